@@ -1,0 +1,139 @@
+//! What happened in a game, in the past tense.
+
+use crate::id::{FlagId, TeamId, VehicleId};
+use crate::time::SimTime;
+use serde::{Deserialize, Serialize};
+
+/// An event, with the tick and the time at which it happened.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Logged {
+    /// Physics tick, counted from 0 at the start of the game.
+    pub tick: u64,
+    /// Simulated time.
+    pub at: SimTime,
+    /// What happened.
+    pub event: Event,
+}
+
+/// Why a boat was tagged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TagCause {
+    /// An opponent came near enough on its own side.
+    Opponent(VehicleId),
+    /// The boat left the field.
+    Boundary,
+}
+
+/// What happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Event {
+    /// A boat took an opponent's flag.
+    Grabbed {
+        /// Who took it.
+        vehicle: VehicleId,
+        /// Which flag.
+        flag: FlagId,
+    },
+    /// A boat brought a flag in.
+    Captured {
+        /// Who brought it.
+        vehicle: VehicleId,
+        /// Which flag.
+        flag: FlagId,
+    },
+    /// A boat was tagged.
+    Tagged {
+        /// Who is tagged now.
+        vehicle: VehicleId,
+        /// Why.
+        cause: TagCause,
+    },
+    /// A tagged boat came home and plays again.
+    Untagged {
+        /// Who plays again.
+        vehicle: VehicleId,
+    },
+    /// A carrier lost its flag, which is at its home again.
+    FlagReturned {
+        /// Who lost it.
+        vehicle: VehicleId,
+        /// Which flag.
+        flag: FlagId,
+    },
+    /// A boat left the field.
+    LeftField {
+        /// Who left.
+        vehicle: VehicleId,
+    },
+    /// A boat came back onto the field.
+    ReturnedToField {
+        /// Who came back.
+        vehicle: VehicleId,
+    },
+    /// Two boats came closer than the collision distance.
+    Collided {
+        /// The one with the lower index.
+        first: VehicleId,
+        /// The one with the higher index.
+        second: VehicleId,
+    },
+    /// A boat came into the keep-out circle of its own flag.
+    EnteredKeepout {
+        /// Who came in.
+        vehicle: VehicleId,
+    },
+    /// A boat is out of action for a while (power play).
+    Disabled {
+        /// Who.
+        vehicle: VehicleId,
+    },
+    /// A boat is back in action.
+    Enabled {
+        /// Who.
+        vehicle: VehicleId,
+    },
+    /// A boat's mind fell silent: the boat holds from now on.
+    MindLost {
+        /// Whose mind.
+        vehicle: VehicleId,
+    },
+    /// A boat's mind is back.
+    MindBack {
+        /// Whose mind.
+        vehicle: VehicleId,
+    },
+    /// A boat's numbers went bad: it lies still where it last was and plays no more.
+    Quarantined {
+        /// Which boat.
+        vehicle: VehicleId,
+    },
+    /// The game is over.
+    Ended {
+        /// Who won; `None` is a draw.
+        winner: Option<TeamId>,
+    },
+}
+
+impl Event {
+    /// The boat it happened to: the first of two in a collision, nobody at the end of a game.
+    #[must_use]
+    pub fn vehicle(self) -> Option<VehicleId> {
+        match self {
+            Event::Grabbed { vehicle, .. }
+            | Event::Captured { vehicle, .. }
+            | Event::Tagged { vehicle, .. }
+            | Event::Untagged { vehicle }
+            | Event::FlagReturned { vehicle, .. }
+            | Event::LeftField { vehicle }
+            | Event::ReturnedToField { vehicle }
+            | Event::EnteredKeepout { vehicle }
+            | Event::Disabled { vehicle }
+            | Event::Enabled { vehicle }
+            | Event::MindLost { vehicle }
+            | Event::MindBack { vehicle }
+            | Event::Quarantined { vehicle } => Some(vehicle),
+            Event::Collided { first, .. } => Some(first),
+            Event::Ended { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! The field: one rectangle on the water, and everything that follows from it, derived once.
+//!
+//! ```text
+//!        corner 1 ──────────────── corner 2        `along` runs from the first team's end to the
+//!           │  first  :  second  │                 second's; `across` is a quarter turn to port of it.
+//!   across ▲│    ⚑    :    ⚑     │                 Flags stand on the long middle line, `flag_inset_m`
+//!          ││  team   :   team   │                 from the ends; the scrimmage line halves the field.
+//!        corner 0 ──────────────── corner 3
+//!              along ▶
+//! ```
+
+use crate::frame::{LatLon, Ned};
+use crate::id::{FlagId, TeamId};
+use serde::{Deserialize, Serialize};
+
+/// What a field file states, checked; [`Field::new`] derives the rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// The field file's stem.
+    pub name: String,
+    /// The geographic position of the local origin.
+    pub datum: LatLon,
+    /// Corner 0 from the datum.
+    pub corner: Ned,
+    /// Compass bearing from the first team's end to the second's, degrees.
+    pub along_deg: f64,
+    /// Extent along, m.
+    pub width_m: f64,
+    /// Extent across, m.
+    pub depth_m: f64,
+    /// Distance of the flags from the ends, m.
+    pub flag_inset_m: f64,
+    /// Flags beyond the one each team has by default.
+    pub extra_flags: Vec<Flag>,
+    /// What stands in the water.
+    pub obstacles: Vec<Obstacle>,
+    /// Whether the edges are walls that boats bump into.
+    pub walls: Walls,
+}
+
+/// Whether the field has walls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Walls {
+    /// Open water all round.
+    #[default]
+    None,
+    /// A wall on every edge.
+    AllRound,
+}
+
+/// A flag and whose it is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Flag {
+    /// The team that defends it.
+    pub team: TeamId,
+    /// Where it stands when nobody carries it.
+    pub home: Ned,
+}
+
+/// Something solid in the water.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Obstacle {
+    /// A round one.
+    Circle {
+        /// Its centre.
+        centre: Ned,
+        /// Its radius, m.
+        radius_m: f64,
+    },
+    /// A polygon without self-crossings, corners in order (either way round).
+    Polygon {
+        /// Its corners, three at least.
+        corners: Vec<Ned>,
+    },
+}
+
+/// A convex region: the inside of a few straight edges. The edges belong to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Zone {
+    /// Unit normals that point out, each with the largest scalar product a point inside has with it.
+    edges: Vec<(Ned, f64)>,
+    /// The corners, in order.
+    pub corners: Vec<Ned>,
+}
+
+impl Zone {
+    /// The convex polygon with these corners, given in order clockwise as seen on the chart.
+    fn new(corners: Vec<Ned>) -> Zone {
+        let edges = (0..corners.len())
+            .map(|i| {
+                let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
+                let side = b - a;
+                let length = side.length();
+                // A quarter turn to port of the side's direction: outward, since we go clockwise.
+                let out = Ned { north: side.east / length, east: -side.north / length };
+                (out, out.dot(a))
+            })
+            .collect();
+        Zone { edges, corners }
+    }
+
+    /// Whether `at` is inside or on an edge (to a nanometre, so that rounding does not decide).
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, at: Ned) -> bool {
+        self.edges.iter().all(|(out, limit)| out.dot(at) <= limit + 1e-9)
+    }
+}
+
+/// The field with all that is derived from its plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Field {
+    /// What the field file states.
+    pub plan: Plan,
+    /// Unit vector from the first team's end to the second's.
+    pub along: Ned,
+    /// Unit vector a quarter turn to port of `along`.
+    pub across: Ned,
+    /// The four corners, clockwise from corner 0.
+    pub corners: [Ned; 4],
+    /// All flags; the first two are the teams' own.
+    pub flags: Vec<Flag>,
+    /// Each team's own side, by team.
+    pub zones: Vec<Zone>,
+    /// The corners of each team's own end, by team.
+    pub own_corners: Vec<[Ned; 2]>,
+    /// The scrimmage line.
+    pub scrimmage: [Ned; 2],
+}
+
+/// The columns of the named points, from the port side as a team looks at its opponent's end.
+const COLUMNS: [(&str, f64); 5] = [("PP", 0.0), ("P", 0.25), ("C", 0.5), ("S", 0.75), ("SS", 1.0)];
+/// The rows of the named points, from the own end: back, flag, half, mid, centre, and theirs.
+const ROWS: [&str; 9] = ["B", "F", "H", "M", "C", "MX", "HX", "FX", "BX"];
+
+impl Field {
+    /// Derives everything from the plan. Two teams: the first has the end at corner 0.
+    #[must_use]
+    pub fn new(plan: Plan) -> Field {
+        let along = Ned::toward_deg(plan.along_deg);
+        let across = Ned { north: along.east, east: -along.north };
+        let at = |x: f64, y: f64| plan.corner + along.scaled(x) + across.scaled(y);
+        let (w, d, half) = (plan.width_m, plan.depth_m, plan.width_m / 2.0);
+        let corners = [at(0.0, 0.0), at(0.0, d), at(w, d), at(w, 0.0)];
+        let mut flags = vec![
+            Flag { team: TeamId(0), home: at(plan.flag_inset_m, d / 2.0) },
+            Flag { team: TeamId(1), home: at(w - plan.flag_inset_m, d / 2.0) },
+        ];
+        flags.extend(&plan.extra_flags);
+        let zones = vec![
+            Zone::new(vec![at(0.0, 0.0), at(0.0, d), at(half, d), at(half, 0.0)]),
+            Zone::new(vec![at(half, 0.0), at(half, d), at(w, d), at(w, 0.0)]),
+        ];
+        let own_corners = vec![[corners[0], corners[1]], [corners[2], corners[3]]];
+        let scrimmage = [at(half, 0.0), at(half, d)];
+        Field { along, across, corners, flags, zones, own_corners, scrimmage, plan }
+    }
+
+    /// The position `along_m` from the first team's end and `across_m` from the edge at corner 0.
+    #[must_use]
+    pub fn at(&self, along_m: f64, across_m: f64) -> Ned {
+        self.plan.corner + self.along.scaled(along_m) + self.across.scaled(across_m)
+    }
+
+    /// Where `at` lies on the field: (metres along, metres across).
+    #[inline]
+    #[must_use]
+    pub fn along_across(&self, at: Ned) -> (f64, f64) {
+        let from_corner = at - self.plan.corner;
+        (from_corner.dot(self.along), from_corner.dot(self.across))
+    }
+
+    /// Whether `at` is on the field; the boundary itself is out.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, at: Ned) -> bool {
+        let (x, y) = self.along_across(at);
+        x > 0.0 && x < self.plan.width_m && y > 0.0 && y < self.plan.depth_m
+    }
+
+    /// The first flag that `team` defends.
+    #[must_use]
+    pub fn flag_of(&self, team: TeamId) -> Option<FlagId> {
+        self.flags.iter().position(|flag| flag.team == team).map(|i| FlagId(i as u8))
+    }
+
+    /// Compass bearing in which `team` looks at its opponent's end, degrees.
+    #[must_use]
+    pub fn facing_deg(&self, team: TeamId) -> f64 {
+        if team.index() == 0 { self.plan.along_deg } else { self.plan.along_deg + 180.0 }
+    }
+
+    /// The named point of `team`: a column (`PP P C S SS`, port to starboard) and a row (`B` back,
+    /// `F` flag line, `H` half of the own side, `M` between there and the centre, `C` centre line,
+    /// then `MX HX FX BX` on the other side), seen from the own end.
+    #[must_use]
+    pub fn point(&self, team: TeamId, name: &str) -> Option<Ned> {
+        let row_names = ROWS.iter().enumerate().rev();
+        let (column, row) = row_names
+            .filter_map(|(row, row_name)| Some((name.strip_suffix(row_name)?, row)))
+            .find_map(|(rest, row)| Some((COLUMNS.iter().find(|(name, _)| *name == rest)?.1, row)))?;
+        let along_m = match row {
+            1 => self.plan.flag_inset_m,
+            7 => self.plan.width_m - self.plan.flag_inset_m,
+            _ => self.plan.width_m * row as f64 / 8.0,
+        };
+        // The first team looks along, so its port side is where `across` is largest.
+        let from_port_m = self.plan.depth_m * column;
+        Some(if team.index() == 0 {
+            self.at(along_m, self.plan.depth_m - from_port_m)
+        } else {
+            self.at(self.plan.width_m - along_m, from_port_m)
+        })
+    }
+
+    /// All names that [`Field::point`] knows.
+    #[must_use]
+    pub fn point_names() -> Vec<String> {
+        COLUMNS.iter().flat_map(|(column, _)| ROWS.iter().map(move |row| format!("{column}{row}"))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(corner: (f64, f64), along_deg: f64, width_m: f64, depth_m: f64, flag_inset_m: f64) -> Plan {
+        Plan {
+            name: "test".into(),
+            datum: LatLon::default(),
+            corner: Ned::from_xy(corner.0, corner.1),
+            along_deg,
+            width_m,
+            depth_m,
+            flag_inset_m,
+            extra_flags: vec![],
+            obstacles: vec![],
+            walls: Walls::None,
+        }
+    }
+
+    fn assert_near(got: Ned, x: f64, y: f64) {
+        assert!(got.distance(Ned::from_xy(x, y)) < 0.02, "({}, {}) is not ({x}, {y})", got.east, got.north);
+    }
+
+    #[test]
+    fn the_axis_aligned_field_has_exact_coordinates() {
+        let field = Field::new(plan((0.0, 0.0), 90.0, 160.0, 80.0, 20.0));
+        assert_eq!(field.flags[0].home, Ned::from_xy(20.0, 40.0));
+        assert_eq!(field.flags[1].home, Ned::from_xy(140.0, 40.0));
+        assert_eq!(field.scrimmage, [Ned::from_xy(80.0, 0.0), Ned::from_xy(80.0, 80.0)]);
+        assert_eq!(field.corners[2], Ned::from_xy(160.0, 80.0));
+    }
+
+    #[test]
+    fn published_fields_come_out_where_they_were_sailed() {
+        // Corners and flags as the 2025 West Point and 2023 Jervis Bay missions list them.
+        let popolopen = Field::new(plan((225.4522, 42.2876), 20.0, 160.0, 80.0, 20.0));
+        assert_near(popolopen.flags[0].home, 194.71, 74.76);
+        assert_near(popolopen.flags[1].home, 235.75, 187.53);
+        assert_near(popolopen.corners[1], 150.28, 69.65);
+        assert_near(popolopen.corners[2], 205.0, 220.0);
+        assert_near(popolopen.corners[3], 280.18, 192.64);
+    }
+
+    #[test]
+    fn the_scrimmage_line_is_on_both_sides_and_the_boundary_is_out() {
+        for (corner, along_deg) in [((0.0, 0.0), 90.0), ((225.4522, 42.2876), 20.0), ((3.0, -7.0), 251.0)] {
+            let field = Field::new(plan(corner, along_deg, 160.0, 80.0, 20.0));
+            let side = |x, y| field.zones.iter().map(|z| z.contains(field.at(x, y))).collect::<Vec<_>>();
+            assert_eq!(side(80.0, 30.0), [true, true], "{along_deg}");
+            assert_eq!(side(79.9, 30.0), [true, false], "{along_deg}");
+            assert_eq!(side(80.1, 30.0), [false, true], "{along_deg}");
+            assert!(field.contains(field.at(0.1, 0.1)) && !field.contains(field.at(-0.1, 0.1)));
+            assert!(!field.contains(field.at(80.0, 80.1)));
+        }
+    }
+
+    #[test]
+    fn named_points_are_seen_from_the_own_end() {
+        let field = Field::new(plan((0.0, 0.0), 90.0, 160.0, 80.0, 20.0));
+        for (team, name, x, y) in [
+            (0, "CF", 20.0, 40.0),
+            (1, "CF", 140.0, 40.0),
+            (0, "PPB", 0.0, 80.0),
+            (1, "PPB", 160.0, 0.0),
+            (0, "SSBX", 160.0, 0.0),
+            (0, "CH", 40.0, 40.0),
+            (0, "CM", 60.0, 40.0),
+            (1, "PC", 80.0, 20.0),
+            (0, "CFX", 140.0, 40.0),
+            (0, "PMX", 100.0, 60.0),
+        ] {
+            assert_eq!(field.point(TeamId(team), name), Some(Ned::from_xy(x, y)), "{name}");
+        }
+        for unknown in ["", "C", "X", "QF", "CFF", "cf", "BX"] {
+            assert_eq!(field.point(TeamId(0), unknown), None, "{unknown}");
+        }
+        assert_eq!(Field::point_names().len(), 45);
+        assert!(Field::point_names().iter().all(|name| field.point(TeamId(1), name).is_some()));
+    }
+}

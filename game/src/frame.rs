@@ -1,0 +1,163 @@
+//! The two frames a boat lives in: the field's north-east-down, and its own body.
+//!
+//! Inside Squall positions are NED: `north_m` and `east_m` from the datum, headings in radians
+//! clockwise from north. Files, the terminal and Python use x east, y north and compass degrees.
+
+use crate::math;
+use serde::{Deserialize, Serialize};
+
+/// A vector in the horizontal plane of the field: north and east, in metres or metres a second.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ned {
+    /// Towards true north.
+    pub north: f64,
+    /// Towards east.
+    pub east: f64,
+}
+
+/// A vector in a boat's own frame: ahead and to starboard.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Body {
+    /// Towards the bow.
+    pub ahead: f64,
+    /// Towards the starboard side.
+    pub starboard: f64,
+}
+
+/// Where a boat is and where it points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pose {
+    /// Position of midships from the datum, m.
+    pub at: Ned,
+    /// Heading, radians clockwise from north.
+    pub psi_rad: f64,
+}
+
+/// A geographic position, WGS 84.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LatLon {
+    /// Latitude, degrees north.
+    pub lat_deg: f64,
+    /// Longitude, degrees east.
+    pub lon_deg: f64,
+}
+
+impl Ned {
+    /// The vector (`x` east, `y` north) of files and charts.
+    #[must_use]
+    pub fn from_xy(x_east: f64, y_north: f64) -> Ned {
+        Ned { north: y_north, east: x_east }
+    }
+
+    /// The unit vector along a compass bearing in degrees, exact at quarter turns.
+    #[must_use]
+    pub fn toward_deg(bearing_deg: f64) -> Ned {
+        let (sin, cos) = math::sin_cos_deg(bearing_deg);
+        Ned { north: cos, east: sin }
+    }
+
+    /// This vector times `factor`.
+    #[inline]
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Ned {
+        Ned { north: self.north * factor, east: self.east * factor }
+    }
+
+    /// The scalar product with `other`.
+    #[inline]
+    #[must_use]
+    pub fn dot(self, other: Ned) -> f64 {
+        self.north * other.north + self.east * other.east
+    }
+
+    /// The length.
+    #[inline]
+    #[must_use]
+    pub fn length(self) -> f64 {
+        math::length(self.north, self.east)
+    }
+
+    /// The squared distance to `other`.
+    #[inline]
+    #[must_use]
+    pub fn distance_squared(self, other: Ned) -> f64 {
+        let (n, e) = (self.north - other.north, self.east - other.east);
+        n * n + e * e
+    }
+
+    /// The distance to `other`.
+    #[inline]
+    #[must_use]
+    pub fn distance(self, other: Ned) -> f64 {
+        self.distance_squared(other).sqrt()
+    }
+
+    /// The bearing of `other` from here, radians clockwise from north.
+    #[inline]
+    #[must_use]
+    pub fn bearing_rad(self, other: Ned) -> f64 {
+        math::atan2(other.east - self.east, other.north - self.north)
+    }
+
+    /// Whether both parts are finite numbers.
+    #[inline]
+    #[must_use]
+    pub fn is_finite(self) -> bool {
+        self.north.is_finite() && self.east.is_finite()
+    }
+}
+
+impl std::ops::Add for Ned {
+    type Output = Ned;
+    #[inline]
+    fn add(self, other: Ned) -> Ned {
+        Ned { north: self.north + other.north, east: self.east + other.east }
+    }
+}
+
+impl std::ops::Sub for Ned {
+    type Output = Ned;
+    #[inline]
+    fn sub(self, other: Ned) -> Ned {
+        Ned { north: self.north - other.north, east: self.east - other.east }
+    }
+}
+
+/// A body vector seen in the field's frame.
+#[inline]
+#[must_use]
+pub fn ned_from_body((sin_psi, cos_psi): (f64, f64), body: Body) -> Ned {
+    Ned {
+        north: cos_psi * body.ahead - sin_psi * body.starboard,
+        east: sin_psi * body.ahead + cos_psi * body.starboard,
+    }
+}
+
+/// A vector of the field's frame seen from the boat.
+#[inline]
+#[must_use]
+pub fn body_from_ned((sin_psi, cos_psi): (f64, f64), ned: Ned) -> Body {
+    Body { ahead: cos_psi * ned.north + sin_psi * ned.east, starboard: -sin_psi * ned.north + cos_psi * ned.east }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ahead_of_a_boat_that_points_east_is_east() {
+        let turn = math::sin_cos_deg(90.0);
+        let ned = ned_from_body(turn, Body { ahead: 2.0, starboard: 1.0 });
+        assert_eq!(ned, Ned { north: -1.0, east: 2.0 });
+        assert_eq!(body_from_ned(turn, ned), Body { ahead: 2.0, starboard: 1.0 });
+    }
+
+    #[test]
+    fn bearings_are_clockwise_from_north() {
+        let home = Ned::default();
+        for (x, y, want_deg) in [(0.0, 1.0, 0.0), (1.0, 0.0, 90.0), (0.0, -1.0, 180.0), (-1.0, 0.0, -90.0)] {
+            let got_deg = home.bearing_rad(Ned::from_xy(x, y)).to_degrees();
+            assert!((got_deg - want_deg).abs() < 1e-12, "{x},{y} -> {got_deg}");
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! What every Squall process agrees on: time, frames, messages, the field, the rules, scenario files.
+//!
+//! Read [`scenario::Scenario`] first (what makes a game), then [`rules`] (the referee), then
+//! the messages (what goes over the wire).
+
+pub mod angle;
+pub mod boat;
+pub mod count;
+pub mod event;
+pub mod field;
+pub mod frame;
+pub mod id;
+pub mod math;
+pub mod near;
+pub mod order;
+pub mod rules;
+pub mod scenario;
+pub mod stream;
+pub mod time;
+
+pub use boat::Boat;
+pub use event::Event;
+pub use field::Field;
+pub use frame::{Body, LatLon, Ned, Pose};
+pub use id::{FlagId, TeamId, VehicleId};
+pub use order::Order;
+pub use rules::Rules;
+pub use scenario::Scenario;
+pub use time::SimTime;
+
+/// The version of Squall, as every node states it when it joins a game.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,80 @@
+//! What a mind asks of its boat.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// One order for one boat; it holds until the next one comes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Order {
+    /// Thrusters to zero. What a boat does without a mind: the safe order.
+    #[default]
+    Hold,
+    /// The front seat's own loops steer this course.
+    Steer {
+        /// Desired heading, radians clockwise from north.
+        heading_rad: f64,
+        /// Desired speed through the water, m/s; never negative.
+        speed_m_s: f64,
+    },
+    /// The two thrusters directly, each in -1 (full astern) to 1 (full ahead).
+    Thrust {
+        /// Port thruster.
+        port: f64,
+        /// Starboard thruster.
+        starboard: f64,
+    },
+}
+
+/// Why an order cannot be obeyed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum BadOrder {
+    /// A number in it is NaN or infinite.
+    #[error("a number is not finite")]
+    NotFinite,
+    /// A number is outside of what the order allows.
+    #[error("a number is out of range (speed 0 to 100 m/s, thrust -1 to 1)")]
+    OutOfRange,
+}
+
+impl Order {
+    /// Whether every number is one a boat can be given.
+    ///
+    /// # Errors
+    /// [`BadOrder`] says what is wrong.
+    pub fn check(self) -> Result<Order, BadOrder> {
+        let (a, b, range_ok) = match self {
+            Order::Hold => return Ok(self),
+            Order::Steer { heading_rad, speed_m_s } => {
+                (heading_rad, speed_m_s, (0.0..=100.0).contains(&speed_m_s) && heading_rad.abs() <= 1e3)
+            }
+            Order::Thrust { port, starboard } => (port, starboard, port.abs() <= 1.0 && starboard.abs() <= 1.0),
+        };
+        if !(a.is_finite() && b.is_finite()) {
+            return Err(BadOrder::NotFinite);
+        }
+        if range_ok { Ok(self) } else { Err(BadOrder::OutOfRange) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_orders_with_sound_numbers_pass() {
+        let steer = |heading_rad, speed_m_s| Order::Steer { heading_rad, speed_m_s };
+        let thrust = |port, starboard| Order::Thrust { port, starboard };
+        for (order, want) in [
+            (Order::Hold, Ok(())),
+            (steer(1.0, 2.0), Ok(())),
+            (thrust(-1.0, 1.0), Ok(())),
+            (steer(f64::NAN, 2.0), Err(BadOrder::NotFinite)),
+            (steer(1.0, f64::INFINITY), Err(BadOrder::NotFinite)),
+            (steer(1.0, -0.1), Err(BadOrder::OutOfRange)),
+            (thrust(1.01, 0.0), Err(BadOrder::OutOfRange)),
+            (thrust(0.0, f64::NAN), Err(BadOrder::NotFinite)),
+        ] {
+            assert_eq!(order.check().map(|_| ()), want, "{order:?}");
+        }
+    }
+}

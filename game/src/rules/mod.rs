@@ -1,0 +1,118 @@
+//! The rules of the game, and the referee who applies them.
+//!
+//! [`Rules`] are data, from `scenarios/rules/*.toml`. The [`Referee`] sees where boats are and what time
+//! it is, never physics: the same referee judges a simulation, a replay and real water.
+
+mod referee;
+mod standing;
+
+pub use referee::{Directive, Referee};
+pub use standing::{FlagStanding, Standing, VehicleStanding};
+
+use crate::time::SimTime;
+use serde::{Deserialize, Serialize};
+
+/// Everything about the game that is a matter of agreement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rules {
+    /// The rules file's stem.
+    pub name: String,
+    /// What is worth what.
+    pub points: Points,
+    /// A flag is grabbed closer than this, m.
+    pub grab_radius_m: f64,
+    /// An intruder is tagged closer than this, m.
+    pub tag_radius_m: f64,
+    /// A tagged boat plays again closer than this to its home, m.
+    pub untag_radius_m: f64,
+    /// A flag is captured closer than this to the place of capture, m (not for [`CaptureAt::OwnSide`]).
+    pub capture_radius_m: f64,
+    /// Two boats closer than this (centre to centre) have collided, m.
+    pub collision_distance_m: f64,
+    /// Where a flag must be brought.
+    pub capture_at: CaptureAt,
+    /// Whether a capture needs the own flag at its home.
+    pub capture_needs_own_flag: bool,
+    /// Where a tagged boat is freed.
+    pub untag_at: UntagAt,
+    /// What frees it there.
+    pub untag_on: UntagOn,
+    /// How long a boat waits after a successful tag before it can tag again.
+    pub tag_cooldown: SimTime,
+    /// Which of several intruders in reach is tagged.
+    pub tag_choice: TagChoice,
+    /// Whether leaving the field tags a boat.
+    pub boundary_tags: bool,
+    /// What a tagged boat does.
+    pub tagged_boat: TaggedBoat,
+    /// Share of its top speed that a tagged boat may use.
+    pub tagged_speed_factor: f64,
+    /// Share of its top speed that a boat outside of the field may use.
+    pub outside_speed_factor: f64,
+    /// Boats keep this far from their own flag while it is home, m; 0 is no such rule.
+    pub flag_keepout_m: f64,
+    /// The game ends when a team has this score.
+    pub win_score: Option<u32>,
+    /// The game ends at this time.
+    pub time_limit: SimTime,
+    /// For how long one boat of each team is out of action; zero is no such rule.
+    pub power_play: SimTime,
+}
+
+/// What is worth what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Points {
+    /// For a grab.
+    pub grab: u32,
+    /// For a capture.
+    pub capture: u32,
+    /// For tagging an opponent (not for the boundary's tags).
+    pub tag: u32,
+}
+
+/// Where a carrier must come to capture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CaptureAt {
+    /// Its own flag's home.
+    OwnFlag,
+    /// Its own side: the scrimmage line is enough.
+    OwnSide,
+    /// Either corner of its own end.
+    OwnCorners,
+}
+
+/// Where a tagged boat must come to play again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum UntagAt {
+    /// Its own flag's home.
+    OwnFlag,
+    /// Either corner of its own end.
+    OwnCorners,
+}
+
+/// What frees a tagged boat at its home.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum UntagOn {
+    /// Coming in: a boat that was tagged inside must leave and come back.
+    Entering,
+    /// Being there.
+    Inside,
+}
+
+/// Which of several intruders in reach is tagged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TagChoice {
+    /// The nearest.
+    Nearest,
+    /// The first in the scenario's list.
+    First,
+}
+
+/// What a tagged boat does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TaggedBoat {
+    /// Its mind must drive it home.
+    DrivesItself,
+    /// It is driven straight home, whatever its mind says.
+    IsDriven,
+}

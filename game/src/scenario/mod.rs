@@ -1,0 +1,149 @@
+//! What makes a game: read from TOML files, checked once, believed ever after.
+//!
+//! [`Scenario`] is the checked form, SI and radians, and travels to every process that joins the game.
+
+use crate::boat::Boat;
+use crate::field::Field;
+use crate::frame::{Ned, Pose};
+use crate::id::TeamId;
+use crate::rules::Rules;
+use crate::time::SimTime;
+use serde::{Deserialize, Serialize};
+
+/// A game, ready to be played.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scenario {
+    /// The game file's stem.
+    pub name: String,
+    /// Chooses the game; `--seed` replaces it.
+    pub seed: u64,
+    /// Physics tick.
+    pub tick: SimTime,
+    /// Physics ticks between two decisions of a mind.
+    pub ticks_per_decision: u32,
+    /// In lockstep, how long (wall clock) the sim waits for a mind before it is lost, s.
+    pub patience_s: f64,
+    /// In real time, how old (simulated time) an order may grow before the boat holds, s.
+    pub order_ttl_s: f64,
+    /// Where.
+    pub field: Field,
+    /// By which rules.
+    pub rules: Rules,
+    /// On what water.
+    pub sea: Sea,
+    /// Who against whom.
+    pub teams: Vec<Team>,
+    /// The kinds of boat that occur.
+    pub boats: Vec<Boat>,
+    /// The strategies that occur.
+    pub strategies: Vec<Strategy>,
+    /// Who plays, in the order in which everything is resolved.
+    pub vehicles: Vec<Vehicle>,
+}
+
+/// A team.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Team {
+    /// Its name, for example `blue`.
+    pub name: String,
+}
+
+/// A boat that plays.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Vehicle {
+    /// Its name, unique in the game.
+    pub name: String,
+    /// Its team.
+    pub team: TeamId,
+    /// Index into [`Scenario::boats`].
+    pub boat: usize,
+    /// Index into [`Scenario::strategies`].
+    pub strategy: usize,
+    /// Where it starts.
+    pub berth: Berth,
+}
+
+/// Where a vehicle starts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Berth {
+    /// Just here.
+    At(Pose),
+    /// Somewhere in a rectangle of the field, drawn from the game's `spawn` stream, pointing at the
+    /// opponent's end.
+    Somewhere {
+        /// Bounds along the field as seen from the vehicle's own end, m.
+        along_m: (f64, f64),
+        /// Bounds across the field, m.
+        across_m: (f64, f64),
+        /// Smallest distance to any other vehicle and to obstacles, m.
+        gap_m: f64,
+    },
+}
+
+/// The water.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sea {
+    /// The sea file's stem.
+    pub name: String,
+    /// Density, kg/m³.
+    pub water_density_kg_m3: f64,
+    /// Uniform, steady current, m/s.
+    pub current_m_s: Ned,
+}
+
+/// How the boats of a team play: the roles they take, and how each role is played.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Strategy {
+    /// The strategy file's stem.
+    pub name: String,
+    /// Roles, dealt to the team's boats of this strategy in order, again from the start when they run out.
+    pub roles: Vec<Role>,
+    /// How they are dealt.
+    pub assignment: Assignment,
+    /// How an easy attacker plays.
+    pub easy_attacker: EasyAttacker,
+    /// How an easy defender plays.
+    pub easy_defender: EasyDefender,
+}
+
+/// What a boat is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// Drives straight at the flag, home when carrying or tagged.
+    EasyAttacker,
+    /// Cycles in front of its flag, reacts to nobody.
+    EasyDefender,
+    /// Lies still.
+    Idle,
+}
+
+/// How roles are dealt to a team's boats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Assignment {
+    /// In the order of the scenario's vehicles.
+    Fixed,
+    /// In an order drawn from the team's own stream.
+    Seeded,
+}
+
+/// How an easy attacker plays.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EasyAttacker {
+    /// Speed, m/s; more than the boat can do is its top speed.
+    pub speed_m_s: f64,
+}
+
+/// How an easy defender plays: round and round an ellipse.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EasyDefender {
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// The named point at the centre of the ellipse.
+    pub centre: String,
+    /// Full extent of the ellipse along the field, m.
+    pub along_m: f64,
+    /// Full extent of the ellipse across the field, m.
+    pub across_m: f64,
+}

@@ -1,0 +1,61 @@
+//! Simulated time: whole nanoseconds since the start of the game.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::ops::{Add, Mul, Sub};
+
+/// A moment or a span of simulated time in nanoseconds.
+///
+/// Integers, so that ten thousand ticks of 50 ms are exactly 500 s on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct SimTime(pub i64);
+
+impl SimTime {
+    /// The start of the game.
+    pub const ZERO: SimTime = SimTime(0);
+    /// Before anything that can happen in a game.
+    pub const LONG_AGO: SimTime = SimTime(i64::MIN / 4);
+    /// After anything that can happen in a game.
+    pub const NEVER: SimTime = SimTime(i64::MAX / 4);
+
+    /// The nearest whole nanosecond to `seconds`.
+    #[must_use]
+    pub fn from_s(seconds: f64) -> SimTime {
+        SimTime((seconds * 1e9).round() as i64)
+    }
+
+    /// The time in seconds.
+    #[inline]
+    #[must_use]
+    pub fn as_s(self) -> f64 {
+        self.0 as f64 * 1e-9
+    }
+}
+
+impl Add for SimTime {
+    type Output = SimTime;
+    fn add(self, other: SimTime) -> SimTime {
+        SimTime(self.0 + other.0)
+    }
+}
+
+impl Sub for SimTime {
+    type Output = SimTime;
+    fn sub(self, other: SimTime) -> SimTime {
+        SimTime(self.0 - other.0)
+    }
+}
+
+impl Mul<i64> for SimTime {
+    type Output = SimTime;
+    fn mul(self, count: i64) -> SimTime {
+        SimTime(self.0 * count)
+    }
+}
+
+impl fmt::Display for SimTime {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.1} s", self.as_s())
+    }
+}
