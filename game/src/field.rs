@@ -204,13 +204,18 @@ impl Field {
             7 => self.plan.width_m - self.plan.flag_inset_m,
             _ => self.plan.width_m * row as f64 / 8.0,
         };
+        Some(self.seen_from(team, along_m, self.plan.depth_m * column))
+    }
+
+    /// The position `ahead_m` from the team's own end and `from_port_m` from the edge to its port side.
+    #[must_use]
+    pub fn seen_from(&self, team: TeamId, ahead_m: f64, from_port_m: f64) -> Ned {
         // The first team looks along, so its port side is where `across` is largest.
-        let from_port_m = self.plan.depth_m * column;
-        Some(if team.index() == 0 {
-            self.at(along_m, self.plan.depth_m - from_port_m)
+        if team.index() == 0 {
+            self.at(ahead_m, self.plan.depth_m - from_port_m)
         } else {
-            self.at(self.plan.width_m - along_m, from_port_m)
-        })
+            self.at(self.plan.width_m - ahead_m, from_port_m)
+        }
     }
 
     /// All names that [`Field::point`] knows.

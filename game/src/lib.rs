@@ -1,22 +1,27 @@
 //! What every Squall process agrees on: time, frames, messages, the field, the rules, scenario files.
 //!
 //! Read [`scenario::Scenario`] first (what makes a game), then [`rules`] (the referee), then
-//! the messages (what goes over the wire).
+//! [`message`] and [`topic`] (what goes over the wire).
 
 pub mod angle;
 pub mod boat;
+pub mod codec;
 pub mod count;
 pub mod event;
 pub mod field;
 pub mod frame;
 pub mod id;
 pub mod math;
+pub mod message;
 pub mod near;
 pub mod order;
+pub mod outcome;
+pub mod picture;
 pub mod rules;
 pub mod scenario;
 pub mod stream;
 pub mod time;
+pub mod topic;
 
 pub use boat::Boat;
 pub use event::Event;
@@ -24,6 +29,8 @@ pub use field::Field;
 pub use frame::{Body, LatLon, Ned, Pose};
 pub use id::{FlagId, TeamId, VehicleId};
 pub use order::Order;
+pub use outcome::Outcome;
+pub use picture::Picture;
 pub use rules::Rules;
 pub use scenario::Scenario;
 pub use time::SimTime;

@@ -13,7 +13,7 @@ pub enum Order {
     Steer {
         /// Desired heading, radians clockwise from north.
         heading_rad: f64,
-        /// Desired speed through the water, m/s; never negative.
+        /// Desired speed ahead over the ground, m/s; never negative.
         speed_m_s: f64,
     },
     /// The two thrusters directly, each in -1 (full astern) to 1 (full ahead).

@@ -1,1 +1,18 @@
-//! stub
+//! The Squall world: boats in water, contact, and the referee.
+//!
+//! Open [`World::step`] first. [`Contest`] plays a whole game with it; `node` puts one on the network.
+
+pub mod autopilot;
+pub mod contact;
+pub mod contest;
+pub mod hull;
+pub mod sea;
+pub mod spawn;
+pub mod state;
+pub mod thruster;
+mod view;
+pub mod world;
+
+pub use contest::Contest;
+pub use state::{BoatState, RestoreError, State};
+pub use world::World;

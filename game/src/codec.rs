@@ -1,0 +1,74 @@
+//! Messages to bytes and back: CDR, little-endian, with the 4-byte encapsulation header.
+//!
+//! This is what ROS 2 and its tools read. Every message begins with a [`Stamp`], and the version in
+//! it is looked at before anything else, so that a newer peer is a clear error and not nonsense.
+
+use crate::message::{Message, Stamp};
+use byteorder::LittleEndian;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use thiserror::Error;
+
+/// CDR, little-endian, plain.
+const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
+
+/// Why bytes are not a message.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum DecodeError {
+    /// The first four bytes are not the header of little-endian CDR.
+    #[error("not CDR little-endian: the bytes begin with {found:02x?}, expected 00 01 00 00")]
+    Encapsulation {
+        /// The first bytes found, four at most.
+        found: Vec<u8>,
+    },
+    /// The sender speaks another version of this message.
+    #[error("{schema} is version {found}, this program reads version {expected}")]
+    Version {
+        /// The message's name.
+        schema: &'static str,
+        /// The sender's version.
+        found: u8,
+        /// Ours.
+        expected: u8,
+    },
+    /// The bytes do not fit the message's layout.
+    #[error("not a {schema}: {reason}")]
+    Layout {
+        /// The message's name.
+        schema: &'static str,
+        /// What does not fit.
+        reason: String,
+    },
+}
+
+/// The bytes of `message`.
+///
+/// # Panics
+/// Never: every message is a plain struct of numbers, lists and strings.
+#[must_use]
+pub fn encode<M: Message + Serialize>(message: &M) -> Vec<u8> {
+    let mut bytes = ENCAPSULATION.to_vec();
+    cdr_encoding::to_writer::<M, LittleEndian, _>(&mut bytes, message).expect("a plain struct always encodes");
+    bytes
+}
+
+/// The message in `bytes`.
+///
+/// # Errors
+/// [`DecodeError`] says which part is wrong; bytes after the end of the message are one.
+pub fn decode<M: Message + DeserializeOwned>(bytes: &[u8]) -> Result<M, DecodeError> {
+    let schema = M::SCHEMA;
+    let body = bytes
+        .strip_prefix(&ENCAPSULATION)
+        .ok_or_else(|| DecodeError::Encapsulation { found: bytes.iter().take(4).copied().collect() })?;
+    let layout = |reason: String| DecodeError::Layout { schema, reason };
+    let (stamp, _) = cdr_encoding::from_bytes::<Stamp, LittleEndian>(body).map_err(|e| layout(e.to_string()))?;
+    if stamp.version != M::VERSION {
+        return Err(DecodeError::Version { schema, found: stamp.version, expected: M::VERSION });
+    }
+    let (message, used) = cdr_encoding::from_bytes::<M, LittleEndian>(body).map_err(|e| layout(e.to_string()))?;
+    if used != body.len() {
+        return Err(layout(format!("{} bytes follow its end", body.len() - used)));
+    }
+    Ok(message)
+}

@@ -1,0 +1,278 @@
+//! What goes over the wire every tick: one struct a topic, in step with `msg/*.msg`.
+//!
+//! The structs keep to what ROS 2 can say (fixed-width numbers, lists, nested messages), so that
+//! tools which know the `.msg` files read our bytes without us. `-1` stands for "none".
+//! The low-rate control plane ([`JoinRequest`], [`JoinReply`], [`Control`]) is JSON.
+
+use crate::event::{Event, Logged, TagCause};
+use crate::id::{FlagId, TeamId, VehicleId};
+use crate::order::Order;
+use crate::picture::{FlagView, Nav, Picture};
+use crate::scenario::Scenario;
+use crate::time::SimTime;
+use serde::{Deserialize, Serialize};
+
+/// A per-tick message: named and versioned.
+pub trait Message {
+    /// The ROS 2 name of the message, as `Encoding` carries it.
+    const SCHEMA: &'static str;
+    /// The version of its layout.
+    const VERSION: u8;
+    /// The `.msg` definition.
+    const DEFINITION: &'static str;
+    /// When it holds, and which one it is.
+    fn stamp(&self) -> &Stamp;
+}
+
+/// How every message begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stamp {
+    /// Simulated time at which the content holds, ns.
+    pub valid_ns: SimTime,
+    /// Decision tick, counted from 0.
+    pub seq: u64,
+    /// Version of the message's layout.
+    pub version: u8,
+}
+
+/// The truth about everything, for observers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// When.
+    pub stamp: Stamp,
+    /// By vehicle.
+    pub vehicles: Vec<VehicleTruth>,
+    /// By flag.
+    pub flags: Vec<FlagView>,
+    /// Points, by team.
+    pub score: Vec<u32>,
+    /// What happened since the frame before.
+    pub events: Vec<EventRecord>,
+    /// Whether the game is over.
+    pub over: bool,
+}
+
+/// The truth about one boat.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct VehicleTruth {
+    /// Where it is and how it moves over the ground.
+    pub nav: Nav,
+    /// Thrust of the port thruster, N.
+    pub port_newton: f64,
+    /// Thrust of the starboard thruster, N.
+    pub starboard_newton: f64,
+    /// Whether it is tagged.
+    pub tagged: bool,
+    /// The flag it carries, or -1.
+    pub carrying: i16,
+    /// Whether it is out of action by power play.
+    pub disabled: bool,
+    /// Whether it is outside of the field.
+    pub outside: bool,
+    /// Whether its mind is lost.
+    pub mind_lost: bool,
+    /// Whether its numbers went bad.
+    pub quarantined: bool,
+}
+
+/// An event as two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EventRecord {
+    /// Physics tick.
+    pub tick: u64,
+    /// Simulated time, ns.
+    pub at_ns: SimTime,
+    /// What happened: the constants of `EventRecord.msg`.
+    pub kind: u8,
+    /// The vehicle it happened to (the winning team, for `ENDED`), or -1.
+    pub subject: i32,
+    /// The flag, the tagger or the other vehicle, or -1.
+    pub object: i32,
+}
+
+/// The orders of one agent process, for all boats it minds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Orders {
+    /// The picture that they answer.
+    pub stamp: Stamp,
+    /// The ticket that the sim gave when the agent joined.
+    pub ticket: u64,
+    /// One order a boat.
+    pub orders: Vec<VehicleOrder>,
+}
+
+/// One order for one boat.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VehicleOrder {
+    /// The boat.
+    pub vehicle: VehicleId,
+    /// 0 hold, 1 steer, 2 thrust.
+    pub kind: u8,
+    /// Heading in rad (steer) or port thrust in -1 to 1 (thrust).
+    pub first: f64,
+    /// Speed in m/s (steer) or starboard thrust in -1 to 1 (thrust).
+    pub second: f64,
+}
+
+impl VehicleOrder {
+    /// The order for `vehicle` in wire form.
+    #[must_use]
+    pub fn new(vehicle: VehicleId, order: Order) -> VehicleOrder {
+        let (kind, first, second) = match order {
+            Order::Hold => (0, 0.0, 0.0),
+            Order::Steer { heading_rad, speed_m_s } => (1, heading_rad, speed_m_s),
+            Order::Thrust { port, starboard } => (2, port, starboard),
+        };
+        VehicleOrder { vehicle, kind, first, second }
+    }
+
+    /// The order, if its kind is one we know.
+    #[must_use]
+    pub fn order(&self) -> Option<Order> {
+        match self.kind {
+            0 => Some(Order::Hold),
+            1 => Some(Order::Steer { heading_rad: self.first, speed_m_s: self.second }),
+            2 => Some(Order::Thrust { port: self.first, starboard: self.second }),
+            _ => None,
+        }
+    }
+}
+
+impl From<Logged> for EventRecord {
+    fn from(logged: Logged) -> EventRecord {
+        let v = |vehicle: VehicleId| i32::from(vehicle.0);
+        let f = |flag: FlagId| i32::from(flag.0);
+        let (kind, subject, object) = match logged.event {
+            Event::Grabbed { vehicle, flag } => (0, v(vehicle), f(flag)),
+            Event::Captured { vehicle, flag } => (1, v(vehicle), f(flag)),
+            Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => (2, v(vehicle), v(by)),
+            Event::Tagged { vehicle, cause: TagCause::Boundary } => (3, v(vehicle), -1),
+            Event::Untagged { vehicle } => (4, v(vehicle), -1),
+            Event::FlagReturned { vehicle, flag } => (5, v(vehicle), f(flag)),
+            Event::LeftField { vehicle } => (6, v(vehicle), -1),
+            Event::ReturnedToField { vehicle } => (7, v(vehicle), -1),
+            Event::Collided { first, second } => (8, v(first), v(second)),
+            Event::EnteredKeepout { vehicle } => (9, v(vehicle), -1),
+            Event::Disabled { vehicle } => (10, v(vehicle), -1),
+            Event::Enabled { vehicle } => (11, v(vehicle), -1),
+            Event::MindLost { vehicle } => (12, v(vehicle), -1),
+            Event::MindBack { vehicle } => (13, v(vehicle), -1),
+            Event::Quarantined { vehicle } => (14, v(vehicle), -1),
+            Event::Ended { winner } => (15, winner.map_or(-1, |team| i32::from(team.0)), -1),
+        };
+        EventRecord { tick: logged.tick, at_ns: logged.at, kind, subject, object }
+    }
+}
+
+impl EventRecord {
+    /// The event, if kind and numbers are ones we know.
+    #[must_use]
+    pub fn logged(&self) -> Option<Logged> {
+        let vehicle = u16::try_from(self.subject).ok().map(VehicleId);
+        let other = u16::try_from(self.object).ok().map(VehicleId);
+        let flag = u8::try_from(self.object).ok().map(FlagId);
+        let event = match self.kind {
+            0 => Event::Grabbed { vehicle: vehicle?, flag: flag? },
+            1 => Event::Captured { vehicle: vehicle?, flag: flag? },
+            2 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Opponent(other?) },
+            3 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Boundary },
+            4 => Event::Untagged { vehicle: vehicle? },
+            5 => Event::FlagReturned { vehicle: vehicle?, flag: flag? },
+            6 => Event::LeftField { vehicle: vehicle? },
+            7 => Event::ReturnedToField { vehicle: vehicle? },
+            8 => Event::Collided { first: vehicle?, second: other? },
+            9 => Event::EnteredKeepout { vehicle: vehicle? },
+            10 => Event::Disabled { vehicle: vehicle? },
+            11 => Event::Enabled { vehicle: vehicle? },
+            12 => Event::MindLost { vehicle: vehicle? },
+            13 => Event::MindBack { vehicle: vehicle? },
+            14 => Event::Quarantined { vehicle: vehicle? },
+            15 => Event::Ended { winner: u8::try_from(self.subject).ok().map(TeamId) },
+            _ => return None,
+        };
+        Some(Logged { tick: self.tick, at: self.at_ns, event })
+    }
+}
+
+impl Message for Frame {
+    const SCHEMA: &'static str = "squall_msgs/msg/Frame";
+    const VERSION: u8 = 1;
+    const DEFINITION: &'static str = include_str!("../msg/Frame.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
+}
+
+impl Message for Picture {
+    const SCHEMA: &'static str = "squall_msgs/msg/Picture";
+    const VERSION: u8 = 1;
+    const DEFINITION: &'static str = include_str!("../msg/Picture.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
+}
+
+impl Message for Orders {
+    const SCHEMA: &'static str = "squall_msgs/msg/Orders";
+    const VERSION: u8 = 1;
+    const DEFINITION: &'static str = include_str!("../msg/Orders.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
+}
+
+/// What an agent asks of the sim before anything else.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JoinRequest {
+    /// The agent's version of Squall.
+    pub version: String,
+    /// A name for the agent process, unique on the network.
+    pub agent: String,
+    /// The vehicles it wants to mind, by name.
+    pub vehicles: Vec<String>,
+}
+
+/// What the sim answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum JoinReply {
+    /// Come in.
+    Granted {
+        /// To be shown with every order.
+        ticket: u64,
+        /// The vehicles, in the order asked for.
+        vehicles: Vec<VehicleId>,
+        /// The checked scenario, with the seed of this game.
+        scenario: Box<Scenario>,
+        /// Longest silence (wall clock) after which the agent may take the sim for dead, s.
+        silence_s: f64,
+    },
+    /// Not now: somebody else minds the vehicle. Asking again later may help.
+    Busy {
+        /// The vehicle.
+        vehicle: String,
+    },
+    /// No, and asking again will not help.
+    Refused {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// What the shore asks of a game.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Control {
+    /// Ends the game now.
+    Stop,
+}
+
+/// What a sim says of its game to anyone who asks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Notice {
+    /// The sim's version of Squall.
+    pub version: String,
+    /// How the game is paced.
+    pub pace: String,
+    /// The checked scenario, with the seed of this game.
+    pub scenario: Scenario,
+}

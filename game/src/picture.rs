@@ -1,0 +1,134 @@
+//! What a team may know: its own boats, what it sees of the others, the flags, the score.
+//!
+//! A mind decides from this and nothing else. It is the same on the sea and in simulation.
+
+use crate::frame::{Ned, Pose};
+use crate::id::{FlagId, TeamId, VehicleId};
+use crate::message::{EventRecord, Stamp};
+use crate::time::SimTime;
+use serde::{Deserialize, Serialize};
+
+/// What one team knows at one decision tick.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Picture {
+    /// When, and which tick orders must answer.
+    pub stamp: Stamp,
+    /// Whose picture this is.
+    pub team: u8,
+    /// The team's own boats, by rising vehicle index.
+    pub own: Vec<OwnBoat>,
+    /// The other boats as the team knows them, by rising vehicle index.
+    pub contacts: Vec<Contact>,
+    /// By flag.
+    pub flags: Vec<FlagView>,
+    /// Points, by team.
+    pub score: Vec<u32>,
+    /// What happened to the team's boats and flags since the picture before.
+    pub events: Vec<EventRecord>,
+    /// Whether the game is over.
+    pub over: bool,
+}
+
+/// A boat's own navigation: where it is and how it moves over the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Nav {
+    /// North of the datum, m.
+    pub north_m: f64,
+    /// East of the datum, m.
+    pub east_m: f64,
+    /// Heading, rad clockwise from north.
+    pub psi_rad: f64,
+    /// Velocity ahead over the ground, m/s.
+    pub surge_m_s: f64,
+    /// Velocity to starboard over the ground, m/s.
+    pub sway_m_s: f64,
+    /// Yaw rate, rad/s clockwise.
+    pub yaw_rate_rad_s: f64,
+}
+
+impl Nav {
+    /// The position.
+    #[must_use]
+    pub fn at(&self) -> Ned {
+        Ned { north: self.north_m, east: self.east_m }
+    }
+
+    /// Position and heading.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        Pose { at: self.at(), psi_rad: self.psi_rad }
+    }
+}
+
+/// One of the team's own boats.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OwnBoat {
+    /// Which.
+    pub vehicle: VehicleId,
+    /// Its navigation.
+    pub nav: Nav,
+    /// Whether it is tagged.
+    pub tagged: bool,
+    /// The flag it carries, or -1.
+    pub carrying: i16,
+    /// Whether it is out of action by power play.
+    pub disabled: bool,
+    /// Whether it is outside of the field.
+    pub outside: bool,
+    /// From when on it may tag again, ns.
+    pub tag_ready_ns: SimTime,
+}
+
+/// Another team's boat, as known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// Which.
+    pub vehicle: VehicleId,
+    /// Its team.
+    pub team: TeamId,
+    /// When it was seen so, ns.
+    pub seen_ns: SimTime,
+    /// North of the datum, m.
+    pub north_m: f64,
+    /// East of the datum, m.
+    pub east_m: f64,
+    /// Heading, rad clockwise from north.
+    pub psi_rad: f64,
+    /// Velocity over the ground towards north, m/s.
+    pub velocity_north_m_s: f64,
+    /// Velocity over the ground towards east, m/s.
+    pub velocity_east_m_s: f64,
+    /// Whether it is tagged.
+    pub tagged: bool,
+    /// The flag it carries, or -1.
+    pub carrying: i16,
+}
+
+/// One flag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FlagView {
+    /// The vehicle that carries it, or -1: it is at its home.
+    pub carrier: i32,
+}
+
+impl Picture {
+    /// The own boat `vehicle`, if it is of this team.
+    #[must_use]
+    pub fn own(&self, vehicle: VehicleId) -> Option<&OwnBoat> {
+        self.own.binary_search_by_key(&vehicle, |boat| boat.vehicle).ok().map(|i| &self.own[i])
+    }
+}
+
+impl OwnBoat {
+    /// The flag it carries.
+    #[must_use]
+    pub fn carried_flag(&self) -> Option<FlagId> {
+        u8::try_from(self.carrying).ok().map(FlagId)
+    }
+}
+
+/// A flag or none as the messages say it.
+#[must_use]
+pub fn number_of_flag(flag: Option<FlagId>) -> i16 {
+    flag.map_or(-1, |flag| i16::from(flag.0))
+}

@@ -1,0 +1,146 @@
+//! The key expressions of a game. Nothing else spells them.
+//!
+//! All keys begin with `squall/<game>/`, so that games on one network never meet.
+
+use crate::id::TeamId;
+use crate::scenario::Scenario;
+
+/// A game's name on the network: small letters, digits, `_` and `-`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct GameName(String);
+
+impl GameName {
+    /// The name, if it can be part of a key.
+    ///
+    /// # Errors
+    /// Says what is allowed.
+    pub fn new(name: &str) -> Result<GameName, String> {
+        let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
+        if (1..=64).contains(&name.len()) && name.chars().all(allowed) {
+            Ok(GameName(name.to_owned()))
+        } else {
+            Err(format!("game name {name:?} is not 1 to 64 of the characters a-z 0-9 _ -"))
+        }
+    }
+
+    /// The name.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+/// The truth for observers (publish).
+#[must_use]
+pub fn frame(game: &GameName) -> String {
+    format!("squall/{}/frame", game.0)
+}
+
+/// A team's picture (publish).
+#[must_use]
+pub fn picture(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
+    format!("squall/{}/picture/{}", game.0, scenario.teams[team.index()].name)
+}
+
+/// An agent's orders (publish).
+#[must_use]
+pub fn orders(game: &GameName, agent: &str) -> String {
+    format!("squall/{}/order/{agent}", game.0)
+}
+
+/// All agents' orders (subscribe).
+#[must_use]
+pub fn all_orders(game: &GameName) -> String {
+    orders(game, "*")
+}
+
+/// The door at which agents ask to be let in (query).
+#[must_use]
+pub fn join(game: &GameName) -> String {
+    format!("squall/{}/join", game.0)
+}
+
+/// What the game is (query).
+#[must_use]
+pub fn scenario(game: &GameName) -> String {
+    format!("squall/{}/scenario", game.0)
+}
+
+/// Orders from the shore (publish).
+#[must_use]
+pub fn control(game: &GameName) -> String {
+    format!("squall/{}/control", game.0)
+}
+
+/// What a node is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    /// The world and the referee.
+    Sim,
+    /// Minds.
+    Agent,
+}
+
+impl Part {
+    fn word(self) -> &'static str {
+        match self {
+            Part::Sim => "sim",
+            Part::Agent => "agent",
+        }
+    }
+}
+
+/// A node that is there (liveliness token).
+#[must_use]
+pub fn alive(game: &GameName, part: Part, node: &str) -> String {
+    format!("squall/{}/alive/{}/{node}", game.0, part.word())
+}
+
+/// All nodes of one kind in a game (liveliness).
+#[must_use]
+pub fn all_alive(game: &GameName, part: Part) -> String {
+    alive(game, part, "*")
+}
+
+/// All nodes of all games (liveliness).
+#[must_use]
+pub fn everyone_alive() -> String {
+    "squall/*/alive/*/*".to_owned()
+}
+
+/// The game, part and node that an [`alive`] key names.
+#[must_use]
+pub fn parse_alive(key: &str) -> Option<(GameName, Part, String)> {
+    let mut words = key.strip_prefix("squall/")?.split('/');
+    let game = GameName::new(words.next()?).ok()?;
+    if words.next()? != "alive" {
+        return None;
+    }
+    let part = match words.next()? {
+        "sim" => Part::Sim,
+        "agent" => Part::Agent,
+        _ => return None,
+    };
+    Some((game, part, words.next()?.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_token_says_who_is_alive_where() {
+        let game = GameName::new("pav01-3f").expect("a good name");
+        assert_eq!(parse_alive(&alive(&game, Part::Agent, "a7")), Some((game, Part::Agent, "a7".into())));
+        for other in ["squall/x/alive/sim", "squall/x/frame", "other/x/alive/sim/a", "squall/x/alive/cat/a"] {
+            assert_eq!(parse_alive(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn names_that_would_break_a_key_are_refused() {
+        for bad in ["", "a/b", "a*", "Game", "a b", "x?"] {
+            assert!(GameName::new(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! The front seat: turns an order into settings for the two thrusters.
+//!
+//! Heading is a proportional-derivative loop whose gains follow from the wanted natural frequency and
+//! the hull's own inertia and damping; speed is the calibrated resistance plus a proportional-integral
+//! correction, all limited by what the thrusters can give, with yaw first.
+
+use crate::hull::{HullModel, Planar};
+use crate::thruster::ThrusterModel;
+use game::angle::wrap_pi;
+use game::boat::Autopilot;
+
+/// The loops of one kind of boat.
+#[derive(Clone, Debug)]
+pub struct AutopilotModel {
+    /// The highest speed it accepts, m/s.
+    pub speed_max_m_s: f64,
+    yaw_per_rad: f64,
+    yaw_per_rad_s: f64,
+    surge_per_m_s: f64,
+    /// Gain of the integral for one tick, N per m/s.
+    surge_integral: f64,
+}
+
+/// The integral is this many times slower than the proportional part.
+const INTEGRAL_SLOWNESS: f64 = 4.0;
+
+impl AutopilotModel {
+    /// The loops for this hull and ticks of `dt_s`.
+    #[must_use]
+    pub fn new(autopilot: &Autopilot, hull: &HullModel, dt_s: f64) -> AutopilotModel {
+        let (inertia, omega) = (hull.yaw_inertia_kg_m2(), autopilot.heading_bandwidth_rad_s);
+        let wanted_damping = 2.0 * autopilot.heading_damping * omega * inertia;
+        let surge_per_m_s = hull.surge_mass_kg() / autopilot.speed_time_s;
+        AutopilotModel {
+            speed_max_m_s: autopilot.speed_max_m_s,
+            yaw_per_rad: inertia * omega * omega,
+            yaw_per_rad_s: (wanted_damping - hull.yaw_damping_kg_m2_s()).max(0.0),
+            surge_per_m_s,
+            surge_integral: surge_per_m_s * dt_s / (INTEGRAL_SLOWNESS * autopilot.speed_time_s),
+        }
+    }
+
+    /// Settings for the port and starboard thruster that steer `heading_rad` at `speed_m_s`.
+    ///
+    /// `integral_newton` is the speed loop's memory.
+    #[inline]
+    pub fn steer(
+        &self,
+        boat: (&HullModel, &ThrusterModel),
+        (psi_rad, nu): (f64, Planar),
+        (heading_rad, speed_m_s): (f64, f64),
+        integral_newton: &mut f64,
+    ) -> [f64; 2] {
+        let (hull, thruster) = boat;
+        let wanted_m_s = speed_m_s.min(self.speed_max_m_s);
+        let error_m_s = wanted_m_s - nu.surge;
+        let surge = hull.surge_resistance_newton(wanted_m_s) + self.surge_per_m_s * error_m_s + *integral_newton;
+        let yaw = self.yaw_per_rad * wrap_pi(heading_rad - psi_rad) - self.yaw_per_rad_s * nu.yaw;
+
+        // Yaw first: what is left of the range goes to surge.
+        let reach = 0.5 * (thruster.newton_max - thruster.newton_min);
+        let difference = (0.5 * yaw / thruster.arm_m).clamp(-reach, reach);
+        let (least, most) = (thruster.newton_min + difference.abs(), thruster.newton_max - difference.abs());
+        let each = (0.5 * surge).clamp(least, most);
+        if each == 0.5 * surge {
+            *integral_newton += self.surge_integral * error_m_s;
+        }
+        [thruster.setting(each + difference), thruster.setting(each - difference)]
+    }
+}

@@ -1,0 +1,102 @@
+//! Where boats start: as placed, or drawn from the game's `spawn` stream.
+
+use game::angle::wrap_pi;
+use game::field::Obstacle;
+use game::frame::{Ned, Pose};
+use game::scenario::{Berth, Scenario};
+use game::stream::Stream;
+use game::{Field, TeamId};
+use thiserror::Error;
+
+/// How often a berth is drawn before the field counts as full.
+const TRIES: u32 = 10_000;
+
+/// No room on the field.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("no free berth for {vehicle} after {TRIES} tries: enlarge its spawn area or lower gap_m")]
+pub struct NoBerth {
+    /// Which vehicle found none.
+    pub vehicle: String,
+}
+
+/// Where every vehicle starts. Boats placed by hand come first, then the others in order.
+///
+/// # Errors
+/// [`NoBerth`] where a spawn area is too full.
+pub fn berths(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, NoBerth> {
+    let mut stream = Stream::new(seed, "spawn");
+    let mut taken: Vec<(usize, Pose)> = Vec::new();
+    for (i, vehicle) in scenario.vehicles.iter().enumerate() {
+        if let Berth::At(pose) = vehicle.berth {
+            taken.push((i, pose));
+        }
+    }
+    for (i, vehicle) in scenario.vehicles.iter().enumerate() {
+        if let Berth::Somewhere { along_m, across_m, gap_m } = vehicle.berth {
+            let free = |at: Ned| {
+                let apart = |other: &(usize, Pose)| other.1.at.distance(at) >= gap_m;
+                taken.iter().all(apart) && clear_of_obstacles(&scenario.field, at, gap_m)
+            };
+            let mut draw = || seen_from(&scenario.field, vehicle.team, (along_m, across_m), &mut stream);
+            let at = (0..TRIES).map(|_| draw()).find(|at| free(*at));
+            let at = at.ok_or_else(|| NoBerth { vehicle: vehicle.name.clone() })?;
+            let psi_rad = wrap_pi(scenario.field.facing_deg(vehicle.team).to_radians());
+            taken.push((i, Pose { at, psi_rad }));
+        }
+    }
+    taken.sort_by_key(|(i, _)| *i);
+    Ok(taken.into_iter().map(|(_, pose)| pose).collect())
+}
+
+/// A random place in a rectangle seen from the team's own end, port side first.
+fn seen_from(field: &Field, team: TeamId, area: ((f64, f64), (f64, f64)), stream: &mut Stream) -> Ned {
+    let ((near_m, far_m), (port_m, starboard_m)) = area;
+    let along_m = stream.between(near_m, far_m);
+    let from_port_m = stream.between(port_m, starboard_m);
+    field.seen_from(team, along_m, from_port_m)
+}
+
+fn clear_of_obstacles(field: &Field, at: Ned, gap_m: f64) -> bool {
+    field.plan.obstacles.iter().all(|obstacle| match obstacle {
+        Obstacle::Circle { centre, radius_m } => centre.distance(at) >= radius_m + gap_m,
+        Obstacle::Polygon { corners } => !inside(corners, at) && distance_to_sides(corners, at) >= gap_m,
+    })
+}
+
+fn sides(corners: &[Ned]) -> impl Iterator<Item = (Ned, Ned)> {
+    (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]))
+}
+
+/// Even-odd rule.
+fn inside(corners: &[Ned], at: Ned) -> bool {
+    let crossed = |(a, b): &(Ned, Ned)| {
+        (a.east > at.east) != (b.east > at.east)
+            && at.north < (b.north - a.north) * (at.east - a.east) / (b.east - a.east) + a.north
+    };
+    sides(corners).filter(crossed).count() % 2 == 1
+}
+
+fn distance_to_sides(corners: &[Ned], at: Ned) -> f64 {
+    let to_side = |(a, b): (Ned, Ned)| {
+        let (side, from_a) = (b - a, at - a);
+        let share = (from_a.dot(side) / side.dot(side)).clamp(0.0, 1.0);
+        from_a.distance(side.scaled(share))
+    };
+    sides(corners).map(to_side).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polygon_knows_its_inside_and_its_distance() {
+        let bay: Vec<Ned> =
+            [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0), (0.0, 4.0)].map(|(x, y)| Ned::from_xy(x, y)).to_vec();
+        for (x, y, want) in [(1.0, 0.5, true), (2.0, 2.0, false), (3.9, 3.5, true), (-1.0, 1.0, false)] {
+            assert_eq!(inside(&bay, Ned::from_xy(x, y)), want, "{x} {y}");
+        }
+        assert!((distance_to_sides(&bay, Ned::from_xy(2.0, -3.0)) - 3.0).abs() < 1e-12);
+        assert!((distance_to_sides(&bay, Ned::from_xy(-3.0, -4.0)) - 5.0).abs() < 1e-12);
+    }
+}

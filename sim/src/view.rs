@@ -1,0 +1,123 @@
+//! What others see of a world: the truth for observers, and each team's picture.
+
+use crate::state::State;
+use game::event::{Event, Logged, TagCause};
+use game::frame;
+use game::message::{Frame, Message, Stamp, VehicleTruth};
+use game::picture::{Contact, FlagView, Nav, OwnBoat, Picture, number_of_flag};
+use game::{Body, Scenario, TeamId, VehicleId};
+
+fn stamp<M: Message>(state: &State, seq: u64) -> Stamp {
+    Stamp { valid_ns: state.now, seq, version: M::VERSION }
+}
+
+fn nav(state: &State, i: usize) -> Nav {
+    let boat = &state.boats[i];
+    Nav {
+        north_m: boat.pose.at.north,
+        east_m: boat.pose.at.east,
+        psi_rad: boat.pose.psi_rad,
+        surge_m_s: boat.nu.surge,
+        sway_m_s: boat.nu.sway,
+        yaw_rate_rad_s: boat.nu.yaw,
+    }
+}
+
+fn flags(state: &State) -> impl Iterator<Item = FlagView> {
+    state.standing.flags.iter().map(|flag| FlagView { carrier: flag.carrier.map_or(-1, |v| i32::from(v.0)) })
+}
+
+/// The truth about everything, with the events since the frame before.
+pub(crate) fn frame(state: &State, seq: u64, events: &[Logged], mind_lost: &[bool]) -> Frame {
+    let truth = |i: usize| {
+        let (boat, standing) = (&state.boats[i], &state.standing.vehicles[i]);
+        VehicleTruth {
+            nav: nav(state, i),
+            port_newton: boat.port.newton,
+            starboard_newton: boat.starboard.newton,
+            tagged: standing.tagged,
+            carrying: number_of_flag(standing.carrying),
+            disabled: standing.disabled,
+            outside: standing.outside,
+            mind_lost: mind_lost[i],
+            quarantined: boat.quarantined,
+        }
+    };
+    Frame {
+        stamp: stamp::<Frame>(state, seq),
+        vehicles: (0..state.boats.len()).map(truth).collect(),
+        flags: flags(state).collect(),
+        score: state.standing.score.clone(),
+        events: events.iter().map(|logged| (*logged).into()).collect(),
+        over: state.standing.over,
+    }
+}
+
+/// Brings a team's picture up to date in place.
+pub(crate) fn picture(scenario: &Scenario, state: &State, seq: u64, events: &[Logged], picture: &mut Picture) {
+    let team = TeamId(picture.team);
+    picture.stamp = stamp::<Picture>(state, seq);
+    picture.own.clear();
+    picture.contacts.clear();
+    for (i, vehicle) in scenario.vehicles.iter().enumerate() {
+        if vehicle.team == team {
+            picture.own.push(own_boat(state, i));
+        } else {
+            picture.contacts.push(contact(state, i, vehicle.team));
+        }
+    }
+    picture.flags.clear();
+    picture.flags.extend(flags(state));
+    picture.score.clone_from(&state.standing.score);
+    picture.events.clear();
+    let concerns = events.iter().filter(|logged| concerns(scenario, team, logged.event));
+    picture.events.extend(concerns.map(|logged| game::message::EventRecord::from(*logged)));
+    picture.over = state.standing.over;
+}
+
+fn own_boat(state: &State, i: usize) -> OwnBoat {
+    let standing = &state.standing.vehicles[i];
+    OwnBoat {
+        vehicle: VehicleId::at(i),
+        nav: nav(state, i),
+        tagged: standing.tagged,
+        carrying: number_of_flag(standing.carrying),
+        disabled: standing.disabled,
+        outside: standing.outside,
+        tag_ready_ns: standing.tag_ready,
+    }
+}
+
+/// What a node report tells of another boat: perfect sharing, as Aquaticus does ashore.
+fn contact(state: &State, i: usize, team: TeamId) -> Contact {
+    let (boat, standing) = (&state.boats[i], &state.standing.vehicles[i]);
+    let turn = game::math::sin_cos(boat.pose.psi_rad);
+    let velocity = frame::ned_from_body(turn, Body { ahead: boat.nu.surge, starboard: boat.nu.sway });
+    Contact {
+        vehicle: VehicleId::at(i),
+        team,
+        seen_ns: state.now,
+        north_m: boat.pose.at.north,
+        east_m: boat.pose.at.east,
+        psi_rad: boat.pose.psi_rad,
+        velocity_north_m_s: velocity.north,
+        velocity_east_m_s: velocity.east,
+        tagged: standing.tagged,
+        carrying: number_of_flag(standing.carrying),
+    }
+}
+
+/// Whether an event is about one of the team's boats or its flag, or ends the game.
+fn concerns(scenario: &Scenario, team: TeamId, event: Event) -> bool {
+    let ours = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].team == team;
+    let second = match event {
+        Event::Tagged { cause: TagCause::Opponent(by), .. } => ours(by),
+        Event::Collided { second, .. } => ours(second),
+        Event::Grabbed { flag, .. } | Event::Captured { flag, .. } | Event::FlagReturned { flag, .. } => {
+            scenario.field.flags[flag.index()].team == team
+        }
+        Event::Ended { .. } => true,
+        _ => false,
+    };
+    second || event.vehicle().is_some_and(ours)
+}
