@@ -49,27 +49,29 @@ impl Near {
     }
 
     fn compare_cells(&mut self, at: &impl Fn(usize) -> Ned, count: usize, reach_m: f64) {
+        if reach_m <= 0.0 {
+            return;
+        }
+        // A shade wider than the reach, so that rounding never puts near boats two cells apart.
+        let cell_m = reach_m * 1.000_001;
+        // Boats that are astray for millions of cells share the last one: it is compared like any other.
+        let cell = |metres: f64| (metres / cell_m).floor().clamp(-1e9, 1e9) as i32;
         self.cells.clear();
         self.cells.extend((0..count).map(|i| {
-            let p = at(i);
-            ((p.north / reach_m).floor() as i32, (p.east / reach_m).floor() as i32, i as u16)
+            let here = at(i);
+            (cell(here.north), cell(here.east), i as u16)
         }));
         self.cells.sort_unstable();
-        for &(north, east, a) in &self.cells {
+        for (i, &(north, east, a)) in self.cells.iter().enumerate() {
             let here = at(usize::from(a));
-            // Forward half of the neighbourhood: this cell and east of it, then the row to the north.
-            for (row, first, last) in [(north, east, east + 1), (north + 1, east - 1, east + 1)] {
-                let start = self.cells.partition_point(|&(n, e, _)| (n, e) < (row, first));
-                for &(n, e, b) in &self.cells[start..] {
-                    if n != row || e > last {
-                        break;
-                    }
-                    if (n, e) == (north, east) && b <= a {
-                        continue;
-                    }
-                    let pair = (a.min(b), a.max(b));
-                    push_if_near(&mut self.pairs, pair, here.distance_squared(at(usize::from(b))), reach_m);
-                }
+            // Forward half of the neighbourhood: the rest of this cell and the one to the east, then the
+            // row to the north.
+            let next_row = self.cells.partition_point(|&(n, e, _)| (n, e) < (north + 1, east - 1));
+            let this = self.cells[i + 1..].iter().take_while(|&&(n, e, _)| n == north && e <= east + 1);
+            let next = self.cells[next_row..].iter().take_while(|&&(n, e, _)| n == north + 1 && e <= east + 1);
+            for &(_, _, b) in this.chain(next) {
+                let distance_squared = here.distance_squared(at(usize::from(b)));
+                push_if_near(&mut self.pairs, (a.min(b), a.max(b)), distance_squared, reach_m);
             }
         }
         self.pairs.sort_unstable_by_key(|pair| (pair.a, pair.b));
@@ -101,5 +103,14 @@ mod tests {
             assert_eq!(got, all.pairs, "seed {seed}");
             assert!(!got.is_empty());
         }
+    }
+
+    #[test]
+    fn boats_astray_and_boats_that_need_no_reach_do_no_harm() {
+        let fleet: Vec<Ned> = (0..30).map(|i| Ned { north: 1e300, east: f64::from(i) * -1e12 }).collect();
+        let mut near = Near::default();
+        assert_eq!(near.pairs(|i| fleet[i], 30, 7.0), []);
+        assert_eq!(near.pairs(|_| fleet[3], 30, 7.0).len(), 30 * 29 / 2);
+        assert_eq!(near.pairs(|_| fleet[3], 30, 0.0), []);
     }
 }

@@ -3,10 +3,21 @@
 //! [`Rules`] are data, from `scenarios/rules/*.toml`. The [`Referee`] sees where boats are and what time
 //! it is, never physics: the same referee judges a simulation, a replay and real water.
 
+mod boundary;
+mod claim;
+mod collision;
+mod directive;
+mod end;
+mod flag;
+mod home;
+mod keepout;
+mod power_play;
 mod referee;
 mod standing;
+mod tag;
 
-pub use referee::{Directive, Referee};
+pub use directive::Directive;
+pub use referee::{Notes, Referee};
 pub use standing::{FlagStanding, Standing, VehicleStanding};
 
 use crate::time::SimTime;

@@ -1,27 +1,135 @@
 //! The referee: looks at all boats once a tick and says what happened.
 
+use super::claim::Claim;
 use super::{Rules, Standing};
 use crate::event::Event;
 use crate::field::Field;
 use crate::frame::Ned;
-use crate::id::TeamId;
+use crate::id::{FlagId, TeamId, VehicleId};
 use crate::near::Pair;
+use crate::stream::Stream;
 use crate::time::SimTime;
 
 /// Who judges a game: constant while it is played. What changes is the [`Standing`].
 #[derive(Clone, Debug)]
 pub struct Referee {
-    rules: Rules,
-    field: Field,
-    team_of: Vec<TeamId>,
+    pub(super) rules: Rules,
+    pub(super) field: Field,
+    pub(super) team_of: Vec<TeamId>,
 }
 
-/// What the rules impose on one boat; the world (or a gateway) enforces it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Directive {
-    /// It does as its mind says, at no more than this share of its top speed.
-    Free {
-        /// Between 0 and 1.
-        speed_factor: f64,
-    },
+/// The referee's notepad: its memory is used again at every look, and holds nothing from one to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Notes {
+    pub(super) claims: Vec<Claim>,
+    pub(super) touching: Vec<(VehicleId, VehicleId)>,
+}
+
+impl Referee {
+    /// The referee of games by these rules on this field; `team_of` is by vehicle.
+    #[must_use]
+    pub fn new(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Referee {
+        Referee { rules, field, team_of }
+    }
+
+    /// By which rules.
+    #[must_use]
+    pub fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
+    /// On which field.
+    #[must_use]
+    pub fn field(&self) -> &Field {
+        &self.field
+    }
+
+    /// Each vehicle's team, by vehicle.
+    #[must_use]
+    pub fn team_of(&self) -> &[TeamId] {
+        &self.team_of
+    }
+
+    /// How the game stands before it begins. The boats' power plays are drawn from `stream`; without
+    /// such a rule nothing is drawn.
+    pub fn start(&self, stream: &mut Stream) -> Standing {
+        let mut standing = Standing::new(self.team_of.len(), self.field.flags.len(), self.teams());
+        self.draw_power_plays(&mut standing, stream);
+        standing
+    }
+
+    /// How near two boats must be to matter to each other by the rules, m: the reach of `near` in
+    /// [`Referee::advance`].
+    #[must_use]
+    pub fn reach_m(&self) -> f64 {
+        self.rules.tag_radius_m.max(self.rules.collision_distance_m)
+    }
+
+    /// Looks at all boats at the moment `now`, later than the last one, and appends what happened.
+    ///
+    /// `at` gives midships by vehicle, `near` all pairs within [`Referee::reach_m`] or more, in the order
+    /// of [`crate::near::Near`].
+    ///
+    /// The order of the list below is the order of resolution. Every phase is judged from how things
+    /// stood when it began, whatever the order of the boats, so that mirrored teams get mirrored results.
+    /// What a boat did or suffered at this look is nothing to build on until the next one: a flag
+    /// that was brought home is not grabbed yet, a flag that was grabbed is not captured yet, a boat
+    /// that was tagged is not freed yet.
+    ///
+    /// Once the game is over, nothing happens any more.
+    pub fn advance(
+        &self,
+        standing: &mut Standing,
+        notes: &mut Notes,
+        at: &impl Fn(usize) -> Ned,
+        near: &[Pair],
+        now: SimTime,
+        events: &mut Vec<Event>,
+    ) {
+        if standing.over {
+            return;
+        }
+        standing.now = now;
+        self.switch_power_plays(standing, events);
+        self.watch_boundary(standing, at, events);
+        self.tag(standing, notes, at, near, events);
+        self.grab(standing, notes, at, events);
+        self.capture(standing, notes, at, events);
+        self.untag(standing, at, events);
+        self.watch_collisions(standing, notes, near, events);
+        self.watch_keepouts(standing, at, events);
+        self.end(standing, events);
+    }
+
+    /// Takes a boat out of the game (its numbers went bad): it loses its flag, and is only something to
+    /// bump into from now on.
+    pub fn retire(&self, standing: &mut Standing, vehicle: VehicleId, events: &mut Vec<Event>) {
+        standing.vehicles[vehicle.index()].in_play = false;
+        standing.drop_flag(vehicle, events);
+    }
+
+    /// How many teams there are.
+    pub(super) fn teams(&self) -> usize {
+        let playing = self.team_of.iter().map(|team| team.index() + 1).max();
+        self.field.zones.len().max(playing.unwrap_or(0))
+    }
+
+    /// Whether `at` is on `team`'s own side; the scrimmage line is on both.
+    #[inline]
+    pub(super) fn is_own_side(&self, team: TeamId, at: Ned) -> bool {
+        self.field.zones.get(team.index()).is_some_and(|zone| zone.contains(at))
+    }
+
+    /// The homes of `team`'s own flags.
+    #[inline]
+    pub(super) fn own_flags(&self, team: TeamId) -> impl Iterator<Item = (FlagId, Ned)> {
+        let flags = self.field.flags.iter().enumerate();
+        flags.filter(move |(_, flag)| flag.team == team).map(|(i, flag)| (FlagId(i as u8), flag.home))
+    }
+
+    /// The corners of `team`'s own end.
+    #[inline]
+    pub(super) fn own_corners(&self, team: TeamId) -> &[Ned] {
+        self.field.own_corners.get(team.index()).map_or(&[], |corners| corners)
+    }
 }

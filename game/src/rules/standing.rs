@@ -1,12 +1,14 @@
 //! How the game stands: who is tagged, who carries what, the score.
 
-use crate::id::{FlagId, VehicleId};
+use crate::id::{FlagId, TeamId, VehicleId};
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
 /// The referee's whole memory.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Standing {
+    /// When the referee last looked.
+    pub now: SimTime,
     /// By vehicle.
     pub vehicles: Vec<VehicleStanding>,
     /// By flag.
@@ -24,15 +26,19 @@ pub struct Standing {
 /// How one boat stands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleStanding {
+    /// Whether it takes part: a quarantined boat is only something to bump into.
+    pub in_play: bool,
     /// Whether it is tagged.
     pub tagged: bool,
+    /// When it was last tagged.
+    pub tagged_at: SimTime,
     /// The flag it carries.
     pub carrying: Option<FlagId>,
     /// From when on it may tag again.
     pub tag_ready: SimTime,
     /// Whether it is outside of the field.
     pub outside: bool,
-    /// Whether it was in its untagging place at the last look.
+    /// Whether it was in its untagging place, and on the field, at the last look.
     pub at_home: bool,
     /// Whether it was in its own flag's keep-out circle at the last look.
     pub in_keepout: bool,
@@ -45,4 +51,47 @@ pub struct VehicleStanding {
 pub struct FlagStanding {
     /// Who carries it; at its home when nobody does.
     pub carrier: Option<VehicleId>,
+    /// When it was last taken or brought home.
+    pub moved_at: SimTime,
+}
+
+impl Standing {
+    /// Nothing has happened yet.
+    pub(super) fn new(vehicles: usize, flags: usize, teams: usize) -> Standing {
+        let vehicle = VehicleStanding {
+            in_play: true,
+            tagged: false,
+            tagged_at: SimTime::LONG_AGO,
+            carrying: None,
+            tag_ready: SimTime::LONG_AGO,
+            outside: false,
+            at_home: false,
+            in_keepout: false,
+            disabled: false,
+        };
+        Standing {
+            now: SimTime::LONG_AGO,
+            vehicles: vec![vehicle; vehicles],
+            flags: vec![FlagStanding { carrier: None, moved_at: SimTime::LONG_AGO }; flags],
+            score: vec![0; teams],
+            touching: Vec::new(),
+            disabled: vec![(SimTime::NEVER, SimTime::NEVER); vehicles],
+            over: false,
+        }
+    }
+
+    /// Adds to a team's score.
+    pub(super) fn award(&mut self, team: TeamId, points: u32) {
+        let score = &mut self.score[team.index()];
+        *score = score.saturating_add(points);
+    }
+}
+
+impl VehicleStanding {
+    /// Whether it may do things to others: tag, grab, capture.
+    #[inline]
+    #[must_use]
+    pub fn acts(&self) -> bool {
+        self.in_play && !self.disabled && !self.tagged && !self.outside
+    }
 }

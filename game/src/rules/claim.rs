@@ -1,0 +1,57 @@
+//! Claims: what boats reach for at the same moment, and who gets it.
+
+use super::TagChoice;
+use std::cmp::Ordering;
+
+/// Boat `by` reaches for `on` (a boat to tag, a flag to grab).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Claim {
+    pub(super) by: u16,
+    pub(super) on: u16,
+    pub(super) distance_squared: f64,
+}
+
+impl Claim {
+    fn nearer(&self, other: &Claim) -> Ordering {
+        self.distance_squared.total_cmp(&other.distance_squared)
+    }
+}
+
+/// Keeps the claims that are granted, in the order of what is claimed.
+///
+/// Every boat reaches for one thing, the nearest or the first; of all who reach for the same thing the
+/// nearest gets it. Between equals the lower index decides. Who comes away empty-handed has lost nothing
+/// and may reach for something else at the next look.
+pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice) {
+    claims.sort_unstable_by(|x, y| {
+        let wanted = if choice == TagChoice::Nearest { x.nearer(y) } else { Ordering::Equal };
+        x.by.cmp(&y.by).then(wanted).then(x.on.cmp(&y.on))
+    });
+    claims.dedup_by_key(|claim| claim.by);
+    claims.sort_unstable_by(|x, y| x.on.cmp(&y.on).then(x.nearer(y)).then(x.by.cmp(&y.by)));
+    claims.dedup_by_key(|claim| claim.on);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_gets_one_thing_and_each_thing_goes_to_the_nearest() {
+        for (name, claims, choice, want) in [
+            ("one reaches for two", vec![(0, 5, 4.0), (0, 6, 1.0)], TagChoice::Nearest, vec![(0, 6)]),
+            ("one takes the first", vec![(0, 6, 1.0), (0, 5, 4.0)], TagChoice::First, vec![(0, 5)]),
+            ("two reach for one", vec![(0, 5, 4.0), (1, 5, 1.0)], TagChoice::Nearest, vec![(1, 5)]),
+            ("two reach for the first", vec![(0, 5, 4.0), (1, 5, 1.0)], TagChoice::First, vec![(1, 5)]),
+            ("equals", vec![(1, 6, 1.0), (1, 5, 1.0), (0, 5, 1.0)], TagChoice::Nearest, vec![(0, 5)]),
+            ("no second choice", vec![(0, 5, 1.0), (1, 5, 2.0), (1, 6, 3.0)], TagChoice::Nearest, vec![(0, 5)]),
+            ("each its own", vec![(1, 5, 1.0), (0, 6, 2.0)], TagChoice::Nearest, vec![(1, 5), (0, 6)]),
+            ("nobody", vec![], TagChoice::Nearest, vec![]),
+        ] {
+            let claim = |(by, on, distance_squared)| Claim { by, on, distance_squared };
+            let mut claims: Vec<Claim> = claims.into_iter().map(claim).collect();
+            settle(&mut claims, choice);
+            assert_eq!(claims.iter().map(|claim| (claim.by, claim.on)).collect::<Vec<_>>(), want, "{name}");
+        }
+    }
+}
