@@ -1,1 +1,51 @@
-//! stub
+//! Whole Squall games in one process: no network, no clock.
+//!
+//! The same world and the same minds as across processes, and the same bytes.
+
+use agent::Mind;
+use game::{Outcome, Scenario, VehicleId};
+use sim::Contest;
+use sim::spawn::NoBerth;
+
+/// Plays the game of `scenario` that `seed` chooses to its end. `minds` are by vehicle.
+///
+/// # Errors
+/// [`NoBerth`] where the boats do not fit into their spawn area.
+///
+/// # Panics
+/// If there is not one mind for each vehicle.
+pub fn play(scenario: &Scenario, minds: &mut [Box<dyn Mind>], seed: u64) -> Result<Outcome, NoBerth> {
+    play_watched(scenario, minds, seed, |_| true)
+}
+
+/// As [`play`], but shows the contest to `watch` before every decision, and stops when that says `false`.
+///
+/// # Errors
+/// [`NoBerth`] where the boats do not fit into their spawn area.
+///
+/// # Panics
+/// If there is not one mind for each vehicle.
+pub fn play_watched(
+    scenario: &Scenario,
+    minds: &mut [Box<dyn Mind>],
+    seed: u64,
+    mut watch: impl FnMut(&Contest) -> bool,
+) -> Result<Outcome, NoBerth> {
+    assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
+    let mut contest = Contest::new(scenario, seed)?;
+    while !contest.is_over() && watch(&contest) {
+        decide(&mut contest, minds);
+        contest.advance();
+    }
+    Ok(contest.outcome())
+}
+
+/// Shows every mind its team's picture and puts its order in force.
+pub fn decide(contest: &mut Contest, minds: &mut [Box<dyn Mind>]) {
+    contest.pictures();
+    for (i, mind) in minds.iter_mut().enumerate() {
+        let order = mind.decide(contest.picture_of(VehicleId::at(i)));
+        // As over the network: an order with bad numbers is refused, and the boat holds.
+        contest.order(VehicleId::at(i), order.check().unwrap_or_default());
+    }
+}

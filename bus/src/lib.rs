@@ -1,1 +1,21 @@
-//! stub
+//! Squall over zenoh: the one crate that names it.
+//!
+//! A game is a star: the sim's session is the *hub* (a zenoh router), agents and observers are *leaves*
+//! (zenoh clients with one link). By default the hub listens on loopback only and nobody
+//! scouts, so that two runs on one machine never meet.
+//!
+//! Everything here is blocking or calls back; callbacks run on zenoh's threads and must only hand over.
+
+mod error;
+mod inbox;
+mod net;
+mod phonebook;
+mod session;
+mod slots;
+
+pub use error::BusError;
+pub use inbox::{Inbox, Outlet, inbox};
+pub use net::{DEFAULT_PORT, Net, free_port};
+pub use phonebook::{Entry, Registration, list as phonebook, register};
+pub use session::{Bus, Delivery, Publisher, Question, Standing};
+pub use slots::Slots;

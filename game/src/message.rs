@@ -233,7 +233,7 @@ pub struct JoinRequest {
 }
 
 /// What the sim answers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JoinReply {
     /// Come in.
     Granted {
@@ -241,10 +241,6 @@ pub enum JoinReply {
         ticket: u64,
         /// The vehicles, in the order asked for.
         vehicles: Vec<VehicleId>,
-        /// The checked scenario, with the seed of this game.
-        scenario: Box<Scenario>,
-        /// Longest silence (wall clock) after which the agent may take the sim for dead, s.
-        silence_s: f64,
     },
     /// Not now: somebody else minds the vehicle. Asking again later may help.
     Busy {

@@ -24,6 +24,8 @@ pub struct Contest {
     /// Events that the last pictures and the last frame already told.
     pictured: usize,
     framed: usize,
+    /// The decision that the pictures are of.
+    pictured_for: Option<u64>,
     /// By team.
     pictures: Vec<Picture>,
     decision: u64,
@@ -46,6 +48,7 @@ impl Contest {
             events: Vec::new(),
             pictured: 0,
             framed: 0,
+            pictured_for: None,
             pictures: pictures.collect(),
             decision: 0,
             scenario,
@@ -94,14 +97,25 @@ impl Contest {
         &self.events
     }
 
-    /// What each team knows now, by team. Each event is told once.
+    /// What each team knows at the open decision, by team: the same whenever it is asked. Each event is told in
+    /// one decision's pictures.
     pub fn pictures(&mut self) -> &[Picture] {
+        if self.pictured_for == Some(self.decision) {
+            return &self.pictures;
+        }
+        self.pictured_for = Some(self.decision);
         let news = &self.events[self.pictured..];
         for picture in &mut self.pictures {
             view::picture(&self.scenario, self.world.state(), self.decision, news, picture);
         }
         self.pictured = self.events.len();
         &self.pictures
+    }
+
+    /// The picture of a vehicle's team, as [`Contest::pictures`] last made it.
+    #[must_use]
+    pub fn picture_of(&self, vehicle: VehicleId) -> &Picture {
+        &self.pictures[self.scenario.vehicles[vehicle.index()].team.index()]
     }
 
     /// The truth, with the events since the last frame.
@@ -135,7 +149,7 @@ impl Contest {
     pub fn advance(&mut self) {
         for _ in 0..self.scenario.ticks_per_decision {
             if self.is_over() {
-                return;
+                break;
             }
             self.world.step(&self.orders);
             let (tick, at) = (self.world.state().tick, self.world.state().now);

@@ -6,6 +6,8 @@ pub mod autopilot;
 pub mod contact;
 pub mod contest;
 pub mod hull;
+#[cfg(feature = "net")]
+pub mod node;
 pub mod sea;
 pub mod spawn;
 pub mod state;

@@ -10,7 +10,7 @@ use crate::thruster::ThrusterModel;
 use game::angle::wrap_pi;
 use game::frame::{self, Ned};
 use game::near::{Near, Pair};
-use game::rules::{Directive, Referee};
+use game::rules::{Directive, Notes, Referee};
 use game::stream::Stream;
 use game::{Event, Order, Pose, Scenario, SimTime, VehicleId, math};
 use xxhash_rust::xxh3;
@@ -55,6 +55,7 @@ struct Work {
     /// Velocity over the ground at the end of the tick without contact, by vehicle.
     velocities: Vec<Planar>,
     pairs: Vec<Pair>,
+    notes: Notes,
     events: Vec<Event>,
 }
 
@@ -152,7 +153,7 @@ impl World {
         work.passages.clear();
         work.velocities.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
-            let directive = model.referee.directive(&state.standing, VehicleId::at(i));
+            let directive = model.referee.directive(&state.standing, VehicleId::at(i), boat.pose.at);
             let (passage, nu) = model.drive(boat, model.kinds[i], work.turns[i], orders[i], directive);
             work.passages.push(passage);
             work.velocities.push(nu);
@@ -161,7 +162,7 @@ impl World {
 
     /// The boats take up the motion, with what contact changed in it. Bad numbers are contained here.
     fn settle(&mut self) {
-        let World { state, work, .. } = self;
+        let World { model, state, work } = self;
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let (passage, mut nu) = (&work.passages[i], work.velocities[i]);
             let turn = math::sin_cos(passage.to.psi_rad);
@@ -172,6 +173,7 @@ impl World {
             } else if !boat.quarantined {
                 *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
                 work.events.push(Event::Quarantined { vehicle: VehicleId::at(i) });
+                model.referee.retire(&mut state.standing, VehicleId::at(i), &mut work.events);
             }
         }
     }
@@ -180,7 +182,11 @@ impl World {
     fn keep_out(&mut self) {
         let World { model, state, work } = self;
         for i in 0..state.boats.len() {
-            let Some((centre, radius_m)) = model.referee.keepout(&state.standing, VehicleId::at(i)) else { continue };
+            let Some((centre, radius_m)) =
+                model.referee.keepout(&state.standing, VehicleId::at(i), state.boats[i].pose.at)
+            else {
+                continue;
+            };
             let boat = &mut state.boats[i];
             let from_centre = boat.pose.at - centre;
             let distance_m = from_centre.length();
@@ -200,8 +206,7 @@ impl World {
         let World { model, state, work } = self;
         let boats = &state.boats;
         let at = |i: usize| boats[i].pose.at;
-        let in_play = |i: usize| !boats[i].quarantined;
-        model.referee.advance(&mut state.standing, &at, &in_play, &work.pairs, state.now, &mut work.events);
+        model.referee.advance(&mut state.standing, &mut work.notes, &at, &work.pairs, state.now, &mut work.events);
     }
 }
 
@@ -291,10 +296,10 @@ impl Model {
 fn obeyed(order: Order, directive: Directive, at: Ned) -> (Order, f64) {
     match directive {
         Directive::Free { speed_factor } => (order.check().unwrap_or_default(), speed_factor),
-        Directive::DriveTo { at: home, speed_factor } => {
+        Directive::DrivenHome { to: home, speed_factor } => {
             (Order::Steer { heading_rad: at.bearing_rad(home), speed_m_s: f64::INFINITY }, speed_factor)
         }
-        Directive::OutOfAction => (Order::Hold, 1.0),
+        Directive::Hold => (Order::Hold, 1.0),
     }
 }
 

@@ -1,0 +1,217 @@
+//! A node's session: publish, subscribe, ask, answer, be alive.
+
+use crate::{BusError, Net};
+use game::codec;
+use game::message::Message;
+use serde::Serialize;
+use std::time::Duration;
+use zenoh::bytes::Encoding;
+use zenoh::qos::CongestionControl;
+use zenoh::sample::SampleKind;
+use zenoh::{Session, Wait};
+
+/// How hard a message is delivered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Delivery {
+    /// The sender waits for a congested link (for up to some seconds).
+    Wait,
+    /// A message that a congested link cannot take at once is dropped.
+    Drop,
+}
+
+/// Something declared that lasts as long as this is kept.
+pub struct Standing(#[expect(dead_code, reason = "kept for its drop")] Kept);
+
+#[expect(dead_code, reason = "kept for their drop")]
+enum Kept {
+    Subscriber(zenoh::pubsub::Subscriber<()>),
+    Queryable(zenoh::query::Queryable<()>),
+    Token(zenoh::liveliness::LivelinessToken),
+}
+
+/// A node's session.
+#[derive(Clone)]
+pub struct Bus {
+    session: Session,
+}
+
+/// Sends messages on one key.
+pub struct Publisher {
+    publisher: zenoh::pubsub::Publisher<'static>,
+}
+
+/// A question somebody asked, to be answered once.
+pub struct Question {
+    query: zenoh::query::Query,
+    /// What came with it.
+    pub payload: Vec<u8>,
+}
+
+fn failed(doing: &'static str, key: &str) -> impl FnOnce(zenoh::Error) -> BusError {
+    move |e| BusError::Use { doing, key: key.to_owned(), reason: e.to_string() }
+}
+
+impl Bus {
+    /// Opens the hub of a game.
+    ///
+    /// # Errors
+    /// [`BusError`] if it cannot listen where it should.
+    pub fn hub(net: &Net) -> Result<Bus, BusError> {
+        let what = format!("to listen on {}", net.listen.join(", "));
+        open(net.hub()?, what)
+    }
+
+    /// Connects to a hub.
+    ///
+    /// # Errors
+    /// [`BusError`] if nobody listens there now.
+    pub fn leaf(net: &Net) -> Result<Bus, BusError> {
+        let what = format!("to connect to {}", net.connect.join(", "));
+        open(net.leaf()?, what)
+    }
+
+    /// This session's own identifier, unique on the network.
+    #[must_use]
+    pub fn id(&self) -> String {
+        self.session.zid().to_string()
+    }
+
+    /// Prepares to publish on `key`.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn publisher(&self, key: String, delivery: Delivery) -> Result<Publisher, BusError> {
+        let congestion = match delivery {
+            Delivery::Wait => CongestionControl::Block,
+            Delivery::Drop => CongestionControl::Drop,
+        };
+        let builder = self.session.declare_publisher(key.clone()).congestion_control(congestion);
+        Ok(Publisher { publisher: builder.wait().map_err(failed("publish on", &key))? })
+    }
+
+    /// Calls `take` with the bytes of everything published on `key`.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn subscribe(&self, key: String, take: impl Fn(&[u8]) + Send + Sync + 'static) -> Result<Standing, BusError> {
+        let callback = move |sample: zenoh::sample::Sample| take(&sample.payload().to_bytes());
+        let subscriber = self.session.declare_subscriber(key.clone()).callback(callback).wait();
+        Ok(Standing(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
+    }
+
+    /// Calls `take` with every question asked at `key`.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn answer(&self, key: String, take: impl Fn(Question) + Send + Sync + 'static) -> Result<Standing, BusError> {
+        let callback = move |query: zenoh::query::Query| {
+            let payload = query.payload().map(|bytes| bytes.to_bytes().into_owned()).unwrap_or_default();
+            take(Question { query, payload });
+        };
+        let queryable = self.session.declare_queryable(key.clone()).callback(callback).wait();
+        Ok(Standing(Kept::Queryable(queryable.map_err(failed("answer at", &key))?)))
+    }
+
+    /// Asks at `key`; gives the first answer that comes within `limit`.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
+        let replies = self.session.get(key).payload(payload).timeout(limit).wait().map_err(failed("ask at", key))?;
+        let answers = std::iter::from_fn(|| replies.recv().ok());
+        let mut sound = answers.filter_map(|reply| reply.into_result().ok());
+        Ok(sound.next().map(|sample| sample.payload().to_bytes().into_owned()))
+    }
+
+    /// Shows that this node is there, under `key`, until dropped or dead.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn show_alive(&self, key: String) -> Result<Standing, BusError> {
+        let token = self.session.liveliness().declare_token(key.clone()).wait();
+        Ok(Standing(Kept::Token(token.map_err(failed("be alive as", &key))?)))
+    }
+
+    /// Calls `take` with the key of every node under `key` that comes (`true`) or goes, beginning with those that are there.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn watch_alive(
+        &self,
+        key: String,
+        take: impl Fn(&str, bool) + Send + Sync + 'static,
+    ) -> Result<Standing, BusError> {
+        let callback = move |sample: zenoh::sample::Sample| {
+            take(sample.key_expr().as_str(), sample.kind() == SampleKind::Put);
+        };
+        let watch = self.session.liveliness().declare_subscriber(key.clone()).history(true).callback(callback);
+        Ok(Standing(Kept::Subscriber(watch.wait().map_err(failed("watch", &key))?)))
+    }
+
+    /// The keys of all nodes under `key` that are there now.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn who_is_alive(&self, key: &str, limit: Duration) -> Result<Vec<String>, BusError> {
+        let replies = self.session.liveliness().get(key).timeout(limit).wait().map_err(failed("look for", key))?;
+        let tokens = std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
+        let mut keys: Vec<String> = tokens.map(|sample| sample.key_expr().as_str().to_owned()).collect();
+        keys.sort();
+        keys.dedup();
+        Ok(keys)
+    }
+
+    /// Says good-bye, so that the others need not find out.
+    pub fn close(&self) {
+        // A session that cannot be closed is as gone as one that can.
+        drop(self.session.close().wait());
+    }
+}
+
+fn open(config: zenoh::Config, what: String) -> Result<Bus, BusError> {
+    match zenoh::open(config).wait() {
+        Ok(session) => Ok(Bus { session }),
+        Err(e) => Err(BusError::Open { what, reason: e.to_string() }),
+    }
+}
+
+impl Publisher {
+    /// Sends a per-tick message as CDR, with its name and version in the encoding.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn send<M: Message + Serialize>(&self, message: &M) -> Result<(), BusError> {
+        let encoding = Encoding::APPLICATION_CDR.with_schema(format!("{}@{}", M::SCHEMA, M::VERSION));
+        self.put(codec::encode(message), encoding)
+    }
+
+    /// Sends bytes that are JSON.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn send_json(&self, json: Vec<u8>) -> Result<(), BusError> {
+        self.put(json, Encoding::APPLICATION_JSON)
+    }
+
+    /// Sends bytes as they are.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn send_raw(&self, bytes: Vec<u8>) -> Result<(), BusError> {
+        self.put(bytes, Encoding::ZENOH_BYTES)
+    }
+
+    fn put(&self, bytes: Vec<u8>, encoding: Encoding) -> Result<(), BusError> {
+        let sent = self.publisher.put(bytes).encoding(encoding).wait();
+        sent.map_err(failed("send on", self.publisher.key_expr().as_str()))
+    }
+}
+
+impl Question {
+    /// Answers with bytes that are JSON.
+    pub fn answer(self, json: Vec<u8>) {
+        let key = self.query.key_expr().clone();
+        // Whoever asked may be gone by now; then nobody misses the answer.
+        drop(self.query.reply(key, json).encoding(Encoding::APPLICATION_JSON).wait());
+    }
+}

@@ -1,0 +1,159 @@
+//! The sim on the network: opens the door, paces the game, tells observers.
+//!
+//! [`serve`] plays one game from the first join to the last frame. Everything that decides is in
+//! [`Contest`] and [`Roster`]; here are the sockets and the clocks.
+
+mod booth;
+mod clock;
+mod lockstep;
+mod realtime;
+pub mod roster;
+
+use crate::contest::Contest;
+use crate::spawn::NoBerth;
+use booth::Booth;
+use bus::{BusError, Net};
+use game::topic::GameName;
+use game::{Outcome, Scenario};
+use roster::{Refused, Timing};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+use thiserror::Error;
+
+/// How a game is paced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pace {
+    /// Every tick waits for every mind: as fast as the slowest, and always the same game.
+    Lockstep,
+    /// By the clock, this many times as fast as it; nobody is waited for.
+    Realtime {
+        /// Simulated seconds a second.
+        factor: f64,
+    },
+}
+
+/// What a sim node needs to know beside the scenario.
+pub struct Settings {
+    /// The game's name on the network.
+    pub game: GameName,
+    /// Where to listen.
+    pub net: Net,
+    /// How to pace the game.
+    pub pace: Pace,
+    /// How long to wait for minds before starting without the missing ones.
+    pub join_limit: Duration,
+    /// Set from outside to end the game early.
+    pub stop: Arc<AtomicBool>,
+}
+
+/// What a node tells the shell that runs it.
+pub enum News<'a> {
+    /// The door is open; these vehicles have no mind yet.
+    Waiting {
+        /// By name.
+        missing: Vec<&'a str>,
+    },
+    /// The game begins.
+    Started,
+    /// Some time has passed: ten times a second or so.
+    Progress {
+        /// The game.
+        contest: &'a Contest,
+        /// Simulated seconds a second, lately.
+        rate: f64,
+        /// What was refused so far.
+        refused: Refused,
+    },
+}
+
+/// How a served game went.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// How the game ended.
+    pub outcome: Outcome,
+    /// How it was run.
+    pub run: Run,
+}
+
+/// What depends on the machines and the network, not on the game.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// How the game was paced.
+    pub pace: String,
+    /// Wall-clock time it took, s.
+    pub wall_s: f64,
+    /// What was refused from agents.
+    pub refused: Refused,
+    /// Decision ticks that began late (real time only).
+    pub overruns: u64,
+    /// Whether it was ended before its end.
+    pub cut_short: bool,
+}
+
+/// Why a game could not be served.
+#[derive(Debug, Error)]
+pub enum NodeError {
+    /// The boats do not fit on the field.
+    #[error(transparent)]
+    NoBerth(#[from] NoBerth),
+    /// The network failed.
+    #[error(transparent)]
+    Bus(#[from] BusError),
+}
+
+impl std::fmt::Display for Pace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Pace::Lockstep => f.write_str("lockstep"),
+            Pace::Realtime { factor } if *factor == 1.0 => f.write_str("realtime"),
+            Pace::Realtime { factor } => write!(f, "{factor}x"),
+        }
+    }
+}
+
+impl std::str::FromStr for Pace {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Pace, String> {
+        let wrong = || format!("pace {text:?} is not lockstep, realtime, or a factor from 0.01x to 1000x such as 4x");
+        match text {
+            "lockstep" => Ok(Pace::Lockstep),
+            "realtime" => Ok(Pace::Realtime { factor: 1.0 }),
+            _ => {
+                let factor: f64 = text.strip_suffix('x').and_then(|n| n.parse().ok()).ok_or_else(wrong)?;
+                if (0.01..=1000.0).contains(&factor) { Ok(Pace::Realtime { factor }) } else { Err(wrong()) }
+            }
+        }
+    }
+}
+
+/// Serves the game of `scenario` that `seed` chooses, and plays it to its end.
+///
+/// # Errors
+/// [`NodeError`] if the boats do not fit on the field or the network fails.
+pub fn serve(
+    scenario: &Scenario,
+    seed: u64,
+    settings: &Settings,
+    tell: &mut dyn FnMut(News<'_>),
+) -> Result<Report, NodeError> {
+    let contest = Contest::new(scenario, seed)?;
+    let timing = if settings.pace == Pace::Lockstep { Timing::Lockstep } else { Timing::Realtime };
+    let mut booth = Booth::open(contest, settings, timing)?;
+    booth.wait_for_minds(settings.join_limit, tell)?;
+    tell(News::Started);
+    let started = clock::now();
+    let overruns = match settings.pace {
+        Pace::Lockstep => {
+            lockstep::play(&mut booth, tell)?;
+            0
+        }
+        Pace::Realtime { factor } => realtime::play(&mut booth, factor, tell)?,
+    };
+    let cut_short = !booth.contest.is_over();
+    let wall_s = clock::since(started).as_secs_f64();
+    booth.say_good_bye()?;
+    let run = Run { pace: settings.pace.to_string(), wall_s, refused: booth.refused(), overruns, cut_short };
+    Ok(Report { outcome: booth.contest.outcome(), run })
+}
