@@ -1,5 +1,7 @@
 //! The shipped scenario files: all of them are sound, and say what they are meant to say.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use game::field::Walls;
 use game::id::{TeamId, VehicleId};
 use game::scenario::{self, Berth, Checked, Kind};
@@ -63,8 +65,8 @@ fn a_file_is_recognised_wherever_it_lies() {
 
 #[test]
 fn published_fields_come_out_where_they_were_sailed() {
-    type Points = [(f64, f64); 2];
-    let table: [(&str, Points, &[(f64, f64)]); 4] = [
+    type Published = (&'static str, [(f64, f64); 2], &'static [(f64, f64)]);
+    let table: [Published; 4] = [
         ("aquaticus_160x80", [(20.0, 40.0), (140.0, 40.0)], &[(0.0, 0.0), (0.0, 80.0), (160.0, 80.0), (160.0, 0.0)]),
         (
             "popolopen_2025",
@@ -178,5 +180,64 @@ fn the_schemas_beside_the_files_are_those_of_the_types() {
         }
         let found = std::fs::read_to_string(&path).unwrap_or_default();
         assert_eq!(found, want, "{} is behind: run this test with SQUALL_BLESS=1", path.display());
+    }
+}
+
+/// Every number that a schema describes with its range: its path in the file, and the range in words.
+fn ranges(schema: &serde_json::Value, at: &serde_json::Value, path: &str, found: &mut Vec<(String, String)>) {
+    for (key, about) in at["properties"].as_object().into_iter().flatten() {
+        let path = format!("{path}{key}");
+        if let Some(name) = about["allOf"][0]["$ref"].as_str() {
+            let inner = &schema["definitions"][name.rsplit('/').next().unwrap()];
+            ranges(schema, inner, &format!("{path}."), found);
+        }
+        let is_number = about["type"] == "number" || about["type"] == "integer";
+        if let (true, Some((_, said))) = (is_number, about["description"].as_str().unwrap().rsplit_once(": ")) {
+            let words: Vec<&str> = said
+                .split(|c: char| c.is_whitespace() || c == ';' || c == ',')
+                .map(|word| word.trim_end_matches('.'))
+                .collect();
+            if words.get(1) == Some(&"to") {
+                found.push((path, format!("{} to {}", words[0], words[2])));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_ranges_that_schemas_describe_are_those_that_are_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let bases = [
+        "games/pav01_vs_pav01",
+        "fields/harbour",
+        "rules/pyquaticus",
+        "boats/otter",
+        "seas/calm_salt",
+        "strategies/pav01",
+    ];
+    for (kind, base) in Kind::ALL.into_iter().zip(bases) {
+        let schema = scenario::schema(kind);
+        let mut found = vec![];
+        ranges(&schema, &schema, "", &mut found);
+        assert!(!found.is_empty(), "{kind}");
+        for (path, range) in found {
+            let base = shipped(&format!("{base}.toml")).canonicalize().unwrap();
+            let (low, high) = range.split_once(" to ").unwrap();
+            let beyond = |bound: &str, by: f64| bound.parse::<f64>().unwrap() + by;
+            let is_whole =
+                ["seed", "win_score", "points.grab", "points.capture", "points.tag"].contains(&path.as_str());
+            for value in [beyond(low, -1.0), beyond(high, 1.0)] {
+                let value = match (is_whole, value > 1e18) {
+                    (true, true) => continue, // A file cannot say so large a whole number.
+                    (true, false) => format!("{value:.0}"),
+                    (false, _) => format!("{value:?}"),
+                };
+                let file = folder.path().join(kind.folder()).join("x.toml");
+                std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+                std::fs::write(&file, format!("base = {:?}\n{path} = {value}\n", base.display().to_string())).unwrap();
+                let problems = scenario::check_file(&file).unwrap_err().to_string();
+                assert!(problems.contains(&format!("expected {range}")), "{kind} {path} = {value}: {problems}");
+            }
+        }
     }
 }

@@ -16,7 +16,9 @@ pub(super) fn explain(complaint: &str, key: &str) -> String {
         .or_else(|| complaint.strip_prefix("invalid "))
         .and_then(|rest| rest.rsplit_once(", expected "));
     match parts {
-        Some((found, expected)) => format!("{key} is {}, expected {}", found_in_words(found), wanted_in_words(expected)),
+        Some((found, expected)) => {
+            format!("{key} is {}, expected {}", found_in_words(found), wanted_in_words(expected))
+        }
         None => format!("{key}: {complaint}"),
     }
 }
@@ -45,7 +47,6 @@ fn wanted_in_words(wanted: &str) -> &str {
         "i64" => "a whole number",
         "a sequence" => "a list",
         "a map" => "a table",
-        "an array of length 2" => "a pair of numbers [a, b]",
         _ if wanted.starts_with("struct ") => "a table",
         _ => wanted,
     }
@@ -84,7 +85,7 @@ mod tests {
             ("invalid type: integer `3`, expected a string", "mass_kg is 3, expected a string"),
             ("invalid type: sequence, expected struct Hull", "mass_kg is a list, expected a table"),
             (
-                "invalid length 3, expected an array of length 2",
+                "invalid length 3, expected a pair of numbers [a, b]",
                 "mass_kg is of length 3, expected a pair of numbers [a, b]",
             ),
             (

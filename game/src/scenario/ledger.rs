@@ -1,8 +1,9 @@
 //! The list of problems found so far, and the checks of single values that add to it.
 
 use super::problem::{Problem, Problems};
-use super::raw::At;
+use super::raw::{At, Pair};
 use super::source::Sources;
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
@@ -12,6 +13,8 @@ pub(super) struct Ledger {
     pub(super) sources: Sources,
     problems: Vec<Problem>,
     faults: usize,
+    /// Keys that did not fit their type, by file: they are not missing as well.
+    unfit: BTreeSet<(usize, String)>,
 }
 
 impl Ledger {
@@ -23,12 +26,27 @@ impl Ledger {
         }
     }
 
-    /// Notes that something is missing from the table at `at`, unless broken syntax may have eaten it.
-    pub(super) fn note_missing(&mut self, at: usize, message: impl Into<String>) {
+    /// Notes what may follow from broken syntax elsewhere in the file, unless there is some.
+    pub(super) fn note_if_intact(&mut self, at: usize, message: impl Into<String>) {
         self.faults += 1;
         if !self.sources.is_broken_file(at) {
             self.push(at, message.into());
         }
+    }
+
+    /// Notes that `key` is missing from the table at `at`, unless it was there and did not fit.
+    pub(super) fn note_missing(&mut self, at: usize, key: &str, expected: &str) {
+        let file = self.sources.index_at(at);
+        if key.split('.').any(|part| self.unfit.contains(&(file, part.to_owned()))) {
+            self.faults += 1;
+        } else {
+            self.note_if_intact(at, format!("{key} is missing, expected {expected}"));
+        }
+    }
+
+    /// Remembers that `key`, in the file at `at`, did not fit.
+    pub(super) fn mark_unfit(&mut self, at: usize, key: &str) {
+        self.unfit.insert((self.sources.index_at(at), key.to_owned()));
     }
 
     /// Notes that the syntax at `at` is wrong.
@@ -68,12 +86,7 @@ impl Ledger {
     }
 
     /// The number given for `key`, if there is one and it is `allowed`.
-    pub(super) fn number(
-        &mut self,
-        key: &str,
-        given: Option<&At<f64>>,
-        allowed: RangeInclusive<f64>,
-    ) -> Option<f64> {
+    pub(super) fn number(&mut self, key: &str, given: Option<&At<f64>>, allowed: RangeInclusive<f64>) -> Option<f64> {
         let given = given?;
         if allowed.contains(&given.value) {
             return Some(given.value);
@@ -93,7 +106,7 @@ impl Ledger {
         allowed: RangeInclusive<f64>,
     ) -> f64 {
         if given.is_none() {
-            self.note_missing(owner, format!("{key} is missing, expected {} to {}", allowed.start(), allowed.end()));
+            self.note_missing(owner, key, &format!("{} to {}", allowed.start(), allowed.end()));
         }
         self.number(key, given, allowed.clone()).unwrap_or(*allowed.start())
     }
@@ -118,11 +131,11 @@ impl Ledger {
     pub(super) fn pair(
         &mut self,
         key: &str,
-        given: Option<&At<[f64; 2]>>,
+        given: Option<&At<Pair>>,
         allowed: RangeInclusive<f64>,
     ) -> Option<(f64, f64)> {
         let given = given?;
-        let [a, b] = given.value.map(|value| At { value, at: given.at });
+        let [a, b] = given.value.0.map(|value| At { value, at: given.at });
         let a = self.number(key, Some(&a), allowed.clone());
         let b = self.number(key, Some(&b), allowed);
         a.zip(b)

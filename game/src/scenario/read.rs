@@ -46,7 +46,7 @@ pub(super) fn document<T: DeserializeOwned + Default>(
     let start = chain[0].0;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     ledger.is_name(start, "the file's name", &name);
-    let raw = deserialised(ledger, merged(&chain));
+    let raw = deserialised(ledger, start, merged(&chain));
     Some(Document { name, start, raw })
 }
 
@@ -120,7 +120,10 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
 /// Notes what is wrong with the syntax, and returns the base the file names.
 fn syntax_of(ledger: &mut Ledger, start: usize, text: &str) -> Option<At<String>> {
     if let Some(at) = too_deep(text) {
-        ledger.note_syntax(start + at, format!("found a key of more than {MOST_PARTS} parts, expected at most 3").as_str());
+        ledger.note_syntax(
+            start + at,
+            format!("found a key of more than {MOST_PARTS} parts, expected at most 3").as_str(),
+        );
         return None;
     }
     let (table, errors) = DeTable::parse_recoverable(text);
@@ -207,17 +210,25 @@ fn lay_over<'i>(over: &mut DeTable<'i>, base: DeTable<'i>) {
 }
 
 /// Reads the table into `T`; an entry that does not fit is noted, taken out, and the rest tried again.
-fn deserialised<T: DeserializeOwned + Default>(ledger: &mut Ledger, mut table: Table<'_>) -> T {
+fn deserialised<T: DeserializeOwned + Default>(ledger: &mut Ledger, start: usize, mut table: Table<'_>) -> T {
     for _ in 0..MOST_COMPLAINTS {
         let error = match T::deserialize(toml::de::Deserializer::from(table.clone())) {
             Ok(raw) => return raw,
             Err(error) => error,
         };
         let at = error.span().map_or(table.span().start, |span| span.start);
-        let key = take_out(table.get_mut(), at);
-        ledger.note(at, explain(error.message(), key.as_deref().unwrap_or("the file")));
-        if key.is_none() {
+        let Some(key) = take_out(table.get_mut(), at) else {
+            ledger.note(at, explain(error.message(), "the file"));
             break;
+        };
+        ledger.mark_unfit(start, &key);
+        ledger.mark_unfit(at, &key);
+        let message = explain(error.message(), &key);
+        // A table head with broken syntax leaves its keys to the table before.
+        if error.message().starts_with("unknown field") {
+            ledger.note_if_intact(at, message);
+        } else {
+            ledger.note(at, message);
         }
     }
     T::default()

@@ -40,7 +40,8 @@ impl Sources {
         start
     }
 
-    fn index_at(&self, offset: usize) -> usize {
+    /// The index of the file that `offset` lies in.
+    pub(super) fn index_at(&self, offset: usize) -> usize {
         self.files.partition_point(|file| file.start <= offset) - 1
     }
 

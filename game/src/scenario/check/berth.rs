@@ -12,7 +12,7 @@ use crate::id::TeamId;
 use crate::near::Near;
 use crate::scenario::Berth;
 use crate::scenario::ledger::Ledger;
-use crate::scenario::raw::{At, RawSpawn, RawVehicle, Whereabouts};
+use crate::scenario::raw::{At, Pair, RawSpawn, RawVehicle, Whereabouts};
 
 /// What a default rectangle leaves free at either side, m.
 const MARGIN_M: f64 = 2.0;
@@ -36,7 +36,7 @@ pub(super) fn stated(ledger: &mut Ledger, raw: &RawVehicle, team: TeamId, field:
     let given = raw.at.as_ref()?;
     let at = match &given.value {
         Whereabouts::Position(position) => {
-            let (x, y) = ledger.pair("at", Some(&same_place(given, *position)), COORDINATE_M)?;
+            let (x, y) = ledger.pair("at", Some(&same_place(given, Pair(*position))), COORDINATE_M)?;
             Ned::from_xy(x, y)
         }
         Whereabouts::Point(name) => {
@@ -77,13 +77,7 @@ pub(super) fn somewhere(ledger: &mut Ledger, spawn: &At<RawSpawn>, count: usize,
     Some(Berth::Somewhere { along_m, across_m, gap_m })
 }
 
-fn bounds(
-    ledger: &mut Ledger,
-    key: &str,
-    given: Option<&At<[f64; 2]>>,
-    whole_m: f64,
-    usual_m: f64,
-) -> Option<(f64, f64)> {
+fn bounds(ledger: &mut Ledger, key: &str, given: Option<&At<Pair>>, whole_m: f64, usual_m: f64) -> Option<(f64, f64)> {
     let Some(given) = given else { return Some((MARGIN_M, usual_m - MARGIN_M)) };
     let (from_m, to_m) = ledger.pair(key, Some(given), 0.0..=whole_m)?;
     if from_m >= to_m {

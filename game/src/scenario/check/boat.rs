@@ -3,7 +3,7 @@
 use super::same_place;
 use crate::boat::{Autopilot, Boat, Hull, ThrustCurve, Thruster};
 use crate::scenario::ledger::Ledger;
-use crate::scenario::raw::{At, RawAutopilot, RawBoat, RawHull, RawPropeller, RawThruster};
+use crate::scenario::raw::{At, Pair, RawAutopilot, RawBoat, RawHull, RawPropeller, RawThruster};
 use crate::scenario::read::Document;
 
 /// The physics takes explicit steps of the game's tick: motions that die out faster than this many times
@@ -39,7 +39,12 @@ pub(in crate::scenario) fn boat(ledger: &mut Ledger, document: &Document<RawBoat
             "hull: {motion} dies out at {rate_per_s:.1} 1/s, expected at most {allowed_per_s} 1/s \
              ({FASTEST_PER_TICK} a tick of {USUAL_TICK_S} s); its resistance is too large for its inertia"
         );
-        ledger.note(hull.mass_kg.map_or(start, |mass| mass.at), message);
+        let culprit = match motion {
+            "surge" => &hull.surge_linear_kg_s,
+            "sway" => &hull.sway_linear_kg_s,
+            _ => &hull.yaw_linear_kg_m2_s,
+        };
+        ledger.note(culprit.or(hull.mass_kg).map_or(start, |given| given.at), message);
     }
     (ledger.faults() == faults).then_some(boat)
 }
@@ -48,8 +53,7 @@ pub(in crate::scenario) fn boat(ledger: &mut Ledger, document: &Document<RawBoat
 fn given_hull(ledger: &mut Ledger, start: usize, raw: &RawHull) -> Hull {
     let crossflow = ledger.number("crossflow_coefficient", raw.crossflow_coefficient.as_ref(), 0.0..=3.0);
     if crossflow.is_some_and(|coefficient| coefficient > 0.0) && raw.crossflow_draught_m.is_none() {
-        let message = "hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient";
-        ledger.note_missing(start, message);
+        ledger.note_missing(start, "hull.crossflow_draught_m", "0 to 20 with a crossflow_coefficient");
     }
     let mass_kg = ledger.required(start, "hull.mass_kg", raw.mass_kg.as_ref(), 0.1..=1e6);
     let mut or_zero = |key: &str, given: &Option<At<f64>>, low: f64, high: f64| {
@@ -142,8 +146,7 @@ fn check_inertia(ledger: &mut Ledger, start: usize, boat: &Boat, raw: &RawHull) 
 pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
     let hull = &boat.hull;
     let u_m_s = boat.autopilot.speed_max_m_s;
-    let crossflow_kg_s =
-        1025.0 * hull.crossflow_coefficient * hull.crossflow_draught_m * hull.crossflow_length_m;
+    let crossflow_kg_s = 1025.0 * hull.crossflow_coefficient * hull.crossflow_draught_m * hull.crossflow_length_m;
     let surge_kg_s = hull.surge_linear_kg_s + 2.0 * hull.surge_quadratic_kg_m * u_m_s;
     let sway_kg_s = hull.sway_linear_kg_s + hull.sway_lift_kg_m * u_m_s + crossflow_kg_s;
     let yaw_kg_m2_s = hull.yaw_linear_kg_m2_s + hull.yaw_lift_kg_m * u_m_s + 2.0 * hull.yaw_quadratic_kg_m2;
@@ -164,8 +167,7 @@ fn thruster(ledger: &mut Ledger, start: usize, raw: &RawThruster) -> Thruster {
             ThrustCurve::Table { points: vec![] }
         }
         (None, None) => {
-            let message = "thruster says no thrust, expected either propeller or table_pct_newton";
-            ledger.note_missing(start, message);
+            ledger.note_missing(start, "thruster.propeller", "it or table_pct_newton");
             ThrustCurve::Table { points: vec![] }
         }
     };
@@ -190,10 +192,10 @@ fn propeller(ledger: &mut Ledger, given: &At<RawPropeller>) -> ThrustCurve {
     }
 }
 
-fn table(ledger: &mut Ledger, given: &At<Vec<At<[f64; 2]>>>) -> ThrustCurve {
+fn table(ledger: &mut Ledger, given: &At<Vec<At<Pair>>>) -> ThrustCurve {
     let mut points: Vec<(f64, f64)> = vec![];
     for row in &given.value {
-        let [setting_pct, thrust_newton] = row.value;
+        let [setting_pct, thrust_newton] = row.value.0;
         let setting = ledger.number("table_pct_newton", Some(&same_place(row, setting_pct)), -100.0..=100.0);
         let thrust = ledger.number("table_pct_newton", Some(&same_place(row, thrust_newton)), -1e6..=1e6);
         let (Some(setting_pct), Some(thrust)) = (setting, thrust) else { continue };

@@ -5,7 +5,7 @@ use crate::field::{Field, Flag, Obstacle, Plan, Walls};
 use crate::frame::{LatLon, Ned};
 use crate::id::TeamId;
 use crate::scenario::ledger::Ledger;
-use crate::scenario::raw::{At, RawField, RawObstacle, RawSide, RawWalls};
+use crate::scenario::raw::{At, Pair, RawField, RawObstacle, RawSide, RawWalls};
 use crate::scenario::read::Document;
 use std::ops::RangeInclusive;
 
@@ -51,7 +51,7 @@ pub(in crate::scenario) fn field(ledger: &mut Ledger, document: &Document<RawFie
 
 fn datum(ledger: &mut Ledger, document: &Document<RawField>) -> LatLon {
     let Some(datum) = &document.raw.datum else {
-        ledger.note_missing(document.start, "datum is missing, expected { lat_deg = …, lon_deg = … }");
+        ledger.note_missing(document.start, "datum", "{ lat_deg = …, lon_deg = … }");
         return LatLon::default();
     };
     LatLon {
@@ -78,10 +78,10 @@ fn extra_flags(ledger: &mut Ledger, document: &Document<RawField>, field: &Field
             break;
         }
         if flag.value.team.is_none() {
-            ledger.note_missing(flag.at, "flag.team is missing, expected one of first, second");
+            ledger.note_missing(flag.at, "flag.team", "one of first, second");
         }
         let Some(at) = &flag.value.at else {
-            ledger.note_missing(flag.at, "flag.at is missing, expected [x, y]");
+            ledger.note_missing(flag.at, "flag.at", "[x, y]");
             continue;
         };
         let home = ledger.pair("at", Some(at), COORDINATE_M).map(|(x, y)| Ned::from_xy(x, y));
@@ -121,7 +121,7 @@ fn obstacle(ledger: &mut Ledger, given: &At<RawObstacle>, field: &Field) -> Opti
     let obstacle = match (&given.value.circle, &given.value.polygon) {
         (Some(circle), None) => {
             if circle.value.centre.is_none() {
-                ledger.note_missing(circle.at, "circle.centre is missing, expected [x, y]");
+                ledger.note_missing(circle.at, "circle.centre", "[x, y]");
             }
             let centre = ledger.pair("centre", circle.value.centre.as_ref(), COORDINATE_M);
             let radius = circle.value.radius_m.as_ref();
@@ -131,7 +131,7 @@ fn obstacle(ledger: &mut Ledger, given: &At<RawObstacle>, field: &Field) -> Opti
         }
         (None, Some(polygon)) => Obstacle::Polygon { corners: corners(ledger, polygon)? },
         _ => {
-            ledger.note_missing(given.at, "obstacle says neither or both, expected either circle or polygon");
+            ledger.note_if_intact(given.at, "obstacle says neither or both, expected either circle or polygon");
             return None;
         }
     };
@@ -156,7 +156,7 @@ fn obstacle(ledger: &mut Ledger, given: &At<RawObstacle>, field: &Field) -> Opti
     Some(obstacle)
 }
 
-fn corners(ledger: &mut Ledger, polygon: &At<Vec<At<[f64; 2]>>>) -> Option<Vec<Ned>> {
+fn corners(ledger: &mut Ledger, polygon: &At<Vec<At<Pair>>>) -> Option<Vec<Ned>> {
     let mut corners = vec![];
     for corner in &polygon.value {
         let (x, y) = ledger.pair("polygon", Some(&same_place(corner, corner.value)), COORDINATE_M)?;
@@ -223,8 +223,7 @@ pub(super) fn is_in_the_way(obstacle: &Obstacle, point: Ned, clearance_m: f64) -
             // A line from the point to the north crosses the sides of a polygon around it an odd number of times.
             let crossings = sides().filter(|(a, b)| {
                 (a.east > point.east) != (b.east > point.east)
-                    && point.north
-                        < a.north + (point.east - a.east) / (b.east - a.east) * (b.north - a.north)
+                    && point.north < a.north + (point.east - a.east) / (b.east - a.east) * (b.north - a.north)
             });
             crossings.count() % 2 == 1 || sides().any(|(a, b)| distance_to_side(point, a, b) <= clearance_m)
         }

@@ -58,7 +58,8 @@ impl<R: DeserializeOwned + Default, T> Shelf<R, T> {
     fn fetch(&mut self, ledger: &mut Ledger, given: &At<String>, path: &std::path::Path) -> Option<usize> {
         let document = read::document(ledger, path, Some(given.at))?;
         if !self.names.insert(document.name.clone()) {
-            let message = format!("{} is the second file named {:?}, expected different names", given.value, document.name);
+            let message =
+                format!("{} is the second file named {:?}, expected different names", given.value, document.name);
             ledger.note(given.at, message);
         }
         self.items.push((self.check)(ledger, &document)?);
@@ -191,13 +192,13 @@ fn teams(ledger: &mut Ledger, document: &Document<RawGame>) -> Vec<(String, Opti
         let message = format!("team has {} entries, expected exactly two [[team]] for now", given.len());
         match given.get(2) {
             Some(third) => ledger.note(third.at, message),
-            None => ledger.note_missing(document.start, message),
+            None => ledger.note_if_intact(document.start, message),
         }
     }
     let mut teams: Vec<(String, Option<At<String>>)> = vec![];
     for team in given.iter().take(2) {
         let Some(name) = &team.value.name else {
-            ledger.note_missing(team.at, "team.name is missing, expected 1 to 40 of a-z, 0-9 and _");
+            ledger.note_missing(team.at, "team.name", "1 to 40 of a-z, 0-9 and _");
             continue;
         };
         if ledger.is_name(name.at, "name", &name.value) && teams.iter().any(|(other, _)| *other == name.value) {
@@ -218,7 +219,7 @@ impl Roster<'_> {
             self.add_fleet(ledger, fleet);
         }
         if raw.vehicle.iter().flatten().next().is_none() && raw.fleet.iter().flatten().next().is_none() {
-            ledger.note_missing(start, "vehicle is missing, expected at least one [[vehicle]] or [[fleet]]");
+            ledger.note_missing(start, "vehicle", "at least one [[vehicle]] or [[fleet]]");
         }
         // The teams' strategies are checked even where no boat of theirs follows them.
         let unused: Vec<At<String>> = self.teams.iter().filter_map(|(_, strategy)| strategy.clone()).collect();
@@ -237,7 +238,7 @@ impl Roster<'_> {
         let berth = team.zip(self.field).and_then(|(team, field)| berth::stated(ledger, raw, team, field));
         let heading_deg = berth::heading_deg(ledger, raw);
         let Some(name) = &raw.name else {
-            ledger.note_missing(vehicle.at, "vehicle.name is missing, expected 1 to 40 of a-z, 0-9 and _");
+            ledger.note_missing(vehicle.at, "vehicle.name", "1 to 40 of a-z, 0-9 and _");
             return;
         };
         if self.is_new_name(ledger, name.at, &name.value)
@@ -255,7 +256,7 @@ impl Roster<'_> {
         let boat = self.boat(ledger, fleet.at, "fleet", raw.boat.as_ref());
         let strategy = self.strategy(ledger, fleet.at, "fleet", raw.strategy.as_ref(), team);
         if raw.count.is_none() {
-            ledger.note_missing(fleet.at, format!("fleet.count is missing, expected 1 to {MOST_VEHICLES}"));
+            ledger.note_missing(fleet.at, "fleet.count", &format!("1 to {MOST_VEHICLES}"));
         }
         let count = ledger.whole("count", raw.count.as_ref(), 1..=MOST_VEHICLES as i64, 1) as usize;
         let spawn = raw.spawn.as_ref();
@@ -305,19 +306,19 @@ impl Roster<'_> {
     fn team(&self, ledger: &mut Ledger, owner: usize, kind: &str, given: Option<&At<String>>) -> Option<TeamId> {
         let names = self.teams.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
         let Some(given) = given else {
-            ledger.note_missing(owner, format!("{kind}.team is missing, expected one of {names}"));
+            ledger.note_missing(owner, &format!("{kind}.team"), &format!("one of {names}"));
             return None;
         };
         let index = self.teams.iter().position(|(name, _)| *name == given.value);
         if index.is_none() {
-            ledger.note_missing(given.at, format!("team is {:?}, expected one of {names}", given.value));
+            ledger.note_if_intact(given.at, format!("team is {:?}, expected one of {names}", given.value));
         }
         index.map(|index| TeamId(index as u8))
     }
 
     fn boat(&mut self, ledger: &mut Ledger, owner: usize, kind: &str, given: Option<&At<String>>) -> Option<usize> {
         let Some(given) = given.or(self.raw.boat.as_ref()) else {
-            ledger.note_missing(owner, format!("{kind}.boat is missing, expected the path of a boat file here or for the game"));
+            ledger.note_missing(owner, &format!("{kind}.boat"), "the path of a boat file here or for the game");
             return None;
         };
         self.boats.index(ledger, given)
@@ -334,8 +335,8 @@ impl Roster<'_> {
         let of_team = team.and_then(|team| self.teams[team.index()].1.clone());
         if given.is_none() && of_team.is_none() {
             if team.is_some() {
-                let message = format!("{kind}.strategy is missing, expected the path of a strategy file here or for the team");
-                ledger.note_missing(owner, message);
+                let key = format!("{kind}.strategy");
+                ledger.note_missing(owner, &key, "the path of a strategy file here or for the team");
             }
             return None;
         }

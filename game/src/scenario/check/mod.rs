@@ -22,7 +22,7 @@ use super::raw::At;
 
 /// Notes that `key` must name a file and does not.
 fn missing_path(ledger: &mut Ledger, owner: usize, key: &str) {
-    ledger.note_missing(owner, format!("{key} is missing, expected the path of a file"));
+    ledger.note_missing(owner, key, "the path of a file");
 }
 
 /// A copy of `given` for another type of value at the same place.

@@ -14,7 +14,7 @@ pub(in crate::scenario) fn strategy(ledger: &mut Ledger, document: &Document<Raw
     let attacker = raw.easy_attacker.clone().unwrap_or_default();
     let defender = raw.easy_defender.clone().unwrap_or_default();
     match &raw.roles {
-        None => ledger.note_missing(document.start, "roles is missing, expected a list of 1 to 1000 roles"),
+        None => ledger.note_missing(document.start, "roles", "a list of 1 to 1000 roles"),
         Some(roles) if !(1..=1000).contains(&roles.value.len()) => {
             ledger.note(roles.at, format!("roles has {} entries, expected 1 to 1000", roles.value.len()));
         }

@@ -1,6 +1,6 @@
 //! A boat file as typed.
 
-use super::At;
+use super::{At, Pair};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -80,7 +80,7 @@ pub(in crate::scenario) struct RawThruster {
     /// A propeller with thrust k n |n|.
     pub(in crate::scenario) propeller: Option<At<RawPropeller>>,
     /// Setting in per cent and thrust of one thruster in newton, from -100 to 100, both rising, with [0, 0].
-    pub(in crate::scenario) table_pct_newton: Option<At<Vec<At<[f64; 2]>>>>,
+    pub(in crate::scenario) table_pct_newton: Option<At<Vec<At<Pair>>>>,
     /// Time constant with which a setting is taken up, s: 0 to 60. Default 0.2.
     pub(in crate::scenario) lag_s: Option<At<f64>>,
     /// Fastest change of the commanded setting, shares of full ahead a second: 0.001 to 1000. Default 10.

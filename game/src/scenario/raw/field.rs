@@ -1,6 +1,6 @@
 //! A field file as typed.
 
-use super::At;
+use super::{At, Pair};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -17,7 +17,7 @@ pub(in crate::scenario) struct RawField {
     pub(in crate::scenario) datum: Option<At<RawDatum>>,
     /// The corner of the first team's end that is to starboard as it looks at its opponent, [x, y] in m:
     /// -1000000 to 1000000. Default [0, 0].
-    pub(in crate::scenario) corner: Option<At<[f64; 2]>>,
+    pub(in crate::scenario) corner: Option<At<Pair>>,
     /// Compass bearing from the first team's end to the second's, degrees: -360 to 360. Default 90.
     pub(in crate::scenario) along_deg: Option<At<f64>>,
     /// Extent from end to end, m: 10 to 20000. Required.
@@ -64,7 +64,7 @@ pub(in crate::scenario) struct RawObstacle {
     /// A round one.
     pub(in crate::scenario) circle: Option<At<RawCircle>>,
     /// Corners [x, y] in order, either way round, three at least, with no two sides crossing.
-    pub(in crate::scenario) polygon: Option<At<Vec<At<[f64; 2]>>>>,
+    pub(in crate::scenario) polygon: Option<At<Vec<At<Pair>>>>,
 }
 
 /// A round obstacle.
@@ -73,7 +73,7 @@ pub(in crate::scenario) struct RawObstacle {
 #[schemars(rename = "Circle")]
 pub(in crate::scenario) struct RawCircle {
     /// Its centre, [x, y] in m, on the field or at most 50 m outside. Required.
-    pub(in crate::scenario) centre: Option<At<[f64; 2]>>,
+    pub(in crate::scenario) centre: Option<At<Pair>>,
     /// Its radius, m: 0.01 to 10000. Required.
     pub(in crate::scenario) radius_m: Option<At<f64>>,
 }
@@ -86,7 +86,7 @@ pub(in crate::scenario) struct RawFlag {
     /// The team that defends it. Required.
     pub(in crate::scenario) team: Option<RawSide>,
     /// Where it stands, [x, y] in m, inside the field. Required.
-    pub(in crate::scenario) at: Option<At<[f64; 2]>>,
+    pub(in crate::scenario) at: Option<At<Pair>>,
 }
 
 /// A field does not know the teams' names, only their order in the game file.

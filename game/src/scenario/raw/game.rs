@@ -1,6 +1,6 @@
 //! A game file as typed.
 
-use super::At;
+use super::{At, Pair};
 use schemars::JsonSchema;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -103,9 +103,9 @@ pub(in crate::scenario) struct RawFleet {
 #[schemars(rename = "Spawn")]
 pub(in crate::scenario) struct RawSpawn {
     /// From and to, m from the own end. Default the own half but for 2 m at either side.
-    pub(in crate::scenario) along_m: Option<At<[f64; 2]>>,
+    pub(in crate::scenario) along_m: Option<At<Pair>>,
     /// From and to, m from the edge to port. Default the whole depth but for 2 m at either side.
-    pub(in crate::scenario) across_m: Option<At<[f64; 2]>>,
+    pub(in crate::scenario) across_m: Option<At<Pair>>,
     /// Smallest distance to any other boat and to obstacles, m: 0 to 1000. Default 5.
     pub(in crate::scenario) gap_m: Option<At<f64>>,
 }

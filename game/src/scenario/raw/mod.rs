@@ -13,11 +13,12 @@ mod strategy;
 pub(super) use boat::{RawAutopilot, RawBoat, RawHull, RawPropeller, RawThruster};
 pub(super) use field::{RawField, RawObstacle, RawSide, RawWalls};
 pub(super) use game::{RawFleet, RawGame, RawSpawn, RawVehicle, Whereabouts};
-pub(super) use rules::{RawCaptureAt, RawRules, RawTagChoice, RawTaggedBoat, RawUntagAt, RawUntagOn};
+pub(super) use rules::RawRules;
 pub(super) use sea::RawSea;
 pub(super) use strategy::RawStrategy;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 use toml::Spanned;
@@ -33,6 +34,20 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for At<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<At<T>, D::Error> {
         let spanned = Spanned::<T>::deserialize(deserializer)?;
         Ok(At { at: spanned.span().start, value: spanned.into_inner() })
+    }
+}
+
+/// Two numbers, no more and no fewer.
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[schemars(inline)]
+pub(super) struct Pair(pub(super) [f64; 2]);
+
+impl<'de> Deserialize<'de> for Pair {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Pair, D::Error> {
+        // Arrays proper let surplus numbers pass in silence.
+        let numbers = Vec::<f64>::deserialize(deserializer)?;
+        let wrong = |numbers: Vec<f64>| D::Error::invalid_length(numbers.len(), &"a pair of numbers [a, b]");
+        numbers.try_into().map(Pair).map_err(wrong)
     }
 }
 

@@ -73,6 +73,7 @@ pub(in crate::scenario) struct RawPoints {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "CaptureAt")]
+#[expect(clippy::enum_variant_names, reason = "they are the words of the file, and of the checked type")]
 pub(in crate::scenario) enum RawCaptureAt {
     /// Its own flag's home.
     OwnFlag,
