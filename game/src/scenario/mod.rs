@@ -1,11 +1,27 @@
 //! What makes a game: read from TOML files, checked once, believed ever after.
 //!
 //! [`Scenario`] is the checked form, SI and radians, and travels to every process that joins the game.
+//! [`load`] makes one: `read` finds the files and lays them over their bases, `raw` is what people type,
+//! `check` makes of it what the program believes, and the `ledger` collects every [`Problem`] on the way.
+
+mod check;
+mod explain;
+mod kind;
+mod ledger;
+mod load;
+mod problem;
+mod raw;
+mod read;
+mod source;
+
+pub use kind::{Kind, schema};
+pub use load::{Checked, check_file, load, load_boat};
+pub use problem::{Problem, Problems};
 
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::frame::{Ned, Pose};
-use crate::id::TeamId;
+use crate::id::{TeamId, VehicleId};
 use crate::rules::Rules;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
@@ -41,6 +57,38 @@ pub struct Scenario {
     pub vehicles: Vec<Vehicle>,
 }
 
+impl Scenario {
+    /// The vehicle with this name.
+    #[must_use]
+    pub fn vehicle_by_name(&self, name: &str) -> Option<VehicleId> {
+        self.vehicles.iter().position(|vehicle| vehicle.name == name).map(VehicleId::at)
+    }
+
+    /// The team with this name.
+    #[must_use]
+    pub fn team_by_name(&self, name: &str) -> Option<TeamId> {
+        self.teams.iter().position(|team| team.name == name).map(|index| TeamId(index as u8))
+    }
+
+    /// The team of a vehicle.
+    #[must_use]
+    pub fn team_of(&self, vehicle: VehicleId) -> TeamId {
+        self.vehicles[vehicle.index()].team
+    }
+
+    /// The boat that a vehicle is.
+    #[must_use]
+    pub fn boat_of(&self, vehicle: VehicleId) -> &Boat {
+        &self.boats[self.vehicles[vehicle.index()].boat]
+    }
+
+    /// The strategy that a vehicle follows.
+    #[must_use]
+    pub fn strategy_of(&self, vehicle: VehicleId) -> &Strategy {
+        &self.strategies[self.vehicles[vehicle.index()].strategy]
+    }
+}
+
 /// A team.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Team {
@@ -71,9 +119,11 @@ pub enum Berth {
     /// Somewhere in a rectangle of the field, drawn from the game's `spawn` stream, pointing at the
     /// opponent's end.
     Somewhere {
-        /// Bounds along the field as seen from the vehicle's own end, m.
+        /// Bounds along the field, m from the vehicle's own end.
         along_m: (f64, f64),
-        /// Bounds across the field, m.
+        /// Bounds across the field, m from the edge to port as the team looks from its own end at its
+        /// opponent's. For the first team that edge joins corners 1 and 2 (`across` is the field's depth
+        /// less this); for the second it joins corners 0 and 3 (`across` is this).
         across_m: (f64, f64),
         /// Smallest distance to any other vehicle and to obstacles, m.
         gap_m: f64,

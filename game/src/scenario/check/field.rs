@@ -1,0 +1,237 @@
+//! A field file, checked.
+
+use super::same_place;
+use crate::field::{Field, Flag, Obstacle, Plan, Walls};
+use crate::frame::{LatLon, Ned};
+use crate::id::TeamId;
+use crate::scenario::ledger::Ledger;
+use crate::scenario::raw::{At, Pair, RawField, RawObstacle, RawSide, RawWalls};
+use crate::scenario::read::Document;
+use std::ops::RangeInclusive;
+
+/// Coordinates, m from the datum: beyond it the local frame is no longer flat.
+pub(super) const COORDINATE_M: RangeInclusive<f64> = -1e6..=1e6;
+/// How far outside of the field an obstacle may stand and still matter, m.
+const NEAR_M: f64 = 50.0;
+/// An index has eight bits; this leaves room for the teams' own.
+const MOST_EXTRA_FLAGS: usize = 100;
+
+/// Checks a field.
+pub(in crate::scenario) fn field(ledger: &mut Ledger, document: &Document<RawField>) -> Option<Field> {
+    let faults = ledger.faults();
+    let raw = &document.raw;
+    let corner = ledger.pair("corner", raw.corner.as_ref(), COORDINATE_M).unwrap_or((0.0, 0.0));
+    let width_m = ledger.required(document.start, "width_m", raw.width_m.as_ref(), 10.0..=20000.0);
+    let plan = Plan {
+        name: document.name.clone(),
+        datum: datum(ledger, document),
+        corner: Ned::from_xy(corner.0, corner.1),
+        along_deg: ledger.number("along_deg", raw.along_deg.as_ref(), -360.0..=360.0).unwrap_or(90.0),
+        width_m,
+        depth_m: ledger.required(document.start, "depth_m", raw.depth_m.as_ref(), 10.0..=20000.0),
+        flag_inset_m: inset(ledger, raw, width_m),
+        extra_flags: vec![],
+        obstacles: vec![],
+        walls: match raw.walls {
+            Some(RawWalls::AllRound) => Walls::AllRound,
+            Some(RawWalls::None) | None => Walls::None,
+        },
+    };
+    if ledger.faults() != faults {
+        return None;
+    }
+    let mut plan = Field::new(plan).plan;
+    plan.extra_flags = extra_flags(ledger, document, &Field::new(plan.clone()));
+    let field = Field::new(plan.clone());
+    for obstacle in raw.obstacle.iter().flatten() {
+        plan.obstacles.extend(self::obstacle(ledger, obstacle, &field));
+    }
+    (ledger.faults() == faults).then(|| Field::new(plan))
+}
+
+fn datum(ledger: &mut Ledger, document: &Document<RawField>) -> LatLon {
+    let Some(datum) = &document.raw.datum else {
+        ledger.note_missing(document.start, "datum", "{ lat_deg = …, lon_deg = … }");
+        return LatLon::default();
+    };
+    LatLon {
+        lat_deg: ledger.required(datum.at, "datum.lat_deg", datum.value.lat_deg.as_ref(), -90.0..=90.0),
+        lon_deg: ledger.required(datum.at, "datum.lon_deg", datum.value.lon_deg.as_ref(), -180.0..=180.0),
+    }
+}
+
+fn inset(ledger: &mut Ledger, raw: &RawField, width_m: f64) -> f64 {
+    let Some(inset) = &raw.flag_inset_m else { return width_m / 8.0 };
+    let inset_m = inset.value;
+    if !(inset_m > 0.0 && inset_m < width_m / 2.0) {
+        let half_m = width_m / 2.0;
+        ledger.note(inset.at, format!("flag_inset_m is {inset_m}, expected more than 0 and less than {half_m}"));
+    }
+    inset_m
+}
+
+fn extra_flags(ledger: &mut Ledger, document: &Document<RawField>, field: &Field) -> Vec<Flag> {
+    let mut flags = vec![];
+    for flag in document.raw.flag.iter().flatten() {
+        if flags.len() == MOST_EXTRA_FLAGS {
+            ledger.note(flag.at, format!("flag is one too many, expected at most {MOST_EXTRA_FLAGS}"));
+            break;
+        }
+        if flag.value.team.is_none() {
+            ledger.note_missing(flag.at, "flag.team", "one of first, second");
+        }
+        let Some(at) = &flag.value.at else {
+            ledger.note_missing(flag.at, "flag.at", "[x, y]");
+            continue;
+        };
+        let home = ledger.pair("at", Some(at), COORDINATE_M).map(|(x, y)| Ned::from_xy(x, y));
+        if let Some((side, home)) = flag.value.team.zip(home)
+            && is_inside(ledger, field, at.at, home)
+        {
+            let team = match side {
+                RawSide::First => TeamId(0),
+                RawSide::Second => TeamId(1),
+            };
+            flags.push(Flag { team, home });
+        }
+    }
+    flags
+}
+
+/// Whether `position`, given at `at`, is inside the field; notes it if not.
+pub(super) fn is_inside(ledger: &mut Ledger, field: &Field, at: usize, position: Ned) -> bool {
+    let is_inside = field.contains(position);
+    if !is_inside {
+        let (along, across) = field.along_across(position);
+        let (width, depth) = (field.plan.width_m, field.plan.depth_m);
+        ledger.note(
+            at,
+            format!(
+                "at is [{}, {}], expected a position inside the field: it is {along:.2} m along (of {width}) \
+                 and {across:.2} m across (of {depth})",
+                position.east, position.north
+            ),
+        );
+    }
+    is_inside
+}
+
+fn obstacle(ledger: &mut Ledger, given: &At<RawObstacle>, field: &Field) -> Option<Obstacle> {
+    let faults = ledger.faults();
+    let obstacle = match (&given.value.circle, &given.value.polygon) {
+        (Some(circle), None) => {
+            if circle.value.centre.is_none() {
+                ledger.note_missing(circle.at, "circle.centre", "[x, y]");
+            }
+            let centre = ledger.pair("centre", circle.value.centre.as_ref(), COORDINATE_M);
+            let radius = circle.value.radius_m.as_ref();
+            let radius_m = ledger.required(circle.at, "circle.radius_m", radius, 0.01..=1e4);
+            let (x, y) = centre?;
+            Obstacle::Circle { centre: Ned::from_xy(x, y), radius_m }
+        }
+        (None, Some(polygon)) => Obstacle::Polygon { corners: corners(ledger, polygon)? },
+        _ => {
+            ledger.note_if_intact(given.at, "obstacle says neither or both, expected either circle or polygon");
+            return None;
+        }
+    };
+    if ledger.faults() != faults {
+        return None;
+    }
+    let is_near = |point: &Ned| {
+        let (along, across) = field.along_across(*point);
+        let within = |x: f64, size: f64| (-NEAR_M..=size + NEAR_M).contains(&x);
+        within(along, field.plan.width_m) && within(across, field.plan.depth_m)
+    };
+    let is_near = match &obstacle {
+        Obstacle::Circle { centre, .. } => is_near(centre),
+        Obstacle::Polygon { corners } => corners.iter().all(is_near),
+    };
+    if !is_near {
+        ledger.note(given.at, format!("obstacle is off the field, expected at most {NEAR_M} m outside of it"));
+    }
+    if field.flags.iter().any(|flag| is_in_the_way(&obstacle, flag.home, 0.0)) {
+        ledger.note(given.at, "obstacle stands on a flag, expected open water there");
+    }
+    Some(obstacle)
+}
+
+fn corners(ledger: &mut Ledger, polygon: &At<Vec<At<Pair>>>) -> Option<Vec<Ned>> {
+    let mut corners = vec![];
+    for corner in &polygon.value {
+        let (x, y) = ledger.pair("polygon", Some(&same_place(corner, corner.value)), COORDINATE_M)?;
+        corners.push(Ned::from_xy(x, y));
+    }
+    let count = corners.len();
+    if !(3..=1000).contains(&count) {
+        ledger.note(polygon.at, format!("polygon has {count} corners, expected 3 to 1000"));
+        return None;
+    }
+    let side = |i: usize| (corners[i], corners[(i + 1) % count]);
+    for i in 0..count {
+        if corners[i] == side(i).1 {
+            ledger.note(polygon.value[i].at, "polygon has two corners in one place, expected different ones");
+            return None;
+        }
+        // Neighbours share a corner; they may only not fold back onto one another.
+        let crossing = (i + 1..count).find(|&j| {
+            let (is_next, is_before) = (j == i + 1, (j + 1) % count == i);
+            match (is_next, is_before) {
+                (true, _) => folds_back(corners[i], corners[j], side(j).1),
+                (_, true) => folds_back(corners[j], corners[i], side(i).1),
+                _ => touch(side(i), side(j)),
+            }
+        });
+        if let Some(j) = crossing {
+            let message = format!("polygon's side {} meets its side {}, expected no crossing", i + 1, j + 1);
+            ledger.note(polygon.value[j].at, message);
+            return None;
+        }
+    }
+    Some(corners)
+}
+
+/// Twice the area of the triangle, positive clockwise on the chart.
+fn turn(a: Ned, b: Ned, c: Ned) -> f64 {
+    (b.north - a.north) * (c.east - a.east) - (b.east - a.east) * (c.north - a.north)
+}
+
+fn folds_back(a: Ned, b: Ned, c: Ned) -> bool {
+    turn(a, b, c) == 0.0 && (a - b).dot(c - b) > 0.0
+}
+
+/// Whether two segments have a point in common.
+fn touch((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
+    let (c_side, d_side) = (turn(a, b, c), turn(a, b, d));
+    let (a_side, b_side) = (turn(c, d, a), turn(c, d, b));
+    let apart = |p: f64, q: f64| (p > 0.0 && q > 0.0) || (p < 0.0 && q < 0.0);
+    if apart(c_side, d_side) || apart(a_side, b_side) {
+        return false;
+    }
+    // Unless all are in one line, each segment reaches the other's line on both sides: they meet.
+    let in_line = c_side == 0.0 && d_side == 0.0;
+    let overlaps = |p: f64, q: f64, r: f64, s: f64| p.min(q) <= r.max(s) && r.min(s) <= p.max(q);
+    !in_line || (overlaps(a.north, b.north, c.north, d.north) && overlaps(a.east, b.east, c.east, d.east))
+}
+
+/// Whether the obstacle is closer to `point` than `clearance_m`, or over it.
+pub(super) fn is_in_the_way(obstacle: &Obstacle, point: Ned, clearance_m: f64) -> bool {
+    match obstacle {
+        Obstacle::Circle { centre, radius_m } => centre.distance(point) <= radius_m + clearance_m,
+        Obstacle::Polygon { corners } => {
+            let sides = || (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
+            // A line from the point to the north crosses the sides of a polygon around it an odd number of times.
+            let crossings = sides().filter(|(a, b)| {
+                (a.east > point.east) != (b.east > point.east)
+                    && point.north < a.north + (point.east - a.east) / (b.east - a.east) * (b.north - a.north)
+            });
+            crossings.count() % 2 == 1 || sides().any(|(a, b)| distance_to_side(point, a, b) <= clearance_m)
+        }
+    }
+}
+
+fn distance_to_side(point: Ned, a: Ned, b: Ned) -> f64 {
+    let side = b - a;
+    let share = ((point - a).dot(side) / side.dot(side)).clamp(0.0, 1.0);
+    point.distance(a + side.scaled(share))
+}

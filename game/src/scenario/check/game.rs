@@ -1,0 +1,345 @@
+//! A game file and all the files it names, checked.
+
+use super::berth;
+use super::boat::{FASTEST_PER_TICK, fastest_decay};
+use super::missing_path;
+use crate::boat::Boat;
+use crate::field::Field;
+use crate::id::TeamId;
+use crate::scenario::ledger::Ledger;
+use crate::scenario::raw::{At, RawFleet, RawGame, RawVehicle};
+use crate::scenario::read::{self, Document};
+use crate::scenario::{Berth, Scenario, Sea, Strategy, Team, Vehicle};
+use crate::time::SimTime;
+use serde::de::DeserializeOwned;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+/// The most vehicles of a game.
+const MOST_VEHICLES: usize = 10_000;
+
+/// A vehicle on the way to its berth.
+pub(super) struct Entry {
+    pub(super) name: String,
+    /// Where it stands in the files.
+    pub(super) place: usize,
+    pub(super) team: TeamId,
+    pub(super) boat: usize,
+    strategy: usize,
+    /// The berth it states; `None` is the team's line.
+    pub(super) berth: Option<Berth>,
+    pub(super) heading_deg: Option<f64>,
+}
+
+/// Files of one kind that the game names, each read once.
+struct Shelf<R, T> {
+    items: Vec<T>,
+    names: BTreeSet<String>,
+    index_of: BTreeMap<PathBuf, Option<usize>>,
+    check: fn(&mut Ledger, &Document<R>) -> Option<T>,
+}
+
+impl<R: DeserializeOwned + Default, T> Shelf<R, T> {
+    fn new(check: fn(&mut Ledger, &Document<R>) -> Option<T>) -> Shelf<R, T> {
+        Shelf { items: vec![], names: BTreeSet::new(), index_of: BTreeMap::new(), check }
+    }
+
+    /// The index of the file that `given` names.
+    fn index(&mut self, ledger: &mut Ledger, given: &At<String>) -> Option<usize> {
+        let path = ledger.sources.resolve(given.at, &given.value);
+        if let Some(index) = self.index_of.get(&path) {
+            return *index;
+        }
+        let index = self.fetch(ledger, given, &path);
+        self.index_of.insert(path, index);
+        index
+    }
+
+    fn fetch(&mut self, ledger: &mut Ledger, given: &At<String>, path: &std::path::Path) -> Option<usize> {
+        let document = read::document(ledger, path, Some(given.at))?;
+        if !self.names.insert(document.name.clone()) {
+            let message =
+                format!("{} is the second file named {:?}, expected different names", given.value, document.name);
+            ledger.note(given.at, message);
+        }
+        self.items.push((self.check)(ledger, &document)?);
+        Some(self.items.len() - 1)
+    }
+}
+
+/// What the entries of the roster refer to.
+struct Roster<'a> {
+    raw: &'a RawGame,
+    field: Option<&'a Field>,
+    teams: Vec<(String, Option<At<String>>)>,
+    boats: Shelf<super::super::raw::RawBoat, Boat>,
+    strategies: Shelf<super::super::raw::RawStrategy, Strategy>,
+    names: BTreeSet<String>,
+    entries: Vec<Entry>,
+}
+
+/// Checks a game.
+pub(in crate::scenario) fn game(ledger: &mut Ledger, document: &Document<RawGame>) -> Option<Scenario> {
+    let faults = ledger.faults();
+    let (raw, start) = (&document.raw, document.start);
+    let field = referenced(ledger, start, "field", raw.field.as_ref(), super::field);
+    let rules = referenced(ledger, start, "rules", raw.rules.as_ref(), super::rules);
+    let sea = match &raw.sea {
+        Some(given) => referenced(ledger, start, "sea", Some(given), super::sea),
+        None => Some(still_fresh_water()),
+    };
+    let (tick, ticks_per_decision) = clock(ledger, raw);
+    let seed = ledger.whole("seed", raw.seed.as_ref(), 0..=i64::MAX, 1);
+    let duration_s = ledger.number("duration_s", raw.duration_s.as_ref(), 1.0..=86400.0);
+    let patience_s = ledger.number("patience_s", raw.patience_s.as_ref(), 0.001..=3600.0);
+    let order_ttl_s = ledger.number("order_ttl_s", raw.order_ttl_s.as_ref(), 0.01..=3600.0);
+    let mut roster = Roster {
+        raw,
+        field: field.as_ref(),
+        teams: teams(ledger, document),
+        boats: Shelf::new(super::boat),
+        strategies: Shelf::new(super::strategy),
+        names: BTreeSet::new(),
+        entries: vec![],
+    };
+    roster.fill(ledger, start);
+    check_tick(ledger, raw, tick, &roster.boats.items);
+    let Roster { teams, boats, strategies, entries, .. } = roster;
+    let (field, mut rules, sea) = (field?, rules?, sea?);
+    if ledger.faults() != faults {
+        return None;
+    }
+    let berths = berth::all(&entries, &field);
+    berth::check_clear(ledger, &entries, &berths, &boats.items, &field);
+    rules.time_limit = duration_s.map_or(rules.time_limit, SimTime::from_s);
+    let vehicles = entries.into_iter().zip(berths).map(|(entry, berth)| Vehicle {
+        name: entry.name,
+        team: entry.team,
+        boat: entry.boat,
+        strategy: entry.strategy,
+        berth,
+    });
+    let scenario = Scenario {
+        name: document.name.clone(),
+        seed: seed as u64,
+        tick,
+        ticks_per_decision,
+        patience_s: patience_s.unwrap_or(5.0),
+        order_ttl_s: order_ttl_s.unwrap_or(1.0),
+        field,
+        rules,
+        sea,
+        teams: teams.into_iter().map(|(name, _)| Team { name }).collect(),
+        boats: boats.items,
+        strategies: strategies.items,
+        vehicles: vehicles.collect(),
+    };
+    (ledger.faults() == faults).then_some(scenario)
+}
+
+fn referenced<R: DeserializeOwned + Default, T>(
+    ledger: &mut Ledger,
+    owner: usize,
+    key: &str,
+    given: Option<&At<String>>,
+    check: fn(&mut Ledger, &Document<R>) -> Option<T>,
+) -> Option<T> {
+    let Some(given) = given else {
+        missing_path(ledger, owner, key);
+        return None;
+    };
+    let path = ledger.sources.resolve(given.at, &given.value);
+    let document = read::document(ledger, &path, Some(given.at))?;
+    check(ledger, &document)
+}
+
+fn still_fresh_water() -> Sea {
+    Sea { name: "calm".into(), water_density_kg_m3: 1000.0, current_m_s: crate::frame::Ned::default() }
+}
+
+/// The physics tick, and how many of them a decision lasts.
+fn clock(ledger: &mut Ledger, raw: &RawGame) -> (SimTime, u32) {
+    let tick_s = ledger.number("tick_s", raw.tick_s.as_ref(), 0.001..=0.5).unwrap_or(0.05);
+    let decision_s = ledger.number("decision_s", raw.decision_s.as_ref(), 0.001..=10.0).unwrap_or(0.1);
+    let (tick, decision) = (SimTime::from_s(tick_s), SimTime::from_s(decision_s));
+    if decision.0 % tick.0 != 0 {
+        let place = raw.decision_s.as_ref().or(raw.tick_s.as_ref()).map_or(0, |given| given.at);
+        ledger.note(place, format!("decision_s is {decision_s}, expected a multiple of tick_s, {tick_s}"));
+    }
+    (tick, (decision.0 / tick.0) as u32)
+}
+
+/// A boat that is stable at the usual tick may not be at a longer one.
+fn check_tick(ledger: &mut Ledger, raw: &RawGame, tick: SimTime, boats: &[Boat]) {
+    let Some(given) = &raw.tick_s else { return };
+    for boat in boats {
+        let (motion, rate_per_s) = fastest_decay(boat);
+        if rate_per_s * tick.as_s() > FASTEST_PER_TICK {
+            let message = format!(
+                "tick_s is {}, expected at most {:.4}: the {motion} of boat {} dies out at {rate_per_s:.1} 1/s",
+                given.value,
+                FASTEST_PER_TICK / rate_per_s,
+                boat.name
+            );
+            ledger.note(given.at, message);
+        }
+    }
+}
+
+fn teams(ledger: &mut Ledger, document: &Document<RawGame>) -> Vec<(String, Option<At<String>>)> {
+    let given = document.raw.team.as_deref().unwrap_or_default();
+    if given.len() != 2 {
+        let message = format!("team has {} entries, expected exactly two [[team]] for now", given.len());
+        match given.get(2) {
+            Some(third) => ledger.note(third.at, message),
+            None => ledger.note_if_intact(document.start, message),
+        }
+    }
+    let mut teams: Vec<(String, Option<At<String>>)> = vec![];
+    for team in given.iter().take(2) {
+        let Some(name) = &team.value.name else {
+            ledger.note_missing(team.at, "team.name", "1 to 40 of a-z, 0-9 and _");
+            continue;
+        };
+        if ledger.is_name(name.at, "name", &name.value) && teams.iter().any(|(other, _)| *other == name.value) {
+            ledger.note(name.at, format!("name is {:?} again, expected a different one for each team", name.value));
+        }
+        teams.push((name.value.clone(), team.value.strategy.clone()));
+    }
+    teams
+}
+
+impl Roster<'_> {
+    fn fill(&mut self, ledger: &mut Ledger, start: usize) {
+        let raw = self.raw;
+        for vehicle in raw.vehicle.iter().flatten() {
+            self.add_vehicle(ledger, vehicle);
+        }
+        for fleet in raw.fleet.iter().flatten() {
+            self.add_fleet(ledger, fleet);
+        }
+        if raw.vehicle.iter().flatten().next().is_none() && raw.fleet.iter().flatten().next().is_none() {
+            ledger.note_missing(start, "vehicle", "at least one [[vehicle]] or [[fleet]]");
+        }
+        // The teams' strategies are checked even where no boat of theirs follows them.
+        let unused: Vec<At<String>> = self.teams.iter().filter_map(|(_, strategy)| strategy.clone()).collect();
+        let known = self.strategies.items.len();
+        for strategy in &unused {
+            self.strategies.index(ledger, strategy);
+        }
+        self.strategies.items.truncate(known);
+    }
+
+    fn add_vehicle(&mut self, ledger: &mut Ledger, vehicle: &At<RawVehicle>) {
+        let raw = &vehicle.value;
+        let team = self.team(ledger, vehicle.at, "vehicle", raw.team.as_ref());
+        let boat = self.boat(ledger, vehicle.at, "vehicle", raw.boat.as_ref());
+        let strategy = self.strategy(ledger, vehicle.at, "vehicle", raw.strategy.as_ref(), team);
+        let berth = team.zip(self.field).and_then(|(team, field)| berth::stated(ledger, raw, team, field));
+        let heading_deg = berth::heading_deg(ledger, raw);
+        let Some(name) = &raw.name else {
+            ledger.note_missing(vehicle.at, "vehicle.name", "1 to 40 of a-z, 0-9 and _");
+            return;
+        };
+        if self.is_new_name(ledger, name.at, &name.value)
+            && self.is_room(ledger, vehicle.at, 1)
+            && let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy)
+        {
+            let (name, place) = (name.value.clone(), raw.at.as_ref().map_or(vehicle.at, |at| at.at));
+            self.entries.push(Entry { name, place, team, boat, strategy, berth, heading_deg });
+        }
+    }
+
+    fn add_fleet(&mut self, ledger: &mut Ledger, fleet: &At<RawFleet>) {
+        let raw = &fleet.value;
+        let team = self.team(ledger, fleet.at, "fleet", raw.team.as_ref());
+        let boat = self.boat(ledger, fleet.at, "fleet", raw.boat.as_ref());
+        let strategy = self.strategy(ledger, fleet.at, "fleet", raw.strategy.as_ref(), team);
+        if raw.count.is_none() {
+            ledger.note_missing(fleet.at, "fleet.count", &format!("1 to {MOST_VEHICLES}"));
+        }
+        let count = ledger.whole("count", raw.count.as_ref(), 1..=MOST_VEHICLES as i64, 1) as usize;
+        let spawn = raw.spawn.as_ref();
+        let berth = spawn.zip(self.field).and_then(|(spawn, field)| berth::somewhere(ledger, spawn, count, field));
+        let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy) else { return };
+        let pattern = match &raw.name {
+            Some(name) => name.value.clone(),
+            None => format!("{}_{{}}", self.teams[team.index()].0),
+        };
+        let place = raw.name.as_ref().map_or(fleet.at, |name| name.at);
+        if !pattern.contains("{}") {
+            ledger.note(place, format!("name is {pattern:?}, expected {{}} in it, where the number goes"));
+            return;
+        }
+        if !self.is_room(ledger, fleet.at, count) {
+            return;
+        }
+        for number in 1..=count {
+            let name = pattern.replace("{}", &number.to_string());
+            if !self.is_new_name(ledger, place, &name) {
+                return;
+            }
+            let berth = berth.clone();
+            self.entries.push(Entry { name, place: fleet.at, team, boat, strategy, berth, heading_deg: None });
+        }
+    }
+
+    fn is_room(&self, ledger: &mut Ledger, at: usize, count: usize) -> bool {
+        let total = self.entries.len() + count;
+        if total > MOST_VEHICLES {
+            ledger.note(at, format!("vehicles are {total} with this one, expected at most {MOST_VEHICLES}"));
+        }
+        total <= MOST_VEHICLES
+    }
+
+    fn is_new_name(&mut self, ledger: &mut Ledger, at: usize, name: &str) -> bool {
+        if !ledger.is_name(at, "name", name) {
+            return false;
+        }
+        let is_new = self.names.insert(name.to_owned());
+        if !is_new {
+            ledger.note(at, format!("name is {name:?} again, expected a different one for each vehicle"));
+        }
+        is_new
+    }
+
+    fn team(&self, ledger: &mut Ledger, owner: usize, kind: &str, given: Option<&At<String>>) -> Option<TeamId> {
+        let names = self.teams.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
+        let Some(given) = given else {
+            ledger.note_missing(owner, &format!("{kind}.team"), &format!("one of {names}"));
+            return None;
+        };
+        let index = self.teams.iter().position(|(name, _)| *name == given.value);
+        if index.is_none() {
+            ledger.note_if_intact(given.at, format!("team is {:?}, expected one of {names}", given.value));
+        }
+        index.map(|index| TeamId(index as u8))
+    }
+
+    fn boat(&mut self, ledger: &mut Ledger, owner: usize, kind: &str, given: Option<&At<String>>) -> Option<usize> {
+        let Some(given) = given.or(self.raw.boat.as_ref()) else {
+            ledger.note_missing(owner, &format!("{kind}.boat"), "the path of a boat file here or for the game");
+            return None;
+        };
+        self.boats.index(ledger, given)
+    }
+
+    fn strategy(
+        &mut self,
+        ledger: &mut Ledger,
+        owner: usize,
+        kind: &str,
+        given: Option<&At<String>>,
+        team: Option<TeamId>,
+    ) -> Option<usize> {
+        let of_team = team.and_then(|team| self.teams[team.index()].1.clone());
+        if given.is_none() && of_team.is_none() {
+            if team.is_some() {
+                let key = format!("{kind}.strategy");
+                ledger.note_missing(owner, &key, "the path of a strategy file here or for the team");
+            }
+            return None;
+        }
+        self.strategies.index(ledger, given.or(of_team.as_ref())?)
+    }
+}

@@ -1,0 +1,31 @@
+//! From files as typed to what the program believes: one function a kind of file.
+//!
+//! Every check notes all it finds in the [`Ledger`] and returns `None` if anything was wrong.
+
+mod berth;
+mod boat;
+mod field;
+mod game;
+mod rules;
+mod sea;
+mod strategy;
+
+pub(super) use boat::boat;
+pub(super) use field::field;
+pub(super) use game::game;
+pub(super) use rules::rules;
+pub(super) use sea::sea;
+pub(super) use strategy::strategy;
+
+use super::ledger::Ledger;
+use super::raw::At;
+
+/// Notes that `key` must name a file and does not.
+fn missing_path(ledger: &mut Ledger, owner: usize, key: &str) {
+    ledger.note_missing(owner, key, "the path of a file");
+}
+
+/// A copy of `given` for another type of value at the same place.
+fn same_place<T, U>(given: &At<T>, value: U) -> At<U> {
+    At { value, at: given.at }
+}

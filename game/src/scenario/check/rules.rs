@@ -1,0 +1,52 @@
+//! A rules file, checked.
+
+use crate::rules::{CaptureAt, Points, Rules, TagChoice, TaggedBoat, UntagAt, UntagOn};
+use crate::scenario::ledger::Ledger;
+use crate::scenario::raw::{At, RawRules};
+use crate::scenario::read::Document;
+use crate::time::SimTime;
+
+/// Distances at which something happens, m.
+const REACH_M: std::ops::RangeInclusive<f64> = 0.1..=1000.0;
+
+/// Checks rules.
+pub(in crate::scenario) fn rules(ledger: &mut Ledger, document: &Document<RawRules>) -> Option<Rules> {
+    let faults = ledger.faults();
+    let raw = &document.raw;
+    let points = raw.points.clone().unwrap_or_default();
+    let is_set = |given: &Option<At<bool>>, default: bool| given.as_ref().map_or(default, |given| given.value);
+    let mut number = |key: &str, given: &Option<At<f64>>, allowed, default: f64| {
+        ledger.number(key, given.as_ref(), allowed).unwrap_or(default)
+    };
+    let mut rules = Rules {
+        name: document.name.clone(),
+        points: Points { grab: 0, capture: 0, tag: 0 },
+        grab_radius_m: number("grab_radius_m", &raw.grab_radius_m, REACH_M, 10.0),
+        tag_radius_m: number("tag_radius_m", &raw.tag_radius_m, REACH_M, 10.0),
+        untag_radius_m: number("untag_radius_m", &raw.untag_radius_m, REACH_M, 10.0),
+        capture_radius_m: number("capture_radius_m", &raw.capture_radius_m, REACH_M, 10.0),
+        collision_distance_m: number("collision_distance_m", &raw.collision_distance_m, 0.0..=100.0, 3.0),
+        capture_at: raw.capture_at.map_or(CaptureAt::OwnFlag, CaptureAt::from),
+        capture_needs_own_flag: is_set(&raw.capture_needs_own_flag, false),
+        untag_at: raw.untag_at.map_or(UntagAt::OwnFlag, UntagAt::from),
+        untag_on: raw.untag_on.map_or(UntagOn::Entering, UntagOn::from),
+        tag_cooldown: SimTime::from_s(number("tag_cooldown_s", &raw.tag_cooldown_s, 0.0..=86400.0, 10.0)),
+        tag_choice: raw.tag_choice.map_or(TagChoice::Nearest, TagChoice::from),
+        boundary_tags: is_set(&raw.boundary_tags, true),
+        tagged_boat: raw.tagged_boat.map_or(TaggedBoat::DrivesItself, TaggedBoat::from),
+        tagged_speed_factor: number("tagged_speed_factor", &raw.tagged_speed_factor, 0.05..=1.0, 1.0),
+        outside_speed_factor: number("outside_speed_factor", &raw.outside_speed_factor, 0.05..=1.0, 1.0),
+        flag_keepout_m: number("flag_keepout_m", &raw.flag_keepout_m, 0.0..=1000.0, 0.0),
+        win_score: None,
+        time_limit: SimTime::from_s(number("time_limit_s", &raw.time_limit_s, 1.0..=86400.0, 600.0)),
+        power_play: SimTime::from_s(number("power_play_s", &raw.power_play_s, 0.0..=86400.0, 0.0)),
+    };
+    let win_score = ledger.whole("win_score", raw.win_score.as_ref(), 0..=1_000_000, 0);
+    rules.win_score = (win_score > 0).then_some(win_score as u32);
+    rules.points = Points {
+        grab: ledger.whole("grab", points.grab.as_ref(), 0..=1000, 1) as u32,
+        capture: ledger.whole("capture", points.capture.as_ref(), 0..=1000, 2) as u32,
+        tag: ledger.whole("tag", points.tag.as_ref(), 0..=1000, 0) as u32,
+    };
+    (ledger.faults() == faults).then_some(rules)
+}

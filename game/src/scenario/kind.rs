@@ -1,0 +1,151 @@
+//! The kinds of scenario files: their names, their schemas, and which kind a file is.
+
+use super::raw;
+use schemars::{JsonSchema, generate::SchemaSettings};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::Path;
+
+/// A kind of scenario file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// A game.
+    Game,
+    /// A field.
+    Field,
+    /// Rules.
+    Rules,
+    /// A kind of boat.
+    Boat,
+    /// A sea.
+    Sea,
+    /// A strategy.
+    Strategy,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Kind; 6] = [Kind::Game, Kind::Field, Kind::Rules, Kind::Boat, Kind::Sea, Kind::Strategy];
+
+    /// Its name, which is also that of its schema file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Game => "game",
+            Kind::Field => "field",
+            Kind::Rules => "rules",
+            Kind::Boat => "boat",
+            Kind::Sea => "sea",
+            Kind::Strategy => "strategy",
+        }
+    }
+
+    /// The folder its files lie in.
+    #[must_use]
+    pub fn folder(self) -> &'static str {
+        match self {
+            Kind::Game => "games",
+            Kind::Field => "fields",
+            Kind::Rules => "rules",
+            Kind::Boat => "boats",
+            Kind::Sea => "seas",
+            Kind::Strategy => "strategies",
+        }
+    }
+
+    /// The kind that the folder of `path` says, if it says one.
+    #[must_use]
+    pub fn by_folder(path: &Path) -> Option<Kind> {
+        let folder = path.parent()?.file_name()?;
+        Kind::ALL.into_iter().find(|kind| folder == kind.folder())
+    }
+
+    /// The kind that knows most of these top-level keys; the first of [`Kind::ALL`] where several do.
+    pub(super) fn by_keys(keys: &BTreeSet<String>) -> Kind {
+        let known = |kind: Kind| {
+            let schema = schema(kind);
+            let properties = schema.get("properties");
+            keys.iter().filter(|key| properties.is_some_and(|known| known.get(key.as_str()).is_some())).count()
+        };
+        // Of equals `max_by_key` takes the last.
+        Kind::ALL.into_iter().rev().max_by_key(|kind| known(*kind)).unwrap_or(Kind::Game)
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The JSON Schema of a kind of file, for editors.
+#[must_use]
+pub fn schema(kind: Kind) -> Value {
+    match kind {
+        Kind::Game => schema_of::<raw::RawGame>(),
+        Kind::Field => schema_of::<raw::RawField>(),
+        Kind::Rules => schema_of::<raw::RawRules>(),
+        Kind::Boat => schema_of::<raw::RawBoat>(),
+        Kind::Sea => schema_of::<raw::RawSea>(),
+        Kind::Strategy => schema_of::<raw::RawStrategy>(),
+    }
+}
+
+fn schema_of<T: JsonSchema>() -> Value {
+    // Draft 7 is what editors' TOML extensions understand.
+    let generator = SchemaSettings::draft07().into_generator();
+    let mut schema = generator.into_root_schema_for::<T>().to_value();
+    without_null(&mut schema);
+    schema
+}
+
+/// Our keys may be left out, which the generator writes as "or null"; TOML has no null.
+fn without_null(value: &mut Value) {
+    let is_null = |choice: &Value| *choice == "null" || choice.get("type").is_some_and(|kind| kind == "null");
+    if let Value::Object(object) = value {
+        if let Some(Value::Array(types)) = object.get_mut("type") {
+            types.retain(|choice| !is_null(choice));
+            if let [only] = types.as_slice() {
+                let only = only.clone();
+                object.insert("type".into(), only);
+            }
+        }
+        if let Some(Value::Array(choices)) = object.get_mut("anyOf") {
+            choices.retain(|choice| !is_null(choice));
+            if let [only] = choices.as_slice() {
+                let only = only.clone();
+                object.remove("anyOf");
+                // Draft 7 ignores what stands beside a `$ref`, so the reference goes into a list of one.
+                object.insert("allOf".into(), Value::Array(vec![only]));
+            }
+        }
+        object.values_mut().for_each(without_null);
+    } else if let Value::Array(items) = value {
+        items.iter_mut().for_each(without_null);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_outside_of_the_folders_is_told_by_its_keys() {
+        for (keys, want) in [
+            (vec!["field", "team"], Kind::Game),
+            (vec!["width_m", "depth_m"], Kind::Field),
+            (vec!["points"], Kind::Rules),
+            (vec!["hull", "typo"], Kind::Boat),
+            (vec!["current"], Kind::Sea),
+            (vec!["roles", "base"], Kind::Strategy),
+            (vec!["base"], Kind::Game),
+            (vec![], Kind::Game),
+        ] {
+            let keys = keys.into_iter().map(str::to_owned).collect();
+            assert_eq!(Kind::by_keys(&keys), want, "{keys:?}");
+        }
+        assert_eq!(Kind::by_folder(Path::new("x/seas/calm.toml")), Some(Kind::Sea));
+        assert_eq!(Kind::by_folder(Path::new("calm.toml")), None);
+    }
+}

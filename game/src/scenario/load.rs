@@ -1,0 +1,108 @@
+//! The ways in: a path, and out comes what the file says, or everything that is wrong with it.
+
+use super::kind::Kind;
+use super::ledger::Ledger;
+use super::problem::Problems;
+use super::read::{self, Document};
+use super::{Scenario, Sea, Strategy, check};
+use crate::boat::Boat;
+use crate::field::Field;
+use crate::rules::Rules;
+use serde::de::DeserializeOwned;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// What a scenario file of any kind says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Checked {
+    /// A game, with all the files it names.
+    Game(Box<Scenario>),
+    /// A field.
+    Field(Box<Field>),
+    /// Rules.
+    Rules(Box<Rules>),
+    /// A kind of boat.
+    Boat(Box<Boat>),
+    /// A sea.
+    Sea(Sea),
+    /// A strategy.
+    Strategy(Strategy),
+}
+
+impl Checked {
+    /// Which kind of file it was.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        match self {
+            Checked::Game(_) => Kind::Game,
+            Checked::Field(_) => Kind::Field,
+            Checked::Rules(_) => Kind::Rules,
+            Checked::Boat(_) => Kind::Boat,
+            Checked::Sea(_) => Kind::Sea,
+            Checked::Strategy(_) => Kind::Strategy,
+        }
+    }
+
+    /// The file's stem.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Checked::Game(game) => &game.name,
+            Checked::Field(field) => &field.plan.name,
+            Checked::Rules(rules) => &rules.name,
+            Checked::Boat(boat) => &boat.name,
+            Checked::Sea(sea) => &sea.name,
+            Checked::Strategy(strategy) => &strategy.name,
+        }
+    }
+}
+
+/// Reads and checks the game file at `path` and every file it names.
+///
+/// # Errors
+/// Everything that is wrong in any of them, by file, line and column.
+pub fn load(path: &Path) -> Result<Scenario, Problems> {
+    one(path, check::game)
+}
+
+/// Reads and checks the boat file at `path`.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
+    one(path, check::boat)
+}
+
+/// Reads and checks a scenario file of any kind.
+///
+/// The folder it lies in says which kind it is (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`).
+/// In any other folder it is the kind that knows most of its top-level keys, its bases' included; where
+/// several know as many, the first of [`Kind::ALL`].
+///
+/// # Errors
+/// Everything that is wrong in it, its bases and the files it names.
+pub fn check_file(path: &Path) -> Result<Checked, Problems> {
+    match Kind::by_folder(path).unwrap_or_else(|| Kind::by_keys(&top_keys(path))) {
+        Kind::Game => one(path, check::game).map(|game| Checked::Game(Box::new(game))),
+        Kind::Field => one(path, check::field).map(|field| Checked::Field(Box::new(field))),
+        Kind::Rules => one(path, check::rules).map(|rules| Checked::Rules(Box::new(rules))),
+        Kind::Boat => one(path, check::boat).map(|boat| Checked::Boat(Box::new(boat))),
+        Kind::Sea => one(path, check::sea).map(Checked::Sea),
+        Kind::Strategy => one(path, check::strategy).map(Checked::Strategy),
+    }
+}
+
+fn one<R: DeserializeOwned + Default, T>(
+    path: &Path,
+    check: fn(&mut Ledger, &Document<R>) -> Option<T>,
+) -> Result<T, Problems> {
+    let mut ledger = Ledger::default();
+    let value = read::document(&mut ledger, path, None).and_then(|document| check(&mut ledger, &document));
+    ledger.close(value)
+}
+
+/// The top-level keys of a file and its bases; what is wrong with them is found again by the check.
+fn top_keys(path: &Path) -> BTreeSet<String> {
+    let Some(chain) = read::chain(&mut Ledger::default(), path, None) else { return BTreeSet::new() };
+    read::merged(&chain).get_ref().keys().map(|key| key.get_ref().to_string()).collect()
+}

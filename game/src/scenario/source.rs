@@ -1,0 +1,126 @@
+//! Every file that was read, laid end to end in one virtual text: one byte offset names file, line and column.
+
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+/// All files read so far.
+#[derive(Debug, Default)]
+pub(super) struct Sources {
+    files: Vec<Source>,
+}
+
+/// A file in the virtual text.
+#[derive(Debug)]
+struct Source {
+    path: PathBuf,
+    text: Arc<str>,
+    /// Where it begins in the virtual text.
+    start: usize,
+    /// Lines with a syntax error, from 1.
+    broken_lines: Vec<usize>,
+}
+
+/// A place in a file, for people.
+#[derive(Debug, PartialEq)]
+pub(super) struct Place {
+    /// The file.
+    pub(super) path: PathBuf,
+    /// Line, from 1.
+    pub(super) line: usize,
+    /// Column in characters, from 1.
+    pub(super) column: usize,
+}
+
+impl Sources {
+    /// Lays a file behind the others; returns where it begins.
+    pub(super) fn add(&mut self, path: PathBuf, text: Arc<str>) -> usize {
+        // One byte apart, so that the end of a file is not the start of the next.
+        let start = self.files.last().map_or(0, |last| last.start + last.text.len() + 1);
+        self.files.push(Source { path, text, start, broken_lines: vec![] });
+        start
+    }
+
+    /// The index of the file that `offset` lies in.
+    pub(super) fn index_at(&self, offset: usize) -> usize {
+        self.files.partition_point(|file| file.start <= offset) - 1
+    }
+
+    /// The place that `offset` names; at least one file must have been added.
+    pub(super) fn place(&self, offset: usize) -> Place {
+        let file = &self.files[self.index_at(offset)];
+        let mut end = (offset - file.start).min(file.text.len());
+        while !file.text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let before = &file.text[..end];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Place {
+            path: file.path.clone(),
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+        }
+    }
+
+    /// The file that the reference `reference`, standing at `offset`, means.
+    pub(super) fn resolve(&self, offset: usize, reference: &str) -> PathBuf {
+        let here = &self.files[self.index_at(offset)].path;
+        tidied(&here.parent().unwrap_or(Path::new("")).join(reference))
+    }
+
+    /// Remembers that the syntax is wrong at `offset`.
+    pub(super) fn mark_broken(&mut self, offset: usize) {
+        let line = self.place(offset).line;
+        let index = self.index_at(offset);
+        self.files[index].broken_lines.push(line);
+    }
+
+    /// Whether the syntax is wrong in the line of `offset`.
+    pub(super) fn is_broken_line(&self, offset: usize) -> bool {
+        self.files[self.index_at(offset)].broken_lines.contains(&self.place(offset).line)
+    }
+
+    /// Whether the syntax is wrong anywhere in the file of `offset`.
+    pub(super) fn is_broken_file(&self, offset: usize) -> bool {
+        !self.files[self.index_at(offset)].broken_lines.is_empty()
+    }
+}
+
+/// `path` without `.` and without `name/..`, so that one file has one path.
+pub(super) fn tidied(path: &Path) -> PathBuf {
+    let mut tidy = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(tidy.components().next_back(), Some(Component::Normal(_))) => {
+                tidy.pop();
+            }
+            _ => tidy.push(part),
+        }
+    }
+    tidy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_offset_names_file_line_and_column() {
+        let mut sources = Sources::default();
+        let a = sources.add("games/a.toml".into(), "x = 1\nß = 2".into());
+        let b = sources.add("b.toml".into(), "y".into());
+        for (offset, path, line, column) in [
+            (a, "games/a.toml", 1, 1),
+            (a + 4, "games/a.toml", 1, 5),
+            (a + 6, "games/a.toml", 2, 1),
+            (a + 9, "games/a.toml", 2, 3),
+            (a + 12, "games/a.toml", 2, 6),
+            (b, "b.toml", 1, 1),
+            (b + 70, "b.toml", 1, 2),
+        ] {
+            assert_eq!(sources.place(offset), Place { path: path.into(), line, column }, "{offset}");
+        }
+        assert_eq!(sources.resolve(a, "../fields/f.toml"), Path::new("fields/f.toml"));
+        assert_eq!(sources.resolve(b, "../c.toml"), Path::new("../c.toml"));
+    }
+}

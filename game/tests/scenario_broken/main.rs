@@ -1,0 +1,84 @@
+//! Broken scenario files: every mistake is reported, at its place, with what is allowed.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod boats;
+mod files;
+mod games;
+mod values;
+
+use game::scenario;
+
+/// A sound set of files; each case replaces some of them.
+const SOUND: [(&str, &str); 6] = [
+    (
+        "games/g.toml",
+        r#"field = "../fields/f.toml"
+rules = "../rules/r.toml"
+sea = "../seas/s.toml"
+boat = "../boats/b.toml"
+team = [{ name = "blue", strategy = "../strategies/p.toml" }, { name = "red", strategy = "../strategies/p.toml" }]
+vehicle = [{ name = "blue_one", team = "blue" }, { name = "red_one", team = "red" }]
+"#,
+    ),
+    ("fields/f.toml", "datum = { lat_deg = 41.0, lon_deg = -74.0 }\nwidth_m = 160\ndepth_m = 80\n"),
+    ("rules/r.toml", ""),
+    ("seas/s.toml", ""),
+    (
+        "boats/b.toml",
+        r#"length_m = 2
+beam_m = 1
+[hull]
+mass_kg = 50
+[thruster]
+arm_m = 0.4
+table_pct_newton = [[-100, -20], [0, 0], [100, 40]]
+[autopilot]
+speed_max_m_s = 2
+"#,
+    ),
+    ("strategies/p.toml", "roles = [\"idle\"]\n"),
+];
+
+/// What is wrong with `asked` when the files are the sound ones with `files` over them, line by line.
+fn problems(asked: &str, files: &[(&str, &[u8])]) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let sound = SOUND.iter().map(|(path, text)| (*path, text.as_bytes()));
+    for (path, text) in sound.chain(files.iter().copied()) {
+        let path = folder.path().join(path);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    let Err(found) = scenario::check_file(&folder.path().join(asked)) else { return vec![] };
+    let root = format!("{}/", folder.path().display());
+    found.to_string().lines().map(|line| line.replace(&root, "")).collect()
+}
+
+/// A name for the case, the file to check, the files to replace, and what must be reported.
+type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static [&'static str]);
+
+/// `line` with the long lists of what is allowed cut short.
+fn abridged(line: &str) -> String {
+    let lists = [("PPB PPF", "SSBX", "{points}"), ("base, points,", "power_play_s", "{keys of rules}")];
+    let lists = lists.into_iter().chain([("mass_kg, yaw", "munk_factor", "{keys of hulls}")]);
+    lists.fold(line.to_owned(), |line, (first, last, short)| match (line.find(first), line.find(last)) {
+        (Some(from), Some(to)) => format!("{}{short}{}", &line[..from], &line[to + last.len()..]),
+        _ => line,
+    })
+}
+
+fn assert_reported(cases: &[Case]) {
+    for (name, asked, files, want) in cases {
+        let files: Vec<(&str, &[u8])> = files.iter().map(|(path, text)| (*path, text.as_bytes())).collect();
+        let got = problems(asked, &files);
+        let got: Vec<String> = got.iter().map(|line| abridged(line)).collect();
+        assert_eq!(got, *want, "{name}");
+    }
+}
+
+#[test]
+fn the_sound_files_are_sound() {
+    for (path, _) in SOUND {
+        assert_eq!(problems(path, &[]), [""; 0], "{path}");
+    }
+}

@@ -1,0 +1,243 @@
+//! The shipped scenario files: all of them are sound, and say what they are meant to say.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use game::field::Walls;
+use game::id::{TeamId, VehicleId};
+use game::scenario::{self, Berth, Checked, Kind};
+use game::{Ned, Scenario};
+use std::path::{Path, PathBuf};
+
+fn shipped(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(path)
+}
+
+fn files(kind: Kind) -> Vec<PathBuf> {
+    let folder = shipped(kind.folder());
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+fn game(name: &str) -> Scenario {
+    scenario::load(&shipped(&format!("games/{name}.toml"))).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn field(name: &str) -> game::Field {
+    match scenario::check_file(&shipped(&format!("fields/{name}.toml"))) {
+        Ok(Checked::Field(field)) => *field,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn every_shipped_file_is_sound_and_says_what_it_is_for() {
+    for kind in Kind::ALL {
+        let files = files(kind);
+        assert!(!files.is_empty(), "no {kind}");
+        for path in files {
+            let checked = scenario::check_file(&path).unwrap_or_else(|problems| panic!("{problems}"));
+            assert_eq!(checked.kind(), kind, "{}", path.display());
+            assert_eq!(checked.name(), path.file_stem().unwrap().to_str().unwrap());
+            assert!(std::fs::read_to_string(&path).unwrap().starts_with("# "), "{}", path.display());
+        }
+    }
+}
+
+#[test]
+fn a_file_is_recognised_wherever_it_lies() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in Kind::ALL {
+        if kind == Kind::Game {
+            continue; // Its references would not follow it.
+        }
+        for path in files(kind) {
+            let text = std::fs::read_to_string(&path).unwrap();
+            if text.contains("base = ") {
+                continue;
+            }
+            let copy = folder.path().join(path.file_name().unwrap());
+            std::fs::write(&copy, text).unwrap();
+            assert_eq!(scenario::check_file(&copy).map(|checked| checked.kind()), Ok(kind), "{}", path.display());
+        }
+    }
+}
+
+#[test]
+fn published_fields_come_out_where_they_were_sailed() {
+    type Published = (&'static str, [(f64, f64); 2], &'static [(f64, f64)]);
+    let table: [Published; 4] = [
+        ("aquaticus_160x80", [(20.0, 40.0), (140.0, 40.0)], &[(0.0, 0.0), (0.0, 80.0), (160.0, 80.0), (160.0, 0.0)]),
+        (
+            "popolopen_2025",
+            [(194.71, 74.76), (235.75, 187.53)],
+            &[(225.46, 42.29), (150.28, 69.65), (205.0, 220.0), (280.18, 192.64)],
+        ),
+        // The fourth published corner is 0.3 m off; see the file.
+        ("popolopen_2022", [(225.83, 79.67), (254.89, 154.21)], &[(246.00, 55.70), (194.76, 75.68), (234.72, 178.16)]),
+        (
+            "jervis_bay_2023",
+            [(76.4, 130.6), (14.59, 233.46)],
+            &[(120.98, 134.05), (52.41, 92.85), (-30.0, 230.0), (38.57, 271.2)],
+        ),
+    ];
+    for (name, flags, corners) in table {
+        let field = field(name);
+        let published_m = 0.05;
+        let pairs = flags.iter().zip(field.flags.iter().map(|flag| flag.home)).chain(corners.iter().zip(field.corners));
+        for ((x, y), got) in pairs {
+            let apart_m = got.distance(Ned::from_xy(*x, *y));
+            assert!(apart_m < published_m, "{name}: ({}, {}) is not ({x}, {y})", got.east, got.north);
+        }
+    }
+    assert_eq!(field("harbour").plan.walls, Walls::AllRound);
+    assert_eq!(field("harbour").plan.obstacles.len(), 5);
+}
+
+#[test]
+fn a_scenario_survives_json_exactly() {
+    for path in files(Kind::Game) {
+        let before = scenario::load(&path).unwrap();
+        let text = serde_json::to_string(&before).unwrap();
+        let after: Scenario = serde_json::from_str(&text).unwrap();
+        assert_eq!(before, after, "{}", path.display());
+        assert_eq!(text, serde_json::to_string(&after).unwrap());
+    }
+}
+
+#[test]
+fn boats_without_a_berth_lie_in_line_and_mirror_each_other() {
+    let game = game("pav01_vs_pav01");
+    let poses: Vec<_> = game
+        .vehicles
+        .iter()
+        .map(|vehicle| match &vehicle.berth {
+            Berth::At(pose) => (pose.at.east, pose.at.north, pose.psi_rad.to_degrees().round()),
+            Berth::Somewhere { .. } => panic!("{} has no place", vehicle.name),
+        })
+        .collect();
+    let third_m = 80.0 / 3.0;
+    let want = [
+        (50.0, 80.0 - third_m, 90.0),
+        (50.0, 80.0 - 2.0 * third_m, 90.0),
+        (110.0, third_m, -90.0),
+        (110.0, 2.0 * third_m, -90.0),
+    ];
+    assert_eq!(poses, want);
+    for count in [3, 4] {
+        let game = self::game(&format!("pav01_{count}v{count}"));
+        assert_eq!(game.vehicles.len(), 2 * count);
+        for i in 0..count {
+            let (Berth::At(blue), Berth::At(red)) = (&game.vehicles[i].berth, &game.vehicles[count + i].berth) else {
+                panic!("no places");
+            };
+            // Half a turn about the middle of the field takes one team to the other.
+            assert_eq!((blue.at.east, blue.at.north), (160.0 - red.at.east, 80.0 - red.at.north), "{i}");
+        }
+    }
+}
+
+#[test]
+fn a_scenario_knows_its_vehicles() {
+    let game = game("attack_1v1");
+    let red = game.vehicle_by_name("red_one").unwrap();
+    assert_eq!((red, game.team_of(red)), (VehicleId(1), TeamId(1)));
+    assert_eq!(game.team_by_name("red"), Some(TeamId(1)));
+    assert_eq!(game.vehicle_by_name("green_one"), None);
+    assert_eq!(game.boat_of(red).name, "surveyor_m1_8");
+    assert_eq!(game.strategy_of(red).name, "idle");
+    assert_eq!(game.rules.time_limit.as_s(), 300.0);
+    let swarm = self::game("swarm_500v500");
+    assert_eq!((swarm.vehicles.len(), swarm.boats.len(), swarm.strategies.len()), (1000, 1, 1));
+    assert_eq!(swarm.vehicles[999].name, "red_500");
+}
+
+#[test]
+fn boats_reach_the_speed_they_are_named_for() {
+    for (name, want_m_s) in [("otter", 3.086), ("surveyor_m1_8", 3.0), ("heron", 2.0)] {
+        let boat = scenario::load_boat(&shipped(&format!("boats/{name}.toml"))).unwrap();
+        let thrust_newton = 2.0
+            * match &boat.thruster.curve {
+                game::boat::ThrustCurve::Propeller { k_ahead, n_max_rad_s, .. } => k_ahead * n_max_rad_s * n_max_rad_s,
+                game::boat::ThrustCurve::Table { points } => points.last().unwrap().1,
+            };
+        let (a, b) = (boat.hull.surge_quadratic_kg_m, boat.hull.surge_linear_kg_s);
+        // The positive root of a u² + b u = T, in the form that also holds for a = 0.
+        let u_m_s = 2.0 * thrust_newton / (b + (b * b + 4.0 * a * thrust_newton).sqrt());
+        assert!((u_m_s - want_m_s).abs() < 0.01, "{name}: {u_m_s} m/s");
+    }
+}
+
+#[test]
+fn the_schemas_beside_the_files_are_those_of_the_types() {
+    let bless = std::env::var_os("SQUALL_BLESS").is_some();
+    for kind in Kind::ALL {
+        let path = shipped(&format!("schema/{kind}.schema.json"));
+        let mut want = serde_json::to_string_pretty(&scenario::schema(kind)).unwrap();
+        want.push('\n');
+        if bless {
+            std::fs::write(&path, &want).unwrap();
+        }
+        let found = std::fs::read_to_string(&path).unwrap_or_default();
+        assert_eq!(found, want, "{} is behind: run this test with SQUALL_BLESS=1", path.display());
+    }
+}
+
+/// Every number that a schema describes with its range: its path in the file, and the range in words.
+fn ranges(schema: &serde_json::Value, at: &serde_json::Value, path: &str, found: &mut Vec<(String, String)>) {
+    for (key, about) in at["properties"].as_object().into_iter().flatten() {
+        let path = format!("{path}{key}");
+        if let Some(name) = about["allOf"][0]["$ref"].as_str() {
+            let inner = &schema["definitions"][name.rsplit('/').next().unwrap()];
+            ranges(schema, inner, &format!("{path}."), found);
+        }
+        let is_number = about["type"] == "number" || about["type"] == "integer";
+        if let (true, Some((_, said))) = (is_number, about["description"].as_str().unwrap().rsplit_once(": ")) {
+            let words: Vec<&str> = said
+                .split(|c: char| c.is_whitespace() || c == ';' || c == ',')
+                .map(|word| word.trim_end_matches('.'))
+                .collect();
+            if words.get(1) == Some(&"to") {
+                found.push((path, format!("{} to {}", words[0], words[2])));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_ranges_that_schemas_describe_are_those_that_are_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let bases = [
+        "games/pav01_vs_pav01",
+        "fields/harbour",
+        "rules/pyquaticus",
+        "boats/otter",
+        "seas/calm_salt",
+        "strategies/pav01",
+    ];
+    for (kind, base) in Kind::ALL.into_iter().zip(bases) {
+        let schema = scenario::schema(kind);
+        let mut found = vec![];
+        ranges(&schema, &schema, "", &mut found);
+        assert!(!found.is_empty(), "{kind}");
+        for (path, range) in found {
+            let base = shipped(&format!("{base}.toml")).canonicalize().unwrap();
+            let (low, high) = range.split_once(" to ").unwrap();
+            let beyond = |bound: &str, by: f64| bound.parse::<f64>().unwrap() + by;
+            let is_whole =
+                ["seed", "win_score", "points.grab", "points.capture", "points.tag"].contains(&path.as_str());
+            for value in [beyond(low, -1.0), beyond(high, 1.0)] {
+                let value = match (is_whole, value > 1e18) {
+                    (true, true) => continue, // A file cannot say so large a whole number.
+                    (true, false) => format!("{value:.0}"),
+                    (false, _) => format!("{value:?}"),
+                };
+                let file = folder.path().join(kind.folder()).join("x.toml");
+                std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+                std::fs::write(&file, format!("base = {:?}\n{path} = {value}\n", base.display().to_string())).unwrap();
+                let problems = scenario::check_file(&file).unwrap_err().to_string();
+                assert!(problems.contains(&format!("expected {range}")), "{kind} {path} = {value}: {problems}");
+            }
+        }
+    }
+}
