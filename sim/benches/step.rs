@@ -1,0 +1,41 @@
+//! `World::step` in calm water: a duel of two, twenty and five hundred a side.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use game::{Order, Scenario};
+use sim::World;
+use std::path::Path;
+
+fn shipped(game: &str) -> Scenario {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games").join(game);
+    game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// All boats go round in circles at speed, each its own way: every part of the step has work.
+fn circling(world: &World, tick: u64) -> Vec<Order> {
+    let count = world.state().boats.len();
+    let heading_rad = |i: usize| (tick as f64 * 0.02 + i as f64) % 6.0 - 3.0;
+    (0..count).map(|i| Order::Steer { heading_rad: heading_rad(i), speed_m_s: 2.0 }).collect()
+}
+
+fn step(c: &mut Criterion) {
+    let mut group = c.benchmark_group("world_step");
+    for (name, game) in
+        [("2v2", "pav01_vs_pav01.toml"), ("20v20", "swarm_20v20.toml"), ("500v500", "swarm_500v500.toml")]
+    {
+        let mut world = World::new(&shipped(game), 1).unwrap_or_else(|e| panic!("{e}"));
+        let mut orders = circling(&world, 0);
+        group.throughput(Throughput::Elements(world.state().boats.len() as u64));
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                if world.state().tick % 20 == 0 {
+                    orders = circling(&world, world.state().tick);
+                }
+                world.step(&orders).len()
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, step);
+criterion_main!(benches);
