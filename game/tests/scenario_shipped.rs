@@ -241,3 +241,29 @@ fn the_ranges_that_schemas_describe_are_those_that_are_checked() {
         }
     }
 }
+
+#[test]
+fn the_examples_of_the_handbook_are_sound() {
+    let handbook = std::fs::read_to_string(shipped("README.md")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let mut examples = vec![];
+    for block in handbook.split("```toml\n").skip(1) {
+        let text = block.split("```").next().unwrap();
+        let Some(name) = text.lines().next().and_then(|line| line.strip_prefix("# ")) else { continue };
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, text).unwrap();
+        examples.push((path, text));
+    }
+    assert_eq!(examples.len(), Kind::ALL.len());
+    for (path, text) in examples {
+        let checked = scenario::check_file(&path).unwrap_or_else(|problems| panic!("{problems}"));
+        // Every key of the schema is shown.
+        let schema = scenario::schema(checked.kind());
+        let tables =
+            std::iter::once(&schema).chain(schema["definitions"].as_object().into_iter().flat_map(|o| o.values()));
+        for key in tables.flat_map(|table| table["properties"].as_object().into_iter().flatten()).map(|(key, _)| key) {
+            assert!(key == "base" || text.contains(key.as_str()), "{key} is not in the example {}", path.display());
+        }
+    }
+}

@@ -81,4 +81,7 @@ fn the_sound_files_are_sound() {
     for (path, _) in SOUND {
         assert_eq!(problems(path, &[]), [""; 0], "{path}");
     }
+    // What a base names stays where the base says, wherever the file that builds on it lies.
+    let elsewhere = ("mine/of/today/x.toml", b"base = \"../../../games/g.toml\"\nseed = 7\n".as_slice());
+    assert_eq!(problems(elsewhere.0, &[elsewhere]), [""; 0]);
 }

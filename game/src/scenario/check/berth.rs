@@ -21,9 +21,14 @@ const GAP_M: f64 = 5.0;
 /// Boats drawn one by one jam when their gaps cover about 0.69 of the rectangle as squares; half is easy.
 const FULLEST: f64 = 0.5;
 
-/// The berth of a vehicle that states one by hand or by name; `None` for the team's line.
-pub(super) fn stated(ledger: &mut Ledger, raw: &RawVehicle, team: TeamId, field: &Field) -> Option<Berth> {
-    let heading = heading_deg(ledger, raw);
+/// The berth of a vehicle that states one by hand, by name or by lot; `None` for the team's line.
+pub(super) fn stated(
+    ledger: &mut Ledger,
+    raw: &RawVehicle,
+    heading_deg: Option<f64>,
+    team: TeamId,
+    field: &Field,
+) -> Option<Berth> {
     if let Some(spawn) = &raw.spawn {
         if let Some(at) = &raw.at {
             ledger.note(at.at, "vehicle has at and spawn, expected one of them");
@@ -45,13 +50,8 @@ pub(super) fn stated(ledger: &mut Ledger, raw: &RawVehicle, team: TeamId, field:
         }
     };
     is_inside(ledger, field, given.at, at);
-    let heading_deg = heading.unwrap_or(field.facing_deg(team));
+    let heading_deg = heading_deg.unwrap_or(field.facing_deg(team));
     Some(Berth::At(Pose { at, psi_rad: rad_from_compass_deg(heading_deg) }))
-}
-
-/// The heading that a vehicle states.
-pub(super) fn heading_deg(ledger: &mut Ledger, raw: &RawVehicle) -> Option<f64> {
-    ledger.number("heading_deg", raw.heading_deg.as_ref(), -360.0..=360.0)
 }
 
 /// The rectangle that `spawn` states, if `count` boats fit into it.

@@ -7,7 +7,7 @@ use crate::boat::Boat;
 use crate::field::Field;
 use crate::id::TeamId;
 use crate::scenario::ledger::Ledger;
-use crate::scenario::raw::{At, RawFleet, RawGame, RawVehicle};
+use crate::scenario::raw::{At, RawBoat, RawFleet, RawGame, RawStrategy, RawVehicle};
 use crate::scenario::read::{self, Document};
 use crate::scenario::{Berth, Scenario, Sea, Strategy, Team, Vehicle};
 use crate::time::SimTime;
@@ -72,8 +72,8 @@ struct Roster<'a> {
     raw: &'a RawGame,
     field: Option<&'a Field>,
     teams: Vec<(String, Option<At<String>>)>,
-    boats: Shelf<super::super::raw::RawBoat, Boat>,
-    strategies: Shelf<super::super::raw::RawStrategy, Strategy>,
+    boats: Shelf<RawBoat, Boat>,
+    strategies: Shelf<RawStrategy, Strategy>,
     names: BTreeSet<String>,
     entries: Vec<Entry>,
 }
@@ -222,12 +222,11 @@ impl Roster<'_> {
             ledger.note_missing(start, "vehicle", "at least one [[vehicle]] or [[fleet]]");
         }
         // The teams' strategies are checked even where no boat of theirs follows them.
-        let unused: Vec<At<String>> = self.teams.iter().filter_map(|(_, strategy)| strategy.clone()).collect();
-        let known = self.strategies.items.len();
-        for strategy in &unused {
+        let followed = self.strategies.items.len();
+        for strategy in self.teams.iter().filter_map(|(_, strategy)| strategy.as_ref()) {
             self.strategies.index(ledger, strategy);
         }
-        self.strategies.items.truncate(known);
+        self.strategies.items.truncate(followed);
     }
 
     fn add_vehicle(&mut self, ledger: &mut Ledger, vehicle: &At<RawVehicle>) {
@@ -235,8 +234,8 @@ impl Roster<'_> {
         let team = self.team(ledger, vehicle.at, "vehicle", raw.team.as_ref());
         let boat = self.boat(ledger, vehicle.at, "vehicle", raw.boat.as_ref());
         let strategy = self.strategy(ledger, vehicle.at, "vehicle", raw.strategy.as_ref(), team);
-        let berth = team.zip(self.field).and_then(|(team, field)| berth::stated(ledger, raw, team, field));
-        let heading_deg = berth::heading_deg(ledger, raw);
+        let heading_deg = ledger.number("heading_deg", raw.heading_deg.as_ref(), -360.0..=360.0);
+        let berth = team.zip(self.field).and_then(|(team, field)| berth::stated(ledger, raw, heading_deg, team, field));
         let Some(name) = &raw.name else {
             ledger.note_missing(vehicle.at, "vehicle.name", "1 to 40 of a-z, 0-9 and _");
             return;
