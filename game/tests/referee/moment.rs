@@ -104,13 +104,20 @@ fn a_flag_returned_by_a_tag_is_home_for_a_capture_at_the_same_look() {
 
 #[test]
 fn the_boundary_comes_before_a_tag() {
+    // The boundary itself is out of the field, although it is still part of the sides.
     let mut scene = Scene::new(aquaticus_2023(), 1);
-    let events = scene.put(0, 60.0, 3.0).put(1, 62.0, -1.0).look();
-    assert_eq!(events, [left(1), stopped_at_the_boundary(1)]);
+    assert_eq!(scene.put(0, 60.0, 3.0).put(1, 62.0, 0.0).look(), [left(1), stopped_at_the_boundary(1)]);
     assert_eq!(scene.standing.vehicles[0].tag_ready, SimTime::LONG_AGO);
     let mut scene = Scene::new(aquaticus_2023(), 1);
-    let events = scene.put(0, 60.0, -1.0).put(1, 62.0, 3.0).look();
+    let events = scene.put(0, 60.0, 0.0).put(1, 62.0, 3.0).look();
     assert_eq!(events, [left(0), stopped_at_the_boundary(0)], "the tagger left: it tags nobody");
+}
+
+#[test]
+fn two_taggers_with_an_intruder_each_tag_both() {
+    let mut scene = Scene::new(aquaticus_2023(), 2);
+    scene.put(0, 60.0, 60.0).put(1, 60.0, 20.0).put(2, 65.0, 20.0).put(3, 65.0, 60.0);
+    assert_eq!(scene.look(), [tagged(2, 1), tagged(3, 0)]);
 }
 
 #[test]
