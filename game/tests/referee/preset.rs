@@ -49,9 +49,9 @@ pub(crate) fn pyquaticus() -> Rules {
     }
 }
 
-/// The 2025 competition: Pyquaticus with nearest-first tags, sailed with other boats.
+/// The 2025 competition: Pyquaticus, sailed with other boats.
 pub(crate) fn mctf_2025() -> Rules {
-    Rules { name: "mctf_2025".into(), tag_choice: TagChoice::Nearest, ..pyquaticus() }
+    Rules { name: "mctf_2025".into(), ..pyquaticus() }
 }
 
 /// The 2026 competition: corners instead of flags, no keep-out, power play.
@@ -91,7 +91,7 @@ fn a_flag_is_captured_where_the_rules_say_and_for_the_points_they_give() {
 #[test]
 fn tags_cool_down_and_choose_as_the_rules_say() {
     for (rules, want_first, want_s) in
-        [(aquaticus_2023(), 3, 10.0), (pyquaticus(), 2, 60.0), (mctf_2025(), 3, 60.0), (mctf_2026(), 3, 60.0)]
+        [(aquaticus_2023(), 3, 10.0), (pyquaticus(), 2, 60.0), (mctf_2025(), 2, 60.0), (mctf_2026(), 2, 60.0)]
     {
         let mut scene = Scene::new(Rules { power_play: SimTime::ZERO, ..rules }, 2);
         let events = scene.put(0, 60.0, 40.0).put(2, 67.0, 40.0).put(3, 55.0, 40.0).look();
