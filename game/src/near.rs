@@ -20,12 +20,12 @@ pub struct Pair {
 #[derive(Clone, Debug, Default)]
 pub struct Near {
     pairs: Vec<Pair>,
-    /// Cell of each vehicle, and vehicles sorted by cell.
-    cells: Vec<(i32, i32, u16)>,
+    /// Vehicles sorted by cell.
+    keys: Vec<u64>,
 }
 
 /// Up to this many boats are compared all with all.
-const FEW: usize = 24;
+const FEW: usize = 32;
 
 impl Near {
     /// All pairs closer than `reach_m`, sorted by `a`, then `b`. Positions must be finite.
@@ -52,30 +52,46 @@ impl Near {
         if reach_m <= 0.0 {
             return;
         }
-        // A shade wider than the reach, so that rounding never puts near boats two cells apart.
-        let cell_m = reach_m * 1.000_001;
-        // Boats that are astray for millions of cells share the last one: it is compared like any other.
-        let cell = |metres: f64| (metres / cell_m).floor().clamp(-1e9, 1e9) as i32;
-        self.cells.clear();
-        self.cells.extend((0..count).map(|i| {
-            let here = at(i);
-            (cell(here.north), cell(here.east), i as u16)
-        }));
-        self.cells.sort_unstable();
-        for (i, &(north, east, a)) in self.cells.iter().enumerate() {
-            let here = at(usize::from(a));
+        self.keys.clear();
+        self.keys.extend((0..count).map(|i| key(at(i), reach_m, i as u16)));
+        self.keys.sort_unstable();
+        let mut row_to_the_north = 0;
+        for (i, &key) in self.keys.iter().enumerate() {
+            let (here, a) = (at(vehicle(key)), key as u16);
             // Forward half of the neighbourhood: the rest of this cell and the one to the east, then the
-            // row to the north.
-            let next_row = self.cells.partition_point(|&(n, e, _)| (n, e) < (north + 1, east - 1));
-            let this = self.cells[i + 1..].iter().take_while(|&&(n, e, _)| n == north && e <= east + 1);
-            let next = self.cells[next_row..].iter().take_while(|&&(n, e, _)| n == north + 1 && e <= east + 1);
-            for &(_, _, b) in this.chain(next) {
-                let distance_squared = here.distance_squared(at(usize::from(b)));
-                push_if_near(&mut self.pairs, (a.min(b), a.max(b)), distance_squared, reach_m);
+            // three cells to the north. As we go on through the list, so do both.
+            let cell = key & !u64::from(u16::MAX);
+            let (start, end) = (cell + ROW - COLUMN, cell + ROW + 2 * COLUMN);
+            while self.keys.get(row_to_the_north).is_some_and(|key| *key < start) {
+                row_to_the_north += 1;
+            }
+            let this = self.keys[i + 1..].iter().take_while(|key| **key < cell + 2 * COLUMN);
+            let north = self.keys[row_to_the_north..].iter().take_while(|key| **key < end);
+            for &key in this.chain(north) {
+                let (there, b) = (at(vehicle(key)), key as u16);
+                push_if_near(&mut self.pairs, (a.min(b), a.max(b)), here.distance_squared(there), reach_m);
             }
         }
         self.pairs.sort_unstable_by_key(|pair| (pair.a, pair.b));
     }
+}
+
+/// From a cell to the next one east, in keys.
+const COLUMN: u64 = 1 << 16;
+/// From a cell to the next one north, in keys.
+const ROW: u64 = 1 << 40;
+
+/// A vehicle and its cell in one number: 24 bits of row, 24 of column, 16 of vehicle.
+fn key(at: Ned, reach_m: f64, vehicle: u16) -> u64 {
+    // A shade wider than the reach, so that rounding never puts near boats two cells apart.
+    let cell_m = reach_m * 1.000_001;
+    // Boats that are astray for millions of cells share the outermost one, which is searched like any other.
+    let cell = |metres: f64| ((metres / cell_m).floor().clamp(-8e6, 8e6) + 8_388_608.0) as u64;
+    cell(at.north) * ROW + cell(at.east) * COLUMN + u64::from(vehicle)
+}
+
+fn vehicle(key: u64) -> usize {
+    usize::from(key as u16)
 }
 
 #[inline]
@@ -92,7 +108,7 @@ mod tests {
 
     #[test]
     fn cells_find_the_same_pairs_as_comparing_all() {
-        for (seed, count) in [(1, 25), (2, 60), (3, 300)] {
+        for (seed, count) in [(1, 33), (2, 60), (3, 300)] {
             let mut stream = Stream::new(seed, "near");
             let fleet: Vec<Ned> = (0..count)
                 .map(|_| Ned { north: stream.between(-40.0, 40.0), east: stream.between(-80.0, 80.0) })
@@ -107,10 +123,10 @@ mod tests {
 
     #[test]
     fn boats_astray_and_boats_that_need_no_reach_do_no_harm() {
-        let fleet: Vec<Ned> = (0..30).map(|i| Ned { north: 1e300, east: f64::from(i) * -1e12 }).collect();
+        let fleet: Vec<Ned> = (0..40).map(|i| Ned { north: 1e300, east: f64::from(i) * -1e12 }).collect();
         let mut near = Near::default();
-        assert_eq!(near.pairs(|i| fleet[i], 30, 7.0), []);
-        assert_eq!(near.pairs(|_| fleet[3], 30, 7.0).len(), 30 * 29 / 2);
-        assert_eq!(near.pairs(|_| fleet[3], 30, 0.0), []);
+        assert_eq!(near.pairs(|i| fleet[i], 40, 7.0), []);
+        assert_eq!(near.pairs(|_| fleet[3], 40, 7.0).len(), 40 * 39 / 2);
+        assert_eq!(near.pairs(|_| fleet[3], 40, 0.0), []);
     }
 }

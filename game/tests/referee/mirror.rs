@@ -1,0 +1,79 @@
+//! The mirror image of a game: seen upside down, with one team taken for the other.
+
+use game::event::{Event, TagCause};
+use game::rules::{Standing, VehicleStanding};
+use game::{FlagId, Ned, TeamId, VehicleId};
+
+/// Half a turn about the middle of the field; the teams, which have so many boats each, change places.
+pub(crate) struct Mirror {
+    pub(crate) boats: usize,
+}
+
+impl Mirror {
+    fn position(at: Ned) -> Ned {
+        Ned::from_xy(160.0 - at.east, 80.0 - at.north)
+    }
+
+    fn vehicle(&self, vehicle: VehicleId) -> VehicleId {
+        VehicleId::at((vehicle.index() + self.boats) % (2 * self.boats))
+    }
+
+    fn pair(&self, first: VehicleId, second: VehicleId) -> (VehicleId, VehicleId) {
+        let (a, b) = (self.vehicle(first), self.vehicle(second));
+        (a.min(b), a.max(b))
+    }
+
+    fn flag(flag: FlagId) -> FlagId {
+        FlagId(flag.0 ^ 1)
+    }
+
+    pub(crate) fn event(&self, event: Event) -> Event {
+        let v = |vehicle| self.vehicle(vehicle);
+        match event {
+            Event::Grabbed { vehicle, flag } => Event::Grabbed { vehicle: v(vehicle), flag: Mirror::flag(flag) },
+            Event::Captured { vehicle, flag } => Event::Captured { vehicle: v(vehicle), flag: Mirror::flag(flag) },
+            Event::FlagReturned { vehicle, flag } => {
+                Event::FlagReturned { vehicle: v(vehicle), flag: Mirror::flag(flag) }
+            }
+            Event::Tagged { vehicle, cause } => {
+                let cause = if let TagCause::Opponent(by) = cause { TagCause::Opponent(v(by)) } else { cause };
+                Event::Tagged { vehicle: v(vehicle), cause }
+            }
+            Event::Untagged { vehicle } => Event::Untagged { vehicle: v(vehicle) },
+            Event::LeftField { vehicle } => Event::LeftField { vehicle: v(vehicle) },
+            Event::ReturnedToField { vehicle } => Event::ReturnedToField { vehicle: v(vehicle) },
+            Event::EnteredKeepout { vehicle } => Event::EnteredKeepout { vehicle: v(vehicle) },
+            Event::Disabled { vehicle } => Event::Disabled { vehicle: v(vehicle) },
+            Event::Enabled { vehicle } => Event::Enabled { vehicle: v(vehicle) },
+            Event::Collided { first, second } => {
+                let (first, second) = self.pair(first, second);
+                Event::Collided { first, second }
+            }
+            Event::Ended { winner } => Event::Ended { winner: winner.map(|team| TeamId(1 - team.0)) },
+            Event::MindLost { .. } | Event::MindBack { .. } | Event::Quarantined { .. } => event,
+        }
+    }
+
+    pub(crate) fn fleet(&self, fleet: &[Ned]) -> Vec<Ned> {
+        (0..fleet.len()).map(|i| Mirror::position(fleet[self.vehicle(VehicleId::at(i)).index()])).collect()
+    }
+
+    pub(crate) fn standing(&self, standing: &Standing) -> Standing {
+        let source = |i: usize| self.vehicle(VehicleId::at(i)).index();
+        let boat = |i: usize| {
+            let boat = standing.vehicles[source(i)].clone();
+            VehicleStanding { carrying: boat.carrying.map(Mirror::flag), ..boat }
+        };
+        let mut mirrored = standing.clone();
+        mirrored.vehicles = (0..standing.vehicles.len()).map(boat).collect();
+        mirrored.disabled = (0..standing.vehicles.len()).map(|i| standing.disabled[source(i)]).collect();
+        for (i, flag) in mirrored.flags.iter_mut().enumerate() {
+            *flag = standing.flags[i ^ 1].clone();
+            flag.carrier = flag.carrier.map(|vehicle| self.vehicle(vehicle));
+        }
+        mirrored.score.reverse();
+        mirrored.touching.iter_mut().for_each(|(a, b)| (*a, *b) = self.pair(*a, *b));
+        mirrored.touching.sort_unstable();
+        mirrored
+    }
+}

@@ -1,0 +1,137 @@
+//! A scene: boats set down by hand on the 160 m by 80 m field, and looked at.
+
+use game::event::{Event, TagCause};
+use game::field::{Field, Flag, Plan, Walls};
+use game::near::Near;
+use game::rules::{Directive, Notes, Referee, Rules, Standing};
+use game::stream::Stream;
+use game::{FlagId, LatLon, Ned, SimTime, TeamId, VehicleId};
+
+pub(crate) struct Scene {
+    pub(crate) referee: Referee,
+    pub(crate) standing: Standing,
+    pub(crate) notes: Notes,
+    pub(crate) near: Near,
+    pub(crate) fleet: Vec<Ned>,
+    pub(crate) now: SimTime,
+}
+
+/// Time between two looks.
+pub(crate) const TICK: SimTime = SimTime(100_000_000);
+
+/// Flags at (20, 40) and (140, 40), the scrimmage line at x = 80.
+pub(crate) fn field(extra_flags: Vec<Flag>) -> Field {
+    rectangle(0.0, 160.0, extra_flags)
+}
+
+pub(crate) fn rectangle(x_m: f64, width_m: f64, extra_flags: Vec<Flag>) -> Field {
+    Field::new(Plan {
+        name: "test".into(),
+        datum: LatLon::default(),
+        corner: Ned::from_xy(x_m, 0.0),
+        along_deg: 90.0,
+        width_m,
+        depth_m: 80.0,
+        flag_inset_m: 20.0,
+        extra_flags,
+        obstacles: vec![],
+        walls: Walls::None,
+    })
+}
+
+pub(crate) fn flag(team: u8, x: f64, y: f64) -> Flag {
+    Flag { team: TeamId(team), home: Ned::from_xy(x, y) }
+}
+
+/// Vehicles `0..boats` play for the first team, the next as many for the second, and so on.
+pub(crate) fn teams_of(boats: usize, teams: usize) -> Vec<TeamId> {
+    (0..boats * teams).map(|i| TeamId((i / boats) as u8)).collect()
+}
+
+impl Scene {
+    /// Two teams of so many boats on the plain field.
+    pub(crate) fn new(rules: Rules, boats: usize) -> Scene {
+        Scene::on(rules, field(vec![]), teams_of(boats, 2))
+    }
+
+    /// Every boat waits on its own side, 12 m from its neighbours, out of reach of everything.
+    pub(crate) fn on(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Scene {
+        let referee = Referee::new(rules, field, team_of);
+        let standing = referee.start(&mut Stream::new(1, "rules"));
+        let berth = |(i, team): (usize, &TeamId)| {
+            let before = referee.team_of()[..i].iter().filter(|other| *other == team).count();
+            Ned::from_xy(if team.0 == 0 { 45.0 } else { 115.0 }, 5.0 + 12.0 * before as f64)
+        };
+        let fleet = referee.team_of().iter().enumerate().map(berth).collect();
+        Scene { standing, fleet, referee, notes: Notes::default(), near: Near::default(), now: SimTime::ZERO }
+    }
+
+    pub(crate) fn name(&self) -> &str {
+        &self.referee.rules().name
+    }
+
+    pub(crate) fn put(&mut self, vehicle: usize, x: f64, y: f64) -> &mut Scene {
+        self.fleet[vehicle] = Ned::from_xy(x, y);
+        self
+    }
+
+    /// Lets time pass in which nobody looks.
+    pub(crate) fn wait(&mut self, seconds: f64) -> &mut Scene {
+        self.now = self.now + SimTime::from_s(seconds) - TICK;
+        self
+    }
+
+    /// One tick later: what happened?
+    pub(crate) fn look(&mut self) -> Vec<Event> {
+        self.now = self.now + TICK;
+        let at = |i: usize| self.fleet[i];
+        let near = self.near.pairs(at, self.fleet.len(), self.referee.reach_m());
+        let mut events = vec![];
+        self.referee.advance(&mut self.standing, &mut self.notes, &at, near, self.now, &mut events);
+        events
+    }
+
+    pub(crate) fn directive(&self, vehicle: usize) -> Directive {
+        self.referee.directive(&self.standing, VehicleId::at(vehicle), self.fleet[vehicle])
+    }
+
+    pub(crate) fn carrier(&self, flag: usize) -> Option<u16> {
+        self.standing.flags[flag].carrier.map(|vehicle| vehicle.0)
+    }
+}
+
+pub(crate) fn tagged(vehicle: u16, by: u16) -> Event {
+    Event::Tagged { vehicle: VehicleId(vehicle), cause: TagCause::Opponent(VehicleId(by)) }
+}
+
+pub(crate) fn stopped_at_the_boundary(vehicle: u16) -> Event {
+    Event::Tagged { vehicle: VehicleId(vehicle), cause: TagCause::Boundary }
+}
+
+pub(crate) fn freed(vehicle: u16) -> Event {
+    Event::Untagged { vehicle: VehicleId(vehicle) }
+}
+
+pub(crate) fn grabbed(vehicle: u16, flag: u8) -> Event {
+    Event::Grabbed { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
+}
+
+pub(crate) fn captured(vehicle: u16, flag: u8) -> Event {
+    Event::Captured { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
+}
+
+pub(crate) fn lost(vehicle: u16, flag: u8) -> Event {
+    Event::FlagReturned { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
+}
+
+pub(crate) fn left(vehicle: u16) -> Event {
+    Event::LeftField { vehicle: VehicleId(vehicle) }
+}
+
+pub(crate) fn back(vehicle: u16) -> Event {
+    Event::ReturnedToField { vehicle: VehicleId(vehicle) }
+}
+
+pub(crate) fn ended(winner: Option<u8>) -> Event {
+    Event::Ended { winner: winner.map(TeamId) }
+}
