@@ -84,11 +84,11 @@ impl World {
         self.drive(orders);
         self.model.contact.resolve(&self.model.hulls, &mut self.work.passages, &self.work.pairs);
         self.settle();
-        self.keep_out();
         self.state.tick += 1;
         self.state.now = self.state.now + self.model.tick;
         self.find_pairs();
         self.judge();
+        self.keep_out();
         &self.work.events
     }
 
@@ -178,9 +178,14 @@ impl World {
         }
     }
 
-    /// Boats that came too near their own flag are set back onto the circle and lose their way inward.
+    /// Boats that came too near their own flag, as the referee has seen, are set back onto the circle and lose their
+    /// way inward.
     fn keep_out(&mut self) {
+        if self.model.referee.rules().flag_keepout_m <= 0.0 {
+            return;
+        }
         let World { model, state, work } = self;
+        let mut moved = false;
         for i in 0..state.boats.len() {
             let Some((centre, radius_m)) =
                 model.referee.keepout(&state.standing, VehicleId::at(i), state.boats[i].pose.at)
@@ -199,6 +204,10 @@ impl World {
             let inward_m_s = (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
             boat.nu.surge -= inward_m_s * out_in_body.ahead;
             boat.nu.sway -= inward_m_s * out_in_body.starboard;
+            moved = true;
+        }
+        if moved {
+            self.find_pairs();
         }
     }
 
