@@ -1,2 +1,62 @@
-//! stub
-fn main() {}
+//! `squall`: one program, a table of subcommands.
+
+mod agent_command;
+mod check_command;
+mod list_command;
+mod net_args;
+mod offspring;
+mod result_table;
+mod run_command;
+mod screen;
+mod sim_command;
+mod stop;
+mod telling;
+mod watch_command;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// A distributed swarm simulator for unmanned surface vehicles that play capture the flag.
+#[derive(Parser)]
+#[command(name = "squall", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Plays a whole game: starts the sim and the agents, shows what happens, prints the result.
+    Run(run_command::Args),
+    /// Serves one game to agents that join it.
+    Sim(sim_command::Args),
+    /// Minds one or many boats in a game that a sim serves.
+    Agent(agent_command::Args),
+    /// Shows a running game in the terminal.
+    Watch(watch_command::Args),
+    /// Lists the games on the network and who is in them.
+    List(list_command::Args),
+    /// Checks scenario files and explains every error.
+    Check(check_command::Args),
+    /// Prints the JSON Schema of a kind of scenario file, for editors.
+    Schema(check_command::SchemaArgs),
+}
+
+fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Run(args) => run_command::run(&args),
+        Command::Sim(args) => sim_command::run(&args),
+        Command::Agent(args) => agent_command::run(&args),
+        Command::Watch(args) => watch_command::run(&args),
+        Command::List(args) => list_command::run(&args),
+        Command::Check(args) => check_command::run(&args),
+        Command::Schema(args) => check_command::print_schema(&args),
+    };
+    match done {
+        Ok(code) => code,
+        Err(error) => {
+            screen::complain(&format!("{error:#}"));
+            ExitCode::FAILURE
+        }
+    }
+}

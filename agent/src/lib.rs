@@ -7,6 +7,8 @@ mod easy_attacker;
 mod easy_defender;
 mod helm;
 mod idle;
+#[cfg(feature = "net")]
+pub mod node;
 pub mod roles;
 
 use game::scenario::{Role, Scenario};

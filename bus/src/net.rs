@@ -37,6 +37,7 @@ impl Net {
     pub(crate) fn leaf(&self) -> Result<Config, BusError> {
         let mut config = self.base()?;
         set(&mut config, "mode", "\"client\"")?;
+        // Without an endpoint, a leaf on a local network scouts for a hub.
         set(&mut config, "connect/endpoints", &list(&self.connect))?;
         set(&mut config, "connect/timeout_ms", "0")?;
         set(&mut config, "connect/exit_on_failure", "true")?;

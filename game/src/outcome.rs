@@ -3,7 +3,7 @@
 use crate::count::{Counts, Tally};
 use crate::event::{Event, Logged, TagCause};
 use crate::id::{TeamId, VehicleId};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Vehicle};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -24,6 +24,8 @@ pub struct Outcome {
     pub ticks: u64,
     /// The winning team's name; none is a draw or a game cut short.
     pub winner: Option<String>,
+    /// The team of each boat.
+    pub boats: BTreeMap<String, String>,
     /// Points.
     pub score: Standings<u32>,
     /// What was done, how often.
@@ -150,6 +152,7 @@ impl Outcome {
         let team_counts = |team: usize| tally.team(TeamId(team as u8), |i| scenario.vehicles[i].team);
         let team_names = || scenario.teams.iter().map(|team| team.name.clone());
         let boats = || scenario.vehicles.iter().map(|vehicle| vehicle.name.clone()).zip(&tally.vehicles);
+        let team_of = |vehicle: &Vehicle| (vehicle.name.clone(), scenario.teams[vehicle.team.index()].name.clone());
         let winner = played.events.iter().rev().find_map(|logged| match logged.event {
             Event::Ended { winner } => winner,
             _ => None,
@@ -162,6 +165,7 @@ impl Outcome {
             duration_s: (scenario.tick * played.ticks as i64).as_s(),
             ticks: played.ticks,
             winner: winner.map(|team| scenario.teams[team.index()].name.clone()),
+            boats: scenario.vehicles.iter().map(team_of).collect(),
             score: Standings {
                 teams: team_names().zip(played.score.iter().copied()).collect(),
                 boats: boats().map(|(name, counts)| (name, made(counts))).collect(),

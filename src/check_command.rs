@@ -1,0 +1,48 @@
+//! `squall check` and `squall schema`: scenario files explained.
+
+use crate::screen;
+use anyhow::{Result, anyhow, bail};
+use game::scenario::{Kind, check_file, schema};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Which files.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Scenario files of any kind
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+}
+
+/// Which kind.
+#[derive(clap::Args)]
+pub(crate) struct SchemaArgs {
+    /// game, field, rules, boat, sea or strategy
+    kind: String,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let mut errors = 0;
+    for file in &args.files {
+        match check_file(file) {
+            Ok(checked) => screen::print(&format!("{}: a good {}\n", file.display(), checked.kind())),
+            Err(problems) => {
+                errors += problems.0.len();
+                screen::print(&format!("{problems}\n"));
+            }
+        }
+    }
+    match errors {
+        0 => Ok(ExitCode::SUCCESS),
+        1 => bail!("1 error"),
+        _ => bail!("{errors} errors"),
+    }
+}
+
+pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {
+    let kinds = || Kind::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
+    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == args.kind);
+    let kind = kind.ok_or_else(|| anyhow!("{:?} is not a kind of scenario file: {}", args.kind, kinds()))?;
+    screen::print(&(serde_json::to_string_pretty(&schema(kind))? + "\n"));
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,71 @@
+//! `squall list`: which games there are, and who is in them.
+
+use crate::net_args::LeafArgs;
+use crate::screen;
+use anyhow::Result;
+use bus::{Bus, Net};
+use game::message::Notice;
+use game::topic::{self, GameName, Part};
+use std::collections::BTreeMap;
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Where to look.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    leaf: LeafArgs,
+    /// Looks only where --connect or --lan says, not at the games of this machine
+    #[arg(long)]
+    elsewhere: bool,
+}
+
+const ANSWER: Duration = Duration::from_secs(2);
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let mut places: Vec<Net> = Vec::new();
+    if !args.elsewhere {
+        places
+            .extend(bus::phonebook().into_iter().map(|entry| Net { connect: vec![entry.endpoint], ..Net::default() }));
+    }
+    // Several games on this machine are no error here: all are listed.
+    places.extend(args.leaf.net().ok().filter(|net| net.lan || !places.iter().any(|p| p.connect == net.connect)));
+    let mut games: BTreeMap<GameName, String> = BTreeMap::new();
+    for place in &places {
+        // Where nobody answers there is no game.
+        if let Ok(bus) = Bus::leaf(place) {
+            games.extend(games_at(&bus, place)?);
+            bus.close();
+        }
+    }
+    if games.is_empty() {
+        screen::print("no games\n");
+    }
+    games.values().for_each(|text| screen::print(text));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn games_at(bus: &Bus, place: &Net) -> Result<BTreeMap<GameName, String>> {
+    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
+    let nodes: Vec<(GameName, Part, String)> = keys.iter().filter_map(|key| topic::parse_alive(key)).collect();
+    let mut games = BTreeMap::new();
+    for (game, _, sim) in nodes.iter().filter(|(_, part, _)| *part == Part::Sim) {
+        let agents = nodes.iter().filter(|(other, part, _)| other == game && *part == Part::Agent);
+        let mut text = format!("{}  {}\n  sim {sim}\n", game.as_str(), place.connect.join(" "));
+        agents.for_each(|(_, _, agent)| text.push_str(&format!("  agent {agent}\n")));
+        let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
+        if let Some(notice) = answer.and_then(|bytes| serde_json::from_slice::<Notice>(&bytes).ok()) {
+            let scenario = &notice.scenario;
+            text.push_str(&format!(
+                "  {} seed {}, {}, {} boats, Squall {}\n",
+                scenario.name,
+                scenario.seed,
+                notice.pace,
+                scenario.vehicles.len(),
+                notice.version
+            ));
+        }
+        games.insert(game.clone(), text);
+    }
+    Ok(games)
+}

@@ -1,0 +1,78 @@
+//! The processes that `run` starts: none of them outlives it.
+
+use anyhow::{Context, Result};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Collapses zenoh's thread pools into one of two threads: a quarter to a half off a lockstep round trip.
+const ZENOH_RUNTIME: &str =
+    "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:2))";
+
+/// One child. It stops when its standard input ends, which the death of this process sees to.
+pub(crate) struct Offspring {
+    name: String,
+    child: Child,
+    life_line: Option<ChildStdin>,
+}
+
+impl Offspring {
+    /// Starts this program with other arguments; its output goes where `stdout` says.
+    pub(crate) fn start(name: &str, args: &[String], stdout: Stdio) -> Result<Offspring> {
+        let program = std::env::current_exe().context("cannot find this program's own file")?;
+        let mut command = Command::new(program);
+        if std::env::var_os("ZENOH_RUNTIME").is_none() {
+            command.env("ZENOH_RUNTIME", ZENOH_RUNTIME);
+        }
+        command.args(args).stdin(Stdio::piped()).stdout(stdout);
+        let mut child = command.spawn().with_context(|| format!("cannot start {name}"))?;
+        let life_line = child.stdin.take();
+        Ok(Offspring { name: name.to_owned(), child, life_line })
+    }
+
+    /// The child's output, once.
+    pub(crate) fn output(&mut self) -> Option<std::process::ChildStdout> {
+        self.child.stdout.take()
+    }
+
+    /// Whether it has ended, and how badly: `Some(None)` is well.
+    pub(crate) fn ended(&mut self) -> Option<Option<String>> {
+        let status = self.child.try_wait().ok().flatten()?;
+        Some((!status.success()).then(|| format!("{} ended with {status}", self.name)))
+    }
+
+    /// Asks it to stop.
+    pub(crate) fn ask_to_stop(&mut self) {
+        self.life_line = None;
+    }
+}
+
+impl Drop for Offspring {
+    fn drop(&mut self) {
+        // Whoever has ended already cannot be killed; the wait then only collects it.
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}
+
+/// Waits until all have ended, but no longer than `limit`; says who ended badly.
+#[expect(clippy::disallowed_methods, reason = "children are waited for with a limit")]
+pub(crate) fn wait_for_all(offspring: &mut [Offspring], limit: Duration) -> Vec<String> {
+    let start = Instant::now();
+    let mut badly = Vec::new();
+    for child in offspring {
+        loop {
+            match child.ended() {
+                Some(outcome) => {
+                    badly.extend(outcome);
+                    break;
+                }
+                None if start.elapsed() >= limit => {
+                    badly.push(format!("{} did not end and was killed", child.name));
+                    break;
+                }
+                None => std::thread::sleep(Duration::from_millis(5)),
+            }
+        }
+    }
+    badly
+}

@@ -1,0 +1,189 @@
+//! `squall run`: a whole game from one command.
+
+use crate::net_args::unique_game_name;
+use crate::offspring::{self, Offspring};
+use crate::screen::{self, Screen};
+use crate::sim_command::{load, seconds, write_json};
+use crate::stop;
+use crate::telling::{Teller, Telling};
+use anyhow::{Context, Result, anyhow, bail};
+use game::Scenario;
+use sim::Contest;
+use sim::node::{Pace, Report, Run};
+use std::io::{BufRead, BufReader};
+use std::path::PathBuf;
+use std::process::{ExitCode, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::time::{Duration, Instant};
+
+/// What to play, and how.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The game file
+    scenario: PathBuf,
+    /// Chooses the game [default: as the file says]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// lockstep, realtime, or a factor such as 4x
+    #[arg(long, default_value = "lockstep")]
+    pace: Pace,
+    /// Plays in this process, without a network: the same game, byte for byte
+    #[arg(long, conflicts_with_all = ["pace", "agents_per_process"])]
+    in_process: bool,
+    /// How many boats one agent process minds
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
+    agents_per_process: u16,
+    /// Writes the result to this file
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// How long to wait for the agents before starting without the missing ones, s
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    join_s: f64,
+}
+
+/// How long processes may take to end once the game is over.
+const LEAVE: Duration = Duration::from_secs(5);
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let scenario = load(&args.scenario)?;
+    let stop = stop::on_ctrl_c()?;
+    let mut screen = Screen::new();
+    let report = if args.in_process {
+        Some(play_here(args, &scenario, &stop, &mut screen)?)
+    } else {
+        play_across_processes(args, &scenario, &stop, &mut screen)?
+    };
+    let Some(report) = report else { return Ok(stop::interrupted()) };
+    if let Some(path) = &args.json {
+        write_json(path, &report)?;
+    }
+    Ok(if report.run.cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
+}
+
+/// The game in this process.
+#[expect(clippy::disallowed_methods, reason = "progress is shown by the clock; the game does not see it")]
+fn play_here(args: &Args, scenario: &Scenario, stop: &AtomicBool, screen: &mut Screen) -> Result<Report> {
+    const SHOW_EVERY: Duration = Duration::from_millis(100);
+    let seed = args.seed.unwrap_or(scenario.seed);
+    let scenario = Scenario { seed, ..scenario.clone() };
+    let mut minds = agent::minds_of(&scenario);
+    let mut teller = Teller::default();
+    let start = Instant::now();
+    let mut shown = (start, 0.0);
+    let watch = |contest: &Contest| {
+        // The clock is slower than a decision: look at it now and then.
+        if contest.decision() % 64 == 0 && shown.0.elapsed() >= SHOW_EVERY {
+            let now_s = contest.now().as_s();
+            let rate = (now_s - shown.1) / shown.0.elapsed().as_secs_f64();
+            shown = (Instant::now(), now_s);
+            teller.progress(contest, rate, 0).iter().for_each(|telling| screen.show(telling));
+        }
+        !stop.load(Ordering::Relaxed)
+    };
+    let outcome = arena::play_watched(&scenario, &mut minds, seed, watch)?;
+    let run = Run {
+        pace: "in process".to_owned(),
+        wall_s: start.elapsed().as_secs_f64(),
+        cut_short: stop.load(Ordering::Relaxed),
+        ..Run::default()
+    };
+    let report = Report { outcome, run };
+    teller.done(report.clone()).iter().for_each(|telling| screen.show(telling));
+    Ok(report)
+}
+
+/// The game in a sim process and agent processes; none if it was stopped before it had a result.
+fn play_across_processes(
+    args: &Args,
+    scenario: &Scenario,
+    stop: &AtomicBool,
+    screen: &mut Screen,
+) -> Result<Option<Report>> {
+    let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
+    let game = unique_game_name(&scenario.name)?.as_str().to_owned();
+    let endpoint = format!("tcp/127.0.0.1:{port}");
+    let mut sim = start_sim(args, &game, &endpoint)?;
+    let tellings = read_tellings(&mut sim)?;
+    let names: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
+    let mut agents = Vec::new();
+    for names in names.chunks(usize::from(args.agents_per_process)) {
+        agents.push(start_agent(names, &game, &endpoint)?);
+    }
+    let report = follow(&tellings, &mut sim, stop, screen)?;
+    let mut everybody = agents;
+    everybody.push(sim);
+    for problem in offspring::wait_for_all(&mut everybody, LEAVE) {
+        if !stop.load(Ordering::Relaxed) {
+            screen::remark(&problem);
+        }
+    }
+    if report.is_none() && !stop.load(Ordering::Relaxed) {
+        bail!("the sim ended without a result");
+    }
+    Ok(report)
+}
+
+fn start_sim(args: &Args, game: &str, endpoint: &str) -> Result<Offspring> {
+    let mut words = vec!["sim".to_owned(), args.scenario.display().to_string()];
+    let options = [
+        ("--pace", args.pace.to_string()),
+        ("--game", game.to_owned()),
+        ("--listen", endpoint.to_owned()),
+        ("--join-s", args.join_s.to_string()),
+    ];
+    words.extend(options.into_iter().flat_map(|(name, value)| [name.to_owned(), value]));
+    words.extend(args.seed.into_iter().flat_map(|seed| ["--seed".to_owned(), seed.to_string()]));
+    words.push("--for-parent".to_owned());
+    Offspring::start("the sim", &words, Stdio::piped())
+}
+
+fn start_agent(names: &[&str], game: &str, endpoint: &str) -> Result<Offspring> {
+    let mut words: Vec<String> =
+        ["agent", "--game", game, "--connect", endpoint, "--for-parent", "--vehicle"].map(str::to_owned).to_vec();
+    words.extend(names.iter().map(|name| (*name).to_owned()));
+    Offspring::start(&format!("the agent of {}", names.join(", ")), &words, Stdio::null())
+}
+
+/// What the sim tells, line by line.
+fn read_tellings(sim: &mut Offspring) -> Result<Receiver<Telling>> {
+    let output = sim.output().context("the sim has no output")?;
+    let (sender, receiver) = sync_channel(1024);
+    std::thread::spawn(move || {
+        let lines = BufReader::new(output).lines().map_while(std::result::Result::ok);
+        let tellings = lines.filter_map(|line| serde_json::from_str(&line).ok());
+        // Ends with the sim, or when nobody listens any more.
+        tellings.map_while(|telling| sender.send(telling).ok()).for_each(drop);
+    });
+    Ok(receiver)
+}
+
+/// Shows what the sim tells until it has told the result, or has ended.
+fn follow(
+    tellings: &Receiver<Telling>,
+    sim: &mut Offspring,
+    stop: &AtomicBool,
+    screen: &mut Screen,
+) -> Result<Option<Report>> {
+    let mut asked = 0;
+    loop {
+        match tellings.recv_timeout(Duration::from_millis(100)) {
+            Ok(telling) => {
+                screen.show(&telling);
+                if let Telling::Done(report) = telling {
+                    return Ok(Some(*report));
+                }
+            }
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        if stop.load(Ordering::Relaxed) {
+            sim.ask_to_stop();
+            asked += 1;
+            // Three seconds and more at ten looks a second: then it is killed.
+            if asked > 30 {
+                return Ok(None);
+            }
+        }
+    }
+}

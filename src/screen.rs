@@ -1,0 +1,120 @@
+//! The terminal: events as lines, how the game stands as one line that is written over.
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is where the program speaks")]
+
+use crate::result_table;
+use crate::telling::{Progress, Telling};
+use std::io::{IsTerminal, Write};
+
+/// Shows tellings to a person.
+pub(crate) struct Screen {
+    /// Whether a line can be written over.
+    live: bool,
+    status: String,
+    /// Simulated time of the last status line on a screen that scrolls, s.
+    last_s: f64,
+}
+
+/// On paper, how it stands is told this often, simulated seconds.
+const PAPER_EVERY_S: f64 = 60.0;
+
+impl Screen {
+    /// The screen of this process.
+    pub(crate) fn new() -> Screen {
+        Screen { live: std::io::stdout().is_terminal(), status: String::new(), last_s: 0.0 }
+    }
+
+    /// Shows one thing.
+    pub(crate) fn show(&mut self, telling: &Telling) {
+        match telling {
+            Telling::Open { game, endpoint } => {
+                self.line(&format!("game {game} at {endpoint}"));
+                self.line(&format!("look on with: squall watch --game {game}"));
+            }
+            Telling::Waiting { missing } if missing.is_empty() => self.line("every boat has a mind"),
+            Telling::Waiting { missing } => self.status(&waiting(missing)),
+            Telling::Started => {}
+            Telling::Event(event) => self.line(&format!("{:>7.1} s  {}", event.at_s, event.sentence())),
+            Telling::Progress(progress) => self.progress(progress),
+            Telling::Done(report) => {
+                self.clear();
+                print!("{}", result_table::text(report));
+            }
+        }
+    }
+
+    fn progress(&mut self, progress: &Progress) {
+        let score: Vec<String> = progress.score.iter().map(|(team, points)| format!("{team} {points}")).collect();
+        let share = (progress.now_s / progress.end_s).clamp(0.0, 1.0);
+        let full = (share * 24.0).round() as usize;
+        let refused = if progress.refused > 0 { format!("  {} refused", progress.refused) } else { String::new() };
+        let text = format!(
+            "{:>7.1} s  [{}{}] {:.0} s  {}  {:.0}x{refused}",
+            progress.now_s,
+            "=".repeat(full),
+            " ".repeat(24 - full),
+            progress.end_s,
+            score.join("  "),
+            progress.rate,
+        );
+        if self.live || progress.now_s - self.last_s >= PAPER_EVERY_S {
+            self.last_s = progress.now_s;
+            self.status(&text);
+        }
+    }
+
+    /// A line that stays.
+    pub(crate) fn line(&mut self, text: &str) {
+        self.clear();
+        println!("{text}");
+        if self.live && !self.status.is_empty() {
+            print!("{}", self.status);
+        }
+        flush();
+    }
+
+    /// A line that the next one is written over.
+    fn status(&mut self, text: &str) {
+        if !self.live {
+            println!("{text}");
+            return flush();
+        }
+        self.clear();
+        self.status = text.to_owned();
+        print!("{text}");
+        flush();
+    }
+
+    fn clear(&mut self) {
+        if self.live && !self.status.is_empty() {
+            print!("\r\x1b[K");
+        }
+    }
+}
+
+fn waiting(missing: &[String]) -> String {
+    const SHOWN: usize = 6;
+    let more = missing.len().saturating_sub(SHOWN);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("waiting for the minds of {}{more}", missing[..missing.len().min(SHOWN)].join(", "))
+}
+
+fn flush() {
+    // A terminal that went away is no reason to stop a game.
+    drop(std::io::stdout().flush());
+}
+
+/// Prints text as it is.
+pub(crate) fn print(text: &str) {
+    print!("{text}");
+    flush();
+}
+
+/// Says what went wrong.
+pub(crate) fn complain(text: &str) {
+    eprintln!("squall: {text}");
+}
+
+/// Says something on the side, where it does not mix with results.
+pub(crate) fn remark(text: &str) {
+    eprintln!("{text}");
+}

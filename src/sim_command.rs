@@ -1,0 +1,97 @@
+//! `squall sim`: serves one game.
+
+use crate::net_args::{HubArgs, unique_game_name};
+use crate::screen::{self, Screen};
+use crate::stop;
+use crate::telling::{Teller, Telling};
+use anyhow::{Context, Result};
+use game::Scenario;
+use game::topic::GameName;
+use sim::node::{Pace, Report, Settings};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// What to serve, and how.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The game file
+    scenario: PathBuf,
+    /// Chooses the game [default: as the file says]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// lockstep, realtime, or a factor such as 4x
+    #[arg(long, default_value = "lockstep")]
+    pace: Pace,
+    /// The game's name on the network [default: the file's name and a random number]
+    #[arg(long, value_name = "NAME", value_parser = GameName::new)]
+    game: Option<GameName>,
+    /// How long to wait for minds before starting without the missing ones, s
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    join_s: f64,
+    #[command(flatten)]
+    hub: HubArgs,
+    /// Writes the result to this file
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Tells everything as JSON lines on standard output, and stops when standard input ends
+    #[arg(long, hide = true)]
+    for_parent: bool,
+}
+
+/// A number of seconds from the command line.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| format!("{text:?} is not a number of seconds"))?;
+    if (0.0..=1e6).contains(&seconds) { Ok(seconds) } else { Err(format!("{text} is not within 0 to 1000000 s")) }
+}
+
+/// The scenario in a file, with every problem in the error.
+pub(crate) fn load(path: &Path) -> Result<Scenario> {
+    game::scenario::load(path).with_context(|| format!("cannot play {}", path.display()))
+}
+
+/// Writes the result of a game to a file.
+pub(crate) fn write_json(path: &Path, report: &Report) -> Result<()> {
+    let mut value = serde_json::to_value(&report.outcome).context("the result is not JSON")?;
+    value["run"] = serde_json::to_value(&report.run).context("the result is not JSON")?;
+    let text = serde_json::to_string_pretty(&value).context("the result is not JSON")?;
+    std::fs::write(path, text + "\n").with_context(|| format!("cannot write the result to {}", path.display()))
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let scenario = load(&args.scenario)?;
+    let stop = stop::on_ctrl_c()?;
+    if args.for_parent {
+        stop::with_parent(&stop);
+    }
+    let game = match &args.game {
+        Some(game) => game.clone(),
+        None => unique_game_name(&scenario.name)?,
+    };
+    let (net, endpoint) = args.hub.net()?;
+    let mut screen = Screen::new();
+    let mut show = |telling: &Telling| {
+        if args.for_parent {
+            screen::print(&(serde_json::to_string(telling).expect("a telling is JSON") + "\n"));
+        } else {
+            screen.show(telling);
+        }
+    };
+    let entry = bus::Entry { game: game.as_str().to_owned(), endpoint: endpoint.clone(), pid: std::process::id() };
+    // Without a phonebook others must be told where the game is; nothing else is lost.
+    let _registration = bus::register(&entry).ok();
+    show(&Telling::Open { game: game.as_str().to_owned(), endpoint });
+    let settings =
+        Settings { game, net, pace: args.pace, join_limit: Duration::from_secs_f64(args.join_s), stop: stop.clone() };
+    let mut teller = Teller::default();
+    let seed = args.seed.unwrap_or(scenario.seed);
+    let report = sim::node::serve(&scenario, seed, &settings, &mut |news| {
+        teller.from_news(&news).iter().for_each(&mut show);
+    })?;
+    if let Some(path) = &args.json {
+        write_json(path, &report)?;
+    }
+    let cut_short = report.run.cut_short;
+    teller.done(report).iter().for_each(&mut show);
+    Ok(if cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
+}

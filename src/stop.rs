@@ -1,0 +1,36 @@
+//! The wish to stop: Ctrl-C, SIGTERM, or the end of the process that started us.
+
+use anyhow::{Context, Result};
+use std::io::Read;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What a shell says of a program that Ctrl-C ended.
+pub(crate) fn interrupted() -> ExitCode {
+    ExitCode::from(130)
+}
+
+/// A flag that Ctrl-C or SIGTERM sets; pressed a second time they end the process at once.
+pub(crate) fn on_ctrl_c() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    let pressed = move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    };
+    ctrlc::set_handler(pressed).context("cannot listen for Ctrl-C")?;
+    Ok(stop)
+}
+
+/// Sets the flag when standard input ends: a child whose parent has died, however it died, must not stay.
+pub(crate) fn with_parent(stop: &Arc<AtomicBool>) {
+    let flag = Arc::clone(stop);
+    std::thread::spawn(move || {
+        let mut sink = [0; 64];
+        let mut input = std::io::stdin();
+        while input.read(&mut sink).is_ok_and(|count| count > 0) {}
+        flag.store(true, Ordering::Relaxed);
+    });
+}

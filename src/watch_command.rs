@@ -1,0 +1,141 @@
+//! `squall watch`: a running game in the terminal.
+
+use crate::net_args::LeafArgs;
+use crate::screen;
+use crate::stop;
+use anyhow::{Context, Result, bail};
+use bus::{Bus, Slots};
+use game::codec;
+use game::message::{Frame, Notice};
+use game::outcome::EventOutcome;
+use game::topic::{self, GameName, Part};
+use game::{Scenario, SimTime};
+use std::collections::VecDeque;
+use std::io::IsTerminal;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+mod chart;
+
+/// Which game, and where.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    leaf: LeafArgs,
+    /// Pictures a second
+    #[arg(long, value_name = "HZ", default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=30))]
+    rate: u8,
+}
+
+const ANSWER: Duration = Duration::from_secs(2);
+/// A game without a frame for this long is gone.
+const SILENCE: Duration = Duration::from_secs(10);
+/// Events that stay on the screen.
+const EVENTS: usize = 6;
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let stop = stop::on_ctrl_c()?;
+    let bus = Bus::leaf(&args.leaf.net()?).context("no game to watch")?;
+    let game = match &args.leaf.game {
+        Some(game) => game.clone(),
+        None => only_game(&bus)?,
+    };
+    let answer = bus.ask(&topic::scenario(&game), Vec::new(), ANSWER)?;
+    let bytes = answer.with_context(|| format!("no sim answers for game {:?}", game.as_str()))?;
+    let notice: Notice = serde_json::from_slice(&bytes).context("the sim is of another version of Squall")?;
+    let frames: Arc<Slots<Frame>> = Arc::new(Slots::new(1));
+    let events: Arc<Slots<Frame>> = Arc::clone(&frames);
+    let count = Arc::new(AtomicU64::new(0));
+    let counter = Arc::clone(&count);
+    let news = Arc::new(std::sync::Mutex::new(VecDeque::new()));
+    let inbox = Arc::clone(&news);
+    let take = move |bytes: &[u8]| {
+        counter.fetch_add(1, Ordering::Relaxed);
+        if let Ok(frame) = codec::decode::<Frame>(bytes) {
+            let mut queue = inbox.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            queue.extend(frame.events.iter().copied());
+            let surplus = queue.len().saturating_sub(EVENTS);
+            queue.drain(..surplus);
+            events.put(0, frame);
+        }
+    };
+    let _standing = bus.subscribe(topic::frame(&game), take)?;
+    let mut meter = Meter::new();
+    let pause = Duration::from_secs_f64(1.0 / f64::from(args.rate));
+    let live = std::io::stdout().is_terminal();
+    while !stop.load(Ordering::Relaxed) {
+        let Some(frame) = frames.take(SILENCE).pop().flatten() else { bail!("game {} is gone", game.as_str()) };
+        let rates = meter.read(frame.stamp.valid_ns, count.load(Ordering::Relaxed));
+        let queue = news.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
+        let told: Vec<String> =
+            queue.iter().filter_map(|r| r.logged()).map(|l| sentence(&notice.scenario, &l)).collect();
+        let text = if live {
+            format!("\x1b[H\x1b[J{}", chart::page(&notice, &game, &frame, &told, &rates))
+        } else {
+            chart::line(&notice.scenario, &frame, &rates)
+        };
+        screen::print(&text);
+        if frame.over {
+            break;
+        }
+        rest(pause);
+    }
+    bus.close();
+    Ok(ExitCode::SUCCESS)
+}
+
+fn sentence(scenario: &Scenario, logged: &game::event::Logged) -> String {
+    let event = EventOutcome::new(scenario, logged);
+    format!("{:>7.1} s  {}", event.at_s, event.sentence())
+}
+
+fn only_game(bus: &Bus) -> Result<GameName> {
+    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
+    let sims = keys.iter().filter_map(|key| topic::parse_alive(key)).filter(|(_, part, _)| *part == Part::Sim);
+    let games: Vec<GameName> = sims.map(|(game, _, _)| game).collect();
+    match games.as_slice() {
+        [game] => Ok(game.clone()),
+        [] => bail!("no game is on the network"),
+        several => {
+            let names: Vec<&str> = several.iter().map(GameName::as_str).collect();
+            bail!("choose with --game among {}", names.join(", "))
+        }
+    }
+}
+
+/// Frames and simulated seconds a second, since the last reading.
+struct Meter {
+    then: Instant,
+    sim: SimTime,
+    frames: u64,
+}
+
+/// What a meter reads.
+pub(crate) struct Rates {
+    /// Frames received a second.
+    pub(crate) frames_hz: f64,
+    /// Simulated seconds a second.
+    pub(crate) factor: f64,
+}
+
+#[expect(clippy::disallowed_methods, reason = "rates are read by the clock")]
+impl Meter {
+    fn new() -> Meter {
+        Meter { then: Instant::now(), sim: SimTime::ZERO, frames: 0 }
+    }
+
+    fn read(&mut self, sim: SimTime, frames: u64) -> Rates {
+        let passed_s = self.then.elapsed().as_secs_f64().max(1e-6);
+        let rates =
+            Rates { frames_hz: (frames - self.frames) as f64 / passed_s, factor: (sim - self.sim).as_s() / passed_s };
+        *self = Meter { then: Instant::now(), sim, frames };
+        rates
+    }
+}
+
+#[expect(clippy::disallowed_methods, reason = "a person reads only so many pictures a second")]
+fn rest(time: Duration) {
+    std::thread::sleep(time);
+}
