@@ -1,2 +1,202 @@
-//! stub
-fn main() {}
+//! Lockstep ticks a second across processes, beside a bare zenoh ping of the same sizes in the same run.
+//!
+//! The ping does what transport alone costs: a hub publishes one message a team to N leaf processes and waits until
+//! each has answered; same topology, same bytes out and back, no game. Everything is repeated in turn, so that both
+//! sides see the same machine; medians are printed.
+#![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::channel;
+use std::time::{Duration, Instant};
+use zenoh::{Config, Session, Wait};
+
+/// How many times each case is run.
+const ROUNDS: usize = 5;
+/// How long a run lasts, s.
+const RUN_S: f64 = 2.0;
+/// The same runtime that `squall run` gives its children.
+const RUNTIME: &str =
+    "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:2))";
+
+struct Case {
+    processes: usize,
+    vehicles: usize,
+}
+
+fn main() {
+    let args: Vec<String> = std::env::args().collect();
+    if let Some(at) = args.iter().position(|arg| arg == "--echo") {
+        return echo(&args[at + 1], args[at + 2].parse().expect("a size"), &args[at + 3]);
+    }
+    // `cargo test --benches` runs this with `--test`: there is nothing to check.
+    if !args.iter().any(|arg| arg == "--bench") {
+        return;
+    }
+    println!("lockstep over zenoh, median of {ROUNDS} runs of {RUN_S} s each");
+    println!("| agent processes | vehicles | ticks/s | bare zenoh/s | time per tick over bare |");
+    println!("|---|---|---|---|---|");
+    for case in [
+        Case { processes: 4, vehicles: 4 },
+        Case { processes: 16, vehicles: 16 },
+        Case { processes: 64, vehicles: 64 },
+        Case { processes: 4, vehicles: 64 },
+    ] {
+        let rounds: Vec<(f64, f64)> = (0..ROUNDS).map(|_| (squall(&case), bare(&case))).collect();
+        let ticks = median(rounds.iter().map(|r| r.0));
+        let pings = median(rounds.iter().map(|r| r.1));
+        let ratio = median(rounds.iter().map(|r| r.1 / r.0));
+        println!("| {} | {} | {ticks:.0} | {pings:.0} | {ratio:.2} |", case.processes, case.vehicles);
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// A game of this many boats, by `squall run`: decisions a second.
+fn squall(case: &Case) -> f64 {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let (game, json) = (dir.path().join("bench.toml"), dir.path().join("result.json"));
+    let fleet = |team: &str| {
+        format!("[[fleet]]\nteam = \"{team}\"\nname = \"{team}_{{}}\"\ncount = {}\nspawn = {{}}\n", case.vehicles / 2)
+    };
+    let team =
+        |team: &str| format!("[[team]]\nname = \"{team}\"\nstrategy = \"{}/strategies/pav01.toml\"\n", root.display());
+    let text = |duration_s: f64| {
+        format!(
+            "field = \"{0}/fields/open_800x400.toml\"\nrules = \"{0}/rules/aquaticus_2023.toml\"\n\
+             boat = \"{0}/boats/surveyor_m1_8.toml\"\nduration_s = {duration_s}\n{1}{2}{3}{4}",
+            root.display(),
+            team("blue"),
+            team("red"),
+            fleet("blue"),
+            fleet("red")
+        )
+    };
+    // A first short game finds how long one of about two seconds is.
+    let mut duration_s = 40.0;
+    loop {
+        std::fs::write(&game, text(duration_s)).expect("a file");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
+        command.args(["run", &game.display().to_string(), "--json", &json.display().to_string()]);
+        command.args(["--agents-per-process", &(case.vehicles / case.processes).to_string()]);
+        let output = command.output().expect("squall runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let result = std::fs::read_to_string(&json).expect("a result");
+        let result: serde_json::Value = serde_json::from_str(&result).expect("JSON");
+        let wall_s = result["run"]["wall_s"].as_f64().expect("a number");
+        if wall_s > 0.5 * RUN_S {
+            return duration_s / 0.1 / wall_s;
+        }
+        duration_s = (duration_s * RUN_S / wall_s).min(5_000.0);
+    }
+}
+
+/// The bytes of one picture and of one process's orders in such a game.
+fn sizes(case: &Case) -> (usize, usize) {
+    use game::codec::encode;
+    use game::message::{Orders, VehicleOrder};
+    use game::{Order, VehicleId};
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let mut scenario = game::scenario::load(&root.join("games/swarm_20v20.toml")).expect("a game");
+    let spare = scenario.vehicles.clone();
+    let own = spare.iter().filter(|v| v.team.0 == 0).cycle().take(case.vehicles / 2).cloned();
+    let others = spare.iter().filter(|v| v.team.0 == 1).cycle().take(case.vehicles / 2).cloned();
+    scenario.vehicles = own.chain(others).collect();
+    for (i, vehicle) in scenario.vehicles.iter_mut().enumerate() {
+        let at = game::Ned { north: i as f64 * 8.0, east: 0.0 };
+        vehicle.berth = game::scenario::Berth::At(game::Pose { at, psi_rad: 0.0 });
+    }
+    let mut contest = sim::Contest::new(&scenario, 1).expect("berths were given");
+    let picture = encode(&contest.pictures()[0]).len();
+    let mine = (0..case.vehicles / case.processes).map(|i| VehicleOrder::new(VehicleId(i as u16), Order::Hold));
+    let orders = encode(&Orders { orders: mine.collect(), ..Orders::default() }).len();
+    (picture, orders)
+}
+
+fn open(mode: &str, key: &str, endpoint: &str) -> Session {
+    let mut config = Config::default();
+    for (key, value) in [
+        ("mode", format!("\"{mode}\"")),
+        (key, format!("[\"{endpoint}\"]")),
+        ("scouting/multicast/enabled", "false".to_owned()),
+        ("scouting/gossip/enabled", "false".to_owned()),
+        ("timestamping/enabled", "false".to_owned()),
+    ] {
+        config.insert_json5(key, &value).expect("a setting");
+    }
+    zenoh::open(config).wait().expect("a session")
+}
+
+/// A leaf process of the bare ping: answers every message of its team.
+fn echo(endpoint: &str, size: usize, name: &str) {
+    let session = open("client", "connect/endpoints", endpoint);
+    let back = session
+        .declare_publisher(format!("bare/back/{name}"))
+        .congestion_control(zenoh::qos::CongestionControl::Block)
+        .wait()
+        .expect("a publisher");
+    let team = if name.ends_with(['0', '2', '4', '6', '8']) { 0 } else { 1 };
+    let (sender, receiver) = channel();
+    let _subscriber = session
+        .declare_subscriber(format!("bare/out/{team}"))
+        .callback(move |sample| drop(sender.send(sample.payload().to_bytes().len())))
+        .wait()
+        .expect("a subscriber");
+    let _token = session.liveliness().declare_token(format!("bare/alive/{name}")).wait().expect("a token");
+    // A message of one byte is the end.
+    while receiver.recv_timeout(Duration::from_secs(20)).is_ok_and(|bytes| bytes > 1) {
+        back.put(vec![0_u8; size]).wait().expect("a session");
+    }
+}
+
+/// The bare ping: rounds a second, by a hub in a process of its own like the sim's: this one.
+fn bare(case: &Case) -> f64 {
+    let (out_size, back_size) = sizes(case);
+    let port = bus::free_port(false).expect("a port");
+    let endpoint = format!("tcp/127.0.0.1:{port}");
+    let session = open("router", "listen/endpoints", &endpoint);
+    let (sender, receiver) = channel();
+    let _subscriber = session
+        .declare_subscriber("bare/back/*")
+        .callback(move |sample| drop(sender.send(sample.payload().to_bytes().len())))
+        .wait()
+        .expect("a subscriber");
+    let out = [0, 1].map(|team| {
+        session
+            .declare_publisher(format!("bare/out/{team}"))
+            .congestion_control(zenoh::qos::CongestionControl::Block)
+            .wait()
+            .expect("a publisher")
+    });
+    let mut leaves: Vec<Child> = (0..case.processes).map(|i| start_leaf(&endpoint, back_size, i)).collect();
+    let alive = || session.liveliness().get("bare/alive/*").wait().expect("a session").into_iter().count();
+    while alive() < case.processes {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let (start, mut rounds) = (Instant::now(), 0);
+    while start.elapsed().as_secs_f64() < RUN_S {
+        for publisher in &out {
+            publisher.put(vec![0_u8; out_size]).wait().expect("a session");
+        }
+        for _ in 0..case.processes {
+            receiver.recv_timeout(Duration::from_secs(10)).expect("every leaf answers");
+        }
+        rounds += 1;
+    }
+    let rate = f64::from(rounds) / start.elapsed().as_secs_f64();
+    out.iter().for_each(|publisher| publisher.put(vec![0_u8]).wait().expect("a session"));
+    leaves.iter_mut().for_each(|leaf| drop(leaf.wait()));
+    rate
+}
+
+fn start_leaf(endpoint: &str, size: usize, i: usize) -> Child {
+    let mut command = Command::new(std::env::current_exe().expect("this program"));
+    command.args(["--echo", endpoint, &size.to_string(), &format!("leaf{i}")]);
+    command.env("ZENOH_RUNTIME", RUNTIME).stdout(Stdio::null());
+    command.spawn().expect("a leaf starts")
+}

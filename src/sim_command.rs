@@ -7,7 +7,7 @@ use crate::telling::{Teller, Telling};
 use anyhow::{Context, Result};
 use game::Scenario;
 use game::topic::GameName;
-use sim::node::{Pace, Report, Settings};
+use sim::node::{News, Pace, Report, Settings};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -77,17 +77,21 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             screen.show(telling);
         }
     };
-    let entry = bus::Entry { game: game.as_str().to_owned(), endpoint: endpoint.clone(), pid: std::process::id() };
-    // Without a phonebook others must be told where the game is; nothing else is lost.
-    let _registration = bus::register(&entry).ok();
-    show(&Telling::Open { game: game.as_str().to_owned(), endpoint });
+    let entry = bus::Entry { game: game.as_str().to_owned(), endpoint, pid: std::process::id() };
+    let mut registration = None;
     let settings =
         Settings { game, net, pace: args.pace, join_limit: Duration::from_secs_f64(args.join_s), stop: stop.clone() };
     let mut teller = Teller::default();
     let seed = args.seed.unwrap_or(scenario.seed);
     let report = sim::node::serve(&scenario, seed, &settings, &mut |news| {
+        if let News::Open = news {
+            // Without a phonebook others must be told where the game is; nothing else is lost.
+            registration = bus::register(&entry).ok();
+            show(&Telling::Open { game: entry.game.clone(), endpoint: entry.endpoint.clone() });
+        }
         teller.from_news(&news).iter().for_each(&mut show);
     })?;
+    drop(registration);
     if let Some(path) = &args.json {
         write_json(path, &report)?;
     }

@@ -76,9 +76,10 @@ impl Teller {
         news.iter().map(name).collect()
     }
 
-    /// What a sim node's news come to.
+    /// What a sim node's news come to. Where it is open, only its shell knows.
     pub(crate) fn from_news(&mut self, news: &News<'_>) -> Vec<Telling> {
         match news {
+            News::Open => vec![],
             News::Waiting { missing } => {
                 vec![Telling::Waiting { missing: missing.iter().map(|name| (*name).to_owned()).collect() }]
             }

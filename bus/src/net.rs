@@ -1,6 +1,7 @@
 //! Where a node listens, whom it connects to, and whether it scouts.
 
 use crate::BusError;
+use crate::session::reason;
 use std::net::TcpListener;
 use std::path::PathBuf;
 use zenoh::Config;
@@ -48,7 +49,7 @@ impl Net {
         let mut config = match &self.config_file {
             None => Config::default(),
             Some(path) => Config::from_file(path)
-                .map_err(|e| BusError::Open { what: path.display().to_string(), reason: e.to_string() })?,
+                .map_err(|e| BusError::Open { what: path.display().to_string(), reason: reason(&e) })?,
         };
         set(&mut config, "scouting/multicast/enabled", if self.lan { "true" } else { "false" })?;
         set(&mut config, "scouting/gossip/enabled", "false")?;
@@ -60,7 +61,7 @@ fn set(config: &mut Config, key: &str, value: &str) -> Result<(), BusError> {
     config.insert_json5(key, value).map_err(|e| BusError::Setting {
         key: key.to_owned(),
         value: value.to_owned(),
-        reason: e.to_string(),
+        reason: reason(&e),
     })
 }
 

@@ -48,7 +48,13 @@ pub struct Question {
 }
 
 fn failed(doing: &'static str, key: &str) -> impl FnOnce(zenoh::Error) -> BusError {
-    move |e| BusError::Use { doing, key: key.to_owned(), reason: e.to_string() }
+    move |e| BusError::Use { doing, key: key.to_owned(), reason: reason(&e) }
+}
+
+/// What zenoh says, without the place in its source that it adds.
+pub(crate) fn reason(error: &zenoh::Error) -> String {
+    let text = error.to_string();
+    text.split(" at /").next().unwrap_or(&text).trim_end_matches(['!', ' ']).to_owned()
 }
 
 impl Bus {
@@ -171,7 +177,7 @@ impl Bus {
 fn open(config: zenoh::Config, what: String) -> Result<Bus, BusError> {
     match zenoh::open(config).wait() {
         Ok(session) => Ok(Bus { session }),
-        Err(e) => Err(BusError::Open { what, reason: e.to_string() }),
+        Err(e) => Err(BusError::Open { what, reason: reason(&e) }),
     }
 }
 

@@ -50,6 +50,8 @@ pub struct Settings {
 
 /// What a node tells the shell that runs it.
 pub enum News<'a> {
+    /// The hub listens: agents may come.
+    Open,
     /// The door is open; these vehicles have no mind yet.
     Waiting {
         /// By name.
@@ -141,6 +143,7 @@ pub fn serve(
     let contest = Contest::new(scenario, seed)?;
     let timing = if settings.pace == Pace::Lockstep { Timing::Lockstep } else { Timing::Realtime };
     let mut booth = Booth::open(contest, settings, timing)?;
+    tell(News::Open);
     booth.wait_for_minds(settings.join_limit, tell)?;
     tell(News::Started);
     let started = clock::now();
@@ -153,7 +156,9 @@ pub fn serve(
     };
     let cut_short = !booth.contest.is_over();
     let wall_s = clock::since(started).as_secs_f64();
+    // The result stands before the agents leave: that they do is not part of the game.
+    let outcome = booth.contest.outcome();
     booth.say_good_bye()?;
     let run = Run { pace: settings.pace.to_string(), wall_s, refused: booth.refused(), overruns, cut_short };
-    Ok(Report { outcome: booth.contest.outcome(), run })
+    Ok(Report { outcome, run })
 }

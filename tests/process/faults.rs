@@ -1,0 +1,92 @@
+//! Nodes that die or fall silent: the game goes on, nobody waits forever.
+
+use crate::support::{FOUR, Process, Sim, long_game};
+use std::io::Read;
+use std::time::Instant;
+
+/// Patience of these games, s.
+const PATIENCE: &str = "patience_s = 2";
+
+fn game(pace: &str) -> (tempfile::TempDir, Sim, Vec<Process>) {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let sim = Sim::start(&long_game(dir.path(), PATIENCE), &["--pace", pace]);
+    let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
+    sim.wait_for(|telling| telling["tell"] == "started");
+    (dir, sim, agents)
+}
+
+#[test]
+fn a_killed_agents_boat_holds_and_a_new_agent_takes_it_on() {
+    for pace in ["lockstep", "20x"] {
+        let (_dir, sim, mut agents) = game(pace);
+        sim.play_on(5.0);
+        agents[1].kill();
+        let killed = Instant::now();
+        sim.wait_for_event("mind_lost", "blue_two");
+        // Patience is 2 s; the rest is room for a busy machine.
+        assert!(killed.elapsed().as_secs_f64() < 12.0, "{pace}: lost after {:?}", killed.elapsed());
+        sim.play_on(5.0);
+        agents[1] = sim.agent(&["blue_two"]);
+        sim.wait_for_event("mind_back", "blue_two");
+        sim.play_on(5.0);
+        let done = sim.stop();
+        assert_eq!(done["outcome"]["counts"]["boats"]["blue_two"]["minds_lost"], 1, "{pace}");
+        assert_eq!(done["outcome"]["counts"]["boats"]["blue_one"]["minds_lost"], 0, "{pace}");
+        assert!(agents.iter_mut().all(|agent| agent.wait().success()), "{pace}: they leave in peace");
+    }
+}
+
+#[test]
+fn an_agent_that_hangs_is_given_up_after_patience_and_may_come_back() {
+    for pace in ["lockstep", "20x"] {
+        let (_dir, sim, agents) = game(pace);
+        sim.play_on(2.0);
+        agents[2].signal("STOP");
+        let hung = Instant::now();
+        sim.wait_for_event("mind_lost", "red_one");
+        assert!(hung.elapsed().as_secs_f64() > 1.5, "{pace}: patience was {:?}", hung.elapsed());
+        sim.play_on(2.0);
+        agents[2].signal("CONT");
+        sim.wait_for_event("mind_back", "red_one");
+        sim.play_on(2.0);
+        sim.stop();
+    }
+}
+
+#[test]
+fn agents_report_a_killed_sim_and_fail() {
+    let (_dir, mut sim, mut agents) = game("lockstep");
+    sim.play_on(2.0);
+    sim.process.kill();
+    let killed = Instant::now();
+    for agent in &mut agents {
+        assert!(!agent.wait().success());
+        let mut said = String::new();
+        agent.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+        assert!(said.contains("the sim is gone"), "{said}");
+    }
+    // Three seconds are stated; the rest is room for a busy machine.
+    assert!(killed.elapsed().as_secs_f64() < 15.0, "{:?}", killed.elapsed());
+}
+
+#[test]
+fn a_seat_that_is_taken_stays_taken() {
+    let (_dir, sim, _agents) = game("lockstep");
+    let args = ["agent", "--connect", &sim.endpoint, "--game", &sim.game, "--wait-s", "1", "--vehicle", "blue_one"];
+    let output = crate::support::run(&args);
+    assert!(!output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("blue_one has another mind"), "{said}");
+    sim.stop();
+}
+
+#[test]
+fn an_agent_for_an_unknown_vehicle_is_told_which_there_are() {
+    let (_dir, sim, _agents) = game("lockstep");
+    let args = ["agent", "--connect", &sim.endpoint, "--game", &sim.game, "--vehicle", "green_one"];
+    let output = crate::support::run(&args);
+    assert!(!output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("green_one") && said.contains("blue_one, blue_two, red_one, red_two"), "{said}");
+    sim.stop();
+}

@@ -1,0 +1,209 @@
+//! Whole games: the same bytes in one process and across processes.
+
+use crate::support::{FOUR, LIMIT, Process, Sim, agent, free_endpoint, long_game, result_of, run, squall};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+/// A game in which the seed decides who plays what and where boats start.
+fn seeded_game(dir: &Path) -> PathBuf {
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let path = dir.join("seeded.toml");
+    let text = format!(
+        r#"
+field = "{root}/fields/popolopen_2025.toml"
+rules = "{root}/rules/aquaticus_2023.toml"
+boat = "{root}/boats/surveyor_m1_8.toml"
+duration_s = 300
+[[team]]
+name = "blue"
+strategy = "{root}/strategies/pav01_seeded.toml"
+[[team]]
+name = "red"
+strategy = "{root}/strategies/pav01_seeded.toml"
+[[fleet]]
+team = "blue"
+name = "blue_{{}}"
+count = 3
+spawn = {{}}
+[[fleet]]
+team = "red"
+name = "red_{{}}"
+count = 3
+spawn = {{}}
+"#,
+        root = scenarios.display()
+    );
+    std::fs::write(&path, text).expect("a file can be written");
+    path
+}
+
+/// What must not depend on how a game was run.
+fn game_itself(mut result: Value) -> Value {
+    result.as_object_mut().expect("an object").remove("run");
+    result
+}
+
+#[test]
+fn a_lockstep_game_over_the_network_is_the_game_in_one_process_byte_for_byte() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let game = seeded_game(dir.path()).display().to_string();
+    let mut digests = Vec::new();
+    for seed in ["1", "2", "3", "4", "5"] {
+        let here = game_itself(result_of(&[&game, "--seed", seed, "--in-process"]));
+        for boats_each in ["1", "2", "6"] {
+            let there = result_of(&[&game, "--seed", seed, "--agents-per-process", boats_each]);
+            assert_eq!(here, game_itself(there), "seed {seed}, {boats_each} boats a process");
+        }
+        digests.push(here["digest"].clone());
+    }
+    digests.dedup();
+    assert_eq!(digests.len(), 5, "each seed is another game");
+}
+
+#[test]
+fn the_first_game_of_the_readme_runs_to_its_end() {
+    let result = result_of(&["scenarios/games/pav01_vs_pav01.toml"]);
+    assert_eq!(result["duration_s"], 600.0);
+    assert_eq!(result["ticks"], 12000);
+    assert_eq!(result["digest"].as_str().map(str::len), Some(32));
+    for team in ["blue", "red"] {
+        assert!(result["score"]["teams"][team].is_u64() && result["counts"]["teams"][team]["grabs"].is_u64());
+    }
+    assert!(result["counts"]["boats"]["blue_one"]["tags"].is_u64());
+    let events = result["events"].as_array().expect("a list");
+    assert_eq!(events.last().map(|event| &event["event"]), Some(&Value::from("ended")));
+    assert!(events.iter().all(|event| event["tick"].is_u64() && event["at_s"].is_f64()));
+    // Two mirrored teams: mirrored results.
+    assert_eq!(result["counts"]["teams"]["blue"], result["counts"]["teams"]["red"]);
+    assert!(result["counts"]["teams"]["blue"]["grabs"].as_u64() > Some(0), "somebody reached a flag");
+}
+
+#[test]
+fn two_runs_at_once_do_not_see_each_other() {
+    let alone = game_itself(result_of(&["scenarios/games/pav01_popolopen.toml", "--in-process"]));
+    let both: Vec<_> = (0..2)
+        .map(|_| std::thread::spawn(|| game_itself(result_of(&["scenarios/games/pav01_popolopen.toml"]))))
+        .collect();
+    for one in both {
+        assert_eq!(one.join().expect("it runs"), alone);
+    }
+}
+
+#[test]
+fn a_paced_game_keeps_its_pace() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let path = dir.path().join("short.toml");
+    let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/pav01_vs_pav01.toml");
+    std::fs::write(&path, format!("base = \"{}\"\nduration_s = 20\n", base.display())).expect("a file");
+    let result = result_of(&[&path.display().to_string(), "--pace", "4x"]);
+    let wall_s = result["run"]["wall_s"].as_f64().expect("a number");
+    // The clock may be late on a busy machine, but never early.
+    assert!(wall_s > 20.0 / 4.0 * 0.98, "{wall_s}");
+    assert_eq!(result["run"]["pace"], "4x");
+    assert_eq!(result["ticks"], 400);
+}
+
+#[test]
+fn agents_may_come_before_the_sim_and_in_any_order() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let game = long_game(dir.path(), "");
+    let endpoint = free_endpoint();
+    let mut agents: Vec<Process> = FOUR.iter().rev().map(|name| agent(&endpoint, "early", &[name])).collect();
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let sim = Sim::start_with(squall(&[]), &game, &["--game", "early", "--listen", &endpoint]);
+    sim.wait_for(|telling| telling["tell"] == "started");
+    sim.play_on(5.0);
+    let done = sim.stop();
+    assert!(done["outcome"]["events"].as_array().expect("a list").iter().all(|e| e["event"] != "mind_lost"), "{done}");
+    for agent in &mut agents {
+        assert!(agent.wait().success(), "an agent leaves in peace when the game ends");
+    }
+}
+
+#[test]
+fn a_mind_may_join_late() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let sim = Sim::start(&long_game(dir.path(), ""), &["--join-s", "1"]);
+    let _three = sim.agent(&FOUR[..3]);
+    sim.wait_for_event("mind_lost", "red_two");
+    let _late = sim.agent(&FOUR[3..]);
+    sim.wait_for_event("mind_back", "red_two");
+    sim.play_on(5.0);
+    sim.stop();
+}
+
+/// Processes whose command line holds this word.
+fn processes_with(word: &str) -> Vec<String> {
+    let output = Command::new("ps").args(["-eo", "pid,args"]).output().expect("ps is there");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.lines().filter(|line| line.contains(word) && !line.contains("<defunct>")).map(str::to_owned).collect()
+}
+
+#[test]
+fn nothing_is_left_of_a_run_that_is_ended_early() {
+    for signal in ["INT", "TERM", "KILL"] {
+        let dir = tempfile::tempdir().expect("a temporary directory");
+        let game = long_game(dir.path(), "");
+        let word = dir.path().display().to_string();
+        let mut command = squall(&["run", &game.display().to_string(), "--pace", "realtime"]);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        let mut run = Process::start(command);
+        let start = Instant::now();
+        let agents = |run: &Process| children_of(run.0.id());
+        while agents(&run).len() < 5 {
+            assert!(start.elapsed() < LIMIT, "sim and agents start");
+        }
+        let family = agents(&run);
+        run.signal(signal);
+        let status = run.wait();
+        assert!(!status.success(), "{signal}: a game that was cut short is no success");
+        let start = Instant::now();
+        while family.iter().any(|pid| Path::new(&format!("/proc/{pid}/exe")).exists()) {
+            assert!(start.elapsed() < LIMIT, "{signal}: still there: {:?}", processes_with(&word));
+        }
+    }
+}
+
+/// The children of a process.
+fn children_of(pid: u32) -> Vec<u32> {
+    let output = Command::new("ps").args(["-o", "pid=", "--ppid", &pid.to_string()]).output().expect("ps is there");
+    String::from_utf8_lossy(&output.stdout).split_whitespace().filter_map(|pid| pid.parse().ok()).collect()
+}
+
+#[test]
+fn games_on_this_machine_are_listed_and_can_be_watched() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let sim = Sim::start(&long_game(dir.path(), ""), &[]);
+    let _agents = sim.agent(&FOUR);
+    sim.play_on(1.0);
+    let list = String::from_utf8_lossy(&run(&["list"]).stdout).into_owned();
+    assert!(list.contains(&sim.game) && list.contains("  agent ") && list.contains("4 boats"), "{list}");
+    let mut command = squall(&["watch", "--game", &sim.game, "--rate", "20"]);
+    command.stdout(Stdio::piped());
+    let mut watch = Process::start(command);
+    let output = watch.0.stdout.take().expect("its output is piped");
+    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(output));
+    for _ in 0..3 {
+        let line = lines.next().expect("it goes on").expect("it is text");
+        assert!(line.contains("blue") && line.contains("frames/s"), "{line}");
+    }
+    sim.stop();
+    assert!(watch.wait().success(), "watching ends with the game");
+}
+
+#[test]
+fn broken_scenarios_are_explained_where_they_are_broken() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let path = dir.path().join("broken.toml");
+    std::fs::write(&path, "fild = \"x.toml\"\nseed = \"one\"\n").expect("a file");
+    let output = run(&["check", &path.display().to_string()]);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(!output.status.success());
+    for place in ["broken.toml:1:1: ", "broken.toml:2:8: "] {
+        assert!(text.contains(place), "{place} is not in {text}");
+    }
+    let output = run(&["run", &path.display().to_string()]);
+    assert!(!output.status.success() && String::from_utf8_lossy(&output.stderr).contains("broken.toml:1:1: "));
+}

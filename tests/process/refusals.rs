@@ -1,0 +1,126 @@
+//! Agents that send what they should not: refused with a counted reason, the game unharmed.
+
+use crate::support::{FOUR, Sim, long_game};
+use bus::{Bus, Delivery, Publisher, Slots};
+use game::codec;
+use game::message::{JoinReply, JoinRequest, Message, Orders, Stamp, VehicleOrder};
+use game::topic::{self, GameName};
+use game::{Order, Picture, VehicleId};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A session that has joined as a rogue.
+struct Rogue {
+    _bus: Bus,
+    pictures: Arc<Slots<Picture>>,
+    orders: Publisher,
+    ticket: u64,
+    _standing: bus::Standing,
+}
+
+fn join(bus: &Bus, game: &GameName, request: &JoinRequest) -> JoinReply {
+    let request = serde_json::to_vec(request).expect("JSON");
+    let answer = bus.ask(&topic::join(game), request, Duration::from_secs(10)).expect("a session");
+    serde_json::from_slice(&answer.expect("the sim answers")).expect("a reply")
+}
+
+fn request(vehicles: &[&str]) -> JoinRequest {
+    let vehicles = vehicles.iter().map(|name| (*name).to_owned()).collect();
+    JoinRequest { version: game::VERSION.to_owned(), agent: "rogue".to_owned(), vehicles }
+}
+
+impl Rogue {
+    fn enter(sim: &Sim) -> Rogue {
+        let bus = sim.bus();
+        let game = GameName::new(&sim.game).expect("a name");
+        let pictures = Arc::new(Slots::new(1));
+        let slots = Arc::clone(&pictures);
+        let key = format!("squall/{}/picture/red", sim.game);
+        let standing = bus.subscribe(key, move |bytes| slots.put(0, codec::decode(bytes).expect("a picture")));
+        let JoinReply::Granted { ticket, .. } = join(&bus, &game, &request(&["red_two"])) else {
+            panic!("the seat is free")
+        };
+        let orders = bus.publisher(topic::orders(&game, "rogue"), Delivery::Wait).expect("a session");
+        Rogue { _bus: bus, pictures, orders, ticket, _standing: standing.expect("a session") }
+    }
+
+    /// Orders for the tick that is open.
+    fn orders(&self, orders: Vec<VehicleOrder>) -> Orders {
+        let picture = self.pictures.take(Duration::from_secs(20)).pop().flatten().expect("a picture");
+        let stamp = Stamp { version: Orders::VERSION, ..picture.stamp };
+        Orders { stamp, ticket: self.ticket, orders }
+    }
+
+    fn good(&self) -> Orders {
+        self.orders(vec![VehicleOrder::new(VehicleId(3), Order::Hold)])
+    }
+}
+
+#[test]
+fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let sim = Sim::start(&long_game(dir.path(), "patience_s = 20"), &[]);
+    let _agents = sim.agent(&FOUR[..3]);
+    let rogue = Rogue::enter(&sim);
+    let send = |orders: &Orders| rogue.orders.send(orders).expect("a session");
+
+    // Garbage, a newer version, a wrong ticket, a tick to come: none of them counts as an answer.
+    let good = rogue.good();
+    rogue.orders.send_raw(b"\xff\x00garbage".to_vec()).expect("a session");
+    rogue.orders.send_raw(codec::encode(&good)[..20].to_vec()).expect("a session");
+    send(&Orders { stamp: Stamp { version: 99, ..good.stamp }, ..good.clone() });
+    send(&Orders { ticket: good.ticket ^ 1, ..good.clone() });
+    send(&Orders { stamp: Stamp { seq: good.stamp.seq + 7, ..good.stamp }, ..good.clone() });
+    send(&good);
+    // Another's vehicle, with nothing for its own; a vehicle that does not exist.
+    send(&rogue.orders(vec![VehicleOrder::new(VehicleId(0), Order::Thrust { port: 1.0, starboard: 1.0 })]));
+    send(
+        &rogue.orders(vec![
+            VehicleOrder::new(VehicleId(60000), Order::Hold),
+            VehicleOrder::new(VehicleId(3), Order::Hold),
+        ]),
+    );
+    // Numbers that are none.
+    let nan = Order::Steer { heading_rad: f64::NAN, speed_m_s: f64::INFINITY };
+    send(&rogue.orders(vec![VehicleOrder::new(VehicleId(3), nan)]));
+    let unknown = VehicleOrder { vehicle: VehicleId(3), kind: 77, first: 0.0, second: 0.0 };
+    send(&rogue.orders(vec![unknown]));
+    // Honest for a while, then nothing more: the others play on after the sim's patience.
+    for _ in 0..20 {
+        send(&rogue.good());
+    }
+    drop(rogue);
+    let done = sim.stop();
+    let refused = &done["run"]["refused"];
+    for (reason, count) in [
+        ("garbage", 2),
+        ("version", 1),
+        ("ticket", 1),
+        ("wrong_tick", 1),
+        ("not_yours", 2),
+        ("bad_number", 2),
+        ("missing", 1),
+    ] {
+        assert_eq!(refused[reason], count, "{reason} in {refused}");
+    }
+    assert!(done["outcome"]["ticks"].as_u64() >= Some(2 * 24), "the game went on");
+    assert!(done["outcome"]["events"].as_array().expect("a list").iter().all(|e| e["event"] != "quarantined"));
+}
+
+#[test]
+fn another_version_is_a_clear_refusal() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let sim = Sim::start(&long_game(dir.path(), ""), &[]);
+    let bus = sim.bus();
+    let game = GameName::new(&sim.game).expect("a name");
+    let JoinReply::Refused { reason } =
+        join(&bus, &game, &JoinRequest { version: "9.9.9".to_owned(), ..request(&["blue_one"]) })
+    else {
+        panic!("another version is let in")
+    };
+    assert!(reason.contains("9.9.9") && reason.contains(game::VERSION), "{reason}");
+    let answer = bus.ask(&topic::join(&game), b"{]".to_vec(), Duration::from_secs(10)).expect("a session");
+    let text = String::from_utf8_lossy(&answer.expect("an answer")).into_owned();
+    assert!(text.contains("not understood"), "{text}");
+    sim.stop();
+}
