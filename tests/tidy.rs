@@ -249,9 +249,8 @@ fn reasons(tree: &Tree) -> Breaches {
     let manifest = tree.files.get("Cargo.toml").map_or("", String::as_str);
     let design = tree.files.get("DESIGN.md").map_or("", String::as_str);
     let rows: Vec<&str> = design.lines().filter(|line| line.starts_with('|')).collect();
-    let named = |name: &str| {
-        rows.iter().any(|row| row.split('|').nth(1).is_some_and(|cell| cell.contains(&format!("`{name}`"))))
-    };
+    let cells: Vec<&str> = rows.iter().filter_map(|row| row.split('|').nth(1)).map(str::trim).collect();
+    let named = |name: &str| cells.contains(&format!("`{name}`").as_str());
     let foreign = |(_, section, name): &(usize, String, String)| {
         section == "workspace.dependencies" && !MAY_IMPORT.iter().any(|(ours, _)| ours == name)
     };
@@ -478,6 +477,11 @@ fn breakers() -> Vec<(&'static str, &'static str, String, &'static str)> {
         (rule(9), "sim/Cargo.toml", "[package]\n".to_owned(), "sim/Cargo.toml:1: must end with `[lints]`"),
         (rule(9), "clippy.toml", "too-many-lines-threshold = 700\n".to_owned(), "threshold = 70`"),
         (rule(10), "CHANGELOG.md", "## [1.2.2]\n".to_owned(), "has no section `## [1.2.3]`"),
-        (rule(11), "DESIGN.md", "`libm` in passing\n".to_owned(), "no table row for `libm`"),
+        (
+            rule(11),
+            "DESIGN.md",
+            "| `libm` in passing | |\n".to_owned(),
+            "Cargo.toml:5: DESIGN.md has no table row for `libm`",
+        ),
     ]
 }
