@@ -14,7 +14,7 @@ pub(crate) struct HubArgs {
     /// Be found by multicast on the local network (listens on all interfaces unless --listen says otherwise)
     #[arg(long)]
     lan: bool,
-    /// A zenoh configuration (JSON5) to begin with: TLS, access control
+    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
 }
@@ -28,7 +28,7 @@ pub(crate) struct LeafArgs {
     /// Find the sim by multicast on the local network
     #[arg(long, conflicts_with = "connect")]
     lan: bool,
-    /// A zenoh configuration (JSON5) to begin with: TLS, access control
+    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
     /// The game's name [default: the only one there]

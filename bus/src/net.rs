@@ -18,7 +18,7 @@ pub struct Net {
     pub connect: Vec<String>,
     /// Find and be found by multicast on the local network.
     pub lan: bool,
-    /// A zenoh configuration (JSON5) to begin with, for TLS, access control and the like.
+    /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers and the like.
     pub config_file: Option<PathBuf>,
 }
 

@@ -5,7 +5,8 @@ use bus::{Bus, Delivery, Publisher, Slots};
 use game::codec;
 use game::message::{JoinReply, JoinRequest, Message, Orders, Stamp, VehicleOrder};
 use game::topic::{self, GameName};
-use game::{Order, Picture, VehicleId};
+use game::{Order, Picture, TeamId, VehicleId};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -35,7 +36,9 @@ impl Rogue {
         let game = GameName::new(&sim.game).expect("a name");
         let pictures = Arc::new(Slots::new(1));
         let slots = Arc::clone(&pictures);
-        let key = format!("squall/{}/picture/red", sim.game);
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/pav01_vs_pav01.toml");
+        let scenario = game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
+        let key = topic::picture(&game, &scenario, TeamId(1));
         let standing = bus.subscribe(key, move |bytes| slots.put(0, codec::decode(bytes).expect("a picture")));
         let JoinReply::Granted { ticket, .. } = join(&bus, &game, &request(&["red_two"])) else {
             panic!("the seat is free")

@@ -127,11 +127,11 @@ impl Roster {
             self.refused.ticket += 1;
             return accepted;
         };
-        let (seq, minder) = (message.stamp.seq, &mut self.minders[m]);
         // A message with a good ticket shows that somebody is there, in time or not.
-        if !std::mem::replace(&mut minder.present, true) {
-            accepted.back.clone_from(&minder.vehicles);
+        if !std::mem::replace(&mut self.minders[m].present, true) {
+            accepted.back = self.seated(m).collect();
         }
+        let (seq, minder) = (message.stamp.seq, &mut self.minders[m]);
         let known = minder.answered.is_some_and(|answered| answered >= seq);
         let in_time = seq == tick || (self.timing == Timing::Realtime && seq < tick);
         if known {
@@ -158,13 +158,15 @@ impl Roster {
             self.refused.bad_number += u64::from(order.is_err());
             orders.push((item.vehicle, order.unwrap_or_default()));
         }
-        for vehicle in &self.minders[m].vehicles {
-            let mine = self.seats[vehicle.index()] == Some(m);
-            if mine && !orders.iter().any(|(given, _)| given == vehicle) {
-                self.refused.missing += 1;
-                orders.push((*vehicle, Order::Hold));
-            }
-        }
+        let given = |vehicle: &VehicleId| orders.iter().any(|(given, _)| given == vehicle);
+        let missing: Vec<VehicleId> = self.seated(m).filter(|vehicle| !given(vehicle)).collect();
+        self.refused.missing += missing.len() as u64;
+        orders.extend(missing.into_iter().map(|vehicle| (vehicle, Order::Hold)));
+    }
+
+    /// The vehicles that a minder still minds: nobody has taken them on since.
+    fn seated(&self, m: usize) -> impl Iterator<Item = VehicleId> {
+        self.minders[m].vehicles.iter().copied().filter(move |vehicle| self.seats[vehicle.index()] == Some(m))
     }
 
     /// An agent process died: the vehicles it leaves behind.
@@ -189,8 +191,7 @@ impl Roster {
 
     fn lose(&mut self, m: usize) -> Vec<VehicleId> {
         self.minders[m].present = false;
-        let vehicles = self.minders[m].vehicles.iter().copied();
-        vehicles.filter(|vehicle| self.seats[vehicle.index()] == Some(m)).collect()
+        self.seated(m).collect()
     }
 
     /// Whether everybody we count on has answered `tick`.
@@ -216,5 +217,113 @@ impl Roster {
 
     fn minder_of(&self, vehicle: usize) -> Option<&Minder> {
         self.seats[vehicle].map(|m| &self.minders[m])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::message::{Message, Stamp, VehicleOrder};
+    use std::path::Path;
+
+    fn roster(timing: Timing) -> Roster {
+        let game = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+        Roster::new(&game::scenario::load(&game).unwrap_or_else(|e| panic!("{e}")), timing)
+    }
+
+    fn ask(agent: &str, vehicles: &[&str]) -> JoinRequest {
+        let vehicles = vehicles.iter().map(|name| (*name).to_owned()).collect();
+        JoinRequest { version: game::VERSION.to_owned(), agent: agent.to_owned(), vehicles }
+    }
+
+    fn orders(ticket: u64, seq: u64, vehicles: &[u16]) -> Orders {
+        let order = |v: &u16| VehicleOrder::new(VehicleId(*v), Order::Thrust { port: 1.0, starboard: 1.0 });
+        let stamp = Stamp { seq, version: Orders::VERSION, ..Stamp::default() };
+        Orders { stamp, ticket, orders: vehicles.iter().map(order).collect() }
+    }
+
+    fn is_granted(reply: &JoinReply) -> bool {
+        matches!(reply, JoinReply::Granted { .. })
+    }
+
+    #[test]
+    fn a_tick_is_complete_when_everybody_who_is_there_has_answered() {
+        let mut roster = roster(Timing::Lockstep);
+        assert!(is_granted(&roster.join(&ask("a", &["blue_one", "blue_two"]), 1)));
+        assert!(is_granted(&roster.join(&ask("b", &["red_one"]), 2)));
+        assert_eq!(roster.mindless(), [VehicleId(3)]);
+        assert!(!roster.all_answered(0));
+        assert_eq!(roster.take(&orders(1, 0, &[0, 1]), 0).orders.len(), 2);
+        assert!(!roster.all_answered(0));
+        roster.take(&orders(2, 0, &[2]), 0);
+        assert!(roster.all_answered(0) && !roster.all_answered(1));
+        assert_eq!(roster.refused.total(), 0);
+    }
+
+    #[test]
+    fn an_answer_that_comes_twice_is_taken_once_and_not_refused() {
+        let mut roster = roster(Timing::Lockstep);
+        roster.join(&ask("a", &["blue_one"]), 1);
+        assert_eq!(roster.take(&orders(1, 0, &[0]), 0).orders.len(), 1);
+        assert_eq!(roster.take(&orders(1, 0, &[0]), 0), Accepted::default());
+        assert_eq!(roster.refused.total(), 0);
+    }
+
+    #[test]
+    fn old_orders_are_for_real_time_only_and_orders_to_come_for_nobody() {
+        for (timing, seq, accepted, refused) in [
+            (Timing::Lockstep, 4, 0, 1),
+            (Timing::Realtime, 4, 1, 0),
+            (Timing::Lockstep, 6, 0, 1),
+            (Timing::Realtime, 6, 0, 1),
+            (Timing::Lockstep, 5, 1, 0),
+        ] {
+            let mut roster = roster(timing);
+            roster.join(&ask("a", &["blue_one"]), 1);
+            assert_eq!(roster.take(&orders(1, seq, &[0]), 5).orders.len(), accepted, "{timing:?} {seq}");
+            assert_eq!(roster.refused.wrong_tick, refused, "{timing:?} {seq}");
+        }
+    }
+
+    #[test]
+    fn a_seat_is_free_again_when_its_minder_is_lost_and_the_old_one_has_no_say() {
+        let mut roster = roster(Timing::Lockstep);
+        roster.join(&ask("a", &["blue_one"]), 1);
+        assert_eq!(roster.join(&ask("b", &["blue_one"]), 2), JoinReply::Busy { vehicle: "blue_one".to_owned() });
+        assert_eq!(roster.give_up(0), [VehicleId(0)]);
+        assert!(roster.all_answered(0), "nobody is waited for");
+        assert!(is_granted(&roster.join(&ask("b", &["blue_one"]), 2)));
+        let late = roster.take(&orders(1, 0, &[0]), 0);
+        assert_eq!(late, Accepted::default(), "the seat is b's");
+        assert_eq!(roster.refused.not_yours, 1);
+        assert!(!roster.all_answered(0), "b is waited for, a is not");
+        roster.take(&orders(2, 0, &[0]), 0);
+        assert!(roster.all_answered(0));
+    }
+
+    #[test]
+    fn a_lost_minder_that_speaks_again_is_back() {
+        let mut roster = roster(Timing::Lockstep);
+        roster.join(&ask("a", &["blue_one"]), 1);
+        assert_eq!(roster.gone("a"), [VehicleId(0)]);
+        let late = roster.take(&orders(1, 0, &[0]), 9);
+        assert_eq!((late.back, late.orders.len()), (vec![VehicleId(0)], 0));
+        assert!(!roster.all_answered(9), "and waited for again");
+    }
+
+    #[test]
+    fn the_door_says_why_it_stays_shut() {
+        let mut roster = roster(Timing::Lockstep);
+        let other = JoinRequest { version: "0.0.1".to_owned(), ..ask("a", &["blue_one"]) };
+        for (request, why) in [
+            (other, "0.0.1"),
+            (ask("a", &[]), "names no vehicle"),
+            (ask("a", &["green_one"]), "blue_one, blue_two, red_one, red_two"),
+            (ask("a", &["blue_one", "blue_one"]), "twice"),
+        ] {
+            let JoinReply::Refused { reason } = roster.join(&request, 1) else { panic!("{request:?} is let in") };
+            assert!(reason.contains(why), "{reason}");
+        }
+        assert_eq!(roster.present(), 0);
     }
 }
