@@ -73,7 +73,7 @@ fn play_here(args: &Args, scenario: &Scenario, stop: &AtomicBool, screen: &mut S
     let mut shown = (start, 0.0);
     let watch = |contest: &Contest| {
         // The clock is slower than a decision: look at it now and then.
-        if contest.decision() % 64 == 0 && shown.0.elapsed() >= SHOW_EVERY {
+        if contest.decision().is_multiple_of(64) && shown.0.elapsed() >= SHOW_EVERY {
             let now_s = contest.now().as_s();
             let rate = (now_s - shown.1) / shown.0.elapsed().as_secs_f64();
             shown = (Instant::now(), now_s);

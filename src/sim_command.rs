@@ -89,7 +89,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             registration = bus::register(&entry).ok();
             show(&Telling::Open { game: entry.game.clone(), endpoint: entry.endpoint.clone() });
         }
-        teller.from_news(&news).iter().for_each(&mut show);
+        teller.news(&news).iter().for_each(&mut show);
     })?;
     drop(registration);
     if let Some(path) = &args.json {

@@ -77,7 +77,7 @@ impl Teller {
     }
 
     /// What a sim node's news come to. Where it is open, only its shell knows.
-    pub(crate) fn from_news(&mut self, news: &News<'_>) -> Vec<Telling> {
+    pub(crate) fn news(&mut self, news: &News<'_>) -> Vec<Telling> {
         match news {
             News::Open => vec![],
             News::Waiting { missing } => {

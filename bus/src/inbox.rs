@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
 /// The sending side, for callbacks. Never blocks: what does not fit is dropped and counted.
@@ -43,10 +43,7 @@ impl<T> Outlet<T> {
 impl<T> Inbox<T> {
     /// The next item, if one comes within `limit`.
     pub fn take(&self, limit: Duration) -> Option<T> {
-        match self.receiver.recv_timeout(limit) {
-            Ok(item) => Some(item),
-            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => None,
-        }
+        self.receiver.recv_timeout(limit).ok()
     }
 
     /// The next item, if one is there.

@@ -1,4 +1,9 @@
 //! The program as people use it: whole games across processes, and what happens when parts of them fail.
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stderr,
+    reason = "processes are waited for by the clock, with a limit; a test that is skipped says so"
+)]
 
 mod faults;
 mod games;
