@@ -24,6 +24,8 @@ use rapier2d_f64::prelude::{
 const CLOSING_MAX_M_S: f64 = 8.0;
 /// Hulls nearer than rapier's look-ahead and this are handed to it, m.
 const SPARE_M: f64 = 0.05;
+/// Thickness of a wall, and how far it reaches beyond the corners, m.
+const WALL_M: f64 = 10.0;
 /// Restitution and friction of hull on hull: fendered glass fibre, wet.
 const RESTITUTION: f64 = 0.1;
 const FRICTION: f64 = 0.2;
@@ -45,8 +47,16 @@ pub struct ContactModel {
 struct Fixed {
     shape: SharedShape,
     pose: Pose,
-    /// A circle round it; walls have none.
-    bounds: Option<(Ned, f64)>,
+    bounds: Bounds,
+}
+
+/// What a boat must come near before the shape itself is looked at.
+#[derive(Clone)]
+enum Bounds {
+    /// A circle: centre and radius.
+    Circle(Ned, f64),
+    /// All that lies behind the line through a point; the unit vector points before it.
+    Behind(Ned, Ned),
 }
 
 /// A boat's motion over one tick, as it would be without contact; then as it is.
@@ -93,9 +103,8 @@ impl ContactModel {
         let mut fixed: Vec<Fixed> = field.plan.obstacles.iter().map(fixed_obstacle).collect();
         if field.plan.walls == Walls::AllRound {
             let inward = [field.along, field.across.scaled(-1.0), field.along.scaled(-1.0), field.across];
-            for (corner, inward) in field.corners.iter().zip(inward) {
-                let shape = SharedShape::halfspace(vector(inward));
-                fixed.push(Fixed { shape, pose: pose(*corner, (0.0, 1.0)), bounds: None });
+            for (i, inward) in inward.into_iter().enumerate() {
+                fixed.push(wall(field.corners[i], field.corners[(i + 1) % 4], inward));
             }
         }
         let look_ahead_m = CLOSING_MAX_M_S * dt_s;
@@ -204,7 +213,10 @@ impl Passage {
 
 impl Fixed {
     fn is_beside(&self, at: Ned, reach_m: f64) -> bool {
-        self.bounds.is_none_or(|(centre, radius_m)| centre.distance(at) < radius_m + reach_m)
+        match self.bounds {
+            Bounds::Circle(centre, radius_m) => centre.distance(at) < radius_m + reach_m,
+            Bounds::Behind(point, before) => (at - point).dot(before) < reach_m,
+        }
     }
 }
 
@@ -221,7 +233,7 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
         Obstacle::Circle { centre, radius_m } => Fixed {
             shape: SharedShape::ball(*radius_m),
             pose: pose(*centre, (0.0, 1.0)),
-            bounds: Some((*centre, *radius_m)),
+            bounds: Bounds::Circle(*centre, *radius_m),
         },
         Obstacle::Polygon { corners } => {
             // A closed line, so that any polygon keeps its exact shape, bays included.
@@ -232,9 +244,21 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
             Fixed {
                 shape: SharedShape::polyline(corners.iter().map(|corner| vector(*corner)).collect(), Some(sides)),
                 pose: Pose::IDENTITY,
-                bounds: Some((first, radius_m)),
+                bounds: Bounds::Circle(first, radius_m),
             }
         }
+    }
+}
+
+/// A wall from one corner to the next. It is a thick plank: boats have sailed through rapier's half-plane, whose
+/// bounding box is infinite.
+fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
+    let half_thickness_m = 0.5 * WALL_M;
+    let middle = from + (to - from).scaled(0.5);
+    Fixed {
+        shape: SharedShape::cuboid(half_thickness_m, 0.5 * from.distance(to) + WALL_M),
+        pose: pose(middle - inward.scaled(half_thickness_m), (inward.east, inward.north)),
+        bounds: Bounds::Behind(from, inward),
     }
 }
 

@@ -55,13 +55,13 @@ fn a_boat_that_rams_anothers_side_pushes_it_away() {
 /// Two boats anyhow, one aimed roughly at the other.
 fn collision_course(world: &mut World, seed: u64) {
     let mut stream = Stream::new(seed, "collision");
-    let (bearing_deg, distance_m) = (stream.between(0.0, 360.0), stream.between(2.5, 6.0));
+    let (bearing_deg, distance_m) = (stream.between(0.0, 360.0), stream.between(2.5, 3.5));
     let (sin, cos) = game::math::sin_cos_deg(bearing_deg);
-    let aim_deg = bearing_deg + 180.0 + stream.between(-25.0, 25.0);
+    let aim_deg = bearing_deg + 180.0 + stream.between(-15.0, 15.0);
     let mut nu = |ahead: f64, across: f64, turn: f64| {
-        (stream.between(ahead, 3.0), stream.between(-across, across), stream.between(-turn, turn))
+        (stream.between(ahead, ahead + 2.0), stream.between(-across, across), stream.between(-turn, turn))
     };
-    let (rammer, rammed) = (nu(0.5, 0.5, 0.3), nu(-1.0, 1.0, 1.0));
+    let (rammer, rammed) = (nu(1.5, 0.5, 0.3), nu(-1.0, 1.0, 1.0));
     let heading_deg = stream.between(0.0, 360.0);
     put(world, 0, (100.0 + distance_m * sin, 100.0 + distance_m * cos, aim_deg), rammer);
     put(world, 1, (100.0, 100.0, heading_deg), rammed);
@@ -202,7 +202,7 @@ fn asking_rapier_only_about_close_hulls_changes_no_byte() {
             crowd(&world, &mut orders);
             collisions += world.step(&orders).iter().filter(|e| matches!(e, game::Event::Collided { .. })).count();
             all.step(&orders);
-            assert_eq!(world.snapshot(), all.snapshot(), "{game}: they differ from tick {tick} on");
+            assert!(world.snapshot() == all.snapshot(), "{game}: they differ from tick {tick} on");
         }
         assert!(collisions > 3, "{game}: only {collisions} boats came together");
     }
