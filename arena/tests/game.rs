@@ -1,6 +1,6 @@
 //! Whole games between the minds of the house.
 
-use game::outcome::Counts;
+use game::count::Counts;
 use game::scenario::Role;
 use game::{Outcome, Scenario, VehicleId};
 use std::path::Path;

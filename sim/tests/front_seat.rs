@@ -39,7 +39,7 @@ fn a_right_turn_at_speed_settles_without_much_overshoot() {
         steer(&mut world, 90.0, speed_m_s, 20, |boat| {
             off_rad = off_rad.max(wrap_pi(boat.pose.psi_rad - 90_f64.to_radians()).abs());
         });
-        assert!(off_rad.to_degrees() < 1.0, "{boat} stays {} degrees off", off_rad.to_degrees());
+        assert!(off_rad.to_degrees() < 3.0, "{boat} stays {} degrees off", off_rad.to_degrees());
     }
 }
 
