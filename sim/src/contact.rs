@@ -8,7 +8,7 @@
 //! remembers nothing: a snapshot needs none of its state, and boats that touch nobody are the same bytes
 //! whether it was asked about others or not.
 
-use crate::hull::HullModel;
+use crate::hull::{HullModel, Planar};
 use game::angle::wrap_pi;
 use game::field::{Field, Obstacle, Walls};
 use game::frame::{self, Ned};
@@ -19,10 +19,13 @@ use rapier2d_f64::prelude::{
     ColliderBuilder, MassProperties, PhysicsWorld, Pose, RigidBodyBuilder, RigidBodyHandle, Rot2, SharedShape, Vector,
 };
 
-/// Hulls nearer than this are handed to rapier, m. More than its own look-ahead below.
-const CLOSE_M: f64 = 0.25;
-/// How far ahead rapier looks for contacts, m: what the fastest pair closes in a tick.
-const LOOK_AHEAD_M: f64 = 0.2;
+/// Two hulls close with at most this speed, m/s. What they close in a tick is how far ahead rapier looks for
+/// contacts: hulls farther apart cannot touch before it is asked again.
+const CLOSING_MAX_M_S: f64 = 8.0;
+/// Hulls nearer than rapier's look-ahead and this are handed to it, m.
+const SPARE_M: f64 = 0.05;
+/// Thickness of a wall, and how far it reaches beyond the corners, m.
+const WALL_M: f64 = 10.0;
 /// Restitution and friction of hull on hull: fendered glass fibre, wet.
 const RESTITUTION: f64 = 0.1;
 const FRICTION: f64 = 0.2;
@@ -35,14 +38,25 @@ pub struct ContactModel {
     /// Obstacles and walls.
     fixed: Vec<Fixed>,
     dt_s: f64,
+    look_ahead_m: f64,
+    /// Hulls nearer than this are handed to rapier, m.
+    close_m: f64,
 }
 
 #[derive(Clone)]
 struct Fixed {
     shape: SharedShape,
     pose: Pose,
-    /// A circle round it; walls have none.
-    bounds: Option<(Ned, f64)>,
+    bounds: Bounds,
+}
+
+/// What a boat must come near before the shape itself is looked at.
+#[derive(Clone)]
+enum Bounds {
+    /// A circle: centre and radius.
+    Circle(Ned, f64),
+    /// All that lies behind the line through a point; the unit vector points before it.
+    Behind(Ned, Ned),
 }
 
 /// A boat's motion over one tick, as it would be without contact; then as it is.
@@ -58,15 +72,14 @@ pub struct Passage {
     pub turn: (f64, f64),
     /// Whether it can move at all.
     pub fixed: bool,
-    /// What contact added to the velocity over the ground, m/s.
-    pub kick_m_s: Ned,
-    /// What contact added to the yaw rate, rad/s.
-    pub kick_rad_s: f64,
+    /// What contact added to the velocity, in body axes.
+    pub kick: Planar,
 }
 
 /// A shape near a boat, with the direction in which it would be pushed.
 struct Touch {
     boat: usize,
+    distance_m: f64,
     normal: Vector,
 }
 
@@ -74,6 +87,7 @@ struct Touch {
 struct Entry {
     boat: usize,
     body: RigidBodyHandle,
+    mass_kg: f64,
     velocity: Vector,
     spin_rad_s: f64,
 }
@@ -89,18 +103,24 @@ impl ContactModel {
         let mut fixed: Vec<Fixed> = field.plan.obstacles.iter().map(fixed_obstacle).collect();
         if field.plan.walls == Walls::AllRound {
             let inward = [field.along, field.across.scaled(-1.0), field.along.scaled(-1.0), field.across];
-            for (corner, inward) in field.corners.iter().zip(inward) {
-                let shape = SharedShape::halfspace(vector(inward));
-                fixed.push(Fixed { shape, pose: pose(*corner, (0.0, 1.0)), bounds: None });
+            for (i, inward) in inward.into_iter().enumerate() {
+                fixed.push(wall(field.corners[i], field.corners[(i + 1) % 4], inward));
             }
         }
-        ContactModel { hulls: hulls.map(capsule).collect(), fixed, dt_s }
+        let look_ahead_m = CLOSING_MAX_M_S * dt_s;
+        ContactModel { hulls: hulls.map(capsule).collect(), fixed, dt_s, look_ahead_m, close_m: look_ahead_m + SPARE_M }
+    }
+
+    /// Hands hulls nearer than `close_m` to rapier; it may be more than is needed, and must then change nothing.
+    #[doc(hidden)]
+    pub fn widen(&mut self, close_m: f64) {
+        self.close_m = self.close_m.max(close_m);
     }
 
     /// The largest distance between two boats at which they may be about to touch, m.
     #[must_use]
     pub fn reach_m(&self) -> f64 {
-        2.0 * self.hulls.iter().map(|hull| hull.1).fold(0.0, f64::max) + CLOSE_M
+        2.0 * self.hulls.iter().map(|hull| hull.1).fold(0.0, f64::max) + self.close_m
     }
 
     /// Resolves all contacts of a tick; `near` are the pairs within [`ContactModel::reach_m`] at its beginning.
@@ -109,8 +129,9 @@ impl ContactModel {
         if touches.is_empty() {
             return;
         }
-        // In vehicle order, each boat once, with the first direction found for it.
-        touches.sort_by_key(|touch| touch.boat);
+        // In vehicle order, each boat once, with the direction of what is nearest to it: who else is handed over
+        // must not matter.
+        touches.sort_by(|a, b| a.boat.cmp(&b.boat).then(a.distance_m.total_cmp(&b.distance_m)));
         touches.dedup_by_key(|touch| touch.boat);
         self.hand_to_rapier(models, passages, &touches);
     }
@@ -121,14 +142,14 @@ impl ContactModel {
         for pair in near {
             let (a, b) = (usize::from(pair.a), usize::from(pair.b));
             let (kind_a, kind_b) = (passages[a].kind, passages[b].kind);
-            let reach_m = self.hulls[kind_a].1 + self.hulls[kind_b].1 + CLOSE_M;
+            let reach_m = self.hulls[kind_a].1 + self.hulls[kind_b].1 + self.close_m;
             if pair.distance_squared > reach_m * reach_m {
                 continue;
             }
             let (shape_a, shape_b) = (&self.hulls[kind_a].0, &self.hulls[kind_b].0);
-            if let Some(normal) = close(passages[a].start(), shape_a, passages[b].start(), shape_b) {
-                touches.push(Touch { boat: a, normal });
-                touches.push(Touch { boat: b, normal });
+            if let Some((distance_m, normal)) = self.close(&passages[a], shape_a, passages[b].start(), shape_b) {
+                touches.push(Touch { boat: a, distance_m, normal });
+                touches.push(Touch { boat: b, distance_m, normal });
             }
         }
         if self.fixed.is_empty() {
@@ -136,23 +157,36 @@ impl ContactModel {
         }
         for (boat, passage) in passages.iter().enumerate() {
             let (shape, half_length_m) = &self.hulls[passage.kind];
-            let beside = self.fixed.iter().filter(|fixed| fixed.is_beside(passage.from.at, half_length_m + CLOSE_M));
+            let beside =
+                self.fixed.iter().filter(|fixed| fixed.is_beside(passage.from.at, half_length_m + self.close_m));
             for fixed in beside {
-                if let Some(normal) = close(passage.start(), shape, fixed.pose, &fixed.shape) {
-                    touches.push(Touch { boat, normal });
+                if let Some((distance_m, normal)) = self.close(passage, shape, fixed.pose, &fixed.shape) {
+                    touches.push(Touch { boat, distance_m, normal });
                 }
             }
         }
         touches
     }
 
+    /// Distance and direction between a hull and a shape that are close.
+    fn close(
+        &self,
+        passage: &Passage,
+        hull: &SharedShape,
+        other_pose: Pose,
+        other: &SharedShape,
+    ) -> Option<(f64, Vector)> {
+        let found = query::contact(&passage.start(), &**hull, &other_pose, &**other, self.close_m);
+        found.ok().flatten().map(|contact| (contact.dist, contact.normal1))
+    }
+
     fn hand_to_rapier(&self, models: &[HullModel], passages: &mut [Passage], touches: &[Touch]) {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters.dt = self.dt_s;
-        world.integration_parameters.normalized_prediction_distance = LOOK_AHEAD_M;
+        world.integration_parameters.normalized_prediction_distance = self.look_ahead_m;
         for fixed in &self.fixed {
-            let reach_m = |passage: &Passage| self.hulls[passage.kind].1 + CLOSE_M;
+            let reach_m = |passage: &Passage| self.hulls[passage.kind].1 + self.close_m;
             if touches.iter().any(|t| fixed.is_beside(passages[t.boat].from.at, reach_m(&passages[t.boat]))) {
                 let collider = ColliderBuilder::new(fixed.shape.clone()).position(fixed.pose);
                 world.insert_collider(collider.friction(FRICTION).restitution(RESTITUTION), None);
@@ -165,7 +199,8 @@ impl ContactModel {
         let entries: Vec<Entry> = touches.iter().map(enter).collect();
         world.step();
         for entry in &entries {
-            leave(&world, entry, &mut passages[entry.boat]);
+            let passage = &mut passages[entry.boat];
+            leave(&world, entry, &models[passage.kind], passage);
         }
     }
 }
@@ -178,7 +213,10 @@ impl Passage {
 
 impl Fixed {
     fn is_beside(&self, at: Ned, reach_m: f64) -> bool {
-        self.bounds.is_none_or(|(centre, radius_m)| centre.distance(at) < radius_m + reach_m)
+        match self.bounds {
+            Bounds::Circle(centre, radius_m) => centre.distance(at) < radius_m + reach_m,
+            Bounds::Behind(point, before) => (at - point).dot(before) < reach_m,
+        }
     }
 }
 
@@ -195,7 +233,7 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
         Obstacle::Circle { centre, radius_m } => Fixed {
             shape: SharedShape::ball(*radius_m),
             pose: pose(*centre, (0.0, 1.0)),
-            bounds: Some((*centre, *radius_m)),
+            bounds: Bounds::Circle(*centre, *radius_m),
         },
         Obstacle::Polygon { corners } => {
             // A closed line, so that any polygon keeps its exact shape, bays included.
@@ -206,16 +244,22 @@ fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
             Fixed {
                 shape: SharedShape::polyline(corners.iter().map(|corner| vector(*corner)).collect(), Some(sides)),
                 pose: Pose::IDENTITY,
-                bounds: Some((first, radius_m)),
+                bounds: Bounds::Circle(first, radius_m),
             }
         }
     }
 }
 
-/// The direction between two shapes that are close.
-fn close(pose_a: Pose, shape_a: &SharedShape, pose_b: Pose, shape_b: &SharedShape) -> Option<Vector> {
-    let found = query::contact(&pose_a, &**shape_a, &pose_b, &**shape_b, CLOSE_M);
-    found.ok().flatten().map(|contact| contact.normal1)
+/// A wall from one corner to the next. It is a thick plank: boats have sailed through rapier's half-plane, whose
+/// bounding box is infinite.
+fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
+    let half_thickness_m = 0.5 * WALL_M;
+    let middle = from + (to - from).scaled(0.5);
+    Fixed {
+        shape: SharedShape::cuboid(half_thickness_m, 0.5 * from.distance(to) + WALL_M),
+        pose: pose(middle - inward.scaled(half_thickness_m), (inward.east, inward.north)),
+        bounds: Bounds::Behind(from, inward),
+    }
 }
 
 /// Puts a boat into rapier's world with the mass it has in the direction of the push.
@@ -231,20 +275,24 @@ fn enter(
     let velocity = vector(moved) / dt_s;
     let spin_rad_s = wrap_pi(passage.to.psi_rad - passage.from.psi_rad) / dt_s;
     let normal = frame::body_from_ned(passage.turn, Ned { north: touch.normal.x, east: touch.normal.y });
-    let mass = model.mass_along_kg(normal.ahead, normal.starboard);
+    let mass_kg = model.mass_along_kg(normal.ahead, normal.starboard);
     let body = if passage.fixed { RigidBodyBuilder::fixed() } else { RigidBodyBuilder::dynamic() }
         .pose(passage.start())
         .linvel(velocity)
         .angvel(spin_rad_s)
         .can_sleep(false)
-        .additional_mass_properties(MassProperties::new(Vector::ZERO, mass, model.yaw_inertia_kg_m2()));
+        .additional_mass_properties(MassProperties::new(Vector::ZERO, mass_kg, model.yaw_inertia_kg_m2()));
     let collider = ColliderBuilder::new(shape.clone()).density(0.0).friction(FRICTION).restitution(RESTITUTION);
     let (body, _) = world.insert(body, collider);
-    Entry { boat: touch.boat, body, velocity, spin_rad_s }
+    Entry { boat: touch.boat, body, mass_kg, velocity, spin_rad_s }
 }
 
 /// Takes a boat out of rapier's world; without an active contact its own motion stands.
-fn leave(world: &PhysicsWorld, entry: &Entry, passage: &mut Passage) {
+///
+/// Rapier's impulse is taken over, not its change of velocity: a push on the bow quarter moves a hull that is
+/// heavier across than along in another direction than the push, and a change of velocity along the push
+/// would give it energy.
+fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, passage: &mut Passage) {
     let body = &world.bodies[entry.body];
     let mut colliders = body.colliders().iter();
     let touched =
@@ -255,7 +303,8 @@ fn leave(world: &PhysicsWorld, entry: &Entry, passage: &mut Passage) {
     let (at, rotation) = (body.translation(), body.rotation());
     passage.to.at = Ned { north: at.x, east: at.y };
     passage.to.psi_rad = math::atan2(rotation.im, rotation.re);
-    let kick = body.linvel() - entry.velocity;
-    passage.kick_m_s = Ned { north: kick.x, east: kick.y };
-    passage.kick_rad_s = body.angvel() - entry.spin_rad_s;
+    let push = (body.linvel() - entry.velocity) * entry.mass_kg;
+    let push = frame::body_from_ned(passage.turn, Ned { north: push.x, east: push.y });
+    let twist = (body.angvel() - entry.spin_rad_s) * model.yaw_inertia_kg_m2();
+    passage.kick = model.kick(Planar { surge: push.ahead, sway: push.starboard, yaw: twist });
 }

@@ -99,8 +99,19 @@ impl HullModel {
             - (self.munk_sway - h.added_surge_kg) * u * v
             - (h.yaw_linear_kg_m2_s + h.yaw_quadratic_kg_m2 * r.abs() + h.yaw_lift_kg_m * u.abs()) * r
             - n_cross;
+        self.kick(Planar { surge: x, sway: y, yaw: n })
+    }
+
+    /// The change of velocity by an impulse (N s, N s, N m s), or the acceleration by a force.
+    #[inline]
+    #[must_use]
+    pub fn kick(&self, push: Planar) -> Planar {
         let (sway_sway, sway_yaw, yaw_yaw) = self.inverse;
-        Planar { surge: self.inverse_surge * x, sway: sway_sway * y + sway_yaw * n, yaw: sway_yaw * y + yaw_yaw * n }
+        Planar {
+            surge: self.inverse_surge * push.surge,
+            sway: sway_sway * push.sway + sway_yaw * push.yaw,
+            yaw: sway_yaw * push.sway + yaw_yaw * push.yaw,
+        }
     }
 
     /// Cross-flow drag in sway and yaw (strip theory): ½ρ C_d T ∫ [1, x] |v + x r| (v + x r) dx.

@@ -132,6 +132,13 @@ impl World {
         self.state.digest()
     }
 
+    /// Hands boats to rapier that are as far as `close_m` from anything. Slower, and the same bytes.
+    #[doc(hidden)]
+    pub fn widen_contact(&mut self, close_m: f64) {
+        self.model.contact.widen(close_m);
+        self.find_pairs();
+    }
+
     /// Makes what follows from the state follow from it.
     fn refresh(&mut self) {
         self.work.turns.clear();
@@ -166,8 +173,7 @@ impl World {
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let (passage, mut nu) = (&work.passages[i], work.velocities[i]);
             let turn = math::sin_cos(passage.to.psi_rad);
-            let kick = frame::body_from_ned(turn, passage.kick_m_s);
-            nu = nu.plus(1.0, Planar { surge: kick.ahead, sway: kick.starboard, yaw: passage.kick_rad_s });
+            nu = nu.plus(1.0, passage.kick);
             if is_sound(passage.to, nu) {
                 (boat.pose, boat.nu, work.turns[i]) = (passage.to, nu, turn);
             } else if !boat.quarantined {
@@ -255,8 +261,7 @@ impl Model {
         directive: Directive,
     ) -> (Passage, Planar) {
         let from = boat.pose;
-        let still =
-            Passage { kind, from, to: from, turn, fixed: boat.quarantined, kick_m_s: Ned::default(), kick_rad_s: 0.0 };
+        let still = Passage { kind, from, to: from, turn, fixed: boat.quarantined, kick: Planar::default() };
         if boat.quarantined {
             return (still, Planar::default());
         }

@@ -1,21 +1,24 @@
 //! Scenarios for tests, written as a user would write them.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use game::Scenario;
+use game::field::Obstacle;
+use game::{Ned, Pose, Scenario};
+use sim::hull::{HullModel, Planar};
+use sim::{State, World};
 use std::path::{Path, PathBuf};
 
 /// The shipped scenarios.
-pub fn scenarios() -> PathBuf {
+pub(crate) fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios")
 }
 
 /// A shipped game.
-pub fn shipped(game: &str) -> Scenario {
+pub(crate) fn shipped(game: &str) -> Scenario {
     game::scenario::load(&scenarios().join("games").join(game)).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A game written here; paths in it are relative to `scenarios/games`.
-pub fn written(toml: &str) -> Scenario {
+pub(crate) fn written(toml: &str) -> Scenario {
     let dir = tempfile::tempdir().expect("a temporary directory");
     let root = scenarios().canonicalize().expect("the scenarios are there");
     let path = dir.path().join("test.toml");
@@ -24,7 +27,7 @@ pub fn written(toml: &str) -> Scenario {
 }
 
 /// One boat of this kind a side, idle, on open salt water, blue at its half point.
-pub fn alone(boat: &str, sea: &str) -> Scenario {
+pub(crate) fn alone(boat: &str, sea: &str) -> Scenario {
     written(&format!(
         r#"
 field = "../fields/open_800x400.toml"
@@ -48,4 +51,72 @@ team = "red"
 at = "CF"
 "#
     ))
+}
+
+/// As [`alone`], in still fresh water with these obstacles in it.
+pub(crate) fn among(boat: &str, obstacles: Vec<Obstacle>) -> Scenario {
+    let mut scenario = alone(boat, "calm");
+    scenario.field.plan.obstacles = obstacles;
+    scenario
+}
+
+/// Changes the state of a world from outside.
+pub(crate) fn set(world: &mut World, change: impl FnOnce(&mut State)) {
+    let mut state = world.state().clone();
+    change(&mut state);
+    // Bytes 5 to 13 of a snapshot mark its scenario.
+    let mark: [u8; 8] = world.snapshot()[5..13].try_into().unwrap();
+    world.restore(&state.snapshot(u64::from_le_bytes(mark))).unwrap();
+}
+
+/// Puts a boat somewhere (x east, y north), pointing somewhere, with a velocity.
+pub(crate) fn put(world: &mut World, boat: usize, (x, y, heading_deg): (f64, f64, f64), nu: (f64, f64, f64)) {
+    set(world, |state| {
+        let boat = &mut state.boats[boat];
+        boat.pose = Pose { at: Ned::from_xy(x, y), psi_rad: game::angle::rad_from_compass_deg(heading_deg) };
+        boat.nu = Planar { surge: nu.0, sway: nu.1, yaw: nu.2 };
+    });
+}
+
+/// The hulls of a scenario, by vehicle.
+pub(crate) fn hulls(scenario: &Scenario) -> Vec<HullModel> {
+    let density = scenario.sea.water_density_kg_m3;
+    scenario.vehicles.iter().map(|v| HullModel::new(&scenario.boats[v.boat].hull, density)).collect()
+}
+
+/// Kinetic energy of all boats, J.
+pub(crate) fn energy_joule(world: &World, hulls: &[HullModel]) -> f64 {
+    world.state().boats.iter().zip(hulls).map(|(boat, hull)| hull.energy_joule(boat.nu)).sum()
+}
+
+/// A boat's hull: the ends of its keel, and how far (m) the hull reaches round it.
+pub(crate) fn capsule(world: &World, scenario: &Scenario, vehicle: usize) -> ((Ned, Ned), f64) {
+    let kind = &scenario.boats[scenario.vehicles[vehicle].boat];
+    let pose = world.state().boats[vehicle].pose;
+    let (sin, cos) = game::math::sin_cos(pose.psi_rad);
+    let half = Ned { north: cos, east: sin }.scaled(0.5 * (kind.length_m - kind.beam_m));
+    ((pose.at - half, pose.at + half), 0.5 * kind.beam_m)
+}
+
+/// How far the hulls of two boats are apart, m.
+pub(crate) fn gap_m(world: &World, scenario: &Scenario, a: usize, b: usize) -> f64 {
+    let ((keel_a, radius_a), (keel_b, radius_b)) = (capsule(world, scenario, a), capsule(world, scenario, b));
+    keels_m(keel_a, keel_b) - radius_a - radius_b
+}
+
+/// The distance of two stretches, m; zero where they cross.
+pub(crate) fn keels_m((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> f64 {
+    let cross = |o: Ned, p: Ned, q: Ned| (p - o).north * (q - o).east - (p - o).east * (q - o).north;
+    if cross(a, b, c) * cross(a, b, d) < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0 {
+        return 0.0;
+    }
+    let ends = [point_m(a, (c, d)), point_m(b, (c, d)), point_m(c, (a, b)), point_m(d, (a, b))];
+    ends.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// The distance of a point from a stretch, m.
+pub(crate) fn point_m(at: Ned, (a, b): (Ned, Ned)) -> f64 {
+    let (side, from_a) = (b - a, at - a);
+    let share = (from_a.dot(side) / side.dot(side)).clamp(0.0, 1.0);
+    from_a.distance(side.scaled(share))
 }

@@ -1,0 +1,84 @@
+//! Whole games between the minds of the house.
+
+use game::count::Counts;
+use game::scenario::Role;
+use game::{Outcome, Scenario, VehicleId};
+use std::path::Path;
+
+fn shipped(name: &str) -> Scenario {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games").join(name);
+    game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn play(game: &str, seed: u64) -> Outcome {
+    let scenario = Scenario { seed, ..shipped(game) };
+    arena::play(&scenario, &mut agent::minds_of(&scenario), seed).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn all(outcome: &Outcome, count: impl Fn(&Counts) -> u32) -> u32 {
+    outcome.counts.boats.values().map(count).sum()
+}
+
+#[test]
+fn the_first_game_of_the_paper_is_played_to_its_end() {
+    for seed in 1..=5 {
+        let outcome = play("pav01_vs_pav01.toml", seed);
+        assert_eq!((outcome.ticks, outcome.duration_s), (12_000, 600.0), "seed {seed}");
+        let ends: Vec<usize> = (0..outcome.events.len()).filter(|i| outcome.events[*i].event == "ended").collect();
+        assert_eq!(ends, [outcome.events.len() - 1], "seed {seed}: it ends once, and nothing comes after");
+
+        let [grabs, captures, tags] = [
+            all(&outcome, |counts| counts.grabs),
+            all(&outcome, |counts| counts.captures),
+            all(&outcome, |counts| counts.tags),
+        ];
+        // Attackers reach the flag, some get home with it, and defenders catch some of them.
+        assert!(grabs > 0 && captures > 0 && tags > 0, "seed {seed}: {grabs} grabs, {captures} captures, {tags} tags");
+        assert!(captures <= grabs, "seed {seed}");
+        let left = outcome.events.iter().filter(|event| event.event == "left_field").count();
+        assert_eq!(left, 0, "seed {seed}: nobody leaves the field");
+    }
+}
+
+#[test]
+fn the_same_seed_is_the_same_game() {
+    for game in ["pav01_vs_pav01.toml", "harbour_2v2.toml", "swarm_20v20.toml"] {
+        let (first, again) = (play(game, 5), play(game, 5));
+        assert_eq!(first, again, "{game}");
+    }
+    assert_ne!(play("swarm_20v20.toml", 5).digest, play("swarm_20v20.toml", 6).digest);
+}
+
+#[test]
+fn mirrored_teams_draw() {
+    // Both teams play the same strategy from mirrored berths: what one does, the other does.
+    let outcome = play("pav01_vs_pav01.toml", 1);
+    assert_eq!(outcome.winner, None);
+    assert_eq!(outcome.score.teams["blue"], outcome.score.teams["red"]);
+}
+
+#[test]
+fn seeds_deal_the_roles_when_the_strategy_says_so() {
+    let mut pav01 = shipped("pav01_vs_pav01.toml");
+    for strategy in &mut pav01.strategies {
+        strategy.assignment = game::scenario::Assignment::Seeded;
+    }
+    let deal = |seed: u64| {
+        let scenario = Scenario { seed, ..pav01.clone() };
+        (0..4).map(|i| agent::roles::role_of(&scenario, VehicleId::at(i))).collect::<Vec<Role>>()
+    };
+    let first = deal(1);
+    assert!((2..20).any(|seed| deal(seed) != first), "every seed deals {first:?}");
+    for seed in 1..20 {
+        let attackers = deal(seed).iter().filter(|role| **role == Role::EasyAttacker).count();
+        assert_eq!(attackers, 2, "seed {seed}: one a team");
+    }
+}
+
+#[test]
+fn no_boat_is_ever_quarantined_in_a_shipped_game() {
+    for game in ["attack_1v1.toml", "pav01_3v3.toml", "pav01_4v4.toml", "pav01_popolopen.toml", "harbour_2v2.toml"] {
+        let outcome = play(game, 1);
+        assert!(outcome.events.iter().all(|event| event.event != "quarantined"), "{game}");
+    }
+}

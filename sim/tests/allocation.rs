@@ -1,0 +1,65 @@
+//! What a step asks of the heap: nothing where no hulls are close, and nothing for good where they are.
+//!
+//! `stats_alloc` counts for us: it is a hundred lines, safe to use, and needs no `unsafe` here as an allocator of
+//! our own would. Its count is of the whole process, so this file holds one test.
+
+mod common;
+
+use common::shipped;
+use game::{Event, Order};
+use sim::World;
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use std::alloc::System;
+
+#[global_allocator]
+static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// Ticks in which everybody has met once: the lists of near boats and of events have grown.
+const WARM_UP: u32 = 1_300;
+
+/// Everybody goes for the middle, then off again, for half a minute each.
+fn orders(world: &World, orders: &mut [Order]) {
+    let field = world.referee().field();
+    let middle = (field.corners[0] + field.corners[2]).scaled(0.5);
+    let away_rad = if (world.state().tick / 600).is_multiple_of(2) { 0.0 } else { std::f64::consts::PI };
+    for (order, boat) in orders.iter_mut().zip(&world.state().boats) {
+        *order = Order::Steer { heading_rad: boat.pose.at.bearing_rad(middle) + away_rad, speed_m_s: 2.0 };
+    }
+}
+
+/// Whether any two boats are so near that their hulls may be about to touch.
+fn crowded(world: &World, reach_m: f64) -> bool {
+    let boats = &world.state().boats;
+    let near = |i: usize| boats[..i].iter().any(|other| other.pose.at.distance(boats[i].pose.at) < reach_m);
+    (0..boats.len()).any(near)
+}
+
+#[test]
+fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() {
+    for game in ["pav01_vs_pav01.toml", "pav01_4v4.toml"] {
+        let scenario = shipped(game);
+        let mut world = World::new(&scenario, 1).unwrap();
+        let mut plan = vec![Order::Hold; scenario.vehicles.len()];
+        let (mut free, mut busy, mut collisions) = (0, 0, 0);
+        for tick in 0..6_000 {
+            orders(&world, &mut plan);
+            // Two Surveyors bow to bow, and what they may close in a tick.
+            let crowded = crowded(&world, 1.83 + 0.5);
+            let heap = Region::new(HEAP);
+            collisions += world.step(&plan).iter().filter(|event| matches!(event, Event::Collided { .. })).count();
+            let used = heap.change();
+            if tick < WARM_UP {
+                continue;
+            }
+            if crowded {
+                busy += 1;
+                // What rapier takes it gives back.
+                assert_eq!(used.allocations, used.deallocations, "{game}, tick {tick}: {used:?}");
+            } else {
+                free += 1;
+                assert_eq!(used.allocations + used.reallocations, 0, "{game}, tick {tick}: {used:?}");
+            }
+        }
+        assert!(free > 1_000 && busy > 10 && collisions > 0, "{game}: {free} free, {busy} busy, {collisions} met");
+    }
+}
