@@ -70,6 +70,8 @@ pub struct Passage {
     pub to: game::Pose,
     /// Sine and cosine of the heading at the beginning.
     pub turn: (f64, f64),
+    /// Sine and cosine of the heading at the end.
+    pub turn_to: (f64, f64),
     /// Whether it can move at all.
     pub fixed: bool,
     /// What contact added to the velocity, in body axes.
@@ -303,6 +305,8 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, passage: &mut P
     let (at, rotation) = (body.translation(), body.rotation());
     passage.to.at = Ned { north: at.x, east: at.y };
     passage.to.psi_rad = math::atan2(rotation.im, rotation.re);
+    // Not rapier's own sine and cosine: a snapshot has only the angle.
+    passage.turn_to = math::sin_cos(passage.to.psi_rad);
     let push = (body.linvel() - entry.velocity) * entry.mass_kg;
     let push = frame::body_from_ned(passage.turn, Ned { north: push.x, east: push.y });
     let twist = (body.angvel() - entry.spin_rad_s) * model.yaw_inertia_kg_m2();

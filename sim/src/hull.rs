@@ -85,7 +85,7 @@ impl HullModel {
     }
 
     /// The acceleration under `tau` at the velocity `nu_r` through the water.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn acceleration(&self, nu_r: Planar, tau: Planar) -> Planar {
         let Planar { surge: u, sway: v, yaw: r } = nu_r;

@@ -172,10 +172,9 @@ impl World {
         let World { model, state, work } = self;
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let (passage, mut nu) = (&work.passages[i], work.velocities[i]);
-            let turn = math::sin_cos(passage.to.psi_rad);
             nu = nu.plus(1.0, passage.kick);
             if is_sound(passage.to, nu) {
-                (boat.pose, boat.nu, work.turns[i]) = (passage.to, nu, turn);
+                (boat.pose, boat.nu, work.turns[i]) = (passage.to, nu, passage.turn_to);
             } else if !boat.quarantined {
                 *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
                 work.events.push(Event::Quarantined { vehicle: VehicleId::at(i) });
@@ -261,23 +260,25 @@ impl Model {
         directive: Directive,
     ) -> (Passage, Planar) {
         let from = boat.pose;
-        let still = Passage { kind, from, to: from, turn, fixed: boat.quarantined, kick: Planar::default() };
+        let still =
+            Passage { kind, from, to: from, turn, turn_to: turn, fixed: boat.quarantined, kick: Planar::default() };
         if boat.quarantined {
             return (still, Planar::default());
         }
         let tau = self.thrust(boat, kind, obeyed(order, directive, from.at));
         let current_m_s = self.sea.at(from.at).current_m_s;
-        let motion = hull::advance(&self.hulls[kind], through_water(boat.nu, turn, current_m_s, -1.0), tau, self.dt_s);
+        let nu_r = through_water(boat.nu, turn, current_m_s, -1.0);
+        let motion = hull::advance(&self.hulls[kind], nu_r, tau, self.dt_s);
 
         let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
         let half_turn = math::sin_cos(from.psi_rad + motion.turn_half_rad);
         let end_turn = math::sin_cos(psi_rad);
-        let start = over_ground(turn, through_water(boat.nu, turn, current_m_s, -1.0));
+        let start = over_ground(turn, nu_r);
         let middle = over_ground(half_turn, motion.nu_r_half);
         let end = over_ground(end_turn, motion.nu_r);
         let mean_m_s = (start + middle.scaled(4.0) + end).scaled(1.0 / 6.0) + current_m_s;
         let to = Pose { at: from.at + mean_m_s.scaled(self.dt_s), psi_rad };
-        (Passage { to, ..still }, through_water(motion.nu_r, end_turn, current_m_s, 1.0))
+        (Passage { to, turn_to: end_turn, ..still }, through_water(motion.nu_r, end_turn, current_m_s, 1.0))
     }
 
     /// The thrusters' force on the hull at the beginning, half-way and at the end of the tick.

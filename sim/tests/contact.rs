@@ -98,7 +98,7 @@ fn no_collision_makes_energy() {
 /// The boat drives on for half a minute; how deep its capsule gets into the obstacle's outline, m, and where it is.
 fn run_into(obstacle: &Obstacle, start: (f64, f64, f64)) -> (f64, Ned) {
     let scenario = among("surveyor_m1_8", vec![obstacle.clone()]);
-    let mut world = World::new(&scenario, 1).unwrap();
+    let mut world = World::new(&scenario, 1).expect("an empty sea has room");
     put(&mut world, 0, start, (2.5, 0.0, 0.0));
     put(&mut world, 1, (700.0, 300.0, 0.0), (0.0, 0.0, 0.0));
     let mut least_m = f64::INFINITY;
@@ -177,7 +177,7 @@ fn crowd(world: &World, orders: &mut Vec<Order>) {
     let minute = world.state().tick / 400;
     orders.clear();
     orders.extend(boats.iter().enumerate().map(|(i, boat)| {
-        let past = if (i as u64 + minute) % 3 == 0 { 1.5 } else { 0.1 };
+        let past = if (i as u64 + minute).is_multiple_of(3) { 1.5 } else { 0.1 };
         Order::Steer { heading_rad: boat.pose.at.bearing_rad(middle) + past, speed_m_s: 2.5 }
     }));
 }

@@ -25,6 +25,7 @@ pub enum Directive {
 
 impl Referee {
     /// What the rules impose on a boat that is at `at`. Of two limits to its speed the lower one holds.
+    #[inline]
     #[must_use]
     pub fn directive(&self, standing: &Standing, vehicle: VehicleId, at: Ned) -> Directive {
         let boat = &standing.vehicles[vehicle.index()];
@@ -35,7 +36,8 @@ impl Referee {
         let speed_factor = limit(boat.tagged, self.rules.tagged_speed_factor)
             .min(limit(boat.outside, self.rules.outside_speed_factor));
         let driven = boat.tagged && self.rules.tagged_boat == TaggedBoat::IsDriven;
-        match self.home(self.team_of[vehicle.index()], at).filter(|_| driven) {
+        let home = || self.home(self.team_of[vehicle.index()], at);
+        match driven.then(home).flatten() {
             Some(to) => Directive::DrivenHome { to, speed_factor },
             None => Directive::Free { speed_factor },
         }

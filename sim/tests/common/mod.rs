@@ -65,8 +65,8 @@ pub(crate) fn set(world: &mut World, change: impl FnOnce(&mut State)) {
     let mut state = world.state().clone();
     change(&mut state);
     // Bytes 5 to 13 of a snapshot mark its scenario.
-    let mark: [u8; 8] = world.snapshot()[5..13].try_into().unwrap();
-    world.restore(&state.snapshot(u64::from_le_bytes(mark))).unwrap();
+    let mark: [u8; 8] = world.snapshot()[5..13].try_into().expect("a snapshot has a head");
+    world.restore(&state.snapshot(u64::from_le_bytes(mark))).expect("it has its own mark");
 }
 
 /// Puts a boat somewhere (x east, y north), pointing somewhere, with a velocity.
