@@ -107,6 +107,18 @@ const VALUES: &[Case] = &[
         ],
     ),
     (
+        "a flag kept from its own boats",
+        "rules/x.toml",
+        &[(
+            "rules/x.toml",
+            "flag_keepout_m = 10\nuntag_radius_m = 10\ncapture_radius_m = 8\nuntag_at = \"own_flag\"\ncapture_at = \"own_flag\"\n",
+        )],
+        &[
+            "rules/x.toml:1:18: flag_keepout_m is 10, expected less than capture_radius_m, which is 8",
+            "rules/x.toml:1:18: flag_keepout_m is 10, expected less than untag_radius_m, which is 10",
+        ],
+    ),
+    (
         "a flag at the scrimmage line",
         "fields/x.toml",
         &[("fields/x.toml", "base = \"f.toml\"\nflag_inset_m = 80\n")],

@@ -48,5 +48,24 @@ pub(in crate::scenario) fn rules(ledger: &mut Ledger, document: &Document<RawRul
         capture: ledger.whole("capture", points.capture.as_ref(), 0..=1000, 2) as u32,
         tag: ledger.whole("tag", points.tag.as_ref(), 0..=1000, 0) as u32,
     };
+    if ledger.faults() == faults {
+        homes_can_be_reached(ledger, raw, &rules);
+    }
     (ledger.faults() == faults).then_some(rules)
+}
+
+/// A keep-out circle must leave room at the own flag for what boats have to do there.
+fn homes_can_be_reached(ledger: &mut Ledger, raw: &RawRules, rules: &Rules) {
+    let Some(given) = &raw.flag_keepout_m else { return };
+    let needed = [
+        (rules.untag_at == UntagAt::OwnFlag, "untag_radius_m", rules.untag_radius_m),
+        (rules.capture_at == CaptureAt::OwnFlag, "capture_radius_m", rules.capture_radius_m),
+    ];
+    for (key, radius_m) in needed.into_iter().filter(|(applies, ..)| *applies).map(|(_, key, radius_m)| (key, radius_m))
+    {
+        if rules.flag_keepout_m >= radius_m {
+            let found = rules.flag_keepout_m;
+            ledger.note(given.at, format!("flag_keepout_m is {found}, expected less than {key}, which is {radius_m}"));
+        }
+    }
 }
