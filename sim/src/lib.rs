@@ -6,8 +6,10 @@ pub mod autopilot;
 pub mod contact;
 pub mod contest;
 pub mod hull;
+pub mod motion;
 #[cfg(feature = "net")]
 pub mod node;
+mod ramp;
 pub mod sea;
 pub mod spawn;
 pub mod state;

@@ -1,5 +1,6 @@
 //! A thruster: takes a setting up with dead-band, slew limit and lag, and turns it into thrust.
 
+use crate::ramp::Ramp;
 use game::boat::{ThrustCurve, Thruster};
 use game::math;
 use serde::{Deserialize, Serialize};
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// A *setting* is a shaft speed in rad/s for a propeller, a share of full ahead for a table.
 #[derive(Clone, Debug)]
 pub struct ThrusterModel {
-    curve: ThrustCurve,
+    curve: Curve,
     /// Distance from the centre line, m.
     pub arm_m: f64,
     /// Settings at full ahead and full astern.
@@ -27,6 +28,20 @@ pub struct ThrusterModel {
     lag: (f64, f64),
 }
 
+/// Thrust over setting, both ways.
+#[derive(Clone, Debug)]
+enum Curve {
+    /// `k n |n|`.
+    Propeller {
+        k_ahead: f64,
+        k_astern: f64,
+    },
+    Table {
+        newton: Ramp,
+        setting: Ramp,
+    },
+}
+
 /// What one thruster is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Shaft {
@@ -42,13 +57,19 @@ impl ThrusterModel {
     /// The model of `thruster` for ticks of `dt_s`.
     #[must_use]
     pub fn new(thruster: &Thruster, dt_s: f64) -> ThrusterModel {
-        let (ahead, astern) = match &thruster.curve {
-            ThrustCurve::Propeller { n_max_rad_s, n_min_rad_s, .. } => (*n_max_rad_s, *n_min_rad_s),
-            ThrustCurve::Table { points } => (points.last().map_or(0.0, |p| p.0), -points.first().map_or(0.0, |p| p.0)),
+        let (curve, ahead, astern) = match &thruster.curve {
+            ThrustCurve::Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s } => {
+                (Curve::Propeller { k_ahead: *k_ahead, k_astern: *k_astern }, *n_max_rad_s, *n_min_rad_s)
+            }
+            ThrustCurve::Table { points } => {
+                let turned: Vec<(f64, f64)> = points.iter().map(|p| (p.1, p.0)).collect();
+                let curve = Curve::Table { newton: Ramp::new(points), setting: Ramp::new(&turned) };
+                (curve, points[points.len() - 1].0, -points[0].0)
+            }
         };
         let left = |time_s: f64| if thruster.lag_s > 0.0 { math::exp(-time_s / thruster.lag_s) } else { 0.0 };
         let mut model = ThrusterModel {
-            curve: thruster.curve.clone(),
+            curve,
             arm_m: thruster.arm_m,
             ahead,
             astern,
@@ -68,10 +89,10 @@ impl ThrusterModel {
     #[must_use]
     pub fn newton(&self, setting: f64) -> f64 {
         match &self.curve {
-            ThrustCurve::Propeller { k_ahead, k_astern, .. } => {
+            Curve::Propeller { k_ahead, k_astern } => {
                 (if setting > 0.0 { k_ahead } else { k_astern }) * setting * setting.abs()
             }
-            ThrustCurve::Table { points } => interpolate(points, setting, |p| p.0, |p| p.1),
+            Curve::Table { newton, .. } => newton.at(setting),
         }
     }
 
@@ -81,12 +102,9 @@ impl ThrusterModel {
     pub fn setting(&self, newton: f64) -> f64 {
         let wanted = newton.clamp(self.newton_min, self.newton_max);
         match &self.curve {
-            ThrustCurve::Propeller { k_ahead, k_astern, .. } if wanted > 0.0 => {
-                let _ = k_astern;
-                (wanted / k_ahead).sqrt()
-            }
-            ThrustCurve::Propeller { k_astern, .. } => -(-wanted / k_astern).sqrt(),
-            ThrustCurve::Table { points } => interpolate(points, wanted, |p| p.1, |p| p.0),
+            Curve::Propeller { k_ahead, .. } if wanted > 0.0 => (wanted / k_ahead).sqrt(),
+            Curve::Propeller { k_astern, .. } => -(-wanted / k_astern).sqrt(),
+            Curve::Table { setting, .. } => setting.at(wanted),
         }
     }
 
@@ -110,23 +128,6 @@ impl ThrusterModel {
         shaft.newton = self.newton(shaft.setting);
         [from, half, shaft.newton]
     }
-}
-
-/// The value at `x` on the line through `points`, whose `key` rises; constant beyond the ends.
-#[inline]
-fn interpolate(
-    points: &[(f64, f64)],
-    x: f64,
-    key: impl Fn(&(f64, f64)) -> f64,
-    value: impl Fn(&(f64, f64)) -> f64,
-) -> f64 {
-    // A binary search without branches: a linear one is guessed wrong at every other look.
-    let after = points.partition_point(|p| key(p) < x);
-    if after == 0 || after == points.len() {
-        return points.get(after.min(points.len().saturating_sub(1))).map_or(0.0, value);
-    }
-    let (a, b) = (&points[after - 1], &points[after]);
-    value(a) + (x - key(a)) / (key(b) - key(a)) * (value(b) - value(a))
 }
 
 #[cfg(test)]

@@ -2,7 +2,8 @@
 
 use crate::autopilot::AutopilotModel;
 use crate::contact::{ContactModel, Passage};
-use crate::hull::{self, HullModel, Planar};
+use crate::hull::{HullModel, Planar};
+use crate::motion::{Effort, Fleet, Motion};
 use crate::sea::SeaModel;
 use crate::spawn::{self, NoBerth};
 use crate::state::{BoatState, RestoreError, State};
@@ -37,6 +38,8 @@ struct Model {
     autopilots: Vec<AutopilotModel>,
     /// Kind of each vehicle.
     kinds: Vec<usize>,
+    /// The hulls again, by vehicle.
+    fleet: Fleet,
     sea: SeaModel,
     contact: ContactModel,
     referee: Referee,
@@ -50,6 +53,9 @@ struct Work {
     near: Near,
     /// Sine and cosine of each heading.
     turns: Vec<(f64, f64)>,
+    /// What moves each boat, and how it moves by that alone.
+    efforts: Vec<Effort>,
+    motions: Vec<Motion>,
     /// Motion over the tick, by vehicle.
     passages: Vec<Passage>,
     /// Velocity over the ground at the end of the tick without contact, by vehicle.
@@ -157,11 +163,16 @@ impl World {
     /// Every boat's motion over the tick as if it were alone.
     fn drive(&mut self, orders: &[Order]) {
         let World { model, state, work } = self;
-        work.passages.clear();
-        work.velocities.clear();
+        work.efforts.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let directive = model.referee.directive(&state.standing, VehicleId::at(i), boat.pose.at);
-            let (passage, nu) = model.drive(boat, model.kinds[i], work.turns[i], orders[i], directive);
+            work.efforts.push(model.effort(boat, model.kinds[i], work.turns[i], orders[i], directive));
+        }
+        model.fleet.advance(&work.efforts, model.dt_s, &mut work.motions);
+        work.passages.clear();
+        work.velocities.clear();
+        for (i, boat) in state.boats.iter().enumerate() {
+            let (passage, nu) = model.passage(boat, model.kinds[i], work.turns[i], &work.efforts[i], &work.motions[i]);
             work.passages.push(passage);
             work.velocities.push(nu);
         }
@@ -237,6 +248,7 @@ impl Model {
             dt_s,
             thrusters: scenario.boats.iter().map(|boat| ThrusterModel::new(&boat.thruster, dt_s)).collect(),
             autopilots: autopilots.map(|(boat, hull)| AutopilotModel::new(&boat.autopilot, hull, dt_s)).collect(),
+            fleet: Fleet::new(scenario.vehicles.iter().map(|vehicle| &hulls[vehicle.boat])),
             kinds: scenario.vehicles.iter().map(|vehicle| vehicle.boat).collect(),
             sea: SeaModel::new(&scenario.sea),
             contact: ContactModel::new(shapes, &scenario.field, dt_s),
@@ -250,14 +262,33 @@ impl Model {
         }
     }
 
-    /// One boat's motion over a tick as if it were alone: its passage, and its velocity over the ground after it.
-    fn drive(
+    /// What moves a boat in this tick: its thrusters take up its order, as far as the rules let it.
+    #[inline]
+    fn effort(
         &self,
         boat: &mut BoatState,
         kind: usize,
         turn: (f64, f64),
         order: Order,
         directive: Directive,
+    ) -> Effort {
+        if boat.quarantined {
+            return Effort::default();
+        }
+        let tau = self.thrust(boat, kind, obeyed(order, directive, boat.pose.at));
+        let current_m_s = self.sea.at(boat.pose.at).current_m_s;
+        Effort { nu_r: through_water(boat.nu, turn, current_m_s, -1.0), tau }
+    }
+
+    /// A boat's passage over a tick as if it were alone, and its velocity over the ground after it.
+    #[inline]
+    fn passage(
+        &self,
+        boat: &BoatState,
+        kind: usize,
+        turn: (f64, f64),
+        effort: &Effort,
+        motion: &Motion,
     ) -> (Passage, Planar) {
         let from = boat.pose;
         let still =
@@ -265,15 +296,11 @@ impl Model {
         if boat.quarantined {
             return (still, Planar::default());
         }
-        let tau = self.thrust(boat, kind, obeyed(order, directive, from.at));
         let current_m_s = self.sea.at(from.at).current_m_s;
-        let nu_r = through_water(boat.nu, turn, current_m_s, -1.0);
-        let motion = hull::advance(&self.hulls[kind], nu_r, tau, self.dt_s);
-
         let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
         let half_turn = math::sin_cos(from.psi_rad + motion.turn_half_rad);
         let end_turn = math::sin_cos(psi_rad);
-        let start = over_ground(turn, nu_r);
+        let start = over_ground(turn, effort.nu_r);
         let middle = over_ground(half_turn, motion.nu_r_half);
         let end = over_ground(end_turn, motion.nu_r);
         let mean_m_s = (start + middle.scaled(4.0) + end).scaled(1.0 / 6.0) + current_m_s;

@@ -1,0 +1,379 @@
+//! One step of motion, for several boats side by side.
+//!
+//! A boat's step is one long chain of dependent operations, in which a processor mostly waits. Boats do not depend on
+//! each other, so four are moved on together, each in its lane. A lane does the same IEEE operations whatever
+//! the others hold and whatever the processor offers: the numbers do not depend on who stands beside whom.
+
+use crate::hull::{HullModel, Planar};
+use wide::f64x4;
+
+/// Boats side by side.
+const LANES: usize = 4;
+
+/// What moves a boat for a tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Effort {
+    /// Velocity through the water at the beginning.
+    pub nu_r: Planar,
+    /// The force on the hull, apart from the hull's own, at the beginning, half-way and at the end.
+    pub tau: [Planar; 3],
+}
+
+/// Motion over one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Velocity through the water at the end.
+    pub nu_r: Planar,
+    /// Velocity through the water half-way.
+    pub nu_r_half: Planar,
+    /// Change of heading half-way, rad.
+    pub turn_half_rad: f64,
+    /// Change of heading at the end, rad.
+    pub turn_rad: f64,
+}
+
+/// The hulls of a fleet, ready to be moved.
+#[derive(Clone, Debug)]
+pub struct Fleet {
+    count: usize,
+    rows: Vec<Row>,
+}
+
+impl Fleet {
+    /// The fleet of these hulls.
+    pub fn new<'a>(hulls: impl IntoIterator<Item = &'a HullModel>) -> Fleet {
+        let hulls: Vec<&HullModel> = hulls.into_iter().collect();
+        Fleet { count: hulls.len(), rows: hulls.chunks(LANES).map(Row::new).collect() }
+    }
+
+    /// Moves every boat on by `dt_s`: the classical Runge-Kutta step of fourth order. The motions, by boat, replace what
+    /// was in `motions`.
+    ///
+    /// The equation in `nu_r` does not know the heading, so this needs no sine or cosine.
+    ///
+    /// # Panics
+    /// If there is not one effort for each boat.
+    pub fn advance(&self, efforts: &[Effort], dt_s: f64, motions: &mut Vec<Motion>) {
+        assert_eq!(efforts.len(), self.count, "one effort a boat");
+        motions.clear();
+        motions.resize(self.count, Motion::default());
+        let places = efforts.chunks(LANES).zip(motions.chunks_mut(LANES));
+        for (row, (efforts, motions)) in self.rows.iter().zip(places) {
+            row.advance(efforts, dt_s, motions);
+        }
+    }
+}
+
+/// [`Planar`], four at a time.
+#[derive(Clone, Copy)]
+struct Planar4 {
+    surge: f64x4,
+    sway: f64x4,
+    yaw: f64x4,
+}
+
+impl Planar4 {
+    #[inline(always)]
+    fn gather(each: impl Fn(usize) -> Planar) -> Planar4 {
+        let lanes = [each(0), each(1), each(2), each(3)];
+        Planar4 {
+            surge: f64x4::new(lanes.map(|p| p.surge)),
+            sway: f64x4::new(lanes.map(|p| p.sway)),
+            yaw: f64x4::new(lanes.map(|p| p.yaw)),
+        }
+    }
+
+    #[inline(always)]
+    fn scatter(self) -> [Planar; LANES] {
+        let (surge, sway, yaw) = (self.surge.to_array(), self.sway.to_array(), self.yaw.to_array());
+        [0, 1, 2, 3].map(|i| Planar { surge: surge[i], sway: sway[i], yaw: yaw[i] })
+    }
+
+    /// `f` of each part and its like in the others.
+    #[inline(always)]
+    fn zip<const N: usize>(parts: [Planar4; N], f: impl Fn([f64x4; N]) -> f64x4) -> Planar4 {
+        Planar4 { surge: f(parts.map(|p| p.surge)), sway: f(parts.map(|p| p.sway)), yaw: f(parts.map(|p| p.yaw)) }
+    }
+
+    /// `self + step * rate`.
+    #[inline(always)]
+    fn plus(self, step: f64, rate: Planar4) -> Planar4 {
+        Planar4::zip([self, rate], |[x, rate]| x + step * rate)
+    }
+}
+
+/// Four hulls side by side: the constants of [`HullModel`].
+#[derive(Clone, Debug)]
+struct Row {
+    m_surge: f64x4,
+    m_cross: f64x4,
+    /// m + what stands for A22 in the Coriolis terms.
+    m_munk: f64x4,
+    /// The same less A11: the Munk moment.
+    munk: f64x4,
+    inverse_surge: f64x4,
+    inverse_sway: f64x4,
+    inverse_cross: f64x4,
+    inverse_yaw: f64x4,
+    surge_linear: f64x4,
+    surge_quadratic: f64x4,
+    sway_linear: f64x4,
+    sway_lift: f64x4,
+    yaw_linear: f64x4,
+    yaw_quadratic: f64x4,
+    yaw_lift: f64x4,
+    crossflow: f64x4,
+    crossflow_half_m: f64x4,
+}
+
+impl Row {
+    /// `hulls` has one to four; what is missing is filled up.
+    fn new(hulls: &[&HullModel]) -> Row {
+        let each = |f: fn(&HullModel) -> f64| f64x4::new(std::array::from_fn(|i| f(hulls[i.min(hulls.len() - 1)])));
+        Row {
+            m_surge: each(|m| m.m_surge),
+            m_cross: each(|m| m.m_cross),
+            m_munk: each(|m| m.hull.mass_kg + m.munk_sway),
+            munk: each(|m| m.munk_sway - m.hull.added_surge_kg),
+            inverse_surge: each(|m| m.inverse_surge),
+            inverse_sway: each(|m| m.inverse.0),
+            inverse_cross: each(|m| m.inverse.1),
+            inverse_yaw: each(|m| m.inverse.2),
+            surge_linear: each(|m| m.hull.surge_linear_kg_s),
+            surge_quadratic: each(|m| m.hull.surge_quadratic_kg_m),
+            sway_linear: each(|m| m.hull.sway_linear_kg_s),
+            sway_lift: each(|m| m.hull.sway_lift_kg_m),
+            yaw_linear: each(|m| m.hull.yaw_linear_kg_m2_s),
+            yaw_quadratic: each(|m| m.hull.yaw_quadratic_kg_m2),
+            yaw_lift: each(|m| m.hull.yaw_lift_kg_m),
+            crossflow: each(|m| m.crossflow),
+            crossflow_half_m: each(|m| 0.5 * m.hull.crossflow_length_m),
+        }
+    }
+
+    /// The acceleration under `tau` at the velocity `nu_r` through the water.
+    #[inline(always)]
+    fn acceleration(&self, nu_r: Planar4, tau: Planar4) -> Planar4 {
+        let Planar4 { surge: u, sway: v, yaw: r } = nu_r;
+        let (y_cross, n_cross) = self.crossflow(v, r);
+        let speed = u.abs();
+        let x = tau.surge + self.m_munk * v * r + self.m_cross * r * r
+            - (self.surge_linear + self.surge_quadratic * speed) * u;
+        let y = tau.sway - self.m_surge * u * r - (self.sway_linear + self.sway_lift * speed) * v - y_cross;
+        let n = tau.yaw
+            - self.m_cross * u * r
+            - self.munk * u * v
+            - (self.yaw_linear + self.yaw_quadratic * r.abs() + self.yaw_lift * speed) * r
+            - n_cross;
+        Planar4 {
+            surge: self.inverse_surge * x,
+            sway: self.inverse_sway * y + self.inverse_cross * n,
+            yaw: self.inverse_cross * y + self.inverse_yaw * n,
+        }
+    }
+
+    /// Cross-flow drag in sway and yaw (strip theory): ½ρ C_d T ∫ [1, x] |v + x r| (v + x r) dx.
+    ///
+    /// The integral is done in closed form instead of over strips. With s = r L/2, the cross-flow at the bow that
+    /// the turn makes: where |s| ≤ |v| the flow has one side all along the hull and the integrand is a polynomial;
+    /// where |s| > |v| it changes its side at x = −v/r, and the two polynomials meet there.
+    #[inline(always)]
+    fn crossflow(&self, v: f64x4, r: f64x4) -> (f64x4, f64x4) {
+        let half = self.crossflow_half_m;
+        let s = r * half;
+        let (v_2, s_2, half_2) = (v * v, s * s, half * half);
+        let same_side = s.abs().simd_le(v.abs());
+        let from = v / same_side.select(f64x4::ONE, r);
+        let side = with_sign(self.crossflow, same_side.select(v, r));
+        let sway = same_side.select(2.0 * half * (v_2 + s_2 * (1.0 / 3.0)), 2.0 / 3.0 * from * (v_2 + 3.0 * s_2));
+        let yaw = same_side
+            .select(4.0 / 3.0 * half_2 * s * v, half_2 * (v_2 + 0.5 * s_2) - v_2 * (from * from) * (1.0 / 6.0));
+        (side * sway, side * yaw)
+    }
+
+    #[inline(always)]
+    fn advance(&self, efforts: &[Effort], dt_s: f64, motions: &mut [Motion]) {
+        let effort = |i: usize| &efforts[i.min(efforts.len() - 1)];
+        let start = Planar4::gather(|i| effort(i).nu_r);
+        let tau = [0, 1, 2].map(|when| Planar4::gather(|i| effort(i).tau[when]));
+        let half = 0.5 * dt_s;
+        let k1 = self.acceleration(start, tau[0]);
+        let k2 = self.acceleration(start.plus(half, k1), tau[1]);
+        let k3 = self.acceleration(start.plus(half, k2), tau[1]);
+        let k4 = self.acceleration(start.plus(dt_s, k3), tau[2]);
+        let sixth = dt_s / 6.0;
+        let end = Planar4::zip([start, k1, k2, k3, k4], |[x, a, b, c, d]| x + sixth * (a + 2.0 * (b + c) + d));
+        // Cubic through both ends and their slopes; k4 is the slope at the end to third order.
+        let eighth = dt_s / 8.0;
+        let middle = Planar4::zip([start, end, k1, k4], |[a, b, at_a, at_b]| 0.5 * (a + b) + eighth * (at_a - at_b));
+        // Integrals of the yaw rate's cubic: Simpson over the whole tick, and its first half exactly.
+        let turn = sixth * (start.yaw + 4.0 * middle.yaw + end.yaw);
+        let turn_half = dt_s / 24.0 * (5.0 * start.yaw + 8.0 * middle.yaw - end.yaw);
+
+        let (end, middle) = (end.scatter(), middle.scatter());
+        let (turn, turn_half) = (turn.to_array(), turn_half.to_array());
+        for (i, motion) in motions.iter_mut().enumerate().take(LANES) {
+            *motion = Motion { nu_r: end[i], nu_r_half: middle[i], turn_half_rad: turn_half[i], turn_rad: turn[i] };
+        }
+    }
+}
+
+/// `magnitude` (not negative) with the sign of `sign`.
+#[inline(always)]
+fn with_sign(magnitude: f64x4, sign: f64x4) -> f64x4 {
+    magnitude | (sign & f64x4::splat(-0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::boat::Hull;
+
+    fn model() -> HullModel {
+        let hull = Hull {
+            mass_kg: 80.0,
+            yaw_inertia_kg_m2: 16.0125,
+            x_g_m: 0.153_125,
+            added_surge_kg: 5.2815,
+            added_sway_kg: 82.5,
+            added_yaw_kg_m2: 24.0324,
+            added_sway_yaw_kg_m: 0.0,
+            surge_linear_kg_s: 77.5544,
+            surge_quadratic_kg_m: 0.0,
+            sway_linear_kg_s: 162.5,
+            sway_lift_kg_m: 0.0,
+            yaw_linear_kg_m2_s: 40.0449,
+            yaw_quadratic_kg_m2: 400.449,
+            yaw_lift_kg_m: 0.0,
+            crossflow_coefficient: 1.004_21,
+            crossflow_draught_m: 0.195_122,
+            crossflow_length_m: 2.1,
+            munk_factor: 1.0,
+        };
+        HullModel::new(&hull, 1025.0)
+    }
+
+    fn adrift(nu_r: Planar) -> Effort {
+        Effort { nu_r, ..Effort::default() }
+    }
+
+    fn advance(model: &HullModel, effort: &Effort, dt_s: f64) -> Planar {
+        let mut motions = Vec::new();
+        Fleet::new([model]).advance(std::slice::from_ref(effort), dt_s, &mut motions);
+        motions[0].nu_r
+    }
+
+    fn crossflow(model: &HullModel, v: f64, r: f64) -> (f64, f64) {
+        let (sway, yaw) = Row::new(&[model]).crossflow(f64x4::splat(v), f64x4::splat(r));
+        (sway.to_array()[0], yaw.to_array()[0])
+    }
+
+    #[test]
+    fn boats_side_by_side_move_as_each_alone() {
+        let mut other = model().hull;
+        other.mass_kg = 40.0;
+        let models = [model(), HullModel::new(&other, 1000.0)];
+        let kinds = [0, 1, 1, 0, 1, 0, 0];
+        let effort = |i: usize| {
+            let x = i as f64;
+            let push = |n: f64| Planar { surge: 40.0 + n * x, sway: n, yaw: 5.0 - n * x };
+            Effort {
+                nu_r: Planar { surge: x, sway: 0.3 - 0.2 * x, yaw: 0.4 * x - 0.5 },
+                tau: [0.0, 1.0, 2.0].map(push),
+            }
+        };
+        let efforts: Vec<Effort> = (0..kinds.len()).map(effort).collect();
+        let mut motions = Vec::new();
+        for count in 0..=kinds.len() {
+            Fleet::new(kinds[..count].iter().map(|kind| &models[*kind])).advance(&efforts[..count], 0.05, &mut motions);
+            assert_eq!(motions.len(), count);
+            for (i, motion) in motions.iter().enumerate() {
+                assert_eq!(motion.nu_r, advance(&models[kinds[i]], &efforts[i], 0.05), "boat {i} of {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_closed_form_of_the_cross_flow_agrees_with_many_strips() {
+        let model = model();
+        let half = 1.05;
+        for (v, r) in
+            [(0.5, 0.1), (-0.5, 0.1), (0.1, 1.0), (-0.1, 1.0), (0.0, -0.7), (0.3, 0.0), (0.3, -0.285), (0.0, 0.0)]
+        {
+            let n = 20_000;
+            let dx = 2.0 * half / f64::from(n);
+            let (mut sway, mut yaw) = (0.0, 0.0);
+            for i in 0..n {
+                let x = -half + (f64::from(i) + 0.5) * dx;
+                let s: f64 = v + x * r;
+                sway += s.abs() * s * dx;
+                yaw += x * s.abs() * s * dx;
+            }
+            let (got_sway, got_yaw) = crossflow(&model, v, r);
+            let scale = model.crossflow;
+            assert!((got_sway - scale * sway).abs() < 1e-5 * scale, "v {v} r {r}: {got_sway} {}", scale * sway);
+            assert!((got_yaw - scale * yaw).abs() < 1e-5 * scale, "v {v} r {r}: {got_yaw} {}", scale * yaw);
+        }
+    }
+
+    #[test]
+    fn inertia_terms_do_no_work_whatever_the_munk_factor() {
+        for munk_factor in [0.0, 0.5, 1.0] {
+            let mut hull = model().hull;
+            hull.munk_factor = munk_factor;
+            for zero in [&mut hull.surge_linear_kg_s, &mut hull.sway_linear_kg_s, &mut hull.yaw_linear_kg_m2_s] {
+                *zero = 0.0;
+            }
+            (hull.yaw_quadratic_kg_m2, hull.crossflow_coefficient) = (0.0, 0.0);
+            let model = HullModel::new(&hull, 1025.0);
+            let mut nu = Planar { surge: 1.5, sway: -0.4, yaw: 0.6 };
+            let before = model.energy_joule(nu);
+            for _ in 0..2000 {
+                nu = advance(&model, &adrift(nu), 0.005);
+            }
+            let drift = (model.energy_joule(nu) - before).abs() / before;
+            assert!(drift < 1e-8, "munk {munk_factor}: energy drifts by {drift}");
+        }
+    }
+
+    #[test]
+    fn without_thrust_the_energy_only_falls() {
+        let model = model();
+        for start in [(2.0, 0.5, 1.0), (-1.0, 1.0, -2.0), (0.0, 0.0, 3.0)] {
+            let mut nu = Planar { surge: start.0, sway: start.1, yaw: start.2 };
+            for tick in 0..400 {
+                let next = advance(&model, &adrift(nu), 0.05);
+                assert!(model.energy_joule(next) < model.energy_joule(nu), "{start:?} tick {tick}");
+                nu = next;
+            }
+        }
+    }
+
+    #[test]
+    fn an_added_mass_of_three_times_the_mass_stays_stable() {
+        let mut hull = model().hull;
+        hull.added_sway_kg = 3.0 * hull.mass_kg;
+        let model = HullModel::new(&hull, 1025.0);
+        let mut nu = Planar { surge: 0.5, sway: 1.0, yaw: 0.5 };
+        for _ in 0..1200 {
+            nu = advance(&model, &adrift(nu), 0.05);
+        }
+        assert!(model.energy_joule(nu) < 1e-6, "{nu:?}");
+    }
+
+    #[test]
+    fn halving_the_tick_divides_the_error_by_sixteen() {
+        let model = model();
+        let run = |dt_s: f64| {
+            let mut nu = Planar { surge: 1.0, sway: 0.2, yaw: 0.5 };
+            let tau = [Planar { surge: 80.0, sway: 0.0, yaw: 10.0 }; 3];
+            for _ in 0..(2.0 / dt_s).round() as u32 {
+                nu = advance(&model, &Effort { nu_r: nu, tau }, dt_s);
+            }
+            nu.yaw
+        };
+        let truth = run(0.0005);
+        let (coarse, fine) = ((run(0.04) - truth).abs(), (run(0.02) - truth).abs());
+        assert!((10.0..24.0).contains(&(coarse / fine)), "{coarse} {fine}");
+    }
+}

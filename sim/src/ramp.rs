@@ -1,0 +1,116 @@
+//! A piecewise linear function, made for being asked often.
+
+/// Most cells of the index.
+const CELLS_MAX: usize = 256;
+
+/// The lines through measured points; constant beyond the ends.
+#[derive(Clone, Debug)]
+pub(crate) struct Ramp {
+    pieces: Vec<Piece>,
+    /// The piece in which each of equally wide cells begins, so that a look-up needs no search.
+    index: Vec<u16>,
+    per_x: f64,
+    first: (f64, f64),
+    last: (f64, f64),
+}
+
+/// One line: `y = at.1 + slope * (x - at.0)` from `at.0` to below `end`.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    at: (f64, f64),
+    slope: f64,
+    end: f64,
+}
+
+impl Ramp {
+    /// The lines through `points`, whose first numbers rise strictly.
+    ///
+    /// # Panics
+    /// If there are fewer than two points.
+    pub(crate) fn new(points: &[(f64, f64)]) -> Ramp {
+        assert!(points.len() >= 2, "a line has two ends");
+        let piece = |ends: &[(f64, f64)]| {
+            let (a, b) = (ends[0], ends[1]);
+            Piece { at: a, slope: (b.1 - a.1) / (b.0 - a.0), end: b.0 }
+        };
+        let pieces: Vec<Piece> = points.windows(2).map(piece).collect();
+        let (first, last) = (points[0], points[points.len() - 1]);
+        let width = last.0 - first.0;
+        let narrowest = pieces.iter().map(|piece| piece.end - piece.at.0).fold(width, f64::min);
+        let cells = ((width / narrowest).ceil() as usize).clamp(1, CELLS_MAX);
+        let piece_at = |x: f64| pieces[..pieces.len() - 1].iter().take_while(|piece| piece.end <= x).count();
+        let index = (0..cells).map(|cell| piece_at(first.0 + width * cell as f64 / cells as f64) as u16).collect();
+        Ramp { pieces, index, per_x: cells as f64 / width, first, last }
+    }
+
+    /// The value at `x`.
+    #[inline]
+    pub(crate) fn at(&self, x: f64) -> f64 {
+        if x <= self.first.0 {
+            return self.first.1;
+        }
+        if x >= self.last.0 {
+            return self.last.1;
+        }
+        let cell = ((x - self.first.0) * self.per_x) as usize;
+        let mut i = usize::from(self.index[cell.min(self.index.len() - 1)]);
+        // A cell holds one border at most, or the pieces are very uneven. The sum, unlike a branch, is never guessed
+        // wrong.
+        i += usize::from(x >= self.pieces[i].end);
+        while x >= self.pieces[i].end {
+            i += 1;
+        }
+        let piece = &self.pieces[i];
+        piece.at.1 + piece.slope * (x - piece.at.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The textbook way.
+    fn searched(points: &[(f64, f64)], x: f64) -> f64 {
+        let Some(after) = points.iter().position(|p| p.0 > x) else { return points[points.len() - 1].1 };
+        if after == 0 {
+            return points[0].1;
+        }
+        let (a, b) = (points[after - 1], points[after]);
+        a.1 + (b.1 - a.1) / (b.0 - a.0) * (x - a.0)
+    }
+
+    #[test]
+    fn it_goes_through_its_points_and_ends_level() {
+        let points = [(-1.0, -30.0), (0.0, 0.0), (0.3, 7.0), (1.0, 60.0)];
+        let ramp = Ramp::new(&points);
+        for (x, y) in points {
+            assert_eq!(ramp.at(x), y);
+        }
+        assert_eq!((ramp.at(-9.0), ramp.at(9.0)), (-30.0, 60.0));
+        assert_eq!(ramp.at(0.5), 7.0 + 53.0 / (1.0 - 0.3) * (0.5 - 0.3));
+    }
+
+    proptest! {
+        #[test]
+        fn it_agrees_with_a_search(
+            steps in prop::collection::vec((1e-6..1.0, -5.0..5.0), 2..40),
+            tiny in any::<prop::sample::Index>(),
+            share in prop::collection::vec(-0.1..1.1, 50),
+        ) {
+            let mut x = -1.0;
+            let mut points: Vec<(f64, f64)> = Vec::new();
+            let tiny = tiny.index(steps.len());
+            for (i, (step, y)) in steps.into_iter().enumerate() {
+                x += if i == tiny { 1e-7 } else { step };
+                points.push((x, y));
+            }
+            let ramp = Ramp::new(&points);
+            let (lo, hi) = (points[0].0, points[points.len() - 1].0);
+            let borders = points.iter().map(|p| p.0);
+            for x in share.into_iter().map(|share| lo + share * (hi - lo)).chain(borders) {
+                prop_assert!((ramp.at(x) - searched(&points, x)).abs() < 1e-12, "at {}", x);
+            }
+        }
+    }
+}
