@@ -2,7 +2,8 @@
 //!
 //! The ping does what transport alone costs: a hub publishes one message a team to N leaf processes and waits until
 //! each has answered; same topology, same bytes out and back, no game. Everything is repeated in turn, so that both
-//! sides see the same machine; medians are printed.
+//! sides see the same machine; medians are printed, and beside them what the same game takes in one process. Boats of
+//! the strategy *idle* lie still: what is left of the game is its messages.
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
 
 use std::path::Path;
@@ -22,6 +23,7 @@ const RUNTIME: &str =
 struct Case {
     processes: usize,
     vehicles: usize,
+    strategy: &'static str,
 }
 
 fn main() {
@@ -40,19 +42,23 @@ fn main() {
         std::process::exit(status.code().unwrap_or(1));
     }
     println!("lockstep over zenoh, median of {ROUNDS} runs of {RUN_S} s each");
-    println!("| agent processes | vehicles | ticks/s | bare zenoh/s | time per tick over bare |");
-    println!("|---|---|---|---|---|");
+    println!(
+        "| agent processes | vehicles | strategy | ticks/s | bare zenoh/s | time over bare | in one process, ticks/s |"
+    );
+    println!("|---|---|---|---|---|---|---|");
     for case in [
-        Case { processes: 4, vehicles: 4 },
-        Case { processes: 16, vehicles: 16 },
-        Case { processes: 64, vehicles: 64 },
-        Case { processes: 4, vehicles: 64 },
+        Case { processes: 4, vehicles: 4, strategy: "pav01" },
+        Case { processes: 16, vehicles: 16, strategy: "pav01" },
+        Case { processes: 64, vehicles: 64, strategy: "pav01" },
+        Case { processes: 4, vehicles: 64, strategy: "idle" },
+        Case { processes: 4, vehicles: 64, strategy: "pav01" },
     ] {
-        let rounds: Vec<(f64, f64)> = (0..ROUNDS).map(|_| (squall(&case), bare(&case))).collect();
-        let ticks = median(rounds.iter().map(|r| r.0));
-        let pings = median(rounds.iter().map(|r| r.1));
-        let ratio = median(rounds.iter().map(|r| r.1 / r.0));
-        println!("| {} | {} | {ticks:.0} | {pings:.0} | {ratio:.2} |", case.processes, case.vehicles);
+        let rounds: Vec<[f64; 3]> =
+            (0..ROUNDS).map(|_| [squall(&case, false), bare(&case), squall(&case, true)]).collect();
+        let ratio = median(rounds.iter().map(|r| r[1] / r[0]));
+        let [ticks, pings, alone] = [0, 1, 2].map(|i| median(rounds.iter().map(|r| r[i])));
+        let Case { processes, vehicles, strategy } = case;
+        println!("| {processes} | {vehicles} | {strategy} | {ticks:.0} | {pings:.0} | {ratio:.2} | {alone:.0} |");
     }
 }
 
@@ -63,15 +69,16 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// A game of this many boats, by `squall run`: decisions a second.
-fn squall(case: &Case) -> f64 {
+fn squall(case: &Case, in_process: bool) -> f64 {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let dir = tempfile::tempdir().expect("a temporary directory");
     let (game, json) = (dir.path().join("bench.toml"), dir.path().join("result.json"));
     let fleet = |team: &str| {
         format!("[[fleet]]\nteam = \"{team}\"\nname = \"{team}_{{}}\"\ncount = {}\nspawn = {{}}\n", case.vehicles / 2)
     };
-    let team =
-        |team: &str| format!("[[team]]\nname = \"{team}\"\nstrategy = \"{}/strategies/pav01.toml\"\n", root.display());
+    let team = |team: &str| {
+        format!("[[team]]\nname = \"{team}\"\nstrategy = \"{}/strategies/{}.toml\"\n", root.display(), case.strategy)
+    };
     let text = |duration_s: f64| {
         format!(
             "field = \"{0}/fields/open_800x400.toml\"\nrules = \"{0}/rules/aquaticus_2023.toml\"\n\
@@ -89,7 +96,11 @@ fn squall(case: &Case) -> f64 {
         std::fs::write(&game, text(duration_s)).expect("a file");
         let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
         command.args(["run", &game.display().to_string(), "--json", &json.display().to_string()]);
-        command.args(["--agents-per-process", &(case.vehicles / case.processes).to_string()]);
+        if in_process {
+            command.arg("--in-process");
+        } else {
+            command.args(["--agents-per-process", &(case.vehicles / case.processes).to_string()]);
+        }
         let output = command.output().expect("squall runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let result = std::fs::read_to_string(&json).expect("a result");
@@ -98,7 +109,7 @@ fn squall(case: &Case) -> f64 {
         if wall_s > 0.5 * RUN_S {
             return duration_s / 0.1 / wall_s;
         }
-        duration_s = (duration_s * RUN_S / wall_s).min(5_000.0);
+        duration_s = (duration_s * RUN_S / wall_s).min(80_000.0);
     }
 }
 

@@ -76,6 +76,20 @@ fn seeds_deal_the_roles_when_the_strategy_says_so() {
 }
 
 #[test]
+fn the_shipped_games_are_what_they_say() {
+    let sums = |game: &str| {
+        let games: Vec<Outcome> = (1..=5).map(|seed| play(game, seed)).collect();
+        let sum = |count: fn(&Counts) -> u32| games.iter().map(|outcome| all(outcome, count)).sum::<u32>();
+        (sum(|counts| counts.grabs), sum(|counts| counts.captures), sum(|counts| counts.tags))
+    };
+    assert_eq!(sums("attack_1v1.toml"), (15, 15, 0), "nothing stops the attacker");
+    for game in ["pav01_3v3.toml", "pav01_4v4.toml", "harbour_2v2.toml"] {
+        let (grabs, captures, tags) = sums(game);
+        assert!(grabs > 0 && captures > 0 && tags > 0, "{game}: {grabs} grabs, {captures} captures, {tags} tags");
+    }
+}
+
+#[test]
 fn no_boat_is_ever_quarantined_in_a_shipped_game() {
     for game in ["attack_1v1.toml", "pav01_3v3.toml", "pav01_4v4.toml", "pav01_popolopen.toml", "harbour_2v2.toml"] {
         let outcome = play(game, 1);

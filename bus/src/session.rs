@@ -4,6 +4,8 @@ use crate::{BusError, Net};
 use game::codec;
 use game::message::Message;
 use serde::Serialize;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use zenoh::bytes::Encoding;
 use zenoh::qos::CongestionControl;
@@ -38,6 +40,7 @@ pub struct Bus {
 /// Sends messages on one key.
 pub struct Publisher {
     publisher: zenoh::pubsub::Publisher<'static>,
+    heard: Arc<AtomicBool>,
 }
 
 /// A question somebody asked, to be answered once.
@@ -92,7 +95,12 @@ impl Bus {
             Delivery::Drop => CongestionControl::Drop,
         };
         let builder = self.session.declare_publisher(key.clone()).congestion_control(congestion);
-        Ok(Publisher { publisher: builder.wait().map_err(failed("publish on", &key))? })
+        let publisher = builder.wait().map_err(failed("publish on", &key))?;
+        let heard = Arc::new(AtomicBool::new(false));
+        let told = Arc::clone(&heard);
+        let listener = publisher.matching_listener().callback(move |now| told.store(now.matching(), Ordering::Relaxed));
+        listener.background().wait().map_err(failed("publish on", &key))?;
+        Ok(Publisher { publisher, heard })
     }
 
     /// Calls `take` with the bytes of everything published on `key`.
@@ -182,6 +190,12 @@ fn open(config: zenoh::Config, what: String) -> Result<Bus, BusError> {
 }
 
 impl Publisher {
+    /// Whether anybody listens; a message that nobody hears need not be made.
+    #[must_use]
+    pub fn is_heard(&self) -> bool {
+        self.heard.load(Ordering::Relaxed)
+    }
+
     /// Sends a per-tick message as CDR, with its name and version in the encoding.
     ///
     /// # Errors

@@ -127,8 +127,11 @@ impl Booth {
         Ok(())
     }
 
-    /// Sends observers the truth.
+    /// Sends observers the truth, if there are any.
     pub(super) fn show(&mut self) -> Result<(), NodeError> {
+        if !self.frames.is_heard() {
+            return Ok(());
+        }
         let frame = self.contest.frame();
         Ok(self.frames.send(&frame)?)
     }
