@@ -14,12 +14,168 @@ pub struct Boat {
     pub length_m: f64,
     /// Beam, m.
     pub beam_m: f64,
+    /// Draught, m: the depth over which waves push and beyond which they do not.
+    pub draught_m: f64,
     /// Inertia and resistance.
     pub hull: Hull,
-    /// The two thrusters.
-    pub thruster: Thruster,
-    /// The front seat's heading and speed loops.
-    pub autopilot: Autopilot,
+    /// What the wind gets hold of.
+    pub windage: Windage,
+    /// What drives it.
+    pub drive: Drive,
+    /// What it knows of itself.
+    pub sensors: Sensors,
+}
+
+/// What drives a boat.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(clippy::large_enum_variant, reason = "there are as many boats as files")]
+pub enum Drive {
+    /// Two thrusters on a hull that floats, steered by the front seat: the model we stand for.
+    Thrusters {
+        /// The two thrusters.
+        thruster: Thruster,
+        /// The front seat's heading and speed loops.
+        autopilot: Autopilot,
+    },
+    /// The point boat of MOOS (uSimMarine under pMarinePID), for parity with what others train on. The sea carries it
+    /// along and does nothing else to it.
+    Kinematic(Kinematic),
+}
+
+impl Boat {
+    /// The highest speed its front seat accepts, m/s.
+    #[must_use]
+    pub fn speed_max_m_s(&self) -> f64 {
+        match &self.drive {
+            Drive::Thrusters { autopilot, .. } => autopilot.speed_max_m_s,
+            Drive::Kinematic(kinematic) => kinematic.speed_max_m_s,
+        }
+    }
+}
+
+/// Wind on the hull: coefficients and areas of Fossen (2021), ch. 10: X = −½ρ V² C_x A_F cos γ, Y = ½ρ V² C_y A_L sin γ,
+/// N = ½ρ V² C_n A_L L sin 2γ, with the relative wind V at the angle γ off the bow.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Windage {
+    /// Projected area from ahead, m².
+    pub frontal_area_m2: f64,
+    /// Projected area from the side, m².
+    pub lateral_area_m2: f64,
+    /// Height of its centre above the water, m: where the wind's profile is taken.
+    pub height_m: f64,
+    /// C_x.
+    pub surge_coefficient: f64,
+    /// C_y.
+    pub sway_coefficient: f64,
+    /// C_n.
+    pub yaw_coefficient: f64,
+}
+
+/// A point boat with thrust, rudder and PID loops: the constants of uSimMarine and pMarinePID, in SI where they have
+/// units, in their own per-cent scales where they have none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Kinematic {
+    /// The highest speed it accepts, m/s.
+    pub speed_max_m_s: f64,
+    /// Thrust (per cent) and speed (m/s), both rising.
+    pub thrust_map: Vec<(f64, f64)>,
+    /// Largest thrust, per cent.
+    pub thrust_max: f64,
+    /// Largest rudder, per cent.
+    pub rudder_max: f64,
+    /// uSimMarine's turn rate: at full rudder and half thrust it turns by this many degrees a second.
+    pub turn_rate: f64,
+    /// Share of the speed that full rudder costs.
+    pub turn_loss: f64,
+    /// Bias of the turn, rad/s clockwise.
+    pub rotate_rad_s: f64,
+    /// Configured acceleration limit, m/s²; 0 is none. The boat does half of it, as uSimMarine's does.
+    pub acceleration_max_m_s2: f64,
+    /// Configured deceleration limit, m/s²; 0 is none.
+    pub deceleration_max_m_s2: f64,
+    /// Thrust over desired speed, per cent per m/s; 0 uses the speed loop instead.
+    pub speed_factor: f64,
+    /// The speed loop: error in m/s to change of thrust in per cent.
+    pub speed_pid: Pid,
+    /// The heading loop: error in degrees to rudder in per cent.
+    pub heading_pid: Pid,
+}
+
+/// Gains of pMarinePID.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pid {
+    /// Proportional.
+    pub p: f64,
+    /// Integral.
+    pub i: f64,
+    /// Derivative.
+    pub d: f64,
+    /// Limit of the integral.
+    pub i_limit: f64,
+}
+
+/// What a boat knows of itself. What is `None` is known perfectly and at once.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sensors {
+    /// Satellite navigation: position and velocity over the ground.
+    pub gps: Option<Gps>,
+    /// Magnetic compass: heading.
+    pub compass: Option<Compass>,
+    /// Gyro and accelerometers.
+    pub imu: Option<Imu>,
+}
+
+/// A satellite receiver.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Gps {
+    /// Standard deviation of the position's wandering bias (Gauss-Markov), each axis, m.
+    pub bias_m: f64,
+    /// Correlation time of the bias, s.
+    pub bias_time_s: f64,
+    /// Standard deviation of the position's white noise, each axis, m.
+    pub noise_m: f64,
+    /// Standard deviation of the velocity's white noise, each axis, m/s.
+    pub velocity_noise_m_s: f64,
+    /// Time between fixes, s.
+    pub period_s: f64,
+    /// Age of a fix when it comes out, s.
+    pub latency_s: f64,
+    /// Drop-outs: how often they begin, 1/s, and how long they last on average, s. No fixes come out meanwhile.
+    pub dropout: (f64, f64),
+    /// Freezes, likewise: fixes come out with the position and velocity that they had at the beginning.
+    pub freeze: (f64, f64),
+    /// Jumps, likewise: how often, 1/s, and the standard deviation of the offset, m; one lasts until the next.
+    pub jump: (f64, f64),
+}
+
+/// A magnetic compass. Its deviation is A + B sin ψ + C cos ψ + D sin 2ψ + E cos 2ψ.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Compass {
+    /// A to E, rad: A is a misalignment, B and C hard iron, D and E soft iron.
+    pub deviation_rad: [f64; 5],
+    /// Error at full thrust of both thrusters, rad: it grows with their current.
+    pub thrust_error_rad: f64,
+    /// Standard deviation of the white noise, rad.
+    pub noise_rad: f64,
+    /// Time between readings, s.
+    pub period_s: f64,
+    /// What is left of the declination after correction, rad: magnetic north, as the boat takes it, east of true north.
+    pub declination_error_rad: f64,
+}
+
+/// Gyro and accelerometers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Imu {
+    /// Standard deviation of the gyro's white noise, rad/s.
+    pub gyro_noise_rad_s: f64,
+    /// Standard deviation of the gyro's bias, rad/s.
+    pub gyro_bias_rad_s: f64,
+    /// Correlation time of the biases, s.
+    pub bias_time_s: f64,
+    /// Standard deviation of the accelerometers' white noise, m/s².
+    pub accelerometer_noise_m_s2: f64,
+    /// Standard deviation of the accelerometers' bias, m/s².
+    pub accelerometer_bias_m_s2: f64,
 }
 
 /// Inertia and resistance of a hull in surge, sway and yaw.
@@ -76,6 +232,67 @@ pub struct Thruster {
     pub slew_per_s: f64,
     /// Commands smaller than this share of full ahead give nothing.
     pub deadband: f64,
+    /// In what it falls short of that.
+    pub flaws: Flaws,
+}
+
+/// What keeps thrusters from doing what they are told. The default is nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Flaws {
+    /// Largest setting that is taken up, as a share of full ahead or astern.
+    pub saturation: f64,
+    /// Factor on the port thruster's thrust, and on the starboard one's.
+    pub gain: (f64, f64),
+    /// Factor on thrust astern.
+    pub reverse_efficiency: f64,
+    /// Moment that acts unasked for, N m clockwise at full thrust of both: a bent bracket, a worn propeller.
+    pub bias_newton_m: f64,
+    /// How long a command is on its way to the thrusters, s.
+    pub latency_s: f64,
+    /// Without a new command for this long the thrusters stop, s; `None` is never.
+    pub watchdog_s: Option<f64>,
+    /// What the thrusters live on.
+    pub battery: Option<Battery>,
+    /// Thrust lost in waves.
+    pub ventilation: Option<Ventilation>,
+}
+
+impl Default for Flaws {
+    fn default() -> Flaws {
+        Flaws {
+            saturation: 1.0,
+            gain: (1.0, 1.0),
+            reverse_efficiency: 1.0,
+            bias_newton_m: 0.0,
+            latency_s: 0.0,
+            watchdog_s: None,
+            battery: None,
+            ventilation: None,
+        }
+    }
+}
+
+/// A battery that sags.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Battery {
+    /// Energy when full, J.
+    pub capacity_joule: f64,
+    /// Charge at the start of a game, as a share.
+    pub charge: f64,
+    /// Power that both thrusters together draw at full ahead, W.
+    pub full_power_watt: f64,
+    /// Power that everything else draws, W.
+    pub hotel_power_watt: f64,
+    /// Share of the thrust that is lost when the battery is empty; it falls in step with the charge.
+    pub sag: f64,
+}
+
+/// Propellers that suck air.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ventilation {
+    /// How deep the thrusters are below still water, m. Thrust falls from where the water above one is half as deep,
+    /// to nothing where there is none.
+    pub depth_m: f64,
 }
 
 /// Thrust as a function of the thruster's setting.

@@ -61,6 +61,53 @@ impl Stream {
     }
 }
 
+/// Noise that can be looked up: a random number for every count, without a state.
+///
+/// For what is drawn every tick. A world that is put back to an earlier tick finds the same numbers again. The mixing is
+/// the finaliser of SplitMix64 (Steele, Lea and Flood 2014), of a counter that starts at a key of the seed and the name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Noise(u64);
+
+impl Noise {
+    /// The noise `name` (for example `gps/red_one`) of the game with this seed.
+    #[must_use]
+    pub fn new(seed: u64, name: &str) -> Noise {
+        Noise(Stream::new(seed, name).bits())
+    }
+
+    /// Every one of 2^64 whole numbers equally likely.
+    #[inline]
+    #[must_use]
+    pub fn bits(&self, count: u64) -> u64 {
+        let mut z = self.0.wrapping_add(count.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// A number in 0 (included) to 1 (excluded).
+    #[inline]
+    #[must_use]
+    pub fn unit(&self, count: u64) -> f64 {
+        (self.bits(count) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Two independent normal numbers, of mean 0 and variance 1 (Box and Muller 1958). Takes the place of two units: the
+    /// pairs of `count` and `count + 1` share nothing if the units of this noise are not used too.
+    #[must_use]
+    pub fn normal_pair(&self, count: u64) -> (f64, f64) {
+        let radius = (-2.0 * libm::log(1.0 - self.unit(2 * count))).sqrt();
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * self.unit(2 * count + 1));
+        (radius * cos, radius * sin)
+    }
+
+    /// A number from the exponential distribution of mean 1.
+    #[must_use]
+    pub fn exponential(&self, count: u64) -> f64 {
+        -libm::log(1.0 - self.unit(count))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -102,6 +149,28 @@ mod tests {
         let variance = squares / f64::from(n) - mean * mean;
         assert!((mean - 0.5).abs() < 0.005, "mean {mean}");
         assert!((variance - 1.0 / 12.0).abs() < 0.002, "variance {variance}");
+    }
+
+    #[test]
+    fn noise_is_normal_uncorrelated_and_the_same_when_looked_up_again() {
+        let noise = Noise::new(1, "test");
+        let n = 200_000_u64;
+        let pairs: Vec<(f64, f64)> = (0..n).map(|i| noise.normal_pair(i)).collect();
+        assert_eq!(noise.normal_pair(77), pairs[77]);
+        assert_ne!(Noise::new(1, "tess").bits(0), noise.bits(0));
+        let mean = |f: &dyn Fn(usize) -> f64| (0..pairs.len() - 1).map(f).sum::<f64>() / n as f64;
+        // Five standard errors each.
+        for (what, got, want, within) in [
+            ("mean", mean(&|i| pairs[i].0), 0.0, 0.0112),
+            ("variance", mean(&|i| pairs[i].0.powi(2)), 1.0, 0.0158),
+            ("variance", mean(&|i| pairs[i].1.powi(2)), 1.0, 0.0158),
+            ("fourth moment", mean(&|i| pairs[i].0.powi(4)), 3.0, 0.11),
+            ("correlation in a pair", mean(&|i| pairs[i].0 * pairs[i].1), 0.0, 0.0112),
+            ("correlation of neighbours", mean(&|i| pairs[i].0 * pairs[i + 1].0), 0.0, 0.0112),
+            ("exponential", mean(&|i| noise.exponential(i as u64)), 1.0, 0.0112),
+        ] {
+            assert!((got - want).abs() < within, "{what}: {got}");
+        }
     }
 
     #[test]

@@ -156,8 +156,9 @@ fn a_scenario_knows_its_vehicles() {
 fn boats_reach_the_speed_they_are_named_for() {
     for (name, want_m_s) in [("otter", 3.086), ("surveyor_m1_8", 3.0), ("heron", 2.0)] {
         let boat = scenario::load_boat(&shipped(&format!("boats/{name}.toml"))).unwrap();
+        let game::boat::Drive::Thrusters { thruster, .. } = &boat.drive else { panic!("{name} has no thrusters") };
         let thrust_newton = 2.0
-            * match &boat.thruster.curve {
+            * match &thruster.curve {
                 game::boat::ThrustCurve::Propeller { k_ahead, n_max_rad_s, .. } => k_ahead * n_max_rad_s * n_max_rad_s,
                 game::boat::ThrustCurve::Table { points } => points.last().unwrap().1,
             };

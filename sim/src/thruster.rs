@@ -133,9 +133,10 @@ impl ThrusterModel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use game::boat::Flaws;
 
     fn thruster(curve: ThrustCurve) -> Thruster {
-        Thruster { arm_m: 0.4, curve, lag_s: 0.2, slew_per_s: 1.0, deadband: 0.05 }
+        Thruster { arm_m: 0.4, curve, lag_s: 0.2, slew_per_s: 1.0, deadband: 0.05, flaws: Flaws::default() }
     }
 
     fn propeller() -> Thruster {

@@ -9,6 +9,7 @@ use crate::spawn::{self, NoBerth};
 use crate::state::{BoatState, RestoreError, State};
 use crate::thruster::ThrusterModel;
 use game::angle::wrap_pi;
+use game::boat::Drive;
 use game::frame::{self, Ned};
 use game::near::{Near, Pair};
 use game::rules::{Directive, Notes, Referee};
@@ -241,13 +242,22 @@ impl Model {
         let density = scenario.sea.water_density_kg_m3;
         let hulls: Vec<HullModel> = scenario.boats.iter().map(|boat| HullModel::new(&boat.hull, density)).collect();
         let shapes = scenario.boats.iter().map(|boat| (boat.length_m, boat.beam_m));
-        let autopilots = scenario.boats.iter().zip(&hulls);
+        let drives: Vec<_> = scenario
+            .boats
+            .iter()
+            .map(|boat| match &boat.drive {
+                Drive::Thrusters { thruster, autopilot } => (thruster, autopilot),
+                Drive::Kinematic(_) => panic!("no kinematic boats yet"),
+            })
+            .collect();
+        let autopilots =
+            drives.iter().zip(&hulls).map(|((_, autopilot), hull)| AutopilotModel::new(autopilot, hull, dt_s));
         let encoded = postcard::to_stdvec(scenario).expect("a checked scenario always encodes");
         Model {
             tick: scenario.tick,
             dt_s,
-            thrusters: scenario.boats.iter().map(|boat| ThrusterModel::new(&boat.thruster, dt_s)).collect(),
-            autopilots: autopilots.map(|(boat, hull)| AutopilotModel::new(&boat.autopilot, hull, dt_s)).collect(),
+            thrusters: drives.iter().map(|(thruster, _)| ThrusterModel::new(thruster, dt_s)).collect(),
+            autopilots: autopilots.collect(),
             fleet: Fleet::new(scenario.vehicles.iter().map(|vehicle| &hulls[vehicle.boat])),
             kinds: scenario.vehicles.iter().map(|vehicle| vehicle.boat).collect(),
             sea: SeaModel::new(&scenario.sea),

@@ -91,7 +91,7 @@ fn it_turns_as_tight_and_as_fast() {
 fn it_drifts_with_the_current_and_turns_as_it_is_caught() {
     let rows = reference(include_str!("otter/current_drift_0p5_b30.csv"));
     let mut scenario = common::alone("otter", "calm_salt");
-    scenario.sea.current_m_s = Ned { north: 0.5 * 0.75_f64.sqrt(), east: 0.25 };
+    scenario.sea.current.mean_m_s = Ned { north: 0.5 * 0.75_f64.sqrt(), east: 0.25 };
     let mut world = World::new(&scenario, 1).unwrap();
     let start = world.state().boats[0].pose.at;
     for row in &rows {

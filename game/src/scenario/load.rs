@@ -4,10 +4,11 @@ use super::kind::Kind;
 use super::ledger::Ledger;
 use super::problem::Problems;
 use super::read::{self, Document};
-use super::{Scenario, Sea, Strategy, check};
+use super::{Scenario, Strategy, check};
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::rules::Rules;
+use crate::sea::Sea;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -24,7 +25,7 @@ pub enum Checked {
     /// A kind of boat.
     Boat(Box<Boat>),
     /// A sea.
-    Sea(Sea),
+    Sea(Box<Sea>),
     /// A strategy.
     Strategy(Strategy),
 }
@@ -73,6 +74,14 @@ pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
     one(path, check::boat)
 }
 
+/// Reads and checks the sea file at `path`.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn load_sea(path: &Path) -> Result<Sea, Problems> {
+    one(path, check::sea)
+}
+
 /// Reads and checks a scenario file of any kind.
 ///
 /// The folder it lies in says which kind it is (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`).
@@ -87,7 +96,7 @@ pub fn check_file(path: &Path) -> Result<Checked, Problems> {
         Kind::Field => one(path, check::field).map(|field| Checked::Field(Box::new(field))),
         Kind::Rules => one(path, check::rules).map(|rules| Checked::Rules(Box::new(rules))),
         Kind::Boat => one(path, check::boat).map(|boat| Checked::Boat(Box::new(boat))),
-        Kind::Sea => one(path, check::sea).map(Checked::Sea),
+        Kind::Sea => one(path, check::sea).map(|sea| Checked::Sea(Box::new(sea))),
         Kind::Strategy => one(path, check::strategy).map(Checked::Strategy),
     }
 }

@@ -15,14 +15,16 @@ mod read;
 mod source;
 
 pub use kind::{Kind, schema};
-pub use load::{Checked, check_file, load, load_boat};
+pub use load::{Checked, check_file, load, load_boat, load_sea};
 pub use problem::{Problem, Problems};
 
 use crate::boat::Boat;
 use crate::field::Field;
-use crate::frame::{Ned, Pose};
+use crate::frame::Pose;
 use crate::id::{TeamId, VehicleId};
+use crate::link::Link;
 use crate::rules::Rules;
+use crate::sea::Sea;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +49,8 @@ pub struct Scenario {
     pub rules: Rules,
     /// On what water.
     pub sea: Sea,
+    /// Over which radio links minds and boats talk; `None` is at once and without loss.
+    pub link: Option<Link>,
     /// Who against whom.
     pub teams: Vec<Team>,
     /// The kinds of boat that occur.
@@ -128,17 +132,6 @@ pub enum Berth {
         /// Smallest distance to any other vehicle and to obstacles, m.
         gap_m: f64,
     },
-}
-
-/// The water.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sea {
-    /// The sea file's stem.
-    pub name: String,
-    /// Density, kg/m³.
-    pub water_density_kg_m3: f64,
-    /// Uniform, steady current, m/s.
-    pub current_m_s: Ned,
 }
 
 /// How the boats of a team play: the roles they take, and how each role is played.

@@ -1,7 +1,7 @@
 //! A boat file, checked, with what it leaves out estimated.
 
 use super::same_place;
-use crate::boat::{Autopilot, Boat, Hull, ThrustCurve, Thruster};
+use crate::boat::{Autopilot, Boat, Drive, Flaws, Hull, Sensors, ThrustCurve, Thruster, Windage};
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, Pair, RawAutopilot, RawBoat, RawHull, RawPropeller, RawThruster};
 use crate::scenario::read::Document;
@@ -23,9 +23,21 @@ pub(in crate::scenario) fn boat(ledger: &mut Ledger, document: &Document<RawBoat
         name: document.name.clone(),
         length_m: ledger.required(start, "length_m", raw.length_m.as_ref(), 0.1..=100.0),
         beam_m: ledger.required(start, "beam_m", raw.beam_m.as_ref(), 0.05..=50.0),
+        draught_m: 0.15,
         hull: given_hull(ledger, start, &hull),
-        thruster: thruster(ledger, start, &raw.thruster.clone().unwrap_or_default()),
-        autopilot: autopilot(ledger, start, &raw.autopilot.clone().unwrap_or_default()),
+        windage: Windage {
+            frontal_area_m2: 0.3,
+            lateral_area_m2: 0.55,
+            height_m: 0.5,
+            surge_coefficient: 0.6,
+            sway_coefficient: 0.85,
+            yaw_coefficient: 0.1,
+        },
+        drive: Drive::Thrusters {
+            thruster: thruster(ledger, start, &raw.thruster.clone().unwrap_or_default()),
+            autopilot: autopilot(ledger, start, &raw.autopilot.clone().unwrap_or_default()),
+        },
+        sensors: Sensors::default(),
     };
     if ledger.faults() != faults {
         return None;
@@ -83,8 +95,11 @@ fn given_hull(ledger: &mut Ledger, start: usize, raw: &RawHull) -> Hull {
 
 /// Fills in what the file leaves out, by the recipes that the file's own documentation states.
 fn estimate(boat: &mut Boat, raw: &RawHull) {
-    let thrust_max_newton = 2.0 * full_ahead_newton(&boat.thruster.curve);
-    let speed_max_m_s = boat.autopilot.speed_max_m_s;
+    let thrust_max_newton = match &boat.drive {
+        Drive::Thrusters { thruster, .. } => 2.0 * full_ahead_newton(&thruster.curve),
+        Drive::Kinematic(_) => 0.0,
+    };
+    let speed_max_m_s = boat.speed_max_m_s();
     let length_m = boat.length_m;
     let hull = &mut boat.hull;
     let mass_kg = hull.mass_kg;
@@ -145,7 +160,7 @@ fn check_inertia(ledger: &mut Ledger, start: usize, boat: &Boat, raw: &RawHull) 
 /// The motion that dies out fastest and its rate, 1/s, at top speed, 1 m/s of drift and 1 rad/s of turn.
 pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
     let hull = &boat.hull;
-    let u_m_s = boat.autopilot.speed_max_m_s;
+    let u_m_s = boat.speed_max_m_s();
     let crossflow_kg_s = 1025.0 * hull.crossflow_coefficient * hull.crossflow_draught_m * hull.crossflow_length_m;
     let surge_kg_s = hull.surge_linear_kg_s + 2.0 * hull.surge_quadratic_kg_m * u_m_s;
     let sway_kg_s = hull.sway_linear_kg_s + hull.sway_lift_kg_m * u_m_s + crossflow_kg_s;
@@ -177,6 +192,7 @@ fn thruster(ledger: &mut Ledger, start: usize, raw: &RawThruster) -> Thruster {
         lag_s: ledger.number("lag_s", raw.lag_s.as_ref(), 0.0..=60.0).unwrap_or(0.2),
         slew_per_s: ledger.number("slew_per_s", raw.slew_per_s.as_ref(), 0.001..=1000.0).unwrap_or(10.0),
         deadband: ledger.number("deadband", raw.deadband.as_ref(), 0.0..=0.9).unwrap_or(0.0),
+        flaws: Flaws::default(),
     }
 }
 

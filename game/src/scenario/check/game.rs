@@ -9,7 +9,8 @@ use crate::id::TeamId;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawBoat, RawFleet, RawGame, RawStrategy, RawVehicle};
 use crate::scenario::read::{self, Document};
-use crate::scenario::{Berth, Scenario, Sea, Strategy, Team, Vehicle};
+use crate::scenario::{Berth, Scenario, Strategy, Team, Vehicle};
+use crate::sea::Sea;
 use crate::time::SimTime;
 use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet};
@@ -86,7 +87,7 @@ pub(in crate::scenario) fn game(ledger: &mut Ledger, document: &Document<RawGame
     let rules = referenced(ledger, start, "rules", raw.rules.as_ref(), super::rules);
     let sea = match &raw.sea {
         Some(given) => referenced(ledger, start, "sea", Some(given), super::sea),
-        None => Some(still_fresh_water()),
+        None => Some(Sea::at_rest()),
     };
     let (tick, ticks_per_decision) = clock(ledger, raw);
     let seed = ledger.whole("seed", raw.seed.as_ref(), 0..=i64::MAX, 1);
@@ -129,6 +130,7 @@ pub(in crate::scenario) fn game(ledger: &mut Ledger, document: &Document<RawGame
         field,
         rules,
         sea,
+        link: None,
         teams: teams.into_iter().map(|(name, _)| Team { name }).collect(),
         boats: boats.items,
         strategies: strategies.items,
@@ -151,10 +153,6 @@ fn referenced<R: DeserializeOwned + Default, T>(
     let path = ledger.sources.resolve(given.at, &given.value);
     let document = read::document(ledger, &path, Some(given.at))?;
     check(ledger, &document)
-}
-
-fn still_fresh_water() -> Sea {
-    Sea { name: "calm".into(), water_density_kg_m3: 1000.0, current_m_s: crate::frame::Ned::default() }
 }
 
 /// The physics tick, and how many of them a decision lasts.

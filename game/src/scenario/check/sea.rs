@@ -1,10 +1,10 @@
 //! A sea file, checked.
 
 use crate::frame::Ned;
-use crate::scenario::Sea;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::RawSea;
 use crate::scenario::read::Document;
+use crate::sea::{Current, Sea};
 
 /// Checks a sea.
 pub(in crate::scenario) fn sea(ledger: &mut Ledger, document: &Document<RawSea>) -> Option<Sea> {
@@ -17,7 +17,13 @@ pub(in crate::scenario) fn sea(ledger: &mut Ledger, document: &Document<RawSea>)
     let sea = Sea {
         name: document.name.clone(),
         water_density_kg_m3: density.unwrap_or(1000.0),
-        current_m_s: Ned::toward_deg(toward.unwrap_or(0.0)).scaled(speed.unwrap_or(0.0)),
+        depth_m: None,
+        waves: None,
+        wind: None,
+        current: Current {
+            mean_m_s: Ned::toward_deg(toward.unwrap_or(0.0)).scaled(speed.unwrap_or(0.0)),
+            ..Current::default()
+        },
     };
     (ledger.faults() == faults).then_some(sea)
 }

@@ -3,7 +3,7 @@
 //! The one door through which the sea acts. Calm water, with or without a steady current.
 
 use game::frame::Ned;
-use game::scenario::Sea;
+use game::sea::Sea;
 
 /// The sea of a game.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ impl SeaModel {
     /// The model of this sea.
     #[must_use]
     pub fn new(sea: &Sea) -> SeaModel {
-        SeaModel { current_m_s: sea.current_m_s }
+        SeaModel { current_m_s: sea.current.mean_m_s }
     }
 
     /// The sea at a boat.

@@ -1,0 +1,204 @@
+//! The water and the air above it, as a scenario states them: waves, wind and current.
+//!
+//! Checked and in SI. What they do to a boat stands in `sim::sea`. Waves and wind are named by where they come
+//! from, the current by where it goes to.
+
+use crate::frame::Ned;
+use serde::{Deserialize, Serialize};
+
+/// A sea.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sea {
+    /// The sea file's stem.
+    pub name: String,
+    /// Density of the water, kg/m³.
+    pub water_density_kg_m3: f64,
+    /// Depth of the water, m; `None` is deeper than any wave feels.
+    pub depth_m: Option<f64>,
+    /// Waves, if there are any.
+    pub waves: Option<Waves>,
+    /// Wind, if there is any.
+    pub wind: Option<Wind>,
+    /// The water's own motion.
+    pub current: Current,
+}
+
+impl Sea {
+    /// Fresh water at rest, under no wind.
+    #[must_use]
+    pub fn at_rest() -> Sea {
+        Sea {
+            name: "at_rest".into(),
+            water_density_kg_m3: 1000.0,
+            depth_m: None,
+            waves: None,
+            wind: None,
+            current: Current::default(),
+        }
+    }
+}
+
+/// A wave field: a spectrum, and how it spreads over directions.
+///
+/// The spectrum is JONSWAP's with its peak enhancement γ; γ = 1 is that of Pierson and Moskowitz in the two-parameter
+/// form of Bretschneider.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Waves {
+    /// Significant wave height, m.
+    pub hs_m: f64,
+    /// Peak period, s.
+    pub tp_s: f64,
+    /// Peak enhancement, 1 to 7.
+    pub gamma: f64,
+    /// The compass bearing they come from, rad.
+    pub from_rad: f64,
+    /// How they spread around it.
+    pub spreading: Spreading,
+    /// How many components stand for the spectrum.
+    pub components: u32,
+    /// Factor on the second-order (drift) force.
+    pub drift_factor: f64,
+}
+
+/// How wave energy spreads around the mean direction.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Spreading {
+    /// Not at all: long-crested waves.
+    None,
+    /// (2/π) cos² μ within 90° of the mean direction.
+    CosineSquared,
+    /// Proportional to cos^(2s) (μ/2), all round (Longuet-Higgins).
+    Cosine2s {
+        /// s: the larger, the narrower.
+        s: f64,
+    },
+}
+
+/// Wind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Wind {
+    /// Mean speed 10 m above the water, m/s.
+    pub speed_10m_m_s: f64,
+    /// The compass bearing it comes from, rad.
+    pub from_rad: f64,
+    /// Exponent of the mean profile: U(z) = U10 (z / 10 m)^α.
+    pub profile_exponent: f64,
+    /// How it varies about the mean.
+    pub gusts: Gusts,
+}
+
+/// How the wind varies about its mean. Gusts travel with the mean wind, unchanged (Taylor's hypothesis), so boats feel
+/// the same gust one after the other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Gusts {
+    /// Not at all.
+    None,
+    /// As an Ornstein-Uhlenbeck process along the wind, and another across it.
+    OrnsteinUhlenbeck {
+        /// Standard deviation along the wind over the mean speed.
+        intensity: f64,
+        /// Standard deviation across the wind over that along it.
+        across_ratio: f64,
+        /// Length scale, m: the time constant is this over the mean speed at the boat.
+        length_m: f64,
+    },
+    /// As a sum of waves along the wind with this spectrum, and another across it.
+    Spectral {
+        /// Which.
+        spectrum: GustSpectrum,
+        /// Standard deviation along the wind over the mean speed.
+        intensity: f64,
+        /// Standard deviation across the wind over that along it.
+        across_ratio: f64,
+        /// How many components each.
+        components: u32,
+    },
+}
+
+/// The shape of a gust spectrum; its size follows from the intensity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GustSpectrum {
+    /// Davenport (1961): 4 x² / (1 + x²)^(4/3), x = 1200 f / U10.
+    Davenport,
+    /// Harris (1971): 4 χ / (2 + χ²)^(5/6), χ = 1800 f / U10.
+    Harris,
+    /// Frøya, of the Norwegian Petroleum Directorate, for wind over the sea.
+    Froya,
+}
+
+/// The water's own motion: the sum of what is stated.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Current {
+    /// The same everywhere and always, m/s.
+    pub mean_m_s: Ned,
+    /// A wandering speed in the mean direction, the same everywhere.
+    pub wander: Option<Wander>,
+    /// A tide.
+    pub tide: Option<Tide>,
+    /// A linear change across the stream.
+    pub shear: Option<Shear>,
+    /// Eddies at stated places.
+    pub eddies: Vec<Eddy>,
+    /// Eddies drawn by lot over the field.
+    pub eddies_by_lot: Option<EddiesByLot>,
+}
+
+/// A first-order Gauss-Markov process that is added to the mean speed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Wander {
+    /// The direction it acts in: the unit vector of the mean current, or its bearing where there is no mean.
+    pub toward: Ned,
+    /// Standard deviation, m/s.
+    pub sigma_m_s: f64,
+    /// Correlation time, s.
+    pub time_s: f64,
+    /// What the sum of mean speed and process is clipped to, m/s.
+    pub speed_m_s: (f64, f64),
+}
+
+/// A tidal stream: a sinusoid of time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tide {
+    /// The stream at its strongest, as it floods, m/s.
+    pub flood_m_s: Ned,
+    /// Period, s; that of the moon's principal tide is 12.42 h.
+    pub period_s: f64,
+    /// Where in its period the game begins: 0 is slack water before the flood, 1 is again.
+    pub phase: f64,
+}
+
+/// A current that grows linearly across: V(p) = `per_m` (p − origin) · `across`, along `toward`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shear {
+    /// The unit vector of the stream.
+    pub toward: Ned,
+    /// The unit vector along which it grows, a quarter turn to starboard of the stream.
+    pub across: Ned,
+    /// Growth, 1/s.
+    pub per_s: f64,
+    /// Where it is nothing, m from the datum.
+    pub origin: Ned,
+}
+
+/// A Lamb-Oseen vortex: v(r) = Γ / (2 π r) (1 − exp(−r² / a²)).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Eddy {
+    /// Its middle.
+    pub centre: Ned,
+    /// Core radius a, m. The fastest flow is at 1.121 a.
+    pub radius_m: f64,
+    /// The fastest flow, m/s; positive turns clockwise seen from above.
+    pub peak_m_s: f64,
+}
+
+/// Eddies whose places, sizes and senses are drawn from the stream `eddies`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EddiesByLot {
+    /// How many.
+    pub count: u32,
+    /// Core radius, from and to, m.
+    pub radius_m: (f64, f64),
+    /// The fastest flow, from and to, m/s; turning either way.
+    pub peak_m_s: (f64, f64),
+}
