@@ -53,6 +53,11 @@ impl Stream {
         }
     }
 
+    /// A normal number of mean 0 and variance 1 (Box and Muller 1958).
+    pub fn normal(&mut self) -> f64 {
+        normal_pair(self.unit(), self.unit()).0
+    }
+
     /// Puts `items` into a random order (Fisher and Yates).
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
@@ -96,9 +101,7 @@ impl Noise {
     /// pairs of `count` and `count + 1` share nothing if the units of this noise are not used too.
     #[must_use]
     pub fn normal_pair(&self, count: u64) -> (f64, f64) {
-        let radius = (-2.0 * libm::log(1.0 - self.unit(2 * count))).sqrt();
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * self.unit(2 * count + 1));
-        (radius * cos, radius * sin)
+        normal_pair(self.unit(2 * count), self.unit(2 * count + 1))
     }
 
     /// A number from the exponential distribution of mean 1.
@@ -106,6 +109,13 @@ impl Noise {
     pub fn exponential(&self, count: u64) -> f64 {
         -libm::log(1.0 - self.unit(count))
     }
+}
+
+/// Two independent normal numbers from two uniform ones.
+fn normal_pair(a: f64, b: f64) -> (f64, f64) {
+    let radius = (-2.0 * libm::log(1.0 - a)).sqrt();
+    let (sin, cos) = libm::sincos(std::f64::consts::TAU * b);
+    (radius * cos, radius * sin)
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ pub use directive::Directive;
 pub use referee::{Notes, Referee};
 pub use standing::{FlagStanding, Standing, VehicleStanding};
 
+use crate::link::Sharing;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
@@ -60,6 +61,8 @@ pub struct Rules {
     pub tagged_speed_factor: f64,
     /// Share of its top speed that a boat outside of the field may use.
     pub outside_speed_factor: f64,
+    /// What a team is shown of other boats. The referee sees everything.
+    pub sharing: Sharing,
     /// Boats keep this far from their own flag while it is home, m; 0 is no such rule.
     pub flag_keepout_m: f64,
     /// The game ends when a team has this score.

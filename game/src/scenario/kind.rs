@@ -2,7 +2,7 @@
 
 use super::raw;
 use schemars::{JsonSchema, generate::SchemaSettings};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
@@ -83,21 +83,72 @@ impl fmt::Display for Kind {
 #[must_use]
 pub fn schema(kind: Kind) -> Value {
     match kind {
-        Kind::Game => schema_of::<raw::RawGame>(),
-        Kind::Field => schema_of::<raw::RawField>(),
-        Kind::Rules => schema_of::<raw::RawRules>(),
-        Kind::Boat => schema_of::<raw::RawBoat>(),
-        Kind::Sea => schema_of::<raw::RawSea>(),
-        Kind::Strategy => schema_of::<raw::RawStrategy>(),
+        Kind::Game => schema_of::<raw::RawGame>(&["Link", "Loss"]),
+        Kind::Field => schema_of::<raw::RawField>(&[]),
+        Kind::Rules => schema_of::<raw::RawRules>(&["Sharing"]),
+        Kind::Boat => schema_of::<raw::RawBoat>(&[EVERYTHING]),
+        Kind::Sea => schema_of::<raw::RawSea>(&[EVERYTHING]),
+        Kind::Strategy => schema_of::<raw::RawStrategy>(&[]),
     }
 }
 
-fn schema_of<T: JsonSchema>() -> Value {
+/// Stands for all the numbers of a kind of file.
+const EVERYTHING: &str = "";
+
+/// The schema of `T`, in which numbers of the tables `drawable` may be distributions.
+fn schema_of<T: JsonSchema>(drawable: &[&str]) -> Value {
     // Draft 7 is what editors' TOML extensions understand.
     let generator = SchemaSettings::draft07().into_generator();
     let mut schema = generator.into_root_schema_for::<T>().to_value();
     without_null(&mut schema);
+    if drawable.is_empty() {
+        return schema;
+    }
+    for name in drawable {
+        let table = if *name == EVERYTHING { Some(&mut schema) } else { schema["definitions"].get_mut(*name) };
+        table.into_iter().for_each(with_distributions);
+    }
+    schema["definitions"]["Distribution"] = distribution();
     schema
+}
+
+/// Lets every number be a distribution as well.
+fn with_distributions(value: &mut Value) {
+    match value {
+        Value::Object(object) if object.get("type").is_some_and(|kind| kind == "number") => {
+            object.remove("type");
+            object.remove("format");
+            object.insert("anyOf".into(), json!([{ "type": "number" }, { "$ref": "#/definitions/Distribution" }]));
+        }
+        Value::Object(object) => object.values_mut().for_each(with_distributions),
+        Value::Array(items) => items.iter_mut().for_each(with_distributions),
+        _ => {}
+    }
+}
+
+fn distribution() -> Value {
+    let numbers = |least: u32, most: Option<u32>| match most {
+        Some(most) => json!({ "type": "array", "items": { "type": "number" }, "minItems": least, "maxItems": most }),
+        None => json!({ "type": "array", "items": { "type": "number" }, "minItems": least }),
+    };
+    let kind = |name: &str, numbers: Value, what: &str| {
+        json!({
+            "type": "object",
+            "description": what,
+            "properties": { name: numbers, "times": { "type": "number", "description": "A factor. Default 1." } },
+            "required": [name],
+            "additionalProperties": false
+        })
+    };
+    json!({
+        "description": "A number that is drawn anew for every game, and for every vehicle.",
+        "anyOf": [
+            kind("uniform", numbers(2, Some(2)), "Between two numbers, all equally likely."),
+            kind("normal", numbers(2, Some(2)), "Mean and standard deviation; within three of them."),
+            kind("log_normal", numbers(2, Some(2)), "Median, and standard deviation of the logarithm; within three of them."),
+            kind("choice", numbers(1, None), "One of these.")
+        ]
+    })
 }
 
 /// Our keys may be left out, which the generator writes as "or null"; TOML has no null.

@@ -1,5 +1,6 @@
 //! The list of problems found so far, and the checks of single values that add to it.
 
+use super::draw::{Drawing, Drawn};
 use super::problem::{Problem, Problems};
 use super::raw::{At, Pair};
 use super::source::Sources;
@@ -8,9 +9,17 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 /// What was read, and what is wrong with it.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Ledger {
     pub(super) sources: Sources,
+    /// Which numbers are taken where a distribution is given.
+    pub(super) drawing: Drawing,
+    /// Those that were taken.
+    pub(super) drawn: Vec<Drawn>,
+    /// Instead of the file system.
+    pub(super) files: Option<Vec<(PathBuf, String)>>,
+    /// The sea file that takes the place of the game's own.
+    pub(super) sea: Option<PathBuf>,
     problems: Vec<Problem>,
     faults: usize,
     /// Keys that did not fit their type, by file: they are not missing as well.
@@ -18,6 +27,20 @@ pub(super) struct Ledger {
 }
 
 impl Ledger {
+    /// An empty ledger.
+    pub(super) fn new(drawing: Drawing) -> Ledger {
+        Ledger {
+            sources: Sources::default(),
+            drawing,
+            drawn: vec![],
+            files: None,
+            sea: None,
+            problems: vec![],
+            faults: 0,
+            unfit: BTreeSet::new(),
+        }
+    }
+
     /// Notes that the value at `at` is wrong. A line whose syntax is wrong has had its say already.
     pub(super) fn note(&mut self, at: usize, message: impl Into<String>) {
         self.faults += 1;
@@ -73,14 +96,14 @@ impl Ledger {
     }
 
     /// The value, if nothing was wrong.
-    pub(super) fn close<T>(mut self, value: Option<T>) -> Result<T, Problems> {
+    pub(super) fn close<T>(&mut self, value: Option<T>) -> Result<T, Problems> {
         match value {
             Some(value) if self.problems.is_empty() => Ok(value),
             _ => {
                 assert!(!self.problems.is_empty(), "a check failed without saying why");
                 self.problems.sort();
                 self.problems.dedup();
-                Err(Problems(self.problems))
+                Err(Problems(std::mem::take(&mut self.problems)))
             }
         }
     }

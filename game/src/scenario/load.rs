@@ -1,15 +1,15 @@
 //! The ways in: a path, and out comes what the file says, or everything that is wrong with it.
 
+use super::draw::{Drawing, Recipe};
 use super::kind::Kind;
 use super::ledger::Ledger;
 use super::problem::Problems;
-use super::read::{self, Document};
+use super::read::{self, Document, Typed};
 use super::{Scenario, Strategy, check};
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::rules::Rules;
 use crate::sea::Sea;
-use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -58,12 +58,63 @@ impl Checked {
     }
 }
 
-/// Reads and checks the game file at `path` and every file it names.
+/// Reads and checks the game file at `path` and every file it names. Where files give distributions, the numbers
+/// are those of the game's own seed; [`Scenario::of_seed`] draws others.
 ///
 /// # Errors
 /// Everything that is wrong in any of them, by file, line and column.
 pub fn load(path: &Path) -> Result<Scenario, Problems> {
-    one(path, check::game)
+    load_with(path, None)
+}
+
+/// Reads and checks a game, with the sea file at `sea` in place of its own.
+///
+/// # Errors
+/// Everything that is wrong in any file, by file, line and column.
+pub fn load_with(path: &Path, sea: Option<&Path>) -> Result<Scenario, Problems> {
+    let read = |drawing: Drawing| {
+        let mut ledger = Ledger::new(drawing);
+        ledger.sea = sea.map(Path::to_owned);
+        game_of(ledger, path)
+    };
+    let least = read(Drawing::Least)?;
+    if least.recipe.is_none() {
+        return Ok(least);
+    }
+    read(Drawing::Greatest)?;
+    least.of_seed(least.seed)
+}
+
+fn game_of(mut ledger: Ledger, path: &Path) -> Result<Scenario, Problems> {
+    let value = read::document(&mut ledger, path, None).and_then(|document| check::game(&mut ledger, &document));
+    let mut scenario = ledger.close(value)?;
+    scenario.drawn = std::mem::take(&mut ledger.drawn);
+    if !scenario.drawn.is_empty() {
+        let (game, sea) = (path.to_owned(), ledger.sea.clone());
+        scenario.recipe = Some(Recipe { game, sea, files: ledger.sources.texts(), seed: None });
+    }
+    Ok(scenario)
+}
+
+impl Scenario {
+    /// The game of this scenario that `seed` chooses: where files give distributions, their numbers are drawn.
+    ///
+    /// # Errors
+    /// What is wrong with the numbers together, though each alone may be drawn.
+    pub fn of_seed(&self, seed: u64) -> Result<Scenario, Problems> {
+        let Some(recipe) = self.recipe.as_ref().filter(|recipe| recipe.seed != Some(seed)) else {
+            return Ok(Scenario { seed, ..self.clone() });
+        };
+        let mut ledger = Ledger::new(Drawing::Seed(seed));
+        ledger.files = Some(recipe.files.clone());
+        ledger.sea.clone_from(&recipe.sea);
+        let mut drawn = game_of(ledger, &recipe.game)?;
+        drawn.seed = seed;
+        if let Some(recipe) = &mut drawn.recipe {
+            recipe.seed = Some(seed);
+        }
+        Ok(drawn)
+    }
 }
 
 /// Reads and checks the boat file at `path`.
@@ -92,7 +143,7 @@ pub fn load_sea(path: &Path) -> Result<Sea, Problems> {
 /// Everything that is wrong in it, its bases and the files it names.
 pub fn check_file(path: &Path) -> Result<Checked, Problems> {
     match Kind::by_folder(path).unwrap_or_else(|| Kind::by_keys(&top_keys(path))) {
-        Kind::Game => one(path, check::game).map(|game| Checked::Game(Box::new(game))),
+        Kind::Game => load(path).map(|game| Checked::Game(Box::new(game))),
         Kind::Field => one(path, check::field).map(|field| Checked::Field(Box::new(field))),
         Kind::Rules => one(path, check::rules).map(|rules| Checked::Rules(Box::new(rules))),
         Kind::Boat => one(path, check::boat).map(|boat| Checked::Boat(Box::new(boat))),
@@ -101,17 +152,22 @@ pub fn check_file(path: &Path) -> Result<Checked, Problems> {
     }
 }
 
-fn one<R: DeserializeOwned + Default, T>(
-    path: &Path,
-    check: fn(&mut Ledger, &Document<R>) -> Option<T>,
-) -> Result<T, Problems> {
-    let mut ledger = Ledger::default();
-    let value = read::document(&mut ledger, path, None).and_then(|document| check(&mut ledger, &document));
-    ledger.close(value)
+fn one<R: Typed, T>(path: &Path, check: fn(&mut Ledger, &Document<R>) -> Option<T>) -> Result<T, Problems> {
+    let read = |drawing: Drawing| {
+        let mut ledger = Ledger::new(drawing);
+        let value = read::document(&mut ledger, path, None).and_then(|document| check(&mut ledger, &document));
+        ledger.close(value).map(|value| (value, ledger.drawn.is_empty()))
+    };
+    let (value, is_certain) = read(Drawing::Least)?;
+    if is_certain {
+        return Ok(value);
+    }
+    read(Drawing::Greatest)?;
+    Ok(read(Drawing::Seed(1))?.0)
 }
 
 /// The top-level keys of a file and its bases; what is wrong with them is found again by the check.
 fn top_keys(path: &Path) -> BTreeSet<String> {
-    let Some(chain) = read::chain(&mut Ledger::default(), path, None) else { return BTreeSet::new() };
+    let Some(chain) = read::chain(&mut Ledger::new(Drawing::Least), path, None) else { return BTreeSet::new() };
     read::merged(&chain).get_ref().keys().map(|key| key.get_ref().to_string()).collect()
 }

@@ -5,6 +5,7 @@
 //! `check` makes of it what the program believes, and the `ledger` collects every [`Problem`] on the way.
 
 mod check;
+mod draw;
 mod explain;
 mod kind;
 mod ledger;
@@ -14,8 +15,9 @@ mod raw;
 mod read;
 mod source;
 
+pub use draw::{Drawn, Recipe};
 pub use kind::{Kind, schema};
-pub use load::{Checked, check_file, load, load_boat, load_sea};
+pub use load::{Checked, check_file, load, load_boat, load_sea, load_with};
 pub use problem::{Problem, Problems};
 
 use crate::boat::Boat;
@@ -59,6 +61,10 @@ pub struct Scenario {
     pub strategies: Vec<Strategy>,
     /// Who plays, in the order in which everything is resolved.
     pub vehicles: Vec<Vehicle>,
+    /// Numbers that were drawn for this game.
+    pub drawn: Vec<Drawn>,
+    /// How to draw others, where there are any.
+    pub recipe: Option<Recipe>,
 }
 
 impl Scenario {

@@ -1,5 +1,6 @@
 //! From a path to what the file says: text, bases, merging, and every complaint about its form.
 
+use super::draw::{self, Drawable};
 use super::explain::explain;
 use super::ledger::Ledger;
 use super::raw::At;
@@ -36,17 +37,35 @@ type Table<'i> = Spanned<DeTable<'i>>;
 /// A file and its bases, the file first: where each begins, and its text.
 pub(super) type Chain = Vec<(usize, Arc<str>)>;
 
+/// A kind of file as typed.
+pub(super) trait Typed: DeserializeOwned + Default {
+    /// Where distributions may stand in place of numbers.
+    const DRAWABLE: Drawable;
+    /// Whose the numbers are, where nobody says.
+    const OWNER: &'static str;
+}
+
 /// Reads the file at `path` with its bases. Problems with finding it stand at `asked_at`, the reference.
-pub(super) fn document<T: DeserializeOwned + Default>(
+pub(super) fn document<T: Typed>(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -> Option<Document<T>> {
+    document_of(ledger, path, asked_at, T::OWNER)
+}
+
+/// The same, for an owner who draws numbers of its own.
+pub(super) fn document_of<T: Typed>(
     ledger: &mut Ledger,
     path: &Path,
     asked_at: Option<usize>,
+    owner: &str,
 ) -> Option<Document<T>> {
     let chain = chain(ledger, path, asked_at)?;
     let start = chain[0].0;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     ledger.is_name(start, "the file's name", &name);
-    let raw = deserialised(ledger, start, merged(&chain));
+    let typed = merged(&chain);
+    let numbers = draw::numbers(ledger, typed.get_ref(), T::DRAWABLE, owner);
+    let mut table: Table<'_> = typed;
+    draw::put(table.get_mut(), T::DRAWABLE, &numbers);
+    let raw = deserialised(ledger, start, table);
     Some(Document { name, start, raw })
 }
 
@@ -80,7 +99,7 @@ pub(super) fn chain(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -
 
 /// Reads one file into the virtual text.
 fn text_of(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -> Option<(usize, Arc<str>)> {
-    let bytes = match bytes_of(path) {
+    let bytes = match bytes_of(ledger, path) {
         Ok(bytes) => bytes,
         Err(why) => {
             match asked_at {
@@ -105,7 +124,11 @@ fn text_of(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -> Option<
     }
 }
 
-fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
+fn bytes_of(ledger: &Ledger, path: &Path) -> Result<Vec<u8>, String> {
+    if let Some(files) = &ledger.files {
+        let kept = files.iter().find(|(kept, _)| kept == path);
+        return kept.map(|(_, text)| text.clone().into_bytes()).ok_or_else(|| "is not among the files kept".into());
+    }
     let unreadable = |error: std::io::Error| format!("cannot be read ({error}), expected a file");
     let about = std::fs::metadata(path).map_err(unreadable)?;
     if !about.is_file() {

@@ -40,6 +40,17 @@ impl Sources {
         start
     }
 
+    /// Every file, once.
+    pub(super) fn texts(&self) -> Vec<(PathBuf, String)> {
+        let mut texts: Vec<(PathBuf, String)> = vec![];
+        for file in &self.files {
+            if !texts.iter().any(|(path, _)| *path == file.path) {
+                texts.push((file.path.clone(), file.text.to_string()));
+            }
+        }
+        texts
+    }
+
     /// The index of the file that `offset` lies in.
     pub(super) fn index_at(&self, offset: usize) -> usize {
         self.files.partition_point(|file| file.start <= offset) - 1

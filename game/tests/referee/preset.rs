@@ -1,6 +1,7 @@
 //! The four rule books the referee must be able to apply, and a scene that tells each from the others.
 
 use crate::scene::{Scene, captured, freed, grabbed, tagged};
+use game::link::Sharing;
 use game::rules::{CaptureAt, Directive, Points, Rules, TagChoice, TaggedBoat, UntagAt, UntagOn};
 use game::{Ned, SimTime, VehicleId};
 
@@ -25,6 +26,7 @@ pub(crate) fn aquaticus_2023() -> Rules {
         tagged_boat: TaggedBoat::DrivesItself,
         tagged_speed_factor: 1.0,
         outside_speed_factor: 1.0,
+        sharing: Sharing::default(),
         flag_keepout_m: 0.0,
         win_score: None,
         time_limit: SimTime::from_s(600.0),
@@ -43,6 +45,7 @@ pub(crate) fn pyquaticus() -> Rules {
         tag_choice: TagChoice::First,
         tagged_boat: TaggedBoat::IsDriven,
         outside_speed_factor: 0.5,
+        sharing: Sharing::default(),
         flag_keepout_m: 5.0,
         win_score: Some(20),
         ..aquaticus_2023()
@@ -63,6 +66,7 @@ pub(crate) fn mctf_2026() -> Rules {
         untag_at: UntagAt::OwnCorners,
         untag_radius_m: 20.0,
         tagged_speed_factor: 0.5,
+        sharing: Sharing::default(),
         flag_keepout_m: 0.0,
         power_play: SimTime::from_s(120.0),
         ..mctf_2025()

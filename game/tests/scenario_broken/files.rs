@@ -15,7 +15,7 @@ const FILES: &[Case] = &[
             "boats/x.toml:1:1: thruster.propeller is missing, expected it or table_pct_newton",
             "boats/x.toml:1:12: length_m is the string \"long\", expected a number",
             "boats/x.toml:2:10: beam_m is -1, expected 0.05 to 50",
-            "boats/x.toml:3:1: wings is unknown, expected one of base, length_m, beam_m, hull, thruster, autopilot",
+            "boats/x.toml:3:1: wings is unknown, expected one of base, length_m, beam_m, draught_m, hull, windage, thruster, autopilot, kinematic, gps, compass, imu",
             "boats/x.toml:5:11: mass_kg is nan, expected 0.1 to 1000000",
             "boats/x.toml:6:15: munk_factor is 2, expected 0 to 1",
         ],

@@ -2,19 +2,19 @@
 
 use super::berth;
 use super::boat::{FASTEST_PER_TICK, fastest_decay};
+use super::link::link;
 use super::missing_path;
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::id::TeamId;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawBoat, RawFleet, RawGame, RawStrategy, RawVehicle};
-use crate::scenario::read::{self, Document};
+use crate::scenario::read::{self, Document, Typed};
 use crate::scenario::{Berth, Scenario, Strategy, Team, Vehicle};
 use crate::sea::Sea;
 use crate::time::SimTime;
-use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The most vehicles of a game.
 const MOST_VEHICLES: usize = 10_000;
@@ -32,33 +32,38 @@ pub(super) struct Entry {
     pub(super) heading_deg: Option<f64>,
 }
 
-/// Files of one kind that the game names, each read once.
+/// Files of one kind that the game names. Each is read once, or once for each owner if it has numbers to be drawn.
 struct Shelf<R, T> {
     items: Vec<T>,
-    names: BTreeSet<String>,
+    path_of: BTreeMap<String, PathBuf>,
+    /// Of files without numbers to be drawn.
     index_of: BTreeMap<PathBuf, Option<usize>>,
     check: fn(&mut Ledger, &Document<R>) -> Option<T>,
 }
 
-impl<R: DeserializeOwned + Default, T> Shelf<R, T> {
+impl<R: Typed, T> Shelf<R, T> {
     fn new(check: fn(&mut Ledger, &Document<R>) -> Option<T>) -> Shelf<R, T> {
-        Shelf { items: vec![], names: BTreeSet::new(), index_of: BTreeMap::new(), check }
+        Shelf { items: vec![], path_of: BTreeMap::new(), index_of: BTreeMap::new(), check }
     }
 
-    /// The index of the file that `given` names.
-    fn index(&mut self, ledger: &mut Ledger, given: &At<String>) -> Option<usize> {
+    /// The index of the file that `given` names, as `owner` has it.
+    fn index(&mut self, ledger: &mut Ledger, given: &At<String>, owner: &str) -> Option<usize> {
         let path = ledger.sources.resolve(given.at, &given.value);
         if let Some(index) = self.index_of.get(&path) {
             return *index;
         }
-        let index = self.fetch(ledger, given, &path);
-        self.index_of.insert(path, index);
+        let drawn = ledger.drawn.len();
+        let index = self.fetch(ledger, given, &path, owner);
+        if ledger.drawn.len() == drawn {
+            self.index_of.insert(path, index);
+        }
         index
     }
 
-    fn fetch(&mut self, ledger: &mut Ledger, given: &At<String>, path: &std::path::Path) -> Option<usize> {
-        let document = read::document(ledger, path, Some(given.at))?;
-        if !self.names.insert(document.name.clone()) {
+    fn fetch(&mut self, ledger: &mut Ledger, given: &At<String>, path: &Path, owner: &str) -> Option<usize> {
+        let document = read::document_of(ledger, path, Some(given.at), owner)?;
+        let known = self.path_of.entry(document.name.clone()).or_insert_with(|| path.to_owned());
+        if *known != path {
             let message =
                 format!("{} is the second file named {:?}, expected different names", given.value, document.name);
             ledger.note(given.at, message);
@@ -85,10 +90,7 @@ pub(in crate::scenario) fn game(ledger: &mut Ledger, document: &Document<RawGame
     let (raw, start) = (&document.raw, document.start);
     let field = referenced(ledger, start, "field", raw.field.as_ref(), super::field);
     let rules = referenced(ledger, start, "rules", raw.rules.as_ref(), super::rules);
-    let sea = match &raw.sea {
-        Some(given) => referenced(ledger, start, "sea", Some(given), super::sea),
-        None => Some(Sea::at_rest()),
-    };
+    let sea = sea(ledger, document);
     let (tick, ticks_per_decision) = clock(ledger, raw);
     let seed = ledger.whole("seed", raw.seed.as_ref(), 0..=i64::MAX, 1);
     let duration_s = ledger.number("duration_s", raw.duration_s.as_ref(), 1.0..=86400.0);
@@ -112,6 +114,7 @@ pub(in crate::scenario) fn game(ledger: &mut Ledger, document: &Document<RawGame
     }
     let berths = berth::all(&entries, &field);
     berth::check_clear(ledger, &entries, &berths, &boats.items, &field);
+    let link = raw.link.as_ref().map(|given| link(ledger, &given.value, &field));
     rules.time_limit = duration_s.map_or(rules.time_limit, SimTime::from_s);
     let vehicles = entries.into_iter().zip(berths).map(|(entry, berth)| Vehicle {
         name: entry.name,
@@ -130,16 +133,30 @@ pub(in crate::scenario) fn game(ledger: &mut Ledger, document: &Document<RawGame
         field,
         rules,
         sea,
-        link: None,
+        link,
         teams: teams.into_iter().map(|(name, _)| Team { name }).collect(),
         boats: boats.items,
         strategies: strategies.items,
         vehicles: vehicles.collect(),
+        drawn: vec![],
+        recipe: None,
     };
     (ledger.faults() == faults).then_some(scenario)
 }
 
-fn referenced<R: DeserializeOwned + Default, T>(
+/// The game's sea, or the one that takes its place.
+fn sea(ledger: &mut Ledger, document: &Document<RawGame>) -> Option<Sea> {
+    if let Some(path) = ledger.sea.clone() {
+        let document = read::document(ledger, &path, None)?;
+        return super::sea(ledger, &document);
+    }
+    match &document.raw.sea {
+        Some(given) => referenced(ledger, document.start, "sea", Some(given), super::sea),
+        None => Some(Sea::at_rest()),
+    }
+}
+
+fn referenced<R: Typed, T>(
     ledger: &mut Ledger,
     owner: usize,
     key: &str,
@@ -222,7 +239,7 @@ impl Roster<'_> {
         // The teams' strategies are checked even where no boat of theirs follows them.
         let followed = self.strategies.items.len();
         for strategy in self.teams.iter().filter_map(|(_, strategy)| strategy.as_ref()) {
-            self.strategies.index(ledger, strategy);
+            self.strategies.index(ledger, strategy, RawStrategy::OWNER);
         }
         self.strategies.items.truncate(followed);
     }
@@ -230,7 +247,8 @@ impl Roster<'_> {
     fn add_vehicle(&mut self, ledger: &mut Ledger, vehicle: &At<RawVehicle>) {
         let raw = &vehicle.value;
         let team = self.team(ledger, vehicle.at, "vehicle", raw.team.as_ref());
-        let boat = self.boat(ledger, vehicle.at, "vehicle", raw.boat.as_ref());
+        let called = raw.name.as_ref().map_or("", |name| name.value.as_str());
+        let boat = self.boat(ledger, (vehicle.at, "vehicle"), raw.boat.as_ref(), called);
         let strategy = self.strategy(ledger, vehicle.at, "vehicle", raw.strategy.as_ref(), team);
         let heading_deg = ledger.number("heading_deg", raw.heading_deg.as_ref(), -360.0..=360.0);
         let berth = team.zip(self.field).and_then(|(team, field)| berth::stated(ledger, raw, heading_deg, team, field));
@@ -250,7 +268,6 @@ impl Roster<'_> {
     fn add_fleet(&mut self, ledger: &mut Ledger, fleet: &At<RawFleet>) {
         let raw = &fleet.value;
         let team = self.team(ledger, fleet.at, "fleet", raw.team.as_ref());
-        let boat = self.boat(ledger, fleet.at, "fleet", raw.boat.as_ref());
         let strategy = self.strategy(ledger, fleet.at, "fleet", raw.strategy.as_ref(), team);
         if raw.count.is_none() {
             ledger.note_missing(fleet.at, "fleet.count", &format!("1 to {MOST_VEHICLES}"));
@@ -258,11 +275,10 @@ impl Roster<'_> {
         let count = ledger.whole("count", raw.count.as_ref(), 1..=MOST_VEHICLES as i64, 1) as usize;
         let spawn = raw.spawn.as_ref();
         let berth = spawn.zip(self.field).and_then(|(spawn, field)| berth::somewhere(ledger, spawn, count, field));
+        let of_team = team.map(|team| format!("{}_{{}}", self.teams[team.index()].0));
+        let pattern = raw.name.as_ref().map(|name| name.value.clone()).or(of_team).unwrap_or_default();
+        let boat = self.boat(ledger, (fleet.at, "fleet"), raw.boat.as_ref(), &pattern.replace("{}", "1"));
         let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy) else { return };
-        let pattern = match &raw.name {
-            Some(name) => name.value.clone(),
-            None => format!("{}_{{}}", self.teams[team.index()].0),
-        };
         let place = raw.name.as_ref().map_or(fleet.at, |name| name.at);
         if !pattern.contains("{}") {
             ledger.note(place, format!("name is {pattern:?}, expected {{}} in it, where the number goes"));
@@ -276,7 +292,11 @@ impl Roster<'_> {
             if !self.is_new_name(ledger, place, &name) {
                 return;
             }
-            let berth = berth.clone();
+            let boat = match number {
+                1 => Some(boat),
+                _ => self.boat(ledger, (fleet.at, "fleet"), raw.boat.as_ref(), &name),
+            };
+            let (Some(boat), berth) = (boat, berth.clone()) else { return };
             self.entries.push(Entry { name, place: fleet.at, team, boat, strategy, berth, heading_deg: None });
         }
     }
@@ -313,12 +333,19 @@ impl Roster<'_> {
         index.map(|index| TeamId(index as u8))
     }
 
-    fn boat(&mut self, ledger: &mut Ledger, owner: usize, kind: &str, given: Option<&At<String>>) -> Option<usize> {
+    /// The boat of the vehicle `name`.
+    fn boat(
+        &mut self,
+        ledger: &mut Ledger,
+        (at, kind): (usize, &str),
+        given: Option<&At<String>>,
+        name: &str,
+    ) -> Option<usize> {
         let Some(given) = given.or(self.raw.boat.as_ref()) else {
-            ledger.note_missing(owner, &format!("{kind}.boat"), "the path of a boat file here or for the game");
+            ledger.note_missing(at, &format!("{kind}.boat"), "the path of a boat file here or for the game");
             return None;
         };
-        self.boats.index(ledger, given)
+        self.boats.index(ledger, given, name)
     }
 
     fn strategy(
@@ -337,6 +364,6 @@ impl Roster<'_> {
             }
             return None;
         }
-        self.strategies.index(ledger, given.or(of_team.as_ref())?)
+        self.strategies.index(ledger, given.or(of_team.as_ref())?, RawStrategy::OWNER)
     }
 }

@@ -6,6 +6,7 @@ mod berth;
 mod boat;
 mod field;
 mod game;
+mod link;
 mod rules;
 mod sea;
 mod strategy;

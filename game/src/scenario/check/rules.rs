@@ -1,5 +1,7 @@
 //! A rules file, checked.
 
+use super::link::sharing;
+use crate::link::Sharing;
 use crate::rules::{CaptureAt, Points, Rules, TagChoice, TaggedBoat, UntagAt, UntagOn};
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawRules};
@@ -37,6 +39,7 @@ pub(in crate::scenario) fn rules(ledger: &mut Ledger, document: &Document<RawRul
         tagged_speed_factor: number("tagged_speed_factor", &raw.tagged_speed_factor, 0.05..=1.0, 1.0),
         outside_speed_factor: number("outside_speed_factor", &raw.outside_speed_factor, 0.05..=1.0, 1.0),
         flag_keepout_m: number("flag_keepout_m", &raw.flag_keepout_m, 0.0..=1000.0, 0.0),
+        sharing: Sharing::default(),
         win_score: None,
         time_limit: SimTime::from_s(number("time_limit_s", &raw.time_limit_s, 1.0..=86400.0, 600.0)),
         power_play: SimTime::from_s(number("power_play_s", &raw.power_play_s, 0.0..=86400.0, 0.0)),
@@ -48,6 +51,7 @@ pub(in crate::scenario) fn rules(ledger: &mut Ledger, document: &Document<RawRul
         capture: ledger.whole("capture", points.capture.as_ref(), 0..=1000, 2) as u32,
         tag: ledger.whole("tag", points.tag.as_ref(), 0..=1000, 0) as u32,
     };
+    rules.sharing = raw.sharing.as_ref().map_or_else(Sharing::default, |given| sharing(ledger, &given.value));
     if ledger.faults() == faults {
         homes_can_be_reached(ledger, raw, &rules);
     }

@@ -1,11 +1,11 @@
 //! A boat file as typed.
 
-use super::{At, Pair};
+use super::{At, Pair, RawCompass, RawGps, RawImu, RawKinematic};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A kind of boat: hull, thrusters and front seat, in surge, sway and yaw. The origin is midships; x
-/// ahead, y to starboard, yaw clockwise.
+/// ahead, y to starboard, yaw clockwise. Any number may be drawn by lot for every game.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "Squall boat")]
@@ -17,12 +17,24 @@ pub(in crate::scenario) struct RawBoat {
     pub(in crate::scenario) length_m: Option<At<f64>>,
     /// Beam over all, m: 0.05 to 50. Required.
     pub(in crate::scenario) beam_m: Option<At<f64>>,
+    /// Draught, m: 0.01 to 20. Default the hull's crossflow_draught_m, or L / 12.
+    pub(in crate::scenario) draught_m: Option<At<f64>>,
     /// Inertia and resistance. Required.
     pub(in crate::scenario) hull: Option<RawHull>,
-    /// The two thrusters. Required.
+    /// What the wind gets hold of.
+    pub(in crate::scenario) windage: Option<RawWindage>,
+    /// The two thrusters. Required, unless the boat is kinematic.
     pub(in crate::scenario) thruster: Option<RawThruster>,
-    /// The front seat's heading and speed loops. Required.
+    /// The front seat's heading and speed loops. Required, unless the boat is kinematic.
     pub(in crate::scenario) autopilot: Option<RawAutopilot>,
+    /// Instead of thruster and autopilot: the point boat of MOOS, for parity. Waves and wind do nothing to it.
+    pub(in crate::scenario) kinematic: Option<At<RawKinematic>>,
+    /// Satellite navigation. Default perfect.
+    pub(in crate::scenario) gps: Option<At<RawGps>>,
+    /// Magnetic compass. Default perfect.
+    pub(in crate::scenario) compass: Option<At<RawCompass>>,
+    /// Gyro and accelerometers. Default perfect.
+    pub(in crate::scenario) imu: Option<At<RawImu>>,
 }
 
 /// Inertia and resistance of a hull. What is left out is estimated from length L, beam, mass m and thrust.
@@ -87,6 +99,24 @@ pub(in crate::scenario) struct RawThruster {
     pub(in crate::scenario) slew_per_s: Option<At<f64>>,
     /// Commands smaller than this share of full ahead give nothing: 0 to 0.9. Default 0.
     pub(in crate::scenario) deadband: Option<At<f64>>,
+    /// Largest setting that is taken up, as a share of full ahead or astern: 0.05 to 1. Default 1.
+    pub(in crate::scenario) saturation: Option<At<f64>>,
+    /// Factor on the port thruster's thrust: 0 to 2. Default 1. The front seat does not know it.
+    pub(in crate::scenario) port_gain: Option<At<f64>>,
+    /// Factor on the starboard thruster's thrust: 0 to 2. Default 1. The front seat does not know it.
+    pub(in crate::scenario) starboard_gain: Option<At<f64>>,
+    /// Factor on thrust astern: 0 to 1. Default 1. The front seat does not know it.
+    pub(in crate::scenario) reverse_efficiency: Option<At<f64>>,
+    /// Moment at full thrust that nobody asked for, N m clockwise: -1000000 to 1000000. Default 0.
+    pub(in crate::scenario) bias_newton_m: Option<At<f64>>,
+    /// How long a command is on its way to the thrusters, s: 0 to 5. Default 0.
+    pub(in crate::scenario) latency_s: Option<At<f64>>,
+    /// Without a new order for this long the thrusters stop, s: 0.1 to 3600. Default never.
+    pub(in crate::scenario) watchdog_s: Option<At<f64>>,
+    /// A battery that sags. Default one that does not.
+    pub(in crate::scenario) battery: Option<At<RawBattery>>,
+    /// Propellers that suck air in waves. Default they do not.
+    pub(in crate::scenario) ventilation: Option<At<RawVentilation>>,
 }
 
 /// A propeller: thrust k n |n| newton at n rad/s.
@@ -117,4 +147,49 @@ pub(in crate::scenario) struct RawAutopilot {
     pub(in crate::scenario) heading_damping: Option<At<f64>>,
     /// Time constant of the speed loop, s: 0.1 to 60. Default 2.
     pub(in crate::scenario) speed_time_s: Option<At<f64>>,
+}
+
+/// A battery whose voltage, and with it the thrust, falls with its charge.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Battery")]
+pub(in crate::scenario) struct RawBattery {
+    /// Energy when full, W h: 1 to 1000000. Required.
+    pub(in crate::scenario) capacity_wh: Option<At<f64>>,
+    /// Charge at the start of a game: 0 to 1. Default 1.
+    pub(in crate::scenario) charge: Option<At<f64>>,
+    /// Power that both thrusters draw at full ahead, W: 0 to 1000000. Required.
+    pub(in crate::scenario) full_power_w: Option<At<f64>>,
+    /// Power that everything else draws, W: 0 to 100000. Default 0.
+    pub(in crate::scenario) hotel_power_w: Option<At<f64>>,
+    /// Share of the thrust that is lost when it is empty: 0 to 0.9. Default 0.15.
+    pub(in crate::scenario) sag: Option<At<f64>>,
+}
+
+/// Propellers near the surface, which suck air as waves bare them.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Ventilation")]
+pub(in crate::scenario) struct RawVentilation {
+    /// How deep the propellers are in still water, m: 0.01 to 10. Required.
+    pub(in crate::scenario) depth_m: Option<At<f64>>,
+}
+
+/// What the wind gets hold of: projected areas and coefficients (Fossen 2021, ch. 10).
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Windage")]
+pub(in crate::scenario) struct RawWindage {
+    /// Area from ahead, m²: 0 to 1000. Default 0.36 beam².
+    pub(in crate::scenario) frontal_area_m2: Option<At<f64>>,
+    /// Area from the side, m²: 0 to 5000. Default 0.16 L².
+    pub(in crate::scenario) lateral_area_m2: Option<At<f64>>,
+    /// Height at which the wind is taken, m: 0.05 to 100. Default 0.25 L.
+    pub(in crate::scenario) height_m: Option<At<f64>>,
+    /// C_x: 0 to 2. Default 0.6.
+    pub(in crate::scenario) surge_coefficient: Option<At<f64>>,
+    /// C_y: 0 to 2. Default 0.85.
+    pub(in crate::scenario) sway_coefficient: Option<At<f64>>,
+    /// C_n: -0.5 to 0.5. Default 0.1.
+    pub(in crate::scenario) yaw_coefficient: Option<At<f64>>,
 }

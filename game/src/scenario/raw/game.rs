@@ -1,6 +1,6 @@
 //! A game file as typed.
 
-use super::{At, Pair};
+use super::{At, Pair, RawLink};
 use schemars::JsonSchema;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -22,6 +22,8 @@ pub(in crate::scenario) struct RawGame {
     pub(in crate::scenario) sea: Option<At<String>>,
     /// The boat file of all vehicles that name none.
     pub(in crate::scenario) boat: Option<At<String>>,
+    /// Over which radio links minds and boats talk. Default at once and without loss.
+    pub(in crate::scenario) link: Option<At<RawLink>>,
     /// Chooses the game: 0 to 9223372036854775807. Default 1.
     pub(in crate::scenario) seed: Option<At<i64>>,
     /// The game ends at this time, s: 1 to 86400. Default what the rules say.

@@ -6,17 +6,28 @@
 mod boat;
 mod field;
 mod game;
+mod kinematic;
+mod link;
 mod rules;
 mod sea;
+mod sensor;
 mod strategy;
 
-pub(super) use boat::{RawAutopilot, RawBoat, RawHull, RawPropeller, RawThruster};
+pub(super) use boat::{RawAutopilot, RawBattery, RawBoat, RawHull, RawPropeller, RawThruster, RawVentilation};
 pub(super) use field::{RawField, RawObstacle, RawSide, RawWalls};
 pub(super) use game::{RawFleet, RawGame, RawSpawn, RawVehicle, Whereabouts};
+pub(super) use kinematic::{RawKinematic, RawPid};
+pub(super) use link::{RawLink, RawLoss, RawSharing};
 pub(super) use rules::RawRules;
-pub(super) use sea::RawSea;
+pub(super) use sea::{
+    RawCurrent, RawEddies, RawEddy, RawGusts, RawSea, RawShear, RawSpectrum, RawSpreading, RawTide, RawWander,
+    RawWaves, RawWind,
+};
+pub(super) use sensor::{RawCompass, RawFault, RawGps, RawImu, RawJump};
 pub(super) use strategy::RawStrategy;
 
+use super::draw::Drawable;
+use super::read::Typed;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
@@ -65,4 +76,34 @@ impl<T: JsonSchema> JsonSchema for At<T> {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         T::json_schema(generator)
     }
+}
+
+impl Typed for RawGame {
+    const DRAWABLE: Drawable = Drawable::Table("link");
+    const OWNER: &'static str = "game";
+}
+
+impl Typed for RawRules {
+    const DRAWABLE: Drawable = Drawable::Table("sharing");
+    const OWNER: &'static str = "rules";
+}
+
+impl Typed for RawBoat {
+    const DRAWABLE: Drawable = Drawable::Everything;
+    const OWNER: &'static str = "boat";
+}
+
+impl Typed for RawSea {
+    const DRAWABLE: Drawable = Drawable::Everything;
+    const OWNER: &'static str = "sea";
+}
+
+impl Typed for RawField {
+    const DRAWABLE: Drawable = Drawable::Nothing;
+    const OWNER: &'static str = "field";
+}
+
+impl Typed for RawStrategy {
+    const DRAWABLE: Drawable = Drawable::Nothing;
+    const OWNER: &'static str = "strategy";
 }

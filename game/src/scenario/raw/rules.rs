@@ -1,6 +1,6 @@
 //! A rules file as typed.
 
-use super::At;
+use super::{At, RawSharing};
 use crate::rules::{CaptureAt, TagChoice, TaggedBoat, UntagAt, UntagOn};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -26,6 +26,8 @@ pub(in crate::scenario) struct RawRules {
     pub(in crate::scenario) capture_radius_m: Option<At<f64>>,
     /// Two boats closer than this, centre to centre, have collided, m: 0 to 100. Default 3.
     pub(in crate::scenario) collision_distance_m: Option<At<f64>>,
+    /// What a team is shown of other boats. Default all of it, at once.
+    pub(in crate::scenario) sharing: Option<At<RawSharing>>,
     /// Where a flag must be brought. Default "own_flag".
     pub(in crate::scenario) capture_at: Option<RawCaptureAt>,
     /// Whether a capture needs the own flag at its home. Default false.

@@ -1,9 +1,12 @@
 //! A boat file, checked, with what it leaves out estimated.
 
-use super::same_place;
-use crate::boat::{Autopilot, Boat, Drive, Flaws, Hull, Sensors, ThrustCurve, Thruster, Windage};
+mod kinematic;
+mod sensor;
+mod thruster;
+
+use crate::boat::{Boat, Drive, Hull, Sensors, ThrustCurve, Windage};
 use crate::scenario::ledger::Ledger;
-use crate::scenario::raw::{At, Pair, RawAutopilot, RawBoat, RawHull, RawPropeller, RawThruster};
+use crate::scenario::raw::{At, RawBoat, RawHull};
 use crate::scenario::read::Document;
 
 /// The physics takes explicit steps of the game's tick: motions that die out faster than this many times
@@ -23,21 +26,15 @@ pub(in crate::scenario) fn boat(ledger: &mut Ledger, document: &Document<RawBoat
         name: document.name.clone(),
         length_m: ledger.required(start, "length_m", raw.length_m.as_ref(), 0.1..=100.0),
         beam_m: ledger.required(start, "beam_m", raw.beam_m.as_ref(), 0.05..=50.0),
-        draught_m: 0.15,
+        draught_m: ledger.number("draught_m", raw.draught_m.as_ref(), 0.01..=20.0).unwrap_or(0.0),
         hull: given_hull(ledger, start, &hull),
-        windage: Windage {
-            frontal_area_m2: 0.3,
-            lateral_area_m2: 0.55,
-            height_m: 0.5,
-            surge_coefficient: 0.6,
-            sway_coefficient: 0.85,
-            yaw_coefficient: 0.1,
+        windage: windage(ledger, raw),
+        drive: drive(ledger, document),
+        sensors: Sensors {
+            gps: raw.gps.as_ref().map(|given| sensor::gps(ledger, given)),
+            compass: raw.compass.as_ref().map(|given| sensor::compass(ledger, &given.value)),
+            imu: raw.imu.as_ref().map(|given| sensor::imu(ledger, &given.value)),
         },
-        drive: Drive::Thrusters {
-            thruster: thruster(ledger, start, &raw.thruster.clone().unwrap_or_default()),
-            autopilot: autopilot(ledger, start, &raw.autopilot.clone().unwrap_or_default()),
-        },
-        sensors: Sensors::default(),
     };
     if ledger.faults() != faults {
         return None;
@@ -59,6 +56,38 @@ pub(in crate::scenario) fn boat(ledger: &mut Ledger, document: &Document<RawBoat
         ledger.note(culprit.or(hull.mass_kg).map_or(start, |given| given.at), message);
     }
     (ledger.faults() == faults).then_some(boat)
+}
+
+fn drive(ledger: &mut Ledger, document: &Document<RawBoat>) -> Drive {
+    let (raw, start) = (&document.raw, document.start);
+    let Some(given) = &raw.kinematic else {
+        return Drive::Thrusters {
+            thruster: thruster::thruster(ledger, start, &raw.thruster.clone().unwrap_or_default()),
+            autopilot: thruster::autopilot(ledger, start, &raw.autopilot.clone().unwrap_or_default()),
+        };
+    };
+    if raw.thruster.is_some() || raw.autopilot.is_some() {
+        ledger.note(given.at, "kinematic beside thruster or autopilot, expected the one or the other");
+    }
+    Drive::Kinematic(kinematic::kinematic(ledger, given))
+}
+
+/// The windage as given, with 0 for areas and heights that are not.
+fn windage(ledger: &mut Ledger, boat: &RawBoat) -> Windage {
+    let raw = boat.windage.clone().unwrap_or_default();
+    let mut number = |key: &str, given: &Option<At<f64>>, low: f64, high: f64, default: f64| {
+        ledger.number(key, given.as_ref(), low..=high).unwrap_or(default)
+    };
+    let size = |given: &Option<At<f64>>| given.as_ref().map_or(0.0, |given| given.value);
+    let (length_m, beam_m) = (size(&boat.length_m), size(&boat.beam_m));
+    Windage {
+        frontal_area_m2: number("frontal_area_m2", &raw.frontal_area_m2, 0.0, 1000.0, 0.36 * beam_m * beam_m),
+        lateral_area_m2: number("lateral_area_m2", &raw.lateral_area_m2, 0.0, 5000.0, 0.16 * length_m * length_m),
+        height_m: number("height_m", &raw.height_m, 0.05, 100.0, 0.25 * length_m),
+        surge_coefficient: number("surge_coefficient", &raw.surge_coefficient, 0.0, 2.0, 0.6),
+        sway_coefficient: number("sway_coefficient", &raw.sway_coefficient, 0.0, 2.0, 0.85),
+        yaw_coefficient: number("yaw_coefficient", &raw.yaw_coefficient, -0.5, 0.5, 0.1),
+    }
 }
 
 /// The hull as given, with 0 for what is not.
@@ -132,6 +161,9 @@ fn estimate(boat: &mut Boat, raw: &RawHull) {
     if raw.crossflow_length_m.is_none() {
         hull.crossflow_length_m = length_m;
     }
+    if boat.draught_m == 0.0 {
+        boat.draught_m = if hull.crossflow_draught_m > 0.0 { hull.crossflow_draught_m } else { length_m / 12.0 };
+    }
 }
 
 /// A mass matrix with a direction that has no inertia would accelerate without bound.
@@ -171,76 +203,6 @@ pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
         ("yaw", yaw_kg_m2_s / (hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2)),
     ];
     rates.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(("surge", 0.0))
-}
-
-fn thruster(ledger: &mut Ledger, start: usize, raw: &RawThruster) -> Thruster {
-    let curve = match (&raw.propeller, &raw.table_pct_newton) {
-        (Some(given), None) => propeller(ledger, given),
-        (None, Some(given)) => table(ledger, given),
-        (Some(given), Some(_)) => {
-            ledger.note(given.at, "thruster has both, expected either propeller or table_pct_newton");
-            ThrustCurve::Table { points: vec![] }
-        }
-        (None, None) => {
-            ledger.note_missing(start, "thruster.propeller", "it or table_pct_newton");
-            ThrustCurve::Table { points: vec![] }
-        }
-    };
-    Thruster {
-        arm_m: ledger.required(start, "thruster.arm_m", raw.arm_m.as_ref(), 0.01..=25.0),
-        curve,
-        lag_s: ledger.number("lag_s", raw.lag_s.as_ref(), 0.0..=60.0).unwrap_or(0.2),
-        slew_per_s: ledger.number("slew_per_s", raw.slew_per_s.as_ref(), 0.001..=1000.0).unwrap_or(10.0),
-        deadband: ledger.number("deadband", raw.deadband.as_ref(), 0.0..=0.9).unwrap_or(0.0),
-        flaws: Flaws::default(),
-    }
-}
-
-fn propeller(ledger: &mut Ledger, given: &At<RawPropeller>) -> ThrustCurve {
-    let raw = &given.value;
-    let k_ahead = ledger.required(given.at, "propeller.k_ahead", raw.k_ahead.as_ref(), 1e-8..=1000.0);
-    let n_max_rad_s = ledger.required(given.at, "propeller.n_max_rad_s", raw.n_max_rad_s.as_ref(), 0.1..=1e4);
-    ThrustCurve::Propeller {
-        k_ahead,
-        k_astern: ledger.number("k_astern", raw.k_astern.as_ref(), 1e-8..=1000.0).unwrap_or(k_ahead),
-        n_max_rad_s,
-        n_min_rad_s: ledger.number("n_min_rad_s", raw.n_min_rad_s.as_ref(), 0.1..=1e4).unwrap_or(n_max_rad_s),
-    }
-}
-
-fn table(ledger: &mut Ledger, given: &At<Vec<At<Pair>>>) -> ThrustCurve {
-    let mut points: Vec<(f64, f64)> = vec![];
-    for row in &given.value {
-        let [setting_pct, thrust_newton] = row.value.0;
-        let setting = ledger.number("table_pct_newton", Some(&same_place(row, setting_pct)), -100.0..=100.0);
-        let thrust = ledger.number("table_pct_newton", Some(&same_place(row, thrust_newton)), -1e6..=1e6);
-        let (Some(setting_pct), Some(thrust)) = (setting, thrust) else { continue };
-        let point = (setting_pct / 100.0, thrust);
-        if points.last().is_some_and(|last| point.0 <= last.0 || point.1 <= last.1) {
-            let message = format!("table_pct_newton has [{setting_pct}, {thrust}] here, expected both to rise");
-            ledger.note(row.at, message);
-        }
-        points.push(point);
-    }
-    let ends = (points.first().map(|first| first.0), points.last().map(|last| last.0));
-    if ends != (Some(-1.0), Some(1.0)) {
-        ledger.note(given.at, "table_pct_newton does not span the settings, expected -100 first and 100 last");
-    }
-    if !points.contains(&(0.0, 0.0)) {
-        ledger.note(given.at, "table_pct_newton has no [0, 0], expected it: no setting, no thrust");
-    }
-    ThrustCurve::Table { points }
-}
-
-fn autopilot(ledger: &mut Ledger, start: usize, raw: &RawAutopilot) -> Autopilot {
-    let speed_max = raw.speed_max_m_s.as_ref();
-    let bandwidth = raw.heading_bandwidth_rad_s.as_ref();
-    Autopilot {
-        speed_max_m_s: ledger.required(start, "autopilot.speed_max_m_s", speed_max, 0.1..=60.0),
-        heading_bandwidth_rad_s: ledger.number("heading_bandwidth_rad_s", bandwidth, 0.01..=10.0).unwrap_or(1.0),
-        heading_damping: ledger.number("heading_damping", raw.heading_damping.as_ref(), 0.1..=5.0).unwrap_or(1.0),
-        speed_time_s: ledger.number("speed_time_s", raw.speed_time_s.as_ref(), 0.1..=60.0).unwrap_or(2.0),
-    }
 }
 
 fn full_ahead_newton(curve: &ThrustCurve) -> f64 {

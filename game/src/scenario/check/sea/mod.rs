@@ -1,29 +1,33 @@
 //! A sea file, checked.
 
-use crate::frame::Ned;
+mod current;
+mod waves;
+mod wind;
+
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::RawSea;
 use crate::scenario::read::Document;
 use crate::sea::{Current, Sea};
 
+/// Standard gravity, m/s².
+const G_M_S2: f64 = 9.80665;
+
 /// Checks a sea.
 pub(in crate::scenario) fn sea(ledger: &mut Ledger, document: &Document<RawSea>) -> Option<Sea> {
     let faults = ledger.faults();
     let raw = &document.raw;
-    let current = raw.current.clone().unwrap_or_default();
     let density = ledger.number("water_density_kg_m3", raw.water_density_kg_m3.as_ref(), 900.0..=1300.0);
-    let speed = ledger.number("current.speed_m_s", current.speed_m_s.as_ref(), 0.0..=10.0);
-    let toward = ledger.number("current.toward_deg", current.toward_deg.as_ref(), -360.0..=360.0);
+    let depth_m = ledger.number("depth_m", raw.depth_m.as_ref(), 0.5..=12_000.0);
+    let wind = raw.wind.as_ref().and_then(|given| wind::wind(ledger, given));
+    let waves = raw.waves.as_ref().and_then(|given| waves::waves(ledger, given, raw.wind.as_ref(), depth_m));
+    let current = raw.current.as_ref().map_or_else(Current::default, |given| current::current(ledger, given));
     let sea = Sea {
         name: document.name.clone(),
         water_density_kg_m3: density.unwrap_or(1000.0),
-        depth_m: None,
-        waves: None,
-        wind: None,
-        current: Current {
-            mean_m_s: Ned::toward_deg(toward.unwrap_or(0.0)).scaled(speed.unwrap_or(0.0)),
-            ..Current::default()
-        },
+        depth_m,
+        waves,
+        wind,
+        current,
     };
     (ledger.faults() == faults).then_some(sea)
 }

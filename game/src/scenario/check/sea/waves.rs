@@ -1,0 +1,126 @@
+//! Waves, by height and period or by the wind that raises them.
+
+use super::G_M_S2;
+use crate::math;
+use crate::scenario::ledger::Ledger;
+use crate::scenario::raw::{At, RawSpectrum, RawSpreading, RawWaves, RawWind};
+use crate::sea::{Spreading, Waves};
+
+/// Waves steeper than this (height over length at the peak) break before they get there.
+const STEEPEST: f64 = 0.08;
+
+/// Checks waves.
+pub(super) fn waves(
+    ledger: &mut Ledger,
+    given: &At<RawWaves>,
+    wind: Option<&At<RawWind>>,
+    depth_m: Option<f64>,
+) -> Option<Waves> {
+    let faults = ledger.faults();
+    let (raw, at) = (&given.value, given.at);
+    let gamma = gamma(ledger, raw);
+    let (hs_m, tp_s) = height_and_period(ledger, given, wind)?;
+    let steepness = hs_m / peak_length_m(tp_s, depth_m);
+    if steepness > STEEPEST {
+        let place = raw.hs_m.as_ref().or(raw.fetch_km.as_ref()).map_or(at, |given| given.at);
+        let message = format!(
+            "waves of hs_m {hs_m:.3} and tp_s {tp_s:.3} are {steepness:.3} of their length high, expected at most {STEEPEST}"
+        );
+        ledger.note(place, message);
+    }
+    let from_wind = wind.and_then(|wind| wind.value.from_deg.as_ref());
+    let from_deg = ledger.required(at, "waves.from_deg", raw.from_deg.as_ref().or(from_wind), -360.0..=360.0);
+    let waves = Waves {
+        hs_m,
+        tp_s,
+        gamma,
+        from_rad: from_deg.to_radians(),
+        spreading: spreading(ledger, raw),
+        components: ledger.whole("components", raw.components.as_ref(), 1..=1024, 64) as u32,
+        drift_factor: ledger.number("drift_factor", raw.drift_factor.as_ref(), 0.0..=10.0).unwrap_or(1.0),
+    };
+    (ledger.faults() == faults).then_some(waves)
+}
+
+fn gamma(ledger: &mut Ledger, raw: &RawWaves) -> f64 {
+    let jonswap = raw.spectrum.unwrap_or_default() == RawSpectrum::Jonswap;
+    match &raw.gamma {
+        Some(given) if !jonswap => {
+            ledger.note(given.at, format!("gamma is {}, expected none: it belongs to \"jonswap\"", given.value));
+            1.0
+        }
+        given => ledger.number("gamma", given.as_ref(), 1.0..=7.0).unwrap_or(if jonswap { 3.3 } else { 1.0 }),
+    }
+}
+
+/// Significant height, m, and peak period, s.
+fn height_and_period(ledger: &mut Ledger, given: &At<RawWaves>, wind: Option<&At<RawWind>>) -> Option<(f64, f64)> {
+    let (raw, at) = (&given.value, given.at);
+    let hs_m = ledger.number("hs_m", raw.hs_m.as_ref(), 0.0..=20.0);
+    let tp_s = ledger.number("tp_s", raw.tp_s.as_ref(), 0.5..=30.0);
+    let fetch_km = ledger.number("fetch_km", raw.fetch_km.as_ref(), 0.05..=1000.0);
+    let own_m_s = ledger.number("wind_m_s", raw.wind_m_s.as_ref(), 0.5..=50.0);
+    if let (Some(_), Some(fetch)) = (&raw.hs_m, &raw.fetch_km) {
+        ledger.note(fetch.at, "fetch_km beside hs_m, expected either height and period, or the fetch");
+        return None;
+    }
+    let fully_grown = raw.spectrum == Some(RawSpectrum::PiersonMoskowitz);
+    if let (true, Some(tp)) = (fully_grown, &raw.tp_s) {
+        ledger.note(tp.at, "tp_s is given, expected none: that of \"pierson_moskowitz\" follows from the height");
+        return None;
+    }
+    // A sea without wind raises no waves; 0.5 m/s is the least that may be stated here.
+    let of_sea = wind.and_then(|wind| wind.value.speed_m_s.as_ref()).map(|speed| speed.value.clamp(0.5, 50.0));
+    let wind_m_s = own_m_s.or(of_sea);
+    match (hs_m, tp_s, fetch_km, wind_m_s) {
+        (Some(hs_m), _, _, _) if fully_grown => Some(fully_grown_with(hs_m)),
+        (None, _, None, Some(u)) if fully_grown => Some(fully_grown_with(0.209_2 * u * u / G_M_S2)),
+        (Some(hs_m), Some(tp_s), _, _) => Some((hs_m, tp_s)),
+        (_, _, Some(x_km), Some(u)) if !fully_grown => {
+            // Carter, D. J. T. (1982). Prediction of wave height and period for a constant wind velocity.
+            Some((0.0163 * x_km.sqrt() * u, 0.566 * math::exp(0.3 * libm::log(x_km) + 0.4 * libm::log(u))))
+        }
+        _ => {
+            let expected = match fully_grown {
+                true => "hs_m, or wind_m_s, or a wind",
+                false => "hs_m and tp_s, or fetch_km with wind_m_s or a wind",
+            };
+            ledger.note_missing(at, "waves' size", expected);
+            None
+        }
+    }
+}
+
+/// Height and period of a fully grown sea of this height.
+///
+/// Pierson and Moskowitz (1964): S = 8.1e-3 g² ω^-5 exp(-0.74 (g / (U ω))^4), with U 19.5 m above the water. Hence
+/// Hs = 0.2092 U² / g, and the peak is at 0.8772 g / U.
+fn fully_grown_with(hs_m: f64) -> (f64, f64) {
+    let u_m_s = (hs_m * G_M_S2 / 0.209_2).sqrt().max(0.1);
+    (hs_m, std::f64::consts::TAU * u_m_s / (0.877_2 * G_M_S2))
+}
+
+/// The length of waves of this period, m.
+fn peak_length_m(tp_s: f64, depth_m: Option<f64>) -> f64 {
+    let omega = std::f64::consts::TAU / tp_s;
+    let deep = omega * omega / G_M_S2;
+    // Guo (2002), within 0.75 %.
+    let k = depth_m.map_or(deep, |h| {
+        let x = h * omega / (G_M_S2 * h).sqrt();
+        x * x / h * libm::pow(1.0 - math::exp(-libm::pow(x, 2.4908)), -0.4015)
+    });
+    std::f64::consts::TAU / k
+}
+
+fn spreading(ledger: &mut Ledger, raw: &RawWaves) -> Spreading {
+    let kind = raw.spreading.unwrap_or_default();
+    let s = ledger.number("spread_s", raw.spread_s.as_ref(), 1.0..=200.0);
+    if let (Some(given), true) = (&raw.spread_s, kind != RawSpreading::Cosine2s) {
+        ledger.note(given.at, "spread_s is given, expected spreading = \"cosine_2s\" with it");
+    }
+    match kind {
+        RawSpreading::None => Spreading::None,
+        RawSpreading::CosineSquared => Spreading::CosineSquared,
+        RawSpreading::Cosine2s => Spreading::Cosine2s { s: s.unwrap_or(10.0) },
+    }
+}
