@@ -19,6 +19,11 @@ pub(super) fn waves(
     let faults = ledger.faults();
     let (raw, at) = (&given.value, given.at);
     let gamma = gamma(ledger, raw);
+    let components = ledger.whole("components", raw.components.as_ref(), 1..=1024, 64) as u32;
+    let drift_factor = ledger.number("drift_factor", raw.drift_factor.as_ref(), 0.0..=10.0).unwrap_or(1.0);
+    let spreading = spreading(ledger, raw);
+    let from_wind = wind.and_then(|wind| wind.value.from_deg.as_ref());
+    let from_deg = ledger.required(at, "waves.from_deg", raw.from_deg.as_ref().or(from_wind), -360.0..=360.0);
     let (hs_m, tp_s) = height_and_period(ledger, given, wind)?;
     let steepness = hs_m / peak_length_m(tp_s, depth_m);
     if steepness > STEEPEST {
@@ -28,17 +33,7 @@ pub(super) fn waves(
         );
         ledger.note(place, message);
     }
-    let from_wind = wind.and_then(|wind| wind.value.from_deg.as_ref());
-    let from_deg = ledger.required(at, "waves.from_deg", raw.from_deg.as_ref().or(from_wind), -360.0..=360.0);
-    let waves = Waves {
-        hs_m,
-        tp_s,
-        gamma,
-        from_rad: from_deg.to_radians(),
-        spreading: spreading(ledger, raw),
-        components: ledger.whole("components", raw.components.as_ref(), 1..=1024, 64) as u32,
-        drift_factor: ledger.number("drift_factor", raw.drift_factor.as_ref(), 0.0..=10.0).unwrap_or(1.0),
-    };
+    let waves = Waves { hs_m, tp_s, gamma, from_rad: from_deg.to_radians(), spreading, components, drift_factor };
     (ledger.faults() == faults).then_some(waves)
 }
 
