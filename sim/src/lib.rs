@@ -3,9 +3,12 @@
 //! Open [`World::step`] first. [`Contest`] plays a whole game with it; `node` puts one on the network.
 
 pub mod autopilot;
+pub mod battery;
 pub mod contact;
 pub mod contest;
+pub mod flaw;
 pub mod hull;
+pub mod kinematic;
 pub mod motion;
 #[cfg(feature = "net")]
 pub mod node;

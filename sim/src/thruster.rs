@@ -1,7 +1,9 @@
 //! A thruster: takes a setting up with dead-band, slew limit and lag, and turns it into thrust.
 
+use crate::flaw::{FlawModel, FlawState};
+use crate::hull::Planar;
 use crate::ramp::Ramp;
-use game::boat::{ThrustCurve, Thruster};
+use game::boat::{ThrustCurve, Thruster, Ventilation};
 use game::math;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +28,8 @@ pub struct ThrusterModel {
     deadband: f64,
     /// What is left of a difference after half a tick and after a tick.
     lag: (f64, f64),
+    /// In what a pair of them falls short of all this.
+    flaws: Option<Box<FlawModel>>,
 }
 
 /// Thrust over setting, both ways.
@@ -78,13 +82,27 @@ impl ThrusterModel {
             slew: thruster.slew_per_s * dt_s * ahead,
             deadband: thruster.deadband * ahead,
             lag: (left(0.5 * dt_s), left(dt_s)),
+            flaws: FlawModel::new(&thruster.flaws, dt_s).map(Box::new),
         };
         model.newton_max = model.newton(ahead);
         model.newton_min = model.newton(-astern);
         model
     }
 
-    /// The thrust of a setting, N.
+    /// The flaws of a pair of these thrusters at the start of a game; [`ThrusterModel::drive`] wants them.
+    #[must_use]
+    pub fn start(&self) -> FlawState {
+        self.flaws.as_ref().map(|flaws| flaws.start()).unwrap_or_default()
+    }
+
+    /// How the thrusters ventilate, if they do.
+    #[inline]
+    #[must_use]
+    pub fn ventilation(&self) -> Option<Ventilation> {
+        self.flaws.as_ref().and_then(|flaws| flaws.ventilation)
+    }
+
+    /// The thrust of a setting without flaws, N.
     #[inline]
     #[must_use]
     pub fn newton(&self, setting: f64) -> f64 {
@@ -96,7 +114,7 @@ impl ThrusterModel {
         }
     }
 
-    /// The setting that gives this thrust, within what the thruster can do.
+    /// The setting that gives this thrust, within what the thruster can do without flaws.
     #[inline]
     #[must_use]
     pub fn setting(&self, newton: f64) -> f64 {
@@ -115,7 +133,75 @@ impl ThrusterModel {
         share * if share > 0.0 { self.ahead } else { self.astern }
     }
 
-    /// Moves a shaft on by one tick towards `wanted`; gives the thrust at the beginning, half-way and at the end, N.
+    /// Moves both thrusters, port and starboard, on by one tick towards `settings`; gives the force on the hull at the
+    /// beginning, half-way and at the end.
+    ///
+    /// `state` begins as [`ThrusterModel::start`]; `water_above_m` is how far under the surface each propeller is and
+    /// counts only where [`ThrusterModel::ventilation`] is something.
+    #[inline]
+    pub fn drive(
+        &self,
+        shafts: [&mut Shaft; 2],
+        state: &mut FlawState,
+        settings: [f64; 2],
+        water_above_m: [f64; 2],
+    ) -> [Planar; 3] {
+        if let Some(flaws) = &self.flaws {
+            return self.drive_flawed(flaws, shafts, state, settings, water_above_m);
+        }
+        let [port, starboard] = shafts;
+        let port = self.respond(port, settings[0]);
+        let starboard = self.respond(starboard, settings[1]);
+        self.on_hull(port, starboard)
+    }
+
+    #[inline]
+    fn on_hull(&self, port: [f64; 3], starboard: [f64; 3]) -> [Planar; 3] {
+        [0, 1, 2].map(|i| Planar {
+            surge: port[i] + starboard[i],
+            sway: 0.0,
+            yaw: self.arm_m * (port[i] - starboard[i]),
+        })
+    }
+
+    fn drive_flawed(
+        &self,
+        flaws: &FlawModel,
+        shafts: [&mut Shaft; 2],
+        state: &mut FlawState,
+        settings: [f64; 2],
+        water_above_m: [f64; 2],
+    ) -> [Planar; 3] {
+        let (least, most) = (-self.astern * flaws.saturation, self.ahead * flaws.saturation);
+        let arrived = state.pass(settings);
+        let factors = flaws.thrust_factors(state, water_above_m);
+        // What a propeller takes out of the battery, and what it gives to the hull.
+        let (mut taken, mut given) = ([0.0; 2], [[0.0; 3]; 2]);
+        for (side, shaft) in shafts.into_iter().enumerate() {
+            shaft.newton = self.newton(shaft.setting);
+            let nominal = self.respond(shaft, arrived[side].max(least).min(most));
+            given[side] = nominal.map(|newton| newton * factors[side] * flaws.gain(side, newton));
+            taken[side] = self.share(nominal[1] * factors[side]);
+            shaft.newton = given[side][2];
+        }
+        if let Some(battery) = flaws.battery {
+            battery.draw(&mut state.battery, taken);
+        }
+        let mut on_hull = self.on_hull(given[0], given[1]);
+        for (i, force) in on_hull.iter_mut().enumerate() {
+            force.yaw += flaws.bias_newton_m * 0.5 * (self.share(given[0][i]) + self.share(given[1][i]));
+        }
+        on_hull
+    }
+
+    /// The size of a thrust as a share of full ahead or astern.
+    #[inline]
+    fn share(&self, newton: f64) -> f64 {
+        newton / if newton < 0.0 { self.newton_min } else { self.newton_max }
+    }
+
+    /// Moves a shaft on by one tick towards `wanted` as one without flaws; gives the thrust at the beginning, half-way
+    /// and at the end, N.
     #[inline]
     pub fn respond(&self, shaft: &mut Shaft, wanted: f64) -> [f64; 3] {
         let change = (wanted - shaft.command).clamp(-self.slew, self.slew);
@@ -133,7 +219,7 @@ impl ThrusterModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::boat::Flaws;
+    use game::boat::{Battery, Flaws};
 
     fn thruster(curve: ThrustCurve) -> Thruster {
         Thruster { arm_m: 0.4, curve, lag_s: 0.2, slew_per_s: 1.0, deadband: 0.05, flaws: Flaws::default() }
@@ -188,5 +274,145 @@ mod tests {
             model.respond(&mut shaft, 0.049);
         });
         assert_eq!(shaft.newton, 0.0);
+    }
+
+    /// Both thrusters through 400 ticks of changing settings; the bits of every force and moment on the way, hashed,
+    /// and the last surge and yaw.
+    fn voyage(thruster: &Thruster) -> (u64, f64, f64) {
+        let model = ThrusterModel::new(thruster, 0.05);
+        let mut state = model.start();
+        let (mut port, mut starboard) = (Shaft::default(), Shaft::default());
+        let mut bytes = Vec::new();
+        let mut last = (0.0, 0.0);
+        for tick in 0..400_u32 {
+            let share = |step: u32| f64::from((tick / 7 * step) % 41) / 20.0 - 1.0;
+            let settings = if tick % 3 == 0 {
+                [model.setting(70.0 * share(5)), model.setting(-40.0 * share(11))]
+            } else {
+                [model.setting_of_share(share(7)), model.setting_of_share(share(3))]
+            };
+            for force in model.drive([&mut port, &mut starboard], &mut state, settings, [0.0; 2]) {
+                last = (force.surge, force.yaw);
+                bytes.extend(last.0.to_le_bytes());
+                bytes.extend(last.1.to_le_bytes());
+            }
+        }
+        (xxhash_rust::xxh3::xxh3_64(&bytes), last.0, last.1)
+    }
+
+    #[test]
+    fn without_flaws_every_bit_is_as_it_was_before_there_were_any() {
+        // Recorded when a thruster had none.
+        let propeller_was = (7_544_133_322_723_756_280, 13.121_373_992_948_243, -4.875_639_398_475_489_5);
+        let table_was = (3_658_721_781_925_709_332, 15.826_061_272_148_417, -4.523_535_130_683_975_5);
+        assert_eq!(voyage(&propeller()), propeller_was);
+        assert_eq!(voyage(&table()), table_was);
+    }
+
+    /// Forces after two minutes (both shafts have settled) at these shares of full.
+    fn settled(flaws: Flaws, shares: [f64; 2]) -> Planar {
+        let (model, mut state, mut shafts) = flawed(flaws);
+        let settings = shares.map(|share| model.setting_of_share(share));
+        let [port, starboard] = &mut shafts;
+        let mut last = Planar::default();
+        for _ in 0..2_400 {
+            last = model.drive([port, starboard], &mut state, settings, [0.05, 0.2])[2];
+        }
+        last
+    }
+
+    fn flawed(flaws: Flaws) -> (ThrusterModel, FlawState, [Shaft; 2]) {
+        let model = ThrusterModel::new(&Thruster { flaws, ..table() }, 0.05);
+        let state = model.start();
+        (model, state, [Shaft::default(); 2])
+    }
+
+    /// Two thrusts as a force on the hull of `table()`.
+    fn pair(port_newton: f64, starboard_newton: f64, more_newton_m: f64) -> Planar {
+        let yaw = 0.4 * (port_newton - starboard_newton) + more_newton_m;
+        Planar { surge: port_newton + starboard_newton, sway: 0.0, yaw }
+    }
+
+    #[test]
+    fn each_flaw_does_what_its_closed_form_says() {
+        let perfect = Flaws::default;
+        // Full ahead is 60 N, full astern -30 N, half ahead 20 N.
+        for (what, flaws, shares, want) in [
+            ("saturation ahead", Flaws { saturation: 0.5, ..perfect() }, [1.0, 0.3], pair(20.0, 12.0, 0.0)),
+            ("saturation astern", Flaws { saturation: 0.5, ..perfect() }, [-1.0, -0.3], pair(-15.0, -9.0, 0.0)),
+            ("gain", Flaws { gain: (0.9, 1.1), ..perfect() }, [1.0, 0.5], pair(54.0, 22.0, 0.0)),
+            ("reverse", Flaws { reverse_efficiency: 0.4, ..perfect() }, [-1.0, 0.5], pair(-12.0, 20.0, 0.0)),
+            (
+                "gain and reverse",
+                Flaws { gain: (0.5, 1.0), reverse_efficiency: 0.4, ..perfect() },
+                [-1.0, -1.0],
+                pair(-6.0, -12.0, 0.0),
+            ),
+            ("bias", Flaws { bias_newton_m: 3.0, ..perfect() }, [1.0, 1.0], pair(60.0, 60.0, 3.0)),
+            ("bias of one", Flaws { bias_newton_m: 3.0, ..perfect() }, [0.5, 0.0], pair(20.0, 0.0, 0.5)),
+            ("bias spinning", Flaws { bias_newton_m: 3.0, ..perfect() }, [1.0, -1.0], pair(60.0, -30.0, 3.0)),
+            (
+                "ventilation of the port one",
+                Flaws { ventilation: Some(Ventilation { depth_m: 0.2 }), ..perfect() },
+                [1.0, 1.0],
+                pair(30.0, 60.0, 0.0),
+            ),
+            ("latency, in the end", Flaws { latency_s: 0.15, ..perfect() }, [1.0, 0.5], pair(60.0, 20.0, 0.0)),
+        ] {
+            let got = settled(flaws, shares);
+            let off = (got.surge - want.surge).abs() + (got.yaw - want.yaw).abs();
+            assert!(off < 1e-9, "{what}: {got:?}, want {want:?}");
+        }
+    }
+
+    #[test]
+    fn a_late_command_does_the_same_later() {
+        let (prompt, mut no_flaws, mut prompt_shafts) = flawed(Flaws::default());
+        let (late, mut state, mut late_shafts) = flawed(Flaws { latency_s: 0.15, ..Flaws::default() });
+        let wanted = |tick: i32| [(f64::from(tick) * 0.1).clamp(-1.0, 1.0), (1.0 - f64::from(tick) * 0.03).max(-1.0)];
+        let mut forces = Vec::new();
+        for tick in 0..100 {
+            let [port, starboard] = &mut prompt_shafts;
+            forces.push(prompt.drive([port, starboard], &mut no_flaws, wanted(tick), [0.0; 2]));
+            let [port, starboard] = &mut late_shafts;
+            let got = late.drive([port, starboard], &mut state, wanted(tick), [0.0; 2]);
+            let want = if tick < 3 { [Planar::default(); 3] } else { forces[tick as usize - 3] };
+            assert_eq!(got, want, "tick {tick}");
+        }
+    }
+
+    #[test]
+    fn a_battery_sags_by_the_energy_it_has_given() {
+        let battery =
+            Battery { capacity_joule: 90_000.0, charge: 0.9, full_power_watt: 600.0, hotel_power_watt: 30.0, sag: 0.2 };
+        let mut quick = table();
+        (quick.lag_s, quick.slew_per_s) = (0.0, 1e9);
+        quick.flaws.battery = Some(battery);
+        let model = ThrusterModel::new(&quick, 0.05);
+        let (mut state, mut port, mut starboard) = (model.start(), Shaft::default(), Shaft::default());
+        // One thruster full astern, one at half ahead, which is a third of full thrust.
+        let mut charge = 0.9;
+        let (mut sag, mut last): (f64, Planar) = (1.0, Planar::default());
+        for _ in 0..1_200 {
+            sag = 1.0 - 0.2 * (1.0 - charge);
+            let both = sag * sag.sqrt() * (1.0 + 1.0 / 27_f64.sqrt());
+            charge -= 0.05 * (30.0 + 600.0 * 0.5 * both) / 90_000.0;
+            last = model.drive([&mut port, &mut starboard], &mut state, [-1.0, 0.5], [0.0; 2])[2];
+        }
+        assert!((state.battery.charge - charge).abs() < 1e-12, "{} {charge}", state.battery.charge);
+        assert!((0.55..0.75).contains(&charge), "{charge}");
+        assert!((last.surge - sag * -10.0).abs() < 1e-9, "{last:?}, sag {sag}");
+        assert_eq!(port.newton + starboard.newton, last.surge);
+    }
+
+    #[test]
+    fn the_front_seat_knows_nothing_of_flaws() {
+        let perfect = ThrusterModel::new(&table(), 0.05);
+        let flaws = Flaws { saturation: 0.5, gain: (0.5, 0.5), reverse_efficiency: 0.3, ..Flaws::default() };
+        let (flawed, ..) = flawed(flaws);
+        for newton in [-40.0, -20.0, 0.0, 15.0, 59.0, 80.0] {
+            assert_eq!(flawed.setting(newton), perfect.setting(newton));
+        }
+        assert_eq!((flawed.newton_max, flawed.newton_min), (perfect.newton_max, perfect.newton_min));
     }
 }

@@ -60,16 +60,3 @@ fn a_change_of_speed_settles_at_the_speed_ordered() {
         }
     }
 }
-
-#[test]
-fn the_surveyor_is_as_fast_as_its_thrust_map_says() {
-    for (percent, want_m_s) in [(20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)] {
-        let (_, mut world) = afloat("surveyor_m1_8");
-        let share = percent / 100.0;
-        for _ in 0..2_000 {
-            world.step(&[Order::Thrust { port: share, starboard: share }, Order::Hold]);
-        }
-        let got_m_s = world.state().boats[0].nu.surge;
-        assert!((got_m_s - want_m_s).abs() < 0.02 * want_m_s, "{percent} %: {got_m_s} m/s, the map says {want_m_s}");
-    }
-}

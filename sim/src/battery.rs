@@ -1,0 +1,100 @@
+//! A battery: it empties as the thrusters draw on it, and thrust falls with it.
+//!
+//! A propeller that stands in the water takes a torque of k_q n |n| and gives a thrust of k_t n |n|, so the power 2 pi n Q
+//! goes with |n|³, that is with |T|^1.5 (Fossen 2021, ch. 9, at advance number 0). Two thrusters at the
+//! shares s of full thrust then draw P = P_hotel + P_full (s_port^1.5 + s_starboard^1.5) / 2.
+
+use game::boat::Battery;
+use serde::{Deserialize, Serialize};
+
+/// A battery ready for computing, for one tick length.
+#[derive(Clone, Copy, Debug)]
+pub struct BatteryModel {
+    /// Charge at the start.
+    charge: f64,
+    sag: f64,
+    /// Charge that goes in a tick whatever the thrusters do, and with them at full.
+    hotel_per_tick: f64,
+    full_per_tick: f64,
+}
+
+/// How full a battery is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BatteryState {
+    /// As a share of a full one, 0 to 1.
+    pub charge: f64,
+}
+
+impl BatteryModel {
+    /// The model of `battery` for ticks of `dt_s`.
+    #[must_use]
+    pub fn new(battery: &Battery, dt_s: f64) -> BatteryModel {
+        BatteryModel {
+            charge: battery.charge,
+            sag: battery.sag,
+            hotel_per_tick: battery.hotel_power_watt * dt_s / battery.capacity_joule,
+            full_per_tick: battery.full_power_watt * dt_s / battery.capacity_joule,
+        }
+    }
+
+    /// The battery at the start of a game.
+    #[must_use]
+    pub fn start(&self) -> BatteryState {
+        BatteryState { charge: self.charge }
+    }
+
+    /// Factor on the thrust.
+    #[inline]
+    #[must_use]
+    pub fn thrust_factor(&self, state: BatteryState) -> f64 {
+        1.0 - self.sag * (1.0 - state.charge)
+    }
+
+    /// Takes a tick's energy out, with the thrusters at these shares (0 to 1) of full thrust.
+    #[inline]
+    pub fn draw(&self, state: &mut BatteryState, shares: [f64; 2]) {
+        let [port, starboard] = shares.map(|share| share * share.sqrt());
+        let spent = self.hotel_per_tick + self.full_per_tick * 0.5 * (port + starboard);
+        state.charge = (state.charge - spent).max(0.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BATTERY: Battery =
+        Battery { capacity_joule: 36_000.0, charge: 0.8, full_power_watt: 720.0, hotel_power_watt: 36.0, sag: 0.15 };
+
+    /// The charge after `seconds` of it.
+    fn charge_after(shares: [f64; 2], seconds: u32) -> f64 {
+        let model = BatteryModel::new(&BATTERY, 0.05);
+        let mut state = model.start();
+        (0..20 * seconds).for_each(|_| model.draw(&mut state, shares));
+        state.charge
+    }
+
+    #[test]
+    fn the_charge_falls_by_the_energy_drawn() {
+        for (shares, watt) in [
+            ([0.0, 0.0], 36.0),
+            ([1.0, 1.0], 756.0),
+            ([1.0, 0.0], 396.0),
+            // 0.25^1.5 is an eighth.
+            ([0.25, 0.25], 126.0),
+        ] {
+            let want = 0.8 - watt * 30.0 / 36_000.0;
+            let got = charge_after(shares, 30);
+            assert!((got - want).abs() < 1e-12, "{shares:?}: {got}, want {want}");
+        }
+        assert_eq!(charge_after([1.0, 1.0], 100), 0.0, "empty is empty");
+    }
+
+    #[test]
+    fn thrust_falls_in_step_with_the_charge() {
+        let model = BatteryModel::new(&BATTERY, 0.05);
+        for (charge, want) in [(1.0, 1.0), (0.5, 0.925), (0.0, 0.85)] {
+            assert!((model.thrust_factor(BatteryState { charge }) - want).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,365 @@
+//! The point boat of MOOS: a throttle, a rudder and two PID loops, without mass.
+//!
+//! The law is that of uSimMarine under pMarinePID (moos-ivp, `SimEngine::propagate…` and `PIDEngine`) as Pyquaticus has
+//! it, quirks included, because others train on it and their numbers have to come out here. For one step of `dt`:
+//!
+//! ```text
+//! thrust  += PID_speed(v_wanted - v), or v_wanted * speed_factor;   below 0.01 it is 0
+//! rudder   = PID_heading(error) while there is thrust, else 0
+//! v_next   = map(thrust) (1 - turn_loss |rudder| / 100), within v - deceleration dt and v + acceleration dt
+//! heading += ±rudder turn_rate / 100 (1 + (|thrust| - 50) / 50) dt + rotate dt;   no rudder where v_next is 0
+//! v        = (v_next + v) / 2;   the position goes v dt along the circular mean of the old and new heading
+//! ```
+//!
+//! That the speed kept is the mean of old and new halves the limits of acceleration: a configured 0.15 m/s² is 0.075.
+//! The loops act once a step, not once a second: behaviour depends on `dt`, and the reference numbers are for 0.1 s.
+
+use crate::ramp::Ramp;
+use game::boat::{Kinematic, Pid};
+use game::{Ned, math};
+use serde::{Deserialize, Serialize};
+
+/// Less thrust than this, per cent, is none.
+const THRUST_MIN: f64 = 0.01;
+/// Thrust and rudder are per cent: uSimMarine takes no more, whatever the limits of the loops.
+const FULL: f64 = 100.0;
+
+/// A point boat ready for computing.
+#[derive(Clone, Debug)]
+pub struct KinematicModel {
+    boat: Kinematic,
+    /// Speed, m/s, over thrust, per cent.
+    speed_of_thrust: Ramp,
+    /// Largest rudder that the heading loop sets, per cent.
+    rudder_max: f64,
+    rotate_deg_s: f64,
+}
+
+/// What changes about a point boat, its position apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct KinematicState {
+    /// Speed through the water, m/s.
+    pub speed_m_s: f64,
+    /// Heading, degrees clockwise from north, −180 to 180: the reference keeps degrees.
+    pub heading_deg: f64,
+    /// Per cent.
+    pub thrust: f64,
+    /// Per cent, to starboard.
+    pub rudder: f64,
+    speed_loop: Loop,
+    heading_loop: Loop,
+}
+
+/// What a point boat is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// The loops steer this course.
+    Steer {
+        /// Desired heading, radians clockwise from north.
+        heading_rad: f64,
+        /// Desired speed, m/s; what is above the boat's highest counts as that.
+        speed_m_s: f64,
+    },
+    /// Thrust and rudder are imposed and the loops rest.
+    Impose {
+        /// Per cent, −100 to 100.
+        thrust: f64,
+        /// Per cent, −100 to 100, to starboard.
+        rudder: f64,
+    },
+    /// Speed 0 on whatever heading it has.
+    Hold,
+}
+
+/// What a point boat did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct KinematicMotion {
+    /// By how far it came, drift included, m.
+    pub travel_m: Ned,
+    /// By how much it turned, rad clockwise.
+    pub turn_rad: f64,
+    /// Where it points now, rad clockwise from north, −pi to pi.
+    pub psi_rad: f64,
+    /// Speed through the water at the end, m/s.
+    pub speed_m_s: f64,
+}
+
+/// Memory of a PID loop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Loop {
+    /// The last error; none before the first call, which has no derivative.
+    error: Option<f64>,
+    integral: f64,
+}
+
+impl Loop {
+    /// The output for `error`, within ±`limit`.
+    fn answer(&mut self, gains: Pid, error: f64, limit: f64, dt_s: f64) -> f64 {
+        let rate = self.error.map_or(0.0, |before| (error - before) / dt_s);
+        self.error = Some(error);
+        self.integral = (self.integral + gains.i * error * dt_s).clamp(-gains.i_limit, gains.i_limit);
+        (gains.p * error + gains.d * rate + self.integral).clamp(-limit, limit)
+    }
+}
+
+impl Command {
+    /// What the thrusts of two thrusters, each a share −1 to 1, are to a boat that has one and a rudder: half the sum
+    /// and half the difference.
+    #[must_use]
+    pub fn of_shares(port: f64, starboard: f64) -> Command {
+        Command::Impose { thrust: 0.5 * FULL * (port + starboard), rudder: 0.5 * FULL * (port - starboard) }
+    }
+}
+
+impl KinematicState {
+    /// At rest, pointing there.
+    #[must_use]
+    pub fn at_rest(psi_rad: f64) -> KinematicState {
+        KinematicState { heading_deg: wrap_180(psi_rad.to_degrees()), ..KinematicState::default() }
+    }
+
+    /// Where it points, rad clockwise from north, −pi to pi.
+    #[must_use]
+    pub fn psi_rad(&self) -> f64 {
+        self.heading_deg.to_radians()
+    }
+
+    /// Takes up a heading and a speed that came from outside, from contact for example. The loops keep their memory.
+    pub fn divert(&mut self, psi_rad: f64, speed_m_s: f64) {
+        self.heading_deg = wrap_180(psi_rad.to_degrees());
+        self.speed_m_s = speed_m_s.max(0.0);
+    }
+}
+
+impl KinematicModel {
+    /// The model of `boat`.
+    #[must_use]
+    pub fn new(boat: &Kinematic) -> KinematicModel {
+        KinematicModel {
+            speed_of_thrust: Ramp::new(&boat.thrust_map),
+            rudder_max: boat.rudder_max.min(FULL),
+            rotate_deg_s: boat.rotate_rad_s.to_degrees(),
+            boat: boat.clone(),
+        }
+    }
+
+    /// The highest speed it accepts, m/s.
+    #[must_use]
+    pub fn speed_max_m_s(&self) -> f64 {
+        self.boat.speed_max_m_s
+    }
+
+    /// Moves a boat on by `dt_s`. `drift_m_s` carries it along: the current.
+    pub fn step(&self, state: &mut KinematicState, command: Command, drift_m_s: Ned, dt_s: f64) -> KinematicMotion {
+        self.control(state, command, dt_s);
+        let v_next_m_s = self.next_speed(state, dt_s);
+        let turn_deg = self.turn_deg(state, v_next_m_s, dt_s);
+        let heading_deg = wrap_180(state.heading_deg + turn_deg);
+        let v_mean_m_s = 0.5 * (v_next_m_s + state.speed_m_s);
+        let way = circular_mean(state.heading_deg, heading_deg).scaled(v_mean_m_s);
+        // What is astern counts for the position once and is forgotten: the reference keeps no negative speed.
+        state.speed_m_s = v_mean_m_s.clamp(0.0, self.boat.speed_max_m_s);
+        state.heading_deg = heading_deg;
+        KinematicMotion {
+            travel_m: (way + drift_m_s).scaled(dt_s),
+            turn_rad: turn_deg.to_radians(),
+            psi_rad: state.psi_rad(),
+            speed_m_s: state.speed_m_s,
+        }
+    }
+
+    /// Sets thrust and rudder (pMarinePID).
+    fn control(&self, state: &mut KinematicState, command: Command, dt_s: f64) {
+        let boat = &self.boat;
+        let (wanted_m_s, error_deg) = match command {
+            Command::Impose { thrust, rudder } => {
+                state.thrust = thrust.clamp(-FULL, FULL);
+                state.rudder = rudder.clamp(-FULL, FULL);
+                return;
+            }
+            Command::Steer { heading_rad, speed_m_s } => {
+                (speed_m_s.min(boat.speed_max_m_s), wrap_180(heading_rad.to_degrees() - state.heading_deg))
+            }
+            Command::Hold => (0.0, 0.0),
+        };
+        let thrust = if boat.speed_factor > 0.0 {
+            wanted_m_s * boat.speed_factor
+        } else {
+            let error_m_s = wanted_m_s - state.speed_m_s;
+            state.thrust + state.speed_loop.answer(boat.speed_pid, error_m_s, boat.thrust_max, dt_s)
+        };
+        state.thrust = if thrust < THRUST_MIN { 0.0 } else { thrust.min(boat.thrust_max) };
+        // Without thrust the heading loop is not asked, and remembers nothing of the meantime.
+        state.rudder = if state.thrust > 0.0 {
+            state.heading_loop.answer(boat.heading_pid, error_deg, self.rudder_max, dt_s)
+        } else {
+            0.0
+        };
+    }
+
+    /// The speed that thrust and rudder give, within the limits of acceleration (uSimMarine).
+    fn next_speed(&self, state: &KinematicState, dt_s: f64) -> f64 {
+        let boat = &self.boat;
+        let raw_m_s = self.speed_of_thrust.at(state.thrust) * (1.0 - boat.turn_loss * state.rudder.abs() / FULL);
+        let limit = |rate_m_s2: f64| if rate_m_s2 > 0.0 { rate_m_s2 * dt_s } else { f64::INFINITY };
+        let least = state.speed_m_s - limit(boat.deceleration_max_m_s2);
+        let most = state.speed_m_s + limit(boat.acceleration_max_m_s2);
+        // Not `clamp`, which panics on a NaN that ought to be contained where numbers are judged.
+        raw_m_s.min(most).max(least)
+    }
+
+    /// By how much the rudder and the bias turn it (uSimMarine).
+    fn turn_deg(&self, state: &KinematicState, v_next_m_s: f64, dt_s: f64) -> f64 {
+        let rudder = if v_next_m_s == 0.0 { 0.0 } else { state.rudder };
+        let side = if state.thrust < 0.0 { -1.0 } else { 1.0 };
+        let more = 1.0 + (state.thrust.abs() - 50.0) / 50.0;
+        side * rudder * (self.boat.turn_rate / 100.0) * dt_s * more + self.rotate_deg_s * dt_s
+    }
+}
+
+/// An angle in degrees brought into −180 to 180 by whole turns, both included: the reference tells them apart.
+fn wrap_180(angle_deg: f64) -> f64 {
+    if angle_deg > 180.0 {
+        angle_deg - 360.0 * ((angle_deg - 180.0) / 360.0).ceil()
+    } else if angle_deg < -180.0 {
+        angle_deg + 360.0 * ((-180.0 - angle_deg) / 360.0).ceil()
+    } else {
+        angle_deg
+    }
+}
+
+/// The unit vector half-way between two headings.
+fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
+    let ((sin_a, cos_a), (sin_b, cos_b)) = (math::sin_cos(a_deg.to_radians()), math::sin_cos(b_deg.to_radians()));
+    let (sin, cos) = math::sin_cos(math::atan2(sin_a + sin_b, cos_a + cos_b));
+    Ned { north: cos, east: sin }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A boat that is simple to reckon with: thrust in per cent is speed in cm/s, no limits, no loss.
+    fn plain() -> Kinematic {
+        let none = Pid { p: 0.0, i: 0.0, d: 0.0, i_limit: 0.0 };
+        Kinematic {
+            speed_max_m_s: 1.0,
+            thrust_map: vec![(-100.0, -1.0), (100.0, 1.0)],
+            thrust_max: 100.0,
+            rudder_max: 100.0,
+            turn_rate: 10.0,
+            turn_loss: 0.0,
+            rotate_rad_s: 0.0,
+            acceleration_max_m_s2: 0.0,
+            deceleration_max_m_s2: 0.0,
+            speed_factor: 100.0,
+            speed_pid: none,
+            heading_pid: Pid { p: 1.0, ..none },
+        }
+    }
+
+    fn step(boat: &Kinematic, state: &mut KinematicState, command: Command) -> KinematicMotion {
+        KinematicModel::new(boat).step(state, command, Ned::default(), 0.1)
+    }
+
+    fn ahead(speed_m_s: f64) -> Command {
+        Command::Steer { heading_rad: 0.0, speed_m_s }
+    }
+
+    #[test]
+    fn the_speed_kept_is_the_mean_of_old_and_new() {
+        let mut state = KinematicState::default();
+        let motion = step(&plain(), &mut state, ahead(1.0));
+        assert_eq!((state.speed_m_s, motion.travel_m), (0.5, Ned { north: 0.05, east: 0.0 }));
+        step(&plain(), &mut state, ahead(1.0));
+        assert_eq!(state.speed_m_s, 0.75);
+    }
+
+    #[test]
+    fn acceleration_and_deceleration_do_half_of_what_is_configured() {
+        let mut boat = plain();
+        (boat.acceleration_max_m_s2, boat.deceleration_max_m_s2) = (0.2, 0.4);
+        let mut state = KinematicState { speed_m_s: 0.5, ..KinematicState::default() };
+        step(&boat, &mut state, ahead(1.0));
+        assert!((state.speed_m_s - 0.51).abs() < 1e-15, "{}", state.speed_m_s);
+        step(&boat, &mut state, Command::Hold);
+        assert!((state.speed_m_s - 0.49).abs() < 1e-15, "{}", state.speed_m_s);
+    }
+
+    #[test]
+    fn it_asks_no_more_than_its_highest_speed() {
+        let mut state = KinematicState::default();
+        step(&plain(), &mut state, ahead(f64::INFINITY));
+        assert_eq!(state.thrust, 100.0);
+    }
+
+    #[test]
+    fn drift_carries_it_along_and_nothing_else() {
+        let drift = Ned { north: 0.3, east: -0.2 };
+        let model = KinematicModel::new(&plain());
+        let command = Command::Steer { heading_rad: 1.0, speed_m_s: 0.8 };
+        let (mut still, mut adrift) = (KinematicState::default(), KinematicState::default());
+        for _ in 0..50 {
+            let a = model.step(&mut still, command, Ned::default(), 0.1);
+            let b = model.step(&mut adrift, command, drift, 0.1);
+            assert!((b.travel_m - a.travel_m).distance(drift.scaled(0.1)) < 1e-15);
+            assert_eq!(still, adrift);
+        }
+    }
+
+    #[test]
+    fn without_thrust_there_is_no_rudder_and_without_way_no_turn() {
+        let mut state = KinematicState { speed_m_s: 1.0, ..KinematicState::default() };
+        step(&plain(), &mut state, Command::Steer { heading_rad: 1.0, speed_m_s: 0.0 });
+        assert_eq!((state.thrust, state.rudder), (0.0, 0.0));
+        let mut state = KinematicState::default();
+        let motion = step(&plain(), &mut state, Command::Impose { thrust: 0.0, rudder: 100.0 });
+        assert_eq!((motion.turn_rad, state.rudder), (0.0, 100.0));
+    }
+
+    #[test]
+    fn astern_the_rudder_turns_the_other_way_and_no_way_is_kept() {
+        let mut state = KinematicState::default();
+        let motion = step(&plain(), &mut state, Command::of_shares(-0.5, -1.0));
+        assert_eq!((state.thrust, state.rudder), (-75.0, 25.0));
+        let want_deg: f64 = -25.0 * 0.1 * 0.1 * 1.5;
+        assert!((motion.turn_rad - want_deg.to_radians()).abs() < 1e-15, "{}", motion.turn_rad);
+        assert!(motion.travel_m.north < 0.0 && state.speed_m_s == 0.0, "{motion:?}");
+    }
+
+    #[test]
+    fn a_bias_turns_it_even_at_rest() {
+        let mut boat = plain();
+        boat.rotate_rad_s = 0.02;
+        let mut state = KinematicState::at_rest(3.141);
+        for _ in 0..10 {
+            step(&boat, &mut state, Command::Hold);
+        }
+        let turned = game::angle::wrap_pi(state.psi_rad() - 3.141);
+        assert!((turned - 0.02).abs() < 1e-12 && state.psi_rad() < 0.0, "{turned}");
+    }
+
+    #[test]
+    fn angles_keep_the_border_they_came_to() {
+        for (input_deg, want_deg) in [
+            (180.0, 180.0),
+            (-180.0, -180.0),
+            (181.0, -179.0),
+            (-181.0, 179.0),
+            (540.0, 180.0),
+            (-540.0, -180.0),
+            (725.0, 5.0),
+        ] {
+            assert_eq!(wrap_180(input_deg), want_deg, "{input_deg}");
+        }
+    }
+
+    #[test]
+    fn bad_numbers_come_out_as_bad_numbers() {
+        let mut state = KinematicState { heading_deg: f64::NAN, ..KinematicState::default() };
+        for _ in 0..3 {
+            let motion = step(&plain(), &mut state, ahead(1.0));
+            assert!(motion.psi_rad.is_nan());
+        }
+    }
+}
