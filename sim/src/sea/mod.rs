@@ -2,6 +2,17 @@
 //!
 //! The one door through which the sea acts. Calm water, with or without a steady current.
 
+mod heading;
+mod hull_wave;
+mod ride;
+mod sine;
+pub mod spectrum;
+pub mod wave;
+
+pub use hull_wave::{HullWaves, WaveSample};
+pub use ride::{Attitude, Ride};
+pub use wave::{Component, Surface, WaveField};
+
 use game::frame::Ned;
 use game::sea::Sea;
 

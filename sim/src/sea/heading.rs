@@ -1,0 +1,88 @@
+//! What depends on the heading, looked up: numbers at every five degrees, straight in between.
+
+use std::f64::consts::TAU;
+use wide::f64x4;
+
+/// Headings at which the numbers stand.
+pub(super) const BINS: usize = 72;
+
+/// The heading in bins: the bin below, and how far on to the next.
+#[inline(always)]
+fn place(heading_rad: f64) -> (usize, f64) {
+    let bins = heading_rad * (BINS as f64 / TAU);
+    let below = bins.floor();
+    // A heading that is no number finds bin 0, and no number comes of it.
+    ((below as i64).rem_euclid(BINS as i64) as usize, bins - below)
+}
+
+/// A number (four side by side) from one bin to the next.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    from: f64x4,
+    /// What it gains up to the next bin.
+    gain: f64x4,
+}
+
+impl Line {
+    /// The number after `part` (0 to 1) of the way.
+    #[inline(always)]
+    pub(super) fn after(&self, part: f64x4) -> f64x4 {
+        self.from + self.gain * part
+    }
+
+    /// Its derivative by the heading, 1/rad.
+    #[inline(always)]
+    pub(super) fn per_rad(&self) -> f64x4 {
+        self.gain * f64x4::splat(BINS as f64 / TAU)
+    }
+}
+
+/// Rows of `N` numbers that depend on the heading. The rows of one bin lie one after the other.
+#[derive(Clone, Debug)]
+pub(super) struct HeadingTable<const N: usize> {
+    rows: usize,
+    lines: Vec<[Line; N]>,
+}
+
+impl<const N: usize> HeadingTable<N> {
+    /// The table of as many `rows`, which `numbers` gives for a row and a heading in rad.
+    pub(super) fn new(rows: usize, numbers: impl Fn(usize, f64) -> [f64x4; N]) -> HeadingTable<N> {
+        let bin_rad = TAU / BINS as f64;
+        let at: Vec<[f64x4; N]> = (0..BINS * rows).map(|i| numbers(i % rows, (i / rows) as f64 * bin_rad)).collect();
+        let line = |i: usize| {
+            let (from, to) = (&at[i], &at[(i + rows) % at.len()]);
+            std::array::from_fn(|n| Line { from: from[n], gain: to[n] - from[n] })
+        };
+        HeadingTable { rows, lines: (0..at.len()).map(line).collect() }
+    }
+
+    /// The rows for a heading, and how far it lies from their bin to the next.
+    #[inline(always)]
+    pub(super) fn at(&self, heading_rad: f64) -> (&[[Line; N]], f64x4) {
+        let (bin, part) = place(heading_rad);
+        (&self.lines[bin * self.rows..(bin + 1) * self.rows], f64x4::splat(part))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_heading_finds_the_bin_below_it_whichever_way_round_it_is_written() {
+        for (heading_deg, bin, part) in [
+            (0.0, 0, 0.0),
+            (7.5, 1, 0.5),
+            (-2.5, 71, 0.5),
+            (-362.5, 71, 0.5),
+            (357.5, 71, 0.5),
+            (720.0 + 91.0, 18, 0.2),
+        ] {
+            let (got_bin, got_part) = place(f64::to_radians(heading_deg));
+            assert!(got_bin == bin && (got_part - part).abs() < 1e-9, "{heading_deg}: {got_bin} {got_part}");
+        }
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
+            assert!(place(odd).0 < BINS, "{odd}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! How the energy of a sea is shared out: over frequencies (JONSWAP), and over directions around the mean one.
+//!
+//! JONSWAP (Hasselmann et al. 1973) in terms of Hs and Tp, with the normalisation of Goda and DNV-RP-C205:
+//!
+//! ```text
+//! S(w) = (1 - 0.287 ln g) 5/16 Hs^2 wp^4 w^-5 exp(-5/4 (wp/w)^4) g^exp(-(w - wp)^2 / (2 s^2 wp^2))
+//! s = 0.07 below the peak, 0.09 above
+//! ```
+
+use super::wave::Component;
+use game::sea::{Spreading, Waves};
+use game::stream::Stream;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// The band that is kept, in peak frequencies: 99.8 % of the variance and 96 % of its second moment at γ = 3.3.
+pub const BAND: (f64, f64) = (0.5, 5.0);
+
+/// Pieces of the curves below.
+const PIECES: usize = 2048;
+
+/// The golden ratio's fractional part.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Spectral density of the surface elevation, m² s, at the angular frequency `omega_rad_s` > 0.
+#[must_use]
+pub fn jonswap_m2_s(waves: &Waves, omega_rad_s: f64) -> f64 {
+    let peak_rad_s = TAU / waves.tp_s;
+    let ratio = peak_rad_s / omega_rad_s;
+    let ratio_4 = ratio * ratio * ratio * ratio;
+    let width = if omega_rad_s <= peak_rad_s { 0.07 } else { 0.09 };
+    let off = (omega_rad_s / peak_rad_s - 1.0) / width;
+    let log_gamma = libm::log(waves.gamma);
+    let shape = libm::exp(log_gamma * libm::exp(-0.5 * off * off) - 1.25 * ratio_4);
+    (1.0 - 0.287 * log_gamma) * 0.3125 * waves.hs_m * waves.hs_m * ratio_4 / omega_rad_s * shape
+}
+
+/// The components that stand for this sea, by rising frequency.
+///
+/// The band is cut into as many strata as there are components, each with the same share of the variance and
+/// of its second moment (that of the velocities) together, and a component carries the variance of its stratum. Its
+/// frequency is drawn from the spectrum within the stratum: every moment is right on average, and the frequencies have
+/// no common multiple after which the sea would repeat itself. Each has one direction, so that the sea is the same
+/// process everywhere (Jefferys 1987). Directions are quantiles of the spreading at multiples of the golden
+/// ratio: few neighbouring frequencies are enough to cover all directions, and none favours one side.
+pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
+    let mut stream = Stream::new(seed, "waves");
+    let count = waves.components as usize;
+    let peak_rad_s = TAU / waves.tp_s;
+    let energy = Curve::new(BAND, |x| jonswap_m2_s(waves, x * peak_rad_s));
+    let second = Curve::new(BAND, |x| x * x * jonswap_m2_s(waves, x * peak_rad_s));
+    let both = Curve { x: energy.x, up_to: (0..=PIECES).map(|i| 0.5 * (energy.up_to[i] + second.up_to[i])).collect() };
+    let spread = spread(waves.spreading);
+    let first_quantile = stream.unit();
+
+    // The renormalisation takes the place of the variance that the band leaves out.
+    let variance_m2 = waves.hs_m * waves.hs_m / 16.0;
+    let mut below = 0.0;
+    (0..count)
+        .map(|i| {
+            let above = if i + 1 == count { 1.0 } else { energy.share_at(both.at((i + 1) as f64 / count as f64)) };
+            let share = above - below;
+            let x = energy.at(below + stream.unit() * share);
+            below = above;
+            let quantile = first_quantile + i as f64 * GOLDEN;
+            Component {
+                amplitude_m: (2.0 * variance_m2 * share).sqrt(),
+                omega_rad_s: x * peak_rad_s,
+                toward_rad: waves.from_rad + PI + spread.as_ref().map_or(0.0, |s| s.at(quantile - quantile.floor())),
+                phase_rad: TAU * stream.unit(),
+            }
+        })
+        .collect()
+}
+
+/// The spreading, as a curve over the angle off the mean direction.
+fn spread(spreading: Spreading) -> Option<Curve> {
+    match spreading {
+        Spreading::None => None,
+        Spreading::CosineSquared => Some(Curve::new((-FRAC_PI_2, FRAC_PI_2), |mu| libm::cos(mu) * libm::cos(mu))),
+        Spreading::Cosine2s { s } => Some(Curve::new((-PI, PI), |mu| libm::pow(libm::cos(0.5 * mu).abs(), 2.0 * s))),
+    }
+}
+
+/// A density over an interval, summed up: straight between [`PIECES`] + 1 points.
+struct Curve {
+    x: (f64, f64),
+    /// The share of the whole that lies below each point.
+    up_to: Vec<f64>,
+}
+
+impl Curve {
+    /// Sums `density`, which is positive somewhere, over the interval, by the trapezoidal rule.
+    fn new(x: (f64, f64), density: impl Fn(f64) -> f64) -> Curve {
+        let step = (x.1 - x.0) / PIECES as f64;
+        let mut up_to = vec![0.0];
+        let (mut sum, mut last) = (0.0, density(x.0));
+        for i in 1..=PIECES {
+            let next = density(x.0 + step * i as f64);
+            sum += 0.5 * (last + next);
+            last = next;
+            up_to.push(sum);
+        }
+        for share in &mut up_to {
+            *share /= sum;
+        }
+        Curve { x, up_to }
+    }
+
+    /// Where `share` of the whole lies below.
+    fn at(&self, share: f64) -> f64 {
+        let i = self.up_to.partition_point(|up_to| *up_to <= share).clamp(1, PIECES);
+        let (low, high) = (self.up_to[i - 1], self.up_to[i]);
+        let part = if high > low { (share - low) / (high - low) } else { 0.0 };
+        self.x.0 + (self.x.1 - self.x.0) * (((i - 1) as f64 + part) / PIECES as f64)
+    }
+
+    /// The share of the whole that lies below `x`.
+    fn share_at(&self, x: f64) -> f64 {
+        let place = (x - self.x.0) / (self.x.1 - self.x.0) * PIECES as f64;
+        let i = (place as usize).min(PIECES - 1);
+        self.up_to[i] + (self.up_to[i + 1] - self.up_to[i]) * (place - i as f64)
+    }
+}

@@ -1,0 +1,292 @@
+//! A wave field: a sum of plane waves, each with a height, a frequency and a direction of its own.
+//!
+//! Linear (Airy) theory: elevation a cos θ with θ = k·x − ω t + φ and ω² = g k tanh k h. Whoever moves
+//! through it meets it at the frequency of encounter, ω − k·V, simply because it is asked for where they are.
+//! What it does to a hull stands in [`HullWaves`](super::HullWaves).
+
+use super::sine::{sin_cos_turns, sum};
+use super::spectrum;
+use crate::hull::Planar;
+use game::boat::Boat;
+use game::frame::Ned;
+use game::sea::Waves;
+use std::f64::consts::TAU;
+use wide::f64x4;
+
+/// Standard gravity.
+pub const GRAVITY_M_S2: f64 = 9.806_65;
+
+/// Components side by side.
+pub(super) const LANES: usize = 4;
+
+/// One plane wave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Component {
+    /// Half its height, m.
+    pub amplitude_m: f64,
+    /// Its angular frequency at a fixed place.
+    pub omega_rad_s: f64,
+    /// The compass bearing it travels to.
+    pub toward_rad: f64,
+    /// Its phase at the datum when the game begins; at 0 its crest is there.
+    pub phase_rad: f64,
+}
+
+/// A component with its place in the dispersion relation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlaneWave {
+    pub(super) component: Component,
+    /// Unit vector of its travel.
+    pub(super) toward: Ned,
+    pub(super) wavenumber_rad_m: f64,
+    depth_m: f64,
+}
+
+impl PlaneWave {
+    fn new(component: Component, depth_m: f64) -> PlaneWave {
+        let (east, north) = libm::sincos(component.toward_rad);
+        let wavenumber_rad_m = wavenumber_rad_m(component.omega_rad_s, depth_m);
+        PlaneWave { component, toward: Ned { north, east }, wavenumber_rad_m, depth_m }
+    }
+
+    /// k h; infinite in deep water.
+    fn depth_rad(&self) -> f64 {
+        self.wavenumber_rad_m * self.depth_m
+    }
+
+    /// How much of the orbital velocity's horizontal part is left at a depth, over a ω: cosh k(z + h) / sinh k h.
+    pub(super) fn orbital_at(&self, below_m: f64) -> f64 {
+        self.decay_at(below_m) / (1.0 - libm::exp(-2.0 * self.depth_rad()))
+    }
+
+    /// How much of the wave's pressure is left at a depth, over ρ g a: cosh k(z + h) / cosh k h.
+    pub(super) fn pressure_at(&self, below_m: f64) -> f64 {
+        self.decay_at(below_m) / (1.0 + libm::exp(-2.0 * self.depth_rad()))
+    }
+
+    /// 2 e^(−k h) cosh k(z + h).
+    fn decay_at(&self, below_m: f64) -> f64 {
+        let k = self.wavenumber_rad_m;
+        let below_m = below_m.min(self.depth_m);
+        libm::exp(-k * below_m) * (1.0 + libm::exp(-2.0 * k * (self.depth_m - below_m)))
+    }
+
+    /// The group's speed over half the phase's: 1 in deep water, 2 in shallow. 1 + 2kh / sinh 2kh.
+    fn group_factor(&self) -> f64 {
+        let twice = 2.0 * self.depth_rad();
+        if twice > 40.0 { 1.0 } else { 1.0 + twice / libm::sinh(twice) }
+    }
+
+    /// The part of a hull's drift force that neither its size nor the wave's direction enters, as its square root: of
+    /// 1/2 ρ g a² R², with the share R = 1 − e^(−2kT) of the wave that a hull of draught T throws back,
+    /// the root a R. Finite depth as Longuet-Higgins (1977).
+    pub(super) fn reflected_m(&self, draught_m: f64) -> f64 {
+        let reflected = 1.0 - libm::exp(-2.0 * self.wavenumber_rad_m * draught_m);
+        self.component.amplitude_m * reflected * self.group_factor().sqrt()
+    }
+}
+
+/// The wavenumber at which ω² = g k tanh k h; in deep water ω² = g k. `depth_m` may be infinite.
+#[must_use]
+pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
+    let deep = omega_rad_s * omega_rad_s / GRAVITY_M_S2;
+    if deep * depth_m > 20.0 {
+        // tanh is 1 to the last bit.
+        return deep;
+    }
+    // Eckart (1952), within 5 %, then Newton's method; its steps become nothing after four or five.
+    let mut k = deep / libm::tanh(deep * depth_m).sqrt();
+    for _ in 0..20 {
+        let tanh = libm::tanh(k * depth_m);
+        let step = (k * tanh - deep) / (tanh + k * depth_m * (1.0 - tanh * tanh));
+        k -= step;
+        if step.abs() <= 1e-15 * k {
+            break;
+        }
+    }
+    k
+}
+
+/// Phases of four components, in turns: they fall by `per_s` and rise by `per_north_m` and `per_east_m`.
+///
+/// After a day the phase of the fastest wave is some 10^5 turns, which an f64 holds to 10^-11 turns.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Phases {
+    start: f64x4,
+    per_s: f64x4,
+    per_north_m: f64x4,
+    per_east_m: f64x4,
+}
+
+impl Phases {
+    pub(super) fn new(waves: &[PlaneWave]) -> Phases {
+        Phases {
+            start: side_by_side(waves, |w| w.component.phase_rad / TAU),
+            per_s: side_by_side(waves, |w| w.component.omega_rad_s / TAU),
+            per_north_m: side_by_side(waves, |w| w.wavenumber_rad_m * w.toward.north / TAU),
+            per_east_m: side_by_side(waves, |w| w.wavenumber_rad_m * w.toward.east / TAU),
+        }
+    }
+
+    /// Sine and cosine of the phases at a place and time.
+    #[inline(always)]
+    pub(super) fn sin_cos(&self, at: Ned, time_s: f64) -> (f64x4, f64x4) {
+        let there = self.per_north_m * f64x4::splat(at.north) + self.per_east_m * f64x4::splat(at.east);
+        sin_cos_turns(there + (self.start - self.per_s * f64x4::splat(time_s)))
+    }
+
+    /// By how much the phases rise per second for someone who moves, rad/s: minus the frequency of encounter.
+    #[inline(always)]
+    pub(super) fn rate_rad_s(&self, velocity_m_s: Ned) -> f64x4 {
+        let there =
+            self.per_north_m * f64x4::splat(velocity_m_s.north) + self.per_east_m * f64x4::splat(velocity_m_s.east);
+        (there - self.per_s) * f64x4::splat(TAU)
+    }
+}
+
+/// `part` of up to four waves side by side; lanes without a wave are 0.
+pub(super) fn side_by_side(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> f64) -> f64x4 {
+    f64x4::new(std::array::from_fn(|lane| waves.get(lane).map_or(0.0, &part)))
+}
+
+/// Four components of the surface side by side.
+#[derive(Clone, Copy, Debug)]
+struct SurfaceRow {
+    phases: Phases,
+    amplitude_m: f64x4,
+    slope_north: f64x4,
+    slope_east: f64x4,
+}
+
+/// The surface at a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// Height above the still water, m, up.
+    pub elevation_m: f64,
+    /// Its gradient: rise per metre to the north and to the east.
+    pub slope: Ned,
+}
+
+/// The waves of a game.
+#[derive(Clone, Debug)]
+pub struct WaveField {
+    pub(super) waves: Vec<PlaneWave>,
+    pub(super) drift_factor: f64,
+    rows: Vec<SurfaceRow>,
+}
+
+impl WaveField {
+    /// The field that the seed's stream `waves` draws from this spectrum, in water of this depth (`None` is deep).
+    #[must_use]
+    pub fn new(waves: &Waves, depth_m: Option<f64>, seed: u64) -> WaveField {
+        WaveField::of(&spectrum::components(waves, seed), depth_m, waves.drift_factor)
+    }
+
+    /// The field of these components: a regular wave, or a sea measured elsewhere.
+    #[must_use]
+    pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
+        let depth_m = depth_m.unwrap_or(f64::INFINITY);
+        let waves: Vec<PlaneWave> = components.iter().map(|c| PlaneWave::new(*c, depth_m)).collect();
+        let row = |waves: &[PlaneWave]| SurfaceRow {
+            phases: Phases::new(waves),
+            amplitude_m: side_by_side(waves, |w| w.component.amplitude_m),
+            slope_north: side_by_side(waves, |w| -w.component.amplitude_m * w.wavenumber_rad_m * w.toward.north),
+            slope_east: side_by_side(waves, |w| -w.component.amplitude_m * w.wavenumber_rad_m * w.toward.east),
+        };
+        let rows = waves.chunks(LANES).map(row).collect();
+        WaveField { waves, drift_factor, rows }
+    }
+
+    /// The components.
+    pub fn components(&self) -> impl ExactSizeIterator<Item = &Component> {
+        self.waves.iter().map(|w| &w.component)
+    }
+
+    /// The surface at a place and time, of all components.
+    #[must_use]
+    pub fn surface(&self, at: Ned, time_s: f64) -> Surface {
+        let (mut elevation, mut north, mut east) = (f64x4::ZERO, f64x4::ZERO, f64x4::ZERO);
+        for row in &self.rows {
+            let (sin, cos) = row.phases.sin_cos(at, time_s);
+            elevation += row.amplitude_m * cos;
+            north += row.slope_north * sin;
+            east += row.slope_east * sin;
+        }
+        Surface { elevation_m: sum(elevation), slope: Ned { north: sum(north), east: sum(east) } }
+    }
+
+    /// Significant wave height, m: four standard deviations of the elevation.
+    #[must_use]
+    pub fn hs_m(&self) -> f64 {
+        4.0 * self.mean(|_| 1.0).sqrt()
+    }
+
+    /// Length of a wave of this period in this field's water, m.
+    #[must_use]
+    pub fn wavelength_m(&self, period_s: f64) -> f64 {
+        let depth_m = self.waves.first().map_or(f64::INFINITY, |w| w.depth_m);
+        TAU / wavenumber_rad_m(TAU / period_s, depth_m)
+    }
+
+    /// Standard deviation of the horizontal orbital velocity at the surface, over both directions together, m/s.
+    #[must_use]
+    pub fn orbital_rms_m_s(&self) -> f64 {
+        self.mean(|w| {
+            let per_m = w.component.omega_rad_s * w.orbital_at(0.0);
+            per_m * per_m
+        })
+        .sqrt()
+    }
+
+    /// Standard deviation of the steepest slope, as an angle, rad.
+    #[must_use]
+    pub fn slope_rms_rad(&self) -> f64 {
+        libm::atan(self.mean(|w| w.wavenumber_rad_m * w.wavenumber_rad_m).sqrt())
+    }
+
+    /// Stokes drift, averaged over a hull's draught, m/s: that of a wave at the depth z is
+    /// a² ω k cosh 2k(z + h) / (2 sinh² k h).
+    #[must_use]
+    pub fn stokes_drift_m_s(&self, draught_m: f64) -> Ned {
+        let mut drift = Ned::default();
+        for w in &self.waves {
+            let (k, draught_m) = (w.wavenumber_rad_m, draught_m.min(w.depth_m));
+            let bottom = libm::exp(-2.0 * w.depth_rad());
+            // sinh 2kh − sinh 2k(h − T), over sinh² k h and e^(2kh) / 2 each.
+            let at_keel = libm::exp(-2.0 * k * draught_m);
+            let layer = (1.0 - at_keel) * (1.0 + bottom * bottom / at_keel);
+            let a = w.component.amplitude_m;
+            let speed_m_s =
+                0.5 * a * a * w.component.omega_rad_s * layer / (draught_m * (1.0 - bottom) * (1.0 - bottom));
+            drift = drift + w.toward.scaled(speed_m_s);
+        }
+        drift
+    }
+
+    /// Mean second-order force on a hull on this heading, in its own axes: the momentum that the waves lose
+    /// to it where it throws them back (Maruo 1960), side and end taken as walls:
+    ///
+    /// ```text
+    /// X = sum 1/2 rho g a^2 R^2 B cos b |cos b|     Y = sum 1/2 rho g a^2 R^2 L sin b |sin b|     R = 1 - e^(-2kT)
+    /// ```
+    ///
+    /// with b between the heading and the wave's travel. That R is a rough stand-in for the hull's reflection is why
+    /// `drift_factor` is there.
+    #[must_use]
+    pub fn mean_drift_newton(&self, boat: &Boat, water_density_kg_m3: f64, heading_rad: f64) -> Planar {
+        let (mut surge, mut sway) = (0.0, 0.0);
+        for w in &self.waves {
+            let (sin, cos) = libm::sincos(w.component.toward_rad - heading_rad);
+            let reflected_m = w.reflected_m(boat.draught_m);
+            surge += reflected_m * reflected_m * cos * cos.abs();
+            sway += reflected_m * reflected_m * sin * sin.abs();
+        }
+        let scale = self.drift_factor * 0.5 * water_density_kg_m3 * GRAVITY_M_S2;
+        Planar { surge: scale * boat.beam_m * surge, sway: scale * boat.length_m * sway, yaw: 0.0 }
+    }
+
+    /// The mean of the square of what is `per_m` of amplitude, its own square given.
+    fn mean(&self, per_m_squared: impl Fn(&PlaneWave) -> f64) -> f64 {
+        self.waves.iter().map(|w| 0.5 * w.component.amplitude_m * w.component.amplitude_m * per_m_squared(w)).sum()
+    }
+}
