@@ -2,6 +2,14 @@
 //!
 //! The one door through which the sea acts. Calm water, with or without a steady current.
 
+pub mod current;
+pub mod eddy;
+pub mod gust_spectrum;
+mod markov;
+mod tape;
+pub mod wind;
+pub mod windage;
+
 use game::frame::Ned;
 use game::sea::Sea;
 
