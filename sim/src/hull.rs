@@ -96,6 +96,17 @@ impl HullModel {
         }
     }
 
+    /// The force (N, N, N m) that gives hull and added mass this acceleration.
+    #[inline]
+    #[must_use]
+    pub fn force_of(&self, acceleration: Planar) -> Planar {
+        Planar {
+            surge: self.m_surge * acceleration.surge,
+            sway: self.m_sway * acceleration.sway + self.m_cross * acceleration.yaw,
+            yaw: self.m_cross * acceleration.sway + self.m_yaw * acceleration.yaw,
+        }
+    }
+
     /// Kinetic energy of hull and added mass, J.
     #[must_use]
     pub fn energy_joule(&self, nu_r: Planar) -> f64 {

@@ -14,6 +14,7 @@ pub mod motion;
 pub mod node;
 mod ramp;
 pub mod sea;
+pub mod sensor;
 pub mod spawn;
 pub mod state;
 pub mod thruster;

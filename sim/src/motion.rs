@@ -17,6 +17,10 @@ pub struct Effort {
     pub nu_r: Planar,
     /// The force on the hull, apart from the hull's own, at the beginning, half-way and at the end.
     pub tau: [Planar; 3],
+    /// The water's own motion half-way, waves and eddies, that resistance feels beside the boat's.
+    pub water: Planar,
+    /// The rate at which that changes.
+    pub water_rate: Planar,
 }
 
 /// Motion over one tick.
@@ -151,19 +155,21 @@ impl Row {
         }
     }
 
-    /// The acceleration under `tau` at the velocity `nu_r` through the water.
+    /// The acceleration under `tau` at the velocity `nu_r` through the water. Resistance acts on the velocity through
+    /// the water as it moves to and fro, `nu_r - water`.
     #[inline(always)]
-    fn acceleration(&self, nu_r: Planar4, tau: Planar4) -> Planar4 {
+    fn acceleration(&self, nu_r: Planar4, tau: Planar4, water: Planar4) -> Planar4 {
         let Planar4 { surge: u, sway: v, yaw: r } = nu_r;
-        let (y_cross, n_cross) = self.crossflow(v, r);
-        let speed = u.abs();
+        let past = Planar4::zip([nu_r, water], |[boat, water]| boat - water);
+        let (y_cross, n_cross) = self.crossflow(past.sway, past.yaw);
+        let speed = past.surge.abs();
         let x = tau.surge + self.m_munk * v * r + self.m_cross * r * r
-            - (self.surge_linear + self.surge_quadratic * speed) * u;
-        let y = tau.sway - self.m_surge * u * r - (self.sway_linear + self.sway_lift * speed) * v - y_cross;
+            - (self.surge_linear + self.surge_quadratic * speed) * past.surge;
+        let y = tau.sway - self.m_surge * u * r - (self.sway_linear + self.sway_lift * speed) * past.sway - y_cross;
         let n = tau.yaw
             - self.m_cross * u * r
             - self.munk * u * v
-            - (self.yaw_linear + self.yaw_quadratic * r.abs() + self.yaw_lift * speed) * r
+            - (self.yaw_linear + self.yaw_quadratic * past.yaw.abs() + self.yaw_lift * speed) * past.yaw
             - n_cross;
         Planar4 {
             surge: self.inverse_surge * x,
@@ -196,11 +202,12 @@ impl Row {
         let effort = |i: usize| &efforts[i.min(efforts.len() - 1)];
         let start = Planar4::gather(|i| effort(i).nu_r);
         let tau = [0, 1, 2].map(|when| Planar4::gather(|i| effort(i).tau[when]));
+        let (water, rate) = (Planar4::gather(|i| effort(i).water), Planar4::gather(|i| effort(i).water_rate));
         let half = 0.5 * dt_s;
-        let k1 = self.acceleration(start, tau[0]);
-        let k2 = self.acceleration(start.plus(half, k1), tau[1]);
-        let k3 = self.acceleration(start.plus(half, k2), tau[1]);
-        let k4 = self.acceleration(start.plus(dt_s, k3), tau[2]);
+        let k1 = self.acceleration(start, tau[0], water.plus(-half, rate));
+        let k2 = self.acceleration(start.plus(half, k1), tau[1], water);
+        let k3 = self.acceleration(start.plus(half, k2), tau[1], water);
+        let k4 = self.acceleration(start.plus(dt_s, k3), tau[2], water.plus(half, rate));
         let sixth = dt_s / 6.0;
         let end = Planar4::zip([start, k1, k2, k3, k4], |[x, a, b, c, d]| x + sixth * (a + 2.0 * (b + c) + d));
         // Cubic through both ends and their slopes; k4 is the slope at the end to third order.
@@ -368,7 +375,7 @@ mod tests {
             let mut nu = Planar { surge: 1.0, sway: 0.2, yaw: 0.5 };
             let tau = [Planar { surge: 80.0, sway: 0.0, yaw: 10.0 }; 3];
             for _ in 0..(2.0 / dt_s).round() as u32 {
-                nu = advance(&model, &Effort { nu_r: nu, tau }, dt_s);
+                nu = advance(&model, &Effort { nu_r: nu, tau, ..Effort::default() }, dt_s);
             }
             nu.yaw
         };

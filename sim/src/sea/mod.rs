@@ -1,45 +1,232 @@
-//! The water: what a boat feels of it at a place and a time.
+//! What a boat feels of the sea: waves, wind and current, at its place and time.
 //!
-//! The one door through which the sea acts. Calm water, with or without a steady current.
+//! Open [`SeaNow::feel`] first: the one door through which the sea acts on boats. Everything here is a function of the
+//! scenario, the seed and the time; the sea remembers nothing, so a world that goes back in time finds the same sea.
 
+pub mod current;
+pub mod eddy;
+pub mod gust_spectrum;
 mod heading;
 mod hull_wave;
+mod markov;
 mod ride;
 mod sine;
 pub mod spectrum;
+mod tape;
 pub mod wave;
+pub mod wind;
+pub mod windage;
 
+pub use current::{CurrentField, CurrentNow};
 pub use hull_wave::{HullWaves, WaveSample};
 pub use ride::{Attitude, Ride};
 pub use wave::{Component, Surface, WaveField};
+pub use wind::WindField;
 
-use game::frame::Ned;
-use game::sea::Sea;
+use crate::hull::{HullModel, Planar};
+use game::boat::Windage;
+use game::frame::{self, Body, Ned, Pose};
+use game::{Boat, Scenario, SimTime};
 
-/// The sea of a game.
+/// Density of the air at 15 °C, kg/m³.
+pub const AIR_KG_M3: f64 = 1.225;
+
+/// The sea of a game, and how each kind of boat lies in it.
 #[derive(Clone, Debug)]
 pub struct SeaModel {
-    current_m_s: Ned,
+    waves: Option<WaveField>,
+    wind: Option<WindField>,
+    current: CurrentField,
+    /// Hulls of different size; kinds of boat that differ in other things share one.
+    shapes: Vec<Shape>,
+    kinds: Vec<Kind>,
+    /// Half a tick, and as seconds.
+    half_tick: SimTime,
+    half_s: f64,
 }
 
-/// The sea at one boat.
+/// A size of hull in the waves.
+#[derive(Clone, Debug)]
+struct Shape {
+    length_m: f64,
+    beam_m: f64,
+    draught_m: f64,
+    waves: HullWaves,
+    ride: Ride,
+    stokes_m_s: Ned,
+}
+
+#[derive(Clone, Debug)]
+struct Kind {
+    length_m: f64,
+    /// Index into the shapes, where there are waves.
+    shape: usize,
+    windage: Windage,
+    /// The mean wind at the height of its windage, m/s.
+    wind_mean_m_s: f64,
+}
+
+/// The sea at one moment.
 #[derive(Clone, Copy, Debug)]
-pub struct SeaSample {
-    /// The velocity of the water over the ground, m/s.
+pub struct SeaNow<'a> {
+    model: &'a SeaModel,
+    current: CurrentNow<'a>,
+    now: SimTime,
+    /// The same half a tick later, in s: when waves are taken.
+    middle_s: f64,
+}
+
+/// What a boat feels of the sea over a tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Felt {
+    /// The velocity of the water over the ground, without its to and fro, m/s.
     pub current_m_s: Ned,
+    /// The water's to and fro and its turning, half-way through the tick, along the boat.
+    pub water: Planar,
+    /// The rate at which that changes.
+    pub water_rate: Planar,
+    /// Wind, wave and drift forces along the boat.
+    pub force: Planar,
 }
 
 impl SeaModel {
-    /// The model of this sea.
+    /// The sea of this scenario in the game that `seed` chooses.
     #[must_use]
-    pub fn new(sea: &Sea) -> SeaModel {
-        SeaModel { current_m_s: sea.current.mean_m_s }
+    pub fn new(scenario: &Scenario, seed: u64) -> SeaModel {
+        let sea = &scenario.sea;
+        let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seed));
+        let highest = scenario.boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
+        let wind = sea.wind.as_ref().map(|wind| WindField::new(wind, highest, &scenario.field, seed));
+        let mut model = SeaModel {
+            current: CurrentField::new(&sea.current, &scenario.field, seed),
+            shapes: vec![],
+            kinds: vec![],
+            half_tick: SimTime(scenario.tick.0 / 2),
+            half_s: 0.5 * scenario.tick.as_s(),
+            waves,
+            wind,
+        };
+        for boat in &scenario.boats {
+            let kind = Kind {
+                length_m: boat.length_m,
+                shape: model.shape_of(boat, sea.water_density_kg_m3),
+                windage: boat.windage.clone(),
+                wind_mean_m_s: model.wind.as_ref().map_or(0.0, |wind| wind.mean_m_s(boat.windage.height_m)),
+            };
+            model.kinds.push(kind);
+        }
+        model
     }
 
-    /// The sea at a boat.
+    /// The index of the boat's shape, made if it is the first of it.
+    fn shape_of(&mut self, boat: &Boat, water_density_kg_m3: f64) -> usize {
+        let Some(field) = &self.waves else { return 0 };
+        let size = (boat.length_m, boat.beam_m, boat.draught_m);
+        let known = self.shapes.iter().position(|shape| (shape.length_m, shape.beam_m, shape.draught_m) == size);
+        known.unwrap_or_else(|| {
+            self.shapes.push(Shape {
+                length_m: boat.length_m,
+                beam_m: boat.beam_m,
+                draught_m: boat.draught_m,
+                waves: HullWaves::new(field, boat, water_density_kg_m3),
+                ride: Ride::new(field, boat),
+                stokes_m_s: field.stokes_drift_m_s(boat.draught_m),
+            });
+            self.shapes.len() - 1
+        })
+    }
+
+    /// Has at hand what is asked for at `now`. Only for speed: without it everything is the same to the last bit.
+    pub fn prepare(&mut self, now: SimTime) {
+        self.current.prepare(now);
+        if let Some(wind) = &mut self.wind {
+            wind.prepare(now);
+        }
+    }
+
+    /// The sea at `now`.
+    #[must_use]
+    pub fn at_time(&self, now: SimTime) -> SeaNow<'_> {
+        let middle_s = (now + self.half_tick).as_s();
+        SeaNow { model: self, current: self.current.at_time(now), now, middle_s }
+    }
+
+    /// The waves, if there are any.
+    #[must_use]
+    pub fn waves(&self) -> Option<&WaveField> {
+        self.waves.as_ref()
+    }
+}
+
+impl SeaNow<'_> {
+    /// What a boat of this kind, with this hull, feels in the tick that begins now. `nu` is its velocity over the ground
+    /// along its axes, `turn` the sine and cosine of its heading.
     #[inline]
     #[must_use]
-    pub fn at(&self, _at: Ned) -> SeaSample {
-        SeaSample { current_m_s: self.current_m_s }
+    pub fn feel(&self, kind: usize, hull: &HullModel, pose: Pose, turn: (f64, f64), nu: Planar) -> Felt {
+        let boat = &self.model.kinds[kind];
+        let (current_m_s, turning_rad_s) = self.current.over_hull(pose.at, turn, boat.length_m);
+        let mut felt = Felt {
+            current_m_s,
+            water: Planar { yaw: turning_rad_s, ..Planar::default() },
+            ..Felt::default()
+        };
+        if let Some(wind) = &self.model.wind {
+            let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
+            let past = windage::wind_past_boat(turn, air_m_s, nu);
+            felt.force = windage::wind_force(&boat.windage, boat.length_m, AIR_KG_M3, past);
+        }
+        if self.model.waves.is_some() {
+            self.feel_waves(&self.model.shapes[boat.shape], hull, pose, turn, nu, &mut felt);
+        }
+        felt
+    }
+
+    /// Waves are taken half-way through the tick, where the boat will be by then.
+    #[inline]
+    fn feel_waves(&self, shape: &Shape, hull: &HullModel, pose: Pose, turn: (f64, f64), nu: Planar, felt: &mut Felt) {
+        let half_s = self.model.half_s;
+        let velocity_m_s = frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway });
+        let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
+        let waves = shape.waves.at(middle, self.middle_s);
+        felt.current_m_s = felt.current_m_s + shape.stokes_m_s;
+        felt.water = felt.water.plus(1.0, waves.velocity);
+        felt.water_rate = waves.acceleration;
+        // Long waves push the water that the hull displaces, and that it would carry along, as they push water
+        // (Froude-Krylov and diffraction; Newman 1977, ch. 6).
+        felt.force = felt.force.plus(1.0, hull.force_of(waves.acceleration)).plus(1.0, waves.drift_newton);
+    }
+
+    /// The current at a place, m/s: what carries a point boat along.
+    #[must_use]
+    pub fn current_at(&self, at: Ned) -> Ned {
+        self.current.at(at)
+    }
+
+    /// The velocity of the air 10 m above the water, m/s.
+    #[must_use]
+    pub fn wind_at(&self, at: Ned) -> Ned {
+        self.model.wind.as_ref().map_or_else(Ned::default, |wind| wind.at(at, wind.mean_m_s(10.0), self.now))
+    }
+
+    /// How a boat of this kind lies in the waves now.
+    #[must_use]
+    pub fn attitude(&self, kind: usize, pose: Pose, turn: (f64, f64), nu: Planar) -> Attitude {
+        if self.model.waves.is_none() {
+            return Attitude::default();
+        }
+        let velocity_m_s = frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway });
+        self.model.shapes[self.model.kinds[kind].shape].ride.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
+    }
+
+    /// By how much the water stands higher than in calm over a point of a boat, m: `place` is ahead and to starboard of
+    /// midships.
+    #[must_use]
+    pub fn cover_m(&self, kind: usize, pose: Pose, turn: (f64, f64), nu: Planar, place: Body) -> f64 {
+        let Some(waves) = &self.model.waves else { return 0.0 };
+        let attitude = self.attitude(kind, pose, turn, nu);
+        let elevation_m = waves.surface(pose.at + frame::ned_from_body(turn, place), self.now.as_s()).elevation_m;
+        let risen_m = attitude.heave_up_m + attitude.pitch_rad * place.ahead - attitude.roll_rad * place.starboard;
+        elevation_m - risen_m
     }
 }

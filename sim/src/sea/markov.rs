@@ -1,0 +1,147 @@
+//! A number that wanders: the stationary Gauss-Markov process, looked up anywhere on its grid.
+//!
+//! Also known as the Ornstein-Uhlenbeck process: mean 0, variance 1, correlation e^(−lag). Its usual recursion needs all
+//! of its past; here a point is found from the noise alone. Every 32 correlation lengths stands an independent point
+//! (the correlation that this leaves out is e^−32 = 1e−14), and what is between is halved again and again: in the middle
+//! between two known points δ away, the process has
+//!
+//! ```text
+//! mean (a + b) ρ / (1 + ρ²)        variance (1 − ρ²) / (1 + ρ²)        ρ = e^(−δ)
+//! ```
+//!
+//! which is the Gauss-Markov process conditioned on both (the bridge of Lévy's construction, for this process). So a
+//! world that is put back to any tick finds the same bits, whatever it had looked at before.
+
+use game::stream::Noise;
+
+/// Grid points in one correlation length.
+pub(super) const STEPS_PER_LENGTH: f64 = 32.0;
+/// How often an interval between independent points is halved.
+const LEVELS: usize = 10;
+/// Grid points between two independent ones: 32 correlation lengths.
+const BLOCK: i64 = 1 << LEVELS;
+/// Puts the counts of the noise of all grid points that matter above zero.
+const COUNT_OF_POINT_ZERO: i64 = 1 << 40;
+
+/// Two independent processes on one grid.
+pub(super) type Pair = (f64, f64);
+
+/// The process: constant.
+#[derive(Clone, Debug)]
+pub(super) struct Markov {
+    noise: Noise,
+    /// By level: the factor on the sum of the neighbours, and the standard deviation about it.
+    halving: [(f64, f64); LEVELS],
+}
+
+/// The points on the way to the one looked up last. Makes the next one cheap, and changes nothing else.
+#[derive(Clone, Debug)]
+pub(super) struct Trail([(i64, Pair); LEVELS + 2]);
+
+impl Default for Trail {
+    fn default() -> Trail {
+        Trail([(i64::MIN, (0.0, 0.0)); LEVELS + 2])
+    }
+}
+
+impl Trail {
+    fn known(&mut self, place: usize, index: i64, find: impl FnOnce() -> Pair) -> Pair {
+        if self.0[place].0 != index {
+            self.0[place] = (index, find());
+        }
+        self.0[place].1
+    }
+}
+
+impl Markov {
+    pub(super) fn new(noise: Noise) -> Markov {
+        let halving = std::array::from_fn(|level| {
+            let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
+            let rho = libm::exp(-apart);
+            (rho / (1.0 + rho * rho), (-libm::expm1(-2.0 * apart) / (1.0 + rho * rho)).sqrt())
+        });
+        Markov { noise, halving }
+    }
+
+    /// The correlation of neighbours on the grid.
+    pub(super) fn neighbour_correlation() -> f64 {
+        libm::exp(-1.0 / STEPS_PER_LENGTH)
+    }
+
+    /// The two processes at a grid point.
+    pub(super) fn at(&self, index: i64, trail: &mut Trail) -> Pair {
+        let block = index.div_euclid(BLOCK);
+        // The ends of a block take turns, so that the end of one stays known as the beginning of the next.
+        let end = |block: i64| LEVELS + (block & 1) as usize;
+        let mut low = trail.known(end(block), block * BLOCK, || self.draw(block * BLOCK));
+        if index == block * BLOCK {
+            return low;
+        }
+        let mut high = trail.known(end(block + 1), (block + 1) * BLOCK, || self.draw((block + 1) * BLOCK));
+        let mut low_index = block * BLOCK;
+        for (level, (pull, sigma)) in self.halving.into_iter().enumerate() {
+            let middle_index = low_index + (BLOCK >> (level + 1));
+            let middle = trail.known(level, middle_index, || {
+                let fresh = self.draw(middle_index);
+                (pull * (low.0 + high.0) + sigma * fresh.0, pull * (low.1 + high.1) + sigma * fresh.1)
+            });
+            match index.cmp(&middle_index) {
+                std::cmp::Ordering::Equal => return middle,
+                std::cmp::Ordering::Less => high = middle,
+                std::cmp::Ordering::Greater => (low, low_index) = (middle, middle_index),
+            }
+        }
+        unreachable!("halving a block ten times reaches each of its 1024 points")
+    }
+
+    fn draw(&self, index: i64) -> Pair {
+        self.noise.normal_pair((COUNT_OF_POINT_ZERO + index) as u64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_the_same_however_one_comes_to_it() {
+        let process = Markov::new(Noise::new(3, "test"));
+        let mut trail = Trail::default();
+        let in_order: Vec<Pair> = (-2100..2100).map(|index| process.at(index, &mut trail)).collect();
+        let stride = 1777; // coprime to 4200: every point once, in a wild order
+        for i in 0..4200 {
+            let i = i * stride % 4200;
+            assert_eq!(process.at(i as i64 - 2100, &mut trail), in_order[i], "point {i} by the trail");
+            assert_eq!(process.at(i as i64 - 2100, &mut Trail::default()), in_order[i], "point {i} alone");
+        }
+    }
+
+    #[test]
+    fn it_has_the_moments_of_its_process_within_blocks_and_across_their_ends() {
+        const POINTS: i64 = 4_000_000;
+        let process = Markov::new(Noise::new(5, "test"));
+        let mut trail = Trail::default();
+        let x: Vec<Pair> = (0..POINTS).map(|index| process.at(index, &mut trail)).collect();
+        // Five standard errors; 125 000 correlation lengths count as so many independent draws over two.
+        let within = 5.0 * (2.0 / (POINTS as f64 / STEPS_PER_LENGTH)).sqrt();
+        let mean =
+            |f: &dyn Fn(usize) -> f64, lag: usize| (0..x.len() - lag).map(f).sum::<f64>() / (x.len() - lag) as f64;
+        assert!(mean(&|i| x[i].0, 0).abs() < within, "mean {}", mean(&|i| x[i].0, 0));
+        assert!(mean(&|i| x[i].0 * x[i].1, 0).abs() < within, "correlation of the two");
+        for lag in [0, 1, 5, 16, 32, 64, 96] {
+            let want = libm::exp(-(lag as f64) / STEPS_PER_LENGTH);
+            for (which, got) in
+                [mean(&|i| x[i].0 * x[i + lag].0, lag), mean(&|i| x[i].1 * x[i + lag].1, lag)].into_iter().enumerate()
+            {
+                assert!((got - want).abs() < within, "process {which}, lag {lag}: {got}, not {want} within {within}");
+            }
+        }
+        // The same at the seam between blocks alone: 3900 seams.
+        let seams = || (1..POINTS as usize / BLOCK as usize).map(|block| block * BLOCK as usize);
+        for lag in [1, 8, 32] {
+            let got = seams().map(|i| x[i - lag].0 * x[i + lag].0).sum::<f64>() / seams().count() as f64;
+            let want = libm::exp(-2.0 * lag as f64 / STEPS_PER_LENGTH);
+            assert!((got - want).abs() < 5.0 * (2.0 / 3900.0_f64).sqrt(), "lag {lag} over a seam: {got}, not {want}");
+        }
+    }
+}

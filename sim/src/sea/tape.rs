@@ -1,0 +1,134 @@
+//! A random process laid out along a line, to be read at any place of it.
+//!
+//! The process itself is a function of the grid point; the tape keeps a stretch of it at hand and reads between the
+//! points. Where it is read beyond that stretch it works the points out again: slower, the same bits.
+
+use super::gust_spectrum::Waves;
+use super::markov::{Markov, Pair, Trail};
+
+/// Most points kept at hand.
+const HELD_MAX: i64 = 1 << 16;
+
+/// What is on a tape.
+#[derive(Clone, Debug)]
+pub(super) enum Process {
+    /// The Gauss-Markov process.
+    Markov(Markov),
+    /// Waves along the wind, and waves across it.
+    Waves(Waves, Waves),
+}
+
+impl Process {
+    fn at(&self, index: i64, trail: &mut Trail) -> Pair {
+        match self {
+            Process::Markov(markov) => markov.at(index, trail),
+            Process::Waves(along, across) => (along.at(index), across.at(index)),
+        }
+    }
+}
+
+/// A process with a stretch of it at hand.
+#[derive(Clone, Debug)]
+pub(super) struct Tape {
+    process: Process,
+    /// By process of the pair: the correlation of neighbours.
+    correlation: Pair,
+    trail: Trail,
+    /// Point i stands at i modulo the length, which is a power of two.
+    ring: Vec<Pair>,
+    /// The points at hand: from the first to before the last.
+    held: (i64, i64),
+}
+
+impl Tape {
+    /// A tape that keeps at least `points` at hand, as far as that is sensible.
+    pub(super) fn new(process: Process, points: f64) -> Tape {
+        let correlation = match &process {
+            Process::Markov(_) => (Markov::neighbour_correlation(), Markov::neighbour_correlation()),
+            Process::Waves(along, across) => (along.neighbour_correlation(), across.neighbour_correlation()),
+        };
+        let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
+        let ring = vec![(0.0, 0.0); length.next_power_of_two() as usize];
+        Tape { process, correlation, trail: Trail::default(), ring, held: (0, 0) }
+    }
+
+    /// Has the points between two places at hand.
+    pub(super) fn hold(&mut self, from: f64, to: f64) {
+        let first = from.floor() as i64;
+        let end = (to.floor() as i64 + 2).min(first + self.ring.len() as i64);
+        let known = if (self.held.0..=self.held.1).contains(&first) { self.held.1 } else { first };
+        for index in known..end {
+            let slot = self.slot(index);
+            self.ring[slot] = self.process.at(index, &mut self.trail);
+        }
+        self.held = (first, end.max(known));
+    }
+
+    /// The pair of processes at a place, each with a mean of 0 and a variance of 1.
+    ///
+    /// On the line between two points the variance would be less: (1−w)² + w² + 2 w (1−w) ρ. The root of that makes up
+    /// for it.
+    #[inline]
+    pub(super) fn at(&self, place: f64) -> Pair {
+        let floor = place.floor();
+        let (index, weight) = (floor as i64, place - floor);
+        let (low, high) = (self.point(index), self.point(index + 1));
+        let product = 2.0 * weight * (1.0 - weight);
+        let between = |low: f64, high: f64, correlation: f64| {
+            (low + weight * (high - low)) / (1.0 - product * (1.0 - correlation)).sqrt()
+        };
+        (between(low.0, high.0, self.correlation.0), between(low.1, high.1, self.correlation.1))
+    }
+
+    #[inline]
+    fn point(&self, index: i64) -> Pair {
+        if self.held.0 <= index && index < self.held.1 {
+            self.ring[self.slot(index)]
+        } else {
+            self.process.at(index, &mut Trail::default())
+        }
+    }
+
+    #[inline]
+    fn slot(&self, index: i64) -> usize {
+        index as usize & (self.ring.len() - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::stream::{Noise, Stream};
+
+    fn processes() -> [Process; 2] {
+        let mut stream = Stream::new(1, "test");
+        let mut waves = || Waves::draw(&|f| f / (1.0 + 100.0 * f), 12, &mut stream);
+        [Process::Markov(Markov::new(Noise::new(1, "test"))), Process::Waves(waves(), waves())]
+    }
+
+    #[test]
+    fn what_is_at_hand_changes_no_bit() {
+        for process in processes() {
+            let bare = Tape::new(process.clone(), 0.0);
+            let mut tape = Tape::new(process, 40.0);
+            // Ahead by little, by much, back, beyond the ring, and below zero.
+            for from in [0.0, 0.4, 1.7, 30.2, 31.0, 200.5, 5.5, 6.5, -70.2, -1030.0, 1e6] {
+                tape.hold(from, from + 40.0);
+                for place in [from - 90.0, from - 0.1, from, from + 0.3, from + 17.5, from + 40.0, from + 99.9] {
+                    assert_eq!(tape.at(place), bare.at(place), "holding {from}, at {place}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_ring_is_filled_no_further_than_it_is_long() {
+        let [process, _] = processes();
+        let bare = Tape::new(process.clone(), 0.0);
+        let mut tape = Tape::new(process, 10.0);
+        tape.hold(0.0, 1000.0);
+        for place in [0.5, 9.5, 15.5, 16.5, 500.5] {
+            assert_eq!(tape.at(place), bare.at(place));
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The wind at a place and a time: a mean that falls towards the water, and gusts that travel with it.
+//!
+//! Gusts are one pattern, frozen, that the mean wind carries over the field (Taylor 1938): what a boat feels, a boat
+//! d metres downwind of it feels d / U later. So the pattern is a function of U t − d alone, with d counted downwind
+//! from the datum and U the mean wind at the reference height. Boats at other heights meet the same pattern, in
+//! proportion to the mean wind at theirs. It does not vary along crests: boats abreast feel the same.
+//!
+//! U is taken as 1 m/s where it is less: a pattern that stands still would be no gust.
+
+use super::gust_spectrum::{FREQUENCY_MAX_HZ, STEPS_PER_WAVE, Waves, shape};
+use super::markov::{Markov, STEPS_PER_LENGTH};
+use super::tape::{Process, Tape};
+use game::SimTime;
+use game::field::Field;
+use game::frame::Ned;
+use game::math;
+use game::sea::{Gusts, Wind};
+use game::stream::{Noise, Stream};
+
+/// Slowest speed at which gusts travel, m/s.
+pub const CARRY_MIN_M_S: f64 = 1.0;
+/// How far around the field gusts are kept at hand, m. Boats further away are served too, more slowly.
+const MARGIN_M: f64 = 50.0;
+
+/// The wind over a field.
+#[derive(Clone, Debug)]
+pub struct WindField {
+    /// Unit vector that the mean wind blows along.
+    downwind: Ned,
+    /// A quarter turn to starboard of it.
+    across: Ned,
+    speed_10m_m_s: f64,
+    profile_exponent: f64,
+    gusts: Option<Frozen>,
+}
+
+/// Gusts as a pattern along the wind.
+#[derive(Clone, Debug)]
+struct Frozen {
+    tape: Tape,
+    /// Standard deviation along the wind and across it, over the mean speed.
+    intensity: (f64, f64),
+    /// Grid points by metre downwind.
+    steps_per_m: f64,
+    /// Grid points by second.
+    steps_per_s: f64,
+    /// How far downwind of the datum the field reaches, with its margin, m.
+    reach_m: (f64, f64),
+}
+
+impl WindField {
+    /// The wind over `field`, with gusts that travel as fast as the mean wind `reference_height_m` above the water: that
+    /// of the boats' own windage, as a rule.
+    #[must_use]
+    pub fn new(wind: &Wind, reference_height_m: f64, field: &Field, seed: u64) -> WindField {
+        let (sin, cos) = math::sin_cos(wind.from_rad);
+        let downwind = Ned { north: -cos, east: -sin };
+        let across = Ned { north: sin, east: -cos };
+        let mut made = WindField {
+            downwind,
+            across,
+            speed_10m_m_s: wind.speed_10m_m_s,
+            profile_exponent: wind.profile_exponent,
+            gusts: None,
+        };
+        let carry_m_s = made.mean_m_s(reference_height_m).max(CARRY_MIN_M_S);
+        let along_m = field.corners.map(|corner| corner.dot(downwind));
+        let reach_m = (
+            along_m.into_iter().fold(f64::INFINITY, f64::min) - MARGIN_M,
+            along_m.into_iter().fold(f64::NEG_INFINITY, f64::max) + MARGIN_M,
+        );
+        made.gusts = match wind.gusts {
+            Gusts::None => None,
+            Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m } => {
+                let process = Process::Markov(Markov::new(Noise::new(seed, "gust")));
+                let steps_per_m = STEPS_PER_LENGTH / length_m;
+                Some(Frozen::new(process, (intensity, intensity * across_ratio), steps_per_m, carry_m_s, reach_m))
+            }
+            Gusts::Spectral { spectrum, intensity, across_ratio, components } => {
+                let speed_10m_m_s = wind.speed_10m_m_s.max(CARRY_MIN_M_S);
+                let shape = |frequency_hz| shape(spectrum, frequency_hz, speed_10m_m_s, reference_height_m);
+                let mut stream = Stream::new(seed, "gust");
+                let along = Waves::draw(&shape, components, &mut stream);
+                let across = Waves::draw(&shape, components, &mut stream);
+                let steps_per_m = STEPS_PER_WAVE * FREQUENCY_MAX_HZ / carry_m_s;
+                let process = Process::Waves(along, across);
+                Some(Frozen::new(process, (intensity, intensity * across_ratio), steps_per_m, carry_m_s, reach_m))
+            }
+        };
+        made
+    }
+
+    /// The mean speed at a height above the water, m/s: U10 (z / 10 m)^α. Boats ask once, when the world is made.
+    #[must_use]
+    pub fn mean_m_s(&self, height_m: f64) -> f64 {
+        self.speed_10m_m_s * libm::pow(height_m / 10.0, self.profile_exponent)
+    }
+
+    /// Has the gusts over the field at `now` at hand. Only for speed: without it, [`WindField::at`] gives the same bits.
+    pub fn prepare(&mut self, now: SimTime) {
+        if let Some(gusts) = &mut self.gusts {
+            let (near_m, far_m) = gusts.reach_m;
+            gusts.tape.hold(gusts.place(far_m, now), gusts.place(near_m, now));
+        }
+    }
+
+    /// The velocity of the air over the ground, m/s, at a place where its mean speed is `mean_m_s`
+    /// (of [`WindField::mean_m_s`]).
+    #[inline]
+    #[must_use]
+    pub fn at(&self, place: Ned, mean_m_s: f64, now: SimTime) -> Ned {
+        let Some(gusts) = &self.gusts else { return self.downwind.scaled(mean_m_s) };
+        let (along, across) = gusts.tape.at(gusts.place(place.dot(self.downwind), now));
+        self.downwind.scaled(mean_m_s * (1.0 + gusts.intensity.0 * along))
+            + self.across.scaled(mean_m_s * (gusts.intensity.1 * across))
+    }
+}
+
+impl Frozen {
+    fn new(process: Process, intensity: (f64, f64), steps_per_m: f64, carry_m_s: f64, reach_m: (f64, f64)) -> Frozen {
+        let tape = Tape::new(process, (reach_m.1 - reach_m.0) * steps_per_m);
+        Frozen { tape, intensity, steps_per_m, steps_per_s: steps_per_m * carry_m_s, reach_m }
+    }
+
+    /// Where on the tape stands what is felt `downwind_m` from the datum.
+    #[inline]
+    fn place(&self, downwind_m: f64, now: SimTime) -> f64 {
+        self.steps_per_s * now.as_s() - self.steps_per_m * downwind_m
+    }
+}

@@ -1,0 +1,66 @@
+//! A magnetic compass: the heading, off by what the earth and the boat do to it.
+//!
+//! ```text
+//! reading = ψ − declination − (A + B sin ψ + C cos ψ + D sin 2ψ + E cos 2ψ) + thrust error + noise
+//! ```
+//!
+//! Declination and deviation have the navigator's sign: east is positive, and then the needle stands east of where it
+//! should and the compass reads less than the truth (Bowditch, The American Practical Navigator, ch. on compasses). The
+//! thrust error is that of the reading, at full thrust of both thrusters.
+
+use super::{Truth, whole_ticks};
+use game::SimTime;
+use game::angle::wrap_pi;
+use game::boat::Compass;
+use game::math;
+use game::stream::Noise;
+use serde::{Deserialize, Serialize};
+
+/// A compass: constant.
+#[derive(Clone, Debug)]
+pub struct CompassModel {
+    compass: Compass,
+    noise: Noise,
+    period: SimTime,
+}
+
+/// Everything that changes about a compass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CompassState {
+    /// The last reading.
+    psi_rad: f64,
+}
+
+impl CompassModel {
+    /// The compass of the boat named `vehicle`.
+    #[must_use]
+    pub fn new(compass: &Compass, tick: SimTime, seed: u64, vehicle: &str) -> CompassModel {
+        CompassModel {
+            compass: compass.clone(),
+            noise: Noise::new(seed, &format!("compass/{vehicle}")),
+            period: whole_ticks(compass.period_s, tick),
+        }
+    }
+
+    /// The deviation at a heading, rad, east positive.
+    #[must_use]
+    pub fn deviation_rad(&self, psi_rad: f64) -> f64 {
+        let [a, b, c, d, e] = self.compass.deviation_rad;
+        let (sin, cos) = math::sin_cos(psi_rad);
+        // sin 2ψ and cos 2ψ by the double angle.
+        a + b * sin + c * cos + d * (2.0 * sin * cos) + e * (cos * cos - sin * sin)
+    }
+
+    /// The heading that the boat reads at `now`, rad, -pi to pi: that of the last period.
+    pub fn read(&self, state: &mut CompassState, truth: &Truth, now: SimTime) -> f64 {
+        if now.0 % self.period.0 == 0 {
+            let number = (now.0 / self.period.0) as u64;
+            let (noise, _) = self.noise.normal_pair(number);
+            let psi_rad = truth.pose.psi_rad;
+            let magnetic_rad = psi_rad - self.compass.declination_error_rad - self.deviation_rad(psi_rad);
+            let error_rad = self.compass.thrust_error_rad * truth.thrust_share + self.compass.noise_rad * noise;
+            state.psi_rad = wrap_pi(magnetic_rad + error_rad);
+        }
+        state.psi_rad
+    }
+}

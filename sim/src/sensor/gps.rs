@@ -1,0 +1,200 @@
+//! A satellite receiver: where a boat was a moment ago and how it moved over the ground, nearly.
+//!
+//! A fix is taken every period and comes out after the latency. Its position errs by a wandering bias (Gauss-Markov), by
+//! white noise and by the last jump; its velocity, which a receiver has from the Doppler shift, by white noise alone.
+//! Drop-outs and freezes come and go as a Markov chain in continuous time, sampled at the fixes: with a rate of
+//! beginning λ and one of ending μ = 1 / mean duration, one that is off is on a period p later with probability
+//! λ / (λ + μ) (1 − e^−(λ+μ)p). So durations are exponential, and the share of time is λ / (λ + μ) exactly.
+
+use super::{Truth, gauss_markov_step, whole_ticks};
+use game::SimTime;
+use game::boat::Gps;
+use game::frame::Ned;
+use game::stream::Noise;
+use serde::{Deserialize, Serialize};
+
+/// Most fixes that can be under way at once: the latency is below this many periods.
+pub const UNDER_WAY_MAX: usize = 16;
+/// Pairs of normal numbers that a fix takes: bias, position, velocity, jump.
+const PAIRS: u64 = 4;
+/// Even numbers that a fix takes: drop-out, freeze, jump.
+const EVENS: u64 = 3;
+
+/// One fix.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fix {
+    /// When it was taken: where the boat was then, it says.
+    pub at: SimTime,
+    /// Position, m from the datum.
+    pub position: Ned,
+    /// Velocity over the ground, m/s.
+    pub velocity_m_s: Ned,
+}
+
+/// A receiver: constant.
+#[derive(Clone, Debug)]
+pub struct GpsModel {
+    normals: Noise,
+    evens: Noise,
+    period: SimTime,
+    latency: SimTime,
+    bias_m: f64,
+    bias_step: (f64, f64),
+    noise_m: f64,
+    velocity_noise_m_s: f64,
+    dropout: Spell,
+    freeze: Spell,
+    /// Probability of a jump at a fix.
+    jump_chance: f64,
+    jump_m: f64,
+}
+
+/// Something that comes and goes: the probabilities that it begins and ends from one fix to the next.
+#[derive(Clone, Copy, Debug)]
+struct Spell {
+    begins: f64,
+    ends: f64,
+}
+
+/// Everything that changes about a receiver. The default is the state before the game.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GpsState {
+    /// The fix that came out last.
+    latest: Fix,
+    under_way: UnderWay,
+    /// m, by axis.
+    bias: Ned,
+    /// m, by axis.
+    jump: Ned,
+    dropped: bool,
+    /// What comes out meanwhile, if the receiver is frozen.
+    frozen: Option<Fix>,
+}
+
+/// Fixes that have been taken and have not come out, first the oldest. As bytes, only those.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Vec<Fix>", try_from = "Vec<Fix>")]
+struct UnderWay {
+    fixes: [Fix; UNDER_WAY_MAX],
+    count: usize,
+}
+
+impl UnderWay {
+    fn push(&mut self, fix: Fix) {
+        assert!(self.count < UNDER_WAY_MAX, "a latency is below {UNDER_WAY_MAX} periods");
+        self.fixes[self.count] = fix;
+        self.count += 1;
+    }
+
+    fn pop_if(&mut self, out: impl Fn(&Fix) -> bool) -> Option<Fix> {
+        let first = self.fixes[0];
+        if self.count == 0 || !out(&first) {
+            return None;
+        }
+        self.fixes.rotate_left(1);
+        self.fixes[UNDER_WAY_MAX - 1] = Fix::default();
+        self.count -= 1;
+        Some(first)
+    }
+}
+
+impl From<UnderWay> for Vec<Fix> {
+    fn from(under_way: UnderWay) -> Vec<Fix> {
+        under_way.fixes[..under_way.count].to_vec()
+    }
+}
+
+impl TryFrom<Vec<Fix>> for UnderWay {
+    type Error = &'static str;
+    fn try_from(fixes: Vec<Fix>) -> Result<UnderWay, &'static str> {
+        let mut under_way = UnderWay { count: fixes.len(), ..UnderWay::default() };
+        under_way.fixes.get_mut(..fixes.len()).ok_or("more fixes under way than can be")?.copy_from_slice(&fixes);
+        Ok(under_way)
+    }
+}
+
+impl Spell {
+    fn new((per_s, mean_s): (f64, f64), period: SimTime) -> Spell {
+        if per_s <= 0.0 || mean_s <= 0.0 {
+            return Spell { begins: 0.0, ends: 1.0 };
+        }
+        let end_per_s = 1.0 / mean_s;
+        let either = -libm::expm1(-(per_s + end_per_s) * period.as_s()) / (per_s + end_per_s);
+        Spell { begins: per_s * either, ends: end_per_s * either }
+    }
+
+    /// Whether it is on at the next fix, by an even number.
+    fn next(self, on: bool, even: f64) -> bool {
+        even < if on { 1.0 - self.ends } else { self.begins }
+    }
+}
+
+impl GpsModel {
+    /// The receiver of the boat named `vehicle`.
+    ///
+    /// # Panics
+    /// If its latency is [`UNDER_WAY_MAX`] periods or more.
+    #[must_use]
+    pub fn new(gps: &Gps, tick: SimTime, seed: u64, vehicle: &str) -> GpsModel {
+        let period = whole_ticks(gps.period_s, tick);
+        let latency = SimTime::from_s(gps.latency_s);
+        assert!(latency < period * UNDER_WAY_MAX as i64, "a latency is below {UNDER_WAY_MAX} periods");
+        GpsModel {
+            normals: Noise::new(seed, &format!("gps/{vehicle}")),
+            evens: Noise::new(seed, &format!("gps/{vehicle}/events")),
+            period,
+            latency,
+            bias_m: gps.bias_m,
+            bias_step: gauss_markov_step(period, gps.bias_time_s),
+            noise_m: gps.noise_m,
+            velocity_noise_m_s: gps.velocity_noise_m_s,
+            dropout: Spell::new(gps.dropout, period),
+            freeze: Spell::new(gps.freeze, period),
+            jump_chance: -libm::expm1(-gps.jump.0 * period.as_s()),
+            jump_m: gps.jump.1,
+        }
+    }
+
+    /// The last fix that has come out by `now`. The receiver has been on since before the game: the fix of time 0 is
+    /// there at once, and nothing is amiss at first.
+    pub fn read(&self, state: &mut GpsState, truth: &Truth, now: SimTime) -> Fix {
+        if now.0 % self.period.0 == 0 {
+            let number = (now.0 / self.period.0) as u64;
+            let fix = self.take(state, truth, now, number);
+            if number == 0 {
+                state.latest = fix;
+            } else if !state.dropped {
+                state.under_way.push(fix);
+            }
+        }
+        while let Some(fix) = state.under_way.pop_if(|fix| fix.at + self.latency <= now) {
+            state.latest = fix;
+        }
+        state.latest
+    }
+
+    fn take(&self, state: &mut GpsState, truth: &Truth, now: SimTime, number: u64) -> Fix {
+        let normal = |which: u64, sigma: f64| {
+            let (north, east) = self.normals.normal_pair(PAIRS * number + which);
+            Ned { north, east }.scaled(sigma)
+        };
+        let even = |which: u64| self.evens.unit(EVENS * number + which);
+        let (kept, fresh) = if number == 0 { (0.0, 1.0) } else { self.bias_step };
+        state.bias = state.bias.scaled(kept) + normal(0, self.bias_m * fresh);
+        if number > 0 {
+            state.dropped = self.dropout.next(state.dropped, even(0));
+            if even(2) < self.jump_chance {
+                state.jump = normal(3, self.jump_m);
+            }
+        }
+        let measured = Fix {
+            at: now,
+            position: truth.pose.at + state.bias + state.jump + normal(1, self.noise_m),
+            velocity_m_s: truth.velocity_m_s() + normal(2, self.velocity_noise_m_s),
+        };
+        let freezes = number > 0 && self.freeze.next(state.frozen.is_some(), even(1));
+        state.frozen = freezes.then(|| state.frozen.unwrap_or(measured));
+        // A frozen receiver still stamps its fixes anew: who reads them cannot tell by their age.
+        state.frozen.map_or(measured, |frozen| Fix { at: now, ..frozen })
+    }
+}

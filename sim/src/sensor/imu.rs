@@ -1,0 +1,102 @@
+//! Gyro and accelerometers: how a boat turns and what pushes it, in its own axes, ahead, to starboard and down.
+//!
+//! With roll φ, pitch θ and heading ψ (Fossen 2021, ch. 2 and 14):
+//!
+//! ```text
+//! gyro:            p = φ' − ψ' sin θ     q = θ' cos φ + ψ' cos θ sin φ     r = −θ' sin φ + ψ' cos θ cos φ
+//! accelerometers:  f = R(φ, θ, ψ)ᵀ (a − g),  g = 9.81 m/s² down: a boat at rest reads −9.81 down, the water's push
+//! ```
+//!
+//! and to each a white noise and a wandering bias (Gauss-Markov). The accelerometers sit midships.
+
+use super::{Truth, gauss_markov_step};
+use game::SimTime;
+use game::boat::Imu;
+use game::math;
+use game::stream::Noise;
+use serde::{Deserialize, Serialize};
+
+/// Gravity, m/s².
+pub const GRAVITY_M_S2: f64 = 9.81;
+/// Pairs of normal numbers that a reading takes: noise and bias for each of six axes.
+const PAIRS: u64 = 6;
+
+/// What gyro and accelerometers say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ImuReading {
+    /// Rates about the axes ahead, to starboard and down, rad/s.
+    pub gyro_rad_s: [f64; 3],
+    /// Specific force along them, m/s².
+    pub accelerometer_m_s2: [f64; 3],
+}
+
+/// Gyro and accelerometers: constant.
+#[derive(Clone, Debug)]
+pub struct ImuModel {
+    imu: Imu,
+    noise: Noise,
+    tick: SimTime,
+    bias_step: (f64, f64),
+}
+
+/// Everything that changes about them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ImuState {
+    bias: ImuReading,
+}
+
+impl ImuReading {
+    /// What is true.
+    #[must_use]
+    pub fn of(truth: &Truth) -> ImuReading {
+        let (sin_roll, cos_roll) = math::sin_cos(truth.roll_rad);
+        let (sin_pitch, cos_pitch) = math::sin_cos(truth.pitch_rad);
+        let (nu, nu_dot) = (truth.nu, truth.nu_dot);
+        let (roll_rate, pitch_rate, yaw_rate) = (truth.roll_rate_rad_s, truth.pitch_rate_rad_s, nu.yaw);
+        // a − g along the heading, across it and down, as the boat turns.
+        let ahead = nu_dot.surge - nu.sway * yaw_rate;
+        let starboard = nu_dot.sway + nu.surge * yaw_rate;
+        let down = truth.heave_acceleration_m_s2 - GRAVITY_M_S2;
+        let pitched = sin_pitch * ahead + cos_pitch * down;
+        ImuReading {
+            gyro_rad_s: [
+                roll_rate - yaw_rate * sin_pitch,
+                pitch_rate * cos_roll + yaw_rate * cos_pitch * sin_roll,
+                -pitch_rate * sin_roll + yaw_rate * cos_pitch * cos_roll,
+            ],
+            accelerometer_m_s2: [
+                cos_pitch * ahead - sin_pitch * down,
+                cos_roll * starboard + sin_roll * pitched,
+                -sin_roll * starboard + cos_roll * pitched,
+            ],
+        }
+    }
+}
+
+impl ImuModel {
+    /// Gyro and accelerometers of the boat named `vehicle`, which are read every tick.
+    #[must_use]
+    pub fn new(imu: &Imu, tick: SimTime, seed: u64, vehicle: &str) -> ImuModel {
+        let noise = Noise::new(seed, &format!("imu/{vehicle}"));
+        ImuModel { imu: imu.clone(), noise, tick, bias_step: gauss_markov_step(tick, imu.bias_time_s) }
+    }
+
+    /// What they say at `now`.
+    pub fn read(&self, state: &mut ImuState, truth: &Truth, now: SimTime) -> ImuReading {
+        let number = (now.0 / self.tick.0) as u64;
+        let (kept, fresh) = if number == 0 { (0.0, 1.0) } else { self.bias_step };
+        let imu = &self.imu;
+        let mut reading = ImuReading::of(truth);
+        for axis in 0..3 {
+            let (noise, step) = self.noise.normal_pair(PAIRS * number + axis as u64);
+            let bias = &mut state.bias.gyro_rad_s[axis];
+            *bias = kept * *bias + fresh * imu.gyro_bias_rad_s * step;
+            reading.gyro_rad_s[axis] += *bias + imu.gyro_noise_rad_s * noise;
+            let (noise, step) = self.noise.normal_pair(PAIRS * number + 3 + axis as u64);
+            let bias = &mut state.bias.accelerometer_m_s2[axis];
+            *bias = kept * *bias + fresh * imu.accelerometer_bias_m_s2 * step;
+            reading.accelerometer_m_s2[axis] += *bias + imu.accelerometer_noise_m_s2 * noise;
+        }
+        reading
+    }
+}

@@ -1,0 +1,135 @@
+//! What a boat knows of itself, as its sensors tell it.
+//!
+//! Open [`SensorModel::read`] first. A sensor that a boat's file leaves out is perfect: its part of the truth comes out
+//! bit for bit. What a sensor remembers is in its state, which is plain numbers and goes into the world's snapshot; what
+//! is random is looked up by the number of the fix or reading, under `gps/<vehicle>`, `compass/<vehicle>` and
+//! `imu/<vehicle>`.
+
+pub mod compass;
+pub mod gps;
+pub mod imu;
+
+use crate::hull::Planar;
+use compass::{CompassModel, CompassState};
+use game::boat::Sensors;
+use game::frame::{Ned, Pose, body_from_ned, ned_from_body};
+use game::math;
+use game::picture::Nav;
+use game::{SimTime, frame::Body};
+use gps::{GpsModel, GpsState};
+use imu::{ImuModel, ImuReading, ImuState};
+use serde::{Deserialize, Serialize};
+
+/// What is true of a boat at one tick, as far as sensors feel it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Truth {
+    /// Position and heading.
+    pub pose: Pose,
+    /// Velocity over the ground along the boat's heading and across it.
+    pub nu: Planar,
+    /// The rate at which `nu` changes, as numbers: the boat's turning is added by the accelerometers.
+    pub nu_dot: Planar,
+    /// Roll, starboard side down, rad.
+    pub roll_rad: f64,
+    /// Pitch, bow up, rad.
+    pub pitch_rad: f64,
+    /// The rate at which roll changes, rad/s.
+    pub roll_rate_rad_s: f64,
+    /// The rate at which pitch changes, rad/s.
+    pub pitch_rate_rad_s: f64,
+    /// Acceleration down, m/s².
+    pub heave_acceleration_m_s2: f64,
+    /// The thrusters' current as a share of that at full thrust of both.
+    pub thrust_share: f64,
+}
+
+impl Truth {
+    /// Velocity over the ground, m/s.
+    #[must_use]
+    pub fn velocity_m_s(&self) -> Ned {
+        ned_from_body(math::sin_cos(self.pose.psi_rad), Body { ahead: self.nu.surge, starboard: self.nu.sway })
+    }
+}
+
+/// What a boat knows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Navigation. Position and velocity are those of the last fix, as they came; the velocity is turned into the boat's
+    /// axes with the heading that the boat reads now.
+    pub nav: Nav,
+    /// When the last fix was taken.
+    pub fix_at: SimTime,
+    /// Gyro and accelerometers.
+    pub imu: ImuReading,
+}
+
+/// The sensors of one boat: constant.
+#[derive(Clone, Debug)]
+pub struct SensorModel {
+    gps: Option<GpsModel>,
+    compass: Option<CompassModel>,
+    imu: Option<ImuModel>,
+}
+
+/// Everything that changes about a boat's sensors. The default is the state before the game.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SensorState {
+    gps: GpsState,
+    compass: CompassState,
+    imu: ImuState,
+}
+
+impl SensorModel {
+    /// The sensors of the boat named `vehicle`, read once a tick.
+    #[must_use]
+    pub fn new(sensors: &Sensors, tick: SimTime, seed: u64, vehicle: &str) -> SensorModel {
+        SensorModel {
+            gps: sensors.gps.as_ref().map(|gps| GpsModel::new(gps, tick, seed, vehicle)),
+            compass: sensors.compass.as_ref().map(|compass| CompassModel::new(compass, tick, seed, vehicle)),
+            imu: sensors.imu.as_ref().map(|imu| ImuModel::new(imu, tick, seed, vehicle)),
+        }
+    }
+
+    /// What the boat knows at `now`: a whole number of ticks, every one of them from 0 on in turn.
+    #[must_use]
+    pub fn read(&self, state: &mut SensorState, truth: &Truth, now: SimTime) -> Reading {
+        let psi_rad = match &self.compass {
+            None => truth.pose.psi_rad,
+            Some(compass) => compass.read(&mut state.compass, truth, now),
+        };
+        let imu = match &self.imu {
+            None => ImuReading::of(truth),
+            Some(imu) => imu.read(&mut state.imu, truth, now),
+        };
+        let (at, velocity, fix_at) = match &self.gps {
+            None => (truth.pose.at, Body { ahead: truth.nu.surge, starboard: truth.nu.sway }, now),
+            Some(gps) => {
+                let fix = gps.read(&mut state.gps, truth, now);
+                (fix.position, body_from_ned(math::sin_cos(psi_rad), fix.velocity_m_s), fix.at)
+            }
+        };
+        let yaw_rate_rad_s = if self.imu.is_some() { imu.gyro_rad_s[2] } else { truth.nu.yaw };
+        let nav = Nav {
+            north_m: at.north,
+            east_m: at.east,
+            psi_rad,
+            surge_m_s: velocity.ahead,
+            sway_m_s: velocity.starboard,
+            yaw_rate_rad_s,
+        };
+        Reading { nav, fix_at, imu }
+    }
+}
+
+/// `period_s` as a whole number of ticks, one at least: sensors measure when the world stands still.
+fn whole_ticks(period_s: f64, tick: SimTime) -> SimTime {
+    let ticks = (period_s / tick.as_s()).round() as i64;
+    tick * ticks.max(1)
+}
+
+/// The step of a Gauss-Markov process: its correlation over a span, and the standard deviation of what is new, for a
+/// process of variance 1.
+fn gauss_markov_step(span: SimTime, time_s: f64) -> (f64, f64) {
+    let spans = span.as_s() / time_s;
+    (math::exp(-spans), (-libm::expm1(-2.0 * spans)).sqrt())
+}

@@ -1,0 +1,441 @@
+//! Sensors against what they are stated to do: statistics, times, curves, and the truth where they are perfect.
+
+use game::boat::{Compass, Gps, Imu, Sensors};
+use game::frame::{Body, Pose, body_from_ned, ned_from_body};
+use game::math;
+use game::{Ned, SimTime};
+use sim::hull::Planar;
+use sim::sensor::imu::{GRAVITY_M_S2, ImuReading};
+use sim::sensor::{Reading, SensorModel, SensorState, Truth};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+const TICK: SimTime = SimTime(50_000_000);
+
+/// A receiver that takes a fix five times a second and errs in nothing.
+fn exact_gps() -> Gps {
+    Gps {
+        bias_m: 0.0,
+        bias_time_s: 60.0,
+        noise_m: 0.0,
+        velocity_noise_m_s: 0.0,
+        period_s: 0.2,
+        latency_s: 0.0,
+        dropout: (0.0, 0.0),
+        freeze: (0.0, 0.0),
+        jump: (0.0, 0.0),
+    }
+}
+
+fn exact_compass() -> Compass {
+    Compass {
+        deviation_rad: [0.0; 5],
+        thrust_error_rad: 0.0,
+        noise_rad: 0.0,
+        period_s: 0.1,
+        declination_error_rad: 0.0,
+    }
+}
+
+fn with_gps(gps: Gps) -> Sensors {
+    Sensors { gps: Some(gps), ..Sensors::default() }
+}
+
+fn with_compass(compass: Compass) -> Sensors {
+    Sensors { compass: Some(compass), ..Sensors::default() }
+}
+
+fn with_imu(imu: Imu) -> Sensors {
+    Sensors { imu: Some(imu), ..Sensors::default() }
+}
+
+/// A boat that goes 2 m/s ahead and 0.5 m/s to starboard with its bow 30° east of north.
+fn sailing(now: SimTime) -> Truth {
+    let psi_rad = PI / 6.0;
+    let velocity = ned_from_body(math::sin_cos(psi_rad), Body { ahead: 2.0, starboard: 0.5 });
+    Truth {
+        pose: Pose { at: velocity.scaled(now.as_s()), psi_rad },
+        nu: Planar { surge: 2.0, sway: 0.5, yaw: 0.0 },
+        ..Truth::default()
+    }
+}
+
+/// What one boat reads, tick by tick.
+fn record(sensors: &Sensors, seed: u64, ticks: i64, truth: impl Fn(SimTime) -> Truth) -> Vec<(SimTime, Reading)> {
+    let model = SensorModel::new(sensors, TICK, seed, "blue_one");
+    let mut state = SensorState::default();
+    (0..ticks).map(|i| (TICK * i, model.read(&mut state, &truth(TICK * i), TICK * i))).collect()
+}
+
+fn at_rest(_now: SimTime) -> Truth {
+    Truth::default()
+}
+
+fn mean_of(count: usize, f: impl Fn(usize) -> f64) -> f64 {
+    (0..count).map(f).sum::<f64>() / count as f64
+}
+
+/// Everything at fault at once.
+fn faulty() -> Sensors {
+    Sensors {
+        gps: Some(Gps {
+            bias_m: 1.0,
+            noise_m: 0.1,
+            velocity_noise_m_s: 0.07,
+            latency_s: 0.55,
+            dropout: (0.05, 3.0),
+            freeze: (0.05, 4.0),
+            jump: (0.1, 6.0),
+            ..exact_gps()
+        }),
+        compass: Some(Compass { noise_rad: 0.02, thrust_error_rad: 0.05, ..exact_compass() }),
+        imu: Some(Imu {
+            gyro_noise_rad_s: 1e-3,
+            gyro_bias_rad_s: 5e-4,
+            bias_time_s: 300.0,
+            accelerometer_noise_m_s2: 0.03,
+            accelerometer_bias_m_s2: 0.02,
+        }),
+    }
+}
+
+#[test]
+fn perfect_sensors_tell_the_truth_bit_for_bit() {
+    for i in 0..200_u32 {
+        let x = f64::from(i);
+        let truth = Truth {
+            pose: Pose { at: Ned::from_xy(0.1 * x, 7.7 - x / 3.0), psi_rad: 0.0173 * x - 1.0 },
+            nu: Planar { surge: 0.3 * x, sway: -0.011 * x, yaw: 0.7 - 0.013 * x },
+            roll_rad: 0.01 * x,
+            ..Truth::default()
+        };
+        let now = TICK * i64::from(i);
+        let model = SensorModel::new(&Sensors::default(), TICK, 1, "blue_one");
+        let mut state = SensorState::default();
+        let Reading { nav, fix_at, imu } = model.read(&mut state, &truth, now);
+        for (got, want) in [
+            (nav.north_m, truth.pose.at.north),
+            (nav.east_m, truth.pose.at.east),
+            (nav.psi_rad, truth.pose.psi_rad),
+            (nav.surge_m_s, truth.nu.surge),
+            (nav.sway_m_s, truth.nu.sway),
+            (nav.yaw_rate_rad_s, truth.nu.yaw),
+        ] {
+            assert_eq!(got.to_bits(), want.to_bits());
+        }
+        assert_eq!((fix_at, imu), (now, ImuReading::of(&truth)));
+        assert_eq!(state, SensorState::default(), "perfect sensors remember nothing");
+    }
+}
+
+#[test]
+fn a_fix_says_where_the_boat_was_and_comes_out_after_its_latency() {
+    // (latency, ticks until it is out): a fix is out at the first tick at which it is old enough.
+    for (latency_s, late) in [(0.0, 0), (0.05, 1), (0.25, 5), (0.26, 6), (1.0, 20), (3.15, 63)] {
+        for (now, reading) in record(&with_gps(Gps { latency_s, ..exact_gps() }), 1, 400, sailing) {
+            let tick = now.0 / TICK.0;
+            let want_at = TICK * ((tick - late).max(0) / 4 * 4);
+            assert_eq!(reading.fix_at, want_at, "latency {latency_s}, tick {tick}");
+            let was = sailing(want_at);
+            assert_eq!(reading.nav.at(), was.pose.at, "latency {latency_s}, tick {tick}");
+            assert!((reading.nav.surge_m_s - 2.0).abs() < 1e-12 && (reading.nav.sway_m_s - 0.5).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn the_bias_of_a_receiver_wanders_as_stated_and_noise_comes_on_top() {
+    const FIXES: usize = 1_200_000;
+    const STEP_S: f64 = 0.2;
+    let gps = Gps { bias_m: 1.5, bias_time_s: 8.0, noise_m: 0.0, ..exact_gps() };
+    let fixes = |gps: Gps, seed| -> Vec<Ned> {
+        let read = record(&with_gps(gps), seed, 4 * FIXES as i64, at_rest);
+        read.iter().step_by(4).map(|(_, reading)| reading.nav.at()).collect()
+    };
+    let biased = fixes(gps.clone(), 2);
+    let within = 5.0 * (2.0 / (FIXES as f64 * STEP_S / 8.0)).sqrt();
+    assert!(within < 0.05);
+    for lag in [0, 10, 40, 80] {
+        let want = math::exp(-(lag as f64) * STEP_S / 8.0);
+        let north = mean_of(FIXES - lag, |i| biased[i].north * biased[i + lag].north) / 2.25;
+        let east = mean_of(FIXES - lag, |i| biased[i].east * biased[i + lag].east) / 2.25;
+        assert!((north - want).abs() < within, "north, lag {lag}: {north}, not {want} within {within}");
+        assert!((east - want).abs() < within, "east, lag {lag}: {east}, not {want} within {within}");
+    }
+    assert!(mean_of(FIXES, |i| biased[i].north * biased[i].east).abs() / 2.25 < within);
+    // Noise does not move the bias: the difference of the two records is the noise.
+    let noisy = fixes(Gps { noise_m: 0.2, ..gps }, 2);
+    let noise: Vec<f64> = noisy.iter().zip(&biased).map(|(noisy, biased)| noisy.north - biased.north).collect();
+    let variance = mean_of(FIXES, |i| noise[i] * noise[i]) / 0.04;
+    let neighbours = mean_of(FIXES - 1, |i| noise[i] * noise[i + 1]) / 0.04;
+    assert!((variance - 1.0).abs() < 0.01, "variance {variance}");
+    assert!(neighbours.abs() < 0.01, "white: {neighbours}");
+}
+
+#[test]
+fn a_boat_s_first_bias_is_as_large_as_any() {
+    let first = |seed| record(&with_gps(Gps { bias_m: 2.0, ..exact_gps() }), seed, 1, at_rest)[0].1.nav.at();
+    let variance = mean_of(20_000, |seed| first(seed as u64).east * first(seed as u64).east) / 4.0;
+    assert!((variance - 1.0).abs() < 0.05, "{variance}");
+}
+
+#[test]
+fn velocity_is_noisy_over_the_ground_and_turned_with_the_heading_that_is_read() {
+    const TURN_RAD: f64 = 0.3;
+    let sensors = Sensors {
+        gps: Some(exact_gps()),
+        compass: Some(Compass { declination_error_rad: TURN_RAD, ..exact_compass() }),
+        imu: None,
+    };
+    let (_, reading) = record(&sensors, 1, 9, sailing)[8];
+    let truth = sailing(SimTime::ZERO);
+    let want = body_from_ned(math::sin_cos(truth.pose.psi_rad - TURN_RAD), truth.velocity_m_s());
+    assert!((reading.nav.surge_m_s - want.ahead).abs() < 1e-12);
+    assert!((reading.nav.sway_m_s - want.starboard).abs() < 1e-12);
+    assert!((reading.nav.sway_m_s - 0.5).abs() > 0.5, "a wrong heading makes way ahead look like leeway");
+
+    let noisy = record(&with_gps(Gps { velocity_noise_m_s: 0.08, ..exact_gps() }), 1, 400_000, sailing);
+    let error: Vec<f64> = noisy.iter().step_by(4).map(|(_, reading)| reading.nav.surge_m_s - 2.0).collect();
+    let sigma = mean_of(error.len(), |i| error[i] * error[i]).sqrt();
+    assert!((sigma / 0.08 - 1.0).abs() < 0.02, "{sigma}");
+}
+
+#[test]
+fn drop_outs_take_their_share_and_last_as_stated_and_the_last_fix_is_kept() {
+    const RATE_PER_S: f64 = 0.1;
+    const MEAN_S: f64 = 3.0;
+    let read = record(&with_gps(Gps { dropout: (RATE_PER_S, MEAN_S), ..exact_gps() }), 3, 4_000_000, sailing);
+    let fixes: Vec<&(SimTime, Reading)> = read.iter().step_by(4).collect();
+    let dropped: Vec<bool> = fixes.iter().map(|(now, reading)| reading.fix_at != *now).collect();
+    let share = mean_of(dropped.len(), |i| f64::from(u8::from(dropped[i])));
+    let want = RATE_PER_S * MEAN_S / (1.0 + RATE_PER_S * MEAN_S);
+    // 15 000 drop-outs: a standard error of about 1 % of the share.
+    assert!((share / want - 1.0).abs() < 0.05, "share {share}, not {want}");
+    // Sampled every 0.2 s, an exponential duration is geometric. Of the chain, one that is on stays on with:
+    let ended = dropped.windows(2).filter(|pair| pair[0] && !pair[1]).count();
+    let on = dropped.iter().filter(|on| **on).count();
+    let both = 1.0 / MEAN_S + RATE_PER_S;
+    let want_end = 1.0 / MEAN_S / both * (1.0 - math::exp(-both * 0.2));
+    let end = ended as f64 / on as f64;
+    assert!((end / want_end - 1.0).abs() < 0.05, "ends with {end} a fix, not {want_end}");
+    for (now, reading) in &read {
+        assert_eq!(reading.nav.at(), sailing(reading.fix_at).pose.at, "at {now} the last fix is kept");
+    }
+}
+
+#[test]
+fn a_frozen_receiver_repeats_itself_with_new_times() {
+    let read = record(&with_gps(Gps { freeze: (0.1, 3.0), ..exact_gps() }), 4, 400_000, sailing);
+    let fixes: Vec<&(SimTime, Reading)> = read.iter().step_by(4).collect();
+    let mut frozen = 0;
+    for pair in fixes.windows(2) {
+        let [before, (now, reading)] = pair else { unreachable!("windows of two") };
+        assert_eq!(reading.fix_at, *now, "fixes go on");
+        if reading.nav.at() == before.1.nav.at() {
+            frozen += 1;
+        } else {
+            assert_eq!(reading.nav.at(), sailing(*now).pose.at, "the first of a freeze, and all others, are true");
+        }
+    }
+    // The first fix of each freeze is true: 10 000 s / (10 + 3) s of them less.
+    let (share, want) = (f64::from(frozen) / fixes.len() as f64, 3.0 / 13.0 - 0.2 / 13.0);
+    assert!((share / want - 1.0).abs() < 0.12, "share {share}, not {want}");
+}
+
+#[test]
+fn a_jump_lasts_until_the_next() {
+    let read = record(&with_gps(Gps { jump: (0.05, 4.0), ..exact_gps() }), 5, 1_000_000, at_rest);
+    let fixes: Vec<Ned> = read.iter().step_by(4).map(|(_, reading)| reading.nav.at()).collect();
+    assert_eq!(fixes[0], Ned::default());
+    let offsets: Vec<Ned> = fixes.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| pair[1]).collect();
+    let rate_per_s = offsets.len() as f64 / (fixes.len() as f64 * 0.2);
+    assert!((rate_per_s / 0.05 - 1.0).abs() < 0.1, "{rate_per_s} jumps a second");
+    let sigma_m = mean_of(offsets.len(), |i| offsets[i].dot(offsets[i]) / 2.0).sqrt();
+    assert!((sigma_m / 4.0 - 1.0).abs() < 0.07, "{sigma_m} m");
+}
+
+#[test]
+fn a_compass_deviates_by_its_curve_and_no_more() {
+    let [a, b, c, d, e] = [0.02, 0.05, -0.03, 0.011, 0.007];
+    let compass = Compass {
+        deviation_rad: [a, b, c, d, e],
+        thrust_error_rad: 0.06,
+        declination_error_rad: -0.21,
+        ..exact_compass()
+    };
+    let sensors = with_compass(compass);
+    for i in -180..=180_i32 {
+        let psi_rad = f64::from(i).to_radians();
+        let thrust_share = 0.5;
+        let truth = Truth { pose: Pose { at: Ned::default(), psi_rad }, thrust_share, ..Truth::default() };
+        let reading = record(&sensors, 1, 1, |_| truth)[0].1;
+        let (sin, cos) = math::sin_cos(psi_rad);
+        let (sin_2, cos_2) = math::sin_cos(2.0 * psi_rad);
+        let want = psi_rad + 0.21 - (a + b * sin + c * cos + d * sin_2 + e * cos_2) + 0.03;
+        let off = game::angle::wrap_pi(reading.nav.psi_rad - want);
+        assert!(off.abs() < 1e-12, "heading {i}°: {} not {want}", reading.nav.psi_rad);
+        assert!(reading.nav.psi_rad.abs() <= PI);
+    }
+}
+
+#[test]
+fn a_compass_is_read_every_period_with_white_noise() {
+    let turning =
+        |now: SimTime| Truth { pose: Pose { at: Ned::default(), psi_rad: 0.1 * now.as_s() }, ..Truth::default() };
+    for (now, reading) in record(&with_compass(exact_compass()), 1, 100, turning) {
+        let taken = TICK * (now.0 / TICK.0 / 2 * 2);
+        assert_eq!(reading.nav.psi_rad, turning(taken).pose.psi_rad);
+    }
+    let noisy = record(&with_compass(Compass { noise_rad: 0.02, ..exact_compass() }), 1, 400_000, at_rest);
+    let error: Vec<f64> = noisy.iter().step_by(2).map(|(_, reading)| reading.nav.psi_rad).collect();
+    let n = error.len();
+    let sigma = mean_of(n, |i| error[i] * error[i]).sqrt();
+    assert!((sigma / 0.02 - 1.0).abs() < 0.01, "{sigma}");
+    assert!(mean_of(n - 1, |i| error[i] * error[i + 1]).abs() / (sigma * sigma) < 0.012, "white");
+    assert!(mean_of(n, |i| error[i]).abs() < 5.0 * sigma / (n as f64).sqrt());
+}
+
+#[test]
+fn at_rest_a_gyro_reads_its_bias_and_noise_and_an_accelerometer_the_water_s_push() {
+    const TICKS: usize = 1_500_000;
+    let imu = Imu {
+        gyro_noise_rad_s: 2e-3,
+        gyro_bias_rad_s: 1e-3,
+        bias_time_s: 5.0,
+        accelerometer_noise_m_s2: 0.04,
+        accelerometer_bias_m_s2: 0.03,
+    };
+    let read = record(&with_imu(imu.clone()), 6, TICKS as i64, at_rest);
+    let within = 5.0 * (2.0 / (TICKS as f64 * 0.05 / 5.0)).sqrt();
+    let columns: Vec<(Vec<f64>, f64, f64)> = (0..6)
+        .map(|axis| {
+            let rest = if axis == 5 { -GRAVITY_M_S2 } else { 0.0 };
+            let value = |reading: &Reading| match axis {
+                0..3 => reading.imu.gyro_rad_s[axis],
+                _ => reading.imu.accelerometer_m_s2[axis - 3] - rest,
+            };
+            let (noise, bias) = if axis < 3 { (2e-3, 1e-3) } else { (0.04, 0.03) };
+            (read.iter().map(|(_, reading)| value(reading)).collect(), noise, bias)
+        })
+        .collect();
+    for (axis, (x, noise, bias)) in columns.iter().enumerate() {
+        // Noise is white, so all that neighbours share is bias.
+        for lag in [0, 1, 50, 100, 200] {
+            let got = mean_of(TICKS - lag, |i| x[i] * x[i + lag]);
+            let white = if lag == 0 { noise * noise } else { 0.0 };
+            let want = white + bias * bias * math::exp(-(lag as f64) * 0.05 / 5.0);
+            let off = (got - want).abs() / (bias * bias);
+            assert!(off < within, "axis {axis}, lag {lag}: {got}, not {want}");
+        }
+        assert!(mean_of(TICKS, |i| x[i]).abs() / bias < within, "axis {axis}: mean");
+        for (other, _, other_bias) in &columns[..axis] {
+            let shared = mean_of(TICKS, |i| x[i] * other[i]) / (bias * other_bias);
+            assert!(shared.abs() < within, "axis {axis} and another: {shared}");
+        }
+    }
+    assert_eq!(read[77].1.nav.yaw_rate_rad_s, read[77].1.imu.gyro_rad_s[2]);
+}
+
+#[test]
+fn a_true_reading_follows_the_boat_s_motion() {
+    let level = Truth { nu: Planar { surge: 2.0, sway: 0.0, yaw: 0.25 }, ..Truth::default() };
+    let rolled = Truth { roll_rad: FRAC_PI_2 / 3.0, ..Truth::default() };
+    let pitched = Truth { pitch_rad: FRAC_PI_2 / 3.0, ..Truth::default() };
+    let half = 0.5 * GRAVITY_M_S2;
+    let most = 0.75_f64.sqrt() * GRAVITY_M_S2;
+    let surging = Truth { nu_dot: Planar { surge: 0.4, sway: -0.2, yaw: 0.0 }, ..Truth::default() };
+    let heaving = Truth { heave_acceleration_m_s2: 1.0, ..Truth::default() };
+    for (what, truth, want) in [
+        // A turn to starboard pushes to starboard with u r.
+        ("turn", level, [0.0, 0.5, -GRAVITY_M_S2]),
+        // Starboard side down, the push up is to port of the mast; bow up, ahead of it.
+        ("roll", rolled, [0.0, -half, -most]),
+        ("pitch", pitched, [half, 0.0, -most]),
+        ("surge and sway", surging, [0.4, -0.2, -GRAVITY_M_S2]),
+        ("heave", heaving, [0.0, 0.0, 1.0 - GRAVITY_M_S2]),
+    ] {
+        let got = ImuReading::of(&truth).accelerometer_m_s2;
+        for axis in 0..3 {
+            assert!((got[axis] - want[axis]).abs() < 1e-12, "{what}: {got:?}, not {want:?}");
+        }
+    }
+    let falling = Truth { heave_acceleration_m_s2: GRAVITY_M_S2, roll_rad: 0.4, pitch_rad: -0.3, ..Truth::default() };
+    assert!(ImuReading::of(&falling).accelerometer_m_s2.iter().all(|f| f.abs() < 1e-15), "free fall");
+}
+
+#[test]
+fn a_gyro_feels_the_turning_of_its_attitude() {
+    // Against the rotation matrix itself: R' = R S(ω), by finite differences of R = Rz(ψ) Ry(θ) Rx(φ).
+    type Matrix = [[f64; 3]; 3];
+    let times = |a: Matrix, b: Matrix| -> Matrix {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| a[i][k] * b[k][j]).sum()))
+    };
+    let attitude = |roll: f64, pitch: f64, yaw: f64| {
+        let ((sr, cr), (sp, cp), (sy, cy)) = (math::sin_cos(roll), math::sin_cos(pitch), math::sin_cos(yaw));
+        let about_z = [[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]];
+        let about_y = [[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]];
+        let about_x = [[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]];
+        times(times(about_z, about_y), about_x)
+    };
+    let truth = Truth {
+        pose: Pose { at: Ned::default(), psi_rad: 1.1 },
+        nu: Planar { surge: 0.0, sway: 0.0, yaw: 0.3 },
+        roll_rad: 0.4,
+        pitch_rad: -0.25,
+        roll_rate_rad_s: 0.7,
+        pitch_rate_rad_s: -0.5,
+        ..Truth::default()
+    };
+    const STEP_S: f64 = 1e-5;
+    let at = |t: f64| attitude(0.4 + 0.7 * t, -0.25 - 0.5 * t, 1.1 + 0.3 * t);
+    let (before, middle, after) = (at(-STEP_S), at(0.0), at(STEP_S));
+    let transposed: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| middle[j][i]));
+    let rate: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| (after[i][j] - before[i][j]) / (2.0 * STEP_S)));
+    let spin = times(transposed, rate);
+    let got = ImuReading::of(&truth);
+    for (got, want) in got.gyro_rad_s.into_iter().zip([spin[2][1], spin[0][2], spin[1][0]]) {
+        assert!((got - want).abs() < 1e-9, "{got}, not {want}");
+    }
+    for (axis, got) in got.accelerometer_m_s2.into_iter().enumerate() {
+        // Rᵀ (0, 0, −g) is the third row of R.
+        assert!((got + GRAVITY_M_S2 * middle[2][axis]).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_same_seed_reads_the_same_and_another_boat_or_seed_otherwise() {
+    let model = |seed, vehicle: &str| SensorModel::new(&faulty(), TICK, seed, vehicle);
+    let read = |model: &SensorModel| -> Vec<Reading> {
+        let mut state = SensorState::default();
+        (0..600).map(|i| model.read(&mut state, &sailing(TICK * i), TICK * i)).collect()
+    };
+    let one = read(&model(1, "blue_one"));
+    assert_eq!(one, read(&model(1, "blue_one")));
+    for (seed, vehicle) in [(1, "blue_two"), (2, "blue_one")] {
+        let other = read(&model(seed, vehicle));
+        assert!(one.iter().zip(&other).all(|(one, other)| one.nav.at() != other.nav.at()), "{vehicle}: gps");
+        assert!(one.iter().zip(&other).all(|(one, other)| one.nav.psi_rad != other.nav.psi_rad), "{vehicle}: compass");
+        assert!(one.iter().zip(&other).all(|(one, other)| one.imu != other.imu), "{vehicle}: imu");
+    }
+}
+
+#[test]
+fn sensors_go_on_from_a_snapshot_to_the_bit() {
+    let model = SensorModel::new(&faulty(), TICK, 1, "blue_one");
+    let mut state = SensorState::default();
+    for i in 0..4_000 {
+        if i % 37 == 0 {
+            let bytes = postcard::to_stdvec(&state).unwrap();
+            let back: SensorState = postcard::from_bytes(&bytes).unwrap();
+            assert_eq!(back, state, "tick {i}");
+            assert!(bytes.len() < 500, "only fixes under way are kept: {} bytes", bytes.len());
+            // A state from bytes sails on beside the one that never was bytes.
+            let (mut one, mut other) = (state, back);
+            for j in i..i + 30 {
+                let readings = [&mut one, &mut other].map(|state| model.read(state, &sailing(TICK * j), TICK * j));
+                assert_eq!(readings[0], readings[1], "tick {j}");
+            }
+        }
+        let _ = model.read(&mut state, &sailing(TICK * i), TICK * i);
+    }
+    assert!(postcard::from_bytes::<SensorState>(&[0xff; 40]).is_err());
+}

@@ -1,0 +1,331 @@
+//! The wind against its formulas, and its force against Fossen's and the drift that closed form gives.
+
+use game::boat::Windage;
+use game::field::{Plan, Walls};
+use game::frame::{Body, LatLon};
+use game::math;
+use game::sea::{GustSpectrum, Gusts, Wind};
+use game::{Field, Ned, SimTime};
+use sim::hull::Planar;
+use sim::sea::gust_spectrum::{FREQUENCY_MAX_HZ, FREQUENCY_MIN_HZ, shape};
+use sim::sea::wind::WindField;
+use sim::sea::windage::{AIR_DENSITY_KG_M3, wind_force, wind_past_boat};
+use std::f64::consts::TAU;
+
+const HEIGHT_M: f64 = 1.5;
+const SPEED_10M_M_S: f64 = 10.0;
+const INTENSITY: f64 = 0.15;
+const ACROSS_RATIO: f64 = 0.75;
+const LENGTH_M: f64 = 40.0;
+
+fn field() -> Field {
+    Field::new(Plan {
+        name: "test".into(),
+        datum: LatLon::default(),
+        corner: Ned::default(),
+        along_deg: 90.0,
+        width_m: 160.0,
+        depth_m: 80.0,
+        flag_inset_m: 20.0,
+        extra_flags: vec![],
+        obstacles: vec![],
+        walls: Walls::None,
+    })
+}
+
+fn wind(from_deg: f64, gusts: Gusts) -> Wind {
+    Wind { speed_10m_m_s: SPEED_10M_M_S, from_rad: from_deg.to_radians(), profile_exponent: 0.12, gusts }
+}
+
+fn ornstein_uhlenbeck() -> Gusts {
+    Gusts::OrnsteinUhlenbeck { intensity: INTENSITY, across_ratio: ACROSS_RATIO, length_m: LENGTH_M }
+}
+
+fn spectral(spectrum: GustSpectrum) -> Gusts {
+    Gusts::Spectral { spectrum, intensity: INTENSITY, across_ratio: ACROSS_RATIO, components: 64 }
+}
+
+/// Wind from the west at one place, every `step_s`: (east over the mean − 1, south over the mean), both over the
+/// intensity along the wind.
+fn record(gusts: Gusts, seed: u64, count: i64, step_s: f64) -> Vec<(f64, f64)> {
+    let mut field = WindField::new(&wind(270.0, gusts), HEIGHT_M, &field(), seed);
+    let mean_m_s = field.mean_m_s(HEIGHT_M);
+    let sample = |i: i64| {
+        let now = SimTime::from_s(i as f64 * step_s);
+        field.prepare(now);
+        let felt = field.at(Ned::from_xy(33.0, 44.0), mean_m_s, now);
+        ((felt.east / mean_m_s - 1.0) / INTENSITY, -felt.north / mean_m_s / INTENSITY)
+    };
+    (0..count).map(sample).collect()
+}
+
+fn mean_of(count: usize, f: impl Fn(usize) -> f64) -> f64 {
+    (0..count).map(f).sum::<f64>() / count as f64
+}
+
+#[test]
+fn the_wind_blows_from_where_it_is_said_to_come_and_falls_towards_the_water() {
+    for (from_deg, x, y) in [(0.0, 0.0, -1.0), (90.0, -1.0, 0.0), (180.0, 0.0, 1.0), (270.0, 1.0, 0.0)] {
+        let field = WindField::new(&wind(from_deg, Gusts::None), HEIGHT_M, &field(), 1);
+        let felt = field.at(Ned::default(), field.mean_m_s(10.0), SimTime::ZERO);
+        assert!(felt.distance(Ned::from_xy(x, y).scaled(SPEED_10M_M_S)) < 1e-12, "from {from_deg}: {felt:?}");
+    }
+    let field = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), 1);
+    assert!((field.mean_m_s(HEIGHT_M) / SPEED_10M_M_S - 0.80).abs() < 0.005, "{}", field.mean_m_s(HEIGHT_M));
+}
+
+#[test]
+fn ornstein_uhlenbeck_gusts_have_the_moments_and_the_memory_of_their_process() {
+    const STEP_S: f64 = 0.25;
+    const COUNT: i64 = 1_200_000;
+    let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), 1).mean_m_s(HEIGHT_M);
+    let time_s = LENGTH_M / mean_m_s;
+    let x = record(ornstein_uhlenbeck(), 11, COUNT, STEP_S);
+    // Five standard errors of a mean square over this many correlation times.
+    let within = 5.0 * (2.0 / (COUNT as f64 * STEP_S / time_s)).sqrt();
+    assert!(within < 0.03);
+    assert!(mean_of(x.len(), |i| x[i].0).abs() < within, "mean along");
+    assert!(mean_of(x.len(), |i| x[i].1).abs() < within, "mean across");
+    assert!(mean_of(x.len(), |i| x[i].0 * x[i].1).abs() < within, "correlation of along and across");
+    let across_variance = ACROSS_RATIO * ACROSS_RATIO;
+    for lag in [0, 4, 12, 20, 40, 80] {
+        let want = math::exp(-(lag as f64) * STEP_S / time_s);
+        let along = mean_of(x.len() - lag, |i| x[i].0 * x[i + lag].0);
+        let across = mean_of(x.len() - lag, |i| x[i].1 * x[i + lag].1) / across_variance;
+        assert!((along - want).abs() < within, "along, lag {lag}: {along}, not {want} within {within}");
+        assert!((across - want).abs() < within, "across, lag {lag}: {across}, not {want} within {within}");
+    }
+}
+
+#[test]
+fn the_spectrum_of_ornstein_uhlenbeck_gusts_bends_at_the_length_scale() {
+    // Dryden: S(ω) proportional to 1 / (1 + (ω τ)²). Periodograms of 3000 stretches of 64 τ with Hann's window.
+    const STRETCH: usize = 1024;
+    const STRETCHES: usize = 3000;
+    let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), 1).mean_m_s(HEIGHT_M);
+    let step_s = LENGTH_M / mean_m_s / 16.0;
+    let x = record(ornstein_uhlenbeck(), 5, (STRETCH * STRETCHES) as i64, step_s);
+    let power = |bin: usize| {
+        let kernel: Vec<(f64, f64)> = (0..STRETCH)
+            .map(|i| {
+                let (sin, cos) = math::sin_cos(TAU * (bin * i) as f64 / STRETCH as f64);
+                let window = 1.0 - math::sin_cos(TAU * i as f64 / STRETCH as f64).1;
+                (window * cos, window * sin)
+            })
+            .collect();
+        let of_stretch = |stretch: &[(f64, f64)]| {
+            let parts = stretch.iter().zip(&kernel);
+            let (re, im) = parts.fold((0.0, 0.0), |sum, (x, k)| (sum.0 + x.0 * k.0, sum.1 + x.0 * k.1));
+            re * re + im * im
+        };
+        x.chunks(STRETCH).map(of_stretch).sum::<f64>()
+    };
+    let omega_tau = |bin: usize| TAU * bin as f64 / 64.0;
+    let density = |bin: usize| 1.0 / (1.0 + omega_tau(bin) * omega_tau(bin));
+    let low = power(2);
+    for bin in [5, 10, 20, 40] {
+        let (got, want) = (power(bin) / low, density(bin) / density(2));
+        // Two periodograms of 1.8 % each, and a little from sampling 16 times in τ.
+        assert!((got / want - 1.0).abs() < 0.12, "ω τ = {}: {got}, not {want}", omega_tau(bin));
+    }
+}
+
+#[test]
+fn spectral_gusts_have_the_variance_stated_and_the_memory_of_their_spectrum() {
+    const STEP_S: f64 = 0.9;
+    const COUNT: i64 = 250_000;
+    for spectrum in [GustSpectrum::Davenport, GustSpectrum::Harris, GustSpectrum::Froya] {
+        let x = record(spectral(spectrum), 3, COUNT, STEP_S);
+        // The transform of the spectrum, between the slowest and the fastest gust, by the midpoint rule.
+        let log_range = libm_log(FREQUENCY_MAX_HZ / FREQUENCY_MIN_HZ);
+        let correlation = |lag_s: f64| {
+            let (mut all, mut sum) = (0.0, 0.0);
+            for i in 0..20_000 {
+                let frequency_hz = FREQUENCY_MIN_HZ * math::exp(log_range * (f64::from(i) + 0.5) / 20_000.0);
+                let part = shape(spectrum, frequency_hz, SPEED_10M_M_S, HEIGHT_M);
+                all += part;
+                sum += part * math::sin_cos(TAU * frequency_hz * lag_s).1;
+            }
+            sum / all
+        };
+        let variance = mean_of(x.len(), |i| x[i].0 * x[i].0);
+        let across = mean_of(x.len(), |i| x[i].1 * x[i].1) / (ACROSS_RATIO * ACROSS_RATIO);
+        assert!((variance - 1.0).abs() < 0.01, "{spectrum:?}: variance along {variance}");
+        assert!((across - 1.0).abs() < 0.01, "{spectrum:?}: variance across {across}");
+        for lag in [1, 5, 20, 60] {
+            let got = mean_of(x.len() - lag, |i| x[i].0 * x[i + lag].0);
+            let want = correlation(lag as f64 * STEP_S);
+            // 64 waves stand for the continuum.
+            assert!((got - want).abs() < 0.04, "{spectrum:?}, lag {lag}: {got}, not {want}");
+        }
+    }
+}
+
+fn libm_log(x: f64) -> f64 {
+    // By Newton's method on exp: tests have no other platform-independent logarithm.
+    (0..60).fold(1.0, |y, _| y - 1.0 + x * math::exp(-y))
+}
+
+#[test]
+fn a_gust_comes_to_a_boat_downwind_as_it_was() {
+    const WITHIN_M_S: f64 = 1e-9;
+    for gusts in [ornstein_uhlenbeck(), spectral(GustSpectrum::Davenport)] {
+        for from_deg in [0.0, 77.0, 200.0] {
+            let mut field = WindField::new(&wind(from_deg, gusts.clone()), HEIGHT_M, &field(), 7);
+            let mean_m_s = field.mean_m_s(HEIGHT_M);
+            let upwind = Ned::from_xy(80.0, 40.0);
+            let (downwind, abreast) = (Ned::toward_deg(from_deg + 180.0), Ned::toward_deg(from_deg + 90.0));
+            let mut differ = 0;
+            for i in 0..200_u32 {
+                let now = SimTime::from_s(f64::from(i) * 0.73);
+                field.prepare(now);
+                let felt = field.at(upwind, mean_m_s, now);
+                let way_m = 1.0 + f64::from(i) * 0.3;
+                let later = SimTime::from_s(now.as_s() + way_m / mean_m_s);
+                let downwind_later = field.at(upwind + downwind.scaled(way_m), mean_m_s, later);
+                // A nanosecond of rounding is worth 1e-8 m of way.
+                assert!(felt.distance(downwind_later) < WITHIN_M_S + 1e-7, "{i}: {felt:?}, {downwind_later:?}");
+                assert!(felt.distance(field.at(upwind + abreast.scaled(30.0), mean_m_s, now)) < WITHIN_M_S);
+                let ratio = field.at(upwind, 2.0 * mean_m_s, now);
+                assert!(ratio.distance(felt.scaled(2.0)) < WITHIN_M_S, "in proportion to the mean");
+                differ += u32::from(felt.distance(field.at(upwind + downwind.scaled(way_m), mean_m_s, now)) > 0.1);
+            }
+            assert!(differ > 100, "gusts vary along the wind: {differ} of 200");
+        }
+    }
+}
+
+#[test]
+fn the_wind_is_a_function_of_seed_place_and_time_alone() {
+    let places = [Ned::from_xy(5.0, 5.0), Ned::from_xy(150.0, 70.0), Ned::from_xy(-400.0, 900.0)];
+    for gusts in [ornstein_uhlenbeck(), spectral(GustSpectrum::Froya)] {
+        let fresh = |seed| WindField::new(&wind(30.0, gusts.clone()), HEIGHT_M, &field(), seed);
+        let mut sailed = fresh(9);
+        let tick = SimTime::from_s(0.05);
+        // Sail on for ten minutes, go back to tick 700, then on again; each time as a world that starts there.
+        for tick_count in (0..12_000).chain(700..900).chain([5, 1_000_000]) {
+            let now = tick * tick_count;
+            sailed.prepare(now);
+            if tick_count % 97 == 0 || tick_count < 10 {
+                let mut restored = fresh(9);
+                restored.prepare(now);
+                for place in places {
+                    assert_eq!(sailed.at(place, 8.0, now), restored.at(place, 8.0, now), "tick {tick_count}");
+                    assert_eq!(
+                        sailed.at(place, 8.0, now),
+                        fresh(9).at(place, 8.0, now),
+                        "tick {tick_count}, unprepared"
+                    );
+                }
+            }
+        }
+        assert_ne!(fresh(9).at(places[0], 8.0, tick), fresh(10).at(places[0], 8.0, tick), "another seed");
+    }
+}
+
+#[test]
+fn no_wind_is_no_gusts_either() {
+    for gusts in [ornstein_uhlenbeck(), spectral(GustSpectrum::Harris)] {
+        let still = Wind { speed_10m_m_s: 0.0, ..wind(40.0, gusts) };
+        let field = WindField::new(&still, HEIGHT_M, &field(), 1);
+        for i in 0..100 {
+            let felt = field.at(Ned::from_xy(3.0, 4.0), field.mean_m_s(HEIGHT_M), SimTime::from_s(f64::from(i)));
+            assert_eq!(felt, Ned::default());
+        }
+    }
+}
+
+/// The Surveyor's windage as the closed-form drift was worked out for.
+fn surveyor() -> Windage {
+    Windage {
+        frontal_area_m2: 0.30,
+        lateral_area_m2: 0.55,
+        height_m: HEIGHT_M,
+        surge_coefficient: 0.6,
+        sway_coefficient: 0.9,
+        yaw_coefficient: 0.1,
+    }
+}
+
+const SURVEYOR_LENGTH_M: f64 = 1.83;
+
+fn force(ahead: f64, starboard: f64) -> Planar {
+    wind_force(&surveyor(), SURVEYOR_LENGTH_M, AIR_DENSITY_KG_M3, Body { ahead, starboard })
+}
+
+#[test]
+fn the_wind_pushes_a_boat_away_and_its_bow_off() {
+    // A boat that points north at rest; the wind from a bearing; signs of surge, sway and yaw.
+    for (from_deg, want) in [
+        (0.0, (-1.0, 0.0, 0.0)),
+        (45.0, (-1.0, -1.0, -1.0)),
+        (90.0, (0.0, -1.0, 0.0)),
+        (135.0, (1.0, -1.0, 1.0)),
+        (180.0, (1.0, 0.0, 0.0)),
+        (225.0, (1.0, 1.0, -1.0)),
+        (270.0, (0.0, 1.0, 0.0)),
+        (315.0, (-1.0, 1.0, 1.0)),
+    ] {
+        let blowing = Ned::toward_deg(from_deg + 180.0).scaled(10.0);
+        let past = wind_past_boat((0.0, 1.0), blowing, Planar::default());
+        let got = force(past.ahead, past.starboard);
+        let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        assert_eq!((sign(got.surge), sign(got.sway), sign(got.yaw)), want, "from {from_deg}: {got:?}");
+    }
+    // A boat that points east and makes 3 m/s, in a wind from the north: ahead by its own way, on its port side.
+    let past = wind_past_boat(
+        math::sin_cos_deg(90.0),
+        Ned { north: -4.0, east: 0.0 },
+        Planar { surge: 3.0, ..Planar::default() },
+    );
+    assert_eq!(past, Body { ahead: -3.0, starboard: 4.0 });
+}
+
+#[test]
+fn the_force_is_fossen_s_at_every_angle() {
+    for i in 0..720_u32 {
+        let angle = f64::from(i) * TAU / 720.0;
+        let (sin, cos) = math::sin_cos(angle);
+        let (u_rw, v_rw) = (7.0 * cos, 7.0 * sin);
+        let gamma = -math::atan2(v_rw, u_rw);
+        let (sin_gamma, cos_gamma) = math::sin_cos(gamma);
+        let pressure = 0.5 * 1.225 * 49.0;
+        let want = Planar {
+            surge: -pressure * 0.6 * cos_gamma * 0.30,
+            sway: pressure * 0.9 * sin_gamma * 0.55,
+            yaw: pressure * 0.1 * math::sin_cos(2.0 * gamma).0 * 0.55 * 1.83,
+        };
+        let got = force(-u_rw, -v_rw);
+        for (got, want) in [(got.surge, want.surge), (got.sway, want.sway), (got.yaw, want.yaw)] {
+            assert!((got - want).abs() < 1e-12 * pressure, "γ = {gamma}: {got}, not {want}");
+        }
+    }
+}
+
+#[test]
+fn the_mirror_image_of_a_wind_gives_the_mirror_image_of_the_force_to_the_bit() {
+    for (ahead, starboard) in [(3.1, 4.7), (-8.3, 0.1), (0.3, -11.9), (-5.5, -5.5)] {
+        let (one, other) = (force(ahead, starboard), force(ahead, -starboard));
+        let bits = |force: Planar| (force.surge.to_bits(), force.sway.to_bits(), force.yaw.to_bits());
+        assert_eq!(bits(one), bits(Planar { surge: other.surge, sway: -other.sway, yaw: -other.yaw }));
+    }
+    let nothing = force(0.0, 0.0);
+    for part in [nothing.surge, nothing.sway, nothing.yaw] {
+        assert_eq!(part.to_bits(), 0, "no wind is +0: {nothing:?}");
+    }
+}
+
+#[test]
+fn a_boat_drifts_beam_on_as_fast_as_closed_form_says() {
+    // ½ ρ_a C_y A_L (W − V)² = Y_v V + ½ ρ C_d L T V², for W the wind at the boat.
+    const WITHIN_M_S: f64 = 0.000_5;
+    for (wind_m_s, want_m_s) in [(5.0, 0.128), (10.0, 0.340)] {
+        let resistance = |v: f64| 40.0 * v + 0.5 * 1025.0 * 0.8 * SURVEYOR_LENGTH_M * 0.17 * v * v;
+        let (mut low, mut high) = (0.0, wind_m_s);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if force(0.0, wind_m_s - middle).sway > resistance(middle) { low = middle } else { high = middle }
+        }
+        assert!((low - want_m_s).abs() < WITHIN_M_S, "wind {wind_m_s} m/s: drifts {low}, not {want_m_s} m/s");
+    }
+}
