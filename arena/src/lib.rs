@@ -5,23 +5,23 @@
 use agent::Mind;
 use game::{Outcome, Scenario, VehicleId};
 use sim::Contest;
-use sim::spawn::NoBerth;
+use sim::NoStart;
 
 /// Plays the game of `scenario` that `seed` chooses to its end. `minds` are by vehicle.
 ///
 /// # Errors
-/// [`NoBerth`] where the boats do not fit into their spawn area.
+/// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
 ///
 /// # Panics
 /// If there is not one mind for each vehicle.
-pub fn play(scenario: &Scenario, minds: &mut [Box<dyn Mind>], seed: u64) -> Result<Outcome, NoBerth> {
+pub fn play(scenario: &Scenario, minds: &mut [Box<dyn Mind>], seed: u64) -> Result<Outcome, NoStart> {
     play_watched(scenario, minds, seed, |_| true)
 }
 
 /// As [`play`], but shows the contest to `watch` before every decision, and stops when that says `false`.
 ///
 /// # Errors
-/// [`NoBerth`] where the boats do not fit into their spawn area.
+/// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
 ///
 /// # Panics
 /// If there is not one mind for each vehicle.
@@ -30,7 +30,7 @@ pub fn play_watched(
     minds: &mut [Box<dyn Mind>],
     seed: u64,
     mut watch: impl FnMut(&Contest) -> bool,
-) -> Result<Outcome, NoBerth> {
+) -> Result<Outcome, NoStart> {
     assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
     let mut contest = Contest::new(scenario, seed)?;
     while !contest.is_over() && watch(&contest) {

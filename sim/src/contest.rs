@@ -4,9 +4,8 @@
 //! [`Contest::advance`]. The network node and the in-process arena do just that and nothing else, so a
 //! game is the same bytes in both.
 
-use crate::spawn::NoBerth;
 use crate::view;
-use crate::world::World;
+use crate::world::{NoStart, World};
 use game::event::Logged;
 use game::message::Frame;
 use game::outcome::{Outcome, Played};
@@ -35,9 +34,9 @@ impl Contest {
     /// The game of `scenario` that `seed` chooses, at its start.
     ///
     /// # Errors
-    /// [`NoBerth`] where the boats do not fit into their spawn area.
-    pub fn new(scenario: &Scenario, seed: u64) -> Result<Contest, NoBerth> {
-        let scenario = Scenario { seed, ..scenario.clone() };
+    /// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
+    pub fn new(scenario: &Scenario, seed: u64) -> Result<Contest, NoStart> {
+        let scenario = scenario.of_seed(seed)?;
         let world = World::new(&scenario, seed)?;
         let count = scenario.vehicles.len();
         let pictures = (0..scenario.teams.len()).map(|team| Picture { team: team as u8, ..Picture::default() });

@@ -9,6 +9,7 @@ pub mod contest;
 pub mod flaw;
 pub mod hull;
 pub mod kinematic;
+mod model;
 pub mod motion;
 #[cfg(feature = "net")]
 pub mod node;
@@ -23,4 +24,4 @@ pub mod world;
 
 pub use contest::Contest;
 pub use state::{BoatState, RestoreError, State};
-pub use world::World;
+pub use world::{NoStart, World};

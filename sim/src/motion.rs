@@ -284,10 +284,9 @@ mod tests {
         let effort = |i: usize| {
             let x = i as f64;
             let push = |n: f64| Planar { surge: 40.0 + n * x, sway: n, yaw: 5.0 - n * x };
-            Effort {
-                nu_r: Planar { surge: x, sway: 0.3 - 0.2 * x, yaw: 0.4 * x - 0.5 },
-                tau: [0.0, 1.0, 2.0].map(push),
-            }
+            let nu_r = Planar { surge: x, sway: 0.3 - 0.2 * x, yaw: 0.4 * x - 0.5 };
+            let (water, water_rate) = (push(0.01), push(0.1));
+            Effort { nu_r, tau: [0.0, 1.0, 2.0].map(push), water, water_rate }
         };
         let efforts: Vec<Effort> = (0..kinds.len()).map(effort).collect();
         let mut motions = Vec::new();

@@ -1,6 +1,9 @@
 //! What changes in a world, and how it becomes bytes.
 
+use crate::flaw::FlawState;
 use crate::hull::Planar;
+use crate::kinematic::KinematicState;
+use crate::sensor::{Reading, SensorState};
 use crate::thruster::Shaft;
 use game::rules::Standing;
 use game::{Pose, SimTime};
@@ -17,6 +20,12 @@ pub struct State {
     pub now: SimTime,
     /// By vehicle.
     pub boats: Vec<BoatState>,
+    /// By vehicle: what its thrusters' flaws remember.
+    pub flaws: Vec<FlawState>,
+    /// The point boats among the vehicles, in their order.
+    pub points: Vec<KinematicState>,
+    /// Of the vehicles with sensors, in their order: what those remember, and what they tell.
+    pub senses: Vec<(SensorState, Reading)>,
     /// How the game stands.
     pub standing: Standing,
 }
@@ -39,7 +48,7 @@ pub struct BoatState {
 }
 
 /// What a snapshot begins with: name, layout version.
-const MAGIC: [u8; 5] = *b"SQLW\x01";
+const MAGIC: [u8; 5] = *b"SQLW\x02";
 
 /// Why bytes are not a snapshot of this world.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -1,21 +1,20 @@
 //! The world: boats, water, contact and the referee, one tick at a time.
 
-use crate::autopilot::AutopilotModel;
-use crate::contact::{ContactModel, Passage};
-use crate::hull::{HullModel, Planar};
-use crate::motion::{Effort, Fleet, Motion};
-use crate::sea::SeaModel;
+use crate::contact::Passage;
+use crate::hull::Planar;
+use crate::model::Model;
+use crate::motion::{Effort, Motion};
+use crate::sea::{Attitude, SeaNow};
+use crate::sensor::{Reading, Truth};
 use crate::spawn::{self, NoBerth};
 use crate::state::{BoatState, RestoreError, State};
-use crate::thruster::ThrusterModel;
-use game::angle::wrap_pi;
-use game::boat::Drive;
 use game::frame::{self, Ned};
 use game::near::{Near, Pair};
-use game::rules::{Directive, Notes, Referee};
+use game::rules::{Notes, Referee};
+use game::scenario::Problems;
 use game::stream::Stream;
 use game::{Event, Order, Pose, Scenario, SimTime, VehicleId, math};
-use xxhash_rust::xxh3;
+use thiserror::Error;
 
 /// No boat is faster than this over the ground, m/s; one that is has bad numbers.
 const ABSURD_M_S: f64 = 1_000.0;
@@ -28,24 +27,15 @@ pub struct World {
     work: Work,
 }
 
-/// What is constant while a game is played.
-#[derive(Clone)]
-struct Model {
-    tick: SimTime,
-    dt_s: f64,
-    /// By kind of boat.
-    hulls: Vec<HullModel>,
-    thrusters: Vec<ThrusterModel>,
-    autopilots: Vec<AutopilotModel>,
-    /// Kind of each vehicle.
-    kinds: Vec<usize>,
-    /// The hulls again, by vehicle.
-    fleet: Fleet,
-    sea: SeaModel,
-    contact: ContactModel,
-    referee: Referee,
-    /// Marks snapshots.
-    scenario_mark: u64,
+/// Why a game cannot start.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum NoStart {
+    /// The boats do not fit into their spawn area.
+    #[error(transparent)]
+    NoBerth(#[from] NoBerth),
+    /// The numbers drawn for this seed are each allowed, but not together.
+    #[error("what was drawn for this seed does not go together\n{0}")]
+    Draw(#[from] Problems),
 }
 
 /// Memory that is used again every tick; all of it follows from the state.
@@ -56,11 +46,14 @@ struct Work {
     turns: Vec<(f64, f64)>,
     /// What moves each boat, and how it moves by that alone.
     efforts: Vec<Effort>,
+    currents_m_s: Vec<Ned>,
     motions: Vec<Motion>,
     /// Motion over the tick, by vehicle.
     passages: Vec<Passage>,
     /// Velocity over the ground at the end of the tick without contact, by vehicle.
     velocities: Vec<Planar>,
+    /// How fast each boat's velocity changed in the last tick.
+    accelerations: Vec<Planar>,
     pairs: Vec<Pair>,
     notes: Notes,
     events: Vec<Event>,
@@ -70,14 +63,25 @@ impl World {
     /// The world of this scenario at the start of the game that `seed` chooses.
     ///
     /// # Errors
-    /// [`NoBerth`] where the boats do not fit into their spawn area.
-    pub fn new(scenario: &Scenario, seed: u64) -> Result<World, NoBerth> {
-        let model = Model::new(scenario);
-        let boats = spawn::berths(scenario, seed)?.into_iter().map(|pose| BoatState { pose, ..BoatState::default() });
-        let standing = model.referee.start(&mut Stream::new(seed, "power_play"));
-        let state = State { tick: 0, now: SimTime::ZERO, boats: boats.collect(), standing };
+    /// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
+    pub fn new(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
+        let scenario = scenario.of_seed(seed)?;
+        let model = Model::new(&scenario, seed);
+        let boats = spawn::berths(&scenario, seed)?.into_iter().map(|pose| BoatState { pose, ..BoatState::default() });
+        let mut state = State {
+            tick: 0,
+            now: SimTime::ZERO,
+            boats: boats.collect(),
+            flaws: model.flaws_at_start(),
+            points: vec![],
+            senses: vec![],
+            standing: model.referee.start(&mut Stream::new(seed, "power_play")),
+        };
+        state.points = model.points_at_start(&state.boats);
+        state.senses = model.senses_at_start();
         let mut world = World { model, state, work: Work::default() };
         world.refresh();
+        world.sense();
         Ok(world)
     }
 
@@ -88,6 +92,7 @@ impl World {
     pub fn step(&mut self, orders: &[Order]) -> &[Event] {
         assert_eq!(orders.len(), self.state.boats.len(), "one order a vehicle");
         self.work.events.clear();
+        self.model.sea.prepare(self.state.now);
         self.drive(orders);
         self.model.contact.resolve(&self.model.hulls, &mut self.work.passages, &self.work.pairs);
         self.settle();
@@ -96,6 +101,7 @@ impl World {
         self.find_pairs();
         self.judge();
         self.keep_out();
+        self.sense();
         &self.work.events
     }
 
@@ -139,6 +145,26 @@ impl World {
         self.state.digest()
     }
 
+    /// The sea now.
+    #[must_use]
+    pub fn sea(&self) -> SeaNow<'_> {
+        self.model.sea.at_time(self.state.now)
+    }
+
+    /// What a vehicle's sensors tell it; `None` is all of the truth.
+    #[must_use]
+    pub fn reading(&self, vehicle: VehicleId) -> Option<&Reading> {
+        let place = self.model.sensed[vehicle.index()].as_ref().map(|(place, _)| *place)?;
+        Some(&self.state.senses[place].1)
+    }
+
+    /// How a vehicle lies in the waves.
+    #[must_use]
+    pub fn attitude(&self, vehicle: VehicleId) -> Attitude {
+        let (i, boat) = (vehicle.index(), &self.state.boats[vehicle.index()]);
+        self.sea().attitude(self.model.kinds[i], boat.pose, self.work.turns[i], boat.nu)
+    }
+
     /// Hands boats to rapier that are as far as `close_m` from anything. Slower, and the same bytes.
     #[doc(hidden)]
     pub fn widen_contact(&mut self, close_m: f64) {
@@ -150,6 +176,7 @@ impl World {
     fn refresh(&mut self) {
         self.work.turns.clear();
         self.work.turns.extend(self.state.boats.iter().map(|boat| math::sin_cos(boat.pose.psi_rad)));
+        self.work.accelerations.resize(self.state.boats.len(), Planar::default());
         self.find_pairs();
     }
 
@@ -164,16 +191,27 @@ impl World {
     /// Every boat's motion over the tick as if it were alone.
     fn drive(&mut self, orders: &[Order]) {
         let World { model, state, work } = self;
+        let sea = model.sea.at_time(state.now);
         work.efforts.clear();
+        work.currents_m_s.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
-            let directive = model.referee.directive(&state.standing, VehicleId::at(i), boat.pose.at);
-            work.efforts.push(model.effort(boat, model.kinds[i], work.turns[i], orders[i], directive));
+            let order = model.obeyed(&state.standing, i, boat.pose.at, orders[i]);
+            let (effort, current_m_s) = model.effort(i, boat, &mut state.flaws[i], work.turns[i], order, &sea);
+            work.efforts.push(effort);
+            work.currents_m_s.push(current_m_s);
         }
         model.fleet.advance(&work.efforts, model.dt_s, &mut work.motions);
         work.passages.clear();
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {
-            let (passage, nu) = model.passage(boat, model.kinds[i], work.turns[i], &work.efforts[i], &work.motions[i]);
+            let (passage, nu) = match model.point(i) {
+                Some((place, point)) if !boat.quarantined => {
+                    let order = model.obeyed(&state.standing, i, boat.pose.at, orders[i]);
+                    let drift_m_s = sea.current_at(boat.pose.at);
+                    model.point_passage(i, boat, (point, &mut state.points[place]), order, drift_m_s)
+                }
+                _ => model.passage(i, boat, work.turns[i], &work.efforts[i], &work.motions[i], work.currents_m_s[i]),
+            };
             work.passages.push(passage);
             work.velocities.push(nu);
         }
@@ -186,7 +224,11 @@ impl World {
             let (passage, mut nu) = (&work.passages[i], work.velocities[i]);
             nu = nu.plus(1.0, passage.kick);
             if is_sound(passage.to, nu) {
+                work.accelerations[i] = nu.plus(-1.0, boat.nu);
                 (boat.pose, boat.nu, work.turns[i]) = (passage.to, nu, passage.turn_to);
+                if let (Some((place, _)), true) = (model.point(i), passage.kick != Planar::default()) {
+                    state.points[place].divert(boat.pose.psi_rad, boat.nu.surge);
+                }
             } else if !boat.quarantined {
                 *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
                 work.events.push(Event::Quarantined { vehicle: VehicleId::at(i) });
@@ -228,144 +270,38 @@ impl World {
         }
     }
 
+    /// Sensors read.
+    fn sense(&mut self) {
+        let World { model, state, work } = self;
+        if state.senses.is_empty() {
+            return;
+        }
+        let sea = model.sea.at_time(state.now);
+        for (i, boat) in state.boats.iter().enumerate() {
+            let Some((place, sensors)) = &model.sensed[i] else { continue };
+            let attitude = sea.attitude(model.kinds[i], boat.pose, work.turns[i], boat.nu);
+            let truth = Truth {
+                pose: boat.pose,
+                nu: boat.nu,
+                nu_dot: Planar::default().plus(1.0 / model.dt_s, work.accelerations[i]),
+                roll_rad: attitude.roll_rad,
+                pitch_rad: attitude.pitch_rad,
+                roll_rate_rad_s: attitude.roll_rad_s,
+                pitch_rate_rad_s: attitude.pitch_rad_s,
+                heave_acceleration_m_s2: -attitude.heave_up_m_s2,
+                thrust_share: model.thrust_share(i, boat),
+            };
+            let (memory, reading) = &mut state.senses[*place];
+            *reading = sensors.read(memory, &truth, state.now);
+        }
+    }
+
     fn judge(&mut self) {
         let World { model, state, work } = self;
         let boats = &state.boats;
         let at = |i: usize| boats[i].pose.at;
         model.referee.advance(&mut state.standing, &mut work.notes, &at, &work.pairs, state.now, &mut work.events);
     }
-}
-
-impl Model {
-    fn new(scenario: &Scenario) -> Model {
-        let dt_s = scenario.tick.as_s();
-        let density = scenario.sea.water_density_kg_m3;
-        let hulls: Vec<HullModel> = scenario.boats.iter().map(|boat| HullModel::new(&boat.hull, density)).collect();
-        let shapes = scenario.boats.iter().map(|boat| (boat.length_m, boat.beam_m));
-        let drives: Vec<_> = scenario
-            .boats
-            .iter()
-            .map(|boat| match &boat.drive {
-                Drive::Thrusters { thruster, autopilot } => (thruster, autopilot),
-                Drive::Kinematic(_) => panic!("no kinematic boats yet"),
-            })
-            .collect();
-        let autopilots =
-            drives.iter().zip(&hulls).map(|((_, autopilot), hull)| AutopilotModel::new(autopilot, hull, dt_s));
-        let encoded = postcard::to_stdvec(scenario).expect("a checked scenario always encodes");
-        Model {
-            tick: scenario.tick,
-            dt_s,
-            thrusters: drives.iter().map(|(thruster, _)| ThrusterModel::new(thruster, dt_s)).collect(),
-            autopilots: autopilots.collect(),
-            fleet: Fleet::new(scenario.vehicles.iter().map(|vehicle| &hulls[vehicle.boat])),
-            kinds: scenario.vehicles.iter().map(|vehicle| vehicle.boat).collect(),
-            sea: SeaModel::new(&scenario.sea),
-            contact: ContactModel::new(shapes, &scenario.field, dt_s),
-            referee: Referee::new(
-                scenario.rules.clone(),
-                scenario.field.clone(),
-                scenario.vehicles.iter().map(|vehicle| vehicle.team).collect(),
-            ),
-            hulls,
-            scenario_mark: xxh3::xxh3_64(&encoded),
-        }
-    }
-
-    /// What moves a boat in this tick: its thrusters take up its order, as far as the rules let it.
-    #[inline]
-    fn effort(
-        &self,
-        boat: &mut BoatState,
-        kind: usize,
-        turn: (f64, f64),
-        order: Order,
-        directive: Directive,
-    ) -> Effort {
-        if boat.quarantined {
-            return Effort::default();
-        }
-        let tau = self.thrust(boat, kind, obeyed(order, directive, boat.pose.at));
-        let current_m_s = self.sea.at(boat.pose.at).current_m_s;
-        Effort { nu_r: through_water(boat.nu, turn, current_m_s, -1.0), tau }
-    }
-
-    /// A boat's passage over a tick as if it were alone, and its velocity over the ground after it.
-    #[inline]
-    fn passage(
-        &self,
-        boat: &BoatState,
-        kind: usize,
-        turn: (f64, f64),
-        effort: &Effort,
-        motion: &Motion,
-    ) -> (Passage, Planar) {
-        let from = boat.pose;
-        let still =
-            Passage { kind, from, to: from, turn, turn_to: turn, fixed: boat.quarantined, kick: Planar::default() };
-        if boat.quarantined {
-            return (still, Planar::default());
-        }
-        let current_m_s = self.sea.at(from.at).current_m_s;
-        let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
-        let half_turn = math::sin_cos(from.psi_rad + motion.turn_half_rad);
-        let end_turn = math::sin_cos(psi_rad);
-        let start = over_ground(turn, effort.nu_r);
-        let middle = over_ground(half_turn, motion.nu_r_half);
-        let end = over_ground(end_turn, motion.nu_r);
-        let mean_m_s = (start + middle.scaled(4.0) + end).scaled(1.0 / 6.0) + current_m_s;
-        let to = Pose { at: from.at + mean_m_s.scaled(self.dt_s), psi_rad };
-        (Passage { to, turn_to: end_turn, ..still }, through_water(motion.nu_r, end_turn, current_m_s, 1.0))
-    }
-
-    /// The thrusters' force on the hull at the beginning, half-way and at the end of the tick.
-    #[inline]
-    fn thrust(&self, boat: &mut BoatState, kind: usize, order: (Order, f64)) -> [Planar; 3] {
-        let (hull, thruster, autopilot) = (&self.hulls[kind], &self.thrusters[kind], &self.autopilots[kind]);
-        let settings = match order {
-            (Order::Steer { heading_rad, speed_m_s }, factor) => {
-                let speed_m_s = speed_m_s.min(factor * autopilot.speed_max_m_s);
-                let at = (boat.pose.psi_rad, boat.nu);
-                autopilot.steer((hull, thruster), at, (heading_rad, speed_m_s), &mut boat.speed_integral_newton)
-            }
-            (Order::Thrust { port, starboard }, factor) => {
-                [thruster.setting_of_share(factor * port), thruster.setting_of_share(factor * starboard)]
-            }
-            (Order::Hold, _) => [0.0, 0.0],
-        };
-        let port = thruster.respond(&mut boat.port, settings[0]);
-        let starboard = thruster.respond(&mut boat.starboard, settings[1]);
-        [0, 1, 2].map(|i| Planar {
-            surge: port[i] + starboard[i],
-            sway: 0.0,
-            yaw: thruster.arm_m * (port[i] - starboard[i]),
-        })
-    }
-}
-
-/// What a boat does: its order as far as the rules let it, and the share of its top speed it may use.
-#[inline]
-fn obeyed(order: Order, directive: Directive, at: Ned) -> (Order, f64) {
-    match directive {
-        Directive::Free { speed_factor } => (order.check().unwrap_or_default(), speed_factor),
-        Directive::DrivenHome { to: home, speed_factor } => {
-            (Order::Steer { heading_rad: at.bearing_rad(home), speed_m_s: f64::INFINITY }, speed_factor)
-        }
-        Directive::Hold => (Order::Hold, 1.0),
-    }
-}
-
-/// `nu` with the current, seen from the boat, added `sign` times: −1 takes a velocity over the ground to one
-/// through the water, 1 takes it back.
-#[inline]
-fn through_water(nu: Planar, turn: (f64, f64), current_m_s: Ned, sign: f64) -> Planar {
-    let current = frame::body_from_ned(turn, current_m_s);
-    nu.plus(sign, Planar { surge: current.ahead, sway: current.starboard, yaw: 0.0 })
-}
-
-#[inline]
-fn over_ground(turn: (f64, f64), nu: Planar) -> Ned {
-    frame::ned_from_body(turn, game::Body { ahead: nu.surge, starboard: nu.sway })
 }
 
 #[inline]

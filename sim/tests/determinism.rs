@@ -209,6 +209,7 @@ fn a_full_area_says_which_boat_has_no_berth() {
         }
     }
     let error = World::new(&scenario, 1).err().expect("no room for twenty boats 30 m apart");
+    let sim::NoStart::NoBerth(error) = error else { panic!("{error}") };
     assert!(scenario.vehicles.iter().any(|vehicle| vehicle.name == error.vehicle), "{error}");
     assert!(error.to_string().contains(&error.vehicle) && error.to_string().contains("gap_m"), "{error}");
 }

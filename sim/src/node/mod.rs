@@ -10,7 +10,7 @@ mod realtime;
 pub mod roster;
 
 use crate::contest::Contest;
-use crate::spawn::NoBerth;
+use crate::world::NoStart;
 use booth::Booth;
 use bus::{BusError, Net};
 use game::topic::GameName;
@@ -99,7 +99,7 @@ pub struct Run {
 pub enum NodeError {
     /// The boats do not fit on the field.
     #[error(transparent)]
-    NoBerth(#[from] NoBerth),
+    NoStart(#[from] NoStart),
     /// The network failed.
     #[error(transparent)]
     Bus(#[from] BusError),

@@ -166,11 +166,8 @@ impl SeaNow<'_> {
     pub fn feel(&self, kind: usize, hull: &HullModel, pose: Pose, turn: (f64, f64), nu: Planar) -> Felt {
         let boat = &self.model.kinds[kind];
         let (current_m_s, turning_rad_s) = self.current.over_hull(pose.at, turn, boat.length_m);
-        let mut felt = Felt {
-            current_m_s,
-            water: Planar { yaw: turning_rad_s, ..Planar::default() },
-            ..Felt::default()
-        };
+        let mut felt =
+            Felt { current_m_s, water: Planar { yaw: turning_rad_s, ..Planar::default() }, ..Felt::default() };
         if let Some(wind) = &self.model.wind {
             let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
             let past = windage::wind_past_boat(turn, air_m_s, nu);

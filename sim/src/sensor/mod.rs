@@ -52,7 +52,7 @@ impl Truth {
 }
 
 /// What a boat knows.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reading {
     /// Navigation. Position and velocity are those of the last fix, as they came; the velocity is turned into the boat's
     /// axes with the heading that the boat reads now.

@@ -1,0 +1,291 @@
+//! What is constant while a game is played: the boats as they are, the sea, contact, the referee.
+
+use crate::autopilot::AutopilotModel;
+use crate::contact::{ContactModel, Passage};
+use crate::flaw::FlawState;
+use crate::hull::{HullModel, Planar};
+use crate::kinematic::{Command, KinematicModel, KinematicState};
+use crate::motion::{Effort, Fleet, Motion};
+use crate::sea::{SeaModel, SeaNow};
+use crate::sensor::{Reading, SensorModel, SensorState};
+use crate::state::BoatState;
+use crate::thruster::ThrusterModel;
+use game::angle::wrap_pi;
+use game::boat::{self, Sensors};
+use game::frame::{self, Body, Ned};
+use game::rules::{Directive, Referee, Standing};
+use game::{Order, Pose, Scenario, SimTime, VehicleId, math};
+use xxhash_rust::xxh3;
+
+/// The propellers are this share of the length astern of midships.
+const PROPELLER_ASTERN: f64 = 0.4;
+
+/// A game's constants.
+#[derive(Clone)]
+pub(crate) struct Model {
+    pub(crate) tick: SimTime,
+    pub(crate) dt_s: f64,
+    /// By kind of boat.
+    pub(crate) hulls: Vec<HullModel>,
+    drives: Vec<Drive>,
+    /// Kind of each vehicle.
+    pub(crate) kinds: Vec<usize>,
+    /// The place of each vehicle among the point boats, if it is one.
+    points: Vec<Option<usize>>,
+    /// The sensors of each vehicle that has any, and its place among those.
+    pub(crate) sensed: Vec<Option<(usize, SensorModel)>>,
+    /// The hulls again, by vehicle.
+    pub(crate) fleet: Fleet,
+    pub(crate) sea: SeaModel,
+    pub(crate) contact: ContactModel,
+    pub(crate) referee: Referee,
+    /// Marks snapshots.
+    pub(crate) scenario_mark: u64,
+}
+
+/// What drives a kind of boat.
+#[derive(Clone)]
+enum Drive {
+    /// Thrusters under a front seat; where they are from midships, m.
+    Thrusters(ThrusterModel, AutopilotModel, [Body; 2]),
+    Point(KinematicModel),
+}
+
+impl Drive {
+    fn new(boat: &game::Boat, hull: &HullModel, dt_s: f64) -> Drive {
+        match &boat.drive {
+            boat::Drive::Thrusters { thruster, autopilot } => {
+                let ahead = -PROPELLER_ASTERN * boat.length_m;
+                let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
+                Drive::Thrusters(ThrusterModel::new(thruster, dt_s), AutopilotModel::new(autopilot, hull, dt_s), places)
+            }
+            boat::Drive::Kinematic(kinematic) => Drive::Point(KinematicModel::new(kinematic)),
+        }
+    }
+}
+
+impl Model {
+    /// The model of this scenario, whose numbers are drawn, in the game that `seed` chooses.
+    pub(crate) fn new(scenario: &Scenario, seed: u64) -> Model {
+        let dt_s = scenario.tick.as_s();
+        let density = scenario.sea.water_density_kg_m3;
+        let hulls: Vec<HullModel> = scenario.boats.iter().map(|boat| HullModel::new(&boat.hull, density)).collect();
+        let shapes = scenario.boats.iter().map(|boat| (boat.length_m, boat.beam_m));
+        let drives: Vec<Drive> =
+            scenario.boats.iter().zip(&hulls).map(|(boat, hull)| Drive::new(boat, hull, dt_s)).collect();
+        let kinds: Vec<usize> = scenario.vehicles.iter().map(|vehicle| vehicle.boat).collect();
+        let points = kinds.iter().map(|kind| matches!(drives[*kind], Drive::Point(_)));
+        let sensors = scenario.vehicles.iter().map(|vehicle| &scenario.boats[vehicle.boat].sensors);
+        let places = numbered(sensors.clone().map(|sensors| *sensors != Sensors::default()));
+        let sensed = places.into_iter().zip(sensors).zip(&scenario.vehicles).map(|((place, sensors), vehicle)| {
+            place.map(|place| (place, SensorModel::new(sensors, scenario.tick, seed, &vehicle.name)))
+        });
+        let encoded = postcard::to_stdvec(scenario).expect("a checked scenario always encodes");
+        Model {
+            tick: scenario.tick,
+            dt_s,
+            points: numbered(points),
+            sensed: sensed.collect(),
+            fleet: Fleet::new(kinds.iter().map(|kind| &hulls[*kind])),
+            sea: SeaModel::new(scenario, seed),
+            contact: ContactModel::new(shapes, &scenario.field, dt_s),
+            referee: Referee::new(
+                scenario.rules.clone(),
+                scenario.field.clone(),
+                scenario.vehicles.iter().map(|vehicle| vehicle.team).collect(),
+            ),
+            scenario_mark: xxh3::xxh3_64(&encoded),
+            hulls,
+            drives,
+            kinds,
+        }
+    }
+
+    /// The flaws of each vehicle's thrusters when the game starts.
+    pub(crate) fn flaws_at_start(&self) -> Vec<FlawState> {
+        let start = |kind: &usize| match &self.drives[*kind] {
+            Drive::Thrusters(thruster, ..) => thruster.start(),
+            Drive::Point(_) => FlawState::default(),
+        };
+        self.kinds.iter().map(start).collect()
+    }
+
+    /// The point boats when the game starts.
+    pub(crate) fn points_at_start(&self, boats: &[BoatState]) -> Vec<KinematicState> {
+        let is_point = |(i, _): &(usize, &BoatState)| self.points[*i].is_some();
+        let points = boats.iter().enumerate().filter(is_point);
+        points.map(|(_, boat)| KinematicState::at_rest(boat.pose.psi_rad)).collect()
+    }
+
+    /// What sensors remember and tell before they are first read.
+    pub(crate) fn senses_at_start(&self) -> Vec<(SensorState, Reading)> {
+        self.sensed.iter().flatten().map(|_| (SensorState::default(), Reading::default())).collect()
+    }
+
+    /// The model of a vehicle that is a point boat, and its place among those.
+    #[inline]
+    pub(crate) fn point(&self, vehicle: usize) -> Option<(usize, &KinematicModel)> {
+        match (self.points[vehicle], &self.drives[self.kinds[vehicle]]) {
+            (Some(place), Drive::Point(point)) => Some((place, point)),
+            _ => None,
+        }
+    }
+
+    /// What a boat does: its order as far as the rules let it, and the share of its top speed it may use.
+    #[inline]
+    pub(crate) fn obeyed(&self, standing: &Standing, vehicle: usize, at: Ned, order: Order) -> (Order, f64) {
+        match self.referee.directive(standing, VehicleId::at(vehicle), at) {
+            Directive::Free { speed_factor } => (order.check().unwrap_or_default(), speed_factor),
+            Directive::DrivenHome { to: home, speed_factor } => {
+                (Order::Steer { heading_rad: at.bearing_rad(home), speed_m_s: f64::INFINITY }, speed_factor)
+            }
+            Directive::Hold => (Order::Hold, 1.0),
+        }
+    }
+
+    /// What moves a boat in this tick, and the current it is in: its thrusters take up its order, and the sea does
+    /// its part.
+    #[inline]
+    pub(crate) fn effort(
+        &self,
+        vehicle: usize,
+        boat: &mut BoatState,
+        flaws: &mut FlawState,
+        turn: (f64, f64),
+        order: (Order, f64),
+        sea: &SeaNow<'_>,
+    ) -> (Effort, Ned) {
+        let kind = self.kinds[vehicle];
+        let Drive::Thrusters(thruster, autopilot, places) = &self.drives[kind] else {
+            return (Effort::default(), Ned::default());
+        };
+        if boat.quarantined {
+            return (Effort::default(), Ned::default());
+        }
+        let hull = &self.hulls[kind];
+        let settings = settings(boat, (hull, thruster, autopilot), order);
+        let water_above_m = thruster.ventilation().map_or([0.0; 2], |ventilation| {
+            places.map(|place| ventilation.depth_m + sea.cover_m(kind, boat.pose, turn, boat.nu, place))
+        });
+        let thrust = thruster.drive([&mut boat.port, &mut boat.starboard], flaws, settings, water_above_m);
+        let felt = sea.feel(kind, hull, boat.pose, turn, boat.nu);
+        let effort = Effort {
+            nu_r: through_water(boat.nu, turn, felt.current_m_s, -1.0),
+            tau: thrust.map(|thrust| thrust.plus(1.0, felt.force)),
+            water: felt.water,
+            water_rate: felt.water_rate,
+        };
+        (effort, felt.current_m_s)
+    }
+
+    /// A boat's passage over a tick as if it were alone, and its velocity over the ground after it.
+    #[inline]
+    pub(crate) fn passage(
+        &self,
+        vehicle: usize,
+        boat: &BoatState,
+        turn: (f64, f64),
+        effort: &Effort,
+        motion: &Motion,
+        current_m_s: Ned,
+    ) -> (Passage, Planar) {
+        let from = boat.pose;
+        let still = self.still(vehicle, boat, turn);
+        if boat.quarantined {
+            return (still, Planar::default());
+        }
+        let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
+        let half_turn = math::sin_cos(from.psi_rad + motion.turn_half_rad);
+        let end_turn = math::sin_cos(psi_rad);
+        let start = over_ground(turn, effort.nu_r);
+        let middle = over_ground(half_turn, motion.nu_r_half);
+        let end = over_ground(end_turn, motion.nu_r);
+        let mean_m_s = (start + middle.scaled(4.0) + end).scaled(1.0 / 6.0) + current_m_s;
+        let to = Pose { at: from.at + mean_m_s.scaled(self.dt_s), psi_rad };
+        (Passage { to, turn_to: end_turn, ..still }, through_water(motion.nu_r, end_turn, current_m_s, 1.0))
+    }
+
+    /// A point boat's passage over a tick, and its velocity over the ground after it.
+    pub(crate) fn point_passage(
+        &self,
+        vehicle: usize,
+        boat: &BoatState,
+        (point, state): (&KinematicModel, &mut KinematicState),
+        (order, factor): (Order, f64),
+        drift_m_s: Ned,
+    ) -> (Passage, Planar) {
+        let command = match order {
+            Order::Steer { heading_rad, speed_m_s } => {
+                Command::Steer { heading_rad, speed_m_s: speed_m_s.min(factor * point.speed_max_m_s()) }
+            }
+            Order::Thrust { port, starboard } => Command::of_shares(factor * port, factor * starboard),
+            Order::Hold => Command::Hold,
+        };
+        let motion = point.step(state, command, drift_m_s, self.dt_s);
+        let turn_to = math::sin_cos(motion.psi_rad);
+        let to = Pose { at: boat.pose.at + motion.travel_m, psi_rad: motion.psi_rad };
+        let nu = Planar { surge: motion.speed_m_s, sway: 0.0, yaw: motion.turn_rad / self.dt_s };
+        let still = self.still(vehicle, boat, math::sin_cos(boat.pose.psi_rad));
+        (Passage { to, turn_to, ..still }, through_water(nu, turn_to, drift_m_s, 1.0))
+    }
+
+    fn still(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64)) -> Passage {
+        let from = boat.pose;
+        let kind = self.kinds[vehicle];
+        Passage { kind, from, to: from, turn, turn_to: turn, fixed: boat.quarantined, kick: Planar::default() }
+    }
+
+    /// The thrust of both thrusters as a share of full thrust, for what their current does to a compass.
+    pub(crate) fn thrust_share(&self, vehicle: usize, boat: &BoatState) -> f64 {
+        match &self.drives[self.kinds[vehicle]] {
+            Drive::Thrusters(thruster, ..) => {
+                0.5 * (boat.port.newton.abs() + boat.starboard.newton.abs()) / thruster.newton_max
+            }
+            Drive::Point(_) => 0.0,
+        }
+    }
+}
+
+/// Each one's place among those that count.
+fn numbered(counts: impl Iterator<Item = bool>) -> Vec<Option<usize>> {
+    let mut before = 0;
+    let place = |counts: bool| {
+        let place = before;
+        before += usize::from(counts);
+        counts.then_some(place)
+    };
+    counts.map(place).collect()
+}
+
+/// The settings of the thrusters, port and starboard, that an order asks for.
+#[inline]
+fn settings(
+    boat: &mut BoatState,
+    (hull, thruster, autopilot): (&HullModel, &ThrusterModel, &AutopilotModel),
+    order: (Order, f64),
+) -> [f64; 2] {
+    match order {
+        (Order::Steer { heading_rad, speed_m_s }, factor) => {
+            let speed_m_s = speed_m_s.min(factor * autopilot.speed_max_m_s);
+            let at = (boat.pose.psi_rad, boat.nu);
+            autopilot.steer((hull, thruster), at, (heading_rad, speed_m_s), &mut boat.speed_integral_newton)
+        }
+        (Order::Thrust { port, starboard }, factor) => {
+            [thruster.setting_of_share(factor * port), thruster.setting_of_share(factor * starboard)]
+        }
+        (Order::Hold, _) => [0.0, 0.0],
+    }
+}
+
+/// `nu` with the current, seen from the boat, added `sign` times: −1 takes a velocity over the ground to one
+/// through the water, 1 takes it back.
+#[inline]
+fn through_water(nu: Planar, turn: (f64, f64), current_m_s: Ned, sign: f64) -> Planar {
+    let current = frame::body_from_ned(turn, current_m_s);
+    nu.plus(sign, Planar { surge: current.ahead, sway: current.starboard, yaw: 0.0 })
+}
+
+#[inline]
+fn over_ground(turn: (f64, f64), nu: Planar) -> Ned {
+    frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway })
+}
