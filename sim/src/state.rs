@@ -56,8 +56,8 @@ pub enum RestoreError {
     /// Not a snapshot, or of another layout.
     #[error("not a snapshot of this version of Squall")]
     NotASnapshot,
-    /// A snapshot of another scenario.
-    #[error("a snapshot of another scenario (or of other versions of its files)")]
+    /// A snapshot of another scenario or seed: the sea would be another.
+    #[error("a snapshot of another scenario, of another seed, or of other versions of its files")]
     OtherScenario,
     /// A snapshot that was cut or changed.
     #[error("the snapshot is damaged")]

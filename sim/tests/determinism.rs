@@ -48,8 +48,8 @@ fn a_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
         let mut collisions = 0;
         for leg in 0..30 {
             let bytes = world.snapshot();
-            let mut other = World::new(&scenario, 99).unwrap();
-            sail(&mut other, leg);
+            let mut other = World::new(&scenario, 3).unwrap();
+            sail(&mut other, leg + 50);
             other.restore(&bytes).unwrap();
             assert!(other.snapshot() == bytes, "{game}, leg {leg}: not what was put in");
             collisions += sail(&mut world, 97);
@@ -107,7 +107,8 @@ fn bytes_that_are_no_snapshot_of_this_game_change_nothing() {
         refuse(&bytes, &[want], &format!("byte {at} changed"));
     }
     refuse(&[good.clone(), vec![0]].concat(), &[Damaged], "a byte too many");
-    let other = Scenario { seed: 7, ..scenario };
+    refuse(&World::new(&scenario, 2).unwrap().snapshot(), &[OtherScenario], "of another seed");
+    let other = Scenario { order_ttl_s: 7.0, ..scenario };
     refuse(&World::new(&other, 1).unwrap().snapshot(), &[OtherScenario], "of another scenario");
 }
 
