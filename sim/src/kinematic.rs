@@ -331,11 +331,11 @@ mod tests {
     fn a_bias_turns_it_even_at_rest() {
         let mut boat = plain();
         boat.rotate_rad_s = 0.02;
-        let mut state = KinematicState::at_rest(3.141);
+        let mut state = KinematicState::at_rest(3.135);
         for _ in 0..10 {
             step(&boat, &mut state, Command::Hold);
         }
-        let turned = game::angle::wrap_pi(state.psi_rad() - 3.141);
+        let turned = game::angle::wrap_pi(state.psi_rad() - 3.135);
         assert!((turned - 0.02).abs() < 1e-12 && state.psi_rad() < 0.0, "{turned}");
     }
 

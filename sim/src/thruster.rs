@@ -164,6 +164,8 @@ impl ThrusterModel {
         })
     }
 
+    #[cold]
+    #[inline(never)]
     fn drive_flawed(
         &self,
         flaws: &FlawModel,
