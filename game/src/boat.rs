@@ -28,7 +28,6 @@ pub struct Boat {
 
 /// What drives a boat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(clippy::large_enum_variant, reason = "there are as many boats as files")]
 pub enum Drive {
     /// Two thrusters on a hull that floats, steered by the front seat: the model we stand for.
     Thrusters {

@@ -42,6 +42,8 @@ pub struct Frame {
     pub stamp: Stamp,
     /// By vehicle.
     pub vehicles: Vec<VehicleTruth>,
+    /// The sea in the middle of the field.
+    pub sea: SeaView,
     /// By flag.
     pub flags: Vec<FlagView>,
     /// Points, by team.
@@ -52,11 +54,32 @@ pub struct Frame {
     pub over: bool,
 }
 
+/// Wind and current at a place, as velocities over the ground, and the height of the water.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SeaView {
+    /// Wind towards north, 10 m above the water, m/s.
+    pub wind_north_m_s: f64,
+    /// Wind towards east, m/s.
+    pub wind_east_m_s: f64,
+    /// Current towards north, m/s.
+    pub current_north_m_s: f64,
+    /// Current towards east, m/s.
+    pub current_east_m_s: f64,
+    /// How much higher the water stands than in calm, m.
+    pub elevation_m: f64,
+}
+
 /// The truth about one boat.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct VehicleTruth {
     /// Where it is and how it moves over the ground.
     pub nav: Nav,
+    /// How far the waves have lifted it, m.
+    pub heave_m: f64,
+    /// Roll, starboard down, rad.
+    pub roll_rad: f64,
+    /// Pitch, bow up, rad.
+    pub pitch_rad: f64,
     /// Thrust of the port thruster, N.
     pub port_newton: f64,
     /// Thrust of the starboard thruster, N.
@@ -196,7 +219,7 @@ impl EventRecord {
 
 impl Message for Frame {
     const SCHEMA: &'static str = "squall_msgs/msg/Frame";
-    const VERSION: u8 = 1;
+    const VERSION: u8 = 2;
     const DEFINITION: &'static str = include_str!("../msg/Frame.msg");
     fn stamp(&self) -> &Stamp {
         &self.stamp
@@ -205,7 +228,7 @@ impl Message for Frame {
 
 impl Message for Picture {
     const SCHEMA: &'static str = "squall_msgs/msg/Picture";
-    const VERSION: u8 = 1;
+    const VERSION: u8 = 2;
     const DEFINITION: &'static str = include_str!("../msg/Picture.msg");
     fn stamp(&self) -> &Stamp {
         &self.stamp

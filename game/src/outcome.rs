@@ -22,6 +22,9 @@ pub struct Outcome {
     pub duration_s: f64,
     /// Physics ticks played.
     pub ticks: u64,
+    /// Numbers that were drawn for this game, under their names, in the units of the files.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
+    pub drawn: BTreeMap<String, f64>,
     /// The winning team's name; none is a draw or a game cut short.
     pub winner: Option<String>,
     /// The team of each boat.
@@ -164,6 +167,7 @@ impl Outcome {
             digest: format!("{:032x}", played.digest),
             duration_s: (scenario.tick * played.ticks as i64).as_s(),
             ticks: played.ticks,
+            drawn: scenario.drawn.iter().map(|drawn| (drawn.parameter.clone(), drawn.value)).collect(),
             winner: winner.map(|team| scenario.teams[team.index()].name.clone()),
             boats: scenario.vehicles.iter().map(team_of).collect(),
             score: Standings {

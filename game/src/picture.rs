@@ -60,13 +60,34 @@ impl Nav {
     }
 }
 
+/// Gyro and accelerometers, along the boat's axes: ahead, to starboard, down.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Imu {
+    /// Rate of turn about the axis ahead, rad/s.
+    pub roll_rate_rad_s: f64,
+    /// About the axis to starboard, rad/s.
+    pub pitch_rate_rad_s: f64,
+    /// About the axis down, rad/s.
+    pub yaw_rate_rad_s: f64,
+    /// Specific force ahead, m/s².
+    pub ahead_m_s2: f64,
+    /// To starboard, m/s².
+    pub starboard_m_s2: f64,
+    /// Down, m/s²: minus gravity at rest.
+    pub down_m_s2: f64,
+}
+
 /// One of the team's own boats.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OwnBoat {
     /// Which.
     pub vehicle: VehicleId,
-    /// Its navigation.
+    /// Its navigation, as its sensors tell it.
     pub nav: Nav,
+    /// When the last satellite fix in it was taken, ns.
+    pub fix_ns: SimTime,
+    /// Gyro and accelerometers.
+    pub imu: Imu,
     /// Whether it is tagged.
     pub tagged: bool,
     /// The flag it carries, or -1.

@@ -3,7 +3,7 @@
 use game::codec::{DecodeError, decode, encode};
 use game::event::{Event, Logged, TagCause};
 use game::message::{EventRecord, Frame, Message, Orders, Stamp, VehicleOrder, VehicleTruth};
-use game::picture::{Contact, FlagView, Nav, OwnBoat};
+use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
 use game::{FlagId, Order, Picture, SimTime, TeamId, VehicleId};
 use proptest::prelude::*;
 use serde_reflection::{ContainerFormat, Format, Registry, Samples, Tracer, TracerConfig};
@@ -168,7 +168,7 @@ proptest! {
 
     #[test]
     fn pictures_and_frames_come_back_to_the_bit(nav in nav(), tagged in any::<bool>(), carrying in -1_i16..4, n in 0_usize..5) {
-        let own = OwnBoat { vehicle: VehicleId(1), nav, tagged, carrying, disabled: false, outside: true, tag_ready_ns: SimTime::LONG_AGO };
+        let own = OwnBoat { vehicle: VehicleId(1), nav, fix_ns: SimTime(7), imu: Imu { down_m_s2: -9.81, ..Imu::default() }, tagged, carrying, disabled: false, outside: true, tag_ready_ns: SimTime::LONG_AGO };
         let contact = Contact {
             vehicle: VehicleId(2), team: TeamId(1), seen_ns: SimTime(3), north_m: nav.north_m, east_m: nav.east_m,
             psi_rad: nav.psi_rad, velocity_north_m_s: 1.0, velocity_east_m_s: -0.0, tagged, carrying,

@@ -4,11 +4,15 @@
 //! [`Contest::advance`]. The network node and the in-process arena do just that and nothing else, so a
 //! game is the same bytes in both.
 
+use crate::radio::Radio;
+use crate::sighting::Sightings;
 use crate::view;
 use crate::world::{NoStart, World};
+use game::boat::Drive;
 use game::event::Logged;
 use game::message::Frame;
 use game::outcome::{Outcome, Played};
+use game::picture::OwnBoat;
 use game::{Event, Order, Picture, Scenario, SimTime, VehicleId};
 use xxhash_rust::xxh3::Xxh3;
 
@@ -18,7 +22,15 @@ pub struct Contest {
     world: World,
     /// In force, by vehicle.
     orders: Vec<Order>,
+    /// When each vehicle last received an order.
+    ordered_at: Vec<SimTime>,
+    /// After how long without one each vehicle's thrusters stop.
+    watchdogs: Vec<Option<SimTime>>,
     mind_lost: Vec<bool>,
+    radio: Option<Radio>,
+    sightings: Option<Sightings>,
+    /// What is known ashore of every boat, as of the last pictures.
+    known: Vec<OwnBoat>,
     events: Vec<Logged>,
     /// Events that the last pictures and the last frame already told.
     pictured: usize,
@@ -40,9 +52,15 @@ impl Contest {
         let world = World::new(&scenario, seed)?;
         let count = scenario.vehicles.len();
         let pictures = (0..scenario.teams.len()).map(|team| Picture { team: team as u8, ..Picture::default() });
+        let known: Vec<OwnBoat> = (0..count).map(|i| view::own_boat(&world, i)).collect();
         Ok(Contest {
+            radio: Radio::new(&scenario, known.iter().copied()),
+            sightings: Sightings::new(&scenario),
+            known,
             world,
             orders: vec![Order::Hold; count],
+            ordered_at: vec![SimTime::ZERO; count],
+            watchdogs: (0..count).map(|i| watchdog(&scenario, VehicleId::at(i))).collect(),
             mind_lost: vec![false; count],
             events: Vec::new(),
             pictured: 0,
@@ -103,9 +121,11 @@ impl Contest {
             return &self.pictures;
         }
         self.pictured_for = Some(self.decision);
-        let news = &self.events[self.pictured..];
+        self.gather();
+        let news = (self.decision, &self.events[self.pictured..]);
         for picture in &mut self.pictures {
-            view::picture(&self.scenario, self.world.state(), self.decision, news, picture);
+            let known = (self.known.as_slice(), self.sightings.as_ref());
+            view::picture(&self.scenario, &self.world, news, known, picture);
         }
         self.pictured = self.events.len();
         &self.pictures
@@ -119,14 +139,49 @@ impl Contest {
 
     /// The truth, with the events since the last frame.
     pub fn frame(&mut self) -> Frame {
-        let frame = view::frame(self.world.state(), self.decision, &self.events[self.framed..], &self.mind_lost);
+        let frame = view::frame(&self.world, self.decision, &self.events[self.framed..], &self.mind_lost);
         self.framed = self.events.len();
         frame
     }
 
-    /// Puts an order in force until the next one for this vehicle.
+    /// Sends an order to a vehicle: it is in force from when it arrives until the next one does.
     pub fn order(&mut self, vehicle: VehicleId, order: Order) {
-        self.orders[vehicle.index()] = order;
+        let (i, now) = (vehicle.index(), self.now());
+        match &mut self.radio {
+            Some(radio) => radio.send_order(i, order, self.world.state().boats[i].pose.at, now),
+            None => (self.orders[i], self.ordered_at[i]) = (order, now),
+        }
+    }
+
+    /// Boats report, and look round.
+    fn gather(&mut self) {
+        let (world, now) = (&self.world, self.world.state().now);
+        for (i, known) in self.known.iter_mut().enumerate() {
+            let report = view::own_boat(world, i);
+            *known = match &mut self.radio {
+                Some(radio) => radio.report(i, report, world.state().boats[i].pose.at, now),
+                None => report,
+            };
+        }
+        if let Some(sightings) = &mut self.sightings {
+            let vehicles = &self.scenario.vehicles;
+            sightings.look(world, self.decision, |i| view::contact(world.state(), i, vehicles[i].team));
+        }
+    }
+
+    /// Orders arrive; boats that have had none for too long hold.
+    fn deliver(&mut self) {
+        let now = self.now();
+        for (i, order) in self.orders.iter_mut().enumerate() {
+            if let Some(arrived) = self.radio.as_mut().and_then(|radio| radio.order(i, now))
+                && !self.mind_lost[i]
+            {
+                (*order, self.ordered_at[i]) = (arrived, now);
+            }
+            if self.watchdogs[i].is_some_and(|limit| now > self.ordered_at[i] + limit) {
+                *order = Order::Hold;
+            }
+        }
     }
 
     /// Says that a vehicle's mind is lost: it holds, and an event says so. Does nothing if it is lost already.
@@ -150,6 +205,7 @@ impl Contest {
             if self.is_over() {
                 break;
             }
+            self.deliver();
             self.world.step(&self.orders);
             let (tick, at) = (self.world.state().tick, self.world.state().now);
             self.events.extend(self.world.events().iter().map(|event| Logged { tick, at, event: *event }));
@@ -187,5 +243,13 @@ impl Contest {
     fn log(&mut self, event: Event) {
         let state = self.world.state();
         self.events.push(Logged { tick: state.tick, at: state.now, event });
+    }
+}
+
+/// After how long without a new order a vehicle's thrusters stop.
+fn watchdog(scenario: &Scenario, vehicle: VehicleId) -> Option<SimTime> {
+    match &scenario.boat_of(vehicle).drive {
+        Drive::Thrusters { thruster, .. } => thruster.flaws.watchdog_s.map(SimTime::from_s),
+        Drive::Kinematic(_) => None,
     }
 }

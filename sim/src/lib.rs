@@ -13,9 +13,11 @@ mod model;
 pub mod motion;
 #[cfg(feature = "net")]
 pub mod node;
+mod radio;
 mod ramp;
 pub mod sea;
 pub mod sensor;
+mod sighting;
 pub mod spawn;
 pub mod state;
 pub mod thruster;

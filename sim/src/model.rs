@@ -7,7 +7,7 @@ use crate::hull::{HullModel, Planar};
 use crate::kinematic::{Command, KinematicModel, KinematicState};
 use crate::motion::{Effort, Fleet, Motion};
 use crate::sea::{SeaModel, SeaNow};
-use crate::sensor::{Reading, SensorModel, SensorState};
+use crate::sensor::{Reading, SensorModel, SensorState, Truth};
 use crate::state::BoatState;
 use crate::thruster::ThrusterModel;
 use game::angle::wrap_pi;
@@ -235,13 +235,33 @@ impl Model {
         Passage { kind, from, to: from, turn, turn_to: turn, fixed: boat.quarantined, kick: Planar::default() }
     }
 
-    /// The thrust of both thrusters as a share of full thrust, for what their current does to a compass.
-    pub(crate) fn thrust_share(&self, vehicle: usize, boat: &BoatState) -> f64 {
-        match &self.drives[self.kinds[vehicle]] {
+    /// What is true of a boat whose velocity changed by `change` in the last tick.
+    pub(crate) fn truth(
+        &self,
+        vehicle: usize,
+        boat: &BoatState,
+        turn: (f64, f64),
+        change: Planar,
+        sea: &SeaNow<'_>,
+    ) -> Truth {
+        let kind = self.kinds[vehicle];
+        let attitude = sea.attitude(kind, boat.pose, turn, boat.nu);
+        let thrust_share = match &self.drives[kind] {
             Drive::Thrusters(thruster, ..) => {
                 0.5 * (boat.port.newton.abs() + boat.starboard.newton.abs()) / thruster.newton_max
             }
             Drive::Point(_) => 0.0,
+        };
+        Truth {
+            pose: boat.pose,
+            nu: boat.nu,
+            nu_dot: Planar::default().plus(1.0 / self.dt_s, change),
+            roll_rad: attitude.roll_rad,
+            pitch_rad: attitude.pitch_rad,
+            roll_rate_rad_s: attitude.roll_rad_s,
+            pitch_rate_rad_s: attitude.pitch_rad_s,
+            heave_acceleration_m_s2: -attitude.heave_up_m_s2,
+            thrust_share,
         }
     }
 }

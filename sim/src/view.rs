@@ -1,10 +1,13 @@
 //! What others see of a world: the truth for observers, and each team's picture.
 
+use crate::sensor::imu::ImuReading;
+use crate::sighting::Sightings;
 use crate::state::State;
+use crate::world::World;
 use game::event::{Event, Logged, TagCause};
 use game::frame;
-use game::message::{Frame, Message, Stamp, VehicleTruth};
-use game::picture::{Contact, FlagView, Nav, OwnBoat, Picture, number_of_flag};
+use game::message::{Frame, Message, SeaView, Stamp, VehicleTruth};
+use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat, Picture, number_of_flag};
 use game::{Body, Scenario, TeamId, VehicleId};
 
 fn stamp<M: Message>(state: &State, seq: u64) -> Stamp {
@@ -28,11 +31,16 @@ fn flags(state: &State) -> impl Iterator<Item = FlagView> {
 }
 
 /// The truth about everything, with the events since the frame before.
-pub(crate) fn frame(state: &State, seq: u64, events: &[Logged], mind_lost: &[bool]) -> Frame {
+pub(crate) fn frame(world: &World, seq: u64, events: &[Logged], mind_lost: &[bool]) -> Frame {
+    let state = world.state();
     let truth = |i: usize| {
         let (boat, standing) = (&state.boats[i], &state.standing.vehicles[i]);
+        let attitude = world.attitude(VehicleId::at(i));
         VehicleTruth {
             nav: nav(state, i),
+            heave_m: attitude.heave_up_m,
+            roll_rad: attitude.roll_rad,
+            pitch_rad: attitude.pitch_rad,
             port_newton: boat.port.newton,
             starboard_newton: boat.starboard.newton,
             tagged: standing.tagged,
@@ -46,6 +54,7 @@ pub(crate) fn frame(state: &State, seq: u64, events: &[Logged], mind_lost: &[boo
     Frame {
         stamp: stamp::<Frame>(state, seq),
         vehicles: (0..state.boats.len()).map(truth).collect(),
+        sea: sea(world),
         flags: flags(state).collect(),
         score: state.standing.score.clone(),
         events: events.iter().map(|logged| (*logged).into()).collect(),
@@ -53,17 +62,42 @@ pub(crate) fn frame(state: &State, seq: u64, events: &[Logged], mind_lost: &[boo
     }
 }
 
-/// Brings a team's picture up to date in place.
-pub(crate) fn picture(scenario: &Scenario, state: &State, seq: u64, events: &[Logged], picture: &mut Picture) {
+fn sea(world: &World) -> SeaView {
+    let corners = &world.referee().field().corners;
+    let middle = (corners[0] + corners[2]).scaled(0.5);
+    let sea = world.sea();
+    let (wind, current) = (sea.wind_at(middle), sea.current_at(middle));
+    SeaView {
+        wind_north_m_s: wind.north,
+        wind_east_m_s: wind.east,
+        current_north_m_s: current.north,
+        current_east_m_s: current.east,
+        elevation_m: sea.elevation_m(middle),
+    }
+}
+
+/// Brings a team's picture up to date in place. `own` is what is known of its boats, by vehicle.
+pub(crate) fn picture(
+    scenario: &Scenario,
+    world: &World,
+    (seq, events): (u64, &[Logged]),
+    (own, sightings): (&[OwnBoat], Option<&Sightings>),
+    picture: &mut Picture,
+) {
+    let state = world.state();
     let team = TeamId(picture.team);
     picture.stamp = stamp::<Picture>(state, seq);
     picture.own.clear();
     picture.contacts.clear();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
         if vehicle.team == team {
-            picture.own.push(own_boat(state, i));
+            picture.own.push(own[i]);
         } else {
-            picture.contacts.push(contact(state, i, vehicle.team));
+            let known = sightings.map_or_else(
+                || Some(contact(state, i, vehicle.team)),
+                |sightings| sightings.of(team.index(), i, state.now),
+            );
+            picture.contacts.extend(known);
         }
     }
     picture.flags.clear();
@@ -75,11 +109,26 @@ pub(crate) fn picture(scenario: &Scenario, state: &State, seq: u64, events: &[Lo
     picture.over = state.standing.over;
 }
 
-fn own_boat(state: &State, i: usize) -> OwnBoat {
+/// What a boat reports of itself.
+pub(crate) fn own_boat(world: &World, i: usize) -> OwnBoat {
+    let state = world.state();
     let standing = &state.standing.vehicles[i];
+    let (nav, fix_ns, imu) = match world.reading(VehicleId::at(i)) {
+        Some(reading) => (reading.nav, reading.fix_at, reading.imu),
+        None => (nav(state, i), state.now, ImuReading::of(&world.truth(VehicleId::at(i)))),
+    };
     OwnBoat {
         vehicle: VehicleId::at(i),
-        nav: nav(state, i),
+        nav,
+        fix_ns,
+        imu: Imu {
+            roll_rate_rad_s: imu.gyro_rad_s[0],
+            pitch_rate_rad_s: imu.gyro_rad_s[1],
+            yaw_rate_rad_s: imu.gyro_rad_s[2],
+            ahead_m_s2: imu.accelerometer_m_s2[0],
+            starboard_m_s2: imu.accelerometer_m_s2[1],
+            down_m_s2: imu.accelerometer_m_s2[2],
+        },
         tagged: standing.tagged,
         carrying: number_of_flag(standing.carrying),
         disabled: standing.disabled,
@@ -88,8 +137,8 @@ fn own_boat(state: &State, i: usize) -> OwnBoat {
     }
 }
 
-/// What a node report tells of another boat: perfect sharing, as Aquaticus does ashore.
-fn contact(state: &State, i: usize, team: TeamId) -> Contact {
+/// The truth about a boat, as a node report tells it: perfect sharing, as Aquaticus does ashore.
+pub(crate) fn contact(state: &State, i: usize, team: TeamId) -> Contact {
     let (boat, standing) = (&state.boats[i], &state.standing.vehicles[i]);
     let turn = game::math::sin_cos(boat.pose.psi_rad);
     let velocity = frame::ned_from_body(turn, Body { ahead: boat.nu.surge, starboard: boat.nu.sway });

@@ -158,6 +158,13 @@ impl World {
         Some(&self.state.senses[place].1)
     }
 
+    /// What is true of a vehicle, as far as sensors feel it.
+    #[must_use]
+    pub fn truth(&self, vehicle: VehicleId) -> Truth {
+        let (i, work) = (vehicle.index(), &self.work);
+        self.model.truth(i, &self.state.boats[i], work.turns[i], work.accelerations[i], &self.sea())
+    }
+
     /// How a vehicle lies in the waves.
     #[must_use]
     pub fn attitude(&self, vehicle: VehicleId) -> Attitude {
@@ -279,18 +286,7 @@ impl World {
         let sea = model.sea.at_time(state.now);
         for (i, boat) in state.boats.iter().enumerate() {
             let Some((place, sensors)) = &model.sensed[i] else { continue };
-            let attitude = sea.attitude(model.kinds[i], boat.pose, work.turns[i], boat.nu);
-            let truth = Truth {
-                pose: boat.pose,
-                nu: boat.nu,
-                nu_dot: Planar::default().plus(1.0 / model.dt_s, work.accelerations[i]),
-                roll_rad: attitude.roll_rad,
-                pitch_rad: attitude.pitch_rad,
-                roll_rate_rad_s: attitude.roll_rad_s,
-                pitch_rate_rad_s: attitude.pitch_rad_s,
-                heave_acceleration_m_s2: -attitude.heave_up_m_s2,
-                thrust_share: model.thrust_share(i, boat),
-            };
+            let truth = model.truth(i, boat, work.turns[i], work.accelerations[i], &sea);
             let (memory, reading) = &mut state.senses[*place];
             *reading = sensors.read(memory, &truth, state.now);
         }

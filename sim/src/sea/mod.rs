@@ -200,6 +200,12 @@ impl SeaNow<'_> {
         self.current.at(at)
     }
 
+    /// How much higher the water stands at a place than in calm, m.
+    #[must_use]
+    pub fn elevation_m(&self, at: Ned) -> f64 {
+        self.model.waves.as_ref().map_or(0.0, |waves| waves.surface(at, self.now.as_s()).elevation_m)
+    }
+
     /// The velocity of the air 10 m above the water, m/s.
     #[must_use]
     pub fn wind_at(&self, at: Ned) -> Ned {
@@ -220,9 +226,11 @@ impl SeaNow<'_> {
     /// midships.
     #[must_use]
     pub fn cover_m(&self, kind: usize, pose: Pose, turn: (f64, f64), nu: Planar, place: Body) -> f64 {
-        let Some(waves) = &self.model.waves else { return 0.0 };
+        if self.model.waves.is_none() {
+            return 0.0;
+        }
         let attitude = self.attitude(kind, pose, turn, nu);
-        let elevation_m = waves.surface(pose.at + frame::ned_from_body(turn, place), self.now.as_s()).elevation_m;
+        let elevation_m = self.elevation_m(pose.at + frame::ned_from_body(turn, place));
         let risen_m = attitude.heave_up_m + attitude.pitch_rad * place.ahead - attitude.roll_rad * place.starboard;
         elevation_m - risen_m
     }
