@@ -119,5 +119,10 @@ mod tests {
     }
 
     /// Read off once; another value on any machine is a fault.
-    const PINNED: [[u64; 2]; 4] = [[0; 2]; 4];
+    const PINNED: [[u64; 2]; 4] = [
+        [0x3fe2_cf23_0473_ae61, 0x3fe9_e377_9b99_14d0],
+        [0x3fee_6f0e_1342_9dfd, 0xbfd3_c6ef_3725_a15c],
+        [0x3fef_bf67_5480_e650, 0x3fc0_0aeb_5da0_1cd8],
+        [0x3fe6_575f_013d_6f66, 0x3fe6_e8f3_a08e_8cae],
+    ];
 }
