@@ -341,7 +341,7 @@ const PINNED: [u64; 6] = [
     0xbfdf_e89b_6bc2_222a,
     0x3fc0_ed5a_d5c8_4f85,
     0x3fd9_a394_629f_ea72,
-    0xbffe_05cf_db81_de20,
-    0x3fd1_3588_82bf_775d,
-    0x3fd1_3072_b2f6_79e5,
+    0xbffe_05cf_db81_de1c,
+    0x3fd1_3588_82bf_775c,
+    0x3fd1_3072_b2f6_79e4,
 ];
