@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn the_bits_are_pinned() {
-        let got = [0.1, 0.3, -7.77, 86_400.123].map(|turns| one(turns)).map(|(s, c)| [s.to_bits(), c.to_bits()]);
+        let got = [0.1, 0.3, -7.77, 86_400.123].map(one).map(|(s, c)| [s.to_bits(), c.to_bits()]);
         assert_eq!(got, PINNED, "{got:#018x?}");
     }
 
