@@ -41,11 +41,15 @@ fn pose(north: f64, east: f64, psi_rad: f64) -> Pose {
     Pose { at: Ned { north, east }, psi_rad }
 }
 
-/// Mean square of surge and sway over places and times, with the boat on this heading.
+fn square(x: f64) -> f64 {
+    x * x
+}
+
+/// Mean square of a part of the velocity over places and times, with the boat on this heading.
 fn mean_square(hull: &HullWaves, psi_rad: f64, part: impl Fn(Planar) -> f64) -> f64 {
     let samples = 20_000;
     let at = |i: i32| hull.at(pose(f64::from(i % 100) * 7.3, 0.0, psi_rad), 0.37 * f64::from(i)).velocity;
-    (0..samples).map(|i| part(at(i)).powi(2)).sum::<f64>() / f64::from(samples)
+    (0..samples).map(|i| square(part(at(i)))).sum::<f64>() / f64::from(samples)
 }
 
 #[test]
@@ -157,13 +161,12 @@ fn between_the_headings_of_the_table_the_error_is_a_hundredth_of_the_motion() {
             [s.velocity.surge, s.velocity.sway, s.velocity.yaw, s.drift_newton.sway + s.drift_newton.surge]
         };
         for (n, (got, want)) in parts(got).into_iter().zip(parts(want)).enumerate() {
-            off[n] += (got - want).powi(2);
+            off[n] += square(got - want);
             size[n] += want * want;
         }
     }
     for n in 0..4 {
         let relative = (off[n] / size[n]).sqrt();
-        println!("part {n}: {relative:.5}");
         assert!(relative < 0.01, "part {n} is off by {relative} of its size");
     }
 }
@@ -199,7 +202,7 @@ fn the_drift_force_of_a_regular_wave_is_steady_and_points_where_it_goes() {
         // Twice the group speed over the phase speed (Longuet-Higgins 1977), by differences of ω(k).
         let omega = |k: f64| (GRAVITY_M_S2 * k * depth_m.map_or(1.0, |h| libm::tanh(k * h))).sqrt();
         let groups = 2.0 * k / omega(k) * (omega(k * 1.0001) - omega(k * 0.9999)) / (k * 0.0002);
-        let per_metre = 0.5 * DENSITY_KG_M3 * GRAVITY_M_S2 * (0.2 * reflected).powi(2) * groups;
+        let per_metre = 0.5 * DENSITY_KG_M3 * GRAVITY_M_S2 * square(0.2 * reflected) * groups;
         for (off_bow_deg, t) in [(0.0, 0.0), (90.0, 0.7), (-90.0, 9.0), (60.0, 50.0), (-150.0, 3.0)] {
             let off_bow_rad = f64::to_radians(off_bow_deg);
             let got = hull.at(pose(4.0, 5.0, toward_rad - off_bow_rad), t).drift_newton;
@@ -224,7 +227,7 @@ fn the_drift_force_comes_in_groups_about_the_closed_mean() {
         let at = |i: i32| hull.at(pose(f64::from(i % 40) * 13.7, f64::from(i % 7) * 31.0, psi_rad), 0.5 * f64::from(i));
         let force: Vec<f64> = (0..samples).map(|i| at(i).drift_newton.sway).collect();
         let mean = force.iter().sum::<f64>() / f64::from(samples);
-        let deviation = (force.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / f64::from(samples)).sqrt();
+        let deviation = (force.iter().map(|f| square(f - mean)).sum::<f64>() / f64::from(samples)).sqrt();
         let want = field.mean_drift_newton(&boat, DENSITY_KG_M3, psi_rad).sway;
         assert!((mean / want - 1.0).abs() < 0.03, "{spreading:?}: {mean} N, not {want} N");
         // The squared envelope of a Gaussian process is exponentially distributed.
@@ -259,7 +262,6 @@ fn orbital_motion_and_drift_have_the_magnitudes_computed_elsewhere() {
             ("drift head-on", -drift(toward_rad + PI).surge, head_on),
         ];
         for (what, got, want) in got {
-            println!("{hs_m} m, {tp_s} s: {what} {got:.4} (elsewhere {want})");
             assert!((got / want - 1.0).abs() < 0.2, "{hs_m} m, {tp_s} s: {what} {got}, elsewhere {want}");
         }
     }
