@@ -9,7 +9,7 @@
 
 use super::heading::HeadingTable;
 use super::sine::sum;
-use super::wave::{LANES, Phases, PlaneWave, WaveField, side_by_side};
+use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes, side_by_side};
 use crate::hull::Planar;
 use game::boat::Boat;
 use game::frame::Pose;
@@ -66,9 +66,8 @@ impl HullWaves {
             reflected_m: side_by_side(waves, |w| w.reflected_m(boat.draught_m)),
         };
         let velocity = HeadingTable::new(chunks.len(), |row, heading_rad| {
-            let part =
-                |part: fn(Planar) -> f64| side_by_side(chunks[row], |w| part(orbital_velocity(w, boat, heading_rad)));
-            [part(|v| v.surge), part(|v| v.sway), part(|v| v.yaw)]
+            let speeds = lanes(chunks[row], |w| orbital_velocity(w, boat, heading_rad));
+            [speeds.map(|v| v.surge), speeds.map(|v| v.sway), speeds.map(|v| v.yaw)].map(f64x4::new)
         });
         let reflected_m2: f64 = field.waves.iter().map(|w| w.reflected_m(boat.draught_m)).map(|c| c * c).sum();
         let per_m2 = if reflected_m2 > 0.0 { 1.0 / reflected_m2 } else { 0.0 };

@@ -6,7 +6,7 @@
 use super::heading::HeadingTable;
 use super::hull_wave::Patch;
 use super::sine::sum;
-use super::wave::{LANES, Phases, PlaneWave, WaveField, side_by_side};
+use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes, side_by_side};
 use game::boat::Boat;
 use game::frame::{Ned, Pose};
 use wide::f64x4;
@@ -101,8 +101,8 @@ impl Ride {
             pitch: Answer::new(waves, PITCH),
         };
         let still = HeadingTable::new(chunks.len(), |row, heading_rad| {
-            let part = |part: fn([f64; 3]) -> f64| side_by_side(chunks[row], |w| part(still(w, boat, heading_rad)));
-            [part(|[heave, _, _]| heave), part(|[_, roll, _]| roll), part(|[_, _, pitch]| pitch)]
+            let parts = lanes(chunks[row], |w| still(w, boat, heading_rad));
+            [0, 1, 2].map(|n| f64x4::new(parts.map(|part| part[n])))
         });
         Ride { rows: chunks.iter().map(row).collect(), still }
     }

@@ -42,21 +42,26 @@ pub(crate) const ERROR: f64 = 6e-11;
 pub(crate) fn sin_cos_turns(turns: f64x4) -> (f64x4, f64x4) {
     let rounder = f64x4::splat(ROUNDER);
     let r = turns - ((turns + rounder) - rounder);
-    let r2 = r * r;
-    let sin_half = polynomial(SIN, r2) * r;
-    let cos_half = polynomial(COS, r2);
+    let x = r * r;
+    let powers = [x, x * x, (x * x) * (x * x)];
+    let sin_half = cubic([SIN[0], SIN[1], SIN[2], SIN[3]], powers) + line(SIN[4], SIN[5], x) * powers[2];
+    let sin_half = sin_half * r;
+    let high = line(COS[4], COS[5], x) + f64x4::splat(COS[6]) * powers[1];
+    let cos_half = cubic([COS[0], COS[1], COS[2], COS[3]], powers) + high * powers[2];
     let sin_twice = sin_half + sin_half;
     (sin_twice * cos_half, f64x4::ONE - sin_twice * sin_half)
 }
 
-/// c0 + c1 x + c2 x² + ... by Horner's rule.
+/// c0 + c1 x + c2 x² + c3 x³, of x, x² and more (Estrin): a chain half as long as Horner's, so less waiting.
 #[inline(always)]
-fn polynomial<const N: usize>(c: [f64; N], x: f64x4) -> f64x4 {
-    let mut sum = f64x4::splat(c[N - 1]);
-    for c in c[..N - 1].iter().rev() {
-        sum = sum * x + f64x4::splat(*c);
-    }
-    sum
+fn cubic(c: [f64; 4], [x, x2, _]: [f64x4; 3]) -> f64x4 {
+    line(c[0], c[1], x) + line(c[2], c[3], x) * x2
+}
+
+/// c0 + c1 x.
+#[inline(always)]
+fn line(c0: f64, c1: f64, x: f64x4) -> f64x4 {
+    f64x4::splat(c0) + f64x4::splat(c1) * x
 }
 
 /// The sum of four numbers, always in the same order.
@@ -114,10 +119,15 @@ mod tests {
 
     #[test]
     fn the_bits_are_pinned() {
-        let got = [0.1, 0.3, -7.77, 86_400.123].map(|turns| one(turns)).map(|(s, c)| [s.to_bits(), c.to_bits()]);
+        let got = [0.1, 0.3, -7.77, 86_400.123].map(one).map(|(s, c)| [s.to_bits(), c.to_bits()]);
         assert_eq!(got, PINNED, "{got:#018x?}");
     }
 
     /// Read off once; another value on any machine is a fault.
-    const PINNED: [[u64; 2]; 4] = [[0; 2]; 4];
+    const PINNED: [[u64; 2]; 4] = [
+        [0x3fe2_cf23_0473_ae62, 0x3fe9_e377_9b99_14cf],
+        [0x3fee_6f0e_1342_9dfe, 0xbfd3_c6ef_3725_a160],
+        [0x3fef_bf67_5480_e651, 0x3fc0_0aeb_5da0_1cd8],
+        [0x3fe6_575f_013d_6f67, 0x3fe6_e8f3_a08e_8cae],
+    ];
 }

@@ -144,9 +144,14 @@ impl Phases {
     }
 }
 
-/// `part` of up to four waves side by side; lanes without a wave are 0.
+/// `part` of up to four waves; lanes without a wave are 0.
+pub(super) fn lanes<T: Default>(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> T) -> [T; LANES] {
+    std::array::from_fn(|lane| waves.get(lane).map_or_else(T::default, &part))
+}
+
+/// [`lanes`] of a number.
 pub(super) fn side_by_side(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> f64) -> f64x4 {
-    f64x4::new(std::array::from_fn(|lane| waves.get(lane).map_or(0.0, &part)))
+    f64x4::new(lanes(waves, part))
 }
 
 /// Four components of the surface side by side.
