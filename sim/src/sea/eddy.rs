@@ -37,15 +37,35 @@ impl Vortex {
     #[inline]
     pub(super) fn at(&self, place: Ned) -> Ned {
         let from_centre = place - self.centre;
-        let s = from_centre.dot(from_centre) * self.per_radius_squared;
-        let rate = if s == 0.0 {
-            self.core_rad_s
-        } else if s > FAR {
-            self.core_rad_s / s
-        } else {
-            -self.core_rad_s * libm::expm1(-s) / s
-        };
+        let (rate, _) = self.rate_and_share(from_centre);
         Ned { north: -rate * from_centre.east, east: rate * from_centre.north }
+    }
+
+    /// The water's velocity, m/s, and the rate at which it turns a line that points along the unit vector `ahead`, rad/s
+    /// clockwise.
+    ///
+    /// With v = g(s) J d, d from the centre, J a quarter turn, s = d² / a²: along a line h the flow across it grows by
+    /// g + 2 s g' (d·h)² / d², and s g' = c e^−s − g for a core that turns with c.
+    #[inline]
+    pub(super) fn over(&self, place: Ned, ahead: Ned) -> (Ned, f64) {
+        let from_centre = place - self.centre;
+        let (rate, share) = self.rate_and_share(from_centre);
+        let squared = from_centre.dot(from_centre);
+        let along = from_centre.dot(ahead);
+        let fade = if squared == 0.0 { 0.0 } else { 2.0 * (self.core_rad_s * (1.0 - share) - rate) / squared };
+        let velocity = Ned { north: -rate * from_centre.east, east: rate * from_centre.north };
+        (velocity, rate + fade * along * along)
+    }
+
+    /// The rate at which the water goes round at a place, rad/s, and the share of the circulation that is inside of it.
+    #[inline]
+    fn rate_and_share(&self, from_centre: Ned) -> (f64, f64) {
+        let s = from_centre.dot(from_centre) * self.per_radius_squared;
+        if s == 0.0 {
+            return (self.core_rad_s, 0.0);
+        }
+        let share = if s > FAR { 1.0 } else { -libm::expm1(-s) };
+        (self.core_rad_s * share / s, share)
     }
 }
 

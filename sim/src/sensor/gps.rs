@@ -91,9 +91,10 @@ impl UnderWay {
         if self.count == 0 || !out(&first) {
             return None;
         }
-        self.fixes.rotate_left(1);
-        self.fixes[UNDER_WAY_MAX - 1] = Fix::default();
+        self.fixes[..self.count].rotate_left(1);
         self.count -= 1;
+        // What is unused is alike in states that are alike.
+        self.fixes[self.count] = Fix::default();
         Some(first)
     }
 }
