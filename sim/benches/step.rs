@@ -1,4 +1,6 @@
-//! `World::step` in calm water: a duel of two, twenty and five hundred a side.
+//! `World::step` in calm water: a duel of two, twenty and five hundred a side. The same in a rough sea, with everything
+//! that the sea and the sensors do.
+#![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use game::{Order, Scenario};
@@ -42,5 +44,44 @@ fn step(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, step);
+/// In a fresh breeze with 64 wave components, gusts and a current, with flawed thrusters and all sensors.
+fn rough(c: &mut Criterion) {
+    let afloat = shipped("pav01_afloat.toml");
+    let mut group = c.benchmark_group("world_step_rough");
+    for (name, game) in [("2v2", "pav01_vs_pav01.toml"), ("500v500", "swarm_500v500.toml")] {
+        let mut scenario = shipped(game);
+        scenario.sea = afloat.sea.clone();
+        scenario.sea.current.mean_m_s = game::Ned { north: 0.1, east: 0.2 };
+        scenario.boats[0] = afloat.boats[0].clone();
+        let start = World::new(&scenario, 1).unwrap_or_else(|e| panic!("{e}"));
+        let mut world = start.clone();
+        let mut orders = circling(&world, 0);
+        let boats = world.state().boats.len() as u64;
+        group.throughput(Throughput::Elements(boats));
+        let (mut ticks, mut spent) = (0, std::time::Duration::ZERO);
+        group.bench_function(name, |b| {
+            b.iter_custom(|count| {
+                let begin = std::time::Instant::now();
+                for _ in 0..count {
+                    if world.state().standing.over {
+                        world = start.clone();
+                    }
+                    if world.state().tick.is_multiple_of(20) {
+                        orders = circling(&world, world.state().tick);
+                    }
+                    std::hint::black_box(world.step(&orders).len());
+                }
+                let took = begin.elapsed();
+                (ticks, spent) = (ticks + count, spent + took);
+                took
+            });
+        });
+        let per_tick_s = spent.as_secs_f64() / ticks as f64;
+        let boat_seconds = boats as f64 * 0.05 / per_tick_s;
+        println!("{name}: {boat_seconds:.0} boat-seconds a CPU-second, {:.0} times real time", 0.05 / per_tick_s);
+    }
+    group.finish();
+}
+
+criterion_group!(benches, step, rough);
 criterion_main!(benches);

@@ -17,14 +17,13 @@ use game::rules::{Directive, Referee, Standing};
 use game::{Order, Pose, Scenario, SimTime, VehicleId, math};
 use xxhash_rust::xxh3;
 
-/// The propellers are this share of the length astern of midships.
-const PROPELLER_ASTERN: f64 = 0.4;
-
 /// A game's constants.
 #[derive(Clone)]
 pub(crate) struct Model {
     pub(crate) tick: SimTime,
     pub(crate) dt_s: f64,
+    /// Ticks between two decisions: sensors are read when minds decide.
+    pub(crate) ticks_per_decision: u64,
     /// By kind of boat.
     pub(crate) hulls: Vec<HullModel>,
     drives: Vec<Drive>,
@@ -46,8 +45,8 @@ pub(crate) struct Model {
 /// What drives a kind of boat.
 #[derive(Clone)]
 enum Drive {
-    /// Thrusters under a front seat; where they are from midships, m.
-    Thrusters(ThrusterModel, AutopilotModel, [Body; 2]),
+    /// Thrusters under a front seat.
+    Thrusters(ThrusterModel, AutopilotModel),
     Point(KinematicModel),
 }
 
@@ -55,9 +54,7 @@ impl Drive {
     fn new(boat: &game::Boat, hull: &HullModel, dt_s: f64) -> Drive {
         match &boat.drive {
             boat::Drive::Thrusters { thruster, autopilot } => {
-                let ahead = -PROPELLER_ASTERN * boat.length_m;
-                let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
-                Drive::Thrusters(ThrusterModel::new(thruster, dt_s), AutopilotModel::new(autopilot, hull, dt_s), places)
+                Drive::Thrusters(ThrusterModel::new(thruster, dt_s), AutopilotModel::new(autopilot, hull, dt_s))
             }
             boat::Drive::Kinematic(kinematic) => Drive::Point(KinematicModel::new(kinematic)),
         }
@@ -76,14 +73,16 @@ impl Model {
         let kinds: Vec<usize> = scenario.vehicles.iter().map(|vehicle| vehicle.boat).collect();
         let points = kinds.iter().map(|kind| matches!(drives[*kind], Drive::Point(_)));
         let sensors = scenario.vehicles.iter().map(|vehicle| &scenario.boats[vehicle.boat].sensors);
+        let decision = scenario.tick * i64::from(scenario.ticks_per_decision);
         let places = numbered(sensors.clone().map(|sensors| *sensors != Sensors::default()));
         let sensed = places.into_iter().zip(sensors).zip(&scenario.vehicles).map(|((place, sensors), vehicle)| {
-            place.map(|place| (place, SensorModel::new(sensors, scenario.tick, seed, &vehicle.name)))
+            place.map(|place| (place, SensorModel::new(sensors, decision, seed, &vehicle.name)))
         });
         let encoded = postcard::to_stdvec(scenario).expect("a checked scenario always encodes");
         Model {
             tick: scenario.tick,
             dt_s,
+            ticks_per_decision: u64::from(scenario.ticks_per_decision),
             points: numbered(points),
             sensed: sensed.collect(),
             fleet: Fleet::new(kinds.iter().map(|kind| &hulls[*kind])),
@@ -156,7 +155,7 @@ impl Model {
         sea: &SeaNow<'_>,
     ) -> (Effort, Ned) {
         let kind = self.kinds[vehicle];
-        let Drive::Thrusters(thruster, autopilot, places) = &self.drives[kind] else {
+        let Drive::Thrusters(thruster, autopilot) = &self.drives[kind] else {
             return (Effort::default(), Ned::default());
         };
         if boat.quarantined {
@@ -164,9 +163,9 @@ impl Model {
         }
         let hull = &self.hulls[kind];
         let settings = settings(boat, (hull, thruster, autopilot), order);
-        let water_above_m = thruster.ventilation().map_or([0.0; 2], |ventilation| {
-            places.map(|place| ventilation.depth_m + sea.cover_m(kind, boat.pose, turn, boat.nu, place))
-        });
+        let water_above_m = thruster
+            .ventilation()
+            .map_or([0.0; 2], |ventilation| sea.cover_m(kind, boat.pose).map(|cover_m| ventilation.depth_m + cover_m));
         let thrust = thruster.drive([&mut boat.port, &mut boat.starboard], flaws, settings, water_above_m);
         let felt = sea.feel(kind, hull, boat.pose, turn, boat.nu);
         let effort = Effort {

@@ -277,10 +277,10 @@ impl World {
         }
     }
 
-    /// Sensors read.
+    /// Sensors read, if minds decide now.
     fn sense(&mut self) {
         let World { model, state, work } = self;
-        if state.senses.is_empty() {
+        if state.senses.is_empty() || !state.tick.is_multiple_of(model.ticks_per_decision) {
             return;
         }
         let sea = model.sea.at_time(state.now);

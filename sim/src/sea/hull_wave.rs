@@ -148,8 +148,8 @@ fn orbital_velocity(wave: &PlaneWave, boat: &Boat, heading_rad: f64) -> Planar {
 /// A plane wave under a rectangle, length by beam.
 pub(super) struct Patch {
     /// The wave's travel in the boat's axes: a unit vector.
-    ahead: f64,
-    starboard: f64,
+    pub(super) ahead: f64,
+    pub(super) starboard: f64,
     /// What is left of it in the mean over the length, and over the beam.
     pub(super) mean_x: f64,
     pub(super) mean_y: f64,

@@ -3,6 +3,7 @@
 //! Open [`SeaNow::feel`] first: the one door through which the sea acts on boats. Everything here is a function of the
 //! scenario, the seed and the time; the sea remembers nothing, so a world that goes back in time finds the same sea.
 
+mod cover;
 pub mod current;
 pub mod eddy;
 pub mod gust_spectrum;
@@ -17,6 +18,7 @@ pub mod wave;
 pub mod wind;
 pub mod windage;
 
+pub use cover::Cover;
 pub use current::{CurrentField, CurrentNow};
 pub use hull_wave::{HullWaves, WaveSample};
 pub use ride::{Attitude, Ride};
@@ -24,12 +26,15 @@ pub use wave::{Component, Surface, WaveField};
 pub use wind::WindField;
 
 use crate::hull::{HullModel, Planar};
-use game::boat::Windage;
+use game::boat::{Drive, Windage};
 use game::frame::{self, Body, Ned, Pose};
 use game::{Boat, Scenario, SimTime};
 
 /// Density of the air at 15 °C, kg/m³.
 pub const AIR_KG_M3: f64 = 1.225;
+
+/// Propellers are this share of the length astern of midships.
+const PROPELLER_ASTERN: f64 = 0.4;
 
 /// The sea of a game, and how each kind of boat lies in it.
 #[derive(Clone, Debug)]
@@ -64,6 +69,8 @@ struct Kind {
     windage: Windage,
     /// The mean wind at the height of its windage, m/s.
     wind_mean_m_s: f64,
+    /// The water over its propellers, where that matters.
+    cover: Option<Cover>,
 }
 
 /// The sea at one moment.
@@ -108,6 +115,7 @@ impl SeaModel {
         };
         for boat in &scenario.boats {
             let kind = Kind {
+                cover: model.cover(boat),
                 length_m: boat.length_m,
                 shape: model.shape_of(boat, sea.water_density_kg_m3),
                 windage: boat.windage.clone(),
@@ -116,6 +124,15 @@ impl SeaModel {
             model.kinds.push(kind);
         }
         model
+    }
+
+    /// The water over the boat's propellers, if they can suck air.
+    fn cover(&self, boat: &Boat) -> Option<Cover> {
+        let Drive::Thrusters { thruster, .. } = &boat.drive else { return None };
+        thruster.flaws.ventilation?;
+        let ahead = -PROPELLER_ASTERN * boat.length_m;
+        let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
+        Some(Cover::new(self.waves.as_ref()?, boat, places))
     }
 
     /// The index of the boat's shape, made if it is the first of it.
@@ -150,12 +167,6 @@ impl SeaModel {
         let middle_s = (now + self.half_tick).as_s();
         SeaNow { model: self, current: self.current.at_time(now), now, middle_s }
     }
-
-    /// The waves, if there are any.
-    #[must_use]
-    pub fn waves(&self) -> Option<&WaveField> {
-        self.waves.as_ref()
-    }
 }
 
 impl SeaNow<'_> {
@@ -165,7 +176,7 @@ impl SeaNow<'_> {
     #[must_use]
     pub fn feel(&self, kind: usize, hull: &HullModel, pose: Pose, turn: (f64, f64), nu: Planar) -> Felt {
         let boat = &self.model.kinds[kind];
-        let (current_m_s, turning_rad_s) = self.current.over_hull(pose.at, turn, boat.length_m);
+        let (current_m_s, turning_rad_s) = self.current.over_hull(pose.at, turn);
         let mut felt =
             Felt { current_m_s, water: Planar { yaw: turning_rad_s, ..Planar::default() }, ..Felt::default() };
         if let Some(wind) = &self.model.wind {
@@ -192,6 +203,12 @@ impl SeaNow<'_> {
         // Long waves push the water that the hull displaces, and that it would carry along, as they push water
         // (Froude-Krylov and diffraction; Newman 1977, ch. 6).
         felt.force = felt.force.plus(1.0, hull.force_of(waves.acceleration)).plus(1.0, waves.drift_newton);
+    }
+
+    /// The waves, if there are any.
+    #[must_use]
+    pub fn waves(&self) -> Option<&WaveField> {
+        self.model.waves.as_ref()
     }
 
     /// The current at a place, m/s: what carries a point boat along.
@@ -222,16 +239,9 @@ impl SeaNow<'_> {
         self.model.shapes[self.model.kinds[kind].shape].ride.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
     }
 
-    /// By how much the water stands higher than in calm over a point of a boat, m: `place` is ahead and to starboard of
-    /// midships.
+    /// How much higher than in calm the water stands over the propellers of a boat of this kind, m.
     #[must_use]
-    pub fn cover_m(&self, kind: usize, pose: Pose, turn: (f64, f64), nu: Planar, place: Body) -> f64 {
-        if self.model.waves.is_none() {
-            return 0.0;
-        }
-        let attitude = self.attitude(kind, pose, turn, nu);
-        let elevation_m = self.elevation_m(pose.at + frame::ned_from_body(turn, place));
-        let risen_m = attitude.heave_up_m + attitude.pitch_rad * place.ahead - attitude.roll_rad * place.starboard;
-        elevation_m - risen_m
+    pub fn cover_m(&self, kind: usize, pose: Pose) -> [f64; 2] {
+        self.model.kinds[kind].cover.as_ref().map_or([0.0; 2], |cover| cover.at(pose, self.now.as_s()))
     }
 }

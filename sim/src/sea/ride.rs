@@ -13,9 +13,9 @@ use wide::f64x4;
 
 /// Natural frequency, rad/s, and damping ratio: those of the Otter in Fossen's Marine Systems Simulator. A hull as long as
 /// the Otter has much the same.
-const HEAVE: (f64, f64) = (7.5, 0.3);
-const ROLL: (f64, f64) = (7.4, 0.2);
-const PITCH: (f64, f64) = (8.6, 0.4);
+pub(super) const HEAVE: (f64, f64) = (7.5, 0.3);
+pub(super) const ROLL: (f64, f64) = (7.4, 0.2);
+pub(super) const PITCH: (f64, f64) = (8.6, 0.4);
 
 /// Where the waves have put a hull, and how fast it moves there. Angles are as in NED: roll is positive with the
 /// starboard side down, pitch with the bow up. Heave is the height above where it floats at rest, up.
@@ -82,7 +82,7 @@ impl Answer {
 }
 
 /// The real part, and minus the imaginary part, of wn² / (wn² − ω² + 2 i ζ wn ω).
-fn response(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f64, f64) {
+pub(super) fn response(natural_rad_s: f64, damping: f64, omega_rad_s: f64) -> (f64, f64) {
     let ratio = omega_rad_s / natural_rad_s;
     let (real, imaginary) = (1.0 - ratio * ratio, 2.0 * damping * ratio);
     let size = real * real + imaginary * imaginary;
@@ -148,7 +148,7 @@ impl Ride {
 
 /// Heave, roll and pitch of the plane that fits a wave's pressure at the draught best: heave per cosine, roll and pitch
 /// per sine of the phase amidships. Where the surface rises ahead the bow goes up; where it rises to starboard, that side.
-fn still(wave: &PlaneWave, boat: &Boat, heading_rad: f64) -> [f64; 3] {
+pub(super) fn still(wave: &PlaneWave, boat: &Boat, heading_rad: f64) -> [f64; 3] {
     let patch = Patch::new(wave, boat, heading_rad);
     let a = wave.component.amplitude_m * wave.pressure_at(boat.draught_m);
     [a * patch.mean_x * patch.mean_y, a * patch.tilt_y * patch.mean_x, -a * patch.tilt_x * patch.mean_y]

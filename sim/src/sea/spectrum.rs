@@ -46,8 +46,10 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let mut stream = Stream::new(seed, "waves");
     let count = waves.components as usize;
     let peak_rad_s = TAU / waves.tp_s;
-    let energy = Curve::new(BAND, |x| jonswap_m2_s(waves, x * peak_rad_s));
-    let second = Curve::new(BAND, |x| x * x * jonswap_m2_s(waves, x * peak_rad_s));
+    // The shape does not depend on the height, and a sea of no height has one too.
+    let shape = Waves { hs_m: 1.0, ..waves.clone() };
+    let energy = Curve::new(BAND, |x| jonswap_m2_s(&shape, x * peak_rad_s));
+    let second = Curve::new(BAND, |x| x * x * jonswap_m2_s(&shape, x * peak_rad_s));
     let both = Curve { x: energy.x, up_to: (0..=PIECES).map(|i| 0.5 * (energy.up_to[i] + second.up_to[i])).collect() };
     let spread = spread(waves.spreading);
     let first_quantile = stream.unit();
