@@ -337,7 +337,7 @@ fn at_rest_a_gyro_reads_its_bias_and_noise_and_an_accelerometer_the_water_s_push
 
 #[test]
 fn a_true_reading_follows_the_boat_s_motion() {
-    let level = Truth { nu: Planar { surge: 2.0, sway: 0.0, yaw: 0.25 }, ..Truth::default() };
+    let level = Truth { nu: Planar { surge: 2.0, sway: 1.0, yaw: 0.25 }, ..Truth::default() };
     let rolled = Truth { roll_rad: FRAC_PI_2 / 3.0, ..Truth::default() };
     let pitched = Truth { pitch_rad: FRAC_PI_2 / 3.0, ..Truth::default() };
     let half = 0.5 * GRAVITY_M_S2;
@@ -345,8 +345,8 @@ fn a_true_reading_follows_the_boat_s_motion() {
     let surging = Truth { nu_dot: Planar { surge: 0.4, sway: -0.2, yaw: 0.0 }, ..Truth::default() };
     let heaving = Truth { heave_acceleration_m_s2: 1.0, ..Truth::default() };
     for (what, truth, want) in [
-        // A turn to starboard pushes to starboard with u r.
-        ("turn", level, [0.0, 0.5, -GRAVITY_M_S2]),
+        // A turn to starboard pushes to starboard with u r, and astern with v r where the boat slides to starboard.
+        ("turn", level, [-0.25, 0.5, -GRAVITY_M_S2]),
         // Starboard side down, the push up is to port of the mast; bow up, ahead of it.
         ("roll", rolled, [0.0, -half, -most]),
         ("pitch", pitched, [half, 0.0, -most]),

@@ -271,13 +271,13 @@ fn the_wind_pushes_a_boat_away_and_its_bow_off() {
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         assert_eq!((sign(got.surge), sign(got.sway), sign(got.yaw)), want, "from {from_deg}: {got:?}");
     }
-    // A boat that points east and makes 3 m/s, in a wind from the north: ahead by its own way, on its port side.
+    // A boat that points east, makes 3 m/s ahead and 1 m/s to starboard, in a wind from the north on its port side.
     let past = wind_past_boat(
         math::sin_cos_deg(90.0),
         Ned { north: -4.0, east: 0.0 },
-        Planar { surge: 3.0, ..Planar::default() },
+        Planar { surge: 3.0, sway: 1.0, yaw: 0.7 },
     );
-    assert_eq!(past, Body { ahead: -3.0, starboard: 4.0 });
+    assert_eq!(past, Body { ahead: -3.0, starboard: 3.0 });
 }
 
 #[test]
