@@ -25,6 +25,9 @@ pub(crate) struct Args {
     /// Chooses the game [default: as the file says]
     #[arg(long)]
     seed: Option<u64>,
+    /// A sea file in place of the game's own
+    #[arg(long, value_name = "FILE")]
+    sea: Option<PathBuf>,
     /// lockstep, realtime, or a factor such as 4x
     #[arg(long, default_value = "lockstep")]
     pace: Pace,
@@ -46,7 +49,7 @@ pub(crate) struct Args {
 const LEAVE: Duration = Duration::from_secs(5);
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let scenario = load(&args.scenario)?;
+    let scenario = load(&args.scenario, args.sea.as_deref())?;
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
     let report = if args.in_process {
@@ -66,7 +69,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 fn play_here(args: &Args, scenario: &Scenario, stop: &AtomicBool, screen: &mut Screen) -> Result<Report> {
     const SHOW_EVERY: Duration = Duration::from_millis(100);
     let seed = args.seed.unwrap_or(scenario.seed);
-    let scenario = Scenario { seed, ..scenario.clone() };
+    let scenario = scenario.of_seed(seed)?;
     let mut minds = agent::minds_of(&scenario);
     let mut teller = Teller::default();
     let start = Instant::now();
@@ -133,6 +136,7 @@ fn start_sim(args: &Args, game: &str, endpoint: &str) -> Result<Offspring> {
         ("--join-s", args.join_s.to_string()),
     ];
     words.extend(options.into_iter().flat_map(|(name, value)| [name.to_owned(), value]));
+    words.extend(args.sea.iter().flat_map(|sea| ["--sea".to_owned(), sea.display().to_string()]));
     words.extend(args.seed.into_iter().flat_map(|seed| ["--seed".to_owned(), seed.to_string()]));
     words.push("--for-parent".to_owned());
     Offspring::start("the sim", &words, Stdio::piped())

@@ -20,6 +20,9 @@ pub(crate) struct Args {
     /// Chooses the game [default: as the file says]
     #[arg(long)]
     seed: Option<u64>,
+    /// A sea file in place of the game's own
+    #[arg(long, value_name = "FILE")]
+    sea: Option<PathBuf>,
     /// lockstep, realtime, or a factor such as 4x
     #[arg(long, default_value = "lockstep")]
     pace: Pace,
@@ -45,9 +48,9 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     if (0.0..=1e6).contains(&seconds) { Ok(seconds) } else { Err(format!("{text} is not within 0 to 1000000 s")) }
 }
 
-/// The scenario in a file, with every problem in the error.
-pub(crate) fn load(path: &Path) -> Result<Scenario> {
-    game::scenario::load(path).with_context(|| format!("cannot play {}", path.display()))
+/// The scenario in a file, on its own sea or another, with every problem in the error.
+pub(crate) fn load(path: &Path, sea: Option<&Path>) -> Result<Scenario> {
+    game::scenario::load_with(path, sea).with_context(|| format!("cannot play {}", path.display()))
 }
 
 /// Writes the result of a game to a file.
@@ -59,7 +62,7 @@ pub(crate) fn write_json(path: &Path, report: &Report) -> Result<()> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let scenario = load(&args.scenario)?;
+    let scenario = load(&args.scenario, args.sea.as_deref())?;
     let stop = stop::on_ctrl_c()?;
     if args.for_parent {
         stop::with_parent(&stop);

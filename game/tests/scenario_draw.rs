@@ -83,7 +83,10 @@ fn the_numbers_have_the_distribution_that_was_asked_for() {
     assert!((mass - 52.3).abs() < 5.0 * 0.2 * 52.3 / 12_f64.sqrt() / (n as f64).sqrt(), "{mass}");
     let speed = mean(&|game| value(game, "sea/current.speed_m_s"));
     assert!((speed - 0.3).abs() < 5.0 * 0.05 / (n as f64).sqrt(), "{speed}");
-    let variance = mean(&|game| (value(game, "sea/current.speed_m_s") - 0.3).powi(2));
+    let variance = mean(&|game| {
+        let off = value(game, "sea/current.speed_m_s") - 0.3;
+        off * off
+    });
     assert!((variance / (0.973 * 0.05 * 0.05) - 1.0).abs() < 5.0 * (2.0 / n as f64).sqrt(), "{variance}");
     let median = games.iter().filter(|game| value(game, "blue_one/thruster.lag_s") < 0.25).count();
     assert!((median as f64 - 500.0).abs() < 5.0 * 16.0, "{median}");

@@ -4,23 +4,34 @@ use crate::boat::{Compass, Gps, Imu};
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawCompass, RawFault, RawGps, RawImu, RawJump};
 
+/// Fixes that are under way at once.
+const MOST_PERIODS_LATE: f64 = 12.0;
+
 /// Checks a satellite receiver.
 pub(super) fn gps(ledger: &mut Ledger, given: &At<RawGps>) -> Gps {
     let raw = &given.value;
     let mut number = |key: &str, given: &Option<At<f64>>, low: f64, high: f64, default: f64| {
         ledger.number(key, given.as_ref(), low..=high).unwrap_or(default)
     };
-    Gps {
+    let period_s = number("period_s", &raw.period_s, 0.02, 10.0, 0.2);
+    let latency_s = number("latency_s", &raw.latency_s, 0.0, 2.0, 0.1);
+    let gps = Gps {
         bias_m: number("bias_m", &raw.bias_m, 0.0, 100.0, 0.8),
         bias_time_s: number("bias_time_s", &raw.bias_time_s, 1.0, 86_400.0, 200.0),
         noise_m: number("noise_m", &raw.noise_m, 0.0, 100.0, 0.1),
         velocity_noise_m_s: number("velocity_noise_m_s", &raw.velocity_noise_m_s, 0.0, 10.0, 0.05),
-        period_s: number("period_s", &raw.period_s, 0.02, 10.0, 0.2),
-        latency_s: number("latency_s", &raw.latency_s, 0.0, 2.0, 0.1),
+        period_s,
+        latency_s,
         dropout: fault(ledger, "dropout", raw.dropout.as_ref()),
         freeze: fault(ledger, "freeze", raw.freeze.as_ref()),
         jump: jump(ledger, raw.jump.as_ref()),
+    };
+    let most_s = MOST_PERIODS_LATE * period_s;
+    if latency_s > most_s {
+        let place = raw.latency_s.as_ref().or(raw.period_s.as_ref()).map_or(given.at, |given| given.at);
+        ledger.note(place, format!("latency_s is {latency_s}, expected at most {most_s}: {MOST_PERIODS_LATE} periods"));
     }
+    gps
 }
 
 /// How often, 1/s, and for how long, s.
