@@ -214,7 +214,7 @@ mod tests {
         // Closed forms: bad for 2 of 10 s; a stay seen at every tenth of a second lasts tenth / (1 - stay).
         assert!((bad / n - 0.2).abs() < 0.01, "{}", bad / n);
         assert!((lost / n - (0.8 * 0.01 + 0.2 * 0.6)).abs() < 0.005, "{}", lost / n);
-        let leave = (1.0 - (-0.1 * (0.125 + 0.5_f64)).exp()) * 0.8;
+        let leave = (1.0 - math::exp(-0.1 * (0.125 + 0.5))) * 0.8;
         assert!((bad / turns / (1.0 / leave) - 1.0).abs() < 0.05, "{} {}", bad / turns, 1.0 / leave);
     }
 
