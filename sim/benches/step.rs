@@ -19,6 +19,17 @@ fn circling(world: &World, tick: u64) -> Vec<Order> {
     (0..count).map(|i| Order::Steer { heading_rad: heading_rad(i), speed_m_s: 2.0 }).collect()
 }
 
+/// One step of a game that starts again when it is over: then the referee would have nothing to do.
+fn sail(world: &mut World, start: &World, orders: &mut Vec<Order>) -> usize {
+    if world.state().standing.over {
+        *world = start.clone();
+    }
+    if world.state().tick.is_multiple_of(20) {
+        *orders = circling(world, world.state().tick);
+    }
+    world.step(orders).len()
+}
+
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("world_step");
     for (name, game) in
@@ -28,18 +39,7 @@ fn step(c: &mut Criterion) {
         let mut world = start.clone();
         let mut orders = circling(&world, 0);
         group.throughput(Throughput::Elements(world.state().boats.len() as u64));
-        group.bench_function(name, |b| {
-            b.iter(|| {
-                // Once a game is over the referee has nothing to do.
-                if world.state().standing.over {
-                    world = start.clone();
-                }
-                if world.state().tick.is_multiple_of(20) {
-                    orders = circling(&world, world.state().tick);
-                }
-                world.step(&orders).len()
-            });
-        });
+        group.bench_function(name, |b| b.iter(|| sail(&mut world, &start, &mut orders)));
     }
     group.finish();
 }
@@ -63,13 +63,7 @@ fn rough(c: &mut Criterion) {
             b.iter_custom(|count| {
                 let begin = std::time::Instant::now();
                 for _ in 0..count {
-                    if world.state().standing.over {
-                        world = start.clone();
-                    }
-                    if world.state().tick.is_multiple_of(20) {
-                        orders = circling(&world, world.state().tick);
-                    }
-                    std::hint::black_box(world.step(&orders).len());
+                    std::hint::black_box(sail(&mut world, &start, &mut orders));
                 }
                 let took = begin.elapsed();
                 (ticks, spent) = (ticks + count, spent + took);
