@@ -8,6 +8,7 @@ mod offspring;
 mod result_table;
 mod run_command;
 mod screen;
+mod sea_command;
 mod sim_command;
 mod stop;
 mod telling;
@@ -36,6 +37,8 @@ enum Command {
     Watch(watch_command::Args),
     /// Lists the games on the network and who is in them.
     List(list_command::Args),
+    /// Says what a sea means for a boat.
+    Sea(sea_command::Args),
     /// Checks scenario files and explains every error.
     Check(check_command::Args),
     /// Prints the JSON Schema of a kind of scenario file, for editors.
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),
         Command::List(args) => list_command::run(&args),
+        Command::Sea(args) => sea_command::run(&args),
         Command::Check(args) => check_command::run(&args),
         Command::Schema(args) => check_command::print_schema(&args),
     };

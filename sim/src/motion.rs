@@ -68,6 +68,12 @@ impl Fleet {
     }
 }
 
+/// The resistance of a hull that drifts sideways at this speed, N.
+pub(crate) fn cross_flow_newton(hull: &HullModel, drift_m_s: f64) -> f64 {
+    let (sway, _) = Row::new(&[hull]).crossflow(f64x4::splat(drift_m_s), f64x4::ZERO);
+    hull.hull.sway_linear_kg_s * drift_m_s + sway.to_array()[0]
+}
+
 /// [`Planar`], four at a time.
 #[derive(Clone, Copy)]
 struct Planar4 {

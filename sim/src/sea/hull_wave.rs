@@ -134,7 +134,7 @@ impl Sums {
 ///
 /// Yaw is the rate at which a rigid line along the hull turns that has the same first moment of the transverse
 /// velocity, the mean of x v over the mean of x².
-fn orbital_velocity(wave: &PlaneWave, boat: &Boat, heading_rad: f64) -> Planar {
+pub(super) fn orbital_velocity(wave: &PlaneWave, boat: &Boat, heading_rad: f64) -> Planar {
     let patch = Patch::new(wave, boat, heading_rad);
     let component = &wave.component;
     let speed_m_s = component.amplitude_m * component.omega_rad_s * wave.orbital_at(0.5 * boat.draught_m);

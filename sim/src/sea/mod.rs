@@ -13,6 +13,7 @@ mod markov;
 mod ride;
 mod sine;
 pub mod spectrum;
+mod summary;
 mod tape;
 pub mod wave;
 pub mod wind;
@@ -22,6 +23,7 @@ pub use cover::Cover;
 pub use current::{CurrentField, CurrentNow};
 pub use hull_wave::{HullWaves, WaveSample};
 pub use ride::{Attitude, Ride};
+pub use summary::{Summary, WaveSummary, WindSummary};
 pub use wave::{Component, Surface, WaveField};
 pub use wind::WindField;
 
@@ -29,9 +31,6 @@ use crate::hull::{HullModel, Planar};
 use game::boat::{Drive, Windage};
 use game::frame::{self, Body, Ned, Pose};
 use game::{Boat, Scenario, SimTime};
-
-/// Density of the air at 15 °C, kg/m³.
-pub const AIR_KG_M3: f64 = 1.225;
 
 /// Propellers are this share of the length astern of midships.
 const PROPELLER_ASTERN: f64 = 0.4;
@@ -182,7 +181,7 @@ impl SeaNow<'_> {
         if let Some(wind) = &self.model.wind {
             let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
             let past = windage::wind_past_boat(turn, air_m_s, nu);
-            felt.force = windage::wind_force(&boat.windage, boat.length_m, AIR_KG_M3, past);
+            felt.force = windage::wind_force(&boat.windage, boat.length_m, windage::AIR_DENSITY_KG_M3, past);
         }
         if self.model.waves.is_some() {
             self.feel_waves(&self.model.shapes[boat.shape], hull, pose, turn, nu, &mut felt);
