@@ -36,7 +36,7 @@ fn crowded(world: &World, reach_m: f64) -> bool {
 
 #[test]
 fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() {
-    for game in ["pav01_vs_pav01.toml", "pav01_4v4.toml"] {
+    for game in ["pav01_vs_pav01.toml", "pav01_4v4.toml", "pav01_afloat.toml"] {
         let scenario = shipped(game);
         let mut world = World::new(&scenario, 1).unwrap();
         let mut plan = vec![Order::Hold; scenario.vehicles.len()];
@@ -60,6 +60,11 @@ fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() 
                 assert_eq!(used.allocations + used.reallocations, 0, "{game}, tick {tick}: {used:?}");
             }
         }
-        assert!(free > 1_000 && busy > 10 && collisions > 0, "{game}: {free} free, {busy} busy, {collisions} met");
+        // In waves four boats do not meet.
+        let meet = game != "pav01_afloat.toml";
+        assert!(
+            free > 1_000 && (!meet || busy > 10 && collisions > 0),
+            "{game}: {free} free, {busy} busy, {collisions} met"
+        );
     }
 }

@@ -63,6 +63,35 @@ fn a_lockstep_game_over_the_network_is_the_game_in_one_process_byte_for_byte() {
 }
 
 #[test]
+fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let rules = dir.path().join("short_sighted.toml");
+    let sharing = "sharing = { range_m = 80, view_deg = 270, delay_s = 0.3, noise_m = 1, loss = 0.2, memory_s = 5 }\n";
+    let base = scenarios.join("rules/aquaticus_2023.toml");
+    std::fs::write(&rules, format!("base = {:?}\n{sharing}", base.display().to_string()))
+        .expect("a file can be written");
+    let path = dir.path().join("rough.toml");
+    let base = scenarios.join("games/pav01_afloat.toml").display().to_string();
+    std::fs::write(&path, format!("base = {base:?}\nrules = \"short_sighted.toml\"\nduration_s = 200\n"))
+        .expect("a file can be written");
+    let game = path.display().to_string();
+    let bay = scenarios.join("seas/bay_fresh_breeze.toml").display().to_string();
+    let mut digests = Vec::new();
+    for (seed, sea) in [("1", &[][..]), ("2", &[]), ("1", &["--sea", bay.as_str()])] {
+        let words = [&[game.as_str(), "--seed", seed], sea].concat();
+        let here = game_itself(result_of(&[words.as_slice(), &["--in-process"]].concat()));
+        let there = game_itself(result_of(&[words.as_slice(), &["--agents-per-process", "2"]].concat()));
+        assert_eq!(here, there, "seed {seed} {sea:?}");
+        let mass_kg = here["drawn"]["blue_one/hull.mass_kg"].as_f64().expect("the mass was drawn");
+        assert!((0.9 * 52.3..1.1 * 52.3).contains(&mass_kg));
+        digests.push(here["digest"].clone());
+    }
+    digests.dedup();
+    assert_eq!(digests.len(), 3, "each is another game");
+}
+
+#[test]
 fn the_first_game_of_the_readme_runs_to_its_end() {
     let result = result_of(&["scenarios/games/pav01_vs_pav01.toml"]);
     assert_eq!(result["duration_s"], 600.0);
