@@ -1,7 +1,7 @@
 //! The sim on the network: opens the door, paces the game, tells observers.
 //!
 //! [`serve`] plays one game from the first join to the last frame. Everything that decides is in
-//! [`Contest`] and [`Roster`]; here are the sockets and the clocks.
+//! [`Contest`] and the roster of agents; here are the sockets and the clocks.
 
 mod booth;
 mod clock;
