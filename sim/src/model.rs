@@ -163,11 +163,10 @@ impl Model {
         }
         let hull = &self.hulls[kind];
         let settings = settings(boat, (hull, thruster, autopilot), order);
-        let water_above_m = thruster
-            .ventilation()
-            .map_or([0.0; 2], |ventilation| sea.cover_m(kind, boat.pose).map(|cover_m| ventilation.depth_m + cover_m));
-        let thrust = thruster.drive([&mut boat.port, &mut boat.starboard], flaws, settings, water_above_m);
         let felt = sea.feel(kind, hull, boat.pose, turn, boat.nu);
+        let still_m = thruster.ventilation().map_or(0.0, |ventilation| ventilation.depth_m);
+        let water_above_m = felt.cover_m.map(|cover_m| still_m + cover_m);
+        let thrust = thruster.drive([&mut boat.port, &mut boat.starboard], flaws, settings, water_above_m);
         let effort = Effort {
             nu_r: through_water(boat.nu, turn, felt.current_m_s, -1.0),
             tau: thrust.map(|thrust| thrust.plus(1.0, felt.force)),

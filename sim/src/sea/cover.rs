@@ -1,6 +1,6 @@
 //! How much water stands over a boat's propellers: the waves there, less what the hull has risen on them.
 
-use super::heading::HeadingTable;
+use super::heading::{HeadingTable, Line};
 use super::hull_wave::Patch;
 use super::ride::{HEAVE, PITCH, ROLL, response, still};
 use super::sine::sum;
@@ -35,14 +35,39 @@ impl Cover {
     /// How much higher than in calm the water stands over each propeller, m.
     #[must_use]
     pub fn at(&self, pose: Pose, time_s: f64) -> [f64; 2] {
-        let (mut port, mut starboard) = (f64x4::ZERO, f64x4::ZERO);
-        let (lines, part) = self.over.at(pose.psi_rad);
+        let mut tally = Tally::default();
+        let (lines, part) = self.lines(pose.psi_rad);
         for (phases, lines) in self.phases.iter().zip(lines) {
             let (sin, cos) = phases.sin_cos(pose.at, time_s);
-            port += lines[0].after(part) * cos + lines[1].after(part) * sin;
-            starboard += lines[2].after(part) * cos + lines[3].after(part) * sin;
+            tally.add(lines, part, sin, cos);
         }
-        [sum(port), sum(starboard)]
+        tally.cover_m()
+    }
+
+    /// The numbers for a heading, for who has the phases at hand.
+    #[inline(always)]
+    pub(super) fn lines(&self, heading_rad: f64) -> (&[[Line; 4]], f64x4) {
+        self.over.at(heading_rad)
+    }
+}
+
+/// The water over both propellers, summed over the components four at a time.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Tally {
+    port: f64x4,
+    starboard: f64x4,
+}
+
+impl Tally {
+    #[inline(always)]
+    pub(super) fn add(&mut self, lines: &[Line; 4], part: f64x4, sin: f64x4, cos: f64x4) {
+        self.port += lines[0].after(part) * cos + lines[1].after(part) * sin;
+        self.starboard += lines[2].after(part) * cos + lines[3].after(part) * sin;
+    }
+
+    #[inline(always)]
+    pub(super) fn cover_m(&self) -> [f64; 2] {
+        [sum(self.port), sum(self.starboard)]
     }
 }
 

@@ -7,6 +7,7 @@
 //!
 //! Second order: the drift force, which varies with the groups of waves (Newman 1974).
 
+use super::cover::{Cover, Tally};
 use super::heading::HeadingTable;
 use super::sine::sum;
 use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes, side_by_side};
@@ -87,9 +88,29 @@ impl HullWaves {
             let (sin, cos) = row.phases.sin_cos(pose.at, time_s);
             sums.add(row, [lines[0].after(part), lines[1].after(part), lines[2].after(part)], sin, cos);
         }
+        self.sample(&sums, pose.psi_rad)
+    }
+
+    /// The waves at a boat, and how much higher than in calm the water stands over its propellers, m: [`HullWaves::at`]
+    /// and [`Cover::at`] in one go.
+    #[must_use]
+    pub fn at_with(&self, cover: &Cover, pose: Pose, time_s: f64) -> (WaveSample, [f64; 2]) {
+        let (mut sums, mut tally) = (Sums::default(), Tally::default());
+        let (lines, part) = self.velocity.at(pose.psi_rad);
+        let (over, _) = cover.lines(pose.psi_rad);
+        for ((row, lines), over) in self.rows.iter().zip(lines).zip(over) {
+            let (sin, cos) = row.phases.sin_cos(pose.at, time_s);
+            sums.add(row, [lines[0].after(part), lines[1].after(part), lines[2].after(part)], sin, cos);
+            tally.add(over, part, sin, cos);
+        }
+        (self.sample(&sums, pose.psi_rad), tally.cover_m())
+    }
+
+    #[inline(always)]
+    fn sample(&self, sums: &Sums, heading_rad: f64) -> WaveSample {
         let (in_phase, off_phase) = (sum(sums.reflected_cos), sum(sums.reflected_sin));
         let groups_m2 = f64x4::splat(in_phase * in_phase + off_phase * off_phase);
-        let (drift, part) = self.drift.at(pose.psi_rad);
+        let (drift, part) = self.drift.at(heading_rad);
         let [surge, sway, ..] = (drift[0][0].after(part) * groups_m2).to_array();
         WaveSample {
             velocity: Planar { surge: sum(sums.surge), sway: sum(sums.sway), yaw: sum(sums.yaw) },

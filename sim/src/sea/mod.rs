@@ -93,6 +93,8 @@ pub struct Felt {
     pub water_rate: Planar,
     /// Wind, wave and drift forces along the boat.
     pub force: Planar,
+    /// How much higher than in calm the water stands over its propellers, where that matters, m.
+    pub cover_m: [f64; 2],
 }
 
 impl SeaModel {
@@ -184,18 +186,22 @@ impl SeaNow<'_> {
             felt.force = windage::wind_force(&boat.windage, boat.length_m, windage::AIR_DENSITY_KG_M3, past);
         }
         if self.model.waves.is_some() {
-            self.feel_waves(&self.model.shapes[boat.shape], hull, pose, turn, nu, &mut felt);
+            self.feel_waves(boat, hull, pose, turn, nu, &mut felt);
         }
         felt
     }
 
     /// Waves are taken half-way through the tick, where the boat will be by then.
     #[inline]
-    fn feel_waves(&self, shape: &Shape, hull: &HullModel, pose: Pose, turn: (f64, f64), nu: Planar, felt: &mut Felt) {
-        let half_s = self.model.half_s;
+    fn feel_waves(&self, boat: &Kind, hull: &HullModel, pose: Pose, turn: (f64, f64), nu: Planar, felt: &mut Felt) {
+        let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape]);
         let velocity_m_s = frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway });
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
-        let waves = shape.waves.at(middle, self.middle_s);
+        let (waves, cover_m) = match &boat.cover {
+            None => (shape.waves.at(middle, self.middle_s), [0.0; 2]),
+            Some(cover) => shape.waves.at_with(cover, middle, self.middle_s),
+        };
+        felt.cover_m = cover_m;
         felt.current_m_s = felt.current_m_s + shape.stokes_m_s;
         felt.water = felt.water.plus(1.0, waves.velocity);
         felt.water_rate = waves.acceleration;
@@ -236,11 +242,5 @@ impl SeaNow<'_> {
         }
         let velocity_m_s = frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway });
         self.model.shapes[self.model.kinds[kind].shape].ride.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
-    }
-
-    /// How much higher than in calm the water stands over the propellers of a boat of this kind, m.
-    #[must_use]
-    pub fn cover_m(&self, kind: usize, pose: Pose) -> [f64; 2] {
-        self.model.kinds[kind].cover.as_ref().map_or([0.0; 2], |cover| cover.at(pose, self.now.as_s()))
     }
 }
