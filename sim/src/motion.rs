@@ -55,15 +55,21 @@ impl Fleet {
     ///
     /// The equation in `nu_r` does not know the heading, so this needs no sine or cosine.
     ///
+    /// Where the water lies still or all moves alike, `is_uniform` saves looking at it; the numbers are the same.
+    ///
     /// # Panics
     /// If there is not one effort for each boat.
-    pub fn advance(&self, efforts: &[Effort], dt_s: f64, motions: &mut Vec<Motion>) {
+    pub fn advance(&self, efforts: &[Effort], dt_s: f64, is_uniform: bool, motions: &mut Vec<Motion>) {
         assert_eq!(efforts.len(), self.count, "one effort a boat");
         motions.clear();
         motions.resize(self.count, Motion::default());
         let places = efforts.chunks(LANES).zip(motions.chunks_mut(LANES));
         for (row, (efforts, motions)) in self.rows.iter().zip(places) {
-            row.advance(efforts, dt_s, motions);
+            if is_uniform {
+                row.advance::<true>(efforts, dt_s, motions);
+            } else {
+                row.advance::<false>(efforts, dt_s, motions);
+            }
         }
     }
 }
@@ -164,9 +170,9 @@ impl Row {
     /// The acceleration under `tau` at the velocity `nu_r` through the water. Resistance acts on the velocity through
     /// the water as it moves to and fro, `nu_r - water`.
     #[inline(always)]
-    fn acceleration(&self, nu_r: Planar4, tau: Planar4, water: Planar4) -> Planar4 {
+    fn acceleration<const UNIFORM: bool>(&self, nu_r: Planar4, tau: Planar4, water: Planar4) -> Planar4 {
         let Planar4 { surge: u, sway: v, yaw: r } = nu_r;
-        let past = Planar4::zip([nu_r, water], |[boat, water]| boat - water);
+        let past = if UNIFORM { nu_r } else { Planar4::zip([nu_r, water], |[boat, water]| boat - water) };
         let (y_cross, n_cross) = self.crossflow(past.sway, past.yaw);
         let speed = past.surge.abs();
         let x = tau.surge + self.m_munk * v * r + self.m_cross * r * r
@@ -204,16 +210,22 @@ impl Row {
     }
 
     #[inline(always)]
-    fn advance(&self, efforts: &[Effort], dt_s: f64, motions: &mut [Motion]) {
+    fn advance<const UNIFORM: bool>(&self, efforts: &[Effort], dt_s: f64, motions: &mut [Motion]) {
         let effort = |i: usize| &efforts[i.min(efforts.len() - 1)];
         let start = Planar4::gather(|i| effort(i).nu_r);
         let tau = [0, 1, 2].map(|when| Planar4::gather(|i| effort(i).tau[when]));
-        let (water, rate) = (Planar4::gather(|i| effort(i).water), Planar4::gather(|i| effort(i).water_rate));
         let half = 0.5 * dt_s;
-        let k1 = self.acceleration(start, tau[0], water.plus(-half, rate));
-        let k2 = self.acceleration(start.plus(half, k1), tau[1], water);
-        let k3 = self.acceleration(start.plus(half, k2), tau[1], water);
-        let k4 = self.acceleration(start.plus(dt_s, k3), tau[2], water.plus(half, rate));
+        let still = Planar4 { surge: f64x4::ZERO, sway: f64x4::ZERO, yaw: f64x4::ZERO };
+        let water = if UNIFORM {
+            [still; 3]
+        } else {
+            let (middle, rate) = (Planar4::gather(|i| effort(i).water), Planar4::gather(|i| effort(i).water_rate));
+            [middle.plus(-half, rate), middle, middle.plus(half, rate)]
+        };
+        let k1 = self.acceleration::<UNIFORM>(start, tau[0], water[0]);
+        let k2 = self.acceleration::<UNIFORM>(start.plus(half, k1), tau[1], water[1]);
+        let k3 = self.acceleration::<UNIFORM>(start.plus(half, k2), tau[1], water[1]);
+        let k4 = self.acceleration::<UNIFORM>(start.plus(dt_s, k3), tau[2], water[2]);
         let sixth = dt_s / 6.0;
         let end = Planar4::zip([start, k1, k2, k3, k4], |[x, a, b, c, d]| x + sixth * (a + 2.0 * (b + c) + d));
         // Cubic through both ends and their slopes; k4 is the slope at the end to third order.
@@ -272,7 +284,7 @@ mod tests {
 
     fn advance(model: &HullModel, effort: &Effort, dt_s: f64) -> Planar {
         let mut motions = Vec::new();
-        Fleet::new([model]).advance(std::slice::from_ref(effort), dt_s, &mut motions);
+        Fleet::new([model]).advance(std::slice::from_ref(effort), dt_s, false, &mut motions);
         motions[0].nu_r
     }
 
@@ -297,7 +309,12 @@ mod tests {
         let efforts: Vec<Effort> = (0..kinds.len()).map(effort).collect();
         let mut motions = Vec::new();
         for count in 0..=kinds.len() {
-            Fleet::new(kinds[..count].iter().map(|kind| &models[*kind])).advance(&efforts[..count], 0.05, &mut motions);
+            Fleet::new(kinds[..count].iter().map(|kind| &models[*kind])).advance(
+                &efforts[..count],
+                0.05,
+                false,
+                &mut motions,
+            );
             assert_eq!(motions.len(), count);
             for (i, motion) in motions.iter().enumerate() {
                 assert_eq!(motion.nu_r, advance(&models[kinds[i]], &efforts[i], 0.05), "boat {i} of {count}");

@@ -207,7 +207,7 @@ impl World {
             work.efforts.push(effort);
             work.currents_m_s.push(current_m_s);
         }
-        model.fleet.advance(&work.efforts, model.dt_s, &mut work.motions);
+        model.fleet.advance(&work.efforts, model.dt_s, model.sea.is_uniform(), &mut work.motions);
         work.passages.clear();
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {

@@ -56,7 +56,15 @@ impl CurrentField {
         }
     }
 
+    /// Whether it is the same everywhere.
+    #[inline]
+    #[must_use]
+    pub fn is_uniform(&self) -> bool {
+        self.shear.is_none() && self.eddies.is_empty()
+    }
+
     /// The current at `now`.
+    #[inline]
     #[must_use]
     pub fn at_time(&self, now: SimTime) -> CurrentNow<'_> {
         let mut uniform_m_s = self.mean_m_s;

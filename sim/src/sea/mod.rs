@@ -162,7 +162,15 @@ impl SeaModel {
         }
     }
 
+    /// Whether the water moves everywhere alike.
+    #[inline]
+    #[must_use]
+    pub fn is_uniform(&self) -> bool {
+        self.waves.is_none() && self.current.is_uniform()
+    }
+
     /// The sea at `now`.
+    #[inline]
     #[must_use]
     pub fn at_time(&self, now: SimTime) -> SeaNow<'_> {
         let middle_s = (now + self.half_tick).as_s();
