@@ -70,6 +70,9 @@ fn rough(c: &mut Criterion) {
                 took
             });
         });
+        if ticks == 0 {
+            continue;
+        }
         let per_tick_s = spent.as_secs_f64() / ticks as f64;
         let boat_seconds = boats as f64 * 0.05 / per_tick_s;
         println!("{name}: {boat_seconds:.0} boat-seconds a CPU-second, {:.0} times real time", 0.05 / per_tick_s);
