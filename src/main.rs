@@ -11,7 +11,9 @@ mod screen;
 mod sim_command;
 mod stop;
 mod telling;
+mod trial_command;
 mod watch_command;
+mod water_args;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -36,6 +38,8 @@ enum Command {
     Watch(watch_command::Args),
     /// Lists the games on the network and who is in them.
     List(list_command::Args),
+    /// Puts one boat in open water through recorded commands or a standard manoeuvre.
+    Trial(trial_command::Args),
     /// Checks scenario files and explains every error.
     Check(check_command::Args),
     /// Prints the JSON Schema of a kind of scenario file, for editors.
@@ -49,6 +53,7 @@ fn main() -> ExitCode {
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),
         Command::List(args) => list_command::run(&args),
+        Command::Trial(args) => trial_command::run(&args),
         Command::Check(args) => check_command::run(&args),
         Command::Schema(args) => check_command::print_schema(&args),
     };

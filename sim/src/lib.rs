@@ -17,6 +17,7 @@ mod ramp;
 pub mod sea;
 pub mod sensor;
 pub mod spawn;
+pub mod start;
 pub mod state;
 pub mod thruster;
 mod view;
