@@ -1,9 +1,10 @@
 //! `squall trial`: one boat in open water, put through a recorded series of commands or a standard manoeuvre.
 
 use crate::screen;
+use crate::trial_plot;
 use crate::water_args::{self, WaterArgs, degrees, within};
 use anyhow::{Context, Result, anyhow, bail};
-use arena::trial::{self, Afloat, Engine, Orders, Sample, Sheet, Start};
+use arena::trial::{self, Afloat, Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start};
 use game::boat::{Boat, Drive};
 use game::{SimTime, angle};
 use sim::hull::Planar;
@@ -14,7 +15,7 @@ use std::process::ExitCode;
 
 /// Which boat, on which water, doing what.
 #[derive(clap::Args)]
-#[command(group(clap::ArgGroup::new("what").required(true).args(["orders"])))]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["orders", "manoeuvre"])))]
 pub(crate) struct Args {
     /// A boat file, or the name of a boat in scenarios/boats
     boat: String,
@@ -22,9 +23,15 @@ pub(crate) struct Args {
     /// thrust_pct,rudder_pct, or speed_m_s,heading_deg
     #[arg(long, value_name = "FILE")]
     orders: Option<PathBuf>,
-    /// Writes the track to this file, every 0.1 s
+    /// A standard manoeuvre
+    #[arg(long, value_enum, value_name = "NAME")]
+    manoeuvre: Option<Named>,
+    /// Writes the track to this file, every 0.1 s [default: of a manoeuvre <boat>_<manoeuvre>.csv here]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Draws track and time series into this file, as SVG [default: of a manoeuvre <boat>_<manoeuvre>.svg here]
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
     /// Adds the commands to the track, as columns that `identify` and --orders read
     #[arg(long)]
     with_orders: bool,
@@ -38,6 +45,64 @@ pub(crate) struct Args {
     /// How long the trial lasts, s [default: until the last command, or as the manoeuvre needs]
     #[arg(long, value_name = "S", value_parser = duration)]
     duration_s: Option<f64>,
+    #[command(flatten)]
+    manoeuvring: ManoeuvreArgs,
+}
+
+/// How a manoeuvre is sailed.
+#[derive(clap::Args)]
+pub(crate) struct ManoeuvreArgs {
+    /// Speed of the straight approach, m/s [default: the highest that the front seat accepts]
+    #[arg(long, value_name = "M_S", value_parser = water_args::speed, conflicts_with = "orders")]
+    approach_m_s: Option<f64>,
+    /// How long the approach takes, s
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = approach_time, conflicts_with = "orders")]
+    approach_s: f64,
+    /// Turns to port (first)
+    #[arg(long, conflicts_with = "orders")]
+    to_port: bool,
+    /// The heading at which a zigzag switches, degrees: 10 for 10/10, 20 for 20/20
+    #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = switch_angle, conflicts_with = "orders")]
+    angle_deg: f64,
+    /// How far a zigzag sets the thrusters off their mean, or the rudder, per cent of full [default: as many as --angle-deg]
+    #[arg(long, value_name = "PCT", value_parser = differential, conflicts_with = "orders")]
+    differential_pct: Option<f64>,
+}
+
+/// The manoeuvres by name.
+#[derive(Clone, Copy, clap::ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Named {
+    TurningCircle,
+    Zigzag,
+    CrashStop,
+    Acceleration,
+    Drift,
+    Spin,
+}
+
+impl Named {
+    fn name(self) -> &'static str {
+        match self {
+            Named::TurningCircle => "turning_circle",
+            Named::Zigzag => "zigzag",
+            Named::CrashStop => "crash_stop",
+            Named::Acceleration => "acceleration",
+            Named::Drift => "drift",
+            Named::Spin => "spin",
+        }
+    }
+
+    fn manoeuvre(self) -> Manoeuvre {
+        match self {
+            Named::TurningCircle => Manoeuvre::TurningCircle,
+            Named::Zigzag => Manoeuvre::Zigzag,
+            Named::CrashStop => Manoeuvre::CrashStop,
+            Named::Acceleration => Manoeuvre::Acceleration,
+            Named::Drift => Manoeuvre::Drift,
+            Named::Spin => Manoeuvre::Spin,
+        }
+    }
 }
 
 /// How the boat begins.
@@ -85,6 +150,18 @@ fn per_cent(text: &str) -> Result<f64, String> {
     within(text, -100.0, 100.0, "per cent")
 }
 
+fn approach_time(text: &str) -> Result<f64, String> {
+    within(text, 0.0, 3600.0, "s")
+}
+
+fn switch_angle(text: &str) -> Result<f64, String> {
+    within(text, 1.0, 90.0, "degrees")
+}
+
+fn differential(text: &str) -> Result<f64, String> {
+    within(text, 1.0, 100.0, "per cent")
+}
+
 fn duration(text: &str) -> Result<f64, String> {
     within(text, 0.1, trial::LONGEST_S, "s")
 }
@@ -108,10 +185,46 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let start = args.start.start(&boat)?;
     let tick = SimTime::from_s(args.tick_s.unwrap_or(usual_tick_s(&boat)));
     let mut afloat = Afloat::new(&boat, &args.water.sea()?, tick, args.water.seed, &start)?;
-    match &args.orders {
-        Some(path) => replay(args, path, &boat, &mut afloat),
-        None => bail!("neither --orders nor --manoeuvre"),
+    match (&args.orders, args.manoeuvre) {
+        (Some(path), _) => replay(args, path, &boat, &mut afloat),
+        (None, Some(named)) => manoeuvre(args, named, &boat, &mut afloat),
+        (None, None) => bail!("neither --orders nor --manoeuvre"),
     }
+}
+
+fn manoeuvre(args: &Args, named: Named, boat: &Boat, afloat: &mut Afloat) -> Result<ExitCode> {
+    let how = &args.manoeuvring;
+    let plan = Plan {
+        manoeuvre: named.manoeuvre(),
+        course_rad: angle::rad_from_compass_deg(args.start.start_heading_deg),
+        approach_m_s: how.approach_m_s,
+        approach_s: how.approach_s,
+        side: if how.to_port { -1.0 } else { 1.0 },
+        switch_rad: how.angle_deg.to_radians(),
+        differential: how.differential_pct.unwrap_or(how.angle_deg) / 100.0,
+        duration_s: args.duration_s,
+    };
+    let sailed = trial::sail(boat, afloat, &plan)?;
+    let file = |given: &Option<PathBuf>, ending: &str| {
+        given.clone().unwrap_or_else(|| PathBuf::from(format!("{}_{}.{ending}", boat.name, named.name())))
+    };
+    let (csv, plot) = (file(&args.csv, "csv"), file(&args.plot, "svg"));
+    write_track(&csv, &sailed.samples, args.with_orders)?;
+    let title = format!("{}: {}", boat.name, named.name().replace('_', " "));
+    trial_plot::write(&plot, &title, &sailed.samples)?;
+    screen::print(&format!("{title}\n{}", table(&trial::measures(&plan, &sailed))));
+    screen::print(&format!("track in {}, plot in {}\n", csv.display(), plot.display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The results, one a line.
+fn table(measures: &[trial::Measure]) -> String {
+    let line = |measure: &trial::Measure| {
+        let value = if measure.value.is_finite() { format!("{:.2}", measure.value) } else { "not reached".to_owned() };
+        let unit = if measure.value.is_finite() { measure.unit } else { "" };
+        format!("  {:<32}{value:>12} {unit}\n", measure.name)
+    };
+    measures.iter().map(line).collect()
 }
 
 fn replay(args: &Args, path: &Path, boat: &Boat, afloat: &mut Afloat) -> Result<ExitCode> {
@@ -123,6 +236,9 @@ fn replay(args: &Args, path: &Path, boat: &Boat, afloat: &mut Afloat) -> Result<
     let samples = trial::replay(afloat, &orders, duration)?;
     let csv = args.csv.as_deref().ok_or_else(|| anyhow!("--orders needs --csv FILE for the track"))?;
     write_track(csv, &samples, args.with_orders)?;
+    if let Some(plot) = &args.plot {
+        trial_plot::write(plot, &format!("{}: {}", boat.name, path.display()), &samples)?;
+    }
     let last = &samples[samples.len() - 1];
     screen::print(&format!(
         "{}: {} for {:.1} s, at the end x {:.2} m, y {:.2} m, heading {:.1}°, {:.3} m/s\n",

@@ -127,15 +127,16 @@ impl Afloat {
     /// What there is to write down now, at `t_s` of the trial, about to be told `command`.
     #[must_use]
     pub fn sample(&self, t_s: f64, command: Command) -> Sample {
-        let (nu, thrusts_newton) = match &self.craft {
+        let Pose { at, psi_rad } = self.pose();
+        let (nu, surge_through_water_m_s, thrusts_newton) = match &self.craft {
             Craft::Thrusters(world) => {
                 let boat = world.state().boats[0];
-                (boat.nu, [boat.port.newton, boat.starboard.newton])
+                let current = in_body(psi_rad, world.sea().current_at(at));
+                (boat.nu, boat.nu.surge - current.ahead, [boat.port.newton, boat.starboard.newton])
             }
-            Craft::Kinematic(point) => (point.nu, [f64::NAN; 2]),
+            Craft::Kinematic(point) => (point.nu, point.state.speed_m_s, [f64::NAN; 2]),
         };
-        let Pose { at, psi_rad } = self.pose();
-        Sample { t_s, at: at - self.origin, psi_rad, nu, thrusts_newton, command }
+        Sample { t_s, at: at - self.origin, psi_rad, nu, surge_through_water_m_s, thrusts_newton, command }
     }
 
     /// The settings of its two thrusters, or thrust and rudder in per cent.

@@ -111,6 +111,17 @@ impl Engine {
         }
     }
 
+    /// The mean throttle that settings of `Afloat::settings` are, as a share of full.
+    pub(crate) fn throttle(&self, settings: [f64; 2]) -> f64 {
+        match self {
+            Engine::Thrusters(model, _) => {
+                let share = |setting: f64| setting / model.setting_of_share(setting.signum()).abs();
+                0.5 * (share(settings[0]) + share(settings[1]))
+            }
+            Engine::Kinematic(_) => settings[0] / 100.0,
+        }
+    }
+
     /// The numbers allowed in each of the two columns, or why this boat cannot be commanded in them.
     ///
     /// # Errors

@@ -20,7 +20,7 @@ pub enum Manoeuvre {
     /// From a straight approach the thrusters are set apart by a share of full (the rudder is set), to starboard; each
     /// time the heading passes the angle on the side it turns to, to the other side.
     Zigzag,
-    /// From a straight approach full astern, until the boat is dead in the water.
+    /// From a straight approach full astern, until the boat is dead in the water (which may drift).
     CrashStop,
     /// Full ahead from rest, until the speed is steady.
     Acceleration,
@@ -56,14 +56,14 @@ pub struct Plan {
 pub struct Sailed {
     /// The track from there; the first sample ends the approach.
     pub samples: Vec<Sample>,
-    /// Speed over the ground at the end of the approach, m/s, the mean of its last [`MEAN_S`].
+    /// Speed over the ground at the end of the approach, m/s, the mean of its last 5 s.
     pub approach_m_s: f64,
-    /// When a zigzag switched, s, and the heading it had before the next switch reached furthest beyond the angle, rad.
+    /// When a zigzag switched, s.
     pub switches: Vec<f64>,
 }
 
 /// Over how long the end of the approach is averaged, s.
-pub const MEAN_S: f64 = 5.0;
+const MEAN_S: f64 = 5.0;
 /// The longest that a manoeuvre goes on if nobody says how long, s.
 const LONGEST_S: f64 = 600.0;
 /// How long boats drift and spin if nobody says, s.
@@ -72,7 +72,7 @@ const SPIN_S: f64 = 60.0;
 /// A zigzag is over after this many switches.
 const SWITCHES: usize = 7;
 /// Dead in the water is slower than this share of the approach.
-pub const DEAD: f64 = 0.01;
+pub(super) const DEAD: f64 = 0.01;
 /// Speed is steady when it changes by less than this share in [`STEADY_S`].
 const STEADY: f64 = 0.001;
 const STEADY_S: f64 = 10.0;
@@ -122,6 +122,7 @@ pub fn sail(boat: &Boat, afloat: &mut Afloat, plan: &Plan) -> Result<Sailed, Uns
     let start = afloat.now();
     let mut sailed = Sailed { samples: vec![], approach_m_s, switches: vec![] };
     let mut side = plan.side;
+    let mut turned_rad = 0.0;
     loop {
         let t_s = (ROW * sailed.samples.len() as i64).as_s();
         let mut told = command(plan, helm, side);
@@ -131,8 +132,9 @@ pub fn sail(boat: &Boat, afloat: &mut Afloat, plan: &Plan) -> Result<Sailed, Uns
         }
         for _ in 0..per_row {
             if plan.manoeuvre == Manoeuvre::Zigzag {
-                let sample = afloat.sample(0.0, told);
-                if side * wrap_pi(sample.psi_rad - plan.course_rad) > plan.switch_rad {
+                // Turned on, not wrapped: a boat that spins has not come back.
+                turned_rad += wrap_pi(afloat.sample(0.0, told).psi_rad - plan.course_rad - turned_rad);
+                if side * turned_rad > plan.switch_rad {
                     side = -side;
                     told = command(plan, helm, side);
                     sailed.switches.push((afloat.now() - start).as_s());
@@ -193,7 +195,7 @@ fn is_over(plan: &Plan, sailed: &Sailed, t_s: f64) -> bool {
         }),
         Manoeuvre::Zigzag => sailed.switches.len() >= SWITCHES,
         Manoeuvre::CrashStop => {
-            sailed.samples.last().is_some_and(|sample| sample.nu.surge <= DEAD * sailed.approach_m_s)
+            sailed.samples.last().is_some_and(|sample| sample.surge_through_water_m_s <= DEAD * sailed.approach_m_s)
         }
         Manoeuvre::Acceleration => is_steady(&sailed.samples),
         Manoeuvre::Drift => t_s >= DRIFT_S - 1e-6,
@@ -211,8 +213,7 @@ fn is_steady(samples: &[Sample]) -> bool {
 }
 
 /// By how much the boat has turned since the first sample, whole turns counted, rad clockwise, at each sample.
-#[must_use]
-pub fn turned_rad(samples: &[Sample]) -> Vec<f64> {
+pub(super) fn turned_rad(samples: &[Sample]) -> Vec<f64> {
     let mut turned = 0.0;
     let mut before = samples.first().map_or(0.0, |sample| sample.psi_rad);
     samples

@@ -4,6 +4,8 @@
 
 mod afloat;
 mod command;
+mod manoeuvre;
+mod measure;
 mod orders;
 mod replay;
 mod sample;
@@ -12,6 +14,8 @@ mod water;
 
 pub use afloat::{Afloat, Start};
 pub use command::{Command, Engine, Pair};
+pub use manoeuvre::{Manoeuvre, Plan, Sailed, sail};
+pub use measure::{Measure, measures};
 pub use orders::{LONGEST_S, Orders};
 pub use replay::{ROW, Unsound, replay, ticks_per_row};
 pub use sample::{COLUMNS, Sample, write_csv};

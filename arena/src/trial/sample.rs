@@ -29,6 +29,8 @@ pub struct Sample {
     pub psi_rad: f64,
     /// Velocity over the ground along the boat's axes.
     pub nu: Planar,
+    /// Speed ahead through the water, m/s: without the current, and without the waves' to and fro.
+    pub surge_through_water_m_s: f64,
     /// Thrust of the port and the starboard thruster, N; NaN for a boat that has none.
     pub thrusts_newton: [f64; 2],
     /// What it is told from this moment on.
