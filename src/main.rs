@@ -2,9 +2,11 @@
 
 mod agent_command;
 mod check_command;
+mod identify_command;
 mod list_command;
 mod net_args;
 mod offspring;
+mod plot;
 mod result_table;
 mod run_command;
 mod screen;
@@ -12,7 +14,10 @@ mod sea_command;
 mod sim_command;
 mod stop;
 mod telling;
+mod trial_command;
+mod trial_plot;
 mod watch_command;
+mod water_args;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -39,6 +44,10 @@ enum Command {
     List(list_command::Args),
     /// Says what a sea means for a boat.
     Sea(sea_command::Args),
+    /// Puts one boat in open water through recorded commands or a standard manoeuvre.
+    Trial(trial_command::Args),
+    /// Fits a boat file to a recorded series, and says how well.
+    Identify(identify_command::Args),
     /// Checks scenario files and explains every error.
     Check(check_command::Args),
     /// Prints the JSON Schema of a kind of scenario file, for editors.
@@ -53,6 +62,8 @@ fn main() -> ExitCode {
         Command::Watch(args) => watch_command::run(&args),
         Command::List(args) => list_command::run(&args),
         Command::Sea(args) => sea_command::run(&args),
+        Command::Trial(args) => trial_command::run(&args),
+        Command::Identify(args) => identify_command::run(&args),
         Command::Check(args) => check_command::run(&args),
         Command::Schema(args) => check_command::print_schema(&args),
     };

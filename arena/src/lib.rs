@@ -2,6 +2,9 @@
 //!
 //! The same world and the same minds as across processes, and the same bytes.
 
+pub mod identify;
+pub mod trial;
+
 use agent::Mind;
 use game::{Outcome, Scenario, VehicleId};
 use sim::Contest;

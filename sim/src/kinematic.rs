@@ -118,6 +118,20 @@ impl KinematicState {
         KinematicState { heading_deg: wrap_180(psi_rad.to_degrees()), ..KinematicState::default() }
     }
 
+    /// On a course that it has long been steering: pointing there, at this speed (m/s) and thrust (per cent), with the
+    /// memory of loops that had nothing left to correct.
+    #[must_use]
+    pub fn under_way(psi_rad: f64, speed_m_s: f64, thrust: f64) -> KinematicState {
+        let settled = Loop { error: Some(0.0), integral: 0.0 };
+        KinematicState {
+            speed_m_s,
+            thrust,
+            speed_loop: settled,
+            heading_loop: settled,
+            ..KinematicState::at_rest(psi_rad)
+        }
+    }
+
     /// Where it points, rad clockwise from north, −pi to pi.
     #[must_use]
     pub fn psi_rad(&self) -> f64 {
@@ -147,6 +161,18 @@ impl KinematicModel {
     #[must_use]
     pub fn speed_max_m_s(&self) -> f64 {
         self.boat.speed_max_m_s
+    }
+
+    /// The thrust at which the boat keeps this speed straight ahead, per cent: the thrust map read backwards. Speeds
+    /// beyond its ends count as its ends.
+    #[must_use]
+    pub fn thrust_for_speed(&self, speed_m_s: f64) -> f64 {
+        let map = &self.boat.thrust_map;
+        let piece = map.windows(2).find(|ends| (ends[0].1..ends[1].1).contains(&speed_m_s));
+        piece.map_or_else(
+            || if speed_m_s < map[0].1 { map[0].0 } else { map[map.len() - 1].0 },
+            |ends| ends[0].0 + (ends[1].0 - ends[0].0) * (speed_m_s - ends[0].1) / (ends[1].1 - ends[0].1),
+        )
     }
 
     /// Moves a boat on by `dt_s`. `drift_m_s` carries it along: the current.
@@ -352,6 +378,27 @@ mod tests {
         ] {
             assert_eq!(wrap_180(input_deg), want_deg, "{input_deg}");
         }
+    }
+
+    #[test]
+    fn the_thrust_for_a_speed_is_the_map_backwards() {
+        let mut boat = plain();
+        boat.thrust_map = vec![(-100.0, -2.0), (0.0, 0.0), (40.0, 1.0), (80.0, 3.0), (100.0, 3.0)];
+        let model = KinematicModel::new(&boat);
+        for (speed_m_s, want) in [(-9.0, -100.0), (-1.0, -50.0), (0.0, 0.0), (0.5, 20.0), (2.0, 60.0), (9.0, 100.0)] {
+            assert_eq!(model.thrust_for_speed(speed_m_s), want, "{speed_m_s}");
+        }
+    }
+
+    #[test]
+    fn a_boat_under_way_feels_the_derivative_of_its_first_error() {
+        let mut boat = plain();
+        boat.heading_pid = Pid { d: 0.1, ..boat.heading_pid };
+        let turn = Command::Steer { heading_rad: 0.2, speed_m_s: 1.0 };
+        let (mut rested, mut sailing) = (KinematicState::at_rest(0.0), KinematicState::under_way(0.0, 1.0, 100.0));
+        step(&boat, &mut rested, turn);
+        step(&boat, &mut sailing, turn);
+        assert!((sailing.rudder - 2.0 * rested.rudder).abs() < 1e-9, "{} and {}", sailing.rudder, rested.rudder);
     }
 
     #[test]

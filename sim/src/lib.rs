@@ -19,6 +19,7 @@ pub mod sea;
 pub mod sensor;
 mod sighting;
 pub mod spawn;
+pub mod start;
 pub mod state;
 pub mod thruster;
 mod view;

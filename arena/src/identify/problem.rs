@@ -1,0 +1,204 @@
+//! The fit as a problem of least squares: residuals, and how they change with the parameters.
+//!
+//! Multiple shooting: the model starts anew in every segment, from a state that is itself fitted, since measured starts
+//! have noise. For given parameters the best starts are a small linear problem a segment, so the search only sees the
+//! parameters (variable projection, Golub and Pereyra 1973, with Kaufman's simplification of the Jacobian, 1975).
+
+use super::log::Log;
+use super::parameter::Knob;
+use super::rollout::{Point, Setting, rollout};
+use game::boat::Boat;
+use levenberg_marquardt::LeastSquaresProblem;
+use nalgebra::{DMatrix, DVector, Dyn, Owned};
+
+/// Step of a parameter's logarithm for its derivative.
+const PARAMETER_STEP: f64 = 1e-4;
+/// Step of a start, in standard deviations of its channel.
+const START_STEP: f64 = 1e-2;
+/// Corrections of the starts for each set of parameters; the search goes on from the last ones, so they need few.
+const CORRECTIONS: usize = 2;
+
+/// The fit of one log.
+#[derive(Clone)]
+pub(super) struct Problem<'a> {
+    pub(super) boat: &'a Boat,
+    pub(super) setting: &'a Setting,
+    pub(super) log: &'a Log,
+    pub(super) segments: Vec<usize>,
+    pub(super) knobs: Vec<Knob>,
+    /// Standard deviation of each channel, by which residuals are divided.
+    pub(super) sigmas: [f64; 6],
+    /// Measured cells: row and channel, in the order of the rows.
+    cells: Vec<(usize, usize)>,
+    /// Where each segment's cells begin; the end stands last.
+    borders: Vec<usize>,
+    /// Channels of a start that are fitted: those that are measured.
+    fitted: Vec<usize>,
+    at: DVector<f64>,
+    starts: Vec<Point>,
+    /// Whitened residuals at `at`; none where the model cannot be sailed.
+    residuals: Option<DVector<f64>>,
+}
+
+impl<'a> Problem<'a> {
+    pub(super) fn new(boat: &'a Boat, setting: &'a Setting, log: &'a Log, knobs: Vec<Knob>) -> Problem<'a> {
+        let segments = log.segments(setting.segment);
+        let rows = segments[0]..log.measured.len();
+        let measured = |row: usize| (0..6).filter(move |channel| log.measured[row][*channel].is_finite());
+        let cells: Vec<(usize, usize)> =
+            rows.flat_map(|row| measured(row).map(move |channel| (row, channel))).collect();
+        let borders = segments.iter().map(|start| cells.partition_point(|(row, _)| row < start)).collect();
+        let fitted = (0..6).filter(|channel| cells.iter().any(|(_, of)| of == channel)).collect();
+        let known = |row: &usize| log.measured[*row].map(|cell| if cell.is_finite() { cell } else { 0.0 });
+        let starts = segments[..segments.len() - 1].iter().map(known).collect();
+        let at = DVector::zeros(knobs.len());
+        let mut problem = Problem {
+            boat,
+            setting,
+            log,
+            segments,
+            knobs,
+            // What such instruments are good for; the residuals then say it better.
+            sigmas: [0.3, 0.3, 0.02, 0.05, 0.05, 0.01],
+            cells,
+            borders,
+            fitted,
+            at,
+            starts,
+            residuals: None,
+        };
+        problem.settle();
+        problem
+    }
+
+    /// Weighs the channels anew.
+    pub(super) fn weigh(&mut self, sigmas: [f64; 6]) {
+        self.sigmas = sigmas;
+        self.settle();
+    }
+
+    /// The boat at a place of the search.
+    pub(super) fn boat_at(&self, at: &DVector<f64>) -> Boat {
+        let mut boat = self.boat.clone();
+        self.knobs.iter().zip(at.iter()).for_each(|(knob, at)| knob.turn(&mut boat, *at));
+        boat
+    }
+
+    pub(super) fn place(&self) -> &DVector<f64> {
+        &self.at
+    }
+
+    /// How many numbers are measured, and how many are fitted to them, starts included.
+    pub(super) fn sizes(&self) -> (usize, usize) {
+        (self.cells.len(), self.knobs.len() + self.fitted.len() * self.starts.len())
+    }
+
+    /// The residuals of a channel in its own unit.
+    pub(super) fn residuals_of(&self, channel: usize) -> Vec<f64> {
+        let Some(residuals) = &self.residuals else { return vec![] };
+        let of = self.cells.iter().zip(residuals.iter()).filter(|((_, of), _)| *of == channel);
+        of.map(|(_, residual)| residual * self.sigmas[channel]).collect()
+    }
+
+    fn weighed(&self, boat: &Boat, starts: &[Point]) -> Option<DVector<f64>> {
+        let points = rollout(boat, self.setting, self.log, &self.segments, starts)?;
+        let residual = |(row, channel): &(usize, usize)| {
+            (points[*row][*channel] - self.log.measured[*row][*channel]) / self.sigmas[*channel]
+        };
+        let residuals = DVector::from_iterator(self.cells.len(), self.cells.iter().map(residual));
+        residuals.iter().all(|residual| residual.is_finite()).then_some(residuals)
+    }
+
+    /// How the residuals change with the starts: the columns of a segment's start are those of its rows.
+    fn by_starts(&self, boat: &Boat, residuals: &DVector<f64>) -> Option<DMatrix<f64>> {
+        let mut columns = Vec::with_capacity(self.fitted.len());
+        for channel in &self.fitted {
+            let mut moved = self.starts.clone();
+            moved.iter_mut().for_each(|start| start[*channel] += START_STEP * self.sigmas[*channel]);
+            columns.push((self.weighed(boat, &moved)? - residuals) / START_STEP);
+        }
+        Some(DMatrix::from_columns(&columns))
+    }
+
+    /// For each segment, the best change of its start to take away `from`, in the columns of `by_starts`; none where
+    /// that is not determined.
+    fn corrections(&self, by_starts: &DMatrix<f64>, from: &DVector<f64>) -> Option<Vec<DVector<f64>>> {
+        let correction = |border: &[usize]| {
+            let columns = by_starts.rows(border[0], border[1] - border[0]);
+            let mut normal = columns.tr_mul(&columns);
+            // So small that it only matters where a channel says nothing at all.
+            (0..normal.nrows()).for_each(|i| normal[(i, i)] += 1e-9);
+            Some(normal.cholesky()?.solve(&columns.tr_mul(&from.rows(border[0], border[1] - border[0]))))
+        };
+        self.borders.windows(2).map(correction).collect()
+    }
+
+    /// What is left of a vector when the starts have taken away what they can.
+    fn project(&self, by_starts: &DMatrix<f64>, from: &DVector<f64>) -> Option<DVector<f64>> {
+        let mut left = from.clone();
+        for (border, change) in self.borders.windows(2).zip(self.corrections(by_starts, from)?) {
+            let (begin, count) = (border[0], border[1] - border[0]);
+            let taken = by_starts.rows(begin, count) * change;
+            left.rows_mut(begin, count).iter_mut().zip(taken.iter()).for_each(|(left, taken)| *left -= taken);
+        }
+        Some(left)
+    }
+
+    /// Finds the best starts for these parameters.
+    fn settle(&mut self) {
+        let boat = self.boat_at(&self.at);
+        self.residuals = self.weighed(&boat, &self.starts);
+        for _ in 0..CORRECTIONS {
+            let Some(residuals) = &self.residuals else { return };
+            let corrections = self.by_starts(&boat, residuals).and_then(|by| self.corrections(&by, residuals));
+            let Some(corrections) = corrections else { return };
+            let mut starts = self.starts.clone();
+            for (start, change) in starts.iter_mut().zip(&corrections) {
+                for (channel, change) in self.fitted.iter().zip(change.iter()) {
+                    start[*channel] -= change * self.sigmas[*channel];
+                }
+            }
+            // A correction that makes it worse came from beyond where the model is nearly linear.
+            match self.weighed(&boat, &starts) {
+                Some(better) if better.norm_squared() < residuals.norm_squared() => {
+                    (self.starts, self.residuals) = (starts, Some(better));
+                }
+                _ => return,
+            }
+        }
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
+    type ResidualStorage = Owned<f64, Dyn>;
+    type JacobianStorage = Owned<f64, Dyn, Dyn>;
+    type ParameterStorage = Owned<f64, Dyn>;
+
+    fn set_params(&mut self, at: &DVector<f64>) {
+        self.at.copy_from(at);
+        self.settle();
+    }
+
+    fn params(&self) -> DVector<f64> {
+        self.at.clone()
+    }
+
+    fn residuals(&self) -> Option<DVector<f64>> {
+        self.residuals.clone()
+    }
+
+    fn jacobian(&self) -> Option<DMatrix<f64>> {
+        let residuals = self.residuals.as_ref()?;
+        let by_starts = self.by_starts(&self.boat_at(&self.at), residuals)?;
+        let mut columns = Vec::with_capacity(self.knobs.len());
+        for i in 0..self.knobs.len() {
+            let (mut up, mut down) = (self.at.clone(), self.at.clone());
+            up[i] += PARAMETER_STEP;
+            down[i] -= PARAMETER_STEP;
+            let up = self.weighed(&self.boat_at(&up), &self.starts)?;
+            let down = self.weighed(&self.boat_at(&down), &self.starts)?;
+            columns.push(self.project(&by_starts, &((up - down) / (2.0 * PARAMETER_STEP)))?);
+        }
+        Some(DMatrix::from_columns(&columns))
+    }
+}

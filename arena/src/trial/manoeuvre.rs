@@ -1,0 +1,227 @@
+//! The standard manoeuvres: how each is steered, and when it is over.
+//!
+//! Definitions follow IMO resolution MSC.137(76) and its explanatory notes MSC/Circ.1053, for boats that steer by two
+//! thrusters where those speak of a rudder: see [`Manoeuvre`].
+
+use super::afloat::Afloat;
+use super::command::{Command, Engine};
+use super::replay::{ROW, Unsound, ticks_per_row};
+use super::sample::Sample;
+use game::SimTime;
+use game::angle::wrap_pi;
+use game::boat::{Boat, Drive};
+
+/// A standard manoeuvre. *Port* and *starboard* are thrusters; a kinematic boat has thrust and rudder instead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manoeuvre {
+    /// From a straight approach the inner thruster stops and the outer one stays (full rudder, thrust stays), for two
+    /// turns.
+    TurningCircle,
+    /// From a straight approach the thrusters are set apart by a share of full (the rudder is set), to starboard; each
+    /// time the heading passes the angle on the side it turns to, to the other side.
+    Zigzag,
+    /// From a straight approach full astern, until the boat is dead in the water (which may drift).
+    CrashStop,
+    /// Full ahead from rest, until the speed is steady.
+    Acceleration,
+    /// No thrust, in whatever sea there is.
+    Drift,
+    /// From rest port full ahead and starboard full astern (thrust 50 and full rudder).
+    Spin,
+}
+
+/// How a manoeuvre is sailed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plan {
+    /// Which.
+    pub manoeuvre: Manoeuvre,
+    /// The heading of the approach, rad.
+    pub course_rad: f64,
+    /// The speed of the approach, m/s; `None` is the highest that the front seat accepts.
+    pub approach_m_s: Option<f64>,
+    /// How long the approach takes, s.
+    pub approach_s: f64,
+    /// 1 turns to starboard (first), −1 to port.
+    pub side: f64,
+    /// The heading at which a zigzag switches, rad.
+    pub switch_rad: f64,
+    /// How far apart a zigzag sets the thrusters, or how far it sets the rudder, as a share of full.
+    pub differential: f64,
+    /// How long to go on; `None` is until the manoeuvre is over.
+    pub duration_s: Option<f64>,
+}
+
+/// What was sailed, from the moment the manoeuvre began.
+#[derive(Clone, Debug)]
+pub struct Sailed {
+    /// The track from there; the first sample ends the approach.
+    pub samples: Vec<Sample>,
+    /// Speed over the ground at the end of the approach, m/s, the mean of its last 5 s.
+    pub approach_m_s: f64,
+    /// When a zigzag switched, s.
+    pub switches: Vec<f64>,
+}
+
+/// Over how long the end of the approach is averaged, s.
+const MEAN_S: f64 = 5.0;
+/// The longest that a manoeuvre goes on if nobody says how long, s.
+const LONGEST_S: f64 = 600.0;
+/// How long boats drift and spin if nobody says, s.
+const DRIFT_S: f64 = 300.0;
+const SPIN_S: f64 = 60.0;
+/// A zigzag is over after this many switches.
+const SWITCHES: usize = 7;
+/// Dead in the water is slower than this share of the approach.
+pub(super) const DEAD: f64 = 0.01;
+/// Speed is steady when it changes by less than this share in [`STEADY_S`].
+const STEADY: f64 = 0.001;
+const STEADY_S: f64 = 10.0;
+
+/// What turns a boat and drives it ahead, whatever it is driven by.
+#[derive(Clone, Copy, Debug)]
+struct Helm {
+    is_kinematic: bool,
+    /// Mean throttle at the end of the approach, as a share of full.
+    throttle: f64,
+}
+
+impl Helm {
+    /// Thrusters at these shares, or half their sum as thrust and half their difference as rudder.
+    fn apart(self, port: f64, starboard: f64) -> Command {
+        if self.is_kinematic {
+            return Command::Impose { thrust: 50.0 * (port + starboard), rudder: 50.0 * (port - starboard) };
+        }
+        Command::Thrust { port: port.clamp(-1.0, 1.0), starboard: starboard.clamp(-1.0, 1.0) }
+    }
+
+    /// Approach thrust with this much differential or rudder to starboard.
+    fn turning(self, differential: f64) -> Command {
+        if self.is_kinematic {
+            return Command::Impose { thrust: 100.0 * self.throttle, rudder: 100.0 * differential };
+        }
+        self.apart(self.throttle + differential, self.throttle - differential)
+    }
+}
+
+/// Sails `plan` with a boat that has just been set afloat; `afloat` is at its start, pointing along the course.
+///
+/// # Errors
+/// [`Unsound`] where the boat's numbers go bad.
+///
+/// # Panics
+/// If the tick does not fit into [`ROW`].
+pub fn sail(boat: &Boat, afloat: &mut Afloat, plan: &Plan) -> Result<Sailed, Unsound> {
+    let per_row = ticks_per_row(afloat.tick()).expect("the tick was checked");
+    let is_kinematic = matches!(boat.drive, Drive::Kinematic(_));
+    let mut helm = Helm { is_kinematic, throttle: 1.0 };
+    let mut approach_m_s = 0.0;
+    if matches!(plan.manoeuvre, Manoeuvre::TurningCircle | Manoeuvre::Zigzag | Manoeuvre::CrashStop) {
+        (approach_m_s, helm.throttle) = approach(boat, afloat, plan, per_row)?;
+    }
+    afloat.set_origin();
+    let start = afloat.now();
+    let mut sailed = Sailed { samples: vec![], approach_m_s, switches: vec![] };
+    let mut side = plan.side;
+    let mut turned_rad = 0.0;
+    loop {
+        let t_s = (ROW * sailed.samples.len() as i64).as_s();
+        let mut told = command(plan, helm, side);
+        sailed.samples.push(afloat.sample(t_s, told));
+        if is_over(plan, &sailed, t_s) {
+            return Ok(sailed);
+        }
+        for _ in 0..per_row {
+            if plan.manoeuvre == Manoeuvre::Zigzag {
+                // Turned on, not wrapped: a boat that spins has not come back.
+                turned_rad += wrap_pi(afloat.sample(0.0, told).psi_rad - plan.course_rad - turned_rad);
+                if side * turned_rad > plan.switch_rad {
+                    side = -side;
+                    told = command(plan, helm, side);
+                    sailed.switches.push((afloat.now() - start).as_s());
+                }
+            }
+            afloat.step(told);
+        }
+        if !afloat.is_sound() {
+            return Err(Unsound { t_s });
+        }
+    }
+}
+
+/// The straight approach: the speed at its end, m/s, and the throttle as a share of full.
+fn approach(boat: &Boat, afloat: &mut Afloat, plan: &Plan, per_row: u32) -> Result<(f64, f64), Unsound> {
+    let speed_m_s = plan.approach_m_s.unwrap_or_else(|| boat.speed_max_m_s());
+    let course = Command::Steer { heading_rad: plan.course_rad, speed_m_s };
+    let engine = Engine::new(boat);
+    let rows = SimTime::from_s(plan.approach_s).0 / ROW.0;
+    let last_rows = (MEAN_S / ROW.as_s()).round() as i64;
+    let (mut speed_sum, mut throttle_sum, mut count) = (0.0, 0.0, 0.0_f64);
+    for row in 1..=rows {
+        (0..per_row).for_each(|_| afloat.step(course));
+        if !afloat.is_sound() {
+            return Err(Unsound { t_s: (ROW * row).as_s() - plan.approach_s });
+        }
+        if row > rows - last_rows {
+            speed_sum += afloat.sample(0.0, course).speed_m_s();
+            throttle_sum += engine.throttle(afloat.settings());
+            count += 1.0;
+        }
+    }
+    Ok((speed_sum / count.max(1.0), throttle_sum / count.max(1.0)))
+}
+
+fn command(plan: &Plan, helm: Helm, side: f64) -> Command {
+    let (throttle, full) = (helm.throttle, side > 0.0);
+    match plan.manoeuvre {
+        Manoeuvre::TurningCircle if helm.is_kinematic => helm.turning(side),
+        Manoeuvre::TurningCircle => helm.apart(if full { throttle } else { 0.0 }, if full { 0.0 } else { throttle }),
+        Manoeuvre::Zigzag => helm.turning(side * plan.differential),
+        Manoeuvre::CrashStop => helm.apart(-1.0, -1.0),
+        Manoeuvre::Acceleration => helm.apart(1.0, 1.0),
+        Manoeuvre::Drift => helm.apart(0.0, 0.0),
+        Manoeuvre::Spin if helm.is_kinematic => Command::Impose { thrust: 50.0, rudder: 100.0 * side },
+        Manoeuvre::Spin => helm.apart(side, -side),
+    }
+}
+
+/// Whether a manoeuvre has shown what it is sailed for.
+fn is_over(plan: &Plan, sailed: &Sailed, t_s: f64) -> bool {
+    if let Some(duration_s) = plan.duration_s {
+        return t_s >= duration_s - 1e-6;
+    }
+    let done = match plan.manoeuvre {
+        Manoeuvre::TurningCircle => {
+            turned_rad(&sailed.samples).last().is_some_and(|turned| turned.abs() >= 2.0 * std::f64::consts::TAU)
+        }
+        Manoeuvre::Zigzag => sailed.switches.len() >= SWITCHES,
+        Manoeuvre::CrashStop => {
+            sailed.samples.last().is_some_and(|sample| sample.surge_through_water_m_s <= DEAD * sailed.approach_m_s)
+        }
+        Manoeuvre::Acceleration => is_steady(&sailed.samples),
+        Manoeuvre::Drift => t_s >= DRIFT_S - 1e-6,
+        Manoeuvre::Spin => t_s >= SPIN_S - 1e-6,
+    };
+    done || t_s >= LONGEST_S
+}
+
+fn is_steady(samples: &[Sample]) -> bool {
+    let rows = (STEADY_S / ROW.as_s()).round() as usize;
+    let mean = |samples: &[Sample]| samples.iter().map(|sample| sample.nu.surge).sum::<f64>() / rows as f64;
+    let Some(first) = samples.len().checked_sub(2 * rows) else { return false };
+    let (before, after) = (mean(&samples[first..first + rows]), mean(&samples[first + rows..]));
+    after > 0.0 && (after - before).abs() < STEADY * after
+}
+
+/// By how much the boat has turned since the first sample, whole turns counted, rad clockwise, at each sample.
+pub(super) fn turned_rad(samples: &[Sample]) -> Vec<f64> {
+    let mut turned = 0.0;
+    let mut before = samples.first().map_or(0.0, |sample| sample.psi_rad);
+    samples
+        .iter()
+        .map(|sample| {
+            turned += wrap_pi(sample.psi_rad - before);
+            before = sample.psi_rad;
+            turned
+        })
+        .collect()
+}

@@ -1,0 +1,23 @@
+//! Sea trials: one boat in open water, commanded by a recorded series or put through a standard manoeuvre.
+//!
+//! Open [`replay`] first. Files, units and plots are the shell's; here is what happens to the boat.
+
+mod afloat;
+mod command;
+mod manoeuvre;
+mod measure;
+mod orders;
+mod replay;
+mod sample;
+mod sheet;
+mod water;
+
+pub use afloat::{Afloat, Start};
+pub use command::{Command, Engine, Pair};
+pub use manoeuvre::{Manoeuvre, Plan, Sailed, sail};
+pub use measure::{Measure, measures};
+pub use orders::{LONGEST_S, Orders};
+pub use replay::{ROW, Unsound, replay, ticks_per_row};
+pub use sample::{COLUMNS, Sample, write_csv};
+pub use sheet::{Mistake, Sheet};
+pub use water::{set_mean_current, still_sea};

@@ -1,0 +1,226 @@
+//! A CSV file as people keep them: a line of names, then numbers; mistakes are named by file, line and column.
+
+use std::io::Read;
+use thiserror::Error;
+
+/// Most rows a file may have: a day at 50 a second, and more.
+const ROWS_MAX: usize = 5_000_000;
+
+/// A file with named columns.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// What the file is called in messages.
+    file: String,
+    /// Names as they are compared: lower case, with `_` between words.
+    heads: Vec<String>,
+    rows: Vec<(u64, csv::StringRecord)>,
+}
+
+/// What is wrong in a file.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{file}{}: {message}", line.map(|line| format!(":{line}")).unwrap_or_default())]
+pub struct Mistake {
+    /// The file.
+    pub file: String,
+    /// The line, where it is in one.
+    pub line: Option<u64>,
+    /// The column, what was found, what is allowed.
+    pub message: String,
+}
+
+impl Sheet {
+    /// Reads a file that is called `file` in messages.
+    ///
+    /// # Errors
+    /// Where it is no CSV, has no rows, or has two columns of one name.
+    pub fn read(file: &str, input: impl Read) -> Result<Sheet, Mistake> {
+        let wrong = |error: csv::Error| Mistake {
+            file: file.to_owned(),
+            line: error.position().map(csv::Position::line),
+            message: reason(&error),
+        };
+        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(input);
+        let heads: Vec<String> = reader.headers().map_err(wrong)?.iter().map(plain_head).collect();
+        let mut sheet = Sheet { file: file.to_owned(), heads, rows: vec![] };
+        for (i, head) in sheet.heads.iter().enumerate() {
+            if !head.is_empty() && sheet.heads[..i].contains(head) {
+                return Err(sheet.mistake(Some(1), format!("two columns {head}, expected one")));
+            }
+        }
+        for record in reader.records() {
+            let record = record.map_err(wrong)?;
+            let line = record.position().map_or(0, csv::Position::line);
+            if sheet.rows.len() == ROWS_MAX {
+                return Err(sheet.mistake(Some(line), format!("more than {ROWS_MAX} rows")));
+            }
+            sheet.rows.push((line, record));
+        }
+        if sheet.rows.is_empty() {
+            return Err(sheet.mistake(None, "no rows of numbers below the line of names".to_owned()));
+        }
+        Ok(sheet)
+    }
+
+    /// How many rows there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Never: a file without rows is refused.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The columns' names.
+    #[must_use]
+    pub fn heads(&self) -> &[String] {
+        &self.heads
+    }
+
+    /// The place of a column, if it is there.
+    #[must_use]
+    pub fn column(&self, head: &str) -> Option<usize> {
+        self.heads.iter().position(|known| known == head)
+    }
+
+    /// What stands in a row and column; the row must exist.
+    #[must_use]
+    pub fn text(&self, row: usize, column: usize) -> &str {
+        self.rows[row].1.get(column).unwrap_or_default()
+    }
+
+    /// The number in a row and column, within `low` to `high`.
+    ///
+    /// # Errors
+    /// Where it is no number, or beyond that.
+    pub fn number(&self, row: usize, column: usize, (low, high): (f64, f64)) -> Result<f64, Mistake> {
+        let text = self.text(row, column);
+        let found = if text.is_empty() { "empty".to_owned() } else { text.to_owned() };
+        // A setting that was computed as full ahead may be beyond it by a rounding.
+        let slack = 1e-9 * low.abs().max(high.abs());
+        match text.parse::<f64>() {
+            Ok(number) if (low - slack..=high + slack).contains(&number) => Ok(number.clamp(low, high)),
+            _ => {
+                let expected = format!("expected {} to {}", short(low), short(high));
+                Err(self.row_mistake(row, format!("{} is {found}, {expected}", self.heads[column])))
+            }
+        }
+    }
+
+    /// Something wrong in a row.
+    #[must_use]
+    pub fn row_mistake(&self, row: usize, message: String) -> Mistake {
+        self.mistake(Some(self.rows[row].0), message)
+    }
+
+    /// Something wrong in the file, or in one of its lines.
+    #[must_use]
+    pub fn mistake(&self, line: Option<u64>, message: String) -> Mistake {
+        Mistake { file: self.file.clone(), line, message }
+    }
+
+    /// The times in column `t_s`, each later than the one before.
+    ///
+    /// # Errors
+    /// Where that is not so.
+    pub fn times(&self, high_s: f64) -> Result<Vec<f64>, Mistake> {
+        let missing = || self.mistake(Some(1), format!("no column t_s among {}", self.heads.join(", ")));
+        let column = self.column("t_s").ok_or_else(missing)?;
+        let mut times_s: Vec<f64> = Vec::with_capacity(self.len());
+        for row in 0..self.len() {
+            let t_s = self.number(row, column, (0.0, high_s))?;
+            if let Some(before_s) = times_s.last().filter(|before_s| t_s <= **before_s) {
+                let message = format!("t_s is {t_s}, expected more than the {before_s} of the row before");
+                return Err(self.row_mistake(row, message));
+            }
+            times_s.push(t_s);
+        }
+        Ok(times_s)
+    }
+}
+
+/// A column's name as it is compared: `Port (rad/s)` is `port_rad_s`.
+fn plain_head(head: &str) -> String {
+    let spelt = head.trim_start_matches('\u{feff}').to_lowercase().replace('%', "pct");
+    let words: Vec<&str> = spelt.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let joined = words.join("_");
+    for side in ["port", "starboard"] {
+        let unit = joined.strip_prefix(side).and_then(|rest| rest.strip_prefix('_'));
+        let known = match unit {
+            Some("n" | "newtons") => "newton",
+            Some("percent" | "per_cent") => "pct",
+            Some("rad_per_s" | "radps" | "rads") => "rad_s",
+            _ => continue,
+        };
+        return format!("{side}_{known}");
+    }
+    joined
+}
+
+/// A limit in at most six digits: no one wants to read 13.225999999999999.
+fn short(number: f64) -> String {
+    let text = format!("{number:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn reason(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("{len} columns, expected {expected_len} as in the line of names")
+        }
+        csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".to_owned(),
+        csv::ErrorKind::Io(error) => format!("cannot be read: {error}"),
+        _ => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet(text: &str) -> Result<Sheet, Mistake> {
+        Sheet::read("in.csv", text.as_bytes())
+    }
+
+    #[test]
+    fn units_are_read_in_several_spellings() {
+        for (head, want) in [
+            ("port_rad_s", "port_rad_s"),
+            (" Port (rad/s)", "port_rad_s"),
+            ("\u{feff}t_s", "t_s"),
+            ("t [s]", "t_s"),
+            ("starboard (%)", "starboard_pct"),
+            ("starboard [N]", "starboard_newton"),
+            ("portfolio", "portfolio"),
+        ] {
+            assert_eq!(plain_head(head), want, "{head:?}");
+        }
+    }
+
+    #[test]
+    fn mistakes_are_named_by_file_line_and_column() {
+        for (text, want) in [
+            ("", "in.csv: no rows"),
+            ("t_s,a\n", "in.csv: no rows"),
+            ("t_s,t_s\n0,1\n", "in.csv:1: two columns t_s"),
+            ("t_s,a\n0,1\n1\n", "in.csv:3: 1 columns, expected 2"),
+            ("x,a\n0,1\n", "in.csv:1: no column t_s among x, a"),
+            ("t_s,a\n0,1\nnan,1\n", "in.csv:3: t_s is nan, expected 0 to 100"),
+            ("t_s,a\n0,1\n-1,1\n", "in.csv:3: t_s is -1, expected 0 to 100"),
+            ("t_s,a\n0,1\n\n# a remark\n1e9,1\n", "in.csv:5: t_s is 1e9, expected 0 to 100"),
+            ("t_s,a\n0,1\n,1\n", "in.csv:3: t_s is empty, expected 0 to 100"),
+            ("t_s,a\n0,1\n2,1\n2,3\n", "in.csv:4: t_s is 2, expected more than the 2 of the row before"),
+        ] {
+            let error = sheet(text).and_then(|sheet| sheet.times(100.0)).expect_err(text);
+            assert!(error.to_string().starts_with(want), "{text:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_text_is_refused() {
+        let error = Sheet::read("in.csv", &b"t_s,a\n0,\xff\xfe\n"[..]).expect_err("no text");
+        assert!(error.to_string().contains("not UTF-8"), "{error}");
+    }
+}

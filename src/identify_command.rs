@@ -1,0 +1,102 @@
+//! `squall identify`: fits a boat file to a recorded series.
+
+use crate::screen;
+use crate::trial_command::{read_sheet, tick, usual_tick_s};
+use crate::water_args::{self, WaterArgs, within};
+use anyhow::{Context, Result};
+use arena::identify::{self, Fit, Log, Setting};
+use game::SimTime;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Which boat, to which log.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// A boat file, or the name of a boat in scenarios/boats: where the search begins
+    boat: String,
+    /// The recorded series: t_s, commands as for `trial --orders`, and of a trial's columns heading_deg, surge_m_s,
+    /// yaw_rate_deg_s, and sway_m_s, x_m,y_m if there are
+    #[arg(long, value_name = "FILE")]
+    log: PathBuf,
+    /// What to fit [default: surge_linear, surge_quadratic, sway_linear, yaw_linear, yaw_quadratic, yaw_lift,
+    /// port_gain, starboard_gain, lag, as far as the boat has them]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    fit: Vec<String>,
+    /// The model starts anew from the log this often, s
+    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = segment)]
+    segment_s: f64,
+    /// Writes the new boat to this file [default: <boat>_identified.toml here]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Physics tick, s [default: 0.05]
+    #[arg(long, value_name = "S", value_parser = tick)]
+    tick_s: Option<f64>,
+    #[command(flatten)]
+    water: WaterArgs,
+}
+
+fn segment(text: &str) -> Result<f64, String> {
+    within(text, 1.0, 3600.0, "s")
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let (boat, path) = water_args::boat(&args.boat)?;
+    let parameters = identify::parameters(&args.fit, &boat)?;
+    let log = Log::of_sheet(&read_sheet(&args.log)?, &boat)?;
+    let setting = Setting {
+        sea: args.water.sea()?,
+        seed: args.water.seed,
+        tick: SimTime::from_s(args.tick_s.unwrap_or(usual_tick_s(&boat))),
+        segment: SimTime::from_s(args.segment_s),
+    };
+    let named = args.log.display().to_string();
+    let fit = identify::fit(&boat, &log, &setting, &parameters).with_context(|| format!("cannot fit {named}"))?;
+    screen::print(&table(&boat.name, &named, &fit));
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_identified.toml", boat.name)));
+    let text = identify::written(&fit, &base_of(&out, &path), &named);
+    std::fs::write(&out, text).with_context(|| format!("cannot write {}", out.display()))?;
+    game::scenario::load_boat(&out).with_context(|| format!("{} is written, but no sound boat", out.display()))?;
+    screen::print(&format!("boat in {}\n", out.display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The path of the base as it stands in `out`: relative where both lie in one folder, so that they can move together.
+fn base_of(out: &Path, base: &Path) -> String {
+    let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let folder = match out.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let base = whole(base);
+    let relative = base.strip_prefix(whole(folder)).map(Path::to_owned);
+    relative.unwrap_or(base).display().to_string()
+}
+
+fn table(boat: &str, log: &str, fit: &Fit) -> String {
+    let mut text = format!("{boat} fitted to {log}: {} numbers in {} segments\n", fit.measured, fit.segments);
+    text.push_str(&format!("  {:<18}{:>12}{:>12}   {:<12}{}\n", "", "was", "is", "± 95 %", "key"));
+    for estimate in &fit.estimates {
+        text.push_str(&format!(
+            "  {:<18}{:>12.4}{:>12.4} ± {:<12.4}{}.{}\n",
+            estimate.parameter.name,
+            estimate.before,
+            estimate.value,
+            estimate.plus_minus,
+            estimate.parameter.table,
+            estimate.parameter.key
+        ));
+    }
+    for quality in &fit.qualities {
+        text.push_str(&format!(
+            "  {:<10} rms {:>8.4} {:<4} R² {:.4}\n",
+            quality.channel, quality.rms, quality.unit, quality.r_squared
+        ));
+    }
+    for confused in &fit.confused {
+        text.push_str(&format!(
+            "  warning: {} and {} are hardly told apart (correlation {:.3}): fix one of them with --fit\n",
+            confused.names[0], confused.names[1], confused.correlation
+        ));
+    }
+    text
+}

@@ -1,0 +1,214 @@
+//! Plots as SVG files: panels with axes and units, each with a few lines and a legend.
+
+use anyhow::{Context, Result, anyhow};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use std::path::Path;
+
+/// A page of panels.
+pub(crate) struct Page {
+    /// What stands on top.
+    pub(crate) title: String,
+    /// Panels per row.
+    pub(crate) columns: usize,
+    /// Row by row.
+    pub(crate) panels: Vec<Panel>,
+}
+
+/// One diagram.
+pub(crate) struct Panel {
+    /// What it shows.
+    pub(crate) title: String,
+    /// Name and unit along the horizontal axis.
+    pub(crate) x: String,
+    /// Name and unit along the vertical axis.
+    pub(crate) y: String,
+    /// Whether a metre is as long on both axes: for maps.
+    pub(crate) equal: bool,
+    /// What is drawn.
+    pub(crate) lines: Vec<Line>,
+}
+
+/// A line through points; where a number is not finite it has a gap.
+pub(crate) struct Line {
+    /// What the legend calls it; without a name it is not in there.
+    pub(crate) name: String,
+    /// Horizontal and vertical.
+    pub(crate) points: Vec<(f64, f64)>,
+}
+
+/// Size of a panel, pixels.
+const PANEL: (u32, u32) = (560, 400);
+const TITLE_HEIGHT: u32 = 44;
+const FONT: &str = "sans-serif";
+/// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
+const COLOURS: [RGBColor; 6] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(90, 90, 90),
+];
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Draws a page into a file.
+pub(crate) fn write_svg(path: &Path, page: &Page) -> Result<()> {
+    let rows = page.panels.len().div_ceil(page.columns);
+    let size = (PANEL.0 * page.columns as u32, TITLE_HEIGHT + PANEL.1 * rows as u32);
+    let mut svg = String::new();
+    draw(&mut svg, size, page, rows).with_context(|| format!("cannot draw {}", path.display()))?;
+    std::fs::write(path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))
+}
+
+fn draw(svg: &mut String, size: (u32, u32), page: &Page, rows: usize) -> Result<()> {
+    let root = SVGBackend::with_string(svg, size).into_drawing_area();
+    root.fill(&WHITE).map_err(failed)?;
+    let (top, rest) = root.split_vertically(TITLE_HEIGHT);
+    top.draw(&Text::new(page.title.clone(), (24, 14), (FONT, 20).into_font())).map_err(failed)?;
+    for (area, panel) in rest.split_evenly((rows, page.columns)).iter().zip(&page.panels) {
+        draw_panel(area, panel)?;
+    }
+    root.present().map_err(failed)
+}
+
+fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
+    let ((mut x0, mut x1), (mut y0, mut y1)) = (extent(panel, |p| p.0), extent(panel, |p| p.1));
+    if panel.equal {
+        // What labels and title leave of the panel.
+        let (wide, high) = (f64::from(PANEL.0) - 100.0, f64::from(PANEL.1) - 105.0);
+        let metres_per_pixel = f64::max((x1 - x0) / wide, (y1 - y0) / high);
+        (x0, x1) = about_middle(x0, x1, wide * metres_per_pixel);
+        (y0, y1) = about_middle(y0, y1, high * metres_per_pixel);
+    }
+    let mut chart = ChartBuilder::on(area)
+        .margin(12)
+        .caption(&panel.title, (FONT, 16))
+        .x_label_area_size(40)
+        .y_label_area_size(64)
+        .build_cartesian_2d(x0..x1, y0..y1)
+        .map_err(failed)?;
+    chart
+        .configure_mesh()
+        .x_desc(&panel.x)
+        .y_desc(&panel.y)
+        .axis_desc_style((FONT, 14))
+        .label_style((FONT, 12))
+        .x_labels(8)
+        .y_labels(8)
+        .light_line_style(RGBColor(244, 244, 244))
+        .bold_line_style(RGBColor(222, 222, 222))
+        .x_label_formatter(&|x| label(*x, x1 - x0))
+        .y_label_formatter(&|y| label(*y, y1 - y0))
+        .draw()
+        .map_err(failed)?;
+    for (line, colour) in panel.lines.iter().zip(COLOURS.iter().cycle()) {
+        let style = colour.stroke_width(2);
+        for (i, piece) in pieces(&line.points).into_iter().enumerate() {
+            let drawn = chart.draw_series(LineSeries::new(piece.iter().copied(), style)).map_err(failed)?;
+            if i == 0 && !line.name.is_empty() {
+                drawn.label(&line.name).legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], style));
+            }
+        }
+    }
+    if panel.lines.iter().any(|line| !line.name.is_empty() && !pieces(&line.points).is_empty()) {
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(200, 200, 200))
+            .label_font((FONT, 12))
+            .draw()
+            .map_err(failed)?;
+    }
+    Ok(())
+}
+
+/// What can be drawn without gaps.
+fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
+    points.split(|point| !(point.0.is_finite() && point.1.is_finite())).filter(|piece| !piece.is_empty()).collect()
+}
+
+/// The range of a panel's points in one direction, with a margin.
+fn extent(panel: &Panel, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
+    let numbers = panel.lines.iter().flat_map(|line| &line.points).map(of).filter(|number| number.is_finite());
+    let (low, high) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), n| (l.min(n), h.max(n)));
+    if low > high {
+        return (0.0, 1.0);
+    }
+    // A constant gets a tenth of itself above and below it, and a line of nothing but rounding is a constant.
+    let least = (0.1 * low.abs().max(high.abs())).max(1e-3);
+    let margin = (0.05 * (high - low)).max(if high - low < 0.01 * least { least } else { 0.0 });
+    (low - margin, high + margin)
+}
+
+/// The range widened about its middle.
+fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
+    let middle = 0.5 * (low + high);
+    (middle - 0.5 * width, middle + 0.5 * width)
+}
+
+/// A number on an axis of this width, with the places that tell its labels apart.
+fn label(number: f64, width: f64) -> String {
+    let places = (0..6).find(|places| width >= 4.0 * [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5][*places]).unwrap_or(6);
+    let text = format!("{number:.places$}");
+    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
+}
+
+fn failed<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> anyhow::Error {
+    anyhow!("{error}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn page(points: Vec<(f64, f64)>) -> Page {
+        let line = |name: &str| Line { name: name.into(), points: points.clone() };
+        let panel = |equal| Panel {
+            title: "speed".into(),
+            x: "t in s".into(),
+            y: "u in m/s".into(),
+            equal,
+            lines: vec![line("surge"), line("")],
+        };
+        Page { title: "a trial".into(), columns: 2, panels: vec![panel(true), panel(false)] }
+    }
+
+    fn drawn(points: Vec<(f64, f64)>) -> String {
+        let dir = tempfile::tempdir().expect("a temporary directory");
+        let path = dir.path().join("plot.svg");
+        write_svg(&path, &page(points)).expect("it can be drawn");
+        std::fs::read_to_string(path).expect("it is there")
+    }
+
+    #[test]
+    fn a_page_has_titles_units_and_a_legend() {
+        let svg = drawn(vec![(0.0, 0.0), (1.0, 2.0), (2.0, 3.0)]);
+        for text in ["a trial", "speed", "t in s", "u in m/s", "surge"] {
+            assert!(svg.contains(text), "{text}");
+        }
+    }
+
+    #[test]
+    fn odd_numbers_are_drawn_all_the_same() {
+        for points in [
+            vec![],
+            vec![(0.0, f64::NAN)],
+            vec![(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0)],
+            vec![(0.0, 5.0), (1.0, 5.0 + 1e-13)],
+            vec![(0.0, 0.0), (1e9, -1e9)],
+        ] {
+            assert!(drawn(points.clone()).ends_with("</svg>\n"), "{points:?}");
+        }
+    }
+
+    #[test]
+    fn labels_have_the_places_they_need() {
+        for (number, width, want) in [(3.0, 100.0, "3"), (0.5, 2.0, "0.5"), (-0.0001, 2.0, "0.0"), (0.12, 0.2, "0.12")]
+        {
+            assert_eq!(label(number, width), want);
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! `squall trial`: one boat in open water, put through a recorded series of commands or a standard manoeuvre.
+
+use crate::screen;
+use crate::trial_plot;
+use crate::water_args::{self, WaterArgs, degrees, within};
+use anyhow::{Context, Result, anyhow, bail};
+use arena::trial::{self, Afloat, Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start};
+use game::boat::{Boat, Drive};
+use game::{SimTime, angle};
+use sim::hull::Planar;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Which boat, on which water, doing what.
+#[derive(clap::Args)]
+#[command(group(clap::ArgGroup::new("what").required(true).args(["orders", "manoeuvre"])))]
+pub(crate) struct Args {
+    /// A boat file, or the name of a boat in scenarios/boats
+    boat: String,
+    /// Replays the commands in this CSV file: t_s, and port and starboard in _rad_s, _pct or _newton, or
+    /// thrust_pct,rudder_pct, or speed_m_s,heading_deg
+    #[arg(long, value_name = "FILE")]
+    orders: Option<PathBuf>,
+    /// A standard manoeuvre
+    #[arg(long, value_enum, value_name = "NAME")]
+    manoeuvre: Option<Named>,
+    /// Writes the track to this file, every 0.1 s [default: of a manoeuvre <boat>_<manoeuvre>.csv here]
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Draws track and time series into this file, as SVG [default: of a manoeuvre <boat>_<manoeuvre>.svg here]
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// Adds the commands to the track, as columns that `identify` and --orders read
+    #[arg(long)]
+    with_orders: bool,
+    #[command(flatten)]
+    water: WaterArgs,
+    #[command(flatten)]
+    start: StartArgs,
+    /// Physics tick, s [default: 0.05; of a kinematic boat 0.1]
+    #[arg(long, value_name = "S", value_parser = tick)]
+    tick_s: Option<f64>,
+    /// How long the trial lasts, s [default: until the last command, or as the manoeuvre needs]
+    #[arg(long, value_name = "S", value_parser = duration)]
+    duration_s: Option<f64>,
+    #[command(flatten)]
+    manoeuvring: ManoeuvreArgs,
+}
+
+/// How a manoeuvre is sailed.
+#[derive(clap::Args)]
+pub(crate) struct ManoeuvreArgs {
+    /// Speed of the straight approach, m/s [default: the highest that the front seat accepts]
+    #[arg(long, value_name = "M_S", value_parser = water_args::speed, conflicts_with = "orders")]
+    approach_m_s: Option<f64>,
+    /// How long the approach takes, s
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = approach_time, conflicts_with = "orders")]
+    approach_s: f64,
+    /// Turns to port (first)
+    #[arg(long, conflicts_with = "orders")]
+    to_port: bool,
+    /// The heading at which a zigzag switches, degrees: 10 for 10/10, 20 for 20/20
+    #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = switch_angle, conflicts_with = "orders")]
+    angle_deg: f64,
+    /// How far a zigzag sets the thrusters off their mean, or the rudder, per cent of full [default: as many as --angle-deg]
+    #[arg(long, value_name = "PCT", value_parser = differential, conflicts_with = "orders")]
+    differential_pct: Option<f64>,
+}
+
+/// The manoeuvres by name.
+#[derive(Clone, Copy, clap::ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Named {
+    TurningCircle,
+    Zigzag,
+    CrashStop,
+    Acceleration,
+    Drift,
+    Spin,
+}
+
+impl Named {
+    fn name(self) -> &'static str {
+        match self {
+            Named::TurningCircle => "turning_circle",
+            Named::Zigzag => "zigzag",
+            Named::CrashStop => "crash_stop",
+            Named::Acceleration => "acceleration",
+            Named::Drift => "drift",
+            Named::Spin => "spin",
+        }
+    }
+
+    fn manoeuvre(self) -> Manoeuvre {
+        match self {
+            Named::TurningCircle => Manoeuvre::TurningCircle,
+            Named::Zigzag => Manoeuvre::Zigzag,
+            Named::CrashStop => Manoeuvre::CrashStop,
+            Named::Acceleration => Manoeuvre::Acceleration,
+            Named::Drift => Manoeuvre::Drift,
+            Named::Spin => Manoeuvre::Spin,
+        }
+    }
+}
+
+/// How the boat begins.
+#[derive(clap::Args)]
+pub(crate) struct StartArgs {
+    /// Heading at the start, compass degrees
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = degrees, allow_negative_numbers = true)]
+    start_heading_deg: f64,
+    /// Speed ahead over the ground at the start, m/s
+    #[arg(long, value_name = "M_S", default_value_t = 0.0, value_parser = any_speed, allow_negative_numbers = true)]
+    start_surge_m_s: f64,
+    /// Speed to starboard over the ground at the start, m/s
+    #[arg(long, value_name = "M_S", default_value_t = 0.0, value_parser = any_speed, allow_negative_numbers = true)]
+    start_sway_m_s: f64,
+    /// Yaw rate at the start, degrees a second clockwise
+    #[arg(long, value_name = "DEG_S", default_value_t = 0.0, value_parser = degrees, allow_negative_numbers = true)]
+    start_yaw_rate_deg_s: f64,
+    /// Thrust of a kinematic boat at the start, per cent [default: what keeps its speed]
+    #[arg(long, value_name = "PCT", value_parser = per_cent, allow_negative_numbers = true)]
+    start_thrust_pct: Option<f64>,
+}
+
+impl StartArgs {
+    fn start(&self, boat: &Boat) -> Result<Start> {
+        if self.start_thrust_pct.is_some() && !matches!(boat.drive, Drive::Kinematic(_)) {
+            bail!("--start-thrust-pct is for kinematic boats; {} has thrusters, which start at rest", boat.name);
+        }
+        Ok(Start {
+            psi_rad: angle::rad_from_compass_deg(self.start_heading_deg),
+            nu: Planar {
+                surge: self.start_surge_m_s,
+                sway: self.start_sway_m_s,
+                yaw: self.start_yaw_rate_deg_s.to_radians(),
+            },
+            thrust_pct: self.start_thrust_pct,
+        })
+    }
+}
+
+fn any_speed(text: &str) -> Result<f64, String> {
+    within(text, -60.0, 60.0, "m/s")
+}
+
+fn per_cent(text: &str) -> Result<f64, String> {
+    within(text, -100.0, 100.0, "per cent")
+}
+
+fn approach_time(text: &str) -> Result<f64, String> {
+    within(text, 0.0, 3600.0, "s")
+}
+
+fn switch_angle(text: &str) -> Result<f64, String> {
+    within(text, 1.0, 90.0, "degrees")
+}
+
+fn differential(text: &str) -> Result<f64, String> {
+    within(text, 1.0, 100.0, "per cent")
+}
+
+fn duration(text: &str) -> Result<f64, String> {
+    within(text, 0.1, trial::LONGEST_S, "s")
+}
+
+/// A physics tick from the command line, s.
+pub(crate) fn tick(text: &str) -> Result<f64, String> {
+    let tick_s = within(text, 0.001, 0.1, "s")?;
+    trial::ticks_per_row(SimTime::from_s(tick_s)).map(|_| tick_s)
+}
+
+/// The tick that suits a boat: what its reference numbers hold for.
+pub(crate) fn usual_tick_s(boat: &Boat) -> f64 {
+    match boat.drive {
+        Drive::Thrusters { .. } => 0.05,
+        Drive::Kinematic(_) => 0.1,
+    }
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let (boat, _) = water_args::boat(&args.boat)?;
+    let start = args.start.start(&boat)?;
+    let tick = SimTime::from_s(args.tick_s.unwrap_or(usual_tick_s(&boat)));
+    let mut afloat = Afloat::new(&boat, &args.water.sea()?, tick, args.water.seed, &start)?;
+    match (&args.orders, args.manoeuvre) {
+        (Some(path), _) => replay(args, path, &boat, &mut afloat),
+        (None, Some(named)) => manoeuvre(args, named, &boat, &mut afloat),
+        (None, None) => bail!("neither --orders nor --manoeuvre"),
+    }
+}
+
+fn manoeuvre(args: &Args, named: Named, boat: &Boat, afloat: &mut Afloat) -> Result<ExitCode> {
+    let how = &args.manoeuvring;
+    let plan = Plan {
+        manoeuvre: named.manoeuvre(),
+        course_rad: angle::rad_from_compass_deg(args.start.start_heading_deg),
+        approach_m_s: how.approach_m_s,
+        approach_s: how.approach_s,
+        side: if how.to_port { -1.0 } else { 1.0 },
+        switch_rad: how.angle_deg.to_radians(),
+        differential: how.differential_pct.unwrap_or(how.angle_deg) / 100.0,
+        duration_s: args.duration_s,
+    };
+    let sailed = trial::sail(boat, afloat, &plan)?;
+    let file = |given: &Option<PathBuf>, ending: &str| {
+        given.clone().unwrap_or_else(|| PathBuf::from(format!("{}_{}.{ending}", boat.name, named.name())))
+    };
+    let (csv, plot) = (file(&args.csv, "csv"), file(&args.plot, "svg"));
+    write_track(&csv, &sailed.samples, args.with_orders)?;
+    let title = format!("{}: {}", boat.name, named.name().replace('_', " "));
+    trial_plot::write(&plot, &title, &sailed.samples)?;
+    screen::print(&format!("{title}\n{}", table(&trial::measures(&plan, &sailed))));
+    screen::print(&format!("track in {}, plot in {}\n", csv.display(), plot.display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The results, one a line.
+fn table(measures: &[trial::Measure]) -> String {
+    let line = |measure: &trial::Measure| {
+        let value = if measure.value.is_finite() { format!("{:.2}", measure.value) } else { "not reached".to_owned() };
+        let unit = if measure.value.is_finite() { measure.unit } else { "" };
+        format!("  {:<32}{value:>12} {unit}\n", measure.name)
+    };
+    measures.iter().map(line).collect()
+}
+
+fn replay(args: &Args, path: &Path, boat: &Boat, afloat: &mut Afloat) -> Result<ExitCode> {
+    let orders = Orders::of_sheet(&read_sheet(path)?, &Engine::new(boat))?;
+    let duration = args.duration_s.map_or(orders.end(), SimTime::from_s);
+    if duration < trial::ROW {
+        bail!("{}: the series ends where it begins; say with --duration-s how long its command holds", path.display());
+    }
+    let samples = trial::replay(afloat, &orders, duration)?;
+    let csv = args.csv.as_deref().ok_or_else(|| anyhow!("--orders needs --csv FILE for the track"))?;
+    write_track(csv, &samples, args.with_orders)?;
+    if let Some(plot) = &args.plot {
+        trial_plot::write(plot, &format!("{}: {}", boat.name, path.display()), &samples)?;
+    }
+    let last = &samples[samples.len() - 1];
+    screen::print(&format!(
+        "{}: {} for {:.1} s, at the end x {:.2} m, y {:.2} m, heading {:.1}°, {:.3} m/s\n",
+        csv.display(),
+        boat.name,
+        last.t_s,
+        last.at.east,
+        last.at.north,
+        angle::compass_deg_from_rad(last.psi_rad),
+        last.speed_m_s(),
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A CSV file with named columns.
+pub(crate) fn read_sheet(path: &Path) -> Result<Sheet> {
+    let file = File::open(path).with_context(|| format!("cannot read {}", path.display()))?;
+    Ok(Sheet::read(&path.display().to_string(), file)?)
+}
+
+fn write_track(path: &Path, samples: &[Sample], with_orders: bool) -> Result<()> {
+    let trying = || format!("cannot write the track to {}", path.display());
+    let file = File::create(path).with_context(trying)?;
+    trial::write_csv(samples, with_orders, BufWriter::new(file)).with_context(trying)
+}

@@ -1,0 +1,96 @@
+//! Which boat sails on which water: what `trial` and `identify` ask alike.
+
+use anyhow::{Context, Result, anyhow, bail};
+use game::Boat;
+use game::sea::Sea;
+use std::path::{Path, PathBuf};
+
+/// The water, from the command line.
+#[derive(clap::Args)]
+pub(crate) struct WaterArgs {
+    /// The sea file [default: salt water at rest, no wind]
+    #[arg(long, value_name = "FILE")]
+    sea: Option<PathBuf>,
+    /// Chooses the waves, gusts and whatever else the sea draws
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// The mean current, in place of the sea's own, m/s
+    #[arg(long, value_name = "M_S", value_parser = speed, default_value_if("current_toward_deg", clap::builder::ArgPredicate::IsPresent, "0"))]
+    current_m_s: Option<f64>,
+    /// Where that current goes to, compass degrees
+    #[arg(long, value_name = "DEG", value_parser = degrees, default_value_t = 0.0, allow_negative_numbers = true, requires = "current_m_s")]
+    current_toward_deg: f64,
+}
+
+impl WaterArgs {
+    /// The sea that was asked for.
+    pub(crate) fn sea(&self) -> Result<Sea> {
+        let mut sea = match &self.sea {
+            Some(path) => game::scenario::load_sea(path).with_context(|| format!("no sea in {}", path.display()))?,
+            None => arena::trial::still_sea(),
+        };
+        if let Some(speed_m_s) = self.current_m_s {
+            arena::trial::set_mean_current(&mut sea, speed_m_s, self.current_toward_deg);
+        }
+        Ok(sea)
+    }
+}
+
+/// The boat in a file, or of a name in `scenarios/boats`, and the file.
+pub(crate) fn boat(named: &str) -> Result<(Boat, PathBuf)> {
+    let path = boat_file(named)?;
+    let boat = game::scenario::load_boat(&path).with_context(|| format!("no boat in {}", path.display()))?;
+    Ok((boat, path))
+}
+
+/// The folder `scenarios/boats` is looked for in the working folder and those above it, then in the program's.
+fn boat_file(named: &str) -> Result<PathBuf> {
+    let given = PathBuf::from(named);
+    if given.is_file() {
+        return Ok(given);
+    }
+    if named.ends_with(".toml") || named.contains(['/', '\\']) {
+        bail!("there is no file {named}");
+    }
+    let starts = [std::env::current_dir().ok(), std::env::current_exe().ok()];
+    let above: Vec<&Path> = starts.iter().flatten().flat_map(|start| start.ancestors()).collect();
+    let folder = above.iter().map(|folder| folder.join("scenarios/boats")).find(|folder| folder.is_dir());
+    let folder = folder.ok_or_else(|| {
+        anyhow!("there is no file {named}, and no folder scenarios/boats here or above to look for a boat of that name")
+    })?;
+    let path = folder.join(format!("{named}.toml"));
+    if !path.is_file() {
+        let names = names_in(&folder).join(", ");
+        bail!("there is no file {named}, and no boat of that name in {}: {names}", folder.display());
+    }
+    Ok(path)
+}
+
+/// The boats in a folder.
+fn names_in(folder: &Path) -> Vec<String> {
+    let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
+    let paths = files.map(|file| file.path()).filter(|path| path.extension().is_some_and(|end| end == "toml"));
+    let mut names: Vec<String> = paths.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();
+    names.sort();
+    names
+}
+
+/// A number from the command line, within limits.
+pub(crate) fn within(text: &str, low: f64, high: f64, unit: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| format!("{text:?} is not a number, expected {low} to {high} {unit}"))?;
+    if (low..=high).contains(&number) {
+        Ok(number)
+    } else {
+        Err(format!("{text} is not within {low} to {high} {unit}"))
+    }
+}
+
+/// A speed, m/s.
+pub(crate) fn speed(text: &str) -> Result<f64, String> {
+    within(text, 0.0, 60.0, "m/s")
+}
+
+/// An angle, degrees.
+pub(crate) fn degrees(text: &str) -> Result<f64, String> {
+    within(text, -720.0, 720.0, "degrees")
+}

@@ -1,0 +1,393 @@
+//! `squall trial` from outside: references through its CSV door, mistakes explained.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![expect(clippy::disallowed_methods, reason = "tolerances are far above the last bit")]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// Numbers by column.
+type Columns = BTreeMap<String, Vec<f64>>;
+
+fn project() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn boat(name: &str) -> String {
+    project().join(format!("scenarios/boats/{name}.toml")).display().to_string()
+}
+
+fn squall(dir: &TempDir, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_squall")).current_dir(dir.path()).args(args).output().expect("the program starts")
+}
+
+/// Runs a trial that must succeed; what it printed.
+fn trial(dir: &TempDir, args: &[&str]) -> String {
+    let output = squall(dir, &[&["trial"], args].concat());
+    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Runs a trial that must be refused; why it was.
+fn refusal(dir: &TempDir, args: &[&str]) -> String {
+    let output = squall(dir, &[&["trial"], args].concat());
+    assert!(!output.status.success(), "{args:?} is accepted");
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(!text.contains("panicked"), "{text}");
+    text
+}
+
+fn columns(path: &Path) -> Columns {
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let heads: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let mut columns: Columns = heads.iter().map(|head| ((*head).to_owned(), vec![])).collect();
+    for line in lines {
+        for (head, cell) in heads.iter().zip(line.split(',')) {
+            columns.get_mut(*head).unwrap().push(cell.parse().unwrap_or(f64::NAN));
+        }
+    }
+    columns
+}
+
+fn reference(name: &str) -> Columns {
+    columns(&project().join("sim/tests").join(name))
+}
+
+fn write_orders(dir: &TempDir, heads: &str, rows: impl Iterator<Item = [f64; 3]>) -> PathBuf {
+    let rows: Vec<String> = rows.map(|[t, a, b]| format!("{t},{a},{b}")).collect();
+    let path = dir.path().join("in.csv");
+    std::fs::write(&path, format!("{heads}\n{}\n", rows.join("\n"))).unwrap();
+    path
+}
+
+/// An Otter reference and the track that its commands give through the door.
+fn otter(name: &str, more: &[&str]) -> (Columns, Columns) {
+    let dir = tempfile::tempdir().unwrap();
+    let want = reference(&format!("otter/{name}.csv"));
+    let rows = (0..want["t"].len()).map(|i| [want["t"][i], want["n1_cmd"][i], want["n2_cmd"][i]]);
+    write_orders(&dir, "t_s,port_rad_s,starboard_rad_s", rows);
+    trial(&dir, &[&[&boat("otter"), "--orders", "in.csv", "--csv", "out.csv"], more].concat());
+    (want, columns(&dir.path().join("out.csv")))
+}
+
+/// The largest distance from the reference over the distance sailed, which counts as a metre at least.
+fn position_error(want: &Columns, got: &Columns) -> f64 {
+    assert_eq!(want["t"].len(), got["t_s"].len());
+    let (mut sailed_m, mut worst) = (0.0, 0.0_f64);
+    for i in 0..want["t"].len() {
+        assert!((want["t"][i] - got["t_s"][i]).abs() < 1e-9);
+        let (x, y) = (want["y_east"][i], want["x_north"][i]);
+        if i > 0 {
+            sailed_m += (x - want["y_east"][i - 1]).hypot(y - want["x_north"][i - 1]);
+        }
+        worst = worst.max((got["x_m"][i] - x).hypot(got["y_m"][i] - y) / f64::max(sailed_m, 1.0));
+    }
+    worst
+}
+
+fn last(columns: &Columns, head: &str) -> f64 {
+    *columns[head].last().unwrap()
+}
+
+#[test]
+fn the_otter_accelerates_as_the_reference_does() {
+    let (want, got) = otter("accel_n80", &[]);
+    let error = position_error(&want, &got);
+    println!("position within {:.4} %", 100.0 * error);
+    assert!(error < 0.005, "position is off by {error}");
+    let steady_m_s = 2.0 * 0.01108 * 80.0 * 80.0 / 77.5544;
+    assert!((last(&got, "surge_m_s") - steady_m_s).abs() < 0.001 * steady_m_s);
+    assert!((last(&got, "port_newton") - 0.01108 * 6400.0).abs() < 1e-6);
+}
+
+#[test]
+fn the_otter_turns_as_the_reference_does() {
+    let (want, got) = otter("turn_80_60", &[]);
+    let (u, v, r) = (last(&got, "surge_m_s"), last(&got, "sway_m_s"), last(&got, "yaw_rate_deg_s"));
+    let radius_m = u.hypot(v) / r.to_radians();
+    println!("{u} m/s, {r} deg/s, {radius_m} m, position within {:.4} %", 100.0 * position_error(&want, &got));
+    for (what, got, want) in [("surge", u, 1.400), ("yaw rate", r, 9.375), ("radius", radius_m, 8.57)] {
+        assert!((got - want).abs() < 0.01 * want, "{what} {got}, reference {want}");
+    }
+    assert!(position_error(&want, &got) < 0.01);
+}
+
+#[test]
+fn the_otter_drifts_in_a_current_as_the_reference_does() {
+    let (want, got) = otter("current_drift_0p5_b30", &["--current-m-s", "0.5", "--current-toward-deg", "30"]);
+    let error = position_error(&want, &got);
+    let psi_deg = last(&got, "heading_deg") - 360.0;
+    println!("position within {:.4} %, heading {psi_deg}", 100.0 * error);
+    assert!(error < 0.005, "position is off by {error}");
+    assert!((psi_deg + 6.22).abs() < 0.05, "heading {psi_deg}");
+    for i in 0..want["t"].len() {
+        // Over the ground, along the boat's axes.
+        assert!((want["u"][i] - got["surge_m_s"][i]).abs() < 2e-3, "row {i}: {} {}", want["u"][i], got["surge_m_s"][i]);
+        assert!((want["v"][i] - got["sway_m_s"][i]).abs() < 2e-3, "row {i}: {} {}", want["v"][i], got["sway_m_s"][i]);
+    }
+}
+
+/// The swings of a zigzag (furthest headings, degrees) and the mean period, s, after 40 s.
+fn zigzag(times_s: &[f64], headings_deg: &[f64]) -> (Vec<f64>, f64) {
+    let within: Vec<f64> = headings_deg.iter().map(|h| (h + 180.0).rem_euclid(360.0) - 180.0).collect();
+    let settled = || (1..times_s.len() - 1).filter(|i| times_s[*i] > 40.0);
+    let turns = |i: &usize| (within[*i] - within[i - 1]) * (within[i + 1] - within[*i]) <= 0.0;
+    let swings_deg = settled().filter(turns).map(|i| within[i]).filter(|psi| psi.abs() > 10.0).collect();
+    let rising = settled().filter(|i| within[i - 1] < 0.0 && within[*i] >= 0.0);
+    let passes: Vec<f64> = rising.map(|i| times_s[i] - 0.1 * within[i] / (within[i] - within[i - 1])).collect();
+    (swings_deg, (passes[passes.len() - 1] - passes[0]) / (passes.len() - 1) as f64)
+}
+
+fn mean_size(numbers: &[f64]) -> f64 {
+    numbers.iter().map(|number| number.abs()).sum::<f64>() / numbers.len() as f64
+}
+
+/// The reference switched every 0.02 s if it had to, its rows are 0.1 s apart: replayed, a single swing is off by as much as
+/// the boat turns in that time (1°), but not their mean and not the period.
+#[test]
+fn the_otter_zigzags_as_the_reference_does() {
+    let (want, got) = otter("zigzag10_n80_d10", &[]);
+    let psi_deg: Vec<f64> = want["psi"].iter().map(|psi| psi.to_degrees()).collect();
+    let (want_deg, want_s) = zigzag(&want["t"], &psi_deg);
+    let (swings_deg, period_s) = zigzag(&got["t_s"], &got["heading_deg"]);
+    println!("period {period_s} s of {want_s}, mean {} of {}", mean_size(&swings_deg), mean_size(&want_deg));
+    assert!((period_s - 8.25).abs() < 0.02 * 8.25, "period {period_s} s");
+    assert!((mean_size(&swings_deg) - mean_size(&want_deg)).abs() < 0.1, "{swings_deg:?}, reference {want_deg:?}");
+}
+
+/// With the switches where the recorded shaft speeds show that they were, every swing is right.
+#[test]
+fn the_otter_zigzags_swing_by_swing_where_the_switches_are_known() {
+    let dir = tempfile::tempdir().unwrap();
+    let want = reference("otter/zigzag10_n80_d10.csv");
+    let switch = |i: usize| {
+        let (told, before, now) = (want["n1_cmd"][i], want["n1"][i - 1], want["n1"][i]);
+        // A first-order lag of 0.1 s has come from `before` towards `told` since the switch, if it has moved at all.
+        let left = (now - told) / (before - told);
+        want["t"][i] + if now == before { 0.0 } else { 0.1 * left.ln() }
+    };
+    let changes = (1..want["t"].len()).filter(|i| want["n1_cmd"][*i] != want["n1_cmd"][i - 1]);
+    let rows = changes.map(|i| [(50.0 * switch(i)).round() / 50.0, want["n1_cmd"][i], want["n2_cmd"][i]]);
+    write_orders(&dir, "t_s,port_rad_s,starboard_rad_s", [[0.0, 80.0, 80.0]].into_iter().chain(rows));
+    let end = last(&want, "t").to_string();
+    let how = ["--tick-s", "0.02", "--duration-s", &end];
+    trial(&dir, &[&[boat("otter").as_str(), "--orders", "in.csv", "--csv", "out.csv"][..], &how].concat());
+    let got = columns(&dir.path().join("out.csv"));
+    let psi_deg: Vec<f64> = want["psi"].iter().map(|psi| psi.to_degrees()).collect();
+    let ((want_deg, _), (swings_deg, _)) = (zigzag(&want["t"], &psi_deg), zigzag(&got["t_s"], &got["heading_deg"]));
+    assert_eq!(swings_deg.len(), want_deg.len());
+    let worst_deg = swings_deg.iter().zip(&want_deg).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let error = position_error(&want, &got);
+    println!("swings within {worst_deg} degrees, position within {:.4} %", 100.0 * error);
+    assert!(worst_deg < 0.5 && error < 0.005, "{swings_deg:?}, reference {want_deg:?}; position {error}");
+}
+
+/// A kinematic reference through the door, every row and column within a tolerance of 1e-6. A row of the reference is the
+/// state after its command, so the command is given at the time of the row before.
+fn kinematic(name: &str, kind: &str, heads: [&str; 2], more: &[&str]) {
+    let dir = tempfile::tempdir().unwrap();
+    let want = reference(&format!("kinematic/{kind}_{name}.csv"));
+    let from = if heads[0] == "thrust" { "t_s,thrust_pct,rudder_pct" } else { "t_s,speed_m_s,heading_deg" };
+    let n = want["t"].len();
+    write_orders(&dir, from, (1..n).map(|i| [want["t"][i - 1], want[heads[0]][i], want[heads[1]][i]]));
+    let end = want["t"][n - 1].to_string();
+    let fixed = ["--orders", "in.csv", "--csv", "out.csv", "--duration-s", &end];
+    trial(&dir, &[&[boat(&format!("{kind}_kinematic")).as_str()][..], &fixed, more].concat());
+    let got = columns(&dir.path().join("out.csv"));
+    assert_eq!(got["t_s"].len(), n);
+    let mut worst = 0.0_f64;
+    for i in 0..n {
+        let turned = (got["heading_deg"][i] - want["heading"][i] + 180.0).rem_euclid(360.0) - 180.0;
+        let errors = [
+            got["x_m"][i] - want["x"][i],
+            got["y_m"][i] - want["y"][i],
+            got["surge_m_s"][i] - want["speed"][i],
+            turned,
+        ];
+        for (what, error) in ["x", "y", "speed", "heading"].iter().zip(errors) {
+            worst = worst.max(error.abs());
+            assert!(error.abs() < 1e-6, "{kind} {name}, row {i}: {what} is off by {error}");
+        }
+    }
+    println!("{kind} {name}: within {worst:.2e}");
+    assert!(got["port_newton"].iter().all(|newton| newton.is_nan()), "it has no thrusters");
+}
+
+const STEERED: [&str; 2] = ["cmd_speed", "target_heading"];
+
+#[test]
+fn kinematic_boats_accelerate_as_the_reference_does() {
+    kinematic("accel_max", "heron", STEERED, &[]);
+    kinematic("accel_max", "surveyor", STEERED, &[]);
+}
+
+#[test]
+fn kinematic_boats_turn_as_the_reference_does() {
+    // What the reference's first row says.
+    let start = ["--start-surge-m-s", "1.999944", "--start-thrust-pct", "99.996694"];
+    kinematic("turn90_max", "heron", STEERED, &start);
+    kinematic("turn90_max", "surveyor", STEERED, &["--start-surge-m-s", "3"]);
+}
+
+#[test]
+fn kinematic_boats_take_thrust_and_rudder_as_the_reference_does() {
+    let start = ["--start-surge-m-s", "3", "--start-thrust-pct", "100"];
+    kinematic("tr_thrust100_rudder50", "surveyor", ["thrust", "rudder"], &start);
+}
+
+#[test]
+fn mistakes_in_a_series_name_file_line_and_column() {
+    let dir = tempfile::tempdir().unwrap();
+    let (otter, surveyor, point) = (boat("otter"), boat("surveyor_m1_8"), boat("heron_kinematic"));
+    for (boat, text, want) in [
+        (
+            &otter,
+            "t_s,port_rad_s,starboard_rad_s\n0,80,120\n",
+            "in.csv:2: starboard_rad_s is 120, expected -101.737 to 103.931",
+        ),
+        (&otter, "t_s,port_rad_s,starboard_rad_s\n0,80,x\n", "in.csv:2: starboard_rad_s is x, expected"),
+        (&otter, "t_s,port_rad_s,starboard_rad_s\n0,80,80\n0,80,80\n", "in.csv:3: t_s is 0, expected more than"),
+        (&otter, "t_s,port_rad_s\n0,80\n", "in.csv:1: column port_rad_s without starboard_rad_s"),
+        (&otter, "t_s,a\n0,80\n", "in.csv:1: no columns of commands among t_s, a, expected one of"),
+        (&otter, "t_s,port_rad_s,starboard_rad_s,port_pct,starboard_pct\n0,1,1,1,1\n", "several kinds of commands"),
+        (&otter, "t_s,thrust_pct,rudder_pct\n0,1,1\n", "the boat has two thrusters and no rudder"),
+        (&surveyor, "t_s,port_rad_s,starboard_rad_s\n0,1,1\n", "the boat has a thrust table and no propeller curve"),
+        (&surveyor, "t_s,port_newton,starboard_newton\n0,1,70\n", "starboard_newton is 70, expected -37.125 to 67.5"),
+        (&point, "t_s,port_pct,starboard_pct\n0,1,1\n", "the boat is kinematic and has no thrusters"),
+        (&otter, "t_s,port_pct,starboard_pct\n0,1,1\n", "the series ends where it begins"),
+        (&otter, "", "in.csv: no rows"),
+    ] {
+        std::fs::write(dir.path().join("in.csv"), text).unwrap();
+        let said = refusal(&dir, &[boat, "--orders", "in.csv", "--csv", "out.csv"]);
+        assert!(said.contains(want), "{text:?}: {said}");
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_what_could() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("in.csv"), "t_s,port_pct,starboard_pct\n0,1,1\n5,1,1\n").unwrap();
+    let otter = boat("otter");
+    let orders = ["--orders", "in.csv", "--csv", "out.csv"];
+    for (args, want) in [
+        (&["--manoeuvre", "loop"][..], "turning_circle"),
+        (&[], "--orders"),
+        (&["--orders", "none.csv", "--csv", "out.csv"], "cannot read none.csv"),
+        (&["--orders", "in.csv"], "--csv"),
+        (&[&orders[..], &["--tick-s", "0.03"]].concat(), "expected 0.001 to 0.1"),
+        (&[&orders[..], &["--sea", "none.toml"]].concat(), "none.toml"),
+        (&[&orders[..], &["--start-thrust-pct", "50"]].concat(), "kinematic"),
+        (&[&orders[..], &["--current-toward-deg", "50"]].concat(), "--current-m-s"),
+    ] {
+        let said = refusal(&dir, &[&[otter.as_str()], args].concat());
+        assert!(said.contains(want), "{args:?}: {said}");
+    }
+    assert!(refusal(&dir, &["no_such_boat", "--manoeuvre", "spin"]).contains("no_such_boat"));
+}
+
+#[test]
+fn the_units_of_a_thruster_say_the_same() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut tracks = vec![];
+    let newton = 0.01108 * 50.0 * 50.0;
+    for (heads, value) in [
+        ("t_s,port_rad_s,starboard_rad_s", 50.0),
+        ("t (s),Port [rad/s],Starboard [rad/s]", 50.0),
+        ("t_s,port_pct,starboard_pct", 100.0 * 50.0 / 103.931),
+        ("t_s,port_newton,starboard_newton", newton),
+    ] {
+        write_orders(&dir, heads, [[0.0, value, value], [20.0, 0.0, 0.0]].into_iter());
+        trial(&dir, &[&boat("otter"), "--orders", "in.csv", "--csv", "out.csv"]);
+        tracks.push(columns(&dir.path().join("out.csv")));
+    }
+    assert!((last(&tracks[0], "port_newton") - newton).abs() < 1e-6);
+    for track in &tracks {
+        assert!((last(track, "y_m") - last(&tracks[0], "y_m")).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_boat_starts_as_it_is_told_to() {
+    let dir = tempfile::tempdir().unwrap();
+    write_orders(&dir, "t_s,speed_m_s,heading_deg", [[0.0, 1.0, 90.0], [30.0, 1.0, 90.0]].into_iter());
+    let start = ["--start-heading-deg", "350", "--start-surge-m-s", "1.5", "--start-sway-m-s", "-0.1"];
+    let more = ["--start-yaw-rate-deg-s", "3", "--with-orders"];
+    trial(
+        &dir,
+        &[&[boat("surveyor_m1_8").as_str(), "--orders", "in.csv", "--csv", "out.csv"], &start[..], &more].concat(),
+    );
+    let got = columns(&dir.path().join("out.csv"));
+    for (head, want) in [
+        ("t_s", 0.0),
+        ("x_m", 0.0),
+        ("y_m", 0.0),
+        ("heading_deg", 350.0),
+        ("surge_m_s", 1.5),
+        ("sway_m_s", -0.1),
+        ("yaw_rate_deg_s", 3.0),
+        ("port_newton", 0.0),
+        ("heading_order_deg", 90.0),
+    ] {
+        assert!((got[head][0] - want).abs() < 1e-9, "{head} starts at {}", got[head][0]);
+    }
+    assert!((last(&got, "heading_deg") - 90.0).abs() < 3.0 && (last(&got, "surge_m_s") - 1.0).abs() < 0.05);
+}
+
+/// The results of a manoeuvre by name.
+fn manoeuvre(dir: &TempDir, kind: &str, name: &str, more: &[&str]) -> BTreeMap<String, f64> {
+    let text = trial(dir, &[&[boat(kind).as_str(), "--manoeuvre", name], more].concat());
+    let number = |line: &str| -> Option<(String, f64)> {
+        let (what, rest) = line.strip_prefix("  ")?.split_once("  ")?;
+        Some((what.to_owned(), rest.split_whitespace().next()?.parse().ok()?))
+    };
+    text.lines().filter_map(number).collect()
+}
+
+#[test]
+fn manoeuvres_give_numbers_a_track_and_a_plot() {
+    for name in ["turning_circle", "zigzag", "crash_stop", "acceleration", "drift", "spin"] {
+        for kind in ["surveyor_m1_8", "surveyor_kinematic"] {
+            let dir = tempfile::tempdir().unwrap();
+            let current = ["--current-m-s", "0.2", "--current-toward-deg", "45"];
+            let results = manoeuvre(&dir, kind, name, &current);
+            assert!(results.len() >= 4, "{kind} {name}: {results:?}");
+            let track = columns(&dir.path().join(format!("{kind}_{name}.csv")));
+            assert!((last(&track, "t_s") - results["duration"]).abs() < 0.01, "{kind} {name}");
+            assert_eq!((track["x_m"][0], track["y_m"][0]), (0.0, 0.0));
+            let svg = std::fs::read_to_string(dir.path().join(format!("{kind}_{name}.svg"))).unwrap();
+            assert!(svg.contains("Track") && svg.contains("m/s") && svg.ends_with("</svg>\n"));
+        }
+    }
+}
+
+#[test]
+fn a_drifting_boat_goes_where_the_water_goes() {
+    let dir = tempfile::tempdir().unwrap();
+    let results = manoeuvre(&dir, "otter", "drift", &["--current-m-s", "0.5", "--current-toward-deg", "30"]);
+    assert!(
+        (results["drift speed"] - 0.5).abs() < 0.005 && (results["drift toward"] - 30.0).abs() < 0.5,
+        "{results:?}"
+    );
+}
+
+#[test]
+fn acceleration_has_the_published_numbers_of_the_kinematic_surveyor() {
+    let dir = tempfile::tempdir().unwrap();
+    let results = manoeuvre(&dir, "surveyor_kinematic", "acceleration", &["--duration-s", "60"]);
+    assert!((results["steady speed"] - 3.0).abs() < 0.005, "{results:?}");
+}
+
+#[test]
+fn turns_to_both_sides_are_mirror_images() {
+    let dir = tempfile::tempdir().unwrap();
+    let starboard = manoeuvre(&dir, "surveyor_m1_8", "turning_circle", &[]);
+    let port = manoeuvre(&dir, "surveyor_m1_8", "turning_circle", &["--to-port", "--start-heading-deg", "200"]);
+    for name in
+        ["advance at 90°", "transfer at 90°", "tactical diameter at 180°", "steady turning diameter", "speed loss"]
+    {
+        assert!((starboard[name] - port[name]).abs() < 0.02, "{name}: {} and {}", starboard[name], port[name]);
+        assert!(starboard[name] > 0.0, "{name}");
+    }
+}
