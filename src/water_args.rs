@@ -78,7 +78,11 @@ fn names_in(folder: &Path) -> Vec<String> {
 /// A number from the command line, within limits.
 pub(crate) fn within(text: &str, low: f64, high: f64, unit: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| format!("{text:?} is not a number, expected {low} to {high} {unit}"))?;
-    if (low..=high).contains(&number) { Ok(number) } else { Err(format!("{text} is not within {low} to {high} {unit}")) }
+    if (low..=high).contains(&number) {
+        Ok(number)
+    } else {
+        Err(format!("{text} is not within {low} to {high} {unit}"))
+    }
 }
 
 /// A speed, m/s.

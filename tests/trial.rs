@@ -1,4 +1,4 @@
-//! `squall trial` from outside: references through its CSV door, mistakes explained.
+//! `squall trial` and `squall identify` from outside: references through their CSV door, mistakes explained.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![expect(clippy::disallowed_methods, reason = "tolerances are far above the last bit")]
 
@@ -242,7 +242,11 @@ fn mistakes_in_a_series_name_file_line_and_column() {
     let dir = tempfile::tempdir().unwrap();
     let (otter, surveyor, point) = (boat("otter"), boat("surveyor_m1_8"), boat("heron_kinematic"));
     for (boat, text, want) in [
-        (&otter, "t_s,port_rad_s,starboard_rad_s\n0,80,120\n", "in.csv:2: starboard_rad_s is 120, expected -101.737 to 103.931"),
+        (
+            &otter,
+            "t_s,port_rad_s,starboard_rad_s\n0,80,120\n",
+            "in.csv:2: starboard_rad_s is 120, expected -101.737 to 103.931",
+        ),
         (&otter, "t_s,port_rad_s,starboard_rad_s\n0,80,x\n", "in.csv:2: starboard_rad_s is x, expected"),
         (&otter, "t_s,port_rad_s,starboard_rad_s\n0,80,80\n0,80,80\n", "in.csv:3: t_s is 0, expected more than"),
         (&otter, "t_s,port_rad_s\n0,80\n", "in.csv:1: column port_rad_s without starboard_rad_s"),
@@ -310,7 +314,10 @@ fn a_boat_starts_as_it_is_told_to() {
     write_orders(&dir, "t_s,speed_m_s,heading_deg", [[0.0, 1.0, 90.0], [30.0, 1.0, 90.0]].into_iter());
     let start = ["--start-heading-deg", "350", "--start-surge-m-s", "1.5", "--start-sway-m-s", "-0.1"];
     let more = ["--start-yaw-rate-deg-s", "3", "--with-orders"];
-    trial(&dir, &[&[boat("surveyor_m1_8").as_str(), "--orders", "in.csv", "--csv", "out.csv"], &start[..], &more].concat());
+    trial(
+        &dir,
+        &[&[boat("surveyor_m1_8").as_str(), "--orders", "in.csv", "--csv", "out.csv"], &start[..], &more].concat(),
+    );
     let got = columns(&dir.path().join("out.csv"));
     for (head, want) in [
         ("t_s", 0.0),
@@ -359,7 +366,10 @@ fn manoeuvres_give_numbers_a_track_and_a_plot() {
 fn a_drifting_boat_goes_where_the_water_goes() {
     let dir = tempfile::tempdir().unwrap();
     let results = manoeuvre(&dir, "otter", "drift", &["--current-m-s", "0.5", "--current-toward-deg", "30"]);
-    assert!((results["drift speed"] - 0.5).abs() < 0.005 && (results["drift toward"] - 30.0).abs() < 0.5, "{results:?}");
+    assert!(
+        (results["drift speed"] - 0.5).abs() < 0.005 && (results["drift toward"] - 30.0).abs() < 0.5,
+        "{results:?}"
+    );
 }
 
 #[test]
@@ -374,8 +384,62 @@ fn turns_to_both_sides_are_mirror_images() {
     let dir = tempfile::tempdir().unwrap();
     let starboard = manoeuvre(&dir, "surveyor_m1_8", "turning_circle", &[]);
     let port = manoeuvre(&dir, "surveyor_m1_8", "turning_circle", &["--to-port", "--start-heading-deg", "200"]);
-    for name in ["advance at 90°", "transfer at 90°", "tactical diameter at 180°", "steady turning diameter", "speed loss"] {
+    for name in
+        ["advance at 90°", "transfer at 90°", "tactical diameter at 180°", "steady turning diameter", "speed loss"]
+    {
         assert!((starboard[name] - port[name]).abs() < 0.02, "{name}: {} and {}", starboard[name], port[name]);
         assert!(starboard[name] > 0.0, "{name}");
+    }
+}
+
+/// A log of the Surveyor, and a boat file that starts elsewhere.
+fn log_and_start(dir: &TempDir) {
+    let rows = [[90.0, 90.0], [60.0, 20.0], [20.0, 70.0], [-40.0, -40.0], [100.0, 40.0], [0.0, 0.0], [50.0, 80.0]];
+    let steps = (0..28).map(|i| [6.0 * f64::from(i), rows[i as usize % 7][0], rows[i as usize % 7][1]]);
+    write_orders(dir, "t_s,port_pct,starboard_pct", steps);
+    trial(dir, &[&boat("surveyor_m1_8"), "--orders", "in.csv", "--csv", "log.csv", "--with-orders"]);
+    let start = format!("base = {:?}\n[hull]\nsurge_linear_kg_s = 9\nyaw_linear_kg_m2_s = 24\n", boat("surveyor_m1_8"));
+    std::fs::write(dir.path().join("start.toml"), start).unwrap();
+}
+
+#[test]
+fn identify_writes_a_boat_that_check_accepts() {
+    let dir = tempfile::tempdir().unwrap();
+    log_and_start(&dir);
+    let args = ["identify", "start.toml", "--log", "log.csv", "--fit", "surge_linear,yaw_linear", "--out", "new.toml"];
+    let output = squall(&dir, &args);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(said.contains("surge_linear") && said.contains('±') && said.contains("R²"), "{said}");
+    let toml = std::fs::read_to_string(dir.path().join("new.toml")).unwrap();
+    assert!(toml.starts_with("# Fitted to log.csv") && toml.contains("base = \"start.toml\""), "{toml}");
+    let number = |key: &str| -> f64 {
+        let line = toml.lines().find(|line| line.starts_with(key)).unwrap();
+        line.split_whitespace().nth(2).unwrap().parse().unwrap()
+    };
+    // A log without noise gives the numbers of the boat that sailed.
+    for (key, want) in [("surge_linear_kg_s", 6.0), ("yaw_linear_kg_m2_s", 16.0)] {
+        assert!((number(key) - want).abs() < 0.01, "{key} {}", number(key));
+    }
+    let checked = squall(&dir, &["check", "new.toml"]);
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
+    trial(&dir, &["new.toml", "--manoeuvre", "acceleration"]);
+}
+
+#[test]
+fn identify_says_what_is_wrong() {
+    let dir = tempfile::tempdir().unwrap();
+    log_and_start(&dir);
+    let kinematic = boat("heron_kinematic");
+    for (args, want) in [
+        (["start.toml", "--log", "none.csv", "--fit", "lag"], "cannot read none.csv"),
+        (["start.toml", "--log", "in.csv", "--fit", "lag"], "in.csv:1: no column heading_deg"),
+        (["start.toml", "--log", "log.csv", "--fit", "keel"], "keel is no parameter, expected some of surge_linear"),
+        (["none.toml", "--log", "log.csv", "--fit", "lag"], "there is no file none.toml"),
+        ([kinematic.as_str(), "--log", "log.csv", "--fit", "surge_linear"], "heron_kinematic is kinematic"),
+    ] {
+        let output = squall(&dir, &[&["identify"], &args[..]].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.contains(want), "{args:?}: {said}");
     }
 }

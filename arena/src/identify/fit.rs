@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use thiserror::Error;
 
 /// A fitted parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Estimate {
     /// Which.
     pub parameter: Parameter,
@@ -157,7 +157,12 @@ fn report(problem: &Problem<'_>) -> Result<Fit, NoFit> {
     let estimate = |(i, knob): (usize, &Knob)| {
         let value = knob.value(at[i]);
         // The search moves the logarithm: d value = value d log.
-        Estimate { parameter: knob.parameter, before: knob.before, value, plus_minus: NORMAL_975 * value * deviation(i) }
+        Estimate {
+            parameter: knob.parameter,
+            before: knob.before,
+            value,
+            plus_minus: NORMAL_975 * value * deviation(i),
+        }
     };
     let mut confused = vec![];
     for i in 0..problem.knobs.len() {
@@ -194,8 +199,11 @@ fn covariance(jacobian: &DMatrix<f64>, variance: f64, problem: &Problem<'_>) -> 
 
 fn quality(problem: &Problem<'_>, channel: usize) -> Option<Quality> {
     let residuals = problem.residuals_of(channel);
-    let measured: Vec<f64> =
-        problem.log.measured[problem.segments[0]..].iter().map(|cells| cells[channel]).filter(|c| c.is_finite()).collect();
+    let measured: Vec<f64> = problem.log.measured[problem.segments[0]..]
+        .iter()
+        .map(|cells| cells[channel])
+        .filter(|c| c.is_finite())
+        .collect();
     if residuals.is_empty() {
         return None;
     }

@@ -45,7 +45,8 @@ impl<'a> Problem<'a> {
         let segments = log.segments(setting.segment);
         let rows = segments[0]..log.measured.len();
         let measured = |row: usize| (0..6).filter(move |channel| log.measured[row][*channel].is_finite());
-        let cells: Vec<(usize, usize)> = rows.flat_map(|row| measured(row).map(move |channel| (row, channel))).collect();
+        let cells: Vec<(usize, usize)> =
+            rows.flat_map(|row| measured(row).map(move |channel| (row, channel))).collect();
         let borders = segments.iter().map(|start| cells.partition_point(|(row, _)| row < start)).collect();
         let fitted = (0..6).filter(|channel| cells.iter().any(|(_, of)| of == channel)).collect();
         let known = |row: &usize| log.measured[*row].map(|cell| if cell.is_finite() { cell } else { 0.0 });

@@ -175,11 +175,8 @@ impl Point {
         self.at = self.at + motion.travel_m;
         self.now = self.now + tick;
         let carried = in_body(motion.psi_rad, drift_m_s);
-        self.nu = Planar {
-            surge: motion.speed_m_s + carried.ahead,
-            sway: carried.starboard,
-            yaw: motion.turn_rad / dt_s,
-        };
+        self.nu =
+            Planar { surge: motion.speed_m_s + carried.ahead, sway: carried.starboard, yaw: motion.turn_rad / dt_s };
     }
 }
 

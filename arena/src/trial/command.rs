@@ -135,9 +135,7 @@ impl Engine {
                     .to_owned()),
             },
             (Engine::Thrusters(_, thruster), Pair::Pct) => match &thruster.curve {
-                ThrustCurve::Table { points } => {
-                    Ok([(100.0 * points[0].0, 100.0 * points[points.len() - 1].0); 2])
-                }
+                ThrustCurve::Table { points } => Ok([(100.0 * points[0].0, 100.0 * points[points.len() - 1].0); 2]),
                 ThrustCurve::Propeller { .. } => Ok([(-100.0, 100.0); 2]),
             },
             (Engine::Thrusters(model, _), Pair::Newton) => Ok([(model.newton_min, model.newton_max); 2]),

@@ -190,9 +190,9 @@ fn is_over(plan: &Plan, sailed: &Sailed, t_s: f64) -> bool {
         return t_s >= duration_s - 1e-6;
     }
     let done = match plan.manoeuvre {
-        Manoeuvre::TurningCircle => turned_rad(&sailed.samples).last().is_some_and(|turned| {
-            turned.abs() >= 2.0 * std::f64::consts::TAU
-        }),
+        Manoeuvre::TurningCircle => {
+            turned_rad(&sailed.samples).last().is_some_and(|turned| turned.abs() >= 2.0 * std::f64::consts::TAU)
+        }
         Manoeuvre::Zigzag => sailed.switches.len() >= SWITCHES,
         Manoeuvre::CrashStop => {
             sailed.samples.last().is_some_and(|sample| sample.surge_through_water_m_s <= DEAD * sailed.approach_m_s)

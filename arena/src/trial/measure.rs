@@ -145,9 +145,11 @@ fn drift(sailed: &Sailed) -> Vec<Measure> {
     let (Some(first), Some(last)) = (half.first(), half.last()) else { return vec![] };
     let way = last.at - first.at;
     let speed_m_s = way.length() / (last.t_s - first.t_s);
-    let toward_deg = if way.length() > 1e-6 { compass_deg_from_rad(math::atan2(way.east, way.north)) } else { f64::NAN };
+    let toward_deg =
+        if way.length() > 1e-6 { compass_deg_from_rad(math::atan2(way.east, way.north)) } else { f64::NAN };
     let turned = turned_rad(&sailed.samples);
-    let mean_rad = sailed.samples[0].psi_rad + turned[sailed.samples.len() / 2..].iter().sum::<f64>() / half.len() as f64;
+    let mean_rad =
+        sailed.samples[0].psi_rad + turned[sailed.samples.len() / 2..].iter().sum::<f64>() / half.len() as f64;
     vec![
         measure("drift speed", speed_m_s, "m/s"),
         measure("drift toward", toward_deg, "°"),
@@ -180,6 +182,10 @@ fn spin(sailed: &Sailed) -> Vec<Measure> {
         measure("time to 63.2 % of it", reached.map_or(f64::NAN, |sample| sample.t_s), "s"),
         measure("turning diameter", 2.0 * mean(half, Sample::speed_m_s) / rate_rad_s.abs(), "m"),
         measure("drift speed", drift_m_s, "m/s"),
-        measure("furthest from the start", sailed.samples.iter().map(|sample| sample.at.length()).fold(0.0, f64::max), "m"),
+        measure(
+            "furthest from the start",
+            sailed.samples.iter().map(|sample| sample.at.length()).fold(0.0, f64::max),
+            "m",
+        ),
     ]
 }

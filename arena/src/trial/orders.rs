@@ -23,9 +23,9 @@ impl Orders {
     pub fn of_sheet(sheet: &Sheet, engine: &Engine) -> Result<Orders, Mistake> {
         let times_s = sheet.times(LONGEST_S)?;
         let (pair, columns) = pair_of(sheet)?;
-        let ranges = engine.ranges(pair).map_err(|lack| {
-            sheet.mistake(Some(1), format!("columns {}: {lack}", pair.columns().join(",")))
-        })?;
+        let ranges = engine
+            .ranges(pair)
+            .map_err(|lack| sheet.mistake(Some(1), format!("columns {}: {lack}", pair.columns().join(","))))?;
         let mut steps = Vec::with_capacity(times_s.len());
         for (row, t_s) in times_s.into_iter().enumerate() {
             let a = sheet.number(row, columns[0], ranges[0])?;
@@ -78,8 +78,11 @@ fn pair_of(sheet: &Sheet) -> Result<(Pair, [usize; 2]), Mistake> {
     match found[..] {
         [one] => Ok(one),
         [] => {
-            let message =
-                format!("no columns of commands among {}, expected one of {}", sheet.heads().join(", "), names(&Pair::ALL));
+            let message = format!(
+                "no columns of commands among {}, expected one of {}",
+                sheet.heads().join(", "),
+                names(&Pair::ALL)
+            );
             Err(sheet.mistake(Some(1), message))
         }
         _ => {

@@ -6,17 +6,8 @@ use game::angle::compass_deg_from_rad;
 use sim::hull::Planar;
 
 /// The columns of a trial's file, in order.
-pub const COLUMNS: [&str; 9] = [
-    "t_s",
-    "x_m",
-    "y_m",
-    "heading_deg",
-    "surge_m_s",
-    "sway_m_s",
-    "yaw_rate_deg_s",
-    "port_newton",
-    "starboard_newton",
-];
+pub const COLUMNS: [&str; 9] =
+    ["t_s", "x_m", "y_m", "heading_deg", "surge_m_s", "sway_m_s", "yaw_rate_deg_s", "port_newton", "starboard_newton"];
 
 /// A boat at one moment of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
