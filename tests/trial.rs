@@ -95,7 +95,6 @@ fn last(columns: &Columns, head: &str) -> f64 {
 fn the_otter_accelerates_as_the_reference_does() {
     let (want, got) = otter("accel_n80", &[]);
     let error = position_error(&want, &got);
-    println!("position within {:.4} %", 100.0 * error);
     assert!(error < 0.005, "position is off by {error}");
     let steady_m_s = 2.0 * 0.01108 * 80.0 * 80.0 / 77.5544;
     assert!((last(&got, "surge_m_s") - steady_m_s).abs() < 0.001 * steady_m_s);
@@ -107,7 +106,6 @@ fn the_otter_turns_as_the_reference_does() {
     let (want, got) = otter("turn_80_60", &[]);
     let (u, v, r) = (last(&got, "surge_m_s"), last(&got, "sway_m_s"), last(&got, "yaw_rate_deg_s"));
     let radius_m = u.hypot(v) / r.to_radians();
-    println!("{u} m/s, {r} deg/s, {radius_m} m, position within {:.4} %", 100.0 * position_error(&want, &got));
     for (what, got, want) in [("surge", u, 1.400), ("yaw rate", r, 9.375), ("radius", radius_m, 8.57)] {
         assert!((got - want).abs() < 0.01 * want, "{what} {got}, reference {want}");
     }
@@ -119,7 +117,6 @@ fn the_otter_drifts_in_a_current_as_the_reference_does() {
     let (want, got) = otter("current_drift_0p5_b30", &["--current-m-s", "0.5", "--current-toward-deg", "30"]);
     let error = position_error(&want, &got);
     let psi_deg = last(&got, "heading_deg") - 360.0;
-    println!("position within {:.4} %, heading {psi_deg}", 100.0 * error);
     assert!(error < 0.005, "position is off by {error}");
     assert!((psi_deg + 6.22).abs() < 0.05, "heading {psi_deg}");
     for i in 0..want["t"].len() {
@@ -150,9 +147,8 @@ fn mean_size(numbers: &[f64]) -> f64 {
 fn the_otter_zigzags_as_the_reference_does() {
     let (want, got) = otter("zigzag10_n80_d10", &[]);
     let psi_deg: Vec<f64> = want["psi"].iter().map(|psi| psi.to_degrees()).collect();
-    let (want_deg, want_s) = zigzag(&want["t"], &psi_deg);
+    let (want_deg, _) = zigzag(&want["t"], &psi_deg);
     let (swings_deg, period_s) = zigzag(&got["t_s"], &got["heading_deg"]);
-    println!("period {period_s} s of {want_s}, mean {} of {}", mean_size(&swings_deg), mean_size(&want_deg));
     assert!((period_s - 8.25).abs() < 0.02 * 8.25, "period {period_s} s");
     assert!((mean_size(&swings_deg) - mean_size(&want_deg)).abs() < 0.1, "{swings_deg:?}, reference {want_deg:?}");
 }
@@ -180,7 +176,6 @@ fn the_otter_zigzags_swing_by_swing_where_the_switches_are_known() {
     assert_eq!(swings_deg.len(), want_deg.len());
     let worst_deg = swings_deg.iter().zip(&want_deg).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let error = position_error(&want, &got);
-    println!("swings within {worst_deg} degrees, position within {:.4} %", 100.0 * error);
     assert!(worst_deg < 0.5 && error < 0.005, "{swings_deg:?}, reference {want_deg:?}; position {error}");
 }
 
@@ -211,7 +206,6 @@ fn kinematic(name: &str, kind: &str, heads: [&str; 2], more: &[&str]) {
             assert!(error.abs() < 1e-6, "{kind} {name}, row {i}: {what} is off by {error}");
         }
     }
-    println!("{kind} {name}: within {worst:.2e}");
     assert!(got["port_newton"].iter().all(|newton| newton.is_nan()), "it has no thrusters");
 }
 

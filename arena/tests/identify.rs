@@ -88,7 +88,6 @@ fn known_parameters_come_back_within_their_stated_confidence() {
             let want = estimate.parameter.value(&truth).expect("it has it");
             let off = (estimate.value - want).abs() / estimate.plus_minus;
             let name = estimate.parameter.name;
-            println!("seed {seed}: {name} {want} is {:.4} ± {:.4}", estimate.value, estimate.plus_minus);
             assert!(estimate.plus_minus < 0.2 * want, "seed {seed}: {name} ± {}", estimate.plus_minus);
             assert!(off < 2.0, "seed {seed}: {name} {want} is {} ± {}", estimate.value, estimate.plus_minus);
             (all, within) = (all + 1, within + i32::from(off <= 1.0));
