@@ -82,8 +82,13 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
         (x0, x1) = about_middle(x0, x1, wide * metres_per_pixel);
         (y0, y1) = about_middle(y0, y1, high * metres_per_pixel);
     }
+    if !panel.equal && panel.lines.iter().any(|line| !line.name.is_empty()) {
+        // Room for the legend above the lines.
+        y1 += 0.25 * (y1 - y0);
+    }
     let mut chart = ChartBuilder::on(area)
         .margin(12)
+        .margin_right(24)
         .caption(&panel.title, (FONT, 16))
         .x_label_area_size(40)
         .y_label_area_size(64)
@@ -97,7 +102,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
         .label_style((FONT, 12))
         .x_labels(8)
         .y_labels(8)
-        .light_line_style(RGBColor(244, 244, 244))
+        .light_line_style(TRANSPARENT)
         .bold_line_style(RGBColor(222, 222, 222))
         .x_label_formatter(&|x| label(*x, x1 - x0))
         .y_label_formatter(&|y| label(*y, y1 - y0))

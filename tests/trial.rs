@@ -1,4 +1,4 @@
-//! `squall trial` from outside: references through its CSV door, mistakes explained.
+//! `squall trial` and `squall identify` from outside: references through their CSV door, mistakes explained.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![expect(clippy::disallowed_methods, reason = "tolerances are far above the last bit")]
 
@@ -95,7 +95,6 @@ fn last(columns: &Columns, head: &str) -> f64 {
 fn the_otter_accelerates_as_the_reference_does() {
     let (want, got) = otter("accel_n80", &[]);
     let error = position_error(&want, &got);
-    println!("position within {:.4} %", 100.0 * error);
     assert!(error < 0.005, "position is off by {error}");
     let steady_m_s = 2.0 * 0.01108 * 80.0 * 80.0 / 77.5544;
     assert!((last(&got, "surge_m_s") - steady_m_s).abs() < 0.001 * steady_m_s);
@@ -107,7 +106,6 @@ fn the_otter_turns_as_the_reference_does() {
     let (want, got) = otter("turn_80_60", &[]);
     let (u, v, r) = (last(&got, "surge_m_s"), last(&got, "sway_m_s"), last(&got, "yaw_rate_deg_s"));
     let radius_m = u.hypot(v) / r.to_radians();
-    println!("{u} m/s, {r} deg/s, {radius_m} m, position within {:.4} %", 100.0 * position_error(&want, &got));
     for (what, got, want) in [("surge", u, 1.400), ("yaw rate", r, 9.375), ("radius", radius_m, 8.57)] {
         assert!((got - want).abs() < 0.01 * want, "{what} {got}, reference {want}");
     }
@@ -119,7 +117,6 @@ fn the_otter_drifts_in_a_current_as_the_reference_does() {
     let (want, got) = otter("current_drift_0p5_b30", &["--current-m-s", "0.5", "--current-toward-deg", "30"]);
     let error = position_error(&want, &got);
     let psi_deg = last(&got, "heading_deg") - 360.0;
-    println!("position within {:.4} %, heading {psi_deg}", 100.0 * error);
     assert!(error < 0.005, "position is off by {error}");
     assert!((psi_deg + 6.22).abs() < 0.05, "heading {psi_deg}");
     for i in 0..want["t"].len() {
@@ -150,9 +147,8 @@ fn mean_size(numbers: &[f64]) -> f64 {
 fn the_otter_zigzags_as_the_reference_does() {
     let (want, got) = otter("zigzag10_n80_d10", &[]);
     let psi_deg: Vec<f64> = want["psi"].iter().map(|psi| psi.to_degrees()).collect();
-    let (want_deg, want_s) = zigzag(&want["t"], &psi_deg);
+    let (want_deg, _) = zigzag(&want["t"], &psi_deg);
     let (swings_deg, period_s) = zigzag(&got["t_s"], &got["heading_deg"]);
-    println!("period {period_s} s of {want_s}, mean {} of {}", mean_size(&swings_deg), mean_size(&want_deg));
     assert!((period_s - 8.25).abs() < 0.02 * 8.25, "period {period_s} s");
     assert!((mean_size(&swings_deg) - mean_size(&want_deg)).abs() < 0.1, "{swings_deg:?}, reference {want_deg:?}");
 }
@@ -180,7 +176,6 @@ fn the_otter_zigzags_swing_by_swing_where_the_switches_are_known() {
     assert_eq!(swings_deg.len(), want_deg.len());
     let worst_deg = swings_deg.iter().zip(&want_deg).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let error = position_error(&want, &got);
-    println!("swings within {worst_deg} degrees, position within {:.4} %", 100.0 * error);
     assert!(worst_deg < 0.5 && error < 0.005, "{swings_deg:?}, reference {want_deg:?}; position {error}");
 }
 
@@ -211,7 +206,6 @@ fn kinematic(name: &str, kind: &str, heads: [&str; 2], more: &[&str]) {
             assert!(error.abs() < 1e-6, "{kind} {name}, row {i}: {what} is off by {error}");
         }
     }
-    println!("{kind} {name}: within {worst:.2e}");
     assert!(got["port_newton"].iter().all(|newton| newton.is_nan()), "it has no thrusters");
 }
 
@@ -389,5 +383,57 @@ fn turns_to_both_sides_are_mirror_images() {
     {
         assert!((starboard[name] - port[name]).abs() < 0.02, "{name}: {} and {}", starboard[name], port[name]);
         assert!(starboard[name] > 0.0, "{name}");
+    }
+}
+
+/// A log of the Surveyor, and a boat file that starts elsewhere.
+fn log_and_start(dir: &TempDir) {
+    let rows = [[90.0, 90.0], [60.0, 20.0], [20.0, 70.0], [-40.0, -40.0], [100.0, 40.0], [0.0, 0.0], [50.0, 80.0]];
+    let steps = (0..28).map(|i| [6.0 * f64::from(i), rows[i as usize % 7][0], rows[i as usize % 7][1]]);
+    write_orders(dir, "t_s,port_pct,starboard_pct", steps);
+    trial(dir, &[&boat("surveyor_m1_8"), "--orders", "in.csv", "--csv", "log.csv", "--with-orders"]);
+    let start = format!("base = {:?}\n[hull]\nsurge_linear_kg_s = 9\nyaw_linear_kg_m2_s = 24\n", boat("surveyor_m1_8"));
+    std::fs::write(dir.path().join("start.toml"), start).unwrap();
+}
+
+#[test]
+fn identify_writes_a_boat_that_check_accepts() {
+    let dir = tempfile::tempdir().unwrap();
+    log_and_start(&dir);
+    let args = ["identify", "start.toml", "--log", "log.csv", "--fit", "surge_linear,yaw_linear", "--out", "new.toml"];
+    let output = squall(&dir, &args);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(said.contains("surge_linear") && said.contains('±') && said.contains("R²"), "{said}");
+    let toml = std::fs::read_to_string(dir.path().join("new.toml")).unwrap();
+    assert!(toml.starts_with("# Fitted to log.csv") && toml.contains("base = \"start.toml\""), "{toml}");
+    let number = |key: &str| -> f64 {
+        let line = toml.lines().find(|line| line.starts_with(key)).unwrap();
+        line.split_whitespace().nth(2).unwrap().parse().unwrap()
+    };
+    // A log without noise gives the numbers of the boat that sailed.
+    for (key, want) in [("surge_linear_kg_s", 6.0), ("yaw_linear_kg_m2_s", 16.0)] {
+        assert!((number(key) - want).abs() < 0.01, "{key} {}", number(key));
+    }
+    let checked = squall(&dir, &["check", "new.toml"]);
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));
+    trial(&dir, &["new.toml", "--manoeuvre", "acceleration"]);
+}
+
+#[test]
+fn identify_says_what_is_wrong() {
+    let dir = tempfile::tempdir().unwrap();
+    log_and_start(&dir);
+    let kinematic = boat("heron_kinematic");
+    for (args, want) in [
+        (["start.toml", "--log", "none.csv", "--fit", "lag"], "cannot read none.csv"),
+        (["start.toml", "--log", "in.csv", "--fit", "lag"], "in.csv:1: no column heading_deg"),
+        (["start.toml", "--log", "log.csv", "--fit", "keel"], "keel is no parameter, expected some of surge_linear"),
+        (["none.toml", "--log", "log.csv", "--fit", "lag"], "there is no file none.toml"),
+        ([kinematic.as_str(), "--log", "log.csv", "--fit", "surge_linear"], "heron_kinematic is kinematic"),
+    ] {
+        let output = squall(&dir, &[&["identify"], &args[..]].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.contains(want), "{args:?}: {said}");
     }
 }

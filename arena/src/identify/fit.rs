@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use thiserror::Error;
 
 /// A fitted parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Estimate {
     /// Which.
     pub parameter: Parameter,

@@ -71,12 +71,7 @@ impl Log {
         for row in 0..times_s.len() {
             let mut cells = [f64::NAN; 6];
             for (channel, column) in columns.iter().enumerate() {
-                let Some(column) = column else { continue };
-                let text = sheet.text(row, *column);
-                if !text.is_empty() && !text.eq_ignore_ascii_case("nan") {
-                    let number = sheet.number(row, *column, (-1e7, 1e7))?;
-                    cells[channel] = if CHANNELS[channel].2 == Unit::Degrees { number.to_radians() } else { number };
-                }
+                cells[channel] = column.map_or(Ok(f64::NAN), |column| cell(sheet, row, column, CHANNELS[channel].2))?;
             }
             measured.push(cells);
         }
@@ -106,6 +101,16 @@ impl Log {
         starts.push(self.measured.len());
         starts
     }
+}
+
+/// What was measured, in our unit; NaN where nothing was.
+fn cell(sheet: &Sheet, row: usize, column: usize, unit: Unit) -> Result<f64, Mistake> {
+    let text = sheet.text(row, column);
+    if text.is_empty() || text.eq_ignore_ascii_case("nan") {
+        return Ok(f64::NAN);
+    }
+    let number = sheet.number(row, column, (-1e7, 1e7))?;
+    Ok(if unit == Unit::Degrees { number.to_radians() } else { number })
 }
 
 /// Headings without jumps of a whole turn.

@@ -4,7 +4,7 @@ use game::boat::{Boat, Drive, Thruster};
 use game::math;
 
 /// A number of a boat that can be fitted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     /// What it is called on the command line.
     pub name: &'static str,

@@ -83,7 +83,7 @@ fn zigzag(plan: &Plan, sailed: &Sailed) -> Vec<Measure> {
     let switches = &sailed.switches;
     let overshoot_deg = |which: usize| {
         let (Some(from), Some(to)) = (switches.get(which), switches.get(which + 1)) else { return f64::NAN };
-        let side = if which % 2 == 0 { plan.side } else { -plan.side };
+        let side = if which.is_multiple_of(2) { plan.side } else { -plan.side };
         let swing = sailed.samples.iter().zip(&turned).filter(|(sample, _)| (*from..=*to).contains(&sample.t_s));
         let furthest = swing.map(|(_, turned)| side * turned).fold(f64::NEG_INFINITY, f64::max);
         (furthest - plan.switch_rad).to_degrees()
