@@ -153,6 +153,11 @@ impl Contest {
         }
     }
 
+    /// Makes a vehicle hold at once, whatever it was told: nothing of it goes over the air.
+    pub fn hold(&mut self, vehicle: VehicleId) {
+        self.orders[vehicle.index()] = Order::Hold;
+    }
+
     /// Boats report, and look round.
     fn gather(&mut self) {
         let (world, now) = (&self.world, self.world.state().now);

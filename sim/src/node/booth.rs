@@ -242,7 +242,7 @@ impl Booth {
         };
         if let JoinReply::Granted { vehicles, .. } = &reply {
             for vehicle in vehicles {
-                self.contest.order(*vehicle, Order::Hold);
+                self.contest.hold(*vehicle);
                 self.contest.regain_mind(*vehicle);
                 self.heard[vehicle.index()] = clock::now();
             }
