@@ -33,13 +33,18 @@ impl Sheet {
     ///
     /// # Errors
     /// Where it is no CSV, has no rows, or has two columns of one name.
-    pub fn read(file: &str, input: impl Read) -> Result<Sheet, Mistake> {
+    pub fn read(file: &str, mut input: impl Read) -> Result<Sheet, Mistake> {
+        let mut bytes = vec![];
+        if let Err(error) = input.read_to_end(&mut bytes) {
+            let message = format!("cannot be read: {error}");
+            return Err(Mistake { file: file.to_owned(), line: None, message });
+        }
         let wrong = |error: csv::Error| Mistake {
             file: file.to_owned(),
-            line: error.position().map(csv::Position::line),
+            line: error.position().map(|position| line_of(&bytes, position)),
             message: reason(&error),
         };
-        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(input);
+        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(&bytes[..]);
         let heads: Vec<String> = reader.headers().map_err(wrong)?.iter().map(plain_head).collect();
         let mut sheet = Sheet { file: file.to_owned(), heads, rows: vec![] };
         for (i, head) in sheet.heads.iter().enumerate() {
@@ -49,7 +54,7 @@ impl Sheet {
         }
         for record in reader.records() {
             let record = record.map_err(wrong)?;
-            let line = record.position().map_or(0, csv::Position::line);
+            let line = record.position().map_or(0, |position| line_of(&bytes, position));
             if sheet.rows.len() == ROWS_MAX {
                 return Err(sheet.mistake(Some(line), format!("more than {ROWS_MAX} rows")));
             }
@@ -141,6 +146,13 @@ impl Sheet {
     }
 }
 
+/// The line of a record. The reader says where the one before ended; blank lines and remarks may follow there.
+fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
+    let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
+    let lines = rest.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
+    position.line() + lines.take_while(|line| line.is_empty() || line.starts_with(b"#")).count() as u64
+}
+
 /// A column's name as it is compared: `Port (rad/s)` is `port_rad_s`.
 fn plain_head(head: &str) -> String {
     let spelt = head.trim_start_matches('\u{feff}').to_lowercase().replace('%', "pct");
@@ -171,7 +183,6 @@ fn reason(error: &csv::Error) -> String {
             format!("{len} columns, expected {expected_len} as in the line of names")
         }
         csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".to_owned(),
-        csv::ErrorKind::Io(error) => format!("cannot be read: {error}"),
         _ => error.to_string(),
     }
 }
