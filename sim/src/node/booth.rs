@@ -8,7 +8,7 @@ use bus::{Bus, Delivery, Inbox, Publisher, Question, Standing, inbox};
 use game::codec::{self, DecodeError};
 use game::message::{Control, JoinReply, JoinRequest, Notice, Orders, Stamp};
 use game::topic::{self, Part};
-use game::{Order, SimTime, TeamId, VehicleId};
+use game::{SimTime, TeamId, VehicleId};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -2,7 +2,7 @@
 
 use super::booth::Booth;
 use super::{News, NodeError, clock};
-use game::{Order, VehicleId};
+use game::VehicleId;
 use std::time::Duration;
 
 /// Plays until the game is over or stopped; gives the number of decision ticks that began late.
@@ -42,7 +42,7 @@ fn expire(booth: &mut Booth) {
     let (ttl_s, patience_s) = (booth.contest.scenario().order_ttl_s, booth.contest.scenario().patience_s);
     for i in 0..booth.ordered_at.len() {
         if (now - booth.ordered_at[i]).as_s() > ttl_s {
-            booth.contest.order(VehicleId::at(i), Order::Hold);
+            booth.contest.hold(VehicleId::at(i));
         }
     }
     booth.lose_silent(Duration::from_secs_f64(patience_s));
