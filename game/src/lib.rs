@@ -15,6 +15,7 @@ pub mod link;
 pub mod math;
 pub mod message;
 pub mod near;
+mod normal;
 pub mod order;
 pub mod outcome;
 pub mod picture;

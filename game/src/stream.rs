@@ -4,6 +4,7 @@
 //! numbers of another one. The few samplers are spelled out here rather than taken from a
 //! library that may change its algorithm under the same seed.
 
+use crate::normal::{normal, unit};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use xxhash_rust::xxh3::xxh3_128;
@@ -30,7 +31,7 @@ impl Stream {
 
     /// A number in 0 (included) to 1 (excluded), a multiple of 2^-53.
     pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        unit(self.bits())
     }
 
     /// A number between `low` and `high`.
@@ -55,7 +56,7 @@ impl Stream {
 
     /// A normal number of mean 0 and variance 1.
     pub fn normal(&mut self) -> f64 {
-        normal_quantile(between_0_and_1(self.bits()))
+        normal(|_| self.bits())
     }
 
     /// Puts `items` into a random order (Fisher and Yates).
@@ -94,15 +95,21 @@ impl Noise {
     #[inline]
     #[must_use]
     pub fn unit(&self, count: u64) -> f64 {
-        (self.bits(count) >> 11) as f64 / (1_u64 << 53) as f64
+        unit(self.bits(count))
     }
 
     /// Two independent normal numbers, of mean 0 and variance 1. Takes the place of two units, those of twice the count
     /// and the one after it.
     #[must_use]
     pub fn normal_pair(&self, count: u64) -> (f64, f64) {
-        let normal = |count: u64| normal_quantile(between_0_and_1(self.bits(count)));
-        (normal(2 * count), normal(2 * count + 1))
+        (self.normal(2 * count), self.normal(2 * count + 1))
+    }
+
+    /// One of them. What one number takes of bits beyond the first is drawn from those.
+    #[inline]
+    fn normal(&self, count: u64) -> f64 {
+        let first = self.bits(count);
+        normal(|asked| if asked == 0 { first } else { Noise(first).bits(asked) })
     }
 
     /// A number from the exponential distribution of mean 1.
@@ -111,98 +118,6 @@ impl Noise {
         -libm::log(1.0 - self.unit(count))
     }
 }
-
-/// A number above 0 and below 1.
-fn between_0_and_1(bits: u64) -> f64 {
-    ((bits >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
-}
-
-/// The normal number (mean 0, variance 1) that `share` of all are below: Wichura's PPND16 (1988, Algorithm AS 241), to
-/// sixteen digits. Six in seven are found without a logarithm.
-fn normal_quantile(share: f64) -> f64 {
-    let off = share - 0.5;
-    if off.abs() <= 0.425 {
-        let r = 0.180_625 - off * off;
-        return off * ratio(&MIDDLE, r);
-    }
-    let r = (-libm::log(if off < 0.0 { share } else { 1.0 - share })).sqrt();
-    let size = if r <= 5.0 { ratio(&FLANK, r - 1.6) } else { ratio(&TAIL, r - 5.0) };
-    if off < 0.0 { -size } else { size }
-}
-
-/// The ratio of two polynomials, the highest power first.
-#[inline]
-fn ratio([above, below]: &[[f64; 8]; 2], x: f64) -> f64 {
-    let horner = |powers: &[f64; 8]| powers[1..].iter().fold(powers[0], |sum, c| sum * x + c);
-    horner(above) / horner(below)
-}
-
-const MIDDLE: [[f64; 8]; 2] = [
-    [
-        2.509_080_928_730_122_7e3,
-        3.343_057_558_358_813e4,
-        6.726_577_092_700_87e4,
-        4.592_195_393_154_987e4,
-        1.373_169_376_550_946e4,
-        1.971_590_950_306_551_3e3,
-        1.331_416_678_917_843_8e2,
-        3.387_132_872_796_366_5,
-    ],
-    [
-        5.226_495_278_852_854e3,
-        2.872_908_573_572_194_3e4,
-        3.930_789_580_009_271e4,
-        2.121_379_430_158_659_7e4,
-        5.394_196_021_424_751e3,
-        6.871_870_074_920_579e2,
-        4.231_333_070_160_091e1,
-        1.0,
-    ],
-];
-const FLANK: [[f64; 8]; 2] = [
-    [
-        7.745_450_142_783_414e-4,
-        2.272_384_498_926_918_4e-2,
-        2.417_807_251_774_506e-1,
-        1.270_458_252_452_368_4,
-        3.647_848_324_763_204_5,
-        5.769_497_221_460_691,
-        4.630_337_846_156_546,
-        1.423_437_110_749_683_5,
-    ],
-    [
-        1.050_750_071_644_416_9e-9,
-        5.475_938_084_995_345e-4,
-        1.519_866_656_361_645_7e-2,
-        1.481_039_764_274_800_8e-1,
-        6.897_673_349_851e-1,
-        1.676_384_830_183_803_8,
-        2.053_191_626_637_758_7,
-        1.0,
-    ],
-];
-const TAIL: [[f64; 8]; 2] = [
-    [
-        2.010_334_399_292_288_1e-7,
-        2.711_555_568_743_487_6e-5,
-        1.242_660_947_388_078_4e-3,
-        2.653_218_952_657_612_4e-2,
-        2.965_605_718_285_048_7e-1,
-        1.784_826_539_917_291_3,
-        5.463_784_911_164_114,
-        6.657_904_643_501_103,
-    ],
-    [
-        2.044_263_103_389_939_8e-15,
-        1.421_511_758_316_446e-7,
-        1.846_318_317_510_054_8e-5,
-        7.868_691_311_456_133e-4,
-        1.487_536_129_085_061_5e-2,
-        1.369_298_809_227_358e-1,
-        5.998_322_065_558_88e-1,
-        1.0,
-    ],
-];
 
 #[cfg(test)]
 mod tests {
@@ -268,22 +183,6 @@ mod tests {
         ] {
             assert!((got - want).abs() < within, "{what}: {got}");
         }
-    }
-
-    #[test]
-    fn a_normal_quantile_is_where_that_share_is_below() {
-        let below = |x: f64| 0.5 * libm::erfc(-x / std::f64::consts::SQRT_2);
-        for i in 1..20_000_u64 {
-            let share = i as f64 / 20_000.0;
-            let x = normal_quantile(share);
-            assert!((below(x) / share - 1.0).abs() < 1e-13, "{share}: {x}");
-            assert!((normal_quantile(1.0 - share) + x).abs() < 1e-11, "{share}: {x}");
-        }
-        for power in 1..=52 {
-            let share = libm::exp2(-f64::from(power));
-            assert!((below(normal_quantile(share)) / share - 1.0).abs() < 1e-12, "2^-{power}");
-        }
-        assert!((between_0_and_1(0) > 0.0) && between_0_and_1(u64::MAX) < 1.0);
     }
 
     #[test]
