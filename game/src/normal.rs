@@ -12,16 +12,26 @@ const LAYERS: usize = 256;
 const TAIL_FROM: f64 = 3.654_152_885_361_009;
 const AREA: f64 = 0.004_928_673_233_974_658;
 
-/// The right edges of the layers from below; the lowest as wide as a box of its area would be, and a 0 at the top.
-static EDGES: LazyLock<[f64; LAYERS + 1]> = LazyLock::new(|| {
-    let mut edges = [0.0; LAYERS + 1];
-    (edges[0], edges[1]) = (AREA / bell(TAIL_FROM), TAIL_FROM);
+/// The layers from below, and what closes them at the top.
+static LAYER: LazyLock<[Layer; LAYERS + 1]> = LazyLock::new(|| {
+    let layer = |edge| Layer { edge, bell: bell(edge) };
+    let mut layers = [layer(0.0); LAYERS + 1];
+    // The lowest is as wide as a box of its area would be.
+    (layers[0], layers[1]) = (layer(AREA / bell(TAIL_FROM)), layer(TAIL_FROM));
     for i in 2..LAYERS {
-        let below = edges[i - 1];
-        edges[i] = (-2.0 * libm::log(AREA / below + bell(below))).sqrt();
+        let below = layers[i - 1];
+        layers[i] = layer((-2.0 * libm::log(AREA / below.edge + below.bell)).sqrt());
     }
-    edges
+    layers
 });
+
+#[derive(Clone, Copy)]
+struct Layer {
+    /// Its right edge.
+    edge: f64,
+    /// The bell over that: where the layer begins.
+    bell: f64,
+}
 
 /// The bell over `x`, 1 at its top.
 fn bell(x: f64) -> f64 {
@@ -37,31 +47,45 @@ pub(crate) fn unit(bits: u64) -> f64 {
 /// A normal number of mean 0 and variance 1. `bits(n)` is the nth time that 64 random bits are asked for, from 0.
 #[inline]
 pub(crate) fn normal(mut bits: impl FnMut(u64) -> u64) -> f64 {
-    let edges = &*EDGES;
-    let mut asked = 0;
+    let first = bits(0);
+    inside(first).unwrap_or_else(|layer_x| try_on(layer_x, bits))
+}
+
+/// The number if it lies under the next layer; otherwise the layer and what was drawn in it.
+#[inline]
+fn inside(drawn: u64) -> Result<f64, (usize, f64)> {
+    let (layers, layer) = (&*LAYER, (drawn % LAYERS as u64) as usize);
+    let x = (2.0 * unit(drawn) - 1.0) * layers[layer].edge;
+    if x.abs() < layers[layer + 1].edge { Ok(x) } else { Err((layer, x)) }
+}
+
+/// Goes on until a number is found.
+#[cold]
+#[inline(never)]
+fn try_on(first: (usize, f64), mut bits: impl FnMut(u64) -> u64) -> f64 {
+    let (mut drawn, mut asked) = (Err(first), 0);
     let mut next = || {
         asked += 1;
-        bits(asked - 1)
+        bits(asked)
     };
     loop {
-        let drawn = next();
-        let layer = (drawn % LAYERS as u64) as usize;
-        let x = (2.0 * unit(drawn) - 1.0) * edges[layer];
-        if x.abs() < edges[layer + 1] {
-            return x;
+        match drawn {
+            Ok(x) => return x,
+            Err((layer, x)) => {
+                if let Some(x) = beside(x, layer, &mut next) {
+                    return x;
+                }
+            }
         }
-        if let Some(x) = beside(x, layer, &mut next) {
-            return x;
-        }
+        drawn = inside(next());
     }
 }
 
 /// What becomes of an `x` that does not lie under the next layer: in the lowest layer a number from the tail; in others
 /// it stays if a height drawn from the layer is under the bell.
-#[cold]
 fn beside(x: f64, layer: usize, next: &mut impl FnMut() -> u64) -> Option<f64> {
     if layer > 0 {
-        let (low, high) = (bell(EDGES[layer]), bell(EDGES[layer + 1]));
+        let (low, high) = (LAYER[layer].bell, LAYER[layer + 1].bell);
         return (low + unit(next()) * (high - low) < bell(x)).then_some(x);
     }
     // Marsaglia (1964).
@@ -81,7 +105,7 @@ mod tests {
     #[test]
     fn layers_have_one_area_and_end_at_the_top() {
         for i in 1..LAYERS {
-            let area = EDGES[i] * (bell(EDGES[i + 1]) - bell(EDGES[i]));
+            let area = LAYER[i].edge * (LAYER[i + 1].bell - LAYER[i].bell);
             assert!((area / AREA - 1.0).abs() < 1e-9, "layer {i}: {area}");
         }
         let tail = (std::f64::consts::PI / 2.0).sqrt() * libm::erfc(TAIL_FROM / std::f64::consts::SQRT_2);

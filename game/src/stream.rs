@@ -100,14 +100,16 @@ impl Noise {
 
     /// Two independent normal numbers, of mean 0 and variance 1. Takes the place of two units, those of twice the count
     /// and the one after it.
+    #[inline]
     #[must_use]
     pub fn normal_pair(&self, count: u64) -> (f64, f64) {
         (self.normal(2 * count), self.normal(2 * count + 1))
     }
 
-    /// One of them. What one number takes of bits beyond the first is drawn from those.
-    #[inline]
-    fn normal(&self, count: u64) -> f64 {
+    /// A normal number of mean 0 and variance 1, in the place of a unit. What it may take of bits beyond the first is
+    /// drawn from those.
+    #[must_use]
+    pub fn normal(&self, count: u64) -> f64 {
         let first = self.bits(count);
         normal(|asked| if asked == 0 { first } else { Noise(first).bits(asked) })
     }

@@ -44,15 +44,24 @@ fn step(c: &mut Criterion) {
     group.finish();
 }
 
-/// In a fresh breeze with 64 wave components, gusts and a current, with flawed thrusters and all sensors.
+/// In a fresh breeze with 64 wave components, gusts and a current, and with all sensors; then with flawed thrusters and a
+/// battery too.
 fn rough(c: &mut Criterion) {
-    let afloat = shipped("pav01_afloat.toml");
+    let afloat = shipped("pav01_afloat.toml").of_seed(1).unwrap_or_else(|e| panic!("{e}"));
     let mut group = c.benchmark_group("world_step_rough");
-    for (name, game) in [("2v2", "pav01_vs_pav01.toml"), ("500v500", "swarm_500v500.toml")] {
+    for (name, game, flawed) in [
+        ("2v2", "pav01_vs_pav01.toml", false),
+        ("2v2_flawed", "pav01_vs_pav01.toml", true),
+        ("500v500", "swarm_500v500.toml", false),
+        ("500v500_flawed", "swarm_500v500.toml", true),
+    ] {
         let mut scenario = shipped(game);
         scenario.sea = afloat.sea.clone();
         scenario.sea.current.mean_m_s = game::Ned { north: 0.1, east: 0.2 };
-        scenario.boats[0] = afloat.boats[0].clone();
+        scenario.boats[0].sensors = afloat.boats[0].sensors.clone();
+        if flawed {
+            scenario.boats[0] = afloat.boats[0].clone();
+        }
         let start = World::new(&scenario, 1).unwrap_or_else(|e| panic!("{e}"));
         let mut world = start.clone();
         let mut orders = circling(&world, 0);

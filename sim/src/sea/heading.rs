@@ -1,7 +1,7 @@
 //! What depends on the heading, looked up: numbers at every five degrees, straight in between.
 
 use std::f64::consts::TAU;
-use wide::f64x4;
+use wide::f32x4;
 
 /// Headings at which the numbers stand.
 pub(super) const BINS: usize = 72;
@@ -18,22 +18,22 @@ fn place(heading_rad: f64) -> (usize, f64) {
 /// A number (four side by side) from one bin to the next.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
-    from: f64x4,
+    from: f32x4,
     /// What it gains up to the next bin.
-    gain: f64x4,
+    gain: f32x4,
 }
 
 impl Line {
     /// The number after `part` (0 to 1) of the way.
     #[inline(always)]
-    pub(super) fn after(&self, part: f64x4) -> f64x4 {
+    pub(super) fn after(&self, part: f32x4) -> f32x4 {
         self.from + self.gain * part
     }
 
     /// Its derivative by the heading, 1/rad.
     #[inline(always)]
-    pub(super) fn per_rad(&self) -> f64x4 {
-        self.gain * f64x4::splat(BINS as f64 / TAU)
+    pub(super) fn per_rad(&self) -> f32x4 {
+        self.gain * f32x4::splat((BINS as f64 / TAU) as f32)
     }
 }
 
@@ -46,9 +46,9 @@ pub(super) struct HeadingTable<const N: usize> {
 
 impl<const N: usize> HeadingTable<N> {
     /// The table of as many `rows`, which `numbers` gives for a row and a heading in rad.
-    pub(super) fn new(rows: usize, numbers: impl Fn(usize, f64) -> [f64x4; N]) -> HeadingTable<N> {
+    pub(super) fn new(rows: usize, numbers: impl Fn(usize, f64) -> [f32x4; N]) -> HeadingTable<N> {
         let bin_rad = TAU / BINS as f64;
-        let at: Vec<[f64x4; N]> = (0..BINS * rows).map(|i| numbers(i % rows, (i / rows) as f64 * bin_rad)).collect();
+        let at: Vec<[f32x4; N]> = (0..BINS * rows).map(|i| numbers(i % rows, (i / rows) as f64 * bin_rad)).collect();
         let line = |i: usize| {
             let (from, to) = (&at[i], &at[(i + rows) % at.len()]);
             std::array::from_fn(|n| Line { from: from[n], gain: to[n] - from[n] })
@@ -58,9 +58,9 @@ impl<const N: usize> HeadingTable<N> {
 
     /// The rows for a heading, and how far it lies from their bin to the next.
     #[inline(always)]
-    pub(super) fn at(&self, heading_rad: f64) -> (&[[Line; N]], f64x4) {
+    pub(super) fn at(&self, heading_rad: f64) -> (&[[Line; N]], f32x4) {
         let (bin, part) = place(heading_rad);
-        (&self.lines[bin * self.rows..(bin + 1) * self.rows], f64x4::splat(part))
+        (&self.lines[bin * self.rows..(bin + 1) * self.rows], f32x4::splat(part as f32))
     }
 }
 

@@ -14,7 +14,7 @@ use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes, side_by_side};
 use crate::hull::Planar;
 use game::boat::Boat;
 use game::frame::Pose;
-use wide::f64x4;
+use wide::f32x4;
 
 /// The waves at one hull, in its own axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,9 +51,9 @@ pub struct HullWaves {
 #[derive(Clone, Copy, Debug)]
 struct Row {
     phases: Phases,
-    omega_rad_s: f64x4,
+    omega_rad_s: f32x4,
     /// a R.
-    reflected_m: f64x4,
+    reflected_m: f32x4,
 }
 
 impl HullWaves {
@@ -68,13 +68,14 @@ impl HullWaves {
         };
         let velocity = HeadingTable::new(chunks.len(), |row, heading_rad| {
             let speeds = lanes(chunks[row], |w| orbital_velocity(w, boat, heading_rad));
-            [speeds.map(|v| v.surge), speeds.map(|v| v.sway), speeds.map(|v| v.yaw)].map(f64x4::new)
+            let single = |part: fn(&Planar) -> f64| f32x4::new(speeds.each_ref().map(|v| part(v) as f32));
+            [single(|v| v.surge), single(|v| v.sway), single(|v| v.yaw)]
         });
         let reflected_m2: f64 = field.waves.iter().map(|w| w.reflected_m(boat.draught_m)).map(|c| c * c).sum();
         let per_m2 = if reflected_m2 > 0.0 { 1.0 / reflected_m2 } else { 0.0 };
         let drift = HeadingTable::new(1, |_, heading_rad| {
             let mean = field.mean_drift_newton(boat, water_density_kg_m3, heading_rad);
-            [f64x4::new([per_m2 * mean.surge, per_m2 * mean.sway, 0.0, 0.0])]
+            [f32x4::new([(per_m2 * mean.surge) as f32, (per_m2 * mean.sway) as f32, 0.0, 0.0])]
         });
         HullWaves { rows: chunks.iter().map(row).collect(), velocity, drift }
     }
@@ -109,9 +110,9 @@ impl HullWaves {
     #[inline(always)]
     fn sample(&self, sums: &Sums, heading_rad: f64) -> WaveSample {
         let (in_phase, off_phase) = (sum(sums.reflected_cos), sum(sums.reflected_sin));
-        let groups_m2 = f64x4::splat(in_phase * in_phase + off_phase * off_phase);
+        let groups_m2 = in_phase * in_phase + off_phase * off_phase;
         let (drift, part) = self.drift.at(heading_rad);
-        let [surge, sway, ..] = (drift[0][0].after(part) * groups_m2).to_array();
+        let [surge, sway, ..] = drift[0][0].after(part).to_array().map(|mean| f64::from(mean) * groups_m2);
         WaveSample {
             velocity: Planar { surge: sum(sums.surge), sway: sum(sums.sway), yaw: sum(sums.yaw) },
             acceleration: Planar { surge: sum(sums.surge_rate), sway: sum(sums.sway_rate), yaw: -sum(sums.yaw_fall) },
@@ -123,21 +124,21 @@ impl HullWaves {
 /// Sums over the components, four side by side.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    surge: f64x4,
-    sway: f64x4,
-    yaw: f64x4,
-    surge_rate: f64x4,
-    sway_rate: f64x4,
+    surge: f32x4,
+    sway: f32x4,
+    yaw: f32x4,
+    surge_rate: f32x4,
+    sway_rate: f32x4,
     /// The rate of `yaw`, negative.
-    yaw_fall: f64x4,
-    reflected_sin: f64x4,
-    reflected_cos: f64x4,
+    yaw_fall: f32x4,
+    reflected_sin: f32x4,
+    reflected_cos: f32x4,
 }
 
 impl Sums {
     /// Adds four components of these velocities. As time goes on the phase falls by ω: (cos)' = ω sin, (sin)' = −ω cos.
     #[inline(always)]
-    fn add(&mut self, row: &Row, [surge, sway, yaw]: [f64x4; 3], sin: f64x4, cos: f64x4) {
+    fn add(&mut self, row: &Row, [surge, sway, yaw]: [f32x4; 3], sin: f32x4, cos: f32x4) {
         let (sin_rate, cos_rate) = (row.omega_rad_s * cos, row.omega_rad_s * sin);
         self.surge += surge * cos;
         self.sway += sway * cos;

@@ -9,7 +9,7 @@ use super::sine::sum;
 use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes, side_by_side};
 use game::boat::Boat;
 use game::frame::{Ned, Pose};
-use wide::f64x4;
+use wide::f32x4;
 
 /// Natural frequency, rad/s, and damping ratio: those of the Otter in Fossen's Marine Systems Simulator. A hull as long as
 /// the Otter has much the same.
@@ -61,8 +61,8 @@ struct Row {
 /// A spring's answer to four frequencies: the parts in phase with the waves and a quarter turn behind.
 #[derive(Clone, Copy, Debug)]
 struct Answer {
-    real: f64x4,
-    behind: f64x4,
+    real: f32x4,
+    behind: f32x4,
 }
 
 impl Answer {
@@ -76,7 +76,7 @@ impl Answer {
     /// The sine and cosine of the phase as the spring passes them on. The phase falls with time, so what lags has a phase
     /// that is ahead.
     #[inline(always)]
-    fn to(&self, sin: f64x4, cos: f64x4) -> (f64x4, f64x4) {
+    fn to(&self, sin: f32x4, cos: f32x4) -> (f32x4, f32x4) {
         (self.real * sin + self.behind * cos, self.real * cos - self.behind * sin)
     }
 }
@@ -102,7 +102,7 @@ impl Ride {
         };
         let still = HeadingTable::new(chunks.len(), |row, heading_rad| {
             let parts = lanes(chunks[row], |w| still(w, boat, heading_rad));
-            [0, 1, 2].map(|n| f64x4::new(parts.map(|part| part[n])))
+            [0, 1, 2].map(|n| f32x4::new(parts.map(|part| part[n] as f32)))
         });
         Ride { rows: chunks.iter().map(row).collect(), still }
     }
@@ -110,11 +110,11 @@ impl Ride {
     /// The attitude of a boat that moves over the ground at this velocity and turns at this rate.
     #[must_use]
     pub fn at(&self, pose: Pose, velocity_m_s: Ned, turn_rad_s: f64, time_s: f64) -> Attitude {
-        let (mut heave, mut roll, mut pitch) = (f64x4::ZERO, f64x4::ZERO, f64x4::ZERO);
-        let (mut heave_rate, mut roll_rate, mut pitch_rate) = (f64x4::ZERO, f64x4::ZERO, f64x4::ZERO);
-        let mut heave_acceleration = f64x4::ZERO;
+        let (mut heave, mut roll, mut pitch) = (f32x4::ZERO, f32x4::ZERO, f32x4::ZERO);
+        let (mut heave_rate, mut roll_rate, mut pitch_rate) = (f32x4::ZERO, f32x4::ZERO, f32x4::ZERO);
+        let mut heave_acceleration = f32x4::ZERO;
         let (lines, part) = self.still.at(pose.psi_rad);
-        let turn = f64x4::splat(turn_rad_s);
+        let turn = f32x4::splat(turn_rad_s as f32);
         for (row, lines) in self.rows.iter().zip(lines) {
             let (sin, cos) = row.phases.sin_cos(pose.at, time_s);
             let rate = row.phases.rate_rad_s(velocity_m_s);

@@ -4,14 +4,14 @@
 //! through it meets it at the frequency of encounter, ω − k·V, simply because it is asked for where they are.
 //! What it does to a hull stands in [`HullWaves`](super::HullWaves).
 
-use super::sine::{sin_cos_turns, sum};
+use super::sine::{sin_cos_turns, single, sum};
 use super::spectrum;
 use crate::hull::Planar;
 use game::boat::Boat;
 use game::frame::Ned;
 use game::sea::Waves;
 use std::f64::consts::TAU;
-use wide::f64x4;
+use wide::{f32x4, f64x4};
 
 /// Standard gravity.
 pub const GRAVITY_M_S2: f64 = 9.806_65;
@@ -121,26 +121,26 @@ pub(super) struct Phases {
 impl Phases {
     pub(super) fn new(waves: &[PlaneWave]) -> Phases {
         Phases {
-            start: side_by_side(waves, |w| w.component.phase_rad / TAU),
-            per_s: side_by_side(waves, |w| w.component.omega_rad_s / TAU),
-            per_north_m: side_by_side(waves, |w| w.wavenumber_rad_m * w.toward.north / TAU),
-            per_east_m: side_by_side(waves, |w| w.wavenumber_rad_m * w.toward.east / TAU),
+            start: f64x4::new(lanes(waves, |w| w.component.phase_rad / TAU)),
+            per_s: f64x4::new(lanes(waves, |w| w.component.omega_rad_s / TAU)),
+            per_north_m: f64x4::new(lanes(waves, |w| w.wavenumber_rad_m * w.toward.north / TAU)),
+            per_east_m: f64x4::new(lanes(waves, |w| w.wavenumber_rad_m * w.toward.east / TAU)),
         }
     }
 
     /// Sine and cosine of the phases at a place and time.
     #[inline(always)]
-    pub(super) fn sin_cos(&self, at: Ned, time_s: f64) -> (f64x4, f64x4) {
+    pub(super) fn sin_cos(&self, at: Ned, time_s: f64) -> (f32x4, f32x4) {
         let there = self.per_north_m * f64x4::splat(at.north) + self.per_east_m * f64x4::splat(at.east);
         sin_cos_turns(there + (self.start - self.per_s * f64x4::splat(time_s)))
     }
 
     /// By how much the phases rise per second for someone who moves, rad/s: minus the frequency of encounter.
     #[inline(always)]
-    pub(super) fn rate_rad_s(&self, velocity_m_s: Ned) -> f64x4 {
+    pub(super) fn rate_rad_s(&self, velocity_m_s: Ned) -> f32x4 {
         let there =
             self.per_north_m * f64x4::splat(velocity_m_s.north) + self.per_east_m * f64x4::splat(velocity_m_s.east);
-        (there - self.per_s) * f64x4::splat(TAU)
+        single((there - self.per_s) * f64x4::splat(TAU))
     }
 }
 
@@ -149,18 +149,18 @@ pub(super) fn lanes<T: Default>(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -
     std::array::from_fn(|lane| waves.get(lane).map_or_else(T::default, &part))
 }
 
-/// [`lanes`] of a number.
-pub(super) fn side_by_side(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> f64) -> f64x4 {
-    f64x4::new(lanes(waves, part))
+/// [`lanes`] of a number, in single precision.
+pub(super) fn side_by_side(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> f64) -> f32x4 {
+    f32x4::new(lanes(waves, |w| part(w) as f32))
 }
 
 /// Four components of the surface side by side.
 #[derive(Clone, Copy, Debug)]
 struct SurfaceRow {
     phases: Phases,
-    amplitude_m: f64x4,
-    slope_north: f64x4,
-    slope_east: f64x4,
+    amplitude_m: f32x4,
+    slope_north: f32x4,
+    slope_east: f32x4,
 }
 
 /// The surface at a point.
@@ -210,7 +210,7 @@ impl WaveField {
     /// The surface at a place and time, of all components.
     #[must_use]
     pub fn surface(&self, at: Ned, time_s: f64) -> Surface {
-        let (mut elevation, mut north, mut east) = (f64x4::ZERO, f64x4::ZERO, f64x4::ZERO);
+        let (mut elevation, mut north, mut east) = (f32x4::ZERO, f32x4::ZERO, f32x4::ZERO);
         for row in &self.rows {
             let (sin, cos) = row.phases.sin_cos(at, time_s);
             elevation += row.amplitude_m * cos;

@@ -55,7 +55,7 @@ impl CompassModel {
     pub fn read(&self, state: &mut CompassState, truth: &Truth, now: SimTime) -> f64 {
         if now.0 % self.period.0 == 0 {
             let number = (now.0 / self.period.0) as u64;
-            let (noise, _) = self.noise.normal_pair(number);
+            let noise = self.noise.normal(number);
             let psi_rad = truth.pose.psi_rad;
             let magnetic_rad = psi_rad - self.compass.declination_error_rad - self.deviation_rad(psi_rad);
             let error_rad = self.compass.thrust_error_rad * truth.thrust_share + self.compass.noise_rad * noise;

@@ -120,3 +120,11 @@ pub(crate) fn point_m(at: Ned, (a, b): (Ned, Ned)) -> f64 {
     let share = (from_a.dot(side) / side.dot(side)).clamp(0.0, 1.0);
     from_a.distance(side.scaled(share))
 }
+
+/// The derivatives at 0 of some parts of `f`, by differences of fourth order. The step suits numbers in single precision
+/// that change within a tenth of a unit.
+pub(crate) fn derivative<T, const N: usize>(f: impl Fn(f64) -> T, parts: impl Fn(&T) -> [f64; N]) -> [f64; N] {
+    let step = 0.01;
+    let [far_before, before, after, far_after] = [-2.0, -1.0, 1.0, 2.0].map(|n| parts(&f(n * step)));
+    std::array::from_fn(|i| (8.0 * (after[i] - before[i]) - (far_after[i] - far_before[i])) / (12.0 * step))
+}
