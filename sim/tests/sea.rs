@@ -7,6 +7,7 @@ use common::{alone, put, scenarios};
 use game::sea::{Current, Gusts, Sea, Spreading, Waves, Wind};
 use game::{Ned, Order, Pose, Scenario};
 use sim::World;
+use sim::sea::WaveField;
 
 const DRIFTING: [Order; 2] = [Order::Hold; 2];
 
@@ -325,5 +326,24 @@ fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
         let speed =
             world.state().boats.iter().map(|boat| game::math::length(boat.nu.surge, boat.nu.sway)).fold(0.0, f64::max);
         assert!(speed < 10.0, "{}: {speed} m/s", file.display());
+    }
+}
+
+#[test]
+fn a_free_boat_in_a_long_swell_goes_with_stokes_drift() {
+    for (hs_m, tp_s) in [(0.5, 5.0), (1.0, 6.0)] {
+        let swell = Waves { drift_factor: 0.0, spreading: Spreading::None, ..waves(hs_m, tp_s) };
+        let scenario = on(|sea| sea.waves = Some(swell.clone()));
+        let field = WaveField::new(&swell, None, 4);
+        let want = field.stokes_drift_m_s(scenario.boats[0].draught_m);
+        let mut world = World::new(&scenario, 4).unwrap();
+        put(&mut world, 0, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
+        let start = world.state().boats[0].pose.at;
+        let minutes = 40;
+        for _ in 0..20 * 60 * minutes {
+            world.step(&DRIFTING);
+        }
+        let gone = (world.state().boats[0].pose.at - start).scaled(1.0 / f64::from(60 * minutes));
+        assert!(gone.distance(want) < 0.15 * want.length(), "{hs_m} m, {tp_s} s: {gone:?} m/s, not {want:?}");
     }
 }

@@ -57,7 +57,8 @@ struct Shape {
     draught_m: f64,
     waves: HullWaves,
     ride: Ride,
-    stokes_m_s: Ned,
+    /// The part of Stokes drift that is not found by going along with the water.
+    rise_drift_m_s: Ned,
 }
 
 #[derive(Clone, Debug)]
@@ -104,7 +105,9 @@ impl SeaModel {
         let sea = &scenario.sea;
         let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seed));
         let highest = scenario.boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
-        let wind = sea.wind.as_ref().map(|wind| WindField::new(wind, highest, &scenario.field, seed));
+        // Wind of no speed is no wind, whatever the boat makes by its own way.
+        let wind = sea.wind.as_ref().filter(|wind| wind.speed_10m_m_s > 0.0);
+        let wind = wind.map(|wind| WindField::new(wind, highest, &scenario.field, seed));
         let mut model = SeaModel {
             current: CurrentField::new(&sea.current, &scenario.field, seed),
             shapes: vec![],
@@ -148,7 +151,7 @@ impl SeaModel {
                 draught_m: boat.draught_m,
                 waves: HullWaves::new(field, boat, water_density_kg_m3),
                 ride: Ride::new(field, boat),
-                stokes_m_s: field.stokes_drift_m_s(boat.draught_m),
+                rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
             });
             self.shapes.len() - 1
         })
@@ -210,7 +213,7 @@ impl SeaNow<'_> {
             Some(cover) => shape.waves.at_with(cover, middle, self.middle_s),
         };
         felt.cover_m = cover_m;
-        felt.current_m_s = felt.current_m_s + shape.stokes_m_s;
+        felt.current_m_s = felt.current_m_s + shape.rise_drift_m_s;
         felt.water = felt.water.plus(1.0, waves.velocity);
         felt.water_rate = waves.acceleration;
         // Long waves push the water that the hull displaces, and that it would carry along, as they push water
