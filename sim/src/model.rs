@@ -6,7 +6,7 @@ use crate::flaw::FlawState;
 use crate::hull::{HullModel, Planar};
 use crate::kinematic::{Command, KinematicModel, KinematicState};
 use crate::motion::{Effort, Fleet, Motion};
-use crate::sea::{SeaModel, SeaNow};
+use crate::sea::{Attitude, SeaModel, SeaNow};
 use crate::sensor::{Reading, SensorModel, SensorState, Truth};
 use crate::state::BoatState;
 use crate::thruster::ThrusterModel;
@@ -233,17 +233,19 @@ impl Model {
         Passage { kind, from, to: from, turn, turn_to: turn, fixed: boat.quarantined, kick: Planar::default() }
     }
 
-    /// What is true of a boat whose velocity changed by `change` in the last tick.
-    pub(crate) fn truth(
-        &self,
-        vehicle: usize,
-        boat: &BoatState,
-        turn: (f64, f64),
-        change: Planar,
-        sea: &SeaNow<'_>,
-    ) -> Truth {
+    /// How a boat lies in the waves; a point boat knows none.
+    pub(crate) fn attitude(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64), sea: &SeaNow<'_>) -> Attitude {
         let kind = self.kinds[vehicle];
-        let attitude = sea.attitude(kind, boat.pose, turn, boat.nu);
+        match self.drives[kind] {
+            Drive::Thrusters(..) => sea.attitude(kind, boat.pose, turn, boat.nu),
+            Drive::Point(_) => Attitude::default(),
+        }
+    }
+
+    /// What is true of a boat.
+    pub(crate) fn truth(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64), sea: &SeaNow<'_>) -> Truth {
+        let kind = self.kinds[vehicle];
+        let attitude = self.attitude(vehicle, boat, turn, sea);
         let thrust_share = match &self.drives[kind] {
             Drive::Thrusters(thruster, ..) => {
                 0.5 * (boat.port.newton.abs() + boat.starboard.newton.abs()) / thruster.newton_max
@@ -253,7 +255,7 @@ impl Model {
         Truth {
             pose: boat.pose,
             nu: boat.nu,
-            nu_dot: Planar::default().plus(1.0 / self.dt_s, change),
+            nu_dot: Planar::default().plus(1.0 / self.dt_s, boat.nu_change),
             roll_rad: attitude.roll_rad,
             pitch_rad: attitude.pitch_rad,
             roll_rate_rad_s: attitude.roll_rad_s,

@@ -37,6 +37,8 @@ pub struct BoatState {
     pub pose: Pose,
     /// Velocity over the ground in body axes.
     pub nu: Planar,
+    /// By how much that changed in the last tick: what accelerometers feel.
+    pub nu_change: Planar,
     /// Port thruster.
     pub port: Shaft,
     /// Starboard thruster.
@@ -48,7 +50,7 @@ pub struct BoatState {
 }
 
 /// What a snapshot begins with: name, layout version.
-const MAGIC: [u8; 5] = *b"SQLW\x02";
+const MAGIC: [u8; 5] = *b"SQLW\x03";
 
 /// Why bytes are not a snapshot of this world.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

@@ -347,3 +347,24 @@ fn a_free_boat_in_a_long_swell_goes_with_stokes_drift() {
         assert!(gone.distance(want) < 0.15 * want.length(), "{hs_m} m, {tp_s} s: {gone:?} m/s, not {want:?}");
     }
 }
+
+#[test]
+fn point_boats_collide_in_a_current_as_they_do_in_still_water() {
+    let current = Ned { north: 0.3, east: 0.4 };
+    let after = |mean_m_s: Ned| {
+        let mut scenario = alone("heron_kinematic", "calm");
+        scenario.sea.current.mean_m_s = mean_m_s;
+        let mut world = World::new(&scenario, 1).unwrap();
+        // Blue runs into red's side.
+        put(&mut world, 0, (300.0, 200.0, 90.0), (0.0, 0.0, 0.0));
+        put(&mut world, 1, (308.0, 200.2, 0.0), (0.0, 0.0, 0.0));
+        let ahead = Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 };
+        run(&mut world, &[ahead, Order::Hold], 30.0);
+        [0, 1].map(|i| world.state().boats[i].pose.at - mean_m_s.scaled(30.0))
+    };
+    let (still, drifting) = (after(Ned::default()), after(current));
+    assert!((still[0].north - 200.0).abs() > 1.0, "red was in the way: {still:?}");
+    for (still, drifting) in still.into_iter().zip(drifting) {
+        assert!(still.distance(drifting) < 1e-3, "{still:?}, in a current {drifting:?}");
+    }
+}
