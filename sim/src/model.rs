@@ -121,6 +121,12 @@ impl Model {
         self.sensed.iter().flatten().map(|_| (SensorState::default(), Reading::default())).collect()
     }
 
+    /// How far a vehicle's compass is off, rad.
+    #[inline]
+    pub(crate) fn heading_error_rad(&self, vehicle: usize, senses: &[(SensorState, Reading)]) -> f64 {
+        self.sensed[vehicle].as_ref().map_or(0.0, |(place, _)| senses[*place].0.heading_error_rad())
+    }
+
     /// The model of a vehicle that is a point boat, and its place among those.
     #[inline]
     pub(crate) fn point(&self, vehicle: usize) -> Option<(usize, &KinematicModel)> {
@@ -142,15 +148,15 @@ impl Model {
         }
     }
 
-    /// What moves a boat in this tick, and the current it is in: its thrusters take up its order, and the sea does
-    /// its part.
+    /// What moves a boat in this tick, and the current it is in: its thrusters take up its order, by the heading that
+    /// its compass shows, and the sea does its part.
     #[inline]
     pub(crate) fn effort(
         &self,
         vehicle: usize,
         boat: &mut BoatState,
         flaws: &mut FlawState,
-        turn: (f64, f64),
+        (turn, heading_error_rad): ((f64, f64), f64),
         order: (Order, f64),
         sea: &SeaNow<'_>,
     ) -> (Effort, Ned) {
@@ -162,7 +168,7 @@ impl Model {
             return (Effort::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
-        let settings = settings(boat, (hull, thruster, autopilot), order);
+        let settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), order);
         let felt = sea.feel(kind, hull, boat.pose, turn, boat.nu);
         let still_m = thruster.ventilation().map_or(0.0, |ventilation| ventilation.depth_m);
         let water_above_m = felt.cover_m.map(|cover_m| still_m + cover_m);
@@ -281,13 +287,14 @@ fn numbered(counts: impl Iterator<Item = bool>) -> Vec<Option<usize>> {
 #[inline]
 fn settings(
     boat: &mut BoatState,
+    heading_error_rad: f64,
     (hull, thruster, autopilot): (&HullModel, &ThrusterModel, &AutopilotModel),
     order: (Order, f64),
 ) -> [f64; 2] {
     match order {
         (Order::Steer { heading_rad, speed_m_s }, factor) => {
             let speed_m_s = speed_m_s.min(factor * autopilot.speed_max_m_s);
-            let at = (boat.pose.psi_rad, boat.nu);
+            let at = (boat.pose.psi_rad + heading_error_rad, boat.nu);
             autopilot.steer((hull, thruster), at, (heading_rad, speed_m_s), &mut boat.speed_integral_newton)
         }
         (Order::Thrust { port, starboard }, factor) => {

@@ -200,7 +200,8 @@ impl World {
         work.currents_m_s.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let order = model.obeyed(&state.standing, i, boat.pose.at, orders[i]);
-            let (effort, current_m_s) = model.effort(i, boat, &mut state.flaws[i], work.turns[i], order, &sea);
+            let heading = (work.turns[i], model.heading_error_rad(i, &state.senses));
+            let (effort, current_m_s) = model.effort(i, boat, &mut state.flaws[i], heading, order, &sea);
             work.efforts.push(effort);
             work.currents_m_s.push(current_m_s);
         }

@@ -244,7 +244,7 @@ fn boats_in_waves_meet_them_at_the_frequency_of_encounter() {
         last = pitch;
     }
     let found = std::f64::consts::TAU * f64::from(crossings - 1) / (last_at - first_at);
-    let want = omega + omega * omega / 9.81 * speed;
+    let want = omega + omega * omega / game::sea::GRAVITY_M_S2 * speed;
     assert!((found / want - 1.0).abs() < 0.01, "{found} against {want} rad/s (ω {omega}, U {speed})");
 }
 

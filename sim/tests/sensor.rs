@@ -1,11 +1,15 @@
 //! Sensors against what they are stated to do: statistics, times, curves, and the truth where they are perfect.
 
+mod common;
+
 use game::boat::{Compass, Gps, Imu, Sensors};
 use game::frame::{Body, Pose, body_from_ned, ned_from_body};
 use game::math;
-use game::{Ned, SimTime};
+use game::sea::GRAVITY_M_S2;
+use game::{Ned, Order, SimTime, VehicleId};
+use sim::World;
 use sim::hull::Planar;
-use sim::sensor::imu::{GRAVITY_M_S2, ImuReading};
+use sim::sensor::imu::ImuReading;
 use sim::sensor::{Reading, SensorModel, SensorState, Truth};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -438,4 +442,21 @@ fn sensors_go_on_from_a_snapshot_to_the_bit() {
         let _ = model.read(&mut state, &sailing(TICK * i), TICK * i);
     }
     assert!(postcard::from_bytes::<SensorState>(&[0xff; 40]).is_err());
+}
+
+#[test]
+fn the_front_seat_steers_by_the_heading_that_the_compass_shows() {
+    let mut scenario = common::alone("surveyor_m1_8", "calm");
+    let off = Compass { deviation_rad: [0.2, 0.0, 0.0, 0.0, 0.0], ..exact_compass() };
+    scenario.boats[0].sensors = with_compass(off);
+    let mut world = World::new(&scenario, 1).unwrap();
+    let orders = [Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 }, Order::Hold];
+    for _ in 0..20 * 60 {
+        world.step(&orders);
+    }
+    // A compass that points 0.2 rad too far east reads as much too little.
+    let (psi_rad, reading) =
+        (world.state().boats[0].pose.psi_rad, world.reading(VehicleId::at(0)).unwrap().nav.psi_rad);
+    assert!((reading - 1.0).abs() < 0.01, "it reads {reading}");
+    assert!((psi_rad - 1.2).abs() < 0.01, "it goes {psi_rad}");
 }

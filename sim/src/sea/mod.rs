@@ -43,6 +43,8 @@ pub struct SeaModel {
     current: CurrentField,
     /// Hulls of different size; kinds of boat that differ in other things share one.
     shapes: Vec<Shape>,
+    /// The water over propellers, by size of hull and place of the propellers.
+    covers: Vec<([f64; 4], Cover)>,
     kinds: Vec<Kind>,
     /// Half a tick, and as seconds.
     half_tick: SimTime,
@@ -69,8 +71,8 @@ struct Kind {
     windage: Windage,
     /// The mean wind at the height of its windage, m/s.
     wind_mean_m_s: f64,
-    /// The water over its propellers, where that matters.
-    cover: Option<Cover>,
+    /// Index into the covers, where that matters.
+    cover: Option<usize>,
 }
 
 /// The sea at one moment.
@@ -111,6 +113,7 @@ impl SeaModel {
         let mut model = SeaModel {
             current: CurrentField::new(&sea.current, &scenario.field, seed),
             shapes: vec![],
+            covers: vec![],
             kinds: vec![],
             half_tick: SimTime(scenario.tick.0 / 2),
             half_s: 0.5 * scenario.tick.as_s(),
@@ -119,7 +122,7 @@ impl SeaModel {
         };
         for boat in &scenario.boats {
             let kind = Kind {
-                cover: model.cover(boat),
+                cover: model.cover_of(boat),
                 length_m: boat.length_m,
                 shape: model.shape_of(boat, sea.water_density_kg_m3),
                 windage: boat.windage.clone(),
@@ -130,13 +133,18 @@ impl SeaModel {
         model
     }
 
-    /// The water over the boat's propellers, if they can suck air.
-    fn cover(&self, boat: &Boat) -> Option<Cover> {
-        let Drive::Thrusters { thruster, .. } = &boat.drive else { return None };
+    /// The index of the water over the boat's propellers, made if it is the first of it, if they can suck air.
+    fn cover_of(&mut self, boat: &Boat) -> Option<usize> {
+        let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
         thruster.flaws.ventilation?;
-        let ahead = -PROPELLER_ASTERN * boat.length_m;
-        let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
-        Some(Cover::new(self.waves.as_ref()?, boat, places))
+        let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
+        let known = self.covers.iter().position(|(other, _)| *other == size);
+        Some(known.unwrap_or_else(|| {
+            let ahead = -PROPELLER_ASTERN * boat.length_m;
+            let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
+            self.covers.push((size, Cover::new(field, boat, places)));
+            self.covers.len() - 1
+        }))
     }
 
     /// The index of the boat's shape, made if it is the first of it.
@@ -208,7 +216,7 @@ impl SeaNow<'_> {
         let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape]);
         let velocity_m_s = frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway });
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
-        let (waves, cover_m) = match &boat.cover {
+        let (waves, cover_m) = match boat.cover.map(|cover| &self.model.covers[cover].1) {
             None => (shape.waves.at(middle, self.middle_s), [0.0; 2]),
             Some(cover) => shape.waves.at_with(cover, middle, self.middle_s),
         };

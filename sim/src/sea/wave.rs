@@ -9,12 +9,9 @@ use super::spectrum;
 use crate::hull::Planar;
 use game::boat::Boat;
 use game::frame::Ned;
-use game::sea::Waves;
+use game::sea::{GRAVITY_M_S2, Waves};
 use std::f64::consts::TAU;
 use wide::{f32x4, f64x4};
-
-/// Standard gravity.
-pub const GRAVITY_M_S2: f64 = 9.806_65;
 
 /// Components side by side.
 pub(super) const LANES: usize = 4;

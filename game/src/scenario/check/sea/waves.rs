@@ -1,11 +1,10 @@
 //! Waves, by height and period or by the wind that raises them.
 
-use super::G_M_S2;
 use super::wind::PROFILE_EXPONENT;
 use crate::math;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawSpectrum, RawSpreading, RawWaves, RawWind};
-use crate::sea::{Spreading, Waves};
+use crate::sea::{GRAVITY_M_S2, Spreading, Waves};
 
 /// Waves steeper than this (height over length at the peak) break before they get there.
 const STEEPEST: f64 = 0.08;
@@ -77,7 +76,7 @@ fn height_and_period(ledger: &mut Ledger, given: &At<RawWaves>, wind: Option<&At
         (Some(hs_m), _, _, _) if fully_grown => Some(fully_grown_with(hs_m)),
         (None, _, None, Some(u_10)) if fully_grown => {
             let u_19_5 = u_10 * libm::pow(1.95, profile_exponent(wind));
-            Some(fully_grown_with(0.209_2 * u_19_5 * u_19_5 / G_M_S2))
+            Some(fully_grown_with(0.209_2 * u_19_5 * u_19_5 / GRAVITY_M_S2))
         }
         (Some(hs_m), Some(tp_s), _, _) => Some((hs_m, tp_s)),
         (_, _, Some(x_km), Some(u)) if !fully_grown => {
@@ -108,17 +107,17 @@ fn profile_exponent(wind: Option<&At<RawWind>>) -> f64 {
 /// Pierson and Moskowitz (1964): S = 8.1e-3 g² ω^-5 exp(-0.74 (g / (U ω))^4), with U 19.5 m above the water. Hence
 /// Hs = 0.2092 U² / g, and the peak is at 0.8772 g / U.
 fn fully_grown_with(hs_m: f64) -> (f64, f64) {
-    let u_m_s = (hs_m * G_M_S2 / 0.209_2).sqrt().max(0.1);
-    (hs_m, std::f64::consts::TAU * u_m_s / (0.877_2 * G_M_S2))
+    let u_m_s = (hs_m * GRAVITY_M_S2 / 0.209_2).sqrt().max(0.1);
+    (hs_m, std::f64::consts::TAU * u_m_s / (0.877_2 * GRAVITY_M_S2))
 }
 
 /// The length of waves of this period, m.
 fn peak_length_m(tp_s: f64, depth_m: Option<f64>) -> f64 {
     let omega = std::f64::consts::TAU / tp_s;
-    let deep = omega * omega / G_M_S2;
+    let deep = omega * omega / GRAVITY_M_S2;
     // Guo (2002), within 0.75 %.
     let k = depth_m.map_or(deep, |h| {
-        let x = h * omega / (G_M_S2 * h).sqrt();
+        let x = h * omega / (GRAVITY_M_S2 * h).sqrt();
         x * x / h * libm::pow(1.0 - math::exp(-libm::pow(x, 2.4908)), -0.4015)
     });
     std::f64::consts::TAU / k
