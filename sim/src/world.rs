@@ -38,7 +38,8 @@ pub enum NoStart {
     Draw(#[from] Problems),
 }
 
-/// Memory that is used again every tick; all of it follows from the state.
+/// Memory that is used again every tick. All of it follows from the state but `accelerations`, which a step writes before it
+/// reads them.
 #[derive(Clone, Default)]
 struct Work {
     near: Near,
@@ -52,7 +53,7 @@ struct Work {
     passages: Vec<Passage>,
     /// Velocity over the ground at the end of the tick without contact, by vehicle.
     velocities: Vec<Planar>,
-    /// How fast each boat's velocity changed in the last tick.
+    /// How fast each boat's velocity changed in the last tick; zero before the first, and after a restore.
     accelerations: Vec<Planar>,
     pairs: Vec<Pair>,
     notes: Notes,
@@ -123,7 +124,8 @@ impl World {
         &self.model.referee
     }
 
-    /// The state as bytes; [`World::restore`] takes them back.
+    /// The state as bytes; [`World::restore`] takes them back. They hold the world alone: no orders in force, no messages
+    /// under way, no sightings, no events of the last step.
     #[must_use]
     pub fn snapshot(&self) -> Vec<u8> {
         self.state.snapshot(self.model.scenario_mark)
@@ -139,7 +141,7 @@ impl World {
         Ok(())
     }
 
-    /// 128 bits that differ when any bit of the state differs.
+    /// 128 bits that differ when any bit of the state differs: of what [`World::snapshot`] holds.
     #[must_use]
     pub fn digest(&self) -> u128 {
         self.state.digest()
@@ -158,7 +160,7 @@ impl World {
         Some(&self.state.senses[place].1)
     }
 
-    /// What is true of a vehicle, as far as sensors feel it.
+    /// What is true of a vehicle, as far as sensors feel it. Right after a restore it accelerates by nothing.
     #[must_use]
     pub fn truth(&self, vehicle: VehicleId) -> Truth {
         let (i, work) = (vehicle.index(), &self.work);
@@ -183,6 +185,7 @@ impl World {
     fn refresh(&mut self) {
         self.work.turns.clear();
         self.work.turns.extend(self.state.boats.iter().map(|boat| math::sin_cos(boat.pose.psi_rad)));
+        self.work.accelerations.clear();
         self.work.accelerations.resize(self.state.boats.len(), Planar::default());
         self.find_pairs();
     }
@@ -238,6 +241,7 @@ impl World {
                 }
             } else if !boat.quarantined {
                 *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
+                work.accelerations[i] = Planar::default();
                 work.events.push(Event::Quarantined { vehicle: VehicleId::at(i) });
                 model.referee.retire(&mut state.standing, VehicleId::at(i), &mut work.events);
             }
