@@ -30,7 +30,7 @@ fn over(link: Link) -> Scenario {
 }
 
 fn started(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).unwrap()
+    Contest::new(scenario, 1).expect("the boats fit")
 }
 
 /// An order that says when it was given: at this decision. At this pace nobody gets anywhere.
@@ -152,7 +152,8 @@ fn a_mind_that_is_silent_or_talks_much_changes_the_fate_of_no_other_message() {
 
 #[test]
 fn holding_stops_what_is_under_way() {
-    let ways: [(&str, fn(&mut Contest)); 3] = [
+    type Stop = fn(&mut Contest);
+    let ways: [(&str, Stop); 3] = [
         ("hold", |contest| contest.hold(BLUE)),
         ("lose", |contest| contest.lose_mind(BLUE)),
         ("regain", |contest| {

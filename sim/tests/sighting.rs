@@ -35,7 +35,7 @@ fn facing(sharing: Sharing, blue: (f64, f64, f64), red: (f64, f64, f64)) -> Scen
 }
 
 fn started(scenario: &Scenario) -> Contest {
-    Contest::new(scenario, 1).unwrap()
+    Contest::new(scenario, 1).expect("the boats fit")
 }
 
 /// What blue is shown of red.
