@@ -11,7 +11,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use xxhash_rust::xxh3;
 
-/// Everything that changes in a world. Nothing else is remembered from tick to tick.
+/// Everything that changes in a world. Nothing else is remembered from tick to tick: what a step does follows from this
+/// and the orders. What stands between minds and boats is no part of the world: orders in force, messages under way,
+/// sightings and watchdogs belong to [`Contest`](crate::Contest), whose digest covers them and which has no snapshot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Physics ticks since the start.

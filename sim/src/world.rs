@@ -121,7 +121,8 @@ impl World {
         &self.model.referee
     }
 
-    /// The state as bytes; [`World::restore`] takes them back.
+    /// The state as bytes; [`World::restore`] takes them back. They hold the world alone: no orders in force, no messages
+    /// under way, no sightings, no events of the last step.
     #[must_use]
     pub fn snapshot(&self) -> Vec<u8> {
         self.state.snapshot(self.model.scenario_mark)
@@ -137,7 +138,7 @@ impl World {
         Ok(())
     }
 
-    /// 128 bits that differ when any bit of the state differs.
+    /// 128 bits that differ when any bit of the state differs: of what [`World::snapshot`] holds.
     #[must_use]
     pub fn digest(&self) -> u128 {
         self.state.digest()

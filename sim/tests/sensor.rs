@@ -147,6 +147,42 @@ fn a_fix_says_where_the_boat_was_and_comes_out_after_its_latency() {
 }
 
 #[test]
+fn the_longest_latency_that_a_file_may_state_comes_out_as_stated_whatever_the_periods() {
+    // What `game::scenario` allows: latency_s up to 2 and up to 12 periods, period_s from 0.02.
+    for decision_ms in [10, 20, 50, 100, 250, 1_000] {
+        let decision = SimTime(decision_ms * 1_000_000);
+        for period_s in [0.02, 0.029, 0.05, 0.074, 0.1, 0.13, 0.149, 0.149_999, 0.15, 0.2, 1.0, 1.49, 10.0] {
+            let gps = Gps { period_s, latency_s: (12.0 * period_s).min(2.0), ..exact_gps() };
+            let latency = SimTime::from_s(gps.latency_s);
+            let model = SensorModel::new(&with_gps(gps), decision, 1, "blue_one");
+            let period = decision * ((period_s / decision.as_s()).round() as i64).max(1);
+            let mut state = SensorState::default();
+            for now in (0..1_000).map(|i| decision * i) {
+                let reading = model.read(&mut state, &sailing(now), now);
+                let want_at = period * ((now - latency).0.max(0) / period.0);
+                assert_eq!(reading.fix_at, want_at, "decision {decision}, period {period_s}, at {now}");
+                assert_eq!(reading.nav.at(), sailing(want_at).pose.at);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_game_with_an_awkward_period_and_a_long_latency_is_played() {
+    let mut scenario = common::alone("surveyor_m1_8", "calm");
+    for boat in &mut scenario.boats {
+        boat.sensors.gps = Some(Gps { period_s: 0.13, latency_s: 1.55, ..exact_gps() });
+    }
+    let mut contest = sim::Contest::new(&scenario, 1).unwrap();
+    for k in 0..200_i64 {
+        let late = SimTime(1_600_000_000);
+        let want_at = SimTime((contest.now() - late).0.max(0));
+        assert_eq!(contest.pictures()[0].own[0].fix_ns, want_at, "at decision {k}");
+        contest.advance();
+    }
+}
+
+#[test]
 fn the_bias_of_a_receiver_wanders_as_stated_and_noise_comes_on_top() {
     const FIXES: usize = 1_200_000;
     const STEP_S: f64 = 0.2;
