@@ -26,8 +26,10 @@ pub(crate) struct Panel {
     pub(crate) y: String,
     /// Whether a metre is as long on both axes: for maps.
     pub(crate) equal: bool,
-    /// What is drawn; without any the panel says that there is none.
+    /// What is drawn.
     pub(crate) lines: Vec<Line>,
+    /// What is said where nothing is drawn.
+    pub(crate) absent: &'static str,
     /// Places that are pointed out.
     pub(crate) marks: Vec<Mark>,
 }
@@ -129,11 +131,12 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
             }
         }
     }
+    let rises = rises(&panel.marks);
     for mark in panel.marks.iter().filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite()) {
-        // The name goes where there is room for it.
-        let (side, gap) = if mark.at.0 > 0.5 * (x0 + x1) { (HPos::Right, -7) } else { (HPos::Left, 7) };
+        // The name goes where there is room for it, and not onto the line from mark to mark.
+        let (side, right) = if mark.at.0 > 0.5 * (x0 + x1) { (HPos::Right, -1) } else { (HPos::Left, 1) };
         let style = (FONT, 12).into_font().into_text_style(area).pos(Pos::new(side, VPos::Center));
-        let name = Text::new(mark.name.clone(), (gap, 0), style);
+        let name = Text::new(mark.name.clone(), (7 * right, if rises { 6 * right } else { -6 * right }), style);
         chart
             .draw_series([EmptyElement::at(mark.at) + Circle::new((0, 0), 3, BLACK.filled()) + name])
             .map_err(failed)?;
@@ -155,8 +158,10 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
 fn draw_absent(area: &Area<'_>, panel: &Panel) -> Result<()> {
     let area = area.margin(12, 12, 12, 24).titled(&panel.title, CAPTION).map_err(failed)?;
     let (wide, high) = area.dim_in_pixel();
+    let frame = RGBColor(222, 222, 222).stroke_width(1);
+    area.draw(&Rectangle::new([(0, 0), (wide as i32 - 1, high as i32 - 1)], frame)).map_err(failed)?;
     let style = CAPTION.into_font().color(&RGBColor(120, 120, 120)).pos(Pos::new(HPos::Center, VPos::Center));
-    area.draw(&Text::new("none", (wide as i32 / 2, high as i32 / 2), style)).map_err(failed)
+    area.draw(&Text::new(panel.absent, (wide as i32 / 2, high as i32 / 2), style)).map_err(failed)
 }
 
 /// What a panel shows horizontally and vertically.
@@ -173,6 +178,12 @@ fn ranges(panel: &Panel, has_names: bool) -> ((f64, f64), (f64, f64)) {
         y1 += 0.25 * (y1 - y0);
     }
     ((x0, x1), (y0, y1))
+}
+
+/// Whether marks go up from left to right.
+fn rises(marks: &[Mark]) -> bool {
+    let (Some(first), Some(last)) = (marks.first(), marks.last()) else { return true };
+    (last.at.0 - first.at.0) * (last.at.1 - first.at.1) >= 0.0
 }
 
 /// The outline of what lies between a line and 0.
@@ -207,7 +218,8 @@ fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
 
 /// A number on an axis of this width, with the places that tell its labels apart.
 fn label(number: f64, width: f64) -> String {
-    let places = (0..6).find(|places| width >= 4.0 * [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5][*places]).unwrap_or(6);
+    // There are up to nine labels at steps of 1, 2 or 5.
+    let places = (0..6).find(|places| width >= 5.0 * [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5][*places]).unwrap_or(6);
     let text = format!("{number:.places$}");
     if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
 }
@@ -229,6 +241,7 @@ mod tests {
             y: "u in m/s".into(),
             equal,
             lines: vec![line("surge"), line("")],
+            absent: "nothing",
             marks: points.iter().map(mark).collect(),
         };
         Page { title: "a trial".into(), columns: 2, panels: vec![panel(true), panel(false)] }
@@ -270,14 +283,15 @@ mod tests {
     fn a_panel_of_nothing_says_so_under_its_title() {
         let mut page = page(vec![]);
         page.panels[1].lines.clear();
-        assert!(svg(&page).contains("none") && svg(&page).contains("speed"));
+        assert!(svg(&page).contains("nothing") && svg(&page).contains("speed"));
         page.panels.remove(1);
-        assert!(!svg(&page).contains("none"));
+        assert!(!svg(&page).contains("nothing"));
     }
 
     #[test]
     fn labels_have_the_places_they_need() {
-        for (number, width, want) in [(3.0, 100.0, "3"), (0.5, 2.0, "0.5"), (-0.0001, 2.0, "0.0"), (0.12, 0.2, "0.12")]
+        for (number, width, want) in
+            [(3.0, 100.0, "3"), (0.5, 2.0, "0.5"), (-0.0001, 2.0, "0.0"), (0.12, 0.2, "0.12"), (0.05, 0.45, "0.05")]
         {
             assert_eq!(label(number, width), want);
         }

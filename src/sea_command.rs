@@ -6,6 +6,7 @@ use crate::{screen, water_args};
 use anyhow::{Context, Result};
 use arena::trial::{self, Afloat, Drift, Manoeuvre, Plan, Sample, Start};
 use game::angle::compass_deg_from_rad;
+use game::boat::Drive;
 use game::sea::Sea;
 use game::{Boat, Ned, SimTime};
 use sim::sea::{SeaModel, Summary, WaveSummary, WindSummary};
@@ -39,7 +40,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let water = trial::open_water(&boat, &sea, tick, args.seed);
     let summary = Summary::new(&sea, &boat, &water.field, args.seed);
     let drifted = drifted(&boat, &sea, tick, args.seed)?;
-    screen::print(&told(&sea, &boat.name, &summary, &drifted));
+    screen::print(&told(&sea, &boat, &summary, &drifted));
 
     let plot = args.plot.clone().unwrap_or_else(|| PathBuf::from(format!("{}.svg", sea.name)));
     let title = format!("{}: {}, seed {}", sea.name, boat.name, args.seed);
@@ -66,8 +67,8 @@ fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sampl
 }
 
 /// The summary as text.
-fn told(sea: &Sea, boat: &str, summary: &Summary, drifted: &[Sample]) -> String {
-    let mut text = format!("{} for a boat of kind {boat}\n", sea.name);
+fn told(sea: &Sea, boat: &Boat, summary: &Summary, drifted: &[Sample]) -> String {
+    let mut text = format!("{} for a boat of kind {}\n", sea.name, boat.name);
     let depth = sea.depth_m.map_or("deep".to_owned(), |depth_m| format!("{depth_m} m deep"));
     line(&mut text, "water", &format!("{} kg/m³, {depth}", sea.water_density_kg_m3));
     match &summary.waves {
@@ -79,7 +80,7 @@ fn told(sea: &Sea, boat: &str, summary: &Summary, drifted: &[Sample]) -> String 
         None => line(&mut text, "wind", "none"),
         Some(wind) => tell_wind(&mut text, wind),
     }
-    tell_drift(&mut text, drifted);
+    tell_drift(&mut text, drifted, boat);
     text
 }
 
@@ -115,11 +116,14 @@ fn tell_wind(text: &mut String, wind: &WindSummary) {
 }
 
 /// Where the boat went. The speed is that of the second half, the distance that of the whole.
-fn tell_drift(text: &mut String, drifted: &[Sample]) {
+fn tell_drift(text: &mut String, drifted: &[Sample], boat: &Boat) {
     let (Some(drift), Some(last)) = (Drift::of(drifted), drifted.last()) else { return };
     let heading_deg = whole_deg(drift.heading_rad);
     line(text, "free boat, simulated", &flow(drift.velocity_m_s, "stays", &format!(", heading {heading_deg}°")));
     line(text, "  from its start", &format!("{:.1} m in {:.0} s", last.at.length(), last.t_s));
+    if matches!(boat.drive, Drive::Kinematic(_)) {
+        line(text, "", "a kinematic boat feels the current alone");
+    }
 }
 
 /// A velocity as speed and bearing, with more to say about it; or that there is none.

@@ -58,7 +58,7 @@ fn spectrum(shown: &Shown<'_>) -> Panel {
             curve("asked for", (0..=CURVE).map(|i| (at(i), spectrum::density_m2_hz(waves, at(i)))).collect()),
         ];
     }
-    panel("Wave spectrum", "frequency in Hz", "m²/Hz", lines)
+    panel("Wave spectrum", "frequency in Hz", "m²/Hz", "no waves", lines)
 }
 
 fn elevation(shown: &Shown<'_>) -> Panel {
@@ -68,7 +68,7 @@ fn elevation(shown: &Shown<'_>) -> Panel {
         (t_s, shown.model.at_time(SimTime::from_s(t_s)).elevation_m(Ned::default()))
     };
     let line = |tp_s: f64| curve("", (0..=ELEVATION_PERIODS * ELEVATION_STEPS).map(|i| point(tp_s, i)).collect());
-    panel("Surface elevation at the datum", "time in s", "m", tp_s.map(line).into_iter().collect())
+    panel("Surface elevation at the datum", "time in s", "m", "no waves", tp_s.map(line).into_iter().collect())
 }
 
 fn wind(shown: &Shown<'_>) -> Panel {
@@ -87,7 +87,7 @@ fn wind(shown: &Shown<'_>) -> Panel {
             series("across it, to the right", Ned { north: sin, east: -cos }),
         ];
     }
-    panel("Wind at the datum, 10 m above the water", "time in s", "m/s", lines)
+    panel("Wind at the datum, 10 m above the water", "time in s", "m/s", "no wind", lines)
 }
 
 fn drift(samples: &[Sample]) -> Panel {
@@ -102,13 +102,14 @@ fn drift(samples: &[Sample]) -> Panel {
             "Track of a free boat",
             "x (east) in m",
             "y (north) in m",
+            "it stays where it is",
             if moves { vec![curve("", samples.iter().map(place).collect())] } else { vec![] },
         )
     }
 }
 
-fn panel(title: &str, x: &str, y: &str, lines: Vec<Line>) -> Panel {
-    Panel { title: title.to_owned(), x: x.to_owned(), y: y.to_owned(), equal: false, lines, marks: vec![] }
+fn panel(title: &str, x: &str, y: &str, absent: &'static str, lines: Vec<Line>) -> Panel {
+    Panel { title: title.to_owned(), x: x.to_owned(), y: y.to_owned(), equal: false, lines, absent, marks: vec![] }
 }
 
 fn curve(name: &str, points: Vec<(f64, f64)>) -> Line {

@@ -16,6 +16,7 @@ pub(crate) fn write(path: &Path, title: &str, samples: &[Sample]) -> Result<()> 
             y: "y (north) in m".into(),
             equal: true,
             lines: vec![line("", track)],
+            absent: "",
             marks: vec![],
         },
         over_time(
@@ -63,7 +64,15 @@ fn drive(samples: &[Sample]) -> Vec<Panel> {
 }
 
 fn over_time(title: &str, unit: &str, lines: Vec<Line>) -> Panel {
-    Panel { title: title.to_owned(), x: "time in s".into(), y: unit.to_owned(), equal: false, lines, marks: vec![] }
+    Panel {
+        title: title.to_owned(),
+        x: "time in s".into(),
+        y: unit.to_owned(),
+        equal: false,
+        lines,
+        absent: "",
+        marks: vec![],
+    }
 }
 
 fn series(name: &str, samples: &[Sample], of: impl Fn(&Sample) -> f64) -> Line {
