@@ -3,6 +3,7 @@
 //! Open [`SeaNow::feel`] first: the one door through which the sea acts on boats. Everything here is a function of the
 //! scenario, the seed and the time; the sea remembers nothing, so a world that goes back in time finds the same sea.
 
+pub mod band;
 mod cover;
 pub mod current;
 pub mod eddy;
@@ -19,6 +20,7 @@ pub mod wave;
 pub mod wind;
 pub mod windage;
 
+pub use band::Band;
 pub use cover::Cover;
 pub use current::{CurrentField, CurrentNow};
 pub use hull_wave::{HullWaves, WaveSample};
