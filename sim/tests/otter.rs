@@ -74,6 +74,80 @@ fn it_accelerates_to_the_speed_of_the_closed_form() {
     assert!(error < 0.005, "position is off by {:.3} %", error * 100.0);
 }
 
+/// Its velocity at every tick of this many seconds under these shaft speeds, from rest, and the world in the end.
+fn from_rest(n_rad_s: [f64; 2], seconds: u32) -> (Vec<[f64; 3]>, World) {
+    let mut world = World::new(&common::alone("otter", "calm_salt"), 1).expect("an empty sea has room");
+    let step = |_| {
+        world.step(&[thrust(n_rad_s), Order::Hold]);
+        let nu = world.state().boats[0].nu;
+        [nu.surge, nu.sway, nu.yaw]
+    };
+    ((0..20 * seconds).map(step).collect(), world)
+}
+
+#[test]
+fn its_steady_speeds_are_those_of_the_closed_form() {
+    // 2 k n² / d: published as 0.4572 and 1.8287 m/s.
+    for (n_rad_s, published_m_s) in [(40.0, 0.4572), (80.0, 1.8287)] {
+        let got = from_rest([n_rad_s; 2], 60).0[1199][0];
+        let want = 2.0 * 0.01108 * n_rad_s * n_rad_s / 77.5544;
+        assert!((got / want - 1.0).abs() < 1e-9, "{n_rad_s} rad/s: {got}, closed form {want}");
+        assert!((got - published_m_s).abs() < 1e-4, "{n_rad_s} rad/s: {got}, published {published_m_s}");
+    }
+}
+
+#[test]
+fn it_takes_up_speed_as_its_mass_resistance_and_shafts_say() {
+    // Shafts come up as 1 − e^(−t / 0.1 s), thrust is that squared, and (m + A11) u' = thrust − d u is linear.
+    let time_s = 85.2815 / 77.5544;
+    let share = |t_s: f64| {
+        let ramp = |rate: f64| {
+            let hull = game::math::exp(-t_s / time_s);
+            (game::math::exp(-rate * t_s) - hull) / (1.0 - rate * time_s)
+        };
+        1.0 - game::math::exp(-t_s / time_s) - 2.0 * ramp(10.0) + ramp(20.0)
+    };
+    for n_rad_s in [40.0, 80.0] {
+        let track = from_rest([n_rad_s; 2], 60).0;
+        let steady = track[1199][0];
+        for (i, [u, v, r]) in track.iter().enumerate() {
+            let want = steady * share(0.05 * (i + 1) as f64);
+            assert!((u - want).abs() < 1e-4 * steady && (*v, *r) == (0.0, 0.0), "tick {i}: {u}, closed form {want}");
+        }
+        for (part, published_s) in [(0.632, 1.3), (0.9, 2.7)] {
+            let after = track.iter().position(|nu| nu[0] >= part * steady).unwrap();
+            let got_s = 0.05 * (after + 1) as f64
+                - 0.05 * (track[after][0] - part * steady) / (track[after][0] - track[after - 1][0]);
+            assert!((got_s - published_s).abs() < 0.05, "{part} after {got_s} s, published {published_s} s");
+        }
+    }
+}
+
+#[test]
+fn it_spins_on_the_spot_under_opposed_shafts() {
+    // At 70 and −70 rad/s, published as 13.18 degrees per second. Astern the propellers give less, so it creeps ahead.
+    let [u, v, r] = from_rest([70.0, -70.0], 60).0[1199];
+    assert!((r.to_degrees() - 13.18).abs() < 0.02, "{} degrees per second", r.to_degrees());
+    assert!((0.0..0.4).contains(&u) && v.abs() < 0.1, "{u} {v}");
+
+    // As much thrust astern as ahead: it turns about a point that stays where it is.
+    let astern = -70.0 * (0.01108_f64 / 0.006445).sqrt();
+    let (_, mut world) = from_rest([70.0, astern], 60);
+    let mut around = || {
+        // One turn, to the tick.
+        let rate = world.state().boats[0].nu.yaw;
+        let ticks = (std::f64::consts::TAU / (0.05 * rate)).round() as u32;
+        let mut middle = Ned::default();
+        for _ in 0..ticks {
+            world.step(&[thrust([70.0, astern]), Order::Hold]);
+            middle = middle + world.state().boats[0].pose.at.scaled(1.0 / f64::from(ticks));
+        }
+        middle
+    };
+    let moved_m = around().distance(around());
+    assert!(moved_m < 1e-3, "{moved_m} m a turn");
+}
+
 #[test]
 fn it_turns_as_tight_and_as_fast() {
     let rows = reference(include_str!("otter/turn_80_60.csv"));

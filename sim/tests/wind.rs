@@ -1,5 +1,7 @@
 //! The wind against its formulas, and its force against Fossen's and the drift that closed form gives.
 
+mod common;
+
 use game::boat::Windage;
 use game::field::{Plan, Walls};
 use game::frame::{Body, LatLon};
@@ -320,11 +322,7 @@ fn a_boat_drifts_beam_on_as_fast_as_closed_form_says() {
     const WITHIN_M_S: f64 = 0.000_5;
     for (wind_m_s, want_m_s) in [(5.0, 0.128), (10.0, 0.340)] {
         let resistance = |v: f64| 40.0 * v + 0.5 * 1025.0 * 0.8 * SURVEYOR_LENGTH_M * 0.17 * v * v;
-        let (mut low, mut high) = (0.0, wind_m_s);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if force(0.0, wind_m_s - middle).sway > resistance(middle) { low = middle } else { high = middle }
-        }
-        assert!((low - want_m_s).abs() < WITHIN_M_S, "wind {wind_m_s} m/s: drifts {low}, not {want_m_s} m/s");
+        let got_m_s = common::root((0.0, wind_m_s), |v| resistance(v) - force(0.0, wind_m_s - v).sway);
+        assert!((got_m_s - want_m_s).abs() < WITHIN_M_S, "wind {wind_m_s} m/s: drifts {got_m_s}, not {want_m_s} m/s");
     }
 }

@@ -121,6 +121,34 @@ pub(crate) fn point_m(at: Ned, (a, b): (Ned, Ned)) -> f64 {
     from_a.distance(side.scaled(share))
 }
 
+/// Where `f`, which rises, is nothing between `low` and `high`: by bisection.
+pub(crate) fn root((mut low, mut high): (f64, f64), f: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if f(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// The amplitudes of the harmonics of a series, by the discrete Fourier transform with Hann's window: that of harmonic
+/// `n`, which has `n` periods in the series. A sine between two harmonics loses up to a sixth of its size.
+pub(crate) fn amplitudes(series: &[f64]) -> Vec<f64> {
+    let count = series.len();
+    let turns: Vec<(f64, f64)> =
+        (0..count).map(|i| game::math::sin_cos(std::f64::consts::TAU * i as f64 / count as f64)).collect();
+    let windowed: Vec<f64> = series.iter().zip(&turns).map(|(x, turn)| x * (1.0 - turn.1)).collect();
+    let amplitude = |harmonic: usize| {
+        let (mut sin, mut cos, mut place) = (0.0, 0.0, 0);
+        for x in &windowed {
+            (sin, cos) = (sin + x * turns[place].0, cos + x * turns[place].1);
+            place += harmonic;
+            place -= if place >= count { count } else { 0 };
+        }
+        2.0 / count as f64 * game::math::length(sin, cos)
+    };
+    (0..count / 2).map(amplitude).collect()
+}
+
 /// The derivatives at 0 of some parts of `f`, by differences of fourth order. The step suits numbers in single precision
 /// that change within a tenth of a unit.
 pub(crate) fn derivative<T, const N: usize>(f: impl Fn(f64) -> T, parts: impl Fn(&T) -> [f64; N]) -> [f64; N] {

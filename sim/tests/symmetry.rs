@@ -1,0 +1,238 @@
+//! What must not matter: where north is, which side is port, how fast all the water moves, and a disturbance of no size.
+
+mod common;
+
+use common::{alone, put};
+use game::field::Plan;
+use game::math::sin_cos;
+use game::sea::{EddiesByLot, Eddy, Gusts, Sea, Shear, Spreading, Tide, Wander, Waves, Wind};
+use game::{Field, Ned, Order, Pose, Scenario};
+use sim::World;
+
+fn waves(hs_m: f64) -> Waves {
+    Waves {
+        hs_m,
+        tp_s: 2.5,
+        gamma: 3.3,
+        from_rad: 0.4,
+        spreading: Spreading::CosineSquared,
+        components: 64,
+        drift_factor: 1.0,
+    }
+}
+
+fn wind(speed_10m_m_s: f64) -> Wind {
+    let gusts = Gusts::OrnsteinUhlenbeck { intensity: 0.15, across_ratio: 0.75, length_m: 40.0 };
+    Wind { speed_10m_m_s, from_rad: -0.9, profile_exponent: 0.12, gusts }
+}
+
+/// The Surveyor on this water.
+fn on(change: impl FnOnce(&mut Sea)) -> Scenario {
+    let mut scenario = alone("surveyor_m1_8", "calm");
+    change(&mut scenario.sea);
+    scenario
+}
+
+fn turned(v: Ned, by_rad: f64) -> Ned {
+    let (sin, cos) = sin_cos(by_rad);
+    Ned { north: v.north * cos - v.east * sin, east: v.north * sin + v.east * cos }
+}
+
+/// The scenario as it is with north `by_rad` further to port: everything turns to starboard about the datum.
+fn with_all_turned(mut scenario: Scenario, by_rad: f64) -> Scenario {
+    let sea = &mut scenario.sea;
+    for from_rad in [&mut sea.waves.as_mut().unwrap().from_rad, &mut sea.wind.as_mut().unwrap().from_rad] {
+        *from_rad += by_rad;
+    }
+    let current = &mut sea.current;
+    let (shear, tide) = (current.shear.as_mut().unwrap(), current.tide.as_mut().unwrap());
+    let (wander, eddy) = (current.wander.as_mut().unwrap(), &mut current.eddies[0]);
+    let vectors = [&mut current.mean_m_s, &mut shear.toward, &mut shear.across, &mut shear.origin, &mut tide.flood_m_s];
+    for vector in vectors.into_iter().chain([&mut wander.toward, &mut eddy.centre]) {
+        *vector = turned(*vector, by_rad);
+    }
+    let plan = &scenario.field.plan;
+    let (corner, along_deg) = (turned(plan.corner, by_rad), plan.along_deg + by_rad.to_degrees());
+    scenario.field = Field::new(Plan { corner, along_deg, ..plan.clone() });
+    scenario
+}
+
+/// All that a sea can have.
+fn everything(sea: &mut Sea) {
+    (sea.waves, sea.wind) = (Some(waves(0.3)), Some(wind(8.0)));
+    sea.current.mean_m_s = Ned { north: 0.2, east: 0.1 };
+    sea.current.tide = Some(Tide { flood_m_s: Ned { north: -0.1, east: 0.3 }, period_s: 300.0, phase: 0.1 });
+    let toward = Ned::toward_deg(30.0);
+    sea.current.shear =
+        Some(Shear { toward, across: Ned::toward_deg(120.0), per_s: 0.002, origin: Ned { north: 180.0, east: 280.0 } });
+    sea.current.wander = Some(Wander { toward, sigma_m_s: 0.1, time_s: 60.0, speed_m_s: (-1.0, 1.0) });
+    sea.current.eddies = vec![Eddy { centre: Ned { north: 215.0, east: 320.0 }, radius_m: 20.0, peak_m_s: 0.3 }];
+}
+
+/// Where a boat is after each tick, its heading and its velocity, from north 200 and east 300 on a heading of 20°, in a
+/// world turned by `by_rad`; turned back.
+fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> Vec<[f64; 6]> {
+    let mut world = World::new(scenario, 3).unwrap();
+    let start = turned(Ned { north: 200.0, east: 300.0 }, by_rad);
+    let (x, y) = (start.east, start.north);
+    put(&mut world, 0, (x, y, 20.0 + by_rad.to_degrees()), (1.0, 0.2, 0.1));
+    let step = |_| {
+        world.step(&[order_of(by_rad), Order::Hold]);
+        let boat = world.state().boats[0];
+        let Pose { at, psi_rad } = boat.pose;
+        let at = turned(at, -by_rad);
+        [at.north, at.east, game::angle::wrap_pi(psi_rad - by_rad), boat.nu.surge, boat.nu.sway, boat.nu.yaw]
+    };
+    (0..1_200).map(step).collect()
+}
+
+#[test]
+fn it_does_not_matter_where_north_is() {
+    // The table of headings has an entry every 5°. Turned by a multiple of that, a boat finds the same numbers, to single
+    // precision; by anything else, it finds others between the entries, which are off by a part of a per cent.
+    let scenario = on(everything);
+    let steer = |by_rad: f64| Order::Steer { heading_rad: game::angle::wrap_pi(0.6 + by_rad), speed_m_s: 1.5 };
+    let thrust = |_| Order::Thrust { port: 0.6, starboard: 0.55 };
+    let mut farthest_m = 0.0_f64;
+    for by_deg in [90.0, 35.0, 180.0, -115.0, 2.5, 47.3, 181.7] {
+        let by_rad = f64::to_radians(by_deg);
+        let other = with_all_turned(scenario.clone(), by_rad);
+        let within_m = if by_deg % 5.0 == 0.0 { 1e-6 } else { 0.05 };
+        for order_of in [&steer as &dyn Fn(f64) -> Order, &thrust] {
+            let (here, there) = (track(&scenario, order_of, 0.0), track(&other, order_of, by_rad));
+            let off_m =
+                here.iter().zip(&there).map(|(a, b)| game::math::length(a[0] - b[0], a[1] - b[1])).fold(0.0, f64::max);
+            assert!(off_m < within_m, "{by_deg}°: {off_m} m off after a minute");
+            farthest_m = farthest_m.max(here[1199][0] - 200.0);
+        }
+    }
+    assert!(farthest_m > 30.0, "they go somewhere: {farthest_m} m");
+}
+
+#[test]
+fn it_does_not_matter_which_side_is_port() {
+    // Mirrored in the line north-south through the datum: east, heading, sway and yaw change sign. Without waves to the
+    // last bit; with them to single precision, since a heading and its mirror image lie between different entries of the
+    // table. Waves of one direction: where they spread, the directions are drawn by lot, and not the mirrored ones.
+    let sail = |side: f64, has_waves: bool| {
+        let mut scenario = on(|sea| {
+            sea.current.mean_m_s = Ned { north: 0.2, east: side * 0.3 };
+            sea.current.tide =
+                Some(Tide { flood_m_s: Ned { north: -0.1, east: side * 0.1 }, period_s: 60.0, phase: 0.1 });
+            sea.current.eddies =
+                vec![Eddy { centre: Ned { north: 230.0, east: side * 15.0 }, radius_m: 20.0, peak_m_s: side * 0.3 }];
+            let gusts = Gusts::OrnsteinUhlenbeck { intensity: 0.15, across_ratio: 0.0, length_m: 40.0 };
+            sea.wind = Some(Wind { speed_10m_m_s: 8.0, from_rad: side * 0.9, profile_exponent: 0.12, gusts });
+            sea.waves = has_waves.then(|| Waves { from_rad: side * 0.7, spreading: Spreading::None, ..waves(0.3) });
+        });
+        scenario.field.plan.obstacles.clear();
+        let mut world = World::new(&scenario, 1).unwrap();
+        put(&mut world, 0, (0.0, 200.0, side * 20.0), (1.0, side * 0.2, side * 0.1));
+        let (port, starboard) = if side > 0.0 { (0.9, 0.3) } else { (0.3, 0.9) };
+        let step = |_| {
+            world.step(&[Order::Thrust { port, starboard }, Order::Hold]);
+            let boat = world.state().boats[0];
+            let Pose { at, psi_rad } = boat.pose;
+            let nu = boat.nu;
+            [at.north, side * at.east, side * psi_rad, nu.surge, side * nu.sway, side * nu.yaw]
+        };
+        (0..1_200).map(step).collect::<Vec<_>>()
+    };
+    for (tick, (a, b)) in sail(1.0, false).iter().zip(&sail(-1.0, false)).enumerate() {
+        assert_eq!(a.map(f64::to_bits), b.map(f64::to_bits), "tick {tick}: {a:?} {b:?}");
+    }
+    for (tick, (a, b)) in sail(1.0, true).iter().zip(&sail(-1.0, true)).enumerate() {
+        let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 3e-5, "tick {tick}: {a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
+    // Of imposed thrust. The front seat steers by what it is told of the ground, and a current changes that.
+    let current = Ned { north: 0.35, east: -0.2 };
+    let orders = [Order::Thrust { port: 0.8, starboard: 0.5 }, Order::Hold];
+    let mut still = World::new(&on(|_| ()), 1).unwrap();
+    let mut carried = World::new(&on(|sea| sea.current.mean_m_s = current), 1).unwrap();
+    // The same velocity through the water: over the ground it is that and the current, seen from the boat at 0°.
+    put(&mut carried, 0, (200.0, 200.0, 0.0), (1.0 + current.north, current.east, 0.1));
+    put(&mut still, 0, (200.0, 200.0, 0.0), (1.0, 0.0, 0.1));
+    for tick in 1..=12_000 {
+        still.step(&orders);
+        carried.step(&orders);
+        let (a, b) = (still.state().boats[0].pose, carried.state().boats[0].pose);
+        let off_m = (b.at - current.scaled(f64::from(tick) * 0.05)).distance(a.at);
+        let off_rad = game::angle::wrap_pi(a.psi_rad - b.psi_rad).abs();
+        // The state holds the velocity over the ground, so in every tick the current is added and taken away again:
+        // that rounds, and headings are alike to rounding, not to the last bit.
+        assert!(off_m < 1e-10 && off_rad < 1e-12, "tick {tick}: {off_m} m, {off_rad} rad");
+    }
+}
+
+/// A name, and what is done to a sea.
+type Change = (&'static str, fn(&mut Sea));
+
+const NOTHINGS: [Change; 9] = [
+    ("waves of no height", |sea| sea.waves = Some(waves(0.0))),
+    ("waves of no height, one of them", |sea| sea.waves = Some(Waves { components: 1, ..waves(0.0) })),
+    ("wind of no speed", |sea| sea.wind = Some(Wind { gusts: Gusts::None, ..wind(0.0) })),
+    ("gusts of no wind", |sea| sea.wind = Some(wind(0.0))),
+    ("a tide of no strength", |sea| {
+        sea.current.tide = Some(Tide { flood_m_s: Ned::default(), period_s: 300.0, phase: 0.3 });
+    }),
+    ("a shear of no strength", |sea| {
+        let (toward, across) = (Ned::toward_deg(30.0), Ned::toward_deg(120.0));
+        sea.current.shear = Some(Shear { toward, across, per_s: 0.0, origin: Ned { north: 10.0, east: 20.0 } });
+    }),
+    ("a wander of no size", |sea| {
+        let toward = Ned::toward_deg(30.0);
+        sea.current.wander = Some(Wander { toward, sigma_m_s: 0.0, time_s: 100.0, speed_m_s: (-1.0, 1.0) });
+    }),
+    ("an eddy of no strength", |sea| {
+        sea.current.eddies = vec![Eddy { centre: Ned { north: 210.0, east: 190.0 }, radius_m: 20.0, peak_m_s: 0.0 }];
+    }),
+    ("eddies by lot of no strength", |sea| {
+        sea.current.eddies_by_lot = Some(EddiesByLot { count: 5, radius_m: (10.0, 40.0), peak_m_s: (0.0, 0.0) });
+    }),
+];
+
+/// The digests of a game's state, tick by tick, on the sea so changed.
+fn digests(change: impl FnOnce(&mut Sea)) -> Vec<u128> {
+    let mut world = World::new(&on(change), 1).unwrap();
+    put(&mut world, 0, (200.0, 200.0, 40.0), (1.0, 0.2, -0.1));
+    let orders = [Order::Steer { heading_rad: 2.0, speed_m_s: 2.0 }, Order::Thrust { port: 0.7, starboard: 0.2 }];
+    let step = |_| {
+        world.step(&orders);
+        world.state().digest()
+    };
+    (0..1_000).map(step).collect()
+}
+
+#[test]
+fn a_disturbance_of_no_size_is_none_to_the_last_bit() {
+    let calm = digests(|_| ());
+    let differ = |change: &Change| digests(change.1) != calm;
+    let differing: Vec<&str> = NOTHINGS.iter().filter(|c| differ(c)).map(|c| c.0).collect();
+    assert!(differing.is_empty(), "not as in calm: {differing:?}");
+    assert_ne!(digests(|sea| sea.wind = Some(wind(0.001))), calm, "some wind is some");
+}
+
+#[test]
+fn a_disturbance_of_no_size_changes_nothing_in_a_rough_sea_either() {
+    // No wind, which is no wind at all: air at rest would resist a boat under way.
+    let rough = |sea: &mut Sea| {
+        sea.waves = Some(waves(0.3));
+        sea.current.mean_m_s = Ned { north: 0.2, east: 0.1 };
+    };
+    let want = digests(rough);
+    let changes = NOTHINGS.iter().filter(|c| !c.0.starts_with("waves"));
+    let differ = |change: fn(&mut Sea)| {
+        let got = digests(|sea| {
+            rough(sea);
+            change(sea);
+        });
+        got != want
+    };
+    let differing: Vec<&str> = changes.filter(|c| differ(c.1)).map(|c| c.0).collect();
+    assert!(differing.is_empty(), "not as without: {differing:?}");
+}
