@@ -22,7 +22,7 @@ pub(crate) struct Args {
     /// The boat that it is told for: a file, or the name of one in scenarios/boats
     #[arg(long, value_name = "BOAT", default_value = "surveyor_m1_8")]
     boat: String,
-    /// Chooses the waves, gusts and eddies
+    /// Chooses the waves, gusts and eddies, and the numbers that sea and boat leave to chance
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Draws spectrum, surface, wind and the drift of the boat into this file, as SVG [default: <sea>.svg here]
@@ -34,8 +34,10 @@ pub(crate) struct Args {
 const DRIFT_S: f64 = 300.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let sea = game::scenario::load_sea(&args.sea).with_context(|| format!("no sea in {}", args.sea.display()))?;
-    let (boat, _) = water_args::boat(&args.boat).context("no boat to tell the sea for (--boat names another)")?;
+    let sea = water_args::sea(&args.sea, args.seed)?;
+    let boat = water_args::boat(&args.boat, args.seed);
+    let (boat, _, drawn) = boat.context("no boat to tell the sea for (--boat names another)")?;
+    water_args::tell_drawn(args.seed, &drawn);
     let tick = SimTime::from_s(usual_tick_s(&boat));
     let water = trial::open_water(&boat, &sea, tick, args.seed);
     let summary = Summary::new(&sea, &boat, &water.field, args.seed);

@@ -28,12 +28,7 @@ impl WaterArgs {
     /// The sea that was asked for.
     pub(crate) fn sea(&self) -> Result<Sea> {
         let mut sea = match &self.sea {
-            Some(path) => {
-                let drawn = game::scenario::draw_sea(path, self.seed);
-                let (sea, drawn) = drawn.with_context(|| format!("no sea in {}", path.display()))?;
-                tell_drawn(self.seed, &drawn);
-                sea
-            }
+            Some(path) => sea(path, self.seed)?,
             None => arena::trial::still_sea(),
         };
         if let Some(speed_m_s) = self.current_m_s {
@@ -41,6 +36,14 @@ impl WaterArgs {
         }
         Ok(sea)
     }
+}
+
+/// The sea in a file; what was drawn of it is told.
+pub(crate) fn sea(path: &Path, seed: u64) -> Result<Sea> {
+    let drawn = game::scenario::draw_sea(path, seed);
+    let (sea, drawn) = drawn.with_context(|| format!("no sea in {}", path.display()))?;
+    tell_drawn(seed, &drawn);
+    Ok(sea)
 }
 
 /// The boat in a file, or of a name in `scenarios/boats`, the file, and what was drawn of it.
