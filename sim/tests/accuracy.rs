@@ -1,4 +1,5 @@
 //! How good the numbers are: the error against the length of the tick, and stability whatever the water a hull carries along.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
 

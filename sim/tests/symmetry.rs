@@ -1,4 +1,5 @@
 //! What must not matter: where north is, which side is port, how fast all the water moves, and a disturbance of no size.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
 
