@@ -3,7 +3,7 @@
 use crate::screen;
 use crate::trial_command::{read_sheet, tick, usual_tick_s};
 use crate::water_args::{self, WaterArgs, within};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use arena::identify::{self, Fit, Log, Setting};
 use game::SimTime;
 use std::path::{Path, PathBuf};
@@ -40,7 +40,18 @@ fn segment(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let (boat, path) = water_args::boat(&args.boat)?;
+    let (boat, path, drawn) = water_args::boat(&args.boat, args.water.seed)?;
+    if let Some(first) = drawn.first() {
+        let key = first.parameter.trim_start_matches("boat/");
+        bail!("{} leaves {key} to chance; identify starts from a boat of numbers, such as its base", path.display());
+    }
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_identified.toml", boat.name)));
+    if out.canonicalize().is_ok_and(|out| path.canonicalize().is_ok_and(|path| path == out)) {
+        bail!(
+            "--out {} is the boat that the search starts from and the new file builds on: choose another",
+            out.display()
+        );
+    }
     let parameters = identify::parameters(&args.fit, &boat)?;
     let log = Log::of_sheet(&read_sheet(&args.log)?, &boat)?;
     let setting = Setting {
@@ -52,7 +63,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let named = args.log.display().to_string();
     let fit = identify::fit(&boat, &log, &setting, &parameters).with_context(|| format!("cannot fit {named}"))?;
     screen::print(&table(&boat.name, &named, &fit));
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}_identified.toml", boat.name)));
     let text = identify::written(&fit, &base_of(&out, &path), &named);
     std::fs::write(&out, text).with_context(|| format!("cannot write {}", out.display()))?;
     game::scenario::load_boat(&out).with_context(|| format!("{} is written, but no sound boat", out.display()))?;

@@ -11,6 +11,7 @@ mod result_table;
 mod run_command;
 mod screen;
 mod sea_command;
+mod sea_plot;
 mod sim_command;
 mod stop;
 mod telling;
@@ -42,7 +43,7 @@ enum Command {
     Watch(watch_command::Args),
     /// Lists the games on the network and who is in them.
     List(list_command::Args),
-    /// Says what a sea means for a boat.
+    /// Says what a sea means for a boat, and draws it.
     Sea(sea_command::Args),
     /// Puts one boat in open water through recorded commands or a standard manoeuvre.
     Trial(trial_command::Args),

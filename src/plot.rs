@@ -3,6 +3,7 @@
 use anyhow::{Context, Result, anyhow};
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
 
 /// A page of panels.
@@ -27,6 +28,10 @@ pub(crate) struct Panel {
     pub(crate) equal: bool,
     /// What is drawn.
     pub(crate) lines: Vec<Line>,
+    /// What is said where nothing is drawn.
+    pub(crate) absent: &'static str,
+    /// Places that are pointed out.
+    pub(crate) marks: Vec<Mark>,
 }
 
 /// A line through points; where a number is not finite it has a gap.
@@ -35,12 +40,25 @@ pub(crate) struct Line {
     pub(crate) name: String,
     /// Horizontal and vertical.
     pub(crate) points: Vec<(f64, f64)>,
+    /// Whether what lies between it and 0 is filled.
+    pub(crate) filled: bool,
+}
+
+/// A dot with a name beside it.
+pub(crate) struct Mark {
+    /// What it is called.
+    pub(crate) name: String,
+    /// Horizontal and vertical.
+    pub(crate) at: (f64, f64),
 }
 
 /// Size of a panel, pixels.
 const PANEL: (u32, u32) = (560, 400);
 const TITLE_HEIGHT: u32 = 44;
 const FONT: &str = "sans-serif";
+const CAPTION: (&str, u32) = (FONT, 16);
+/// How much of a line's colour is in what it fills.
+const FILLING: f64 = 0.25;
 /// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
@@ -74,22 +92,15 @@ fn draw(svg: &mut String, size: (u32, u32), page: &Page, rows: usize) -> Result<
 }
 
 fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
-    let ((mut x0, mut x1), (mut y0, mut y1)) = (extent(panel, |p| p.0), extent(panel, |p| p.1));
-    if panel.equal {
-        // What labels and title leave of the panel.
-        let (wide, high) = (f64::from(PANEL.0) - 100.0, f64::from(PANEL.1) - 105.0);
-        let metres_per_pixel = f64::max((x1 - x0) / wide, (y1 - y0) / high);
-        (x0, x1) = about_middle(x0, x1, wide * metres_per_pixel);
-        (y0, y1) = about_middle(y0, y1, high * metres_per_pixel);
+    if panel.lines.is_empty() {
+        return draw_absent(area, panel);
     }
-    if !panel.equal && panel.lines.iter().any(|line| !line.name.is_empty()) {
-        // Room for the legend above the lines.
-        y1 += 0.25 * (y1 - y0);
-    }
+    let has_names = panel.lines.iter().any(|line| !line.name.is_empty());
+    let ((x0, x1), (y0, y1)) = ranges(panel, has_names);
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .margin_right(24)
-        .caption(&panel.title, (FONT, 16))
+        .caption(&panel.title, CAPTION)
         .x_label_area_size(40)
         .y_label_area_size(64)
         .build_cartesian_2d(x0..x1, y0..y1)
@@ -111,13 +122,26 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
     for (line, colour) in panel.lines.iter().zip(COLOURS.iter().cycle()) {
         let style = colour.stroke_width(2);
         for (i, piece) in pieces(&line.points).into_iter().enumerate() {
+            if line.filled {
+                chart.draw_series([Polygon::new(down_to_0(piece), colour.mix(FILLING))]).map_err(failed)?;
+            }
             let drawn = chart.draw_series(LineSeries::new(piece.iter().copied(), style)).map_err(failed)?;
             if i == 0 && !line.name.is_empty() {
                 drawn.label(&line.name).legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], style));
             }
         }
     }
-    if panel.lines.iter().any(|line| !line.name.is_empty() && !pieces(&line.points).is_empty()) {
+    let rises = rises(&panel.marks);
+    for mark in panel.marks.iter().filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite()) {
+        // The name goes where there is room for it, and not onto the line from mark to mark.
+        let (side, right) = if mark.at.0 > 0.5 * (x0 + x1) { (HPos::Right, -1) } else { (HPos::Left, 1) };
+        let style = (FONT, 12).into_font().into_text_style(area).pos(Pos::new(side, VPos::Center));
+        let name = Text::new(mark.name.clone(), (7 * right, if rises { 6 * right } else { -6 * right }), style);
+        chart
+            .draw_series([EmptyElement::at(mark.at) + Circle::new((0, 0), 3, BLACK.filled()) + name])
+            .map_err(failed)?;
+    }
+    if has_names && panel.lines.iter().any(|line| !pieces(&line.points).is_empty()) {
         chart
             .configure_series_labels()
             .position(SeriesLabelPosition::UpperRight)
@@ -128,6 +152,44 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
             .map_err(failed)?;
     }
     Ok(())
+}
+
+/// A panel of what there is not.
+fn draw_absent(area: &Area<'_>, panel: &Panel) -> Result<()> {
+    let area = area.margin(12, 12, 12, 24).titled(&panel.title, CAPTION).map_err(failed)?;
+    let (wide, high) = area.dim_in_pixel();
+    let frame = RGBColor(222, 222, 222).stroke_width(1);
+    area.draw(&Rectangle::new([(0, 0), (wide as i32 - 1, high as i32 - 1)], frame)).map_err(failed)?;
+    let style = CAPTION.into_font().color(&RGBColor(120, 120, 120)).pos(Pos::new(HPos::Center, VPos::Center));
+    area.draw(&Text::new(panel.absent, (wide as i32 / 2, high as i32 / 2), style)).map_err(failed)
+}
+
+/// What a panel shows horizontally and vertically.
+fn ranges(panel: &Panel, has_names: bool) -> ((f64, f64), (f64, f64)) {
+    let ((mut x0, mut x1), (mut y0, mut y1)) = (extent(panel, |p| p.0), extent(panel, |p| p.1));
+    if panel.equal {
+        // What labels and title leave of the panel.
+        let (wide, high) = (f64::from(PANEL.0) - 100.0, f64::from(PANEL.1) - 105.0);
+        let metres_per_pixel = f64::max((x1 - x0) / wide, (y1 - y0) / high);
+        (x0, x1) = about_middle(x0, x1, wide * metres_per_pixel);
+        (y0, y1) = about_middle(y0, y1, high * metres_per_pixel);
+    } else if has_names {
+        // Room for the legend above the lines.
+        y1 += 0.25 * (y1 - y0);
+    }
+    ((x0, x1), (y0, y1))
+}
+
+/// Whether marks go up from left to right.
+fn rises(marks: &[Mark]) -> bool {
+    let (Some(first), Some(last)) = (marks.first(), marks.last()) else { return true };
+    (last.at.0 - first.at.0) * (last.at.1 - first.at.1) >= 0.0
+}
+
+/// The outline of what lies between a line and 0.
+fn down_to_0(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let ends = [points.last(), points.first()];
+    points.iter().copied().chain(ends.into_iter().flatten().map(|end| (end.0, 0.0))).collect()
 }
 
 /// What can be drawn without gaps.
@@ -156,7 +218,8 @@ fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
 
 /// A number on an axis of this width, with the places that tell its labels apart.
 fn label(number: f64, width: f64) -> String {
-    let places = (0..6).find(|places| width >= 4.0 * [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5][*places]).unwrap_or(6);
+    // There are up to nine labels at steps of 1, 2 or 5.
+    let places = (0..6).find(|places| width >= 5.0 * [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5][*places]).unwrap_or(6);
     let text = format!("{number:.places$}");
     if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
 }
@@ -170,28 +233,35 @@ mod tests {
     use super::*;
 
     fn page(points: Vec<(f64, f64)>) -> Page {
-        let line = |name: &str| Line { name: name.into(), points: points.clone() };
+        let line = |name: &str| Line { name: name.into(), points: points.clone(), filled: !name.is_empty() };
+        let mark = |at: &(f64, f64)| Mark { name: "here".into(), at: *at };
         let panel = |equal| Panel {
             title: "speed".into(),
             x: "t in s".into(),
             y: "u in m/s".into(),
             equal,
             lines: vec![line("surge"), line("")],
+            absent: "nothing",
+            marks: points.iter().map(mark).collect(),
         };
         Page { title: "a trial".into(), columns: 2, panels: vec![panel(true), panel(false)] }
     }
 
     fn drawn(points: Vec<(f64, f64)>) -> String {
+        svg(&page(points))
+    }
+
+    fn svg(page: &Page) -> String {
         let dir = tempfile::tempdir().expect("a temporary directory");
         let path = dir.path().join("plot.svg");
-        write_svg(&path, &page(points)).expect("it can be drawn");
+        write_svg(&path, page).expect("it can be drawn");
         std::fs::read_to_string(path).expect("it is there")
     }
 
     #[test]
     fn a_page_has_titles_units_and_a_legend() {
         let svg = drawn(vec![(0.0, 0.0), (1.0, 2.0), (2.0, 3.0)]);
-        for text in ["a trial", "speed", "t in s", "u in m/s", "surge"] {
+        for text in ["a trial", "speed", "t in s", "u in m/s", "surge", "here"] {
             assert!(svg.contains(text), "{text}");
         }
     }
@@ -210,8 +280,18 @@ mod tests {
     }
 
     #[test]
+    fn a_panel_of_nothing_says_so_under_its_title() {
+        let mut page = page(vec![]);
+        page.panels[1].lines.clear();
+        assert!(svg(&page).contains("nothing") && svg(&page).contains("speed"));
+        page.panels.remove(1);
+        assert!(!svg(&page).contains("nothing"));
+    }
+
+    #[test]
     fn labels_have_the_places_they_need() {
-        for (number, width, want) in [(3.0, 100.0, "3"), (0.5, 2.0, "0.5"), (-0.0001, 2.0, "0.0"), (0.12, 0.2, "0.12")]
+        for (number, width, want) in
+            [(3.0, 100.0, "3"), (0.5, 2.0, "0.5"), (-0.0001, 2.0, "0.0"), (0.12, 0.2, "0.12"), (0.05, 0.45, "0.05")]
         {
             assert_eq!(label(number, width), want);
         }

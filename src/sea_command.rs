@@ -1,10 +1,15 @@
-//! `squall sea`: what a sea means.
+//! `squall sea`: what a sea means for a boat, in numbers and as a plot.
 
-use crate::screen;
+use crate::sea_plot::{self, Shown};
+use crate::trial_command::usual_tick_s;
+use crate::{screen, water_args};
 use anyhow::{Context, Result};
-use game::scenario::{load_boat, load_sea};
+use arena::trial::{self, Afloat, Drift, Manoeuvre, Plan, Sample, Start};
+use game::angle::compass_deg_from_rad;
+use game::boat::Drive;
 use game::sea::Sea;
-use sim::sea::{Summary, WaveSummary, WindSummary};
+use game::{Boat, Ned, SimTime};
+use sim::sea::{SeaModel, Summary, WaveSummary, WindSummary};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,49 +19,68 @@ use std::process::ExitCode;
 pub(crate) struct Args {
     /// The sea file
     sea: PathBuf,
-    /// The boat file that it is told for
-    #[arg(long, value_name = "FILE", default_value = "scenarios/boats/surveyor_m1_8.toml")]
-    boat: PathBuf,
-    /// The game file whose field it lies over
-    #[arg(long, value_name = "FILE", default_value = "scenarios/games/pav01_vs_pav01.toml")]
-    game: PathBuf,
+    /// The boat that it is told for: a file, or the name of one in scenarios/boats
+    #[arg(long, value_name = "BOAT", default_value = "surveyor_m1_8")]
+    boat: String,
     /// Chooses the waves, gusts and eddies
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Draws spectrum, surface, wind and the drift of the boat into this file, as SVG [default: <sea>.svg here]
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
 }
 
+/// How long the boat drifts, s.
+const DRIFT_S: f64 = 300.0;
+
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let sea = load_sea(&args.sea).with_context(|| format!("cannot read {}", args.sea.display()))?;
-    let boat = load_boat(&args.boat).with_context(|| format!("cannot read {}", args.boat.display()))?;
-    let game = crate::sim_command::load(&args.game, None)?;
-    let summary = Summary::new(&sea, &boat, &game.field, args.seed);
-    screen::print(&told(&sea, &boat.name, &summary));
+    let sea = game::scenario::load_sea(&args.sea).with_context(|| format!("no sea in {}", args.sea.display()))?;
+    let (boat, _) = water_args::boat(&args.boat).context("no boat to tell the sea for (--boat names another)")?;
+    let tick = SimTime::from_s(usual_tick_s(&boat));
+    let water = trial::open_water(&boat, &sea, tick, args.seed);
+    let summary = Summary::new(&sea, &boat, &water.field, args.seed);
+    let drifted = drifted(&boat, &sea, tick, args.seed)?;
+    screen::print(&told(&sea, &boat, &summary, &drifted));
+
+    let plot = args.plot.clone().unwrap_or_else(|| PathBuf::from(format!("{}.svg", sea.name)));
+    let title = format!("{}: {}, seed {}", sea.name, boat.name, args.seed);
+    let model = SeaModel::new(&water, args.seed);
+    sea_plot::write(&plot, &Shown { title, sea: &sea, model: &model, drift: &drifted })?;
+    screen::print(&format!("plot in {}\n", plot.display()));
     Ok(ExitCode::SUCCESS)
 }
 
+/// The track of the boat, released at rest at the datum, pointing north: that of `squall trial --manoeuvre drift`.
+fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sample>> {
+    let mut afloat = Afloat::new(boat, sea, tick, seed, &Start::default())?;
+    let plan = Plan {
+        manoeuvre: Manoeuvre::Drift,
+        course_rad: 0.0,
+        approach_m_s: None,
+        approach_s: 0.0,
+        side: 1.0,
+        switch_rad: 0.0,
+        differential: 0.0,
+        duration_s: Some(DRIFT_S),
+    };
+    Ok(trial::sail(boat, &mut afloat, &plan)?.samples)
+}
+
 /// The summary as text.
-fn told(sea: &Sea, boat: &str, summary: &Summary) -> String {
-    let mut text = format!("{} for a boat of kind {boat}\n", sea.name);
+fn told(sea: &Sea, boat: &Boat, summary: &Summary, drifted: &[Sample]) -> String {
+    let mut text = format!("{} for a boat of kind {}\n", sea.name, boat.name);
     let depth = sea.depth_m.map_or("deep".to_owned(), |depth_m| format!("{depth_m} m deep"));
     line(&mut text, "water", &format!("{} kg/m³, {depth}", sea.water_density_kg_m3));
     match &summary.waves {
         None => line(&mut text, "waves", "none"),
         Some(waves) => tell_waves(&mut text, waves),
     }
+    line(&mut text, "current at the datum", &flow(summary.current_m_s, "none at the start", " at the start"));
     match &summary.wind {
         None => line(&mut text, "wind", "none"),
         Some(wind) => tell_wind(&mut text, wind),
     }
-    let current = summary.current_m_s;
-    let bearing_deg = game::angle::compass_deg_from_rad(game::math::atan2(current.east, current.north));
-    match current.length() {
-        0.0 => line(&mut text, "current in the middle", "none at the start"),
-        speed_m_s => line(
-            &mut text,
-            "current in the middle",
-            &format!("{speed_m_s:.2} m/s towards {bearing_deg:.0}° at the start"),
-        ),
-    }
+    tell_drift(&mut text, drifted, boat);
     text
 }
 
@@ -89,6 +113,31 @@ fn tell_wind(text: &mut String, wind: &WindSummary) {
     ] {
         line(text, what, &value);
     }
+}
+
+/// Where the boat went. The speed is that of the second half, the distance that of the whole.
+fn tell_drift(text: &mut String, drifted: &[Sample], boat: &Boat) {
+    let (Some(drift), Some(last)) = (Drift::of(drifted), drifted.last()) else { return };
+    let heading_deg = whole_deg(drift.heading_rad);
+    line(text, "free boat, simulated", &flow(drift.velocity_m_s, "stays", &format!(", heading {heading_deg}°")));
+    line(text, "  from its start", &format!("{:.1} m in {:.0} s", last.at.length(), last.t_s));
+    if matches!(boat.drive, Drive::Kinematic(_)) {
+        line(text, "", "a kinematic boat feels the current alone");
+    }
+}
+
+/// A velocity as speed and bearing, with more to say about it; or that there is none.
+fn flow(velocity_m_s: Ned, none: &str, more: &str) -> String {
+    let speed_m_s = velocity_m_s.length();
+    if speed_m_s < 0.005 {
+        return none.to_owned();
+    }
+    format!("{speed_m_s:.2} m/s towards {}°{more}", whole_deg(Ned::default().bearing_rad(velocity_m_s)))
+}
+
+/// A bearing in whole degrees, 0 to 359.
+fn whole_deg(bearing_rad: f64) -> u32 {
+    compass_deg_from_rad(bearing_rad).round() as u32 % 360
 }
 
 fn line(text: &mut String, what: &str, value: &str) {

@@ -181,7 +181,8 @@ pub(crate) fn usual_tick_s(boat: &Boat) -> f64 {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let (boat, _) = water_args::boat(&args.boat)?;
+    let (boat, _, drawn) = water_args::boat(&args.boat, args.water.seed)?;
+    water_args::tell_drawn(args.water.seed, &drawn);
     let start = args.start.start(&boat)?;
     let tick = SimTime::from_s(args.tick_s.unwrap_or(usual_tick_s(&boat)));
     let mut afloat = Afloat::new(&boat, &args.water.sea()?, tick, args.water.seed, &start)?;

@@ -16,6 +16,8 @@ pub(crate) fn write(path: &Path, title: &str, samples: &[Sample]) -> Result<()> 
             y: "y (north) in m".into(),
             equal: true,
             lines: vec![line("", track)],
+            absent: "",
+            marks: vec![],
         },
         over_time(
             "Velocity over the ground",
@@ -62,7 +64,15 @@ fn drive(samples: &[Sample]) -> Vec<Panel> {
 }
 
 fn over_time(title: &str, unit: &str, lines: Vec<Line>) -> Panel {
-    Panel { title: title.to_owned(), x: "time in s".into(), y: unit.to_owned(), equal: false, lines }
+    Panel {
+        title: title.to_owned(),
+        x: "time in s".into(),
+        y: unit.to_owned(),
+        equal: false,
+        lines,
+        absent: "",
+        marks: vec![],
+    }
 }
 
 fn series(name: &str, samples: &[Sample], of: impl Fn(&Sample) -> f64) -> Line {
@@ -79,5 +89,5 @@ fn headings(samples: &[Sample]) -> Line {
 }
 
 fn line(name: &str, points: Vec<(f64, f64)>) -> Line {
-    Line { name: name.to_owned(), points }
+    Line { name: name.to_owned(), points, filled: false }
 }

@@ -1,7 +1,9 @@
 //! Which boat sails on which water: what `trial` and `identify` ask alike.
 
+use crate::screen;
 use anyhow::{Context, Result, anyhow, bail};
 use game::Boat;
+use game::scenario::Drawn;
 use game::sea::Sea;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +13,7 @@ pub(crate) struct WaterArgs {
     /// The sea file [default: salt water at rest, no wind]
     #[arg(long, value_name = "FILE")]
     sea: Option<PathBuf>,
-    /// Chooses the waves, gusts and whatever else the sea draws
+    /// Chooses the waves and gusts, and the numbers that boat and sea leave to chance
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// The mean current, in place of the sea's own, m/s
@@ -26,7 +28,12 @@ impl WaterArgs {
     /// The sea that was asked for.
     pub(crate) fn sea(&self) -> Result<Sea> {
         let mut sea = match &self.sea {
-            Some(path) => game::scenario::load_sea(path).with_context(|| format!("no sea in {}", path.display()))?,
+            Some(path) => {
+                let drawn = game::scenario::draw_sea(path, self.seed);
+                let (sea, drawn) = drawn.with_context(|| format!("no sea in {}", path.display()))?;
+                tell_drawn(self.seed, &drawn);
+                sea
+            }
             None => arena::trial::still_sea(),
         };
         if let Some(speed_m_s) = self.current_m_s {
@@ -36,11 +43,19 @@ impl WaterArgs {
     }
 }
 
-/// The boat in a file, or of a name in `scenarios/boats`, and the file.
-pub(crate) fn boat(named: &str) -> Result<(Boat, PathBuf)> {
+/// The boat in a file, or of a name in `scenarios/boats`, the file, and what was drawn of it.
+pub(crate) fn boat(named: &str, seed: u64) -> Result<(Boat, PathBuf, Vec<Drawn>)> {
     let path = boat_file(named)?;
-    let boat = game::scenario::load_boat(&path).with_context(|| format!("no boat in {}", path.display()))?;
-    Ok((boat, path))
+    let drawn = game::scenario::draw_boat(&path, seed);
+    let (boat, drawn) = drawn.with_context(|| format!("no boat in {}", path.display()))?;
+    Ok((boat, path, drawn))
+}
+
+/// Says which numbers were drawn.
+pub(crate) fn tell_drawn(seed: u64, drawn: &[Drawn]) {
+    for Drawn { parameter, value } in drawn {
+        screen::print(&format!("drawn by seed {seed}: {parameter} = {value}\n"));
+    }
 }
 
 /// The folder `scenarios/boats` is looked for in the working folder and those above it, then in the program's.

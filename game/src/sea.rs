@@ -6,6 +6,9 @@
 use crate::frame::Ned;
 use serde::{Deserialize, Serialize};
 
+/// Standard gravity, m/s².
+pub const GRAVITY_M_S2: f64 = 9.806_65;
+
 /// A sea.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sea {

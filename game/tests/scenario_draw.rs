@@ -72,6 +72,28 @@ fn a_new_distribution_does_not_shift_the_numbers_of_the_others() {
 }
 
 #[test]
+fn whole_numbers_are_drawn_by_choice_and_a_lone_file_by_its_seed() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("sea.toml");
+    let sea = "[waves]\nhs_m = { uniform = [0.2, 0.4] }\ntp_s = 3\nfrom_deg = 0\ncomponents = { choice = [16, 32] }\n";
+    std::fs::write(&path, sea).unwrap();
+    let mut heights = vec![];
+    for seed in 1..=20 {
+        let (sea, drawn) = scenario::draw_sea(&path, seed).unwrap();
+        let waves = sea.waves.unwrap();
+        assert!([16, 32].contains(&waves.components));
+        let named = |key: &str| drawn.iter().find(|drawn| drawn.parameter == key).unwrap().value;
+        assert_eq!((named("sea/waves.hs_m"), named("sea/waves.components")), (waves.hs_m, f64::from(waves.components)));
+        heights.push(waves.hs_m);
+    }
+    heights.dedup();
+    assert_eq!(heights.len(), 20);
+    std::fs::write(&path, sea.replace("choice = [16, 32]", "uniform = [16, 33]")).unwrap();
+    let said = scenario::draw_sea(&path, 1).unwrap_err().to_string();
+    assert!(said.contains("components") && said.contains("expected a whole number"), "{said}");
+}
+
+#[test]
 fn the_numbers_have_the_distribution_that_was_asked_for() {
     let dir = tempfile::tempdir().unwrap();
     let game = scenario::load(&written(dir.path(), BOAT, SEA, "")).unwrap();

@@ -54,7 +54,7 @@ impl Contest {
         let pictures = (0..scenario.teams.len()).map(|team| Picture { team: team as u8, ..Picture::default() });
         let known: Vec<OwnBoat> = (0..count).map(|i| view::own_boat(&world, i)).collect();
         Ok(Contest {
-            radio: Radio::new(&scenario, known.iter().copied()),
+            radio: Radio::new(&scenario),
             sightings: Sightings::new(&scenario),
             known,
             world,
@@ -88,6 +88,12 @@ impl Contest {
     #[must_use]
     pub fn decision(&self) -> u64 {
         self.decision
+    }
+
+    /// Orders in force, by vehicle: those that have arrived.
+    #[must_use]
+    pub fn orders(&self) -> &[Order] {
+        &self.orders
     }
 
     /// Simulated time.
@@ -153,24 +159,44 @@ impl Contest {
         }
     }
 
-    /// Makes a vehicle hold at once, whatever it was told: nothing of it goes over the air.
+    /// Makes a vehicle hold at once, whatever it was told: nothing of it goes over the air, and orders under way do not
+    /// arrive any more.
     pub fn hold(&mut self, vehicle: VehicleId) {
         self.orders[vehicle.index()] = Order::Hold;
+        self.forget_orders(vehicle);
     }
 
-    /// Boats report, and look round.
+    /// Orders under way to a vehicle do not arrive any more.
+    fn forget_orders(&mut self, vehicle: VehicleId) {
+        if let Some(radio) = &mut self.radio {
+            radio.forget_orders(vehicle.index());
+        }
+    }
+
+    /// Boats look round and report.
     fn gather(&mut self) {
-        let (world, now) = (&self.world, self.world.state().now);
+        let (world, state, decision) = (&self.world, self.world.state(), self.decision);
+        if let Some(sightings) = &mut self.sightings {
+            let oldest = self.radio.as_ref().map_or(decision, Radio::oldest_report);
+            let vehicles = self.scenario.vehicles.iter().enumerate();
+            sightings.look(decision, oldest, vehicles.map(|(i, vehicle)| view::contact(state, i, vehicle.team)));
+        }
         for (i, known) in self.known.iter_mut().enumerate() {
             let report = view::own_boat(world, i);
-            *known = match &mut self.radio {
-                Some(radio) => radio.report(i, report, world.state().boats[i].pose.at, now),
-                None => report,
+            let mut take = |sent: u64| {
+                if let Some(sightings) = &mut self.sightings {
+                    sightings.take(i, sent);
+                }
             };
-        }
-        if let Some(sightings) = &mut self.sightings {
-            let vehicles = &self.scenario.vehicles;
-            sightings.look(world, self.decision, |i| view::contact(world.state(), i, vehicles[i].team));
+            let Some(radio) = &mut self.radio else {
+                take(decision);
+                *known = report;
+                continue;
+            };
+            radio.send_report(i, report, state.boats[i].pose.at, state.now);
+            if let Some(newest) = radio.report(i, state.now, take) {
+                *known = newest;
+            }
         }
     }
 
@@ -189,17 +215,19 @@ impl Contest {
         }
     }
 
-    /// Says that a vehicle's mind is lost: it holds, and an event says so. Does nothing if it is lost already.
+    /// Says that a vehicle's mind is lost: it holds as by [`Contest::hold`], and an event says so. Does nothing if it is
+    /// lost already.
     pub fn lose_mind(&mut self, vehicle: VehicleId) {
         if !std::mem::replace(&mut self.mind_lost[vehicle.index()], true) {
-            self.orders[vehicle.index()] = Order::Hold;
+            self.hold(vehicle);
             self.log(Event::MindLost { vehicle });
         }
     }
 
-    /// Says that a vehicle's mind is there again. Does nothing if it was not lost.
+    /// Says that a vehicle's mind is there again: what was sent before does not arrive. Does nothing if it was not lost.
     pub fn regain_mind(&mut self, vehicle: VehicleId) {
         if std::mem::replace(&mut self.mind_lost[vehicle.index()], false) {
+            self.forget_orders(vehicle);
             self.log(Event::MindBack { vehicle });
         }
     }
@@ -216,9 +244,16 @@ impl Contest {
             self.events.extend(self.world.events().iter().map(|event| Logged { tick, at, event: *event }));
         }
         self.decision += 1;
+        if let Some(radio) = &mut self.radio {
+            radio.open_next();
+        }
     }
 
-    /// 128 bits over the state and all events.
+    /// 128 bits over the state and all events. Where a game has radio links, limits of sharing or command watchdogs, also
+    /// over what is in force, under way and known: that is in no snapshot of the world.
+    ///
+    /// # Panics
+    /// Never: plain numbers always encode.
     #[must_use]
     pub fn digest(&self) -> u128 {
         let mut hash = Xxh3::new();
@@ -229,6 +264,10 @@ impl Contest {
             hash.update(&[record.kind]);
             hash.update(&record.subject.to_le_bytes());
             hash.update(&record.object.to_le_bytes());
+        }
+        if self.radio.is_some() || self.sightings.is_some() || self.watchdogs.iter().any(Option::is_some) {
+            let between = (&self.orders, &self.ordered_at, &self.known, &self.radio, &self.sightings);
+            hash.update(&postcard::to_stdvec(&between).expect("plain numbers always encode"));
         }
         hash.digest128()
     }

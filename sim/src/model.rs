@@ -6,7 +6,7 @@ use crate::flaw::FlawState;
 use crate::hull::{HullModel, Planar};
 use crate::kinematic::{Command, KinematicModel, KinematicState};
 use crate::motion::{Effort, Fleet, Motion};
-use crate::sea::{SeaModel, SeaNow};
+use crate::sea::{Attitude, SeaModel, SeaNow};
 use crate::sensor::{Reading, SensorModel, SensorState, Truth};
 use crate::state::BoatState;
 use crate::thruster::ThrusterModel;
@@ -121,6 +121,12 @@ impl Model {
         self.sensed.iter().flatten().map(|_| (SensorState::default(), Reading::default())).collect()
     }
 
+    /// How far a vehicle's compass is off, rad.
+    #[inline]
+    pub(crate) fn heading_error_rad(&self, vehicle: usize, senses: &[(SensorState, Reading)]) -> f64 {
+        self.sensed[vehicle].as_ref().map_or(0.0, |(place, _)| senses[*place].0.heading_error_rad())
+    }
+
     /// The model of a vehicle that is a point boat, and its place among those.
     #[inline]
     pub(crate) fn point(&self, vehicle: usize) -> Option<(usize, &KinematicModel)> {
@@ -142,15 +148,15 @@ impl Model {
         }
     }
 
-    /// What moves a boat in this tick, and the current it is in: its thrusters take up its order, and the sea does
-    /// its part.
+    /// What moves a boat in this tick, and the current it is in: its thrusters take up its order, by the heading that
+    /// its compass shows, and the sea does its part.
     #[inline]
     pub(crate) fn effort(
         &self,
         vehicle: usize,
         boat: &mut BoatState,
         flaws: &mut FlawState,
-        turn: (f64, f64),
+        (turn, heading_error_rad): ((f64, f64), f64),
         order: (Order, f64),
         sea: &SeaNow<'_>,
     ) -> (Effort, Ned) {
@@ -162,7 +168,7 @@ impl Model {
             return (Effort::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
-        let settings = settings(boat, (hull, thruster, autopilot), order);
+        let settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), order);
         let felt = sea.feel(kind, hull, boat.pose, turn, boat.nu);
         let still_m = thruster.ventilation().map_or(0.0, |ventilation| ventilation.depth_m);
         let water_above_m = felt.cover_m.map(|cover_m| still_m + cover_m);
@@ -233,17 +239,19 @@ impl Model {
         Passage { kind, from, to: from, turn, turn_to: turn, fixed: boat.quarantined, kick: Planar::default() }
     }
 
-    /// What is true of a boat whose velocity changed by `change` in the last tick.
-    pub(crate) fn truth(
-        &self,
-        vehicle: usize,
-        boat: &BoatState,
-        turn: (f64, f64),
-        change: Planar,
-        sea: &SeaNow<'_>,
-    ) -> Truth {
+    /// How a boat lies in the waves; a point boat knows none.
+    pub(crate) fn attitude(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64), sea: &SeaNow<'_>) -> Attitude {
         let kind = self.kinds[vehicle];
-        let attitude = sea.attitude(kind, boat.pose, turn, boat.nu);
+        match self.drives[kind] {
+            Drive::Thrusters(..) => sea.attitude(kind, boat.pose, turn, boat.nu),
+            Drive::Point(_) => Attitude::default(),
+        }
+    }
+
+    /// What is true of a boat.
+    pub(crate) fn truth(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64), sea: &SeaNow<'_>) -> Truth {
+        let kind = self.kinds[vehicle];
+        let attitude = self.attitude(vehicle, boat, turn, sea);
         let thrust_share = match &self.drives[kind] {
             Drive::Thrusters(thruster, ..) => {
                 0.5 * (boat.port.newton.abs() + boat.starboard.newton.abs()) / thruster.newton_max
@@ -253,7 +261,7 @@ impl Model {
         Truth {
             pose: boat.pose,
             nu: boat.nu,
-            nu_dot: Planar::default().plus(1.0 / self.dt_s, change),
+            nu_dot: Planar::default().plus(1.0 / self.dt_s, boat.nu_change),
             roll_rad: attitude.roll_rad,
             pitch_rad: attitude.pitch_rad,
             roll_rate_rad_s: attitude.roll_rad_s,
@@ -279,13 +287,14 @@ fn numbered(counts: impl Iterator<Item = bool>) -> Vec<Option<usize>> {
 #[inline]
 fn settings(
     boat: &mut BoatState,
+    heading_error_rad: f64,
     (hull, thruster, autopilot): (&HullModel, &ThrusterModel, &AutopilotModel),
     order: (Order, f64),
 ) -> [f64; 2] {
     match order {
         (Order::Steer { heading_rad, speed_m_s }, factor) => {
             let speed_m_s = speed_m_s.min(factor * autopilot.speed_max_m_s);
-            let at = (boat.pose.psi_rad, boat.nu);
+            let at = (boat.pose.psi_rad + heading_error_rad, boat.nu);
             autopilot.steer((hull, thruster), at, (heading_rad, speed_m_s), &mut boat.speed_integral_newton)
         }
         (Order::Thrust { port, starboard }, factor) => {

@@ -1,142 +1,193 @@
 //! The radio link between the minds ashore and their boats: reports come in late or never, and orders go out so.
 //!
-//! All of it is drawn from the game's seed, by the number of the message: the same losses in one process and over a
-//! network. What the real network does comes on top.
+//! All of it is drawn from the game's seed, by vehicle, direction and number of the decision: the same losses in one
+//! process and over a network, whatever else is sent. What the real network does comes on top.
 
 use game::link::Link;
 use game::picture::OwnBoat;
 use game::stream::Noise;
-use game::{Ned, Order, Scenario, SimTime, math};
+use game::{Ned, Order, Scenario, SimTime};
+use serde::Serialize;
 use std::collections::VecDeque;
 
-/// The most messages of a kind that are under way to one boat or from it.
-const MOST_UNDER_WAY: usize = 256;
+/// The largest number that [`Noise::exponential`] gives, 53 ln 2, rounded up.
+const MOST_JITTERS: f64 = 37.0;
+/// Even numbers that a decision takes: the link's turn, and loss and jitter of either direction.
+const DRAWS: u64 = 5;
 
-/// The links of a game.
+/// The links of a game. As bytes, what changes in them.
+#[derive(Serialize)]
 pub(crate) struct Radio {
+    #[serde(skip)]
     link: Link,
+    /// Probabilities that a link turns bad and good from one decision to the next.
+    #[serde(skip)]
+    turns: (f64, f64),
+    /// The decision that is open.
+    decision: u64,
     lines: Vec<Line>,
 }
 
 /// The link of one boat.
+#[derive(Serialize)]
 struct Line {
+    #[serde(skip)]
     noise: Noise,
-    /// Messages sent so far, both ways.
-    sent: u64,
     is_bad: bool,
-    /// When it was last asked whether it is.
-    asked: SimTime,
     orders: Way<Order>,
     reports: Way<OwnBoat>,
 }
 
-/// Messages in one direction. One that is overtaken by a later one is not taken any more.
+/// Messages in one direction, by rising arrival. One that is overtaken by a later one is not taken any more.
+#[derive(Serialize)]
 struct Way<T> {
-    under_way: VecDeque<(SimTime, T)>,
-    latest: Option<T>,
+    under_way: VecDeque<Sent<T>>,
+    /// The most of them at once: one for each decision in the longest time that a message takes.
+    #[serde(skip)]
+    most: usize,
+}
+
+/// A message under way.
+#[derive(Clone, Copy, Serialize)]
+struct Sent<T> {
+    /// The decision at which it was sent.
+    decision: u64,
+    arrival: SimTime,
+    message: T,
+}
+
+/// Which way a message goes; the first of its draws in a decision.
+#[derive(Clone, Copy)]
+enum Direction {
+    Out = 1,
+    In = 3,
 }
 
 impl<T: Copy> Way<T> {
-    fn new(latest: Option<T>) -> Way<T> {
-        Way { under_way: VecDeque::with_capacity(MOST_UNDER_WAY), latest }
+    fn new(link: &Link, decision: SimTime) -> Way<T> {
+        let decisions = |span_s: f64| (span_s / decision.as_s()).ceil() as usize + 2;
+        Way {
+            // Jitter is seldom so long, and what is late is overtaken.
+            under_way: VecDeque::with_capacity(decisions(link.delay_s)),
+            most: decisions(link.delay_s + MOST_JITTERS * link.jitter_s),
+        }
     }
 
-    fn send(&mut self, arrival: SimTime, message: T) {
+    fn send(&mut self, sent: Sent<T>) {
         // What would arrive after this one is overtaken by it.
-        while self.under_way.back().is_some_and(|(later, _)| *later >= arrival) {
+        while self.under_way.back().is_some_and(|earlier| earlier.arrival >= sent.arrival) {
             self.under_way.pop_back();
         }
-        if self.under_way.len() < MOST_UNDER_WAY {
-            self.under_way.push_back((arrival, message));
-        }
+        assert!(self.under_way.len() < self.most, "one message a decision, and none takes longer than the longest");
+        self.under_way.push_back(sent);
     }
 
-    /// Whether something new has arrived by `now`.
-    fn receive(&mut self, now: SimTime) -> bool {
-        let mut is_new = false;
-        while self.under_way.front().is_some_and(|(arrival, _)| *arrival <= now) {
-            self.latest = self.under_way.pop_front().map(|(_, message)| message);
-            is_new = true;
+    /// The newest message that has arrived by `now`, if any has; `each` is told of all of them by their decisions.
+    fn receive(&mut self, now: SimTime, mut each: impl FnMut(u64)) -> Option<T> {
+        let mut newest = None;
+        while let Some(sent) = self.under_way.pop_front_if(|sent| sent.arrival <= now) {
+            each(sent.decision);
+            newest = Some(sent.message);
         }
-        is_new
+        newest
     }
 }
 
 impl Radio {
-    /// The links of this scenario in the game that its seed chooses, if it states any. `reports` are what is known ashore
-    /// before the game: every boat in its berth.
-    pub(crate) fn new(scenario: &Scenario, reports: impl Iterator<Item = OwnBoat>) -> Option<Radio> {
+    /// The links of this scenario in the game that its seed chooses, if it states any.
+    pub(crate) fn new(scenario: &Scenario) -> Option<Radio> {
         let link = scenario.link.clone()?;
-        let lines = scenario.vehicles.iter().zip(reports).map(|(vehicle, report)| Line {
-            noise: Noise::new(scenario.seed, &format!("link/{}", vehicle.name)),
-            sent: 0,
-            is_bad: false,
-            asked: SimTime::ZERO,
-            orders: Way::new(None),
-            reports: Way::new(Some(report)),
-        });
-        Some(Radio { lines: lines.collect(), link })
+        let decision = scenario.tick * i64::from(scenario.ticks_per_decision);
+        let noise = |name: &str| Noise::new(scenario.seed, &format!("link/{name}"));
+        Some(Radio::over(link, decision, scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name))))
     }
 
-    /// An order goes out to a boat, which is at `at`.
+    fn over(link: Link, decision: SimTime, noises: impl Iterator<Item = Noise>) -> Radio {
+        let line = |noise| Line {
+            noise,
+            is_bad: false,
+            orders: Way::new(&link, decision),
+            reports: Way::new(&link, decision),
+        };
+        Radio { lines: noises.map(line).collect(), turns: turns(&link, decision), decision: 0, link }
+    }
+
+    /// The next decision opens: each link turns good or bad, or stays.
+    pub(crate) fn open_next(&mut self) {
+        self.decision += 1;
+        let (to_bad, to_good) = self.turns;
+        for line in &mut self.lines {
+            let even = line.noise.unit(DRAWS * self.decision);
+            line.is_bad = even < if line.is_bad { 1.0 - to_good } else { to_bad };
+        }
+    }
+
+    /// An order goes out to a boat, which is at `at`. Of one decision's orders the last one counts.
     pub(crate) fn send_order(&mut self, vehicle: usize, order: Order, at: Ned, now: SimTime) {
-        let line = &mut self.lines[vehicle];
-        if let Some(arrival) = line.arrival(&self.link, at, now) {
-            line.orders.send(arrival, order);
+        if let Some(sent) = self.sent(vehicle, Direction::Out, order, at, now) {
+            self.lines[vehicle].orders.send(sent);
         }
     }
 
     /// The order that arrives at a boat by `now`, if a new one does.
     pub(crate) fn order(&mut self, vehicle: usize, now: SimTime) -> Option<Order> {
-        let orders = &mut self.lines[vehicle].orders;
-        orders.receive(now).then_some(orders.latest).flatten()
+        self.lines[vehicle].orders.receive(now, |_| {})
     }
 
-    /// A boat reports from `at`; what is known of it ashore comes back.
-    pub(crate) fn report(&mut self, vehicle: usize, report: OwnBoat, at: Ned, now: SimTime) -> OwnBoat {
-        let line = &mut self.lines[vehicle];
-        if let Some(arrival) = line.arrival(&self.link, at, now) {
-            line.reports.send(arrival, report);
+    /// Orders under way to a boat do not arrive any more.
+    pub(crate) fn forget_orders(&mut self, vehicle: usize) {
+        self.lines[vehicle].orders.under_way.clear();
+    }
+
+    /// A boat reports from `at`, once a decision.
+    pub(crate) fn send_report(&mut self, vehicle: usize, report: OwnBoat, at: Ned, now: SimTime) {
+        if let Some(sent) = self.sent(vehicle, Direction::In, report, at, now) {
+            self.lines[vehicle].reports.send(sent);
         }
-        line.reports.receive(now);
-        line.reports.latest.unwrap_or(report)
+    }
+
+    /// The newest report of a boat that has come in by `now`, if any has; `each` is told of all of them by the decisions
+    /// at which they were sent.
+    pub(crate) fn report(&mut self, vehicle: usize, now: SimTime, each: impl FnMut(u64)) -> Option<OwnBoat> {
+        self.lines[vehicle].reports.receive(now, each)
+    }
+
+    /// The decision of the oldest report that is under way, or the one that is open.
+    pub(crate) fn oldest_report(&self) -> u64 {
+        let oldest = |line: &Line| line.reports.under_way.front().map(|sent| sent.decision);
+        self.lines.iter().filter_map(oldest).min().unwrap_or(self.decision)
+    }
+
+    /// A message of the open decision, unless it is lost.
+    fn sent<T>(&self, vehicle: usize, way: Direction, message: T, at: Ned, now: SimTime) -> Option<Sent<T>> {
+        let (link, line) = (&self.link, &self.lines[vehicle]);
+        let draw = DRAWS * self.decision + way as u64;
+        let share = if line.is_bad { link.loss.bad } else { link.loss.good };
+        let is_out_of_range = link.range_m.is_some_and(|range_m| at.distance(link.station) > range_m);
+        if is_out_of_range || line.noise.unit(draw) < share {
+            return None;
+        }
+        let arrival = now + SimTime::from_s(link.delay_s + link.jitter_s * line.noise.exponential(draw + 1));
+        Some(Sent { decision: self.decision, arrival, message })
     }
 }
 
-impl Line {
-    /// When a message sent now arrives, if it does.
-    fn arrival(&mut self, link: &Link, at: Ned, now: SimTime) -> Option<SimTime> {
-        let draw = 3 * self.sent;
-        self.sent += 1;
-        self.turn(link, now, self.noise.unit(draw));
-        let share = if self.is_bad { link.loss.bad } else { link.loss.good };
-        let is_out_of_range = link.range_m.is_some_and(|range_m| at.distance(link.station) > range_m);
-        if is_out_of_range || self.noise.unit(draw + 1) < share {
-            return None;
-        }
-        Some(now + SimTime::from_s(link.delay_s + link.jitter_s * self.noise.exponential(draw + 2)))
+/// Probabilities that a link turns bad and good in a decision: the two-state Markov chain in continuous time.
+fn turns(link: &Link, decision: SimTime) -> (f64, f64) {
+    if link.loss.good_time_s <= 0.0 {
+        return (0.0, 1.0);
     }
-
-    /// Lets the link turn good or bad since it was last asked: the two-state Markov chain in continuous time.
-    fn turn(&mut self, link: &Link, now: SimTime, draw: f64) {
-        if link.loss.good_time_s <= 0.0 {
-            return;
-        }
-        let (to_bad, to_good) = (1.0 / link.loss.good_time_s, 1.0 / link.loss.bad_time_s);
-        let settled = to_bad / (to_bad + to_good);
-        let left = math::exp(-(to_bad + to_good) * (now.as_s() - self.asked.as_s()));
-        let bad_chance = settled + (f64::from(u8::from(self.is_bad)) - settled) * left;
-        self.is_bad = draw < bad_chance;
-        self.asked = now;
-    }
+    let (to_bad, to_good) = (1.0 / link.loss.good_time_s, 1.0 / link.loss.bad_time_s);
+    let either = -libm::expm1(-(to_bad + to_good) * decision.as_s()) / (to_bad + to_good);
+    (to_bad * either, to_good * either)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::VehicleId;
     use game::link::Loss;
     use game::picture::{Imu, Nav};
+    use game::{VehicleId, math};
 
     const TENTH: SimTime = SimTime(100_000_000);
 
@@ -155,19 +206,15 @@ mod tests {
     }
 
     fn radio(link: Link) -> Radio {
-        let line = Line {
-            noise: Noise::new(3, "link/test"),
-            sent: 0,
-            is_bad: false,
-            asked: SimTime::ZERO,
-            orders: Way::new(None),
-            reports: Way::new(Some(boat(-1.0))),
-        };
-        Radio { link, lines: vec![line] }
+        Radio::over(link, TENTH, std::iter::once(Noise::new(3, "link/test")))
     }
 
     fn link() -> Link {
         Link { delay_s: 0.25, jitter_s: 0.0, loss: Loss::default(), range_m: None, station: Ned::default() }
+    }
+
+    fn course(speed_m_s: f64) -> Order {
+        Order::Steer { heading_rad: 0.0, speed_m_s }
     }
 
     #[test]
@@ -175,13 +222,17 @@ mod tests {
         let mut radio = radio(link());
         for k in 0..50_i64 {
             let now = TENTH * k;
-            let known = radio.report(0, boat(k as f64), Ned::default(), now).nav.north_m;
-            // Sent at (k - 3) tenths, arrived 0.05 s ago; the berth before that.
-            assert_eq!(known, if k < 3 { -1.0 } else { (k - 3) as f64 }, "at {k}");
-            radio.send_order(0, Order::Steer { heading_rad: 0.0, speed_m_s: k as f64 }, Ned::default(), now);
-            let arrived = radio.order(0, now);
-            let want = (k >= 3).then_some(Order::Steer { heading_rad: 0.0, speed_m_s: (k - 3) as f64 });
-            assert_eq!(arrived, want, "at {k}");
+            radio.send_report(0, boat(k as f64), Ned::default(), now);
+            let mut of = None;
+            let known = radio.report(0, now, |decision| of = Some(decision));
+            // Sent at (k - 3) tenths, arrived 0.05 s ago.
+            let sent = (k >= 3).then_some(k - 3);
+            assert_eq!(known.map(|report| report.nav.north_m), sent.map(|k| k as f64), "at {k}");
+            assert_eq!(of, sent.map(|k| k as u64), "at {k}");
+            assert_eq!(radio.oldest_report(), (k - 2).max(0) as u64);
+            radio.send_order(0, course(k as f64), Ned::default(), now);
+            assert_eq!(radio.order(0, now), sent.map(|k| course(k as f64)), "at {k}");
+            radio.open_next();
         }
     }
 
@@ -190,8 +241,9 @@ mod tests {
         let mut radio = radio(Link { range_m: Some(100.0), delay_s: 0.0, ..link() });
         for k in 1..200_i64 {
             let at = Ned { north: k as f64, east: 0.0 };
-            let known = radio.report(0, boat(k as f64), at, TENTH * k).nav.north_m;
-            assert_eq!(known, k.min(100) as f64);
+            radio.send_report(0, boat(k as f64), at, TENTH * k);
+            assert_eq!(radio.report(0, TENTH * k, |_| {}).is_some(), k <= 100, "at {k}");
+            radio.open_next();
         }
     }
 
@@ -200,20 +252,24 @@ mod tests {
         let loss = Loss { good: 0.01, bad: 0.6, good_time_s: 8.0, bad_time_s: 2.0 };
         let mut radio = radio(Link { delay_s: 0.0, loss, ..link() });
         let n = 400_000_i64;
-        let (mut lost, mut bad, mut turns) = (0.0, 0.0, 0.0);
+        let (mut lost, mut bad, mut turns) = ([0.0; 2], 0.0, 0.0);
         let mut was_bad = false;
         for k in 0..n {
-            let line = &mut radio.lines[0];
-            let arrived = line.arrival(&radio.link, Ned::default(), TENTH * k).is_some();
-            lost += f64::from(u8::from(!arrived));
-            bad += f64::from(u8::from(line.is_bad));
-            turns += f64::from(u8::from(line.is_bad && !was_bad));
-            was_bad = line.is_bad;
+            for (lost, way) in lost.iter_mut().zip([Direction::Out, Direction::In]) {
+                *lost += f64::from(u8::from(radio.sent(0, way, (), Ned::default(), TENTH * k).is_none()));
+            }
+            let is_bad = radio.lines[0].is_bad;
+            bad += f64::from(u8::from(is_bad));
+            turns += f64::from(u8::from(is_bad && !was_bad));
+            was_bad = is_bad;
+            radio.open_next();
         }
         let n = n as f64;
         // Closed forms: bad for 2 of 10 s; a stay seen at every tenth of a second lasts tenth / (1 - stay).
         assert!((bad / n - 0.2).abs() < 0.01, "{}", bad / n);
-        assert!((lost / n - (0.8 * 0.01 + 0.2 * 0.6)).abs() < 0.005, "{}", lost / n);
+        for lost in lost {
+            assert!((lost / n - (0.8 * 0.01 + 0.2 * 0.6)).abs() < 0.005, "{}", lost / n);
+        }
         let leave = (1.0 - math::exp(-0.1 * (0.125 + 0.5))) * 0.8;
         assert!((bad / turns / (1.0 / leave) - 1.0).abs() < 0.05, "{} {}", bad / turns, 1.0 / leave);
     }
@@ -221,15 +277,38 @@ mod tests {
     #[test]
     fn an_order_that_is_overtaken_is_not_obeyed() {
         let mut radio = radio(Link { delay_s: 0.0, jitter_s: 0.5, ..link() });
-        let mut last = -1.0;
+        let (mut last, mut overtaken) = (-1.0, 0);
         for k in 0..2_000_i64 {
             let now = TENTH * k;
-            radio.send_order(0, Order::Steer { heading_rad: 0.0, speed_m_s: k as f64 }, Ned::default(), now);
+            radio.send_order(0, course(k as f64), Ned::default(), now);
             if let Some(Order::Steer { speed_m_s, .. }) = radio.order(0, now) {
                 assert!(speed_m_s > last, "{speed_m_s} after {last}");
+                overtaken += (speed_m_s - last) as i64 - 1;
                 last = speed_m_s;
             }
+            radio.open_next();
         }
-        assert!(last > 1_900.0);
+        assert!(last > 1_900.0 && overtaken > 200, "{last} {overtaken}");
+    }
+
+    #[test]
+    fn orders_of_one_decision_share_their_fate_and_the_last_one_counts() {
+        let loss = Loss { good: 0.5, ..Loss::default() };
+        let mut radio = radio(Link { delay_s: 0.0, loss, ..link() });
+        let mut lost = 0;
+        for k in 0..1_000_i64 {
+            (0..3).for_each(|n| radio.send_order(0, course(f64::from(n)), Ned::default(), TENTH * k));
+            let arrived = radio.order(0, TENTH * k);
+            assert!(arrived.is_none() || arrived == Some(course(2.0)), "{arrived:?}");
+            lost += u32::from(arrived.is_none());
+            radio.open_next();
+        }
+        assert!((420..580).contains(&lost), "{lost}");
+    }
+
+    #[test]
+    fn the_longest_jitter_that_can_be_drawn_is_within_what_queues_are_made_for() {
+        let longest = -libm::log(f64::EPSILON * 0.5);
+        assert!(longest < MOST_JITTERS && longest > MOST_JITTERS - 1.0, "{longest}");
     }
 }

@@ -1,27 +1,43 @@
 //! What a team is shown of other boats: seen by one of its own within range and view, some time ago, not quite there.
 //!
-//! Only games whose rules limit sharing come here; otherwise everything is shown at once.
+//! Only games whose rules limit sharing come here; otherwise everything is shown at once. What a boat sees it tells in
+//! its report: where there is a radio link, a report that is late or lost takes its sightings with it. How a sighting
+//! errs, and whether it is lost, is drawn once a decision for each team and boat seen, whoever of the team sees it.
 
-use crate::world::World;
 use game::angle::wrap_pi;
 use game::frame::{Ned, Pose};
 use game::link::Sharing;
 use game::picture::Contact;
 use game::stream::Noise;
 use game::{Scenario, SimTime};
+use serde::Serialize;
 use std::collections::VecDeque;
 
-/// Sightings of a game, by all teams.
+/// Sightings of a game, by all teams. As bytes, what changes in them.
+#[derive(Serialize)]
 pub(crate) struct Sightings {
+    #[serde(skip)]
     sharing: Sharing,
     /// Decisions between a sighting and its report.
-    late: usize,
-    /// The truth about every boat at the last decisions, the oldest first.
-    past: VecDeque<Vec<Contact>>,
+    #[serde(skip)]
+    late: u64,
+    /// The truth at the decisions whose sightings may still be reported, the oldest first.
+    past: VecDeque<Truths>,
+    /// Used again.
+    #[serde(skip)]
+    spare: Vec<Vec<Contact>>,
     /// By team and vehicle: the last report.
     known: Vec<Vec<Option<Contact>>>,
     /// By vehicle.
+    #[serde(skip)]
     noises: Vec<Noise>,
+}
+
+/// The truth about every boat at one decision.
+#[derive(Serialize)]
+struct Truths {
+    decision: u64,
+    boats: Vec<Contact>,
 }
 
 impl Sightings {
@@ -32,36 +48,46 @@ impl Sightings {
             return None;
         }
         let decision_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision);
-        let late = (sharing.delay_s / decision_s).round() as usize;
         let noise = |name: &str| Noise::new(scenario.seed, &format!("contact/{name}"));
         Some(Sightings {
-            late,
-            past: (0..=late).map(|_| Vec::with_capacity(scenario.vehicles.len())).collect(),
+            late: (sharing.delay_s / decision_s).round() as u64,
+            past: VecDeque::new(),
+            spare: vec![],
             known: vec![vec![None; scenario.vehicles.len()]; scenario.teams.len()],
             noises: scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name)).collect(),
             sharing,
         })
     }
 
-    /// Looks round at one decision. `contact` gives the truth about a vehicle.
-    pub(crate) fn look(&mut self, world: &World, decision: u64, contact: impl Fn(usize) -> Contact) {
-        let count = world.state().boats.len();
-        if let Some(mut oldest) = self.past.pop_front() {
-            oldest.clear();
-            oldest.extend((0..count).map(contact));
-            self.past.push_back(oldest);
+    /// Looks round at one decision: the truth about every boat. Reports of decisions before `oldest` are not to come.
+    pub(crate) fn look(&mut self, decision: u64, oldest: u64, boats: impl Iterator<Item = Contact>) {
+        let oldest = oldest.saturating_sub(self.late);
+        while let Some(past) = self.past.pop_front_if(|past| past.decision < oldest) {
+            self.spare.push(past.boats);
         }
-        let (Some(then), true) = (self.past.front(), decision >= self.late as u64) else { return };
-        let teams = self.known.len();
-        for seen in then {
-            for (team, known) in self.known.iter_mut().enumerate().filter(|(team, _)| *team != seen.team.index()) {
-                let is_own = |other: &&Contact| other.team.index() == team;
-                let draw = 4 * (decision * teams as u64 + team as u64);
-                let noise = self.noises[seen.vehicle.index()];
-                let is_seen = then.iter().filter(is_own).any(|own| sees(&self.sharing, own, seen));
-                if is_seen && noise.unit(draw) >= self.sharing.loss {
-                    known[seen.vehicle.index()] = Some(blurred(&self.sharing, *seen, noise, draw));
-                }
+        let mut now = self.spare.pop().unwrap_or_default();
+        now.clear();
+        now.extend(boats);
+        self.past.push_back(Truths { decision, boats: now });
+    }
+
+    /// The report that `seer` sent at `decision` has come in: its team is shown what it had seen.
+    pub(crate) fn take(&mut self, seer: usize, decision: u64) {
+        let Sightings { sharing, late, past, known, noises, .. } = self;
+        let seen_at = decision.checked_sub(*late);
+        let Some(place) = seen_at.and_then(|at| past.binary_search_by_key(&at, |past| past.decision).ok()) else {
+            return;
+        };
+        let boats = &past[place].boats;
+        let (own, teams) = (&boats[seer], known.len() as u64);
+        let known = &mut known[own.team.index()];
+        let draw = 4 * (decision * teams + own.team.index() as u64);
+        for (seen, known) in boats.iter().zip(known).filter(|(seen, _)| seen.team != own.team) {
+            // Another boat may have reported as much already, or a later sighting.
+            let is_news = known.is_none_or(|known| known.seen_ns < seen.seen_ns);
+            let noise = noises[seen.vehicle.index()];
+            if is_news && sees(sharing, own, seen) && noise.unit(draw) >= sharing.loss {
+                *known = Some(blurred(sharing, *seen, noise, draw));
             }
         }
     }

@@ -11,7 +11,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use xxhash_rust::xxh3;
 
-/// Everything that changes in a world. Nothing else is remembered from tick to tick.
+/// Everything that changes in a world. Nothing else is remembered from tick to tick: what a step does follows from this
+/// and the orders. What stands between minds and boats is no part of the world: orders in force, messages under way,
+/// sightings and watchdogs belong to [`Contest`](crate::Contest), whose digest covers them and which has no snapshot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Physics ticks since the start.
@@ -37,6 +39,8 @@ pub struct BoatState {
     pub pose: Pose,
     /// Velocity over the ground in body axes.
     pub nu: Planar,
+    /// By how much that changed in the last tick: what accelerometers feel.
+    pub nu_change: Planar,
     /// Port thruster.
     pub port: Shaft,
     /// Starboard thruster.
@@ -48,7 +52,7 @@ pub struct BoatState {
 }
 
 /// What a snapshot begins with: name, layout version.
-const MAGIC: [u8; 5] = *b"SQLW\x02";
+const MAGIC: [u8; 5] = *b"SQLW\x03";
 
 /// Why bytes are not a snapshot of this world.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

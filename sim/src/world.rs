@@ -52,8 +52,6 @@ struct Work {
     passages: Vec<Passage>,
     /// Velocity over the ground at the end of the tick without contact, by vehicle.
     velocities: Vec<Planar>,
-    /// How fast each boat's velocity changed in the last tick.
-    accelerations: Vec<Planar>,
     pairs: Vec<Pair>,
     notes: Notes,
     events: Vec<Event>,
@@ -123,7 +121,8 @@ impl World {
         &self.model.referee
     }
 
-    /// The state as bytes; [`World::restore`] takes them back.
+    /// The state as bytes; [`World::restore`] takes them back. They hold the world alone: no orders in force, no messages
+    /// under way, no sightings, no events of the last step.
     #[must_use]
     pub fn snapshot(&self) -> Vec<u8> {
         self.state.snapshot(self.model.scenario_mark)
@@ -139,7 +138,7 @@ impl World {
         Ok(())
     }
 
-    /// 128 bits that differ when any bit of the state differs.
+    /// 128 bits that differ when any bit of the state differs: of what [`World::snapshot`] holds.
     #[must_use]
     pub fn digest(&self) -> u128 {
         self.state.digest()
@@ -161,15 +160,15 @@ impl World {
     /// What is true of a vehicle, as far as sensors feel it.
     #[must_use]
     pub fn truth(&self, vehicle: VehicleId) -> Truth {
-        let (i, work) = (vehicle.index(), &self.work);
-        self.model.truth(i, &self.state.boats[i], work.turns[i], work.accelerations[i], &self.sea())
+        let i = vehicle.index();
+        self.model.truth(i, &self.state.boats[i], self.work.turns[i], &self.sea())
     }
 
     /// How a vehicle lies in the waves.
     #[must_use]
     pub fn attitude(&self, vehicle: VehicleId) -> Attitude {
-        let (i, boat) = (vehicle.index(), &self.state.boats[vehicle.index()]);
-        self.sea().attitude(self.model.kinds[i], boat.pose, self.work.turns[i], boat.nu)
+        let i = vehicle.index();
+        self.model.attitude(i, &self.state.boats[i], self.work.turns[i], &self.sea())
     }
 
     /// Hands boats to rapier that are as far as `close_m` from anything. Slower, and the same bytes.
@@ -183,7 +182,6 @@ impl World {
     fn refresh(&mut self) {
         self.work.turns.clear();
         self.work.turns.extend(self.state.boats.iter().map(|boat| math::sin_cos(boat.pose.psi_rad)));
-        self.work.accelerations.resize(self.state.boats.len(), Planar::default());
         self.find_pairs();
     }
 
@@ -203,7 +201,8 @@ impl World {
         work.currents_m_s.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let order = model.obeyed(&state.standing, i, boat.pose.at, orders[i]);
-            let (effort, current_m_s) = model.effort(i, boat, &mut state.flaws[i], work.turns[i], order, &sea);
+            let heading = (work.turns[i], model.heading_error_rad(i, &state.senses));
+            let (effort, current_m_s) = model.effort(i, boat, &mut state.flaws[i], heading, order, &sea);
             work.efforts.push(effort);
             work.currents_m_s.push(current_m_s);
         }
@@ -227,14 +226,17 @@ impl World {
     /// The boats take up the motion, with what contact changed in it. Bad numbers are contained here.
     fn settle(&mut self) {
         let World { model, state, work } = self;
+        let sea = model.sea.at_time(state.now);
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let (passage, mut nu) = (&work.passages[i], work.velocities[i]);
             nu = nu.plus(1.0, passage.kick);
             if is_sound(passage.to, nu) {
-                work.accelerations[i] = nu.plus(-1.0, boat.nu);
+                boat.nu_change = nu.plus(-1.0, boat.nu);
                 (boat.pose, boat.nu, work.turns[i]) = (passage.to, nu, passage.turn_to);
                 if let (Some((place, _)), true) = (model.point(i), passage.kick != Planar::default()) {
-                    state.points[place].divert(boat.pose.psi_rad, boat.nu.surge);
+                    // Its own speed is through the water.
+                    let drift = frame::body_from_ned(passage.turn_to, sea.current_at(passage.from.at));
+                    state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {
                 *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
@@ -286,7 +288,7 @@ impl World {
         let sea = model.sea.at_time(state.now);
         for (i, boat) in state.boats.iter().enumerate() {
             let Some((place, sensors)) = &model.sensed[i] else { continue };
-            let truth = model.truth(i, boat, work.turns[i], work.accelerations[i], &sea);
+            let truth = model.truth(i, boat, work.turns[i], &sea);
             let (memory, reading) = &mut state.senses[*place];
             *reading = sensors.read(memory, &truth, state.now);
         }

@@ -52,6 +52,9 @@ fn a_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
             sail(&mut other, leg + 50);
             other.restore(&bytes).unwrap();
             assert!(other.snapshot() == bytes, "{game}, leg {leg}: not what was put in");
+            for vehicle in (0..world.state().boats.len()).map(VehicleId::at) {
+                assert_eq!(other.truth(vehicle), world.truth(vehicle), "{game}, leg {leg}");
+            }
             collisions += sail(&mut world, 97);
             sail(&mut other, 97);
             assert!(world.snapshot() == other.snapshot(), "{game}, leg {leg}: they differ");

@@ -5,9 +5,10 @@ mod common;
 use common::shipped;
 use game::boat::Boat;
 use game::frame::{Body, Ned, Pose, ned_from_body};
+use game::sea::GRAVITY_M_S2;
 use game::sea::{Spreading, Waves};
 use sim::hull::Planar;
-use sim::sea::wave::{GRAVITY_M_S2, wavenumber_rad_m};
+use sim::sea::wave::wavenumber_rad_m;
 use sim::sea::{Attitude, Component, HullWaves, Ride, WaveField, WaveSample};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

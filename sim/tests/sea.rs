@@ -4,9 +4,10 @@
 mod common;
 
 use common::{alone, put, scenarios};
-use game::sea::{Sea, Spreading, Waves};
+use game::sea::{GRAVITY_M_S2, Sea, Spreading, Waves};
 use game::{Ned, Order, Scenario};
 use sim::World;
+use sim::sea::WaveField;
 use std::f64::consts::TAU;
 
 const DRIFTING: [Order; 2] = [Order::Hold; 2];
@@ -124,7 +125,7 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
         };
         let spectrum = common::amplitudes(&(0..samples).map(step).collect::<Vec<_>>());
         let gone = world.state().boats[0].pose.at - start;
-        let k = wave.omega_rad_s * wave.omega_rad_s / 9.806_65;
+        let k = wave.omega_rad_s * wave.omega_rad_s / GRAVITY_M_S2;
         let (sin, cos) = game::math::sin_cos(wave.toward_rad);
         let along_m_s = (gone.north * cos + gone.east * sin) / (samples as f64 * dt_s);
         let want = (wave.omega_rad_s - k * along_m_s) / resolution;
@@ -179,5 +180,45 @@ fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
         let speed =
             world.state().boats.iter().map(|boat| game::math::length(boat.nu.surge, boat.nu.sway)).fold(0.0, f64::max);
         assert!(speed < 10.0, "{}: {speed} m/s", file.display());
+    }
+}
+
+#[test]
+fn a_free_boat_in_a_long_swell_goes_with_stokes_drift() {
+    for (hs_m, tp_s) in [(0.5, 5.0), (1.0, 6.0)] {
+        let swell = Waves { drift_factor: 0.0, spreading: Spreading::None, ..waves(hs_m, tp_s) };
+        let scenario = on(|sea| sea.waves = Some(swell.clone()));
+        let field = WaveField::new(&swell, None, 4);
+        let want = field.stokes_drift_m_s(scenario.boats[0].draught_m);
+        let mut world = World::new(&scenario, 4).unwrap();
+        put(&mut world, 0, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
+        let start = world.state().boats[0].pose.at;
+        let minutes = 40;
+        for _ in 0..20 * 60 * minutes {
+            world.step(&DRIFTING);
+        }
+        let gone = (world.state().boats[0].pose.at - start).scaled(1.0 / f64::from(60 * minutes));
+        assert!(gone.distance(want) < 0.15 * want.length(), "{hs_m} m, {tp_s} s: {gone:?} m/s, not {want:?}");
+    }
+}
+
+#[test]
+fn point_boats_collide_in_a_current_as_they_do_in_still_water() {
+    let current = Ned { north: 0.3, east: 0.4 };
+    let after = |mean_m_s: Ned| {
+        let mut scenario = alone("heron_kinematic", "calm");
+        scenario.sea.current.mean_m_s = mean_m_s;
+        let mut world = World::new(&scenario, 1).unwrap();
+        // Blue runs into red's side.
+        put(&mut world, 0, (300.0, 200.0, 90.0), (0.0, 0.0, 0.0));
+        put(&mut world, 1, (308.0, 200.2, 0.0), (0.0, 0.0, 0.0));
+        let ahead = Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 };
+        run(&mut world, &[ahead, Order::Hold], 30.0);
+        [0, 1].map(|i| world.state().boats[i].pose.at - mean_m_s.scaled(30.0))
+    };
+    let (still, drifting) = (after(Ned::default()), after(current));
+    assert!((still[0].north - 200.0).abs() > 1.0, "red was in the way: {still:?}");
+    for (still, drifting) in still.into_iter().zip(drifting) {
+        assert!(still.distance(drifting) < 1e-3, "{still:?}, in a current {drifting:?}");
     }
 }

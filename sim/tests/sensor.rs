@@ -1,11 +1,15 @@
 //! Sensors against what they are stated to do: statistics, times, curves, and the truth where they are perfect.
 
+mod common;
+
 use game::boat::{Compass, Gps, Imu, Sensors};
 use game::frame::{Body, Pose, body_from_ned, ned_from_body};
 use game::math;
-use game::{Ned, SimTime};
+use game::sea::GRAVITY_M_S2;
+use game::{Ned, Order, SimTime, VehicleId};
+use sim::World;
 use sim::hull::Planar;
-use sim::sensor::imu::{GRAVITY_M_S2, ImuReading};
+use sim::sensor::imu::ImuReading;
 use sim::sensor::{Reading, SensorModel, SensorState, Truth};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -139,6 +143,42 @@ fn a_fix_says_where_the_boat_was_and_comes_out_after_its_latency() {
             assert_eq!(reading.nav.at(), was.pose.at, "latency {latency_s}, tick {tick}");
             assert!((reading.nav.surge_m_s - 2.0).abs() < 1e-12 && (reading.nav.sway_m_s - 0.5).abs() < 1e-12);
         }
+    }
+}
+
+#[test]
+fn the_longest_latency_that_a_file_may_state_comes_out_as_stated_whatever_the_periods() {
+    // What `game::scenario` allows: latency_s up to 2 and up to 12 periods, period_s from 0.02.
+    for decision_ms in [10, 20, 50, 100, 250, 1_000] {
+        let decision = SimTime(decision_ms * 1_000_000);
+        for period_s in [0.02, 0.029, 0.05, 0.074, 0.1, 0.13, 0.149, 0.149_999, 0.15, 0.2, 1.0, 1.49, 10.0] {
+            let gps = Gps { period_s, latency_s: (12.0 * period_s).min(2.0), ..exact_gps() };
+            let latency = SimTime::from_s(gps.latency_s);
+            let model = SensorModel::new(&with_gps(gps), decision, 1, "blue_one");
+            let period = decision * ((period_s / decision.as_s()).round() as i64).max(1);
+            let mut state = SensorState::default();
+            for now in (0..1_000).map(|i| decision * i) {
+                let reading = model.read(&mut state, &sailing(now), now);
+                let want_at = period * ((now - latency).0.max(0) / period.0);
+                assert_eq!(reading.fix_at, want_at, "decision {decision}, period {period_s}, at {now}");
+                assert_eq!(reading.nav.at(), sailing(want_at).pose.at);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_game_with_an_awkward_period_and_a_long_latency_is_played() {
+    let mut scenario = common::alone("surveyor_m1_8", "calm");
+    for boat in &mut scenario.boats {
+        boat.sensors.gps = Some(Gps { period_s: 0.13, latency_s: 1.55, ..exact_gps() });
+    }
+    let mut contest = sim::Contest::new(&scenario, 1).unwrap();
+    for k in 0..200_i64 {
+        let late = SimTime(1_600_000_000);
+        let want_at = SimTime((contest.now() - late).0.max(0));
+        assert_eq!(contest.pictures()[0].own[0].fix_ns, want_at, "at decision {k}");
+        contest.advance();
     }
 }
 
@@ -438,4 +478,21 @@ fn sensors_go_on_from_a_snapshot_to_the_bit() {
         let _ = model.read(&mut state, &sailing(TICK * i), TICK * i);
     }
     assert!(postcard::from_bytes::<SensorState>(&[0xff; 40]).is_err());
+}
+
+#[test]
+fn the_front_seat_steers_by_the_heading_that_the_compass_shows() {
+    let mut scenario = common::alone("surveyor_m1_8", "calm");
+    let off = Compass { deviation_rad: [0.2, 0.0, 0.0, 0.0, 0.0], ..exact_compass() };
+    scenario.boats[0].sensors = with_compass(off);
+    let mut world = World::new(&scenario, 1).unwrap();
+    let orders = [Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 }, Order::Hold];
+    for _ in 0..20 * 60 {
+        world.step(&orders);
+    }
+    // A compass that points 0.2 rad too far east reads as much too little.
+    let (psi_rad, reading) =
+        (world.state().boats[0].pose.psi_rad, world.reading(VehicleId::at(0)).unwrap().nav.psi_rad);
+    assert!((reading - 1.0).abs() < 0.01, "it reads {reading}");
+    assert!((psi_rad - 1.2).abs() < 0.01, "it goes {psi_rad}");
 }

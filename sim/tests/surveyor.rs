@@ -45,11 +45,11 @@ fn within(what: &str, got: f64, want: f64, share: f64) {
 
 #[test]
 fn it_is_as_fast_as_its_thrust_map_says() {
-    for (percent, want_m_s) in [(20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)] {
+    for (percent, want_m_s) in [(-100.0, -2.0), (20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)] {
         let each = percent / 100.0;
         let nu = sail(&mut afloat(AT_REST), Order::Thrust { port: each, starboard: each }, 100).nu;
         within(&format!("{percent} %"), nu.surge, want_m_s, 0.02);
-        assert_eq!((nu.sway, nu.yaw), (0.0, 0.0), "{percent} %: straight ahead");
+        assert_eq!((nu.sway, nu.yaw), (0.0, 0.0), "{percent} %: a straight line");
     }
 }
 

@@ -3,10 +3,11 @@
 mod common;
 
 use game::frame::Ned;
+use game::sea::GRAVITY_M_S2;
 use game::sea::{Spreading, Waves};
 use game::stream::Stream;
 use sim::sea::spectrum::{BAND, jonswap_m2_s};
-use sim::sea::wave::{GRAVITY_M_S2, wavenumber_rad_m};
+use sim::sea::wave::wavenumber_rad_m;
 use sim::sea::{Component, Surface, WaveField};
 use std::f64::consts::{PI, TAU};
 

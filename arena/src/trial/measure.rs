@@ -1,5 +1,6 @@
 //! What a manoeuvre shows in numbers.
 
+use super::drift::Drift;
 use super::manoeuvre::{DEAD, Manoeuvre, Plan, Sailed, turned_rad};
 use super::sample::Sample;
 use game::angle::compass_deg_from_rad;
@@ -139,21 +140,12 @@ fn acceleration(sailed: &Sailed) -> Vec<Measure> {
     ]
 }
 
-/// The drift of the second half, when the boat has found how it lies.
 fn drift(sailed: &Sailed) -> Vec<Measure> {
-    let half = &sailed.samples[sailed.samples.len() / 2..];
-    let (Some(first), Some(last)) = (half.first(), half.last()) else { return vec![] };
-    let way = last.at - first.at;
-    let speed_m_s = way.length() / (last.t_s - first.t_s);
-    let toward_deg =
-        if way.length() > 1e-6 { compass_deg_from_rad(math::atan2(way.east, way.north)) } else { f64::NAN };
-    let turned = turned_rad(&sailed.samples);
-    let mean_rad =
-        sailed.samples[0].psi_rad + turned[sailed.samples.len() / 2..].iter().sum::<f64>() / half.len() as f64;
+    let Some(drift) = Drift::of(&sailed.samples) else { return vec![] };
     vec![
-        measure("drift speed", speed_m_s, "m/s"),
-        measure("drift toward", toward_deg, "°"),
-        measure("mean heading", compass_deg_from_rad(mean_rad), "°"),
+        measure("drift speed", drift.speed_m_s(), "m/s"),
+        measure("drift toward", drift.toward_rad().map_or(f64::NAN, compass_deg_from_rad), "°"),
+        measure("mean heading", compass_deg_from_rad(drift.heading_rad), "°"),
     ]
 }
 

@@ -4,6 +4,7 @@
 
 mod afloat;
 mod command;
+mod drift;
 mod manoeuvre;
 mod measure;
 mod orders;
@@ -14,10 +15,11 @@ mod water;
 
 pub use afloat::{Afloat, Start};
 pub use command::{Command, Engine, Pair};
+pub use drift::Drift;
 pub use manoeuvre::{Manoeuvre, Plan, Sailed, sail};
 pub use measure::{Measure, measures};
 pub use orders::{LONGEST_S, Orders};
 pub use replay::{ROW, Unsound, replay, ticks_per_row};
 pub use sample::{COLUMNS, Sample, write_csv};
 pub use sheet::{Mistake, Sheet};
-pub use water::{set_mean_current, still_sea};
+pub use water::{open_water, set_mean_current, still_sea};

@@ -30,7 +30,8 @@ pub fn set_mean_current(sea: &mut Sea, speed_m_s: f64, toward_deg: f64) {
 }
 
 /// A game of one boat that lies in the middle of nowhere, pointing north, at the datum.
-pub(crate) fn open_water(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Scenario {
+#[must_use]
+pub fn open_water(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Scenario {
     let team = |name: &str| Team { name: name.to_owned() };
     Scenario {
         name: "trial".into(),

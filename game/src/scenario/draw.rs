@@ -124,7 +124,7 @@ fn in_value(ledger: &mut Ledger, value: &Spanned<DeValue<'_>>, owner: &str, path
                     ledger.drawn.push(Drawn { parameter: format!("{owner}/{path}"), value });
                     value
                 });
-                found.push(format!("{number:?}"));
+                found.push(written(number));
             }
             None => in_table(ledger, table, owner, path, found),
         },
@@ -135,6 +135,13 @@ fn in_value(ledger: &mut Ledger, value: &Spanned<DeValue<'_>>, owner: &str, path
         }
         _ => {}
     }
+}
+
+/// A number as a file would give it: whole ones without a point, for keys that take no others.
+fn written(number: f64) -> String {
+    // Up to here whole numbers are exact.
+    let is_whole = number.fract() == 0.0 && number.abs() < 1e15;
+    if is_whole { format!("{}", number as i64) } else { format!("{number:?}") }
 }
 
 /// The kind of distribution that a table means to be, if it does.

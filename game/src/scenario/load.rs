@@ -1,6 +1,6 @@
 //! The ways in: a path, and out comes what the file says, or everything that is wrong with it.
 
-use super::draw::{Drawing, Recipe};
+use super::draw::{Drawing, Drawn, Recipe};
 use super::kind::Kind;
 use super::ledger::Ledger;
 use super::problem::Problems;
@@ -117,20 +117,36 @@ impl Scenario {
     }
 }
 
-/// Reads and checks the boat file at `path`.
+/// Reads and checks the boat file at `path`. Where it gives distributions, the numbers are those of seed 1.
 ///
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
-    one(path, check::boat)
+    draw_boat(path, 1).map(|(boat, _)| boat)
 }
 
-/// Reads and checks the sea file at `path`.
+/// Reads and checks the boat file at `path`, and draws its numbers with this seed.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems> {
+    one(path, check::boat, seed)
+}
+
+/// Reads and checks the sea file at `path`. Where it gives distributions, the numbers are those of seed 1.
 ///
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn load_sea(path: &Path) -> Result<Sea, Problems> {
-    one(path, check::sea)
+    draw_sea(path, 1).map(|(sea, _)| sea)
+}
+
+/// Reads and checks the sea file at `path`, and draws its numbers with this seed: those of a game of that seed.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
+    one(path, check::sea, seed)
 }
 
 /// Reads and checks a scenario file of any kind.
@@ -144,26 +160,31 @@ pub fn load_sea(path: &Path) -> Result<Sea, Problems> {
 pub fn check_file(path: &Path) -> Result<Checked, Problems> {
     match Kind::by_folder(path).unwrap_or_else(|| Kind::by_keys(&top_keys(path))) {
         Kind::Game => load(path).map(|game| Checked::Game(Box::new(game))),
-        Kind::Field => one(path, check::field).map(|field| Checked::Field(Box::new(field))),
-        Kind::Rules => one(path, check::rules).map(|rules| Checked::Rules(Box::new(rules))),
-        Kind::Boat => one(path, check::boat).map(|boat| Checked::Boat(Box::new(boat))),
-        Kind::Sea => one(path, check::sea).map(|sea| Checked::Sea(Box::new(sea))),
-        Kind::Strategy => one(path, check::strategy).map(Checked::Strategy),
+        Kind::Field => one(path, check::field, 1).map(|(field, _)| Checked::Field(Box::new(field))),
+        Kind::Rules => one(path, check::rules, 1).map(|(rules, _)| Checked::Rules(Box::new(rules))),
+        Kind::Boat => load_boat(path).map(|boat| Checked::Boat(Box::new(boat))),
+        Kind::Sea => load_sea(path).map(|sea| Checked::Sea(Box::new(sea))),
+        Kind::Strategy => one(path, check::strategy, 1).map(|(strategy, _)| Checked::Strategy(strategy)),
     }
 }
 
-fn one<R: Typed, T>(path: &Path, check: fn(&mut Ledger, &Document<R>) -> Option<T>) -> Result<T, Problems> {
+/// A file of one kind, and what was drawn for it.
+fn one<R: Typed, T>(
+    path: &Path,
+    check: fn(&mut Ledger, &Document<R>) -> Option<T>,
+    seed: u64,
+) -> Result<(T, Vec<Drawn>), Problems> {
     let read = |drawing: Drawing| {
         let mut ledger = Ledger::new(drawing);
         let value = read::document(&mut ledger, path, None).and_then(|document| check(&mut ledger, &document));
-        ledger.close(value).map(|value| (value, ledger.drawn.is_empty()))
+        ledger.close(value).map(|value| (value, std::mem::take(&mut ledger.drawn)))
     };
-    let (value, is_certain) = read(Drawing::Least)?;
-    if is_certain {
-        return Ok(value);
+    let (value, drawn) = read(Drawing::Least)?;
+    if drawn.is_empty() {
+        return Ok((value, drawn));
     }
     read(Drawing::Greatest)?;
-    Ok(read(Drawing::Seed(1))?.0)
+    read(Drawing::Seed(seed))
 }
 
 /// The top-level keys of a file and its bases; what is wrong with them is found again by the check.

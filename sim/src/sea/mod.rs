@@ -3,6 +3,7 @@
 //! Open [`SeaNow::feel`] first: the one door through which the sea acts on boats. Everything here is a function of the
 //! scenario, the seed and the time; the sea remembers nothing, so a world that goes back in time finds the same sea.
 
+pub mod band;
 mod cover;
 pub mod current;
 pub mod eddy;
@@ -19,6 +20,7 @@ pub mod wave;
 pub mod wind;
 pub mod windage;
 
+pub use band::Band;
 pub use cover::Cover;
 pub use current::{CurrentField, CurrentNow};
 pub use hull_wave::{HullWaves, WaveSample};
@@ -43,6 +45,8 @@ pub struct SeaModel {
     current: CurrentField,
     /// Hulls of different size; kinds of boat that differ in other things share one.
     shapes: Vec<Shape>,
+    /// The water over propellers, by size of hull and place of the propellers.
+    covers: Vec<([f64; 4], Cover)>,
     kinds: Vec<Kind>,
     /// Half a tick, and as seconds.
     half_tick: SimTime,
@@ -57,7 +61,8 @@ struct Shape {
     draught_m: f64,
     waves: HullWaves,
     ride: Ride,
-    stokes_m_s: Ned,
+    /// The part of Stokes drift that is not found by going along with the water.
+    rise_drift_m_s: Ned,
 }
 
 #[derive(Clone, Debug)]
@@ -68,8 +73,8 @@ struct Kind {
     windage: Windage,
     /// The mean wind at the height of its windage, m/s.
     wind_mean_m_s: f64,
-    /// The water over its propellers, where that matters.
-    cover: Option<Cover>,
+    /// Index into the covers, where that matters.
+    cover: Option<usize>,
 }
 
 /// The sea at one moment.
@@ -104,10 +109,13 @@ impl SeaModel {
         let sea = &scenario.sea;
         let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seed));
         let highest = scenario.boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
-        let wind = sea.wind.as_ref().map(|wind| WindField::new(wind, highest, &scenario.field, seed));
+        // Wind of no speed is no wind, whatever the boat makes by its own way.
+        let wind = sea.wind.as_ref().filter(|wind| wind.speed_10m_m_s > 0.0);
+        let wind = wind.map(|wind| WindField::new(wind, highest, &scenario.field, seed));
         let mut model = SeaModel {
             current: CurrentField::new(&sea.current, &scenario.field, seed),
             shapes: vec![],
+            covers: vec![],
             kinds: vec![],
             half_tick: SimTime(scenario.tick.0 / 2),
             half_s: 0.5 * scenario.tick.as_s(),
@@ -116,7 +124,7 @@ impl SeaModel {
         };
         for boat in &scenario.boats {
             let kind = Kind {
-                cover: model.cover(boat),
+                cover: model.cover_of(boat),
                 length_m: boat.length_m,
                 shape: model.shape_of(boat, sea.water_density_kg_m3),
                 windage: boat.windage.clone(),
@@ -127,13 +135,18 @@ impl SeaModel {
         model
     }
 
-    /// The water over the boat's propellers, if they can suck air.
-    fn cover(&self, boat: &Boat) -> Option<Cover> {
-        let Drive::Thrusters { thruster, .. } = &boat.drive else { return None };
+    /// The index of the water over the boat's propellers, made if it is the first of it, if they can suck air.
+    fn cover_of(&mut self, boat: &Boat) -> Option<usize> {
+        let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
         thruster.flaws.ventilation?;
-        let ahead = -PROPELLER_ASTERN * boat.length_m;
-        let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
-        Some(Cover::new(self.waves.as_ref()?, boat, places))
+        let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
+        let known = self.covers.iter().position(|(other, _)| *other == size);
+        Some(known.unwrap_or_else(|| {
+            let ahead = -PROPELLER_ASTERN * boat.length_m;
+            let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
+            self.covers.push((size, Cover::new(field, boat, places)));
+            self.covers.len() - 1
+        }))
     }
 
     /// The index of the boat's shape, made if it is the first of it.
@@ -148,7 +161,7 @@ impl SeaModel {
                 draught_m: boat.draught_m,
                 waves: HullWaves::new(field, boat, water_density_kg_m3),
                 ride: Ride::new(field, boat),
-                stokes_m_s: field.stokes_drift_m_s(boat.draught_m),
+                rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
             });
             self.shapes.len() - 1
         })
@@ -205,12 +218,12 @@ impl SeaNow<'_> {
         let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape]);
         let velocity_m_s = frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway });
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
-        let (waves, cover_m) = match &boat.cover {
+        let (waves, cover_m) = match boat.cover.map(|cover| &self.model.covers[cover].1) {
             None => (shape.waves.at(middle, self.middle_s), [0.0; 2]),
             Some(cover) => shape.waves.at_with(cover, middle, self.middle_s),
         };
         felt.cover_m = cover_m;
-        felt.current_m_s = felt.current_m_s + shape.stokes_m_s;
+        felt.current_m_s = felt.current_m_s + shape.rise_drift_m_s;
         felt.water = felt.water.plus(1.0, waves.velocity);
         felt.water_rate = waves.acceleration;
         // Long waves push the water that the hull displaces, and that it would carry along, as they push water

@@ -13,6 +13,7 @@ use wide::{f32x4, f64x4};
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// sin π r = r (S0 + S1 r² + ...), minimax for |r| ≤ 1/2 by Remez' exchange: off by 3.4e-9 at most, before rounding.
+#[expect(clippy::approx_constant, reason = "near π, and not π")]
 const SIN: [f32; 5] = [3.141_592_6, -5.167_707, 2.550_031_4, -0.598_045_2, 0.077_220_13];
 
 /// cos π r = C0 + C1 r² + ..., likewise: off by 4.7e-8 at most.

@@ -34,6 +34,12 @@ pub fn jonswap_m2_s(waves: &Waves, omega_rad_s: f64) -> f64 {
     (1.0 - 0.287 * log_gamma) * 0.3125 * waves.hs_m * waves.hs_m * ratio_4 / omega_rad_s * shape
 }
 
+/// The same over frequency: m²/Hz at `frequency_hz` > 0.
+#[must_use]
+pub fn density_m2_hz(waves: &Waves, frequency_hz: f64) -> f64 {
+    TAU * jonswap_m2_s(waves, TAU * frequency_hz)
+}
+
 /// The components that stand for this sea, by rising frequency.
 ///
 /// The band is cut into as many strata as there are components, each with the same share of the variance and

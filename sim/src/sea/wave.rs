@@ -9,12 +9,9 @@ use super::spectrum;
 use crate::hull::Planar;
 use game::boat::Boat;
 use game::frame::Ned;
-use game::sea::Waves;
+use game::sea::{GRAVITY_M_S2, Waves};
 use std::f64::consts::TAU;
 use wide::{f32x4, f64x4};
-
-/// Standard gravity.
-pub const GRAVITY_M_S2: f64 = 9.806_65;
 
 /// Components side by side.
 pub(super) const LANES: usize = 4;
@@ -75,6 +72,17 @@ impl PlaneWave {
     fn group_factor(&self) -> f64 {
         let twice = 2.0 * self.depth_rad();
         if twice > 40.0 { 1.0 } else { 1.0 + twice / libm::sinh(twice) }
+    }
+
+    /// Stokes drift, averaged over a draught, m/s.
+    fn stokes_m_s(&self, draught_m: f64) -> f64 {
+        let (k, draught_m) = (self.wavenumber_rad_m, draught_m.min(self.depth_m));
+        let bottom = libm::exp(-2.0 * self.depth_rad());
+        // sinh 2kh − sinh 2k(h − T), over sinh² k h and e^(2kh) / 2 each.
+        let at_keel = libm::exp(-2.0 * k * draught_m);
+        let layer = (1.0 - at_keel) * (1.0 + bottom * bottom / at_keel);
+        let a = self.component.amplitude_m;
+        0.5 * a * a * self.component.omega_rad_s * layer / (draught_m * (1.0 - bottom) * (1.0 - bottom))
     }
 
     /// The part of a hull's drift force that neither its size nor the wave's direction enters, as its square root: of
@@ -253,19 +261,25 @@ impl WaveField {
     /// a² ω k cosh 2k(z + h) / (2 sinh² k h).
     #[must_use]
     pub fn stokes_drift_m_s(&self, draught_m: f64) -> Ned {
-        let mut drift = Ned::default();
-        for w in &self.waves {
-            let (k, draught_m) = (w.wavenumber_rad_m, draught_m.min(w.depth_m));
+        self.drift_m_s(|w| w.stokes_m_s(draught_m))
+    }
+
+    /// The part of it that comes of water moving faster where it has risen: a² ω k sinh² k(z + h) / (2 sinh² k h), the
+    /// half in deep water. The other part is found by whoever goes to and fro with the water and meets it where it is.
+    #[must_use]
+    pub fn rise_drift_m_s(&self, draught_m: f64) -> Ned {
+        // cosh 2x = 2 sinh² x + 1.
+        self.drift_m_s(|w| {
             let bottom = libm::exp(-2.0 * w.depth_rad());
-            // sinh 2kh − sinh 2k(h − T), over sinh² k h and e^(2kh) / 2 each.
-            let at_keel = libm::exp(-2.0 * k * draught_m);
-            let layer = (1.0 - at_keel) * (1.0 + bottom * bottom / at_keel);
             let a = w.component.amplitude_m;
-            let speed_m_s =
-                0.5 * a * a * w.component.omega_rad_s * layer / (draught_m * (1.0 - bottom) * (1.0 - bottom));
-            drift = drift + w.toward.scaled(speed_m_s);
-        }
-        drift
+            let flat =
+                a * a * w.component.omega_rad_s * w.wavenumber_rad_m * bottom / ((1.0 - bottom) * (1.0 - bottom));
+            0.5 * w.stokes_m_s(draught_m) - flat
+        })
+    }
+
+    fn drift_m_s(&self, speed_m_s: impl Fn(&PlaneWave) -> f64) -> Ned {
+        self.waves.iter().fold(Ned::default(), |drift, w| drift + w.toward.scaled(speed_m_s(w)))
     }
 
     /// Mean second-order force on a hull on this heading, in its own axes: the momentum that the waves lose

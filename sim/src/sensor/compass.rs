@@ -29,6 +29,16 @@ pub struct CompassModel {
 pub struct CompassState {
     /// The last reading.
     psi_rad: f64,
+    /// How far that was off.
+    error_rad: f64,
+}
+
+impl CompassState {
+    /// How far the last reading was off, rad.
+    #[must_use]
+    pub fn error_rad(&self) -> f64 {
+        self.error_rad
+    }
 }
 
 impl CompassModel {
@@ -60,6 +70,7 @@ impl CompassModel {
             let magnetic_rad = psi_rad - self.compass.declination_error_rad - self.deviation_rad(psi_rad);
             let error_rad = self.compass.thrust_error_rad * truth.thrust_share + self.compass.noise_rad * noise;
             state.psi_rad = wrap_pi(magnetic_rad + error_rad);
+            state.error_rad = wrap_pi(state.psi_rad - psi_rad);
         }
         state.psi_rad
     }

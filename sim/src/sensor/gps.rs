@@ -13,8 +13,9 @@ use game::frame::Ned;
 use game::stream::Noise;
 use serde::{Deserialize, Serialize};
 
-/// Most fixes that can be under way at once: the latency is below this many periods.
-pub const UNDER_WAY_MAX: usize = 16;
+/// Most fixes that can be under way at once: the latency is at most this many periods. A file may state 12 periods; of
+/// them, rounded to whole decisions, as many as 18 may be left of the same time.
+pub const UNDER_WAY_MAX: usize = 18;
 /// Pairs of normal numbers that a fix takes: bias, position, velocity, jump.
 const PAIRS: u64 = 4;
 /// Even numbers that a fix takes: drop-out, freeze, jump.
@@ -81,7 +82,7 @@ struct UnderWay {
 
 impl UnderWay {
     fn push(&mut self, fix: Fix) {
-        assert!(self.count < UNDER_WAY_MAX, "a latency is below {UNDER_WAY_MAX} periods");
+        assert!(self.count < UNDER_WAY_MAX, "a latency is at most {UNDER_WAY_MAX} periods");
         self.fixes[self.count] = fix;
         self.count += 1;
     }
@@ -131,15 +132,15 @@ impl Spell {
 }
 
 impl GpsModel {
-    /// The receiver of the boat named `vehicle`.
+    /// The receiver of the boat named `vehicle`, read once a `tick`: its period is a whole number of these.
     ///
     /// # Panics
-    /// If its latency is [`UNDER_WAY_MAX`] periods or more.
+    /// If its latency is more than [`UNDER_WAY_MAX`] periods.
     #[must_use]
     pub fn new(gps: &Gps, tick: SimTime, seed: u64, vehicle: &str) -> GpsModel {
         let period = whole_ticks(gps.period_s, tick);
         let latency = SimTime::from_s(gps.latency_s);
-        assert!(latency < period * UNDER_WAY_MAX as i64, "a latency is below {UNDER_WAY_MAX} periods");
+        assert!(latency <= period * UNDER_WAY_MAX as i64, "a latency is at most {UNDER_WAY_MAX} periods");
         GpsModel {
             normals: Noise::new(seed, &format!("gps/{vehicle}")),
             evens: Noise::new(seed, &format!("gps/{vehicle}/events")),
@@ -159,17 +160,18 @@ impl GpsModel {
     /// The last fix that has come out by `now`. The receiver has been on since before the game: the fix of time 0 is
     /// there at once, and nothing is amiss at first.
     pub fn read(&self, state: &mut GpsState, truth: &Truth, now: SimTime) -> Fix {
+        // What is out makes room for the new fix.
+        while let Some(fix) = state.under_way.pop_if(|fix| fix.at + self.latency <= now) {
+            state.latest = fix;
+        }
         if now.0 % self.period.0 == 0 {
             let number = (now.0 / self.period.0) as u64;
             let fix = self.take(state, truth, now, number);
-            if number == 0 {
+            if number == 0 || (self.latency == SimTime::ZERO && !state.dropped) {
                 state.latest = fix;
             } else if !state.dropped {
                 state.under_way.push(fix);
             }
-        }
-        while let Some(fix) = state.under_way.pop_if(|fix| fix.at + self.latency <= now) {
-            state.latest = fix;
         }
         state.latest
     }

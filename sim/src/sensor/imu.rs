@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! gyro:            p = φ' − ψ' sin θ     q = θ' cos φ + ψ' cos θ sin φ     r = −θ' sin φ + ψ' cos θ cos φ
-//! accelerometers:  f = R(φ, θ, ψ)ᵀ (a − g),  g = 9.81 m/s² down: a boat at rest reads −9.81 down, the water's push
+//! accelerometers:  f = R(φ, θ, ψ)ᵀ (a − g),  g downwards: a boat at rest reads −g down, the water's push
 //! ```
 //!
 //! and to each a white noise and a wandering bias (Gauss-Markov). The accelerometers sit midships.
@@ -13,11 +13,10 @@ use super::{Truth, gauss_markov_step};
 use game::SimTime;
 use game::boat::Imu;
 use game::math;
+use game::sea::GRAVITY_M_S2;
 use game::stream::Noise;
 use serde::{Deserialize, Serialize};
 
-/// Gravity, m/s².
-pub const GRAVITY_M_S2: f64 = 9.81;
 /// Pairs of normal numbers that a reading takes: noise and bias for each of six axes.
 const PAIRS: u64 = 6;
 

@@ -79,6 +79,14 @@ pub struct SensorState {
     imu: ImuState,
 }
 
+impl SensorState {
+    /// How far the compass was off when it last was read, rad: by so much the front seat steers wrong.
+    #[must_use]
+    pub fn heading_error_rad(&self) -> f64 {
+        self.compass.error_rad()
+    }
+}
+
 impl SensorModel {
     /// The sensors of the boat named `vehicle`, read once a tick.
     #[must_use]

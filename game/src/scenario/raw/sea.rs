@@ -64,7 +64,7 @@ pub(in crate::scenario) enum RawSpectrum {
     Jonswap,
     /// Any sea: hs_m and tp_s, or fetch_km.
     Bretschneider,
-    /// A fully grown sea: hs_m alone, or wind_m_s (19.5 m above the water).
+    /// A fully grown sea: hs_m alone, or wind_m_s.
     PiersonMoskowitz,
 }
 

@@ -9,9 +9,6 @@ use crate::scenario::raw::RawSea;
 use crate::scenario::read::Document;
 use crate::sea::{Current, Sea};
 
-/// Standard gravity, m/s².
-const G_M_S2: f64 = 9.80665;
-
 /// Checks a sea.
 pub(in crate::scenario) fn sea(ledger: &mut Ledger, document: &Document<RawSea>) -> Option<Sea> {
     let faults = ledger.faults();

@@ -1,13 +1,15 @@
 //! Waves, by height and period or by the wind that raises them.
 
-use super::G_M_S2;
+use super::wind::PROFILE_EXPONENT;
 use crate::math;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawSpectrum, RawSpreading, RawWaves, RawWind};
-use crate::sea::{Spreading, Waves};
+use crate::sea::{GRAVITY_M_S2, Spreading, Waves};
 
 /// Waves steeper than this (height over length at the peak) break before they get there.
 const STEEPEST: f64 = 0.08;
+/// Waves higher than this share of the depth break.
+const HIGHEST: f64 = 0.6;
 
 /// Checks waves.
 pub(super) fn waves(
@@ -26,8 +28,11 @@ pub(super) fn waves(
     let from_deg = ledger.required(at, "waves.from_deg", raw.from_deg.as_ref().or(from_wind), -360.0..=360.0);
     let (hs_m, tp_s) = height_and_period(ledger, given, wind)?;
     let steepness = hs_m / peak_length_m(tp_s, depth_m);
-    if steepness > STEEPEST {
-        let place = raw.hs_m.as_ref().or(raw.fetch_km.as_ref()).map_or(at, |given| given.at);
+    let place = raw.hs_m.as_ref().or(raw.fetch_km.as_ref()).map_or(at, |given| given.at);
+    if let Some(depth_m) = depth_m.filter(|depth_m| hs_m > HIGHEST * depth_m) {
+        let highest_m = HIGHEST * depth_m;
+        ledger.note(place, format!("waves of hs_m {hs_m:.3} break in {depth_m} m, expected at most {highest_m:.3}"));
+    } else if steepness > STEEPEST {
         let message = format!(
             "waves of hs_m {hs_m:.3} and tp_s {tp_s:.3} are {steepness:.3} of their length high, expected at most {STEEPEST}"
         );
@@ -69,10 +74,15 @@ fn height_and_period(ledger: &mut Ledger, given: &At<RawWaves>, wind: Option<&At
     let wind_m_s = own_m_s.or(of_sea);
     match (hs_m, tp_s, fetch_km, wind_m_s) {
         (Some(hs_m), _, _, _) if fully_grown => Some(fully_grown_with(hs_m)),
-        (None, _, None, Some(u)) if fully_grown => Some(fully_grown_with(0.209_2 * u * u / G_M_S2)),
+        (None, _, None, Some(u_10)) if fully_grown => {
+            let u_19_5 = u_10 * libm::pow(1.95, profile_exponent(wind));
+            Some(fully_grown_with(0.209_2 * u_19_5 * u_19_5 / GRAVITY_M_S2))
+        }
         (Some(hs_m), Some(tp_s), _, _) => Some((hs_m, tp_s)),
         (_, _, Some(x_km), Some(u)) if !fully_grown => {
-            // Carter, D. J. T. (1982). Prediction of wave height and period for a constant wind velocity.
+            // Carter, D. J. T. (1982). Prediction of wave height and period for a constant wind velocity. The sea is fully
+            // grown, with Hs = 0.02481 U², after 2.317 U² km.
+            let x_km = x_km.min(2.317 * u * u);
             Some((0.0163 * x_km.sqrt() * u, 0.566 * math::exp(0.3 * libm::log(x_km) + 0.4 * libm::log(u))))
         }
         _ => {
@@ -86,22 +96,28 @@ fn height_and_period(ledger: &mut Ledger, given: &At<RawWaves>, wind: Option<&At
     }
 }
 
+/// That of the wind's power law; its range is checked with the wind.
+fn profile_exponent(wind: Option<&At<RawWind>>) -> f64 {
+    let given = wind.and_then(|wind| wind.value.profile_exponent.as_ref());
+    given.map_or(PROFILE_EXPONENT, |given| given.value)
+}
+
 /// Height and period of a fully grown sea of this height.
 ///
 /// Pierson and Moskowitz (1964): S = 8.1e-3 g² ω^-5 exp(-0.74 (g / (U ω))^4), with U 19.5 m above the water. Hence
 /// Hs = 0.2092 U² / g, and the peak is at 0.8772 g / U.
 fn fully_grown_with(hs_m: f64) -> (f64, f64) {
-    let u_m_s = (hs_m * G_M_S2 / 0.209_2).sqrt().max(0.1);
-    (hs_m, std::f64::consts::TAU * u_m_s / (0.877_2 * G_M_S2))
+    let u_m_s = (hs_m * GRAVITY_M_S2 / 0.209_2).sqrt().max(0.1);
+    (hs_m, std::f64::consts::TAU * u_m_s / (0.877_2 * GRAVITY_M_S2))
 }
 
 /// The length of waves of this period, m.
 fn peak_length_m(tp_s: f64, depth_m: Option<f64>) -> f64 {
     let omega = std::f64::consts::TAU / tp_s;
-    let deep = omega * omega / G_M_S2;
+    let deep = omega * omega / GRAVITY_M_S2;
     // Guo (2002), within 0.75 %.
     let k = depth_m.map_or(deep, |h| {
-        let x = h * omega / (G_M_S2 * h).sqrt();
+        let x = h * omega / (GRAVITY_M_S2 * h).sqrt();
         x * x / h * libm::pow(1.0 - math::exp(-libm::pow(x, 2.4908)), -0.4015)
     });
     std::f64::consts::TAU / k

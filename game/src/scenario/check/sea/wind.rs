@@ -4,6 +4,9 @@ use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawGusts, RawWind};
 use crate::sea::{Gusts, Wind};
 
+/// The exponent of the power law over open water, by default.
+pub(super) const PROFILE_EXPONENT: f64 = 0.12;
+
 /// Checks wind.
 pub(super) fn wind(ledger: &mut Ledger, given: &At<RawWind>) -> Option<Wind> {
     let faults = ledger.faults();
@@ -12,8 +15,12 @@ pub(super) fn wind(ledger: &mut Ledger, given: &At<RawWind>) -> Option<Wind> {
     let from_deg = ledger.required(at, "wind.from_deg", raw.from_deg.as_ref(), -360.0..=360.0);
     let exponent = ledger.number("profile_exponent", raw.profile_exponent.as_ref(), 0.0..=0.5);
     let gusts = gusts(ledger, raw);
-    let wind =
-        Wind { speed_10m_m_s, from_rad: from_deg.to_radians(), profile_exponent: exponent.unwrap_or(0.12), gusts };
+    let wind = Wind {
+        speed_10m_m_s,
+        from_rad: from_deg.to_radians(),
+        profile_exponent: exponent.unwrap_or(PROFILE_EXPONENT),
+        gusts,
+    };
     (ledger.faults() == faults).then_some(wind)
 }
 

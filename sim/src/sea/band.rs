@@ -1,0 +1,103 @@
+//! What the components of a wave field hold, by band of frequency: to be laid beside the spectrum that was asked for.
+
+use super::WaveField;
+use super::spectrum::BAND;
+use std::f64::consts::TAU;
+
+/// A band of frequencies, and what is in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// Where it begins and ends, Hz.
+    pub range_hz: (f64, f64),
+    /// Variance of the elevation that the components in it hold, m².
+    pub variance_m2: f64,
+}
+
+impl Band {
+    /// The mean spectral density in it, m²/Hz.
+    #[must_use]
+    pub fn density_m2_hz(&self) -> f64 {
+        self.variance_m2 / (self.range_hz.1 - self.range_hz.0)
+    }
+}
+
+/// The frequencies that the components of a sea with this peak period cover, Hz.
+#[must_use]
+pub fn range_hz(tp_s: f64) -> (f64, f64) {
+    (BAND.0 / tp_s, BAND.1 / tp_s)
+}
+
+impl WaveField {
+    /// `count` bands of the same width from the lower to the upper end of `range_hz`. A component beyond it counts to the
+    /// band next to it, so that the variances add up to that of the sea.
+    #[must_use]
+    pub fn bands(&self, range_hz: (f64, f64), count: usize) -> Vec<Band> {
+        let width_hz = (range_hz.1 - range_hz.0) / count as f64;
+        let edge_hz = |i: usize| range_hz.0 + i as f64 * width_hz;
+        let empty = |i: usize| Band { range_hz: (edge_hz(i), edge_hz(i + 1)), variance_m2: 0.0 };
+        let mut bands: Vec<Band> = (0..count).map(empty).collect();
+        for component in self.components() {
+            // A number below the range, or none, becomes 0.
+            let place = ((component.omega_rad_s / TAU - range_hz.0) / width_hz) as usize;
+            bands[place.min(count - 1)].variance_m2 += 0.5 * component.amplitude_m * component.amplitude_m;
+        }
+        bands
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::spectrum::density_m2_hz;
+    use super::super::wave::Component;
+    use super::*;
+    use game::sea::{Spreading, Waves};
+
+    fn waves(gamma: f64, components: u32) -> Waves {
+        Waves {
+            hs_m: 0.5,
+            tp_s: 3.0,
+            gamma,
+            from_rad: 1.0,
+            spreading: Spreading::CosineSquared,
+            components,
+            drift_factor: 1.0,
+        }
+    }
+
+    #[test]
+    fn the_bands_hold_the_variance_of_the_sea() {
+        for (gamma, components, count) in [(3.3, 64, 30), (1.0, 16, 7), (7.0, 500, 1)] {
+            let field = WaveField::new(&waves(gamma, components), None, 5);
+            let bands = field.bands(range_hz(3.0), count);
+            let variance_m2: f64 = bands.iter().map(|band| band.variance_m2).sum();
+            let want_m2 = 0.5 * 0.5 / 16.0;
+            assert!((variance_m2 / want_m2 - 1.0).abs() < 1e-9, "{gamma} {components} {count}: {variance_m2} m²");
+        }
+    }
+
+    #[test]
+    fn many_components_hold_in_each_band_what_was_asked_for() {
+        /// What the strata at the edges of a band may be off by, of the highest density.
+        const TOLERANCE: f64 = 0.03;
+        for gamma in [1.0, 3.3] {
+            let waves = waves(gamma, 4000);
+            let bands = WaveField::new(&waves, None, 5).bands(range_hz(3.0), 30);
+            let highest = bands.iter().map(Band::density_m2_hz).fold(0.0, f64::max);
+            for band in bands {
+                let (low_hz, high_hz) = band.range_hz;
+                let at = |i: i32| density_m2_hz(&waves, low_hz + (high_hz - low_hz) * (f64::from(i) + 0.5) / 100.0);
+                let want = (0..100).map(at).sum::<f64>() / 100.0;
+                let got = band.density_m2_hz();
+                assert!((got - want).abs() < TOLERANCE * highest, "{gamma}, {low_hz} Hz: {got}, wanted {want}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_lies_beyond_the_range_is_not_lost() {
+        let wave = |hz: f64| Component { amplitude_m: 0.2, omega_rad_s: TAU * hz, toward_rad: 0.0, phase_rad: 0.0 };
+        let field = WaveField::of(&[wave(0.01), wave(0.15), wave(9.0)], None, 1.0);
+        let held: Vec<f64> = field.bands((0.1, 0.4), 3).iter().map(|band| band.variance_m2).collect();
+        assert!((held[0] - 0.04).abs() < 1e-12 && held[1] == 0.0 && (held[2] - 0.02).abs() < 1e-12, "{held:?}");
+    }
+}

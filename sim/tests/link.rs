@@ -1,0 +1,234 @@
+//! The radio link as a game feels it: when orders are in force, what is lost, and what a boat does without any.
+
+mod common;
+
+use common::alone;
+use game::boat::Drive;
+use game::link::{Link, Loss};
+use game::scenario::Berth;
+use game::{Ned, Order, Pose, Scenario, SimTime, VehicleId};
+use sim::Contest;
+
+const BLUE: VehicleId = VehicleId(0);
+const RED: VehicleId = VehicleId(1);
+
+/// In bursts, of all sorts.
+const BURSTS: Loss = Loss { good: 0.1, bad: 0.8, good_time_s: 4.0, bad_time_s: 2.0 };
+
+fn link() -> Link {
+    Link { delay_s: 0.0, jitter_s: 0.0, loss: Loss::default(), range_m: None, station: Ned::default() }
+}
+
+/// One boat a side over this link, blue at x = 150 m, y = 200 m, pointing east.
+fn over(link: Link) -> Scenario {
+    let mut scenario = alone("surveyor_m1_8", "calm");
+    scenario.rules.time_limit = SimTime::from_s(80_000.0);
+    let psi_rad = std::f64::consts::FRAC_PI_2;
+    scenario.vehicles[BLUE.index()].berth = Berth::At(Pose { at: Ned::from_xy(150.0, 200.0), psi_rad });
+    scenario.link = Some(link);
+    scenario
+}
+
+fn started(scenario: &Scenario) -> Contest {
+    Contest::new(scenario, 1).expect("the boats fit")
+}
+
+/// An order that says when it was given: at this decision. At this pace nobody gets anywhere.
+fn labelled(decision: u64) -> Order {
+    Order::Steer { heading_rad: 0.0, speed_m_s: 1e-6 * decision as f64 }
+}
+
+/// Gives both boats the order of the open decision, and plays it.
+fn play(contest: &mut Contest) {
+    contest.pictures();
+    for vehicle in [BLUE, RED] {
+        contest.order(vehicle, labelled(contest.decision()));
+    }
+    contest.advance();
+}
+
+#[test]
+fn an_order_is_in_force_once_the_delay_has_passed() {
+    let mut contest = started(&over(Link { delay_s: 0.25, ..link() }));
+    for k in 0..100_u64 {
+        play(&mut contest);
+        // The last tick of decision k begins at (k + 1/2) tenths of a second, just when order k - 2 arrives.
+        let want = k.checked_sub(2).map_or(Order::Hold, labelled);
+        assert_eq!(contest.orders()[0], want, "decision {k}");
+    }
+}
+
+#[test]
+fn every_order_of_the_longest_delay_and_a_short_decision_arrives() {
+    let mut scenario = over(Link { delay_s: 10.0, ..link() });
+    (scenario.tick, scenario.ticks_per_decision) = (SimTime(20_000_000), 1);
+    let mut contest = started(&scenario);
+    for k in 0..1_500_u64 {
+        let (now, reported) = (contest.now(), contest.pictures()[0].own[0].fix_ns);
+        assert_eq!(reported, SimTime((now - SimTime::from_s(10.0)).0.max(0)), "decision {k}");
+        play(&mut contest);
+        assert_eq!(contest.orders()[0], k.checked_sub(500).map_or(Order::Hold, labelled), "decision {k}");
+    }
+}
+
+#[test]
+fn the_longest_jitter_does_not_fill_the_queues() {
+    let mut scenario = over(Link { delay_s: 10.0, jitter_s: 10.0, ..link() });
+    (scenario.tick, scenario.ticks_per_decision) = (SimTime(10_000_000), 1);
+    let mut contest = started(&scenario);
+    (0..10_000).for_each(|_| play(&mut contest));
+    assert_ne!(contest.orders()[0], Order::Hold);
+}
+
+#[test]
+fn orders_sent_beyond_the_range_do_not_arrive() {
+    let station = Ned::from_xy(150.0, 200.0);
+    let mut contest = started(&over(Link { range_m: Some(30.0), station, ..link() }));
+    let (mut inside, mut outside) = (0, 0);
+    let mut want = Order::Hold;
+    for k in 0..400_u32 {
+        // East, and at which decision it was said.
+        let heading_rad = std::f64::consts::FRAC_PI_2;
+        let order = Order::Steer { heading_rad, speed_m_s: 2.0 + 1e-6 * f64::from(k) };
+        if contest.world().state().boats[0].pose.at.distance(station) <= 30.0 {
+            (want, inside) = (order, inside + 1);
+        } else {
+            outside += 1;
+        }
+        contest.order(BLUE, order);
+        contest.advance();
+        assert_eq!(contest.orders()[0], want, "decision {k}");
+    }
+    assert!(inside > 100 && outside > 100, "{inside} {outside}");
+}
+
+#[test]
+fn the_stated_share_of_orders_is_lost() {
+    const ORDERS: u64 = 20_000;
+    let loss = Loss { good: 0.3, ..Loss::default() };
+    let mut contest = started(&over(Link { loss, ..link() }));
+    let mut lost = 0.0;
+    for k in 0..ORDERS {
+        play(&mut contest);
+        lost += f64::from(u8::from(contest.orders()[0] != labelled(k)));
+    }
+    // Five standard errors.
+    let share = lost / ORDERS as f64;
+    assert!((share - 0.3).abs() < 5.0 * (0.21 / ORDERS as f64).sqrt(), "{share}");
+}
+
+#[test]
+fn a_mind_that_is_silent_or_talks_much_changes_the_fate_of_no_other_message() {
+    let link = Link { delay_s: 0.12, jitter_s: 0.1, loss: BURSTS, ..link() };
+    let (silence, loquacity) = (200..300, 600..700);
+    // What arrived, decision by decision: orders in force, and when the reports known were sent.
+    let record = |says: &dyn Fn(u64) -> u32| {
+        let mut contest = started(&over(link.clone()));
+        let mut told = vec![];
+        for k in 0..1_500 {
+            let reported = [0, 1].map(|team| contest.pictures()[team].own[0].fix_ns);
+            (0..says(k)).for_each(|_| contest.order(BLUE, labelled(k)));
+            contest.order(RED, labelled(k));
+            contest.advance();
+            told.push((contest.orders().to_vec(), reported));
+        }
+        told
+    };
+    let plain = record(&|_| 1);
+    let other = record(&|k| if silence.contains(&k) { 0 } else { 1 + 4 * u32::from(loquacity.contains(&k)) });
+    let mut differ = 0;
+    for (k, (plain, other)) in plain.iter().zip(&other).enumerate() {
+        assert_eq!((plain.1, plain.0[1]), (other.1, other.0[1]), "decision {k}");
+        // Until the first order after the silence has arrived, the last one before it stands.
+        let is_of_silence = |order: &Order| silence.clone().any(|k| labelled(k) == *order);
+        if is_of_silence(&plain.0[0]) {
+            differ += 1;
+        } else {
+            assert_eq!(plain.0[0], other.0[0], "decision {k}");
+        }
+    }
+    assert!(differ > 50, "{differ}");
+}
+
+#[test]
+fn holding_stops_what_is_under_way() {
+    type Stop = fn(&mut Contest);
+    let ways: [(&str, Stop); 3] = [
+        ("hold", |contest| contest.hold(BLUE)),
+        ("lose", |contest| contest.lose_mind(BLUE)),
+        ("regain", |contest| {
+            contest.lose_mind(BLUE);
+            // Nobody's order: its mind is lost.
+            contest.order(BLUE, labelled(77));
+            contest.regain_mind(BLUE);
+        }),
+    ];
+    for (name, stop) in ways {
+        let mut contest = started(&over(Link { delay_s: 1.0, ..link() }));
+        (0..30).for_each(|_| play(&mut contest));
+        assert_ne!(contest.orders()[0], Order::Hold);
+        stop(&mut contest);
+        for _ in 0..20 {
+            contest.advance();
+            assert_eq!(contest.orders()[0], Order::Hold, "{name}");
+        }
+        assert_eq!(contest.orders()[1], labelled(29), "{name}: red's go on");
+        contest.regain_mind(BLUE);
+        (0..20).for_each(|_| play(&mut contest));
+        assert_ne!(contest.orders()[0], Order::Hold, "{name}: the next order counts again");
+    }
+}
+
+#[test]
+fn a_watchdog_stops_the_thrusters_when_the_link_is_silent_and_the_next_order_starts_them() {
+    let loss = Loss { good: 0.0, bad: 1.0, good_time_s: 3.0, bad_time_s: 3.0 };
+    let mut scenario = over(Link { loss, ..link() });
+    for boat in &mut scenario.boats {
+        let Drive::Thrusters { thruster, .. } = &mut boat.drive else { panic!("a Surveyor has thrusters") };
+        thruster.flaws.watchdog_s = Some(1.0);
+    }
+    let mut contest = started(&scenario);
+    let order = |k: u32| Order::Thrust { port: 0.3 + 1e-6 * f64::from(k), starboard: 0.3 };
+    let (mut last, mut running, mut stopped, mut started_again) = (0, 0, 0, 0);
+    let (mut before_newton, mut least_newton) = (0.0, f64::INFINITY);
+    for k in 0..1_000_u32 {
+        contest.order(BLUE, order(k));
+        contest.advance();
+        let got = contest.orders()[0];
+        if got == order(k) {
+            started_again += u32::from(k - last > 10);
+            last = k;
+        }
+        // The decision's last tick begins half a decision after its order came, or should have.
+        let is_silent = k - last >= 10;
+        assert_eq!(got, if is_silent { Order::Hold } else { order(last) }, "decision {k}, heard at {last}");
+        running = if got == Order::Hold { 0 } else { running + 1 };
+        let newton = contest.world().state().boats[0].port.newton;
+        if k - last >= 15 {
+            // What the thruster's lag has left of it.
+            assert!(newton < 0.95 * before_newton || newton < 1e-3, "decision {k}: {newton} N after {before_newton} N");
+            least_newton = least_newton.min(newton);
+            stopped += 1;
+        } else if running > 10 {
+            assert!(newton > 1.0, "decision {k}: {newton} N under an order");
+        }
+        before_newton = newton;
+    }
+    assert!(stopped > 50 && started_again > 5 && least_newton < 0.1, "{stopped} {started_again} {least_newton} N");
+}
+
+#[test]
+fn a_digest_tells_games_apart_that_differ_in_what_is_under_way() {
+    let scenario = over(Link { delay_s: 1.0, ..link() });
+    let digest = |order: Order| {
+        let mut contest = started(&scenario);
+        contest.pictures();
+        contest.order(BLUE, order);
+        contest.advance();
+        (contest.world().digest(), contest.digest())
+    };
+    let (first, second) = (digest(labelled(1)), digest(labelled(2)));
+    assert_eq!(first.0, second.0, "the world does not know yet");
+    assert_ne!(first.1, second.1);
+    assert_eq!(first, digest(labelled(1)));
+}

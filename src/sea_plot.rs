@@ -1,0 +1,117 @@
+//! A sea on one page: its spectrum, the surface, the wind, and where it takes a boat that nobody steers.
+
+use crate::plot::{self, Line, Mark, Page, Panel};
+use anyhow::Result;
+use arena::trial::Sample;
+use game::sea::Sea;
+use game::{Ned, SimTime, math};
+use sim::sea::{Band, SeaModel, band, spectrum};
+use std::path::Path;
+
+/// Bands of the spectrum: near the peak of a JONSWAP spectrum it takes 0.15 of the peak frequency to tell its shape.
+const BANDS: usize = 30;
+/// Points of the spectrum that was asked for.
+const CURVE: usize = 600;
+/// How long the surface is shown, peak periods, and in how many steps a period: ten of the shortest waves'.
+const ELEVATION_PERIODS: u32 = 20;
+const ELEVATION_STEPS: u32 = 50;
+/// How long the wind is shown, and in what steps, s.
+const WIND_S: u32 = 600;
+const WIND_STEPS_PER_S: u32 = 2;
+/// A mark on the track this often, s.
+const MARK_S: f64 = 60.0;
+/// A boat that stays within this distance has not drifted, m.
+const STAYS_M: f64 = 0.01;
+
+/// What is shown.
+pub(crate) struct Shown<'a> {
+    /// What stands on top.
+    pub(crate) title: String,
+    /// As its file states it.
+    pub(crate) sea: &'a Sea,
+    /// As it is.
+    pub(crate) model: &'a SeaModel,
+    /// The track of a boat that nobody steers, from the datum.
+    pub(crate) drift: &'a [Sample],
+}
+
+/// Draws a sea into a file.
+pub(crate) fn write(path: &Path, shown: &Shown<'_>) -> Result<()> {
+    let panels = vec![spectrum(shown), elevation(shown), wind(shown), drift(shown.drift)];
+    plot::write_svg(path, &Page { title: shown.title.clone(), columns: 2, panels })
+}
+
+/// Bars and curve are densities alike: the area of a bar is the variance of the components in its band.
+fn spectrum(shown: &Shown<'_>) -> Panel {
+    let mut lines = vec![];
+    let field = shown.model.at_time(SimTime::ZERO);
+    if let (Some(waves), Some(field)) = (&shown.sea.waves, field.waves()) {
+        let (low_hz, high_hz) = band::range_hz(waves.tp_s);
+        let at = |i: usize| low_hz + (high_hz - low_hz) * i as f64 / CURVE as f64;
+        let corners = |band: &Band| [(band.range_hz.0, band.density_m2_hz()), (band.range_hz.1, band.density_m2_hz())];
+        lines = vec![
+            Line {
+                name: format!("{} components of this seed", waves.components),
+                points: field.bands((low_hz, high_hz), BANDS).iter().flat_map(corners).collect(),
+                filled: true,
+            },
+            curve("asked for", (0..=CURVE).map(|i| (at(i), spectrum::density_m2_hz(waves, at(i)))).collect()),
+        ];
+    }
+    panel("Wave spectrum", "frequency in Hz", "m²/Hz", "no waves", lines)
+}
+
+fn elevation(shown: &Shown<'_>) -> Panel {
+    let tp_s = shown.sea.waves.as_ref().map(|waves| waves.tp_s);
+    let point = |tp_s: f64, i: u32| {
+        let t_s = tp_s * f64::from(i) / f64::from(ELEVATION_STEPS);
+        (t_s, shown.model.at_time(SimTime::from_s(t_s)).elevation_m(Ned::default()))
+    };
+    let line = |tp_s: f64| curve("", (0..=ELEVATION_PERIODS * ELEVATION_STEPS).map(|i| point(tp_s, i)).collect());
+    panel("Surface elevation at the datum", "time in s", "m", "no waves", tp_s.map(line).into_iter().collect())
+}
+
+fn wind(shown: &Shown<'_>) -> Panel {
+    let mut lines = vec![];
+    if let Some(wind) = &shown.sea.wind {
+        let (sin, cos) = math::sin_cos(wind.from_rad);
+        let series = |name: &str, unit: Ned| {
+            let point = |i: u32| {
+                let t_s = f64::from(i) / f64::from(WIND_STEPS_PER_S);
+                (t_s, shown.model.at_time(SimTime::from_s(t_s)).wind_at(Ned::default()).dot(unit))
+            };
+            curve(name, (0..=WIND_S * WIND_STEPS_PER_S).map(point).collect())
+        };
+        lines = vec![
+            series("along the mean wind", Ned { north: -cos, east: -sin }),
+            series("across it, to the right", Ned { north: sin, east: -cos }),
+        ];
+    }
+    panel("Wind at the datum, 10 m above the water", "time in s", "m/s", "no wind", lines)
+}
+
+fn drift(samples: &[Sample]) -> Panel {
+    let place = |sample: &Sample| (sample.at.east, sample.at.north);
+    let moves = samples.iter().any(|sample| sample.at.length() > STAYS_M);
+    let marked = samples.iter().filter(|sample| (sample.t_s + 1e-6) % MARK_S < 1e-3);
+    let name = |sample: &Sample| if sample.t_s > 0.0 { format!("{:.0} s", sample.t_s) } else { "start".to_owned() };
+    Panel {
+        equal: true,
+        marks: marked.filter(|_| moves).map(|sample| Mark { name: name(sample), at: place(sample) }).collect(),
+        ..panel(
+            "Track of a free boat",
+            "x (east) in m",
+            "y (north) in m",
+            "it stays where it is",
+            if moves { vec![curve("", samples.iter().map(place).collect())] } else { vec![] },
+        )
+    }
+}
+
+fn panel(title: &str, x: &str, y: &str, absent: &'static str, lines: Vec<Line>) -> Panel {
+    Panel { title: title.to_owned(), x: x.to_owned(), y: y.to_owned(), equal: false, lines, absent, marks: vec![] }
+}
+
+fn curve(name: &str, points: Vec<(f64, f64)>) -> Line {
+    Line { name: name.to_owned(), points, filled: false }
+}

@@ -1,0 +1,189 @@
+//! `squall sea` from outside: the numbers it tells, the page it draws, mistakes explained.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// What stands over the panels.
+const TITLES: [&str; 4] = [
+    "Wave spectrum",
+    "Surface elevation at the datum",
+    "Wind at the datum, 10 m above the water",
+    "Track of a free boat",
+];
+
+fn scenario(file: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").join(file).display().to_string()
+}
+
+/// Runs the program in a folder without any scenarios.
+fn squall(dir: &TempDir, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_squall")).current_dir(dir.path()).args(args).output().expect("the program starts")
+}
+
+/// Runs what must succeed; what it printed.
+fn said(dir: &TempDir, args: &[&str]) -> String {
+    let output = squall(dir, args);
+    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// `squall sea` for the Surveyor, from any folder: what it printed, and the page.
+fn sea(dir: &TempDir, file: &str, more: &[&str]) -> (String, String) {
+    let boat = scenario("boats/surveyor_m1_8.toml");
+    let text = said(dir, &[&["sea", file, "--boat", &boat, "--plot", "page.svg"], more].concat());
+    assert!(text.ends_with("plot in page.svg\n"), "{text}");
+    (text, std::fs::read_to_string(dir.path().join("page.svg")).unwrap())
+}
+
+/// What stands behind a name in a text of the program.
+fn value<'a>(text: &'a str, name: &str) -> &'a str {
+    let line = text.lines().find_map(|line| line.trim_start().strip_prefix(name));
+    line.unwrap_or_else(|| panic!("no {name:?} in\n{text}")).trim()
+}
+
+/// The numbers in a text, in order.
+fn numbers(text: &str) -> Vec<f64> {
+    text.split(|c: char| !(c.is_ascii_digit() || c == '.')).filter_map(|word| word.parse().ok()).collect()
+}
+
+/// Every element that begins ends, the innermost first, and no character stands where it must be escaped.
+fn assert_well_formed(svg: &str) {
+    let mut open = vec![];
+    let mut rest = svg;
+    while let Some((text, after)) = rest.split_once('<') {
+        assert_escaped(text);
+        let (tag, after) = after.split_once('>').unwrap_or_else(|| panic!("a tag without an end: <{after}"));
+        assert_escaped(tag);
+        assert_eq!(tag.matches('"').count() % 2, 0, "<{tag}>");
+        if let Some(name) = tag.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(name), "</{name}>");
+        } else if !tag.ends_with('/') {
+            open.extend(tag.split_whitespace().next());
+        }
+        rest = after;
+    }
+    assert!(open.is_empty() && rest.trim().is_empty(), "{open:?} is left open, {rest:?} is left over");
+}
+
+fn assert_escaped(text: &str) {
+    let entities = ["amp;", "lt;", "gt;", "quot;", "apos;", "#"];
+    for after in text.split('&').skip(1) {
+        assert!(entities.iter().any(|entity| after.starts_with(entity)), "&{after}");
+    }
+}
+
+#[test]
+fn every_sea_has_its_numbers_and_a_page_of_four_panels() {
+    let calm = ["no waves", "no waves", "no wind", "it stays where it is"];
+    // Which panels have nothing to show.
+    for (name, absent) in
+        [("fresh_breeze", &[][..]), ("bay_gale", &[]), ("calm", &calm), ("tidal", &calm[..3]), ("any", &[])]
+    {
+        let dir = tempfile::tempdir().unwrap();
+        let (text, svg) = sea(&dir, &scenario(&format!("seas/{name}.toml")), &[]);
+        assert!(text.starts_with(&format!("{name} for a boat of kind surveyor_m1_8\n")), "{text}");
+        assert_well_formed(&svg);
+        for title in TITLES.into_iter().chain([format!("{name}: surveyor_m1_8, seed 1").as_str()]) {
+            assert!(svg.lines().any(|line| line == title), "{name} has no {title:?}");
+        }
+        assert_eq!(svg.lines().filter(|line| calm.contains(line)).collect::<Vec<_>>(), absent, "{name}");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
+    }
+}
+
+#[test]
+fn the_page_is_named_after_the_sea_and_changes_with_the_seed() {
+    let dir = tempfile::tempdir().unwrap();
+    let (file, boat) = (dir.path().join("own_gale.toml"), scenario("boats/otter.toml"));
+    std::fs::write(&file, format!("base = {:?}\n", scenario("seas/gale.toml"))).unwrap();
+    let page = |seed: &str| {
+        let text = said(&dir, &["sea", "own_gale.toml", "--boat", &boat, "--seed", seed]);
+        assert!(text.ends_with("plot in own_gale.svg\n"), "{text}");
+        std::fs::read_to_string(dir.path().join("own_gale.svg")).unwrap()
+    };
+    let (one, two) = (page("1"), page("2"));
+    assert_well_formed(&one);
+    assert!(one.lines().any(|line| line == "own_gale: otter, seed 1"));
+    assert!(one == page("1") && one != two);
+}
+
+#[test]
+fn the_free_boat_is_that_of_the_trial() {
+    for (name, seed) in [("fresh_breeze", "1"), ("bay_gale", "3"), ("tidal", "1")] {
+        let dir = tempfile::tempdir().unwrap();
+        let (file, boat) = (scenario(&format!("seas/{name}.toml")), scenario("boats/surveyor_m1_8.toml"));
+        let (text, _) = sea(&dir, &file, &["--seed", seed]);
+        let trial = said(&dir, &["trial", &boat, "--manoeuvre", "drift", "--sea", &file, "--seed", seed]);
+        let want = ["drift speed", "drift toward", "mean heading"].map(|name| numbers(value(&trial, name))[0]);
+        let got = numbers(value(&text, "free boat, simulated"));
+        // Speeds are told in hundredths, bearings in whole degrees.
+        assert!((got[0] - want[0]).abs() < 0.0051, "{name}: {got:?}, the trial {want:?}");
+        for i in [1, 2] {
+            let off_deg = (got[i] - want[i] + 180.0).rem_euclid(360.0) - 180.0;
+            assert!(off_deg.abs() < 0.51, "{name}: {got:?}, the trial {want:?}");
+        }
+    }
+}
+
+#[test]
+fn in_a_steady_wind_the_free_boat_drifts_as_the_balance_of_forces_says() {
+    /// Both are told in hundredths.
+    const TOLERANCE_M_S: f64 = 0.011;
+    for wind_m_s in [5.0, 12.0] {
+        let dir = tempfile::tempdir().unwrap();
+        let wind = format!("[wind]\nspeed_m_s = {wind_m_s}\nfrom_deg = 225\ngusts = \"none\"\n");
+        std::fs::write(dir.path().join("wind.toml"), wind).unwrap();
+        let (text, _) = sea(&dir, "wind.toml", &[]);
+        let free = numbers(value(&text, "free boat, simulated"));
+        let balance_m_s = numbers(value(&text, "wind drift, beam on"))[0];
+        assert!((free[0] - balance_m_s).abs() < TOLERANCE_M_S, "{wind_m_s}: {text}");
+        assert!((free[1] - 45.0).abs() < 2.0, "{wind_m_s} m/s from 225°: {text}");
+        assert_eq!(value(&text, "waves"), "none");
+    }
+}
+
+#[test]
+fn a_stream_carries_the_free_boat_as_fast_as_it_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("stream.toml"), "current = { speed_m_s = 0.4, toward_deg = 290 }\n").unwrap();
+    let (text, _) = sea(&dir, "stream.toml", &[]);
+    for name in ["current at the datum", "free boat, simulated"] {
+        assert!(value(&text, name).starts_with("0.40 m/s towards 290°"), "{text}");
+    }
+    assert!((numbers(value(&text, "from its start"))[0] - 0.4 * 300.0).abs() < 5.0, "{text}");
+    let (text, _) = sea(&dir, &scenario("seas/calm.toml"), &[]);
+    assert_eq!(value(&text, "free boat, simulated"), "stays");
+}
+
+#[test]
+fn a_kinematic_boat_stays_in_a_gale_and_the_text_says_why() {
+    let dir = tempfile::tempdir().unwrap();
+    let boat = scenario("boats/heron_kinematic.toml");
+    let text = said(&dir, &["sea", &scenario("seas/gale.toml"), "--boat", &boat]);
+    assert_eq!(value(&text, "free boat, simulated"), "stays");
+    assert!(text.contains("a kinematic boat feels the current alone"), "{text}");
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("bad.toml"), "wind = { speed_m_s = -3, from_deg = 0 }\n").unwrap();
+    let (calm, boat) = (scenario("seas/calm.toml"), scenario("boats/surveyor_m1_8.toml"));
+    let cases: [(&[&str], &[&str]); 5] = [
+        (&["none.toml"], &["no sea in none.toml"]),
+        (&["bad.toml"], &["no sea in bad.toml", "bad.toml:1", "speed_m_s"]),
+        (&[&boat], &["no sea in", "length_m"]),
+        (&[&calm, "--boat", "nonesuch"], &["there is no file nonesuch", "--boat"]),
+        (&[&calm, "--boat", &boat, "--plot", "no/where.svg"], &["cannot write the plot to no/where.svg"]),
+    ];
+    for (args, wants) in cases {
+        let output = squall(&dir, &[&["sea"], args].concat());
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && !error.contains("panicked"), "{args:?}: {error}");
+        for want in wants {
+            assert!(error.contains(want), "{args:?} should say {want:?}: {error}");
+        }
+    }
+}
