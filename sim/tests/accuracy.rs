@@ -1,4 +1,5 @@
 //! How good the numbers are: the error against the length of the tick, and stability whatever the water a hull carries along.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
 
@@ -54,7 +55,8 @@ fn in_calm_the_error_falls_with_the_fourth_power_of_the_tick() {
 fn in_waves_it_falls_with_the_square_and_in_wind_in_proportion() {
     // Waves are taken half-way through the tick, wind at its beginning; each holds for the tick.
     let in_waves = gains(|sea| sea.waves = Some(waves()));
-    assert!(in_waves.iter().flatten().all(|gain| (3.0..5.0).contains(gain)), "{in_waves:?}");
+    assert!(in_waves.iter().flatten().all(|gain| *gain > 3.5), "{in_waves:?}");
+    assert!(in_waves[2].iter().all(|gain| *gain < 4.5), "the longest ticks have more than that: {in_waves:?}");
     let in_wind = gains(|sea| {
         sea.wind = Some(Wind { speed_10m_m_s: 8.0, from_rad: 1.0, profile_exponent: 0.0, gusts: Gusts::None });
     });

@@ -1,4 +1,5 @@
 //! Balances of force and of energy: a boat that is left to the wind, and what thrust and resistance do to its energy.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod common;
 
