@@ -25,7 +25,7 @@ pub(crate) struct Args {
     /// The model starts anew from the log this often, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = segment)]
     segment_s: f64,
-    /// Writes the new boat to this file [default: <boat>_identified.toml here]
+    /// Writes the new boat to this file [default: BOAT_identified.toml here]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Physics tick, s [default: 0.05]

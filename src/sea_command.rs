@@ -25,7 +25,7 @@ pub(crate) struct Args {
     /// Chooses the waves, gusts and eddies, and the numbers that sea and boat leave to chance
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Draws spectrum, surface, wind and the drift of the boat into this file, as SVG [default: <sea>.svg here]
+    /// Draws spectrum, surface, wind and the drift of the boat into this file, as SVG [default: SEA.svg here]
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }

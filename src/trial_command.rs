@@ -26,10 +26,10 @@ pub(crate) struct Args {
     /// A standard manoeuvre
     #[arg(long, value_enum, value_name = "NAME")]
     manoeuvre: Option<Named>,
-    /// Writes the track to this file, every 0.1 s [default: of a manoeuvre <boat>_<manoeuvre>.csv here]
+    /// Writes the track to this file, every 0.1 s [default: of a manoeuvre BOAT_MANOEUVRE.csv here]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Draws track and time series into this file, as SVG [default: of a manoeuvre <boat>_<manoeuvre>.svg here]
+    /// Draws track and time series into this file, as SVG [default: of a manoeuvre BOAT_MANOEUVRE.svg here]
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// Adds the commands to the track, as columns that `identify` and --orders read
