@@ -34,6 +34,13 @@ pub(crate) struct Panel {
     pub(crate) marks: Vec<Mark>,
 }
 
+impl Panel {
+    /// A diagram of these lines, with axes of their own and nothing pointed out. Without lines it says what is absent.
+    pub(crate) fn of(title: &str, [x, y]: [&str; 2], lines: Vec<Line>, absent: &'static str) -> Panel {
+        Panel { title: title.into(), x: x.into(), y: y.into(), equal: false, lines, absent, marks: vec![] }
+    }
+}
+
 /// A line through points; where a number is not finite it has a gap.
 pub(crate) struct Line {
     /// What the legend calls it; without a name it is not in there.
@@ -50,6 +57,13 @@ pub(crate) struct Mark {
     pub(crate) name: String,
     /// Horizontal and vertical.
     pub(crate) at: (f64, f64),
+}
+
+impl Line {
+    /// A line with nothing under it.
+    pub(crate) fn of(name: &str, points: Vec<(f64, f64)>) -> Line {
+        Line { name: name.into(), points, filled: false }
+    }
 }
 
 /// Size of a panel, pixels.
@@ -220,8 +234,7 @@ fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
 fn label(number: f64, width: f64) -> String {
     // There are up to nine labels at steps of 1, 2 or 5.
     let places = (0..6).find(|places| width >= 5.0 * [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5][*places]).unwrap_or(6);
-    let text = format!("{number:.places$}");
-    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
+    arena::trial::decimal(number, places)
 }
 
 fn failed<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> anyhow::Error {

@@ -30,9 +30,6 @@ pub(crate) struct Args {
     plot: Option<PathBuf>,
 }
 
-/// How long the boat drifts, s.
-const DRIFT_S: f64 = 300.0;
-
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let sea = water_args::sea(&args.sea, args.seed)?;
     let boat = water_args::boat(&args.boat, args.seed);
@@ -63,7 +60,7 @@ fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sampl
         side: 1.0,
         switch_rad: 0.0,
         differential: 0.0,
-        duration_s: Some(DRIFT_S),
+        duration_s: None,
     };
     Ok(trial::sail(boat, &mut afloat, &plan)?.samples)
 }

@@ -55,10 +55,10 @@ fn spectrum(shown: &Shown<'_>) -> Panel {
                 points: field.bands((low_hz, high_hz), BANDS).iter().flat_map(corners).collect(),
                 filled: true,
             },
-            curve("asked for", (0..=CURVE).map(|i| (at(i), spectrum::density_m2_hz(waves, at(i)))).collect()),
+            Line::of("asked for", (0..=CURVE).map(|i| (at(i), spectrum::density_m2_hz(waves, at(i)))).collect()),
         ];
     }
-    panel("Wave spectrum", "frequency in Hz", "m²/Hz", "no waves", lines)
+    Panel::of("Wave spectrum", ["frequency in Hz", "m²/Hz"], lines, "no waves")
 }
 
 fn elevation(shown: &Shown<'_>) -> Panel {
@@ -67,8 +67,8 @@ fn elevation(shown: &Shown<'_>) -> Panel {
         let t_s = tp_s * f64::from(i) / f64::from(ELEVATION_STEPS);
         (t_s, shown.model.at_time(SimTime::from_s(t_s)).elevation_m(Ned::default()))
     };
-    let line = |tp_s: f64| curve("", (0..=ELEVATION_PERIODS * ELEVATION_STEPS).map(|i| point(tp_s, i)).collect());
-    panel("Surface elevation at the datum", "time in s", "m", "no waves", tp_s.map(line).into_iter().collect())
+    let line = |tp_s: f64| Line::of("", (0..=ELEVATION_PERIODS * ELEVATION_STEPS).map(|i| point(tp_s, i)).collect());
+    Panel::of("Surface elevation at the datum", ["time in s", "m"], tp_s.map(line).into_iter().collect(), "no waves")
 }
 
 fn wind(shown: &Shown<'_>) -> Panel {
@@ -80,14 +80,14 @@ fn wind(shown: &Shown<'_>) -> Panel {
                 let t_s = f64::from(i) / f64::from(WIND_STEPS_PER_S);
                 (t_s, shown.model.at_time(SimTime::from_s(t_s)).wind_at(Ned::default()).dot(unit))
             };
-            curve(name, (0..=WIND_S * WIND_STEPS_PER_S).map(point).collect())
+            Line::of(name, (0..=WIND_S * WIND_STEPS_PER_S).map(point).collect())
         };
         lines = vec![
             series("along the mean wind", Ned { north: -cos, east: -sin }),
             series("across it, to the right", Ned { north: sin, east: -cos }),
         ];
     }
-    panel("Wind at the datum, 10 m above the water", "time in s", "m/s", "no wind", lines)
+    Panel::of("Wind at the datum, 10 m above the water", ["time in s", "m/s"], lines, "no wind")
 }
 
 fn drift(samples: &[Sample]) -> Panel {
@@ -98,20 +98,11 @@ fn drift(samples: &[Sample]) -> Panel {
     Panel {
         equal: true,
         marks: marked.filter(|_| moves).map(|sample| Mark { name: name(sample), at: place(sample) }).collect(),
-        ..panel(
+        ..Panel::of(
             "Track of a free boat",
-            "x (east) in m",
-            "y (north) in m",
+            ["x (east) in m", "y (north) in m"],
+            if moves { vec![Line::of("", samples.iter().map(place).collect())] } else { vec![] },
             "it stays where it is",
-            if moves { vec![curve("", samples.iter().map(place).collect())] } else { vec![] },
         )
     }
-}
-
-fn panel(title: &str, x: &str, y: &str, absent: &'static str, lines: Vec<Line>) -> Panel {
-    Panel { title: title.to_owned(), x: x.to_owned(), y: y.to_owned(), equal: false, lines, absent, marks: vec![] }
-}
-
-fn curve(name: &str, points: Vec<(f64, f64)>) -> Line {
-    Line { name: name.to_owned(), points, filled: false }
 }

@@ -5,6 +5,7 @@ use crate::trial_plot;
 use crate::water_args::{self, WaterArgs, degrees, within};
 use anyhow::{Context, Result, anyhow, bail};
 use arena::trial::{self, Afloat, Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use game::boat::{Boat, Drive};
 use game::{SimTime, angle};
 use sim::hull::Planar;
@@ -24,8 +25,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     orders: Option<PathBuf>,
     /// A standard manoeuvre
-    #[arg(long, value_enum, value_name = "NAME")]
-    manoeuvre: Option<Named>,
+    #[arg(long, value_name = "NAME", value_parser = manoeuvre_name())]
+    manoeuvre: Option<Manoeuvre>,
     /// Writes the track to this file, every 0.1 s [default: of a manoeuvre BOAT_MANOEUVRE.csv here]
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -69,40 +70,12 @@ pub(crate) struct ManoeuvreArgs {
     differential_pct: Option<f64>,
 }
 
-/// The manoeuvres by name.
-#[derive(Clone, Copy, clap::ValueEnum)]
-#[value(rename_all = "snake_case")]
-enum Named {
-    TurningCircle,
-    Zigzag,
-    CrashStop,
-    Acceleration,
-    Drift,
-    Spin,
-}
-
-impl Named {
-    fn name(self) -> &'static str {
-        match self {
-            Named::TurningCircle => "turning_circle",
-            Named::Zigzag => "zigzag",
-            Named::CrashStop => "crash_stop",
-            Named::Acceleration => "acceleration",
-            Named::Drift => "drift",
-            Named::Spin => "spin",
-        }
-    }
-
-    fn manoeuvre(self) -> Manoeuvre {
-        match self {
-            Named::TurningCircle => Manoeuvre::TurningCircle,
-            Named::Zigzag => Manoeuvre::Zigzag,
-            Named::CrashStop => Manoeuvre::CrashStop,
-            Named::Acceleration => Manoeuvre::Acceleration,
-            Named::Drift => Manoeuvre::Drift,
-            Named::Spin => Manoeuvre::Spin,
-        }
-    }
+/// Reads the name of a manoeuvre.
+fn manoeuvre_name() -> impl TypedValueParser<Value = Manoeuvre> {
+    PossibleValuesParser::new(Manoeuvre::ALL.map(Manoeuvre::name)).map(|name| {
+        let named = Manoeuvre::ALL.into_iter().find(|manoeuvre| manoeuvre.name() == name);
+        named.expect("no other name gets here")
+    })
 }
 
 /// How the boat begins.
@@ -193,10 +166,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
 }
 
-fn manoeuvre(args: &Args, named: Named, boat: &Boat, afloat: &mut Afloat) -> Result<ExitCode> {
+fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, afloat: &mut Afloat) -> Result<ExitCode> {
     let how = &args.manoeuvring;
     let plan = Plan {
-        manoeuvre: named.manoeuvre(),
+        manoeuvre: named,
         course_rad: angle::rad_from_compass_deg(args.start.start_heading_deg),
         approach_m_s: how.approach_m_s,
         approach_s: how.approach_s,

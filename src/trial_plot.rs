@@ -2,23 +2,14 @@
 
 use crate::plot::{self, Line, Page, Panel};
 use anyhow::Result;
-use arena::trial::{Command, Sample};
-use game::angle::wrap_pi;
+use arena::trial::{self, Command, Sample};
 use std::path::Path;
 
 /// Draws a trial into a file.
 pub(crate) fn write(path: &Path, title: &str, samples: &[Sample]) -> Result<()> {
     let track = samples.iter().map(|sample| (sample.at.east, sample.at.north)).collect();
     let panels = vec![
-        Panel {
-            title: "Track".into(),
-            x: "x (east) in m".into(),
-            y: "y (north) in m".into(),
-            equal: true,
-            lines: vec![line("", track)],
-            absent: "",
-            marks: vec![],
-        },
+        Panel { equal: true, ..Panel::of("Track", ["x (east) in m", "y (north) in m"], vec![Line::of("", track)], "") },
         over_time(
             "Velocity over the ground",
             "m/s",
@@ -64,30 +55,15 @@ fn drive(samples: &[Sample]) -> Vec<Panel> {
 }
 
 fn over_time(title: &str, unit: &str, lines: Vec<Line>) -> Panel {
-    Panel {
-        title: title.to_owned(),
-        x: "time in s".into(),
-        y: unit.to_owned(),
-        equal: false,
-        lines,
-        absent: "",
-        marks: vec![],
-    }
+    Panel::of(title, ["time in s", unit], lines, "")
 }
 
 fn series(name: &str, samples: &[Sample], of: impl Fn(&Sample) -> f64) -> Line {
-    line(name, samples.iter().map(|sample| (sample.t_s, of(sample))).collect())
+    Line::of(name, samples.iter().map(|sample| (sample.t_s, of(sample))).collect())
 }
 
 fn headings(samples: &[Sample]) -> Line {
-    let mut psi_rad = samples.first().map_or(0.0, |sample| sample.psi_rad);
-    let mut on = |sample: &Sample| {
-        psi_rad += wrap_pi(sample.psi_rad - psi_rad);
-        (sample.t_s, psi_rad.to_degrees())
-    };
-    line("", samples.iter().map(&mut on).collect())
-}
-
-fn line(name: &str, points: Vec<(f64, f64)>) -> Line {
-    Line { name: name.to_owned(), points, filled: false }
+    let start_rad = samples.first().map_or(0.0, |sample| sample.psi_rad);
+    let on = |(sample, turned_rad): (&Sample, f64)| (sample.t_s, (start_rad + turned_rad).to_degrees());
+    Line::of("", samples.iter().zip(trial::turned_rad(samples)).map(on).collect())
 }

@@ -19,7 +19,6 @@ pub mod sea;
 pub mod sensor;
 mod sighting;
 pub mod spawn;
-pub mod start;
 pub mod state;
 pub mod thruster;
 mod view;

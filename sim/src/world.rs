@@ -138,6 +138,16 @@ impl World {
         Ok(())
     }
 
+    /// Puts a boat there, moving over the ground like this (body axes), its thrusters as they are: somebody outside says so.
+    ///
+    /// # Panics
+    /// If there is no such vehicle.
+    pub fn set_under_way(&mut self, vehicle: VehicleId, pose: Pose, nu: Planar) {
+        let boat = &mut self.state.boats[vehicle.index()];
+        (boat.pose, boat.nu) = (pose, nu);
+        self.refresh();
+    }
+
     /// 128 bits that differ when any bit of the state differs: of what [`World::snapshot`] holds.
     #[must_use]
     pub fn digest(&self) -> u128 {

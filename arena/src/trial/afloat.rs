@@ -61,7 +61,7 @@ impl Afloat {
             Drive::Thrusters { .. } => {
                 let mut world = World::new(&scenario, seed)?;
                 let pose = Pose { at: Ned::default(), psi_rad: start.psi_rad };
-                sim::start::set_under_way(&mut world, VehicleId(0), pose, start.nu, |_| {});
+                world.set_under_way(VehicleId(0), pose, start.nu);
                 Craft::Thrusters(Box::new(world))
             }
             Drive::Kinematic(kinematic) => {
@@ -91,7 +91,7 @@ impl Afloat {
         self.origin = self.pose().at;
     }
 
-    fn pose(&self) -> Pose {
+    pub(super) fn pose(&self) -> Pose {
         match &self.craft {
             Craft::Thrusters(world) => world.state().boats[0].pose,
             Craft::Kinematic(point) => Pose { at: point.at, psi_rad: point.state.psi_rad() },
@@ -101,7 +101,7 @@ impl Afloat {
     /// Moves a boat with thrusters to where it was measured, moving as it was measured; its thrusters stay as they are.
     pub fn relocate(&mut self, pose: Pose, nu: Planar) {
         if let Craft::Thrusters(world) = &mut self.craft {
-            sim::start::set_under_way(world, VehicleId(0), pose, nu, |_| {});
+            world.set_under_way(VehicleId(0), pose, nu);
         }
     }
 

@@ -30,6 +30,31 @@ pub enum Manoeuvre {
     Spin,
 }
 
+impl Manoeuvre {
+    /// All there are.
+    pub const ALL: [Manoeuvre; 6] = [
+        Manoeuvre::TurningCircle,
+        Manoeuvre::Zigzag,
+        Manoeuvre::CrashStop,
+        Manoeuvre::Acceleration,
+        Manoeuvre::Drift,
+        Manoeuvre::Spin,
+    ];
+
+    /// What it is called on the command line and in the names of files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Manoeuvre::TurningCircle => "turning_circle",
+            Manoeuvre::Zigzag => "zigzag",
+            Manoeuvre::CrashStop => "crash_stop",
+            Manoeuvre::Acceleration => "acceleration",
+            Manoeuvre::Drift => "drift",
+            Manoeuvre::Spin => "spin",
+        }
+    }
+}
+
 /// How a manoeuvre is sailed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
@@ -122,19 +147,23 @@ pub fn sail(boat: &Boat, afloat: &mut Afloat, plan: &Plan) -> Result<Sailed, Uns
     let start = afloat.now();
     let mut sailed = Sailed { samples: vec![], approach_m_s, switches: vec![] };
     let mut side = plan.side;
-    let mut turned_rad = 0.0;
+    let mut off_course_rad = 0.0;
+    let (mut turned_rad, mut psi_rad) = (0.0, afloat.pose().psi_rad);
     loop {
         let t_s = (ROW * sailed.samples.len() as i64).as_s();
         let mut told = command(plan, helm, side);
-        sailed.samples.push(afloat.sample(t_s, told));
-        if is_over(plan, &sailed, t_s) {
+        let sample = afloat.sample(t_s, told);
+        turned_rad += wrap_pi(sample.psi_rad - psi_rad);
+        psi_rad = sample.psi_rad;
+        sailed.samples.push(sample);
+        if is_over(plan, &sailed, turned_rad, t_s) {
             return Ok(sailed);
         }
         for _ in 0..per_row {
             if plan.manoeuvre == Manoeuvre::Zigzag {
                 // Turned on, not wrapped: a boat that spins has not come back.
-                turned_rad += wrap_pi(afloat.sample(0.0, told).psi_rad - plan.course_rad - turned_rad);
-                if side * turned_rad > plan.switch_rad {
+                off_course_rad += wrap_pi(afloat.pose().psi_rad - plan.course_rad - off_course_rad);
+                if side * off_course_rad > plan.switch_rad {
                     side = -side;
                     told = command(plan, helm, side);
                     sailed.switches.push((afloat.now() - start).as_s());
@@ -184,15 +213,14 @@ fn command(plan: &Plan, helm: Helm, side: f64) -> Command {
     }
 }
 
-/// Whether a manoeuvre has shown what it is sailed for.
-fn is_over(plan: &Plan, sailed: &Sailed, t_s: f64) -> bool {
+/// Whether a manoeuvre has shown what it is sailed for. `turned_rad` is by how much the boat has turned since it began,
+/// whole turns counted.
+fn is_over(plan: &Plan, sailed: &Sailed, turned_rad: f64, t_s: f64) -> bool {
     if let Some(duration_s) = plan.duration_s {
         return t_s >= duration_s - 1e-6;
     }
     let done = match plan.manoeuvre {
-        Manoeuvre::TurningCircle => {
-            turned_rad(&sailed.samples).last().is_some_and(|turned| turned.abs() >= 2.0 * std::f64::consts::TAU)
-        }
+        Manoeuvre::TurningCircle => turned_rad.abs() >= 2.0 * std::f64::consts::TAU,
         Manoeuvre::Zigzag => sailed.switches.len() >= SWITCHES,
         Manoeuvre::CrashStop => {
             sailed.samples.last().is_some_and(|sample| sample.surge_through_water_m_s <= DEAD * sailed.approach_m_s)
@@ -213,7 +241,8 @@ fn is_steady(samples: &[Sample]) -> bool {
 }
 
 /// By how much the boat has turned since the first sample, whole turns counted, rad clockwise, at each sample.
-pub(super) fn turned_rad(samples: &[Sample]) -> Vec<f64> {
+#[must_use]
+pub fn turned_rad(samples: &[Sample]) -> Vec<f64> {
     let mut turned = 0.0;
     let mut before = samples.first().map_or(0.0, |sample| sample.psi_rad);
     samples

@@ -30,15 +30,7 @@ pub struct CompassState {
     /// The last reading.
     psi_rad: f64,
     /// How far that was off.
-    error_rad: f64,
-}
-
-impl CompassState {
-    /// How far the last reading was off, rad.
-    #[must_use]
-    pub fn error_rad(&self) -> f64 {
-        self.error_rad
-    }
+    pub(super) error_rad: f64,
 }
 
 impl CompassModel {

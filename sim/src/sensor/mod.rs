@@ -83,7 +83,7 @@ impl SensorState {
     /// How far the compass was off when it last was read, rad: by so much the front seat steers wrong.
     #[must_use]
     pub fn heading_error_rad(&self) -> f64 {
-        self.compass.error_rad()
+        self.compass.error_rad
     }
 }
 
