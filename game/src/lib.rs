@@ -22,6 +22,7 @@ pub mod picture;
 pub mod rules;
 pub mod scenario;
 pub mod sea;
+pub mod strategy;
 pub mod stream;
 pub mod time;
 pub mod topic;

@@ -5,11 +5,12 @@ use super::kind::Kind;
 use super::ledger::Ledger;
 use super::problem::Problems;
 use super::read::{self, Document, Typed};
-use super::{Scenario, Strategy, check};
+use super::{Scenario, check};
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::rules::Rules;
 use crate::sea::Sea;
+use crate::strategy::Strategy;
 use std::collections::BTreeSet;
 use std::path::Path;
 
