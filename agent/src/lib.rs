@@ -7,6 +7,7 @@ mod easy_attacker;
 mod easy_defender;
 mod helm;
 mod idle;
+pub mod ivp;
 #[cfg(feature = "net")]
 pub mod node;
 pub mod roles;
