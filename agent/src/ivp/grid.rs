@@ -125,13 +125,15 @@ impl Grid {
     /// Ticks from an angle (as ticks) to course `k`, the short way: positive to starboard, and exactly half a turn is
     /// to starboard.
     pub(super) fn ticks_between(&self, from: i64, k: usize) -> i64 {
-        let ahead = (k as i64 * TICKS - from).rem_euclid(self.circle());
+        // Both are below a full turn: no division is needed.
+        let ahead = k as i64 * TICKS - from;
+        let ahead = if ahead < 0 { ahead + self.circle() } else { ahead };
         if 2 * ahead > self.circle() { ahead - self.circle() } else { ahead }
     }
 
-    /// What so many ticks are, rad.
-    pub(super) fn rad_of_ticks(&self, ticks: i64) -> f64 {
-        ticks as f64 * TAU / self.circle() as f64
+    /// One tick, rad.
+    pub(super) fn tick_rad(&self) -> f64 {
+        TAU / self.circle() as f64
     }
 
     /// Ticks all round.

@@ -21,17 +21,20 @@
 //! - weight times utility is rounded to [`QUANTUM`] before it is added, so sums are of integers: the order of functions
 //!   cannot matter, and two candidates are equal or they are not.
 //!
-//! With more variables than two the grid grows too large; there tiles are the better tool.
+//! With more variables than two the grid grows too large; there tiles are the better tool: [`piecewise`] and [`branch`].
 //!
 //! Open [`Objective`] first, then [`Problem`].
 
+pub mod branch;
 mod closest;
 mod closing;
+pub mod domain;
 mod fixed;
 mod grid;
 mod limit;
 mod objective;
 mod peaks;
+pub mod piecewise;
 mod problem;
 mod stay;
 

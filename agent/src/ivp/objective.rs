@@ -112,8 +112,18 @@ impl Objective<'_> {
         (weight.share(share), weight.share(1.0 - share))
     }
 
+    /// Utility of course alone, for each course.
+    pub(super) fn each_course(&self, grid: &Grid, mut told: impl FnMut(usize, f32)) {
+        if let Objective::Course(peaks) | Objective::Coupled { course: peaks, .. } = self {
+            let utility = peaks.courses(grid);
+            (0..grid.courses()).for_each(|k| told(k, utility(k)));
+        } else {
+            (0..grid.courses()).for_each(|k| told(k, self.of_course(grid, k)));
+        }
+    }
+
     /// Utility of course alone.
-    pub(super) fn of_course(&self, grid: &Grid, k: usize) -> f32 {
+    fn of_course(&self, grid: &Grid, k: usize) -> f32 {
         match self {
             Objective::Course(peaks) | Objective::Coupled { course: peaks, .. } => peaks.of_course(grid, k),
             Objective::CourseTable(table) => {

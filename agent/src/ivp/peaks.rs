@@ -104,36 +104,57 @@ impl Peaks {
         &self.peaks[..self.count]
     }
 
+    /// The same peaks with their summits elsewhere.
+    #[must_use]
+    pub fn moved(mut self, summit: impl Fn(f64) -> f64) -> Peaks {
+        for peak in &mut self.peaks[..self.count] {
+            peak.summit = summit(peak.summit);
+        }
+        self
+    }
+
     /// Utility of course `k`; angles go round.
     #[must_use]
     pub fn of_course(&self, grid: &Grid, k: usize) -> f32 {
-        self.total(|peak| {
-            let ticks = grid.ticks_between(grid.ticks_of(peak.summit), k);
-            if peak.summit.is_finite() { grid.rad_of_ticks(ticks) } else { f64::NAN }
-        })
+        self.courses(grid)(k)
     }
 
     /// Utility of speed `j`.
     #[must_use]
     pub fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
         let speed_m_s = grid.speed_m_s(j);
-        self.total(|peak| speed_m_s - peak.summit)
+        self.total(|i| speed_m_s - self.peaks[i].summit)
     }
 
-    /// All peaks together, given how far each is.
-    fn total(&self, distance: impl Fn(&Peak) -> f64) -> f32 {
+    /// Utility by course, with what is the same for all courses done once.
+    pub(super) fn courses(&self, grid: &Grid) -> impl Fn(usize) -> f32 {
+        let summits = self.peaks.map(|peak| grid.ticks_of(peak.summit));
+        let tick_rad = grid.tick_rad();
+        move |k| {
+            self.total(|i| {
+                let distance_rad = grid.ticks_between(summits[i], k) as f64 * tick_rad;
+                // A summit that is nowhere must not be taken for one to the north.
+                if self.peaks[i].summit.is_finite() { distance_rad } else { f64::NAN }
+            })
+        }
+    }
+
+    /// All peaks together, given how far away each is.
+    #[inline]
+    fn total(&self, distance: impl Fn(usize) -> f64) -> f32 {
         let mut total = 0.0_f64;
-        for peak in self.peaks() {
-            let distance = distance(peak);
-            // A summit that is nowhere must not be taken for one that is far away.
+        for (i, peak) in self.peaks().iter().enumerate() {
+            let distance = distance(i);
+            // Nor for one that is far away.
             let utility = if distance.is_finite() { peak.at(distance) } else { f64::NAN };
-            if !utility.is_finite() {
-                return fixed::utility(utility);
-            }
             total = match self.combine {
-                Combine::Max => total.max(utility),
+                Combine::Max if utility <= total => total,
+                Combine::Max => utility,
                 Combine::Sum => total + utility,
             };
+            if total.is_nan() {
+                break;
+            }
         }
         fixed::utility(total)
     }

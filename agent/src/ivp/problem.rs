@@ -228,9 +228,7 @@ impl Problem {
     fn add_separable(&mut self, weight: Weight, objective: &Objective) {
         let (of_course, of_speed) = objective.weights(weight);
         if !of_course.is_zero() {
-            for (k, sum) in self.courses.iter_mut().enumerate() {
-                *sum += of_course.quanta_of_one(objective.of_course(&self.grid, k));
-            }
+            objective.each_course(&self.grid, |k, utility| self.courses[k] += of_course.quanta_of_one(utility));
         }
         if !of_speed.is_zero() {
             for j in 0..self.grid.speeds() {
