@@ -15,9 +15,6 @@
 
 use wide::f32x8;
 
-/// Spans of speed over which a course is bounded.
-const SPANS: usize = 4;
-
 /// What one number in single precision may be wrong by, with room to spare, in parts of the lengths that went into it.
 const ROUNDING: f64 = 1e-5;
 
@@ -89,7 +86,6 @@ impl Closest {
             floor: splat(floor),
             seek: self.approach == Approach::Seek,
             margin: splat(ROUNDING * scale_m),
-            speed_max: speed_max_m_s as f32,
         })
     }
 }
@@ -107,7 +103,6 @@ pub(super) struct Ready {
     floor: f32x8,
     seek: bool,
     margin: f32x8,
-    speed_max: f32,
 }
 
 impl Ready {
@@ -119,26 +114,19 @@ impl Ready {
         self.worth(self.distance(w_north, w_east, t))
     }
 
-    /// What no speed on each of eight courses exceeds.
+    /// What no speed from `slow` to `fast` exceeds, on each of eight courses.
     #[inline]
-    pub(super) fn bound(&self, north: f32x8, east: f32x8) -> f32x8 {
-        let half = 0.5 * self.speed_max / SPANS as f32;
-        let mut best = f32x8::ZERO;
-        for span in 0..SPANS {
-            let middle = (2 * span + 1) as f32 * half;
-            let (w_north, w_east) = self.passing(north, east, f32x8::splat(middle));
-            let t = self.time(w_north, w_east);
-            let distance = if self.seek {
-                self.distance(w_north, w_east, t) - f32x8::splat(half) * self.horizon - self.margin
-            } else {
-                // The ends of the span, a little beyond for rounding, at the same time.
-                let slow = self.passing(north, east, f32x8::splat(middle - half));
-                let fast = self.passing(north, east, f32x8::splat(middle + half));
-                self.distance(slow.0, slow.1, t).fast_max(self.distance(fast.0, fast.1, t)) + self.margin
-            };
-            best = best.fast_max(self.worth(distance));
+    pub(super) fn bound(&self, north: f32x8, east: f32x8, slow: f32x8, fast: f32x8) -> f32x8 {
+        let half = f32x8::splat(0.5);
+        let (w_north, w_east) = self.passing(north, east, (slow + fast) * half);
+        let t = self.time(w_north, w_east);
+        if self.seek {
+            return self.worth(self.distance(w_north, w_east, t) - (fast - slow) * half * self.horizon - self.margin);
         }
-        best
+        // The ends of the span at the same time.
+        let (slow, fast) = (self.passing(north, east, slow), self.passing(north, east, fast));
+        let square = self.square(slow.0, slow.1, t).fast_max(self.square(fast.0, fast.1, t));
+        self.worth(square.sqrt() + self.margin)
     }
 
     /// How the contact moves past, m/s.
@@ -159,8 +147,14 @@ impl Ready {
     /// The distance at a time, m.
     #[inline(always)]
     fn distance(&self, w_north: f32x8, w_east: f32x8, t: f32x8) -> f32x8 {
+        self.square(w_north, w_east, t).sqrt()
+    }
+
+    /// The square of the distance at a time, m2.
+    #[inline(always)]
+    fn square(&self, w_north: f32x8, w_east: f32x8, t: f32x8) -> f32x8 {
         let (north, east) = (self.north + w_north * t, self.east + w_east * t);
-        (north * north + east * east).sqrt()
+        north * north + east * east
     }
 
     /// Utility of a distance.

@@ -43,7 +43,6 @@ impl Closing {
             east: splat(sight_east),
             slope: splat(slope),
             rest: splat(50.0 + slope * towards_m_s),
-            speed_max: splat(speed_max_m_s),
         })
     }
 }
@@ -58,7 +57,6 @@ pub(super) struct Ready {
     slope: f32x8,
     /// Utility at rest.
     rest: f32x8,
-    speed_max: f32x8,
 }
 
 impl Ready {
@@ -69,10 +67,10 @@ impl Ready {
         (self.rest + along * speed).fast_max(f32x8::ZERO).fast_min(f32x8::splat(100.0))
     }
 
-    /// What no speed on each of eight courses exceeds: on one course utility only rises or only falls with speed, and
-    /// rounding keeps that order.
+    /// What no speed from `slow` to `fast` exceeds, on each of eight courses: on one course utility only rises or only
+    /// falls with speed, and rounding keeps that order.
     #[inline]
-    pub(super) fn bound(&self, north: f32x8, east: f32x8) -> f32x8 {
-        self.utility(north, east, f32x8::ZERO).fast_max(self.utility(north, east, self.speed_max))
+    pub(super) fn bound(&self, north: f32x8, east: f32x8, slow: f32x8, fast: f32x8) -> f32x8 {
+        self.utility(north, east, slow).fast_max(self.utility(north, east, fast))
     }
 }

@@ -14,8 +14,8 @@ pub const WEIGHT_MAX: f64 = 1000.0;
 /// The most functions a problem takes.
 pub const FUNCTIONS_MAX: usize = 256;
 
-/// The value of a place that does not exist: below all others, and far enough from overflow.
-pub(super) const NOWHERE: i32 = i32::MIN / 2;
+/// The value of a place that does not exist: below all others, and far enough from overflow for two of them.
+pub(super) const NOWHERE: i32 = i32::MIN / 4;
 
 /// A priority weight, in quanta for each point of utility.
 #[derive(Clone, Copy, Debug)]

@@ -16,8 +16,8 @@
 //! functions themselves are cheap to ask, so [`Problem`] asks them, and its answer is exact on the grid:
 //!
 //! - functions of course only, of speed only, or of one plus the other, are added up in two lists;
-//! - the others are asked course by course, eight speeds side by side, and courses whose bound does not reach the best
-//!   found so far are passed over;
+//! - the others are asked eight speeds of a course at a time, side by side, and eights whose bound does not reach the
+//!   best found so far are passed over;
 //! - weight times utility is rounded to [`QUANTUM`] before it is added, so sums are of integers: the order of functions
 //!   cannot matter, and two candidates are equal or they are not.
 //!

@@ -200,13 +200,13 @@ impl Field {
         }
     }
 
-    /// What no speed on each of eight courses exceeds.
+    /// What no speed from `slow` to `fast` exceeds, on each of eight courses.
     #[inline]
-    pub(super) fn bound(&self, north: f32x8, east: f32x8) -> f32x8 {
+    pub(super) fn bound(&self, north: f32x8, east: f32x8, slow: f32x8, fast: f32x8) -> f32x8 {
         match self {
-            Field::Closest(ready) => ready.bound(north, east),
-            Field::Closing(ready) => ready.bound(north, east),
-            Field::Stay(ready) => ready.bound(north, east),
+            Field::Closest(ready) => ready.bound(north, east, slow, fast),
+            Field::Closing(ready) => ready.bound(north, east, slow, fast),
+            Field::Stay(ready) => ready.bound(north, east, slow, fast),
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::fixed::{FUNCTIONS_MAX, NOWHERE, QUANTUM, Weight};
 use super::grid::{Grid, LANES};
 use super::objective::{Field, Objective, Parts};
+use std::cmp::Ordering;
 use wide::{f32x8, i32x8};
 
 /// A point of the grid.
@@ -37,26 +38,25 @@ pub struct Choice {
     pub best: f64,
     /// Whether an earlier decision was kept though another is better.
     pub is_kept: bool,
-    /// Courses of which the speeds were asked; the others could not win.
-    pub courses_asked: usize,
+    /// How many points were asked; the others could not win.
+    pub asked: usize,
 }
 
 /// The functions of one decision, ready to be added up; its lists are used again for the next one.
 #[derive(Clone, Debug)]
 pub struct Problem {
     grid: Grid,
-    /// What functions of course alone come to, in quanta by course.
-    courses: Vec<i32>,
+    /// What functions of course alone come to, in quanta by course; beyond the last course, [`NOWHERE`].
+    courses: Vec<i32x8>,
     /// What functions of speed alone come to, in quanta by speed; beyond the last speed, [`NOWHERE`].
     speeds: Vec<i32x8>,
     /// Formulas in both.
     fields: Vec<(Weight, Field)>,
     /// Weighted tables in both, added up, in quanta: rows of speeds by course; empty without any.
     table: Vec<i32x8>,
-    /// What no speed of a course exceeds, in quanta by course.
-    bounds: Vec<i32>,
-    /// The course that is being asked.
-    row: Vec<i32x8>,
+    /// What no speed of a block exceeds, in quanta. A block is a course and eight speeds that stand side by side; all
+    /// courses with the first eight come first, eight side by side.
+    bounds: Vec<i32x8>,
     functions: usize,
     weight: f64,
     decides_course: bool,
@@ -71,18 +71,25 @@ struct Best {
     speed: usize,
 }
 
+/// What the own ship is doing.
+#[derive(Clone, Copy, Debug)]
+struct Present {
+    /// Its course, in ticks.
+    course: i64,
+    speed_m_s: f64,
+}
+
 impl Problem {
     /// A problem on this grid, without functions.
     #[must_use]
     pub fn new(grid: Grid) -> Problem {
-        let rows = grid.courses().next_multiple_of(LANES);
+        let blocks = grid.directions().0.len() * grid.speed_lanes().len();
         let mut problem = Problem {
-            courses: vec![0; grid.courses()],
-            speeds: grid.speed_lanes().iter().map(|_| i32x8::ZERO).collect(),
+            courses: vec![i32x8::ZERO; grid.directions().0.len()],
+            speeds: vec![i32x8::ZERO; grid.speed_lanes().len()],
             fields: Vec::new(),
             table: Vec::new(),
-            bounds: vec![0; rows],
-            row: grid.speed_lanes().iter().map(|_| i32x8::ZERO).collect(),
+            bounds: vec![i32x8::ZERO; blocks],
             functions: 0,
             weight: 0.0,
             decides_course: false,
@@ -101,11 +108,8 @@ impl Problem {
 
     /// Forgets all functions.
     pub fn clear(&mut self) {
-        self.courses.fill(0);
-        for (i, speeds) in self.speeds.iter_mut().enumerate() {
-            let count = self.grid.speeds();
-            *speeds = i32x8::new(std::array::from_fn(|lane| if LANES * i + lane < count { 0 } else { NOWHERE }));
-        }
+        clear_lanes(&mut self.courses, self.grid.courses());
+        clear_lanes(&mut self.speeds, self.grid.speeds());
         self.fields.clear();
         self.table.clear();
         self.functions = 0;
@@ -175,18 +179,14 @@ impl Problem {
     /// that course the speed nearest to the present one, of two such the lower. If an earlier decision is nearly as good
     /// and the wish is to keep it, it is that.
     pub fn solve(&mut self, wish: Wish) -> Choice {
-        self.bound_courses();
-        let present = self.grid.ticks_of(wish.course_rad);
+        self.bound_blocks();
+        let present = Present { course: self.grid.ticks_of(wish.course_rad), speed_m_s: wish.speed_m_s };
         let mut best = Best { value: NOWHERE, course: 0, speed: 0 };
-        let likely = (1..self.grid.courses()).fold(0, |a, k| if self.bounds[k] > self.bounds[a] { k } else { a });
-        self.ask(likely, present, wish.speed_m_s, &mut best);
-        let mut courses_asked = 1;
-        for k in 0..self.grid.courses() {
-            if k != likely && self.bounds[k] >= best.value {
-                self.ask(k, present, wish.speed_m_s, &mut best);
-                courses_asked += 1;
-            }
-        }
+        let mut asked = 0;
+        // The most promising block first: what it reaches rules out most others.
+        let most = self.bounds.iter().fold(i32x8::splat(NOWHERE), |a, &b| a.max(b)).reduce_max();
+        self.ask_those_up_to(most, present, &mut best, &mut asked);
+        self.ask_those_up_to(best.value, present, &mut best, &mut asked);
         let found = Decision { course: best.course as u16, speed: best.speed as u16 };
         let kept = wish.keep.and_then(|(old, share)| self.kept(old, share, best.value));
         Choice {
@@ -194,7 +194,7 @@ impl Problem {
             value: f64::from(kept.map_or(best.value, |(_, value)| value)) * QUANTUM,
             best: f64::from(best.value) * QUANTUM,
             is_kept: kept.is_some(),
-            courses_asked,
+            asked,
         }
     }
 
@@ -212,23 +212,30 @@ impl Problem {
     /// The weighted sum at one point, in quanta.
     fn quanta(&self, k: usize, j: usize) -> i32 {
         assert!(k < self.grid.courses() && j < self.grid.speeds(), "course {k}, speed {j}");
-        let (lanes, lane) = (j / LANES, j % LANES);
+        self.block(k, j / LANES).as_array()[j % LANES]
+    }
+
+    /// The weighted sums of a block, in quanta.
+    fn block(&self, k: usize, lanes: usize) -> i32x8 {
+        let course = i32x8::splat(self.courses[k / LANES].as_array()[k % LANES]);
         let (north, east) = self.grid.direction(k);
-        let mut sum = self.speeds[lanes] + i32x8::splat(self.courses[k]);
+        let (north, east, speed) = (f32x8::splat(north), f32x8::splat(east), self.grid.speed_lanes()[lanes]);
+        let mut sum = self.speeds[lanes] + course;
         for (weight, field) in &self.fields {
-            let speed = self.grid.speed_lanes()[lanes];
-            sum += weight.quanta(field.utility(f32x8::splat(north), f32x8::splat(east), speed));
+            sum += weight.quanta(field.utility(north, east, speed));
         }
         if !self.table.is_empty() {
             sum += self.table[k * self.speeds.len() + lanes];
         }
-        sum.as_array()[lane]
+        sum
     }
 
     fn add_separable(&mut self, weight: Weight, objective: &Objective) {
         let (of_course, of_speed) = objective.weights(weight);
         if !of_course.is_zero() {
-            objective.each_course(&self.grid, |k, utility| self.courses[k] += of_course.quanta_of_one(utility));
+            objective.each_course(&self.grid, |k, utility| {
+                self.courses[k / LANES].as_mut_array()[k % LANES] += of_course.quanta_of_one(utility)
+            });
         }
         if !of_speed.is_zero() {
             for j in 0..self.grid.speeds() {
@@ -249,68 +256,82 @@ impl Problem {
         }
     }
 
-    /// Fills in what no speed of a course exceeds.
-    fn bound_courses(&mut self) {
-        let fastest = self.speeds.iter().fold(i32x8::splat(NOWHERE), |a, &b| a.max(b)).reduce_max();
+    /// Fills in what no speed of a block exceeds.
+    fn bound_blocks(&mut self) {
         let (north, east) = self.grid.directions();
-        for (i, bounds) in self.bounds.chunks_mut(LANES).enumerate() {
-            let mut sum = i32x8::splat(fastest);
+        let courses = self.courses.len();
+        for (lanes, speeds) in self.grid.speed_lanes().iter().enumerate() {
+            let most = i32x8::splat(self.speeds[lanes].reduce_max());
+            let (slow, fast) = (f32x8::splat(speeds.as_array()[0]), f32x8::splat(speeds.as_array()[LANES - 1]));
+            let bounds = &mut self.bounds[lanes * courses..][..courses];
+            for (bound, &course) in bounds.iter_mut().zip(&self.courses) {
+                *bound = course + most;
+            }
             for (weight, field) in &self.fields {
-                sum += weight.quanta(field.bound(north[i], east[i]));
+                for (i, bound) in bounds.iter_mut().enumerate() {
+                    *bound += weight.quanta(field.bound(north[i], east[i], slow, fast));
+                }
             }
-            bounds.copy_from_slice(&sum.as_array()[..bounds.len()]);
-        }
-        let lanes = self.speeds.len();
-        for (k, &course) in self.courses.iter().enumerate() {
-            self.bounds[k] += course;
-            if !self.table.is_empty() {
-                let row = &self.table[k * lanes..][..lanes];
-                self.bounds[k] += row.iter().fold(i32x8::ZERO, |a, &b| a.max(b)).reduce_max();
+            for k in 0..if self.table.is_empty() { 0 } else { self.grid.courses() } {
+                let row = self.table[k * self.speeds.len() + lanes];
+                bounds[k / LANES].as_mut_array()[k % LANES] += row.reduce_max();
             }
         }
     }
 
-    /// Asks all speeds of a course, and takes the best of them if it is better than what was found.
-    fn ask(&mut self, k: usize, present: i64, speed_m_s: f64, best: &mut Best) {
-        let course = i32x8::splat(self.courses[k]);
-        for (row, &speeds) in self.row.iter_mut().zip(&self.speeds) {
-            *row = speeds + course;
-        }
-        if !self.table.is_empty() {
-            let lanes = self.row.len();
-            for (row, &table) in self.row.iter_mut().zip(&self.table[k * lanes..]) {
-                *row += table;
+    /// Asks the blocks whose bound reaches `least` and the best found, unless they were asked before.
+    fn ask_those_up_to(&mut self, least: i32, present: Present, best: &mut Best, asked: &mut usize) {
+        let courses = self.courses.len();
+        for i in 0..self.bounds.len() {
+            let bounds = self.bounds[i];
+            if bounds.reduce_max() < least.max(best.value) {
+                continue;
             }
-        }
-        let (north, east) = self.grid.direction(k);
-        let (north, east) = (f32x8::splat(north), f32x8::splat(east));
-        for (weight, field) in &self.fields {
-            for (row, &speed) in self.row.iter_mut().zip(self.grid.speed_lanes()) {
-                *row += weight.quanta(field.utility(north, east, speed));
+            let (lanes, first) = (i / courses, LANES * (i % courses));
+            for (lane, &bound) in bounds.as_array().iter().enumerate() {
+                if bound >= least.max(best.value) && first + lane < self.grid.courses() {
+                    self.ask(first + lane, lanes, present, best);
+                    self.bounds[i].as_mut_array()[lane] = NOWHERE;
+                    *asked += LANES.min(self.grid.speeds() - LANES * lanes);
+                }
             }
-        }
-        let value = self.row.iter().fold(i32x8::splat(NOWHERE), |a, &b| a.max(b)).reduce_max();
-        if value > best.value || value == best.value && self.is_nearer(k, best.course, present) {
-            *best = Best { value, course: k, speed: self.speed_with(value, speed_m_s) };
         }
     }
 
-    /// Whether course `k` is nearer to the present one than `other` is, or as near and to starboard.
-    fn is_nearer(&self, k: usize, other: usize, present: i64) -> bool {
-        let (one, other) = (self.grid.ticks_between(present, k), self.grid.ticks_between(present, other));
-        (one.abs(), one < 0) < (other.abs(), other < 0)
-    }
-
-    /// The speed of the course that was asked which has this value and is nearest to the present one; of two the lower.
-    fn speed_with(&self, value: i32, speed_m_s: f64) -> usize {
-        let speed_m_s = if speed_m_s.is_finite() { speed_m_s } else { 0.0 };
-        let mut nearest = (f64::INFINITY, 0);
-        for j in 0..self.grid.speeds() {
-            let away_m_s = (self.grid.speed_m_s(j) - speed_m_s).abs();
-            if self.row[j / LANES].as_array()[j % LANES] == value && away_m_s < nearest.0 {
-                nearest = (away_m_s, j);
+    /// Asks a block, and takes its best point if that is better than what was found.
+    fn ask(&self, k: usize, lanes: usize, present: Present, best: &mut Best) {
+        let sums = self.block(k, lanes);
+        let value = sums.reduce_max();
+        if value < best.value {
+            return;
+        }
+        for (lane, &sum) in sums.as_array().iter().enumerate() {
+            let point = Best { value, course: k, speed: LANES * lanes + lane };
+            if sum == value && (value > best.value || self.is_nearer(&point, best, present)) {
+                *best = point;
             }
         }
-        nearest.1
+    }
+
+    /// Whether of two equal points the first is to be taken.
+    fn is_nearer(&self, point: &Best, other: &Best, present: Present) -> bool {
+        let turn = |k: usize| {
+            let ticks = self.grid.ticks_between(present.course, k);
+            (ticks.abs(), ticks < 0)
+        };
+        let away_m_s = |j: usize| (self.grid.speed_m_s(j) - present.speed_m_s).abs();
+        let speeds = || (away_m_s(point.speed), point.speed) < (away_m_s(other.speed), other.speed);
+        match turn(point.course).cmp(&turn(other.course)) {
+            Ordering::Less => true,
+            Ordering::Equal => speeds(),
+            Ordering::Greater => false,
+        }
+    }
+}
+
+/// Nothing on so many places, side by side, and [`NOWHERE`] beyond them.
+fn clear_lanes(lanes: &mut [i32x8], count: usize) {
+    for (i, eight) in lanes.iter_mut().enumerate() {
+        *eight = i32x8::new(std::array::from_fn(|lane| if LANES * i + lane < count { 0 } else { NOWHERE }));
     }
 }

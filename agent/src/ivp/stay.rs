@@ -124,15 +124,14 @@ impl Ready {
         worst
     }
 
-    /// What no speed on each of eight courses exceeds: for one edge and course utility only rises or only falls with
-    /// speed, and rounding keeps that order.
+    /// What no speed from `slow` to `fast` exceeds, on each of eight courses: for one edge and course utility only rises or
+    /// only falls with speed, and rounding keeps that order.
     #[inline]
-    pub(super) fn bound(&self, north: f32x8, east: f32x8) -> f32x8 {
+    pub(super) fn bound(&self, north: f32x8, east: f32x8, slow: f32x8, fast: f32x8) -> f32x8 {
         let mut worst = f32x8::splat(100.0);
         for side in &self.sides[..self.count] {
-            let at_rest = self.of_side(side, north, east, f32x8::ZERO);
-            let at_full = self.of_side(side, north, east, f32x8::splat(self.speed_max));
-            worst = worst.fast_min(at_rest.fast_max(at_full));
+            let (at_slow, at_fast) = (self.of_side(side, north, east, slow), self.of_side(side, north, east, fast));
+            worst = worst.fast_min(at_slow.fast_max(at_fast));
         }
         worst
     }

@@ -1,7 +1,8 @@
 //! The solver against the whole grid.
 
 use crate::scene::{self, Tables, decision, points, solved};
-use agent::ivp::{Choice, Decision, Grid, Objective, Peak, Peaks, Problem, QUANTUM, Wish};
+use agent::ivp::{Approach, Choice, Closest, Closing, Decision, FUNCTIONS_MAX, Grid, Objective, Peak, Peaks};
+use agent::ivp::{Problem, QUANTUM, WEIGHT_MAX, Wish};
 use game::angle::wrap_pi;
 use game::stream::Stream;
 
@@ -38,10 +39,10 @@ fn the_solver_finds_what_a_search_of_the_whole_grid_finds() {
         let got = solved(&grid, &functions, wish);
         assert_eq!((got.decision, got.value), (want, value), "seed {seed}: {functions:?} {wish:?}");
         ties += usize::from(sums.iter().filter(|&&sum| sum as f64 * QUANTUM == value).count() > 1);
-        passed_over += grid.courses() - got.courses_asked;
+        passed_over += points(&grid).count() - got.asked;
     }
     assert!(ties > 400, "{ties} scenes in which equals had to be told apart");
-    assert!(passed_over > 4_000, "{passed_over} courses passed over");
+    assert!(passed_over > 400_000, "{passed_over} points passed over");
 }
 
 #[test]
@@ -140,6 +141,55 @@ fn an_earlier_decision_stays_while_it_is_nearly_as_good() {
     assert!(!solved(&grid, &functions, Wish { keep: nowhere, ..Wish::default() }).is_kept);
     let nonsense = Some((decision(0, 0), f64::NAN));
     assert!(!solved(&grid, &functions, Wish { keep: nonsense, ..Wish::default() }).is_kept);
+}
+
+#[test]
+fn as_many_functions_as_there_may_be_do_not_overflow() {
+    // Speeds and courses that do not fill their lanes.
+    let grid = Grid::new(9, 9, 3.0);
+    let mut stream = Stream::new(1, "ivp/many");
+    let far = Closest {
+        north_m: 5e4,
+        min_m: 0.0,
+        max_m: 1.0,
+        approach: Approach::Avoid { floor: 0.0 },
+        ..scene::closest(&mut stream, &grid)
+    };
+    let functions = vec![(1e9, Objective::Closest(far)); FUNCTIONS_MAX];
+    let wish = Wish { course_rad: grid.course_rad(8), speed_m_s: 9.0, keep: None };
+    let got = solved(&grid, &functions, wish);
+    assert_eq!((got.decision, got.value), (decision(8, 8), FUNCTIONS_MAX as f64 * WEIGHT_MAX * 100.0));
+}
+
+/// A waypoint ahead to starboard, and three contacts that cross.
+#[test]
+fn a_scene_is_pinned_so_that_every_machine_decides_alike() {
+    let grid = Grid::new(360, 21, 4.0);
+    let avoid = |north_m: f64, east_m: f64, course_deg: f64, speed_m_s: f64| {
+        let (sin, cos) = game::math::sin_cos_deg(course_deg);
+        Objective::Closest(Closest {
+            north_m,
+            east_m,
+            velocity_north_m_s: speed_m_s * cos,
+            velocity_east_m_s: speed_m_s * sin,
+            horizon_s: 120.0,
+            min_m: 10.0,
+            max_m: 75.0,
+            approach: Approach::Avoid { floor: 25.0 },
+        })
+    };
+    let waypoint =
+        Closing { north_m: 45.0, east_m: 70.0, velocity_north_m_s: 0.0, velocity_east_m_s: 0.0, flee: false };
+    let functions = [
+        (100.0, Objective::Closing(waypoint)),
+        (300.0, avoid(20.0, 35.0, 250.0, 1.5)),
+        (300.0, avoid(38.0, 20.0, 160.0, 1.2)),
+        (300.0, avoid(5.0, 55.0, 330.0, 1.8)),
+    ];
+    let two = solved(&grid, &functions[..2], Wish::default());
+    assert_eq!((two.decision, two.value), (decision(332, 20), 22_282.484_375));
+    let four = solved(&grid, &functions, Wish::default());
+    assert_eq!((four.decision, four.value), (decision(277, 9), 63_275.25));
 }
 
 #[test]
