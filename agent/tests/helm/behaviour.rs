@@ -59,7 +59,7 @@ fn behaviours_that_go_somewhere_go_there() {
         ("kind = 'intercept'\ncontact = 'opponent'\nspeed_m_s = 2", contact(Boat::at(0.0, 40.0).going(90.0, 1.2)), Some((36.87, 2.0))),
         ("kind = 'intercept'\ncontact = 'opponent'\ngiveup_m = 30", contact(Boat::at(0.0, 40.0)), None),
         ("kind = 'cut_range'\ncontact = 'opponent'\npatience = 0", contact(Boat::at(0.0, 40.0).going(90.0, 2.0)), Some((0.0, 3.0))),
-        ("kind = 'cut_range'\ncontact = 'opponent'\npatience = 100\ntime_on_leg_s = 60", contact(Boat::at(0.0, 40.0).going(180.0, 2.0)), Some((0.0, 0.0))),
+        ("kind = 'cut_range'\ncontact = 'opponent'\npatience = 100\ntime_on_leg_s = 60", contact(Boat::at(0.0, 40.0).going(180.0, 2.0)), Some((0.0, 2.0))),
         ("kind = 'cut_range'\ncontact = 'opponent'\ngiveup_m = 30", contact(Boat::at(0.0, 40.0)), None),
         ("kind = 'cut_range'\ncontact = 'nearest_intruder'", contact(Boat::at(20.0, 10.0)), None),
         // 10 m astern of a boat that heads east at (30, 30) is (20, 30).
@@ -202,6 +202,24 @@ fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
     assert!((in_again.speed_m_s.expect("a speed") - 0.5).abs() < 0.05, "in for a moment is not in yet");
     let in_for_good = see(6.1, 60.0);
     assert!(in_for_good.speed_m_s.expect("a speed") > 1.0, "{:?}", in_for_good.speed_m_s);
+}
+
+#[test]
+fn who_looks_inside_sees_the_utilities() {
+    let mut helm = helm(&only("kind = 'waypoint'\npoints = ['enemy_flag']\nspeed_m_s = 2"));
+    assert!(thought(&mut helm, &here()).functions.iter().all(|f| f.utilities.is_empty() && f.utility.is_none()));
+    helm.show(true);
+    let report = thought(&mut helm, &here());
+    assert_eq!(report.functions.len(), 3);
+    for function in &report.functions {
+        assert_eq!(function.utilities.len(), report.courses * report.speeds, "{}", function.behaviour);
+    }
+    let it = report.functions.iter().find(|f| f.behaviour == "it").expect("the waypoint asks");
+    assert!(it.utility.expect("it is looked at") > 99.0, "{:?}", it.utility);
+    let best = it.utilities.iter().copied().fold(0.0, f32::max);
+    assert!((best - it.utility.expect("it is looked at")).abs() < 1e-3, "it gets what it wants: {best}");
+    let value: f64 = report.functions.iter().map(|f| f.weight * f64::from(f.utility.unwrap_or(0.0))).sum();
+    assert!((value - report.value.expect("a value")).abs() < 0.1, "{value}, {:?}", report.value);
 }
 
 #[test]

@@ -31,7 +31,7 @@ circle = { centre = [0, -30], radius_m = 2 }
 "#;
 
 /// The scenario in which all boats follow the program `strategy`.
-pub fn scenario(strategy: &str) -> Scenario {
+pub(crate) fn scenario(strategy: &str) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for files");
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let text = |text: &str| text.replace("SCENARIOS", &scenarios.display().to_string());
@@ -42,7 +42,7 @@ pub fn scenario(strategy: &str) -> Scenario {
 }
 
 /// A program with one behaviour and nothing else.
-pub fn only(behaviour: &str) -> Scenario {
+pub(crate) fn only(behaviour: &str) -> Scenario {
     scenario(&format!(
         "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n[behaviour.it]\n{behaviour}\n\
          [behaviour.head]\nkind = \"constant_heading\"\nheading_deg = 0\nweight = 0.001\n\
@@ -52,19 +52,19 @@ pub fn only(behaviour: &str) -> Scenario {
 
 /// Places and motion in files' terms: x east, y north, compass degrees, m/s.
 #[derive(Clone, Copy, Debug)]
-pub struct Boat {
-    pub x: f64,
-    pub y: f64,
-    pub heading_deg: f64,
-    pub speed_m_s: f64,
+pub(crate) struct Boat {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) heading_deg: f64,
+    pub(crate) speed_m_s: f64,
 }
 
 impl Boat {
-    pub fn at(x: f64, y: f64) -> Boat {
+    pub(crate) fn at(x: f64, y: f64) -> Boat {
         Boat { x, y, heading_deg: 0.0, speed_m_s: 0.0 }
     }
 
-    pub fn going(self, heading_deg: f64, speed_m_s: f64) -> Boat {
+    pub(crate) fn going(self, heading_deg: f64, speed_m_s: f64) -> Boat {
         Boat { heading_deg, speed_m_s, ..self }
     }
 
@@ -78,7 +78,7 @@ impl Boat {
         }
     }
 
-    pub fn own(self, vehicle: u16) -> OwnBoat {
+    pub(crate) fn own(self, vehicle: u16) -> OwnBoat {
         OwnBoat {
             vehicle: VehicleId(vehicle),
             nav: self.nav(),
@@ -92,7 +92,7 @@ impl Boat {
         }
     }
 
-    pub fn contact(self, vehicle: u16, seen: SimTime) -> Contact {
+    pub(crate) fn contact(self, vehicle: u16, seen: SimTime) -> Contact {
         let towards = Ned::toward_deg(self.heading_deg).scaled(self.speed_m_s);
         Contact {
             vehicle: VehicleId(vehicle),
@@ -110,7 +110,7 @@ impl Boat {
 }
 
 /// Blue's picture at a time: its boats 0 and 1, and red's 2 and 3.
-pub fn picture(at_s: f64, [one, two]: [Boat; 2], [three, four]: [Boat; 2]) -> Picture {
+pub(crate) fn picture(at_s: f64, [one, two]: [Boat; 2], [three, four]: [Boat; 2]) -> Picture {
     let now = SimTime::from_s(at_s);
     let mut picture = Picture {
         own: vec![one.own(0), two.own(1)],
@@ -124,19 +124,17 @@ pub fn picture(at_s: f64, [one, two]: [Boat; 2], [three, four]: [Boat; 2]) -> Pi
 }
 
 /// Far from everybody else.
-pub fn alone(at_s: f64, own: Boat) -> Picture {
+pub(crate) fn alone(at_s: f64, own: Boat) -> Picture {
     picture(at_s, [own, Boat::at(-75.0, -35.0)], [Boat::at(75.0, 35.0), Boat::at(75.0, -35.0)])
 }
 
 /// The helm of boat 0.
-pub fn helm(scenario: &Scenario) -> HelmMind {
-    let mut helm = HelmMind::new(scenario, VehicleId(0), agent::roles::role_of(scenario, VehicleId(0)));
-    helm.show(true);
-    helm
+pub(crate) fn helm(scenario: &Scenario) -> HelmMind {
+    HelmMind::new(scenario, VehicleId(0), agent::roles::role_of(scenario, VehicleId(0)))
 }
 
 /// What the helm thinks after this picture.
-pub fn thought(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
+pub(crate) fn thought(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
     let order = helm.decide(picture);
     let report = helm.report().expect("a helm reports");
     match (order, report.course_deg.zip(report.speed_m_s)) {
