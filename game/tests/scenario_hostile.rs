@@ -25,6 +25,7 @@ fn shipped() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let files = |kind: &Kind| std::fs::read_dir(root.join(kind.folder())).unwrap();
     let mut paths: Vec<PathBuf> = Kind::ALL.iter().flat_map(files).map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     paths.sort();
     paths
 }

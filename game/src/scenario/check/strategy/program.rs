@@ -3,9 +3,8 @@
 use super::behaviour::behaviours;
 use super::expression::{Wanted, expression};
 use super::mode::modes;
-use super::safety;
 use super::variable::{set, variables};
-use super::watch;
+use super::{reach, safety};
 use crate::scenario::explain::nearest;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawRule, RawStrategy};
@@ -39,7 +38,7 @@ pub(super) fn program(ledger: &mut Ledger, document: &Document<RawStrategy>) -> 
     };
     // What is wrong with a part may be all that is wrong with the whole.
     if has_variables && ledger.faults() == faults {
-        watch::check_reached(ledger, &program, &places);
+        reach::check(ledger, &program, &places);
         safety::check(ledger, &program, &places, because.as_ref());
     }
     (ledger.faults() == faults).then_some(program)
