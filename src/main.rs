@@ -6,6 +6,7 @@ mod identify_command;
 mod list_command;
 mod net_args;
 mod offspring;
+mod override_args;
 mod plot;
 mod result_table;
 mod run_command;

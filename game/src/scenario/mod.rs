@@ -10,15 +10,19 @@ mod explain;
 mod kind;
 mod ledger;
 mod load;
+mod overrides;
 mod problem;
 mod raw;
 mod read;
 mod source;
+mod tournament;
 
 pub use draw::{Drawn, Recipe};
 pub use kind::{Kind, schema};
-pub use load::{Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_with};
+pub use load::{Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_tournament, load_with};
+pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
+pub use tournament::{Entrant, Tournament};
 
 use crate::boat::Boat;
 use crate::field::Field;

@@ -12,6 +12,7 @@ mod rules;
 mod sea;
 mod sensor;
 mod strategy;
+mod tournament;
 
 pub(super) use boat::{RawAutopilot, RawBattery, RawBoat, RawHull, RawPropeller, RawThruster, RawVentilation};
 pub(super) use field::{RawField, RawObstacle, RawSide, RawWalls};
@@ -25,6 +26,7 @@ pub(super) use sea::{
 };
 pub(super) use sensor::{RawCompass, RawFault, RawGps, RawImu, RawJump};
 pub(super) use strategy::RawStrategy;
+pub(super) use tournament::{RawEntry, RawTournament};
 
 use super::draw::Drawable;
 use super::read::Typed;
@@ -106,4 +108,9 @@ impl Typed for RawField {
 impl Typed for RawStrategy {
     const DRAWABLE: Drawable = Drawable::Nothing;
     const OWNER: &'static str = "strategy";
+}
+
+impl Typed for RawTournament {
+    const DRAWABLE: Drawable = Drawable::Nothing;
+    const OWNER: &'static str = "tournament";
 }
