@@ -1,5 +1,4 @@
 //! Says which commit the program is built from.
-#![expect(clippy::print_stdout, reason = "this is how a build script speaks")]
 
 use std::path::Path;
 use std::process::Command;

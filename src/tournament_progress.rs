@@ -50,7 +50,8 @@ impl Progress {
     pub(crate) fn done(&self, jobs: usize) -> f64 {
         let (rate, wall_s) = (self.rate(), self.start.elapsed().as_secs_f64());
         self.bar.finish_and_clear();
-        screen::remark(&format!("{} games in {wall_s:.1} s on {jobs} threads: {rate:.1} games/s", self.played));
+        let threads = if jobs == 1 { "1 thread".to_owned() } else { format!("{jobs} threads") };
+        screen::remark(&format!("{} games in {wall_s:.1} s on {threads}: {rate:.1} games/s", self.played));
         rate
     }
 }

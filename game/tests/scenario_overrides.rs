@@ -1,5 +1,4 @@
 //! Files in place of those a game names: a sea, and the strategies of teams.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use game::Scenario;
 use game::id::VehicleId;
