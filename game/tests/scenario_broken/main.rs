@@ -5,12 +5,13 @@
 mod boats;
 mod files;
 mod games;
+mod tournaments;
 mod values;
 
 use game::scenario;
 
 /// A sound set of files; each case replaces some of them.
-const SOUND: [(&str, &str); 6] = [
+const SOUND: [(&str, &str); 7] = [
     (
         "games/g.toml",
         r#"field = "../fields/f.toml"
@@ -38,6 +39,12 @@ speed_max_m_s = 2
 "#,
     ),
     ("strategies/p.toml", "roles = [\"idle\"]\n"),
+    (
+        "tournaments/t.toml",
+        r#"game = "../games/g.toml"
+entry = [{ name = "a", strategy = "../strategies/p.toml" }, { name = "b", strategy = "../strategies/p.toml" }]
+"#,
+    ),
 ];
 
 /// What is wrong with `asked` when the files are the sound ones with `files` over them, line by line.
