@@ -150,6 +150,14 @@ pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
     one(path, check::sea, seed)
 }
 
+/// Reads and checks the strategy file at `path` and the files of the roles that it deals.
+///
+/// # Errors
+/// Everything that is wrong in any of them and their bases.
+pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
+    one(path, check::strategy, 1).map(|(strategy, _)| strategy)
+}
+
 /// Reads and checks a scenario file of any kind.
 ///
 /// The folder it lies in says which kind it is (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`).
@@ -165,7 +173,7 @@ pub fn check_file(path: &Path) -> Result<Checked, Problems> {
         Kind::Rules => one(path, check::rules, 1).map(|(rules, _)| Checked::Rules(Box::new(rules))),
         Kind::Boat => load_boat(path).map(|boat| Checked::Boat(Box::new(boat))),
         Kind::Sea => load_sea(path).map(|sea| Checked::Sea(Box::new(sea))),
-        Kind::Strategy => one(path, check::strategy, 1).map(|(strategy, _)| Checked::Strategy(strategy)),
+        Kind::Strategy => load_strategy(path).map(Checked::Strategy),
     }
 }
 

@@ -17,7 +17,7 @@ mod source;
 
 pub use draw::{Drawn, Recipe};
 pub use kind::{Kind, schema};
-pub use load::{Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_with};
+pub use load::{Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_strategy, load_with};
 pub use problem::{Problem, Problems};
 
 use crate::boat::Boat;

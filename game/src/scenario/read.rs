@@ -43,6 +43,11 @@ pub(super) trait Typed: DeserializeOwned + Default {
     const DRAWABLE: Drawable;
     /// Whose the numbers are, where nobody says.
     const OWNER: &'static str;
+    /// A key whose value serde cannot read alone; [`Typed::put_apart`] gets it.
+    const APART: Option<&'static str> = None;
+
+    /// Reads the value of [`Typed::APART`].
+    fn put_apart(&mut self, _: &mut Ledger, _: Spanned<DeValue<'_>>) {}
 }
 
 /// Reads the file at `path` with its bases. Problems with finding it stand at `asked_at`, the reference.
@@ -65,7 +70,11 @@ pub(super) fn document_of<T: Typed>(
     let numbers = draw::numbers(ledger, typed.get_ref(), T::DRAWABLE, owner);
     let mut table: Table<'_> = typed;
     draw::put(table.get_mut(), T::DRAWABLE, &numbers);
-    let raw = deserialised(ledger, start, table);
+    let apart = T::APART.and_then(|key| table.get_mut().remove(key));
+    let mut raw: T = deserialised(ledger, start, table);
+    if let Some(value) = apart {
+        raw.put_apart(ledger, value);
+    }
     Some(Document { name, start, raw })
 }
 
@@ -233,7 +242,11 @@ fn lay_over<'i>(over: &mut DeTable<'i>, base: DeTable<'i>) {
 }
 
 /// Reads the table into `T`; an entry that does not fit is noted, taken out, and the rest tried again.
-fn deserialised<T: DeserializeOwned + Default>(ledger: &mut Ledger, start: usize, mut table: Table<'_>) -> T {
+pub(super) fn deserialised<T: DeserializeOwned + Default>(
+    ledger: &mut Ledger,
+    start: usize,
+    mut table: Table<'_>,
+) -> T {
     for _ in 0..MOST_COMPLAINTS {
         let error = match T::deserialize(toml::de::Deserializer::from(table.clone())) {
             Ok(raw) => return raw,

@@ -43,6 +43,12 @@ impl Parameter {
     pub fn value(&self, values: &impl Values) -> f64 {
         self.expression.value(values).clamp(self.range.0, self.range.1)
     }
+
+    /// Its value, if that is always the same.
+    #[must_use]
+    pub fn constant(&self) -> Option<f64> {
+        self.expression.constant().map(|value| value.clamp(self.range.0, self.range.1))
+    }
 }
 
 /// A value given to a variable at a moment of a behaviour's life.

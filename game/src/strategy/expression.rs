@@ -88,6 +88,24 @@ pub trait Values {
     fn mates(&self, condition: &Expression) -> f64;
 }
 
+/// What constants are evaluated against.
+struct Nothing;
+
+impl Values for Nothing {
+    fn fact(&self, _: Fact) -> f64 {
+        0.0
+    }
+    fn variable(&self, _: u16) -> f64 {
+        0.0
+    }
+    fn measure(&self, _: Measure, _: &Place) -> f64 {
+        0.0
+    }
+    fn mates(&self, _: &Expression) -> f64 {
+        0.0
+    }
+}
+
 impl Expression {
     /// The value. Numbers that are not finite become 0.
     #[must_use]
@@ -113,6 +131,19 @@ impl Expression {
     #[must_use]
     pub fn is_true(&self, values: &impl Values) -> bool {
         self.value(values) != 0.0
+    }
+
+    /// Its value, if that does not depend on the game or on variables.
+    #[must_use]
+    pub fn constant(&self) -> Option<f64> {
+        let mut asks = false;
+        self.walk(&mut |part| {
+            asks |= matches!(
+                part,
+                Expression::Variable(_) | Expression::Fact(_) | Expression::Measure(..) | Expression::Mates(_)
+            );
+        });
+        (!asks).then(|| self.value(&Nothing))
     }
 
     /// Calls `visit` with this expression and everything in it.

@@ -24,15 +24,22 @@ pub(super) use sea::{
     RawWaves, RawWind,
 };
 pub(super) use sensor::{RawCompass, RawFault, RawGps, RawImu, RawJump};
-pub(super) use strategy::RawStrategy;
+pub(super) use strategy::{
+    Amount, Given, RawAttractor, RawAvoidCollision, RawAvoidObstacle, RawBehaviour, RawBehaviours, RawCommon,
+    RawConstantHeading, RawConstantSpeed, RawCutRange, RawEllipse, RawIntercept, RawLoiter, RawMaxSpeed,
+    RawMemoryTurnLimit, RawMode, RawOpRegion, RawPolicy, RawRule, RawSet, RawShield, RawStationKeep, RawStrategy,
+    RawTask, RawTrail, RawVariable, RawWaypoint, Stated,
+};
 
 use super::draw::Drawable;
+use super::ledger::Ledger;
 use super::read::Typed;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 use toml::Spanned;
+use toml::de::DeValue;
 
 /// A value and where it stands in the virtual text of all files.
 #[derive(Clone, Copy, Debug)]
@@ -106,4 +113,9 @@ impl Typed for RawField {
 impl Typed for RawStrategy {
     const DRAWABLE: Drawable = Drawable::Nothing;
     const OWNER: &'static str = "strategy";
+    const APART: Option<&'static str> = Some("behaviour");
+
+    fn put_apart(&mut self, ledger: &mut Ledger, value: Spanned<DeValue<'_>>) {
+        self.behaviour = RawBehaviours::of(ledger, value);
+    }
 }
