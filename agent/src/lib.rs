@@ -15,6 +15,7 @@ pub use helm::HelmMind;
 use game::helm::HelmReport;
 use game::message::Word;
 use game::scenario::Scenario;
+use game::strategy::Strategy;
 use game::{Order, Picture, SimTime, VehicleId};
 
 /// What decides for one boat.
@@ -24,6 +25,16 @@ use game::{Order, Picture, SimTime, VehicleId};
 pub trait Mind: Send {
     /// Decides on the newest picture.
     fn decide(&mut self, picture: &Picture) -> Order;
+
+    /// Whether the boat tells its team anything, ever: then it hears its mates too.
+    fn talks(&self) -> bool {
+        false
+    }
+
+    /// Whether proposals of a policy are heeded, ever.
+    fn heeds_policy(&self) -> bool {
+        false
+    }
 
     /// Adds what the boat tells its team after deciding.
     fn say(&self, _words: &mut Vec<Word>) {}
@@ -57,6 +68,12 @@ pub struct Proposal {
 #[must_use]
 pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
     Box::new(HelmMind::new(scenario, vehicle, roles::role_of(scenario, vehicle)))
+}
+
+/// The mind that `strategy` gives this vehicle, whatever the scenario's own strategy for it is.
+#[must_use]
+pub fn mind_by(scenario: &Scenario, vehicle: VehicleId, strategy: &Strategy) -> Box<dyn Mind> {
+    Box::new(HelmMind::new(scenario, vehicle, roles::role_in(scenario, vehicle, strategy)))
 }
 
 /// The minds of all vehicles, in the scenario's order.

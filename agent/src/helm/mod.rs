@@ -22,7 +22,7 @@ use bid::Entry;
 use game::helm::HelmReport;
 use game::message::Word;
 use game::scenario::Scenario;
-use game::strategy::{Expression, Moment, Program, Rule, What, Who};
+use game::strategy::{Expression, Moment, Program, Rule, Task, What, Who};
 use game::{Event, Order, Picture, SimTime, VehicleId};
 use life::Life;
 use scene::Proposed;
@@ -195,6 +195,14 @@ impl Mind for HelmMind {
         let stop = self.mode.is_none_or(|mode| self.ask_behaviours(mode));
         self.decided = self.solve(stop);
         self.order()
+    }
+
+    fn talks(&self) -> bool {
+        self.scene.ears.talks()
+    }
+
+    fn heeds_policy(&self) -> bool {
+        self.program.behaviours.iter().any(|behaviour| matches!(behaviour.task, Task::Policy(_)))
     }
 
     fn say(&self, words: &mut Vec<Word>) {

@@ -30,6 +30,11 @@ impl Ears {
         Ears { heard: mates.iter().map(heard).collect(), keys }
     }
 
+    /// Whether anything is shared.
+    pub(crate) fn talks(&self) -> bool {
+        self.keys.iter().any(Option::is_some)
+    }
+
     /// Takes in what mates said; words of others and about unknown variables are nothing to us.
     pub(crate) fn hear(&mut self, words: &[Word]) {
         for word in words.iter().filter(|word| word.value.is_finite()) {
