@@ -35,6 +35,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let names = args.vehicle.join(", ");
     let settings = Settings {
+        policy_wait: std::time::Duration::ZERO,
+        strategy: None,
         game: args.leaf.game.clone(),
         net: args.leaf.net()?,
         vehicles: args.vehicle.clone(),
@@ -47,6 +49,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             return;
         }
         match news {
+            News::Left { .. } => {}
             News::Looking { reason } => screen::remark(&format!("{names}: looking for the game: {reason}")),
             News::Joined { game } => screen::remark(&format!("{names}: joined {game}")),
         }

@@ -84,12 +84,26 @@ fn tell(total: &Tally, sea: &str, duration_s: u64) {
     let share = |n: u64| 100.0 * n as f64 / total.games as f64;
     let hourly = |n: u64| n as f64 / total.boat_hours;
     println!("{} games of {duration_s} s, sea {sea}, {:.0} boat-hours", total.games, total.boat_hours);
-    println!("left the field: {} times, {:.3} a boat-hour, in {:.2} % of games", total.left, hourly(total.left), share(total.games_left));
+    println!(
+        "left the field: {} times, {:.3} a boat-hour, in {:.2} % of games",
+        total.left,
+        hourly(total.left),
+        share(total.games_left)
+    );
     println!("  pushed (hulls touched within {PUSH_REMEMBERED_S} s): {}", total.left_pushed);
     println!("  with another boat within {CROWD_M} m: {}", total.left_crowded);
     println!("  neither: {}", total.left - total.left_pushed - total.left_crowded);
-    println!("hulls touched: {} times, {:.3} a boat-hour, in {:.2} % of games", total.touched, hourly(total.touched), share(total.games_touched));
-    println!("nearer than the rules' collision distance: {} times, {:.3} a boat-hour", total.collided, hourly(total.collided));
+    println!(
+        "hulls touched: {} times, {:.3} a boat-hour, in {:.2} % of games",
+        total.touched,
+        hourly(total.touched),
+        share(total.games_touched)
+    );
+    println!(
+        "nearer than the rules' collision distance: {} times, {:.3} a boat-hour",
+        total.collided,
+        hourly(total.collided)
+    );
 }
 
 /// A game between strategies drawn by lot.
@@ -126,7 +140,8 @@ fn program(scenarios: &Path, stream: &mut Stream) -> String {
         text += &behaviour(stream);
         // The first one always has something to say.
         if i > 0 {
-            let conditions = ["enemy_in_zone", "own_side", "time_s > 60", "has_flag", "!tagged", "distance(nearest_enemy) < 30"];
+            let conditions =
+                ["enemy_in_zone", "own_side", "time_s > 60", "has_flag", "!tagged", "distance(nearest_enemy) < 30"];
             text += &format!("when = \"{}\"\n", conditions[stream.below(conditions.len() as u64) as usize]);
         }
     }
@@ -136,18 +151,26 @@ fn program(scenarios: &Path, stream: &mut Stream) -> String {
 fn behaviour(stream: &mut Stream) -> String {
     let speed_m_s = stream.between(0.5, 5.0);
     // The field is 160 m by 80 m from its corner at the datum.
-    let place = |stream: &mut Stream| format!("[{:.1}, {:.1}]", stream.between(-20.0, 180.0), stream.between(-20.0, 100.0));
+    let place =
+        |stream: &mut Stream| format!("[{:.1}, {:.1}]", stream.between(-20.0, 180.0), stream.between(-20.0, 100.0));
     let boats = ["nearest_enemy", "opponent", "nearest_attacker", "nearest_mate"];
     let boat = boats[stream.below(boats.len() as u64) as usize];
     match stream.below(7) {
         0 => {
             let points: Vec<String> = (0..=stream.below(4)).map(|_| place(stream)).collect();
-            format!("kind = \"waypoint\"\npoints = [{}]\nspeed_m_s = {speed_m_s:.2}\nperpetual = true\n", points.join(", "))
+            format!(
+                "kind = \"waypoint\"\npoints = [{}]\nspeed_m_s = {speed_m_s:.2}\nperpetual = true\n",
+                points.join(", ")
+            )
         }
-        1 => format!("kind = \"waypoint\"\npoints = [\"enemy_flag\", \"own_flag\"]\nspeed_m_s = {speed_m_s:.2}\nperpetual = true\n"),
+        1 => format!(
+            "kind = \"waypoint\"\npoints = [\"enemy_flag\", \"own_flag\"]\nspeed_m_s = {speed_m_s:.2}\nperpetual = true\n"
+        ),
         2 => {
             let (centre, along, across) = (place(stream), stream.between(10.0, 120.0), stream.between(10.0, 80.0));
-            format!("kind = \"loiter\"\nellipse = {{ centre = {centre}, along_m = {along:.1}, across_m = {across:.1} }}\nspeed_m_s = {speed_m_s:.2}\n")
+            format!(
+                "kind = \"loiter\"\nellipse = {{ centre = {centre}, along_m = {along:.1}, across_m = {across:.1} }}\nspeed_m_s = {speed_m_s:.2}\n"
+            )
         }
         3 => format!("kind = \"cut_range\"\ncontact = \"{boat}\"\npatience = {:.0}\n", stream.between(0.0, 100.0)),
         4 => format!("kind = \"intercept\"\ncontact = \"{boat}\"\nspeed_m_s = {speed_m_s:.2}\n"),
@@ -167,6 +190,34 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
     let mut told = 0;
     while !contest.is_over() {
         arena::decide(&mut contest, &mut minds, &mut talk);
+        if std::env::var("TELL").is_ok() {
+            for i in 0..count {
+                let b = &contest.world().state().boats[i];
+                let r = minds[i].report().unwrap();
+                let near = (0..count)
+                    .filter(|j| *j != i)
+                    .map(|j| contest.world().state().boats[j].pose.at.distance(b.pose.at))
+                    .fold(1e9, f64::min);
+                let active: Vec<String> =
+                    r.functions.iter().map(|f| format!("{}:{:.0}", f.behaviour, f.weight)).collect();
+                eprintln!(
+                    "{:.1} boat{i} x {:.1} y {:.1} psi {:.0} u {:.2} v {:.2} r {:.2} -> {:?} {:?} hold {:?} near {near:.1} out {} tagged {} {}",
+                    contest.now().as_s(),
+                    b.pose.at.east,
+                    b.pose.at.north,
+                    b.pose.psi_rad.to_degrees(),
+                    b.nu.surge,
+                    b.nu.sway,
+                    b.nu.yaw,
+                    r.course_deg,
+                    r.speed_m_s,
+                    r.hold,
+                    contest.world().state().standing.vehicles[i].outside,
+                    contest.world().state().standing.vehicles[i].tagged,
+                    active.join(" ")
+                );
+            }
+        }
         contest.advance();
         let now_s = contest.now().as_s();
         let pose = |i: usize| contest.world().state().boats[i].pose;
@@ -186,6 +237,9 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
             if let Event::LeftField { vehicle } = logged.event {
                 let i = vehicle.index();
                 tally.left += 1;
+                if std::env::var("TELL").is_ok() {
+                    eprintln!("LEFT boat{i} seed {seed}");
+                }
                 let crowded = (0..count).any(|j| j != i && pose(i).at.distance(pose(j).at) < CROWD_M);
                 if now_s - touched_s[i] <= PUSH_REMEMBERED_S {
                     tally.left_pushed += 1;

@@ -7,6 +7,8 @@ use game::strategy::{AvoidCollision, Grade};
 
 /// What a closest point of approach just beyond the least distance is worth: MOOS-IvP's 25.
 const FLOOR: f64 = 25.0;
+/// How long a boat goes on as it goes before a decision shows, s.
+const REACTION_S: f64 = 0.7;
 
 pub(super) struct Conductor(pub(super) AvoidCollision);
 
@@ -17,11 +19,12 @@ impl Conduct for Conductor {
         let (min_m, max_m) = (task.cpa_min_m.value(scene), task.cpa_max_m.value(scene));
         let horizon_s = task.time_on_leg_s.value(scene);
         for other in &scene.others {
-            let line = other.at - scene.at;
-            let distance_m = line.length();
+            let distance_m = scene.at.distance(other.at);
             if distance_m >= outer_m || !is_meant(task.contacts, scene, other) {
                 continue;
             }
+            // What is decided now is felt a little later.
+            let line = other.at - scene.at + (other.velocity - scene.velocity).scaled(REACTION_S);
             let closest = Closest {
                 north_m: line.north,
                 east_m: line.east,

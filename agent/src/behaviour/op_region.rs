@@ -2,17 +2,20 @@
 
 use super::Conduct;
 use crate::helm::{Bid, Scene};
-use crate::ivp::{Edge, Objective, Peak, Peaks, Stay};
+use crate::ivp::{Objective, Peak, Peaks};
+use game::angle::wrap_pi;
 use game::strategy::OpRegion;
-use game::{Ned, SimTime};
-use std::f64::consts::PI;
+use game::{Ned, SimTime, math};
+use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A course that leads out sooner than this share of the look-ahead is worth nothing.
-const SOON: f64 = 0.4;
 /// How far inside of the edge a boat steers for that comes back, m.
 const WELL_IN_M: f64 = 5.0;
-/// Half width of the peak at the recovery speed, m/s: none, it is as slow as said.
+/// From the recovery speed down to nothing, m/s: it comes back as slowly as said.
 const RECOVERY_BASE_M_S: f64 = 0.5;
+/// How fast a boat is thought to turn, rad/s. A Surveyor under way does 25 degrees a second.
+const TURN_RAD_S: f64 = 0.35;
+/// How long it takes until it begins to, s.
+const REACTION_S: f64 = 0.7;
 
 /// Where the boat counts as being.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,11 +29,13 @@ pub(super) struct Conductor {
     side: Side,
     /// Since when the boat has been on the other side of the edge than it counts.
     crossed: Option<SimTime>,
+    /// Utilities of all courses and speeds.
+    table: Vec<f32>,
 }
 
 impl Conductor {
     pub(super) fn new(task: OpRegion) -> Conductor {
-        Conductor { task, side: Side::In, crossed: None }
+        Conductor { task, side: Side::In, crossed: None, table: Vec::new() }
     }
 
     /// A boat counts as out, or in again, when it has been so for a while.
@@ -74,17 +79,83 @@ impl Conduct for Conductor {
             return;
         }
         let (lookahead_s, save_m) = (self.task.lookahead_s.value(scene), self.task.save_m.value(scene));
-        let reach_m = save_m + lookahead_s * (scene.chart.speed_max_m_s + region.drift.length());
-        if inside_m > reach_m {
+        if inside_m > region.reach_m(scene, lookahead_s, save_m) {
             return;
         }
-        // Within `save_m` of the edge the boat counts as outside of a smaller region, and is turned back into it.
-        let mut stay = Stay::new(SOON * lookahead_s, lookahead_s).drifting(region.drift.north, region.drift.east);
-        for (normal, edge_m) in region.edges {
-            let inside_m = edge_m - save_m;
-            stay = stay.and(Edge { normal_north: normal.north, normal_east: normal.east, inside_m });
+        self.fill(scene, bid, &region, (lookahead_s, save_m.max(0.1)));
+        bid.ask(&Objective::Table(&self.table));
+    }
+}
+
+impl Conductor {
+    /// Fills the table with how well each candidate keeps clear of the edges.
+    ///
+    /// A candidate is worth as much as it keeps of `save_m`: half of it for the least distance to an edge on the way, half
+    /// for the distance at the end of the look-ahead; the worst edge counts. On the way the boat goes on for its reaction
+    /// time, then turns the shorter way at its rate, then goes straight.
+    fn fill(&mut self, scene: &Scene, bid: &Bid<'_>, region: &Region, (lookahead_s, save_m): (f64, f64)) {
+        let grid = bid.problem().grid();
+        let (heading_rad, surge_m_s) = (scene.own.nav.psi_rad, scene.own.nav.surge_m_s.max(0.0));
+        let near = |edge: &&(Ned, f64)| edge.1 <= region.reach_m(scene, lookahead_s, save_m);
+        self.table.clear();
+        self.table.resize(grid.courses() * grid.speeds(), 100.0);
+        for (normal, inside_m) in region.edges.iter().filter(near) {
+            let out_rad = math::atan2(normal.east, normal.north);
+            let drift_out_m_s = region.drift.dot(*normal);
+            for (k, row) in self.table.chunks_mut(grid.speeds()).enumerate() {
+                let turn = Turn::new(wrap_pi(heading_rad - out_rad), wrap_pi(grid.course_rad(k) - heading_rad));
+                let straight_s = (lookahead_s - turn.duration_s).max(0.0);
+                for (j, utility) in row.iter_mut().enumerate() {
+                    let speed_m_s = grid.speed_m_s(j);
+                    // While it turns it has not reached the new speed yet.
+                    let turning_m_s = 0.5 * (surge_m_s + speed_m_s);
+                    let start_m = inside_m - REACTION_S * surge_m_s * turn.outward_first;
+                    let least_m = start_m - turning_m_s * turn.farthest_s;
+                    let turned_m = start_m - turning_m_s * turn.end_s;
+                    let end_m = turned_m - straight_s * speed_m_s * turn.outward_last - lookahead_s * drift_out_m_s;
+                    let kept = |clear_m: f64| (clear_m / save_m).clamp(0.0, 1.0);
+                    let worth = 50.0 * (kept(least_m.min(start_m).min(end_m)) + kept(end_m));
+                    *utility = utility.min(worth as f32);
+                }
+            }
         }
-        bid.ask(&Objective::Stay(stay));
+    }
+}
+
+/// A turn, as seen from an edge: distances outwards for each m/s of speed.
+struct Turn {
+    /// How much of the way is outwards at first: the cosine of the angle to the normal.
+    outward_first: f64,
+    /// How much of it is in the end.
+    outward_last: f64,
+    /// How long the turn takes, with the reaction, s.
+    duration_s: f64,
+    /// The farthest out that the boat gets while it turns, s times its speed.
+    farthest_s: f64,
+    /// How far out it is when it has turned, s times its speed.
+    end_s: f64,
+}
+
+impl Turn {
+    /// From an angle to the edge's outward normal, by another angle, rad.
+    ///
+    /// The way outwards is the integral of the cosine: the sine, divided by the rate of turn, whose extremes are at right
+    /// angles to the normal.
+    fn new(from_rad: f64, by_rad: f64) -> Turn {
+        let (sin_from, outward_first) = math::sin_cos(from_rad);
+        let (sin_to, outward_last) = math::sin_cos(from_rad + by_rad);
+        let side = if by_rad < 0.0 { -1.0 } else { 1.0 };
+        let end_s = side * (sin_to - sin_from) / TURN_RAD_S;
+        let to_parallel_rad = (side * FRAC_PI_2 - from_rad) * side;
+        let passes = to_parallel_rad.rem_euclid(2.0 * PI) < by_rad.abs();
+        let parallel_s = (1.0 - side * sin_from) / TURN_RAD_S;
+        Turn {
+            outward_first,
+            outward_last,
+            duration_s: REACTION_S + by_rad.abs() / TURN_RAD_S,
+            farthest_s: if passes { parallel_s.max(end_s) } else { end_s.max(0.0) },
+            end_s,
+        }
     }
 }
 
@@ -104,7 +175,7 @@ impl Region {
         let (x, y) = field.along_across(scene.at);
         let (width_m, depth_m) = (field.plan.width_m, field.plan.depth_m);
         let minus = |v: Ned| v.scaled(-1.0);
-        let (sin, cos) = game::math::sin_cos(scene.own.nav.psi_rad);
+        let (sin, cos) = math::sin_cos(scene.own.nav.psi_rad);
         let starboard = Ned { north: -sin, east: cos };
         Region {
             edges: [
@@ -123,6 +194,11 @@ impl Region {
         self.edges.iter().map(|(_, inside_m)| *inside_m).fold(f64::INFINITY, f64::min)
     }
 
+    /// Farther inside than this no candidate comes near an edge, m.
+    fn reach_m(&self, scene: &Scene, lookahead_s: f64, save_m: f64) -> f64 {
+        save_m + (lookahead_s + REACTION_S) * (scene.chart.speed_max_m_s + self.drift.length())
+    }
+
     /// The nearest point well inside.
     fn nearest_inside(&self, scene: &Scene) -> Ned {
         let field = &scene.chart.field;
@@ -132,5 +208,37 @@ impl Region {
             v.clamp(in_m, extent_m - in_m)
         };
         field.at(within(x, field.plan.width_m), within(y, field.plan.depth_m))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The farthest and the last distance outwards of a boat that turns at a speed of 1 m/s, by small steps, m.
+    fn stepped(from_rad: f64, by_rad: f64) -> (f64, f64) {
+        let steps = 100_000;
+        let dt_s = by_rad.abs() / TURN_RAD_S / f64::from(steps);
+        let (mut out_m, mut farthest_m) = (0.0, 0.0_f64);
+        for step in 0..steps {
+            let angle_rad = from_rad + by_rad * (f64::from(step) + 0.5) / f64::from(steps);
+            out_m += dt_s * math::sin_cos(angle_rad).1;
+            farthest_m = farthest_m.max(out_m);
+        }
+        (farthest_m, out_m)
+    }
+
+    #[test]
+    fn a_turn_goes_out_as_far_as_small_steps_say() {
+        for from_deg in (-180..180).step_by(25) {
+            for by_deg in (-180..=180).step_by(20) {
+                let (from_rad, by_rad) = (f64::from(from_deg).to_radians(), f64::from(by_deg).to_radians());
+                let turn = Turn::new(from_rad, by_rad);
+                let (farthest_m, out_m) = stepped(from_rad, by_rad);
+                let what = format!("from {from_deg} by {by_deg} degrees");
+                assert!((turn.farthest_s - farthest_m).abs() < 1e-4, "{what}: {} m, {farthest_m}", turn.farthest_s);
+                assert!((turn.end_s - out_m).abs() < 1e-4, "{what}: {} m, {out_m}", turn.end_s);
+            }
+        }
     }
 }

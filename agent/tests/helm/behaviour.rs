@@ -40,7 +40,8 @@ fn here() -> Picture {
 #[test]
 fn behaviours_that_go_somewhere_go_there() {
     // The own flag is at (-60, 0), the enemy's at (60, 0).
-    let contact = |boat: Boat| picture(0.0, [Boat::at(0.0, 0.0), Boat::at(-70.0, -30.0)], [boat, Boat::at(75.0, -35.0)]);
+    let contact =
+        |boat: Boat| picture(0.0, [Boat::at(0.0, 0.0), Boat::at(-70.0, -30.0)], [boat, Boat::at(75.0, -35.0)]);
     let by = |boat: Boat, x: f64, y: f64| {
         let mut picture = contact(boat);
         (picture.own[0].nav.east_m, picture.own[0].nav.north_m) = (x, y);
@@ -49,26 +50,62 @@ fn behaviours_that_go_somewhere_go_there() {
     for (behaviour, picture, want) in [
         ("kind = 'waypoint'\npoints = ['enemy_flag']\nspeed_m_s = 2", here(), Some((90.0, 2.0))),
         ("kind = 'waypoint'\npoints = ['CF']\nspeed_m_s = 9", here(), Some((270.0, 3.0))),
-        ("kind = 'waypoint'\npoints = [[0, -20], [20, -20]]\nreverse = true\nspeed_m_s = 2", here(), Some((135.0, 2.0))),
+        (
+            "kind = 'waypoint'\npoints = [[0, -20], [20, -20]]\nreverse = true\nspeed_m_s = 2",
+            here(),
+            Some((135.0, 2.0)),
+        ),
         // On the line from the start to the point, which is the boat's own place: straight there.
         ("kind = 'waypoint'\npoints = [[30, 30]]\nlead_m = 5\nspeed_m_s = 2", here(), Some((45.0, 2.0))),
         ("kind = 'station_keep'\nat = [0, 30]\ntransit_speed_m_s = 2", here(), Some((0.0, 2.0))),
         // Two thirds of the way from the inner radius to the outer.
-        ("kind = 'station_keep'\nat = [0, 10]\ninner_radius_m = 4\nouter_radius_m = 13\nouter_speed_m_s = 1.5", here(), Some((0.0, 1.0))),
+        (
+            "kind = 'station_keep'\nat = [0, 10]\ninner_radius_m = 4\nouter_radius_m = 13\nouter_speed_m_s = 1.5",
+            here(),
+            Some((0.0, 1.0)),
+        ),
         ("kind = 'station_keep'\nat = [0, 3]", here(), Some((0.0, 0.0))),
-        ("kind = 'intercept'\ncontact = 'opponent'\nspeed_m_s = 2", contact(Boat::at(0.0, 40.0).going(90.0, 1.2)), Some((36.87, 2.0))),
+        (
+            "kind = 'intercept'\ncontact = 'opponent'\nspeed_m_s = 2",
+            contact(Boat::at(0.0, 40.0).going(90.0, 1.2)),
+            Some((36.87, 2.0)),
+        ),
         ("kind = 'intercept'\ncontact = 'opponent'\ngiveup_m = 30", contact(Boat::at(0.0, 40.0)), None),
-        ("kind = 'cut_range'\ncontact = 'opponent'\npatience = 0", contact(Boat::at(0.0, 40.0).going(90.0, 2.0)), Some((0.0, 3.0))),
-        ("kind = 'cut_range'\ncontact = 'opponent'\npatience = 100\ntime_on_leg_s = 60", contact(Boat::at(0.0, 40.0).going(180.0, 2.0)), Some((0.0, 2.0))),
+        (
+            "kind = 'cut_range'\ncontact = 'opponent'\npatience = 0",
+            contact(Boat::at(0.0, 40.0).going(90.0, 2.0)),
+            Some((0.0, 3.0)),
+        ),
+        (
+            "kind = 'cut_range'\ncontact = 'opponent'\npatience = 100\ntime_on_leg_s = 60",
+            contact(Boat::at(0.0, 40.0).going(180.0, 2.0)),
+            Some((0.0, 2.0)),
+        ),
         ("kind = 'cut_range'\ncontact = 'opponent'\ngiveup_m = 30", contact(Boat::at(0.0, 40.0)), None),
         ("kind = 'cut_range'\ncontact = 'nearest_intruder'", contact(Boat::at(20.0, 10.0)), None),
         // 10 m astern of a boat that heads east at (30, 30) is (20, 30).
-        ("kind = 'trail'\ncontact = 'opponent'\nrange_m = 10\nspeed_m_s = 2", by(Boat::at(30.0, 30.0).going(90.0, 1.0), 0.0, 10.0), Some((45.0, 2.0))),
-        ("kind = 'trail'\ncontact = 'opponent'\nrange_m = 10\nspeed_m_s = 2", by(Boat::at(30.0, 30.0).going(90.0, 1.0), 19.0, 30.0), Some((90.0, 1.0))),
+        (
+            "kind = 'trail'\ncontact = 'opponent'\nrange_m = 10\nspeed_m_s = 2",
+            by(Boat::at(30.0, 30.0).going(90.0, 1.0), 0.0, 10.0),
+            Some((45.0, 2.0)),
+        ),
+        (
+            "kind = 'trail'\ncontact = 'opponent'\nrange_m = 10\nspeed_m_s = 2",
+            by(Boat::at(30.0, 30.0).going(90.0, 1.0), 19.0, 30.0),
+            Some((90.0, 1.0)),
+        ),
         // Between the own flag and an enemy due north of it, 10 m from the flag.
-        ("kind = 'shield'\nguarded = 'own_flag'\nagainst = 'opponent'\nspeed_m_s = 2", by(Boat::at(-60.0, 40.0), -80.0, 10.0), Some((90.0, 2.0))),
+        (
+            "kind = 'shield'\nguarded = 'own_flag'\nagainst = 'opponent'\nspeed_m_s = 2",
+            by(Boat::at(-60.0, 40.0), -80.0, 10.0),
+            Some((90.0, 2.0)),
+        ),
         // The nearer the enemy, the nearer the station: never beyond the middle.
-        ("kind = 'shield'\nguarded = 'own_flag'\nagainst = 'opponent'\nspeed_m_s = 2", by(Boat::at(-60.0, 12.0), -80.0, 6.0), Some((90.0, 2.0))),
+        (
+            "kind = 'shield'\nguarded = 'own_flag'\nagainst = 'opponent'\nspeed_m_s = 2",
+            by(Boat::at(-60.0, 12.0), -80.0, 6.0),
+            Some((90.0, 2.0)),
+        ),
         ("kind = 'attractor'\nto = [30, 0]\nouter_m = 50\nspeed_m_s = 2", here(), Some((90.0, 2.0))),
         ("kind = 'attractor'\nto = [30, 0]\nouter_m = 20\nspeed_m_s = 2", here(), None),
         ("kind = 'constant_heading'\nheading_deg = 250", here(), Some((250.0, 2.0))),
@@ -91,13 +128,14 @@ fn behaviours_that_go_somewhere_go_there() {
 #[test]
 fn a_loiter_goes_round_the_way_it_is_told() {
     // Due north of the centre: clockwise is east from there.
-    let ring = |turn: &str| format!("kind = 'loiter'\nellipse = {{ centre = [0, 0], along_m = 40, across_m = 40, corners = 36 }}\nturn = '{turn}'\nspeed_m_s = 2");
-    for (turn, heading_deg, east) in [
-        ("clockwise", 270.0, true),
-        ("counterclockwise", 90.0, false),
-        ("best", 80.0, true),
-        ("best", 280.0, false),
-    ] {
+    let ring = |turn: &str| {
+        format!(
+            "kind = 'loiter'\nellipse = {{ centre = [0, 0], along_m = 40, across_m = 40, corners = 36 }}\nturn = '{turn}'\nspeed_m_s = 2"
+        )
+    };
+    for (turn, heading_deg, east) in
+        [("clockwise", 270.0, true), ("counterclockwise", 90.0, false), ("best", 80.0, true), ("best", 280.0, false)]
+    {
         let picture = alone(0.0, Boat::at(0.0, 20.0).going(heading_deg, 1.0));
         let course_deg = decided(&ring(turn), &picture).course_deg.expect("it goes on");
         assert_eq!((0.0..180.0).contains(&course_deg), east, "{turn} with heading {heading_deg}: {course_deg}");

@@ -113,7 +113,10 @@ fn behaviours_live_and_post() {
         assert_eq!(variable(&at(&mut helm, at_s, x), "laps"), laps, "{at_s} s");
     }
     let done = at(&mut helm, 6.0, -30.0);
-    assert_eq!((stage(&done, "drive"), done.hold.as_deref()), (StageReport::Idle, Some("no behaviour asks for anything")));
+    assert_eq!(
+        (stage(&done, "drive"), done.hold.as_deref()),
+        (StageReport::Idle, Some("no behaviour asks for anything"))
+    );
 }
 
 #[test]

@@ -71,10 +71,7 @@ fn a_scene_turned_by_half_a_turn_gives_a_decision_turned_by_half_a_turn() {
             let (here, there) = (decide(0, &picture), decide(2, &turned(&picture)));
             match (here, there) {
                 (Order::Hold, Order::Hold) => {}
-                (
-                    Order::Steer { heading_rad: a, speed_m_s: u },
-                    Order::Steer { heading_rad: b, speed_m_s: v },
-                ) => {
+                (Order::Steer { heading_rad: a, speed_m_s: u }, Order::Steer { heading_rad: b, speed_m_s: v }) => {
                     let off_deg = game::angle::wrap_pi(b - a - std::f64::consts::PI).to_degrees().abs();
                     assert!(
                         off_deg < 1e-6 && u == v,

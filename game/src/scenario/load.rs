@@ -188,7 +188,7 @@ pub fn check_file(path: &Path) -> Result<Checked, Problems> {
         Kind::Boat => load_boat(path).map(|boat| Checked::Boat(Box::new(boat))),
         Kind::Sea => load_sea(path).map(|sea| Checked::Sea(Box::new(sea))),
         Kind::Strategy => load_strategy(path).map(Checked::Strategy),
-            Kind::Tournament => load_tournament(path).map(Checked::Tournament),
+        Kind::Tournament => load_tournament(path).map(Checked::Tournament),
     }
 }
 
