@@ -203,32 +203,16 @@ impl Terms<'_> {
             Expression::Fact(fact) if !fact.is_truth() => number(fact.least(), fact.is_whole()),
             Expression::Measure(measure, _) if !measure.is_truth() => number(measure.least(), false),
             Expression::Mates(_) => number(0.0, true),
-            Expression::Variable(index) => match (self.given_to(*index), &self.program.variables[*index as usize].kind)
-            {
-                (Some(values), _) => Bounds::These(values),
-                (None, Kind::Number) => number(f64::NEG_INFINITY, false),
-                (None, Kind::Truth) => Bounds::These(vec![0.0, 1.0]),
-                (None, Kind::Text(texts)) => Bounds::These((0..texts.len()).map(|text| text as f64).collect()),
-            },
+            Expression::Variable(index) => {
+                match (given_to(self.program, *index), &self.program.variables[usize::from(*index)].kind) {
+                    (Some(values), _) => Bounds::These(values),
+                    (None, Kind::Number) => number(f64::NEG_INFINITY, false),
+                    (None, Kind::Truth) => Bounds::These(vec![0.0, 1.0]),
+                    (None, Kind::Text(texts)) => Bounds::These((0..texts.len()).map(|text| text as f64).collect()),
+                }
+            }
             _ => Bounds::These(vec![0.0, 1.0]),
         }
-    }
-
-    /// The values that a variable ever has, if only constants are given to it.
-    fn given_to(&self, variable: u16) -> Option<Vec<f64>> {
-        let program = self.program;
-        let entered = program.modes.iter().flat_map(|mode| &mode.enter);
-        let ruled = program.rules.iter().flat_map(|rule| &rule.set);
-        let set = entered.chain(ruled).map(|(variable, value)| (*variable, value));
-        let posts = program.behaviours.iter().flat_map(|behaviour| &behaviour.posts);
-        let set = set.chain(posts.map(|post| (post.variable, &post.value)));
-        let mut values = vec![program.variables[variable as usize].initial];
-        for (_, value) in set.filter(|(index, _)| *index == variable) {
-            values.push(value.constant()?);
-        }
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        Some(values)
     }
 
     /// Whether all facts of a law occur in the conditions.
@@ -266,6 +250,22 @@ impl Terms<'_> {
             }
         }
     }
+}
+
+/// The values that a variable ever has, if only constants are given to it.
+pub(super) fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
+    let entered = program.modes.iter().flat_map(|mode| &mode.enter);
+    let ruled = program.rules.iter().flat_map(|rule| &rule.set);
+    let set = entered.chain(ruled).map(|(variable, value)| (*variable, value));
+    let posts = program.behaviours.iter().flat_map(|behaviour| &behaviour.posts);
+    let set = set.chain(posts.map(|post| (post.variable, &post.value)));
+    let mut values = vec![program.variables[usize::from(variable)].initial];
+    for (_, value) in set.filter(|(index, _)| *index == variable) {
+        values.push(value.constant()?);
+    }
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    Some(values)
 }
 
 fn is_term(expression: &Expression) -> bool {
