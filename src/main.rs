@@ -6,6 +6,7 @@ mod identify_command;
 mod list_command;
 mod net_args;
 mod offspring;
+mod override_args;
 mod plot;
 mod result_table;
 mod run_command;
@@ -16,6 +17,9 @@ mod sim_command;
 mod stop;
 mod strategy_command;
 mod telling;
+mod tournament_command;
+mod tournament_progress;
+mod tournament_table;
 mod trial_command;
 mod trial_plot;
 mod watch_command;
@@ -24,9 +28,12 @@ mod water_args;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
+/// The version, and the commit it was built from.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMMIT"), ")");
+
 /// A distributed swarm simulator for unmanned surface vehicles that play capture the flag.
 #[derive(Parser)]
-#[command(name = "squall", version, max_term_width = 100)]
+#[command(name = "squall", version = VERSION, max_term_width = 100)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -36,6 +43,8 @@ struct Cli {
 enum Command {
     /// Plays a whole game: starts the sim and the agents, shows what happens, prints the result.
     Run(run_command::Args),
+    /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
+    Tournament(tournament_command::Args),
     /// Serves one game to agents that join it.
     Sim(sim_command::Args),
     /// Minds one or many boats in a game that a sim serves.
@@ -61,6 +70,7 @@ enum Command {
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(args) => run_command::run(&args),
+        Command::Tournament(args) => tournament_command::run(&args),
         Command::Sim(args) => sim_command::run(&args),
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),

@@ -27,7 +27,7 @@ fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_ha
         let crowded = (0..boats.len()).any(near);
         let (events, decision) = (contest.events().len(), contest.decision());
         let heap = Region::new(HEAP);
-        arena::decide(&mut contest, &mut minds);
+        arena::decide(&mut contest, &mut minds, &mut talk);
         contest.advance();
         let used = heap.change();
         // The log of events grows, now and then; it is the one thing that does.

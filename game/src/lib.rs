@@ -10,6 +10,7 @@ pub mod count;
 pub mod event;
 pub mod field;
 pub mod frame;
+pub mod helm;
 pub mod id;
 pub mod link;
 pub mod math;

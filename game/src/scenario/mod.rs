@@ -10,17 +10,23 @@ mod explain;
 mod kind;
 mod ledger;
 mod load;
+mod overrides;
 mod problem;
 mod raw;
 mod read;
 mod reference;
 mod source;
+mod tournament;
 
 pub use draw::{Drawn, Recipe};
 pub use kind::{Kind, schema};
-pub use load::{Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_strategy, load_with};
+pub use load::{
+    Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_strategy, load_tournament, load_with,
+};
+pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
 pub use reference::reference;
+pub use tournament::{Entrant, Tournament};
 
 use crate::boat::Boat;
 use crate::field::Field;

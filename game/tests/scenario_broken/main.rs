@@ -6,12 +6,13 @@ mod boats;
 mod files;
 mod games;
 mod strategy;
+mod tournaments;
 mod values;
 
 use game::scenario;
 
 /// A sound set of files; each case replaces some of them.
-const SOUND: [(&str, &str); 7] = [
+const SOUND: [(&str, &str); 8] = [
     (
         "games/g.toml",
         r#"field = "../fields/f.toml"
@@ -42,6 +43,12 @@ speed_max_m_s = 2
     (
         "strategies/s.toml",
         "[behaviour.stay_in]\nkind = \"op_region\"\n[behaviour.keep_clear]\nkind = \"avoid_collision\"\n",
+    ),
+    (
+        "tournaments/t.toml",
+        r#"game = "../games/g.toml"
+entry = [{ name = "a", strategy = "../strategies/p.toml" }, { name = "b", strategy = "../strategies/p.toml" }]
+"#,
     ),
 ];
 

@@ -12,6 +12,7 @@ mod rules;
 mod sea;
 mod sensor;
 mod strategy;
+mod tournament;
 
 pub(super) use boat::{RawAutopilot, RawBattery, RawBoat, RawHull, RawPropeller, RawThruster, RawVentilation};
 pub(super) use field::{RawField, RawObstacle, RawSide, RawWalls};
@@ -30,6 +31,7 @@ pub(super) use strategy::{
     RawMaxSpeed, RawMemoryTurnLimit, RawMode, RawOpRegion, RawPolicy, RawRule, RawSet, RawShield, RawStationKeep,
     RawStrategy, RawTask, RawTrail, RawVariable, RawWaypoint, Stated, keys_of, kinds,
 };
+pub(super) use tournament::{RawEntry, RawTournament};
 
 use super::draw::Drawable;
 use super::ledger::Ledger;
@@ -118,4 +120,9 @@ impl Typed for RawStrategy {
     fn put_apart(&mut self, ledger: &mut Ledger, value: Spanned<DeValue<'_>>) {
         self.behaviour = RawBehaviours::of(ledger, value);
     }
+}
+
+impl Typed for RawTournament {
+    const DRAWABLE: Drawable = Drawable::Nothing;
+    const OWNER: &'static str = "tournament";
 }

@@ -1,0 +1,48 @@
+//! Collision avoidance: keeps clear of other boats by the closest point of approach, with a function for each.
+
+use super::{Conduct, is_meant, nearness};
+use crate::helm::{Bid, Scene};
+use crate::ivp::{Approach, Closest, Objective};
+use game::strategy::{AvoidCollision, Grade};
+
+/// What a closest point of approach just beyond the least distance is worth: MOOS-IvP's 25.
+const FLOOR: f64 = 25.0;
+
+pub(super) struct Conductor(pub(super) AvoidCollision);
+
+impl Conduct for Conductor {
+    fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
+        let task = &self.0;
+        let (inner_m, outer_m) = (task.inner_m.value(scene), task.outer_m.value(scene));
+        let (min_m, max_m) = (task.cpa_min_m.value(scene), task.cpa_max_m.value(scene));
+        let horizon_s = task.time_on_leg_s.value(scene);
+        for other in &scene.others {
+            let line = other.at - scene.at;
+            let distance_m = line.length();
+            if distance_m >= outer_m || !is_meant(task.contacts, scene, other) {
+                continue;
+            }
+            let closest = Closest {
+                north_m: line.north,
+                east_m: line.east,
+                velocity_north_m_s: other.velocity.north,
+                velocity_east_m_s: other.velocity.east,
+                horizon_s,
+                min_m,
+                max_m: max_m.max(min_m),
+                approach: Approach::Avoid { floor: FLOOR },
+            };
+            let share = graded(task.grade, nearness(distance_m, inner_m, outer_m));
+            bid.ask_for(share, Some(other.vehicle), &Objective::Closest(closest));
+        }
+    }
+}
+
+/// How much of the weight is left: all of it at the inner distance and nearer, never more.
+fn graded(grade: Grade, nearness: f64) -> f64 {
+    match grade {
+        Grade::Linear => nearness,
+        Grade::Quasi => nearness * nearness.sqrt(),
+        Grade::Quadratic => nearness * nearness,
+    }
+}

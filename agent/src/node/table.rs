@@ -1,0 +1,174 @@
+//! The table at which the minds of one process sit: pictures come in, words and orders go out.
+
+use super::advice::Advice;
+use super::ignored::Ignored;
+use super::talk::Talk;
+use super::window::Window;
+use super::{LOOK_AGAIN, NodeError, SILENCE_AFTER_DEATH, Settings, clock};
+use crate::{Mind, mind_by, mind_of};
+use bus::{Bus, Delivery, Publisher, Slots, Standing};
+use game::codec::{self, DecodeError};
+use game::message::{Message, Notice, Orders, Stamp, VehicleOrder};
+use game::topic::{self, GameName, Part};
+use game::{Picture, Scenario, TeamId, VehicleId};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// In lockstep words of mates are there before the picture, unless something on the way between several hubs changes
+/// their order, or a link was cut: they are waited for this long, once.
+const WORDS_LATE: Duration = Duration::from_millis(500);
+
+/// A mind and its boat.
+pub(super) struct Seated {
+    pub(super) vehicle: VehicleId,
+    pub(super) mind: Box<dyn Mind>,
+}
+
+/// The minds at work.
+pub(super) struct Table {
+    seated: Vec<Seated>,
+    talk: Talk,
+    advice: Advice,
+    window: Window,
+    orders: Publisher,
+    line: Line,
+    ticket: u64,
+    /// The newest picture, by team.
+    pictures: Vec<Option<Picture>>,
+    /// The orders given last, to be sent again if they are asked for again.
+    last: Option<Orders>,
+}
+
+impl Table {
+    /// Makes the minds and opens all their lines, before the sim counts on them.
+    pub(super) fn lay(bus: &Bus, game: &GameName, notice: &Notice, settings: &Settings) -> Result<Table, NodeError> {
+        let scenario = &notice.scenario;
+        let mind = |vehicle| match &settings.strategy {
+            Some(strategy) => mind_by(scenario, vehicle, strategy),
+            None => mind_of(scenario, vehicle),
+        };
+        // A name that is unknown the sim will refuse.
+        let known = settings.vehicles.iter().filter_map(|name| scenario.vehicle_by_name(name));
+        let seated: Vec<Seated> = known.map(|vehicle| Seated { vehicle, mind: mind(vehicle) }).collect();
+        let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
+        let is_lockstep = notice.pace == "lockstep";
+        let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
+        Ok(Table {
+            talk: Talk::open(bus, game, scenario, &seated, limit(WORDS_LATE))?,
+            advice: Advice::open(bus, game, scenario, &seated, limit(settings.policy_wait))?,
+            window: Window::open(bus, game, scenario, &seated)?,
+            orders: bus.publisher(topic::orders(game, &bus.id()), Delivery::Wait)?,
+            line: Line::open(bus, game, scenario, &seated)?,
+            seated,
+            ticket: 0,
+            pictures: vec![None; scenario.teams.len()],
+            last: None,
+        })
+    }
+
+    /// The sim has let these boats in, with this ticket.
+    pub(super) fn seat(&mut self, ticket: u64, vehicles: &[VehicleId]) -> Result<(), NodeError> {
+        self.ticket = ticket;
+        if self.seated.iter().map(|seat| &seat.vehicle).eq(vehicles) {
+            return Ok(());
+        }
+        Err(NodeError::Refused("it let other boats in than those that asked".to_owned()))
+    }
+
+    /// Everything that was not heeded so far.
+    pub(super) fn ignored(&self) -> Ignored {
+        self.talk.ignored() + self.advice.ignored()
+    }
+
+    /// Decides until the game is over.
+    pub(super) fn play(&mut self, settings: &Settings) -> Result<(), NodeError> {
+        let mut heard = clock::now();
+        while !settings.stop.load(Ordering::Relaxed) {
+            let mut decided = false;
+            for (cell, bytes) in self.line.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
+                let Some(bytes) = bytes else { continue };
+                heard = clock::now();
+                match codec::decode::<Picture>(&bytes) {
+                    Ok(picture) => self.pictures[cell] = Some(picture),
+                    Err(e @ DecodeError::Version { .. }) => return Err(NodeError::Version { theirs: e.to_string() }),
+                    // Damaged on the way; the sim sends it again.
+                    Err(_) => {}
+                }
+                if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
+                    return Ok(());
+                }
+                decided |= self.decide()?;
+            }
+            self.window.answer(&mut self.seated, decided);
+            let sim_alive = self.line.sim_alive.load(Ordering::Relaxed);
+            let limit = if sim_alive { settings.silence } else { settings.silence.min(SILENCE_AFTER_DEATH) };
+            if clock::since(heard) > limit {
+                return Err(NodeError::SimGone(clock::since(heard)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Decides when the pictures of all teams are of one tick; answers a tick that is asked again as before. Says
+    /// whether the minds have decided.
+    fn decide(&mut self) -> Result<bool, NodeError> {
+        let stamp_of = |team: &TeamId| self.pictures[team.index()].as_ref().map(|picture| picture.stamp);
+        let Some(stamp) = self.line.teams.first().and_then(stamp_of) else { return Ok(false) };
+        if self.line.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
+            return Ok(false);
+        }
+        if let Some(last) = self.last.as_ref().filter(|last| last.stamp.seq == stamp.seq) {
+            self.talk.repeat()?;
+            self.orders.send(last)?;
+            return Ok(false);
+        }
+        self.talk.hear(&mut self.seated, stamp.seq);
+        self.advice.give(&mut self.seated, stamp);
+        let orders = self.orders_for(stamp);
+        // Words before orders: the sim goes on when it has the orders, and then the words are under way.
+        self.talk.say(&mut self.seated, stamp)?;
+        self.orders.send(&orders)?;
+        self.last = Some(orders);
+        Ok(true)
+    }
+
+    fn orders_for(&mut self, stamp: Stamp) -> Orders {
+        let pictures = &self.pictures;
+        let decide = |Seated { vehicle, mind }: &mut Seated| {
+            let mine = pictures.iter().flatten().find(|picture| picture.own(*vehicle).is_some());
+            VehicleOrder::new(*vehicle, mine.map(|picture| mind.decide(picture)).unwrap_or_default())
+        };
+        let stamp = Stamp { version: Orders::VERSION, ..stamp };
+        Orders { stamp, ticket: self.ticket, orders: self.seated.iter_mut().map(decide).collect() }
+    }
+}
+
+/// What comes in from the sim: the newest picture of each team, and whether it shows signs of life.
+struct Line {
+    pictures: Arc<Slots<Vec<u8>>>,
+    sim_alive: Arc<AtomicBool>,
+    /// The teams whose pictures come.
+    teams: Vec<TeamId>,
+    _standing: Vec<Standing>,
+}
+
+impl Line {
+    fn open(bus: &Bus, game: &GameName, scenario: &Scenario, seated: &[Seated]) -> Result<Line, NodeError> {
+        let pictures = Arc::new(Slots::new(scenario.teams.len()));
+        let sim_alive = Arc::new(AtomicBool::new(true));
+        let mut teams: Vec<TeamId> = seated.iter().map(|seat| scenario.team_of(seat.vehicle)).collect();
+        teams.sort_unstable();
+        teams.dedup();
+        let mut standing = Vec::new();
+        for team in &teams {
+            let (slots, cell) = (Arc::clone(&pictures), team.index());
+            let take = move |bytes: &[u8]| slots.put(cell, bytes.to_vec());
+            standing.push(bus.subscribe(topic::picture(game, scenario, *team), take)?);
+        }
+        let flag = Arc::clone(&sim_alive);
+        let watch = move |_: &str, alive: bool| flag.store(alive, Ordering::Relaxed);
+        standing.push(bus.watch_alive(topic::all_alive(game, Part::Sim), watch)?);
+        Ok(Line { pictures, sim_alive, teams, _standing: standing })
+    }
+}
