@@ -75,8 +75,8 @@ fn wanted<'a>(program: &Program, claims: &'a Claims, mode: usize, in_place: bool
 /// A search through the cases that conditions can tell apart.
 struct Search<'a> {
     claims: &'a Claims,
-    /// For each term, which of its values is looked at.
-    held: Vec<Option<usize>>,
+    /// For each term, the value that is looked at.
+    held: Vec<Option<f64>>,
     cases: usize,
     steps: usize,
 }
@@ -104,8 +104,8 @@ impl Search<'_> {
         }
         let Some(open) = open else { return true };
         let term = open.open_term(&self.held).expect("a claim that is open has an open term");
-        for value in 0..self.claims.values(term) {
-            self.held[term] = Some(value);
+        for value in self.claims.values(term) {
+            self.held[term] = Some(*value);
             if self.is_possible_from(wanted) {
                 return true;
             }
