@@ -124,14 +124,7 @@ fn graph(strategy: &Strategy) -> String {
         let _ = writeln!(text, "  subgraph cluster_{i} {{\n    label={};", quoted(&role.name));
         let _ = writeln!(text, "    r{i} [label={}, shape=ellipse];", quoted(&role.name));
         for (mode, about) in role.modes.iter().enumerate() {
-            let mut label = about.name.clone();
-            if role.is_leaf(mode) {
-                for behaviour in role.behaviours.iter().filter(|behaviour| behaviour.modes[mode]) {
-                    let [name, kind, weight, notes] = row(role, behaviour);
-                    let notes = if notes.is_empty() { notes } else { format!(", {notes}") };
-                    let _ = write!(label, "\n{name}: {kind} {weight}{notes}");
-                }
-            }
+            let label = if role.is_leaf(mode) { leaf_label(role, mode) } else { about.name.clone() };
             let _ = writeln!(text, "    r{i}m{mode} [label={}];", quoted(&label));
             let from = about.parent.map_or_else(|| format!("r{i}"), |parent| format!("r{i}m{parent}"));
             let _ = writeln!(text, "    {from} -> r{i}m{mode} [label={}];", quoted(&condition(role, mode)));
@@ -140,6 +133,17 @@ fn graph(strategy: &Strategy) -> String {
     }
     text.push_str("}\n");
     text
+}
+
+/// A leaf's name, and below it what may run in it.
+fn leaf_label(program: &Program, leaf: usize) -> String {
+    let mut label = program.modes[leaf].name.clone();
+    for behaviour in program.behaviours.iter().filter(|behaviour| behaviour.modes[leaf]) {
+        let [name, kind, weight, notes] = row(program, behaviour);
+        let notes = if notes.is_empty() { notes } else { format!(", {notes}") };
+        let _ = write!(label, "\n{name}: {kind} {weight}{notes}");
+    }
+    label
 }
 
 /// A text as Graphviz reads it.
