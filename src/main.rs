@@ -15,6 +15,7 @@ mod sea_command;
 mod sea_plot;
 mod sim_command;
 mod stop;
+mod strategy_command;
 mod telling;
 mod tournament_command;
 mod tournament_progress;
@@ -58,6 +59,8 @@ enum Command {
     Trial(trial_command::Args),
     /// Fits a boat file to a recorded series, and says how well.
     Identify(identify_command::Args),
+    /// Shows what a strategy file means: its modes, and what may run in each.
+    Strategy(strategy_command::Args),
     /// Checks scenario files and explains every error.
     Check(check_command::Args),
     /// Prints the JSON Schema of a kind of scenario file, for editors.
@@ -75,6 +78,7 @@ fn main() -> ExitCode {
         Command::Sea(args) => sea_command::run(&args),
         Command::Trial(args) => trial_command::run(&args),
         Command::Identify(args) => identify_command::run(&args),
+        Command::Strategy(args) => strategy_command::run(&args),
         Command::Check(args) => check_command::run(&args),
         Command::Schema(args) => check_command::print_schema(&args),
     };

@@ -5,6 +5,10 @@ use game::id::VehicleId;
 use game::scenario::{Overrides, load, load_with};
 use std::path::{Path, PathBuf};
 
+/// A strategy file that needs no other.
+const LIES_STILL: &str =
+    "unsafe_i_know = true\nunsafe_because = \"it lies still\"\n[behaviour.stop]\nkind = \"full_stop\"\n";
+
 fn shipped(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(file)
 }
@@ -51,7 +55,7 @@ fn all_boats_of_a_team_follow_the_strategy_it_is_given_and_nobody_else_does() {
 fn two_files_of_one_name_may_meet_and_what_is_replaced_is_not_read() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("pav01.toml");
-    std::fs::write(&path, "roles = [\"idle\"]\n").unwrap();
+    std::fs::write(&path, LIES_STILL).unwrap();
     let game = shipped("games/pav01_vs_pav01.toml");
     let scenario = load_with(&game, &instead(&[("blue", path.clone())])).unwrap();
     assert_eq!(followed(&scenario), ["pav01"; 4]);
@@ -73,7 +77,7 @@ fn a_game_drawn_again_keeps_what_took_the_place_of_its_own() {
     let (game, strategy) = (dir.path().join("game.toml"), dir.path().join("own.toml"));
     let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
     std::fs::write(&game, format!("base = {base:?}\nlink = {{ delay_s = {{ uniform = [0.1, 0.2] }} }}\n")).unwrap();
-    std::fs::write(&strategy, "roles = [\"idle\"]\n").unwrap();
+    std::fs::write(&strategy, LIES_STILL).unwrap();
     let overrides = Overrides { sea: Some(shipped("seas/gale.toml")), ..instead(&[("red", strategy)]) };
     let scenario = load_with(&game, &overrides).unwrap();
     // The files are not needed any more.

@@ -1,7 +1,5 @@
 //! The reference page of strategy files is that of the program's types.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
-
 use game::scenario;
 use std::path::Path;
 

@@ -172,9 +172,15 @@ impl Join {
             Join::Or => return truth(left.is_true(values) || right.is_true(values)),
             _ => {}
         }
-        let (a, b) = (left.value(values), right.value(values));
+        self.of(left.value(values), right.value(values))
+    }
+
+    /// Two values joined.
+    #[must_use]
+    pub fn of(self, a: f64, b: f64) -> f64 {
         match self {
-            Join::And | Join::Or => unreachable!("decided above"),
+            Join::And => truth(a != 0.0 && b != 0.0),
+            Join::Or => truth(a != 0.0 || b != 0.0),
             Join::Equal => truth(a == b),
             Join::Unequal => truth(a != b),
             Join::Less => truth(a < b),

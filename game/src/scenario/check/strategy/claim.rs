@@ -11,8 +11,10 @@ use std::collections::BTreeMap;
 #[derive(Debug)]
 pub(super) enum Claim {
     Known(bool),
-    /// Whether it holds for each value of a term.
-    Term(usize, Vec<bool>),
+    /// A term as such.
+    Term(usize),
+    /// A term beside a constant, and whether the constant comes first.
+    Compared(usize, Join, f64, bool),
     Not(Box<Claim>),
     And(Box<(Claim, Claim)>),
     Or(Box<(Claim, Claim)>),
@@ -37,7 +39,7 @@ impl Claims {
         let laws: Vec<Expression> = laws().into_iter().filter(|law| terms.knows_all(law)).collect();
         laws.iter().for_each(|law| terms.gather(law));
         let values: Vec<Vec<f64>> = terms.bounds.iter().map(Bounds::values).collect();
-        let claim = |when: &Expression| terms.claim(when, &values);
+        let claim = |when: &Expression| terms.claim(when);
         Claims {
             of_modes: conditions().map(|when| when.map(claim)).collect(),
             laws: laws.iter().map(claim).collect(),
@@ -60,9 +62,9 @@ impl Claims {
         self.values.len()
     }
 
-    /// How many values a term has.
-    pub(super) fn values(&self, term: usize) -> usize {
-        self.values[term].len()
+    /// The values that a term may have.
+    pub(super) fn values(&self, term: usize) -> &[f64] {
+        &self.values[term]
     }
 }
 
@@ -203,32 +205,16 @@ impl Terms<'_> {
             Expression::Fact(fact) if !fact.is_truth() => number(fact.least(), fact.is_whole()),
             Expression::Measure(measure, _) if !measure.is_truth() => number(measure.least(), false),
             Expression::Mates(_) => number(0.0, true),
-            Expression::Variable(index) => match (self.given_to(*index), &self.program.variables[*index as usize].kind)
-            {
-                (Some(values), _) => Bounds::These(values),
-                (None, Kind::Number) => number(f64::NEG_INFINITY, false),
-                (None, Kind::Truth) => Bounds::These(vec![0.0, 1.0]),
-                (None, Kind::Text(texts)) => Bounds::These((0..texts.len()).map(|text| text as f64).collect()),
-            },
+            Expression::Variable(index) => {
+                match (given_to(self.program, *index), &self.program.variables[usize::from(*index)].kind) {
+                    (Some(values), _) => Bounds::These(values),
+                    (None, Kind::Number) => number(f64::NEG_INFINITY, false),
+                    (None, Kind::Truth) => Bounds::These(vec![0.0, 1.0]),
+                    (None, Kind::Text(texts)) => Bounds::These((0..texts.len()).map(|text| text as f64).collect()),
+                }
+            }
             _ => Bounds::These(vec![0.0, 1.0]),
         }
-    }
-
-    /// The values that a variable ever has, if only constants are given to it.
-    fn given_to(&self, variable: u16) -> Option<Vec<f64>> {
-        let program = self.program;
-        let entered = program.modes.iter().flat_map(|mode| &mode.enter);
-        let ruled = program.rules.iter().flat_map(|rule| &rule.set);
-        let set = entered.chain(ruled).map(|(variable, value)| (*variable, value));
-        let posts = program.behaviours.iter().flat_map(|behaviour| &behaviour.posts);
-        let set = set.chain(posts.map(|post| (post.variable, &post.value)));
-        let mut values = vec![program.variables[variable as usize].initial];
-        for (_, value) in set.filter(|(index, _)| *index == variable) {
-            values.push(value.constant()?);
-        }
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        Some(values)
     }
 
     /// Whether all facts of a law occur in the conditions.
@@ -240,32 +226,39 @@ impl Terms<'_> {
         knows
     }
 
-    fn claim(&self, condition: &Expression, values: &[Vec<f64>]) -> Claim {
-        let claim = |part: &Expression| self.claim(part, values);
-        let two = |sides: &(Expression, Expression)| Box::new((claim(&sides.0), claim(&sides.1)));
+    fn claim(&self, condition: &Expression) -> Claim {
+        let two = |sides: &(Expression, Expression)| Box::new((self.claim(&sides.0), self.claim(&sides.1)));
+        let index = |term: &Expression| self.index[&format!("{term:?}")];
         match self.look(condition) {
             Look::Known(holds) => Claim::Known(holds),
-            Look::Not(inner) => Claim::Not(Box::new(claim(inner))),
+            Look::Not(inner) => Claim::Not(Box::new(self.claim(inner))),
             Look::And(sides) => Claim::And(two(sides)),
             Look::Or(sides) => Claim::Or(two(sides)),
             Look::Same(sides) => Claim::Same(two(sides)),
             Look::Unlike(sides) => Claim::Not(Box::new(Claim::Same(two(sides)))),
-            Look::Choose(parts) => Claim::Choose(Box::new((claim(&parts.0), claim(&parts.1), claim(&parts.2)))),
-            Look::Compared(join, term, constant, is_first) => {
-                let term = self.index[&format!("{term:?}")];
-                let holds = |value: &f64| {
-                    let (a, b) = if is_first { (constant, *value) } else { (*value, constant) };
-                    let sides = (Expression::Constant(a), Expression::Constant(b));
-                    Expression::Join(join, Box::new(sides)).constant() == Some(1.0)
-                };
-                Claim::Term(term, values[term].iter().map(holds).collect())
+            Look::Choose(parts) => {
+                Claim::Choose(Box::new((self.claim(&parts.0), self.claim(&parts.1), self.claim(&parts.2))))
             }
-            Look::Free(condition) => {
-                let term = self.index[&format!("{condition:?}")];
-                Claim::Term(term, values[term].iter().map(|value| *value != 0.0).collect())
-            }
+            Look::Compared(join, term, constant, is_first) => Claim::Compared(index(term), join, constant, is_first),
+            Look::Free(condition) => Claim::Term(index(condition)),
         }
     }
+}
+
+/// The values that a variable ever has, if only constants are given to it.
+pub(super) fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
+    let entered = program.modes.iter().flat_map(|mode| &mode.enter);
+    let ruled = program.rules.iter().flat_map(|rule| &rule.set);
+    let set = entered.chain(ruled).map(|(variable, value)| (*variable, value));
+    let posts = program.behaviours.iter().flat_map(|behaviour| &behaviour.posts);
+    let set = set.chain(posts.map(|post| (post.variable, &post.value)));
+    let mut values = vec![program.variables[usize::from(variable)].initial];
+    for (_, value) in set.filter(|(index, _)| *index == variable) {
+        values.push(value.constant()?);
+    }
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    Some(values)
 }
 
 fn is_term(expression: &Expression) -> bool {
@@ -274,11 +267,15 @@ fn is_term(expression: &Expression) -> bool {
 
 impl Claim {
     /// Whether it holds, if the terms that are held decide that. Counts its steps.
-    pub(super) fn holds(&self, held: &[Option<usize>], steps: &mut usize) -> Option<bool> {
+    pub(super) fn holds(&self, held: &[Option<f64>], steps: &mut usize) -> Option<bool> {
         *steps += 1;
         match self {
             Claim::Known(holds) => Some(*holds),
-            Claim::Term(term, holds) => held[*term].map(|value| holds[value]),
+            Claim::Term(term) => held[*term].map(|value| value != 0.0),
+            Claim::Compared(term, join, constant, is_first) => held[*term].map(|value| {
+                let (a, b) = if *is_first { (*constant, value) } else { (value, *constant) };
+                join.of(a, b) != 0.0
+            }),
             Claim::Not(inner) => inner.holds(held, steps).map(|holds| !holds),
             Claim::And(sides) => match (sides.0.holds(held, steps), sides.1.holds(held, steps)) {
                 (Some(false), _) | (_, Some(false)) => Some(false),
@@ -306,10 +303,10 @@ impl Claim {
     }
 
     /// A term of it that is not held and decides something.
-    pub(super) fn open_term(&self, held: &[Option<usize>]) -> Option<usize> {
+    pub(super) fn open_term(&self, held: &[Option<f64>]) -> Option<usize> {
         match self {
             Claim::Known(_) => None,
-            Claim::Term(term, _) => held[*term].is_none().then_some(*term),
+            Claim::Term(term) | Claim::Compared(term, ..) => held[*term].is_none().then_some(*term),
             Claim::Not(inner) => inner.open_term(held),
             Claim::And(sides) | Claim::Or(sides) | Claim::Same(sides) => {
                 sides.0.open_term(held).or_else(|| sides.1.open_term(held))

@@ -20,7 +20,7 @@ pub(super) fn program(ledger: &mut Ledger, document: &Document<RawStrategy>) -> 
     let (raw, start) = (&document.raw, document.start);
     let helm = helm(ledger, raw);
     let variables = variables(ledger, raw);
-    let has_variables = ledger.faults() == faults;
+    let has_tasks = raw.behaviour.0.iter().all(|behaviour| behaviour.value.task.is_some());
     let modes = modes(ledger, &variables, raw, start);
     let behaviours = behaviours(ledger, &variables, modes.as_deref(), raw, start);
     let rules = rules(ledger, &variables, raw);
@@ -37,7 +37,7 @@ pub(super) fn program(ledger: &mut Ledger, document: &Document<RawStrategy>) -> 
         unsafe_because: because.as_ref().map(|because| because.value.clone()),
     };
     // What is wrong with a part may be all that is wrong with the whole.
-    if has_variables && ledger.faults() == faults {
+    if has_tasks && ledger.faults() == faults {
         reach::check(ledger, &program, &places);
         safety::check(ledger, &program, &places, because.as_ref());
     }

@@ -1,8 +1,9 @@
 //! Modes that can never be: decided over everything that their conditions can tell apart.
 
-use super::claim::{Claim, Claims};
+use super::claim::{Claim, Claims, given_to};
 use crate::scenario::ledger::Ledger;
-use crate::strategy::Program;
+use crate::strategy::{Expression, Program};
+use std::collections::BTreeSet;
 
 /// Of one mode no more cases than this are looked at; it is then taken to be possible.
 const MOST_CASES: usize = 200_000;
@@ -23,7 +24,7 @@ pub(super) fn check(ledger: &mut Ledger, program: &Program, places: &[usize]) {
         let before: Vec<&str> = before(program, i).map(|other| program.modes[other].name.as_str()).collect();
         let alone = wanted(program, &claims, i, false);
         let why = if !alone.is_empty() && !search.is_possible(&alone) {
-            "its when never holds".to_owned()
+            format!("its when never holds{}", only_ever(program, i))
         } else if before.is_empty() {
             "its when never holds in the modes that it is in".to_owned()
         } else {
@@ -31,6 +32,26 @@ pub(super) fn check(ledger: &mut Ledger, program: &Program, places: &[usize]) {
         };
         ledger.note(places[i], format!("mode {} can never be ({why}), expected one that can", program.path(i)));
     }
+}
+
+/// What the variables of a mode's condition ever are, where that is not everything.
+fn only_ever(program: &Program, mode: usize) -> String {
+    let mut asked = BTreeSet::new();
+    let when = program.modes[mode].when.iter();
+    when.for_each(|when| when.walk(&mut |part| asked.extend(Some(part).and_then(variable))));
+    let mut words = String::new();
+    for index in asked {
+        let Some(values) = given_to(program, index) else { continue };
+        let word = |value: &f64| program.value_in_words(index, &Expression::Constant(*value));
+        let values: Vec<String> = values.iter().map(word).collect();
+        let name = &program.variables[usize::from(index)].name;
+        words.push_str(&format!("; {name} is only ever {}", values.join(" or ")));
+    }
+    words
+}
+
+fn variable(part: &Expression) -> Option<u16> {
+    if let Expression::Variable(index) = part { Some(*index) } else { None }
 }
 
 /// The parts of the same mode that are asked before this one.
@@ -54,8 +75,8 @@ fn wanted<'a>(program: &Program, claims: &'a Claims, mode: usize, in_place: bool
 /// A search through the cases that conditions can tell apart.
 struct Search<'a> {
     claims: &'a Claims,
-    /// For each term, which of its values is looked at.
-    held: Vec<Option<usize>>,
+    /// For each term, the value that is looked at.
+    held: Vec<Option<f64>>,
     cases: usize,
     steps: usize,
 }
@@ -83,8 +104,8 @@ impl Search<'_> {
         }
         let Some(open) = open else { return true };
         let term = open.open_term(&self.held).expect("a claim that is open has an open term");
-        for value in 0..self.claims.values(term) {
-            self.held[term] = Some(value);
+        for value in self.claims.values(term) {
+            self.held[term] = Some(*value);
             if self.is_possible_from(wanted) {
                 return true;
             }

@@ -184,7 +184,8 @@ impl RawBehaviours {
             ),
             other => {
                 ledger.note(at, format!("behaviour is {}, expected tables [behaviour.NAME]", found(&other)));
-                ledger.mark_unfit(at, "behaviour");
+                // Without it nobody can say whether roles are missing.
+                ledger.mark_unfit(at, "roles");
                 RawBehaviours::default()
             }
         }

@@ -23,7 +23,7 @@ fn place(_: &mut SchemaGenerator) -> Schema {
     let points = Field::point_names();
     let names: Vec<&str> = Mark::all().map(Mark::name).chain(Boat::all().map(Boat::name)).collect();
     let names: Vec<&str> = names.into_iter().chain(points.iter().map(String::as_str)).collect();
-    json_schema!({ "anyOf": [position, { "description": "Something that moves, or a named point.", "enum": names }] })
+    json_schema!({ "anyOf": [position, { "description": "A mark, a boat, or a named point of the own team.", "enum": names }] })
 }
 
 /// A list of places, for editors.
