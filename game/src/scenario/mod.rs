@@ -13,12 +13,14 @@ mod load;
 mod problem;
 mod raw;
 mod read;
+mod reference;
 mod source;
 
 pub use draw::{Drawn, Recipe};
 pub use kind::{Kind, schema};
 pub use load::{Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_strategy, load_with};
 pub use problem::{Problem, Problems};
+pub use reference::reference;
 
 use crate::boat::Boat;
 use crate::field::Field;

@@ -112,6 +112,12 @@ impl Fact {
         self.row().2
     }
 
+    /// Whether it counts something, and so is a whole number.
+    #[must_use]
+    pub fn is_whole(self) -> bool {
+        !self.is_truth() && !matches!(self, Fact::TimeS | Fact::TimeLeftS | Fact::ModeS | Fact::StepS | Fact::SpeedMS)
+    }
+
     /// The smallest value it can have.
     #[must_use]
     pub fn least(self) -> f64 {

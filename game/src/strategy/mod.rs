@@ -7,6 +7,7 @@ mod behaviour;
 mod expression;
 mod fact;
 mod place;
+mod words;
 
 pub use behaviour::{
     Attractor, AvoidCollision, AvoidObstacle, Behaviour, ConstantHeading, ConstantSpeed, Contacts, CutRange, FullStop,

@@ -25,10 +25,10 @@ pub(super) use sea::{
 };
 pub(super) use sensor::{RawCompass, RawFault, RawGps, RawImu, RawJump};
 pub(super) use strategy::{
-    Amount, Given, RawAttractor, RawAvoidCollision, RawAvoidObstacle, RawBehaviour, RawBehaviours, RawCommon,
-    RawConstantHeading, RawConstantSpeed, RawCutRange, RawEllipse, RawIntercept, RawLoiter, RawMaxSpeed,
-    RawMemoryTurnLimit, RawMode, RawOpRegion, RawPolicy, RawRule, RawSet, RawShield, RawStationKeep, RawStrategy,
-    RawTask, RawTrail, RawVariable, RawWaypoint, Stated,
+    Amount, COMMON_KEYS, Given, RawAttractor, RawAvoidCollision, RawAvoidObstacle, RawBehaviour, RawBehaviours,
+    RawCommon, RawConstantHeading, RawConstantSpeed, RawCutRange, RawEllipse, RawHelm, RawIntercept, RawLoiter,
+    RawMaxSpeed, RawMemoryTurnLimit, RawMode, RawOpRegion, RawPolicy, RawRule, RawSet, RawShield, RawStationKeep,
+    RawStrategy, RawTask, RawTrail, RawVariable, RawWaypoint, Stated, keys_of, kinds,
 };
 
 use super::draw::Drawable;

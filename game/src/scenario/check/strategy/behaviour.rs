@@ -21,7 +21,7 @@ pub(super) fn behaviours(
 ) -> Vec<Behaviour> {
     let given = raw.behaviour.0.as_slice();
     if given.is_empty() {
-        ledger.note_missing(start, "behaviour", "at least one [behaviour.NAME], or roles");
+        ledger.note_missing(start, "roles", "it, or at least one [behaviour.NAME]");
     }
     if given.len() > MOST {
         ledger.note(given[MOST].at, format!("behaviour has {} entries, expected at most {MOST}", given.len()));

@@ -2,13 +2,14 @@
 
 mod behaviour;
 mod cel;
+mod claim;
 mod expression;
 mod mode;
 mod program;
+mod reach;
 mod safety;
 mod task;
 mod variable;
-mod watch;
 
 use crate::field::Field;
 use crate::scenario::explain::nearest;

@@ -3,9 +3,8 @@
 use super::behaviour::behaviours;
 use super::expression::{Wanted, expression};
 use super::mode::modes;
-use super::safety;
 use super::variable::{set, variables};
-use super::watch;
+use super::{reach, safety};
 use crate::scenario::explain::nearest;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawRule, RawStrategy};
@@ -21,7 +20,7 @@ pub(super) fn program(ledger: &mut Ledger, document: &Document<RawStrategy>) -> 
     let (raw, start) = (&document.raw, document.start);
     let helm = helm(ledger, raw);
     let variables = variables(ledger, raw);
-    let has_variables = ledger.faults() == faults;
+    let has_tasks = raw.behaviour.0.iter().all(|behaviour| behaviour.value.task.is_some());
     let modes = modes(ledger, &variables, raw, start);
     let behaviours = behaviours(ledger, &variables, modes.as_deref(), raw, start);
     let rules = rules(ledger, &variables, raw);
@@ -38,8 +37,8 @@ pub(super) fn program(ledger: &mut Ledger, document: &Document<RawStrategy>) -> 
         unsafe_because: because.as_ref().map(|because| because.value.clone()),
     };
     // What is wrong with a part may be all that is wrong with the whole.
-    if has_variables && ledger.faults() == faults {
-        watch::check_reached(ledger, &program, &places);
+    if has_tasks && ledger.faults() == faults {
+        reach::check(ledger, &program, &places);
         safety::check(ledger, &program, &places, because.as_ref());
     }
     (ledger.faults() == faults).then_some(program)

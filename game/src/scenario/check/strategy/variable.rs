@@ -83,7 +83,11 @@ fn shown(number: f64) -> String {
 fn stated_kind(ledger: &mut Ledger, name: &str, at: usize, stated: &Stated) -> Option<(Kind, f64)> {
     let Some(values) = &stated.values else {
         let Some(initial) = &stated.initial else {
-            ledger.note_missing(at, &format!("{name}.initial"), "a number, true or false, or values = [...]");
+            ledger.note_missing(
+                at,
+                &format!("{name}.values"),
+                "the texts it may have, or initial, a number or a truth",
+            );
             return None;
         };
         return plain(ledger, name, initial.at, &initial.value);

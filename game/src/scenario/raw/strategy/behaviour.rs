@@ -101,51 +101,37 @@ pub(in crate::scenario) enum RawTask {
 pub(in crate::scenario) struct RawKind {
     pub(in crate::scenario) name: &'static str,
     read: fn(&mut Ledger, Own<'_>) -> RawTask,
-    pub(in crate::scenario) schema: fn(&mut SchemaGenerator) -> Schema,
+    schema: fn(&mut SchemaGenerator) -> Schema,
+    /// Its own keys, in order.
+    pub(in crate::scenario) keys: fn() -> Vec<String>,
 }
 
 /// All kinds, in the order in which they are explained.
 pub(in crate::scenario) fn kinds() -> [RawKind; 18] {
     [
-        kind("waypoint", |ledger, own| RawTask::Waypoint(own.read(ledger)), RawWaypoint::json_schema),
-        kind("loiter", |ledger, own| RawTask::Loiter(own.read(ledger)), RawLoiter::json_schema),
-        kind("station_keep", |ledger, own| RawTask::StationKeep(own.read(ledger)), RawStationKeep::json_schema),
-        kind("cut_range", |ledger, own| RawTask::CutRange(own.read(ledger)), RawCutRange::json_schema),
-        kind("trail", |ledger, own| RawTask::Trail(own.read(ledger)), RawTrail::json_schema),
-        kind("intercept", |ledger, own| RawTask::Intercept(own.read(ledger)), RawIntercept::json_schema),
-        kind("shield", |ledger, own| RawTask::Shield(own.read(ledger)), RawShield::json_schema),
-        kind("attractor", |ledger, own| RawTask::Attractor(own.read(ledger)), RawAttractor::json_schema),
-        kind(
-            "avoid_collision",
-            |ledger, own| RawTask::AvoidCollision(own.read(ledger)),
-            RawAvoidCollision::json_schema,
-        ),
-        kind("avoid_obstacle", |ledger, own| RawTask::AvoidObstacle(own.read(ledger)), RawAvoidObstacle::json_schema),
-        kind("op_region", |ledger, own| RawTask::OpRegion(own.read(ledger)), RawOpRegion::json_schema),
-        kind("max_speed", |ledger, own| RawTask::MaxSpeed(own.read(ledger)), RawMaxSpeed::json_schema),
-        kind(
-            "constant_heading",
-            |ledger, own| RawTask::ConstantHeading(own.read(ledger)),
-            RawConstantHeading::json_schema,
-        ),
-        kind("constant_speed", |ledger, own| RawTask::ConstantSpeed(own.read(ledger)), RawConstantSpeed::json_schema),
-        kind(
-            "memory_turn_limit",
-            |ledger, own| RawTask::MemoryTurnLimit(own.read(ledger)),
-            RawMemoryTurnLimit::json_schema,
-        ),
-        kind("timer", |ledger, own| RawTask::Timer(own.read(ledger)), RawTimer::json_schema),
-        kind("full_stop", |ledger, own| RawTask::FullStop(own.read(ledger)), RawFullStop::json_schema),
-        kind("policy", |ledger, own| RawTask::Policy(own.read(ledger)), RawPolicy::json_schema),
+        kind::<RawWaypoint>("waypoint", |ledger, own| RawTask::Waypoint(own.read(ledger))),
+        kind::<RawLoiter>("loiter", |ledger, own| RawTask::Loiter(own.read(ledger))),
+        kind::<RawStationKeep>("station_keep", |ledger, own| RawTask::StationKeep(own.read(ledger))),
+        kind::<RawCutRange>("cut_range", |ledger, own| RawTask::CutRange(own.read(ledger))),
+        kind::<RawTrail>("trail", |ledger, own| RawTask::Trail(own.read(ledger))),
+        kind::<RawIntercept>("intercept", |ledger, own| RawTask::Intercept(own.read(ledger))),
+        kind::<RawShield>("shield", |ledger, own| RawTask::Shield(own.read(ledger))),
+        kind::<RawAttractor>("attractor", |ledger, own| RawTask::Attractor(own.read(ledger))),
+        kind::<RawAvoidCollision>("avoid_collision", |ledger, own| RawTask::AvoidCollision(own.read(ledger))),
+        kind::<RawAvoidObstacle>("avoid_obstacle", |ledger, own| RawTask::AvoidObstacle(own.read(ledger))),
+        kind::<RawOpRegion>("op_region", |ledger, own| RawTask::OpRegion(own.read(ledger))),
+        kind::<RawMaxSpeed>("max_speed", |ledger, own| RawTask::MaxSpeed(own.read(ledger))),
+        kind::<RawConstantHeading>("constant_heading", |ledger, own| RawTask::ConstantHeading(own.read(ledger))),
+        kind::<RawConstantSpeed>("constant_speed", |ledger, own| RawTask::ConstantSpeed(own.read(ledger))),
+        kind::<RawMemoryTurnLimit>("memory_turn_limit", |ledger, own| RawTask::MemoryTurnLimit(own.read(ledger))),
+        kind::<RawTimer>("timer", |ledger, own| RawTask::Timer(own.read(ledger))),
+        kind::<RawFullStop>("full_stop", |ledger, own| RawTask::FullStop(own.read(ledger))),
+        kind::<RawPolicy>("policy", |ledger, own| RawTask::Policy(own.read(ledger))),
     ]
 }
 
-fn kind(
-    name: &'static str,
-    read: fn(&mut Ledger, Own<'_>) -> RawTask,
-    schema: fn(&mut SchemaGenerator) -> Schema,
-) -> RawKind {
-    RawKind { name, read, schema }
+fn kind<T: DeserializeOwned + JsonSchema>(name: &'static str, read: fn(&mut Ledger, Own<'_>) -> RawTask) -> RawKind {
+    RawKind { name, read, schema: T::json_schema, keys: keys_of::<T> }
 }
 
 /// The keys of a behaviour that are those of its kind.
@@ -177,7 +163,7 @@ impl Own<'_> {
 }
 
 /// The keys that `T` knows, in the order of its fields: serde lists them when it meets another one.
-fn keys_of<T: DeserializeOwned>() -> Vec<String> {
+pub(in crate::scenario) fn keys_of<T: DeserializeOwned>() -> Vec<String> {
     let none = toml::de::Deserializer::parse("'' = 0").expect("this is a key and a value");
     match T::deserialize(none) {
         Ok(_) => vec![],
@@ -198,7 +184,8 @@ impl RawBehaviours {
             ),
             other => {
                 ledger.note(at, format!("behaviour is {}, expected tables [behaviour.NAME]", found(&other)));
-                ledger.mark_unfit(at, "behaviour");
+                // Without it nobody can say whether roles are missing.
+                ledger.mark_unfit(at, "roles");
                 RawBehaviours::default()
             }
         }
@@ -276,11 +263,12 @@ impl JsonSchema for RawBehaviours {
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let choices: Vec<Value> = kinds().iter().map(|kind| of_kind(generator, kind)).collect();
-        json_schema!({ "type": "object", "additionalProperties": { "oneOf": choices } })
+        json_schema!({ "type": "object", "additionalProperties": { "anyOf": choices } })
     }
 }
 
-/// A reference to the schema of a behaviour of this kind: its own keys and those of all.
+/// A reference to the schema of a behaviour of this kind: its own keys and those of all. A file that is laid over a
+/// base need not say the kind again, so the schema does not ask for it; the check does.
 fn of_kind(generator: &mut SchemaGenerator, kind: &RawKind) -> Value {
     let mut schema = (kind.schema)(generator).to_value();
     let common = RawCommon::json_schema(generator).to_value();
@@ -288,7 +276,6 @@ fn of_kind(generator: &mut SchemaGenerator, kind: &RawKind) -> Value {
     properties.extend(schema["properties"].as_object().cloned().unwrap_or_default());
     properties.insert("kind".into(), json!({ "description": "What it does. Required.", "enum": [kind.name] }));
     schema["properties"] = Value::Object(properties);
-    schema["required"] = json!(["kind"]);
     let definition = format!("behaviour_{}", kind.name);
     generator.definitions_mut().insert(definition.clone(), schema);
     json!({ "$ref": format!("#/definitions/{definition}") })

@@ -1,10 +1,12 @@
 //! Behaviours that want to get somewhere, as typed.
 
 use super::Amount;
+use crate::field::Field;
 use crate::scenario::raw::{At, Whereabouts};
-use crate::strategy::{Boat, Turn};
+use crate::strategy::{Boat, Mark, Turn};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
+use serde_json::json;
 
 /// The names of boats, for editors.
 fn boat(_: &mut SchemaGenerator) -> Schema {
@@ -12,11 +14,30 @@ fn boat(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "string", "enum": names })
 }
 
+/// A place, for editors.
+fn place(_: &mut SchemaGenerator) -> Schema {
+    let position = json!({
+        "description": "[x east, y north] in metres from the datum.",
+        "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2
+    });
+    let points = Field::point_names();
+    let names: Vec<&str> = Mark::all().map(Mark::name).chain(Boat::all().map(Boat::name)).collect();
+    let names: Vec<&str> = names.into_iter().chain(points.iter().map(String::as_str)).collect();
+    json_schema!({ "anyOf": [position, { "description": "Something that moves, or a named point.", "enum": names }] })
+}
+
+/// A list of places, for editors.
+fn places(generator: &mut SchemaGenerator) -> Schema {
+    let place = place(generator);
+    json_schema!({ "type": "array", "items": place })
+}
+
 /// Drives along a list of points, and is complete at the last.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct RawWaypoint {
     /// The points, in order, each a place: 1 to 1000 of them. Required.
+    #[schemars(schema_with = "places")]
     pub(in crate::scenario) points: Option<At<Vec<At<Whereabouts>>>>,
     /// Drives the list backwards. Default false.
     pub(in crate::scenario) reverse: Option<At<bool>>,
@@ -40,6 +61,7 @@ pub(in crate::scenario) struct RawWaypoint {
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct RawLoiter {
     /// Its corners, in order, each a place: 3 to 1000 of them. Required, or ellipse.
+    #[schemars(schema_with = "places")]
     pub(in crate::scenario) polygon: Option<At<Vec<At<Whereabouts>>>>,
     /// An ellipse instead. Required, or polygon.
     pub(in crate::scenario) ellipse: Option<At<RawEllipse>>,
@@ -61,6 +83,7 @@ pub(in crate::scenario) struct RawLoiter {
 #[schemars(rename = "Ellipse")]
 pub(in crate::scenario) struct RawEllipse {
     /// Its centre, a place. Required.
+    #[schemars(schema_with = "place")]
     pub(in crate::scenario) centre: Option<At<Whereabouts>>,
     /// Full extent along the field, m: 1 to 10000. Required.
     pub(in crate::scenario) along_m: Option<At<f64>>,
@@ -75,6 +98,7 @@ pub(in crate::scenario) struct RawEllipse {
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct RawStationKeep {
     /// The place. Default where the boat is when it begins.
+    #[schemars(schema_with = "place")]
     pub(in crate::scenario) at: Option<At<Whereabouts>>,
     /// Within this it does nothing, m: 0 to 1000. Default 4.
     pub(in crate::scenario) inner_radius_m: Option<At<Amount>>,
@@ -136,6 +160,7 @@ pub(in crate::scenario) struct RawIntercept {
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct RawShield {
     /// What it guards, a place. Required.
+    #[schemars(schema_with = "place")]
     pub(in crate::scenario) guarded: Option<At<Whereabouts>>,
     /// From whom. Default "nearest_attacker".
     #[schemars(schema_with = "boat")]
@@ -154,6 +179,7 @@ pub(in crate::scenario) struct RawShield {
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct RawAttractor {
     /// The place. Required.
+    #[schemars(schema_with = "place")]
     pub(in crate::scenario) to: Option<At<Whereabouts>>,
     /// Nearer than this it has its full weight, m: 0 to 10000. Default 10.
     pub(in crate::scenario) inner_m: Option<At<Amount>>,

@@ -5,7 +5,7 @@ mod goal;
 mod guard;
 mod value;
 
-pub(in crate::scenario) use behaviour::{RawBehaviour, RawBehaviours, RawCommon, RawTask};
+pub(in crate::scenario) use behaviour::{COMMON_KEYS, RawBehaviour, RawBehaviours, RawCommon, RawTask, keys_of, kinds};
 pub(in crate::scenario) use goal::{
     RawAttractor, RawCutRange, RawEllipse, RawIntercept, RawLoiter, RawShield, RawStationKeep, RawTrail, RawWaypoint,
 };
