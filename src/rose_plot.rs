@@ -53,7 +53,7 @@ const GREY: RGBColor = RGBColor(90, 90, 90);
 pub(crate) fn write_svg(path: &Path, title: &str, roses: &[Rose]) -> Result<()> {
     let mut svg = String::new();
     let backend = SVGBackend::with_string(&mut svg, size(roses));
-    draw(backend, title, roses).with_context(|| format!("cannot draw {}", path.display()))?;
+    draw(backend, title, roses, 1).with_context(|| format!("cannot draw {}", path.display()))?;
     std::fs::write(path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn write_png(path: &Path, title: &str, roses: &[Rose]) -> Result<()> 
     let (wide, high) = size(roses);
     let mut pixels = vec![0; 3 * wide as usize * high as usize];
     let backend = BitMapBackend::with_buffer(&mut pixels, (wide, high));
-    draw(backend, title, roses).with_context(|| format!("cannot draw {}", path.display()))?;
+    draw(backend, title, roses, 0).with_context(|| format!("cannot draw {}", path.display()))?;
     let write = || -> Result<()> {
         let file = std::io::BufWriter::new(std::fs::File::create(path)?);
         let mut encoder = png::Encoder::new(file, wide, high);
@@ -83,7 +83,7 @@ fn size(roses: &[Rose]) -> (u32, u32) {
     (PANEL.0 * columns as u32, TITLE_HEIGHT + PANEL.1 * rows as u32)
 }
 
-fn draw<B: DrawingBackend>(backend: B, title: &str, roses: &[Rose]) -> Result<()>
+fn draw<B: DrawingBackend>(backend: B, title: &str, roses: &[Rose], under: i32) -> Result<()>
 where
     B::ErrorType: 'static,
 {
@@ -95,56 +95,66 @@ where
     for (i, rose) in roses.iter().enumerate() {
         let corner = ((i % columns) as u32 * PANEL.0, TITLE_HEIGHT + (i / columns) as u32 * PANEL.1);
         let area = root.clone().shrink(corner, PANEL);
-        draw_rose(&area, rose).map_err(plot::failed)?;
+        draw_rose(&area, rose, under).map_err(plot::failed)?;
     }
     root.present().map_err(plot::failed)
 }
 
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-fn draw_rose<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose) -> Drawn<B> {
+fn draw_rose<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, under: i32) -> Drawn<B> {
     area.draw(&Text::new(rose.title.clone(), (24, 12), (plot::FONT, 15).into_font()))?;
-    draw_disc(area, rose)?;
+    draw_disc(area, rose, under)?;
     draw_axes(area, rose)?;
     draw_scale(area, rose)?;
     let Some((course_deg, speed_m_s)) = rose.chosen else { return Ok(()) };
     let at = place(course_deg, RADIUS * speed_m_s / rose.speed_max_m_s);
-    area.draw(&Circle::new(at, 8, BLACK.stroke_width(4)))?;
-    area.draw(&Circle::new(at, 8, WHITE.stroke_width(2)))
+    area.draw(&Circle::new(at, 8, BLACK.filled()))?;
+    area.draw(&Circle::new(at, 6, WHITE.filled()))?;
+    area.draw(&Circle::new(at, 3, BLACK.filled()))
 }
 
-/// Wedges of each course from the outside in, each drawn over the one before, so that no gap shows between them.
-fn draw_disc<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose) -> Drawn<B> {
-    let speeds = rose.values.len() / rose.courses;
-    let step_px = RADIUS / (speeds - 1) as f64;
-    let half_deg = 180.0 / rose.courses as f64;
-    for k in 0..rose.courses {
-        let course_deg = 2.0 * half_deg * k as f64;
-        // It reaches a little under the next one, which is drawn after it.
-        let under_deg = if k + 1 < rose.courses { half_deg } else { 0.0 };
-        let mut last = None;
-        for j in (0..speeds).rev() {
-            let shade = shade(rose.values[k * speeds + j], rose.range);
-            if last.replace(shade) == Some(shade) {
-                continue;
-            }
-            let radius = step_px * (j as f64 + 0.5);
-            let (from, to) = (course_deg - half_deg, course_deg + half_deg + under_deg);
-            let arcs = ((to - from) / 3.0).ceil().max(1.0) as usize;
-            let rim = (0..=arcs).map(|i| place(from + (to - from) * i as f64 / arcs as f64, radius));
-            let wedge: Vec<(i32, i32)> = std::iter::once(place(0.0, 0.0)).chain(rim).collect();
-            area.draw(&Polygon::new(wedge, colour(shade).filled()))?;
+/// The disc, row by row of its pixels, each a few stretches of one colour. In a drawing that can be enlarged, stretches
+/// reach under those that are drawn after them, so that no gap shows.
+fn draw_disc<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, under: i32) -> Drawn<B> {
+    let rim = rim(rose);
+    let reach = rim.ceil() as i32;
+    let (x0, y0) = place(0.0, 0.0);
+    for y in -reach..=reach {
+        let half = (rim * rim - f64::from(y * y)).max(0.0).sqrt().floor() as i32;
+        let shades: Vec<usize> = (-half..=half).map(|x| shade(value_at(rose, x, y), rose.range)).collect();
+        let mut x = x0 - half;
+        for stretch in shades.chunk_by(|a, b| a == b) {
+            let right = x + stretch.len() as i32;
+            let corners = [(x, y0 + y), (right - 1 + 2 * under, y0 + y + 2 * under)];
+            area.draw(&Rectangle::new(corners, colour(stretch[0]).filled()))?;
+            x = right;
         }
     }
     Ok(())
+}
+
+/// The radius of the disc: half a step more than that of the highest speed.
+fn rim(rose: &Rose) -> f64 {
+    let speeds = rose.values.len() / rose.courses;
+    RADIUS * (1.0 + 0.5 / (speeds - 1) as f64)
+}
+
+/// The value of the course and speed nearest to a place, in pixels right and down of the middle.
+fn value_at(rose: &Rose, x: i32, y: i32) -> f64 {
+    let speeds = rose.values.len() / rose.courses;
+    let turn = math::atan2(f64::from(x), f64::from(-y)) / std::f64::consts::TAU;
+    let course = (turn.rem_euclid(1.0) * rose.courses as f64).round() as usize % rose.courses;
+    let speed = math::length(f64::from(x), f64::from(y)) / RADIUS * (speeds - 1) as f64;
+    rose.values[course * speeds + (speed.round() as usize).min(speeds - 1)]
 }
 
 /// Rings of speed and the four quarters of the compass.
 fn draw_axes<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose) -> Drawn<B> {
     let text = |pos, size: u32, colour: &RGBColor| (plot::FONT, size).into_font().color(colour).pos(pos);
     let centre = Pos::new(HPos::Center, VPos::Center);
-    let speeds = rose.values.len() / rose.courses;
-    let rim = RADIUS * (1.0 + 0.5 / (speeds - 1) as f64);
+    let rim = rim(rose);
+    area.draw(&Circle::new(place(0.0, 0.0), rim.round() as i32, GREY.stroke_width(2)))?;
     let ring_m_s = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0].into_iter().find(|step| rose.speed_max_m_s / step <= 4.0);
     let ring_m_s = ring_m_s.unwrap_or(0.25 * rose.speed_max_m_s);
     for i in 1..=4 {
@@ -156,11 +166,9 @@ fn draw_axes<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose) -> Dr
         area.draw(&Circle::new(place(0.0, 0.0), radius.round() as i32, WHITE.mix(0.45).stroke_width(1)))?;
         let at = place(45.0, radius);
         let label = format!("{}", (speed_m_s * 100.0).round() / 100.0);
-        // A dark edge keeps the number readable on every colour.
-        for (x, y) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
-            area.draw(&Text::new(label.clone(), (at.0 + x, at.1 + y), text(centre, 12, &RGBColor(40, 40, 40))))?;
-        }
-        area.draw(&Text::new(label, at, text(centre, 12, &WHITE)))?;
+        // A light ground keeps the number readable on every colour.
+        area.draw(&Circle::new(at, 8, WHITE.mix(0.75).filled()))?;
+        area.draw(&Text::new(label, at, text(centre, 12, &BLACK)))?;
     }
     for (course_deg, name) in [(0.0, "N"), (90.0, "E"), (180.0, "S"), (270.0, "W")] {
         area.draw(&PathElement::new([place(course_deg, rim + 2.0), place(course_deg, rim + 7.0)], GREY))?;
@@ -249,7 +257,7 @@ mod tests {
         write_svg(&svg, "blue_one", &roses).expect("it can be drawn");
         let (best, worst) = (VIRIDIS[8], VIRIDIS[0]);
         for (course_deg, speed, want) in
-            [(80.0, 0.85, best), (80.0, 0.4, worst), (10.0, 0.85, worst), (190.0, 0.85, worst), (280.0, 0.85, worst)]
+            [(80.0, 0.75, best), (80.0, 0.4, worst), (10.0, 0.75, worst), (190.0, 0.75, worst), (280.0, 0.75, worst)]
         {
             assert_eq!(pixel(&png, place(course_deg, RADIUS * speed)), want, "{course_deg}° at {speed} of the speed");
         }

@@ -57,12 +57,10 @@ fn watch_shows_a_helm_and_helm_writes_its_functions() {
     let mut command = squall(&[&["watch", "--helm", "blue_two", "--rate", "20"], &leaf[..]].concat());
     command.stdout(Stdio::piped());
     let mut watch = Process::start(command);
-    let lines = BufReader::new(watch.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
-    let lines: Vec<String> = lines.take(3).collect();
-    for line in &lines {
-        let is_mode =
-            ["attacking", "returning", "tagged"].iter().any(|mode| line.contains(&format!("blue_two  {mode}")));
-        assert!(is_mode && line.contains("keep") || line.contains("grab") || line.contains("m/s"), "{line}");
+    let mut lines = BufReader::new(watch.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
+    for line in lines.by_ref().take(3) {
+        let is_mode = |mode: &&str| line.contains(&format!("blue_two  {mode}  course"));
+        assert!(["attacking", "returning", "tagged"].iter().any(is_mode), "{line}");
     }
     let files = ["one.csv", "one.png", "one.svg"].map(|name| dir.path().join(name).display().to_string());
     let args = ["helm", "--vehicle", "blue_two", "--csv", &files[0], "--png", &files[1], "--svg", &files[2]];
@@ -80,6 +78,9 @@ fn watch_shows_a_helm_and_helm_writes_its_functions() {
     assert!(std::fs::read(&files[1]).expect("it was written").starts_with(b"\x89PNG"));
     assert!(std::fs::read_to_string(&files[2]).expect("it was written").contains("collective"));
     sim.stop();
+    // It ends with the game.
+    lines.for_each(drop);
+    assert!(watch.wait().success());
 }
 
 #[test]
