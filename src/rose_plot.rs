@@ -34,7 +34,7 @@ const RADIUS: f64 = 180.0;
 /// The colour scale: left and right edge, top and bottom.
 const SCALE: [i32; 4] = [444, 460, 88, 448];
 /// Steps of the colour scale.
-const SHADES: usize = 128;
+const SHADES: usize = 64;
 /// matplotlib's viridis at every eighth: evenly spaced to the eye, whatever its colour vision.
 const VIRIDIS: [[u8; 3]; 9] = [
     [68, 1, 84],
@@ -53,7 +53,7 @@ const GREY: RGBColor = RGBColor(90, 90, 90);
 pub(crate) fn write_svg(path: &Path, title: &str, roses: &[Rose]) -> Result<()> {
     let mut svg = String::new();
     let backend = SVGBackend::with_string(&mut svg, size(roses));
-    draw(backend, title, roses, 1).with_context(|| format!("cannot draw {}", path.display()))?;
+    draw(backend, title, roses, 2).with_context(|| format!("cannot draw {}", path.display()))?;
     std::fs::write(path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn write_png(path: &Path, title: &str, roses: &[Rose]) -> Result<()> 
     let (wide, high) = size(roses);
     let mut pixels = vec![0; 3 * wide as usize * high as usize];
     let backend = BitMapBackend::with_buffer(&mut pixels, (wide, high));
-    draw(backend, title, roses, 0).with_context(|| format!("cannot draw {}", path.display()))?;
+    draw(backend, title, roses, 1).with_context(|| format!("cannot draw {}", path.display()))?;
     let write = || -> Result<()> {
         let file = std::io::BufWriter::new(std::fs::File::create(path)?);
         let mut encoder = png::Encoder::new(file, wide, high);
@@ -83,7 +83,7 @@ fn size(roses: &[Rose]) -> (u32, u32) {
     (PANEL.0 * columns as u32, TITLE_HEIGHT + PANEL.1 * rows as u32)
 }
 
-fn draw<B: DrawingBackend>(backend: B, title: &str, roses: &[Rose], under: i32) -> Result<()>
+fn draw<B: DrawingBackend>(backend: B, title: &str, roses: &[Rose], grain: i32) -> Result<()>
 where
     B::ErrorType: 'static,
 {
@@ -95,16 +95,16 @@ where
     for (i, rose) in roses.iter().enumerate() {
         let corner = ((i % columns) as u32 * PANEL.0, TITLE_HEIGHT + (i / columns) as u32 * PANEL.1);
         let area = root.clone().shrink(corner, PANEL);
-        draw_rose(&area, rose, under).map_err(plot::failed)?;
+        draw_rose(&area, rose, grain).map_err(plot::failed)?;
     }
     root.present().map_err(plot::failed)
 }
 
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-fn draw_rose<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, under: i32) -> Drawn<B> {
+fn draw_rose<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, grain: i32) -> Drawn<B> {
     area.draw(&Text::new(rose.title.clone(), (24, 12), (plot::FONT, 15).into_font()))?;
-    draw_disc(area, rose, under)?;
+    draw_disc(area, rose, grain)?;
     draw_axes(area, rose)?;
     draw_scale(area, rose)?;
     let Some((course_deg, speed_m_s)) = rose.chosen else { return Ok(()) };
@@ -114,19 +114,22 @@ fn draw_rose<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, under
     area.draw(&Circle::new(at, 3, BLACK.filled()))
 }
 
-/// The disc, row by row of its pixels, each a few stretches of one colour. In a drawing that can be enlarged, stretches
-/// reach under those that are drawn after them, so that no gap shows.
-fn draw_disc<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, under: i32) -> Drawn<B> {
+/// The disc, row by row of its grains, each a few stretches of one colour. Where grains are more than a pixel, in a
+/// drawing that can be enlarged, stretches reach a pixel under those that are drawn after them, so that no gap shows.
+fn draw_disc<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, grain: i32) -> Drawn<B> {
     let rim = rim(rose);
-    let reach = rim.ceil() as i32;
     let (x0, y0) = place(0.0, 0.0);
-    for y in -reach..=reach {
-        let half = (rim * rim - f64::from(y * y)).max(0.0).sqrt().floor() as i32;
-        let shades: Vec<usize> = (-half..=half).map(|x| shade(value_at(rose, x, y), rose.range)).collect();
-        let mut x = x0 - half;
+    let rows = (rim.ceil() as i32) / grain;
+    for row in -rows..=rows {
+        let y = row * grain;
+        let half = ((rim * rim - f64::from(y * y)).max(0.0).sqrt().floor() as i32) / grain;
+        let value = |i: i32| value_at(rose, i * grain, y);
+        let shades: Vec<usize> = (-half..=half).map(|i| shade(value(i), rose.range)).collect();
+        let mut x = x0 - half * grain;
         for stretch in shades.chunk_by(|a, b| a == b) {
-            let right = x + stretch.len() as i32;
-            let corners = [(x, y0 + y), (right - 1 + 2 * under, y0 + y + 2 * under)];
+            let right = x + stretch.len() as i32 * grain;
+            let under = grain - 1;
+            let corners = [(x, y0 + y), (right + under, y0 + y + grain + under)];
             area.draw(&Rectangle::new(corners, colour(stretch[0]).filled()))?;
             x = right;
         }
@@ -154,7 +157,7 @@ fn draw_axes<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose) -> Dr
     let text = |pos, size: u32, colour: &RGBColor| (plot::FONT, size).into_font().color(colour).pos(pos);
     let centre = Pos::new(HPos::Center, VPos::Center);
     let rim = rim(rose);
-    area.draw(&Circle::new(place(0.0, 0.0), rim.round() as i32, GREY.stroke_width(2)))?;
+    area.draw(&Circle::new(place(0.0, 0.0), rim.round() as i32, GREY.stroke_width(1)))?;
     let ring_m_s = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0].into_iter().find(|step| rose.speed_max_m_s / step <= 4.0);
     let ring_m_s = ring_m_s.unwrap_or(0.25 * rose.speed_max_m_s);
     for i in 1..=4 {
