@@ -265,7 +265,7 @@ mod tests {
             assert_eq!(pixel(&png, place(course_deg, RADIUS * speed)), want, "{course_deg}° at {speed} of the speed");
         }
         let text = std::fs::read_to_string(&svg).expect("it is there");
-        for part in ["blue_one", "keep_clear: weight 300", "#FDE725", "#440154", "3.50 m/s", ">100\n"] {
+        for part in ["blue_one", "keep_clear: weight 300", "#FDE725", "#440154", "3.50 m/s", "\n100\n"] {
             assert!(text.contains(part), "{part}");
         }
     }
