@@ -87,7 +87,7 @@ impl Talk {
         for line in &mut self.lines {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&line.team);
             let words: Vec<Word> = self.words.iter().filter(ours).copied().collect();
-            line.said = (!words.is_empty()).then(|| Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
+            line.said = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
         }
         self.repeat()
     }
