@@ -2,13 +2,17 @@
 
 mod agent_command;
 mod check_command;
+mod helm_command;
+mod helm_page;
 mod identify_command;
 mod list_command;
 mod net_args;
 mod offspring;
+mod onlooker;
 mod override_args;
 mod plot;
 mod result_table;
+mod rose_plot;
 mod run_command;
 mod screen;
 mod sea_command;
@@ -49,8 +53,10 @@ enum Command {
     Sim(sim_command::Args),
     /// Minds one or many boats in a game that a sim serves.
     Agent(agent_command::Args),
-    /// Shows a running game in the terminal.
+    /// Shows a running game in the terminal, or what one boat's helm thinks.
     Watch(watch_command::Args),
+    /// Dumps one decision of a boat's helm: a table, numbers, pictures.
+    Helm(helm_command::Args),
     /// Lists the games on the network and who is in them.
     List(list_command::Args),
     /// Says what a sea means for a boat, and draws it.
@@ -74,6 +80,7 @@ fn main() -> ExitCode {
         Command::Sim(args) => sim_command::run(&args),
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),
+        Command::Helm(args) => helm_command::run(&args),
         Command::List(args) => list_command::run(&args),
         Command::Sea(args) => sea_command::run(&args),
         Command::Trial(args) => trial_command::run(&args),

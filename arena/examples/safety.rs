@@ -228,7 +228,9 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
                 let touch = overlap((pose(a), sizes[0]), (pose(b), sizes[1]));
                 tally.touched += u64::from(touch && !touching[a * count + b]);
                 touching[a * count + b] = touch;
-                if touch && std::env::var("TELL").is_ok() && touched_s[a] < now_s - 1.0 { eprintln!("TOUCH boat{a} boat{b} seed {seed} at {now_s}"); }
+                if touch && std::env::var("TELL").is_ok() && touched_s[a] < now_s - 1.0 {
+                    eprintln!("TOUCH boat{a} boat{b} seed {seed} at {now_s}");
+                }
                 if touch {
                     (touched_s[a], touched_s[b]) = (now_s, now_s);
                 }

@@ -31,13 +31,13 @@ impl Ignored {
 
     fn parts(&self) -> [(u64, &'static str); 7] {
         [
-            (self.garbage, "not understood"),
-            (self.version, "of another version"),
-            (self.not_theirs, "about a boat that is not theirs"),
-            (self.bad_number, "with bad numbers"),
-            (self.surplus, "beyond what a boat may say"),
-            (self.unheard, "of mates that never came"),
-            (self.unadvised, "of a policy that never came"),
+            (self.garbage, "a message not understood"),
+            (self.version, "a message of another version"),
+            (self.not_theirs, "something about a boat that is not theirs"),
+            (self.bad_number, "a number that is none"),
+            (self.surplus, "more words than a boat has"),
+            (self.unheard, "words of a mate that never came"),
+            (self.unadvised, "a proposal that never came"),
         ]
     }
 }
@@ -62,7 +62,7 @@ impl fmt::Display for Ignored {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts = self.parts();
         let said: Vec<String> =
-            parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+            parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} x {what}")).collect();
         f.write_str(&said.join(", "))
     }
 }

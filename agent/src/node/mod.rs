@@ -109,9 +109,9 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &agent))?;
     let notice = look.until(|| ask_notice(&bus, &game))?;
     let mut table = Table::lay(&bus, &game, &notice, settings)?;
-    let (ticket, vehicles) = look.until(|| ask_seat(&bus, &game, &agent, &settings.vehicles))?;
+    let seat = look.until(|| ask_seat(&bus, &game, &agent, &settings.vehicles))?;
+    table.seat(&bus, &game, &notice.scenario, seat)?;
     (look.tell)(News::Joined { game: game.as_str() });
-    table.seat(ticket, &vehicles)?;
     let played = table.play(settings);
     (look.tell)(News::Left { ignored: table.ignored() });
     bus.close();

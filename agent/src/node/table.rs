@@ -30,7 +30,8 @@ pub(super) struct Table {
     seated: Vec<Seated>,
     talk: Talk,
     advice: Advice,
-    window: Window,
+    /// Opened with the seat: an agent that waits for one must not answer for the one that has it.
+    window: Option<Window>,
     orders: Publisher,
     line: Line,
     ticket: u64,
@@ -57,7 +58,7 @@ impl Table {
         Ok(Table {
             talk: Talk::open(bus, game, scenario, &seated, limit(WORDS_LATE))?,
             advice: Advice::open(bus, game, scenario, &seated, limit(settings.policy_wait))?,
-            window: Window::open(bus, game, scenario, &seated)?,
+            window: None,
             orders: bus.publisher(topic::orders(game, &bus.id()), Delivery::Wait)?,
             line: Line::open(bus, game, scenario, &seated)?,
             seated,
@@ -68,12 +69,19 @@ impl Table {
     }
 
     /// The sim has let these boats in, with this ticket.
-    pub(super) fn seat(&mut self, ticket: u64, vehicles: &[VehicleId]) -> Result<(), NodeError> {
-        self.ticket = ticket;
-        if self.seated.iter().map(|seat| &seat.vehicle).eq(vehicles) {
-            return Ok(());
+    pub(super) fn seat(
+        &mut self,
+        bus: &Bus,
+        game: &GameName,
+        scenario: &Scenario,
+        (ticket, vehicles): (u64, Vec<VehicleId>),
+    ) -> Result<(), NodeError> {
+        if !self.seated.iter().map(|seat| seat.vehicle).eq(vehicles) {
+            return Err(NodeError::Refused("it let other boats in than those that asked".to_owned()));
         }
-        Err(NodeError::Refused("it let other boats in than those that asked".to_owned()))
+        self.ticket = ticket;
+        self.window = Some(Window::open(bus, game, scenario, &self.seated)?);
+        Ok(())
     }
 
     /// Everything that was not heeded so far.
@@ -100,7 +108,9 @@ impl Table {
                 }
                 decided |= self.decide()?;
             }
-            self.window.answer(&mut self.seated, decided);
+            if let Some(window) = &mut self.window {
+                window.answer(&mut self.seated, decided);
+            }
             let sim_alive = self.line.sim_alive.load(Ordering::Relaxed);
             let limit = if sim_alive { settings.silence } else { settings.silence.min(SILENCE_AFTER_DEATH) };
             if clock::since(heard) > limit {

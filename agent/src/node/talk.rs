@@ -62,11 +62,16 @@ impl Talk {
         if self.lines.is_empty() {
             return;
         }
-        if !self.patience.is_zero() {
+        // In real time nobody waits, and nobody counts either: mates decide when they do.
+        let waits = !self.patience.is_zero();
+        if waits {
             self.mailbag.wait(self.patience, |mailbag| mailbag.is_complete(seq));
         }
         self.words.clear();
-        self.mailbag.visit(|mailbag| mailbag.hear(seq, &mut self.words));
+        self.mailbag.visit(|mailbag| {
+            let missed = mailbag.hear(seq, &mut self.words);
+            mailbag.ignored.unheard += if waits { missed } else { 0 };
+        });
         self.pass_on(seated);
     }
 
@@ -82,7 +87,7 @@ impl Talk {
         for line in &mut self.lines {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&line.team);
             let words: Vec<Word> = self.words.iter().filter(ours).copied().collect();
-            line.said = (!words.is_empty()).then(|| Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
+            line.said = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
         }
         self.repeat()
     }

@@ -1,0 +1,73 @@
+//! An onlooker: a session that watches a game and asks about it.
+
+use crate::net_args::LeafArgs;
+use anyhow::{Context, Result, bail};
+use bus::Bus;
+use game::VehicleId;
+use game::helm::{HelmQuestion, HelmReport};
+use game::message::Notice;
+use game::topic::{self, GameName, Part};
+use std::time::Duration;
+
+const ANSWER: Duration = Duration::from_secs(2);
+
+/// Somebody who looks on.
+pub(crate) struct Onlooker {
+    pub(crate) bus: Bus,
+    pub(crate) game: GameName,
+    pub(crate) notice: Notice,
+}
+
+impl Onlooker {
+    /// Comes to a game that runs.
+    pub(crate) fn come(leaf: &LeafArgs) -> Result<Onlooker> {
+        let bus = Bus::leaf(&leaf.net()?).context("no game to watch")?;
+        let game = match &leaf.game {
+            Some(game) => game.clone(),
+            None => only_game(&bus)?,
+        };
+        let answer = bus.ask(&topic::scenario(&game), Vec::new(), ANSWER)?;
+        let bytes = answer.with_context(|| format!("no sim answers for game {:?}", game.as_str()))?;
+        let notice: Notice = serde_json::from_slice(&bytes).context("the sim is of another version of Squall")?;
+        Ok(Onlooker { bus, game, notice })
+    }
+
+    /// The vehicle of this name.
+    pub(crate) fn vehicle(&self, name: &str) -> Result<VehicleId> {
+        let scenario = &self.notice.scenario;
+        scenario.vehicle_by_name(name).with_context(|| {
+            let names: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
+            format!("there is no vehicle {name:?}; there are {}", names.join(", "))
+        })
+    }
+
+    /// What a vehicle's helm thinks; nothing if nobody minds it now.
+    pub(crate) fn helm(&self, vehicle: VehicleId, question: HelmQuestion) -> Result<Option<HelmReport>> {
+        let question = serde_json::to_vec(&question).context("a question is JSON")?;
+        let key = topic::helm(&self.game, &self.notice.scenario, vehicle);
+        let Some(answer) = self.bus.ask(&key, question, ANSWER)? else { return Ok(None) };
+        let report: Option<HelmReport> =
+            serde_json::from_slice(&answer).context("the agent is of another version of Squall")?;
+        let name = &self.notice.scenario.vehicles[vehicle.index()].name;
+        report.with_context(|| format!("the mind of {name} goes by no helm")).map(Some)
+    }
+
+    /// Whether the game's sim is still there.
+    pub(crate) fn is_on(&self) -> Result<bool> {
+        Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game, Part::Sim), ANSWER)?.is_empty())
+    }
+}
+
+fn only_game(bus: &Bus) -> Result<GameName> {
+    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
+    let sims = keys.iter().filter_map(|key| topic::parse_alive(key)).filter(|(_, part, _)| *part == Part::Sim);
+    let games: Vec<GameName> = sims.map(|(game, _, _)| game).collect();
+    match games.as_slice() {
+        [game] => Ok(game.clone()),
+        [] => bail!("no game is on the network"),
+        several => {
+            let names: Vec<&str> = several.iter().map(GameName::as_str).collect();
+            bail!("choose with --game among {}", names.join(", "))
+        }
+    }
+}
