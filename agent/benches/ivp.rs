@@ -32,6 +32,7 @@ fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Wish)> {
                 min_m: 10.0,
                 max_m: 75.0,
                 approach: Approach::Avoid { floor: 25.0 },
+                lag: None,
             };
             functions.push((300.0, Objective::Closest(closest)));
         }

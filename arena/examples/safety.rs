@@ -190,34 +190,6 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
     let mut told = 0;
     while !contest.is_over() {
         arena::decide(&mut contest, &mut minds, &mut talk);
-        if std::env::var("TELL").is_ok() {
-            for i in 0..count {
-                let b = &contest.world().state().boats[i];
-                let r = minds[i].report().unwrap();
-                let near = (0..count)
-                    .filter(|j| *j != i)
-                    .map(|j| contest.world().state().boats[j].pose.at.distance(b.pose.at))
-                    .fold(1e9, f64::min);
-                let active: Vec<String> =
-                    r.functions.iter().map(|f| format!("{}:{:.0}", f.behaviour, f.weight)).collect();
-                eprintln!(
-                    "{:.1} boat{i} x {:.1} y {:.1} psi {:.0} u {:.2} v {:.2} r {:.2} -> {:?} {:?} hold {:?} near {near:.1} out {} tagged {} {}",
-                    contest.now().as_s(),
-                    b.pose.at.east,
-                    b.pose.at.north,
-                    b.pose.psi_rad.to_degrees(),
-                    b.nu.surge,
-                    b.nu.sway,
-                    b.nu.yaw,
-                    r.course_deg,
-                    r.speed_m_s,
-                    r.hold,
-                    contest.world().state().standing.vehicles[i].outside,
-                    contest.world().state().standing.vehicles[i].tagged,
-                    active.join(" ")
-                );
-            }
-        }
         contest.advance();
         let now_s = contest.now().as_s();
         let pose = |i: usize| contest.world().state().boats[i].pose;
@@ -228,9 +200,6 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
                 let touch = overlap((pose(a), sizes[0]), (pose(b), sizes[1]));
                 tally.touched += u64::from(touch && !touching[a * count + b]);
                 touching[a * count + b] = touch;
-                if touch && std::env::var("TELL").is_ok() && touched_s[a] < now_s - 1.0 {
-                    eprintln!("TOUCH boat{a} boat{b} seed {seed} at {now_s}");
-                }
                 if touch {
                     (touched_s[a], touched_s[b]) = (now_s, now_s);
                 }

@@ -20,6 +20,7 @@ fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_ha
     let scenario: Scenario = game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
     let mut minds = agent::minds_of(&scenario);
     let mut contest = Contest::new(&scenario, 1).unwrap_or_else(|e| panic!("{e}"));
+    let mut talk = arena::Talk::default();
     let (mut free, mut busy) = (0, 0);
     while !contest.is_over() {
         let boats = &contest.world().state().boats;

@@ -1,14 +1,12 @@
 //! Collision avoidance: keeps clear of other boats by the closest point of approach, with a function for each.
 
-use super::{Conduct, is_meant, nearness};
+use super::{Conduct, is_meant, lag, nearness};
 use crate::helm::{Bid, Scene};
 use crate::ivp::{Approach, Closest, Objective};
 use game::strategy::{AvoidCollision, Grade};
 
 /// What a closest point of approach just beyond the least distance is worth: MOOS-IvP's 25.
 const FLOOR: f64 = 25.0;
-/// How long a boat goes on as it goes before a decision shows, s.
-const REACTION_S: f64 = 0.7;
 
 pub(super) struct Conductor(pub(super) AvoidCollision);
 
@@ -23,8 +21,7 @@ impl Conduct for Conductor {
             if distance_m >= outer_m || !is_meant(task.contacts, scene, other) {
                 continue;
             }
-            // What is decided now is felt a little later.
-            let line = other.at - scene.at + (other.velocity - scene.velocity).scaled(REACTION_S);
+            let line = other.at - scene.at;
             let closest = Closest {
                 north_m: line.north,
                 east_m: line.east,
@@ -34,6 +31,7 @@ impl Conduct for Conductor {
                 min_m,
                 max_m: max_m.max(min_m),
                 approach: Approach::Avoid { floor: FLOOR },
+                lag: Some(lag(scene)),
             };
             let share = graded(task.grade, nearness(distance_m, inner_m, outer_m));
             bid.ask_for(share, Some(other.vehicle), &Objective::Closest(closest));

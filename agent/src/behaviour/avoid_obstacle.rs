@@ -1,7 +1,7 @@
 //! Obstacle avoidance: keeps clear of what stands in the water.
 
 use super::loiter::distance_to_side;
-use super::{Conduct, nearness};
+use super::{Conduct, lag, nearness};
 use crate::helm::{Bid, Scene};
 use crate::ivp::{Approach, Closest, Objective};
 use game::Ned;
@@ -63,6 +63,7 @@ impl Conduct for Conductor {
                         min_m: min_m + radius_m,
                         max_m: max_m + radius_m,
                         approach: Approach::Avoid { floor: FLOOR },
+                        lag: Some(lag(scene)),
                     };
                     bid.ask_for(share, None, &Objective::Closest(closest));
                 }

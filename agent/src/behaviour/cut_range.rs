@@ -32,6 +32,7 @@ impl Conduct for Conductor {
             min_m: 0.0,
             max_m: distance_m.max(1.0),
             approach: Approach::Seek,
+            lag: None,
         };
         bid.ask_for(1.0 - patience, Some(contact.vehicle), &Objective::Closing(closing));
         bid.ask_for(patience, Some(contact.vehicle), &Objective::Closest(closest));

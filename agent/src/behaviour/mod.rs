@@ -18,9 +18,9 @@ mod trail;
 mod waypoint;
 
 use crate::helm::{Bid, Other, Scene};
-use crate::ivp::{Objective, Peak, Peaks};
+use crate::ivp::{Lag, Objective, Peak, Peaks};
 use game::strategy::{Contacts, Task};
-use game::{Ned, angle};
+use game::{Ned, angle, math};
 use std::f64::consts::PI;
 
 /// What a behaviour does at its turn.
@@ -60,6 +60,24 @@ pub(crate) fn conduct_of(task: &Task) -> Box<dyn Conduct> {
 const SPEED_BASE_M_S: f64 = 1.6;
 /// How much less the edge of a peak of speed is worth than its summit: so that the desired speed itself is best.
 const SPEED_SUMMIT_DELTA: f64 = 20.0;
+
+/// How fast a boat is thought to turn, rad/s. A Surveyor under way does 25 degrees a second.
+const TURN_RAD_S: f64 = 0.35;
+/// How long it takes until a decision shows, s.
+const REACTION_S: f64 = 0.7;
+
+/// How slow the boat is to follow.
+fn lag(scene: &Scene) -> Lag {
+    let (heading_east, heading_north) = math::sin_cos(scene.own.nav.psi_rad);
+    Lag {
+        velocity_north_m_s: scene.velocity.north,
+        velocity_east_m_s: scene.velocity.east,
+        heading_north,
+        heading_east,
+        reaction_s: REACTION_S,
+        turn_rad_s: TURN_RAD_S,
+    }
+}
 
 /// Straight for a place at a speed, both alike: the function of MOOS-IvP's waypoints.
 fn drive(scene: &Scene, to: Ned, speed_m_s: f64) -> Objective<'static> {

@@ -1,21 +1,17 @@
 //! Operation region: keeps the boat on the field, and brings it back slowly if it got out.
 
-use super::Conduct;
+use super::{Conduct, REACTION_S, TURN_RAD_S};
 use crate::helm::{Bid, Scene};
 use crate::ivp::{Objective, Peak, Peaks};
 use game::angle::wrap_pi;
 use game::strategy::OpRegion;
 use game::{Ned, SimTime, math};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// How far inside of the edge a boat steers for that comes back, m.
 const WELL_IN_M: f64 = 5.0;
 /// From the recovery speed down to nothing, m/s: it comes back as slowly as said.
 const RECOVERY_BASE_M_S: f64 = 0.5;
-/// How fast a boat is thought to turn, rad/s. A Surveyor under way does 25 degrees a second.
-const TURN_RAD_S: f64 = 0.35;
-/// How long it takes until it begins to, s.
-const REACTION_S: f64 = 0.7;
 
 /// Where the boat counts as being.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,11 +27,13 @@ pub(super) struct Conductor {
     crossed: Option<SimTime>,
     /// Utilities of all courses and speeds.
     table: Vec<f32>,
+    /// The speeds, m/s.
+    speeds: Vec<f32>,
 }
 
 impl Conductor {
     pub(super) fn new(task: OpRegion) -> Conductor {
-        Conductor { task, side: Side::In, crossed: None, table: Vec::new() }
+        Conductor { task, side: Side::In, crossed: None, table: Vec::new(), speeds: Vec::new() }
     }
 
     /// A boat counts as out, or in again, when it has been so for a while.
@@ -97,36 +95,61 @@ impl Conductor {
         let grid = bid.problem().grid();
         let (heading_rad, surge_m_s) = (scene.own.nav.psi_rad, scene.own.nav.surge_m_s.max(0.0));
         let near = |edge: &&(Ned, f64)| edge.1 <= region.reach_m(scene, lookahead_s, save_m);
+        let per_m = (50.0 / save_m) as f32;
         self.table.clear();
         self.table.resize(grid.courses() * grid.speeds(), 100.0);
+        self.speeds.clear();
+        self.speeds.extend((0..grid.speeds()).map(|j| grid.speed_m_s(j) as f32));
         for (normal, inside_m) in region.edges.iter().filter(near) {
-            let out_rad = math::atan2(normal.east, normal.north);
-            let drift_out_m_s = region.drift.dot(*normal);
+            let from_rad = wrap_pi(heading_rad - math::atan2(normal.east, normal.north));
+            let (sin_from, cos_from) = math::sin_cos(from_rad);
+            let start_m = inside_m - REACTION_S * surge_m_s * cos_from;
+            let drift_m = lookahead_s * region.drift.dot(*normal);
             for (k, row) in self.table.chunks_mut(grid.speeds()).enumerate() {
-                let turn = Turn::new(wrap_pi(heading_rad - out_rad), wrap_pi(grid.course_rad(k) - heading_rad));
+                let (north, east) = grid.direction(k);
+                let course = Ned { north: f64::from(north), east: f64::from(east) };
+                // The sine and cosine of its angle to the normal.
+                let to = (normal.north * course.east - normal.east * course.north, course.dot(*normal));
+                let turn = Turn::new((from_rad, sin_from), wrap_pi(grid.course_rad(k) - heading_rad), to);
                 let straight_s = (lookahead_s - turn.duration_s).max(0.0);
-                for (j, utility) in row.iter_mut().enumerate() {
-                    let speed_m_s = grid.speed_m_s(j);
-                    // While it turns it has not reached the new speed yet.
-                    let turning_m_s = 0.5 * (surge_m_s + speed_m_s);
-                    let start_m = inside_m - REACTION_S * surge_m_s * turn.outward_first;
-                    let least_m = start_m - turning_m_s * turn.farthest_s;
-                    let turned_m = start_m - turning_m_s * turn.end_s;
-                    let end_m = turned_m - straight_s * speed_m_s * turn.outward_last - lookahead_s * drift_out_m_s;
-                    let kept = |clear_m: f64| (clear_m / save_m).clamp(0.0, 1.0);
-                    let worth = 50.0 * (kept(least_m.min(start_m).min(end_m)) + kept(end_m));
-                    *utility = utility.min(worth as f32);
+                // Everything is linear in the new speed; while the boat turns it has half of the old one still.
+                let turned = Line::new(start_m, -turn.end_s).at_half(surge_m_s);
+                let farthest = Line::new(start_m, -turn.farthest_s).at_half(surge_m_s);
+                let end = turned.and(-drift_m, -straight_s * turn.outward_last);
+                for (utility, speed_m_s) in row.iter_mut().zip(&self.speeds) {
+                    let end_m = end.0 + end.1 * speed_m_s;
+                    let least_m = (farthest.0 + farthest.1 * speed_m_s).min(start_m as f32).min(end_m);
+                    let kept = |clear_m: f32| (clear_m * per_m).max(0.0).min(50.0);
+                    *utility = utility.min(kept(least_m) + kept(end_m));
                 }
             }
         }
     }
 }
 
+/// A distance, m, that depends on the new speed: what it is at rest, and how much more it is for each m/s.
+#[derive(Clone, Copy)]
+struct Line(f32, f32);
+
+impl Line {
+    fn new(at_rest_m: f64, per_speed_s: f64) -> Line {
+        Line(at_rest_m as f32, per_speed_s as f32)
+    }
+
+    /// As long as the speed is the mean of this and the new one.
+    fn at_half(self, old_m_s: f64) -> Line {
+        let half = 0.5 * self.1;
+        Line(self.0 + half * old_m_s as f32, half)
+    }
+
+    fn and(self, at_rest_m: f64, per_speed_s: f64) -> Line {
+        Line(self.0 + at_rest_m as f32, self.1 + per_speed_s as f32)
+    }
+}
+
 /// A turn, as seen from an edge: distances outwards for each m/s of speed.
 struct Turn {
-    /// How much of the way is outwards at first: the cosine of the angle to the normal.
-    outward_first: f64,
-    /// How much of it is in the end.
+    /// How much of the way is outwards in the end: the cosine of the angle to the normal.
     outward_last: f64,
     /// How long the turn takes, with the reaction, s.
     duration_s: f64,
@@ -137,21 +160,18 @@ struct Turn {
 }
 
 impl Turn {
-    /// From an angle to the edge's outward normal, by another angle, rad.
+    /// From an angle to the edge's outward normal (and its sine), by another angle, rad, to a third (its sine and cosine).
     ///
     /// The way outwards is the integral of the cosine: the sine, divided by the rate of turn, whose extremes are at right
     /// angles to the normal.
-    fn new(from_rad: f64, by_rad: f64) -> Turn {
-        let (sin_from, outward_first) = math::sin_cos(from_rad);
-        let (sin_to, outward_last) = math::sin_cos(from_rad + by_rad);
+    fn new((from_rad, sin_from): (f64, f64), by_rad: f64, (sin_to, cos_to): (f64, f64)) -> Turn {
         let side = if by_rad < 0.0 { -1.0 } else { 1.0 };
         let end_s = side * (sin_to - sin_from) / TURN_RAD_S;
         let to_parallel_rad = (side * FRAC_PI_2 - from_rad) * side;
-        let passes = to_parallel_rad.rem_euclid(2.0 * PI) < by_rad.abs();
+        let passes = to_parallel_rad.rem_euclid(TAU) < by_rad.abs();
         let parallel_s = (1.0 - side * sin_from) / TURN_RAD_S;
         Turn {
-            outward_first,
-            outward_last,
+            outward_last: cos_to,
             duration_s: REACTION_S + by_rad.abs() / TURN_RAD_S,
             farthest_s: if passes { parallel_s.max(end_s) } else { end_s.max(0.0) },
             end_s,
@@ -233,7 +253,7 @@ mod tests {
         for from_deg in (-180..180).step_by(25) {
             for by_deg in (-180..=180).step_by(20) {
                 let (from_rad, by_rad) = (f64::from(from_deg).to_radians(), f64::from(by_deg).to_radians());
-                let turn = Turn::new(from_rad, by_rad);
+                let turn = Turn::new((from_rad, math::sin_cos(from_rad).0), by_rad, math::sin_cos(from_rad + by_rad));
                 let (farthest_m, out_m) = stepped(from_rad, by_rad);
                 let what = format!("from {from_deg} by {by_deg} degrees");
                 assert!((turn.farthest_s - farthest_m).abs() < 1e-4, "{what}: {} m, {farthest_m}", turn.farthest_s);

@@ -9,6 +9,9 @@
 //!
 //! since the square of the distance is a parabola in `t`.
 //!
+//! A boat does not turn at once: with a [`Lag`] it goes on as it goes for a while, the longer the more it must turn, and only
+//! then as the candidate says. The least distance of both legs counts.
+//!
 //! For a bound over a span of speeds: at any fixed time `t` the distance is convex in `s`, so its largest value is at an
 //! end of the span; and since the closest approach is no farther than the distance at `t`, that is a bound for all of
 //! the span. The other way round, a change of speed by `ds` moves the own ship by no more than `ds` times the horizon.
@@ -53,6 +56,47 @@ pub struct Closest {
     pub max_m: f64,
     /// Keep away or come close.
     pub approach: Approach,
+    /// How long the own ship goes on as it goes; none if it does as decided at once.
+    pub lag: Option<Lag>,
+}
+
+/// How slow the own ship is to follow: it goes on with its present velocity for the reaction time, and for as long again as
+/// half of its turn takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lag {
+    /// Present velocity of the own ship to the north, m/s.
+    pub velocity_north_m_s: f64,
+    /// Present velocity of the own ship to the east, m/s.
+    pub velocity_east_m_s: f64,
+    /// Present heading, as a unit vector: its part to the north.
+    pub heading_north: f64,
+    /// Its part to the east.
+    pub heading_east: f64,
+    /// Until a decision shows at all, s.
+    pub reaction_s: f64,
+    /// How fast it turns, rad/s.
+    pub turn_rad_s: f64,
+}
+
+/// The angle of a turn is close to this many times the chord that it spans on a circle of radius 1: between 1 for small turns
+/// and half of pi for half a turn.
+const ANGLE_OF_CHORD: f64 = 1.15;
+
+impl Lag {
+    /// Of a boat that does as decided at once.
+    const NONE: Lag = Lag {
+        velocity_north_m_s: 0.0,
+        velocity_east_m_s: 0.0,
+        heading_north: 1.0,
+        heading_east: 0.0,
+        reaction_s: 0.0,
+        turn_rad_s: f64::INFINITY,
+    };
+
+    /// How much longer it goes on for each unit of chord of its turn, s.
+    fn chord_s(&self) -> f64 {
+        0.5 * ANGLE_OF_CHORD / self.turn_rad_s
+    }
 }
 
 impl Closest {
@@ -64,7 +108,13 @@ impl Closest {
         };
         let numbers = [self.north_m, self.east_m, self.velocity_north_m_s, self.velocity_east_m_s];
         let limits = [self.horizon_s, self.min_m, self.max_m, floor];
-        let sound = numbers.iter().chain(&limits).all(|x| x.is_finite() && x.abs() < 1e7) && self.horizon_s >= 0.0;
+        let lag = self.lag.unwrap_or(Lag::NONE);
+        let heading = [lag.heading_north, lag.heading_east];
+        let own = [lag.velocity_north_m_s, lag.velocity_east_m_s, lag.reaction_s, lag.chord_s()];
+        let sound = numbers.iter().chain(&limits).chain(&heading).chain(&own).all(|x| x.is_finite() && x.abs() < 1e7)
+            && self.horizon_s >= 0.0
+            && lag.reaction_s >= 0.0
+            && lag.chord_s() >= 0.0;
         debug_assert!(sound, "{self:?}");
         if !sound {
             return None;
@@ -73,7 +123,9 @@ impl Closest {
         let width_m = self.max_m - self.min_m;
         let slope = if width_m > 0.0 { ((100.0 - floor) / width_m).min(STEP) } else { STEP };
         let reach_m = game::math::length(self.velocity_north_m_s, self.velocity_east_m_s) + speed_max_m_s;
-        let scale_m = game::math::length(self.north_m, self.east_m) + reach_m * self.horizon_s;
+        let own_m_s = game::math::length(lag.velocity_north_m_s, lag.velocity_east_m_s);
+        let lag_m = (reach_m + own_m_s) * (lag.reaction_s + 2.0 * lag.chord_s());
+        let scale_m = game::math::length(self.north_m, self.east_m) + reach_m * self.horizon_s + lag_m;
         let splat = |x: f64| f32x8::splat(x as f32);
         Some(Ready {
             north: splat(self.north_m),
@@ -85,6 +137,13 @@ impl Closest {
             slope: splat(slope),
             floor: splat(floor),
             seek: self.approach == Approach::Seek,
+            heading: (splat(lag.heading_north), splat(lag.heading_east)),
+            reaction: splat(lag.reaction_s),
+            chord: splat(lag.chord_s()),
+            present: (
+                splat(self.velocity_north_m_s - lag.velocity_north_m_s),
+                splat(self.velocity_east_m_s - lag.velocity_east_m_s),
+            ),
             margin: splat(ROUNDING * scale_m),
         })
     }
@@ -102,31 +161,62 @@ pub(super) struct Ready {
     slope: f32x8,
     floor: f32x8,
     seek: bool,
+    /// The own ship's, a unit vector.
+    heading: (f32x8, f32x8),
+    reaction: f32x8,
+    /// For each unit of chord of a turn.
+    chord: f32x8,
+    /// How the contact moves past at present.
+    present: (f32x8, f32x8),
     margin: f32x8,
+}
+
+/// Where the contact is when the own ship does as decided, and how near it came until then.
+#[derive(Clone, Copy)]
+struct Leg {
+    north: f32x8,
+    east: f32x8,
+    /// The square of the least distance, m2.
+    least: f32x8,
 }
 
 impl Ready {
     /// Utilities of eight candidates.
     #[inline(always)]
     pub(super) fn utility(&self, north: f32x8, east: f32x8, speed: f32x8) -> f32x8 {
-        let (w_north, w_east) = self.passing(north, east, speed);
-        let t = self.time(w_north, w_east);
-        self.worth(self.distance(w_north, w_east, t))
+        let leg = self.going_on(north, east);
+        let w = self.passing(north, east, speed);
+        let square = square((leg.north, leg.east), w, Ready::time((leg.north, leg.east), w, self.horizon));
+        self.worth(square.fast_min(leg.least).sqrt())
     }
 
     /// What no speed from `slow` to `fast` exceeds, on each of eight courses.
     #[inline]
     pub(super) fn bound(&self, north: f32x8, east: f32x8, slow: f32x8, fast: f32x8) -> f32x8 {
         let half = f32x8::splat(0.5);
-        let (w_north, w_east) = self.passing(north, east, (slow + fast) * half);
-        let t = self.time(w_north, w_east);
+        let leg = self.going_on(north, east);
+        let p = (leg.north, leg.east);
+        let w = self.passing(north, east, (slow + fast) * half);
+        let t = Ready::time(p, w, self.horizon);
         if self.seek {
-            return self.worth(self.distance(w_north, w_east, t) - (fast - slow) * half * self.horizon - self.margin);
+            let least = square(p, w, t).sqrt() - (fast - slow) * half * self.horizon;
+            return self.worth(least.fast_min(leg.least.sqrt()) - self.margin);
         }
         // The ends of the span at the same time.
         let (slow, fast) = (self.passing(north, east, slow), self.passing(north, east, fast));
-        let square = self.square(slow.0, slow.1, t).fast_max(self.square(fast.0, fast.1, t));
-        self.worth(square.sqrt() + self.margin)
+        let most = square(p, slow, t).fast_max(square(p, fast, t)).fast_min(leg.least);
+        self.worth(most.sqrt() + self.margin)
+    }
+
+    /// The way until the own ship does as decided.
+    #[inline(always)]
+    fn going_on(&self, north: f32x8, east: f32x8) -> Leg {
+        let cosine = self.heading.0 * north + self.heading.1 * east;
+        let chord = (f32x8::splat(2.0) - f32x8::splat(2.0) * cosine).fast_max(f32x8::ZERO).sqrt();
+        let lag = self.reaction + self.chord * chord;
+        let p = (self.north, self.east);
+        let least = square(p, self.present, Ready::time(p, self.present, lag));
+        Leg { north: p.0 + self.present.0 * lag, east: p.1 + self.present.1 * lag, least }
     }
 
     /// How the contact moves past, m/s.
@@ -135,26 +225,13 @@ impl Ready {
         (self.velocity_north - speed * north, self.velocity_east - speed * east)
     }
 
-    /// The time of the closest point of approach within the horizon, s.
+    /// The time of the closest point of approach, up to a longest one, s.
     #[inline(always)]
-    fn time(&self, w_north: f32x8, w_east: f32x8) -> f32x8 {
-        let dot = self.north * w_north + self.east * w_east;
+    fn time(p: (f32x8, f32x8), w: (f32x8, f32x8), longest: f32x8) -> f32x8 {
+        let dot = p.0 * w.0 + p.1 * w.1;
         // With hardly any motion past each other any time will do.
-        let square = (w_north * w_north + w_east * w_east).fast_max(f32x8::splat(1e-20));
-        (-dot / square).fast_max(f32x8::ZERO).fast_min(self.horizon)
-    }
-
-    /// The distance at a time, m.
-    #[inline(always)]
-    fn distance(&self, w_north: f32x8, w_east: f32x8, t: f32x8) -> f32x8 {
-        self.square(w_north, w_east, t).sqrt()
-    }
-
-    /// The square of the distance at a time, m2.
-    #[inline(always)]
-    fn square(&self, w_north: f32x8, w_east: f32x8, t: f32x8) -> f32x8 {
-        let (north, east) = (self.north + w_north * t, self.east + w_east * t);
-        north * north + east * east
+        let square = (w.0 * w.0 + w.1 * w.1).fast_max(f32x8::splat(1e-20));
+        (-dot / square).fast_max(f32x8::ZERO).fast_min(longest)
     }
 
     /// Utility of a distance.
@@ -168,4 +245,11 @@ impl Ready {
             (self.floor + rise).fast_min(full) & distance.simd_gt(self.min)
         }
     }
+}
+
+/// The square of the distance at a time, m2, from a place with a velocity.
+#[inline(always)]
+fn square(p: (f32x8, f32x8), w: (f32x8, f32x8), t: f32x8) -> f32x8 {
+    let (north, east) = (p.0 + w.0 * t, p.1 + w.1 * t);
+    north * north + east * east
 }

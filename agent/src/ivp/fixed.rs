@@ -63,3 +63,11 @@ pub(super) fn utility(utility: f64) -> f32 {
     debug_assert!(utility.is_finite(), "utility {utility}");
     if utility.is_finite() { utility.clamp(0.0, 100.0) as f32 } else { 0.0 }
 }
+
+/// Eight utilities brought into 0 to 100; those that are no number count 0. The same as [`utility`].
+#[inline]
+pub(super) fn utilities(utilities: f32x8) -> f32x8 {
+    debug_assert!(utilities.as_array().iter().all(|utility| utility.is_finite()), "utilities {utilities:?}");
+    let is_finite = utilities.abs().simd_lt(f32x8::splat(f32::INFINITY));
+    (utilities & is_finite).fast_max(f32x8::ZERO).fast_min(f32x8::splat(100.0))
+}

@@ -38,7 +38,7 @@ pub mod piecewise;
 mod problem;
 mod stay;
 
-pub use closest::{Approach, Closest};
+pub use closest::{Approach, Closest, Lag};
 pub use closing::Closing;
 pub use fixed::{FUNCTIONS_MAX, QUANTUM, WEIGHT_MAX};
 pub use grid::Grid;

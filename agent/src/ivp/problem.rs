@@ -249,9 +249,11 @@ impl Problem {
         let lanes = self.speeds.len();
         self.table.resize(lanes * self.grid.courses(), i32x8::ZERO);
         for (k, row) in table.chunks(self.grid.speeds()).enumerate() {
-            for (j, &utility) in row.iter().enumerate() {
-                let quanta = weight.quanta_of_one(super::fixed::utility(f64::from(utility)));
-                self.table[k * lanes + j / LANES].as_mut_array()[j % LANES] += quanta;
+            for (sum, utilities) in self.table[k * lanes..].iter_mut().zip(row.chunks(LANES)) {
+                // Beyond the last speed nothing is added.
+                let mut eight = [0.0; LANES];
+                eight[..utilities.len()].copy_from_slice(utilities);
+                *sum += weight.quanta(super::fixed::utilities(f32x8::new(eight)));
             }
         }
     }

@@ -153,6 +153,7 @@ fn as_many_functions_as_there_may_be_do_not_overflow() {
         min_m: 0.0,
         max_m: 1.0,
         approach: Approach::Avoid { floor: 0.0 },
+        lag: None,
         ..scene::closest(&mut stream, &grid)
     };
     let functions = vec![(1e9, Objective::Closest(far)); FUNCTIONS_MAX];
@@ -176,6 +177,7 @@ fn a_scene_is_pinned_so_that_every_machine_decides_alike() {
             min_m: 10.0,
             max_m: 75.0,
             approach: Approach::Avoid { floor: 25.0 },
+            lag: None,
         })
     };
     let waypoint =

@@ -1,6 +1,6 @@
 //! Random decisions, with functions of every kind and plenty of equal values.
 
-use agent::ivp::{Approach, Choice, Closest, Closing, Combine, Decision, Edge, Grid, Objective, Peak, Peaks};
+use agent::ivp::{Approach, Choice, Closest, Closing, Combine, Decision, Edge, Grid, Lag, Objective, Peak, Peaks};
 use agent::ivp::{Problem, SpeedLimit, Stay, Wish};
 use game::stream::Stream;
 
@@ -143,6 +143,19 @@ pub(crate) fn closest(stream: &mut Stream, grid: &Grid) -> Closest {
         max_m: min_m + [0.0, 0.3, 1.0][stream.below(3) as usize] * range,
         approach: [Approach::Avoid { floor: 25.0 }, Approach::Avoid { floor: 0.0 }, Approach::Seek]
             [stream.below(3) as usize],
+        lag: (stream.below(2) == 0).then(|| lag(stream, grid)),
+    }
+}
+
+fn lag(stream: &mut Stream, grid: &Grid) -> Lag {
+    let (heading_east, heading_north) = game::math::sin_cos(stream.between(-4.0, 4.0));
+    Lag {
+        velocity_north_m_s: stream.between(-1.0, 1.0) * grid.speed_max_m_s(),
+        velocity_east_m_s: stream.between(-1.0, 1.0) * grid.speed_max_m_s(),
+        heading_north,
+        heading_east,
+        reaction_s: stream.between(0.0, 2.0),
+        turn_rad_s: stream.between(0.1, 2.0),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The functions themselves, at points that were worked out by hand or by another way.
 
-use agent::ivp::{Approach, Closest, Closing, Combine, Edge, Grid, Objective, Peak, Peaks, SpeedLimit, Stay};
+use agent::ivp::{Approach, Closest, Closing, Combine, Edge, Grid, Lag, Objective, Peak, Peaks, SpeedLimit, Stay};
 use game::stream::Stream;
 
 /// Single precision over some hundred metres, in points of utility.
@@ -57,12 +57,20 @@ fn searched_m(closest: &Closest, grid: &Grid, k: usize, j: usize) -> f64 {
     const TIMES: usize = 40_000;
     let (sin, cos) = game::math::sin_cos(grid.course_rad(k));
     let speed_m_s = grid.speed_m_s(j);
-    let at = |i: usize| {
-        let t = closest.horizon_s * i as f64 / TIMES as f64;
-        let north_m = closest.north_m + (closest.velocity_north_m_s - speed_m_s * cos) * t;
-        game::math::length(north_m, closest.east_m + (closest.velocity_east_m_s - speed_m_s * sin) * t)
+    // From a place, with a velocity, for a time.
+    let least = |(north_m, east_m): (f64, f64), (north_m_s, east_m_s): (f64, f64), time_s: f64| {
+        let times = (0..=TIMES).map(|i| time_s * i as f64 / TIMES as f64);
+        times.map(|t| game::math::length(north_m + north_m_s * t, east_m + east_m_s * t)).fold(f64::INFINITY, f64::min)
     };
-    (0..=TIMES).map(at).fold(f64::INFINITY, f64::min)
+    let (north_m, east_m) = (closest.north_m, closest.east_m);
+    let decided = (closest.velocity_north_m_s - speed_m_s * cos, closest.velocity_east_m_s - speed_m_s * sin);
+    let Some(lag) = closest.lag else { return least((north_m, east_m), decided, closest.horizon_s) };
+    let present =
+        (closest.velocity_north_m_s - lag.velocity_north_m_s, closest.velocity_east_m_s - lag.velocity_east_m_s);
+    let chord = game::math::length(cos - lag.heading_north, sin - lag.heading_east);
+    let lag_s = lag.reaction_s + 0.5 * 1.15 * chord / lag.turn_rad_s;
+    let then = (north_m + present.0 * lag_s, east_m + present.1 * lag_s);
+    least((north_m, east_m), present, lag_s).min(least(then, decided, closest.horizon_s))
 }
 
 #[test]
@@ -80,6 +88,14 @@ fn the_closest_point_of_approach_is_the_one_a_search_of_times_finds() {
             min_m: 10.0,
             max_m: 75.0,
             approach: Approach::Avoid { floor: 25.0 },
+            lag: (seed % 2 == 0).then(|| Lag {
+                velocity_north_m_s: within(3.0),
+                velocity_east_m_s: within(3.0),
+                heading_north: 0.6,
+                heading_east: -0.8,
+                reaction_s: 1.5,
+                turn_rad_s: 0.5,
+            }),
         };
         let seek = Closest { approach: Approach::Seek, ..closest };
         for (k, j) in (0..36).flat_map(|k| [(k, 0), (k, 3), (k, 7)]) {

@@ -1,7 +1,7 @@
 //! The same scene turned or mirrored must give the same decision turned or mirrored.
 
 use crate::scene::{self, Tables, solved};
-use agent::ivp::{Closest, Closing, Edge, Grid, Objective, Stay, Wish};
+use agent::ivp::{Closest, Closing, Edge, Grid, Lag, Objective, Stay, Wish};
 use game::stream::Stream;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -56,7 +56,18 @@ impl Motion {
             Objective::Closest(c) => {
                 let (north_m, east_m) = self.vector(c.north_m, c.east_m);
                 let (velocity_north_m_s, velocity_east_m_s) = self.vector(c.velocity_north_m_s, c.velocity_east_m_s);
-                Objective::Closest(Closest { north_m, east_m, velocity_north_m_s, velocity_east_m_s, ..c })
+                let lag = c.lag.map(|lag| {
+                    let velocity = self.vector(lag.velocity_north_m_s, lag.velocity_east_m_s);
+                    let heading = self.vector(lag.heading_north, lag.heading_east);
+                    Lag {
+                        velocity_north_m_s: velocity.0,
+                        velocity_east_m_s: velocity.1,
+                        heading_north: heading.0,
+                        heading_east: heading.1,
+                        ..lag
+                    }
+                });
+                Objective::Closest(Closest { north_m, east_m, velocity_north_m_s, velocity_east_m_s, lag, ..c })
             }
             Objective::Closing(c) => {
                 let (north_m, east_m) = self.vector(c.north_m, c.east_m);
