@@ -209,9 +209,6 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
             if let Event::LeftField { vehicle } = logged.event {
                 let i = vehicle.index();
                 tally.left += 1;
-                if std::env::var("TELL").is_ok() {
-                    eprintln!("LEFT boat{i} seed {seed}");
-                }
                 let crowded = (0..count).any(|j| j != i && pose(i).at.distance(pose(j).at) < CROWD_M);
                 if now_s - touched_s[i] <= PUSH_REMEMBERED_S {
                     tally.left_pushed += 1;

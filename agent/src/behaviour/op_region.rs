@@ -119,7 +119,7 @@ impl Conductor {
                 for (utility, speed_m_s) in row.iter_mut().zip(&self.speeds) {
                     let end_m = end.0 + end.1 * speed_m_s;
                     let least_m = (farthest.0 + farthest.1 * speed_m_s).min(start_m as f32).min(end_m);
-                    let kept = |clear_m: f32| (clear_m * per_m).max(0.0).min(50.0);
+                    let kept = |clear_m: f32| (clear_m * per_m).clamp(0.0, 50.0);
                     *utility = utility.min(kept(least_m) + kept(end_m));
                 }
             }

@@ -183,6 +183,7 @@ pub(super) enum Parts<'a> {
 
 /// A formula in course and speed.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "kept in a list that is used again; boxes would be allocated anew")]
 pub(super) enum Field {
     Closest(closest::Ready),
     Closing(closing::Ready),
