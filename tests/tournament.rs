@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 const GAME: &str = "scenarios/games/pav01_vs_pav01.toml";
 const SEA: &str = "scenarios/seas/moderate_breeze.toml";
-const TOURNAMENT: &str = "scenarios/tournaments/paper_2023.toml";
+const TOURNAMENT: &str = "scenarios/tournaments/simple.toml";
 
 /// The program, in the folder of the project.
 fn squall(args: &[&str]) -> Command {
@@ -43,7 +43,7 @@ fn short_tournament(dir: &TempDir, more: &str) -> String {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let game = format!("base = {:?}\nduration_s = 60\n", scenarios.join("games/pav01_vs_pav01.toml"));
     std::fs::write(dir.path().join("short.toml"), game).unwrap();
-    let base = scenarios.join("tournaments/paper_2023.toml");
+    let base = scenarios.join("tournaments/simple.toml");
     let path = place(dir, "tournament.toml");
     std::fs::write(&path, format!("base = {base:?}\ngame = \"short.toml\"\n{more}\n")).unwrap();
     path
@@ -269,7 +269,7 @@ fn strategies_that_nobody_can_follow_are_explained() {
         ),
         (
             &["--blue", "nonesuch"],
-            "no strategy of that name in scenarios/games/../strategies: easy_attackers, easy_defenders",
+            "no strategy of that name in scenarios/games/../strategies: easy_attacker, easy_attackers",
         ),
         (&["--blue", "none/such.toml"], "there is no strategy file none/such.toml"),
         (&["--blue", "idle", "--strategy", "blue=idle"], "the strategy of team blue is given twice"),
