@@ -125,11 +125,11 @@ fn behaviours_that_hold_or_wait_do_so() {
         ("kind = 'policy'", here(), None),
         ("kind = 'op_region'", here(), None),
         ("kind = 'avoid_collision'", here(), None),
-        ("kind = 'max_speed'\nspeed_m_s = 0.5", here(), None),
-        ("kind = 'max_speed'\nspeed_m_s = 0.5\nrange_m = 0", here(), Some((0.0, 0.5))),
-        ("kind = 'max_speed'\nspeed_m_s = 0.5\nrange_m = 20", contact(Boat::at(0.0, 15.0)), Some((0.0, 0.5))),
+        ("kind = 'max_speed'\nspeed_m_s = 0.61", here(), None),
+        ("kind = 'max_speed'\nspeed_m_s = 0.61\nrange_m = 0", here(), Some((0.0, 0.6))),
+        ("kind = 'max_speed'\nspeed_m_s = 0.61\nrange_m = 20", contact(Boat::at(0.0, 15.0)), Some((0.0, 0.6))),
         // Abaft the beam it does not count.
-        ("kind = 'max_speed'\nspeed_m_s = 0.5\nrange_m = 20", contact(Boat::at(0.0, -15.0)), None),
+        ("kind = 'max_speed'\nspeed_m_s = 0.61\nrange_m = 20", contact(Boat::at(0.0, -15.0)), None),
     ] {
         assert_decides(behaviour, &picture, want);
     }
@@ -222,9 +222,9 @@ fn obstacles_are_passed() {
         [behaviour.go]\nkind = 'waypoint'\npoints = [[0, 39]]\nspeed_m_s = 2\nweight = 50\n\
         [behaviour.avoid]\nkind = 'avoid_obstacle'\nweight = 300\n";
     // The field's obstacle is a disc of 2 m at (0, 30).
-    let report = thought(&mut helm(&scenario(behaviours)), &alone(0.0, Boat::at(0.0, 20.0).going(0.0, 2.0)));
+    let report = thought(&mut helm(&scenario(behaviours)), &alone(0.0, Boat::at(0.0, 14.0).going(0.0, 2.0)));
     let course_rad = report.course_deg.expect("a course").to_radians();
-    let miss_m = (10.0 * libm::sin(course_rad)).abs() - 2.0;
+    let miss_m = (16.0 * libm::sin(course_rad)).abs() - 2.0;
     assert!(miss_m > 2.9, "passes its edge at {miss_m} m: {report:?}");
 }
 

@@ -45,8 +45,8 @@ pub(crate) fn scenario(strategy: &str) -> Scenario {
 pub(crate) fn only(behaviour: &str) -> Scenario {
     scenario(&format!(
         "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n[behaviour.it]\n{behaviour}\n\
-         [behaviour.head]\nkind = \"constant_heading\"\nheading_deg = 0\nweight = 0.001\n\
-         [behaviour.speed]\nkind = \"constant_speed\"\nspeed_m_s = 2\nweight = 0.001\n"
+         [behaviour.head]\nkind = \"constant_heading\"\nheading_deg = 0\nweight = 0.01\n\
+         [behaviour.speed]\nkind = \"constant_speed\"\nspeed_m_s = 2\nweight = 0.01\n"
     ))
 }
 
