@@ -115,8 +115,9 @@ fn behaviours_that_go_somewhere_go_there() {
 
 #[test]
 fn behaviours_that_hold_or_wait_do_so() {
-    let contact =
-        |boat: Boat| picture(0.0, [Boat::at(0.0, 0.0), Boat::at(-70.0, -30.0)], [boat, Boat::at(75.0, -35.0)]);
+    let contact = |boat: Boat| {
+        picture(0.0, [Boat::at(0.0, 0.0).going(0.0, 1.0), Boat::at(-70.0, -30.0)], [boat, Boat::at(75.0, -35.0)])
+    };
     for (behaviour, picture, want) in [
         ("kind = 'constant_heading'\nheading_deg = 250", here(), Some((250.0, 2.0))),
         ("kind = 'constant_speed'\nspeed_m_s = 1.2", here(), Some((0.0, 1.2))),
