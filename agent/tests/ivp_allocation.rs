@@ -26,7 +26,7 @@ fn a_decision_takes_nothing_from_the_heap_once_its_lists_have_grown() {
             horizon_s: 60.0,
             min_m: 5.0,
             max_m: 50.0,
-            approach: Approach::Avoid { floor: 25.0 },
+            approach: Approach::Avoid { at_min: 25.0 },
             lag: None,
         };
         let heap = Region::new(HEAP);

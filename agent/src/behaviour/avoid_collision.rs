@@ -1,12 +1,9 @@
 //! Collision avoidance: keeps clear of other boats by the closest point of approach, with a function for each.
 
-use super::{Conduct, is_meant, lag, nearness};
+use super::{CPA_MIN_UTILITY, Conduct, is_meant, lag, nearness};
 use crate::helm::{Bid, Scene};
 use crate::ivp::{Approach, Closest, Objective};
 use game::strategy::{AvoidCollision, Grade};
-
-/// What a closest point of approach just beyond the least distance is worth: MOOS-IvP's 25.
-const FLOOR: f64 = 25.0;
 
 pub(super) struct Conductor(pub(super) AvoidCollision);
 
@@ -30,7 +27,7 @@ impl Conduct for Conductor {
                 horizon_s,
                 min_m,
                 max_m: max_m.max(min_m),
-                approach: Approach::Avoid { floor: FLOOR },
+                approach: Approach::Avoid { at_min: CPA_MIN_UTILITY },
                 lag: Some(lag(scene)),
             };
             let share = graded(task.grade, nearness(distance_m, inner_m, outer_m));

@@ -1,15 +1,12 @@
 //! Obstacle avoidance: keeps clear of what stands in the water.
 
 use super::loiter::distance_to_side;
-use super::{Conduct, lag, nearness};
+use super::{CPA_MIN_UTILITY, Conduct, lag, nearness};
 use crate::helm::{Bid, Scene};
 use crate::ivp::{Approach, Closest, Objective};
 use game::Ned;
 use game::field::Obstacle;
 use game::strategy::AvoidObstacle;
-
-/// What a pass just beyond the least distance is worth.
-const FLOOR: f64 = 25.0;
 
 pub(super) struct Conductor {
     task: AvoidObstacle,
@@ -62,7 +59,7 @@ impl Conduct for Conductor {
                         horizon_s,
                         min_m: min_m + radius_m,
                         max_m: max_m + radius_m,
-                        approach: Approach::Avoid { floor: FLOOR },
+                        approach: Approach::Avoid { at_min: CPA_MIN_UTILITY },
                         lag: Some(lag(scene)),
                     };
                     bid.ask_for(share, None, &Objective::Closest(closest));
@@ -79,14 +76,14 @@ impl Conduct for Conductor {
     }
 }
 
-/// Utility of a pass: nothing up to the least distance, then from the floor to 100.
+/// Utility of a pass, as for contacts: from nothing at no distance to 100 at the largest.
 fn worth(pass_m: f64, min_m: f64, max_m: f64) -> f64 {
     if pass_m <= min_m {
-        0.0
+        CPA_MIN_UTILITY * pass_m / min_m.max(f64::MIN_POSITIVE)
     } else if pass_m >= max_m {
         100.0
     } else {
-        FLOOR + (100.0 - FLOOR) * (pass_m - min_m) / (max_m - min_m)
+        CPA_MIN_UTILITY + (100.0 - CPA_MIN_UTILITY) * (pass_m - min_m) / (max_m - min_m)
     }
 }
 

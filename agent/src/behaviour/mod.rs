@@ -61,11 +61,14 @@ const SPEED_BASE_M_S: f64 = 1.6;
 /// How much less the edge of a peak of speed is worth than its summit: so that the desired speed itself is best.
 const SPEED_SUMMIT_DELTA: f64 = 20.0;
 
+/// What a closest point of approach at the least distance is worth: as steep inside of it as outside or steeper, so that a
+/// boat which is too near comes no nearer.
+const CPA_MIN_UTILITY: f64 = 50.0;
+
 /// How fast a boat is thought to turn, rad/s. A Surveyor under way does 25 degrees a second.
 const TURN_RAD_S: f64 = 0.35;
 /// How long it takes until a decision shows, s.
 const REACTION_S: f64 = 0.7;
-
 /// How slow the boat is to follow.
 fn lag(scene: &Scene) -> Lag {
     let (heading_east, heading_north) = math::sin_cos(scene.own.nav.psi_rad);

@@ -116,15 +116,34 @@ impl Conductor {
                 let turned = Line::new(start_m, -turn.end_s).at_half(surge_m_s);
                 let farthest = Line::new(start_m, -turn.farthest_s).at_half(surge_m_s);
                 let end = turned.and(-drift_m, -straight_s * turn.outward_last);
+                let start_m = start_m as f32;
+                let clear_m = |speed_m_s: f32| {
+                    let end_m = end.at(speed_m_s);
+                    (least(least(farthest.at(speed_m_s), start_m), end_m), end_m)
+                };
+                // What is clear at the slowest speed and at the fastest is so at those between.
+                let is_clear = |j: usize| clear_m(self.speeds[j]).0 >= save_m as f32;
+                if is_clear(0) && is_clear(row.len() - 1) {
+                    continue;
+                }
                 for (utility, speed_m_s) in row.iter_mut().zip(&self.speeds) {
-                    let end_m = end.0 + end.1 * speed_m_s;
-                    let least_m = (farthest.0 + farthest.1 * speed_m_s).min(start_m as f32).min(end_m);
-                    let kept = |clear_m: f32| (clear_m * per_m).clamp(0.0, 50.0);
-                    *utility = utility.min(kept(least_m) + kept(end_m));
+                    let (least_m, end_m) = clear_m(*speed_m_s);
+                    *utility = least(*utility, kept(least_m * per_m) + kept(end_m * per_m));
                 }
             }
         }
     }
+}
+
+/// The lesser of two numbers, without the care that `min` takes of those that are none.
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// Half of the utility, as far as a distance in parts of it reaches: 0 to 50.
+fn kept(utility: f32) -> f32 {
+    let kept = least(utility, 50.0);
+    if kept > 0.0 { kept } else { 0.0 }
 }
 
 /// A distance, m, that depends on the new speed: what it is at rest, and how much more it is for each m/s.
@@ -140,6 +159,11 @@ impl Line {
     fn at_half(self, old_m_s: f64) -> Line {
         let half = 0.5 * self.1;
         Line(self.0 + half * old_m_s as f32, half)
+    }
+
+    /// At a speed, m.
+    fn at(self, speed_m_s: f32) -> f32 {
+        self.0 + self.1 * speed_m_s
     }
 
     fn and(self, at_rest_m: f64, per_speed_s: f64) -> Line {

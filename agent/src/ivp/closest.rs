@@ -27,11 +27,12 @@ const STEP: f64 = 1e12;
 /// Whether to keep away or to come close.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Approach {
-    /// Farther is better: nothing at or below the least distance, `floor` just above it, from there linearly to 100 at
-    /// the largest. MOOS-IvP avoids collisions with a floor of 25.
+    /// Farther is better: linearly from nothing at no distance to `at_min` at the least, and from there to 100 at the
+    /// largest. MOOS-IvP makes a step of 25 at the least distance and calls all below it worth nothing, so that a boat
+    /// that is too near already does not care how much nearer it comes.
     Avoid {
-        /// Utility just above the least distance, 0 to 100.
-        floor: f64,
+        /// Utility at the least distance, 0 to 100.
+        at_min: f64,
     },
     /// Closer is better: 100 at or below the least distance, linearly to nothing at the largest.
     Seek,
@@ -102,12 +103,12 @@ impl Lag {
 impl Closest {
     /// The function in single precision; none if a number is none or the horizon is negative.
     pub(super) fn ready(&self, speed_max_m_s: f64) -> Option<Ready> {
-        let floor = match self.approach {
-            Approach::Avoid { floor } => floor,
+        let at_min = match self.approach {
+            Approach::Avoid { at_min } => at_min,
             Approach::Seek => 0.0,
         };
         let numbers = [self.north_m, self.east_m, self.velocity_north_m_s, self.velocity_east_m_s];
-        let limits = [self.horizon_s, self.min_m, self.max_m, floor];
+        let limits = [self.horizon_s, self.min_m, self.max_m, at_min];
         let lag = self.lag.unwrap_or(Lag::NONE);
         let heading = [lag.heading_north, lag.heading_east];
         let own = [lag.velocity_north_m_s, lag.velocity_east_m_s, lag.reaction_s, lag.chord_s()];
@@ -119,9 +120,9 @@ impl Closest {
         if !sound {
             return None;
         }
-        let floor = floor.clamp(0.0, 100.0);
+        let at_min = at_min.clamp(0.0, 100.0);
         let width_m = self.max_m - self.min_m;
-        let slope = if width_m > 0.0 { ((100.0 - floor) / width_m).min(STEP) } else { STEP };
+        let slope = |rise: f64, width_m: f64| if width_m > 0.0 { (rise / width_m).min(STEP) } else { STEP };
         let reach_m = game::math::length(self.velocity_north_m_s, self.velocity_east_m_s) + speed_max_m_s;
         let own_m_s = game::math::length(lag.velocity_north_m_s, lag.velocity_east_m_s);
         let lag_m = (reach_m + own_m_s) * (lag.reaction_s + 2.0 * lag.chord_s());
@@ -134,8 +135,9 @@ impl Closest {
             velocity_east: splat(self.velocity_east_m_s),
             horizon: splat(self.horizon_s),
             min: splat(self.min_m),
-            slope: splat(slope),
-            floor: splat(floor),
+            slope: splat(slope(100.0 - at_min, width_m)),
+            inner_slope: splat(slope(at_min, self.min_m)),
+            at_min: splat(at_min),
             seek: self.approach == Approach::Seek,
             heading: (splat(lag.heading_north), splat(lag.heading_east)),
             reaction: splat(lag.reaction_s),
@@ -158,8 +160,11 @@ pub(super) struct Ready {
     velocity_east: f32x8,
     horizon: f32x8,
     min: f32x8,
+    /// Beyond the least distance, for each m.
     slope: f32x8,
-    floor: f32x8,
+    /// Below it.
+    inner_slope: f32x8,
+    at_min: f32x8,
     seek: bool,
     /// The own ship's, a unit vector.
     heading: (f32x8, f32x8),
@@ -242,7 +247,8 @@ impl Ready {
         if self.seek {
             (full - rise).fast_max(f32x8::ZERO).fast_min(full)
         } else {
-            (self.floor + rise).fast_min(full) & distance.simd_gt(self.min)
+            let inside = (distance * self.inner_slope).fast_min(self.at_min);
+            distance.simd_gt(self.min).select((self.at_min + rise).fast_min(full), inside)
         }
     }
 }

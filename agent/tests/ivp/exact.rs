@@ -152,7 +152,7 @@ fn as_many_functions_as_there_may_be_do_not_overflow() {
         north_m: 5e4,
         min_m: 0.0,
         max_m: 1.0,
-        approach: Approach::Avoid { floor: 0.0 },
+        approach: Approach::Avoid { at_min: 0.0 },
         lag: None,
         ..scene::closest(&mut stream, &grid)
     };
@@ -176,7 +176,7 @@ fn a_scene_is_pinned_so_that_every_machine_decides_alike() {
             horizon_s: 120.0,
             min_m: 10.0,
             max_m: 75.0,
-            approach: Approach::Avoid { floor: 25.0 },
+            approach: Approach::Avoid { at_min: 25.0 },
             lag: None,
         })
     };

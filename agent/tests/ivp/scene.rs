@@ -141,7 +141,7 @@ pub(crate) fn closest(stream: &mut Stream, grid: &Grid) -> Closest {
         horizon_s: [0.0, 15.0, 120.0][stream.below(3) as usize],
         min_m,
         max_m: min_m + [0.0, 0.3, 1.0][stream.below(3) as usize] * range,
-        approach: [Approach::Avoid { floor: 25.0 }, Approach::Avoid { floor: 0.0 }, Approach::Seek]
+        approach: [Approach::Avoid { at_min: 25.0 }, Approach::Avoid { at_min: 0.0 }, Approach::Seek]
             [stream.below(3) as usize],
         lag: (stream.below(2) == 0).then(|| lag(stream, grid)),
     }

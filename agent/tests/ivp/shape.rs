@@ -87,7 +87,7 @@ fn the_closest_point_of_approach_is_the_one_a_search_of_times_finds() {
             horizon_s: 60.0,
             min_m: 10.0,
             max_m: 75.0,
-            approach: Approach::Avoid { floor: 25.0 },
+            approach: Approach::Avoid { at_min: 25.0 },
             lag: (seed % 2 == 0).then(|| Lag {
                 velocity_north_m_s: within(3.0),
                 velocity_east_m_s: within(3.0),
@@ -102,10 +102,8 @@ fn the_closest_point_of_approach_is_the_one_a_search_of_times_finds() {
             let distance_m = searched_m(&closest, &grid, k, j);
             let part = ((distance_m - 10.0) / 65.0).clamp(0.0, 1.0);
             let what = format!("seed {seed}, course {k}, speed {j}, {distance_m} m");
-            if (distance_m - 10.0).abs() > 0.01 {
-                let avoid = if distance_m > 10.0 { 25.0 + 75.0 * part } else { 0.0 };
-                near(Objective::Closest(closest).utility(&grid, k, j), avoid, &what);
-            }
+            let avoid = if distance_m > 10.0 { 25.0 + 75.0 * part } else { 2.5 * distance_m };
+            near(Objective::Closest(closest).utility(&grid, k, j), avoid, &what);
             near(Objective::Closest(seek).utility(&grid, k, j), 100.0 - 100.0 * part, &what);
         }
     }
