@@ -112,13 +112,12 @@ impl Objective<'_> {
         (weight.share(share), weight.share(1.0 - share))
     }
 
-    /// Utility of course alone, for each course.
-    pub(super) fn each_course(&self, grid: &Grid, mut told: impl FnMut(usize, f32)) {
+    /// Utility of course alone, for eight courses at a time; nothing beyond the last course.
+    pub(super) fn each_course(&self, grid: &Grid, told: impl FnMut(usize, f32x8)) {
         if let Objective::Course(peaks) | Objective::Coupled { course: peaks, .. } = self {
-            let utility = peaks.courses(grid);
-            (0..grid.courses()).for_each(|k| told(k, utility(k)));
+            eight_at_a_time(grid.courses(), peaks.courses(grid), told);
         } else {
-            (0..grid.courses()).for_each(|k| told(k, self.of_course(grid, k)));
+            eight_at_a_time(grid.courses(), |k| self.of_course(grid, k), told);
         }
     }
 
@@ -162,6 +161,15 @@ impl Objective<'_> {
             }
             _ => Parts::Separable,
         }
+    }
+}
+
+/// Tells the utilities of so many courses by eights, and those beyond the last as nothing.
+fn eight_at_a_time(courses: usize, utility: impl Fn(usize) -> f32, mut told: impl FnMut(usize, f32x8)) {
+    for lanes in 0..courses.div_ceil(LANES) {
+        let first = LANES * lanes;
+        let eight = std::array::from_fn(|lane| if first + lane < courses { utility(first + lane) } else { 0.0 });
+        told(lanes, f32x8::new(eight));
     }
 }
 

@@ -233,9 +233,7 @@ impl Problem {
     fn add_separable(&mut self, weight: Weight, objective: &Objective) {
         let (of_course, of_speed) = objective.weights(weight);
         if !of_course.is_zero() {
-            objective.each_course(&self.grid, |k, utility| {
-                self.courses[k / LANES].as_mut_array()[k % LANES] += of_course.quanta_of_one(utility)
-            });
+            objective.each_course(&self.grid, |lanes, utilities| self.courses[lanes] += of_course.quanta(utilities));
         }
         if !of_speed.is_zero() {
             for j in 0..self.grid.speeds() {
@@ -249,11 +247,16 @@ impl Problem {
         let lanes = self.speeds.len();
         self.table.resize(lanes * self.grid.courses(), i32x8::ZERO);
         for (k, row) in table.chunks(self.grid.speeds()).enumerate() {
-            for (sum, utilities) in self.table[k * lanes..].iter_mut().zip(row.chunks(LANES)) {
+            let sums = &mut self.table[k * lanes..][..lanes];
+            let (eights, rest) = row.as_chunks::<LANES>();
+            let mut add =
+                |lanes: usize, eight| sums[lanes] += weight.quanta(super::fixed::utilities(f32x8::new(eight)));
+            for (i, eight) in eights.iter().enumerate() {
+                add(i, *eight);
+            }
+            if !rest.is_empty() {
                 // Beyond the last speed nothing is added.
-                let mut eight = [0.0; LANES];
-                eight[..utilities.len()].copy_from_slice(utilities);
-                *sum += weight.quanta(super::fixed::utilities(f32x8::new(eight)));
+                add(eights.len(), std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0)));
             }
         }
     }
