@@ -289,6 +289,30 @@ fn a_proposal_is_heard_while_it_is_fresh() {
 }
 
 #[test]
+fn safety_arbitrates_what_a_policy_proposes() {
+    let program = "base = \"SCENARIOS/strategies/safety.toml\"\n[behaviour.learned]\nkind = \"policy\"\n";
+    let advised = |picture: &Picture, (course_rad, speed_m_s): (f64, f64)| {
+        let mut helm = helm(&scenario(program));
+        helm.propose(game::SimTime::ZERO, agent::Proposal { course_rad, speed_m_s });
+        let report = thought(&mut helm, picture);
+        (report.course_deg.expect("a course").to_radians(), report.speed_m_s.expect("a speed"))
+    };
+    let east = (std::f64::consts::FRAC_PI_2, 3.0);
+    let (course_rad, speed_m_s) = advised(&alone(0.0, Boat::at(0.0, 0.0).going(90.0, 2.0)), east);
+    assert!((course_rad - east.0).abs() < 0.01 && (speed_m_s - 3.0).abs() < 0.05, "in the open it has its way");
+    let (course_rad, speed_m_s) = advised(&alone(0.0, Boat::at(74.0, 0.0).going(90.0, 2.0)), east);
+    assert!(speed_m_s * libm::sin(course_rad) < 0.1, "not out of the field: {course_rad} rad, {speed_m_s} m/s");
+    let boats = [Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(-70.0, -30.0)];
+    let ahead = picture(0.0, boats, [Boat::at(14.0, 0.0), Boat::at(75.0, -35.0)]);
+    let (course_rad, speed_m_s) = advised(&ahead, east);
+    // It goes on for a moment, then as decided for the eight seconds that it looks ahead.
+    let places = (0..=80).map(|i| 0.1 * f64::from(i) * speed_m_s);
+    let from_m = |run_m: f64| (run_m * libm::cos(course_rad), 14.0 - 2.0 * 0.7 - run_m * libm::sin(course_rad));
+    let miss_m = places.map(|run_m| game::math::length(from_m(run_m).0, from_m(run_m).1)).fold(f64::INFINITY, f64::min);
+    assert!(miss_m > 4.9, "not into a boat: {course_rad} rad, {speed_m_s} m/s, {miss_m} m");
+}
+
+#[test]
 fn a_full_stop_stops_whatever_else_is_wanted() {
     let report = decided("kind = 'full_stop'\nweight = 1", &here());
     assert_eq!(report.hold.as_deref(), Some("stopped by a behaviour"));
