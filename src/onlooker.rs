@@ -49,13 +49,31 @@ impl Onlooker {
         let report: Option<HelmReport> =
             serde_json::from_slice(&answer).context("the agent is of another version of Squall")?;
         let name = &self.notice.scenario.vehicles[vehicle.index()].name;
-        report.with_context(|| format!("the mind of {name} goes by no helm")).map(Some)
+        let report = report.with_context(|| format!("the mind of {name} goes by no helm"))?;
+        if !is_sound(&report, vehicle, self.notice.scenario.vehicles.len()) {
+            bail!("the answer about the helm of {name} makes no sense");
+        }
+        Ok(Some(report))
     }
 
     /// Whether the game's sim is still there.
     pub(crate) fn is_on(&self) -> Result<bool> {
         Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game, Part::Sim), ANSWER)?.is_empty())
     }
+}
+
+/// Whether a report is about this vehicle and of one piece: an agent that answers is not therefore right.
+fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> bool {
+    let is_grid = (1..=3600).contains(&report.courses)
+        && (2..=1000).contains(&report.speeds)
+        && report.speed_max_m_s.is_finite()
+        && report.speed_max_m_s > 0.0;
+    let is_whole = |count: usize| count == 0 || count == report.courses * report.speeds;
+    report.vehicle == vehicle
+        && is_grid
+        && report.functions.iter().all(|function| {
+            is_whole(function.utilities.len()) && function.contact.is_none_or(|contact| contact.index() < vehicles)
+        })
 }
 
 fn only_game(bus: &Bus) -> Result<GameName> {

@@ -36,6 +36,11 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let plan = planned(args)?;
+    // Better now than after hours of games.
+    for path in args.json.iter().chain(&args.csv) {
+        let file = std::fs::OpenOptions::new().append(true).create(true).open(path);
+        file.with_context(|| format!("cannot write the report to {}", path.display()))?;
+    }
     let stop = stop::on_ctrl_c()?;
     let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
     let mut progress = Progress::new(plan.games() as u64);
@@ -48,7 +53,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if !args.matches {
         report.matches.clear();
     }
-    screen::print(&tournament_table::text(&report));
     if let Some(path) = &args.json {
         let text = serde_json::to_string_pretty(&report).context("the report is not JSON")?;
         write(path, &(text + "\n"))?;
@@ -56,6 +60,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.csv {
         write(path, &tournament_table::csv(&report))?;
     }
+    screen::print(&tournament_table::text(&report));
     Ok(match (report.games_unplayed > 0, report.failures.is_empty()) {
         (true, _) => stop::interrupted(),
         (false, true) => ExitCode::SUCCESS,

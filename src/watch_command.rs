@@ -83,8 +83,7 @@ fn watch_field(Onlooker { bus, game, notice }: &Onlooker, pause: Duration, stop:
         } else {
             chart::line(&notice.scenario, &frame, &rates)
         };
-        screen::print(&text);
-        if frame.over {
+        if !screen::is_read(&text) || frame.over {
             break;
         }
         rest(pause);

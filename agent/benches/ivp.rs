@@ -31,6 +31,7 @@ fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Wish)> {
                 horizon_s: 120.0,
                 min_m: 10.0,
                 max_m: 75.0,
+                touch_m: 0.0,
                 approach: Approach::Avoid { at_min: 25.0 },
                 lag: None,
             };

@@ -2,7 +2,7 @@
 //!
 //! `stats_alloc` counts for us, see `sim/tests/allocation.rs`; one test, since it counts the whole process.
 
-use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Peaks, Problem, SpeedLimit, Stay, Wish};
+use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Peaks, Problem, SpeedLimit, Wish};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
 
@@ -26,6 +26,7 @@ fn a_decision_takes_nothing_from_the_heap_once_its_lists_have_grown() {
             horizon_s: 60.0,
             min_m: 5.0,
             max_m: 50.0,
+            touch_m: 0.0,
             approach: Approach::Avoid { at_min: 25.0 },
             lag: None,
         };
@@ -33,7 +34,6 @@ fn a_decision_takes_nothing_from_the_heap_once_its_lists_have_grown() {
         problem.clear();
         problem.add(100.0, &Objective::Coupled { course: peaks, speed: peaks, course_share: 0.5 });
         problem.add(200.0, &Objective::Closest(closest));
-        problem.add(50.0, &Objective::Stay(Stay::new(5.0, 30.0)));
         problem.add(20.0, &Objective::Limit(SpeedLimit::at_most(2.0, 0.5)));
         problem.add(10.0, &Objective::Table(&table));
         let choice = problem.solve(Wish::default());

@@ -103,7 +103,7 @@ fn a_program_says_what_its_file_says() {
     assert_eq!(go.modes, [false, true, true, true, false]);
     assert_eq!(program.condition_in_words(go.when.as_ref().unwrap()), "laps > 1");
     assert_eq!(program.number_in_words(&go.weight.expression), "50 + laps");
-    assert_eq!((go.weight.range, go.weight.constant(), go.perpetual), ((0.0, 1000.0), None, true));
+    assert_eq!((go.weight.range, go.weight.constant(), go.perpetual), ((0.0, 300.0), None, true));
     assert_eq!(go.posts.iter().map(|post| post.at).collect::<Vec<_>>(), [Moment::Reach, Moment::Complete]);
     let Task::Waypoint(waypoint) = &go.task else { panic!("{go:?}") };
     let corner = Place::At(Ned::from_xy(3.0, 4.0));

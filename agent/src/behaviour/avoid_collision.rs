@@ -1,6 +1,6 @@
 //! Collision avoidance: keeps clear of other boats by the closest point of approach, with a function for each.
 
-use super::{CPA_MIN_UTILITY, Conduct, is_meant, lag, nearness};
+use super::{CPA_MIN_UTILITY, Conduct, Nearest, is_meant, lag, nearness};
 use crate::helm::{Bid, Scene};
 use crate::ivp::{Approach, Closest, Objective};
 use game::strategy::{AvoidCollision, Grade};
@@ -13,11 +13,10 @@ impl Conduct for Conductor {
         let (inner_m, outer_m) = (task.inner_m.value(scene), task.outer_m.value(scene));
         let (min_m, max_m) = (task.cpa_min_m.value(scene), task.cpa_max_m.value(scene));
         let horizon_s = task.time_on_leg_s.value(scene);
-        for other in &scene.others {
-            let distance_m = scene.at.distance(other.at);
-            if distance_m >= outer_m || !is_meant(task.contacts, scene, other) {
-                continue;
-            }
+        let near = scene.others.iter().enumerate().map(|(i, other)| (scene.at.distance(other.at), i));
+        let meant = |i: usize| is_meant(task.contacts, scene, &scene.others[i]);
+        for (distance_m, i) in Nearest::of(near.filter(|(distance_m, i)| *distance_m < outer_m && meant(*i))).iter() {
+            let other = &scene.others[i];
             let line = other.at - scene.at;
             let closest = Closest {
                 north_m: line.north,
@@ -27,6 +26,7 @@ impl Conduct for Conductor {
                 horizon_s,
                 min_m,
                 max_m: max_m.max(min_m),
+                touch_m: 0.0,
                 approach: Approach::Avoid { at_min: CPA_MIN_UTILITY },
                 lag: Some(lag(scene)),
             };

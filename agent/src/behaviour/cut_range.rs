@@ -24,6 +24,7 @@ impl Conduct for Conductor {
             flee: false,
         };
         let closest = Closest {
+            touch_m: 0.0,
             north_m: line.north,
             east_m: line.east,
             velocity_north_m_s: contact.velocity.north,

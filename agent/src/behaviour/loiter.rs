@@ -3,6 +3,7 @@
 use super::waypoint::Approach;
 use super::{Conduct, drive};
 use crate::helm::{Bid, Scene};
+use game::field::{distance_to_outline, sides};
 use game::strategy::{Loiter, Shape, Turn};
 use game::{Ned, math};
 use std::f64::consts::TAU;
@@ -56,9 +57,13 @@ impl Conduct for Conductor {
 
     fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
         if self.corners.len() < 3 {
+            // What it goes round was not known when it began.
+            corners_of(&self.task.shape, scene, &mut self.corners);
+        }
+        if self.corners.len() < 3 {
             return;
         }
-        let far = distance_to(&self.corners, scene.at) > self.task.acquire_m.value(scene);
+        let far = distance_to_outline(&self.corners, scene.at) > self.task.acquire_m.value(scene);
         if self.target.is_none() || far {
             self.choose(scene);
         }
@@ -104,27 +109,12 @@ fn corners_of(shape: &Shape, scene: &Scene, corners: &mut Vec<Ned>) {
 
 /// Twice the area that the corners go round clockwise, m²; negative if they go the other way.
 fn turns_clockwise(corners: &[Ned]) -> f64 {
-    let next = corners.iter().skip(1).chain(corners.first());
-    corners.iter().zip(next).map(|(a, b)| a.north * b.east - a.east * b.north).sum()
+    sides(corners).map(|(a, b)| a.north * b.east - a.east * b.north).sum()
 }
 
 fn centre_of(corners: &[Ned]) -> Ned {
     let sum = corners.iter().fold(Ned::default(), |sum, corner| sum + *corner);
     sum.scaled(1.0 / corners.len() as f64)
-}
-
-/// The distance to the polygon's outline, m.
-fn distance_to(corners: &[Ned], at: Ned) -> f64 {
-    let next = corners.iter().skip(1).chain(corners.first());
-    corners.iter().zip(next).map(|(a, b)| distance_to_side(*a, *b, at)).fold(f64::INFINITY, f64::min)
-}
-
-/// The distance to the straight line from `a` to `b`, m.
-pub(super) fn distance_to_side(a: Ned, b: Ned, at: Ned) -> f64 {
-    let side = b - a;
-    let length_squared = side.dot(side);
-    let share = if length_squared > 0.0 { ((at - a).dot(side) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
-    at.distance(a + side.scaled(share))
 }
 
 #[cfg(test)]
@@ -138,9 +128,5 @@ mod tests {
         let mut other = square;
         other.reverse();
         assert!((turns_clockwise(&other) + 200.0).abs() < 1e-9);
-        for (at, want_m) in [((5.0, 5.0), 5.0), ((-3.0, 5.0), 3.0), ((13.0, 14.0), 5.0), ((10.0, 2.0), 0.0)] {
-            let got_m = distance_to(&square, Ned { north: at.0, east: at.1 });
-            assert!((got_m - want_m).abs() < 1e-9, "{at:?}: {got_m} m");
-        }
     }
 }

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use std::f64::consts::PI;
 
 /// The most headings that are remembered.
-const MOST: usize = 1024;
+const MOST: usize = 256;
 /// From the range that costs nothing down to nothing, as a share of what is left of half a turn.
 const BASE: f64 = 1.0;
 
@@ -41,12 +41,13 @@ impl Conduct for Conductor {
 
     fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
         let memory = SimTime::from_s(self.task.memory_s.value(scene));
-        if self.headings.len() == MOST {
-            self.headings.pop_front();
-        }
-        self.headings.push_back((scene.now, scene.own.nav.psi_rad));
         while self.headings.front().is_some_and(|(at, _)| *at + memory < scene.now) {
             self.headings.pop_front();
+        }
+        // Evenly spread over a memory that is longer than fits decision by decision.
+        let spacing = SimTime::from_s(memory.as_s() / (MOST - 1) as f64);
+        if self.headings.back().is_none_or(|(at, _)| *at + spacing <= scene.now) && self.headings.len() < MOST {
+            self.headings.push_back((scene.now, scene.own.nav.psi_rad));
         }
         let range_rad = self.task.turn_range_deg.value(scene).to_radians();
         bid.ask(&Objective::Course(Peaks::one(Peak {

@@ -19,7 +19,7 @@ mod waypoint;
 
 use crate::helm::{Bid, Other, Scene};
 use crate::ivp::{Lag, Objective, Peak, Peaks};
-use game::strategy::{Contacts, Task};
+use game::strategy::{Contacts, HEEDED_MAX, Task};
 use game::{Ned, angle, math};
 use std::f64::consts::PI;
 
@@ -61,8 +61,8 @@ const SPEED_BASE_M_S: f64 = 1.6;
 /// How much less the edge of a peak of speed is worth than its summit: so that the desired speed itself is best.
 const SPEED_SUMMIT_DELTA: f64 = 20.0;
 
-/// What a closest point of approach at the least distance is worth: as steep inside of it as outside or steeper, so that a
-/// boat which is too near comes no nearer.
+/// What a closest point of approach at the least distance is worth; below that it falls to nothing, so that a boat which is
+/// too near comes no nearer.
 const CPA_MIN_UTILITY: f64 = 50.0;
 
 /// How fast a boat is thought to turn, rad/s. A Surveyor under way does 25 degrees a second.
@@ -119,6 +119,32 @@ fn nearness(distance_m: f64, inner_m: f64, outer_m: f64) -> f64 {
     }
 }
 
+/// The nearest of a few, without a list on the heap: no behaviour heeds more.
+struct Nearest {
+    /// Distance, m, and index; the nearest first, of equally near ones the first.
+    entries: [(f64, usize); HEEDED_MAX],
+    count: usize,
+}
+
+impl Nearest {
+    fn of(those: impl Iterator<Item = (f64, usize)>) -> Nearest {
+        let mut nearest = Nearest { entries: [(f64::INFINITY, 0); HEEDED_MAX], count: 0 };
+        for entry in those {
+            let place = nearest.entries[..nearest.count].partition_point(|known| known.0 <= entry.0);
+            if place < HEEDED_MAX {
+                nearest.count = (nearest.count + 1).min(HEEDED_MAX);
+                nearest.entries[place..nearest.count].rotate_right(1);
+                nearest.entries[place] = entry;
+            }
+        }
+        nearest
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (f64, usize)> {
+        self.entries[..self.count].iter().copied()
+    }
+}
+
 /// Whether a boat is one of those meant.
 fn is_meant(contacts: Contacts, scene: &Scene, other: &Other) -> bool {
     match contacts {
@@ -139,7 +165,17 @@ const TAG_FORESIGHT_S: f64 = 5.0;
 
 #[cfg(test)]
 mod tests {
-    use super::nearness;
+    use super::{HEEDED_MAX, Nearest, nearness};
+
+    #[test]
+    fn the_nearest_of_many_are_heeded_in_order() {
+        let many: Vec<(f64, usize)> = (0..100).map(|i| (f64::from((i * 37) % 50), i as usize)).collect();
+        let mut sorted = many.clone();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sorted.truncate(HEEDED_MAX);
+        assert!(Nearest::of(many.into_iter()).iter().eq(sorted));
+        assert_eq!(Nearest::of([(2.0, 0), (1.0, 1)].into_iter()).iter().collect::<Vec<_>>(), [(1.0, 1), (2.0, 0)]);
+    }
 
     #[test]
     fn a_weight_falls_from_inner_to_outer_and_never_exceeds_itself() {

@@ -92,7 +92,7 @@ impl Conductor {
     /// for the distance at the end of the look-ahead; the worst edge counts. On the way the boat goes on for its reaction
     /// time, then turns the shorter way at its rate, then goes straight.
     fn fill(&mut self, scene: &Scene, bid: &Bid<'_>, region: &Region, (lookahead_s, save_m): (f64, f64)) {
-        let grid = bid.problem().grid();
+        let grid = bid.grid();
         let (heading_rad, surge_m_s) = (scene.own.nav.psi_rad, scene.own.nav.surge_m_s.max(0.0));
         let near = |edge: &&(Ned, f64)| edge.1 <= region.reach_m(scene, lookahead_s, save_m);
         let per_m = (50.0 / save_m) as f32;
@@ -240,7 +240,9 @@ impl Region {
 
     /// Farther inside than this no candidate comes near an edge, m.
     fn reach_m(&self, scene: &Scene, lookahead_s: f64, save_m: f64) -> f64 {
-        save_m + (lookahead_s + REACTION_S) * (scene.chart.speed_max_m_s + self.drift.length())
+        let fastest_m_s = scene.chart.speed_max_m_s.max(scene.own.nav.surge_m_s);
+        // The widest turn there is goes out by twice its radius.
+        save_m + (lookahead_s.max(2.0 / TURN_RAD_S) + REACTION_S) * (fastest_m_s + self.drift.length())
     }
 
     /// The nearest point well inside.

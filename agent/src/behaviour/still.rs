@@ -1,7 +1,8 @@
-//! Behaviours that steer nowhere: one waits, one stops the boat.
+//! Behaviours that steer nowhere: one waits, one lies still.
 
 use super::Conduct;
 use crate::helm::{Bid, Scene};
+use crate::ivp::{Objective, Peak, Peaks};
 
 /// Waits until its time is over, which the helm sees to.
 pub(super) struct Waits;
@@ -10,11 +11,11 @@ impl Conduct for Waits {
     fn act(&mut self, _scene: &Scene, _bid: &mut Bid<'_>) {}
 }
 
-/// Stops the boat.
+/// Would like the boat to lie still.
 pub(super) struct Stops;
 
 impl Conduct for Stops {
-    fn act(&mut self, _scene: &Scene, bid: &mut Bid<'_>) {
-        bid.stop();
+    fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
+        bid.ask(&Objective::Speed(Peaks::one(Peak::tent(0.0, scene.chart.speed_max_m_s))));
     }
 }

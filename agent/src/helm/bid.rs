@@ -1,6 +1,6 @@
 //! A bid: what one behaviour asks of the helm at one decision.
 
-use crate::ivp::{FUNCTIONS_MAX, Objective, Problem};
+use crate::ivp::{Grid, Objective, Problem};
 use game::VehicleId;
 
 /// A function that a behaviour added.
@@ -51,7 +51,7 @@ impl<'a> Bid<'a> {
     /// Asks for something with a share (0 to 1) of the behaviour's weight: never with more than that.
     pub(crate) fn ask_for(&mut self, share: f64, contact: Option<VehicleId>, objective: &Objective<'_>) {
         let weight = self.weight * share.clamp(0.0, 1.0);
-        if weight <= 0.0 || self.problem.len() >= FUNCTIONS_MAX {
+        if weight <= 0.0 {
             return;
         }
         self.active = true;
@@ -72,7 +72,7 @@ impl<'a> Bid<'a> {
     }
 
     /// The decision grid.
-    pub(crate) fn problem(&self) -> &Problem {
-        self.problem
+    pub(crate) fn grid(&self) -> &Grid {
+        self.problem.grid()
     }
 }

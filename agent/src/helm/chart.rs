@@ -46,6 +46,7 @@ impl Chart {
         let mut points: Vec<(String, Ned)> =
             Field::point_names().into_iter().filter_map(|name| field.point(team, &name).map(|at| (name, at))).collect();
         points.sort_by(|a, b| a.0.cmp(&b.0));
+        let own_m_s = scenario.boat_of(me).speed_max_m_s();
         Chart {
             me,
             team,
@@ -56,7 +57,7 @@ impl Chart {
             own_flags: flags(true),
             untag_radius_m: scenario.rules.untag_radius_m,
             time_limit: scenario.rules.time_limit,
-            speed_max_m_s: program.helm.speed_max_m_s.unwrap_or_else(|| scenario.boat_of(me).speed_max_m_s()),
+            speed_max_m_s: program.helm.speed_max_m_s.map_or(own_m_s, |most_m_s| most_m_s.min(own_m_s)),
             capture_at: scenario.rules.capture_at,
             untag_at: scenario.rules.untag_at,
             points,

@@ -129,14 +129,13 @@ impl HelmMind {
             let Bid { active, reached, mut complete, .. } = bid;
             stop |= bid.stop;
             worker.life.asked(active, &mut post);
-            if reached {
-                post(Moment::Reach);
-            }
             let time_is_up =
                 |duration: &game::strategy::Parameter| worker.life.running_s(scene.now) + 1e-9 >= duration.value(scene);
-            if behaviour.duration_s.as_ref().is_some_and(time_is_up) {
-                complete = true;
+            let time_is_up = behaviour.duration_s.as_ref().is_some_and(time_is_up);
+            if reached || time_is_up {
+                post(Moment::Reach);
             }
+            complete |= time_is_up;
             if complete {
                 worker.life.complete(behaviour.perpetual, &mut post);
             }
@@ -188,6 +187,8 @@ impl Mind for HelmMind {
     fn decide(&mut self, picture: &Picture) -> Order {
         if !self.scene.take(picture) {
             self.decided = Decided::Hold("the picture does not show the own boat");
+            self.entries.clear();
+            self.workers.iter_mut().for_each(|worker| worker.weight = 0.0);
             return Order::Hold;
         }
         self.apply_rules(picture);
@@ -244,16 +245,18 @@ fn is_due(rule: &Rule, scene: &Scene, picture: &Picture) -> bool {
     let happened = rule.on.is_none_or(|trigger| {
         let events = picture.events.iter().filter_map(|record| record.logged());
         events
-            .filter_map(|logged| happening(logged.event, trigger.what))
+            .flat_map(|logged| happening(logged.event, trigger.what))
+            .flatten()
             .any(|vehicle| who(scene, vehicle) == trigger.who)
     });
     happened && rule.when.as_ref().is_none_or(|when| when.is_true(scene))
 }
 
-/// The boat that does or suffers this, if the event is it.
-fn happening(event: Event, what: What) -> Option<VehicleId> {
+/// The boats that do or suffer this, if the event is it.
+fn happening(event: Event, what: What) -> [Option<VehicleId>; 2] {
     use game::event::TagCause;
-    match (what, event) {
+    let one = match (what, event) {
+        (What::Collides, Event::Collided { first, second, .. }) => return [Some(first), Some(second)],
         (What::Grabs, Event::Grabbed { vehicle, .. })
         | (What::Captures, Event::Captured { vehicle, .. })
         | (What::LosesFlag, Event::FlagReturned { vehicle, .. })
@@ -261,10 +264,10 @@ fn happening(event: Event, what: What) -> Option<VehicleId> {
         | (What::IsUntagged, Event::Untagged { vehicle })
         | (What::LeavesField, Event::LeftField { vehicle })
         | (What::ReturnsToField, Event::ReturnedToField { vehicle })
-        | (What::Collides, Event::Collided { first: vehicle, .. })
         | (What::Tags, Event::Tagged { cause: TagCause::Opponent(vehicle), .. }) => Some(vehicle),
         _ => None,
-    }
+    };
+    [one, None]
 }
 
 fn who(scene: &Scene, vehicle: VehicleId) -> Who {

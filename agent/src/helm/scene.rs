@@ -54,6 +54,8 @@ pub(crate) struct Scene {
     pub(crate) chart: Chart,
     pub(crate) now: SimTime,
     pub(crate) step_s: f64,
+    /// Whether it has taken in a picture.
+    begun: bool,
     pub(crate) mode_since: SimTime,
     pub(crate) own: OwnBoat,
     pub(crate) at: Ned,
@@ -88,6 +90,7 @@ impl Scene {
             },
             chart,
             now: SimTime::ZERO,
+            begun: false,
             step_s: 0.0,
             mode_since: SimTime::ZERO,
             at: Ned::default(),
@@ -107,8 +110,8 @@ impl Scene {
     pub(crate) fn take(&mut self, picture: &Picture) -> bool {
         let Some(own) = picture.own(self.chart.me) else { return false };
         let now = picture.stamp.valid_ns;
-        self.step_s = (now - self.now).as_s().max(0.0);
-        self.now = now;
+        self.step_s = if self.begun { (now - self.now).as_s().max(0.0) } else { 0.0 };
+        (self.now, self.begun) = (now, true);
         self.own = *own;
         self.at = own.nav.at();
         self.velocity = velocity_of(own);
@@ -144,12 +147,8 @@ impl Scene {
         let (ours, all) = (picture.score.get(self.chart.team.index()).copied(), picture.score.iter().sum::<u32>());
         self.score = f64::from(ours.unwrap_or(0));
         self.enemy_score = f64::from(all) - self.score;
-        let from_home_m = self.at.distance(self.chart.untag_place(self.at));
-        if from_home_m < WELL_INSIDE * self.chart.untag_radius_m {
-            self.leaving = true;
-        } else if from_home_m > WELL_OUTSIDE * self.chart.untag_radius_m || !own.tagged {
-            self.leaving = false;
-        }
+        let from_home = self.at.distance(self.chart.untag_place(self.at)) / self.chart.untag_radius_m;
+        self.leaving = own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
     }
 
@@ -226,7 +225,7 @@ impl Scene {
         self.chart.own_flags.iter().any(|(own, _)| *own == flag)
     }
 
-    /// Who carries a flag: `Some(true)` an own boat.
+    /// Who carries a flag.
     fn carried(&self, flag: FlagId) -> Option<VehicleId> {
         self.carriers.get(flag.index()).copied().flatten()
     }

@@ -27,7 +27,7 @@ const STEP: f64 = 1e12;
 /// Whether to keep away or to come close.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Approach {
-    /// Farther is better: linearly from nothing at no distance to `at_min` at the least, and from there to 100 at the
+    /// Farther is better: linearly from nothing where they touch to `at_min` at the least, and from there to 100 at the
     /// largest. MOOS-IvP makes a step of 25 at the least distance and calls all below it worth nothing, so that a boat
     /// that is too near already does not care how much nearer it comes.
     Avoid {
@@ -51,10 +51,12 @@ pub struct Closest {
     pub velocity_east_m_s: f64,
     /// How long the course and speed are kept, s.
     pub horizon_s: f64,
-    /// The least distance that makes a difference, m.
+    /// The least distance to keep, m.
     pub min_m: f64,
     /// The largest distance that makes a difference, m.
     pub max_m: f64,
+    /// The distance at which they touch, m: nothing is worth less.
+    pub touch_m: f64,
     /// Keep away or come close.
     pub approach: Approach,
     /// How long the own ship goes on as it goes; none if it does as decided at once.
@@ -94,6 +96,13 @@ impl Lag {
         turn_rad_s: f64::INFINITY,
     };
 
+    /// How long it goes on before it is on a course, a unit vector, s.
+    #[must_use]
+    pub fn duration_s(&self, north: f64, east: f64) -> f64 {
+        let chord = game::math::length(north - self.heading_north, east - self.heading_east);
+        self.reaction_s + self.chord_s() * chord
+    }
+
     /// How much longer it goes on for each unit of chord of its turn, s.
     fn chord_s(&self) -> f64 {
         0.5 * ANGLE_OF_CHORD / self.turn_rad_s
@@ -108,7 +117,7 @@ impl Closest {
             Approach::Seek => 0.0,
         };
         let numbers = [self.north_m, self.east_m, self.velocity_north_m_s, self.velocity_east_m_s];
-        let limits = [self.horizon_s, self.min_m, self.max_m, at_min];
+        let limits = [self.horizon_s, self.min_m, self.max_m, self.touch_m, at_min];
         let lag = self.lag.unwrap_or(Lag::NONE);
         let heading = [lag.heading_north, lag.heading_east];
         let own = [lag.velocity_north_m_s, lag.velocity_east_m_s, lag.reaction_s, lag.chord_s()];
@@ -136,7 +145,8 @@ impl Closest {
             horizon: splat(self.horizon_s),
             min: splat(self.min_m),
             slope: splat(slope(100.0 - at_min, width_m)),
-            inner_slope: splat(slope(at_min, self.min_m)),
+            touch: splat(self.touch_m),
+            inner_slope: splat(slope(at_min, self.min_m - self.touch_m)),
             at_min: splat(at_min),
             seek: self.approach == Approach::Seek,
             heading: (splat(lag.heading_north), splat(lag.heading_east)),
@@ -162,7 +172,8 @@ pub(super) struct Ready {
     min: f32x8,
     /// Beyond the least distance, for each m.
     slope: f32x8,
-    /// Below it.
+    touch: f32x8,
+    /// Between there and the least distance.
     inner_slope: f32x8,
     at_min: f32x8,
     seek: bool,
@@ -247,7 +258,7 @@ impl Ready {
         if self.seek {
             (full - rise).fast_max(f32x8::ZERO).fast_min(full)
         } else {
-            let inside = (distance * self.inner_slope).fast_min(self.at_min);
+            let inside = ((distance - self.touch) * self.inner_slope).fast_max(f32x8::ZERO).fast_min(self.at_min);
             distance.simd_gt(self.min).select((self.at_min + rise).fast_min(full), inside)
         }
     }

@@ -14,6 +14,9 @@ pub const WEIGHT_MAX: f64 = 1000.0;
 /// The most functions a problem takes.
 pub const FUNCTIONS_MAX: usize = 256;
 
+// What a checked program may ask for is heard.
+const _: () = assert!(game::strategy::FUNCTIONS_MAX <= FUNCTIONS_MAX);
+
 /// The value of a place that does not exist: below all others, and far enough from overflow for two of them.
 pub(super) const NOWHERE: i32 = i32::MIN / 4;
 

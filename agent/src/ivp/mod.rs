@@ -36,7 +36,6 @@ mod objective;
 mod peaks;
 pub mod piecewise;
 mod problem;
-mod stay;
 
 pub use closest::{Approach, Closest, Lag};
 pub use closing::Closing;
@@ -46,4 +45,3 @@ pub use limit::SpeedLimit;
 pub use objective::Objective;
 pub use peaks::{Combine, Peak, Peaks};
 pub use problem::{Choice, Decision, Problem, Wish};
-pub use stay::{EDGES_MAX, Edge, Stay};

@@ -2,7 +2,7 @@
 
 use super::fixed::{self, Weight};
 use super::grid::{Grid, LANES};
-use super::{Closest, Closing, Peaks, SpeedLimit, Stay, closest, closing, stay};
+use super::{Closest, Closing, Peaks, SpeedLimit, closest, closing};
 use wide::f32x8;
 
 /// A utility of 0 to 100 for each course and speed.
@@ -30,8 +30,6 @@ pub enum Objective<'a> {
     Closest(Closest),
     /// Rate of closure.
     Closing(Closing),
-    /// Staying within a region.
-    Stay(Stay),
     /// Utilities in a table, one row of all speeds for each course.
     Table(&'a [f32]),
     /// Utilities by course.
@@ -153,7 +151,6 @@ impl Objective<'_> {
         match self {
             Objective::Closest(closest) => field(closest.ready(fastest_m_s).map(Field::Closest)),
             Objective::Closing(closing) => field(closing.ready(fastest_m_s).map(Field::Closing)),
-            Objective::Stay(stay) => field(stay.ready(fastest_m_s).map(Field::Stay)),
             Objective::Table(table) => {
                 let points = grid.courses() * grid.speeds();
                 assert!(table.len() == points, "{} utilities, {points} points", table.len());
@@ -195,7 +192,6 @@ pub(super) enum Parts<'a> {
 pub(super) enum Field {
     Closest(closest::Ready),
     Closing(closing::Ready),
-    Stay(stay::Ready),
 }
 
 impl Field {
@@ -205,7 +201,6 @@ impl Field {
         match self {
             Field::Closest(ready) => ready.utility(north, east, speed),
             Field::Closing(ready) => ready.utility(north, east, speed),
-            Field::Stay(ready) => ready.utility(north, east, speed),
         }
     }
 
@@ -215,7 +210,6 @@ impl Field {
         match self {
             Field::Closest(ready) => ready.bound(north, east, slow, fast),
             Field::Closing(ready) => ready.bound(north, east, slow, fast),
-            Field::Stay(ready) => ready.bound(north, east, slow, fast),
         }
     }
 }

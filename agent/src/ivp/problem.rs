@@ -36,7 +36,7 @@ pub struct Choice {
     pub value: f64,
     /// The largest weighted sum; more than `value` only when an earlier decision was kept.
     pub best: f64,
-    /// Whether an earlier decision was kept though another is better.
+    /// Whether an earlier decision was kept; it may be the best one itself.
     pub is_kept: bool,
     /// How many points were asked; the others could not win.
     pub asked: usize,
@@ -198,7 +198,7 @@ impl Problem {
         }
     }
 
-    /// An earlier decision and its value, if it is on the grid, worse than the best and near enough to it.
+    /// An earlier decision and its value, if it is on the grid and near enough to the best one.
     fn kept(&self, old: Decision, share: f64, best: i32) -> Option<(Decision, i32)> {
         let (k, j) = (usize::from(old.course), usize::from(old.speed));
         if k >= self.grid.courses() || j >= self.grid.speeds() {

@@ -8,7 +8,7 @@ use bus::{Board, Bus, Standing};
 use game::codec::{self, DecodeError};
 use game::message::{PolicyProposal, Stamp};
 use game::topic::{self, GameName};
-use game::{Scenario, VehicleId};
+use game::{Scenario, SimTime, VehicleId};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -90,7 +90,7 @@ impl Heap {
         };
         if proposal.vehicle != self.advisers[i].vehicle {
             self.ignored.not_theirs += 1;
-        } else if !(proposal.course_rad.is_finite() && proposal.speed_m_s.is_finite()) {
+        } else if !is_sound(&proposal) {
             self.ignored.bad_number += 1;
         } else {
             self.advisers[i].newest = Some(proposal);
@@ -102,6 +102,11 @@ impl Heap {
         let is_for = |proposal: &PolicyProposal| proposal.stamp.seq >= seq;
         self.advisers.iter().all(|adviser| adviser.newest.as_ref().is_some_and(is_for))
     }
+}
+
+/// Whether its numbers are numbers, and it is of a time in the game.
+fn is_sound(proposal: &PolicyProposal) -> bool {
+    proposal.course_rad.is_finite() && proposal.speed_m_s.is_finite() && proposal.stamp.valid_ns >= SimTime::ZERO
 }
 
 #[cfg(test)]
@@ -125,12 +130,14 @@ mod tests {
         heap.take(1, &codec::encode(&proposal(1, 5, 2.0)));
         heap.take(1, &codec::encode(&proposal(0, 6, 9.0)));
         heap.take(1, &codec::encode(&proposal(1, 6, f64::NAN)));
+        let early = Stamp { valid_ns: SimTime(i64::MIN), ..proposal(1, 6, 9.0).stamp };
+        heap.take(1, &codec::encode(&PolicyProposal { stamp: early, ..proposal(1, 6, 9.0) }));
         heap.take(1, b"ahoy");
         let mut other = proposal(1, 6, 9.0);
         other.stamp.version += 1;
         heap.take(1, &codec::encode(&other));
         assert_eq!(heap.advisers[1].newest, Some(proposal(1, 5, 2.0)));
-        let want = Ignored { not_theirs: 1, bad_number: 1, garbage: 1, version: 1, ..Ignored::default() };
+        let want = Ignored { not_theirs: 1, bad_number: 2, garbage: 1, version: 1, ..Ignored::default() };
         assert_eq!(heap.ignored, want);
     }
 }

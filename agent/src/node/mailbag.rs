@@ -6,10 +6,8 @@
 use super::ignored::Ignored;
 use game::codec::{self, DecodeError};
 use game::message::{Say, Word};
+use game::strategy::SHARED_MAX;
 use game::{TeamId, VehicleId};
-
-/// No boat has more shared variables than this.
-const WORDS_MAX: usize = 256;
 
 /// What one boat said after one decision.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,7 +107,7 @@ impl Speaker {
         let known = newest.words.iter().position(|known| known.key == word.key);
         match known {
             Some(known) => newest.words[known] = word,
-            None if newest.words.len() < WORDS_MAX => newest.words.push(word),
+            None if newest.words.len() < SHARED_MAX => newest.words.push(word),
             None => return false,
         }
         true
@@ -122,7 +120,7 @@ impl Speaker {
 
     /// Whether what it said after the decision before `seq` is there, or can no longer come.
     fn is_past(&self, seq: u64) -> bool {
-        [&self.newest, &self.before].into_iter().flatten().any(|said| said.seq + 1 >= seq)
+        [&self.newest, &self.before].into_iter().flatten().any(|said| said.seq >= seq.saturating_sub(1))
     }
 }
 
@@ -216,11 +214,12 @@ mod tests {
         assert_eq!((bag.ignored.version, bag.ignored.garbage), (1, 1));
         let key = |key| Word { vehicle: VehicleId(1), key, value: 1.0 };
         take(&mut bag, &Say { words: (0..300).map(key).collect(), ..say(0, &[]) });
-        assert_eq!(bag.ignored.surplus, 300 - WORDS_MAX as u64);
-        assert_eq!(heard(&mut bag, 1).len(), WORDS_MAX);
+        assert_eq!(bag.ignored.surplus, 300 - SHARED_MAX as u64);
+        assert_eq!(heard(&mut bag, 1).len(), SHARED_MAX);
         // A number of a decision that never comes hides what was said once, and not for long.
         take(&mut bag, &say(u64::MAX, &[(1, 1.0)]));
         assert!(bag.is_complete(u64::MAX));
+        assert!(bag.is_complete(3), "it is past what is waited for");
         take(&mut bag, &say(1, &[(1, 6.0)]));
         assert_eq!(heard(&mut bag, 2), [6.0]);
     }

@@ -19,6 +19,11 @@ use std::time::Duration;
 /// their order, or a link was cut: they are waited for this long, once.
 const WORDS_LATE: Duration = Duration::from_millis(500);
 
+/// Pictures of a team that are kept while the minds decide.
+const UNREAD_MAX: usize = 64;
+/// Events that are carried over from pictures on which nobody decided.
+const EVENTS_MAX: usize = 1024;
+
 /// A mind and its boat.
 pub(super) struct Seated {
     pub(super) vehicle: VehicleId,
@@ -94,14 +99,18 @@ impl Table {
         let mut heard = clock::now();
         while !settings.stop.load(Ordering::Relaxed) {
             let mut decided = false;
-            for (cell, bytes) in self.line.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
-                let Some(bytes) = bytes else { continue };
+            for (cell, unread) in self.line.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
+                let Some(unread) = unread else { continue };
                 heard = clock::now();
-                match codec::decode::<Picture>(&bytes) {
-                    Ok(picture) => self.pictures[cell] = Some(picture),
-                    Err(e @ DecodeError::Version { .. }) => return Err(NodeError::Version { theirs: e.to_string() }),
-                    // Damaged on the way; the sim sends it again.
-                    Err(_) => {}
+                for bytes in unread {
+                    match codec::decode::<Picture>(&bytes) {
+                        Ok(picture) => self.see(cell, picture),
+                        Err(e @ DecodeError::Version { .. }) => {
+                            return Err(NodeError::Version { theirs: e.to_string() });
+                        }
+                        // Damaged on the way; the sim sends it again.
+                        Err(_) => {}
+                    }
                 }
                 if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
                     return Ok(());
@@ -118,6 +127,21 @@ impl Table {
             }
         }
         Ok(())
+    }
+
+    /// Takes in a picture. An event is told in one picture only: what a picture tells that nobody decided on, since the
+    /// next one came first, is told with that one.
+    fn see(&mut self, cell: usize, mut picture: Picture) {
+        let decided = self.last.as_ref().map(|last| last.stamp.seq);
+        if let Some(old) = self.pictures[cell].take() {
+            let (old_seq, seq) = (old.stamp.seq, picture.stamp.seq);
+            if old_seq < seq && decided.is_none_or(|decided| decided < old_seq) {
+                picture.events.splice(0..0, old.events);
+                let surplus = picture.events.len().saturating_sub(EVENTS_MAX);
+                picture.events.drain(..surplus);
+            }
+        }
+        self.pictures[cell] = Some(picture);
     }
 
     /// Decides when the pictures of all teams are of one tick; answers a tick that is asked again as before. Says
@@ -154,9 +178,9 @@ impl Table {
     }
 }
 
-/// What comes in from the sim: the newest picture of each team, and whether it shows signs of life.
+/// What comes in from the sim: the newest pictures of each team, oldest first, and whether it shows signs of life.
 struct Line {
-    pictures: Arc<Slots<Vec<u8>>>,
+    pictures: Arc<Slots<Vec<Vec<u8>>>>,
     sim_alive: Arc<AtomicBool>,
     /// The teams whose pictures come.
     teams: Vec<TeamId>,
@@ -173,7 +197,14 @@ impl Line {
         let mut standing = Vec::new();
         for team in &teams {
             let (slots, cell) = (Arc::clone(&pictures), team.index());
-            let take = move |bytes: &[u8]| slots.put(cell, bytes.to_vec());
+            let take = move |bytes: &[u8]| {
+                slots.change(cell, |unread| {
+                    let mut unread: Vec<Vec<u8>> = unread.unwrap_or_default();
+                    unread.drain(..(unread.len() + 1).saturating_sub(UNREAD_MAX));
+                    unread.push(bytes.to_vec());
+                    unread
+                });
+            };
             standing.push(bus.subscribe(topic::picture(game, scenario, *team), take)?);
         }
         let flag = Arc::clone(&sim_alive);

@@ -13,7 +13,9 @@ const INBOX: usize = 32;
 /// A mind keeps what people look at for this long after the last question.
 const LOOKED_AT: Duration = Duration::from_secs(5);
 /// A question that came before anything was kept waits this long for the next decision.
-const NEXT_DECISION: Duration = Duration::from_millis(500);
+const NEXT_DECISION: Duration = Duration::from_millis(1500);
+/// Answers between two looks at the pictures: a flood of questions must not keep a boat from deciding.
+const ANSWERS: usize = 2;
 
 /// A question about one of the boats.
 struct Asked {
@@ -62,8 +64,7 @@ impl Window {
                 self.waiting.push(asked);
             }
         }
-        // No more in one go than fit: a flood of questions must not keep a boat from deciding.
-        for _ in 0..INBOX {
+        for _ in 0..ANSWERS {
             let Some((seat, question)) = self.inbox.take_now() else { break };
             self.take(seated, seat, question);
         }

@@ -313,7 +313,15 @@ fn safety_arbitrates_what_a_policy_proposes() {
 }
 
 #[test]
-fn a_full_stop_stops_whatever_else_is_wanted() {
-    let report = decided("kind = 'full_stop'\nweight = 1", &here());
-    assert_eq!(report.hold.as_deref(), Some("stopped by a behaviour"));
+fn a_full_stop_lies_still_and_lets_safety_have_its_way() {
+    let unsafely = "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n";
+    let stop = "[behaviour.stop]\nkind = \"full_stop\"\n";
+    let alone_it_is = thought(&mut helm(&scenario(&format!("{unsafely}{stop}"))), &here());
+    assert_eq!(alone_it_is.hold.as_deref(), Some("no behaviour asks for a course"));
+    let go = "[behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\nspeed_m_s = 2\nweight = 50\n";
+    let against = thought(&mut helm(&scenario(&format!("{unsafely}{stop}{go}"))), &here());
+    assert_eq!(against.speed_m_s, Some(0.0));
+    let safely = scenario(&format!("base = \"SCENARIOS/strategies/safety.toml\"\n{stop}"));
+    let drifting = thought(&mut helm(&safely), &alone(0.0, Boat::at(79.5, 0.0).going(270.0, 0.0)));
+    assert!(drifting.speed_m_s.is_some_and(|speed_m_s| speed_m_s > 0.5), "{drifting:?}");
 }

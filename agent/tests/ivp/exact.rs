@@ -152,6 +152,7 @@ fn as_many_functions_as_there_may_be_do_not_overflow() {
         north_m: 5e4,
         min_m: 0.0,
         max_m: 1.0,
+        touch_m: 0.0,
         approach: Approach::Avoid { at_min: 0.0 },
         lag: None,
         ..scene::closest(&mut stream, &grid)
@@ -176,6 +177,7 @@ fn a_scene_is_pinned_so_that_every_machine_decides_alike() {
             horizon_s: 120.0,
             min_m: 10.0,
             max_m: 75.0,
+            touch_m: 0.0,
             approach: Approach::Avoid { at_min: 25.0 },
             lag: None,
         })
@@ -232,7 +234,6 @@ fn numbers_that_are_none_count_nothing() {
         (5.0, Objective::Course(peaks.moved(|_| none))),
         (5.0, Objective::Speed(peaks.moved(|_| f64::INFINITY))),
         (5.0, Objective::SpeedTable(&[f32::NAN; 9])),
-        (5.0, Objective::Stay(agent::ivp::Stay::new(none, 1.0))),
         (none, Objective::Speed(peaks)),
         (-3.0, Objective::Speed(peaks)),
     ];

@@ -1,7 +1,7 @@
 //! Random decisions, with functions of every kind and plenty of equal values.
 
-use agent::ivp::{Approach, Choice, Closest, Closing, Combine, Decision, Edge, Grid, Lag, Objective, Peak, Peaks};
-use agent::ivp::{Problem, SpeedLimit, Stay, Wish};
+use agent::ivp::{Approach, Choice, Closest, Closing, Combine, Decision, Grid, Lag, Objective, Peak, Peaks};
+use agent::ivp::{Problem, SpeedLimit, Wish};
 use game::stream::Stream;
 
 /// Numbers that functions refer to.
@@ -41,7 +41,6 @@ impl Tables {
             Objective::Limit(limit) => Objective::Limit(limit),
             Objective::Closest(closest) => Objective::Closest(closest),
             Objective::Closing(closing) => Objective::Closing(closing),
-            Objective::Stay(stay) => Objective::Stay(stay),
             Objective::Table(_) => Objective::Table(&self.points),
             Objective::CourseTable(_) => Objective::CourseTable(&self.courses),
             Objective::SpeedTable(_) => Objective::SpeedTable(&self.speeds),
@@ -81,8 +80,7 @@ fn function<'a>(stream: &mut Stream, grid: &Grid, tables: &'a Tables) -> Objecti
         },
         4 => Objective::Limit(limit(stream, grid)),
         5..=8 => Objective::Closest(closest(stream, grid)),
-        9 => Objective::Closing(closing(stream)),
-        10 => Objective::Stay(stay(stream, grid)),
+        9 | 10 => Objective::Closing(closing(stream)),
         11 => Objective::Table(&tables.points),
         12 => Objective::CourseTable(&tables.courses),
         _ => Objective::SpeedTable(&tables.speeds),
@@ -141,6 +139,7 @@ pub(crate) fn closest(stream: &mut Stream, grid: &Grid) -> Closest {
         horizon_s: [0.0, 15.0, 120.0][stream.below(3) as usize],
         min_m,
         max_m: min_m + [0.0, 0.3, 1.0][stream.below(3) as usize] * range,
+        touch_m: 0.0,
         approach: [Approach::Avoid { at_min: 25.0 }, Approach::Avoid { at_min: 0.0 }, Approach::Seek]
             [stream.below(3) as usize],
         lag: (stream.below(2) == 0).then(|| lag(stream, grid)),
@@ -168,19 +167,6 @@ fn closing(stream: &mut Stream) -> Closing {
         velocity_east_m_s: within(3.0),
         flee: stream.below(2) == 0,
     }
-}
-
-fn stay(stream: &mut Stream, grid: &Grid) -> Stay {
-    let soon_s = stream.between(0.0, 20.0);
-    let late_s = soon_s + stream.between(-5.0, 60.0);
-    let mut stay = Stay::new(soon_s, late_s).drifting(stream.between(-0.5, 0.5), stream.between(-0.5, 0.5));
-    let sides = 1 + stream.below(8);
-    for side in 0..sides {
-        let (normal_east, normal_north) = game::math::sin_cos(side as f64 * std::f64::consts::TAU / sides as f64 + 0.3);
-        let inside_m = stream.between(-0.5, 4.0) * 20.0 * grid.speed_max_m_s();
-        stay = stay.and(Edge { normal_north, normal_east, inside_m });
-    }
-    stay
 }
 
 /// What the own ship is doing.

@@ -1,6 +1,6 @@
 //! The functions themselves, at points that were worked out by hand or by another way.
 
-use agent::ivp::{Approach, Closest, Closing, Combine, Edge, Grid, Lag, Objective, Peak, Peaks, SpeedLimit, Stay};
+use agent::ivp::{Approach, Closest, Closing, Combine, Grid, Lag, Objective, Peak, Peaks, SpeedLimit};
 use game::stream::Stream;
 
 /// Single precision over some hundred metres, in points of utility.
@@ -87,6 +87,7 @@ fn the_closest_point_of_approach_is_the_one_a_search_of_times_finds() {
             horizon_s: 60.0,
             min_m: 10.0,
             max_m: 75.0,
+            touch_m: 0.0,
             approach: Approach::Avoid { at_min: 25.0 },
             lag: (seed % 2 == 0).then(|| Lag {
                 velocity_north_m_s: within(3.0),
@@ -129,32 +130,6 @@ fn closing_in_is_worth_100_at_most_and_drawing_away_nothing() {
     ];
     for (closing, k, j, want) in cases {
         near(Objective::Closing(closing).utility(&grid, k, j), want, &format!("{closing:?} at {k}, {j}"));
-    }
-}
-
-#[test]
-fn staying_inside_counts_the_time_to_the_edge_that_comes_first() {
-    let grid = Grid::new(4, 5, 4.0);
-    let north = |inside_m| Edge { normal_north: 1.0, normal_east: 0.0, inside_m };
-    let east = |inside_m| Edge { normal_north: 0.0, normal_east: 1.0, inside_m };
-    let stay = Stay::new(5.0, 25.0).and(north(40.0)).and(east(10.0));
-    let cases = [
-        (stay, 0, 4, 25.0),
-        (stay, 0, 2, 75.0),
-        (stay, 0, 1, 100.0),
-        (stay, 1, 4, 0.0),
-        (stay, 1, 1, 25.0),
-        (stay, 2, 4, 100.0),
-        (stay, 1, 0, 100.0),
-        (stay.drifting(0.0, 1.0), 0, 0, 25.0),
-        (stay.drifting(0.0, 1.0), 3, 4, 100.0),
-        (stay.drifting(-2.0, 0.0), 0, 4, 75.0),
-    ];
-    let outside = Stay::new(5.0, 25.0).and(north(-3.0));
-    let returning = [(outside, 0, 4, 0.0), (outside, 1, 4, 0.0), (outside, 2, 1, 25.0), (outside, 2, 4, 100.0)];
-    let drifted = [(outside.drifting(1.0, 0.0), 2, 1, 0.0), (outside.drifting(1.0, 0.0), 2, 4, 75.0)];
-    for (stay, k, j, want) in cases.into_iter().chain(returning).chain(drifted) {
-        near(Objective::Stay(stay).utility(&grid, k, j), want, &format!("{stay:?} at {k}, {j}"));
     }
 }
 

@@ -1,7 +1,7 @@
 //! The same scene turned or mirrored must give the same decision turned or mirrored.
 
 use crate::scene::{self, Tables, solved};
-use agent::ivp::{Closest, Closing, Edge, Grid, Lag, Objective, Stay, Wish};
+use agent::ivp::{Closest, Closing, Grid, Lag, Objective, Wish};
 use game::stream::Stream;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -73,15 +73,6 @@ impl Motion {
                 let (north_m, east_m) = self.vector(c.north_m, c.east_m);
                 let (velocity_north_m_s, velocity_east_m_s) = self.vector(c.velocity_north_m_s, c.velocity_east_m_s);
                 Objective::Closing(Closing { north_m, east_m, velocity_north_m_s, velocity_east_m_s, ..c })
-            }
-            Objective::Stay(stay) => {
-                let (north_m_s, east_m_s) = self.vector(stay.drift_north_m_s, stay.drift_east_m_s);
-                let mut moved = Stay::new(stay.soon_s, stay.late_s).drifting(north_m_s, east_m_s);
-                for edge in stay.edges() {
-                    let (normal_north, normal_east) = self.vector(edge.normal_north, edge.normal_east);
-                    moved = moved.and(Edge { normal_north, normal_east, ..*edge });
-                }
-                Objective::Stay(moved)
             }
             same => same,
         }

@@ -46,6 +46,9 @@ pub(super) trait Typed: DeserializeOwned + Default {
     /// A key whose value serde cannot read alone; [`Typed::put_apart`] gets it.
     const APART: Option<&'static str> = None;
 
+    /// Keys that count only in the file itself, not in its bases.
+    const OWN: &'static [&'static str] = &[];
+
     /// Reads the value of [`Typed::APART`].
     fn put_apart(&mut self, _: &mut Ledger, _: Spanned<DeValue<'_>>) {}
 }
@@ -69,6 +72,13 @@ pub(super) fn document_of<T: Typed>(
     let typed = merged(&chain);
     let numbers = draw::numbers(ledger, typed.get_ref(), T::DRAWABLE, owner);
     let mut table: Table<'_> = typed;
+    let own = start..start + chain[0].1.len();
+    for key in T::OWN {
+        let of_base = table.get_ref().get(*key).is_some_and(|value| !own.contains(&value.span().start));
+        if of_base {
+            table.get_mut().remove(*key);
+        }
+    }
     draw::put(table.get_mut(), T::DRAWABLE, &numbers);
     let apart = T::APART.and_then(|key| table.get_mut().remove(key));
     let mut raw: T = deserialised(ledger, start, table);

@@ -261,7 +261,7 @@ pub struct AvoidCollision {
     pub inner_m: Parameter,
     /// Farther than this it has none, m.
     pub outer_m: Parameter,
-    /// A closest point of approach of this or less is worth nothing, m.
+    /// A closest point of approach of this is worth half, a nearer one less, m.
     pub cpa_min_m: Parameter,
     /// One of this or more is worth everything, m.
     pub cpa_max_m: Parameter,
@@ -304,7 +304,7 @@ pub struct AvoidObstacle {
     pub inner_m: Parameter,
     /// Farther than this it has none, m.
     pub outer_m: Parameter,
-    /// A pass of this or less is worth nothing, m.
+    /// A pass of this is worth half, a nearer one less, m.
     pub cpa_min_m: Parameter,
     /// One of this or more is worth everything, m.
     pub cpa_max_m: Parameter,
@@ -381,7 +381,7 @@ pub struct MemoryTurnLimit {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timer {}
 
-/// Stops the boat, whatever the others want.
+/// Would like the boat to lie still; safety may move it all the same.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FullStop {}
 

@@ -107,7 +107,7 @@ impl Values for Nothing {
 }
 
 impl Expression {
-    /// The value. Numbers that are not finite become 0.
+    /// The value; one that is no number becomes 0.
     #[must_use]
     pub fn value(&self, values: &impl Values) -> f64 {
         let value = match self {

@@ -20,6 +20,13 @@ pub use place::{Boat, Mark, Place};
 
 use serde::{Deserialize, Serialize};
 
+/// The most contacts or obstacles that one behaviour heeds at a time: the nearest.
+pub const HEEDED_MAX: usize = 16;
+/// The most functions that the behaviours of a mode may ask for together, each contact or obstacle counted.
+pub const FUNCTIONS_MAX: usize = 256;
+/// The most shared variables of a program.
+pub const SHARED_MAX: usize = 256;
+
 /// How the boats of a team play.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Strategy {

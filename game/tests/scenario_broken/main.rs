@@ -12,7 +12,7 @@ mod values;
 use game::scenario;
 
 /// A sound set of files; each case replaces some of them.
-const SOUND: [(&str, &str); 8] = [
+const SOUND: [(&str, &str); 9] = [
     (
         "games/g.toml",
         r#"field = "../fields/f.toml"
@@ -40,6 +40,10 @@ speed_max_m_s = 2
 "#,
     ),
     ("strategies/p.toml", "roles = [\"s.toml\"]\n"),
+    (
+        "strategies/unsafe.toml",
+        "unsafe_i_know = true\nunsafe_because = \"a test\"\n[behaviour.stop]\nkind = \"full_stop\"\n",
+    ),
     (
         "strategies/s.toml",
         "[behaviour.stay_in]\nkind = \"op_region\"\n[behaviour.keep_clear]\nkind = \"avoid_collision\"\n",

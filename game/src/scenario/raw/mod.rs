@@ -116,6 +116,7 @@ impl Typed for RawStrategy {
     const DRAWABLE: Drawable = Drawable::Nothing;
     const OWNER: &'static str = "strategy";
     const APART: Option<&'static str> = Some("behaviour");
+    const OWN: &'static [&'static str] = &["unsafe_i_know", "unsafe_because"];
 
     fn put_apart(&mut self, ledger: &mut Ledger, value: Spanned<DeValue<'_>>) {
         self.behaviour = RawBehaviours::of(ledger, value);

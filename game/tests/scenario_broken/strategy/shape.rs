@@ -65,7 +65,7 @@ helm = { courses = 4, speeds = 1.5, speed_max_m_s = 0, hysteresis = nan, rate = 
             "2:20: courses is 4, expected 8 to 3600",
             "2:32: speeds is 1.5, expected a whole number",
             "2:53: speed_max_m_s is 0, expected 0.1 to 60",
-            "2:69: hysteresis is nan, expected 0 to 1",
+            "2:69: hysteresis is nan, expected 0 to 0.1",
             "2:74: rate is unknown, expected one of courses, speeds, speed_max_m_s, hysteresis",
         ],
     ),

@@ -102,13 +102,13 @@ impl Bounds {
         sorted.dedup();
         let first = sorted.first().copied().unwrap_or(0.0);
         let last = sorted.last().copied().unwrap_or(0.0);
-        let mut values = vec![if least.is_finite() { *least } else { first.floor() - 1.0 }];
+        let mut values = vec![if least.is_finite() { *least } else { (first.floor() - 1.0).min(first.next_down()) }];
         for pair in sorted.windows(2) {
             let (low, high) = (pair[0], pair[1]);
             values.push(low);
-            values.push(if *is_whole { low.floor() + 1.0 } else { 0.5 * (low + high) });
+            values.push(if *is_whole { low.floor() + 1.0 } else { 0.5 * low + 0.5 * high });
         }
-        values.extend([last, last.floor() + 1.0]);
+        values.extend([last, (last.floor() + 1.0).max(last.next_up())]);
         values.retain(|value| value >= least && (!is_whole || value.fract() == 0.0));
         values.sort_by(f64::total_cmp);
         values.dedup();

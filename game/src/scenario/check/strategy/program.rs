@@ -9,8 +9,10 @@ use crate::scenario::explain::nearest;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawRule, RawStrategy};
 use crate::scenario::read::Document;
-use crate::strategy::{Helm, Program, Rule, Trigger, Variable, What, Who};
+use crate::strategy::{Behaviour, FUNCTIONS_MAX, HEEDED_MAX, Helm, Program, Rule, Task, Trigger, Variable, What, Who};
 
+/// The most that a decision may be worse than the best and stand: more would outweigh safety.
+const HYSTERESIS_MAX: f64 = 0.1;
 /// The most rules of a program.
 const MOST_RULES: usize = 1000;
 
@@ -26,7 +28,7 @@ pub(super) fn program(ledger: &mut Ledger, document: &Document<RawStrategy>) -> 
     let rules = rules(ledger, &variables, raw);
     let because = safety::because(ledger, raw);
     let (places, modes): (Vec<usize>, Vec<_>) = modes.unwrap_or_default().into_iter().unzip();
-    let program = Program {
+    let mut program = Program {
         name: document.name.clone(),
         about: raw.about.as_ref().map(|about| about.value.clone()).unwrap_or_default(),
         helm,
@@ -38,10 +40,31 @@ pub(super) fn program(ledger: &mut Ledger, document: &Document<RawStrategy>) -> 
     };
     // What is wrong with a part may be all that is wrong with the whole.
     if has_tasks && ledger.faults() == faults {
+        count_functions(ledger, &program, &places);
         reach::check(ledger, &program, &places);
-        safety::check(ledger, &program, &places, because.as_ref());
+        safety::check(ledger, &mut program, (&places, raw), because.as_ref());
     }
     (ledger.faults() == faults).then_some(program)
+}
+
+/// Notes modes in which the behaviours could ask for more functions than a helm hears.
+fn count_functions(ledger: &mut Ledger, program: &Program, places: &[usize]) {
+    for leaf in program.leaves() {
+        let most = |behaviour: &Behaviour| match behaviour.task {
+            Task::AvoidCollision(_) | Task::AvoidObstacle(_) => HEEDED_MAX,
+            Task::CutRange(_) => 2,
+            _ => 1,
+        };
+        let functions: usize = program.behaviours.iter().filter(|b| b.modes[leaf]).map(most).sum();
+        if functions > FUNCTIONS_MAX {
+            let message = format!(
+                "mode {} could ask for {functions} functions at once, expected at most {FUNCTIONS_MAX}: {HEEDED_MAX} for each \
+                 avoid_collision and avoid_obstacle, 2 for each cut_range, 1 for each other behaviour",
+                program.path(leaf)
+            );
+            ledger.note(places[leaf], message);
+        }
+    }
 }
 
 fn helm(ledger: &mut Ledger, raw: &RawStrategy) -> Helm {
@@ -50,7 +73,7 @@ fn helm(ledger: &mut Ledger, raw: &RawStrategy) -> Helm {
         courses: ledger.whole("courses", raw.courses.as_ref(), 8..=3600, 360) as usize,
         speeds: ledger.whole("speeds", raw.speeds.as_ref(), 2..=1000, 36) as usize,
         speed_max_m_s: ledger.number("speed_max_m_s", raw.speed_max_m_s.as_ref(), 0.1..=60.0),
-        hysteresis: ledger.number("hysteresis", raw.hysteresis.as_ref(), 0.0..=1.0).unwrap_or(0.0),
+        hysteresis: ledger.number("hysteresis", raw.hysteresis.as_ref(), 0.0..=HYSTERESIS_MAX).unwrap_or(0.0),
     }
 }
 

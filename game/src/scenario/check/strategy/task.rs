@@ -63,7 +63,10 @@ impl Keys<'_> {
 
     fn given(&mut self, key: &str, given: &At<Amount>, range: (f64, f64)) -> Option<Expression> {
         let expression = match &given.value {
-            Amount::Number(number) => Expression::Constant(*number),
+            Amount::Number(number) => {
+                let value = At { value: *number, at: given.at };
+                return self.ledger.number(key, Some(&value), range.0..=range.1).map(Expression::Constant);
+            }
             Amount::Text(text) => {
                 let text = At { value: text.clone(), at: given.at };
                 expression(self.ledger, self.variables, key, &text, Wanted::Number)?

@@ -4,7 +4,7 @@ use super::expression::{CALLS, RESERVED, Wanted, expression, place_of, values_al
 use crate::scenario::explain::nearest;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, Given, RawSet, RawStrategy, RawVariable, Stated};
-use crate::strategy::{Expression, Fact, Kind, Measure, Variable};
+use crate::strategy::{Expression, Fact, Kind, Measure, SHARED_MAX, Variable};
 
 /// The most variables of a program.
 const MOST: usize = 1000;
@@ -18,7 +18,13 @@ pub(super) fn variables(ledger: &mut Ledger, raw: &RawStrategy) -> Vec<Variable>
         ledger.note(given.at, format!("variables has {} entries, expected at most {MOST}", given.value.len()));
         return vec![];
     }
-    given.value.iter().filter_map(|(name, variable)| one(ledger, name, variable)).collect()
+    let variables: Vec<Variable> =
+        given.value.iter().filter_map(|(name, variable)| one(ledger, name, variable)).collect();
+    let shared = variables.iter().filter(|variable| variable.shared).count();
+    if shared > SHARED_MAX {
+        ledger.note(given.at, format!("variables has {shared} shared ones, expected at most {SHARED_MAX}"));
+    }
+    variables
 }
 
 fn one(ledger: &mut Ledger, name: &str, given: &At<RawVariable>) -> Option<Variable> {

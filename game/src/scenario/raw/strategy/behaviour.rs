@@ -38,8 +38,8 @@ pub(in crate::scenario) struct RawCommon {
     pub(in crate::scenario) r#in: Option<At<Vec<At<String>>>>,
     /// It runs only while this expression is true. Default always.
     pub(in crate::scenario) when: Option<At<String>>,
-    /// How much its wishes count against those of others, a number or an expression: 0 to 1000. Default 100; of
-    /// op_region, avoid_collision and avoid_obstacle 300.
+    /// How much its wishes count against those of others, a number or an expression; no more than the op_region and the
+    /// avoid_collision on guard have: 0 to 1000. Default 100; of op_region, avoid_collision and avoid_obstacle 300.
     pub(in crate::scenario) weight: Option<At<Amount>>,
     /// It is complete after running for this long, s: 0 to 86400. Default never.
     pub(in crate::scenario) duration_s: Option<At<Amount>>,

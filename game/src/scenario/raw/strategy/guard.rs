@@ -16,7 +16,7 @@ pub(in crate::scenario) struct RawAvoidCollision {
     pub(in crate::scenario) inner_m: Option<At<Amount>>,
     /// Farther than this it has none, m: 0 to 10000. Default 15.
     pub(in crate::scenario) outer_m: Option<At<Amount>>,
-    /// A closest point of approach of this or less is worth nothing, m: 0 to 10000. Default 3.
+    /// A closest point of approach of this is worth half, a nearer one less, m: 0 to 10000. Default 3.
     pub(in crate::scenario) cpa_min_m: Option<At<Amount>>,
     /// One of this or more is worth everything, m: 0 to 10000. Default 6.
     pub(in crate::scenario) cpa_max_m: Option<At<Amount>>,
@@ -34,7 +34,7 @@ pub(in crate::scenario) struct RawAvoidObstacle {
     pub(in crate::scenario) inner_m: Option<At<Amount>>,
     /// Farther than this it has none, m: 0 to 10000. Default 15.
     pub(in crate::scenario) outer_m: Option<At<Amount>>,
-    /// A pass of this or less is worth nothing, m: 0 to 10000. Default 1.
+    /// A pass of this is worth half, a nearer one less, m: 0 to 10000. Default 1.
     pub(in crate::scenario) cpa_min_m: Option<At<Amount>>,
     /// One of this or more is worth everything, m: 0 to 10000. Default 4.
     pub(in crate::scenario) cpa_max_m: Option<At<Amount>>,
@@ -117,7 +117,7 @@ pub(in crate::scenario) struct RawMemoryTurnLimit {
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct RawTimer {}
 
-/// Stops the boat, whatever the others want.
+/// Would like the boat to lie still; safety may move it all the same.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct RawFullStop {}

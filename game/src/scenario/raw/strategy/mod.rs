@@ -66,9 +66,9 @@ pub(in crate::scenario) struct RawHelm {
     pub(in crate::scenario) courses: Option<At<i64>>,
     /// How many speeds, from 0 to the highest: 2 to 1000. Default 36.
     pub(in crate::scenario) speeds: Option<At<i64>>,
-    /// The highest speed, m/s: 0.1 to 60. Default the boat's own.
+    /// The highest speed, m/s: 0.1 to 60, but never more than the boat's own. Default the boat's own.
     pub(in crate::scenario) speed_max_m_s: Option<At<f64>>,
-    /// The last decision stands while it is worth this share less than the best at most: 0 to 1. Default 0.
+    /// The last decision stands while it is worth this share less than the best at most: 0 to 0.1. Default 0.
     pub(in crate::scenario) hysteresis: Option<At<f64>>,
 }
 
