@@ -89,3 +89,47 @@ fn only_game(bus: &Bus) -> Result<GameName> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::is_sound;
+    use game::VehicleId;
+    use game::helm::{FunctionReport, HelmReport};
+
+    fn report(courses: usize, utilities: usize, contact: u16) -> HelmReport {
+        let function = FunctionReport {
+            behaviour: "go".to_owned(),
+            contact: Some(VehicleId(contact)),
+            weight: 1.0,
+            utility: None,
+            utilities: vec![0.0; utilities],
+        };
+        HelmReport {
+            vehicle: VehicleId(0),
+            at: game::SimTime::ZERO,
+            program: String::new(),
+            mode: String::new(),
+            course_deg: None,
+            speed_m_s: None,
+            hold: None,
+            value: None,
+            courses,
+            speeds: 2,
+            speed_max_m_s: 1.0,
+            behaviours: vec![],
+            variables: vec![],
+            functions: vec![function],
+        }
+    }
+
+    #[test]
+    fn answers_that_make_no_sense_are_told_from_those_that_do() {
+        let good = report(8, 16, 1);
+        assert!(is_sound(&good, VehicleId(0), 2) && is_sound(&report(8, 0, 1), VehicleId(0), 2));
+        assert!(!is_sound(&good, VehicleId(1), 2), "of another boat");
+        assert!(!is_sound(&good, VehicleId(0), 1), "about a boat that is not there");
+        for bad in [report(8, 15, 1), report(usize::MAX, 0, 1), HelmReport { speed_max_m_s: f64::NAN, ..good }] {
+            assert!(!is_sound(&bad, VehicleId(0), 2), "{bad:?}");
+        }
+    }
+}

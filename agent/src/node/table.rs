@@ -129,19 +129,11 @@ impl Table {
         Ok(())
     }
 
-    /// Takes in a picture. An event is told in one picture only: what a picture tells that nobody decided on, since the
-    /// next one came first, is told with that one.
-    fn see(&mut self, cell: usize, mut picture: Picture) {
+    /// Takes in a picture.
+    fn see(&mut self, cell: usize, picture: Picture) {
         let decided = self.last.as_ref().map(|last| last.stamp.seq);
-        if let Some(old) = self.pictures[cell].take() {
-            let (old_seq, seq) = (old.stamp.seq, picture.stamp.seq);
-            if old_seq < seq && decided.is_none_or(|decided| decided < old_seq) {
-                picture.events.splice(0..0, old.events);
-                let surplus = picture.events.len().saturating_sub(EVENTS_MAX);
-                picture.events.drain(..surplus);
-            }
-        }
-        self.pictures[cell] = Some(picture);
+        let old = self.pictures[cell].take();
+        self.pictures[cell] = Some(with_missed_events(picture, old, decided));
     }
 
     /// Decides when the pictures of all teams are of one tick; answers a tick that is asked again as before. Says
@@ -178,6 +170,19 @@ impl Table {
     }
 }
 
+/// A picture with the events of the one before, if nobody decided on that: `decided` is the number of the last decision. An
+/// event is told in one picture only.
+fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Option<u64>) -> Picture {
+    let is_missed =
+        |old: &Picture| old.stamp.seq < picture.stamp.seq && decided.is_none_or(|decided| decided < old.stamp.seq);
+    if let Some(old) = before.filter(is_missed) {
+        picture.events.splice(0..0, old.events);
+        let surplus = picture.events.len().saturating_sub(EVENTS_MAX);
+        picture.events.drain(..surplus);
+    }
+    picture
+}
+
 /// What comes in from the sim: the newest pictures of each team, oldest first, and whether it shows signs of life.
 struct Line {
     pictures: Arc<Slots<Vec<Vec<u8>>>>,
@@ -211,5 +216,33 @@ impl Line {
         let watch = move |_: &str, alive: bool| flag.store(alive, Ordering::Relaxed);
         standing.push(bus.watch_alive(topic::all_alive(game, Part::Sim), watch)?);
         Ok(Line { pictures, sim_alive, teams, _standing: standing })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::event::{Event, Logged};
+    use game::message::EventRecord;
+    use game::{SimTime, VehicleId};
+
+    /// A picture in which boat `seq` left the field.
+    fn picture(seq: u64) -> Picture {
+        let event = Event::LeftField { vehicle: VehicleId(seq as u16) };
+        let events = vec![EventRecord::from(Logged { tick: seq, at: SimTime::ZERO, event })];
+        Picture { stamp: Stamp { seq, ..Stamp::default() }, events, ..Picture::default() }
+    }
+
+    #[test]
+    fn events_of_pictures_on_which_nobody_decided_are_told_with_the_next() {
+        let told = |picture: &Picture| picture.events.iter().map(|event| event.subject).collect::<Vec<_>>();
+        let late = with_missed_events(picture(4), Some(picture(3)), Some(2));
+        assert_eq!(told(&late), [3, 4]);
+        let later = with_missed_events(picture(5), Some(late.clone()), Some(2));
+        assert_eq!(told(&later), [3, 4, 5]);
+        assert_eq!(told(&with_missed_events(picture(5), Some(late.clone()), Some(4))), [5], "it was decided on");
+        assert_eq!(told(&with_missed_events(picture(4), Some(late), None)), [4], "the same picture once more");
+        let many = (0..3000).fold(picture(0), |last, seq| with_missed_events(picture(seq + 1), Some(last), None));
+        assert_eq!((many.events.len(), many.events.last().map(|event| event.subject)), (EVENTS_MAX, Some(3000)));
     }
 }

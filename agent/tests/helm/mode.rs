@@ -149,6 +149,46 @@ fn mates_are_heard_when_they_have_said_everything_that_is_asked() {
 }
 
 #[test]
+fn a_collision_is_one_for_both_boats() {
+    let rule = |who: &str| {
+        format!(
+            "unsafe_i_know = true\nunsafe_because = \"about rules only\"\n[variables]\nhit = 0\n\
+             [[rule]]\non = \"{who} collides\"\nset = {{ hit = \"hit + 1\" }}\n[behaviour.wait]\nkind = \"full_stop\"\n"
+        )
+    };
+    let mut seen = alone(1.0, Boat::at(-20.0, 0.0));
+    for (first, second, who, want) in
+        [(0, 2, "i", 1.0), (0, 2, "enemy", 1.0), (0, 2, "mate", 0.0), (1, 3, "mate", 1.0), (1, 3, "i", 0.0)]
+    {
+        let event = Event::Collided { first: VehicleId(first), second: VehicleId(second) };
+        seen.events = vec![EventRecord::from(Logged { tick: 2, at: SimTime::ZERO, event })];
+        let report = thought(&mut helm(&scenario(&rule(who))), &seen);
+        assert_eq!(report.variables[0].value, want.to_string(), "{first} and {second}: {who}");
+    }
+}
+
+#[test]
+fn what_a_behaviour_has_reached_is_a_point_or_its_time() {
+    let program = "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n[variables]\nreached = 0\n\
+        [behaviour.wait]\nkind = \"timer\"\nduration_s = 5\non_reach = { reached = \"reached + 1\" }\n\
+        [behaviour.stop]\nkind = \"full_stop\"\n";
+    let mut mind = helm(&scenario(program));
+    for (at_s, want) in [(0.0, "0"), (4.9, "0"), (5.0, "1"), (9.0, "1")] {
+        assert_eq!(thought(&mut mind, &alone(at_s, Boat::at(0.0, 0.0))).variables[0].value, want, "{at_s} s");
+    }
+}
+
+#[test]
+fn time_is_counted_from_the_first_picture() {
+    let program = "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n[variables]\nwaited_s = 0\n\
+        [[rule]]\nwhen = \"true\"\nset = { waited_s = \"waited_s + step_s\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
+    let mut mind = helm(&scenario(program));
+    for (at_s, want) in [(300.0, "0"), (300.5, "0.5"), (301.0, "1")] {
+        assert_eq!(thought(&mut mind, &alone(at_s, Boat::at(0.0, 0.0))).variables[0].value, want, "{at_s} s");
+    }
+}
+
+#[test]
 fn a_decision_is_kept_while_it_is_nearly_as_good() {
     let program = |hysteresis: f64| {
         scenario(&format!(
