@@ -102,16 +102,7 @@ impl Table {
             for (cell, unread) in self.line.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
                 let Some(unread) = unread else { continue };
                 heard = clock::now();
-                for bytes in unread {
-                    match codec::decode::<Picture>(&bytes) {
-                        Ok(picture) => self.see(cell, picture),
-                        Err(e @ DecodeError::Version { .. }) => {
-                            return Err(NodeError::Version { theirs: e.to_string() });
-                        }
-                        // Damaged on the way; the sim sends it again.
-                        Err(_) => {}
-                    }
-                }
+                unread.iter().try_for_each(|bytes| self.see(cell, bytes))?;
                 if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
                     return Ok(());
                 }
@@ -130,10 +121,17 @@ impl Table {
     }
 
     /// Takes in a picture.
-    fn see(&mut self, cell: usize, picture: Picture) {
+    fn see(&mut self, cell: usize, bytes: &[u8]) -> Result<(), NodeError> {
+        let picture = match codec::decode(bytes) {
+            Ok(picture) => picture,
+            Err(e @ DecodeError::Version { .. }) => return Err(NodeError::Version { theirs: e.to_string() }),
+            // Damaged on the way; the sim sends it again.
+            Err(_) => return Ok(()),
+        };
         let decided = self.last.as_ref().map(|last| last.stamp.seq);
-        let old = self.pictures[cell].take();
-        self.pictures[cell] = Some(with_missed_events(picture, old, decided));
+        let before = self.pictures[cell].take();
+        self.pictures[cell] = Some(with_missed_events(picture, before, decided));
+        Ok(())
     }
 
     /// Decides when the pictures of all teams are of one tick; answers a tick that is asked again as before. Says

@@ -2,6 +2,7 @@
 
 mod behaviour;
 mod expression;
+mod guard;
 mod mode;
 mod reach;
 mod role;
