@@ -99,7 +99,8 @@ fn sentence(scenario: &Scenario, logged: &game::event::Logged) -> String {
 /// Frames and simulated seconds a second, since the last reading.
 struct Meter {
     then: Instant,
-    sim: SimTime,
+    /// Nothing before the first reading.
+    sim: Option<SimTime>,
     frames: u64,
 }
 
@@ -114,14 +115,14 @@ pub(crate) struct Rates {
 #[expect(clippy::disallowed_methods, reason = "rates are read by the clock")]
 impl Meter {
     fn new() -> Meter {
-        Meter { then: Instant::now(), sim: SimTime::ZERO, frames: 0 }
+        Meter { then: Instant::now(), sim: None, frames: 0 }
     }
 
     fn read(&mut self, sim: SimTime, frames: u64) -> Rates {
         let passed_s = self.then.elapsed().as_secs_f64().max(1e-6);
-        let rates =
-            Rates { frames_hz: (frames - self.frames) as f64 / passed_s, factor: (sim - self.sim).as_s() / passed_s };
-        *self = Meter { then: Instant::now(), sim, frames };
+        let sim_s = self.sim.map_or(0.0, |before| (sim - before).as_s());
+        let rates = Rates { frames_hz: (frames - self.frames) as f64 / passed_s, factor: sim_s / passed_s };
+        *self = Meter { then: Instant::now(), sim: Some(sim), frames };
         rates
     }
 }

@@ -84,6 +84,35 @@ fn watch_shows_a_helm_and_helm_writes_its_functions() {
 }
 
 #[test]
+fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let scenario = long_game(dir.path(), "").display().to_string();
+    let mut command = squall(&["run", &scenario, "--pace", "1x"]);
+    command.stdout(Stdio::piped());
+    let mut game = Process::start(command);
+    let mut lines = BufReader::new(game.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
+    let open = lines.next().expect("where it is");
+    let words: Vec<&str> = open.split_whitespace().collect();
+    let ["game", name, "at", endpoint] = words[..] else { panic!("{open}") };
+    lines.by_ref().find(|line| line.contains("every boat has a mind")).expect("it starts");
+    let csv = dir.path().join("one.csv").display().to_string();
+    // All of them at once: half a megabyte from each goes through the hub.
+    std::thread::scope(|scope| {
+        for vehicle in FOUR {
+            let args = ["helm", "--connect", endpoint, "--game", name, "--vehicle", vehicle, "--csv"];
+            let csv = format!("{csv}.{vehicle}");
+            scope.spawn(move || {
+                let output = run(&[&args[..], &[csv.as_str()]].concat());
+                assert!(output.status.success(), "{vehicle}: {}", String::from_utf8_lossy(&output.stderr));
+            });
+        }
+    });
+    game.signal("INT");
+    let lost: Vec<String> = lines.filter(|line| line.contains("LOST")).collect();
+    assert_eq!(lost, [""; 0]);
+}
+
+#[test]
 fn an_agent_plays_by_a_strategy_file_of_its_own() {
     let dir = tempfile::tempdir().expect("a temporary directory");
     let text = format!("base = \"{}/strategies/easy_attacker.toml\"\nabout = \"mine\"\n", scenarios());
