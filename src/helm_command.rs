@@ -7,6 +7,7 @@ use crate::{helm_page, screen};
 use anyhow::{Context, Result, bail};
 use game::Scenario;
 use game::helm::{FunctionReport, HelmQuestion, HelmReport};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -123,7 +124,7 @@ fn roses(report: &HelmReport) -> Vec<Rose> {
     for behaviour in &report.behaviours {
         let of_it = || report.functions.iter().filter(|function| function.behaviour == behaviour.name);
         let weight: f64 = of_it().map(|function| function.weight).sum();
-        let contacts = of_it().filter(|function| function.contact.is_some()).count();
+        let contacts = of_it().filter_map(|function| function.contact).collect::<BTreeSet<_>>().len();
         if of_it().next().is_none() {
             continue;
         }
