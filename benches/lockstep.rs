@@ -18,7 +18,7 @@ const ROUNDS: usize = 5;
 const RUN_S: f64 = 2.0;
 /// The same runtime that `squall run` gives its children.
 const RUNTIME: &str =
-    "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:2))";
+    "(rx:(worker_threads:1),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
 struct Case {
     processes: usize,

@@ -6,6 +6,8 @@ use crate::sim_command::seconds;
 use crate::stop;
 use agent::node::{News, Settings};
 use anyhow::{Context, Result};
+use game::strategy::Strategy;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -23,9 +25,21 @@ pub(crate) struct Args {
     /// After this long without a picture the sim counts as dead, s (3 s once its sign of life is gone)
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
     silence_s: f64,
-    /// Says nothing, and stops when standard input ends
+    /// Plays by this strategy file in place of the one that the sim's scenario names
+    #[arg(long, value_name = "FILE")]
+    strategy: Option<PathBuf>,
+    /// In lockstep: how long to wait at every decision for the proposal of a policy outside, s, where the strategy heeds
+    /// one (at most half of the game's patience_s)
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = seconds)]
+    policy_wait_s: f64,
+    /// Says nothing that is well, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
+}
+
+/// The strategy in a file, with every problem in the error.
+fn load_strategy(path: &Path) -> Result<Strategy> {
+    game::scenario::load_strategy(path).with_context(|| format!("cannot play by {}", path.display()))
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -34,22 +48,26 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         stop::with_parent(&stop);
     }
     let names = args.vehicle.join(", ");
+    let strategy = args.strategy.as_deref().map(load_strategy).transpose()?;
     let settings = Settings {
         game: args.leaf.game.clone(),
         net: args.leaf.net()?,
         vehicles: args.vehicle.clone(),
         wait: Duration::from_secs_f64(args.wait_s),
         silence: Duration::from_secs_f64(args.silence_s),
+        strategy,
+        policy_wait: Duration::from_secs_f64(args.policy_wait_s),
         stop: stop.clone(),
     };
-    let mut tell = |news: News<'_>| {
-        if args.for_parent {
-            return;
+    let mut tell = |news: News<'_>| match news {
+        News::Left { ignored } if ignored.total() > 0 => {
+            screen::remark(&format!("{names}: ignored or missed: {ignored}"));
         }
-        match news {
-            News::Looking { reason } => screen::remark(&format!("{names}: looking for the game: {reason}")),
-            News::Joined { game } => screen::remark(&format!("{names}: joined {game}")),
+        News::Looking { reason } if !args.for_parent => {
+            screen::remark(&format!("{names}: looking for the game: {reason}"));
         }
+        News::Joined { game } if !args.for_parent => screen::remark(&format!("{names}: joined {game}")),
+        News::Left { .. } | News::Looking { .. } | News::Joined { .. } => {}
     };
     agent::node::serve(&settings, &mut tell).with_context(|| format!("the agent of {names}"))?;
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);

@@ -17,7 +17,7 @@ pub(crate) struct Args {
 /// Which kind.
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
-    /// game, field, rules, boat, sea or strategy
+    /// game, field, rules, boat, sea, strategy or tournament
     kind: String,
 }
 

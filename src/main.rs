@@ -2,19 +2,28 @@
 
 mod agent_command;
 mod check_command;
+mod helm_command;
+mod helm_page;
 mod identify_command;
 mod list_command;
 mod net_args;
 mod offspring;
+mod onlooker;
+mod override_args;
 mod plot;
 mod result_table;
+mod rose_plot;
 mod run_command;
 mod screen;
 mod sea_command;
 mod sea_plot;
 mod sim_command;
 mod stop;
+mod strategy_command;
 mod telling;
+mod tournament_command;
+mod tournament_progress;
+mod tournament_table;
 mod trial_command;
 mod trial_plot;
 mod watch_command;
@@ -23,9 +32,12 @@ mod water_args;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
+/// The version, and the commit it was built from.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMMIT"), ")");
+
 /// A distributed swarm simulator for unmanned surface vehicles that play capture the flag.
 #[derive(Parser)]
-#[command(name = "squall", version, max_term_width = 100)]
+#[command(name = "squall", version = VERSION, max_term_width = 100)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -35,12 +47,16 @@ struct Cli {
 enum Command {
     /// Plays a whole game: starts the sim and the agents, shows what happens, prints the result.
     Run(run_command::Args),
+    /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
+    Tournament(tournament_command::Args),
     /// Serves one game to agents that join it.
     Sim(sim_command::Args),
     /// Minds one or many boats in a game that a sim serves.
     Agent(agent_command::Args),
-    /// Shows a running game in the terminal.
+    /// Shows a running game in the terminal, or what one boat's helm thinks.
     Watch(watch_command::Args),
+    /// Dumps one decision of a boat's helm: a table, numbers, pictures.
+    Helm(helm_command::Args),
     /// Lists the games on the network and who is in them.
     List(list_command::Args),
     /// Says what a sea means for a boat, and draws it.
@@ -49,6 +65,8 @@ enum Command {
     Trial(trial_command::Args),
     /// Fits a boat file to a recorded series, and says how well.
     Identify(identify_command::Args),
+    /// Shows what a strategy file means: its modes, and what may run in each.
+    Strategy(strategy_command::Args),
     /// Checks scenario files and explains every error.
     Check(check_command::Args),
     /// Prints the JSON Schema of a kind of scenario file, for editors.
@@ -58,13 +76,16 @@ enum Command {
 fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(args) => run_command::run(&args),
+        Command::Tournament(args) => tournament_command::run(&args),
         Command::Sim(args) => sim_command::run(&args),
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),
+        Command::Helm(args) => helm_command::run(&args),
         Command::List(args) => list_command::run(&args),
         Command::Sea(args) => sea_command::run(&args),
         Command::Trial(args) => trial_command::run(&args),
         Command::Identify(args) => identify_command::run(&args),
+        Command::Strategy(args) => strategy_command::run(&args),
         Command::Check(args) => check_command::run(&args),
         Command::Schema(args) => check_command::print_schema(&args),
     };

@@ -4,9 +4,11 @@ use anyhow::{Context, Result};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Collapses zenoh's thread pools into one of two threads: a quarter to a half off a lockstep round trip.
+/// Collapses zenoh's thread pools into two threads: a quarter to a half off a lockstep round trip. What is received has
+/// one to itself: a hub that passes something large on waits in it for the sender to make room, which must then have
+/// another thread to run in.
 const ZENOH_RUNTIME: &str =
-    "(rx:(handover:app),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:2))";
+    "(rx:(worker_threads:1),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
 /// One child. It stops when its standard input ends, which the death of this process sees to.
 pub(crate) struct Offspring {

@@ -69,7 +69,7 @@ impl Line {
 /// Size of a panel, pixels.
 const PANEL: (u32, u32) = (560, 400);
 const TITLE_HEIGHT: u32 = 44;
-const FONT: &str = "sans-serif";
+pub(crate) const FONT: &str = "sans-serif";
 const CAPTION: (&str, u32) = (FONT, 16);
 /// How much of a line's colour is in what it fills.
 const FILLING: f64 = 0.25;
@@ -87,6 +87,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Draws a page into a file.
 pub(crate) fn write_svg(path: &Path, page: &Page) -> Result<()> {
+    provide_font();
     let rows = page.panels.len().div_ceil(page.columns);
     let size = (PANEL.0 * page.columns as u32, TITLE_HEIGHT + PANEL.1 * rows as u32);
     let mut svg = String::new();
@@ -237,7 +238,14 @@ fn label(number: f64, width: f64) -> String {
     arena::trial::decimal(number, places)
 }
 
-fn failed<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> anyhow::Error {
+/// Gives the plotting library the letters that it measures texts by and draws into pictures.
+pub(crate) fn provide_font() {
+    let font = epaint_default_fonts::UBUNTU_LIGHT;
+    // It cannot fail with a font that is one; a plot without letters would say so itself.
+    drop(plotters::style::register_font(FONT, FontStyle::Normal, font));
+}
+
+pub(crate) fn failed<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> anyhow::Error {
     anyhow!("{error}")
 }
 

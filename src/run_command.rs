@@ -2,6 +2,7 @@
 
 use crate::net_args::unique_game_name;
 use crate::offspring::{self, Offspring};
+use crate::override_args::{self, OverrideArgs};
 use crate::screen::{self, Screen};
 use crate::sim_command::{load, seconds, write_json};
 use crate::stop;
@@ -25,9 +26,8 @@ pub(crate) struct Args {
     /// Chooses the game [default: as the file says]
     #[arg(long)]
     seed: Option<u64>,
-    /// A sea file in place of the game's own
-    #[arg(long, value_name = "FILE")]
-    sea: Option<PathBuf>,
+    #[command(flatten)]
+    instead: OverrideArgs,
     /// lockstep, realtime, or a factor such as 4x
     #[arg(long, default_value = "lockstep")]
     pace: Pace,
@@ -49,7 +49,7 @@ pub(crate) struct Args {
 const LEAVE: Duration = Duration::from_secs(5);
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let scenario = load(&args.scenario, args.sea.as_deref())?;
+    let scenario = load(&args.scenario, &args.instead.overrides(&args.scenario)?)?;
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
     let report = if args.in_process {
@@ -136,7 +136,7 @@ fn start_sim(args: &Args, game: &str, endpoint: &str) -> Result<Offspring> {
         ("--join-s", args.join_s.to_string()),
     ];
     words.extend(options.into_iter().flat_map(|(name, value)| [name.to_owned(), value]));
-    words.extend(args.sea.iter().flat_map(|sea| ["--sea".to_owned(), sea.display().to_string()]));
+    words.extend(override_args::words(&args.instead.overrides(&args.scenario)?));
     words.extend(args.seed.into_iter().flat_map(|seed| ["--seed".to_owned(), seed.to_string()]));
     words.push("--for-parent".to_owned());
     Offspring::start("the sim", &words, Stdio::piped())

@@ -1,5 +1,4 @@
 //! The terminal: events as lines, how the game stands as one line that is written over.
-#![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is where the program speaks")]
 
 use crate::result_table;
 use crate::telling::{Progress, Telling};
@@ -37,7 +36,7 @@ impl Screen {
             Telling::Progress(progress) => self.progress(progress),
             Telling::Done(report) => {
                 self.clear();
-                print!("{}", result_table::text(report));
+                print(&result_table::text(report));
             }
         }
     }
@@ -65,28 +64,24 @@ impl Screen {
     /// A line that stays.
     pub(crate) fn line(&mut self, text: &str) {
         self.clear();
-        println!("{text}");
-        if self.live && !self.status.is_empty() {
-            print!("{}", self.status);
-        }
-        flush();
+        let status = if self.live { self.status.as_str() } else { "" };
+        print(&format!("{text}\n{status}"));
     }
 
     /// A line that the next one is written over.
     fn status(&mut self, text: &str) {
         if !self.live {
-            println!("{text}");
-            return flush();
+            print(&format!("{text}\n"));
+            return;
         }
         self.clear();
         self.status = text.to_owned();
-        print!("{text}");
-        flush();
+        print(text);
     }
 
     fn clear(&mut self) {
         if self.live && !self.status.is_empty() {
-            print!("\r\x1b[K");
+            print("\r\x1b[K");
         }
     }
 }
@@ -98,23 +93,23 @@ fn waiting(missing: &[String]) -> String {
     format!("waiting for the minds of {}{more}", missing[..missing.len().min(SHOWN)].join(", "))
 }
 
-fn flush() {
-    // A terminal that went away is no reason to stop a game.
-    drop(std::io::stdout().flush());
+/// Prints text as it is. A reader that went away is no reason to stop a game.
+pub(crate) fn print(text: &str) {
+    is_read(text);
 }
 
-/// Prints text as it is.
-pub(crate) fn print(text: &str) {
-    print!("{text}");
-    flush();
+/// Prints text as it is, and says whether anybody still reads.
+pub(crate) fn is_read(text: &str) -> bool {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_ok()
 }
 
 /// Says what went wrong.
 pub(crate) fn complain(text: &str) {
-    eprintln!("squall: {text}");
+    remark(&format!("squall: {text}"));
 }
 
 /// Says something on the side, where it does not mix with results.
 pub(crate) fn remark(text: &str) {
-    eprintln!("{text}");
+    drop(writeln!(std::io::stderr(), "{text}"));
 }

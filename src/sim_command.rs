@@ -1,11 +1,13 @@
 //! `squall sim`: serves one game.
 
 use crate::net_args::{HubArgs, unique_game_name};
+use crate::override_args::OverrideArgs;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::telling::{Teller, Telling};
 use anyhow::{Context, Result};
 use game::Scenario;
+use game::scenario::Overrides;
 use game::topic::GameName;
 use sim::node::{News, Pace, Report, Settings};
 use std::path::{Path, PathBuf};
@@ -20,9 +22,8 @@ pub(crate) struct Args {
     /// Chooses the game [default: as the file says]
     #[arg(long)]
     seed: Option<u64>,
-    /// A sea file in place of the game's own
-    #[arg(long, value_name = "FILE")]
-    sea: Option<PathBuf>,
+    #[command(flatten)]
+    instead: OverrideArgs,
     /// lockstep, realtime, or a factor such as 4x
     #[arg(long, default_value = "lockstep")]
     pace: Pace,
@@ -48,9 +49,9 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     if (0.0..=1e6).contains(&seconds) { Ok(seconds) } else { Err(format!("{text} is not within 0 to 1000000 s")) }
 }
 
-/// The scenario in a file, on its own sea or another, with every problem in the error.
-pub(crate) fn load(path: &Path, sea: Option<&Path>) -> Result<Scenario> {
-    game::scenario::load_with(path, sea).with_context(|| format!("cannot play {}", path.display()))
+/// The scenario in a file, some files of its own replaced, with every problem in the error.
+pub(crate) fn load(path: &Path, overrides: &Overrides) -> Result<Scenario> {
+    game::scenario::load_with(path, overrides).with_context(|| format!("cannot play {}", path.display()))
 }
 
 /// Writes the result of a game to a file.
@@ -62,7 +63,7 @@ pub(crate) fn write_json(path: &Path, report: &Report) -> Result<()> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let scenario = load(&args.scenario, args.sea.as_deref())?;
+    let scenario = load(&args.scenario, &args.instead.overrides(&args.scenario)?)?;
     let stop = stop::on_ctrl_c()?;
     if args.for_parent {
         stop::with_parent(&stop);

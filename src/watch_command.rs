@@ -1,35 +1,39 @@
-//! `squall watch`: a running game in the terminal.
+//! `squall watch`: a running game in the terminal, or what one boat's helm thinks.
 
 use crate::net_args::LeafArgs;
+use crate::onlooker::Onlooker;
 use crate::screen;
 use crate::stop;
-use anyhow::{Context, Result, bail};
-use bus::{Bus, Slots};
+use anyhow::{Result, bail};
+use bus::Slots;
 use game::codec;
-use game::message::{Frame, Notice};
+use game::message::Frame;
 use game::outcome::EventOutcome;
-use game::topic::{self, GameName, Part};
+use game::topic;
 use game::{Scenario, SimTime};
 use std::collections::VecDeque;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 mod chart;
+mod helm;
 
 /// Which game, and where.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
+    /// Shows what this vehicle's helm thinks instead of the field
+    #[arg(long, value_name = "NAME")]
+    helm: Option<String>,
     /// Pictures a second
     #[arg(long, value_name = "HZ", default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=30))]
     rate: u8,
 }
 
-const ANSWER: Duration = Duration::from_secs(2);
 /// A game without a frame for this long is gone.
 const SILENCE: Duration = Duration::from_secs(10);
 /// Events that stay on the screen.
@@ -37,14 +41,18 @@ const EVENTS: usize = 6;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
-    let bus = Bus::leaf(&args.leaf.net()?).context("no game to watch")?;
-    let game = match &args.leaf.game {
-        Some(game) => game.clone(),
-        None => only_game(&bus)?,
-    };
-    let answer = bus.ask(&topic::scenario(&game), Vec::new(), ANSWER)?;
-    let bytes = answer.with_context(|| format!("no sim answers for game {:?}", game.as_str()))?;
-    let notice: Notice = serde_json::from_slice(&bytes).context("the sim is of another version of Squall")?;
+    let onlooker = Onlooker::come(&args.leaf)?;
+    let pause = Duration::from_secs_f64(1.0 / f64::from(args.rate));
+    match &args.helm {
+        Some(name) => helm::watch(&onlooker, name, pause, &stop)?,
+        None => watch_field(&onlooker, pause, &stop)?,
+    }
+    onlooker.bus.close();
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Shows the field until the game is over, this often.
+fn watch_field(Onlooker { bus, game, notice }: &Onlooker, pause: Duration, stop: &AtomicBool) -> Result<()> {
     let frames: Arc<Slots<Frame>> = Arc::new(Slots::new(1));
     let events: Arc<Slots<Frame>> = Arc::clone(&frames);
     let count = Arc::new(AtomicU64::new(0));
@@ -61,9 +69,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             events.put(0, frame);
         }
     };
-    let _standing = bus.subscribe(topic::frame(&game), take)?;
+    let _standing = bus.subscribe(topic::frame(game), take)?;
     let mut meter = Meter::new();
-    let pause = Duration::from_secs_f64(1.0 / f64::from(args.rate));
     let live = std::io::stdout().is_terminal();
     while !stop.load(Ordering::Relaxed) {
         let Some(frame) = frames.take(SILENCE).pop().flatten() else { bail!("game {} is gone", game.as_str()) };
@@ -72,18 +79,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         let told: Vec<String> =
             queue.iter().filter_map(|r| r.logged()).map(|l| sentence(&notice.scenario, &l)).collect();
         let text = if live {
-            format!("\x1b[H\x1b[J{}", chart::page(&notice, &game, &frame, &told, &rates))
+            format!("\x1b[H\x1b[J{}", chart::page(notice, game, &frame, &told, &rates))
         } else {
             chart::line(&notice.scenario, &frame, &rates)
         };
-        screen::print(&text);
-        if frame.over {
+        if !screen::is_read(&text) || frame.over {
             break;
         }
         rest(pause);
     }
-    bus.close();
-    Ok(ExitCode::SUCCESS)
+    Ok(())
 }
 
 fn sentence(scenario: &Scenario, logged: &game::event::Logged) -> String {
@@ -91,24 +96,11 @@ fn sentence(scenario: &Scenario, logged: &game::event::Logged) -> String {
     format!("{:>7.1} s  {}", event.at_s, event.sentence())
 }
 
-fn only_game(bus: &Bus) -> Result<GameName> {
-    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
-    let sims = keys.iter().filter_map(|key| topic::parse_alive(key)).filter(|(_, part, _)| *part == Part::Sim);
-    let games: Vec<GameName> = sims.map(|(game, _, _)| game).collect();
-    match games.as_slice() {
-        [game] => Ok(game.clone()),
-        [] => bail!("no game is on the network"),
-        several => {
-            let names: Vec<&str> = several.iter().map(GameName::as_str).collect();
-            bail!("choose with --game among {}", names.join(", "))
-        }
-    }
-}
-
 /// Frames and simulated seconds a second, since the last reading.
 struct Meter {
     then: Instant,
-    sim: SimTime,
+    /// Nothing before the first reading.
+    sim: Option<SimTime>,
     frames: u64,
 }
 
@@ -123,14 +115,14 @@ pub(crate) struct Rates {
 #[expect(clippy::disallowed_methods, reason = "rates are read by the clock")]
 impl Meter {
     fn new() -> Meter {
-        Meter { then: Instant::now(), sim: SimTime::ZERO, frames: 0 }
+        Meter { then: Instant::now(), sim: None, frames: 0 }
     }
 
     fn read(&mut self, sim: SimTime, frames: u64) -> Rates {
         let passed_s = self.then.elapsed().as_secs_f64().max(1e-6);
-        let rates =
-            Rates { frames_hz: (frames - self.frames) as f64 / passed_s, factor: (sim - self.sim).as_s() / passed_s };
-        *self = Meter { then: Instant::now(), sim, frames };
+        let sim_s = self.sim.map_or(0.0, |before| (sim - before).as_s());
+        let rates = Rates { frames_hz: (frames - self.frames) as f64 / passed_s, factor: sim_s / passed_s };
+        *self = Meter { then: Instant::now(), sim: Some(sim), frames };
         rates
     }
 }

@@ -84,8 +84,8 @@ fn boat_file(named: &str) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// The boats in a folder.
-fn names_in(folder: &Path) -> Vec<String> {
+/// The scenario files in a folder, by name.
+pub(crate) fn names_in(folder: &Path) -> Vec<String> {
     let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
     let paths = files.map(|file| file.path()).filter(|path| path.extension().is_some_and(|end| end == "toml"));
     let mut names: Vec<String> = paths.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();

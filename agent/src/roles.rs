@@ -1,7 +1,8 @@
 //! Who plays which role: a strategy's roles dealt to the boats of a team.
 
 use game::VehicleId;
-use game::scenario::{Assignment, Role, Scenario};
+use game::scenario::Scenario;
+use game::strategy::{Assignment, Program, Strategy};
 use game::stream::Stream;
 
 /// The role of a vehicle in the game that the scenario's seed chooses.
@@ -10,16 +11,31 @@ use game::stream::Stream;
 /// from the first role when they run out; a seeded deal shuffles them by the team's own stream. Every
 /// mind of a team comes to the same result by itself.
 #[must_use]
-pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> Role {
+pub fn role_of(scenario: &Scenario, vehicle: VehicleId) -> &Program {
     let me = &scenario.vehicles[vehicle.index()];
-    let strategy = &scenario.strategies[me.strategy];
-    let dealt_to = |i: &usize| scenario.vehicles[*i].team == me.team && scenario.vehicles[*i].strategy == me.strategy;
-    let boats: Vec<usize> = (0..scenario.vehicles.len()).filter(dealt_to).collect();
-    let mut roles: Vec<Role> = strategy.roles.iter().copied().cycle().take(boats.len()).collect();
+    dealt(scenario, vehicle, scenario.strategy_of(vehicle), |i| scenario.vehicles[i].strategy == me.strategy)
+}
+
+/// The role that `strategy` gives a vehicle of which the scenario says otherwise: as if its whole team followed it.
+#[must_use]
+pub fn role_in<'a>(scenario: &Scenario, vehicle: VehicleId, strategy: &'a Strategy) -> &'a Program {
+    dealt(scenario, vehicle, strategy, |_| true)
+}
+
+fn dealt<'a>(
+    scenario: &Scenario,
+    vehicle: VehicleId,
+    strategy: &'a Strategy,
+    follows: impl Fn(usize) -> bool,
+) -> &'a Program {
+    let team = scenario.team_of(vehicle);
+    let boats: Vec<usize> =
+        (0..scenario.vehicles.len()).filter(|i| scenario.vehicles[*i].team == team && follows(*i)).collect();
+    let mut roles: Vec<usize> = (0..strategy.roles.len()).cycle().take(boats.len()).collect();
     if strategy.assignment == Assignment::Seeded {
-        let team = &scenario.teams[me.team.index()].name;
+        let team = &scenario.teams[team.index()].name;
         Stream::new(scenario.seed, &format!("roles/{team}")).shuffle(&mut roles);
     }
-    let place = boats.iter().position(|i| *i == vehicle.index());
-    place.and_then(|place| roles.get(place)).copied().unwrap_or(Role::Idle)
+    let place = boats.iter().position(|i| *i == vehicle.index()).expect("a vehicle is one of those that follow");
+    &strategy.roles[roles[place]]
 }

@@ -3,9 +3,11 @@
 //! The same world and the same minds as across processes, and the same bytes.
 
 pub mod identify;
+pub mod tournament;
 pub mod trial;
 
 use agent::Mind;
+use game::message::Word;
 use game::{Outcome, Scenario, VehicleId};
 use sim::Contest;
 use sim::NoStart;
@@ -36,19 +38,33 @@ pub fn play_watched(
 ) -> Result<Outcome, NoStart> {
     assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
     let mut contest = Contest::new(scenario, seed)?;
+    let mut talk = Talk::default();
     while !contest.is_over() && watch(&contest) {
-        decide(&mut contest, minds);
+        decide(&mut contest, minds, &mut talk);
         contest.advance();
     }
     Ok(contest.outcome())
 }
 
-/// Shows every mind its team's picture and puts its order in force.
-pub fn decide(contest: &mut Contest, minds: &mut [Box<dyn Mind>]) {
+/// What minds tell their teams between two decisions.
+#[derive(Debug, Default)]
+pub struct Talk {
+    words: Vec<Word>,
+}
+
+/// Shows every mind its team's picture and puts its order in force. What minds say then, their mates know at the next
+/// decision.
+pub fn decide(contest: &mut Contest, minds: &mut [Box<dyn Mind>], talk: &mut Talk) {
     contest.pictures();
     for (i, mind) in minds.iter_mut().enumerate() {
         let order = mind.decide(contest.picture_of(VehicleId::at(i)));
         // As over the network: an order with bad numbers is refused, and the boat holds.
         contest.order(VehicleId::at(i), order.check().unwrap_or_default());
+    }
+    talk.words.clear();
+    minds.iter().for_each(|mind| mind.say(&mut talk.words));
+    if !talk.words.is_empty() {
+        // Words of the other team are nothing to a mind: it listens to its mates.
+        minds.iter_mut().for_each(|mind| mind.hear(&talk.words));
     }
 }

@@ -6,6 +6,7 @@
 //!
 //! Everything here is blocking or calls back; callbacks run on zenoh's threads and must only hand over.
 
+mod board;
 mod error;
 mod inbox;
 mod net;
@@ -13,6 +14,7 @@ mod phonebook;
 mod session;
 mod slots;
 
+pub use board::Board;
 pub use error::BusError;
 pub use inbox::{Inbox, Outlet, inbox};
 pub use net::{DEFAULT_PORT, Net, free_port};

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use zenoh::bytes::Encoding;
 use zenoh::qos::CongestionControl;
-use zenoh::sample::SampleKind;
+use zenoh::sample::{Locality, SampleKind};
 use zenoh::{Session, Wait};
 
 /// How hard a message is delivered.
@@ -110,6 +110,17 @@ impl Bus {
     pub fn subscribe(&self, key: String, take: impl Fn(&[u8]) + Send + Sync + 'static) -> Result<Standing, BusError> {
         let callback = move |sample: zenoh::sample::Sample| take(&sample.payload().to_bytes());
         let subscriber = self.session.declare_subscriber(key.clone()).callback(callback).wait();
+        Ok(Standing(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
+    }
+
+    /// As [`Bus::subscribe`], but not with what this session publishes itself.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn overhear(&self, key: String, take: impl Fn(&[u8]) + Send + Sync + 'static) -> Result<Standing, BusError> {
+        let callback = move |sample: zenoh::sample::Sample| take(&sample.payload().to_bytes());
+        let builder = self.session.declare_subscriber(key.clone()).allowed_origin(Locality::Remote);
+        let subscriber = builder.callback(callback).wait();
         Ok(Standing(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
     }
 

@@ -24,6 +24,14 @@ impl<T> Slots<T> {
         self.news.notify_all();
     }
 
+    /// Puts into a cell what `next` makes of what is there.
+    pub fn change(&self, cell: usize, next: impl FnOnce(Option<T>) -> T) {
+        if let Some(cell) = self.lock().get_mut(cell) {
+            *cell = Some(next(cell.take()));
+        }
+        self.news.notify_all();
+    }
+
     /// Waits up to `limit` for news; takes what is there, by cell. All `None` means that nothing came.
     pub fn take(&self, limit: Duration) -> Vec<Option<T>> {
         let guard = self.lock();

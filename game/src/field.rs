@@ -74,6 +74,87 @@ pub enum Obstacle {
     },
 }
 
+impl Obstacle {
+    /// Whether a place is within it.
+    #[must_use]
+    pub fn contains(&self, at: Ned) -> bool {
+        match self {
+            Obstacle::Circle { centre, radius_m } => centre.distance(at) < *radius_m,
+            Obstacle::Polygon { corners } => is_within(corners, at),
+        }
+    }
+
+    /// The distance from its edge, m; 0 within.
+    #[must_use]
+    pub fn distance(&self, at: Ned) -> f64 {
+        match self {
+            Obstacle::Circle { centre, radius_m } => (centre.distance(at) - radius_m).max(0.0),
+            Obstacle::Polygon { corners } if is_within(corners, at) => 0.0,
+            Obstacle::Polygon { corners } => distance_to_outline(corners, at),
+        }
+    }
+}
+
+/// The sides of a polygon, from corner to corner and back to the first.
+pub fn sides(corners: &[Ned]) -> impl Iterator<Item = (Ned, Ned)> {
+    corners.iter().copied().zip(corners.iter().copied().cycle().skip(1))
+}
+
+/// Whether a polygon contains a place: a line from there crosses its outline an odd number of times.
+#[must_use]
+pub fn is_within(corners: &[Ned], at: Ned) -> bool {
+    let crossed = |(a, b): &(Ned, Ned)| {
+        (a.east > at.east) != (b.east > at.east)
+            && at.north < (b.north - a.north) * (at.east - a.east) / (b.east - a.east) + a.north
+    };
+    sides(corners).filter(crossed).count() % 2 == 1
+}
+
+/// The distance to the outline of a polygon, m; infinite without corners.
+#[must_use]
+pub fn distance_to_outline(corners: &[Ned], at: Ned) -> f64 {
+    sides(corners).map(|(a, b)| distance_to_side(a, b, at)).fold(f64::INFINITY, f64::min)
+}
+
+/// The distance to the straight line from `a` to `b`, m.
+#[must_use]
+pub fn distance_to_side(a: Ned, b: Ned, at: Ned) -> f64 {
+    let (side, from_a) = (b - a, at - a);
+    let length_squared = side.dot(side);
+    let share = if length_squared > 0.0 { (from_a.dot(side) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+    from_a.distance(side.scaled(share))
+}
+
+/// The distance between a polygon and the straight line from `a` to `b`, m; 0 where they have a point in common.
+#[must_use]
+pub fn distance_to_line(corners: &[Ned], (a, b): (Ned, Ned)) -> f64 {
+    if is_within(corners, a) || sides(corners).any(|side| do_meet(side, (a, b))) {
+        return 0.0;
+    }
+    let of_ends = distance_to_outline(corners, a).min(distance_to_outline(corners, b));
+    corners.iter().map(|corner| distance_to_side(a, b, *corner)).fold(of_ends, f64::min)
+}
+
+/// Whether two straight lines between points have a point in common.
+#[must_use]
+pub fn do_meet((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
+    let (c_side, d_side) = (turn(a, b, c), turn(a, b, d));
+    let (a_side, b_side) = (turn(c, d, a), turn(c, d, b));
+    let apart = |p: f64, q: f64| (p > 0.0 && q > 0.0) || (p < 0.0 && q < 0.0);
+    if apart(c_side, d_side) || apart(a_side, b_side) {
+        return false;
+    }
+    // Unless all are in one line, each segment reaches the other's line on both sides: they meet.
+    let in_line = c_side == 0.0 && d_side == 0.0;
+    let overlaps = |p: f64, q: f64, r: f64, s: f64| p.min(q) <= r.max(s) && r.min(s) <= p.max(q);
+    !in_line || (overlaps(a.north, b.north, c.north, d.north) && overlaps(a.east, b.east, c.east, d.east))
+}
+
+/// Twice the area of the triangle, positive clockwise on the chart.
+pub(crate) fn turn(a: Ned, b: Ned, c: Ned) -> f64 {
+    (b.north - a.north) * (c.east - a.east) - (b.east - a.east) * (c.north - a.north)
+}
+
 /// A convex region: the inside of a few straight edges. The edges belong to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Zone {
@@ -228,6 +309,41 @@ impl Field {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn polygon<const N: usize>(corners: [(f64, f64); N]) -> Vec<Ned> {
+        corners.map(|(x, y)| Ned::from_xy(x, y)).to_vec()
+    }
+
+    #[test]
+    fn a_polygon_knows_its_inside_and_its_distance() {
+        let bay = polygon([(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0), (0.0, 4.0)]);
+        for (x, y, want) in [(1.0, 0.5, true), (2.0, 2.0, false), (3.9, 3.5, true), (-1.0, 1.0, false)] {
+            assert_eq!(is_within(&bay, Ned::from_xy(x, y)), want, "{x} {y}");
+        }
+        let bay = Obstacle::Polygon { corners: bay };
+        for (x, y, want_m) in [(2.0, -3.0, 3.0), (-3.0, -4.0, 5.0), (1.0, 0.5, 0.0)] {
+            assert!((bay.distance(Ned::from_xy(x, y)) - want_m).abs() < 1e-12, "{x} {y}");
+        }
+        let round = Obstacle::Circle { centre: Ned::from_xy(1.0, 1.0), radius_m: 2.0 };
+        assert!(round.contains(Ned::from_xy(2.0, 1.0)) && round.distance(Ned::from_xy(2.0, 1.0)) == 0.0);
+        assert!((round.distance(Ned::from_xy(6.0, 1.0)) - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_line_passes_a_polygon_as_near_as_its_nearest_point() {
+        let wall = polygon([(0.0, 0.0), (10.0, 0.0), (10.0, 1.0), (0.0, 1.0)]);
+        let line = |a: (f64, f64), b: (f64, f64)| (Ned::from_xy(a.0, a.1), Ned::from_xy(b.0, b.1));
+        for (a, b, want_m) in [
+            ((5.0, -4.0), (5.0, 5.0), 0.0),
+            ((5.0, 0.5), (6.0, 0.5), 0.0),
+            ((-3.0, -4.0), (13.0, -4.0), 4.0),
+            ((13.0, 5.0), (20.0, 9.0), 5.0),
+            ((12.0, -8.0), (12.0, 8.0), 2.0),
+        ] {
+            let got_m = distance_to_line(&wall, line(a, b));
+            assert!((got_m - want_m).abs() < 1e-12, "{a:?} {b:?}: {got_m}");
+        }
+    }
 
     fn plan(corner: (f64, f64), along_deg: f64, width_m: f64, depth_m: f64, flag_inset_m: f64) -> Plan {
         Plan {

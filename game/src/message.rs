@@ -244,6 +244,57 @@ impl Message for Orders {
     }
 }
 
+/// What minds tell their team: the values of shared variables, as of one decision.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Say {
+    /// When, and after which decision.
+    pub stamp: Stamp,
+    /// The words of all boats that one process minds.
+    pub words: Vec<Word>,
+}
+
+/// A shared variable of one boat.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Word {
+    /// Whose.
+    pub vehicle: VehicleId,
+    /// Which: a hash of its name and of what it can be.
+    pub key: u64,
+    /// Its value: truths are 0 and 1, texts count from 0.
+    pub value: f64,
+}
+
+/// What a policy outside of the helm proposes for a boat.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PolicyProposal {
+    /// For which decision.
+    pub stamp: Stamp,
+    /// The boat.
+    pub vehicle: VehicleId,
+    /// Desired course, rad clockwise from north.
+    pub course_rad: f64,
+    /// Desired speed, m/s.
+    pub speed_m_s: f64,
+}
+
+impl Message for Say {
+    const SCHEMA: &'static str = "squall_msgs/msg/Say";
+    const VERSION: u8 = 1;
+    const DEFINITION: &'static str = include_str!("../msg/Say.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
+}
+
+impl Message for PolicyProposal {
+    const SCHEMA: &'static str = "squall_msgs/msg/PolicyProposal";
+    const VERSION: u8 = 1;
+    const DEFINITION: &'static str = include_str!("../msg/PolicyProposal.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
+}
+
 /// What an agent asks of the sim before anything else.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JoinRequest {

@@ -2,7 +2,7 @@
 //!
 //! All keys begin with `squall/<game>/`, so that games on one network never meet.
 
-use crate::id::TeamId;
+use crate::id::{TeamId, VehicleId};
 use crate::scenario::Scenario;
 
 /// A game's name on the network: small letters, digits, `_` and `-`.
@@ -52,6 +52,30 @@ pub fn orders(game: &GameName, agent: &str) -> String {
 #[must_use]
 pub fn all_orders(game: &GameName) -> String {
     orders(game, "*")
+}
+
+/// What the minds of one agent process tell their team (publish).
+#[must_use]
+pub fn say(game: &GameName, scenario: &Scenario, team: TeamId, agent: &str) -> String {
+    format!("squall/{}/say/{}/{agent}", game.0, scenario.teams[team.index()].name)
+}
+
+/// What all minds of a team tell each other (subscribe).
+#[must_use]
+pub fn all_say(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
+    say(game, scenario, team, "*")
+}
+
+/// What a policy outside proposes for a boat (publish).
+#[must_use]
+pub fn policy(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
+    format!("squall/{}/policy/{}", game.0, scenario.vehicles[vehicle.index()].name)
+}
+
+/// What a boat's helm thinks (query).
+#[must_use]
+pub fn helm(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
+    format!("squall/{}/helm/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
 /// The door at which agents ask to be let in (query).
@@ -134,6 +158,22 @@ mod tests {
         assert_eq!(parse_alive(&alive(&game, Part::Agent, "a7")), Some((game, Part::Agent, "a7".into())));
         for other in ["squall/x/alive/sim", "squall/x/frame", "other/x/alive/sim/a", "squall/x/alive/cat/a"] {
             assert_eq!(parse_alive(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn keys_name_game_team_and_boat() {
+        let game = GameName::new("pav01").expect("a good name");
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+        let scenario = crate::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let (red, two) = (TeamId(1), VehicleId(1));
+        for (key, want) in [
+            (say(&game, &scenario, red, "a7"), "squall/pav01/say/red/a7"),
+            (all_say(&game, &scenario, red), "squall/pav01/say/red/*"),
+            (policy(&game, &scenario, two), "squall/pav01/policy/blue_two"),
+            (helm(&game, &scenario, two), "squall/pav01/helm/blue_two"),
+        ] {
+            assert_eq!(key, want);
         }
     }
 

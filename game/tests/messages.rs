@@ -2,7 +2,9 @@
 
 use game::codec::{DecodeError, decode, encode};
 use game::event::{Event, Logged, TagCause};
-use game::message::{EventRecord, Frame, Message, Orders, Stamp, VehicleOrder, VehicleTruth};
+use game::message::{
+    EventRecord, Frame, Message, Orders, PolicyProposal, Say, Stamp, VehicleOrder, VehicleTruth, Word,
+};
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
 use game::{FlagId, Order, Picture, SimTime, TeamId, VehicleId};
 use proptest::prelude::*;
@@ -15,6 +17,8 @@ fn registry() -> Registry {
     tracer.trace_type::<Picture>(&samples).expect("a plain struct");
     tracer.trace_type::<Frame>(&samples).expect("a plain struct");
     tracer.trace_type::<Orders>(&samples).expect("a plain struct");
+    tracer.trace_type::<Say>(&samples).expect("a plain struct");
+    tracer.trace_type::<PolicyProposal>(&samples).expect("a plain struct");
     tracer.registry().expect("all is known")
 }
 
@@ -71,6 +75,8 @@ fn definitions_belong_to_their_messages() {
         (Frame::SCHEMA, Frame::DEFINITION),
         (Picture::SCHEMA, Picture::DEFINITION),
         (Orders::SCHEMA, Orders::DEFINITION),
+        (Say::SCHEMA, Say::DEFINITION),
+        (PolicyProposal::SCHEMA, PolicyProposal::DEFINITION),
     ] {
         let name = schema.rsplit('/').next().expect("a name");
         let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("msg/{name}.msg")));
@@ -123,6 +129,57 @@ fn damaged_messages_are_refused_with_the_reason() {
     assert!(matches!(decode::<Orders>(&big_endian), Err(DecodeError::Encapsulation { .. })));
 }
 
+fn say() -> Say {
+    let word = |vehicle, value| Word { vehicle: VehicleId(vehicle), key: u64::MAX - 3, value };
+    Say { stamp: stamp::<Say>(), words: vec![word(0, -0.0), word(7, 1.0 / 3.0)] }
+}
+
+fn proposal() -> PolicyProposal {
+    let stamp = stamp::<PolicyProposal>();
+    PolicyProposal { stamp, vehicle: VehicleId(3), course_rad: -0.1, speed_m_s: 0.1 + 0.2 }
+}
+
+/// A message comes back as it was; cut short, lengthened or of another version it is refused.
+fn survives_or_is_refused<M>(message: &M)
+where
+    M: Message + serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
+{
+    let good = encode(message);
+    assert_eq!(&decode::<M>(&good).expect("it was just encoded"), message);
+    assert_eq!(encode(&decode::<M>(&good).expect("it was just encoded")), good);
+    for cut in 0..good.len() {
+        assert!(decode::<M>(&good[..cut]).is_err(), "{} cut at {cut}", M::SCHEMA);
+    }
+    assert!(decode::<M>(&[&good[..], &[0]].concat()).is_err(), "{} with more", M::SCHEMA);
+    let mut newer = good;
+    newer[4 + 16] += 1;
+    let version = DecodeError::Version { schema: M::SCHEMA, found: M::VERSION + 1, expected: M::VERSION };
+    assert_eq!(decode::<M>(&newer), Err(version));
+}
+
+#[test]
+fn words_and_proposals_survive_and_damaged_ones_are_refused() {
+    survives_or_is_refused(&say());
+    survives_or_is_refused(&Say { words: vec![], ..say() });
+    survives_or_is_refused(&proposal());
+}
+
+#[test]
+fn words_and_proposals_are_cdr_as_other_programs_write_it() {
+    // Written by hand from the CDR rules: every number stands at a multiple of its size.
+    let mut start = vec![0, 1, 0, 0];
+    start.extend(1_250_000_000_i64.to_le_bytes());
+    start.extend(12_u64.to_le_bytes());
+    let mut want = [&start[..], &[1, 0, 0, 0], &1_u32.to_le_bytes(), &[7, 0, 0, 0, 0, 0, 0, 0]].concat();
+    want.extend((u64::MAX - 3).to_le_bytes());
+    want.extend((1.0_f64 / 3.0).to_le_bytes());
+    assert_eq!(encode(&Say { words: vec![say().words[1]], ..say() }), want);
+    let mut want = [&start[..], &[1, 0, 3, 0, 0, 0, 0, 0]].concat();
+    want.extend((-0.1_f64).to_le_bytes());
+    want.extend((0.1_f64 + 0.2).to_le_bytes());
+    assert_eq!(encode(&proposal()), want);
+}
+
 #[test]
 fn every_event_survives_its_record() {
     let v = VehicleId(7);
@@ -164,6 +221,8 @@ proptest! {
         let _ = decode::<Orders>(&bytes);
         let _ = decode::<Picture>(&bytes);
         let _ = decode::<Frame>(&bytes);
+        let _ = decode::<Say>(&bytes);
+        let _ = decode::<PolicyProposal>(&bytes);
     }
 
     #[test]

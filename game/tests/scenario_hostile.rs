@@ -25,6 +25,7 @@ fn shipped() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let files = |kind: &Kind| std::fs::read_dir(root.join(kind.folder())).unwrap();
     let mut paths: Vec<PathBuf> = Kind::ALL.iter().flat_map(files).map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     paths.sort();
     paths
 }
@@ -64,6 +65,58 @@ fn deep_and_large_files_are_refused() {
     for text in
         [deep("[", 100_000), deep("{a=", 100_000), format!("{} = 1", vec!["a"; 50_000].join(".")), "x".repeat(5 << 20)]
     {
+        check_as_all_kinds(text.as_bytes());
+    }
+}
+
+/// Keys of strategy files, and values that may stand there, or not.
+const KEYS: [&str; 16] = [
+    "base",
+    "about",
+    "roles",
+    "helm",
+    "variables",
+    "mode",
+    "rule",
+    "behaviour",
+    "behaviour.go",
+    "behaviour.go.kind",
+    "behaviour.go.points",
+    "behaviour.go.on_run",
+    "behaviour.go.ellipse",
+    "variables.a",
+    "unsafe_i_know",
+    "behaviour.go.in",
+];
+const VALUES: [&str; 17] = [
+    "3",
+    "nan",
+    "true",
+    "\"x\"",
+    "\"waypoint\"",
+    "\"loiter\"",
+    "[]",
+    "[[]]",
+    "[\"x.toml\"]",
+    "{}",
+    "{ a = 1 }",
+    "[{}]",
+    "{ values = [\"a\"], initial = 3 }",
+    "[{ name = \"a\", when = \"b\", set = { a = 1 } }]",
+    "1979-05-27",
+    "[1, [2, 3]]",
+    "{ go = { kind = \"timer\", in = [3] } }",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn arbitrary_values_in_a_strategy_are_refused_or_read(
+        entries in prop::collection::vec((0..KEYS.len(), 0..VALUES.len()), 0..6)
+    ) {
+        let line = |(key, value): &(usize, usize)| format!("{} = {}\n", KEYS[*key], VALUES[*value]);
+        let text: String = entries.iter().map(line).collect();
         check_as_all_kinds(text.as_bytes());
     }
 }

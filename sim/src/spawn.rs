@@ -1,7 +1,6 @@
 //! Where boats start: as placed, or drawn from the game's `spawn` stream.
 
 use game::angle::wrap_pi;
-use game::field::Obstacle;
 use game::frame::{Ned, Pose};
 use game::scenario::{Berth, Scenario};
 use game::stream::Stream;
@@ -57,46 +56,5 @@ fn seen_from(field: &Field, team: TeamId, area: ((f64, f64), (f64, f64)), stream
 }
 
 fn clear_of_obstacles(field: &Field, at: Ned, gap_m: f64) -> bool {
-    field.plan.obstacles.iter().all(|obstacle| match obstacle {
-        Obstacle::Circle { centre, radius_m } => centre.distance(at) >= radius_m + gap_m,
-        Obstacle::Polygon { corners } => !inside(corners, at) && distance_to_sides(corners, at) >= gap_m,
-    })
-}
-
-fn sides(corners: &[Ned]) -> impl Iterator<Item = (Ned, Ned)> {
-    (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]))
-}
-
-/// Even-odd rule.
-fn inside(corners: &[Ned], at: Ned) -> bool {
-    let crossed = |(a, b): &(Ned, Ned)| {
-        (a.east > at.east) != (b.east > at.east)
-            && at.north < (b.north - a.north) * (at.east - a.east) / (b.east - a.east) + a.north
-    };
-    sides(corners).filter(crossed).count() % 2 == 1
-}
-
-fn distance_to_sides(corners: &[Ned], at: Ned) -> f64 {
-    let to_side = |(a, b): (Ned, Ned)| {
-        let (side, from_a) = (b - a, at - a);
-        let share = (from_a.dot(side) / side.dot(side)).clamp(0.0, 1.0);
-        from_a.distance(side.scaled(share))
-    };
-    sides(corners).map(to_side).fold(f64::INFINITY, f64::min)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_polygon_knows_its_inside_and_its_distance() {
-        let bay: Vec<Ned> =
-            [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0), (0.0, 4.0)].map(|(x, y)| Ned::from_xy(x, y)).to_vec();
-        for (x, y, want) in [(1.0, 0.5, true), (2.0, 2.0, false), (3.9, 3.5, true), (-1.0, 1.0, false)] {
-            assert_eq!(inside(&bay, Ned::from_xy(x, y)), want, "{x} {y}");
-        }
-        assert!((distance_to_sides(&bay, Ned::from_xy(2.0, -3.0)) - 3.0).abs() < 1e-12);
-        assert!((distance_to_sides(&bay, Ned::from_xy(-3.0, -4.0)) - 5.0).abs() < 1e-12);
-    }
+    field.plan.obstacles.iter().all(|obstacle| !obstacle.contains(at) && obstacle.distance(at) >= gap_m)
 }

@@ -4,6 +4,7 @@
 mod common;
 
 use common::{alone, put, scenarios};
+use game::scenario::Overrides;
 use game::sea::{GRAVITY_M_S2, Sea, Spreading, Waves};
 use game::{Ned, Order, Scenario};
 use sim::World;
@@ -142,7 +143,7 @@ fn a_rough_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
     for file in ["fresh_breeze.toml", "bay_gale.toml", "river.toml", "tidal.toml", "eddies.toml", "any.toml"] {
         let scenario = game::scenario::load_with(
             &scenarios().join("games/pav01_afloat.toml"),
-            Some(&scenarios().join("seas").join(file)),
+            &Overrides { sea: Some(scenarios().join("seas").join(file)), ..Overrides::default() },
         )
         .unwrap_or_else(|e| panic!("{e}"));
         let mut world = World::new(&scenario, 5).unwrap();
@@ -171,7 +172,8 @@ fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
     assert!(files.len() >= 14, "{files:?}");
     for file in files {
         let game = scenarios().join("games/pav01_afloat.toml");
-        let scenario = game::scenario::load_with(&game, Some(&file)).unwrap_or_else(|e| panic!("{e}"));
+        let scenario = game::scenario::load_with(&game, &Overrides { sea: Some(file.clone()), ..Overrides::default() })
+            .unwrap_or_else(|e| panic!("{e}"));
         let mut world = World::new(&scenario, 1).unwrap();
         for _ in 0..12_000 {
             world.step(&[Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 }; 4]);

@@ -40,7 +40,7 @@ spawn = {{}}
 }
 
 /// What must not depend on how a game was run.
-fn game_itself(mut result: Value) -> Value {
+pub(crate) fn game_itself(mut result: Value) -> Value {
     result.as_object_mut().expect("an object").remove("run");
     result
 }

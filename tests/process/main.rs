@@ -7,6 +7,9 @@
 
 mod faults;
 mod games;
+mod helm;
 mod hosts;
+mod policy;
 mod refusals;
 mod support;
+mod talk;

@@ -43,6 +43,18 @@ pub(crate) fn long_game(dir: &Path, more: &str) -> PathBuf {
     path
 }
 
+/// The folder of scenario files.
+pub(crate) fn scenarios() -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").display().to_string()
+}
+
+/// A file of this name in a folder.
+pub(crate) fn write(dir: &Path, name: &str, text: &str) -> PathBuf {
+    let path = dir.join(name);
+    std::fs::write(&path, text).expect("a file can be written");
+    path
+}
+
 /// A process that is gone with the test.
 pub(crate) struct Process(pub(crate) Child);
 

@@ -2,17 +2,25 @@
 //!
 //! Everything but the vehicles' names comes from the sim: field, rules, strategies, seed.
 
+mod advice;
 mod clock;
+mod ignored;
+mod mailbag;
+mod table;
+mod talk;
+mod window;
 
-use crate::{Mind, mind_of};
-use bus::{Bus, BusError, Delivery, Net, Publisher, Slots, Standing};
-use game::codec::{self, DecodeError};
-use game::message::{JoinReply, JoinRequest, Notice, Orders, Stamp, VehicleOrder};
+pub use ignored::Ignored;
+
+use bus::{Bus, BusError, Net};
+use game::VehicleId;
+use game::message::{JoinReply, JoinRequest, Notice};
+use game::strategy::Strategy;
 use game::topic::{self, GameName, Part};
-use game::{Picture, Scenario, TeamId, VehicleId};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use table::Table;
 use thiserror::Error;
 
 /// What an agent node needs to know.
@@ -27,6 +35,11 @@ pub struct Settings {
     pub wait: Duration,
     /// After this long without a picture the sim counts as dead.
     pub silence: Duration,
+    /// How to play, in place of what the scenario says.
+    pub strategy: Option<Strategy>,
+    /// In lockstep: how long the proposal of a policy is waited for at every decision, where a strategy heeds one. No
+    /// longer than half of the scenario's patience, though.
+    pub policy_wait: Duration,
     /// Set from outside to leave the game.
     pub stop: Arc<AtomicBool>,
 }
@@ -42,6 +55,11 @@ pub enum News<'a> {
     Joined {
         /// Its name.
         game: &'a str,
+    },
+    /// The game is over, or left.
+    Left {
+        /// What others said in it that was not heeded, and what never came.
+        ignored: Ignored,
     },
 }
 
@@ -89,18 +107,13 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     };
     let agent = bus.id();
     let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &agent))?;
-    let scenario = look.until(|| ask_scenario(&bus, &game))?;
-    let line = Line::open(&bus, &game, &scenario, &settings.vehicles)?;
-    let (ticket, vehicles) = look.until(|| ask_seat(&bus, &game, &agent, &settings.vehicles))?;
+    let notice = look.until(|| ask_notice(&bus, &game))?;
+    let mut table = Table::lay(&bus, &game, &notice, settings)?;
+    let seat = look.until(|| ask_seat(&bus, &game, &agent, &settings.vehicles))?;
+    table.seat(&bus, &game, &notice.scenario, seat)?;
     (look.tell)(News::Joined { game: game.as_str() });
-    let mut desk = Desk {
-        minds: vehicles.iter().map(|vehicle| (*vehicle, mind_of(&scenario, *vehicle))).collect(),
-        orders: bus.publisher(topic::orders(&game, &agent), Delivery::Wait)?,
-        ticket,
-        pictures: vec![None; scenario.teams.len()],
-        last: None,
-    };
-    let played = desk.play(&line, settings);
+    let played = table.play(settings);
+    (look.tell)(News::Left { ignored: table.ignored() });
     bus.close();
     played
 }
@@ -165,7 +178,7 @@ fn only_game(bus: &Bus) -> Result<GameName, Missing> {
 }
 
 /// What the game is, from the sim.
-fn ask_scenario(bus: &Bus, game: &GameName) -> Result<Scenario, Missing> {
+fn ask_notice(bus: &Bus, game: &GameName) -> Result<Notice, Missing> {
     let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
     let bytes = answer.ok_or_else(|| Missing::Yet(format!("no sim answers for game {:?}", game.as_str())))?;
     // The version first: of another version we may not understand the rest.
@@ -176,7 +189,7 @@ fn ask_scenario(bus: &Bus, game: &GameName) -> Result<Scenario, Missing> {
     }
     let notice: Result<Notice, _> = serde_json::from_slice(&bytes);
     match notice {
-        Ok(notice) => Ok(notice.scenario),
+        Ok(notice) => Ok(notice),
         Err(e) => {
             Err(Missing::Forever(NodeError::Version { theirs: format!("the sim's scenario is not understood: {e}") }))
         }
@@ -197,100 +210,5 @@ fn ask_seat(bus: &Bus, game: &GameName, agent: &str, vehicles: &[String]) -> Res
         Err(e) => {
             Err(Missing::Forever(NodeError::Version { theirs: format!("the sim's answer is not understood: {e}") }))
         }
-    }
-}
-
-/// What comes in: the newest picture of each team, and whether the sim shows signs of life.
-struct Line {
-    pictures: Arc<Slots<Vec<u8>>>,
-    sim_alive: Arc<AtomicBool>,
-    /// The teams whose pictures come.
-    teams: Vec<TeamId>,
-    _standing: Vec<Standing>,
-}
-
-impl Line {
-    fn open(bus: &Bus, game: &GameName, scenario: &Scenario, vehicles: &[String]) -> Result<Line, NodeError> {
-        let pictures = Arc::new(Slots::new(scenario.teams.len()));
-        let sim_alive = Arc::new(AtomicBool::new(true));
-        let minded = |name: &String| scenario.vehicle_by_name(name).map(|vehicle| scenario.team_of(vehicle));
-        let mut teams: Vec<TeamId> = vehicles.iter().filter_map(minded).collect();
-        teams.sort_unstable();
-        teams.dedup();
-        let mut standing = Vec::new();
-        for team in &teams {
-            let (slots, cell) = (Arc::clone(&pictures), team.index());
-            let take = move |bytes: &[u8]| slots.put(cell, bytes.to_vec());
-            standing.push(bus.subscribe(topic::picture(game, scenario, *team), take)?);
-        }
-        let flag = Arc::clone(&sim_alive);
-        let watch = move |_: &str, alive: bool| flag.store(alive, Ordering::Relaxed);
-        standing.push(bus.watch_alive(topic::all_alive(game, Part::Sim), watch)?);
-        Ok(Line { pictures, sim_alive, teams, _standing: standing })
-    }
-}
-
-/// The minds at work.
-struct Desk {
-    minds: Vec<(VehicleId, Box<dyn Mind>)>,
-    orders: Publisher,
-    ticket: u64,
-    /// The newest picture, by team.
-    pictures: Vec<Option<Picture>>,
-    /// The orders given last, to be sent again if they are asked for again.
-    last: Option<Orders>,
-}
-
-impl Desk {
-    fn play(&mut self, line: &Line, settings: &Settings) -> Result<(), NodeError> {
-        let mut heard = clock::now();
-        while !settings.stop.load(Ordering::Relaxed) {
-            for (cell, bytes) in line.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
-                let Some(bytes) = bytes else { continue };
-                heard = clock::now();
-                match codec::decode::<Picture>(&bytes) {
-                    Ok(picture) => self.pictures[cell] = Some(picture),
-                    Err(e @ DecodeError::Version { .. }) => return Err(NodeError::Version { theirs: e.to_string() }),
-                    // Damaged on the way; the sim sends it again.
-                    Err(_) => {}
-                }
-                if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
-                    return Ok(());
-                }
-                self.decide(&line.teams)?;
-            }
-            let sim_alive = line.sim_alive.load(Ordering::Relaxed);
-            let limit = if sim_alive { settings.silence } else { settings.silence.min(SILENCE_AFTER_DEATH) };
-            if clock::since(heard) > limit {
-                return Err(NodeError::SimGone(clock::since(heard)));
-            }
-        }
-        Ok(())
-    }
-
-    /// Decides when the pictures of all teams are of one tick; answers a tick that is asked again as before.
-    fn decide(&mut self, teams: &[TeamId]) -> Result<(), NodeError> {
-        let stamp_of = |team: &TeamId| self.pictures[team.index()].as_ref().map(|picture| picture.stamp);
-        let Some(stamp) = teams.first().and_then(stamp_of) else { return Ok(()) };
-        if teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
-            return Ok(());
-        }
-        if self.last.as_ref().is_none_or(|last| last.stamp.seq != stamp.seq) {
-            self.last = Some(self.orders_for(stamp));
-        }
-        match &self.last {
-            Some(orders) => Ok(self.orders.send(orders)?),
-            None => Ok(()),
-        }
-    }
-
-    fn orders_for(&mut self, stamp: Stamp) -> Orders {
-        let pictures = &self.pictures;
-        let mut decide = |(vehicle, mind): &mut (VehicleId, Box<dyn Mind>)| {
-            let mine = pictures.iter().flatten().find(|picture| picture.own(*vehicle).is_some());
-            VehicleOrder::new(*vehicle, mine.map(|picture| mind.decide(picture)).unwrap_or_default())
-        };
-        let stamp = Stamp { version: <Orders as game::message::Message>::VERSION, ..stamp };
-        Orders { stamp, ticket: self.ticket, orders: self.minds.iter_mut().map(&mut decide).collect() }
     }
 }

@@ -5,6 +5,7 @@
 //! the middle of a campaign.
 
 use super::ledger::Ledger;
+use super::overrides::Overrides;
 use crate::stream::Stream;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -28,8 +29,8 @@ pub struct Drawn {
 pub struct Recipe {
     /// The game file.
     pub(super) game: PathBuf,
-    /// The sea file that takes the place of the game's own.
-    pub(super) sea: Option<PathBuf>,
+    /// The files that take the place of the game's own.
+    pub(super) overrides: Overrides,
     /// Every file, as read.
     pub(super) files: Vec<(PathBuf, String)>,
     /// The seed that the numbers at hand were drawn with.

@@ -22,11 +22,14 @@ pub enum Kind {
     Sea,
     /// A strategy.
     Strategy,
+    /// A tournament.
+    Tournament,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 6] = [Kind::Game, Kind::Field, Kind::Rules, Kind::Boat, Kind::Sea, Kind::Strategy];
+    pub const ALL: [Kind; 7] =
+        [Kind::Game, Kind::Field, Kind::Rules, Kind::Boat, Kind::Sea, Kind::Strategy, Kind::Tournament];
 
     /// Its name, which is also that of its schema file.
     #[must_use]
@@ -38,6 +41,7 @@ impl Kind {
             Kind::Boat => "boat",
             Kind::Sea => "sea",
             Kind::Strategy => "strategy",
+            Kind::Tournament => "tournament",
         }
     }
 
@@ -51,6 +55,7 @@ impl Kind {
             Kind::Boat => "boats",
             Kind::Sea => "seas",
             Kind::Strategy => "strategies",
+            Kind::Tournament => "tournaments",
         }
     }
 
@@ -89,6 +94,7 @@ pub fn schema(kind: Kind) -> Value {
         Kind::Boat => schema_of::<raw::RawBoat>(&[EVERYTHING]),
         Kind::Sea => schema_of::<raw::RawSea>(&[EVERYTHING]),
         Kind::Strategy => schema_of::<raw::RawStrategy>(&[]),
+        Kind::Tournament => schema_of::<raw::RawTournament>(&[]),
     }
 }
 
@@ -190,6 +196,7 @@ mod tests {
             (vec!["hull", "typo"], Kind::Boat),
             (vec!["current"], Kind::Sea),
             (vec!["roles", "base"], Kind::Strategy),
+            (vec!["game", "entry", "sea", "seed"], Kind::Tournament),
             (vec!["base"], Kind::Game),
             (vec![], Kind::Game),
         ] {

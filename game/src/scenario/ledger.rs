@@ -1,6 +1,7 @@
 //! The list of problems found so far, and the checks of single values that add to it.
 
 use super::draw::{Drawing, Drawn};
+use super::overrides::Overrides;
 use super::problem::{Problem, Problems};
 use super::raw::{At, Pair};
 use super::source::Sources;
@@ -18,8 +19,8 @@ pub(super) struct Ledger {
     pub(super) drawn: Vec<Drawn>,
     /// Instead of the file system.
     pub(super) files: Option<Vec<(PathBuf, String)>>,
-    /// The sea file that takes the place of the game's own.
-    pub(super) sea: Option<PathBuf>,
+    /// The files that take the place of the game's own.
+    pub(super) overrides: Overrides,
     problems: Vec<Problem>,
     faults: usize,
     /// Keys that did not fit their type, by file: they are not missing as well.
@@ -34,7 +35,7 @@ impl Ledger {
             drawing,
             drawn: vec![],
             files: None,
-            sea: None,
+            overrides: Overrides::default(),
             problems: vec![],
             faults: 0,
             unfit: BTreeSet::new(),

@@ -3,13 +3,15 @@
 use super::draw::{Drawing, Drawn, Recipe};
 use super::kind::Kind;
 use super::ledger::Ledger;
+use super::overrides::Overrides;
 use super::problem::Problems;
 use super::read::{self, Document, Typed};
-use super::{Scenario, Strategy, check};
+use super::{Scenario, Tournament, check};
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::rules::Rules;
 use crate::sea::Sea;
+use crate::strategy::Strategy;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -28,6 +30,8 @@ pub enum Checked {
     Sea(Box<Sea>),
     /// A strategy.
     Strategy(Strategy),
+    /// A tournament, with all the files it names.
+    Tournament(Tournament),
 }
 
 impl Checked {
@@ -41,6 +45,7 @@ impl Checked {
             Checked::Boat(_) => Kind::Boat,
             Checked::Sea(_) => Kind::Sea,
             Checked::Strategy(_) => Kind::Strategy,
+            Checked::Tournament(_) => Kind::Tournament,
         }
     }
 
@@ -54,6 +59,7 @@ impl Checked {
             Checked::Boat(boat) => &boat.name,
             Checked::Sea(sea) => &sea.name,
             Checked::Strategy(strategy) => &strategy.name,
+            Checked::Tournament(tournament) => &tournament.name,
         }
     }
 }
@@ -64,17 +70,17 @@ impl Checked {
 /// # Errors
 /// Everything that is wrong in any of them, by file, line and column.
 pub fn load(path: &Path) -> Result<Scenario, Problems> {
-    load_with(path, None)
+    load_with(path, &Overrides::default())
 }
 
-/// Reads and checks a game, with the sea file at `sea` in place of its own.
+/// Reads and checks a game, with other files in place of its own.
 ///
 /// # Errors
-/// Everything that is wrong in any file, by file, line and column.
-pub fn load_with(path: &Path, sea: Option<&Path>) -> Result<Scenario, Problems> {
+/// Everything that is wrong in any file, by file, line and column; also a strategy for a team that is not in the game.
+pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
     let read = |drawing: Drawing| {
         let mut ledger = Ledger::new(drawing);
-        ledger.sea = sea.map(Path::to_owned);
+        ledger.overrides = overrides.clone();
         game_of(ledger, path)
     };
     let least = read(Drawing::Least)?;
@@ -90,8 +96,8 @@ fn game_of(mut ledger: Ledger, path: &Path) -> Result<Scenario, Problems> {
     let mut scenario = ledger.close(value)?;
     scenario.drawn = std::mem::take(&mut ledger.drawn);
     if !scenario.drawn.is_empty() {
-        let (game, sea) = (path.to_owned(), ledger.sea.clone());
-        scenario.recipe = Some(Recipe { game, sea, files: ledger.sources.texts(), seed: None });
+        let (game, overrides) = (path.to_owned(), ledger.overrides.clone());
+        scenario.recipe = Some(Recipe { game, overrides, files: ledger.sources.texts(), seed: None });
     }
     Ok(scenario)
 }
@@ -107,7 +113,7 @@ impl Scenario {
         };
         let mut ledger = Ledger::new(Drawing::Seed(seed));
         ledger.files = Some(recipe.files.clone());
-        ledger.sea.clone_from(&recipe.sea);
+        ledger.overrides.clone_from(&recipe.overrides);
         let mut drawn = game_of(ledger, &recipe.game)?;
         drawn.seed = seed;
         if let Some(recipe) = &mut drawn.recipe {
@@ -149,9 +155,26 @@ pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
     one(path, check::sea, seed)
 }
 
+/// Reads and checks the strategy file at `path` and the files of the roles that it deals.
+///
+/// # Errors
+/// Everything that is wrong in any of them and their bases.
+pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
+    one(path, check::strategy, 1).map(|(strategy, _)| strategy)
+}
+
+/// Reads and checks the tournament file at `path` and every file it names.
+///
+/// # Errors
+/// Everything that is wrong in any of them.
+pub fn load_tournament(path: &Path) -> Result<Tournament, Problems> {
+    one(path, check::tournament, 1).map(|(tournament, _)| tournament)
+}
+
 /// Reads and checks a scenario file of any kind.
 ///
-/// The folder it lies in says which kind it is (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`).
+/// The folder it lies in says which kind it is (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`,
+/// `tournaments`).
 /// In any other folder it is the kind that knows most of its top-level keys, its bases' included; where
 /// several know as many, the first of [`Kind::ALL`].
 ///
@@ -164,7 +187,8 @@ pub fn check_file(path: &Path) -> Result<Checked, Problems> {
         Kind::Rules => one(path, check::rules, 1).map(|(rules, _)| Checked::Rules(Box::new(rules))),
         Kind::Boat => load_boat(path).map(|boat| Checked::Boat(Box::new(boat))),
         Kind::Sea => load_sea(path).map(|sea| Checked::Sea(Box::new(sea))),
-        Kind::Strategy => one(path, check::strategy, 1).map(|(strategy, _)| Checked::Strategy(strategy)),
+        Kind::Strategy => load_strategy(path).map(Checked::Strategy),
+        Kind::Tournament => load_tournament(path).map(Checked::Tournament),
     }
 }
 

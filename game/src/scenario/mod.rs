@@ -10,15 +10,23 @@ mod explain;
 mod kind;
 mod ledger;
 mod load;
+mod overrides;
 mod problem;
 mod raw;
 mod read;
+mod reference;
 mod source;
+mod tournament;
 
 pub use draw::{Drawn, Recipe};
 pub use kind::{Kind, schema};
-pub use load::{Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_with};
+pub use load::{
+    Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_strategy, load_tournament, load_with,
+};
+pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
+pub use reference::reference;
+pub use tournament::{Entrant, Tournament};
 
 use crate::boat::Boat;
 use crate::field::Field;
@@ -27,6 +35,7 @@ use crate::id::{TeamId, VehicleId};
 use crate::link::Link;
 use crate::rules::Rules;
 use crate::sea::Sea;
+use crate::strategy::Strategy;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
@@ -138,61 +147,4 @@ pub enum Berth {
         /// Smallest distance to any other vehicle and to obstacles, m.
         gap_m: f64,
     },
-}
-
-/// How the boats of a team play: the roles they take, and how each role is played.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Strategy {
-    /// The strategy file's stem.
-    pub name: String,
-    /// Roles, dealt to the team's boats of this strategy in order, again from the start when they run out.
-    pub roles: Vec<Role>,
-    /// How they are dealt.
-    pub assignment: Assignment,
-    /// How an easy attacker plays.
-    pub easy_attacker: EasyAttacker,
-    /// How an easy defender plays.
-    pub easy_defender: EasyDefender,
-}
-
-/// What a boat is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Role {
-    /// Drives straight at the flag, home when carrying or tagged.
-    EasyAttacker,
-    /// Cycles in front of its flag, reacts to nobody.
-    EasyDefender,
-    /// Lies still.
-    Idle,
-}
-
-/// How roles are dealt to a team's boats.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Assignment {
-    /// In the order of the scenario's vehicles.
-    Fixed,
-    /// In an order drawn from the team's own stream.
-    Seeded,
-}
-
-/// How an easy attacker plays.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EasyAttacker {
-    /// Speed, m/s; more than the boat can do is its top speed.
-    pub speed_m_s: f64,
-}
-
-/// How an easy defender plays: round and round an ellipse.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EasyDefender {
-    /// Speed, m/s.
-    pub speed_m_s: f64,
-    /// The named point at the centre of the ellipse.
-    pub centre: String,
-    /// Full extent of the ellipse along the field, m.
-    pub along_m: f64,
-    /// Full extent of the ellipse across the field, m.
-    pub across_m: f64,
 }

@@ -43,6 +43,14 @@ pub(super) trait Typed: DeserializeOwned + Default {
     const DRAWABLE: Drawable;
     /// Whose the numbers are, where nobody says.
     const OWNER: &'static str;
+    /// A key whose value serde cannot read alone; [`Typed::put_apart`] gets it.
+    const APART: Option<&'static str> = None;
+
+    /// Keys that count only in the file itself, not in its bases.
+    const OWN: &'static [&'static str] = &[];
+
+    /// Reads the value of [`Typed::APART`].
+    fn put_apart(&mut self, _: &mut Ledger, _: Spanned<DeValue<'_>>) {}
 }
 
 /// Reads the file at `path` with its bases. Problems with finding it stand at `asked_at`, the reference.
@@ -64,8 +72,19 @@ pub(super) fn document_of<T: Typed>(
     let typed = merged(&chain);
     let numbers = draw::numbers(ledger, typed.get_ref(), T::DRAWABLE, owner);
     let mut table: Table<'_> = typed;
+    let own = start..start + chain[0].1.len();
+    for key in T::OWN {
+        let of_base = table.get_ref().get(*key).is_some_and(|value| !own.contains(&value.span().start));
+        if of_base {
+            table.get_mut().remove(*key);
+        }
+    }
     draw::put(table.get_mut(), T::DRAWABLE, &numbers);
-    let raw = deserialised(ledger, start, table);
+    let apart = T::APART.and_then(|key| table.get_mut().remove(key));
+    let mut raw: T = deserialised(ledger, start, table);
+    if let Some(value) = apart {
+        raw.put_apart(ledger, value);
+    }
     Some(Document { name, start, raw })
 }
 
@@ -233,7 +252,11 @@ fn lay_over<'i>(over: &mut DeTable<'i>, base: DeTable<'i>) {
 }
 
 /// Reads the table into `T`; an entry that does not fit is noted, taken out, and the rest tried again.
-fn deserialised<T: DeserializeOwned + Default>(ledger: &mut Ledger, start: usize, mut table: Table<'_>) -> T {
+pub(super) fn deserialised<T: DeserializeOwned + Default>(
+    ledger: &mut Ledger,
+    start: usize,
+    mut table: Table<'_>,
+) -> T {
     for _ in 0..MOST_COMPLAINTS {
         let error = match T::deserialize(toml::de::Deserializer::from(table.clone())) {
             Ok(raw) => return raw,

@@ -72,6 +72,12 @@ impl Sources {
         }
     }
 
+    /// The text from `offset` to the end of its file.
+    pub(super) fn text_from(&self, offset: usize) -> &str {
+        let file = &self.files[self.index_at(offset)];
+        file.text.get(offset - file.start..).unwrap_or_default()
+    }
+
     /// The file that the reference `reference`, standing at `offset`, means.
     pub(super) fn resolve(&self, offset: usize, reference: &str) -> PathBuf {
         let here = &self.files[self.index_at(offset)].path;

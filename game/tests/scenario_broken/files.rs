@@ -38,7 +38,7 @@ const FILES: &[Case] = &[
         &[
             ("games/x.toml", "base = \"g.toml\"\nseed = -1\n"),
             ("fields/f.toml", "width_m = 160\ndepth_m = 1\n"),
-            ("strategies/p.toml", "roles = [\"ide\"]\n"),
+            ("strategies/p.toml", "roles = [\"none.toml\"]\n"),
             ("boats/b.toml", "length_m = \n"),
         ],
         &[
@@ -46,7 +46,7 @@ const FILES: &[Case] = &[
             "fields/f.toml:1:1: datum is missing, expected { lat_deg = …, lon_deg = … }",
             "fields/f.toml:2:11: depth_m is 1, expected 10 to 20000",
             "games/x.toml:2:8: seed is -1, expected 0 to 9223372036854775807",
-            "strategies/p.toml:1:10: roles is \"ide\", expected one of easy_attacker, easy_defender, idle (did you mean idle?)",
+            "strategies/p.toml:1:10: strategies/none.toml cannot be read (No such file or directory (os error 2)), expected a file",
         ],
     ),
     (

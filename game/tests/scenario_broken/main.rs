@@ -5,12 +5,14 @@
 mod boats;
 mod files;
 mod games;
+mod strategy;
+mod tournaments;
 mod values;
 
 use game::scenario;
 
 /// A sound set of files; each case replaces some of them.
-const SOUND: [(&str, &str); 6] = [
+const SOUND: [(&str, &str); 9] = [
     (
         "games/g.toml",
         r#"field = "../fields/f.toml"
@@ -37,7 +39,21 @@ table_pct_newton = [[-100, -20], [0, 0], [100, 40]]
 speed_max_m_s = 2
 "#,
     ),
-    ("strategies/p.toml", "roles = [\"idle\"]\n"),
+    ("strategies/p.toml", "roles = [\"s.toml\"]\n"),
+    (
+        "strategies/unsafe.toml",
+        "unsafe_i_know = true\nunsafe_because = \"a test\"\n[behaviour.stop]\nkind = \"full_stop\"\n",
+    ),
+    (
+        "strategies/s.toml",
+        "[behaviour.stay_in]\nkind = \"op_region\"\n[behaviour.keep_clear]\nkind = \"avoid_collision\"\n",
+    ),
+    (
+        "tournaments/t.toml",
+        r#"game = "../games/g.toml"
+entry = [{ name = "a", strategy = "../strategies/p.toml" }, { name = "b", strategy = "../strategies/p.toml" }]
+"#,
+    ),
 ];
 
 /// What is wrong with `asked` when the files are the sound ones with `files` over them, line by line.
@@ -57,13 +73,30 @@ fn problems(asked: &str, files: &[(&str, &[u8])]) -> Vec<String> {
 /// A name for the case, the file to check, the files to replace, and what must be reported.
 type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static [&'static str]);
 
+/// Long lists of what is allowed: how they begin and end, and what stands for them here.
+const LISTS: [(&str, &str, &str); 11] = [
+    ("PPB PPF", "SSBX", "{points}"),
+    ("base, points,", "power_play_s", "{keys of rules}"),
+    ("mass_kg, yaw", "munk_factor", "{keys of hulls}"),
+    ("base, about,", "behaviour, rule", "{keys of strategies}"),
+    ("waypoint, loiter,", "policy", "{kinds}"),
+    ("in, when, weight,", "on_complete", "{keys of all}"),
+    ("nearest_enemy, nearest", "mate_carrier", "{boats}"),
+    ("own_flag, enemy_flag,", "such as CH", "{places}"),
+    ("i, mate, enemy, then", "collides", "{events}"),
+    ("numbers, texts, true,", "on_own_side()", "{CEL that is allowed}"),
+    ("min(), max(),", "on_own_side()", "{calls}"),
+];
+
 /// `line` with the long lists of what is allowed cut short.
 fn abridged(line: &str) -> String {
-    let lists = [("PPB PPF", "SSBX", "{points}"), ("base, points,", "power_play_s", "{keys of rules}")];
-    let lists = lists.into_iter().chain([("mass_kg, yaw", "munk_factor", "{keys of hulls}")]);
-    lists.fold(line.to_owned(), |line, (first, last, short)| match (line.find(first), line.find(last)) {
-        (Some(from), Some(to)) => format!("{}{short}{}", &line[..from], &line[to + last.len()..]),
-        _ => line,
+    LISTS.into_iter().fold(line.to_owned(), |line, (first, last, short)| {
+        let from = line.find(first);
+        let to = from.and_then(|from| Some(from + line[from..].find(last)? + last.len()));
+        match (from, to) {
+            (Some(from), Some(to)) => format!("{}{short}{}", &line[..from], &line[to..]),
+            _ => line,
+        }
     })
 }
 

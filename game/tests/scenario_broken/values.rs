@@ -4,6 +4,12 @@ use crate::{Case, assert_reported};
 
 const VALUES: &[Case] = &[
     (
+        "a number for text",
+        "strategies/x.toml",
+        &[("strategies/x.toml", "base = \"p.toml\"\nabout = 3\n")],
+        &["strategies/x.toml:2:9: about is 3, expected a string"],
+    ),
+    (
         "an unknown key",
         "rules/x.toml",
         &[("rules/x.toml", "tag_radius = 10\n")],
@@ -20,12 +26,6 @@ const VALUES: &[Case] = &[
         "rules/x.toml",
         &[("rules/x.toml", "\ntag_radius_m = \"far\"\n")],
         &["rules/x.toml:2:16: tag_radius_m is the string \"far\", expected a number"],
-    ),
-    (
-        "a number for text",
-        "strategies/x.toml",
-        &[("strategies/x.toml", "base = \"p.toml\"\neasy_defender = { centre = 3 }\n")],
-        &["strategies/x.toml:2:28: centre is 3, expected a string"],
     ),
     (
         "a fraction for a whole number",
@@ -71,24 +71,6 @@ const VALUES: &[Case] = &[
         &[
             "rules/x.toml:1:14: capture_at is \"own_flags\", expected one of own_flag, own_side, own_corners (did you mean own_flag?)",
         ],
-    ),
-    (
-        "an unknown role",
-        "strategies/x.toml",
-        &[("strategies/x.toml", "roles = [\"idle\", \"hero\"]\n")],
-        &["strategies/x.toml:1:18: roles is \"hero\", expected one of easy_attacker, easy_defender, idle"],
-    ),
-    (
-        "no roles",
-        "strategies/x.toml",
-        &[("strategies/x.toml", "roles = []\n")],
-        &["strategies/x.toml:1:9: roles has 0 entries, expected 1 to 1000"],
-    ),
-    (
-        "an unknown point",
-        "strategies/x.toml",
-        &[("strategies/x.toml", "base = \"p.toml\"\n[easy_defender]\ncentre = \"CCH\"\n")],
-        &["strategies/x.toml:3:10: centre is \"CCH\", expected a named point, one of {points} (did you mean CC?)"],
     ),
     (
         "a bad file name",

@@ -1,6 +1,6 @@
 //! Where boats start: by hand, by name, in the team's line, or somewhere in a rectangle.
 
-use super::field::{COORDINATE_M, is_in_the_way, is_inside};
+use super::field::{COORDINATE_M, is_inside};
 use super::game::Entry;
 use super::same_place;
 use super::strategy::is_point;
@@ -118,7 +118,7 @@ pub(super) fn check_clear(ledger: &mut Ledger, entries: &[Entry], berths: &[Bert
     for (entry, berth) in entries.iter().zip(berths) {
         let Berth::At(pose) = berth else { continue };
         let length_m = boats[entry.boat].length_m;
-        if field.plan.obstacles.iter().any(|obstacle| is_in_the_way(obstacle, pose.at, length_m / 2.0)) {
+        if field.plan.obstacles.iter().any(|obstacle| obstacle.distance(pose.at) <= length_m / 2.0) {
             let (x, y) = (pose.at.east, pose.at.north);
             let message = format!("{} starts at [{x}, {y}], on an obstacle, expected open water", entry.name);
             ledger.note(entry.place, message);

@@ -1,7 +1,7 @@
 //! A field file, checked.
 
 use super::same_place;
-use crate::field::{Field, Flag, Obstacle, Plan, Walls};
+use crate::field::{Field, Flag, Obstacle, Plan, Walls, do_meet, turn};
 use crate::frame::{LatLon, Ned};
 use crate::id::TeamId;
 use crate::scenario::ledger::Ledger;
@@ -150,7 +150,7 @@ fn obstacle(ledger: &mut Ledger, given: &At<RawObstacle>, field: &Field) -> Opti
     if !is_near {
         ledger.note(given.at, format!("obstacle is off the field, expected at most {NEAR_M} m outside of it"));
     }
-    if field.flags.iter().any(|flag| is_in_the_way(&obstacle, flag.home, 0.0)) {
+    if field.flags.iter().any(|flag| obstacle.distance(flag.home) <= 0.0) {
         ledger.note(given.at, "obstacle stands on a flag, expected open water there");
     }
     Some(obstacle)
@@ -179,7 +179,7 @@ fn corners(ledger: &mut Ledger, polygon: &At<Vec<At<Pair>>>) -> Option<Vec<Ned>>
             match (is_next, is_before) {
                 (true, _) => folds_back(corners[i], corners[j], side(j).1),
                 (_, true) => folds_back(corners[j], corners[i], side(i).1),
-                _ => touch(side(i), side(j)),
+                _ => do_meet(side(i), side(j)),
             }
         });
         if let Some(j) = crossing {
@@ -191,47 +191,6 @@ fn corners(ledger: &mut Ledger, polygon: &At<Vec<At<Pair>>>) -> Option<Vec<Ned>>
     Some(corners)
 }
 
-/// Twice the area of the triangle, positive clockwise on the chart.
-fn turn(a: Ned, b: Ned, c: Ned) -> f64 {
-    (b.north - a.north) * (c.east - a.east) - (b.east - a.east) * (c.north - a.north)
-}
-
 fn folds_back(a: Ned, b: Ned, c: Ned) -> bool {
     turn(a, b, c) == 0.0 && (a - b).dot(c - b) > 0.0
-}
-
-/// Whether two segments have a point in common.
-fn touch((a, b): (Ned, Ned), (c, d): (Ned, Ned)) -> bool {
-    let (c_side, d_side) = (turn(a, b, c), turn(a, b, d));
-    let (a_side, b_side) = (turn(c, d, a), turn(c, d, b));
-    let apart = |p: f64, q: f64| (p > 0.0 && q > 0.0) || (p < 0.0 && q < 0.0);
-    if apart(c_side, d_side) || apart(a_side, b_side) {
-        return false;
-    }
-    // Unless all are in one line, each segment reaches the other's line on both sides: they meet.
-    let in_line = c_side == 0.0 && d_side == 0.0;
-    let overlaps = |p: f64, q: f64, r: f64, s: f64| p.min(q) <= r.max(s) && r.min(s) <= p.max(q);
-    !in_line || (overlaps(a.north, b.north, c.north, d.north) && overlaps(a.east, b.east, c.east, d.east))
-}
-
-/// Whether the obstacle is closer to `point` than `clearance_m`, or over it.
-pub(super) fn is_in_the_way(obstacle: &Obstacle, point: Ned, clearance_m: f64) -> bool {
-    match obstacle {
-        Obstacle::Circle { centre, radius_m } => centre.distance(point) <= radius_m + clearance_m,
-        Obstacle::Polygon { corners } => {
-            let sides = || (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
-            // A line from the point to the north crosses the sides of a polygon around it an odd number of times.
-            let crossings = sides().filter(|(a, b)| {
-                (a.east > point.east) != (b.east > point.east)
-                    && point.north < a.north + (point.east - a.east) / (b.east - a.east) * (b.north - a.north)
-            });
-            crossings.count() % 2 == 1 || sides().any(|(a, b)| distance_to_side(point, a, b) <= clearance_m)
-        }
-    }
-}
-
-fn distance_to_side(point: Ned, a: Ned, b: Ned) -> f64 {
-    let side = b - a;
-    let share = ((point - a).dot(side) / side.dot(side)).clamp(0.0, 1.0);
-    point.distance(a + side.scaled(share))
 }

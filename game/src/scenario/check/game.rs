@@ -10,8 +10,10 @@ use crate::id::TeamId;
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawBoat, RawFleet, RawGame, RawStrategy, RawVehicle};
 use crate::scenario::read::{self, Document, Typed};
-use crate::scenario::{Berth, Scenario, Strategy, Team, Vehicle};
+use crate::scenario::source::tidied;
+use crate::scenario::{Berth, Scenario, Team, Vehicle};
 use crate::sea::Sea;
+use crate::strategy::Strategy;
 use crate::time::SimTime;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -33,7 +35,7 @@ pub(super) struct Entry {
 }
 
 /// Files of one kind that the game names. Each is read once, or once for each owner if it has numbers to be drawn.
-struct Shelf<R, T> {
+pub(super) struct Shelf<R, T> {
     items: Vec<T>,
     path_of: BTreeMap<String, PathBuf>,
     /// Of files without numbers to be drawn.
@@ -42,32 +44,45 @@ struct Shelf<R, T> {
 }
 
 impl<R: Typed, T> Shelf<R, T> {
-    fn new(check: fn(&mut Ledger, &Document<R>) -> Option<T>) -> Shelf<R, T> {
+    pub(super) fn new(check: fn(&mut Ledger, &Document<R>) -> Option<T>) -> Shelf<R, T> {
         Shelf { items: vec![], path_of: BTreeMap::new(), index_of: BTreeMap::new(), check }
     }
 
     /// The index of the file that `given` names, as `owner` has it.
     fn index(&mut self, ledger: &mut Ledger, given: &At<String>, owner: &str) -> Option<usize> {
         let path = ledger.sources.resolve(given.at, &given.value);
+        let is_new = !self.index_of.contains_key(&path);
+        let index = self.index_at(ledger, &path, Some(given.at), owner)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if is_new && *self.path_of.entry(name.clone()).or_insert_with(|| path.clone()) != path {
+            let message = format!("{} is the second file named {name:?}, expected different names", given.value);
+            ledger.note(given.at, message);
+        }
+        Some(index)
+    }
+
+    /// The index of the file at `path`, whatever it is named: two versions of one strategy may meet.
+    pub(super) fn index_at(
+        &mut self,
+        ledger: &mut Ledger,
+        path: &Path,
+        asked_at: Option<usize>,
+        owner: &str,
+    ) -> Option<usize> {
+        let path = tidied(path);
         if let Some(index) = self.index_of.get(&path) {
             return *index;
         }
         let drawn = ledger.drawn.len();
-        let index = self.fetch(ledger, given, &path, owner);
+        let index = self.fetch(ledger, &path, asked_at, owner);
         if ledger.drawn.len() == drawn {
             self.index_of.insert(path, index);
         }
         index
     }
 
-    fn fetch(&mut self, ledger: &mut Ledger, given: &At<String>, path: &Path, owner: &str) -> Option<usize> {
-        let document = read::document_of(ledger, path, Some(given.at), owner)?;
-        let known = self.path_of.entry(document.name.clone()).or_insert_with(|| path.to_owned());
-        if *known != path {
-            let message =
-                format!("{} is the second file named {:?}, expected different names", given.value, document.name);
-            ledger.note(given.at, message);
-        }
+    fn fetch(&mut self, ledger: &mut Ledger, path: &Path, asked_at: Option<usize>, owner: &str) -> Option<usize> {
+        let document = read::document_of(ledger, path, asked_at, owner)?;
         self.items.push((self.check)(ledger, &document)?);
         Some(self.items.len() - 1)
     }
@@ -146,7 +161,7 @@ pub(in crate::scenario) fn game(ledger: &mut Ledger, document: &Document<RawGame
 
 /// The game's sea, or the one that takes its place.
 fn sea(ledger: &mut Ledger, document: &Document<RawGame>) -> Option<Sea> {
-    if let Some(path) = ledger.sea.clone() {
+    if let Some(path) = ledger.overrides.sea.clone() {
         let document = read::document(ledger, &path, None)?;
         return super::sea(ledger, &document);
     }
@@ -156,7 +171,7 @@ fn sea(ledger: &mut Ledger, document: &Document<RawGame>) -> Option<Sea> {
     }
 }
 
-fn referenced<R: Typed, T>(
+pub(super) fn referenced<R: Typed, T>(
     ledger: &mut Ledger,
     owner: usize,
     key: &str,
@@ -221,6 +236,12 @@ fn teams(ledger: &mut Ledger, document: &Document<RawGame>) -> Vec<(String, Opti
         }
         teams.push((name.value.clone(), team.value.strategy.clone()));
     }
+    let names = teams.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
+    let unknown = ledger.overrides.strategies.keys().find(|team| teams.iter().all(|(name, _)| name != *team)).cloned();
+    if let Some(team) = unknown {
+        let message = format!("there is no team {team:?} to give another strategy to, expected one of {names}");
+        ledger.note_if_intact(document.start, message);
+    }
     teams
 }
 
@@ -238,8 +259,12 @@ impl Roster<'_> {
         }
         // The teams' strategies are checked even where no boat of theirs follows them.
         let followed = self.strategies.items.len();
-        for strategy in self.teams.iter().filter_map(|(_, strategy)| strategy.as_ref()) {
-            self.strategies.index(ledger, strategy, RawStrategy::OWNER);
+        for (name, strategy) in &self.teams {
+            match (ledger.overrides.strategies.get(name).cloned(), strategy) {
+                (Some(path), _) => drop(self.strategies.index_at(ledger, &path, None, RawStrategy::OWNER)),
+                (None, Some(given)) => drop(self.strategies.index(ledger, given, RawStrategy::OWNER)),
+                (None, None) => {}
+            }
         }
         self.strategies.items.truncate(followed);
     }
@@ -356,6 +381,10 @@ impl Roster<'_> {
         given: Option<&At<String>>,
         team: Option<TeamId>,
     ) -> Option<usize> {
+        let instead = team.and_then(|team| ledger.overrides.strategies.get(&self.teams[team.index()].0).cloned());
+        if let Some(path) = instead {
+            return self.strategies.index_at(ledger, &path, None, RawStrategy::OWNER);
+        }
         let of_team = team.and_then(|team| self.teams[team.index()].1.clone());
         if given.is_none() && of_team.is_none() {
             if team.is_some() {

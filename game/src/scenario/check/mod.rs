@@ -10,6 +10,7 @@ mod link;
 mod rules;
 mod sea;
 mod strategy;
+mod tournament;
 
 pub(super) use boat::boat;
 pub(super) use field::field;
@@ -17,6 +18,7 @@ pub(super) use game::game;
 pub(super) use rules::rules;
 pub(super) use sea::sea;
 pub(super) use strategy::strategy;
+pub(super) use tournament::tournament;
 
 use super::ledger::Ledger;
 use super::raw::At;

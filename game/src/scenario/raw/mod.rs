@@ -12,6 +12,7 @@ mod rules;
 mod sea;
 mod sensor;
 mod strategy;
+mod tournament;
 
 pub(super) use boat::{RawAutopilot, RawBattery, RawBoat, RawHull, RawPropeller, RawThruster, RawVentilation};
 pub(super) use field::{RawField, RawObstacle, RawSide, RawWalls};
@@ -24,15 +25,23 @@ pub(super) use sea::{
     RawWaves, RawWind,
 };
 pub(super) use sensor::{RawCompass, RawFault, RawGps, RawImu, RawJump};
-pub(super) use strategy::RawStrategy;
+pub(super) use strategy::{
+    Amount, COMMON_KEYS, Given, RawAttractor, RawAvoidCollision, RawAvoidObstacle, RawBehaviour, RawBehaviours,
+    RawCommon, RawConstantHeading, RawConstantSpeed, RawCutRange, RawEllipse, RawHelm, RawIntercept, RawLoiter,
+    RawMaxSpeed, RawMemoryTurnLimit, RawMode, RawOpRegion, RawPolicy, RawRule, RawSet, RawShield, RawStationKeep,
+    RawStrategy, RawTask, RawTrail, RawVariable, RawWaypoint, Stated, keys_of, kinds,
+};
+pub(super) use tournament::{RawEntry, RawTournament};
 
 use super::draw::Drawable;
+use super::ledger::Ledger;
 use super::read::Typed;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 use std::borrow::Cow;
 use toml::Spanned;
+use toml::de::DeValue;
 
 /// A value and where it stands in the virtual text of all files.
 #[derive(Clone, Copy, Debug)]
@@ -106,4 +115,15 @@ impl Typed for RawField {
 impl Typed for RawStrategy {
     const DRAWABLE: Drawable = Drawable::Nothing;
     const OWNER: &'static str = "strategy";
+    const APART: Option<&'static str> = Some("behaviour");
+    const OWN: &'static [&'static str] = &["unsafe_i_know", "unsafe_because"];
+
+    fn put_apart(&mut self, ledger: &mut Ledger, value: Spanned<DeValue<'_>>) {
+        self.behaviour = RawBehaviours::of(ledger, value);
+    }
+}
+
+impl Typed for RawTournament {
+    const DRAWABLE: Drawable = Drawable::Nothing;
+    const OWNER: &'static str = "tournament";
 }

@@ -1,0 +1,111 @@
+//! What a decision of the helm costs, with building its functions, and what it would cost to look at every point.
+
+use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Peaks, Problem, Wish};
+use criterion::{Criterion, criterion_group, criterion_main};
+use game::stream::Stream;
+use std::f64::consts::{PI, TAU};
+use std::hint::black_box;
+
+/// Decisions that are taken in turn, so that none is learnt by heart.
+const SCENES: usize = 64;
+
+/// A waypoint, and contacts within 80 m, as a helm meets them.
+fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Wish)> {
+    let mut stream = Stream::new(1, "bench/ivp");
+    let scene = |_| {
+        let (bearing_rad, course_rad) = (stream.between(0.0, TAU), stream.between(0.0, TAU));
+        let heading = Peak { peak_width: 0.5, summit_delta: 50.0, height: 20.0, ..Peak::tent(course_rad, 0.5) };
+        let waypoint = Objective::Coupled {
+            course: Peaks::one(Peak::tent(bearing_rad, PI)).and(heading),
+            speed: Peaks::one(Peak { peak_width: 1.25, summit_delta: 20.0, ..Peak::tent(2.5, 1.6) }),
+            course_share: 0.5,
+        };
+        let mut functions = vec![(100.0, waypoint)];
+        for _ in 0..contacts {
+            let (north_m, east_m) = (stream.between(-80.0, 80.0), stream.between(-80.0, 80.0));
+            let closest = Closest {
+                north_m,
+                east_m,
+                velocity_north_m_s: stream.between(-2.0, 2.0),
+                velocity_east_m_s: stream.between(-2.0, 2.0),
+                horizon_s: 120.0,
+                min_m: 10.0,
+                max_m: 75.0,
+                touch_m: 0.0,
+                approach: Approach::Avoid { at_min: 25.0 },
+                lag: None,
+            };
+            functions.push((300.0, Objective::Closest(closest)));
+        }
+        (functions, Wish { course_rad, speed_m_s: 2.0, keep: None })
+    };
+    (0..SCENES).map(scene).collect()
+}
+
+fn decide(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("ivp 360x36");
+    for contacts in [0, 1, 3] {
+        let scenes = scenes(contacts);
+        let mut problem = Problem::new(Grid::default());
+        let mut next = 0;
+        group.bench_function(format!("functions {}", contacts + 1), |bencher| {
+            bencher.iter(|| {
+                let (functions, wish) = black_box(&scenes[next % SCENES]);
+                next += 1;
+                problem.clear();
+                functions.iter().for_each(|(weight, objective)| problem.add(*weight, objective));
+                problem.solve(*wish)
+            });
+        });
+    }
+    group.finish();
+}
+
+/// The closed form at every point of the grid, in plain double precision and with no bounds: what anybody would write
+/// first. The waypoint's two lists are made once, as in the solver.
+fn every_point(criterion: &mut Criterion) {
+    let grid = Grid::default();
+    let scenes = scenes(3);
+    let mut next = 0;
+    criterion.bench_function("ivp 360x36/functions 4, every point", |bencher| {
+        bencher.iter(|| {
+            let (functions, _) = black_box(&scenes[next % SCENES]);
+            next += 1;
+            best_of_all(&grid, functions)
+        });
+    });
+}
+
+fn best_of_all(grid: &Grid, functions: &[(f64, Objective)]) -> (f64, usize, usize) {
+    let Objective::Coupled { course, speed, course_share } = functions[0].1 else { panic!("a waypoint comes first") };
+    let speeds: Vec<f64> = (0..grid.speeds()).map(|j| f64::from(speed.of_speed(grid, j))).collect();
+    let mut best = (f64::NEG_INFINITY, 0, 0);
+    for k in 0..grid.courses() {
+        let (north, east) = grid.direction(k);
+        let of_course = f64::from(course.of_course(grid, k));
+        for (j, of_speed) in speeds.iter().enumerate() {
+            let speed_m_s = grid.speed_m_s(j);
+            let (own_north, own_east) = (speed_m_s * f64::from(north), speed_m_s * f64::from(east));
+            let waypoint = functions[0].0 * (of_course * course_share + of_speed * (1.0 - course_share));
+            let contacts: f64 = functions[1..].iter().map(|(weight, f)| weight * plain(f, own_north, own_east)).sum();
+            if waypoint + contacts > best.0 {
+                best = (waypoint + contacts, k, j);
+            }
+        }
+    }
+    best
+}
+
+/// Utility of the distance at the closest point of approach.
+fn plain(objective: &Objective, own_north_m_s: f64, own_east_m_s: f64) -> f64 {
+    let Objective::Closest(c) = objective else { return 0.0 };
+    let (w_north, w_east) = (c.velocity_north_m_s - own_north_m_s, c.velocity_east_m_s - own_east_m_s);
+    let square = (w_north * w_north + w_east * w_east).max(1e-20);
+    let t = (-(c.north_m * w_north + c.east_m * w_east) / square).clamp(0.0, c.horizon_s);
+    let distance_m = game::math::length(c.north_m + w_north * t, c.east_m + w_east * t);
+    let rise = 75.0 * (distance_m - c.min_m) / (c.max_m - c.min_m);
+    if distance_m > c.min_m { (25.0 + rise).min(100.0) } else { 0.0 }
+}
+
+criterion_group!(benches, decide, every_point);
+criterion_main!(benches);

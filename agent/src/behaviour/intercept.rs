@@ -1,0 +1,69 @@
+//! Intercept: steers for the point where a boat can be met soonest (lead pursuit).
+
+use super::{Conduct, drive};
+use crate::helm::{Bid, Scene, Spot};
+use game::Ned;
+use game::strategy::Intercept;
+
+pub(super) struct Conductor(pub(super) Intercept);
+
+impl Conduct for Conductor {
+    fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
+        let Some(contact) = scene.boat(self.0.contact).copied() else { return };
+        let giveup_m = self.0.giveup_m.value(scene);
+        if giveup_m > 0.0 && scene.at.distance(contact.at) > giveup_m {
+            return;
+        }
+        let speed_m_s = self.0.speed_m_s.value(scene).min(scene.chart.speed_max_m_s);
+        let meeting = meeting_point(scene.at, speed_m_s, Spot { at: contact.at, velocity: contact.velocity });
+        bid.ask_for(1.0, Some(contact.vehicle), &drive(scene, meeting, speed_m_s));
+    }
+}
+
+/// Where a boat at `from`, going straight at this speed, meets one that keeps its velocity soonest; where that one is now
+/// if it never does.
+///
+/// The time is the smallest positive root of |line + velocity t| = speed t.
+pub(super) fn meeting_point(from: Ned, speed_m_s: f64, contact: Spot) -> Ned {
+    let line = contact.at - from;
+    let a = contact.velocity.dot(contact.velocity) - speed_m_s * speed_m_s;
+    let half_b = line.dot(contact.velocity);
+    let c = line.dot(line);
+    let time_s = if a.abs() < 1e-9 {
+        (half_b < 0.0).then(|| -0.5 * c / half_b)
+    } else {
+        let under_root = half_b * half_b - a * c;
+        let root = under_root.max(0.0).sqrt();
+        let both = [(-half_b - root) / a, (-half_b + root) / a];
+        both.into_iter().filter(|t| under_root >= 0.0 && *t > 0.0).reduce(f64::min)
+    };
+    contact.at + contact.velocity.scaled(time_s.unwrap_or(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boats_meet_where_both_arrive_at_once() {
+        let contact = |north, east, v_north, v_east| Spot {
+            at: Ned { north, east },
+            velocity: Ned { north: v_north, east: v_east },
+        };
+        // Crossing at right angles: 3-4-5.
+        let got = meeting_point(Ned::default(), 2.0, contact(40.0, 0.0, 0.0, 1.2));
+        assert!(got.distance(Ned { north: 40.0, east: 30.0 }) < 1e-9, "{got:?}");
+        for spot in [contact(50.0, 10.0, -1.0, 0.5), contact(-20.0, 30.0, 1.5, 1.0), contact(9.0, 9.0, 0.0, 0.0)] {
+            let got = meeting_point(Ned::default(), 2.5, spot);
+            let speed_m_s = spot.velocity.length();
+            let times_s = (got.length() / 2.5, if speed_m_s > 0.0 { got.distance(spot.at) / speed_m_s } else { -1.0 });
+            assert!(times_s.1 < 0.0 || (times_s.0 - times_s.1).abs() < 1e-9, "{spot:?}: {times_s:?}");
+        }
+        // One that flees faster is chased where it is.
+        let got = meeting_point(Ned::default(), 1.0, contact(10.0, 0.0, 2.0, 0.0));
+        assert_eq!(got, Ned { north: 10.0, east: 0.0 });
+        // One of the same speed that comes on is met half way.
+        let got = meeting_point(Ned::default(), 2.0, contact(10.0, 0.0, -2.0, 0.0));
+        assert!(got.distance(Ned { north: 5.0, east: 0.0 }) < 1e-9, "{got:?}");
+    }
+}

@@ -1,0 +1,104 @@
+//! The chart of one boat: everything about the game that does not change while it is played.
+
+use game::rules::{CaptureAt, UntagAt};
+use game::scenario::Scenario;
+use game::strategy::Program;
+use game::{Field, FlagId, Ned, SimTime, TeamId, VehicleId};
+
+/// What a helm knows before the game begins.
+#[derive(Clone, Debug)]
+pub(crate) struct Chart {
+    pub(crate) me: VehicleId,
+    pub(crate) team: TeamId,
+    pub(crate) field: Field,
+    /// The own boat's place in its team.
+    pub(crate) rank: usize,
+    /// The enemies, in the scenario's order.
+    pub(crate) enemies: Vec<VehicleId>,
+    /// The other boats of the team, in the scenario's order.
+    pub(crate) mates: Vec<VehicleId>,
+    /// The flags to attack.
+    pub(crate) targets: Vec<(FlagId, Ned)>,
+    /// The flags to defend.
+    pub(crate) own_flags: Vec<(FlagId, Ned)>,
+    pub(crate) untag_radius_m: f64,
+    pub(crate) time_limit: SimTime,
+    /// The highest speed of the helm's decisions, m/s.
+    pub(crate) speed_max_m_s: f64,
+    capture_at: CaptureAt,
+    untag_at: UntagAt,
+    /// The team's named points, by name.
+    points: Vec<(String, Ned)>,
+}
+
+impl Chart {
+    pub(crate) fn new(scenario: &Scenario, me: VehicleId, program: &Program) -> Chart {
+        let team = scenario.vehicles[me.index()].team;
+        let field = &scenario.field;
+        let of = |wanted: bool| {
+            let vehicles = (0..scenario.vehicles.len()).map(VehicleId::at);
+            vehicles.filter(move |vehicle| (scenario.team_of(*vehicle) == team) == wanted)
+        };
+        let flags = |wanted: bool| {
+            let flags = field.flags.iter().enumerate().filter(move |(_, flag)| (flag.team == team) == wanted);
+            flags.map(|(i, flag)| (FlagId(i as u8), flag.home)).collect::<Vec<_>>()
+        };
+        let mut points: Vec<(String, Ned)> =
+            Field::point_names().into_iter().filter_map(|name| field.point(team, &name).map(|at| (name, at))).collect();
+        points.sort_by(|a, b| a.0.cmp(&b.0));
+        let own_m_s = scenario.boat_of(me).speed_max_m_s();
+        Chart {
+            me,
+            team,
+            rank: of(true).position(|vehicle| vehicle == me).unwrap_or(0),
+            enemies: of(false).collect(),
+            mates: of(true).filter(|vehicle| *vehicle != me).collect(),
+            targets: flags(false),
+            own_flags: flags(true),
+            untag_radius_m: scenario.rules.untag_radius_m,
+            time_limit: scenario.rules.time_limit,
+            speed_max_m_s: program.helm.speed_max_m_s.map_or(own_m_s, |most_m_s| most_m_s.min(own_m_s)),
+            capture_at: scenario.rules.capture_at,
+            untag_at: scenario.rules.untag_at,
+            points,
+            field: field.clone(),
+        }
+    }
+
+    /// The home of the own flag.
+    pub(crate) fn own_flag(&self) -> Ned {
+        self.own_flags.first().expect("a checked field has a flag for every team").1
+    }
+
+    /// A named point of the own team.
+    pub(crate) fn point(&self, name: &str) -> Option<Ned> {
+        let found = self.points.binary_search_by(|(known, _)| known.as_str().cmp(name));
+        found.ok().map(|i| self.points[i].1)
+    }
+
+    /// Where a flag must be brought, from here.
+    pub(crate) fn capture_place(&self, at: Ned) -> Ned {
+        match self.capture_at {
+            CaptureAt::OwnFlag | CaptureAt::OwnSide => self.own_flag(),
+            CaptureAt::OwnCorners => self.nearest_corner(at),
+        }
+    }
+
+    /// Where a tagged boat is freed, from here.
+    pub(crate) fn untag_place(&self, at: Ned) -> Ned {
+        match self.untag_at {
+            UntagAt::OwnFlag => self.own_flag(),
+            UntagAt::OwnCorners => self.nearest_corner(at),
+        }
+    }
+
+    /// Whether `at` is on the own team's side.
+    pub(crate) fn is_own_side(&self, at: Ned) -> bool {
+        self.field.zones[self.team.index()].contains(at)
+    }
+
+    fn nearest_corner(&self, at: Ned) -> Ned {
+        let [a, b] = self.field.own_corners[self.team.index()];
+        if at.distance_squared(a) <= at.distance_squared(b) { a } else { b }
+    }
+}

@@ -1,0 +1,215 @@
+//! An objective function: what one behaviour would like of course and speed.
+
+use super::fixed::{self, Weight};
+use super::grid::{Grid, LANES};
+use super::{Closest, Closing, Peaks, SpeedLimit, closest, closing};
+use wide::f32x8;
+
+/// A utility of 0 to 100 for each course and speed.
+///
+/// Numbers that are none count as no utility at all (a debug build stops at them). `Course`, `Speed`, `Coupled`, `Limit`,
+/// `CourseTable` and `SpeedTable` cost next to nothing; the others are asked point by point.
+#[derive(Clone, Copy, Debug)]
+pub enum Objective<'a> {
+    /// Of course alone.
+    Course(Peaks),
+    /// Of speed alone.
+    Speed(Peaks),
+    /// Of course and speed, added.
+    Coupled {
+        /// What it would like of course.
+        course: Peaks,
+        /// What it would like of speed.
+        speed: Peaks,
+        /// How much of the utility the course makes, 0 to 1; the speed makes the rest.
+        course_share: f64,
+    },
+    /// A speed limit.
+    Limit(SpeedLimit),
+    /// Distance at the closest point of approach to a contact.
+    Closest(Closest),
+    /// Rate of closure.
+    Closing(Closing),
+    /// Utilities in a table, one row of all speeds for each course.
+    Table(&'a [f32]),
+    /// Utilities by course.
+    CourseTable(&'a [f32]),
+    /// Utilities by speed.
+    SpeedTable(&'a [f32]),
+}
+
+impl Objective<'_> {
+    /// Whether it tells courses from each other.
+    #[must_use]
+    pub fn decides_course(&self) -> bool {
+        match self {
+            Objective::Speed(_) | Objective::Limit(_) | Objective::SpeedTable(_) => false,
+            Objective::Coupled { course_share, .. } => *course_share > 0.0,
+            _ => true,
+        }
+    }
+
+    /// Whether it tells speeds from each other.
+    #[must_use]
+    pub fn decides_speed(&self) -> bool {
+        match self {
+            Objective::Course(_) | Objective::CourseTable(_) => false,
+            Objective::Coupled { course_share, .. } => *course_share < 1.0,
+            _ => true,
+        }
+    }
+
+    /// The utility of course `k` at speed `j`, in the arithmetic of the solver.
+    ///
+    /// # Panics
+    /// Beyond the grid, and with a table that is not of its size.
+    #[must_use]
+    pub fn utility(&self, grid: &Grid, k: usize, j: usize) -> f32 {
+        assert!(k < grid.courses() && j < grid.speeds(), "course {k}, speed {j}");
+        match self.parts(grid) {
+            Parts::Separable => {
+                let (course, speed, share) = (self.of_course(grid, k), self.of_speed(grid, j), self.course_share());
+                (f64::from(course) * share + f64::from(speed) * (1.0 - share)) as f32
+            }
+            Parts::Field(field) => {
+                let (north, east) = grid.direction(k);
+                let speed = grid.speed_lanes()[j / LANES];
+                field.utility(f32x8::splat(north), f32x8::splat(east), speed).as_array()[j % LANES]
+            }
+            Parts::Table(table) => fixed::utility(f64::from(table[k * grid.speeds() + j])),
+            Parts::Nothing => 0.0,
+        }
+    }
+
+    /// What it adds to the sum at course `k` and speed `j` with this weight, in steps of [`QUANTUM`](super::QUANTUM): the
+    /// weighted utility, rounded; for `Coupled` the two parts are rounded one by one.
+    #[must_use]
+    pub fn contribution(&self, grid: &Grid, weight: f64, k: usize, j: usize) -> i32 {
+        let weight = Weight::new(weight);
+        match self {
+            Objective::Coupled { .. } => {
+                let (course, speed) = self.weights(weight);
+                course.quanta_of_one(self.of_course(grid, k)) + speed.quanta_of_one(self.of_speed(grid, j))
+            }
+            _ => weight.quanta_of_one(self.utility(grid, k, j)),
+        }
+    }
+
+    /// How much of the utility the course makes, of functions that are a sum of two.
+    fn course_share(&self) -> f64 {
+        match self {
+            Objective::Course(_) | Objective::CourseTable(_) => 1.0,
+            Objective::Coupled { course_share, .. } if course_share.is_finite() => course_share.clamp(0.0, 1.0),
+            _ => 0.0,
+        }
+    }
+
+    /// The weights of course and speed, of functions that are a sum of two.
+    pub(super) fn weights(&self, weight: Weight) -> (Weight, Weight) {
+        let share = self.course_share();
+        (weight.share(share), weight.share(1.0 - share))
+    }
+
+    /// Utility of course alone, for eight courses at a time; nothing beyond the last course.
+    pub(super) fn each_course(&self, grid: &Grid, told: impl FnMut(usize, f32x8)) {
+        if let Objective::Course(peaks) | Objective::Coupled { course: peaks, .. } = self {
+            eight_at_a_time(grid.courses(), peaks.courses(grid), told);
+        } else {
+            eight_at_a_time(grid.courses(), |k| self.of_course(grid, k), told);
+        }
+    }
+
+    /// Utility of course alone.
+    fn of_course(&self, grid: &Grid, k: usize) -> f32 {
+        match self {
+            Objective::Course(peaks) | Objective::Coupled { course: peaks, .. } => peaks.of_course(grid, k),
+            Objective::CourseTable(table) => {
+                assert!(table.len() == grid.courses(), "{} utilities, {} courses", table.len(), grid.courses());
+                fixed::utility(f64::from(table[k]))
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Utility of speed alone.
+    pub(super) fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
+        match self {
+            Objective::Speed(peaks) | Objective::Coupled { speed: peaks, .. } => peaks.of_speed(grid, j),
+            Objective::Limit(limit) => limit.of_speed(grid, j),
+            Objective::SpeedTable(table) => {
+                assert!(table.len() == grid.speeds(), "{} utilities, {} speeds", table.len(), grid.speeds());
+                fixed::utility(f64::from(table[j]))
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// How the solver goes about it.
+    pub(super) fn parts(&self, grid: &Grid) -> Parts<'_> {
+        let field = |field: Option<Field>| field.map_or(Parts::Nothing, Parts::Field);
+        let fastest_m_s = grid.speed_max_m_s();
+        match self {
+            Objective::Closest(closest) => field(closest.ready(fastest_m_s).map(Field::Closest)),
+            Objective::Closing(closing) => field(closing.ready(fastest_m_s).map(Field::Closing)),
+            Objective::Table(table) => {
+                let points = grid.courses() * grid.speeds();
+                assert!(table.len() == points, "{} utilities, {points} points", table.len());
+                Parts::Table(table)
+            }
+            _ => Parts::Separable,
+        }
+    }
+}
+
+/// Tells the utilities of so many courses by eights, and those beyond the last as nothing.
+fn eight_at_a_time(courses: usize, utility: impl Fn(usize) -> f32, mut told: impl FnMut(usize, f32x8)) {
+    for lanes in 0..courses.div_ceil(LANES) {
+        let first = LANES * lanes;
+        let eight = std::array::from_fn(|lane| if first + lane < courses { utility(first + lane) } else { 0.0 });
+        told(lanes, f32x8::new(eight));
+    }
+}
+
+/// How a function is evaluated.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "it lives only while a function is added, and a box would be on the heap"
+)]
+pub(super) enum Parts<'a> {
+    /// A function of course plus one of speed.
+    Separable,
+    /// A formula in both.
+    Field(Field),
+    /// Numbers for both.
+    Table(&'a [f32]),
+    /// Its numbers are none.
+    Nothing,
+}
+
+/// A formula in course and speed.
+#[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "kept in a list that is used again; boxes would be allocated anew")]
+pub(super) enum Field {
+    Closest(closest::Ready),
+    Closing(closing::Ready),
+}
+
+impl Field {
+    /// Utilities of eight candidates.
+    #[inline(always)]
+    pub(super) fn utility(&self, north: f32x8, east: f32x8, speed: f32x8) -> f32x8 {
+        match self {
+            Field::Closest(ready) => ready.utility(north, east, speed),
+            Field::Closing(ready) => ready.utility(north, east, speed),
+        }
+    }
+
+    /// What no speed from `slow` to `fast` exceeds, on each of eight courses.
+    #[inline]
+    pub(super) fn bound(&self, north: f32x8, east: f32x8, slow: f32x8, fast: f32x8) -> f32x8 {
+        match self {
+            Field::Closest(ready) => ready.bound(north, east, slow, fast),
+            Field::Closing(ready) => ready.bound(north, east, slow, fast),
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Team talk over the network: what the minds here tell their mates elsewhere, and hear from them.
+
+use super::NodeError;
+use super::ignored::Ignored;
+use super::mailbag::Mailbag;
+use super::table::Seated;
+use bus::{Board, Bus, Delivery, Publisher, Standing};
+use game::message::{Message, Say, Stamp, Word};
+use game::topic::{self, GameName};
+use game::{Scenario, TeamId, VehicleId};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The line to one team.
+struct Line {
+    team: TeamId,
+    publisher: Publisher,
+    /// Said last, to be said again when orders are sent again.
+    said: Option<Say>,
+}
+
+/// The talk of the teams whose minds here talk.
+pub(super) struct Talk {
+    lines: Vec<Line>,
+    mailbag: Arc<Board<Mailbag>>,
+    teams: Vec<TeamId>,
+    /// How long words that should be there may take.
+    patience: Duration,
+    words: Vec<Word>,
+    _standing: Vec<Standing>,
+}
+
+impl Talk {
+    /// Opens a line to each team of which a mind here talks, and listens to its mates.
+    pub(super) fn open(
+        bus: &Bus,
+        game: &GameName,
+        scenario: &Scenario,
+        seated: &[Seated],
+        patience: Duration,
+    ) -> Result<Talk, NodeError> {
+        let teams: Vec<TeamId> = (0..scenario.vehicles.len()).map(|i| scenario.team_of(VehicleId::at(i))).collect();
+        let mut talking: Vec<TeamId> =
+            seated.iter().filter(|seat| seat.mind.talks()).map(|seat| scenario.team_of(seat.vehicle)).collect();
+        talking.sort_unstable();
+        talking.dedup();
+        let minded: Vec<VehicleId> = seated.iter().map(|seat| seat.vehicle).collect();
+        let mailbag = Arc::new(Board::new(Mailbag::new(teams.iter().copied(), &minded)));
+        let (mut lines, mut standing) = (Vec::new(), Vec::new());
+        for team in talking {
+            let inbox = Arc::clone(&mailbag);
+            let take = move |bytes: &[u8]| inbox.visit(|mailbag| mailbag.take(team, bytes));
+            standing.push(bus.overhear(topic::all_say(game, scenario, team), take)?);
+            let publisher = bus.publisher(topic::say(game, scenario, team, &bus.id()), Delivery::Wait)?;
+            lines.push(Line { team, publisher, said: None });
+        }
+        Ok(Talk { lines, mailbag, teams, patience, words: Vec::new(), _standing: standing })
+    }
+
+    /// Lets the minds hear what mates elsewhere said after the decision before.
+    pub(super) fn hear(&mut self, seated: &mut [Seated], seq: u64) {
+        if self.lines.is_empty() {
+            return;
+        }
+        // In real time nobody waits, and nobody counts either: mates decide when they do.
+        let waits = !self.patience.is_zero();
+        if waits {
+            self.mailbag.wait(self.patience, |mailbag| mailbag.is_complete(seq));
+        }
+        self.words.clear();
+        self.mailbag.visit(|mailbag| {
+            let missed = mailbag.hear(seq, &mut self.words);
+            mailbag.ignored.unheard += if waits { missed } else { 0 };
+        });
+        self.pass_on(seated);
+    }
+
+    /// Tells mates, here and elsewhere, what the minds say after deciding. It must be sent before the orders are: then
+    /// it is on its way before the next picture.
+    pub(super) fn say(&mut self, seated: &mut [Seated], stamp: Stamp) -> Result<(), NodeError> {
+        if self.lines.is_empty() {
+            return Ok(());
+        }
+        self.words.clear();
+        seated.iter().for_each(|seat| seat.mind.say(&mut self.words));
+        self.pass_on(seated);
+        for line in &mut self.lines {
+            let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&line.team);
+            let words: Vec<Word> = self.words.iter().filter(ours).copied().collect();
+            line.said = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
+        }
+        self.repeat()
+    }
+
+    /// Says again what was said last: it may have been lost with the orders that are asked for again.
+    pub(super) fn repeat(&self) -> Result<(), NodeError> {
+        for line in &self.lines {
+            if let Some(said) = &line.said {
+                line.publisher.send(said)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Words of the other team are nothing to a mind: it listens to its mates.
+    fn pass_on(&self, seated: &mut [Seated]) {
+        if !self.words.is_empty() {
+            seated.iter_mut().for_each(|seat| seat.mind.hear(&self.words));
+        }
+    }
+
+    pub(super) fn ignored(&self) -> Ignored {
+        self.mailbag.visit(|mailbag| mailbag.ignored)
+    }
+}

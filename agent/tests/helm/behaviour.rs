@@ -1,0 +1,327 @@
+//! Each behaviour, alone: what it makes of a scene.
+
+use crate::scene::{Boat, alone, helm, only, picture, scenario, thought};
+use agent::Mind;
+use game::helm::{HelmReport, StageReport};
+use game::picture::Picture;
+
+/// A course and a speed, or that it asks for nothing.
+type Want = Option<(f64, f64)>;
+
+/// What boat 0 decides by this behaviour alone in this scene.
+fn decided(behaviour: &str, picture: &Picture) -> HelmReport {
+    thought(&mut helm(&only(behaviour)), picture)
+}
+
+fn is_active(report: &HelmReport) -> bool {
+    report.behaviours.iter().any(|b| b.name == "it" && b.stage == StageReport::Active)
+}
+
+fn assert_decides(behaviour: &str, picture: &Picture, want: Want) {
+    let report = decided(behaviour, picture);
+    let got = report.course_deg.zip(report.speed_m_s).filter(|_| is_active(&report));
+    match (got, want) {
+        (None, None) => {}
+        (Some((course_deg, speed_m_s)), Some((want_deg, want_m_s))) => {
+            let off_deg = (course_deg - want_deg).rem_euclid(360.0);
+            // Half a step of the grid: 1 degree, 3/35 m/s.
+            assert!(off_deg.min(360.0 - off_deg) <= 0.51, "{behaviour}: course {course_deg}, wanted {want_deg}");
+            assert!((speed_m_s - want_m_s).abs() <= 0.044, "{behaviour}: {speed_m_s} m/s, wanted {want_m_s}");
+        }
+        _ => panic!("{behaviour}: {got:?}, wanted {want:?}"),
+    }
+}
+
+/// From the middle of the field.
+fn here() -> Picture {
+    alone(0.0, Boat::at(0.0, 0.0).going(0.0, 1.0))
+}
+
+#[test]
+fn behaviours_that_go_somewhere_go_there() {
+    // The own flag is at (-60, 0), the enemy's at (60, 0).
+    let contact =
+        |boat: Boat| picture(0.0, [Boat::at(0.0, 0.0), Boat::at(-70.0, -30.0)], [boat, Boat::at(75.0, -35.0)]);
+    let by = |boat: Boat, x: f64, y: f64| {
+        let mut picture = contact(boat);
+        (picture.own[0].nav.east_m, picture.own[0].nav.north_m) = (x, y);
+        picture
+    };
+    for (behaviour, picture, want) in [
+        ("kind = 'waypoint'\npoints = ['enemy_flag']\nspeed_m_s = 2", here(), Some((90.0, 2.0))),
+        ("kind = 'waypoint'\npoints = ['CF']\nspeed_m_s = 9", here(), Some((270.0, 3.0))),
+        (
+            "kind = 'waypoint'\npoints = [[0, -20], [20, -20]]\nreverse = true\nspeed_m_s = 2",
+            here(),
+            Some((135.0, 2.0)),
+        ),
+        // On the line from the start to the point, which is the boat's own place: straight there.
+        ("kind = 'waypoint'\npoints = [[30, 30]]\nlead_m = 5\nspeed_m_s = 2", here(), Some((45.0, 2.0))),
+        ("kind = 'station_keep'\nat = [0, 30]\ntransit_speed_m_s = 2", here(), Some((0.0, 2.0))),
+        // Two thirds of the way from the inner radius to the outer.
+        (
+            "kind = 'station_keep'\nat = [0, 10]\ninner_radius_m = 4\nouter_radius_m = 13\nouter_speed_m_s = 1.5",
+            here(),
+            Some((0.0, 1.0)),
+        ),
+        ("kind = 'station_keep'\nat = [0, 3]", here(), Some((0.0, 0.0))),
+        (
+            "kind = 'intercept'\ncontact = 'opponent'\nspeed_m_s = 2",
+            contact(Boat::at(0.0, 40.0).going(90.0, 1.2)),
+            Some((36.87, 2.0)),
+        ),
+        ("kind = 'intercept'\ncontact = 'opponent'\ngiveup_m = 30", contact(Boat::at(0.0, 40.0)), None),
+        (
+            "kind = 'cut_range'\ncontact = 'opponent'\npatience = 0",
+            contact(Boat::at(0.0, 40.0).going(90.0, 2.0)),
+            Some((0.0, 3.0)),
+        ),
+        (
+            "kind = 'cut_range'\ncontact = 'opponent'\npatience = 100\ntime_on_leg_s = 60",
+            contact(Boat::at(0.0, 40.0).going(180.0, 2.0)),
+            Some((0.0, 2.0)),
+        ),
+        ("kind = 'cut_range'\ncontact = 'opponent'\ngiveup_m = 30", contact(Boat::at(0.0, 40.0)), None),
+        ("kind = 'cut_range'\ncontact = 'nearest_intruder'", contact(Boat::at(20.0, 10.0)), None),
+        // 10 m astern of a boat that heads east at (30, 30) is (20, 30).
+        (
+            "kind = 'trail'\ncontact = 'opponent'\nrange_m = 10\nspeed_m_s = 2",
+            by(Boat::at(30.0, 30.0).going(90.0, 1.0), 0.0, 10.0),
+            Some((45.0, 2.0)),
+        ),
+        (
+            "kind = 'trail'\ncontact = 'opponent'\nrange_m = 10\nspeed_m_s = 2",
+            by(Boat::at(30.0, 30.0).going(90.0, 1.0), 19.0, 30.0),
+            Some((90.0, 1.0)),
+        ),
+        // Between the own flag and an enemy due north of it, 10 m from the flag.
+        (
+            "kind = 'shield'\nguarded = 'own_flag'\nagainst = 'opponent'\nspeed_m_s = 2",
+            by(Boat::at(-60.0, 40.0), -80.0, 10.0),
+            Some((90.0, 2.0)),
+        ),
+        // The nearer the enemy, the nearer the station: never beyond the middle.
+        (
+            "kind = 'shield'\nguarded = 'own_flag'\nagainst = 'opponent'\nspeed_m_s = 2",
+            by(Boat::at(-60.0, 12.0), -80.0, 6.0),
+            Some((90.0, 2.0)),
+        ),
+        ("kind = 'attractor'\nto = [30, 0]\nouter_m = 50\nspeed_m_s = 2", here(), Some((90.0, 2.0))),
+        ("kind = 'attractor'\nto = [30, 0]\nouter_m = 20\nspeed_m_s = 2", here(), None),
+    ] {
+        assert_decides(behaviour, &picture, want);
+    }
+}
+
+#[test]
+fn behaviours_that_hold_or_wait_do_so() {
+    let contact = |boat: Boat| {
+        picture(0.0, [Boat::at(0.0, 0.0).going(0.0, 1.0), Boat::at(-70.0, -30.0)], [boat, Boat::at(75.0, -35.0)])
+    };
+    for (behaviour, picture, want) in [
+        ("kind = 'constant_heading'\nheading_deg = 250", here(), Some((250.0, 2.0))),
+        ("kind = 'constant_speed'\nspeed_m_s = 1.2", here(), Some((0.0, 1.2))),
+        ("kind = 'timer'\nduration_s = 5", here(), None),
+        ("kind = 'memory_turn_limit'", alone(0.0, Boat::at(0.0, 0.0).going(120.0, 1.0)), Some((75.0, 2.0))),
+        ("kind = 'policy'", here(), None),
+        ("kind = 'op_region'", here(), None),
+        ("kind = 'avoid_collision'", here(), None),
+        ("kind = 'max_speed'\nspeed_m_s = 0.61", here(), None),
+        ("kind = 'max_speed'\nspeed_m_s = 0.61\nrange_m = 0", here(), Some((0.0, 0.6))),
+        ("kind = 'max_speed'\nspeed_m_s = 0.61\nrange_m = 20", contact(Boat::at(0.0, 15.0)), Some((0.0, 0.6))),
+        // Abaft the beam it does not count.
+        ("kind = 'max_speed'\nspeed_m_s = 0.61\nrange_m = 20", contact(Boat::at(0.0, -15.0)), None),
+    ] {
+        assert_decides(behaviour, &picture, want);
+    }
+}
+
+#[test]
+fn a_loiter_goes_round_the_way_it_is_told() {
+    // Due north of the centre: clockwise is east from there.
+    let ring = |turn: &str| {
+        format!(
+            "kind = 'loiter'\nellipse = {{ centre = [0, 0], along_m = 40, across_m = 40, corners = 36 }}\nturn = '{turn}'\nspeed_m_s = 2"
+        )
+    };
+    for (turn, heading_deg, east) in
+        [("clockwise", 270.0, true), ("counterclockwise", 90.0, false), ("best", 80.0, true), ("best", 280.0, false)]
+    {
+        let picture = alone(0.0, Boat::at(0.0, 20.0).going(heading_deg, 1.0));
+        let course_deg = decided(&ring(turn), &picture).course_deg.expect("it goes on");
+        assert_eq!((0.0..180.0).contains(&course_deg), east, "{turn} with heading {heading_deg}: {course_deg}");
+    }
+}
+
+#[test]
+fn a_loiter_goes_all_the_way_round() {
+    let ring = "kind = 'loiter'\nellipse = { centre = [0, 0], along_m = 60, across_m = 30 }\nturn = 'clockwise'\nspeed_m_s = 2";
+    let (mut helm, mut at, mut turned_deg, mut last) = (helm(&only(ring)), (0.0_f64, 15.0_f64), 0.0, 0.0_f64);
+    for step in 0..1500 {
+        let report = thought(&mut helm, &alone(f64::from(step) * 0.1, Boat::at(at.0, at.1).going(90.0, 2.0)));
+        let (course, speed_m_s) = (report.course_deg.expect("a course").to_radians(), 2.0);
+        at = (at.0 + 0.1 * speed_m_s * libm::sin(course), at.1 + 0.1 * speed_m_s * libm::cos(course));
+        let bearing_deg = libm::atan2(at.0, at.1).to_degrees();
+        turned_deg += (bearing_deg - last + 540.0).rem_euclid(360.0) - 180.0;
+        last = bearing_deg;
+    }
+    // 145 m round: 300 m are two rounds.
+    assert!((650.0..850.0).contains(&turned_deg), "{turned_deg} degrees round");
+}
+
+#[test]
+fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
+    let weight = |distance_m: f64, grade: &str| {
+        let behaviour =
+            format!("kind = 'avoid_collision'\nweight = 300\ninner_m = 10\nouter_m = 20\ngrade = '{grade}'");
+        let scene = picture(
+            0.0,
+            [Boat::at(0.0, 0.0), Boat::at(-70.0, -30.0)],
+            [Boat::at(0.0, distance_m), Boat::at(75.0, -35.0)],
+        );
+        let report = decided(&behaviour, &scene);
+        report.functions.iter().find(|f| f.behaviour == "it").map_or(0.0, |f| f.weight)
+    };
+    for (distance_m, grade, want) in [
+        (0.0, "linear", 300.0),
+        (5.0, "linear", 300.0),
+        (10.0, "linear", 300.0),
+        (12.5, "linear", 225.0),
+        (15.0, "quadratic", 75.0),
+        (15.0, "quasi", 300.0 * 0.353_553_390_593),
+        (20.0, "linear", 0.0),
+    ] {
+        let got = weight(distance_m, grade);
+        assert!((got - want).abs() < 1e-6, "{grade} at {distance_m} m: {got}, wanted {want}");
+    }
+}
+
+#[test]
+fn a_boat_in_the_way_is_passed_and_one_astern_is_not_heeded() {
+    let behaviours = "unsafe_i_know = true\nunsafe_because = \"two behaviours\"\n\
+        [behaviour.go]\nkind = 'waypoint'\npoints = [[60, 0]]\nspeed_m_s = 2\nweight = 50\n\
+        [behaviour.avoid]\nkind = 'avoid_collision'\nweight = 300\n";
+    let scene = |x: f64| {
+        picture(
+            0.0,
+            [Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(-70.0, -30.0)],
+            [Boat::at(x, 0.0), Boat::at(75.0, -35.0)],
+        )
+    };
+    let scenario = scenario(behaviours);
+    let ahead = thought(&mut helm(&scenario), &scene(13.0));
+    let course_rad = ahead.course_deg.expect("a course").to_radians();
+    // It goes on for a moment before it turns.
+    let miss_m = ((13.0 - 2.0 * 0.7) * libm::cos(course_rad)).abs();
+    assert!(miss_m > 5.5, "course {course_rad} rad passes at {miss_m} m");
+    assert!((thought(&mut helm(&scenario), &scene(-9.0)).course_deg.expect("a course") - 90.0).abs() < 0.51);
+}
+
+#[test]
+fn obstacles_are_passed() {
+    let behaviours = "unsafe_i_know = true\nunsafe_because = \"two behaviours\"\n\
+        [behaviour.go]\nkind = 'waypoint'\npoints = [[0, 39]]\nspeed_m_s = 2\nweight = 50\n\
+        [behaviour.avoid]\nkind = 'avoid_obstacle'\nweight = 300\n";
+    // The field's obstacle is a disc of 2 m at (0, 30).
+    let report = thought(&mut helm(&scenario(behaviours)), &alone(0.0, Boat::at(0.0, 14.0).going(0.0, 2.0)));
+    let course_rad = report.course_deg.expect("a course").to_radians();
+    let miss_m = (16.0 * libm::sin(course_rad)).abs() - 2.0;
+    assert!(miss_m > 2.9, "passes its edge at {miss_m} m: {report:?}");
+}
+
+#[test]
+fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
+    let program = "unsafe_i_know = true\nunsafe_because = \"no other boats\"\n\
+        [behaviour.go]\nkind = 'waypoint'\npoints = [[300, 0]]\nspeed_m_s = 3\nweight = 50\n\
+        [behaviour.stay]\nkind = 'op_region'\nhalt_m = 20\nexit_s = 1\nentry_s = 1\nrecovery_speed_m_s = 0.5\nweight = 300\n";
+    let mut helm = helm(&scenario(program));
+    let mut see = |at_s: f64, x: f64| thought(&mut helm, &alone(at_s, Boat::at(x, 5.0).going(90.0, 2.0)));
+    let deep_inside = see(0.0, 0.0);
+    assert!((deep_inside.course_deg.expect("a course") - 91.0).abs() < 1.0, "far inside the waypoint has its way");
+    let near = see(1.0, 76.0);
+    let outward_m_s = near.speed_m_s.expect("a speed") * libm::sin(near.course_deg.expect("a course").to_radians());
+    assert!(outward_m_s <= 0.01, "near the edge it does not go on out: {outward_m_s} m/s");
+    let just_out = see(2.0, 81.0);
+    assert!(just_out.speed_m_s.expect("a speed") > 0.6, "out for a moment is not out yet: it comes back at once");
+    let out = see(3.1, 81.0);
+    assert!((out.course_deg.expect("a course") - 270.0).abs() < 0.51, "{:?}", out.course_deg);
+    assert!((out.speed_m_s.expect("a speed") - 0.5).abs() < 0.05, "{:?}", out.speed_m_s);
+    let far_out = see(4.0, 101.0);
+    assert_eq!(far_out.hold.as_deref(), Some("stopped by a behaviour"));
+    let in_again = see(5.0, 79.0);
+    assert!((in_again.speed_m_s.expect("a speed") - 0.5).abs() < 0.05, "in for a moment is not in yet");
+    let in_for_good = see(6.1, 60.0);
+    assert!(in_for_good.speed_m_s.expect("a speed") > 1.0, "{:?}", in_for_good.speed_m_s);
+}
+
+#[test]
+fn who_looks_inside_sees_the_utilities() {
+    let mut helm = helm(&only("kind = 'waypoint'\npoints = ['enemy_flag']\nspeed_m_s = 2"));
+    assert!(thought(&mut helm, &here()).functions.iter().all(|f| f.utilities.is_empty() && f.utility.is_none()));
+    helm.show(true);
+    let report = thought(&mut helm, &here());
+    assert_eq!(report.functions.len(), 3);
+    for function in &report.functions {
+        assert_eq!(function.utilities.len(), report.courses * report.speeds, "{}", function.behaviour);
+    }
+    let it = report.functions.iter().find(|f| f.behaviour == "it").expect("the waypoint asks");
+    assert!(it.utility.expect("it is looked at") > 99.0, "{:?}", it.utility);
+    let best = it.utilities.iter().copied().fold(0.0, f32::max);
+    assert!((best - it.utility.expect("it is looked at")).abs() < 1e-3, "it gets what it wants: {best}");
+    let value: f64 = report.functions.iter().map(|f| f.weight * f64::from(f.utility.unwrap_or(0.0))).sum();
+    assert!((value - report.value.expect("a value")).abs() < 0.1, "{value}, {:?}", report.value);
+}
+
+#[test]
+fn a_proposal_is_heard_while_it_is_fresh() {
+    let mut helm = helm(&only("kind = 'policy'\nttl_s = 1"));
+    assert!(!is_active(&thought(&mut helm, &here())));
+    let proposal = agent::Proposal { course_rad: 2.0, speed_m_s: 1.5 };
+    helm.propose(game::SimTime::from_s(1.0), proposal);
+    for (at_s, heard) in [(1.0, true), (1.9, true), (2.1, false)] {
+        let report = thought(&mut helm, &alone(at_s, Boat::at(0.0, 0.0)));
+        assert_eq!(is_active(&report), heard, "{at_s} s");
+        if heard {
+            assert!((report.course_deg.expect("a course") - 2.0_f64.to_degrees()).abs() <= 0.51);
+            assert!((report.speed_m_s.expect("a speed") - 1.5).abs() <= 0.044);
+        }
+    }
+}
+
+#[test]
+fn safety_arbitrates_what_a_policy_proposes() {
+    let program = "base = \"SCENARIOS/strategies/safety.toml\"\n[behaviour.learned]\nkind = \"policy\"\n";
+    let advised = |picture: &Picture, (course_rad, speed_m_s): (f64, f64)| {
+        let mut helm = helm(&scenario(program));
+        helm.propose(game::SimTime::ZERO, agent::Proposal { course_rad, speed_m_s });
+        let report = thought(&mut helm, picture);
+        (report.course_deg.expect("a course").to_radians(), report.speed_m_s.expect("a speed"))
+    };
+    let east = (std::f64::consts::FRAC_PI_2, 3.0);
+    let (course_rad, speed_m_s) = advised(&alone(0.0, Boat::at(0.0, 0.0).going(90.0, 2.0)), east);
+    assert!((course_rad - east.0).abs() < 0.01 && (speed_m_s - 3.0).abs() < 0.05, "in the open it has its way");
+    let (course_rad, speed_m_s) = advised(&alone(0.0, Boat::at(74.0, 0.0).going(90.0, 2.0)), east);
+    assert!(speed_m_s * libm::sin(course_rad) < 0.1, "not out of the field: {course_rad} rad, {speed_m_s} m/s");
+    let boats = [Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(-70.0, -30.0)];
+    let ahead = picture(0.0, boats, [Boat::at(14.0, 0.0), Boat::at(75.0, -35.0)]);
+    let (course_rad, speed_m_s) = advised(&ahead, east);
+    // It goes on for a moment, then as decided for the eight seconds that it looks ahead.
+    let places = (0..=80).map(|i| 0.1 * f64::from(i) * speed_m_s);
+    let from_m = |run_m: f64| (run_m * libm::cos(course_rad), 14.0 - 2.0 * 0.7 - run_m * libm::sin(course_rad));
+    let miss_m = places.map(|run_m| game::math::length(from_m(run_m).0, from_m(run_m).1)).fold(f64::INFINITY, f64::min);
+    assert!(miss_m > 4.9, "not into a boat: {course_rad} rad, {speed_m_s} m/s, {miss_m} m");
+}
+
+#[test]
+fn a_full_stop_lies_still_and_lets_safety_have_its_way() {
+    let unsafely = "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n";
+    let stop = "[behaviour.stop]\nkind = \"full_stop\"\n";
+    let alone_it_is = thought(&mut helm(&scenario(&format!("{unsafely}{stop}"))), &here());
+    assert_eq!(alone_it_is.hold.as_deref(), Some("no behaviour asks for a course"));
+    let go = "[behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\nspeed_m_s = 2\nweight = 50\n";
+    let against = thought(&mut helm(&scenario(&format!("{unsafely}{stop}{go}"))), &here());
+    assert_eq!(against.speed_m_s, Some(0.0));
+    let safely = scenario(&format!("base = \"SCENARIOS/strategies/safety.toml\"\n{stop}"));
+    let drifting = thought(&mut helm(&safely), &alone(0.0, Boat::at(79.5, 0.0).going(270.0, 0.0)));
+    assert!(drifting.speed_m_s.is_some_and(|speed_m_s| speed_m_s > 0.5), "{drifting:?}");
+}

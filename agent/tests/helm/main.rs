@@ -1,0 +1,6 @@
+//! Helms at the wheel: what programs make of pictures.
+
+mod behaviour;
+mod mode;
+mod scene;
+mod symmetry;

@@ -1,0 +1,149 @@
+//! Scenes: a program, the picture that a boat has, and what it decides.
+
+use agent::{HelmMind, Mind};
+use game::helm::HelmReport;
+use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat, Picture};
+use game::{Ned, Order, Scenario, SimTime, TeamId, VehicleId};
+use std::path::Path;
+
+/// The game of the tests: two against two on a field of 160 m by 80 m about the datum, blue in the west.
+const GAME: &str = r#"
+base = "SCENARIOS/games/pav01_vs_pav01.toml"
+field = "field.toml"
+[[team]]
+name = "blue"
+strategy = "strategy.toml"
+[[team]]
+name = "red"
+strategy = "strategy.toml"
+"#;
+
+const FIELD: &str = r#"
+datum = { lat_deg = 41.3, lon_deg = -74.0 }
+corner = [-80, -40]
+along_deg = 90
+width_m = 160
+depth_m = 80
+[[obstacle]]
+circle = { centre = [0, 30], radius_m = 2 }
+[[obstacle]]
+circle = { centre = [0, -30], radius_m = 2 }
+"#;
+
+/// The scenario in which all boats follow the program `strategy`.
+pub(crate) fn scenario(strategy: &str) -> Scenario {
+    let folder = tempfile::tempdir().expect("a folder for files");
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
+    let text = |text: &str| text.replace("SCENARIOS", &scenarios.display().to_string());
+    for (name, content) in [("game.toml", GAME), ("field.toml", FIELD), ("strategy.toml", strategy)] {
+        std::fs::write(folder.path().join(name), text(content)).expect("a file in it");
+    }
+    game::scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A program with one behaviour and nothing else.
+pub(crate) fn only(behaviour: &str) -> Scenario {
+    scenario(&format!(
+        "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n[behaviour.it]\n{behaviour}\n\
+         [behaviour.head]\nkind = \"constant_heading\"\nheading_deg = 0\nweight = 0.01\n\
+         [behaviour.speed]\nkind = \"constant_speed\"\nspeed_m_s = 2\nweight = 0.01\n"
+    ))
+}
+
+/// Places and motion in files' terms: x east, y north, compass degrees, m/s.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Boat {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) heading_deg: f64,
+    pub(crate) speed_m_s: f64,
+}
+
+impl Boat {
+    pub(crate) fn at(x: f64, y: f64) -> Boat {
+        Boat { x, y, heading_deg: 0.0, speed_m_s: 0.0 }
+    }
+
+    pub(crate) fn going(self, heading_deg: f64, speed_m_s: f64) -> Boat {
+        Boat { heading_deg, speed_m_s, ..self }
+    }
+
+    fn nav(self) -> Nav {
+        Nav {
+            north_m: self.y,
+            east_m: self.x,
+            psi_rad: game::angle::rad_from_compass_deg(self.heading_deg),
+            surge_m_s: self.speed_m_s,
+            ..Nav::default()
+        }
+    }
+
+    pub(crate) fn own(self, vehicle: u16) -> OwnBoat {
+        OwnBoat {
+            vehicle: VehicleId(vehicle),
+            nav: self.nav(),
+            fix_ns: SimTime::ZERO,
+            imu: Imu::default(),
+            tagged: false,
+            carrying: -1,
+            disabled: false,
+            outside: false,
+            tag_ready_ns: SimTime::ZERO,
+        }
+    }
+
+    pub(crate) fn contact(self, vehicle: u16, seen: SimTime) -> Contact {
+        let towards = Ned::toward_deg(self.heading_deg).scaled(self.speed_m_s);
+        Contact {
+            vehicle: VehicleId(vehicle),
+            team: TeamId(1),
+            seen_ns: seen,
+            north_m: self.y,
+            east_m: self.x,
+            psi_rad: game::angle::rad_from_compass_deg(self.heading_deg),
+            velocity_north_m_s: towards.north,
+            velocity_east_m_s: towards.east,
+            tagged: false,
+            carrying: -1,
+        }
+    }
+}
+
+/// Blue's picture at a time: its boats 0 and 1, and red's 2 and 3.
+pub(crate) fn picture(at_s: f64, [one, two]: [Boat; 2], [three, four]: [Boat; 2]) -> Picture {
+    let now = SimTime::from_s(at_s);
+    let mut picture = Picture {
+        own: vec![one.own(0), two.own(1)],
+        contacts: vec![three.contact(2, now), four.contact(3, now)],
+        flags: vec![FlagView { carrier: -1 }; 2],
+        score: vec![0, 0],
+        ..Picture::default()
+    };
+    picture.stamp.valid_ns = now;
+    picture
+}
+
+/// Far from everybody else.
+pub(crate) fn alone(at_s: f64, own: Boat) -> Picture {
+    picture(at_s, [own, Boat::at(-75.0, -35.0)], [Boat::at(75.0, 35.0), Boat::at(75.0, -35.0)])
+}
+
+/// The helm of boat 0.
+pub(crate) fn helm(scenario: &Scenario) -> HelmMind {
+    HelmMind::new(scenario, VehicleId(0), agent::roles::role_of(scenario, VehicleId(0)))
+}
+
+/// What the helm thinks after this picture.
+pub(crate) fn thought(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
+    let order = helm.decide(picture);
+    let report = helm.report().expect("a helm reports");
+    match (order, report.course_deg.zip(report.speed_m_s)) {
+        (Order::Steer { heading_rad, speed_m_s }, Some((course_deg, reported_m_s))) => {
+            let off_deg = (heading_rad.to_degrees() - course_deg).rem_euclid(360.0);
+            assert!(off_deg.min(360.0 - off_deg) < 1e-6 && speed_m_s == reported_m_s, "{order:?}, {report:?}");
+        }
+        (Order::Hold, None) => assert!(report.hold.is_some(), "{report:?}"),
+        _ => panic!("{order:?}, but the report says {report:?}"),
+    }
+    report
+}

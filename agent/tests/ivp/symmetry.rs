@@ -1,0 +1,143 @@
+//! The same scene turned or mirrored must give the same decision turned or mirrored.
+
+use crate::scene::{self, Tables, solved};
+use agent::ivp::{Closest, Closing, Grid, Lag, Objective, Wish};
+use game::stream::Stream;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A motion of the plane that leaves the own ship where it is.
+#[derive(Clone, Copy, Debug)]
+enum Motion {
+    HalfTurn,
+    QuarterTurn,
+    Mirror,
+}
+
+impl Motion {
+    fn vector(self, north: f64, east: f64) -> (f64, f64) {
+        match self {
+            Motion::HalfTurn => (-north, -east),
+            Motion::QuarterTurn => (-east, north),
+            Motion::Mirror => (north, -east),
+        }
+    }
+
+    fn angle(self, angle_rad: f64) -> f64 {
+        match self {
+            Motion::HalfTurn => angle_rad + PI,
+            Motion::QuarterTurn => angle_rad + FRAC_PI_2,
+            Motion::Mirror => -angle_rad,
+        }
+    }
+
+    /// Where course `k` of `n` comes to lie.
+    fn course(self, k: usize, n: usize) -> usize {
+        match self {
+            Motion::HalfTurn => (k + n / 2) % n,
+            Motion::QuarterTurn => (k + n / 4) % n,
+            Motion::Mirror => (n - k) % n,
+        }
+    }
+
+    /// Which course of `n` comes to lie at `k`.
+    fn back(self, k: usize, n: usize) -> usize {
+        match self {
+            Motion::QuarterTurn => (k + n - n / 4) % n,
+            _ => self.course(k, n),
+        }
+    }
+
+    fn objective<'a>(self, objective: &Objective<'a>) -> Objective<'a> {
+        match *objective {
+            Objective::Course(peaks) => Objective::Course(peaks.moved(|x| self.angle(x))),
+            Objective::Coupled { course, speed, course_share } => {
+                Objective::Coupled { course: course.moved(|x| self.angle(x)), speed, course_share }
+            }
+            Objective::Closest(c) => {
+                let (north_m, east_m) = self.vector(c.north_m, c.east_m);
+                let (velocity_north_m_s, velocity_east_m_s) = self.vector(c.velocity_north_m_s, c.velocity_east_m_s);
+                let lag = c.lag.map(|lag| {
+                    let velocity = self.vector(lag.velocity_north_m_s, lag.velocity_east_m_s);
+                    let heading = self.vector(lag.heading_north, lag.heading_east);
+                    Lag {
+                        velocity_north_m_s: velocity.0,
+                        velocity_east_m_s: velocity.1,
+                        heading_north: heading.0,
+                        heading_east: heading.1,
+                        ..lag
+                    }
+                });
+                Objective::Closest(Closest { north_m, east_m, velocity_north_m_s, velocity_east_m_s, lag, ..c })
+            }
+            Objective::Closing(c) => {
+                let (north_m, east_m) = self.vector(c.north_m, c.east_m);
+                let (velocity_north_m_s, velocity_east_m_s) = self.vector(c.velocity_north_m_s, c.velocity_east_m_s);
+                Objective::Closing(Closing { north_m, east_m, velocity_north_m_s, velocity_east_m_s, ..c })
+            }
+            same => same,
+        }
+    }
+}
+
+fn holds_under(motion: Motion, grid: &Grid, seed: u64) {
+    let mut stream = Stream::new(seed, "ivp/symmetry");
+    let tables = Tables::random(&mut stream, grid);
+    let functions = scene::functions(&mut stream, grid, &tables);
+    let wish = scene::wish(&mut stream, grid);
+    let moved_tables = tables.turned(grid, |k| motion.back(k, grid.courses()));
+    let moved: Vec<(f64, Objective)> =
+        functions.iter().map(|(w, f)| (*w, motion.objective(&moved_tables.of(f)))).collect();
+    let mut want = solved(grid, &functions, wish);
+    let got = solved(grid, &moved, Wish { course_rad: motion.angle(wish.course_rad), ..wish });
+    want.decision.course = motion.course(want.decision.course.into(), grid.courses()) as u16;
+    // How many points had to be asked depends on where the search began.
+    want.asked = got.asked;
+    assert_eq!(got, want, "seed {seed}, {motion:?}: {functions:?}");
+}
+
+#[test]
+fn a_scene_turned_by_half_a_turn_gives_the_decision_turned_by_half_a_turn() {
+    for seed in 0..2_000 {
+        holds_under(Motion::HalfTurn, &Grid::new(90, 21, 4.0), seed);
+    }
+}
+
+#[test]
+fn a_scene_turned_by_a_quarter_gives_the_decision_turned_by_a_quarter() {
+    for seed in 0..2_000 {
+        holds_under(Motion::QuarterTurn, &Grid::new(72, 9, 4.0), seed);
+    }
+}
+
+#[test]
+fn a_mirrored_scene_gives_the_mirrored_decision() {
+    for seed in 0..2_000 {
+        holds_under(Motion::Mirror, &Grid::new(90, 21, 4.0), seed);
+    }
+}
+
+#[test]
+fn a_full_grid_is_symmetric_too() {
+    for seed in 0..50 {
+        for motion in [Motion::HalfTurn, Motion::QuarterTurn, Motion::Mirror] {
+            holds_under(motion, &Grid::default(), seed);
+        }
+    }
+}
+
+#[test]
+fn directions_are_exact_images_of_each_other() {
+    for courses in [4, 8, 36, 90, 360, 1000] {
+        let grid = Grid::new(courses, 2, 1.0);
+        for k in 0..courses {
+            let (north, east) = grid.direction(k);
+            assert_eq!(grid.direction((courses - k) % courses), (north, 0.0 - east), "{k} of {courses}");
+            assert_eq!(grid.direction((k + courses / 2) % courses), (0.0 - north, 0.0 - east), "{k} of {courses}");
+            if courses % 4 == 0 {
+                assert_eq!(grid.direction((k + courses / 4) % courses), (0.0 - east, north), "{k} of {courses}");
+            }
+            let (sin, cos) = game::math::sin_cos(grid.course_rad(k));
+            assert!((f64::from(north) - cos).abs() < 1e-7 && (f64::from(east) - sin).abs() < 1e-7, "{k}");
+        }
+    }
+}

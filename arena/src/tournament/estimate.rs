@@ -1,0 +1,68 @@
+//! A mean, and how well it is known.
+
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// The mean of independent observations with its 95 % confidence interval, by Student's t.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The mean.
+    pub mean: f64,
+    /// The lower end of the interval; none with a single observation.
+    pub low: Option<f64>,
+    /// The upper end.
+    pub high: Option<f64>,
+}
+
+impl Estimate {
+    /// The estimate from `observations`, at least one.
+    ///
+    /// # Panics
+    /// If there are none.
+    #[must_use]
+    pub fn of(observations: &[f64]) -> Estimate {
+        let count = observations.len();
+        assert!(count > 0, "a mean of nothing");
+        let mean = observations.iter().sum::<f64>() / count as f64;
+        let squares: f64 = observations.iter().map(|observation| (observation - mean) * (observation - mean)).sum();
+        let degrees = count as f64 - 1.0;
+        let half = StudentsT::new(0.0, 1.0, degrees)
+            .ok()
+            .map(|student| student.inverse_cdf(0.975) * (squares / degrees / count as f64).sqrt());
+        Estimate { mean, low: half.map(|half| mean - half), high: half.map(|half| mean + half) }
+    }
+
+    /// Half the width of the interval.
+    #[must_use]
+    pub fn half_width(&self) -> Option<f64> {
+        self.high.map(|high| high - self.mean)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tables give four digits after the point.
+    const TABLE: f64 = 0.00005;
+
+    #[test]
+    fn the_interval_is_that_of_the_tables_of_student() {
+        // Observations 0 and 1 in equal numbers: the deviation is known, the quantile follows.
+        for (count, quantile) in [(2, 12.7062), (4, 3.1824), (10, 2.2622), (30, 2.0452), (100, 1.9842), (1000, 1.9623)]
+        {
+            let observations: Vec<f64> = (0..count).map(|i| f64::from(i % 2)).collect();
+            let estimate = Estimate::of(&observations);
+            let error = (0.25 / f64::from(count - 1)).sqrt();
+            let got = estimate.half_width().unwrap_or(f64::NAN) / error;
+            assert!(estimate.mean == 0.5 && (got - quantile).abs() < TABLE, "{count}: {got}, tables say {quantile}");
+        }
+    }
+
+    #[test]
+    fn equal_observations_are_known_exactly_and_one_says_nothing_about_the_width() {
+        let equal = Estimate::of(&[3.0; 5]);
+        assert_eq!((equal.mean, equal.low, equal.high), (3.0, Some(3.0), Some(3.0)));
+        assert_eq!(Estimate::of(&[4.0]), Estimate { mean: 4.0, low: None, high: None });
+    }
+}

@@ -1,0 +1,14 @@
+//! Tournaments: every strategy against every other, over many seeds and from both sides.
+//!
+//! A [`Plan`] says which games are played, [`play()`] plays them on several threads, and a [`Report`] says what came of
+//! it. The report depends on the plan alone, not on the number of threads.
+
+mod estimate;
+mod plan;
+mod play;
+mod report;
+
+pub use estimate::Estimate;
+pub use plan::{Match, Plan};
+pub use play::{Game, Record, play};
+pub use report::{Cell, Failure, MatchRow, Report, Row, Seeds};

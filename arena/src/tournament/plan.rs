@@ -1,0 +1,94 @@
+//! Which games a tournament consists of.
+
+use game::Scenario;
+use game::scenario::{Problems, Tournament};
+
+/// A tournament with everything that its games need.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    tournament: Tournament,
+    /// The names of the game's two teams.
+    teams: Vec<String>,
+    seeds: u64,
+    /// What is played with each seed: who is the first team and who the second, and the game.
+    rounds: Vec<([usize; 2], Scenario)>,
+}
+
+/// One game.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Match {
+    /// Chooses the game.
+    pub seed: u64,
+    /// Which entry plays as the first team, and which as the second.
+    pub sides: [usize; 2],
+}
+
+impl Plan {
+    /// The games of a tournament. All pairings play the same seeds, each of them twice, with the sides exchanged; an
+    /// entry against itself plays them once, since exchanged sides are the same game.
+    ///
+    /// # Errors
+    /// Everything that is wrong in the files, also in what they are together.
+    pub fn new(tournament: &Tournament) -> Result<Plan, Problems> {
+        let teams = tournament.teams()?;
+        let count = tournament.entries.len();
+        let mut rounds = vec![];
+        for one in 0..count {
+            for other in one..count {
+                let both = [[one, other], [other, one]];
+                let sides = match (one == other, tournament.self_play) {
+                    (true, true) => &both[..1],
+                    (true, false) => &[],
+                    (false, _) => &both[..],
+                };
+                for sides in sides {
+                    rounds.push((*sides, tournament.game_of(&teams, *sides)?));
+                }
+            }
+        }
+        let seeds = u64::from(tournament.games).div_ceil(2);
+        Ok(Plan { tournament: tournament.clone(), teams, seeds, rounds })
+    }
+
+    /// The tournament.
+    #[must_use]
+    pub fn tournament(&self) -> &Tournament {
+        &self.tournament
+    }
+
+    /// The names of the game's teams, the first one first.
+    #[must_use]
+    pub fn teams(&self) -> &[String] {
+        &self.teams
+    }
+
+    /// How many seeds are played, from the tournament's own on.
+    #[must_use]
+    pub fn seeds(&self) -> u64 {
+        self.seeds
+    }
+
+    /// How many games are played with each seed.
+    #[must_use]
+    pub fn games_per_seed(&self) -> usize {
+        self.rounds.len()
+    }
+
+    /// How many games are played.
+    #[must_use]
+    pub fn games(&self) -> usize {
+        usize::try_from(self.seeds).map_or(usize::MAX, |seeds| seeds.saturating_mul(self.rounds.len()))
+    }
+
+    /// The game at `index`, seed by seed: whoever stops early has whole seeds.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    #[must_use]
+    pub fn match_at(&self, index: usize) -> (Match, &Scenario) {
+        assert!(index < self.games(), "match {index} of {}", self.games());
+        let (sides, scenario) = &self.rounds[index % self.rounds.len()];
+        let seed = self.tournament.seed.wrapping_add((index / self.rounds.len()) as u64);
+        (Match { seed, sides: *sides }, scenario)
+    }
+}

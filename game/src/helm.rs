@@ -1,0 +1,96 @@
+//! What a helm tells of itself to those who ask: its mode, its behaviours, and why it steers as it does.
+
+use crate::id::VehicleId;
+use crate::time::SimTime;
+use serde::{Deserialize, Serialize};
+
+/// What a helm thinks at one decision.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HelmReport {
+    /// Whose helm.
+    pub vehicle: VehicleId,
+    /// The time of the decision.
+    pub at: SimTime,
+    /// The program it goes by.
+    pub program: String,
+    /// The mode, with those that it is a part of: `defending:loitering`.
+    pub mode: String,
+    /// The chosen course, compass degrees; none if the boat holds.
+    pub course_deg: Option<f64>,
+    /// The chosen speed, m/s; none if the boat holds.
+    pub speed_m_s: Option<f64>,
+    /// Why the boat holds, if it does.
+    pub hold: Option<String>,
+    /// The weighted sum of utilities at the decision.
+    pub value: Option<f64>,
+    /// How many courses were weighed: the first is north, and they go clockwise.
+    pub courses: usize,
+    /// How many speeds, from 0.
+    pub speeds: usize,
+    /// The highest of them, m/s.
+    pub speed_max_m_s: f64,
+    /// All behaviours, by name.
+    pub behaviours: Vec<BehaviourReport>,
+    /// The variables.
+    pub variables: Vec<VariableReport>,
+    /// The objective functions of the decision.
+    pub functions: Vec<FunctionReport>,
+}
+
+/// A behaviour at one decision.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BehaviourReport {
+    /// Its name.
+    pub name: String,
+    /// Its kind.
+    pub kind: String,
+    /// Where it is in its life.
+    pub stage: StageReport,
+    /// Its weight now; 0 if it does not run.
+    pub weight: f64,
+}
+
+/// Where a behaviour is in its life.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StageReport {
+    /// It may not run.
+    Idle,
+    /// It runs but asks for nothing.
+    Running,
+    /// It runs and influences the helm.
+    Active,
+    /// It is done.
+    Complete,
+}
+
+/// A variable and its value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VariableReport {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: String,
+}
+
+/// An objective function.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FunctionReport {
+    /// Whose it is.
+    pub behaviour: String,
+    /// The boat it is about.
+    pub contact: Option<VehicleId>,
+    /// Its weight.
+    pub weight: f64,
+    /// Its utility at the decision, 0 to 100; none before somebody looks.
+    pub utility: Option<f32>,
+    /// Its utilities, a row of speeds for each course; empty unless they were asked for.
+    pub utilities: Vec<f32>,
+}
+
+/// What is asked of a helm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HelmQuestion {
+    /// Whether the utilities are wanted, not only the weights.
+    pub functions: bool,
+}

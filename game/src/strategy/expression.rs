@@ -1,0 +1,203 @@
+//! Expressions of strategy files: conditions, weights and numbers that follow the game.
+//!
+//! In a file they are written in CEL; the check makes of them this tree, in which names are numbers and types are
+//! known to fit. Everything is an `f64`: false and true are 0 and 1, a text is its place among the texts that its
+//! variable may have.
+
+use super::{Fact, Place};
+use serde::{Deserialize, Serialize};
+
+/// An expression whose types fit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Expression {
+    /// A number, a truth or a text.
+    Constant(f64),
+    /// A variable of the strategy, by its index in [`super::Program::variables`].
+    Variable(u16),
+    /// What is known of the game.
+    Fact(Fact),
+    /// Something about a place or a boat.
+    Measure(Measure, Place),
+    /// How many mates there are for which the condition holds, with the mates' own values of shared variables.
+    Mates(Box<Expression>),
+    /// Not so.
+    Not(Box<Expression>),
+    /// Minus this.
+    Minus(Box<Expression>),
+    /// Two values joined.
+    Join(Join, Box<(Expression, Expression)>),
+    /// The second where the first is true, else the third.
+    Choose(Box<(Expression, Expression, Expression)>),
+}
+
+/// How two values are joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Join {
+    /// Both are true; the second is not looked at if the first is false.
+    And,
+    /// One at least is true; the second is not looked at if the first is true.
+    Or,
+    /// The same.
+    Equal,
+    /// Not the same.
+    Unequal,
+    /// The first is smaller.
+    Less,
+    /// The first is smaller or the same.
+    AtMost,
+    /// The first is greater.
+    More,
+    /// The first is greater or the same.
+    AtLeast,
+    /// Sum.
+    Plus,
+    /// Difference.
+    Minus,
+    /// Product.
+    Times,
+    /// Quotient; by 0 it is 0.
+    Over,
+    /// The smaller one.
+    Least,
+    /// The greater one.
+    Greatest,
+}
+
+/// What can be asked about a place or a boat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Measure {
+    /// How far it is, m.
+    Distance,
+    /// How fast the distance shrinks, m/s.
+    Closing,
+    /// Whether there is such a thing now.
+    Known,
+    /// Whether it is on the own team's side of the field.
+    OnOwnSide,
+}
+
+/// What expressions are evaluated against.
+pub trait Values {
+    /// The value of a fact.
+    fn fact(&self, fact: Fact) -> f64;
+    /// The value of a variable.
+    fn variable(&self, index: u16) -> f64;
+    /// What is asked about a place.
+    fn measure(&self, measure: Measure, place: &Place) -> f64;
+    /// How many mates there are for which `condition` holds.
+    fn mates(&self, condition: &Expression) -> f64;
+}
+
+/// What constants are evaluated against.
+struct Nothing;
+
+impl Values for Nothing {
+    fn fact(&self, _: Fact) -> f64 {
+        0.0
+    }
+    fn variable(&self, _: u16) -> f64 {
+        0.0
+    }
+    fn measure(&self, _: Measure, _: &Place) -> f64 {
+        0.0
+    }
+    fn mates(&self, _: &Expression) -> f64 {
+        0.0
+    }
+}
+
+impl Expression {
+    /// The value; one that is no number becomes 0.
+    #[must_use]
+    pub fn value(&self, values: &impl Values) -> f64 {
+        let value = match self {
+            Expression::Constant(value) => *value,
+            Expression::Variable(index) => values.variable(*index),
+            Expression::Fact(fact) => values.fact(*fact),
+            Expression::Measure(measure, place) => values.measure(*measure, place),
+            Expression::Mates(condition) => values.mates(condition),
+            Expression::Not(inner) => truth(!inner.is_true(values)),
+            Expression::Minus(inner) => -inner.value(values),
+            Expression::Join(join, sides) => join.value(&sides.0, &sides.1, values),
+            Expression::Choose(parts) => {
+                let (condition, then, otherwise) = &**parts;
+                if condition.is_true(values) { then.value(values) } else { otherwise.value(values) }
+            }
+        };
+        if value.is_nan() { 0.0 } else { value }
+    }
+
+    /// Whether it is true.
+    #[must_use]
+    pub fn is_true(&self, values: &impl Values) -> bool {
+        self.value(values) != 0.0
+    }
+
+    /// Its value, if that does not depend on the game or on variables.
+    #[must_use]
+    pub fn constant(&self) -> Option<f64> {
+        let mut asks = false;
+        self.walk(&mut |part| {
+            asks |= matches!(
+                part,
+                Expression::Variable(_) | Expression::Fact(_) | Expression::Measure(..) | Expression::Mates(_)
+            );
+        });
+        (!asks).then(|| self.value(&Nothing))
+    }
+
+    /// Calls `visit` with this expression and everything in it.
+    pub fn walk<'a>(&'a self, visit: &mut impl FnMut(&'a Expression)) {
+        visit(self);
+        match self {
+            Expression::Mates(inner) | Expression::Not(inner) | Expression::Minus(inner) => inner.walk(visit),
+            Expression::Join(_, sides) => {
+                sides.0.walk(visit);
+                sides.1.walk(visit);
+            }
+            Expression::Choose(parts) => {
+                parts.0.walk(visit);
+                parts.1.walk(visit);
+                parts.2.walk(visit);
+            }
+            Expression::Constant(_) | Expression::Variable(_) | Expression::Fact(_) | Expression::Measure(..) => {}
+        }
+    }
+}
+
+impl Join {
+    fn value(self, left: &Expression, right: &Expression, values: &impl Values) -> f64 {
+        match self {
+            Join::And => return truth(left.is_true(values) && right.is_true(values)),
+            Join::Or => return truth(left.is_true(values) || right.is_true(values)),
+            _ => {}
+        }
+        self.of(left.value(values), right.value(values))
+    }
+
+    /// Two values joined.
+    #[must_use]
+    pub fn of(self, a: f64, b: f64) -> f64 {
+        match self {
+            Join::And => truth(a != 0.0 && b != 0.0),
+            Join::Or => truth(a != 0.0 || b != 0.0),
+            Join::Equal => truth(a == b),
+            Join::Unequal => truth(a != b),
+            Join::Less => truth(a < b),
+            Join::AtMost => truth(a <= b),
+            Join::More => truth(a > b),
+            Join::AtLeast => truth(a >= b),
+            Join::Plus => a + b,
+            Join::Minus => a - b,
+            Join::Times => a * b,
+            Join::Over if b == 0.0 => 0.0,
+            Join::Over => a / b,
+            Join::Least => a.min(b),
+            Join::Greatest => a.max(b),
+        }
+    }
+}
+
+fn truth(is: bool) -> f64 {
+    f64::from(u8::from(is))
+}

@@ -1,0 +1,241 @@
+//! Strategies: how the boats of a team play, as data.
+//!
+//! A [`Strategy`] deals [`Program`]s to the boats of a team. A program is what one boat's helm goes by: variables, a
+//! tree of modes, behaviours, and rules that give values to variables.
+
+mod behaviour;
+mod expression;
+mod fact;
+mod place;
+mod words;
+
+pub use behaviour::{
+    Attractor, AvoidCollision, AvoidObstacle, Behaviour, ConstantHeading, ConstantSpeed, Contacts, CutRange, FullStop,
+    Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, Moment, OpRegion, Parameter, Policy, Post, Shape, Shield,
+    StationKeep, Task, Timer, Trail, Turn, Waypoint,
+};
+pub use expression::{Expression, Join, Measure, Values};
+pub use fact::{Fact, Kind};
+pub use place::{Boat, Mark, Place};
+
+use serde::{Deserialize, Serialize};
+
+/// The most contacts or obstacles that one behaviour heeds at a time: the nearest.
+pub const HEEDED_MAX: usize = 16;
+/// The most functions that the behaviours of a mode may ask for together, each contact or obstacle counted.
+pub const FUNCTIONS_MAX: usize = 256;
+/// The most shared variables of a program.
+pub const SHARED_MAX: usize = 256;
+
+/// How the boats of a team play.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Strategy {
+    /// The strategy file's stem.
+    pub name: String,
+    /// What the strategy is, in the file's words.
+    pub about: String,
+    /// The programs, dealt to the team's boats of this strategy in order, again from the start when they run out.
+    pub roles: Vec<Program>,
+    /// How they are dealt.
+    pub assignment: Assignment,
+}
+
+/// How roles are dealt to a team's boats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Assignment {
+    /// In the order of the scenario's vehicles.
+    Fixed,
+    /// In an order drawn from the team's own stream.
+    Seeded,
+}
+
+/// What one boat's helm goes by.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Program {
+    /// The stem of the file it is from.
+    pub name: String,
+    /// What the program is, in the file's words.
+    pub about: String,
+    /// How decisions are made.
+    pub helm: Helm,
+    /// Its variables.
+    pub variables: Vec<Variable>,
+    /// Its modes, parents before children, siblings in order; at least one.
+    pub modes: Vec<Mode>,
+    /// Its behaviours, by name.
+    pub behaviours: Vec<Behaviour>,
+    /// What gives values to variables, in order.
+    pub rules: Vec<Rule>,
+    /// Why a mode may do without `op_region` or `avoid_collision`, if one does.
+    pub unsafe_because: Option<String>,
+}
+
+/// How decisions are made.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Helm {
+    /// How many courses are weighed against each other.
+    pub courses: usize,
+    /// How many speeds, from 0 to the highest.
+    pub speeds: usize,
+    /// The highest speed, m/s; none is the boat's own.
+    pub speed_max_m_s: Option<f64>,
+    /// The last decision stands while it is worth this share less than the best at most, 0 to 1.
+    pub hysteresis: f64,
+}
+
+/// A variable.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Variable {
+    /// Its name.
+    pub name: String,
+    /// What it can be.
+    pub kind: Kind,
+    /// What it is at first: see [`Expression`] for how truths and texts are numbers.
+    pub initial: f64,
+    /// Whether the team is told of it.
+    pub shared: bool,
+}
+
+/// A mode: what the boat is at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mode {
+    /// Its name, unique in the program.
+    pub name: String,
+    /// The mode it is a part of, by index; parents stand before their children.
+    pub parent: Option<usize>,
+    /// Of the parts of a mode the first whose condition holds is the one; the last of them has none.
+    pub when: Option<Expression>,
+    /// Given to variables when the mode begins.
+    pub enter: Vec<(u16, Expression)>,
+}
+
+/// Gives values to variables.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rule {
+    /// Only at this event.
+    pub on: Option<Trigger>,
+    /// Only where this holds.
+    pub when: Option<Expression>,
+    /// The variables, by index, and their new values.
+    pub set: Vec<(u16, Expression)>,
+}
+
+/// An event that a rule waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Trigger {
+    /// To whom it happens.
+    pub who: Who,
+    /// What happens.
+    pub what: What,
+}
+
+/// To whom something happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Who {
+    /// The own boat.
+    I,
+    /// Another boat of the own team.
+    Mate,
+    /// An enemy.
+    Enemy,
+}
+
+/// What happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[expect(missing_docs, reason = "each says it itself")]
+pub enum What {
+    Grabs,
+    Captures,
+    LosesFlag,
+    IsTagged,
+    IsUntagged,
+    Tags,
+    LeavesField,
+    ReturnsToField,
+    Collides,
+}
+
+impl Program {
+    /// Whether a mode has no parts.
+    #[must_use]
+    pub fn is_leaf(&self, mode: usize) -> bool {
+        self.modes.iter().all(|other| other.parent != Some(mode))
+    }
+
+    /// The modes without parts, by index, in order.
+    pub fn leaves(&self) -> impl Iterator<Item = usize> {
+        (0..self.modes.len()).filter(|mode| self.is_leaf(*mode))
+    }
+
+    /// The mode's name with those of the modes it is a part of, outermost first: `defending:intercepting`.
+    #[must_use]
+    pub fn path(&self, mode: usize) -> String {
+        let name = &self.modes[mode].name;
+        self.modes[mode].parent.map_or_else(|| name.clone(), |parent| format!("{}:{name}", self.path(parent)))
+    }
+
+    /// The leaf that the conditions choose.
+    ///
+    /// # Panics
+    /// If the last part of a mode has a condition, which no checked program has.
+    #[must_use]
+    pub fn leaf(&self, values: &impl Values) -> usize {
+        let mut within = None;
+        loop {
+            let holds = |mode: &Mode| mode.when.as_ref().is_none_or(|when| when.is_true(values));
+            let part = self.modes.iter().position(|mode| mode.parent == within && holds(mode));
+            match part {
+                Some(part) if self.is_leaf(part) => return part,
+                Some(part) => within = Some(part),
+                None => unreachable!("the last part of a mode has no condition"),
+            }
+        }
+    }
+}
+
+impl What {
+    /// Everything that can happen.
+    pub const ALL: [What; 9] = [
+        What::Grabs,
+        What::Captures,
+        What::LosesFlag,
+        What::IsTagged,
+        What::IsUntagged,
+        What::Tags,
+        What::LeavesField,
+        What::ReturnsToField,
+        What::Collides,
+    ];
+
+    /// Its name in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            What::Grabs => "grabs",
+            What::Captures => "captures",
+            What::LosesFlag => "loses_flag",
+            What::IsTagged => "is_tagged",
+            What::IsUntagged => "is_untagged",
+            What::Tags => "tags",
+            What::LeavesField => "leaves_field",
+            What::ReturnsToField => "returns_to_field",
+            What::Collides => "collides",
+        }
+    }
+}
+
+impl Who {
+    /// Everybody.
+    pub const ALL: [Who; 3] = [Who::I, Who::Mate, Who::Enemy];
+
+    /// Its name in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Who::I => "i",
+            Who::Mate => "mate",
+            Who::Enemy => "enemy",
+        }
+    }
+}

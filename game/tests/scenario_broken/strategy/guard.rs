@@ -1,0 +1,169 @@
+//! Mistakes in strategies: safety that is none, and more than a helm or a team can take.
+
+use super::{Broken, assert_broken};
+
+const VOID: &[Broken] = &[
+    (
+        "a field much larger than the field",
+        r#"base = "s.toml"
+[behaviour.stay_in]
+margin_m = -1000
+"#,
+        &[
+            r#"1:1: mode active has no op_region on guard (stay_in is none: margin_m is -1000, less than 0), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "a field that is left for good after a while",
+        r#"base = "s.toml"
+[behaviour.stay_in]
+margin_m = "time_s > 10 ? -1000 : 0"
+"#,
+        &[
+            r#"1:1: mode active has no op_region on guard (stay_in is none: margin_m is no number), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "no room to turn back",
+        r#"base = "s.toml"
+[behaviour.stay_in]
+save_m = 0
+"#,
+        &[
+            r#"1:1: mode active has no op_region on guard (stay_in is none: save_m is 0, less than 1), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "no foresight",
+        r#"base = "s.toml"
+[behaviour.stay_in]
+lookahead_s = 0.5
+"#,
+        &[
+            r#"1:1: mode active has no op_region on guard (stay_in is none: lookahead_s is 0.5, less than 1), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "out for long before it counts",
+        r#"base = "s.toml"
+[behaviour.stay_in]
+exit_s = 600
+"#,
+        &[
+            r#"1:1: mode active has no op_region on guard (stay_in is none: exit_s is 600, more than 10), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "no way back",
+        r#"base = "s.toml"
+[behaviour.stay_in]
+recovery_speed_m_s = 0
+"#,
+        &[
+            r#"1:1: mode active has no op_region on guard (stay_in is none: recovery_speed_m_s is 0, less than 0.1), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "no boat is near enough",
+        r#"base = "s.toml"
+[behaviour.keep_clear]
+inner_m = 0
+outer_m = "has_flag ? 0 : 30"
+"#,
+        &[
+            r#"1:1: mode active has no avoid_collision on guard (keep_clear is none: outer_m is no number), expected a behaviour of this kind for all contacts, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "no pass is too near",
+        r#"base = "s.toml"
+[behaviour.keep_clear]
+cpa_min_m = 0
+cpa_max_m = 0
+"#,
+        &[
+            r#"1:1: mode active has no avoid_collision on guard (keep_clear is none: cpa_max_m is 0, less than 3), expected a behaviour of this kind for all contacts, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "no time to come near",
+        r#"base = "s.toml"
+[behaviour.keep_clear]
+time_on_leg_s = 0.1
+"#,
+        &[
+            r#"1:1: mode active has no avoid_collision on guard (keep_clear is none: time_on_leg_s is 0.1, less than 1), expected a behaviour of this kind for all contacts, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "a goal above safety",
+        r#"base = "s.toml"
+[behaviour.go]
+kind = "waypoint"
+points = ["CF"]
+weight = 301
+"#,
+        &[r#"5:10: weight is 301 in mode active, expected at most 300, which op_region or avoid_collision has there"#],
+    ),
+    (
+        "safety that is worth hardly anything",
+        r#"base = "s.toml"
+[behaviour.stay_in]
+weight = 1e-9
+[behaviour.go]
+kind = "waypoint"
+points = ["CF"]
+"#,
+        &[
+            r#"4:12: weight is 100 in mode active, expected at most 0.000000001, which op_region or avoid_collision has there"#,
+        ],
+    ),
+    (
+        "a reason of another file",
+        r#"base = "unsafe.toml"
+[behaviour.go]
+kind = "waypoint"
+points = ["CF"]
+"#,
+        &[
+            r#"1:1: mode active has no avoid_collision on guard, expected a behaviour of this kind for all contacts, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+            r#"1:1: mode active has no op_region on guard, expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
+        ],
+    ),
+    (
+        "numbers that are none",
+        r#"base = "s.toml"
+[behaviour.go]
+kind = "waypoint"
+points = ["CF"]
+speed_m_s = nan
+weight = inf
+"#,
+        &[r#"5:13: speed_m_s is nan, expected 0 to 60"#, r#"6:10: weight is inf, expected 0 to 1000"#],
+    ),
+];
+
+#[test]
+fn safety_cannot_be_voided() {
+    assert_broken(VOID);
+}
+
+#[test]
+fn there_is_an_end_to_what_is_heard() {
+    let avoid: String = (0..16).map(|i| format!("[behaviour.a{i:02}]\nkind = \"avoid_collision\"\n")).collect();
+    let shared: String = (0..257).map(|i| format!("v{i} = {{ initial = 0, shared = true }}\n")).collect();
+    assert_broken(&[
+        (
+            "more than a helm hears",
+            &format!("base = \"s.toml\"\n{avoid}"),
+            &[
+                "1:1: mode active could ask for 273 functions at once, expected at most 256: 16 for each avoid_collision and avoid_obstacle, 2 for each cut_range, 1 for each other behaviour",
+            ],
+        ),
+        (
+            "more than mates hear",
+            &format!("base = \"s.toml\"\n[variables]\n{shared}"),
+            &["2:1: variables has 257 shared ones, expected at most 256"],
+        ),
+    ]);
+}

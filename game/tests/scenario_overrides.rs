@@ -1,0 +1,107 @@
+//! Files in place of those a game names: a sea, and the strategies of teams.
+
+use game::Scenario;
+use game::id::VehicleId;
+use game::scenario::{Overrides, load, load_with};
+use std::path::{Path, PathBuf};
+
+/// A strategy file that needs no other.
+const LIES_STILL: &str =
+    "unsafe_i_know = true\nunsafe_because = \"it lies still\"\n[behaviour.stop]\nkind = \"full_stop\"\n";
+
+fn shipped(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(file)
+}
+
+fn instead(strategies: &[(&str, PathBuf)]) -> Overrides {
+    let strategies = strategies.iter().map(|(team, path)| ((*team).to_owned(), path.clone())).collect();
+    Overrides { sea: None, strategies }
+}
+
+/// The strategies that the boats follow, in order.
+fn followed(scenario: &Scenario) -> Vec<&str> {
+    (0..scenario.vehicles.len()).map(|i| scenario.strategy_of(VehicleId::at(i)).name.as_str()).collect()
+}
+
+#[test]
+fn all_boats_of_a_team_follow_the_strategy_it_is_given_and_nobody_else_does() {
+    let dir = tempfile::tempdir().unwrap();
+    let game = dir.path().join("game.toml");
+    let own = shipped("strategies/pav01_seeded.toml").canonicalize().unwrap();
+    let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
+    let boats = ["blue_one", "blue_two", "red_one", "red_two"].map(|name| {
+        let (team, _) = name.split_once('_').unwrap();
+        let own = if name.ends_with("two") { format!("strategy = {own:?}\n") } else { String::new() };
+        format!("[[vehicle]]\nname = {name:?}\nteam = {team:?}\n{own}")
+    });
+    std::fs::write(&game, format!("base = {base:?}\n{}", boats.concat())).unwrap();
+    assert_eq!(followed(&load(&game).unwrap()), ["pav01", "pav01_seeded", "pav01", "pav01_seeded"]);
+
+    let attack = shipped("strategies/easy_attackers.toml");
+    for (overrides, want) in [
+        (instead(&[("blue", attack.clone())]), ["easy_attackers", "easy_attackers", "pav01", "pav01_seeded"]),
+        (
+            instead(&[("red", attack.clone()), ("blue", shipped("strategies/idle.toml"))]),
+            ["idle", "idle", "easy_attackers", "easy_attackers"],
+        ),
+    ] {
+        let scenario = load_with(&game, &overrides).unwrap();
+        assert_eq!(followed(&scenario), want);
+        assert_eq!(load(&game).unwrap().sea, scenario.sea);
+    }
+}
+
+#[test]
+fn two_files_of_one_name_may_meet_and_what_is_replaced_is_not_read() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("pav01.toml");
+    std::fs::write(&path, LIES_STILL).unwrap();
+    let game = shipped("games/pav01_vs_pav01.toml");
+    let scenario = load_with(&game, &instead(&[("blue", path.clone())])).unwrap();
+    assert_eq!(followed(&scenario), ["pav01"; 4]);
+    assert_ne!(scenario.vehicles[0].strategy, scenario.vehicles[2].strategy);
+
+    let text = std::fs::read_to_string(&game).unwrap();
+    let folder = shipped("").canonicalize().unwrap().display().to_string();
+    let broken = dir.path().join("broken.toml");
+    std::fs::write(&broken, text.replace("pav01.toml", "nonesuch.toml").replace("\"..", &format!("\"{folder}")))
+        .unwrap();
+    assert!(load(&broken).is_err());
+    let both = instead(&[("blue", path.clone()), ("red", path)]);
+    assert_eq!(followed(&load_with(&broken, &both).unwrap()), ["pav01"; 4]);
+}
+
+#[test]
+fn a_game_drawn_again_keeps_what_took_the_place_of_its_own() {
+    let dir = tempfile::tempdir().unwrap();
+    let (game, strategy) = (dir.path().join("game.toml"), dir.path().join("own.toml"));
+    let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();
+    std::fs::write(&game, format!("base = {base:?}\nlink = {{ delay_s = {{ uniform = [0.1, 0.2] }} }}\n")).unwrap();
+    std::fs::write(&strategy, LIES_STILL).unwrap();
+    let overrides = Overrides { sea: Some(shipped("seas/gale.toml")), ..instead(&[("red", strategy)]) };
+    let scenario = load_with(&game, &overrides).unwrap();
+    // The files are not needed any more.
+    drop(dir);
+    let other = scenario.of_seed(7).unwrap();
+    assert_ne!(other.drawn, scenario.drawn);
+    assert_eq!(followed(&other), ["pav01", "pav01", "own", "own"]);
+    assert_eq!((&other.sea, other.sea.name.as_str()), (&scenario.sea, "gale"));
+}
+
+#[test]
+fn an_unknown_team_and_a_file_that_is_not_there_are_explained() {
+    let game = shipped("games/pav01_vs_pav01.toml");
+    let idle = shipped("strategies/idle.toml");
+    for (overrides, want) in [
+        (
+            instead(&[("green", idle)]),
+            "there is no team \"green\" to give another strategy to, expected one of blue, red",
+        ),
+        (instead(&[("red", "none.toml".into())]), "none.toml:1:1: cannot be read"),
+        (Overrides { sea: Some("none.toml".into()), ..Overrides::default() }, "none.toml:1:1: cannot be read"),
+        (instead(&[("red", shipped("seas/gale.toml"))]), "wind is unknown, expected one of"),
+    ] {
+        let problems = load_with(&game, &overrides).unwrap_err().to_string();
+        assert!(problems.contains(want), "{want}\n{problems}");
+    }
+}

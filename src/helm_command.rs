@@ -1,0 +1,144 @@
+//! `squall helm`: one decision of a boat's helm, in a table, as numbers and as pictures.
+
+use crate::net_args::LeafArgs;
+use crate::onlooker::Onlooker;
+use crate::rose_plot::{self, Rose};
+use crate::{helm_page, screen};
+use anyhow::{Context, Result, bail};
+use game::Scenario;
+use game::helm::{FunctionReport, HelmQuestion, HelmReport};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Whose, and into which files.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The vehicle, by name
+    #[arg(long, value_name = "NAME")]
+    vehicle: String,
+    #[command(flatten)]
+    leaf: LeafArgs,
+    /// Writes the utility of every course and speed, by behaviour and in all, into this file
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Draws the same into this file, as PNG
+    #[arg(long, value_name = "FILE")]
+    png: Option<PathBuf>,
+    /// Draws the same into this file, as SVG
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+}
+
+/// What the sum of all behaviours is called.
+const COLLECTIVE: &str = "collective";
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let onlooker = Onlooker::come(&args.leaf)?;
+    let vehicle = onlooker.vehicle(&args.vehicle)?;
+    let report = onlooker.helm(vehicle, HelmQuestion { functions: true })?;
+    let Some(report) = report else { bail!("nobody minds {}", args.vehicle) };
+    let scenario = &onlooker.notice.scenario;
+    if report.functions.iter().any(|function| function.utilities.is_empty()) {
+        bail!("the helm of {} has not decided since it was asked; ask again", args.vehicle);
+    }
+    screen::print(&helm_page::page(scenario, &report));
+    if let Some(path) = &args.csv {
+        write_csv(path, scenario, &report)
+            .with_context(|| format!("cannot write the functions to {}", path.display()))?;
+    }
+    if args.png.is_some() || args.svg.is_some() {
+        let title = format!(
+            "{} ({}) at {:.1} s: {}; {}",
+            args.vehicle,
+            report.program,
+            report.at.as_s(),
+            report.mode,
+            helm_page::decision(&report)
+        );
+        let roses = roses(&report);
+        if let Some(path) = &args.png {
+            rose_plot::write_png(path, &title, &roses)?;
+        }
+        if let Some(path) = &args.svg {
+            rose_plot::write_svg(path, &title, &roses)?;
+        }
+    }
+    onlooker.bus.close();
+    Ok(ExitCode::SUCCESS)
+}
+
+fn course_deg(report: &HelmReport, k: usize) -> f64 {
+    360.0 * k as f64 / report.courses as f64
+}
+
+fn speed_m_s(report: &HelmReport, j: usize) -> f64 {
+    report.speed_max_m_s * j as f64 / (report.speeds - 1) as f64
+}
+
+/// The weighted sum of these functions, course by course.
+fn sum<'a>(report: &HelmReport, functions: impl Iterator<Item = &'a FunctionReport>) -> Vec<f64> {
+    let mut total = vec![0.0; report.courses * report.speeds];
+    for function in functions {
+        total.iter_mut().zip(&function.utilities).for_each(|(sum, u)| *sum += function.weight * f64::from(*u));
+    }
+    total
+}
+
+/// A row for each function, course and speed; then the sums, of which the largest is what the helm takes.
+fn write_csv(path: &Path, scenario: &Scenario, report: &HelmReport) -> Result<()> {
+    let mut csv = csv::Writer::from_path(path)?;
+    csv.write_record(["behaviour", "contact", "weight", "course_deg", "speed_m_s", "utility"])?;
+    let mut write = |behaviour: &str, contact: &str, weight: f64, utilities: &mut dyn Iterator<Item = f64>| {
+        for (i, utility) in utilities.enumerate() {
+            let (course, speed) = (course_deg(report, i / report.speeds), speed_m_s(report, i % report.speeds));
+            let numbers = [weight, course, speed, utility].map(|number| number.to_string());
+            let [weight, course, speed, utility] = numbers.each_ref().map(String::as_str);
+            csv.write_record([behaviour, contact, weight, course, speed, utility])?;
+        }
+        anyhow::Ok(())
+    };
+    for function in &report.functions {
+        let contact = function.contact.map_or("", |contact| scenario.vehicles[contact.index()].name.as_str());
+        let utilities = &mut function.utilities.iter().map(|utility| f64::from(*utility));
+        write(&function.behaviour, contact, function.weight, utilities)?;
+    }
+    let weight: f64 = report.functions.iter().map(|function| function.weight).sum();
+    write(COLLECTIVE, "", weight, &mut sum(report, report.functions.iter()).into_iter())?;
+    Ok(csv.flush()?)
+}
+
+/// A picture of all together, then of each behaviour that asked for something.
+fn roses(report: &HelmReport) -> Vec<Rose> {
+    let rose = |title: String, values: Vec<f64>, range: (f64, f64)| Rose {
+        title,
+        courses: report.courses,
+        speed_max_m_s: report.speed_max_m_s,
+        values,
+        range,
+        chosen: report.course_deg.zip(report.speed_m_s),
+    };
+    let all = sum(report, report.functions.iter());
+    let range = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+    let mut roses = vec![rose(format!("{COLLECTIVE}: sum of weight × utility"), all, range)];
+    for behaviour in &report.behaviours {
+        let of_it = || report.functions.iter().filter(|function| function.behaviour == behaviour.name);
+        let weight: f64 = of_it().map(|function| function.weight).sum();
+        let contacts = of_it().filter_map(|function| function.contact).collect::<BTreeSet<_>>().len();
+        if of_it().next().is_none() {
+            continue;
+        }
+        let about = match contacts {
+            0 => String::new(),
+            1 => ", 1 contact".to_owned(),
+            n => format!(", {n} contacts"),
+        };
+        let mean = sum(report, of_it()).into_iter().map(|v| v / weight.max(f64::MIN_POSITIVE)).collect();
+        roses.push(rose(
+            format!("{} ({}): weight {weight:.1}{about}", behaviour.name, behaviour.kind),
+            mean,
+            (0.0, 100.0),
+        ));
+    }
+    roses
+}

@@ -1,0 +1,100 @@
+//! What a helm thinks, as a page of text or as one line.
+
+use game::Scenario;
+use game::helm::{FunctionReport, HelmReport, StageReport};
+use std::fmt::Write;
+
+/// A page: what the boat is at, what was decided, and what every behaviour wants.
+pub(crate) fn page(scenario: &Scenario, report: &HelmReport) -> String {
+    let name = &scenario.vehicles[report.vehicle.index()].name;
+    let mut text = format!("{name}  goes by {}  {:.1} s\n", report.program, report.at.as_s());
+    push(&mut text, format_args!("mode    {}\n", report.mode));
+    push(&mut text, format_args!("helm    {}\n\n", decision(report)));
+    let rows = rows(scenario, report);
+    let widths = [0, 1].map(|i| rows.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
+    for [what, kind, stage, weight, utility] in &rows {
+        let line =
+            format!("{what:<w$}  {kind:<k$}  {stage:<8}  {weight:>7}  {utility:>7}", w = widths[0], k = widths[1]);
+        push(&mut text, format_args!("{}\n", line.trim_end()));
+    }
+    if !report.variables.is_empty() {
+        let width = report.variables.iter().map(|variable| variable.name.len()).max().unwrap_or(0);
+        text.push('\n');
+        for variable in &report.variables {
+            push(&mut text, format_args!("{:<width$}  {}\n", variable.name, variable.value));
+        }
+    }
+    text
+}
+
+/// One line: mode, decision, and how content each function is with it.
+pub(crate) fn line(scenario: &Scenario, report: &HelmReport) -> String {
+    let name = &scenario.vehicles[report.vehicle.index()].name;
+    let content = |function: &FunctionReport| {
+        let of = function.contact.map(|contact| format!("({})", scenario.vehicles[contact.index()].name));
+        format!("{}{} {}", function.behaviour, of.unwrap_or_default(), number(function.utility.map(f64::from), 0))
+    };
+    let functions: Vec<String> = report.functions.iter().map(content).collect();
+    let variables: Vec<String> =
+        report.variables.iter().map(|variable| format!("{}={}", variable.name, variable.value)).collect();
+    let line = format!(
+        "{:>7.1} s  {name}  {}  {}  {}  {}",
+        report.at.as_s(),
+        report.mode,
+        decision(report),
+        functions.join(", "),
+        variables.join(" ")
+    );
+    format!("{}\n", line.trim_end())
+}
+
+/// What was decided, or why nothing was.
+pub(crate) fn decision(report: &HelmReport) -> String {
+    match (report.course_deg, report.speed_m_s, &report.hold) {
+        (Some(course_deg), Some(speed_m_s), _) => format!("course {course_deg:.0}°, {speed_m_s:.2} m/s"),
+        (_, _, Some(why)) => format!("holds: {why}"),
+        _ => "holds".to_owned(),
+    }
+}
+
+/// The table of behaviours: name, kind, stage, weight and utility; functions about contacts stand under theirs.
+fn rows(scenario: &Scenario, report: &HelmReport) -> Vec<[String; 5]> {
+    let mut rows = vec![["behaviour", "kind", "stage", "weight", "utility"].map(str::to_owned)];
+    for behaviour in &report.behaviours {
+        let functions = || report.functions.iter().filter(|function| function.behaviour == behaviour.name);
+        let stage = match behaviour.stage {
+            StageReport::Idle => "-",
+            StageReport::Running => "running",
+            StageReport::Active => "active",
+            StageReport::Complete => "complete",
+        };
+        let own = functions().find(|function| function.contact.is_none());
+        let runs = matches!(behaviour.stage, StageReport::Running | StageReport::Active);
+        rows.push([
+            behaviour.name.clone(),
+            behaviour.kind.clone(),
+            stage.to_owned(),
+            number(runs.then_some(behaviour.weight), 1),
+            number(own.and_then(|function| function.utility).map(f64::from), 1),
+        ]);
+        for function in functions() {
+            let Some(contact) = function.contact else { continue };
+            rows.push([
+                format!("  {}", scenario.vehicles[contact.index()].name),
+                String::new(),
+                String::new(),
+                number(Some(function.weight), 1),
+                number(function.utility.map(f64::from), 1),
+            ]);
+        }
+    }
+    rows
+}
+
+fn number(value: Option<f64>, places: usize) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.places$}"))
+}
+
+fn push(text: &mut String, args: std::fmt::Arguments<'_>) {
+    text.write_fmt(args).expect("writing to a String cannot fail");
+}

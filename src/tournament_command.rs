@@ -1,0 +1,85 @@
+//! `squall tournament`: every strategy against every other, in this process.
+
+use crate::tournament_progress::Progress;
+use crate::{screen, stop, tournament_table};
+use anyhow::{Context, Result};
+use arena::tournament::{Plan, Report, play};
+use game::scenario::{Tournament, load_tournament};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Which tournament, and how.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The tournament file
+    tournament: PathBuf,
+    /// Games of each pairing, half of them on each side [default: as the file says]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    games: Option<u32>,
+    /// The first seed [default: as the file says]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: Option<u64>,
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZeroUsize>,
+    /// Writes everything to this file
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Writes a line for each entry to this file
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Puts every game with its digest into the JSON file
+    #[arg(long, requires = "json")]
+    matches: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let plan = planned(args)?;
+    // Better now than after hours of games.
+    for path in args.json.iter().chain(&args.csv) {
+        let file = std::fs::OpenOptions::new().append(true).create(true).open(path);
+        file.with_context(|| format!("cannot write the report to {}", path.display()))?;
+    }
+    let stop = stop::on_ctrl_c()?;
+    let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
+    let mut progress = Progress::new(plan.games() as u64);
+    let records = play(&plan, jobs, &stop, |_| progress.played());
+    let rate = progress.done(jobs.get().min(plan.games()));
+
+    let mut report = Report::new(&plan, &records);
+    report.commit = env!("SQUALL_COMMIT").to_owned();
+    report.rate = Some(rate);
+    if !args.matches {
+        report.matches.clear();
+    }
+    if let Some(path) = &args.json {
+        let text = serde_json::to_string_pretty(&report).context("the report is not JSON")?;
+        write(path, &(text + "\n"))?;
+    }
+    if let Some(path) = &args.csv {
+        write(path, &tournament_table::csv(&report))?;
+    }
+    screen::print(&tournament_table::text(&report));
+    Ok(match (report.games_unplayed > 0, report.failures.is_empty()) {
+        (true, _) => stop::interrupted(),
+        (false, true) => ExitCode::SUCCESS,
+        (false, false) => ExitCode::FAILURE,
+    })
+}
+
+fn planned(args: &Args) -> Result<Plan> {
+    let path = &args.tournament;
+    let context = || format!("no tournament in {}", path.display());
+    let file = load_tournament(path).with_context(context)?;
+    let games = args.games.unwrap_or(file.games);
+    if !games.is_multiple_of(2) {
+        screen::remark(&format!("{games} games a pairing are {}: half of them on each side", games + 1));
+    }
+    let tournament = Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file };
+    Plan::new(&tournament).with_context(context)
+}
+
+fn write(path: &Path, text: &str) -> Result<()> {
+    std::fs::write(path, text).with_context(|| format!("cannot write the report to {}", path.display()))
+}

@@ -1,0 +1,144 @@
+//! The report of a tournament as tables: for people, and one for spreadsheets.
+
+use arena::tournament::{Cell, Estimate, Report, Row};
+use std::fmt::Write;
+
+/// What is counted, as heads of columns: the name in the file, the words for people, and where it is.
+type Column = (&'static str, &'static str, fn(&Row) -> Estimate);
+
+const COLUMNS: [Column; 7] = [
+    ("score", "score", |row| row.score),
+    ("grabs", "grabs", |row| row.grabs),
+    ("captures", "captures", |row| row.captures),
+    ("tags", "tags", |row| row.tags),
+    ("tagged", "tagged", |row| row.tagged),
+    ("out_of_bounds", "out of bounds", |row| row.out_of_bounds),
+    ("collisions", "collisions", |row| row.collisions),
+];
+
+/// The report for people.
+pub(crate) fn text(report: &Report) -> String {
+    let mut text = String::new();
+    let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(", sea {sea}"));
+    line(&mut text, format_args!("{}: {}{sea}", report.tournament, report.game));
+    match report.matrix.first() {
+        None => line(&mut text, format_args!("no seed of which all games were played: nothing to tell")),
+        Some(Cell { games, seeds, .. }) => {
+            let (count, first, last) = (report.seeds_counted, seeds.first, seeds.last);
+            line(&mut text, format_args!("{games} games a pairing, half of them on each side"));
+            line(&mut text, format_args!("means a game ± 95 %, over {count} seeds from {first} to {last}\n"));
+            entries(&mut text, report);
+            matrix(&mut text, report);
+        }
+    }
+    missing(&mut text, report);
+    again(&mut text, report);
+    text
+}
+
+fn width(report: &Report) -> usize {
+    report.entries.iter().map(|row| row.name.len()).max().unwrap_or(0).max(6) + 1
+}
+
+/// A line for each entry.
+fn entries(text: &mut String, report: &Report) {
+    let width = width(report);
+    let heads: String = COLUMNS.iter().map(|(_, words, _)| format!("{words:>15}")).collect();
+    line(text, format_args!("{:width$}{heads}{:>7}{:>7}{:>7}", "", "won", "drawn", "lost"));
+    for row in &report.entries {
+        let cells: String = COLUMNS.iter().map(|(_, _, of)| format!("{:>15}", estimate(&of(row)))).collect();
+        let Row { name, wins, draws, losses, .. } = row;
+        line(text, format_args!("{name:width$}{cells}{wins:>7}{draws:>7}{losses:>7}"));
+    }
+}
+
+fn estimate(estimate: &Estimate) -> String {
+    let half = estimate.half_width().map_or("?".to_owned(), |half| format!("{half:.2}"));
+    format!("{:.2} ± {half}", estimate.mean)
+}
+
+/// Who beats whom.
+fn matrix(text: &mut String, report: &Report) {
+    let width = width(report);
+    line(text, format_args!("\nrow beats column: won % / drawn %, and the row's score less the column's a game"));
+    let column = width.max(19);
+    let heads: String = report.entries.iter().map(|row| format!("{:>column$}", row.name)).collect();
+    line(text, format_args!("{:width$}{heads}", ""));
+    for row in &report.entries {
+        let cell = |column: &Row| {
+            let cell = report.matrix.iter().find(|cell| cell.row == row.name && cell.column == column.name);
+            cell.map_or("-".to_owned(), beaten)
+        };
+        let cells: String = report.entries.iter().map(|other| format!("{:>column$}", cell(other))).collect();
+        line(text, format_args!("{:width$}{cells}", row.name));
+    }
+}
+
+fn beaten(cell: &Cell) -> String {
+    let pct = |count: u64| 100.0 * count as f64 / cell.games as f64;
+    format!("{:.0} / {:.0}  {:+.2}", pct(cell.wins), pct(cell.draws), cell.score_difference)
+}
+
+/// What is not in the tables.
+fn missing(text: &mut String, report: &Report) {
+    /// Failures that are told in full.
+    const TOLD: usize = 5;
+    let Report { games_unplayed, games_left_out, failures, .. } = report;
+    if *games_unplayed > 0 {
+        line(text, format_args!("\nCUT SHORT: {games_unplayed} games were not played"));
+    }
+    if !failures.is_empty() {
+        line(text, format_args!("\n{} games could not start:", failures.len()));
+    }
+    for failure in failures.iter().take(TOLD) {
+        let why = failure.why.replace('\n', "; ");
+        line(text, format_args!("  {} against {}, seed {}: {why}", failure.blue, failure.red, failure.seed));
+    }
+    if failures.len() > TOLD {
+        line(text, format_args!("  and {} more", failures.len() - TOLD));
+    }
+    if *games_left_out > 0 {
+        line(text, format_args!("{games_left_out} games are left out, since others of their seed are missing"));
+    }
+}
+
+/// How to play one of the games again.
+fn again(text: &mut String, report: &Report) {
+    let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {sea}"));
+    let sides: String = report.teams.iter().map(|team| format!(" {}", flag(team))).collect();
+    let files: Vec<String> = report.entries.iter().map(|row| format!("  {:<16} {}", row.name, row.strategy)).collect();
+    line(text, format_args!("\nany of these games again, with strategy files for A and B:"));
+    let [a, b] = ["A", "B"];
+    let sides = sides.replacen("{}", a, 1).replacen("{}", b, 1);
+    line(text, format_args!("  squall run {}{sea}{sides} --seed {} --in-process", report.game, report.seed));
+    files.iter().for_each(|file| line(text, format_args!("{file}")));
+}
+
+/// The option that gives a team its strategy, with a hole for it.
+fn flag(team: &str) -> String {
+    if ["blue", "red"].contains(&team) { format!("--{team} {{}}") } else { format!("--strategy {team}={{}}") }
+}
+
+/// A line for each entry, separated by commas. Names hold no commas, and paths are put in quotes.
+pub(crate) fn csv(report: &Report) -> String {
+    let mut text = String::new();
+    let heads: String = COLUMNS.iter().map(|(name, _, _)| format!(",{name},{name}_low,{name}_high")).collect();
+    line(&mut text, format_args!("name,strategy,games,wins,draws,losses{heads}"));
+    for row in &report.entries {
+        let number = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
+        let numbers = |of: &fn(&Row) -> Estimate| {
+            let Estimate { mean, low, high } = of(row);
+            format!(",{mean},{},{}", number(low), number(high))
+        };
+        let cells: String = COLUMNS.iter().map(|(_, _, of)| numbers(of)).collect();
+        let Row { name, strategy, games, wins, draws, losses, .. } = row;
+        let strategy = strategy.replace('"', "\"\"");
+        line(&mut text, format_args!("{name},\"{strategy}\",{games},{wins},{draws},{losses}{cells}"));
+    }
+    text
+}
+
+fn line(text: &mut String, args: std::fmt::Arguments<'_>) {
+    text.write_fmt(args).expect("writing to a String cannot fail");
+    text.push('\n');
+}

@@ -1,0 +1,44 @@
+//! One boat's helm, live.
+
+use super::rest;
+use crate::onlooker::Onlooker;
+use crate::{helm_page, screen};
+use anyhow::{Result, bail};
+use game::helm::HelmQuestion;
+use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// A boat without a mind for this long has none.
+const SILENCE: Duration = Duration::from_secs(10);
+
+/// Shows what the helm of the vehicle of this name thinks until the game is over, this often.
+#[expect(clippy::disallowed_methods, reason = "silence is measured by the clock")]
+pub(super) fn watch(onlooker: &Onlooker, name: &str, pause: Duration, stop: &AtomicBool) -> Result<()> {
+    let vehicle = onlooker.vehicle(name)?;
+    let scenario = &onlooker.notice.scenario;
+    let live = std::io::stdout().is_terminal();
+    let mut last = None;
+    let mut heard = Instant::now();
+    while !stop.load(Ordering::Relaxed) {
+        match onlooker.helm(vehicle, HelmQuestion { functions: false })? {
+            Some(report) => {
+                heard = Instant::now();
+                // On paper a decision is told once.
+                let text = match live {
+                    true => format!("\x1b[H\x1b[J{}", helm_page::page(scenario, &report)),
+                    false if last.replace(report.at) == Some(report.at) => String::new(),
+                    false => helm_page::line(scenario, &report),
+                };
+                if !screen::is_read(&text) {
+                    return Ok(());
+                }
+            }
+            None if !onlooker.is_on()? => return Ok(()),
+            None if heard.elapsed() > SILENCE => bail!("nobody minds {name}"),
+            None => {}
+        }
+        rest(pause);
+    }
+    Ok(())
+}

@@ -1,0 +1,150 @@
+//! Looking into helms while they play, and giving a boat another strategy.
+
+use crate::support::{FOUR, LIMIT, Process, Sim, long_game, run, scenarios, squall, write};
+use game::helm::HelmReport;
+use game::message::Notice;
+use game::topic::{self, GameName};
+use std::io::{BufRead, BufReader, Read};
+use std::process::Stdio;
+
+/// A game that goes on, with an agent for each boat.
+fn game() -> (tempfile::TempDir, Sim, Vec<Process>) {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let sim = Sim::start(&long_game(dir.path(), ""), &[]);
+    let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
+    sim.wait_for(|telling| telling["tell"] == "started");
+    sim.play_on(1.0);
+    (dir, sim, agents)
+}
+
+#[test]
+fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
+    let (_dir, sim, _agents) = game();
+    let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
+    let notice = bus.ask(&topic::scenario(&name), Vec::new(), LIMIT).expect("the hub is there").expect("an answer");
+    let notice: Notice = serde_json::from_slice(&notice).expect("a notice");
+    let two = notice.scenario.vehicle_by_name("blue_two").expect("it is there");
+    let ask = |question: &[u8]| -> HelmReport {
+        let key = topic::helm(&name, &notice.scenario, two);
+        let answer = bus.ask(&key, question.to_vec(), LIMIT).expect("the hub is there");
+        serde_json::from_slice(&answer.expect("an answer")).expect("a report")
+    };
+    for (question, whole) in [(&b"{\"functions\":true}"[..], true), (b"", false), (b"ahoy", false)] {
+        let report = ask(question);
+        assert_eq!((report.vehicle, report.program.as_str()), (two, "easy_attacker"));
+        assert!(!report.mode.is_empty() && !report.functions.is_empty(), "{report:?}");
+        let length = if whole { report.courses * report.speeds } else { 0 };
+        assert!(report.functions.iter().all(|function| function.utilities.len() == length));
+        if report.course_deg.is_some() {
+            assert!(report.functions.iter().all(|function| function.utility.is_some()), "asked for or not");
+        }
+    }
+    // Time goes on from answer to answer.
+    let before = ask(b"").at;
+    sim.play_on(1.0);
+    assert!(ask(b"").at > before);
+    let args = ["helm", "--connect", &sim.endpoint, "--game", &sim.game, "--vehicle"];
+    let other = run(&[&args[..], &["green_one"]].concat());
+    let said = String::from_utf8_lossy(&other.stderr).into_owned();
+    assert!(!other.status.success() && said.contains("blue_one, blue_two, red_one, red_two"), "{said}");
+    sim.stop();
+}
+
+#[test]
+fn watch_shows_a_helm_and_helm_writes_its_functions() {
+    let (dir, sim, _agents) = game();
+    let leaf = ["--connect", &sim.endpoint, "--game", &sim.game];
+    let mut command = squall(&[&["watch", "--helm", "blue_two", "--rate", "20"], &leaf[..]].concat());
+    command.stdout(Stdio::piped());
+    let mut watch = Process::start(command);
+    let mut lines = BufReader::new(watch.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
+    for line in lines.by_ref().take(3) {
+        let is_mode = |mode: &&str| line.contains(&format!("blue_two  {mode}  course"));
+        assert!(["attacking", "returning", "tagged"].iter().any(is_mode), "{line}");
+    }
+    let files = ["one.csv", "one.png", "one.svg"].map(|name| dir.path().join(name).display().to_string());
+    let args = ["helm", "--vehicle", "blue_two", "--csv", &files[0], "--png", &files[1], "--svg", &files[2]];
+    let output = run(&[&args[..], &leaf[..]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        page.contains("goes by easy_attacker") && page.contains("waypoint") && page.contains("op_region"),
+        "{page}"
+    );
+    let csv = std::fs::read_to_string(&files[0]).expect("it was written");
+    assert!(csv.starts_with("behaviour,contact,weight,course_deg,speed_m_s,utility\n"));
+    let collective = csv.lines().filter(|line| line.starts_with("collective,")).count();
+    assert_eq!(collective, 360 * 36, "a row for each course and speed");
+    assert!(std::fs::read(&files[1]).expect("it was written").starts_with(b"\x89PNG"));
+    assert!(std::fs::read_to_string(&files[2]).expect("it was written").contains("collective"));
+    sim.stop();
+    // It ends with the game.
+    lines.for_each(drop);
+    assert!(watch.wait().success());
+}
+
+#[test]
+fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let scenario = long_game(dir.path(), "").display().to_string();
+    let mut command = squall(&["run", &scenario, "--pace", "1x"]);
+    command.stdout(Stdio::piped());
+    let mut game = Process::start(command);
+    let mut lines = BufReader::new(game.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
+    let open = lines.next().expect("where it is");
+    let words: Vec<&str> = open.split_whitespace().collect();
+    let ["game", name, "at", endpoint] = words[..] else { panic!("{open}") };
+    lines.by_ref().find(|line| line.contains("every boat has a mind")).expect("it starts");
+    let csv = dir.path().join("one.csv").display().to_string();
+    // All of them at once: half a megabyte from each goes through the hub.
+    std::thread::scope(|scope| {
+        for vehicle in FOUR {
+            let args = ["helm", "--connect", endpoint, "--game", name, "--vehicle", vehicle, "--csv"];
+            let csv = format!("{csv}.{vehicle}");
+            scope.spawn(move || {
+                let output = run(&[&args[..], &[csv.as_str()]].concat());
+                assert!(output.status.success(), "{vehicle}: {}", String::from_utf8_lossy(&output.stderr));
+            });
+        }
+    });
+    game.signal("INT");
+    let lost: Vec<String> = lines.filter(|line| line.contains("LOST")).collect();
+    assert_eq!(lost, [""; 0]);
+}
+
+#[test]
+fn an_agent_plays_by_a_strategy_file_of_its_own() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let text = format!("base = \"{}/strategies/easy_attacker.toml\"\nabout = \"mine\"\n", scenarios());
+    let mine = write(dir.path(), "mine.toml", &text).display().to_string();
+    let sim = Sim::start(&long_game(dir.path(), ""), &[]);
+    let agent = |words: &[&str]| {
+        let args = ["agent", "--connect", &sim.endpoint, "--game", &sim.game];
+        let mut command = squall(&[&args[..], words].concat());
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        Process::start(command)
+    };
+    let _ours = agent(&["--vehicle", "blue_one", "blue_two", "--strategy", &mine]);
+    let _theirs = agent(&["--vehicle", "red_one", "red_two"]);
+    sim.wait_for(|telling| telling["tell"] == "started");
+    for (vehicle, program) in [("blue_one", "mine"), ("blue_two", "mine"), ("red_two", "easy_attacker")] {
+        let output = run(&["helm", "--connect", &sim.endpoint, "--game", &sim.game, "--vehicle", vehicle]);
+        let page = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(page.contains(&format!("goes by {program}")), "{page}");
+    }
+    sim.stop();
+}
+
+#[test]
+fn mistakes_in_a_strategy_file_are_told_before_joining() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let bad = write(dir.path(), "bad.toml", "about = \"bad\"\n[behaviour.go]\nkind = \"fly\"\n").display().to_string();
+    // Nobody is there to join: it does not even look.
+    let mut command = squall(&["agent", "--vehicle", "blue_one", "--strategy", &bad, "--wait-s", "50"]);
+    command.stderr(Stdio::piped());
+    let mut agent = Process::start(command);
+    assert!(!agent.wait().success());
+    let mut said = String::new();
+    agent.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+    assert!(said.contains("bad.toml:3:") && said.contains("\"fly\"") && said.contains("waypoint"), "{said}");
+}

@@ -1,0 +1,111 @@
+//! Policies outside of the helm: another program proposes, the helm weighs it against keeping inside of the field.
+
+use crate::support::{LIMIT, Process, Sim, scenarios, squall, write};
+use bus::{Bus, Delivery, Standing};
+use game::message::{Frame, Message, Notice, PolicyProposal, Stamp};
+use game::topic::{self, GameName};
+use game::{Picture, TeamId, VehicleId, codec};
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+const ME: VehicleId = VehicleId(0);
+const LIMIT_S: f64 = 100.0;
+
+/// Two boats that lie still, and a strategy for one that lets a policy steer, weighed with keeping inside or not.
+fn game(dir: &Path, is_safe: bool) -> (PathBuf, PathBuf) {
+    let root = scenarios();
+    let safety = if is_safe {
+        format!("base = \"{root}/strategies/safety.toml\"")
+    } else {
+        "unsafe_i_know = true\nunsafe_because = \"to see what safety is good for\"".to_owned()
+    };
+    let strategy =
+        format!("{safety}\nabout = \"does what it is told\"\n[behaviour.told]\nkind = \"policy\"\nttl_s = 2\n");
+    let boat = |name: &str| {
+        format!(
+            "[[team]]\nname = \"{name}\"\nstrategy = \"{root}/strategies/idle.toml\"\n\
+             [[fleet]]\nteam = \"{name}\"\nname = \"{name}_{{}}\"\ncount = 1\nspawn = {{}}\n"
+        )
+    };
+    let game = format!(
+        "field = \"{root}/fields/popolopen_2025.toml\"\nrules = \"{root}/rules/aquaticus_2023.toml\"\n\
+         boat = \"{root}/boats/surveyor_m1_8.toml\"\nduration_s = {LIMIT_S}\n{}{}",
+        boat("blue"),
+        boat("red")
+    );
+    (write(dir, "told_game.toml", &game), write(dir, "told.toml", &strategy))
+}
+
+/// A policy as another program would be: it sees the picture and wants to drive north in a zigzag, whatever happens. Now
+/// and then it is slow.
+fn drive_north(bus: &Bus, name: &GameName, notice: &Notice) -> Standing {
+    let publisher = bus.publisher(topic::policy(name, &notice.scenario, ME), Delivery::Wait).expect("the hub is there");
+    let answer = move |bytes: &[u8]| {
+        let picture: Picture = codec::decode(bytes).expect("a picture");
+        let stamp = Stamp { version: PolicyProposal::VERSION, ..picture.stamp };
+        let course_rad = if stamp.seq % 10 < 5 { 0.4 } else { -0.4 };
+        let proposal = PolicyProposal { stamp, vehicle: ME, course_rad, speed_m_s: 2.0 };
+        if stamp.seq.is_multiple_of(7) {
+            std::thread::sleep(Duration::from_millis(3));
+        }
+        // Nonsense in between does no harm.
+        publisher.send(&PolicyProposal { course_rad: f64::NAN, ..proposal }).unwrap_or_default();
+        publisher.send(&PolicyProposal { vehicle: VehicleId(1), course_rad: 3.0, ..proposal }).unwrap_or_default();
+        publisher.send(&proposal).unwrap_or_default();
+    };
+    bus.subscribe(topic::picture(name, &notice.scenario, TeamId(0)), answer).expect("the hub is there")
+}
+
+/// Plays a game with the policy, or without one: what happened, and the frames that were seen of it.
+fn play(is_safe: bool, has_policy: bool) -> (serde_json::Value, Vec<Frame>) {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let (game, strategy) = game(dir.path(), is_safe);
+    let sim = Sim::start(&game, &[]);
+    let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
+    let notice = bus.ask(&topic::scenario(&name), Vec::new(), LIMIT).expect("the hub is there").expect("an answer");
+    let notice: Notice = serde_json::from_slice(&notice).expect("a notice");
+    let frames = Arc::new(Mutex::new(Vec::new()));
+    let film = Arc::clone(&frames);
+    let see = move |bytes: &[u8]| film.lock().expect("whole").push(codec::decode(bytes).expect("a frame"));
+    let _seen = bus.subscribe(topic::frame(&name), see).expect("the hub is there");
+    let _policy = has_policy.then(|| drive_north(&bus, &name, &notice));
+    let strategy = strategy.display().to_string();
+    let mut words = vec!["agent", "--connect", &sim.endpoint, "--game", &sim.game, "--vehicle", "blue_1"];
+    words.extend(["--strategy", &strategy]);
+    if has_policy {
+        words.extend(["--policy-wait-s", "2"]);
+    }
+    let mut command = squall(&words);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    let _told = Process::start(command);
+    let _still = sim.agent(&["red_1"]);
+    let done = sim.wait_for(|telling| telling["tell"] == "done");
+    let frames = frames.lock().expect("whole").clone();
+    (done["outcome"].clone(), frames)
+}
+
+#[test]
+fn a_boat_follows_a_policy_but_not_out_of_the_field_and_the_game_is_the_same_again() {
+    let (outcome, frames) = play(true, true);
+    let (again, _) = play(true, true);
+    assert_eq!(outcome["digest"], again["digest"], "a policy that is waited for makes no difference");
+    assert!(frames.len() > 500, "{} frames", frames.len());
+    let navs: Vec<_> = frames.iter().map(|frame| &frame.vehicles[ME.index()].nav).collect();
+    let north_m = navs.iter().map(|nav| nav.north_m).fold(f64::NEG_INFINITY, f64::max) - navs[0].north_m;
+    assert!(north_m > 20.0, "it went {north_m} m north");
+    assert!(frames.iter().all(|frame| !frame.vehicles[ME.index()].outside), "it stayed inside");
+    assert_eq!(outcome["counts"]["boats"]["blue_1"]["minds_lost"], 0);
+    // Without a behaviour that keeps it inside, the same policy takes it out.
+    let (_, frames) = play(false, true);
+    assert!(frames.iter().any(|frame| frame.vehicles[ME.index()].outside), "it went out");
+}
+
+#[test]
+fn without_a_policy_the_boat_lies_still() {
+    let (_, frames) = play(true, false);
+    let at = |frame: &Frame| frame.vehicles[ME.index()].nav.at();
+    let (first, last) = (frames.first().expect("frames"), frames.last().expect("frames"));
+    assert!(at(first).distance(at(last)) < 1.0);
+}

@@ -1,0 +1,285 @@
+//! `squall tournament` and strategies from the command line, from outside.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use serde_json::Value;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+const GAME: &str = "scenarios/games/pav01_vs_pav01.toml";
+const SEA: &str = "scenarios/seas/moderate_breeze.toml";
+const TOURNAMENT: &str = "scenarios/tournaments/simple.toml";
+
+/// The program, in the folder of the project.
+fn squall(args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR")).args(args);
+    command
+}
+
+fn output(args: &[&str]) -> Output {
+    squall(args).output().expect("the program starts")
+}
+
+/// Runs what must succeed; what it printed.
+fn said(args: &[&str]) -> String {
+    let output = output(args);
+    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A file of a temporary folder, as an argument.
+fn place(dir: &TempDir, name: &str) -> String {
+    dir.path().join(name).display().to_string()
+}
+
+fn json(path: &str) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// A tournament of the shipped strategies in short games.
+fn short_tournament(dir: &TempDir, more: &str) -> String {
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let game = format!("base = {:?}\nduration_s = 60\n", scenarios.join("games/pav01_vs_pav01.toml"));
+    std::fs::write(dir.path().join("short.toml"), game).unwrap();
+    let base = scenarios.join("tournaments/simple.toml");
+    let path = place(dir, "tournament.toml");
+    std::fs::write(&path, format!("base = {base:?}\ngame = \"short.toml\"\n{more}\n")).unwrap();
+    path
+}
+
+fn keys(value: &Value) -> Vec<&str> {
+    let mut keys: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
+    keys.sort_unstable();
+    keys
+}
+
+#[test]
+fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
+    let dir = tempfile::tempdir().unwrap();
+    let (report, result) = (place(&dir, "report.json"), place(&dir, "result.json"));
+    let text = said(&[
+        "tournament",
+        TOURNAMENT,
+        "--games",
+        "2",
+        "--seed",
+        "11",
+        "--jobs",
+        "2",
+        "--matches",
+        "--json",
+        &report,
+    ]);
+    let how = format!("squall run {GAME} --sea {SEA} --blue A --red B --seed 11 --in-process");
+    assert!(text.contains(&how), "{text}");
+
+    let report = json(&report);
+    let matches = report["matches"].as_array().unwrap();
+    assert_eq!(matches.len(), 6, "three pairings, both sides, one seed");
+    let strategy = |name: &Value| {
+        let row = report["entries"].as_array().unwrap().iter().find(|row| row["name"] == *name).unwrap();
+        row["strategy"].as_str().unwrap().to_owned()
+    };
+    for game in matches {
+        let (blue, red, seed) = (strategy(&game["blue"]), strategy(&game["red"]), game["seed"].to_string());
+        let options = ["--sea", SEA, "--blue", &blue, "--red", &red, "--seed", &seed, "--in-process"];
+        said(&[&["run", GAME], &options[..], &["--json", &result]].concat());
+        let played = json(&result);
+        assert_eq!(played["digest"], game["digest"], "{game}");
+        assert_eq!(played["score"]["teams"]["blue"], game["score"][0], "{game}");
+        assert_eq!(played["score"]["teams"]["red"], game["score"][1], "{game}");
+    }
+}
+
+#[test]
+fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
+    let dir = tempfile::tempdir().unwrap();
+    let tournament = short_tournament(&dir, "self_play = true");
+    let (path, table) = (place(&dir, "report.json"), place(&dir, "table.csv"));
+    let play = |jobs: &str| {
+        let text = said(&["tournament", &tournament, "--games", "4", "--jobs", jobs, "--json", &path, "--csv", &table]);
+        let mut report = json(&path);
+        assert!(report["rate"].as_f64().unwrap() > 0.0);
+        report["rate"] = Value::Null;
+        (text, report, std::fs::read_to_string(&table).unwrap())
+    };
+    let (text, report, csv) = play("1");
+    assert_eq!((&text, &report, &csv), (&play("4").0, &play("4").1, &play("4").2));
+
+    let wanted = [
+        "commit",
+        "entries",
+        "failures",
+        "game",
+        "games_left_out",
+        "games_per_pairing",
+        "games_unplayed",
+        "matrix",
+        "rate",
+        "sea",
+        "seed",
+        "seeds_counted",
+        "teams",
+        "tournament",
+        "version",
+    ];
+    assert_eq!(keys(&report), wanted, "without --matches there are none");
+    assert_eq!((&report["tournament"], &report["seed"]), (&"tournament".into(), &1.into()));
+    assert_eq!((&report["games_per_pairing"], &report["seeds_counted"]), (&4.into(), &2.into()));
+    let commit = report["commit"].as_str().unwrap();
+    let hash = commit.trim_end_matches("-dirty");
+    assert!(commit == "unknown" || hash.len() == 12 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{commit}");
+    assert!(said(&["--version"]).contains(commit));
+
+    let entries = report["entries"].as_array().unwrap();
+    let scores: Vec<f64> = entries.iter().map(|row| row["score"]["mean"].as_f64().unwrap()).collect();
+    assert!(scores.len() == 3 && scores.is_sorted_by(|a, b| a >= b), "{scores:?}");
+    for row in entries {
+        assert_eq!(row["games"], 12, "two seeds, two sides, three opponents with itself");
+        for key in ["score", "grabs", "captures", "tags", "tagged", "out_of_bounds", "collisions"] {
+            let [low, mean, high] = ["low", "mean", "high"].map(|of| row[key][of].as_f64().unwrap());
+            assert!(low <= mean && mean <= high && ((low + high) / 2.0 - mean).abs() < 1e-9, "{key}: {row}");
+        }
+        assert_eq!(["wins", "draws", "losses"].map(|of| row[of].as_u64().unwrap()).iter().sum::<u64>(), 12);
+    }
+    let matrix = report["matrix"].as_array().unwrap();
+    assert_eq!(matrix.len(), 9);
+    assert_eq!(keys(&matrix[0]), ["column", "draws", "games", "losses", "row", "score_difference", "seeds", "wins"]);
+    assert_eq!(matrix[0]["seeds"], serde_json::json!({ "first": 1, "last": 2 }));
+
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!((lines.len(), lines[0].len()), (4, 6 + 7 * 3), "{csv}");
+    assert!(csv.starts_with("name,strategy,games,wins,draws,losses,score,score_low,score_high,grabs,"), "{csv}");
+    for (line, row) in lines[1..].iter().zip(entries) {
+        assert_eq!((line.len(), line[0]), (27, row["name"].as_str().unwrap()));
+        assert_eq!(line[6].parse::<f64>().unwrap(), row["score"]["mean"].as_f64().unwrap());
+        assert!(text.contains(&format!("{:.2} ± ", row["score"]["mean"].as_f64().unwrap())), "{text}");
+    }
+}
+
+#[test]
+fn an_odd_number_of_games_is_rounded_up_with_a_note() {
+    let dir = tempfile::tempdir().unwrap();
+    let (tournament, report) = (short_tournament(&dir, "games = 5\nseed = 9"), place(&dir, "report.json"));
+    let output = output(&["tournament", &tournament, "--json", &report]);
+    let note = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && note.contains("5 games a pairing are 6"), "{note}");
+    assert!(note.contains("18 games in") && note.contains("games/s"), "{note}");
+    let report = json(&report);
+    assert_eq!((&report["games_per_pairing"], &report["matrix"][0]["games"]), (&6.into(), &6.into()));
+    assert_eq!(report["matrix"][0]["seeds"], serde_json::json!({ "first": 9, "last": 11 }));
+}
+
+#[test]
+fn mistakes_in_a_tournament_are_explained() {
+    let dir = tempfile::tempdir().unwrap();
+    let (bad, crowd) = (place(&dir, "bad.toml"), place(&dir, "crowd.toml"));
+    let entries = "[[entry]]\nname = \"a\"\nstrategy = \"none.toml\"\n";
+    std::fs::write(&bad, format!("game = \"none.toml\"\ngames = 0\n{entries}")).unwrap();
+    let tournament = short_tournament(&dir, "");
+    let cases: [(&[&str], &[&str]); 7] = [
+        (&["none.toml"], &["no tournament in none.toml", "cannot be read"]),
+        (&[GAME], &["no tournament in", "vehicle is unknown"]),
+        (
+            &[&bad],
+            &[
+                "bad.toml:1:8",
+                "bad.toml:2:9: games is 0, expected 2 to 1000000",
+                "entry has 1 entries",
+                "bad.toml:5:12",
+            ],
+        ),
+        (&[&tournament, "--games", "1"], &["2..=1000000"]),
+        (&[&tournament, "--jobs", "0"], &["--jobs"]),
+        (&[&tournament, "--matches"], &["--json"]),
+        (&[&tournament, "--games", "2", "--json", "no/where.json"], &["cannot write the report to no/where.json"]),
+    ];
+    for (args, wants) in cases {
+        let output = output(&[&["tournament"], args].concat());
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && !error.contains("panicked"), "{args:?}: {error}");
+        for want in wants {
+            assert!(error.contains(want), "{args:?} should say {want:?}: {error}");
+        }
+    }
+    // Two boats lie where a third would have to keep clear of them.
+    let game = "[[vehicle]]\nname = \"a\"\nteam = \"blue\"\nat = [20.5, 50]\n\
+                [[vehicle]]\nname = \"b\"\nteam = \"blue\"\nat = [22.4, 50]\n\
+                [[fleet]]\nteam = \"red\"\ncount = 1\n\
+                spawn = { along_m = [137.1, 140.0], across_m = [48.5, 51.5], gap_m = 2 }\n";
+    std::fs::write(dir.path().join("full.toml"), format!("base = \"short.toml\"\n{game}")).unwrap();
+    std::fs::write(&crowd, "base = \"tournament.toml\"\ngame = \"full.toml\"\n").unwrap();
+    let output = output(&["tournament", &crowd, "--games", "2"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("6 games could not start") && text.contains("no free berth for red_1"), "{text}");
+}
+
+#[test]
+fn an_interrupted_tournament_tells_what_was_finished() {
+    let dir = tempfile::tempdir().unwrap();
+    let tournament = short_tournament(&dir, "");
+    let mut command = squall(&["tournament", &tournament, "--games", "1000000", "--jobs", "2"]);
+    let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut error = BufReader::new(process.stderr.take().unwrap());
+    let mut line = String::new();
+    error.read_line(&mut line).unwrap();
+    assert_eq!(line, "3000000 games to play\n");
+    let killed = Command::new("kill").args(["-INT", &process.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let mut text = String::new();
+    process.stdout.take().unwrap().read_to_string(&mut text).unwrap();
+    assert_eq!(process.wait().unwrap().code(), Some(130), "{text}");
+    assert!(text.contains("CUT SHORT: ") && text.contains(" games were not played"), "{text}");
+    assert!(text.contains("tournament: "), "{text}");
+}
+
+#[test]
+fn run_gives_teams_other_strategies_in_one_process_and_across_processes() {
+    let dir = tempfile::tempdir().unwrap();
+    let result = place(&dir, "result.json");
+    let game = "scenarios/games/attack_1v1.toml";
+    let digest = |args: &[&str]| {
+        said(&[&["run", game], args, &["--json", &result]].concat());
+        json(&result)["digest"].as_str().unwrap().to_owned()
+    };
+    let path = "scenarios/strategies/easy_defenders.toml";
+    let own = digest(&["--in-process"]);
+    let other = digest(&["--red", path, "--in-process"]);
+    assert_ne!(own, other);
+    for args in [
+        &["--red", "easy_defenders", "--in-process"][..],
+        &["--strategy", "red=easy_defenders", "--strategy", "blue=easy_attackers", "--in-process"],
+        &["--red", "easy_defenders"],
+    ] {
+        assert_eq!(digest(args), other, "{args:?}");
+    }
+    assert_eq!(digest(&["--blue", "easy_attackers", "--red", "idle", "--in-process"]), own);
+}
+
+#[test]
+fn strategies_that_nobody_can_follow_are_explained() {
+    let game = "scenarios/games/attack_1v1.toml";
+    for (args, want) in [
+        (
+            &["--strategy", "green=idle"][..],
+            "there is no team \"green\" to give another strategy to, expected one of blue, red",
+        ),
+        (
+            &["--blue", "nonesuch"],
+            "no strategy of that name in scenarios/games/../strategies: easy_attacker, easy_attackers",
+        ),
+        (&["--blue", "none/such.toml"], "there is no strategy file none/such.toml"),
+        (&["--blue", "idle", "--strategy", "blue=idle"], "the strategy of team blue is given twice"),
+        (&["--strategy", "blue"], "\"blue\" is not TEAM=FILE"),
+        (&["--red", SEA], "wind is unknown, expected one of"),
+    ] {
+        for command in [&["run", game, "--in-process"][..], &["sim", game]] {
+            let output = output(&[command, args].concat());
+            let error = String::from_utf8(output.stderr).unwrap();
+            assert!(!output.status.success() && error.contains(want), "{command:?} {args:?}: {error}");
+        }
+    }
+}
