@@ -8,6 +8,7 @@ pub mod boat;
 pub mod codec;
 pub mod count;
 pub mod event;
+pub mod external;
 pub mod field;
 pub mod frame;
 pub mod helm;

@@ -2,6 +2,7 @@
 
 use game::codec::{DecodeError, decode, encode};
 use game::event::{Event, Logged, TagCause};
+use game::external::{ExternalOrder, NavReport};
 use game::message::{
     EventRecord, Frame, Message, Orders, PolicyProposal, Say, Stamp, VehicleOrder, VehicleTruth, Word,
 };
@@ -19,6 +20,8 @@ fn registry() -> Registry {
     tracer.trace_type::<Orders>(&samples).expect("a plain struct");
     tracer.trace_type::<Say>(&samples).expect("a plain struct");
     tracer.trace_type::<PolicyProposal>(&samples).expect("a plain struct");
+    tracer.trace_type::<NavReport>(&samples).expect("a plain struct");
+    tracer.trace_type::<ExternalOrder>(&samples).expect("a plain struct");
     tracer.registry().expect("all is known")
 }
 
@@ -77,6 +80,8 @@ fn definitions_belong_to_their_messages() {
         (Orders::SCHEMA, Orders::DEFINITION),
         (Say::SCHEMA, Say::DEFINITION),
         (PolicyProposal::SCHEMA, PolicyProposal::DEFINITION),
+        (NavReport::SCHEMA, NavReport::DEFINITION),
+        (ExternalOrder::SCHEMA, ExternalOrder::DEFINITION),
     ] {
         let name = schema.rsplit('/').next().expect("a name");
         let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("msg/{name}.msg")));
