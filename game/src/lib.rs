@@ -11,6 +11,7 @@ pub mod event;
 pub mod external;
 pub mod field;
 pub mod frame;
+pub mod gateway;
 pub mod helm;
 pub mod id;
 pub mod link;
