@@ -46,3 +46,79 @@ fn day(date: Date) -> Option<time::Date> {
     // The crate knows the model of 2020 too, which was made with older measurements.
     (YEARS.0..=YEARS.1).contains(&date.year).then_some(day)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(lat_deg: f64, lon_deg: f64) -> LatLon {
+        LatLon { lat_deg, lon_deg }
+    }
+
+    fn on(year: u16, month: u8, day: u8) -> Date {
+        Date { year, month, day }
+    }
+
+    #[test]
+    fn published_values_of_the_model_are_met() {
+        // WMM2025_TestValues (NOAA and BGS) at height 0, 2025.0 and 2027.5; NOAA's calculator for 2026-07-04.
+        let tolerance_deg = 0.01;
+        let (first, middle, summer) = (on(2025, 1, 1), on(2027, 7, 2), on(2026, 7, 4));
+        for (lat_deg, lon_deg, date, want_deg) in [
+            (80.0, 0.0, first, 1.28),
+            (0.0, 120.0, first, -0.16),
+            (-80.0, -120.0, first, 68.78),
+            (80.0, 0.0, middle, 2.59),
+            (0.0, 120.0, middle, -0.24),
+            (-80.0, -120.0, middle, 68.49),
+            (-33.8688, 151.2093, summer, 12.820_83),
+            (51.5074, -0.1278, summer, 1.162_80),
+            (64.1466, -21.9426, summer, -11.133_49),
+        ] {
+            let got_deg = declination_deg(at(lat_deg, lon_deg), date).unwrap();
+            assert!((got_deg - want_deg).abs() <= tolerance_deg, "{lat_deg}, {lon_deg}, {date:?}: {got_deg}");
+        }
+    }
+
+    #[test]
+    fn compasses_point_west_of_north_at_west_point_and_east_at_jervis_bay() {
+        let tolerance_deg = 0.5;
+        for (place, lat_deg, lon_deg, want_deg) in [
+            ("Lake Popolopen", 41.349_28, -74.063_645, -12.5),
+            ("Boston", 42.358_436, -71.087_448, -14.2),
+            ("Jervis Bay", -35.126, 150.711, 13.1),
+        ] {
+            let got_deg = declination_deg(at(lat_deg, lon_deg), on(2026, 11, 20)).unwrap();
+            assert!((got_deg - want_deg).abs() < tolerance_deg, "{place}: {got_deg}");
+        }
+    }
+
+    #[test]
+    fn the_model_holds_for_five_years() {
+        for (date, known) in [
+            (on(2024, 12, 31), false),
+            (on(2025, 1, 1), true),
+            (on(2028, 2, 29), true),
+            (on(2029, 12, 31), true),
+            (on(2030, 1, 1), false),
+            (on(2026, 2, 29), false),
+            (on(2026, 13, 1), false),
+            (on(2026, 0, 0), false),
+        ] {
+            let got = declination_deg(at(42.0, -71.0), date);
+            assert_eq!(got.is_ok(), known, "{date:?}");
+            assert_eq!(got.err(), (!known).then_some(DeclinationError::Date(date)));
+        }
+    }
+
+    #[test]
+    fn what_is_no_place_on_earth_has_none() {
+        for (lat_deg, lon_deg) in [(90.1, 0.0), (0.0, 180.1), (f64::NAN, 0.0), (0.0, f64::INFINITY)] {
+            let error = declination_deg(at(lat_deg, lon_deg), on(2026, 1, 1)).unwrap_err();
+            assert!(error.to_string().contains("is no place on earth"), "{error}");
+        }
+        for pole_deg in [-90.0, 90.0] {
+            assert!(declination_deg(at(pole_deg, 0.0), on(2026, 1, 1)).unwrap().is_finite());
+        }
+    }
+}

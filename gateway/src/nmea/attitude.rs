@@ -6,9 +6,9 @@ use super::{Line, ParseError};
 /// `PSEAA`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attitude {
-    /// Pitch, degrees, bow up positive.
+    /// Pitch, degrees. Which way is positive is not published.
     pub pitch_deg: Option<f64>,
-    /// Roll, degrees, starboard down positive.
+    /// Roll, degrees.
     pub roll_deg: Option<f64>,
     /// Heading by the compass: magnetic, degrees.
     pub heading_deg: Option<f64>,
@@ -22,7 +22,7 @@ pub struct Attitude {
     pub accel_starboard_g: Option<f64>,
     /// Acceleration down: -1 at rest.
     pub accel_down_g: Option<f64>,
-    /// Rate of turn, degrees a second, to starboard positive.
+    /// Rate of turn, degrees a second.
     pub yaw_rate_deg_s: Option<f64>,
 }
 

@@ -39,7 +39,7 @@ impl Command {
         match self.mode {
             Mode::FileDownload => {
                 for number in [self.heading_deg, thrust, difference] {
-                    let number = number.filter(|number| number.is_finite()).unwrap_or_default();
+                    let number = number.filter(|number| number.is_finite()).unwrap_or_default().round();
                     // No lines to come, and what has no meaning here, are three zeros.
                     let width = if number == 0.0 { 3 } else { 0 };
                     line.padded(Some(number), width, 0);

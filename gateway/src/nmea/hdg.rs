@@ -28,7 +28,7 @@ impl Hdg {
     }
 
     pub(super) fn write(&self, mut line: Line) {
-        line.compass(self.heading_deg, 0, 1);
+        line.compass(self.heading_deg, 5, 1);
         line.east(self.deviation_deg, 1);
         line.east(self.variation_deg, 1);
         line.end();
