@@ -1,5 +1,11 @@
 //! The door to real boats.
 
+pub mod bridge;
 pub mod declination;
+pub mod emulator;
+pub mod estimate;
+pub mod fence;
+pub mod front_seat;
 pub mod geodesy;
 pub mod nmea;
+pub mod supervisor;

@@ -1,0 +1,8 @@
+//! Gateway and boat in one pool: both cores joined in memory, with time in the test's hands and faults at will.
+
+mod faults;
+mod missions;
+mod oracle;
+mod pool;
+mod sailing;
+mod storms;
