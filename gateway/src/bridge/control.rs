@@ -12,7 +12,7 @@ pub(super) struct ControlLog {
     said: Option<(SimTime, Mode, Option<Operator>)>,
     /// The mode it was last sent.
     sent: Option<Mode>,
-    /// Since when it has shown another one, or could have shown this one.
+    /// Since when it has shown another one.
     astray_since: Option<SimTime>,
 }
 
@@ -28,9 +28,8 @@ impl ControlLog {
 
     pub(super) fn take(&mut self, now: SimTime, state: &ControlState) {
         self.said = Some((now, state.mode, state.operator));
-        if self.sent.is_none_or(|sent| sent == state.mode) {
-            self.astray_since = None;
-        }
+        let astray = self.sent.is_some_and(|sent| sent != state.mode);
+        self.astray_since = astray.then(|| self.astray_since.unwrap_or(now));
     }
 
     /// The boat was sent this mode.

@@ -73,7 +73,7 @@ fn thrust_orders_reach_the_thrusters_within_the_limits() {
     let mut pool = Pool::under_way("surveyor.toml", None);
     pool.mind = Some(Order::Thrust { port: 0.5, starboard: 0.1 });
     pool.run(2.0);
-    assert_eq!(pool.oracle.last, "$PSEAC,T,0,30,20,*09\r\n");
+    assert_eq!(pool.oracle.last, "$PSEAC,T,0,30,20,*0D\r\n");
     pool.mind = Some(Order::Thrust { port: 1.0, starboard: 1.0 });
     pool.run(2.0);
     assert_eq!(pool.oracle.last, "$PSEAC,T,0,70,0,*3B\r\n");
