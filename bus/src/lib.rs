@@ -9,6 +9,7 @@
 mod board;
 mod error;
 mod inbox;
+pub mod lookout;
 mod net;
 mod phonebook;
 mod session;
