@@ -8,4 +8,6 @@ pub mod fence;
 pub mod front_seat;
 pub mod geodesy;
 pub mod nmea;
+pub mod record;
+pub mod replay;
 pub mod supervisor;

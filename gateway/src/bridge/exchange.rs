@@ -39,6 +39,8 @@ pub enum Input {
     Moored,
     /// An order, and the time of the picture that it answers.
     Order(Order, SimTime),
+    /// Something that should have been an order and is none.
+    BadOrder,
     /// Where the other real boats are.
     Others(Vec<Ned>),
     /// A person wants something.
@@ -100,4 +102,6 @@ pub enum Event {
     Blocked(bool),
     /// Something that a person should know.
     Warning(String),
+    /// Something that the shell saw and the core does not know of.
+    Remark(String),
 }

@@ -144,6 +144,7 @@ impl Bridge {
             Input::Bytes(bytes) => self.read(now, bytes, out),
             Input::Moored => self.order = None,
             Input::Order(order, given) => self.take_order(now, *order, *given),
+            Input::BadOrder => self.tally.bad_orders += 1,
             Input::Others(places) => self.others = (now, places.clone()),
             Input::Operator(OperatorCommand::Mission(mission)) => wish = self.take_mission(now, mission, out),
             Input::Operator(command) => wish = wish_of(command),

@@ -4,5 +4,6 @@ mod faults;
 mod missions;
 mod oracle;
 mod pool;
+mod recording;
 mod sailing;
 mod storms;

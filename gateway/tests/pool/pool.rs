@@ -47,6 +47,8 @@ pub(crate) struct Pool {
     pub(crate) navs: Vec<(SimTime, NavOut)>,
     pub(crate) sent: Vec<(SimTime, Vec<u8>)>,
     pub(crate) refused: Option<String>,
+    /// Everything that went into the gateway, and what came out.
+    pub(crate) turns: Vec<(SimTime, Input, Outbox)>,
 }
 
 /// The plan of a gateway with this file's settings, on the field of the first game.
@@ -102,6 +104,7 @@ impl Pool {
             navs: vec![],
             sent: vec![],
             refused: None,
+            turns: vec![],
         };
         pool.link(true);
         pool
@@ -136,6 +139,7 @@ impl Pool {
             _ => {}
         }
         self.bridge.take(self.now, input, &mut out);
+        self.turns.push((self.now, input.clone(), out.clone()));
         self.take_out(out);
     }
 
