@@ -1,1 +1,3 @@
 //! The door to real boats.
+
+pub mod link;
