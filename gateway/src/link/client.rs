@@ -3,7 +3,7 @@
 use super::backoff::Backoff;
 use super::clock;
 use super::crew::{Crew, Woken};
-use super::peer::{End, Seat};
+use super::peer::Seat;
 use super::port::{Port, TICK};
 use super::{LinkAddress, LinkEvent};
 use serial2::SerialPort;
@@ -27,15 +27,12 @@ const UNACKNOWLEDGED: Duration = Duration::from_secs(2);
 /// Connects, serves, waits, until the link is closed.
 pub(super) fn keep(crew: &Arc<Crew>, address: &LinkAddress) {
     let mut backoff = Backoff::new(crew.settings.retry);
+    let mut seen = crew.reconnects();
     loop {
         let seat = connect(crew, address).and_then(|(port, name)| Seat::take(crew, port, name));
         let mut wait = match seat {
             Ok(seat) => {
-                let served = seat.serve();
-                backoff.judge(served.heard_for);
-                if served.end == End::Asked {
-                    backoff.reset();
-                }
+                backoff.judge(seat.serve().heard_for);
                 backoff.wait()
             }
             Err(_) if crew.is_stopped() => return,
@@ -46,7 +43,7 @@ pub(super) fn keep(crew: &Arc<Crew>, address: &LinkAddress) {
             }
         };
         loop {
-            match crew.pause(wait) {
+            match crew.pause(wait, &mut seen) {
                 Woken::Rested => break,
                 Woken::Stopped => return,
                 Woken::Asked => {
@@ -94,7 +91,7 @@ fn dial(crew: &Crew, address: SocketAddr) -> io::Result<TcpStream> {
         if clock::since(start) >= CONNECT {
             return Err(io::Error::new(ErrorKind::TimedOut, format!("no answer for {CONNECT:?}")));
         }
-        if crew.pause(GLANCE) == Woken::Stopped {
+        if crew.rest(GLANCE) == Woken::Stopped {
             return Err(ErrorKind::Interrupted.into());
         }
     }

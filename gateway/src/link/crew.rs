@@ -5,7 +5,7 @@ use super::peer::{End, Peer};
 use super::{LinkEvent, LinkSettings};
 use std::io;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -129,27 +129,37 @@ impl Crew {
         lock(&self.watch).stopped = true;
         self.changed.notify_all();
         self.end_all(&End::Stopped);
-        let busy = |watch: &mut Watch| watch.hands > 0;
         // Whoever is not back by then hangs in what it tells, and ends after that.
-        drop(self.changed.wait_timeout_while(lock(&self.watch), limit, busy));
+        drop(self.wait(limit, |watch| watch.hands > 0));
     }
 
     pub(super) fn is_stopped(&self) -> bool {
         lock(&self.watch).stopped
     }
 
-    /// Waits this long, or until something else is wanted.
-    pub(super) fn pause(&self, limit: Duration) -> Woken {
-        let guard = lock(&self.watch);
-        let before = guard.reconnects;
-        let nothing_new = |watch: &mut Watch| !watch.stopped && watch.reconnects == before;
-        let waited = self.changed.wait_timeout_while(guard, limit, nothing_new);
-        let (watch, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        match *watch {
-            Watch { stopped: true, .. } => Woken::Stopped,
-            Watch { reconnects, .. } if reconnects != before => Woken::Asked,
-            _ => Woken::Rested,
+    /// How often a reconnect was asked for.
+    pub(super) fn reconnects(&self) -> u64 {
+        lock(&self.watch).reconnects
+    }
+
+    /// Waits this long, unless the link is closed.
+    pub(super) fn rest(&self, limit: Duration) -> Woken {
+        if self.wait(limit, |watch| !watch.stopped).stopped { Woken::Stopped } else { Woken::Rested }
+    }
+
+    /// As [`Crew::rest`], unless a reconnect is asked for, or was since `seen`, which is then brought up to date.
+    pub(super) fn pause(&self, limit: Duration, seen: &mut u64) -> Woken {
+        let watch = self.wait(limit, |watch| !watch.stopped && watch.reconnects == *seen);
+        if watch.stopped {
+            return Woken::Stopped;
         }
+        let before = std::mem::replace(seen, watch.reconnects);
+        if before == *seen { Woken::Rested } else { Woken::Asked }
+    }
+
+    fn wait(&self, limit: Duration, nothing_new: impl Fn(&Watch) -> bool) -> MutexGuard<'_, Watch> {
+        let waited = self.changed.wait_timeout_while(lock(&self.watch), limit, |watch| nothing_new(watch));
+        waited.unwrap_or_else(PoisonError::into_inner).0
     }
 
     fn end_all(&self, end: &End) {

@@ -66,6 +66,9 @@ impl Port {
 
     /// Writes all of it, in one call if the system takes it so; gives up when told to, or after a stall.
     pub(super) fn write(&self, bytes: &[u8], is_given_up: impl Fn() -> bool) -> io::Result<Wrote> {
+        if let Port::Pty(pty) = self {
+            pty.begin()?;
+        }
         let flushes = self.flushes();
         let mut rest = bytes;
         let mut moved_at = clock::now();

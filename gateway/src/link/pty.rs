@@ -1,8 +1,7 @@
 //! A pseudo-terminal of our own, which others open as if a boat was on a serial line.
 
-use super::backoff::Backoff;
 use super::clock;
-use super::crew::Crew;
+use super::crew::{Crew, Woken};
 use super::outbox::lock;
 use super::peer::{End, Seat, Served};
 use super::port::{Port, TICK};
@@ -33,9 +32,17 @@ pub(super) struct Pty {
     slave: OwnedFd,
     path: PathBuf,
     link: Option<PathBuf>,
-    /// Since when there has always been something that nobody read.
-    unread_since: Mutex<Option<Instant>>,
+    attention: Mutex<Attention>,
     flushes: AtomicU64,
+}
+
+/// What we know of somebody who reads.
+#[derive(Default)]
+struct Attention {
+    /// Since when there has always been something that nobody read.
+    unread_since: Option<Instant>,
+    /// When the newest in it was begun.
+    begun_at: Option<Instant>,
 }
 
 impl Pty {
@@ -43,8 +50,7 @@ impl Pty {
     pub(super) fn open(link: Option<&Path>) -> Result<Pty, LinkError> {
         let (master, slave, path) = pair().map_err(|e| LinkError::Pty { reason: e.to_string() })?;
         // Made before the symlink is, so that a refusal leaves nothing behind.
-        let mut pty =
-            Pty { master, slave, path, link: None, unread_since: Mutex::new(None), flushes: AtomicU64::new(0) };
+        let mut pty = Pty { master, slave, path, link: None, attention: Mutex::default(), flushes: AtomicU64::new(0) };
         if let Some(link) = link {
             point(link, &pty.path)?;
             pty.link = Some(link.to_owned());
@@ -70,26 +76,37 @@ impl Pty {
         self.flushes.load(Ordering::Relaxed)
     }
 
-    /// Throws away what has not been read for some time. Nothing tells us that somebody opened the slave,
-    /// but somebody who reads empties it.
+    /// Before something new: what was not read for some time makes room for it.
+    pub(super) fn begin(&self) -> io::Result<()> {
+        let mut attention = lock(&self.attention);
+        attention.begun_at = Some(clock::now());
+        if self.unread_for(&mut attention)? >= FRESH { self.empty(&mut attention) } else { Ok(()) }
+    }
+
+    /// Now and then: throws away what was not read for some time, if nothing in it is new. Nothing tells us
+    /// that somebody opened the slave, but somebody who reads empties it.
     pub(super) fn freshen(&self) -> io::Result<()> {
-        let unread = rustix::io::ioctl_fionread(&self.slave)? > 0;
-        let mut since = lock(&self.unread_since);
-        match *since {
-            Some(start) if unread && clock::since(start) >= FRESH => {
-                *since = None;
-                drop(since);
-                self.flush()?;
-            }
-            Some(_) if unread => {}
-            None if unread => *since = Some(clock::now()),
-            _ => *since = None,
-        }
-        Ok(())
+        let mut attention = lock(&self.attention);
+        let is_old = attention.begun_at.is_none_or(|at| clock::since(at) >= FRESH);
+        let unread_for = self.unread_for(&mut attention)?;
+        if is_old && unread_for >= FRESH { self.empty(&mut attention) } else { Ok(()) }
     }
 
     /// Throws away all that has not been read.
     pub(super) fn flush(&self) -> io::Result<()> {
+        self.empty(&mut lock(&self.attention))
+    }
+
+    /// For how long there has always been something to read.
+    fn unread_for(&self, attention: &mut Attention) -> io::Result<Duration> {
+        let is_unread = rustix::io::ioctl_fionread(&self.slave)? > 0;
+        let since = attention.unread_since.filter(|_| is_unread);
+        attention.unread_since = since.or_else(|| is_unread.then(clock::now));
+        Ok(since.map_or(Duration::ZERO, clock::since))
+    }
+
+    fn empty(&self, attention: &mut Attention) -> io::Result<()> {
+        attention.unread_since = None;
         self.flushes.fetch_add(1, Ordering::Relaxed);
         // On the slave: flushing the master would throw away what the others wrote to us.
         Ok(rustix::termios::tcflush(&self.slave, QueueSelector::IFlush)?)
@@ -108,25 +125,17 @@ impl Drop for Pty {
 
 /// Serves whoever opens it, until the link is closed.
 pub(super) fn keep(crew: &Arc<Crew>, pty: &Arc<Pty>) {
-    let mut backoff = Backoff::new(crew.settings.retry);
+    let again = crew.settings.retry.0;
     loop {
         let port = Port::Pty(Arc::clone(pty));
-        let served = Seat::take(crew, port, pty.path.display().to_string()).map(Seat::serve);
-        let again = backoff.wait();
-        match served {
+        match Seat::take(crew, port, pty.path.display().to_string()).map(Seat::serve) {
             // There is no connection to break: who asks for that wants a clean start.
-            Ok(Served { end: End::Asked, .. }) => {
-                drop(pty.flush());
-                backoff.reset();
-            }
-            Ok(Served { end: End::Stopped, .. }) => return,
-            Ok(_) => drop(crew.pause(again)),
-            Err(e) => {
-                crew.tell(LinkEvent::Failed { reason: e.to_string(), again });
-                crew.pause(again);
-            }
+            Ok(Served { end: End::Asked, .. }) => drop(pty.flush()),
+            Ok(_) => {}
+            Err(e) => crew.tell(LinkEvent::Failed { reason: e.to_string(), again }),
         }
-        if crew.is_stopped() {
+        // With both ends in our hands there is little that can break, and nothing to wait longer for.
+        if crew.rest(again) == Woken::Stopped {
             return;
         }
     }

@@ -29,7 +29,7 @@ pub(super) fn keep(crew: &Arc<Crew>, listener: &TcpListener) {
             Ok((stream, from)) => welcome(crew, stream, from),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
             // Too many open files, for example: it may pass.
-            Err(_) if crew.pause(TICK) == Woken::Stopped => return,
+            Err(_) if crew.rest(TICK) == Woken::Stopped => return,
             Err(_) => {}
         }
     }

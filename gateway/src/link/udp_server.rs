@@ -39,7 +39,7 @@ pub(super) fn keep(crew: &Arc<Crew>, socket: &Arc<UdpSocket>) {
         match socket.recv_from(&mut buffer) {
             Ok((count, from)) => hear(crew, socket, &mut guests, from, &buffer[..count]),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-            Err(_) if crew.pause(TICK) == Woken::Stopped => break,
+            Err(_) if crew.rest(TICK) == Woken::Stopped => break,
             Err(_) => {}
         }
         while let Some((at, end)) = leaver(&guests, patience) {
