@@ -187,8 +187,8 @@ impl Link {
     }
 
     /// Last words: displaces what is queued, writes these bytes to all peers, and waits for that up to
-    /// `limit`. Whether there was somebody, and everybody took them. They are not displaced by what other
-    /// threads send at the same time. Works while panicking.
+    /// `limit`. Whether there was somebody, and the system took them for everybody; what had not begun by
+    /// then stays queued. They are not displaced by what other threads send meanwhile. Works while panicking.
     pub fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool {
         self.crew.hand_over(bytes.to_vec(), None, Rank::LastWords).wait(limit)
     }

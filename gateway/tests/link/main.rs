@@ -1,5 +1,6 @@
 //! Links against real sockets and terminals of this machine.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests too may stop at what cannot be")]
 #![allow(clippy::disallowed_methods, reason = "what a link promises is told in milliseconds of the wall clock")]
 
 mod address;
