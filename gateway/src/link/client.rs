@@ -139,5 +139,5 @@ fn open_serial(path: &Path, baud: u32) -> io::Result<(Port, String)> {
     line.set_write_timeout(TICK)?;
     // What came before anybody listened is old.
     line.discard_input_buffer()?;
-    Ok((Port::Serial(line), path.display().to_string()))
+    Ok((Port::Serial { line, baud }, path.display().to_string()))
 }

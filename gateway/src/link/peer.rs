@@ -4,7 +4,7 @@ use super::LinkEvent;
 use super::clock;
 use super::crew::Crew;
 use super::outbox::{Outbox, lock};
-use super::port::{Heard, Port, Wrote};
+use super::port::{Heard, Port, TICK, Wrote};
 use std::fmt;
 use std::io;
 use std::sync::{Arc, Mutex};
@@ -72,7 +72,8 @@ impl Peer {
     /// Writes what is handed over, until the end.
     fn write_on(&self, crew: &Crew) {
         while let Some(parcel) = self.outbox.next() {
-            match self.port.write(parcel.bytes(), || lock(&self.end).is_some()) {
+            let (begun_at, transit) = (clock::now(), self.port.transit(parcel.bytes().len()));
+            match self.port.write(parcel.bytes(), || self.is_over()) {
                 Ok(Wrote::All) => {
                     let at = clock::now();
                     if let Some(tag) = parcel.take() {
@@ -82,7 +83,15 @@ impl Peer {
                 Ok(Wrote::Dropped) => crew.note_displaced(1),
                 Err(e) => self.end(End::Lost(format!("cannot write: {e}"))),
             }
+            // What is handed over meanwhile can still be displaced here; in the driver it could not.
+            while clock::since(begun_at) < transit && !self.is_over() {
+                crew.rest(transit.saturating_sub(clock::since(begun_at)).min(TICK));
+            }
         }
+    }
+
+    fn is_over(&self) -> bool {
+        lock(&self.end).is_some()
     }
 }
 

@@ -25,7 +25,10 @@ pub(super) enum Port {
     Udp(UdpSocket),
     /// Shared by all peers of a server, which reads it.
     UdpTo(Arc<UdpSocket>, SocketAddr),
-    Serial(SerialPort),
+    Serial {
+        line: SerialPort,
+        baud: u32,
+    },
     Pty(Arc<Pty>),
 }
 
@@ -51,7 +54,7 @@ impl Port {
             Port::Tcp(stream) => (&mut &*stream).read(buffer),
             Port::Udp(socket) => socket.recv(buffer),
             Port::UdpTo(..) => Err(ErrorKind::Unsupported.into()),
-            Port::Serial(line) => line.read(buffer),
+            Port::Serial { line, .. } => line.read(buffer),
             Port::Pty(pty) => pty.read(buffer),
         };
         match read {
@@ -99,7 +102,7 @@ impl Port {
             Port::Tcp(stream) => (&mut &*stream).write(bytes),
             Port::Udp(socket) => socket.send(bytes),
             Port::UdpTo(socket, to) => socket.send_to(bytes, *to),
-            Port::Serial(line) => line.write(bytes),
+            Port::Serial { line, .. } => line.write(bytes),
             Port::Pty(pty) => pty.write(bytes),
         }
     }
@@ -135,10 +138,24 @@ impl Port {
         }
     }
 
-    /// Cuts the line: what the system still holds would be stale when it arrived.
+    /// Cuts the line: what the system still holds would be stale when it arrived. A line that is gone
+    /// already cannot be cut, and need not be.
     pub(super) fn reset(&self) {
-        if let Port::Tcp(stream) = self {
-            drop(SockRef::from(stream).set_linger(Some(Duration::ZERO)));
+        match self {
+            Port::Tcp(stream) => drop(SockRef::from(stream).set_linger(Some(Duration::ZERO))),
+            Port::Serial { line, .. } => drop(line.discard_output_buffer()),
+            _ => {}
+        }
+    }
+
+    /// How long so many bytes are on their way to the other side, where that is long. The driver of a serial
+    /// line takes 4 KiB at once, which are 8 s of old commands at 4800 baud.
+    pub(super) fn transit(&self, count: usize) -> Duration {
+        // Eight bits, a start and a stop bit.
+        if let Port::Serial { baud, .. } = self {
+            Duration::from_secs_f64(10.0 * count as f64 / f64::from(*baud))
+        } else {
+            Duration::ZERO
         }
     }
 }

@@ -2,6 +2,9 @@
 
 use crate::ears::{connect, listen, open, patient, wait};
 use gateway::link::{Link, LinkAddress, LinkError, LinkEvent};
+use serial2::SerialPort;
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt;
 use std::time::{Duration, Instant};
 
 #[test]
@@ -67,4 +70,36 @@ fn a_speed_that_no_line_has_is_refused() {
     // The same with a speed that they do have begins, though no such device is there.
     let (_link, ears) = open(&LinkAddress::Serial { path: "/dev/none".into(), baud: 9600 }, patient());
     ears.until("failure", |events| events.iter().find_map(wait));
+}
+
+#[test]
+fn a_slow_line_gets_the_newest_rather_than_all_in_order() {
+    let (boat, boat_ears) = listen("pty");
+    let (link, ears) = connect(&format!("serial://{}?baud=4800", boat.reach()), patient());
+    ears.up(0);
+    // Each is 100 ms on the line, and the first is on it.
+    link.send(vec![0; 48], 0);
+    ears.written(0);
+    for tag in 1..50 {
+        link.send(vec![tag; 48], tag.into());
+    }
+    ears.written(49);
+    let wanted: Vec<u8> = [[0; 48], [49; 48]].concat();
+    boat_ears.heard(&wanted);
+    assert_eq!(link.displaced(), 48);
+}
+
+#[test]
+fn a_line_that_takes_nothing_for_two_seconds_is_opened_anew() {
+    let (silent, _slave) = SerialPort::pair().unwrap();
+    let name = rustix::pty::ptsname(&silent, Vec::new()).unwrap();
+    let path = std::path::Path::new(OsStr::from_bytes(name.as_bytes()));
+    let (link, ears) = connect(&format!("serial://{}?baud=115200", path.display()), patient());
+    ears.up(0);
+    let start = Instant::now();
+    link.send(vec![b'x'; 1 << 20], 0);
+    let (reason, down) = ears.down(0);
+    assert!(reason.contains("nothing taken for 2s"), "{reason}");
+    assert!(down - start > Duration::from_secs(2) && down - start < Duration::from_secs(4), "{:?}", down - start);
+    ears.up(1);
 }

@@ -259,6 +259,30 @@ fn a_dropped_link_says_good_bye_within_200_ms() {
 }
 
 #[test]
+fn a_boat_that_keeps_talking_hears_the_good_bye_whole() {
+    let (link, ears, mut boat, _listener) = joined(patient());
+    let mut mouth = boat.try_clone().unwrap();
+    let (hush, is_hushed) = std::sync::mpsc::channel::<()>();
+    let talker = thread::spawn(move || {
+        // Until the other end hangs up, or ours has.
+        while is_hushed.recv_timeout(Duration::from_micros(200)).is_err() {
+            mouth.write_all(&[b'x'; 500]).expect("the link listens until we have heard its last word");
+        }
+    });
+    ears.until("talk", |events| (events.len() > 20).then_some(()));
+    let ear = thread::spawn(move || {
+        let mut got = Vec::new();
+        boat.read_to_end(&mut got).map(|_| got)
+    });
+    assert!(link.send_and_wait(b"last", LIMIT));
+    let closer = thread::spawn(move || drop(link));
+    assert_eq!(ear.join().unwrap().unwrap(), b"last");
+    hush.send(()).unwrap();
+    talker.join().unwrap();
+    closer.join().unwrap();
+}
+
+#[test]
 fn a_link_that_cannot_reach_anybody_is_dropped_as_quickly() {
     // Full: nobody answers the next one.
     let listener = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();
