@@ -226,17 +226,18 @@ fn a_reconnect_breaks_the_connection_and_makes_a_new_one() {
 }
 
 #[test]
-fn a_reconnect_shortens_a_long_wait() {
+fn a_reconnect_shortens_a_long_wait_to_the_first() {
     let (listener, address) = listener();
-    let retry = (Duration::from_millis(10), Duration::from_secs(60));
-    let (link, ears) = connect(&address, LinkSettings { silence: None, retry });
-    (0..6).for_each(|_| drop(accept(&listener)));
-    let (_, down) = ears.down(5);
-    // 320 ms and 640 ms would follow.
+    let first = Duration::from_millis(50);
+    let (link, ears) = connect(&address, LinkSettings { silence: None, retry: (first, Duration::from_secs(60)) });
+    (0..5).for_each(|_| drop(accept(&listener)));
+    // 800 ms would follow.
+    ears.down(4);
+    let asked = Instant::now();
     link.reconnect();
     let _boat = accept(&listener);
-    let wait = ears.up(6).1 - down;
-    assert!(wait < Duration::from_millis(250), "{wait:?}");
+    let wait = ears.up(5).1 - asked;
+    assert!(wait >= first && wait < Duration::from_millis(500), "{wait:?}");
 }
 
 #[test]
@@ -260,25 +261,19 @@ fn a_dropped_link_says_good_bye_within_200_ms() {
 
 #[test]
 fn a_boat_that_keeps_talking_hears_the_good_bye_whole() {
-    let (link, ears, mut boat, _listener) = joined(patient());
-    let mut mouth = boat.try_clone().unwrap();
-    let (hush, is_hushed) = std::sync::mpsc::channel::<()>();
-    let talker = thread::spawn(move || {
-        // Until the other end hangs up, or ours has.
-        while is_hushed.recv_timeout(Duration::from_micros(200)).is_err() {
-            mouth.write_all(&[b'x'; 500]).expect("the link listens until we have heard its last word");
-        }
-    });
-    ears.until("talk", |events| (events.len() > 20).then_some(()));
-    let ear = thread::spawn(move || {
-        let mut got = Vec::new();
-        boat.read_to_end(&mut got).map(|_| got)
-    });
+    let (link, _ears, mut boat, _listener) = joined(patient());
     assert!(link.send_and_wait(b"last", LIMIT));
     let closer = thread::spawn(move || drop(link));
-    assert_eq!(ear.join().unwrap().unwrap(), b"last");
-    hush.send(()).unwrap();
-    talker.join().unwrap();
+    let mut got = Vec::new();
+    boat.read_to_end(&mut got).unwrap();
+    assert_eq!(got, b"last");
+    // A boat takes a moment to notice. Nobody slams the door in its face meanwhile: a reset could make it
+    // forget what it has not read yet.
+    for _ in 0..10 {
+        boat.write_all(b"$GPGGA").expect("the link listens on for a moment");
+        thread::sleep(Duration::from_millis(1));
+    }
+    drop(boat);
     closer.join().unwrap();
 }
 
