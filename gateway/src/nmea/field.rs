@@ -55,12 +55,13 @@ impl<'a> Fields<'a> {
         number.map(Some).ok_or_else(|| self.wrong(at, "a small whole number or nothing"))
     }
 
-    /// Whether the letter in field `at` is `A` (data valid); `V` and nothing are not.
+    /// Whether the letter in field `at` is `A` (data valid) or `D` (with differential corrections); `V` and nothing
+    /// are not.
     pub(super) fn valid(&self, at: usize) -> Result<bool, ParseError> {
         match self.text(at) {
-            "A" => Ok(true),
+            "A" | "D" => Ok(true),
             "V" | "" => Ok(false),
-            _ => Err(self.wrong(at, "A, V or nothing")),
+            _ => Err(self.wrong(at, "A, D, V or nothing")),
         }
     }
 

@@ -203,7 +203,7 @@ fn a_wrong_field_is_named() {
         ("GPGGA,250502.00,,,,,0", "GPGGA field 1 is \"250502.00\", expected a time hhmmss.ss or nothing"),
         ("GPGGA,150502,,,,,0,,,5.5,F", "GPGGA field 10 is \"F\", expected M"),
         ("GPRMC,150502,A,,,,,,,311126", "GPRMC field 9 is \"311126\", expected a date ddmmyy or nothing"),
-        ("GPRMC,150502,1,,,,,,,", "GPRMC field 2 is \"1\", expected A, V or nothing"),
+        ("GPRMC,150502,1,,,,,,,", "GPRMC field 2 is \"1\", expected A, D, V or nothing"),
         ("GPVTG,045.0,T,2.10,N,3.89,K,A,", "GPVTG field 4 is \"N\", expected M"),
         ("GPVTG,045.0,T,059.5,M", "GPVTG has 4 data fields, expected 8 or more"),
         ("HCHDG,58.7,,,14.5,", "HCHDG field 5 is \"\", expected E or W"),

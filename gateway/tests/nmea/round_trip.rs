@@ -303,7 +303,7 @@ fn wild() -> BoxedStrategy<Sentence> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn what_fits_comes_back(sentence in tame()) {
