@@ -16,7 +16,7 @@ mod tournament;
 
 pub(super) use boat::{RawAutopilot, RawBattery, RawBoat, RawHull, RawPropeller, RawThruster, RawVentilation};
 pub(super) use field::{RawField, RawObstacle, RawSide, RawWalls};
-pub(super) use game::{RawFleet, RawGame, RawSpawn, RawVehicle, Whereabouts};
+pub(super) use game::{RawFleet, RawGame, RawSource, RawSpawn, RawVehicle, Whereabouts};
 pub(super) use kinematic::{RawKinematic, RawPid};
 pub(super) use link::{RawLink, RawLoss, RawSharing};
 pub(super) use rules::RawRules;
