@@ -50,6 +50,9 @@ const LEAVE: Duration = Duration::from_secs(5);
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let scenario = load(&args.scenario, &args.instead.overrides(&args.scenario)?)?;
+    if args.in_process || args.pace == Pace::Lockstep {
+        scenario.has_no_real_boats()?;
+    }
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
     let report = if args.in_process {

@@ -88,6 +88,8 @@ impl EventOutcome {
             Event::MindLost { .. } => ("mind_lost", None, None),
             Event::MindBack { .. } => ("mind_back", None, None),
             Event::Quarantined { .. } => ("quarantined", None, None),
+            Event::NavLost { .. } => ("nav_lost", None, None),
+            Event::NavBack { .. } => ("nav_back", None, None),
             Event::Ended { winner } => ("ended", None, winner.and_then(team)),
         };
         EventOutcome {
@@ -122,6 +124,8 @@ impl EventOutcome {
             "mind_lost" => format!("{who} has LOST ITS MIND and holds"),
             "mind_back" => format!("{who} has a mind again"),
             "quarantined" => format!("{who} is QUARANTINED: its numbers went bad"),
+            "nav_lost" => format!("{who} is LOST: nobody reports where it is"),
+            "nav_back" => format!("{who} is found again"),
             "ended" if self.team.is_none() => "the game ends in a draw".to_owned(),
             "ended" => format!("{team} wins"),
             other => other.to_owned(),

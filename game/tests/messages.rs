@@ -204,6 +204,8 @@ fn every_event_survives_its_record() {
         Event::MindLost { vehicle: v },
         Event::MindBack { vehicle: v },
         Event::Quarantined { vehicle: v },
+        Event::NavLost { vehicle: v },
+        Event::NavBack { vehicle: v },
         Event::Ended { winner: Some(TeamId(1)) },
         Event::Ended { winner: None },
     ] {

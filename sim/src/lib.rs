@@ -6,6 +6,7 @@ pub mod autopilot;
 pub mod battery;
 pub mod contact;
 pub mod contest;
+pub mod external;
 pub mod flaw;
 pub mod hull;
 pub mod kinematic;
@@ -25,5 +26,6 @@ mod view;
 pub mod world;
 
 pub use contest::Contest;
+pub use external::BadReport;
 pub use state::{BoatState, RestoreError, State};
 pub use world::{NoStart, World};

@@ -11,7 +11,7 @@ use crate::state::{BoatState, RestoreError, State};
 use game::frame::{self, Ned};
 use game::near::{Near, Pair};
 use game::rules::{Notes, Referee};
-use game::scenario::Problems;
+use game::scenario::{Problems, RealBoats};
 use game::stream::Stream;
 use game::{Event, Order, Pose, Scenario, SimTime, VehicleId, math};
 use thiserror::Error;
@@ -36,6 +36,9 @@ pub enum NoStart {
     /// The numbers drawn for this seed are each allowed, but not together.
     #[error("what was drawn for this seed does not go together\n{0}")]
     Draw(#[from] Problems),
+    /// The game has real boats, and is to be played without a clock.
+    #[error(transparent)]
+    RealBoats(#[from] RealBoats),
 }
 
 /// Memory that is used again every tick; all of it follows from the state.
@@ -154,6 +157,14 @@ impl World {
         self.state.digest()
     }
 
+    /// What a vehicle is to do by the rules, given an order, and the share of its top speed that it may use; being
+    /// driven home is a course at any speed.
+    #[must_use]
+    pub fn obeyed(&self, vehicle: VehicleId, order: Order) -> (Order, f64) {
+        let i = vehicle.index();
+        self.model.obeyed(&self.state.standing, i, self.state.boats[i].pose.at, order)
+    }
+
     /// The sea now.
     #[must_use]
     pub fn sea(&self) -> SeaNow<'_> {
@@ -221,6 +232,7 @@ impl World {
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {
             let (passage, nu) = match model.point(i) {
+                _ if model.is_external(i) => model.carried_passage(i, boat, work.turns[i]),
                 Some((place, point)) if !boat.quarantined => {
                     let order = model.obeyed(&state.standing, i, boat.pose.at, orders[i]);
                     let drift_m_s = sea.current_at(boat.pose.at);
@@ -265,11 +277,9 @@ impl World {
         let World { model, state, work } = self;
         let mut moved = false;
         for i in 0..state.boats.len() {
-            let Some((centre, radius_m)) =
-                model.referee.keepout(&state.standing, VehicleId::at(i), state.boats[i].pose.at)
-            else {
-                continue;
-            };
+            let keepout = model.referee.keepout(&state.standing, VehicleId::at(i), state.boats[i].pose.at);
+            // A real boat is where it is.
+            let Some((centre, radius_m)) = keepout.filter(|_| !model.is_external(i)) else { continue };
             let boat = &mut state.boats[i];
             let from_centre = boat.pose.at - centre;
             let distance_m = from_centre.length();

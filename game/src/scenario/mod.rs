@@ -14,6 +14,7 @@ mod overrides;
 mod problem;
 mod raw;
 mod read;
+mod real_boats;
 mod reference;
 mod source;
 mod tournament;
@@ -26,6 +27,7 @@ pub use load::{
 };
 pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
+pub use real_boats::RealBoats;
 pub use reference::reference;
 pub use tournament::{Entrant, Tournament};
 
@@ -129,6 +131,18 @@ pub struct Vehicle {
     pub strategy: usize,
     /// Where it starts.
     pub berth: Berth,
+    /// Where its motion comes from.
+    pub source: Source,
+}
+
+/// Where a vehicle's motion comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Source {
+    /// From the boat and the sea of the scenario.
+    #[default]
+    Simulated,
+    /// From a real boat: its gateway reports where it is.
+    External,
 }
 
 /// Where a vehicle starts.

@@ -17,7 +17,7 @@ mod tournament;
 
 pub(super) use boat::{RawAutopilot, RawBattery, RawBoat, RawHull, RawPropeller, RawThruster, RawVentilation};
 pub(super) use field::{RawField, RawObstacle, RawSide, RawWalls};
-pub(super) use game::{RawFleet, RawGame, RawSpawn, RawVehicle, Whereabouts};
+pub(super) use game::{RawFleet, RawGame, RawSource, RawSpawn, RawVehicle, Whereabouts};
 pub(super) use gateway::{
     RawBatteryWatch, RawControlWatch, RawFence, RawGateway, RawHalt, RawLimits, RawLoops, RawNavWatch,
 };
