@@ -117,6 +117,10 @@ pub enum Event {
         /// Which boat.
         vehicle: VehicleId,
     },
+    /// Somebody ashore stopped all boats.
+    EStopped,
+    /// That stop is over.
+    Released,
     /// The game is over.
     Ended {
         /// Who won; `None` is a draw.
@@ -145,7 +149,7 @@ impl Event {
             | Event::NavLost { vehicle }
             | Event::NavBack { vehicle } => Some(vehicle),
             Event::Collided { first, .. } => Some(first),
-            Event::Ended { .. } => None,
+            Event::EStopped | Event::Released | Event::Ended { .. } => None,
         }
     }
 }

@@ -183,6 +183,8 @@ impl From<Logged> for EventRecord {
             Event::Quarantined { vehicle } => (14, v(vehicle), -1),
             Event::NavLost { vehicle } => (16, v(vehicle), -1),
             Event::NavBack { vehicle } => (17, v(vehicle), -1),
+            Event::EStopped => (18, -1, -1),
+            Event::Released => (19, -1, -1),
             Event::Ended { winner } => (15, winner.map_or(-1, |team| i32::from(team.0)), -1),
         };
         EventRecord { tick: logged.tick, at_ns: logged.at, kind, subject, object }
@@ -215,6 +217,8 @@ impl EventRecord {
             15 => Event::Ended { winner: u8::try_from(self.subject).ok().map(TeamId) },
             16 => Event::NavLost { vehicle: vehicle? },
             17 => Event::NavBack { vehicle: vehicle? },
+            18 => Event::EStopped,
+            19 => Event::Released,
             _ => return None,
         };
         Some(Logged { tick: self.tick, at: self.at_ns, event })

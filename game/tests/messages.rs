@@ -206,6 +206,8 @@ fn every_event_survives_its_record() {
         Event::Quarantined { vehicle: v },
         Event::NavLost { vehicle: v },
         Event::NavBack { vehicle: v },
+        Event::EStopped,
+        Event::Released,
         Event::Ended { winner: Some(TeamId(1)) },
         Event::Ended { winner: None },
     ] {

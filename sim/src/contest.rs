@@ -30,6 +30,8 @@ pub struct Contest {
     /// After how long without one each vehicle's thrusters stop.
     watchdogs: Vec<Option<SimTime>>,
     mind_lost: Vec<bool>,
+    /// Whether all boats hold, by somebody ashore.
+    stopped: bool,
     /// The real boats, in order.
     tracks: Vec<Track>,
     radio: Option<Radio>,
@@ -67,6 +69,7 @@ impl Contest {
             ordered_at: vec![SimTime::ZERO; count],
             watchdogs: (0..count).map(|i| watchdog(&scenario, VehicleId::at(i))).collect(),
             mind_lost: vec![false; count],
+            stopped: false,
             tracks: scenario.externals().map(Track::new).collect(),
             events: Vec::new(),
             pictured: 0,
@@ -309,6 +312,14 @@ impl Contest {
         if std::mem::replace(&mut self.mind_lost[vehicle.index()], false) {
             self.forget_orders(vehicle);
             self.log(Event::MindBack { vehicle });
+        }
+    }
+
+    /// Makes all boats hold, or lets them go on. Says so, if that is news.
+    pub fn e_stop(&mut self, stopped: bool) {
+        if std::mem::replace(&mut self.stopped, stopped) != stopped {
+            self.world.halt(stopped);
+            self.log(if stopped { Event::EStopped } else { Event::Released });
         }
     }
 

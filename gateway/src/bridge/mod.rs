@@ -262,7 +262,8 @@ impl Bridge {
             self.tally.bad_orders += 1;
             return;
         };
-        let newer = self.order.is_none_or(|standing| given > standing.given);
+        // Before the first picture nobody can have thought.
+        let newer = given > self.order.map_or(SimTime::ZERO, |standing| standing.given);
         if newer {
             self.tally.orders += 1;
             self.order_is_news = true;

@@ -352,8 +352,16 @@ impl Booth {
     fn obey(&mut self, bytes: &[u8]) {
         match serde_json::from_slice(bytes) {
             Ok(Control::Stop) => self.stop.store(true, Ordering::Relaxed),
+            Ok(Control::EStop) => self.e_stop(true),
+            Ok(Control::Release) => self.e_stop(false),
             Err(_) => self.refused.garbage += 1,
         }
+    }
+
+    fn e_stop(&mut self, stopped: bool) {
+        self.contest.e_stop(stopped);
+        let boats: Vec<VehicleId> = self.helms.iter().map(|(boat, _)| *boat).collect();
+        boats.into_iter().for_each(|boat| self.pass_on_now(boat));
     }
 }
 
