@@ -127,17 +127,61 @@ fn written(sentence: &Sentence) -> String {
     String::from_utf8(out).expect("ASCII")
 }
 
+fn talker() -> impl Strategy<Value = Talker> {
+    select(vec![Talker::GP, Talker::GN, Talker::WI, Talker::VW])
+}
+
+fn angle() -> impl Strategy<Value = Option<f64>> {
+    option::of(0.0..359.9)
+}
+
+fn speed() -> impl Strategy<Value = Option<f64>> {
+    option::of(0.0..99.0)
+}
+
+fn time() -> impl Strategy<Value = Option<TimeOfDay>> {
+    option::of((0..86_400_000_u32).prop_map(TimeOfDay))
+}
+
+/// The crate takes 80 to 82 for this century.
+fn date() -> impl Strategy<Value = Option<Date>> {
+    let days = (1983..2080_u16, 1..=12_u8, 1..=28_u8);
+    option::of(days.prop_map(|(year, month, day)| Date { year, month, day }))
+}
+
+fn place() -> impl Strategy<Value = Option<LatLon>> {
+    option::of((-90.0..90.0, -180.0..180.0).prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg }))
+}
+
 fn sentence() -> BoxedStrategy<Sentence> {
-    let talker = || select(vec![Talker::GP, Talker::GN, Talker::WI, Talker::VW]);
-    let angle = || option::of(0.0..359.9);
-    let speed = || option::of(0.0..99.0);
-    let time = || option::of((0..86_400_000_u32).prop_map(TimeOfDay));
-    let at = || option::of((-90.0..90.0, -180.0..180.0).prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg }));
-    // The crate takes 80 to 82 for this century.
-    let date = || {
-        let days = (1983..2080_u16, 1..=12_u8, 1..=28_u8);
-        option::of(days.prop_map(|(year, month, day)| Date { year, month, day }))
-    };
+    prop_oneof![fix(), heading_or_wind()].boxed()
+}
+
+fn fix() -> BoxedStrategy<Sentence> {
+    let heights = (option::of(-99.0..999.0), option::of(-99.0..99.0));
+    let gga = (talker(), time(), place(), 0..9_u8, option::of(0..99_u8), speed(), heights).prop_map(
+        |(talker, time, at, quality, satellites, hdop, (altitude_m, geoid_m))| {
+            Sentence::Gga(Gga { talker, time, at, quality, satellites, hdop, altitude_m, geoid_m })
+        },
+    );
+    let rmc = (talker(), time(), any::<bool>(), place(), speed(), angle(), date()).prop_map(
+        |(talker, time, valid, at, speed_kn, course_deg, date)| {
+            Sentence::Rmc(Rmc { talker, time, valid, at, speed_kn, course_deg, date })
+        },
+    );
+    let vtg = (talker(), angle(), angle(), 0.0..99.0, any::<bool>()).prop_map(
+        |(talker, course_true_deg, course_magnetic_deg, knots, with_mode)| {
+            let (speed_kn, speed_km_h) = (Some(knots), Some(knots * 1.852));
+            Sentence::Vtg(Vtg { talker, course_true_deg, course_magnetic_deg, speed_kn, speed_km_h, with_mode })
+        },
+    );
+    let gll = (talker(), place(), time(), any::<bool>())
+        .prop_map(|(talker, at, time, valid)| Sentence::Gll(Gll { talker, at, time, valid }));
+    let zda = (talker(), time(), date()).prop_map(|(talker, time, date)| Sentence::Zda(Zda { talker, time, date }));
+    prop_oneof![gga, rmc, vtg, gll, zda].boxed()
+}
+
+fn heading_or_wind() -> BoxedStrategy<Sentence> {
     let units = select(vec![
         SpeedUnit::MetresPerSecond,
         SpeedUnit::KilometresPerHour,
@@ -145,71 +189,20 @@ fn sentence() -> BoxedStrategy<Sentence> {
         SpeedUnit::MilesPerHour,
     ]);
     let references = select(vec![WindReference::Relative, WindReference::Theoretical]);
-    prop_oneof![
-        (
-            talker(),
-            time(),
-            at(),
-            0..9_u8,
-            option::of(0..99_u8),
-            speed(),
-            option::of(-99.0..999.0),
-            option::of(-99.0..99.0)
-        )
-            .prop_map(|(talker, time, at, quality, satellites, hdop, altitude_m, geoid_m)| Sentence::Gga(
-                Gga { talker, time, at, quality, satellites, hdop, altitude_m, geoid_m }
-            )),
-        (talker(), time(), any::<bool>(), at(), speed(), angle(), date()).prop_map(
-            |(talker, time, valid, at, speed_kn, course_deg, date)| Sentence::Rmc(Rmc {
-                talker,
-                time,
-                valid,
-                at,
-                speed_kn,
-                course_deg,
-                date
-            })
-        ),
-        (talker(), angle(), angle(), 0.0..99.0, any::<bool>()).prop_map(
-            |(talker, course_true_deg, course_magnetic_deg, kn, with_mode)| {
-                Sentence::Vtg(Vtg {
-                    talker,
-                    course_true_deg,
-                    course_magnetic_deg,
-                    speed_kn: Some(kn),
-                    speed_km_h: Some(kn * 1.852),
-                    with_mode,
-                })
-            }
-        ),
-        (talker(), at(), time(), any::<bool>()).prop_map(|(talker, at, time, valid)| Sentence::Gll(Gll {
-            talker,
-            at,
-            time,
-            valid
-        })),
-        (talker(), 0.0..359.9).prop_map(|(talker, heading)| Sentence::Hdt(Hdt { talker, heading_deg: Some(heading) })),
-        (talker(), angle(), references, speed(), units, any::<bool>()).prop_map(
-            |(talker, angle_deg, reference, speed_m_s, unit, valid)| Sentence::Mwv(Mwv {
-                talker,
-                angle_deg,
-                reference,
-                speed_m_s,
-                unit,
-                valid
-            })
-        ),
-        (talker(), 0.0..359.9, 0.0..359.9, 0.0..99.0).prop_map(|(talker, heading_true, heading_magnetic, speed)| {
-            Sentence::Vhw(Vhw {
-                talker,
-                heading_true_deg: Some(heading_true),
-                heading_magnetic_deg: Some(heading_magnetic),
-                speed_kn: Some(speed),
-            })
-        }),
-        (talker(), time(), date()).prop_map(|(talker, time, date)| Sentence::Zda(Zda { talker, time, date })),
-    ]
-    .boxed()
+    let hdt = (talker(), (0.0..359.9).prop_map(Some))
+        .prop_map(|(talker, heading_deg)| Sentence::Hdt(Hdt { talker, heading_deg }));
+    let mwv = (talker(), angle(), references, speed(), units, any::<bool>()).prop_map(
+        |(talker, angle_deg, reference, speed_m_s, unit, valid)| {
+            Sentence::Mwv(Mwv { talker, angle_deg, reference, speed_m_s, unit, valid })
+        },
+    );
+    let some = |end: f64| (0.0..end).prop_map(Some);
+    let vhw = (talker(), some(359.9), some(359.9), some(99.0)).prop_map(
+        |(talker, heading_true_deg, heading_magnetic_deg, speed_kn)| {
+            Sentence::Vhw(Vhw { talker, heading_true_deg, heading_magnetic_deg, speed_kn })
+        },
+    );
+    prop_oneof![hdt, mwv, vhw].boxed()
 }
 
 /// Lines as other devices write them.

@@ -210,6 +210,10 @@ fn what_we_write_in_our_own_way() {
         (command(Mode::FileDownload, [Some(12.0), None, None], ""), "$PSEAC,F,12,000,000,*"),
         (command(Mode::BootLoader, [None; 3], ""), "$PSEAC,!,,,,*"),
         (command(Mode::Standby, [Some(0.0); 3], "A,B*00\r\n$PSEAC"), "$PSEAC,L,0,0,0,*"),
+        (command(Mode::Standby, [Some(0.0); 3], "A,B"), "$PSEAC,L,0,0,0,*"),
+        (command(Mode::Standby, [Some(0.0); 3], "A*B"), "$PSEAC,L,0,0,0,*"),
+        (command(Mode::Standby, [Some(0.0); 3], "$A"), "$PSEAC,L,0,0,0,*"),
+        (command(Mode::Standby, [Some(0.0); 3], "A\n"), "$PSEAC,L,0,0,0,*"),
         (Sentence::BoatError(BoatError { code: "Ü".to_owned() }), "$PSEAG,*"),
     ] {
         let got = written(&sentence);
