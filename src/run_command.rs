@@ -40,7 +40,7 @@ pub(crate) struct Args {
     /// Writes the result to this file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// How long to wait for the agents before starting without the missing ones, s
+    /// How long to wait for the agents, and for gateways of real boats, before starting without the missing ones, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     join_s: f64,
 }

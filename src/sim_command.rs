@@ -30,7 +30,7 @@ pub(crate) struct Args {
     /// The game's name on the network [default: the file's name and a random number]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     game: Option<GameName>,
-    /// How long to wait for minds before starting without the missing ones, s
+    /// How long to wait for minds, and for gateways of real boats, before starting without the missing ones, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     join_s: f64,
     #[command(flatten)]

@@ -96,3 +96,10 @@ fn no_boat_is_ever_quarantined_in_a_shipped_game() {
         assert!(outcome.events.iter().all(|event| event.event != "quarantined"), "{game}");
     }
 }
+
+#[test]
+fn a_game_with_real_boats_does_not_start_here() {
+    let scenario = shipped("mixed_2v2.toml");
+    let refused = arena::play(&scenario, &mut agent::minds_of(&scenario), 1);
+    assert!(matches!(refused, Err(sim::NoStart::RealBoats(_))), "{refused:?}");
+}

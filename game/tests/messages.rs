@@ -170,6 +170,15 @@ fn words_and_proposals_survive_and_damaged_ones_are_refused() {
 }
 
 #[test]
+fn reports_of_real_boats_and_their_orders_survive_and_damaged_ones_are_refused() {
+    let nav = Nav { north_m: 0.1 + 0.2, surge_m_s: -0.0, ..Nav::default() };
+    let (stamp, ticket) = (stamp::<NavReport>(), u64::MAX - 5);
+    survives_or_is_refused(&NavReport { stamp, ticket, vehicle: VehicleId(3), valid: true, age_ns: 30_000_000, nav });
+    let order = VehicleOrder::new(VehicleId(3), Order::Thrust { port: -1.0, starboard: 1.0 / 3.0 });
+    survives_or_is_refused(&ExternalOrder { stamp: self::stamp::<ExternalOrder>(), given_ns: SimTime(7), order });
+}
+
+#[test]
 fn words_and_proposals_are_cdr_as_other_programs_write_it() {
     // Written by hand from the CDR rules: every number stands at a multiple of its size.
     let mut start = vec![0, 1, 0, 0];
