@@ -144,7 +144,9 @@ impl Desk {
                 self.remark("moored: the sim takes the boat in", tell);
                 self.turn(Input::Moored, None, tell)
             }
-            Call::Moored(..) => Err(NodeError::Refused("the sim let another boat in than the one that asked".to_owned())),
+            Call::Moored(..) => {
+                Err(NodeError::Refused("the sim let another boat in than the one that asked".to_owned()))
+            }
             Call::SimGone => {
                 self.papers.ticket = None;
                 self.remark("the sim is gone: waiting for the next", tell);

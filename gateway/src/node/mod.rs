@@ -150,9 +150,9 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         arms_itself: settings.arms_itself,
     };
     let logbook = match &settings.record {
-        Some(path) => Some(
-            Logbook::open(path, &plan).map_err(|source| NodeError::Record { path: path.clone(), source })?,
-        ),
+        Some(path) => {
+            Some(Logbook::open(path, &plan).map_err(|source| NodeError::Record { path: path.clone(), source })?)
+        }
         None => None,
     };
     let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;

@@ -22,12 +22,7 @@ pub(super) struct Mooring {
 
 impl Mooring {
     /// Begins to ask for this vehicle.
-    pub(super) fn begin(
-        bus: &Bus,
-        game: &GameName,
-        vehicle: &str,
-        calls: Outlet<Call>,
-    ) -> Result<Mooring, BusError> {
+    pub(super) fn begin(bus: &Bus, game: &GameName, vehicle: &str, calls: Outlet<Call>) -> Result<Mooring, BusError> {
         let sims = Arc::new(Board::new(BTreeSet::<String>::new()));
         let seen = Arc::clone(&sims);
         let watch = bus.watch_alive(topic::all_alive(game, Part::Sim), move |key, alive| {

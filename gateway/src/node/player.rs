@@ -9,8 +9,8 @@ use bus::{Board, Delivery, Net, Publisher};
 use game::message::{Message, Orders, Stamp, VehicleOrder};
 use game::topic::{self, GameName, Part};
 use game::{Picture, SimTime, VehicleId, codec};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// What an emulated boat needs to know.
