@@ -1,4 +1,7 @@
-//! The door to real boats.
+//! The door to real boats: Surveyor NMEA both ways, links, a safety supervisor, and an emulated boat.
+//!
+//! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how sentences, orders and navigation meet), then
+//! [`nmea`]. [`emulator`] is the other end of the line. Sockets and clocks are in [`link`] and `node` alone.
 
 pub mod bridge;
 pub mod declination;
@@ -14,3 +17,5 @@ pub mod node;
 pub mod record;
 pub mod replay;
 pub mod supervisor;
+pub mod survey;
+pub mod utc;

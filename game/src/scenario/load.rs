@@ -184,6 +184,19 @@ pub fn load_gateway(path: &Path) -> Result<Gateway, Problems> {
     one(path, check::gateway, 1).map(|(gateway, _)| gateway)
 }
 
+/// The gateway of a file that says nothing.
+///
+/// # Panics
+/// Never: every key has a default.
+#[must_use]
+pub fn default_gateway() -> Gateway {
+    let path = Path::new("default.toml");
+    let mut ledger = Ledger::new(Drawing::Least);
+    ledger.files = Some(vec![(path.to_owned(), String::new())]);
+    let document = read::document(&mut ledger, path, None);
+    document.and_then(|document| check::gateway(&mut ledger, &document)).expect("every key has a default")
+}
+
 /// Reads and checks a scenario file of any kind.
 ///
 /// The folder it lies in says which kind it is (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`,

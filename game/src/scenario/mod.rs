@@ -22,8 +22,8 @@ mod tournament;
 pub use draw::{Drawn, Recipe};
 pub use kind::{Kind, schema};
 pub use load::{
-    Checked, check_file, draw_boat, draw_sea, load, load_boat, load_gateway, load_sea, load_strategy, load_tournament,
-    load_with,
+    Checked, check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_gateway, load_sea, load_strategy,
+    load_tournament, load_with,
 };
 pub use overrides::Overrides;
 pub use problem::{Problem, Problems};

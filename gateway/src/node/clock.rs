@@ -37,20 +37,3 @@ impl Clock {
 pub(super) fn moment() -> Instant {
     Instant::now()
 }
-
-/// UTC, ns since 1970; 0 for a host that believes to be before.
-pub(super) fn utc_ns() -> u64 {
-    u64::try_from(time::UtcDateTime::now().unix_timestamp_nanos()).unwrap_or(0)
-}
-
-/// Today and the time of day, UTC.
-pub(super) fn utc() -> (crate::nmea::Date, crate::nmea::TimeOfDay) {
-    let now = time::UtcDateTime::now();
-    let date = crate::nmea::Date {
-        year: u16::try_from(now.year()).unwrap_or(0),
-        month: u8::from(now.month()),
-        day: now.day(),
-    };
-    let ms = ((u32::from(now.hour()) * 60 + u32::from(now.minute())) * 60 + u32::from(now.second())) * 1000;
-    (date, crate::nmea::TimeOfDay(ms + u32::from(now.millisecond())))
-}

@@ -1,8 +1,8 @@
 //! The recording of a gateway while it runs: in a thread of its own, so that a slow disk holds up nothing.
 
-use super::clock;
 use crate::bridge::{Event, Input, Outbox, Plan};
 use crate::record::{Moment, RecordError, Recorder};
+use crate::utc;
 use game::SimTime;
 use std::fs::File;
 use std::io::BufWriter;
@@ -40,11 +40,11 @@ impl Logbook {
     }
 
     pub(super) fn turn(&self, at: SimTime, input: Input, out: &Outbox) {
-        self.put(Entry::Turn(Moment { at, utc_ns: clock::utc_ns() }, input, out.clone()));
+        self.put(Entry::Turn(Moment { at, utc_ns: utc::now_ns() }, input, out.clone()));
     }
 
     pub(super) fn remark(&self, at: SimTime, text: &str) {
-        self.put(Entry::Remark(Moment { at, utc_ns: clock::utc_ns() }, Event::Remark(text.to_owned())));
+        self.put(Entry::Remark(Moment { at, utc_ns: utc::now_ns() }, Event::Remark(text.to_owned())));
     }
 
     /// How much could not be recorded.

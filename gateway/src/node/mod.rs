@@ -16,6 +16,7 @@ use crate::bridge::{Bridge, Event, Plan};
 use crate::declination::{DeclinationError, declination_deg};
 use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use crate::record::RecordError;
+use crate::utc;
 use bus::lookout::{self, Lookout, NotFound};
 use bus::{Bus, BusError, Delivery, Net, Standing, inbox};
 use clock::Clock;
@@ -268,5 +269,5 @@ fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeError> {
 
 /// Magnetic north here and today, east of true, rad.
 fn declination_today_rad(at: LatLon) -> Result<f64, NodeError> {
-    Ok(declination_deg(at, clock::utc().0)?.to_radians())
+    Ok(declination_deg(at, utc::now().0)?.to_radians())
 }

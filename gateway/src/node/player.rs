@@ -4,6 +4,7 @@ use super::{News, NodeError, clock, declination_today_rad, find_game, vehicle_of
 use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
+use crate::utc;
 use bus::lookout::{self, Lookout};
 use bus::{Board, Delivery, Net, Publisher};
 use game::message::{Message, Orders, Stamp, VehicleOrder};
@@ -76,7 +77,7 @@ pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> R
         integers: settings.integers,
         extra: settings.extra.clone(),
         vtg_mode: false,
-        began: clock::utc(),
+        began: utc::now(),
     };
     let incoming = Arc::new(Board::new(Incoming::default()));
     let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &bus.id()))?;
