@@ -149,8 +149,8 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     contest.order(REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
     for decisions in 0..30 {
         let since_s = (contest.now() - fix_at).as_s();
-        let (turn, boat) = (r * since_s.min(1.0), contest.world().state().boats[0]);
-        let want = Ned::from_xy(50.0 + u / r * (1.0 - turn.cos()), 40.0 + u / r * turn.sin());
+        let (turn, boat) = (game::math::sin_cos(r * since_s.min(1.0)), contest.world().state().boats[0]);
+        let want = Ned::from_xy(50.0 + u / r * (1.0 - turn.1), 40.0 + u / r * turn.0);
         assert!(boat.pose.at.distance(want) < 1e-9, "after {since_s} s: {:?} is not {want:?}", boat.pose.at);
         assert!(since_s > 0.999 || boat.nu.surge == u);
         let own = *contest.pictures()[0].own(REAL).expect("its own boat");

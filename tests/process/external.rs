@@ -88,8 +88,9 @@ impl Gateway {
         if let Some(Order::Steer { heading_rad, speed_m_s }) = order {
             (self.at.psi_rad, self.at.surge_m_s) = (heading_rad, speed_m_s);
         }
-        self.at.north_m += self.at.surge_m_s * passed_s * self.at.psi_rad.cos();
-        self.at.east_m += self.at.surge_m_s * passed_s * self.at.psi_rad.sin();
+        let (sin, cos) = game::math::sin_cos(self.at.psi_rad);
+        self.at.north_m += self.at.surge_m_s * passed_s * cos;
+        self.at.east_m += self.at.surge_m_s * passed_s * sin;
         self.report(self.ticket);
     }
 
