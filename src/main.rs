@@ -3,6 +3,7 @@
 mod agent_command;
 mod check_command;
 mod gateway_command;
+mod hardware_loop;
 mod helm_command;
 mod helm_page;
 mod identify_command;

@@ -2,6 +2,7 @@
 //!
 //! Open [`World::step`] first. [`Contest`] plays a whole game with it; `node` puts one on the network.
 
+pub mod afloat;
 pub mod autopilot;
 pub mod battery;
 pub mod contact;
@@ -25,6 +26,7 @@ pub mod thruster;
 mod view;
 pub mod world;
 
+pub use afloat::{NotAfloat, afloat};
 pub use contest::Contest;
 pub use external::BadReport;
 pub use state::{BoatState, RestoreError, State};

@@ -7,6 +7,7 @@
 
 mod external;
 mod faults;
+mod gateway;
 mod games;
 mod helm;
 mod hosts;
