@@ -43,8 +43,12 @@ const WINDOW: Duration = Duration::from_secs(20);
 /// How long everybody may take to end.
 const LEAVE: Duration = Duration::from_secs(5);
 
-/// The processes of the loop, in the order in which they are to end: gateways, emulators, water.
-pub(crate) struct HardwareLoop(Vec<Offspring>);
+/// The processes of the loop.
+pub(crate) struct HardwareLoop {
+    /// Gateways, then emulators: the order in which they are to end.
+    ends: Vec<Offspring>,
+    water: Offspring,
+}
 
 impl LoopArgs {
     /// Starts the loop, if it is asked for and there are real boats.
@@ -69,19 +73,19 @@ impl LoopArgs {
             std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
         }
         let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
-        let water = unique_game_name("water")?.as_str().to_owned();
+        let name = unique_game_name("water")?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
-        let sim = start_water(game, &names, &water, &endpoint)?;
+        let place = (name.as_str(), endpoint.as_str());
+        let water = start_water(game, &names, place)?;
         let (mut emulators, mut gateways) = (Vec::new(), Vec::new());
-        for name in names {
-            let mut emulator = start_emulator(name, declination_deg, &water, &endpoint)?;
-            let link = reach(&mut emulator).with_context(|| format!("the emulator of {name}"))?;
+        for vehicle in names {
+            let mut emulator = start_emulator(vehicle, declination_deg, place)?;
+            let link = reach(&mut emulator).with_context(|| format!("the emulator of {vehicle}"))?;
             emulators.push(emulator);
-            gateways.push(self.start_gateway(name, &link, game)?);
+            gateways.push(self.start_gateway(vehicle, &link, game)?);
         }
         gateways.extend(emulators);
-        gateways.push(sim);
-        Ok(Some(HardwareLoop(gateways)))
+        Ok(Some(HardwareLoop { ends: gateways, water }))
     }
 
     fn start_gateway(&self, name: &str, link: &str, game: &Match<'_>) -> Result<Offspring> {
@@ -101,10 +105,13 @@ impl HardwareLoop {
     /// Ends it all, gateways first: they leave their boats at rest. Says who ended badly.
     pub(crate) fn end(mut self) -> Vec<String> {
         let mut badly = Vec::new();
-        for one in &mut self.0 {
+        for one in &mut self.ends {
             one.ask_to_stop();
             badly.extend(offspring::wait_for_all(std::slice::from_mut(one), LEAVE));
         }
+        // The water has no end of its own: it is cut short, and says so.
+        self.water.ask_to_stop();
+        offspring::wait_for_all(std::slice::from_mut(&mut self.water), LEAVE);
         badly
     }
 }
@@ -113,7 +120,7 @@ fn words(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-fn start_water(game: &Match<'_>, names: &[&str], water: &str, endpoint: &str) -> Result<Offspring> {
+fn start_water(game: &Match<'_>, names: &[&str], (water, endpoint): (&str, &str)) -> Result<Offspring> {
     let (file, pace, seed) = (game.file.display().to_string(), game.pace.to_string(), game.seed.to_string());
     let mut words = words(&["sim", &file, "--pace", &pace, "--seed", &seed, "--game", water, "--listen", endpoint]);
     words.extend(override_args::words(game.overrides));
@@ -123,7 +130,7 @@ fn start_water(game: &Match<'_>, names: &[&str], water: &str, endpoint: &str) ->
     Offspring::start("the water", &words, Stdio::null())
 }
 
-fn start_emulator(name: &str, declination_deg: Option<f64>, water: &str, endpoint: &str) -> Result<Offspring> {
+fn start_emulator(name: &str, declination_deg: Option<f64>, (water, endpoint): (&str, &str)) -> Result<Offspring> {
     let mut words = words(&["gateway", "emulate", "--vehicle", name, "--listen", "tcp://127.0.0.1:0"]);
     words.extend(self::words(&["--game", water, "--connect", endpoint, "--for-parent"]));
     words.extend(declination_deg.into_iter().flat_map(|deg| ["--declination-deg".to_owned(), deg.to_string()]));

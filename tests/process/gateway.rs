@@ -325,9 +325,7 @@ fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
     let dir = tempfile::tempdir().expect("a temporary directory");
     let (game, gateways) = ("scenarios/games/mixed_2v2.toml", "scenarios/gateways/emulated.toml");
     let records = dir.path().display().to_string();
-    let looped = result_of(&[
-        game, "--emulate", "--pace", "10x", "--gateway", gateways, "--record-gateways", &records,
-    ]);
+    let looped = result_of(&[game, "--emulate", "--pace", "10x", "--gateway", gateways, "--record-gateways", &records]);
     let pure = result_of(&[game, "--rehearse", "--in-process"]);
     let count = |result: &serde_json::Value, what: &str| -> u64 {
         let teams = result["counts"]["teams"].as_object().expect("teams");
@@ -335,7 +333,10 @@ fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
     };
     for what in ["grabs", "tags"] {
         let (got, want) = (count(&looped, what), count(&pure, what));
-        assert!(got > 0 && want > 0 && got <= 4 * want && want <= 4 * got, "{what}: {got} through gateways, {want} without");
+        assert!(
+            got > 0 && want > 0 && got <= 4 * want && want <= 4 * got,
+            "{what}: {got} through gateways, {want} without"
+        );
     }
     let events = looped["events"].as_array().expect("events");
     for bad in ["nav_lost", "mind_lost", "quarantined"] {

@@ -7,8 +7,8 @@
 
 mod external;
 mod faults;
-mod gateway;
 mod games;
+mod gateway;
 mod helm;
 mod hosts;
 mod policy;

@@ -25,7 +25,7 @@ use game::{Order, SimTime};
 use std::collections::BTreeMap;
 use upload::{Next, Upload};
 
-/// Two sentences with commands are at least this far apart.
+/// Two new orders are sent at least this far apart.
 const GAP_MIN_S: f64 = 0.045;
 /// Where the other boats are counts for this long.
 const OTHERS_AGE_MAX_S: f64 = 2.0;
@@ -74,6 +74,8 @@ pub struct Bridge {
     order: Option<Standing>,
     /// Whether the order has not been sent yet.
     order_is_news: bool,
+    /// When an order was last sent for the first time.
+    order_sent: SimTime,
     others: (SimTime, Vec<Ned>),
     volts: Option<f64>,
     low_since: Option<SimTime>,
@@ -112,6 +114,7 @@ impl Bridge {
             link_up: false,
             order: None,
             order_is_news: false,
+            order_sent: SimTime::LONG_AGO,
             others: (SimTime::LONG_AGO, vec![]),
             volts: None,
             low_since: None,
@@ -164,10 +167,11 @@ impl Bridge {
     pub fn due(&self, now: SimTime) -> SimTime {
         let period = self.period();
         let coming = |at: SimTime| if at > now { at } else { now + period };
-        let since_last = |gap: SimTime| self.last_sent.as_ref().map_or(now + period, |(at, _)| coming(*at + gap));
-        let news = if self.order_is_news { since_last(SimTime::from_s(GAP_MIN_S)) } else { SimTime::NEVER };
+        let regular = self.last_sent.as_ref().map_or(now + period, |(at, _)| coming(*at + period));
+        let news =
+            if self.order_is_news { coming(self.order_sent + SimTime::from_s(GAP_MIN_S)) } else { SimTime::NEVER };
         let upload = self.upload.as_ref().map_or(SimTime::NEVER, |upload| coming(upload.due()));
-        since_last(period).min(news).min(upload)
+        regular.min(news).min(upload)
     }
 
     fn period(&self) -> SimTime {
@@ -177,8 +181,9 @@ impl Bridge {
     /// Whether the boat should hear something now.
     fn is_due(&self, now: SimTime) -> bool {
         let fresh = self.order_is_news && self.supervisor.state() == State::Armed;
-        let gap = if fresh { SimTime::from_s(GAP_MIN_S) } else { self.period() };
-        self.last_sent.as_ref().is_none_or(|(at, _)| now >= *at + gap)
+        // A new order does not wait for what was only said again.
+        let regular = self.last_sent.as_ref().is_none_or(|(at, _)| now >= *at + self.period());
+        regular || (fresh && now >= self.order_sent + SimTime::from_s(GAP_MIN_S))
     }
 
     /// What to send before everything ends: thrust zero, then standby.
@@ -272,7 +277,7 @@ impl Bridge {
             // The sim takes an order back when its mind is lost. That makes nothing fresh.
             self.order = self.order.map(|standing| Standing { order, ..standing });
             self.order_is_news = true;
-        } else {
+        } else if self.order.is_some_and(|standing| given < standing.given) {
             self.tally.old_orders += 1;
         }
     }
@@ -371,7 +376,9 @@ impl Bridge {
         self.under_way |= moves;
         out.bytes.extend(voice::bytes_of(std::slice::from_ref(&command)));
         out.carries_order = action == Action::Follow && self.order_is_news;
-        self.order_is_news &= action != Action::Follow;
+        if out.carries_order {
+            (self.order_is_news, self.order_sent) = (false, now);
+        }
         self.control.note_sent(now, command.mode);
         self.tally.sent += 1;
         self.last_sent = Some((now, command));
