@@ -245,3 +245,17 @@ proptest! {
         prop_assert_eq!(pool.state(), "armed", "{:?}", pool.refused);
     }
 }
+
+#[test]
+fn a_new_order_does_not_wait_for_what_was_only_said_again() {
+    let mut pool = Pool::under_way("surveyor.toml", None);
+    pool.mind = None;
+    for i in 0..30 {
+        // Orders come at ten a second, but at no fixed place between the repetitions.
+        pool.run(0.1 + 0.01 * f64::from(i % 3));
+        let (order, given) = (steer(f64::from(90 + i), 1.5), pool.now + SimTime(1));
+        let before = pool.sent.len();
+        pool.put(&Input::Order(order, given));
+        assert_eq!(pool.sent.len(), before + 1, "{i}: sent in the very same turn");
+    }
+}
