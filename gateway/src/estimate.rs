@@ -29,7 +29,7 @@ struct Fix {
     place: Ned,
 }
 
-/// What is known, and when it came.
+/// What is known of a boat, and when it came.
 #[derive(Clone, Debug)]
 pub struct Estimator {
     frame: LocalFrame,
@@ -37,9 +37,15 @@ pub struct Estimator {
     /// Magnetic (or whatever the boat's compass shows) to true, rad.
     compass_to_true_rad: f64,
     speed_max_m_s: f64,
+    known: Known,
+}
+
+/// What changes.
+#[derive(Clone, Debug, Default)]
+struct Known {
     fix: Option<Fix>,
-    /// Velocity over the ground, and when it came.
-    velocity: Option<(SimTime, Ned)>,
+    /// Velocity over the ground, and when it was told; not when it was made of positions.
+    velocity: Option<(Option<SimTime>, Ned)>,
     /// Heading (true) and rate of turn.
     heading: Option<(SimTime, f64, f64)>,
     /// What the receiver said of its last fix, if that was not good.
@@ -48,7 +54,8 @@ pub struct Estimator {
     time_of_fix: Option<TimeOfDay>,
     /// Since when the position is the same to the last digit under thrust.
     still_since: Option<SimTime>,
-    pushed: SimTime,
+    /// When the boat was last told to push.
+    pushed: Option<SimTime>,
 }
 
 impl Estimator {
@@ -61,20 +68,7 @@ impl Estimator {
         speed_max_m_s: f64,
     ) -> Estimator {
         let compass_to_true_rad = if compass == CompassFrame::Magnetic { declination_rad } else { 0.0 };
-        Estimator {
-            frame,
-            watch,
-            compass_to_true_rad,
-            speed_max_m_s,
-            fix: None,
-            velocity: None,
-            heading: None,
-            doubt: None,
-            jumped: None,
-            time_of_fix: None,
-            still_since: None,
-            pushed: SimTime::LONG_AGO,
-        }
+        Estimator { frame, watch, compass_to_true_rad, speed_max_m_s, known: Known::default() }
     }
 
     /// What must be added to a heading as the boat counts it to make it true, rad.
@@ -85,17 +79,7 @@ impl Estimator {
 
     /// Everything is forgotten: what comes next may be another boat, or the same one elsewhere.
     pub fn forget(&mut self) {
-        *self = Estimator {
-            fix: None,
-            velocity: None,
-            heading: None,
-            doubt: None,
-            jumped: None,
-            time_of_fix: None,
-            still_since: None,
-            pushed: SimTime::LONG_AGO,
-            ..self.clone()
-        };
+        self.known = Known::default();
     }
 
     /// Takes in a sentence; says whether it changed what is known of the boat's motion.
@@ -112,14 +96,14 @@ impl Estimator {
 
     /// The boat has been told to push just now.
     pub fn note_push(&mut self, now: SimTime) {
-        self.pushed = now;
+        self.known.pushed = Some(now);
     }
 
     /// What is known of the boat's motion, and how old its fix is, s; nothing before the first fix and heading.
     #[must_use]
     pub fn nav(&self, now: SimTime) -> Option<(Nav, f64)> {
-        let (fix, (_, psi_rad, yaw_rate_rad_s)) = (self.fix?, self.heading?);
-        let velocity = self.velocity.map_or_else(Ned::default, |(_, velocity)| velocity);
+        let (fix, (_, psi_rad, yaw_rate_rad_s)) = (self.known.fix?, self.known.heading?);
+        let velocity = self.velocity_m_s();
         let body: Body = body_from_ned(math::sin_cos(psi_rad), velocity);
         let nav = Nav {
             north_m: fix.place.north,
@@ -135,19 +119,20 @@ impl Estimator {
     /// Velocity over the ground, m/s.
     #[must_use]
     pub fn velocity_m_s(&self) -> Ned {
-        self.velocity.map_or_else(Ned::default, |(_, velocity)| velocity)
+        self.known.velocity.map_or_else(Ned::default, |(_, velocity)| velocity)
     }
 
     /// What is wrong now.
     #[must_use]
     pub fn fault(&self, now: SimTime) -> Option<NavFault> {
-        let Some(fix) = &self.fix else { return Some(self.doubt.unwrap_or(NavFault::NoFix)) };
-        let Some((heading_at, ..)) = self.heading else { return Some(NavFault::NoHeading) };
+        let Some(fix) = &self.known.fix else { return Some(self.known.doubt.unwrap_or(NavFault::NoFix)) };
+        let Some((heading_at, ..)) = self.known.heading else { return Some(NavFault::NoHeading) };
         let fix_age_s = (now - fix.at).as_s();
         let heading_age_s = (now - heading_at).as_s();
-        let jump = self.jumped.filter(|(at, _)| (now - *at).as_s() < JUMP_MEMORY_S);
-        let still_s = self.still_since.map_or(0.0, |since| (now - since).as_s());
-        self.doubt
+        let jump = self.known.jumped.filter(|(at, _)| (now - *at).as_s() < JUMP_MEMORY_S);
+        let still_s = self.known.still_since.map_or(0.0, |since| (now - since).as_s());
+        self.known
+            .doubt
             .or(jump.map(|(_, by_m)| NavFault::Jump(by_m)))
             .or((fix_age_s > self.watch.age_max_s).then_some(NavFault::FixStale(fix_age_s)))
             .or((heading_age_s > self.watch.age_max_s).then_some(NavFault::HeadingStale(heading_age_s)))
@@ -156,10 +141,10 @@ impl Estimator {
 
     fn take_gga(&mut self, now: SimTime, gga: &Gga) -> bool {
         // The same fix told again is not a new one.
-        if gga.time.is_some() && gga.time == self.time_of_fix {
+        if gga.time.is_some() && gga.time == self.known.time_of_fix {
             return false;
         }
-        self.time_of_fix = gga.time;
+        self.known.time_of_fix = gga.time;
         let bad_hdop = gga.hdop.filter(|hdop| *hdop > self.watch.hdop_max);
         let doubt = match gga.at {
             _ if gga.quality < self.watch.quality_min => Some(NavFault::Quality(gga.quality)),
@@ -172,10 +157,10 @@ impl Estimator {
     fn take_rmc(&mut self, now: SimTime, rmc: &Rmc) -> bool {
         let told = self.take_course(now, rmc.course_deg, rmc.speed_kn);
         // A boat that also sends GGA has told this fix already, with its quality.
-        if rmc.time.is_some() && rmc.time == self.time_of_fix {
+        if rmc.time.is_some() && rmc.time == self.known.time_of_fix {
             return told;
         }
-        self.time_of_fix = rmc.time;
+        self.known.time_of_fix = rmc.time;
         let doubt = (!rmc.valid || rmc.at.is_none()).then_some(NavFault::Quality(0));
         self.take_position(now, rmc.at, doubt) | told
     }
@@ -183,32 +168,36 @@ impl Estimator {
     fn take_position(&mut self, now: SimTime, at: Option<LatLon>, doubt: Option<NavFault>) -> bool {
         let at = match (doubt, at) {
             (None, Some(at)) if at.lat_deg == 0.0 && at.lon_deg == 0.0 => {
-                self.doubt = Some(NavFault::ZeroZero);
+                self.known.doubt = Some(NavFault::ZeroZero);
                 return false;
             }
             (None, Some(at)) => at,
             (doubt, _) => {
-                self.doubt = doubt;
+                self.known.doubt = doubt;
                 return false;
             }
         };
-        self.doubt = None;
+        self.known.doubt = None;
         let place = self.frame.ned(at);
-        if let Some(before) = self.fix {
+        if let Some(before) = self.known.fix {
             let since_s = (now - before.at).as_s();
             let moved = place - before.place;
             if moved.length() > self.speed_max_m_s * since_s + self.watch.jump_m {
-                self.jumped = Some((now, moved.length()));
-                self.velocity = None;
-            } else if self.velocity.is_none_or(|(at, _)| (now - at).as_s() > VELOCITY_AGE_MAX_S) && since_s > 0.05 {
-                // Nobody tells the velocity: this one is not told either, and so not marked as such.
-                self.velocity = Some((SimTime::LONG_AGO, moved.scaled(1.0 / since_s)));
+                self.known.jumped = Some((now, moved.length()));
+                self.known.velocity = None;
+            } else if !self.is_velocity_told(now) && since_s > 0.05 {
+                self.known.velocity = Some((None, moved.scaled(1.0 / since_s)));
             }
-            let pushed = (now - self.pushed).as_s() < PUSH_MEMORY_S;
-            self.still_since = (before.raw == at && pushed).then(|| self.still_since.unwrap_or(before.at));
+            let pushed = self.known.pushed.is_some_and(|pushed| (now - pushed).as_s() < PUSH_MEMORY_S);
+            self.known.still_since = (before.raw == at && pushed).then(|| self.known.still_since.unwrap_or(before.at));
         }
-        self.fix = Some(Fix { at: now, raw: at, place });
+        self.known.fix = Some(Fix { at: now, raw: at, place });
         true
+    }
+
+    fn is_velocity_told(&self, now: SimTime) -> bool {
+        let told = self.known.velocity.and_then(|(told, _)| told);
+        told.is_some_and(|at| (now - at).as_s() <= VELOCITY_AGE_MAX_S)
     }
 
     fn take_vtg(&mut self, now: SimTime, vtg: &Vtg) -> bool {
@@ -223,7 +212,7 @@ impl Estimator {
             (Some(course_deg), Some(speed_kn)) => Ned::toward_deg(course_deg).scaled(speed_kn * M_S_PER_KN),
             _ => return false,
         };
-        self.velocity = Some((now, velocity));
+        self.known.velocity = Some((Some(now), velocity));
         true
     }
 
@@ -236,7 +225,7 @@ impl Estimator {
 
     fn take_heading(&mut self, now: SimTime, psi_rad: Option<f64>, turn_rad_s: Option<f64>) -> bool {
         let Some(psi_rad) = psi_rad else { return false };
-        let turned_rad_s = || match self.heading {
+        let turned_rad_s = || match self.known.heading {
             Some((before, old_rad, turn_rad_s)) => {
                 let since_s = (now - before).as_s();
                 if since_s > 0.02 { wrap_pi(psi_rad - old_rad) / since_s } else { turn_rad_s }
@@ -244,7 +233,7 @@ impl Estimator {
             None => 0.0,
         };
         let yaw_rate_rad_s = turn_rad_s.unwrap_or_else(turned_rad_s);
-        self.heading = Some((now, psi_rad, yaw_rate_rad_s));
+        self.known.heading = Some((now, psi_rad, yaw_rate_rad_s));
         true
     }
 }

@@ -1,6 +1,6 @@
 //! Real boats: a gateway of the test's own brings one, sails it by the orders that come, and falls silent.
 
-use crate::support::{LIMIT, Sim, result_of, run, scenarios, write};
+use crate::support::{LIMIT, Sim, real_attacker, result_of, run, scenarios, write};
 use bus::{Bus, Delivery, Publisher, Standing};
 use game::angle::rad_from_compass_deg;
 use game::external::{ExternalOrder, NavReport};
@@ -8,26 +8,13 @@ use game::message::{JoinReply, JoinRequest, Message, Stamp};
 use game::picture::Nav;
 use game::topic::{self, GameName, Part};
 use game::{Order, VehicleId, codec};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 const ME: VehicleId = VehicleId(0);
 /// Simulated seconds a second.
 const FACTOR: f64 = 4.0;
-
-/// A real boat that attacks, and a simulated one that lies still.
-fn game(dir: &Path) -> PathBuf {
-    let root = scenarios();
-    let game = format!(
-        "base = \"{root}/games/pav01_vs_pav01.toml\"\nduration_s = 80000\n\
-         [[team]]\nname = \"blue\"\nstrategy = \"{root}/strategies/easy_attacker.toml\"\n\
-         [[team]]\nname = \"red\"\nstrategy = \"{root}/strategies/idle.toml\"\n\
-         [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nsource = \"external\"\n\
-         [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\n"
-    );
-    write(dir, "external.toml", &game)
-}
 
 /// A gateway with a boat that does at once what it is told.
 struct Gateway {
@@ -124,7 +111,7 @@ impl Gateway {
 #[test]
 fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     let dir = tempfile::tempdir().expect("a temporary directory");
-    let file = game(dir.path());
+    let file = real_attacker(dir.path());
     let sim = Sim::start(&file, &["--pace", &format!("{FACTOR}x")]);
     let mut agent = sim.agent(&["blue_one"]);
     let _still = sim.agent(&["red_one"]);

@@ -3,7 +3,7 @@
 //! Water with one boat, its emulator, a proxy that can be cut, the gateway, the game and its minds. The boat is watched
 //! in the water itself, by the truth about its thrusters.
 
-use crate::support::{LIMIT, Process, Sim, result_of, scenarios, squall, write};
+use crate::support::{LIMIT, Process, Sim, real_attacker, result_of, squall};
 use bus::{Bus, Standing};
 use game::codec;
 use game::external::{GatewayStatus, OperatorCommand, OperatorReply};
@@ -11,7 +11,6 @@ use game::message::Frame;
 use game::topic::{self, GameName};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
-use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex};
@@ -24,19 +23,6 @@ const SLACK: Duration = Duration::from_millis(1500);
 /// this after 3.5 + 1.1 s.
 const STILL_NEWTON: f64 = 0.5;
 const LAG: Duration = Duration::from_millis(4600);
-
-/// A real boat that attacks, and a simulated one that lies still.
-fn game(dir: &Path) -> PathBuf {
-    let root = scenarios();
-    let text = format!(
-        "base = \"{root}/games/pav01_vs_pav01.toml\"\nduration_s = 80000\n\
-         [[team]]\nname = \"blue\"\nstrategy = \"{root}/strategies/easy_attacker.toml\"\n\
-         [[team]]\nname = \"red\"\nstrategy = \"{root}/strategies/idle.toml\"\n\
-         [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nsource = \"external\"\n\
-         [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\n"
-    );
-    write(dir, "loop.toml", &text)
-}
 
 /// A link that can be cut: passes, swallows everything both ways, or refuses.
 struct Proxy {
@@ -117,7 +103,7 @@ impl Loop {
     /// A boat under way by its mind's orders.
     fn under_way(watchdog: &str) -> Loop {
         let dir = tempfile::tempdir().expect("a temporary directory");
-        let file = game(dir.path());
+        let file = real_attacker(dir.path());
         let sim = Sim::start(&file, &["--pace", "realtime"]);
         let water = Sim::start(&file, &["--pace", "realtime", "--afloat", "blue_one"]);
         let (emulator, back_seat, primary) = start_emulator(&water, watchdog);
