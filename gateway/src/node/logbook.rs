@@ -9,7 +9,7 @@ use std::io::BufWriter;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
 /// Turns that may wait to be written.
@@ -22,7 +22,7 @@ enum Entry {
 
 /// The recording under way.
 pub(super) struct Logbook {
-    queue: Option<SyncSender<Entry>>,
+    queue: Option<SyncSender<Box<Entry>>>,
     writer: Option<JoinHandle<()>>,
     lost: Arc<AtomicU64>,
 }
@@ -53,8 +53,9 @@ impl Logbook {
     }
 
     fn put(&self, entry: Entry) {
-        let sent = self.queue.as_ref().map(|queue| queue.try_send(entry));
-        if let Some(Err(TrySendError::Full(_) | TrySendError::Disconnected(_))) = sent {
+        let Some(queue) = &self.queue else { return };
+        // Full, or its writer is gone: either way this is not recorded.
+        if queue.try_send(Box::new(entry)).is_err() {
             self.lost.fetch_add(1, Ordering::Relaxed);
         }
     }
@@ -68,9 +69,9 @@ impl Drop for Logbook {
     }
 }
 
-fn write(mut recorder: Recorder<BufWriter<File>>, entries: &Receiver<Entry>, lost: &AtomicU64) {
+fn write(mut recorder: Recorder<BufWriter<File>>, entries: &Receiver<Box<Entry>>, lost: &AtomicU64) {
     for entry in entries {
-        let written = match &entry {
+        let written = match entry.as_ref() {
             Entry::Turn(moment, input, out) => recorder.turn(*moment, input, out),
             Entry::Remark(moment, event) => recorder.remark(*moment, event),
         };

@@ -76,6 +76,17 @@ fn frozen_fixes_stop_the_boat() {
     let mut pool = Pool::under_way("surveyor.toml", None);
     pool.frozen = true;
     stops_within(&mut pool, 1.8, "fix");
+    // One that repeats its fix and still calls it good.
+    let mut pool = Pool::under_way("surveyor.toml", None);
+    let mut first = None;
+    pool.tamper = Some(Box::new(move |_, bytes| {
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let (fix, rest) = text.split_once('\n').expect("several sentences");
+        let fix = first.get_or_insert_with(|| fix.to_owned());
+        vec![format!("{fix}\n{rest}").into_bytes()]
+    }));
+    // To the oracle it looks sound.
+    stops_within(&mut pool, 1.8, "fix is");
     // One that stamps the old position anew.
     let mut pool = Pool::under_way("surveyor.toml", None);
     let held = pool.boat.at;

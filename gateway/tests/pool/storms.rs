@@ -218,7 +218,7 @@ fn play(pool: &mut Pool, one: &Move) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The oracle looks at every sentence; here anything may happen, in any order.
     #[test]
