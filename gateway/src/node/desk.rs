@@ -10,7 +10,7 @@ use bus::{Inbox, Publisher, Question};
 use game::codec;
 use game::external::{ExternalOrder, GatewayStatus, NavReport, OperatorCommand, OperatorReply};
 use game::frame::Ned;
-use game::message::{Control, Frame, Message, Stamp};
+use game::message::{Frame, Message, Stamp};
 use game::{Order, SimTime, VehicleId};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,7 +24,8 @@ pub(super) enum Call {
     Order,
     Frame(Vec<u8>),
     Operate(Question),
-    Control(Vec<u8>),
+    EStop,
+    Release,
     Moored(u64, Vec<VehicleId>),
     SimGone,
     Remark(String),
@@ -49,6 +50,8 @@ pub(super) struct Desk {
     pub(super) clock: Clock,
     pub(super) inbox: Inbox<Call>,
     pub(super) tray: Tray,
+    /// Set as soon as an E-stop for all boats comes in: it must not wait, nor be dropped, behind anything else.
+    pub(super) e_stop: Arc<AtomicBool>,
     pub(super) nav: Publisher,
     pub(super) status: Publisher,
     pub(super) vehicle: VehicleId,
@@ -99,6 +102,9 @@ impl Desk {
     /// Works until it is told to stop.
     pub(super) fn work(&mut self, stop: &AtomicBool, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
+            if self.e_stop.swap(false, Ordering::Relaxed) {
+                self.turn(Input::Fleet(FleetCommand::EStop), None, tell)?;
+            }
             let due = self.bridge.due(self.clock.now());
             match self.inbox.take(self.clock.until(due)) {
                 Some(call) => self.take(call, tell)?,
@@ -134,11 +140,9 @@ impl Desk {
             Call::Order => self.take_order(tell),
             Call::Frame(bytes) => self.take_frame(&bytes, tell),
             Call::Operate(question) => self.operate(question, tell),
-            Call::Control(bytes) => match serde_json::from_slice(&bytes) {
-                Ok(Control::EStop) => self.turn(Input::Fleet(FleetCommand::EStop), None, tell),
-                Ok(Control::Release) => self.turn(Input::Fleet(FleetCommand::Release), None, tell),
-                Ok(Control::Stop) | Err(_) => Ok(()),
-            },
+            Call::Release => self.turn(Input::Fleet(FleetCommand::Release), None, tell),
+            // It only wakes the desk.
+            Call::EStop => Ok(()),
             Call::Moored(ticket, vehicles) if vehicles == [self.vehicle] => {
                 self.papers.ticket = Some(ticket);
                 self.remark("moored: the sim takes the boat in", tell);

@@ -24,14 +24,14 @@ use desk::{Call, Desk, Papers, Tray};
 use game::external::GatewayStatus;
 use game::frame::LatLon;
 use game::gateway::Gateway;
-use game::message::Notice;
+use game::message::{Control, Notice};
 use game::scenario::Source;
 use game::topic::{self, GameName, Part};
 use game::{VehicleId, codec};
 use logbook::Logbook;
 use mooring::Mooring;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError};
 use std::time::Duration;
 use thiserror::Error;
@@ -159,7 +159,8 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;
     let (outlet, inbox) = inbox(INBOX);
     let tray = Tray::default();
-    let standing = lines(&bus, &game, &notice, vehicle, (&tray, &outlet))?;
+    let e_stop = Arc::new(AtomicBool::new(false));
+    let standing = lines(&bus, &game, &notice, vehicle, (&tray, &e_stop, &outlet))?;
     let calls = outlet.clone();
     let link_settings = LinkSettings { silence: Some(settings.silence), ..LinkSettings::default() };
     let link = Link::open(&settings.link, link_settings, move |event: LinkEvent| calls.put(Call::Link(event)))?;
@@ -170,6 +171,7 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         clock: Clock::start(factor),
         inbox,
         tray,
+        e_stop,
         nav: bus.publisher(topic::nav(&game, &notice.scenario, vehicle), Delivery::Drop)?,
         status: bus.publisher(topic::status(&game, &settings.vehicle), Delivery::Drop)?,
         vehicle,
@@ -194,7 +196,7 @@ fn lines(
     game: &GameName,
     notice: &Notice,
     vehicle: VehicleId,
-    (tray, outlet): (&Tray, &bus::Outlet<Call>),
+    (tray, e_stop, outlet): (&Tray, &Arc<AtomicBool>, &bus::Outlet<Call>),
 ) -> Result<Vec<Standing>, BusError> {
     let scenario = &notice.scenario;
     let (tray, orders) = (Arc::clone(tray), outlet.clone());
@@ -207,11 +209,19 @@ fn lines(
         }
     };
     let (questions, controls, frames) = (outlet.clone(), outlet.clone(), outlet.clone());
+    let e_stop = Arc::clone(e_stop);
     let name = &scenario.vehicles[vehicle.index()].name;
     let mut standing = vec![
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |question| questions.put(Call::Operate(question)))?,
-        bus.subscribe(topic::control(game), move |bytes| controls.put(Call::Control(bytes.to_vec())))?,
+        bus.subscribe(topic::control(game), move |bytes| match serde_json::from_slice(bytes) {
+            Ok(Control::EStop) => {
+                e_stop.store(true, Ordering::Relaxed);
+                controls.put(Call::EStop);
+            }
+            Ok(Control::Release) => controls.put(Call::Release),
+            Ok(Control::Stop) | Err(_) => {}
+        })?,
     ];
     // The truth is made only where somebody asks for it.
     let real = scenario.vehicles.iter().filter(|vehicle| vehicle.source == Source::External).count();
