@@ -41,7 +41,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
                 screen::remark(&format!("connected to {name}; listening for {} s, without a word", args.for_s));
             }
             Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
-                screen::remark(&why);
+                if why != reason {
+                    screen::remark(&why);
+                }
                 reason = why;
             }
             Ok(LinkEvent::Written { .. }) | Err(RecvTimeoutError::Timeout) => {}
