@@ -77,6 +77,12 @@ impl Estimator {
         self.compass_to_true_rad
     }
 
+    /// Where a position lies on the field.
+    #[must_use]
+    pub fn place(&self, lat_deg: f64, lon_deg: f64) -> Ned {
+        self.frame.ned(LatLon { lat_deg, lon_deg })
+    }
+
     /// Everything is forgotten: what comes next may be another boat, or the same one elsewhere.
     pub fn forget(&mut self) {
         self.known = Known::default();
@@ -140,8 +146,7 @@ impl Estimator {
     }
 
     fn take_gga(&mut self, now: SimTime, gga: &Gga) -> bool {
-        // The same fix told again is not a new one.
-        if gga.time.is_some() && gga.time == self.known.time_of_fix {
+        if self.is_told_again(gga.time, gga.at) {
             return false;
         }
         self.known.time_of_fix = gga.time;
@@ -157,12 +162,18 @@ impl Estimator {
     fn take_rmc(&mut self, now: SimTime, rmc: &Rmc) -> bool {
         let told = self.take_course(now, rmc.course_deg, rmc.speed_kn);
         // A boat that also sends GGA has told this fix already, with its quality.
-        if rmc.time.is_some() && rmc.time == self.known.time_of_fix {
+        if self.is_told_again(rmc.time, rmc.at) {
             return told;
         }
         self.known.time_of_fix = rmc.time;
         let doubt = (!rmc.valid || rmc.at.is_none()).then_some(NavFault::Quality(0));
         self.take_position(now, rmc.at, doubt) | told
+    }
+
+    /// The same fix told again is not a new one. Receivers that stamp whole seconds may take several in one.
+    fn is_told_again(&self, time: Option<TimeOfDay>, at: Option<LatLon>) -> bool {
+        let same_place = self.known.fix.map(|fix| fix.raw) == at || self.known.fix.is_none();
+        time.is_some() && time == self.known.time_of_fix && same_place
     }
 
     fn take_position(&mut self, now: SimTime, at: Option<LatLon>, doubt: Option<NavFault>) -> bool {

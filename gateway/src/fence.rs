@@ -40,7 +40,8 @@ impl FenceWatch {
     }
 
     /// Whether the fence holds this place: the field does, or it is near enough.
-    fn holds(&self, at: Ned) -> bool {
+    #[must_use]
+    pub fn holds(&self, at: Ned) -> bool {
         is_within(&self.corners, at) || distance_to_outline(&self.corners, at) <= self.rules.margin_m
     }
 }

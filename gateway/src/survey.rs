@@ -104,7 +104,10 @@ impl Survey {
             let date = self
                 .date
                 .map_or("it sends no date".to_owned(), |d| format!("date {}-{:02}-{:02}", d.year, d.month, d.day));
-            found.push(format!("clock: fixes are {behind_s:.2} s behind this host's clock, {date}"));
+            let side = if behind_s < 0.0 { "AHEAD of" } else { "behind" };
+            let note = if (-1.0..=5.0).contains(&behind_s) { "" } else { ": one of the two is wrong" };
+            let off_s = behind_s.abs();
+            found.push(format!("clock: fixes are {off_s:.2} s {side} this host's clock{note}; {date}"));
         }
         found
     }
@@ -228,7 +231,7 @@ mod tests {
             "position: 42.358436, -71.087448 (fix quality 2, dilution 0.98)",
             "heading: 222.6 by its compass; nothing true",
             "control: mode T (Thruster), commanded by Primary",
-            "clock: fixes are 1.30 s behind this host's clock, it sends no date",
+            "clock: fixes are 1.30 s behind this host's clock; it sends no date",
         ] {
             assert!(findings.contains(want), "{want} is not in\n{findings}");
         }

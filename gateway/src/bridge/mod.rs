@@ -286,8 +286,9 @@ impl Bridge {
     fn take_mission(&mut self, now: SimTime, mission: &Mission, out: &mut Outbox) -> Option<Wish> {
         let unfit = self.conditions(now).unfit();
         let begun = match self.supervisor.state() {
-            State::EStopped => Err(Refusal::EStopped.to_string()),
+            State::EStopped => Err(self.e_stop_in_force()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
+            _ if !self.is_within_fence(mission) => Err("a place of it is outside of the fence".to_owned()),
             _ => Upload::new(mission, self.plan.gateway.upload_gap_s, now),
         };
         match begun {
@@ -302,12 +303,27 @@ impl Bridge {
         }
     }
 
+    fn is_within_fence(&self, mission: &Mission) -> bool {
+        let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
+        // What is no place at all the upload refuses, in words.
+        let spots = places.filter(|[lat_deg, lon_deg]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0);
+        spots.map(|[lat_deg, lon_deg]| self.estimator.place(*lat_deg, *lon_deg)).all(|place| self.fence.holds(place))
+    }
+
+    fn e_stop_in_force(&self) -> String {
+        format!("an E-stop of {} is in force: release it first", self.supervisor.stopped_by())
+    }
+
     /// One step of the supervisor, and what it has to say to the boat.
     fn advance(&mut self, now: SimTime, wish: Option<Wish>, out: &mut Outbox) {
         let conditions = self.conditions(now);
         let Step { action, refusal, before } = self.supervisor.step(&conditions, wish);
-        if let Some(refusal) = refusal {
-            out.refused = Some(refusal.to_string());
+        let still_stopped = matches!(wish, Some(Wish::Release(_))) && self.supervisor.state() == State::EStopped;
+        match refusal {
+            Some(Refusal::EStopped) => out.refused = Some(self.e_stop_in_force()),
+            Some(refusal) => out.refused = Some(refusal.to_string()),
+            None if still_stopped => out.refused = Some(self.e_stop_in_force()),
+            None => {}
         }
         if let Some(before) = before {
             self.note_change(now, before, out);
@@ -369,11 +385,12 @@ impl Bridge {
                 None => return,
             },
         };
-        let moves = !matches!(action, Action::Standby | Action::Zero);
-        if action == Action::Standby && std::mem::replace(&mut self.under_way, false) {
+        // Whatever comes after our own settings, thrust goes to zero first.
+        let is_ours = matches!(action, Action::Follow | Action::Zero);
+        if !is_ours && std::mem::replace(&mut self.under_way, false) {
             out.bytes.extend(voice::bytes_of(&[voice::of_setting(Setting::ZERO)]));
         }
-        self.under_way |= moves;
+        self.under_way |= action == Action::Follow;
         out.bytes.extend(voice::bytes_of(std::slice::from_ref(&command)));
         out.carries_order = action == Action::Follow && self.order_is_news;
         if out.carries_order {

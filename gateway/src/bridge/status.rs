@@ -2,6 +2,7 @@
 
 use super::{Bridge, voice};
 use crate::nmea::Operator;
+use crate::supervisor::State;
 use game::SimTime;
 use game::external::GatewayStatus;
 
@@ -16,7 +17,7 @@ impl Bridge {
             vehicle: self.plan.vehicle.clone(),
             at_s: now.as_s(),
             link: if self.link_up { "up" } else { "down" }.to_owned(),
-            state: self.supervisor.state().to_string(),
+            state: self.state_in_words(),
             missing: conditions.missing().iter().map(ToString::to_string).collect(),
             trips: self.trips.clone(),
             mode: self.control.mode().map(|mode| mode.letter()),
@@ -27,6 +28,14 @@ impl Bridge {
             last_sent: last_sent.map(|bytes| String::from_utf8_lossy(&bytes).trim_end().to_owned()).unwrap_or_default(),
             counts: self.counts(),
             latency_us: [None; 2],
+        }
+    }
+
+    fn state_in_words(&self) -> String {
+        match self.supervisor.state() {
+            State::EStopped => format!("e-stopped (by an E-stop of {})", self.supervisor.stopped_by()),
+            state if self.upload.is_some() => format!("{state}, sending a mission"),
+            state => state.to_string(),
         }
     }
 

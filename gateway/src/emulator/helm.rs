@@ -1,15 +1,16 @@
 //! What a boat does by its own means: settings, station keeping, missions.
 
-use game::Order;
 use game::angle::wrap_pi;
-use game::frame::Ned;
+use game::frame::{Ned, Pose};
+use game::{Order, math};
 use std::collections::BTreeMap;
 
 /// A place is reached, or kept, within this distance, m.
 const NEAR_M: f64 = 3.0;
-/// How fast a boat goes back to its station, m/s at most and per m of distance.
+/// How fast a boat goes back to its station at most, m/s.
 const KEEP_M_S: f64 = 1.0;
-const KEEP_PER_S: f64 = 0.2;
+/// How fast it approaches a place, m/s per m of distance.
+const APPROACH_PER_S: f64 = 0.2;
 /// Throttle of a mission that names none, per cent.
 const THROTTLE_PCT: f64 = 40.0;
 /// Thrust in per cent and speed in m/s: the thrust map of the West Point missions of 2024.
@@ -22,12 +23,20 @@ pub(super) struct Helm {
     places: BTreeMap<u16, Ned>,
     throttle_pct: Option<f64>,
     /// What is being taken up, while it is.
-    coming: Option<BTreeMap<u16, Ned>>,
+    coming: Option<Download>,
     station: Option<Ned>,
     /// The waypoint that is next.
     next: u16,
-    /// Where the boat was when it first did anything: its recovery point until it has another.
-    home: Option<Ned>,
+}
+
+/// A mission on its way.
+#[derive(Clone, Debug, Default)]
+struct Download {
+    /// How many lines were announced, and have come.
+    announced: f64,
+    lines: u32,
+    throttle_pct: Option<f64>,
+    places: BTreeMap<u16, Ned>,
 }
 
 /// The order for thrust and difference in per cent.
@@ -63,64 +72,83 @@ impl Helm {
     pub(super) fn begin(&mut self, at: Ned) {
         self.station = Some(at);
         self.next = 1;
-        self.home.get_or_insert(at);
     }
 
-    pub(super) fn begin_download(&mut self) {
-        self.coming = Some(BTreeMap::new());
+    /// A mission is coming: the one before is gone.
+    pub(super) fn begin_download(&mut self, announced: f64) {
+        self.places.clear();
+        self.throttle_pct = None;
+        self.coming = Some(Download { announced, ..Download::default() });
     }
 
-    pub(super) fn end_download(&mut self) {
-        if let Some(places) = self.coming.take() {
-            self.places = places;
+    /// All of it is there, or not: then there is no mission, and this says why.
+    pub(super) fn end_download(&mut self) -> Option<String> {
+        let coming = self.coming.take()?;
+        if f64::from(coming.lines) != coming.announced {
+            return Some(format!(
+                "mission refused: {} lines were announced, {} could be read",
+                coming.announced, coming.lines
+            ));
         }
+        (self.places, self.throttle_pct) = (coming.places, coming.throttle_pct);
+        Some(format!("a mission of {} places is taken up", self.places.len()))
     }
 
     pub(super) fn take_throttle(&mut self, throttle_pct: f64) {
-        if self.coming.is_some() {
-            self.throttle_pct = Some(throttle_pct);
+        if let Some(coming) = &mut self.coming {
+            coming.lines += 1;
+            coming.throttle_pct = Some(throttle_pct);
         }
     }
 
     /// A place that comes outside of a download is none of the mission's.
     pub(super) fn take_waypoint(&mut self, index: u16, at: Ned) {
         if let Some(coming) = &mut self.coming {
-            coming.insert(index, at);
+            coming.lines += 1;
+            coming.places.insert(index, at);
         }
     }
 
     /// Stays where it began.
-    pub(super) fn keep(&mut self, at: Ned) -> Order {
-        let station = *self.station.get_or_insert(at);
-        let distance_m = at.distance(station);
-        if distance_m <= NEAR_M {
-            return Order::Hold;
-        }
-        let speed_m_s = (KEEP_PER_S * distance_m).min(KEEP_M_S);
-        Order::Steer { heading_rad: at.bearing_rad(station), speed_m_s }
+    pub(super) fn keep(&mut self, pose: Pose) -> Order {
+        let station = *self.station.get_or_insert(pose.at);
+        go(pose, station, KEEP_M_S).unwrap_or(Order::Hold)
     }
 
-    /// Goes to the recovery point, and stays there.
-    pub(super) fn go_to_erp(&mut self, at: Ned) -> Order {
-        let Some(erp) = self.places.get(&0).copied().or(self.home) else { return Order::Hold };
-        self.go(at, erp).unwrap_or(Order::Hold)
+    /// Goes to the recovery point, and stays there; without one it stays where it is.
+    pub(super) fn go_to_erp(&mut self, pose: Pose) -> Order {
+        match self.places.get(&0) {
+            Some(erp) => go(pose, *erp, self.speed_m_s()).unwrap_or(Order::Hold),
+            None => self.keep(pose),
+        }
     }
 
     /// Sails the mission, and stays at its end.
-    pub(super) fn sail(&mut self, at: Ned) -> Order {
+    pub(super) fn sail(&mut self, pose: Pose) -> Order {
         while let Some(place) = self.places.get(&self.next.max(1)).copied() {
-            if let Some(order) = self.go(at, place) {
+            if let Some(order) = go(pose, place, self.speed_m_s()) {
                 return order;
             }
             self.next = self.next.max(1) + 1;
             self.station = Some(place);
         }
-        self.keep(at)
+        self.keep(pose)
     }
 
-    /// The way to a place, unless it is reached.
-    fn go(&self, at: Ned, place: Ned) -> Option<Order> {
-        let speed_m_s = speed_of_thrust(Some(self.throttle_pct.unwrap_or(THROTTLE_PCT)))?;
-        (at.distance(place) > NEAR_M).then(|| Order::Steer { heading_rad: at.bearing_rad(place), speed_m_s })
+    fn speed_m_s(&self) -> f64 {
+        speed_of_thrust(Some(self.throttle_pct.unwrap_or(THROTTLE_PCT))).unwrap_or(0.0)
     }
+}
+
+/// The way to a place, unless it is reached: slowly while the boat does not point there, and near it, lest it circles.
+fn go(pose: Pose, place: Ned, speed_m_s: f64) -> Option<Order> {
+    let distance_m = pose.at.distance(place);
+    if distance_m <= NEAR_M {
+        return None;
+    }
+    let heading_rad = pose.at.bearing_rad(place);
+    let (_, ahead) = math::sin_cos(wrap_pi(heading_rad - pose.psi_rad));
+    let share = ahead.max(0.0) * ahead.max(0.0);
+    let limit_m_s = (APPROACH_PER_S * distance_m).min(speed_m_s);
+    Some(Order::Steer { heading_rad, speed_m_s: limit_m_s * share })
 }

@@ -31,7 +31,7 @@ pub struct Plan {
     pub extra: Vec<Extra>,
     /// Whether VTG has its mode field: new boats leave it out.
     pub vtg_mode: bool,
-    /// Day and time at the beginning.
+    /// Day and time when the clock of whoever plays it shows zero.
     pub began: (Date, TimeOfDay),
 }
 
@@ -66,6 +66,7 @@ pub struct Emulator {
     /// When the fix that `own` has was first seen, and which it is.
     fix: Option<(SimTime, SimTime)>,
     volts: f64,
+    remark: Option<String>,
     /// Commands that were taken, and those that were not for want of control.
     taken: u64,
     ignored: u64,
@@ -89,6 +90,7 @@ impl Emulator {
             own: None,
             fix: None,
             volts: FULL_V,
+            remark: None,
             taken: 0,
             ignored: 0,
         }
@@ -121,6 +123,18 @@ impl Emulator {
         }
     }
 
+    /// Sets the receiver's clock: it is now so late, UTC.
+    pub fn set_clock(&mut self, now: SimTime, (date, TimeOfDay(ms)): (Date, TimeOfDay)) {
+        const DAY_MS: i64 = 86_400_000;
+        let at_zero_ms = i64::from(ms) - (now.as_s() * 1000.0).round() as i64;
+        self.plan.began = (date, TimeOfDay(at_zero_ms.rem_euclid(DAY_MS) as u32));
+    }
+
+    /// Something to tell whoever plays the boat, once.
+    pub fn take_remark(&mut self) -> Option<String> {
+        self.remark.take()
+    }
+
     /// What the battery shows from now on, V.
     pub fn set_volts(&mut self, volts: f64) {
         self.volts = volts;
@@ -147,9 +161,9 @@ impl Emulator {
             Mode::Thruster => helm::thrust(self.thrust_pct, self.difference_pct),
             Mode::Heading => helm::steer(heading(&self.command), helm::speed_of_thrust(self.command.thrust)),
             Mode::Speed => helm::steer(heading(&self.command), self.command.thrust.map(helm::m_s_from_kn)),
-            Mode::StationKeep => self.helm.keep(own.nav.at()),
-            Mode::GoToErp => self.helm.go_to_erp(own.nav.at()),
-            Mode::Waypoint => self.helm.sail(own.nav.at()),
+            Mode::StationKeep => self.helm.keep(own.nav.pose()),
+            Mode::GoToErp => self.helm.go_to_erp(own.nav.pose()),
+            Mode::Waypoint => self.helm.sail(own.nav.pose()),
             _ => Order::Hold,
         }
     }
@@ -225,9 +239,9 @@ impl Emulator {
             Mode::FileDownload => {
                 let lines = command.heading_deg.unwrap_or(0.0);
                 if lines > 0.0 {
-                    self.helm.begin_download();
+                    self.helm.begin_download(lines);
                 } else {
-                    self.helm.end_download();
+                    self.remark = self.helm.end_download();
                 }
             }
             mode => {

@@ -2,7 +2,7 @@
 
 use super::Emulator;
 use crate::nmea::{
-    Attitude, Battery, BoatError, ControlState, Date, Gga, Hdg, Hdt, Rmc, Sentence, Talker, TimeOfDay, Vtg, Zda,
+    Attitude, Battery, BoatError, ControlState, Date, Gga, Hdg, Hdt, Mode, Rmc, Sentence, Talker, TimeOfDay, Vtg, Zda,
 };
 use game::angle::compass_deg_from_rad;
 use game::frame::{Body, ned_from_body};
@@ -170,9 +170,12 @@ fn battery(volts: f64, now: SimTime) -> Battery {
 }
 
 fn control_state(boat: &Emulator) -> ControlState {
+    // Where it steers no heading, it shows the one it has.
+    let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
+    let has = || boat.own.as_ref().map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad));
     ControlState {
         mode: boat.command.mode,
-        heading_deg: boat.command.heading_deg,
+        heading_deg: if steers { boat.command.heading_deg } else { has() },
         thrust: boat.command.thrust,
         difference: boat.command.difference,
         words: boat.command.words.clone(),

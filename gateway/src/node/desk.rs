@@ -224,6 +224,9 @@ impl Desk {
             }
             Err(e) => Some(format!("the question is not understood: {e}")),
         };
+        if let Some(reason) = &refused {
+            self.remark(&format!("refused: {reason}"), tell);
+        }
         let reply = OperatorReply { refused, status: self.full_status() };
         question.answer(serde_json::to_vec(&reply).expect("a reply is JSON"));
         Ok(())

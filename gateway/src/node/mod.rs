@@ -157,6 +157,10 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         None => None,
     };
     let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;
+    // Not a word to a boat that another gateway has. The thread that keeps it moored asks again, and gets it again.
+    let names = [settings.vehicle.clone()];
+    let mut say = |reason: &str| tell(News::Looking { reason });
+    look.until(&mut say, || lookout::seat(&bus, &topic::moor(&game), &names, "gateway"))?;
     let (outlet, inbox) = inbox(INBOX);
     let tray = Tray::default();
     let e_stop = Arc::new(AtomicBool::new(false));

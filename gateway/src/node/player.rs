@@ -1,6 +1,6 @@
 //! The player: minds a simulated boat in a game, and lets a back seat be that mind, by the boat's own sentences.
 
-use super::{News, NodeError, clock, declination_today_rad, find_game, vehicle_of};
+use super::{News, NodeError, clock, declination_today_rad, find_game, pace_factor, vehicle_of};
 use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
@@ -64,6 +64,8 @@ pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> R
     let mut look = Lookout::new(settings.wait, &settings.stop);
     let (bus, game, notice) = find_game(&mut look, &settings.net, settings.game.as_ref(), tell)?;
     let vehicle = vehicle_of(&notice, &settings.vehicle)?;
+    // A back seat lives by the clock.
+    pace_factor(&notice.pace, true)?;
     let scenario = &notice.scenario;
     let datum = scenario.field.plan.datum;
     let declination_rad = match settings.declination_rad {
@@ -168,6 +170,9 @@ impl Player {
                 self.emulator.take(self.now, *port, bytes);
             }
             self.tell_operator(tell);
+            if let Some(text) = self.emulator.take_remark() {
+                tell(News::Remark { at_s: self.now.as_s(), text: &text });
+            }
             let picture = picture.and_then(|bytes| codec::decode::<Picture>(&bytes).ok());
             if let Some(picture) = picture {
                 heard = clock::moment();
@@ -199,6 +204,9 @@ impl Player {
             return Ok(self.orders.send(last)?);
         }
         self.now = picture.stamp.valid_ns;
+        if self.last.is_none() {
+            self.emulator.set_clock(self.now, utc::now());
+        }
         if let Some(own) = picture.own(self.vehicle) {
             self.emulator.observe(self.now, own);
         }

@@ -137,7 +137,7 @@ impl fmt::Display for State {
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Refusal::EStopped => f.write_str("an E-stop is in force: release it first"),
+            Refusal::EStopped => f.write_str("an E-stop is in force"),
             Refusal::NotReady(missing) => {
                 let missing: Vec<String> = missing.iter().map(ToString::to_string).collect();
                 write!(f, "missing: {}", missing.join("; "))

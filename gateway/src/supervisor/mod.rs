@@ -169,6 +169,17 @@ impl Supervisor {
         self.state
     }
 
+    /// Whose E-stops are in force, in words.
+    #[must_use]
+    pub fn stopped_by(&self) -> &'static str {
+        match self.stops {
+            [true, true] => "this boat and of the fleet",
+            [true, false] => "this boat",
+            [false, true] => "the fleet",
+            [false, false] => "nobody",
+        }
+    }
+
     /// Goes on by one step.
     pub fn step(&mut self, now: &Conditions, wish: Option<Wish>) -> Step {
         let before = self.state;

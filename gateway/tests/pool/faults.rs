@@ -266,6 +266,43 @@ fn an_e_stop_stops_the_boat_at_once_and_stays() {
 }
 
 #[test]
+fn two_e_stops_need_two_releases_and_it_is_said_which_is_in_force() {
+    let mut pool = Pool::under_way("surveyor.toml", None);
+    pool.operate(OperatorCommand::EStop);
+    pool.put(&Input::Fleet(FleetCommand::EStop));
+    pool.put(&Input::Fleet(FleetCommand::Release));
+    let refused = pool.refused.take().unwrap_or_default();
+    assert_eq!(refused, "an E-stop of this boat is in force: release it first");
+    pool.oracle.stopped = true;
+    assert_eq!(pool.bridge.status(pool.now).state, "e-stopped (by an E-stop of this boat)");
+    pool.operate(OperatorCommand::Release);
+    assert_eq!((pool.state().as_str(), pool.refused.take()), ("safed", None));
+}
+
+#[test]
+fn a_receiver_that_stamps_whole_seconds_is_heard_ten_times_a_second() {
+    let mut pool = Pool::under_way("surveyor.toml", None);
+    pool.tamper = Some(Box::new(|_, bytes| {
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let lines = text.lines().map(|line| match line.starts_with("$GPGGA") {
+            true => format!("{}.00{}", &line[..13], &line[16..]),
+            false => line.to_owned(),
+        });
+        vec![resummed(&(lines.collect::<Vec<_>>().join("\r\n") + "\r\n")).into_bytes()]
+    }));
+    pool.run(2.0);
+    let before = pool.navs.len();
+    let places: Vec<f64> = (0..10)
+        .map(|_| {
+            pool.run(0.1);
+            pool.navs.last().map_or(0.0, |(_, nav)| nav.nav.east_m)
+        })
+        .collect();
+    assert!(places.windows(2).all(|pair| pair[1] > pair[0]), "{places:?}");
+    assert!(pool.navs.len() >= before + 10 && pool.state() == "armed");
+}
+
+#[test]
 fn a_step_of_the_receivers_clock_is_told_and_harmless() {
     let mut pool = Pool::under_way("surveyor.toml", None);
     pool.tamper = Some(Box::new(|_, bytes| {

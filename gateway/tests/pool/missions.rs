@@ -19,10 +19,14 @@ fn a_boat_keeps_its_station_by_its_own_means_and_is_told_so_once() {
     let mut pool = Pool::under_way("surveyor.toml", None);
     pool.operate(OperatorCommand::StationKeep);
     assert_eq!((pool.mode(), pool.refused.take()), ('R', None));
+    let last = pool.sent.last().map(|(_, bytes)| String::from_utf8_lossy(bytes).into_owned());
+    assert_eq!(last.as_deref(), Some("$PSEAC,T,0,0,0,*0C\r\n$PSEAC,R,,,,*3A\r\n"), "thrust zero first");
     let (here, sent) = (pool.boat.at, pool.sent.len());
     pool.run(30.0);
     assert!(pool.boat.at.distance(here) < 6.0, "{:?}", pool.boat);
     assert_eq!(pool.sent.len(), sent, "telling it again would set a new station");
+    pool.run(60.0);
+    assert!(pool.is_at_rest() && pool.boat.at.distance(here) < 4.0, "it does not circle: {:?}", pool.boat);
     pool.operate(OperatorCommand::Arm);
     assert_eq!(pool.state(), "armed");
 }
@@ -85,6 +89,7 @@ fn missions_that_make_no_sense_are_refused_with_the_reason() {
         ((|m: &mut Mission| m.throttle_pct = 90.0) as fn(&mut Mission), "throttle_pct is 90, expected 0 to 70"),
         (|m| m.waypoints.clear(), "waypoints are 0, expected 1 to 200"),
         (|m| m.waypoints[0] = [91.0, 0.0], "waypoint 1 is [91, 0], expected latitude and longitude"),
+        (|m| m.waypoints[0][0] += 0.02, "a place of it is outside of the fence"),
         (|m| m.erp = [f64::NAN, 0.0], "waypoint 0 is [NaN, 0]"),
     ] {
         let mut pool = Pool::under_way("surveyor.toml", None);
@@ -99,4 +104,25 @@ fn missions_that_make_no_sense_are_refused_with_the_reason() {
     pool.mind = Some(steer(0.0, 1.0));
     pool.operate(OperatorCommand::Mission(mission(&[(80.0, 60.0)])));
     assert!(pool.refused.is_some_and(|refused| refused.contains("navigation: no fix yet")));
+}
+
+#[test]
+fn a_mission_of_which_a_line_is_lost_is_refused_by_the_boat_and_the_one_before_is_gone() {
+    let mut pool = Pool::under_way("surveyor.toml", None);
+    pool.operate(OperatorCommand::Mission(mission(&[(80.0, 60.0)])));
+    pool.run(2.0);
+    assert_eq!(pool.emulator.take_remark().as_deref(), Some("a mission of 2 places is taken up"));
+    pool.operate(OperatorCommand::Disarm);
+    pool.run(20.0);
+    pool.operate(OperatorCommand::Mission(mission(&[(80.0, 60.0), (100.0, 40.0)])));
+    pool.run(0.35);
+    pool.open.0 = false;
+    pool.run(0.1);
+    pool.open.0 = true;
+    pool.run(2.0);
+    let remark = pool.emulator.take_remark().unwrap_or_default();
+    assert!(remark.starts_with("mission refused: 4 lines were announced"), "{remark:?}");
+    let here = pool.boat.at;
+    pool.run(20.0);
+    assert!(pool.boat.at.distance(here) < 4.0, "without a mission it stays");
 }
