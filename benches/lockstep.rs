@@ -16,9 +16,6 @@ use zenoh::{Config, Session, Wait};
 const ROUNDS: usize = 5;
 /// How long a run lasts, s.
 const RUN_S: f64 = 2.0;
-/// The same runtime that `squall run` gives its children.
-const RUNTIME: &str =
-    "(rx:(worker_threads:1),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
 
 struct Case {
     processes: usize,
@@ -38,7 +35,7 @@ fn main() {
     if std::env::var_os("ZENOH_RUNTIME").is_none() {
         // The bare hub, too, is to run as the sim does.
         let mut again = Command::new(std::env::current_exe().expect("this program"));
-        let status = again.args(&args[1..]).env("ZENOH_RUNTIME", RUNTIME).status().expect("it starts again");
+        let status = again.args(&args[1..]).env("ZENOH_RUNTIME", bus::RUNTIME).status().expect("it starts again");
         std::process::exit(status.code().unwrap_or(1));
     }
     println!("lockstep over zenoh, median of {ROUNDS} runs of {RUN_S} s each");
@@ -214,6 +211,6 @@ fn bare(case: &Case) -> f64 {
 fn start_leaf(endpoint: &str, size: usize, i: usize) -> Child {
     let mut command = Command::new(std::env::current_exe().expect("this program"));
     command.args(["--echo", endpoint, &size.to_string(), &format!("leaf{i}")]);
-    command.env("ZENOH_RUNTIME", RUNTIME).stdout(Stdio::null());
+    command.env("ZENOH_RUNTIME", bus::RUNTIME).stdout(Stdio::null());
     command.spawn().expect("a leaf starts")
 }

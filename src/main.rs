@@ -2,6 +2,8 @@
 
 mod agent_command;
 mod check_command;
+mod gateway_command;
+mod hardware_loop;
 mod helm_command;
 mod helm_page;
 mod identify_command;
@@ -57,6 +59,8 @@ enum Command {
     Watch(watch_command::Args),
     /// Dumps one decision of a boat's helm: a table, numbers, pictures.
     Helm(helm_command::Args),
+    /// Brings real boats into games, and lets real back seats drive simulated ones.
+    Gateway(gateway_command::Args),
     /// Lists the games on the network and who is in them.
     List(list_command::Args),
     /// Says what a sea means for a boat, and draws it.
@@ -81,6 +85,7 @@ fn main() -> ExitCode {
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),
         Command::Helm(args) => helm_command::run(&args),
+        Command::Gateway(args) => gateway_command::run(&args),
         Command::List(args) => list_command::run(&args),
         Command::Sea(args) => sea_command::run(&args),
         Command::Trial(args) => trial_command::run(&args),

@@ -4,12 +4,6 @@ use anyhow::{Context, Result};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Collapses zenoh's thread pools into two threads: a quarter to a half off a lockstep round trip. What is received has
-/// one to itself: a hub that passes something large on waits in it for the sender to make room, which must then have
-/// another thread to run in.
-const ZENOH_RUNTIME: &str =
-    "(rx:(worker_threads:1),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
-
 /// One child. It stops when its standard input ends, which the death of this process sees to.
 pub(crate) struct Offspring {
     name: String,
@@ -23,7 +17,7 @@ impl Offspring {
         let program = std::env::current_exe().context("cannot find this program's own file")?;
         let mut command = Command::new(program);
         if std::env::var_os("ZENOH_RUNTIME").is_none() {
-            command.env("ZENOH_RUNTIME", ZENOH_RUNTIME);
+            command.env("ZENOH_RUNTIME", bus::RUNTIME);
         }
         command.args(args).stdin(Stdio::piped()).stdout(stdout);
         let mut child = command.spawn().with_context(|| format!("cannot start {name}"))?;

@@ -1,8 +1,9 @@
 //! An onlooker: a session that watches a game and asks about it.
 
 use crate::net_args::LeafArgs;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use bus::Bus;
+use bus::lookout::{self, Missing};
 use game::VehicleId;
 use game::helm::{HelmQuestion, HelmReport};
 use game::message::Notice;
@@ -24,11 +25,9 @@ impl Onlooker {
         let bus = Bus::leaf(&leaf.net()?).context("no game to watch")?;
         let game = match &leaf.game {
             Some(game) => game.clone(),
-            None => only_game(&bus)?,
+            None => now(lookout::only_game(&bus))?,
         };
-        let answer = bus.ask(&topic::scenario(&game), Vec::new(), ANSWER)?;
-        let bytes = answer.with_context(|| format!("no sim answers for game {:?}", game.as_str()))?;
-        let notice: Notice = serde_json::from_slice(&bytes).context("the sim is of another version of Squall")?;
+        let notice = now(lookout::notice(&bus, &game))?;
         Ok(Onlooker { bus, game, notice })
     }
 
@@ -76,18 +75,12 @@ fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> bool {
         })
 }
 
-fn only_game(bus: &Bus) -> Result<GameName> {
-    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
-    let sims = keys.iter().filter_map(|key| topic::parse_alive(key)).filter(|(_, part, _)| *part == Part::Sim);
-    let games: Vec<GameName> = sims.map(|(game, _, _)| game).collect();
-    match games.as_slice() {
-        [game] => Ok(game.clone()),
-        [] => bail!("no game is on the network"),
-        several => {
-            let names: Vec<&str> = several.iter().map(GameName::as_str).collect();
-            bail!("choose with --game among {}", names.join(", "))
-        }
-    }
+/// What must be there now.
+fn now<T>(found: Result<T, Missing>) -> Result<T> {
+    found.map_err(|missing| match missing {
+        Missing::Yet(reason) => anyhow!(reason),
+        Missing::Forever(refusal) => anyhow!(refusal),
+    })
 }
 
 #[cfg(test)]

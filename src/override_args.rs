@@ -1,11 +1,11 @@
-//! Files in place of those a game names: what `run` and `sim` ask alike.
+//! What takes the place of what a game says: what `run` and `sim` ask alike.
 
 use crate::water_args::names_in;
 use anyhow::{Result, bail};
 use game::scenario::{Kind, Overrides};
 use std::path::{Path, PathBuf};
 
-/// The files, from the command line.
+/// Files and boats, from the command line.
 #[derive(clap::Args)]
 pub(crate) struct OverrideArgs {
     /// A sea file in place of the game's own
@@ -21,12 +21,15 @@ pub(crate) struct OverrideArgs {
     /// The same for a team of any name; may be given again for another
     #[arg(long, value_name = "TEAM=FILE", value_parser = team_and_file)]
     strategy: Vec<(String, String)>,
+    /// Plays external boats as simulated ones: a rehearsal
+    #[arg(long)]
+    rehearse: bool,
 }
 
 impl OverrideArgs {
-    /// What takes the place of the files that the game at `game` names.
+    /// What takes the place of what the game at `game` says.
     pub(crate) fn overrides(&self, game: &Path) -> Result<Overrides> {
-        let mut overrides = Overrides { sea: self.sea.clone(), ..Overrides::default() };
+        let mut overrides = Overrides { sea: self.sea.clone(), simulate_all: self.rehearse, ..Overrides::default() };
         let named = [("blue", &self.blue), ("red", &self.red)];
         let named = named.into_iter().filter_map(|(team, file)| Some((team, file.as_deref()?)));
         for (team, file) in named.chain(self.strategy.iter().map(|(team, file)| (team.as_str(), file.as_str()))) {
@@ -45,7 +48,8 @@ pub(crate) fn words(overrides: &Overrides) -> Vec<String> {
     let strategies = overrides.strategies.iter();
     let strategies =
         strategies.flat_map(|(team, path)| ["--strategy".to_owned(), format!("{team}={}", path.display())]);
-    sea.chain(strategies).collect()
+    let rehearse = overrides.simulate_all.then(|| "--rehearse".to_owned());
+    sea.chain(strategies).chain(rehearse).collect()
 }
 
 /// A team and its file from the command line.

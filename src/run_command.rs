@@ -1,5 +1,6 @@
 //! `squall run`: a whole game from one command.
 
+use crate::hardware_loop::{HardwareLoop, LoopArgs, Match};
 use crate::net_args::unique_game_name;
 use crate::offspring::{self, Offspring};
 use crate::override_args::{self, OverrideArgs};
@@ -37,10 +38,12 @@ pub(crate) struct Args {
     /// How many boats one agent process minds
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     agents_per_process: u16,
+    #[command(flatten)]
+    hardware_loop: LoopArgs,
     /// Writes the result to this file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// How long to wait for the agents before starting without the missing ones, s
+    /// How long to wait for the agents, and for gateways of real boats, before starting without the missing ones, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     join_s: f64,
 }
@@ -50,6 +53,9 @@ const LEAVE: Duration = Duration::from_secs(5);
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let scenario = load(&args.scenario, &args.instead.overrides(&args.scenario)?)?;
+    if args.in_process || args.pace == Pace::Lockstep {
+        scenario.has_no_real_boats()?;
+    }
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
     let report = if args.in_process {
@@ -113,10 +119,21 @@ fn play_across_processes(
     for names in names.chunks(usize::from(args.agents_per_process)) {
         agents.push(start_agent(names, &game, &endpoint)?);
     }
+    let hardware_loop = args.hardware_loop.start(&Match {
+        file: &args.scenario,
+        scenario,
+        overrides: &args.instead.overrides(&args.scenario)?,
+        seed: args.seed.unwrap_or(scenario.seed),
+        pace: args.pace,
+        game: &game,
+        endpoint: &endpoint,
+    })?;
     let report = follow(&tellings, &mut sim, stop, screen)?;
+    let mut problems = hardware_loop.map(HardwareLoop::end).unwrap_or_default();
     let mut everybody = agents;
     everybody.push(sim);
-    for problem in offspring::wait_for_all(&mut everybody, LEAVE) {
+    problems.extend(offspring::wait_for_all(&mut everybody, LEAVE));
+    for problem in problems {
         if !stop.load(Ordering::Relaxed) {
             screen::remark(&problem);
         }

@@ -29,8 +29,10 @@ impl Screen {
                 self.line(&format!("game {game} at {endpoint}"));
                 self.line(&format!("look on with: squall watch --game {game}"));
             }
-            Telling::Waiting { missing } if missing.is_empty() => self.line("every boat has a mind"),
-            Telling::Waiting { missing } => self.status(&waiting(missing)),
+            Telling::Waiting { missing, gateways } => match waiting(missing, gateways) {
+                Some(text) => self.status(&text),
+                None => self.line("every boat has a mind"),
+            },
             Telling::Started => {}
             Telling::Event(event) => self.line(&format!("{:>7.1} s  {}", event.at_s, event.sentence())),
             Telling::Progress(progress) => self.progress(progress),
@@ -86,11 +88,17 @@ impl Screen {
     }
 }
 
-fn waiting(missing: &[String]) -> String {
+/// For whom a game waits, if for anybody.
+fn waiting(minds: &[String], gateways: &[String]) -> Option<String> {
     const SHOWN: usize = 6;
-    let more = missing.len().saturating_sub(SHOWN);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    format!("waiting for the minds of {}{more}", missing[..missing.len().min(SHOWN)].join(", "))
+    let parts = [("minds", minds), ("gateways", gateways)].into_iter().filter(|(_, names)| !names.is_empty());
+    let parts = parts.map(|(of, names)| {
+        let more = names.len().saturating_sub(SHOWN);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        format!("the {of} of {}{more}", names[..names.len().min(SHOWN)].join(", "))
+    });
+    let parts: Vec<String> = parts.collect();
+    (!parts.is_empty()).then(|| format!("waiting for {}", parts.join(" and ")))
 }
 
 /// Prints text as it is. A reader that went away is no reason to stop a game.

@@ -30,9 +30,12 @@ pub(crate) struct Args {
     /// The game's name on the network [default: the file's name and a random number]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     game: Option<GameName>,
-    /// How long to wait for minds before starting without the missing ones, s
+    /// How long to wait for minds, and for gateways of real boats, before starting without the missing ones, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     join_s: f64,
+    /// Serves only the water of the game, with these of its boats in it and nobody who judges: for gateway emulate
+    #[arg(long, value_name = "NAME", num_args = 1..)]
+    afloat: Vec<String>,
     #[command(flatten)]
     hub: HubArgs,
     /// Writes the result to this file
@@ -64,6 +67,8 @@ pub(crate) fn write_json(path: &Path, report: &Report) -> Result<()> {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let scenario = load(&args.scenario, &args.instead.overrides(&args.scenario)?)?;
+    let seed = args.seed.unwrap_or(scenario.seed);
+    let scenario = if args.afloat.is_empty() { scenario } else { sim::afloat(&scenario, seed, &args.afloat)? };
     let stop = stop::on_ctrl_c()?;
     if args.for_parent {
         stop::with_parent(&stop);
@@ -86,7 +91,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let settings =
         Settings { game, net, pace: args.pace, join_limit: Duration::from_secs_f64(args.join_s), stop: stop.clone() };
     let mut teller = Teller::default();
-    let seed = args.seed.unwrap_or(scenario.seed);
     let report = sim::node::serve(&scenario, seed, &settings, &mut |news| {
         if let News::Open = news {
             // Without a phonebook others must be told where the game is; nothing else is lost.

@@ -17,10 +17,12 @@ pub(crate) enum Telling {
         /// Where to connect.
         endpoint: String,
     },
-    /// These vehicles have no mind yet.
+    /// Somebody is not there yet.
     Waiting {
-        /// By name.
+        /// The vehicles without a mind, by name.
         missing: Vec<String>,
+        /// The real boats that no gateway has told the place of, by name.
+        gateways: Vec<String>,
     },
     /// The game begins.
     Started,
@@ -80,8 +82,10 @@ impl Teller {
     pub(crate) fn news(&mut self, news: &News<'_>) -> Vec<Telling> {
         match news {
             News::Open => vec![],
-            News::Waiting { missing } => {
-                vec![Telling::Waiting { missing: missing.iter().map(|name| (*name).to_owned()).collect() }]
+            News::Waiting { minds, gateways } => {
+                let [missing, gateways] =
+                    [minds, gateways].map(|names| names.iter().map(|name| (*name).to_owned()).collect());
+                vec![Telling::Waiting { missing, gateways }]
             }
             News::Started => vec![Telling::Started],
             News::Progress { contest, rate, refused } => self.progress(contest, *rate, refused.total()),

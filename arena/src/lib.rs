@@ -15,7 +15,8 @@ use sim::NoStart;
 /// Plays the game of `scenario` that `seed` chooses to its end. `minds` are by vehicle.
 ///
 /// # Errors
-/// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
+/// [`NoStart`] where the boats do not fit into their spawn area, numbers drawn by lot do not go together, or boats are
+/// real ones.
 ///
 /// # Panics
 /// If there is not one mind for each vehicle.
@@ -26,7 +27,8 @@ pub fn play(scenario: &Scenario, minds: &mut [Box<dyn Mind>], seed: u64) -> Resu
 /// As [`play`], but shows the contest to `watch` before every decision, and stops when that says `false`.
 ///
 /// # Errors
-/// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
+/// [`NoStart`] where the boats do not fit into their spawn area, numbers drawn by lot do not go together, or boats are
+/// real ones.
 ///
 /// # Panics
 /// If there is not one mind for each vehicle.
@@ -37,6 +39,7 @@ pub fn play_watched(
     mut watch: impl FnMut(&Contest) -> bool,
 ) -> Result<Outcome, NoStart> {
     assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
+    scenario.has_no_real_boats()?;
     let mut contest = Contest::new(scenario, seed)?;
     let mut talk = Talk::default();
     while !contest.is_over() && watch(&contest) {

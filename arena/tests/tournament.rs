@@ -67,7 +67,7 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
     for Record { of, result } in &records {
         let strategy = |side: usize| tournament.entries[of.sides[side]].strategy.clone();
         let strategies = [("blue".to_owned(), strategy(0)), ("red".to_owned(), strategy(1))].into();
-        let scenario = load_with(&tournament.game, &Overrides { sea: None, strategies }).unwrap();
+        let scenario = load_with(&tournament.game, &Overrides { strategies, ..Overrides::default() }).unwrap();
         let scenario = scenario.of_seed(of.seed).unwrap();
         let outcome = arena::play(&scenario, &mut agent::minds_of(&scenario), of.seed).unwrap();
         let game = result.as_ref().unwrap();

@@ -9,6 +9,7 @@
 mod board;
 mod error;
 mod inbox;
+pub mod lookout;
 mod net;
 mod phonebook;
 mod session;
@@ -21,3 +22,9 @@ pub use net::{DEFAULT_PORT, Net, free_port};
 pub use phonebook::{Entry, Registration, list as phonebook, register};
 pub use session::{Bus, Delivery, Publisher, Question, Standing};
 pub use slots::Slots;
+
+/// A value of the environment variable `ZENOH_RUNTIME` for a process that is one node: two threads in place of zenoh's pools,
+/// which takes a quarter to a half off a lockstep round trip. What is received has one to itself: a hub that passes
+/// something large on waits in it for the sender to make room, which must then have another thread to run in.
+pub const RUNTIME: &str =
+    "(rx:(worker_threads:1),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";

@@ -18,10 +18,7 @@ impl<T> Slots<T> {
 
     /// Puts `item` into a cell, over whatever is there.
     pub fn put(&self, cell: usize, item: T) {
-        if let Some(cell) = self.lock().get_mut(cell) {
-            *cell = Some(item);
-        }
-        self.news.notify_all();
+        self.change(cell, |_| item);
     }
 
     /// Puts into a cell what `next` makes of what is there.

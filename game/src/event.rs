@@ -107,6 +107,20 @@ pub enum Event {
         /// Which boat.
         vehicle: VehicleId,
     },
+    /// It is not known any more where a real boat is: it is to hold.
+    NavLost {
+        /// Which boat.
+        vehicle: VehicleId,
+    },
+    /// It is known again where a real boat is.
+    NavBack {
+        /// Which boat.
+        vehicle: VehicleId,
+    },
+    /// Somebody ashore stopped all boats.
+    EStopped,
+    /// That stop is over.
+    Released,
     /// The game is over.
     Ended {
         /// Who won; `None` is a draw.
@@ -131,9 +145,11 @@ impl Event {
             | Event::Enabled { vehicle }
             | Event::MindLost { vehicle }
             | Event::MindBack { vehicle }
-            | Event::Quarantined { vehicle } => Some(vehicle),
+            | Event::Quarantined { vehicle }
+            | Event::NavLost { vehicle }
+            | Event::NavBack { vehicle } => Some(vehicle),
             Event::Collided { first, .. } => Some(first),
-            Event::Ended { .. } => None,
+            Event::EStopped | Event::Released | Event::Ended { .. } => None,
         }
     }
 }

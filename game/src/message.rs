@@ -181,6 +181,10 @@ impl From<Logged> for EventRecord {
             Event::MindLost { vehicle } => (12, v(vehicle), -1),
             Event::MindBack { vehicle } => (13, v(vehicle), -1),
             Event::Quarantined { vehicle } => (14, v(vehicle), -1),
+            Event::NavLost { vehicle } => (16, v(vehicle), -1),
+            Event::NavBack { vehicle } => (17, v(vehicle), -1),
+            Event::EStopped => (18, -1, -1),
+            Event::Released => (19, -1, -1),
             Event::Ended { winner } => (15, winner.map_or(-1, |team| i32::from(team.0)), -1),
         };
         EventRecord { tick: logged.tick, at_ns: logged.at, kind, subject, object }
@@ -211,6 +215,10 @@ impl EventRecord {
             13 => Event::MindBack { vehicle: vehicle? },
             14 => Event::Quarantined { vehicle: vehicle? },
             15 => Event::Ended { winner: u8::try_from(self.subject).ok().map(TeamId) },
+            16 => Event::NavLost { vehicle: vehicle? },
+            17 => Event::NavBack { vehicle: vehicle? },
+            18 => Event::EStopped,
+            19 => Event::Released,
             _ => return None,
         };
         Some(Logged { tick: self.tick, at: self.at_ns, event })
@@ -334,6 +342,10 @@ pub enum JoinReply {
 pub enum Control {
     /// Ends the game now.
     Stop,
+    /// All boats stop, real and simulated, and stay stopped.
+    EStop,
+    /// The stop is over. Real boats have to be armed again.
+    Release,
 }
 
 /// What a sim says of its game to anyone who asks.

@@ -88,6 +88,10 @@ impl EventOutcome {
             Event::MindLost { .. } => ("mind_lost", None, None),
             Event::MindBack { .. } => ("mind_back", None, None),
             Event::Quarantined { .. } => ("quarantined", None, None),
+            Event::NavLost { .. } => ("nav_lost", None, None),
+            Event::NavBack { .. } => ("nav_back", None, None),
+            Event::EStopped => ("e_stopped", None, None),
+            Event::Released => ("released", None, None),
             Event::Ended { winner } => ("ended", None, winner.and_then(team)),
         };
         EventOutcome {
@@ -122,6 +126,10 @@ impl EventOutcome {
             "mind_lost" => format!("{who} has LOST ITS MIND and holds"),
             "mind_back" => format!("{who} has a mind again"),
             "quarantined" => format!("{who} is QUARANTINED: its numbers went bad"),
+            "nav_lost" => format!("{who} is LOST: nobody reports where it is"),
+            "nav_back" => format!("{who} is found again"),
+            "e_stopped" => "E-STOP: all boats hold".to_owned(),
+            "released" => "the E-stop is released".to_owned(),
             "ended" if self.team.is_none() => "the game ends in a draw".to_owned(),
             "ended" => format!("{team} wins"),
             other => other.to_owned(),

@@ -78,6 +78,42 @@ pub fn helm(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String 
     format!("squall/{}/helm/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
+/// Where a real boat is, from its gateway (publish).
+#[must_use]
+pub fn nav(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
+    format!("squall/{}/nav/{}", game.0, scenario.vehicles[vehicle.index()].name)
+}
+
+/// Where all real boats are (subscribe).
+#[must_use]
+pub fn all_nav(game: &GameName) -> String {
+    format!("squall/{}/nav/*", game.0)
+}
+
+/// What a real boat is to do, from the sim (publish).
+#[must_use]
+pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
+    format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
+}
+
+/// How a gateway and its boat are (publish).
+#[must_use]
+pub fn status(game: &GameName, vehicle: &str) -> String {
+    format!("squall/{}/status/{vehicle}", game.0)
+}
+
+/// Where people ask something of a boat's gateway (query).
+#[must_use]
+pub fn operate(game: &GameName, vehicle: &str) -> String {
+    format!("squall/{}/operate/{vehicle}", game.0)
+}
+
+/// The quay at which gateways ask to bring their boat (query).
+#[must_use]
+pub fn moor(game: &GameName) -> String {
+    format!("squall/{}/moor", game.0)
+}
+
 /// The door at which agents ask to be let in (query).
 #[must_use]
 pub fn join(game: &GameName) -> String {
@@ -103,6 +139,8 @@ pub enum Part {
     Sim,
     /// Minds.
     Agent,
+    /// The way to a real boat.
+    Gateway,
 }
 
 impl Part {
@@ -110,6 +148,7 @@ impl Part {
         match self {
             Part::Sim => "sim",
             Part::Agent => "agent",
+            Part::Gateway => "gateway",
         }
     }
 }
@@ -143,6 +182,7 @@ pub fn parse_alive(key: &str) -> Option<(GameName, Part, String)> {
     let part = match words.next()? {
         "sim" => Part::Sim,
         "agent" => Part::Agent,
+        "gateway" => Part::Gateway,
         _ => return None,
     };
     Some((game, part, words.next()?.to_owned()))
@@ -172,6 +212,8 @@ mod tests {
             (all_say(&game, &scenario, red), "squall/pav01/say/red/*"),
             (policy(&game, &scenario, two), "squall/pav01/policy/blue_two"),
             (helm(&game, &scenario, two), "squall/pav01/helm/blue_two"),
+            (nav(&game, &scenario, two), "squall/pav01/nav/blue_two"),
+            (external_order(&game, &scenario, two), "squall/pav01/external/blue_two"),
         ] {
             assert_eq!(key, want);
         }

@@ -2,6 +2,7 @@
 
 use game::codec::{DecodeError, decode, encode};
 use game::event::{Event, Logged, TagCause};
+use game::external::{ExternalOrder, NavReport};
 use game::message::{
     EventRecord, Frame, Message, Orders, PolicyProposal, Say, Stamp, VehicleOrder, VehicleTruth, Word,
 };
@@ -19,6 +20,8 @@ fn registry() -> Registry {
     tracer.trace_type::<Orders>(&samples).expect("a plain struct");
     tracer.trace_type::<Say>(&samples).expect("a plain struct");
     tracer.trace_type::<PolicyProposal>(&samples).expect("a plain struct");
+    tracer.trace_type::<NavReport>(&samples).expect("a plain struct");
+    tracer.trace_type::<ExternalOrder>(&samples).expect("a plain struct");
     tracer.registry().expect("all is known")
 }
 
@@ -77,6 +80,8 @@ fn definitions_belong_to_their_messages() {
         (Orders::SCHEMA, Orders::DEFINITION),
         (Say::SCHEMA, Say::DEFINITION),
         (PolicyProposal::SCHEMA, PolicyProposal::DEFINITION),
+        (NavReport::SCHEMA, NavReport::DEFINITION),
+        (ExternalOrder::SCHEMA, ExternalOrder::DEFINITION),
     ] {
         let name = schema.rsplit('/').next().expect("a name");
         let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("msg/{name}.msg")));
@@ -165,6 +170,15 @@ fn words_and_proposals_survive_and_damaged_ones_are_refused() {
 }
 
 #[test]
+fn reports_of_real_boats_and_their_orders_survive_and_damaged_ones_are_refused() {
+    let nav = Nav { north_m: 0.1 + 0.2, surge_m_s: -0.0, ..Nav::default() };
+    let (stamp, ticket) = (stamp::<NavReport>(), u64::MAX - 5);
+    survives_or_is_refused(&NavReport { stamp, ticket, vehicle: VehicleId(3), valid: true, age_ns: 30_000_000, nav });
+    let order = VehicleOrder::new(VehicleId(3), Order::Thrust { port: -1.0, starboard: 1.0 / 3.0 });
+    survives_or_is_refused(&ExternalOrder { stamp: self::stamp::<ExternalOrder>(), given_ns: SimTime(7), order });
+}
+
+#[test]
 fn words_and_proposals_are_cdr_as_other_programs_write_it() {
     // Written by hand from the CDR rules: every number stands at a multiple of its size.
     let mut start = vec![0, 1, 0, 0];
@@ -199,6 +213,10 @@ fn every_event_survives_its_record() {
         Event::MindLost { vehicle: v },
         Event::MindBack { vehicle: v },
         Event::Quarantined { vehicle: v },
+        Event::NavLost { vehicle: v },
+        Event::NavBack { vehicle: v },
+        Event::EStopped,
+        Event::Released,
         Event::Ended { winner: Some(TeamId(1)) },
         Event::Ended { winner: None },
     ] {

@@ -15,7 +15,7 @@ fn shipped(file: &str) -> PathBuf {
 
 fn instead(strategies: &[(&str, PathBuf)]) -> Overrides {
     let strategies = strategies.iter().map(|(team, path)| ((*team).to_owned(), path.clone())).collect();
-    Overrides { sea: None, strategies }
+    Overrides { strategies, ..Overrides::default() }
 }
 
 /// The strategies that the boats follow, in order.
@@ -86,6 +86,27 @@ fn a_game_drawn_again_keeps_what_took_the_place_of_its_own() {
     assert_ne!(other.drawn, scenario.drawn);
     assert_eq!(followed(&other), ["pav01", "pav01", "own", "own"]);
     assert_eq!((&other.sea, other.sea.name.as_str()), (&scenario.sea, "gale"));
+}
+
+#[test]
+fn in_a_rehearsal_every_boat_is_simulated_also_when_the_game_is_drawn_again() {
+    let mixed = shipped("games/mixed_2v2.toml").canonicalize().unwrap();
+    let scenario = load(&mixed).unwrap();
+    let real: Vec<VehicleId> = scenario.externals().collect();
+    assert_eq!(real, [VehicleId(0), VehicleId(2)]);
+    let said = scenario.has_no_real_boats().unwrap_err().to_string();
+    for part in ["blue_one, red_one", "--pace realtime", "--rehearse"] {
+        assert!(said.contains(part), "{said}");
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let drawn = dir.path().join("drawn.toml");
+    std::fs::write(&drawn, format!("base = {mixed:?}\nlink = {{ delay_s = {{ uniform = [0.1, 0.2] }} }}\n")).unwrap();
+    let rehearsal = Overrides { simulate_all: true, ..Overrides::default() };
+    for game in [mixed, drawn] {
+        let scenario = load_with(&game, &rehearsal).unwrap();
+        assert_eq!(scenario.has_no_real_boats(), Ok(()));
+        assert_eq!(scenario.of_seed(9).unwrap().externals().count(), 0);
+    }
 }
 
 #[test]

@@ -72,10 +72,21 @@ pub struct Passage {
     pub turn: (f64, f64),
     /// Sine and cosine of the heading at the end.
     pub turn_to: (f64, f64),
-    /// Whether it can move at all.
-    pub fixed: bool,
+    /// What contact does to it.
+    pub footing: Footing,
     /// What contact added to the velocity, in body axes.
     pub kick: Planar,
+}
+
+/// What contact does to a boat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Footing {
+    /// It is pushed about.
+    Loose,
+    /// It lies still, whatever bumps into it.
+    Fast,
+    /// It goes its own way, whatever it bumps into: a real boat, which feels nothing of all this.
+    Carried,
 }
 
 /// A shape near a boat, with the direction in which it would be pushed.
@@ -278,7 +289,12 @@ fn enter(
     let spin_rad_s = wrap_pi(passage.to.psi_rad - passage.from.psi_rad) / dt_s;
     let normal = frame::body_from_ned(passage.turn, Ned { north: touch.normal.x, east: touch.normal.y });
     let mass_kg = model.mass_along_kg(normal.ahead, normal.starboard);
-    let body = if passage.fixed { RigidBodyBuilder::fixed() } else { RigidBodyBuilder::dynamic() }
+    let body = match passage.footing {
+        Footing::Loose => RigidBodyBuilder::dynamic(),
+        Footing::Fast => RigidBodyBuilder::fixed(),
+        Footing::Carried => RigidBodyBuilder::kinematic_velocity_based(),
+    };
+    let body = body
         .pose(passage.start())
         .linvel(velocity)
         .angvel(spin_rad_s)
@@ -299,7 +315,7 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, passage: &mut P
     let mut colliders = body.colliders().iter();
     let touched =
         colliders.any(|c| world.narrow_phase.contact_pairs_with(*c).any(|pair| pair.has_any_active_contact()));
-    if !touched || passage.fixed {
+    if !touched || passage.footing != Footing::Loose {
         return;
     }
     let (at, rotation) = (body.translation(), body.rotation());

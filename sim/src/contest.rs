@@ -4,6 +4,8 @@
 //! [`Contest::advance`]. The network node and the in-process arena do just that and nothing else, so a
 //! game is the same bytes in both.
 
+use crate::external::{self, BadReport, Track};
+use crate::hull::Planar;
 use crate::radio::Radio;
 use crate::sighting::Sightings;
 use crate::view;
@@ -12,7 +14,8 @@ use game::boat::Drive;
 use game::event::Logged;
 use game::message::Frame;
 use game::outcome::{Outcome, Played};
-use game::picture::OwnBoat;
+use game::picture::{Nav, OwnBoat};
+use game::scenario::Source;
 use game::{Event, Order, Picture, Scenario, SimTime, VehicleId};
 use xxhash_rust::xxh3::Xxh3;
 
@@ -27,6 +30,10 @@ pub struct Contest {
     /// After how long without one each vehicle's thrusters stop.
     watchdogs: Vec<Option<SimTime>>,
     mind_lost: Vec<bool>,
+    /// Whether all boats hold, by somebody ashore.
+    stopped: bool,
+    /// The real boats, in order.
+    tracks: Vec<Track>,
     radio: Option<Radio>,
     sightings: Option<Sightings>,
     /// What is known ashore of every boat, as of the last pictures.
@@ -62,6 +69,8 @@ impl Contest {
             ordered_at: vec![SimTime::ZERO; count],
             watchdogs: (0..count).map(|i| watchdog(&scenario, VehicleId::at(i))).collect(),
             mind_lost: vec![false; count],
+            stopped: false,
+            tracks: scenario.externals().map(Track::new).collect(),
             events: Vec::new(),
             pictured: 0,
             framed: 0,
@@ -150,12 +159,84 @@ impl Contest {
         frame
     }
 
-    /// Sends an order to a vehicle: it is in force from when it arrives until the next one does.
+    /// Sends an order to a vehicle: it is in force from when it arrives until the next one does. To a real boat it goes
+    /// over a real link, and none of ours.
     pub fn order(&mut self, vehicle: VehicleId, order: Order) {
         let (i, now) = (vehicle.index(), self.now());
+        let is_external = self.track(vehicle).is_some();
         match &mut self.radio {
-            Some(radio) => radio.send_order(i, order, self.world.state().boats[i].pose.at, now),
-            None => (self.orders[i], self.ordered_at[i]) = (order, now),
+            Some(radio) if !is_external => radio.send_order(i, order, self.world.state().boats[i].pose.at, now),
+            _ => (self.orders[i], self.ordered_at[i]) = (order, now),
+        }
+    }
+
+    /// The order in force for a vehicle, after what the rules make of it: driven home it is a course at the speed that
+    /// they allow, and a limit of speed also scales thrust. A real boat holds while it is lost, while its mind is, and
+    /// when the game is over: whatever the rules want of it, somebody must be looking.
+    #[must_use]
+    pub fn obeyed(&self, vehicle: VehicleId) -> Order {
+        let is_lost = |track: &Track| track.is_lost(self.now()) || self.mind_lost[vehicle.index()] || self.is_over();
+        if self.track(vehicle).is_some_and(is_lost) {
+            return Order::Hold;
+        }
+        let speed_max_m_s = self.scenario.boat_of(vehicle).speed_max_m_s();
+        match self.world.obeyed(vehicle, self.orders[vehicle.index()]) {
+            (Order::Steer { heading_rad, speed_m_s }, factor) => {
+                Order::Steer { heading_rad, speed_m_s: speed_m_s.min(factor * speed_max_m_s) }
+            }
+            (Order::Thrust { port, starboard }, factor) => {
+                Order::Thrust { port: factor * port, starboard: factor * starboard }
+            }
+            (Order::Hold, _) => Order::Hold,
+        }
+    }
+
+    /// Takes in where a real boat was at `fix_at`: at most a decision ahead of the game, since reports come while one is
+    /// open. What its gateway calls not `valid` changes nothing.
+    ///
+    /// # Errors
+    /// [`BadReport`] for numbers that no boat has, and for a simulated boat; nothing changes then.
+    pub fn report(&mut self, vehicle: VehicleId, nav: Nav, fix_at: SimTime, valid: bool) -> Result<(), BadReport> {
+        let now = self.now();
+        let decision = self.scenario.tick * i64::from(self.scenario.ticks_per_decision);
+        let track = self.tracks.iter_mut().find(|track| track.vehicle == vehicle).ok_or(BadReport::Simulated)?;
+        let nav = external::sound(nav)?;
+        if valid {
+            track.take(nav, fix_at.min(now + decision));
+            self.carry(vehicle);
+        }
+        Ok(())
+    }
+
+    /// Whether a real boat has ever been heard of; a simulated one always is.
+    #[must_use]
+    pub fn is_heard(&self, vehicle: VehicleId) -> bool {
+        self.track(vehicle).is_none_or(Track::is_heard)
+    }
+
+    fn track(&self, vehicle: VehicleId) -> Option<&Track> {
+        self.tracks.iter().find(|track| track.vehicle == vehicle)
+    }
+
+    /// Puts a real boat where it is taken to be now.
+    fn carry(&mut self, vehicle: VehicleId) {
+        if let Some((pose, nu)) = self.track(vehicle).and_then(|track| track.under_way(self.now())) {
+            self.world.set_under_way(vehicle, pose, nu);
+        }
+    }
+
+    /// Real boats that have not been heard of for long stop, and are lost.
+    fn watch_real_boats(&mut self) {
+        let now = self.now();
+        for i in 0..self.tracks.len() {
+            let vehicle = self.tracks[i].vehicle;
+            let stops = self.tracks[i].under_way(now).is_some_and(|(_, nu)| nu == Planar::default());
+            if stops && self.world.state().boats[vehicle.index()].nu != Planar::default() {
+                self.carry(vehicle);
+            }
+            if let Some(event) = self.tracks[i].news(now) {
+                self.log(event);
+            }
         }
     }
 
@@ -182,13 +263,15 @@ impl Contest {
             sightings.look(decision, oldest, vehicles.map(|(i, vehicle)| view::contact(state, i, vehicle.team)));
         }
         for (i, known) in self.known.iter_mut().enumerate() {
-            let report = view::own_boat(world, i);
+            let mut report = view::own_boat(world, i);
+            let track = self.tracks.iter().find(|track| track.vehicle.index() == i);
+            track.into_iter().for_each(|track| track.tell(&mut report));
             let mut take = |sent: u64| {
                 if let Some(sightings) = &mut self.sightings {
                     sightings.take(i, sent);
                 }
             };
-            let Some(radio) = &mut self.radio else {
+            let Some(radio) = self.radio.as_mut().filter(|_| track.is_none()) else {
                 take(decision);
                 *known = report;
                 continue;
@@ -232,6 +315,14 @@ impl Contest {
         }
     }
 
+    /// Makes all boats hold, or lets them go on. Says so, if that is news.
+    pub fn e_stop(&mut self, stopped: bool) {
+        if std::mem::replace(&mut self.stopped, stopped) != stopped {
+            self.world.halt(stopped);
+            self.log(if stopped { Event::EStopped } else { Event::Released });
+        }
+    }
+
     /// Plays until the next decision, or the end of the game.
     pub fn advance(&mut self) {
         for _ in 0..self.scenario.ticks_per_decision {
@@ -239,6 +330,7 @@ impl Contest {
                 break;
             }
             self.deliver();
+            self.watch_real_boats();
             self.world.step(&self.orders);
             let (tick, at) = (self.world.state().tick, self.world.state().now);
             self.events.extend(self.world.events().iter().map(|event| Logged { tick, at, event: *event }));
@@ -250,7 +342,8 @@ impl Contest {
     }
 
     /// 128 bits over the state and all events. Where a game has radio links, limits of sharing or command watchdogs, also
-    /// over what is in force, under way and known: that is in no snapshot of the world.
+    /// over what is in force, under way and known, and where it has real boats, over their fixes: that is in no snapshot
+    /// of the world.
     ///
     /// # Panics
     /// Never: plain numbers always encode.
@@ -268,6 +361,9 @@ impl Contest {
         if self.radio.is_some() || self.sightings.is_some() || self.watchdogs.iter().any(Option::is_some) {
             let between = (&self.orders, &self.ordered_at, &self.known, &self.radio, &self.sightings);
             hash.update(&postcard::to_stdvec(&between).expect("plain numbers always encode"));
+        }
+        if !self.tracks.is_empty() {
+            hash.update(&postcard::to_stdvec(&self.tracks).expect("plain numbers always encode"));
         }
         hash.digest128()
     }
@@ -293,6 +389,8 @@ impl Contest {
 /// After how long without a new order a vehicle's thrusters stop.
 fn watchdog(scenario: &Scenario, vehicle: VehicleId) -> Option<SimTime> {
     match &scenario.boat_of(vehicle).drive {
+        // A real boat has one of its own.
+        _ if scenario.vehicles[vehicle.index()].source == Source::External => None,
         Drive::Thrusters { thruster, .. } => thruster.flaws.watchdog_s.map(SimTime::from_s),
         Drive::Kinematic(_) => None,
     }

@@ -2,10 +2,12 @@
 //!
 //! Open [`World::step`] first. [`Contest`] plays a whole game with it; `node` puts one on the network.
 
+pub mod afloat;
 pub mod autopilot;
 pub mod battery;
 pub mod contact;
 pub mod contest;
+pub mod external;
 pub mod flaw;
 pub mod hull;
 pub mod kinematic;
@@ -24,6 +26,8 @@ pub mod thruster;
 mod view;
 pub mod world;
 
+pub use afloat::{NotAfloat, afloat};
 pub use contest::Contest;
+pub use external::BadReport;
 pub use state::{BoatState, RestoreError, State};
 pub use world::{NoStart, World};

@@ -1,7 +1,8 @@
 //! What is constant while a game is played: the boats as they are, the sea, contact, the referee.
 
 use crate::autopilot::AutopilotModel;
-use crate::contact::{ContactModel, Passage};
+use crate::contact::{ContactModel, Footing, Passage};
+use crate::external;
 use crate::flaw::FlawState;
 use crate::hull::{HullModel, Planar};
 use crate::kinematic::{Command, KinematicModel, KinematicState};
@@ -14,6 +15,7 @@ use game::angle::wrap_pi;
 use game::boat::{self, Sensors};
 use game::frame::{self, Body, Ned};
 use game::rules::{Directive, Referee, Standing};
+use game::scenario::Source;
 use game::{Order, Pose, Scenario, SimTime, VehicleId, math};
 use xxhash_rust::xxh3;
 
@@ -29,6 +31,8 @@ pub(crate) struct Model {
     drives: Vec<Drive>,
     /// Kind of each vehicle.
     pub(crate) kinds: Vec<usize>,
+    /// Whether each vehicle is a real boat.
+    external: Vec<bool>,
     /// The place of each vehicle among the point boats, if it is one.
     points: Vec<Option<usize>>,
     /// The sensors of each vehicle that has any, and its place among those.
@@ -71,10 +75,12 @@ impl Model {
         let drives: Vec<Drive> =
             scenario.boats.iter().zip(&hulls).map(|(boat, hull)| Drive::new(boat, hull, dt_s)).collect();
         let kinds: Vec<usize> = scenario.vehicles.iter().map(|vehicle| vehicle.boat).collect();
-        let points = kinds.iter().map(|kind| matches!(drives[*kind], Drive::Point(_)));
+        let external: Vec<bool> = scenario.vehicles.iter().map(|vehicle| vehicle.source == Source::External).collect();
+        let points = kinds.iter().zip(&external).map(|(kind, real)| !real && matches!(drives[*kind], Drive::Point(_)));
         let sensors = scenario.vehicles.iter().map(|vehicle| &scenario.boats[vehicle.boat].sensors);
         let decision = scenario.tick * i64::from(scenario.ticks_per_decision);
-        let places = numbered(sensors.clone().map(|sensors| *sensors != Sensors::default()));
+        let is_sensed = sensors.clone().zip(&external).map(|(sensors, real)| !real && *sensors != Sensors::default());
+        let places = numbered(is_sensed);
         let sensed = places.into_iter().zip(sensors).zip(&scenario.vehicles).map(|((place, sensors), vehicle)| {
             place.map(|place| (place, SensorModel::new(sensors, decision, seed, &vehicle.name)))
         });
@@ -84,6 +90,7 @@ impl Model {
             dt_s,
             ticks_per_decision: u64::from(scenario.ticks_per_decision),
             points: numbered(points),
+            external,
             sensed: sensed.collect(),
             fleet: Fleet::new(kinds.iter().map(|kind| &hulls[*kind])),
             sea: SeaModel::new(scenario, seed),
@@ -127,6 +134,12 @@ impl Model {
         self.sensed[vehicle].as_ref().map_or(0.0, |(place, _)| senses[*place].0.heading_error_rad())
     }
 
+    /// Whether a vehicle is a real boat: nothing here moves it.
+    #[inline]
+    pub(crate) fn is_external(&self, vehicle: usize) -> bool {
+        self.external[vehicle]
+    }
+
     /// The model of a vehicle that is a point boat, and its place among those.
     #[inline]
     pub(crate) fn point(&self, vehicle: usize) -> Option<(usize, &KinematicModel)> {
@@ -164,7 +177,7 @@ impl Model {
         let Drive::Thrusters(thruster, autopilot) = &self.drives[kind] else {
             return (Effort::default(), Ned::default());
         };
-        if boat.quarantined {
+        if boat.quarantined || self.external[vehicle] {
             return (Effort::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
@@ -233,18 +246,30 @@ impl Model {
         (Passage { to, turn_to, ..still }, through_water(nu, turn_to, drift_m_s, 1.0))
     }
 
+    /// A real boat's passage over a tick, as far as it is known, and its velocity over the ground: it goes on as it does.
+    pub(crate) fn carried_passage(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64)) -> (Passage, Planar) {
+        let to = external::carried_on(boat.pose, boat.nu, self.dt_s);
+        let still = self.still(vehicle, boat, turn);
+        (Passage { to, turn_to: math::sin_cos(to.psi_rad), ..still }, boat.nu)
+    }
+
     fn still(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64)) -> Passage {
         let from = boat.pose;
         let kind = self.kinds[vehicle];
-        Passage { kind, from, to: from, turn, turn_to: turn, fixed: boat.quarantined, kick: Planar::default() }
+        let footing = match (self.external[vehicle], boat.quarantined) {
+            (true, _) => Footing::Carried,
+            (false, true) => Footing::Fast,
+            (false, false) => Footing::Loose,
+        };
+        Passage { kind, from, to: from, turn, turn_to: turn, footing, kick: Planar::default() }
     }
 
-    /// How a boat lies in the waves; a point boat knows none.
+    /// How a boat lies in the waves; a point boat knows none, and of a real boat it is not known.
     pub(crate) fn attitude(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64), sea: &SeaNow<'_>) -> Attitude {
         let kind = self.kinds[vehicle];
         match self.drives[kind] {
-            Drive::Thrusters(..) => sea.attitude(kind, boat.pose, turn, boat.nu),
-            Drive::Point(_) => Attitude::default(),
+            Drive::Thrusters(..) if !self.external[vehicle] => sea.attitude(kind, boat.pose, turn, boat.nu),
+            _ => Attitude::default(),
         }
     }
 

@@ -11,7 +11,7 @@ use crate::state::{BoatState, RestoreError, State};
 use game::frame::{self, Ned};
 use game::near::{Near, Pair};
 use game::rules::{Notes, Referee};
-use game::scenario::Problems;
+use game::scenario::{Problems, RealBoats};
 use game::stream::Stream;
 use game::{Event, Order, Pose, Scenario, SimTime, VehicleId, math};
 use thiserror::Error;
@@ -25,6 +25,8 @@ pub struct World {
     model: Model,
     state: State,
     work: Work,
+    /// Whether all boats hold, whatever they are told: an E-stop, which is no part of the game.
+    halted: bool,
 }
 
 /// Why a game cannot start.
@@ -36,6 +38,9 @@ pub enum NoStart {
     /// The numbers drawn for this seed are each allowed, but not together.
     #[error("what was drawn for this seed does not go together\n{0}")]
     Draw(#[from] Problems),
+    /// The game has real boats, and is to be played without a clock.
+    #[error(transparent)]
+    RealBoats(#[from] RealBoats),
 }
 
 /// Memory that is used again every tick; all of it follows from the state.
@@ -77,7 +82,7 @@ impl World {
         };
         state.points = model.points_at_start(&state.boats);
         state.senses = model.senses_at_start();
-        let mut world = World { model, state, work: Work::default() };
+        let mut world = World { model, state, work: Work::default(), halted: false };
         world.refresh();
         world.sense();
         Ok(world)
@@ -148,10 +153,26 @@ impl World {
         self.refresh();
     }
 
+    /// Makes all boats hold, driven home or not, until they no longer must.
+    pub fn halt(&mut self, halted: bool) {
+        self.halted = halted;
+    }
+
     /// 128 bits that differ when any bit of the state differs: of what [`World::snapshot`] holds.
     #[must_use]
     pub fn digest(&self) -> u128 {
         self.state.digest()
+    }
+
+    /// What a vehicle is to do by the rules, given an order, and the share of its top speed that it may use; being
+    /// driven home is a course at any speed.
+    #[must_use]
+    pub fn obeyed(&self, vehicle: VehicleId, order: Order) -> (Order, f64) {
+        let i = vehicle.index();
+        if self.halted {
+            return (Order::Hold, 1.0);
+        }
+        self.model.obeyed(&self.state.standing, i, self.state.boats[i].pose.at, order)
     }
 
     /// The sea now.
@@ -205,12 +226,15 @@ impl World {
 
     /// Every boat's motion over the tick as if it were alone.
     fn drive(&mut self, orders: &[Order]) {
-        let World { model, state, work } = self;
+        let World { model, state, work, halted } = self;
+        let obeyed = |standing: &_, i: usize, at, order| {
+            if *halted { (Order::Hold, 1.0) } else { model.obeyed(standing, i, at, order) }
+        };
         let sea = model.sea.at_time(state.now);
         work.efforts.clear();
         work.currents_m_s.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
-            let order = model.obeyed(&state.standing, i, boat.pose.at, orders[i]);
+            let order = obeyed(&state.standing, i, boat.pose.at, orders[i]);
             let heading = (work.turns[i], model.heading_error_rad(i, &state.senses));
             let (effort, current_m_s) = model.effort(i, boat, &mut state.flaws[i], heading, order, &sea);
             work.efforts.push(effort);
@@ -221,8 +245,9 @@ impl World {
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {
             let (passage, nu) = match model.point(i) {
+                _ if model.is_external(i) => model.carried_passage(i, boat, work.turns[i]),
                 Some((place, point)) if !boat.quarantined => {
-                    let order = model.obeyed(&state.standing, i, boat.pose.at, orders[i]);
+                    let order = obeyed(&state.standing, i, boat.pose.at, orders[i]);
                     let drift_m_s = sea.current_at(boat.pose.at);
                     model.point_passage(i, boat, (point, &mut state.points[place]), order, drift_m_s)
                 }
@@ -235,7 +260,7 @@ impl World {
 
     /// The boats take up the motion, with what contact changed in it. Bad numbers are contained here.
     fn settle(&mut self) {
-        let World { model, state, work } = self;
+        let World { model, state, work, .. } = self;
         let sea = model.sea.at_time(state.now);
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let (passage, mut nu) = (&work.passages[i], work.velocities[i]);
@@ -262,14 +287,12 @@ impl World {
         if self.model.referee.rules().flag_keepout_m <= 0.0 {
             return;
         }
-        let World { model, state, work } = self;
+        let World { model, state, work, .. } = self;
         let mut moved = false;
         for i in 0..state.boats.len() {
-            let Some((centre, radius_m)) =
-                model.referee.keepout(&state.standing, VehicleId::at(i), state.boats[i].pose.at)
-            else {
-                continue;
-            };
+            let keepout = model.referee.keepout(&state.standing, VehicleId::at(i), state.boats[i].pose.at);
+            // A real boat is where it is.
+            let Some((centre, radius_m)) = keepout.filter(|_| !model.is_external(i)) else { continue };
             let boat = &mut state.boats[i];
             let from_centre = boat.pose.at - centre;
             let distance_m = from_centre.length();
@@ -291,7 +314,7 @@ impl World {
 
     /// Sensors read, if minds decide now.
     fn sense(&mut self) {
-        let World { model, state, work } = self;
+        let World { model, state, work, .. } = self;
         if state.senses.is_empty() || !state.tick.is_multiple_of(model.ticks_per_decision) {
             return;
         }
@@ -305,7 +328,7 @@ impl World {
     }
 
     fn judge(&mut self) {
-        let World { model, state, work } = self;
+        let World { model, state, work, .. } = self;
         let boats = &state.boats;
         let at = |i: usize| boats[i].pose.at;
         model.referee.advance(&mut state.standing, &mut work.notes, &at, &work.pairs, state.now, &mut work.events);

@@ -5,8 +5,10 @@
     reason = "processes are waited for by the clock, with a limit; a test that is skipped says so"
 )]
 
+mod external;
 mod faults;
 mod games;
+mod gateway;
 mod helm;
 mod hosts;
 mod policy;

@@ -55,6 +55,19 @@ pub(crate) fn write(dir: &Path, name: &str, text: &str) -> PathBuf {
     path
 }
 
+/// A real boat that attacks, and a simulated one that lies still.
+pub(crate) fn real_attacker(dir: &Path) -> PathBuf {
+    let root = scenarios();
+    let text = format!(
+        "base = \"{root}/games/pav01_vs_pav01.toml\"\nduration_s = 80000\n\
+         [[team]]\nname = \"blue\"\nstrategy = \"{root}/strategies/easy_attacker.toml\"\n\
+         [[team]]\nname = \"red\"\nstrategy = \"{root}/strategies/idle.toml\"\n\
+         [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nsource = \"external\"\n\
+         [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\n"
+    );
+    write(dir, "real_attacker.toml", &text)
+}
+
 /// A process that is gone with the test.
 pub(crate) struct Process(pub(crate) Child);
 

@@ -12,9 +12,3 @@ pub(super) fn now() -> Instant {
 pub(super) fn since(start: Instant) -> Duration {
     now().saturating_duration_since(start)
 }
-
-/// Lets some time pass between two attempts, which are limited by whoever makes them.
-#[expect(clippy::disallowed_methods, reason = "between limited attempts to find a sim that is not there yet")]
-pub(super) fn pause(time: Duration) {
-    std::thread::sleep(time);
-}

@@ -12,14 +12,13 @@ mod window;
 
 pub use ignored::Ignored;
 
+use bus::lookout::{self, Lookout, NotFound, Refusal};
 use bus::{Bus, BusError, Net};
-use game::VehicleId;
-use game::message::{JoinReply, JoinRequest, Notice};
 use game::strategy::Strategy;
 use game::topic::{self, GameName, Part};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 use table::Table;
 use thiserror::Error;
 
@@ -86,10 +85,8 @@ pub enum NodeError {
     SimGone(Duration),
 }
 
-/// How often to look again for what is not there.
+/// How often an agent that hears nothing looks whether the sim is still there.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How long to wait for an answer.
-const ANSWER: Duration = Duration::from_secs(2);
 /// How long the sim may be silent once its sign of life is gone.
 const SILENCE_AFTER_DEATH: Duration = Duration::from_secs(3);
 
@@ -98,117 +95,31 @@ const SILENCE_AFTER_DEATH: Duration = Duration::from_secs(3);
 /// # Errors
 /// [`NodeError`] says what went wrong; a sim that dies is an error.
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-    let start = clock::now();
-    let mut look = Look { settings, start, last: String::new(), tell };
-    let bus = look.until(|| Bus::leaf(&settings.net).map_err(|e| Missing::Yet(e.to_string())))?;
+    let mut look = Lookout::new(settings.wait, &settings.stop);
+    let mut say = |reason: &str| tell(News::Looking { reason });
+    let bus = look.until(&mut say, || Ok(Bus::leaf(&settings.net)?))?;
     let game = match &settings.game {
         Some(game) => game.clone(),
-        None => look.until(|| only_game(&bus))?,
+        None => look.until(&mut say, || lookout::only_game(&bus))?,
     };
-    let agent = bus.id();
-    let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &agent))?;
-    let notice = look.until(|| ask_notice(&bus, &game))?;
+    let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &bus.id()))?;
+    let notice = look.until(&mut say, || lookout::notice(&bus, &game))?;
     let mut table = Table::lay(&bus, &game, &notice, settings)?;
-    let seat = look.until(|| ask_seat(&bus, &game, &agent, &settings.vehicles))?;
+    let seat = look.until(&mut say, || lookout::seat(&bus, &topic::join(&game), &settings.vehicles, "mind"))?;
     table.seat(&bus, &game, &notice.scenario, seat)?;
-    (look.tell)(News::Joined { game: game.as_str() });
+    tell(News::Joined { game: game.as_str() });
     let played = table.play(settings);
-    (look.tell)(News::Left { ignored: table.ignored() });
+    tell(News::Left { ignored: table.ignored() });
     bus.close();
     played
 }
 
-/// Why something is not there.
-enum Missing {
-    /// It may come.
-    Yet(String),
-    /// It will not.
-    Forever(NodeError),
-}
-
-impl From<BusError> for Missing {
-    fn from(error: BusError) -> Missing {
-        Missing::Yet(error.to_string())
-    }
-}
-
-/// The search for a game, with its limit.
-struct Look<'a, 'b> {
-    settings: &'a Settings,
-    start: Instant,
-    last: String,
-    tell: &'a mut (dyn FnMut(News<'_>) + 'b),
-}
-
-impl Look<'_, '_> {
-    /// Tries again until it works, the time is up, or it never will.
-    fn until<T>(&mut self, mut attempt: impl FnMut() -> Result<T, Missing>) -> Result<T, NodeError> {
-        loop {
-            let reason = match attempt() {
-                Ok(found) => return Ok(found),
-                Err(Missing::Forever(error)) => return Err(error),
-                Err(Missing::Yet(reason)) => reason,
-            };
-            if reason != self.last {
-                (self.tell)(News::Looking { reason: &reason });
-                self.last.clone_from(&reason);
-            }
-            let stopped = self.settings.stop.load(Ordering::Relaxed);
-            if stopped || clock::since(self.start) >= self.settings.wait {
-                return Err(NodeError::NoGame(clock::since(self.start), reason));
-            }
-            clock::pause(LOOK_AGAIN);
-        }
-    }
-}
-
-/// The only game on the network.
-fn only_game(bus: &Bus) -> Result<GameName, Missing> {
-    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
-    let sims = keys.iter().filter_map(|key| topic::parse_alive(key)).filter(|(_, part, _)| *part == Part::Sim);
-    let games: Vec<GameName> = sims.map(|(game, _, _)| game).collect();
-    match games.as_slice() {
-        [game] => Ok(game.clone()),
-        [] => Err(Missing::Yet("no sim is on the network".to_owned())),
-        several => {
-            let names: Vec<&str> = several.iter().map(GameName::as_str).collect();
-            Err(Missing::Forever(NodeError::Refused(format!("choose with --game among {}", names.join(", ")))))
-        }
-    }
-}
-
-/// What the game is, from the sim.
-fn ask_notice(bus: &Bus, game: &GameName) -> Result<Notice, Missing> {
-    let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
-    let bytes = answer.ok_or_else(|| Missing::Yet(format!("no sim answers for game {:?}", game.as_str())))?;
-    // The version first: of another version we may not understand the rest.
-    let value: serde_json::Value = serde_json::from_slice(&bytes).unwrap_or_default();
-    let version = value.get("version").and_then(serde_json::Value::as_str).unwrap_or("unknown");
-    if version != game::VERSION {
-        return Err(Missing::Forever(NodeError::Version { theirs: format!("the sim is {version}") }));
-    }
-    let notice: Result<Notice, _> = serde_json::from_slice(&bytes);
-    match notice {
-        Ok(notice) => Ok(notice),
-        Err(e) => {
-            Err(Missing::Forever(NodeError::Version { theirs: format!("the sim's scenario is not understood: {e}") }))
-        }
-    }
-}
-
-/// A ticket for the vehicles, from the sim.
-fn ask_seat(bus: &Bus, game: &GameName, agent: &str, vehicles: &[String]) -> Result<(u64, Vec<VehicleId>), Missing> {
-    let request =
-        JoinRequest { version: game::VERSION.to_owned(), agent: agent.to_owned(), vehicles: vehicles.to_vec() };
-    let request = serde_json::to_vec(&request).expect("a request is JSON");
-    let answer = bus.ask(&topic::join(game), request, ANSWER)?;
-    let bytes = answer.ok_or_else(|| Missing::Yet("the sim does not answer at the door".to_owned()))?;
-    match serde_json::from_slice(&bytes) {
-        Ok(JoinReply::Granted { ticket, vehicles }) => Ok((ticket, vehicles)),
-        Ok(JoinReply::Busy { vehicle }) => Err(Missing::Yet(format!("{vehicle} has another mind"))),
-        Ok(JoinReply::Refused { reason }) => Err(Missing::Forever(NodeError::Refused(reason))),
-        Err(e) => {
-            Err(Missing::Forever(NodeError::Version { theirs: format!("the sim's answer is not understood: {e}") }))
+impl From<NotFound> for NodeError {
+    fn from(not_found: NotFound) -> NodeError {
+        match not_found {
+            NotFound::InTime(after, missing) => NodeError::NoGame(after, missing),
+            NotFound::Refused(Refusal::Refused(reason)) => NodeError::Refused(reason),
+            NotFound::Refused(Refusal::Version(theirs)) => NodeError::Version { theirs },
         }
     }
 }

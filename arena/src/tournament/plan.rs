@@ -1,7 +1,7 @@
 //! Which games a tournament consists of.
 
 use game::Scenario;
-use game::scenario::{Problems, Tournament};
+use game::scenario::{Problem, Problems, Tournament};
 
 /// A tournament with everything that its games need.
 #[derive(Clone, Debug)]
@@ -28,7 +28,8 @@ impl Plan {
     /// entry against itself plays them once, since exchanged sides are the same game.
     ///
     /// # Errors
-    /// Everything that is wrong in the files, also in what they are together.
+    /// Everything that is wrong in the files, also in what they are together; and a game with real boats, which cannot
+    /// be played here.
     pub fn new(tournament: &Tournament) -> Result<Plan, Problems> {
         let teams = tournament.teams()?;
         let count = tournament.entries.len();
@@ -42,7 +43,7 @@ impl Plan {
                     (false, _) => &both[..],
                 };
                 for sides in sides {
-                    rounds.push((*sides, tournament.game_of(&teams, *sides)?));
+                    rounds.push((*sides, game_of(tournament, &teams, *sides)?));
                 }
             }
         }
@@ -91,4 +92,12 @@ impl Plan {
         let seed = self.tournament.seed.wrapping_add((index / self.rounds.len()) as u64);
         (Match { seed, sides: *sides }, scenario)
     }
+}
+
+/// The game in which one entry plays as the first team and another as the second, if it can be played here.
+fn game_of(tournament: &Tournament, teams: &[String], sides: [usize; 2]) -> Result<Scenario, Problems> {
+    let scenario = tournament.game_of(teams, sides)?;
+    let at_top = |message| Problems(vec![Problem { path: tournament.game.clone(), line: 1, column: 1, message }]);
+    scenario.has_no_real_boats().map_err(|real_boats| at_top(real_boats.to_string()))?;
+    Ok(scenario)
 }

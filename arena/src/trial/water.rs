@@ -6,7 +6,7 @@ use game::frame::LatLon;
 use game::id::TeamId;
 use game::link::Sharing;
 use game::rules::{CaptureAt, Points, TagChoice, TaggedBoat, UntagAt, UntagOn};
-use game::scenario::{Berth, Team, Vehicle};
+use game::scenario::{Berth, Source, Team, Vehicle};
 use game::sea::{Current, Sea};
 use game::{Field, Ned, Pose, Rules, Scenario, SimTime};
 
@@ -53,6 +53,7 @@ pub fn open_water(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Scenario 
             boat: 0,
             strategy: 0,
             berth: Berth::At(Pose::default()),
+            source: Source::Simulated,
         }],
         drawn: vec![],
         recipe: None,

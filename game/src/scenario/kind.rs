@@ -24,12 +24,14 @@ pub enum Kind {
     Strategy,
     /// A tournament.
     Tournament,
+    /// The way to a real boat.
+    Gateway,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 7] =
-        [Kind::Game, Kind::Field, Kind::Rules, Kind::Boat, Kind::Sea, Kind::Strategy, Kind::Tournament];
+    pub const ALL: [Kind; 8] =
+        [Kind::Game, Kind::Field, Kind::Rules, Kind::Boat, Kind::Sea, Kind::Strategy, Kind::Tournament, Kind::Gateway];
 
     /// Its name, which is also that of its schema file.
     #[must_use]
@@ -42,6 +44,7 @@ impl Kind {
             Kind::Sea => "sea",
             Kind::Strategy => "strategy",
             Kind::Tournament => "tournament",
+            Kind::Gateway => "gateway",
         }
     }
 
@@ -56,6 +59,7 @@ impl Kind {
             Kind::Sea => "seas",
             Kind::Strategy => "strategies",
             Kind::Tournament => "tournaments",
+            Kind::Gateway => "gateways",
         }
     }
 
@@ -95,6 +99,7 @@ pub fn schema(kind: Kind) -> Value {
         Kind::Sea => schema_of::<raw::RawSea>(&[EVERYTHING]),
         Kind::Strategy => schema_of::<raw::RawStrategy>(&[]),
         Kind::Tournament => schema_of::<raw::RawTournament>(&[]),
+        Kind::Gateway => schema_of::<raw::RawGateway>(&[]),
     }
 }
 
@@ -197,6 +202,7 @@ mod tests {
             (vec!["current"], Kind::Sea),
             (vec!["roles", "base"], Kind::Strategy),
             (vec!["game", "entry", "sea", "seed"], Kind::Tournament),
+            (vec!["order_ttl_s", "fence", "limits"], Kind::Gateway),
             (vec!["base"], Kind::Game),
             (vec![], Kind::Game),
         ] {

@@ -9,6 +9,7 @@ use super::read::{self, Document, Typed};
 use super::{Scenario, Tournament, check};
 use crate::boat::Boat;
 use crate::field::Field;
+use crate::gateway::Gateway;
 use crate::rules::Rules;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
@@ -32,6 +33,8 @@ pub enum Checked {
     Strategy(Strategy),
     /// A tournament, with all the files it names.
     Tournament(Tournament),
+    /// The way to a real boat.
+    Gateway(Box<Gateway>),
 }
 
 impl Checked {
@@ -46,6 +49,7 @@ impl Checked {
             Checked::Sea(_) => Kind::Sea,
             Checked::Strategy(_) => Kind::Strategy,
             Checked::Tournament(_) => Kind::Tournament,
+            Checked::Gateway(_) => Kind::Gateway,
         }
     }
 
@@ -60,6 +64,7 @@ impl Checked {
             Checked::Sea(sea) => &sea.name,
             Checked::Strategy(strategy) => &strategy.name,
             Checked::Tournament(tournament) => &tournament.name,
+            Checked::Gateway(gateway) => &gateway.name,
         }
     }
 }
@@ -171,10 +176,31 @@ pub fn load_tournament(path: &Path) -> Result<Tournament, Problems> {
     one(path, check::tournament, 1).map(|(tournament, _)| tournament)
 }
 
+/// Reads and checks the gateway file at `path`.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn load_gateway(path: &Path) -> Result<Gateway, Problems> {
+    one(path, check::gateway, 1).map(|(gateway, _)| gateway)
+}
+
+/// The gateway of a file that says nothing.
+///
+/// # Panics
+/// Never: every key has a default.
+#[must_use]
+pub fn default_gateway() -> Gateway {
+    let path = Path::new("default.toml");
+    let mut ledger = Ledger::new(Drawing::Least);
+    ledger.files = Some(vec![(path.to_owned(), String::new())]);
+    let document = read::document(&mut ledger, path, None);
+    document.and_then(|document| check::gateway(&mut ledger, &document)).expect("every key has a default")
+}
+
 /// Reads and checks a scenario file of any kind.
 ///
 /// The folder it lies in says which kind it is (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`,
-/// `tournaments`).
+/// `tournaments`, `gateways`).
 /// In any other folder it is the kind that knows most of its top-level keys, its bases' included; where
 /// several know as many, the first of [`Kind::ALL`].
 ///
@@ -189,6 +215,7 @@ pub fn check_file(path: &Path) -> Result<Checked, Problems> {
         Kind::Sea => load_sea(path).map(|sea| Checked::Sea(Box::new(sea))),
         Kind::Strategy => load_strategy(path).map(Checked::Strategy),
         Kind::Tournament => load_tournament(path).map(Checked::Tournament),
+        Kind::Gateway => load_gateway(path).map(|gateway| Checked::Gateway(Box::new(gateway))),
     }
 }
 

@@ -14,6 +14,7 @@ mod overrides;
 mod problem;
 mod raw;
 mod read;
+mod real_boats;
 mod reference;
 mod source;
 mod tournament;
@@ -21,10 +22,12 @@ mod tournament;
 pub use draw::{Drawn, Recipe};
 pub use kind::{Kind, schema};
 pub use load::{
-    Checked, check_file, draw_boat, draw_sea, load, load_boat, load_sea, load_strategy, load_tournament, load_with,
+    Checked, check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_gateway, load_sea, load_strategy,
+    load_tournament, load_with,
 };
 pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
+pub use real_boats::RealBoats;
 pub use reference::reference;
 pub use tournament::{Entrant, Tournament};
 
@@ -128,6 +131,18 @@ pub struct Vehicle {
     pub strategy: usize,
     /// Where it starts.
     pub berth: Berth,
+    /// Where its motion comes from.
+    pub source: Source,
+}
+
+/// Where a vehicle's motion comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Source {
+    /// From the boat and the sea of the scenario.
+    #[default]
+    Simulated,
+    /// From a real boat: its gateway reports where it is.
+    External,
 }
 
 /// Where a vehicle starts.

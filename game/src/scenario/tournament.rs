@@ -50,7 +50,7 @@ impl Tournament {
     pub fn overrides(&self, teams: &[String], sides: [usize; 2]) -> Overrides {
         let of_side = |side: usize| self.entries[side].strategy.clone();
         let strategies: BTreeMap<String, PathBuf> = teams.iter().cloned().zip(sides.map(of_side)).collect();
-        Overrides { sea: self.sea.clone(), strategies }
+        Overrides { sea: self.sea.clone(), strategies, ..Overrides::default() }
     }
 
     /// The game in which one entry plays as the first team and another as the second.

@@ -51,6 +51,7 @@ impl Mirror {
             }
             Event::Ended { winner } => Event::Ended { winner: winner.map(|team| TeamId(1 - team.0)) },
             Event::MindLost { .. } | Event::MindBack { .. } | Event::Quarantined { .. } => event,
+            Event::NavLost { .. } | Event::NavBack { .. } | Event::EStopped | Event::Released => event,
         }
     }
 

@@ -85,6 +85,21 @@ const GAMES: &[Case] = &[
         &["games/g.toml:6:12: vehicle.strategy is missing, expected the path of a strategy file here or for the team"],
     ),
     (
+        "a source that is none",
+        "games/x.toml",
+        &[("games/x.toml", "base = \"g.toml\"\nvehicle = [{ name = \"a\", team = \"red\", source = \"real\" }]\n")],
+        &["games/x.toml:2:49: source is \"real\", expected one of simulated, external"],
+    ),
+    (
+        "a fleet of real boats, which are named one by one",
+        "games/x.toml",
+        &[(
+            "games/x.toml",
+            "base = \"g.toml\"\nvehicle = []\nfleet = [{ team = \"red\", count = 2, source = \"external\" }]\n",
+        )],
+        &["games/x.toml:3:37: source is unknown, expected one of team, count, name, boat, strategy, spawn"],
+    ),
+    (
         "a fleet without a number in its name",
         "games/x.toml",
         &[("games/x.toml", "base = \"g.toml\"\nvehicle = []\nfleet = [{ team = \"red\", count = 2, name = \"r\" }]\n")],

@@ -4,6 +4,20 @@ use crate::{Case, assert_reported};
 
 const VALUES: &[Case] = &[
     (
+        "a gateway beyond what is allowed",
+        "gateways/x.toml",
+        &[(
+            "gateways/x.toml",
+            "drive = \"sails\"\norder_ttl_s = 60\n[nav]\nquality_min = 0\n[loops]\nthrust_map = [[0, 0], [50, 2], [40, 3]]\n",
+        )],
+        &[
+            "gateways/x.toml:1:9: drive is \"sails\", expected one of thrust, speed",
+            "gateways/x.toml:2:15: order_ttl_s is 60, expected 0.1 to 10",
+            "gateways/x.toml:4:15: quality_min is 0, expected 1 to 8",
+            "gateways/x.toml:6:32: thrust_map has [40, 3] here, expected both to rise",
+        ],
+    ),
+    (
         "a number for text",
         "strategies/x.toml",
         &[("strategies/x.toml", "base = \"p.toml\"\nabout = 3\n")],

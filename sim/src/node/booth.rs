@@ -1,14 +1,16 @@
-//! The referee's booth: the contest, the roster, and the lines to agents and observers.
+//! The referee's booth: the contest, who is who in it, and the lines to agents, gateways and observers.
 
 use super::clock;
+use super::quay::Quay;
 use super::roster::{Accepted, Refused, Roster, Timing};
 use super::{News, NodeError, Pace, Settings};
 use crate::contest::Contest;
 use bus::{Bus, Delivery, Inbox, Publisher, Question, Standing, inbox};
 use game::codec::{self, DecodeError};
-use game::message::{Control, JoinReply, JoinRequest, Notice, Orders, Stamp};
+use game::external::{ExternalOrder, NavReport};
+use game::message::{Control, JoinReply, JoinRequest, Message, Notice, Orders, Stamp, VehicleOrder};
 use game::topic::{self, Part};
-use game::{SimTime, TeamId, VehicleId};
+use game::{Order, SimTime, TeamId, VehicleId};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,9 +26,11 @@ const GOOD_BYE: Duration = Duration::from_secs(2);
 /// What comes in from the network.
 enum Call {
     Orders(Vec<u8>),
+    Nav(Vec<u8>),
     Join(Question),
+    Moor(Question),
     Scenario(Question),
-    Gone(String),
+    Gone(Part, String),
     Control(Vec<u8>),
 }
 
@@ -34,10 +38,13 @@ enum Call {
 pub(super) struct Booth {
     pub(super) contest: Contest,
     pub(super) roster: Roster,
+    quay: Quay,
     inbox: Inbox<Call>,
     bus: Bus,
     pictures: Vec<Publisher>,
     frames: Publisher,
+    /// What each real boat is to do.
+    helms: Vec<(VehicleId, Publisher)>,
     /// Answers the question what the game is.
     notice: Vec<u8>,
     stop: Arc<AtomicBool>,
@@ -47,6 +54,9 @@ pub(super) struct Booth {
     /// When each vehicle's mind was last heard.
     heard: Vec<Instant>,
     last_news: (Instant, SimTime),
+    /// When the open decision was opened, once the game runs; and simulated seconds a second, none in lockstep.
+    opened: Option<Instant>,
+    factor: f64,
     _standing: Vec<Standing>,
 }
 
@@ -67,27 +77,35 @@ impl Booth {
         };
         let gone = outlet.clone();
         let watch = move |key: &str, alive: bool| {
-            if let (Some((_, Part::Agent, agent)), false) = (topic::parse_alive(key), alive) {
-                gone.put(Call::Gone(agent));
+            if let (Some((_, part, node)), false) = (topic::parse_alive(key), alive) {
+                gone.put(Call::Gone(part, node));
             }
         };
         let standing = vec![
             bus.subscribe(topic::all_orders(game), on(Call::Orders))?,
             bus.subscribe(topic::control(game), on(Call::Control))?,
-            bus.watch_alive(topic::all_alive(game, Part::Agent), watch)?,
+            bus.subscribe(topic::all_nav(game), on(Call::Nav))?,
+            bus.watch_alive(topic::all_alive(game, Part::Agent), watch.clone())?,
+            bus.watch_alive(topic::all_alive(game, Part::Gateway), watch)?,
             bus.answer(topic::scenario(game), asked(Call::Scenario))?,
             bus.answer(topic::join(game), asked(Call::Join))?,
+            bus.answer(topic::moor(game), asked(Call::Moor))?,
             bus.show_alive(topic::alive(game, Part::Sim, &bus.id()))?,
         ];
         let delivery = if settings.pace == Pace::Lockstep { Delivery::Wait } else { Delivery::Drop };
         let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
         let pictures: Result<Vec<Publisher>, _> = teams.map(|key| bus.publisher(key, delivery)).collect();
+        // A gateway that does not keep up must not stop the game, and gets the next order soon.
+        let helm = |v| Ok((v, bus.publisher(topic::external_order(game, scenario, v), Delivery::Drop)?));
+        let helms: Result<Vec<_>, NodeError> = scenario.externals().map(helm).collect();
         let notice =
             Notice { version: game::VERSION.to_owned(), pace: settings.pace.to_string(), scenario: scenario.clone() };
         Ok(Booth {
             roster: Roster::new(scenario, timing),
+            quay: Quay::new(scenario),
             inbox,
             pictures: pictures?,
+            helms: helms?,
             frames: bus.publisher(topic::frame(game), Delivery::Drop)?,
             notice: serde_json::to_vec(&notice).expect("a scenario is JSON"),
             stop: Arc::clone(&settings.stop),
@@ -95,29 +113,37 @@ impl Booth {
             ordered_at: vec![SimTime::ZERO; scenario.vehicles.len()],
             heard: vec![clock::now(); scenario.vehicles.len()],
             last_news: (clock::now(), SimTime::ZERO),
+            opened: None,
+            factor: if let Pace::Realtime { factor } = settings.pace { factor } else { 0.0 },
             _standing: standing,
             bus,
             contest,
         })
     }
 
-    /// Keeps the door open until every vehicle has a mind, or the limit has passed: those without are lost then.
-    pub(super) fn wait_for_minds(&mut self, limit: Duration, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+    /// Keeps the door open until every vehicle has a mind and every real boat has been heard of, or the limit has passed:
+    /// those without are lost then.
+    pub(super) fn wait_for_everybody(
+        &mut self,
+        limit: Duration,
+        tell: &mut dyn FnMut(News<'_>),
+    ) -> Result<(), NodeError> {
         let start = clock::now();
-        let mut told = usize::MAX;
+        let mut told = (usize::MAX, usize::MAX);
         loop {
-            let missing = self.roster.mindless();
-            if missing.len() != told {
-                told = missing.len();
+            let (mindless, unheard) = (self.roster.mindless(), self.unheard());
+            if (mindless.len(), unheard.len()) != told {
+                told = (mindless.len(), unheard.len());
                 let scenario = self.contest.scenario();
-                let name = |v: &VehicleId| scenario.vehicles[v.index()].name.as_str();
-                tell(News::Waiting { missing: missing.iter().map(name).collect() });
+                let [minds, gateways] = [&mindless, &unheard]
+                    .map(|list| list.iter().map(|v| scenario.vehicles[v.index()].name.as_str()).collect());
+                tell(News::Waiting { minds, gateways });
             }
-            if missing.is_empty() || self.is_stopped() {
+            if told == (0, 0) || self.is_stopped() {
                 break;
             }
             if clock::since(start) >= limit {
-                missing.into_iter().for_each(|vehicle| self.contest.lose_mind(vehicle));
+                self.lose_minds(mindless);
                 break;
             }
             self.listen(Duration::from_millis(100));
@@ -125,6 +151,12 @@ impl Booth {
         self.last_news = (clock::now(), SimTime::ZERO);
         self.heard.fill(clock::now());
         Ok(())
+    }
+
+    /// The real boats that have not been heard of, or whose gateway is gone again.
+    fn unheard(&self) -> Vec<VehicleId> {
+        let is_missing = |(v, is_moored): &(VehicleId, bool)| !is_moored || !self.contest.is_heard(*v);
+        self.quay.externals().filter(is_missing).map(|(vehicle, _)| vehicle).collect()
     }
 
     /// Sends observers the truth, if there are any.
@@ -136,12 +168,32 @@ impl Booth {
         Ok(self.frames.send(&frame)?)
     }
 
-    /// Sends every team the picture of the open decision. Sending it twice does no harm.
+    /// Sends every team the picture of the open decision, and every real boat its order. Sending them twice does no harm.
     pub(super) fn ask(&mut self) -> Result<(), NodeError> {
+        self.opened = Some(clock::now());
         for (picture, line) in self.contest.pictures().iter().zip(&self.pictures) {
             line.send(picture)?;
         }
-        Ok(())
+        self.helms.iter().try_for_each(|(boat, _)| self.pass_on(*boat))
+    }
+
+    /// Sends a real boat the order in force for it; holding, where that is older than it may grow. For simulated boats
+    /// there is nothing to send.
+    fn pass_on(&self, vehicle: VehicleId) -> Result<(), NodeError> {
+        let Some((_, helm)) = self.helms.iter().find(|(boat, _)| *boat == vehicle) else { return Ok(()) };
+        let age_s = (self.contest.now() - self.ordered_at[vehicle.index()]).as_s();
+        let is_old = age_s > self.contest.scenario().order_ttl_s;
+        self.send_order(helm, vehicle, if is_old { Order::Hold } else { self.contest.obeyed(vehicle) })
+    }
+
+    fn send_order(&self, helm: &Publisher, vehicle: VehicleId, order: Order) -> Result<(), NodeError> {
+        if !helm.is_heard() {
+            return Ok(());
+        }
+        let (valid_ns, seq) = (self.contest.now(), self.contest.decision());
+        let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
+        let given_ns = self.ordered_at[vehicle.index()];
+        Ok(helm.send(&ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) })?)
     }
 
     /// Takes in what comes, waiting up to `limit` for the first of it.
@@ -150,11 +202,14 @@ impl Booth {
         while let Some(call) = next {
             match call {
                 Call::Orders(bytes) => self.take_orders(&bytes),
+                Call::Nav(bytes) => self.take_nav(&bytes),
                 Call::Join(question) => self.let_in(question),
+                Call::Moor(question) => self.moor(question),
                 Call::Scenario(question) => question.answer(self.notice.clone()),
-                Call::Gone(agent) => {
+                Call::Gone(Part::Gateway, gateway) => self.quay.gone(&gateway),
+                Call::Gone(_, agent) => {
                     let vehicles = self.roster.gone(&agent);
-                    vehicles.into_iter().for_each(|vehicle| self.contest.lose_mind(vehicle));
+                    self.lose_minds(vehicles);
                 }
                 Call::Control(bytes) => self.obey(&bytes),
             }
@@ -165,7 +220,7 @@ impl Booth {
     /// Gives up on minds that have not answered the open tick.
     pub(super) fn give_up(&mut self, tick: u64) {
         let vehicles = self.roster.give_up(tick);
-        vehicles.into_iter().for_each(|vehicle| self.contest.lose_mind(vehicle));
+        self.lose_minds(vehicles);
     }
 
     /// Gives up on minds that have not been heard for this long.
@@ -173,8 +228,16 @@ impl Booth {
         for i in 0..self.heard.len() {
             if clock::since(self.heard[i]) > patience {
                 let vehicles = self.roster.lose_minder_of(VehicleId::at(i));
-                vehicles.into_iter().for_each(|vehicle| self.contest.lose_mind(vehicle));
+                self.lose_minds(vehicles);
             }
+        }
+    }
+
+    /// These vehicles have no mind any more; real boats are told so at once.
+    fn lose_minds(&mut self, vehicles: Vec<VehicleId>) {
+        for vehicle in vehicles {
+            self.contest.lose_mind(vehicle);
+            self.pass_on_now(vehicle);
         }
     }
 
@@ -185,8 +248,8 @@ impl Booth {
 
     /// Everything that was refused so far.
     pub(super) fn refused(&self) -> Refused {
-        let Refused { garbage, version, .. } = self.refused;
-        Refused { garbage, version, flood: self.inbox.dropped(), ..self.roster.refused }
+        let flood = Refused { flood: self.inbox.dropped(), ..Refused::default() };
+        self.refused + self.roster.refused + self.quay.refused + flood
     }
 
     /// Tells progress, if it is time again.
@@ -208,6 +271,8 @@ impl Booth {
         }
         let frame = game::message::Frame { over: true, ..self.contest.frame() };
         self.frames.send(&frame)?;
+        // Real boats hold from now on, also where the game is cut short.
+        self.helms.iter().try_for_each(|(boat, helm)| self.send_order(helm, *boat, Order::Hold))?;
         let start = clock::now();
         while self.roster.present() > 0 && clock::since(start) < GOOD_BYE {
             self.listen(Duration::from_millis(20));
@@ -232,7 +297,41 @@ impl Booth {
             self.contest.order(vehicle, order);
             self.ordered_at[vehicle.index()] = given;
             self.heard[vehicle.index()] = clock::now();
+            self.pass_on_now(vehicle);
         }
+    }
+
+    /// Sends a real boat its order between two decisions. That the session is closed shows at the next of them.
+    fn pass_on_now(&self, vehicle: VehicleId) {
+        self.pass_on(vehicle).unwrap_or_default();
+    }
+
+    fn take_nav(&mut self, bytes: &[u8]) {
+        let report: NavReport = match codec::decode(bytes) {
+            Ok(report) => report,
+            Err(DecodeError::Version { .. }) => return self.refused.version += 1,
+            Err(_) => return self.refused.garbage += 1,
+        };
+        let Some(sighted) = self.quay.take(&report, self.moment()) else { return };
+        let taken = self.contest.report(sighted.vehicle, sighted.nav, sighted.fix_at, sighted.valid);
+        self.refused.bad_number += u64::from(taken.is_err());
+    }
+
+    /// Simulated time by the clock: the open decision's, and what has passed since it was opened. Only fixes are told the
+    /// time by it: a fix would seem up to a decision older than it is otherwise.
+    fn moment(&self) -> SimTime {
+        let scenario = self.contest.scenario();
+        let decision = scenario.tick * i64::from(scenario.ticks_per_decision);
+        let passed = self.opened.map_or(0.0, |opened| clock::since(opened).as_secs_f64() * self.factor);
+        self.contest.now() + SimTime::from_s(passed).min(decision)
+    }
+
+    fn moor(&mut self, question: Question) {
+        let reply = match serde_json::from_slice::<JoinRequest>(&question.payload) {
+            Ok(request) => self.quay.moor(&request, new_ticket()),
+            Err(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
+        };
+        question.answer(serde_json::to_vec(&reply).expect("a reply is JSON"));
     }
 
     fn let_in(&mut self, question: Question) {
@@ -253,8 +352,16 @@ impl Booth {
     fn obey(&mut self, bytes: &[u8]) {
         match serde_json::from_slice(bytes) {
             Ok(Control::Stop) => self.stop.store(true, Ordering::Relaxed),
+            Ok(Control::EStop) => self.e_stop(true),
+            Ok(Control::Release) => self.e_stop(false),
             Err(_) => self.refused.garbage += 1,
         }
+    }
+
+    fn e_stop(&mut self, stopped: bool) {
+        self.contest.e_stop(stopped);
+        let boats: Vec<VehicleId> = self.helms.iter().map(|(boat, _)| *boat).collect();
+        boats.into_iter().for_each(|boat| self.pass_on_now(boat));
     }
 }
 

@@ -6,6 +6,7 @@
 mod booth;
 mod clock;
 mod lockstep;
+pub mod quay;
 mod realtime;
 pub mod roster;
 
@@ -42,7 +43,7 @@ pub struct Settings {
     pub net: Net,
     /// How to pace the game.
     pub pace: Pace,
-    /// How long to wait for minds before starting without the missing ones.
+    /// How long to wait for minds, and for gateways of real boats, before starting without the missing ones.
     pub join_limit: Duration,
     /// Set from outside to end the game early.
     pub stop: Arc<AtomicBool>,
@@ -52,10 +53,12 @@ pub struct Settings {
 pub enum News<'a> {
     /// The hub listens: agents may come.
     Open,
-    /// The door is open; these vehicles have no mind yet.
+    /// The door is open; somebody is not there yet.
     Waiting {
-        /// By name.
-        missing: Vec<&'a str>,
+        /// The vehicles without a mind, by name.
+        minds: Vec<&'a str>,
+        /// The real boats that no gateway has told the place of, by name.
+        gateways: Vec<&'a str>,
     },
     /// The game begins.
     Started,
@@ -86,7 +89,7 @@ pub struct Run {
     pub pace: String,
     /// Wall-clock time it took, s.
     pub wall_s: f64,
-    /// What was refused from agents.
+    /// What was refused from agents and gateways.
     pub refused: Refused,
     /// Decision ticks that began late (real time only).
     pub overruns: u64,
@@ -97,7 +100,7 @@ pub struct Run {
 /// Why a game could not be served.
 #[derive(Debug, Error)]
 pub enum NodeError {
-    /// The boats do not fit on the field.
+    /// The boats do not fit on the field, or are real ones in lockstep.
     #[error(transparent)]
     NoStart(#[from] NoStart),
     /// The network failed.
@@ -133,18 +136,22 @@ impl std::str::FromStr for Pace {
 /// Serves the game of `scenario` that `seed` chooses, and plays it to its end.
 ///
 /// # Errors
-/// [`NodeError`] if the boats do not fit on the field or the network fails.
+/// [`NodeError`] if the boats do not fit on the field or the network fails, or for real boats in lockstep: nothing makes
+/// them wait.
 pub fn serve(
     scenario: &Scenario,
     seed: u64,
     settings: &Settings,
     tell: &mut dyn FnMut(News<'_>),
 ) -> Result<Report, NodeError> {
+    if settings.pace == Pace::Lockstep {
+        scenario.has_no_real_boats().map_err(NoStart::from)?;
+    }
     let contest = Contest::new(scenario, seed)?;
     let timing = if settings.pace == Pace::Lockstep { Timing::Lockstep } else { Timing::Realtime };
     let mut booth = Booth::open(contest, settings, timing)?;
     tell(News::Open);
-    booth.wait_for_minds(settings.join_limit, tell)?;
+    booth.wait_for_everybody(settings.join_limit, tell)?;
     tell(News::Started);
     let started = clock::now();
     let overruns = match settings.pace {

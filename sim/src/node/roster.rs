@@ -7,20 +7,21 @@ use game::order::BadOrder;
 use game::{Order, Scenario, VehicleId};
 use serde::{Deserialize, Serialize};
 
-/// Why something an agent sent was not obeyed, and how often.
+/// Why something an agent or a gateway sent was not heeded, and how often.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Refused {
-    /// Bytes that are no orders.
+    /// Bytes that are no orders, or no report.
     pub garbage: u64,
-    /// Orders of another version of the message.
+    /// Orders or reports of another version of the message.
     pub version: u64,
-    /// Orders with a ticket that nobody holds (any more).
+    /// Orders or reports with a ticket that nobody holds (any more).
     pub ticket: u64,
-    /// Orders for a tick that is over, or still to come.
+    /// Orders for a tick that is over, or still to come; reports that came after a later one.
     pub wrong_tick: u64,
-    /// An order for a vehicle that the agent does not mind.
+    /// An order for a vehicle that the agent does not mind, or a report of one that the gateway did not bring.
     pub not_yours: u64,
-    /// An order with numbers that are not finite or out of range, or of an unknown kind. The boat holds.
+    /// An order with numbers that are not finite or out of range, or of an unknown kind: the boat holds. A report with
+    /// numbers that no boat has.
     pub bad_number: u64,
     /// A vehicle of its own that an agent gave no order for. The boat holds.
     pub missing: u64,
@@ -34,6 +35,22 @@ impl Refused {
     pub fn total(&self) -> u64 {
         let Refused { garbage, version, ticket, wrong_tick, not_yours, bad_number, missing, flood } = self;
         garbage + version + ticket + wrong_tick + not_yours + bad_number + missing + flood
+    }
+}
+
+impl std::ops::Add for Refused {
+    type Output = Refused;
+    fn add(self, other: Refused) -> Refused {
+        Refused {
+            garbage: self.garbage + other.garbage,
+            version: self.version + other.version,
+            ticket: self.ticket + other.ticket,
+            wrong_tick: self.wrong_tick + other.wrong_tick,
+            not_yours: self.not_yours + other.not_yours,
+            bad_number: self.bad_number + other.bad_number,
+            missing: self.missing + other.missing,
+            flood: self.flood + other.flood,
+        }
     }
 }
 

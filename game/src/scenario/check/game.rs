@@ -8,10 +8,10 @@ use crate::boat::Boat;
 use crate::field::Field;
 use crate::id::TeamId;
 use crate::scenario::ledger::Ledger;
-use crate::scenario::raw::{At, RawBoat, RawFleet, RawGame, RawStrategy, RawVehicle};
+use crate::scenario::raw::{At, RawBoat, RawFleet, RawGame, RawSource, RawStrategy, RawVehicle};
 use crate::scenario::read::{self, Document, Typed};
 use crate::scenario::source::tidied;
-use crate::scenario::{Berth, Scenario, Team, Vehicle};
+use crate::scenario::{Berth, Scenario, Source, Team, Vehicle};
 use crate::sea::Sea;
 use crate::strategy::Strategy;
 use crate::time::SimTime;
@@ -32,6 +32,7 @@ pub(super) struct Entry {
     /// The berth it states; `None` is the team's line.
     pub(super) berth: Option<Berth>,
     pub(super) heading_deg: Option<f64>,
+    source: Source,
 }
 
 /// Files of one kind that the game names. Each is read once, or once for each owner if it has numbers to be drawn.
@@ -137,6 +138,7 @@ pub(in crate::scenario) fn game(ledger: &mut Ledger, document: &Document<RawGame
         boat: entry.boat,
         strategy: entry.strategy,
         berth,
+        source: entry.source,
     });
     let scenario = Scenario {
         name: document.name.clone(),
@@ -286,7 +288,11 @@ impl Roster<'_> {
             && let (Some(team), Some(boat), Some(strategy)) = (team, boat, strategy)
         {
             let (name, place) = (name.value.clone(), raw.at.as_ref().map_or(vehicle.at, |at| at.at));
-            self.entries.push(Entry { name, place, team, boat, strategy, berth, heading_deg });
+            let source = match raw.source {
+                Some(RawSource::External) if !ledger.overrides.simulate_all => Source::External,
+                _ => Source::Simulated,
+            };
+            self.entries.push(Entry { name, place, team, boat, strategy, berth, heading_deg, source });
         }
     }
 
@@ -322,7 +328,8 @@ impl Roster<'_> {
                 _ => self.boat(ledger, (fleet.at, "fleet"), raw.boat.as_ref(), &name),
             };
             let (Some(boat), berth) = (boat, berth.clone()) else { return };
-            self.entries.push(Entry { name, place: fleet.at, team, boat, strategy, berth, heading_deg: None });
+            let (place, heading_deg, source) = (fleet.at, None, Source::Simulated);
+            self.entries.push(Entry { name, place, team, boat, strategy, berth, heading_deg, source });
         }
     }
 

@@ -77,6 +77,19 @@ pub(in crate::scenario) struct RawVehicle {
     pub(in crate::scenario) heading_deg: Option<At<f64>>,
     /// Instead of `at`: somewhere in a rectangle, drawn anew for every seed.
     pub(in crate::scenario) spawn: Option<At<RawSpawn>>,
+    /// Where its motion comes from. Default "simulated".
+    pub(in crate::scenario) source: Option<RawSource>,
+}
+
+/// Where a vehicle's motion comes from.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "Source")]
+pub(in crate::scenario) enum RawSource {
+    /// The program moves it through the scenario's sea.
+    Simulated,
+    /// It is a real boat: its gateway reports where it is. Such games are played in real time.
+    External,
 }
 
 /// Many boats at once.

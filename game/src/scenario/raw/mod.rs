@@ -6,6 +6,7 @@
 mod boat;
 mod field;
 mod game;
+mod gateway;
 mod kinematic;
 mod link;
 mod rules;
@@ -16,7 +17,10 @@ mod tournament;
 
 pub(super) use boat::{RawAutopilot, RawBattery, RawBoat, RawHull, RawPropeller, RawThruster, RawVentilation};
 pub(super) use field::{RawField, RawObstacle, RawSide, RawWalls};
-pub(super) use game::{RawFleet, RawGame, RawSpawn, RawVehicle, Whereabouts};
+pub(super) use game::{RawFleet, RawGame, RawSource, RawSpawn, RawVehicle, Whereabouts};
+pub(super) use gateway::{
+    RawBatteryWatch, RawControlWatch, RawFence, RawGateway, RawHalt, RawLimits, RawLoops, RawNavWatch,
+};
 pub(super) use kinematic::{RawKinematic, RawPid};
 pub(super) use link::{RawLink, RawLoss, RawSharing};
 pub(super) use rules::RawRules;
@@ -126,4 +130,9 @@ impl Typed for RawStrategy {
 impl Typed for RawTournament {
     const DRAWABLE: Drawable = Drawable::Nothing;
     const OWNER: &'static str = "tournament";
+}
+
+impl Typed for RawGateway {
+    const DRAWABLE: Drawable = Drawable::Nothing;
+    const OWNER: &'static str = "gateway";
 }

@@ -2,99 +2,20 @@
 
 use super::{Broken, assert_broken};
 
+/// Numbers with which a behaviour is no guard: whose, what the file says of it, and why it is none.
+const POWERLESS: &[(&str, &str, &str)] = &[
+    ("stay_in", "margin_m = -1000", "margin_m is -1000, less than 0"),
+    ("stay_in", "margin_m = \"time_s > 10 ? -1000 : 0\"", "margin_m is no number"),
+    ("stay_in", "save_m = 0", "save_m is 0, less than 1"),
+    ("stay_in", "lookahead_s = 0.5", "lookahead_s is 0.5, less than 1"),
+    ("stay_in", "exit_s = 600", "exit_s is 600, more than 10"),
+    ("stay_in", "recovery_speed_m_s = 0", "recovery_speed_m_s is 0, less than 0.1"),
+    ("keep_clear", "inner_m = 0\nouter_m = \"has_flag ? 0 : 30\"", "outer_m is no number"),
+    ("keep_clear", "cpa_min_m = 0\ncpa_max_m = 0", "cpa_max_m is 0, less than 3"),
+    ("keep_clear", "time_on_leg_s = 0.1", "time_on_leg_s is 0.1, less than 1"),
+];
+
 const VOID: &[Broken] = &[
-    (
-        "a field much larger than the field",
-        r#"base = "s.toml"
-[behaviour.stay_in]
-margin_m = -1000
-"#,
-        &[
-            r#"1:1: mode active has no op_region on guard (stay_in is none: margin_m is -1000, less than 0), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
-    (
-        "a field that is left for good after a while",
-        r#"base = "s.toml"
-[behaviour.stay_in]
-margin_m = "time_s > 10 ? -1000 : 0"
-"#,
-        &[
-            r#"1:1: mode active has no op_region on guard (stay_in is none: margin_m is no number), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
-    (
-        "no room to turn back",
-        r#"base = "s.toml"
-[behaviour.stay_in]
-save_m = 0
-"#,
-        &[
-            r#"1:1: mode active has no op_region on guard (stay_in is none: save_m is 0, less than 1), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
-    (
-        "no foresight",
-        r#"base = "s.toml"
-[behaviour.stay_in]
-lookahead_s = 0.5
-"#,
-        &[
-            r#"1:1: mode active has no op_region on guard (stay_in is none: lookahead_s is 0.5, less than 1), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
-    (
-        "out for long before it counts",
-        r#"base = "s.toml"
-[behaviour.stay_in]
-exit_s = 600
-"#,
-        &[
-            r#"1:1: mode active has no op_region on guard (stay_in is none: exit_s is 600, more than 10), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
-    (
-        "no way back",
-        r#"base = "s.toml"
-[behaviour.stay_in]
-recovery_speed_m_s = 0
-"#,
-        &[
-            r#"1:1: mode active has no op_region on guard (stay_in is none: recovery_speed_m_s is 0, less than 0.1), expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
-    (
-        "no boat is near enough",
-        r#"base = "s.toml"
-[behaviour.keep_clear]
-inner_m = 0
-outer_m = "has_flag ? 0 : 30"
-"#,
-        &[
-            r#"1:1: mode active has no avoid_collision on guard (keep_clear is none: outer_m is no number), expected a behaviour of this kind for all contacts, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
-    (
-        "no pass is too near",
-        r#"base = "s.toml"
-[behaviour.keep_clear]
-cpa_min_m = 0
-cpa_max_m = 0
-"#,
-        &[
-            r#"1:1: mode active has no avoid_collision on guard (keep_clear is none: cpa_max_m is 0, less than 3), expected a behaviour of this kind for all contacts, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
-    (
-        "no time to come near",
-        r#"base = "s.toml"
-[behaviour.keep_clear]
-time_on_leg_s = 0.1
-"#,
-        &[
-            r#"1:1: mode active has no avoid_collision on guard (keep_clear is none: time_on_leg_s is 0.1, less than 1), expected a behaviour of this kind for all contacts, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
     (
         "a goal above safety",
         r#"base = "s.toml"
@@ -146,6 +67,17 @@ weight = inf
 #[test]
 fn safety_cannot_be_voided() {
     assert_broken(VOID);
+    for (name, keys, why) in POWERLESS {
+        let (kind, all) = match *name {
+            "stay_in" => ("op_region", ""),
+            _ => ("avoid_collision", " for all contacts"),
+        };
+        let want = format!(
+            "1:1: mode active has no {kind} on guard ({name} is none: {why}), expected a behaviour of this kind{all}, without \
+             when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"
+        );
+        assert_broken(&[(keys, &format!("base = \"s.toml\"\n[behaviour.{name}]\n{keys}\n"), &[&want])]);
+    }
 }
 
 #[test]

@@ -18,7 +18,7 @@ pub(super) fn kinematic(ledger: &mut Ledger, given: &At<RawKinematic>) -> Kinema
     }
     Kinematic {
         speed_max_m_s: ledger.required(at, "kinematic.speed_max_m_s", raw.speed_max_m_s.as_ref(), 0.1..=60.0),
-        thrust_map: thrust_map(ledger, at, raw.thrust_map.as_ref()),
+        thrust_map: required_map(ledger, at, raw.thrust_map.as_ref()),
         thrust_max: ledger.number("thrust_max", raw.thrust_max.as_ref(), 1.0..=100.0).unwrap_or(100.0),
         rudder_max: ledger.number("rudder_max", raw.rudder_max.as_ref(), 1.0..=100.0).unwrap_or(100.0),
         turn_rate: ledger.required(at, "kinematic.turn_rate", raw.turn_rate.as_ref(), 0.0..=1000.0),
@@ -36,11 +36,16 @@ fn limit(ledger: &mut Ledger, key: &str, given: Option<&At<f64>>, default: f64) 
     ledger.number(key, given, 0.0..=100.0).unwrap_or(default)
 }
 
-fn thrust_map(ledger: &mut Ledger, owner: usize, given: Option<&At<Vec<At<Pair>>>>) -> Vec<(f64, f64)> {
+fn required_map(ledger: &mut Ledger, owner: usize, given: Option<&At<Vec<At<Pair>>>>) -> Vec<(f64, f64)> {
     let Some(given) = given else {
         ledger.note_missing(owner, "kinematic.thrust_map", "pairs of per cent and m/s");
         return vec![];
     };
+    thrust_map(ledger, given)
+}
+
+/// Checks a map of thrust in per cent and speed in m/s.
+pub(in crate::scenario::check) fn thrust_map(ledger: &mut Ledger, given: &At<Vec<At<Pair>>>) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = vec![];
     for row in &given.value {
         let [thrust_pct, speed_m_s] = row.value.0;

@@ -4,6 +4,8 @@ mod kinematic;
 mod sensor;
 mod thruster;
 
+pub(super) use kinematic::thrust_map;
+
 use crate::boat::{Boat, Drive, Hull, Sensors, ThrustCurve, Windage};
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawBoat, RawHull};

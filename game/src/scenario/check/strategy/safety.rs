@@ -83,9 +83,11 @@ fn hold_below_guards(ledger: &mut Ledger, program: &mut Program, raw: &RawStrate
             if is_safety || !behaviour.modes[leaf] {
                 continue;
             }
-            if behaviour.weight.constant().is_none() {
+            let Some(weight) = behaviour.weight.constant() else {
                 behaviour.weight.range.1 = behaviour.weight.range.1.min(most);
-            } else if let Some(weight) = behaviour.weight.constant().filter(|weight| *weight > most) {
+                continue;
+            };
+            if weight > most {
                 let given = raw.behaviour.0.iter().find(|given| given.value.name == behaviour.name);
                 let at =
                     given.map_or(0, |given| given.value.common.weight.as_ref().map_or(given.at, |weight| weight.at));

@@ -1,0 +1,143 @@
+//! What the sim and the gateway of a real boat tell each other.
+//!
+//! A vehicle whose scenario says `source = "external"` has no physics: its gateway reports where it is
+//! ([`NavReport`]), and the sim, which knows whose orders count and what the referee lets the boat do, passes on what it
+//! is to do ([`ExternalOrder`]). What people ask of a gateway ([`OperatorCommand`]) and what it tells of itself
+//! ([`GatewayStatus`]) is JSON.
+
+use crate::id::VehicleId;
+use crate::message::{Message, Stamp, VehicleOrder};
+use crate::picture::Nav;
+use crate::time::SimTime;
+use serde::{Deserialize, Serialize};
+
+/// Where a real boat is, from its gateway.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NavReport {
+    /// Time: that of the game as the gateway last heard it. Number: counts the reports.
+    pub stamp: Stamp,
+    /// The ticket that the sim gave when the gateway moored.
+    pub ticket: u64,
+    /// Whose navigation it is.
+    pub vehicle: VehicleId,
+    /// Whether it can be relied on; what is not valid is where the boat last was.
+    pub valid: bool,
+    /// How old the fix was when this was sent, ns.
+    pub age_ns: i64,
+    /// Position, heading and velocity.
+    pub nav: Nav,
+}
+
+/// What a real boat is to do, from the sim.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExternalOrder {
+    /// Time and decision of the game.
+    pub stamp: Stamp,
+    /// The time of the picture that the mind answered with this: it grows as long as somebody thinks.
+    pub given_ns: SimTime,
+    /// The order, as far as the referee lets the boat follow it.
+    pub order: VehicleOrder,
+}
+
+impl Message for NavReport {
+    const SCHEMA: &'static str = "squall_msgs/msg/NavReport";
+    const VERSION: u8 = 1;
+    const DEFINITION: &'static str = include_str!("../msg/NavReport.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
+}
+
+impl Message for ExternalOrder {
+    const SCHEMA: &'static str = "squall_msgs/msg/ExternalOrder";
+    const VERSION: u8 = 1;
+    const DEFINITION: &'static str = include_str!("../msg/ExternalOrder.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
+}
+
+/// What a person asks of a gateway.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum OperatorCommand {
+    /// How are you?
+    Status,
+    /// Follow orders from now on, if everything that this needs is there.
+    Arm,
+    /// Do not follow orders any more: standby.
+    Disarm,
+    /// Standby, and nothing else until this is released.
+    EStop,
+    /// The E-stop is over; the boat stays safed.
+    Release,
+    /// Hold the position by the boat's own means.
+    StationKeep,
+    /// Go to the emergency recovery point by the boat's own means.
+    GoToErp,
+    /// Take up a mission and sail it by the boat's own means.
+    Mission(Mission),
+}
+
+/// A mission that a boat sails by itself.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Mission {
+    /// Throttle, per cent.
+    pub throttle_pct: f64,
+    /// The emergency recovery point: latitude and longitude, degrees.
+    pub erp: [f64; 2],
+    /// The waypoints, each latitude and longitude, degrees.
+    pub waypoints: Vec<[f64; 2]>,
+}
+
+/// What a gateway answers a person.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OperatorReply {
+    /// Why it does not do what was asked.
+    pub refused: Option<String>,
+    /// How it is now.
+    pub status: GatewayStatus,
+}
+
+/// How a gateway and its boat are.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GatewayStatus {
+    /// The boat.
+    pub vehicle: String,
+    /// Time since the gateway began, s.
+    pub at_s: f64,
+    /// The link to the boat: `up`, or why it is not.
+    pub link: String,
+    /// The supervisor's state.
+    pub state: String,
+    /// What keeps it from being armed, in words.
+    pub missing: Vec<String>,
+    /// What made it stop, newest last.
+    pub trips: Vec<TripReport>,
+    /// Control mode that the boat says it is in: the Surveyor's letter.
+    pub mode: Option<char>,
+    /// Who the boat says is in control.
+    pub operator: Option<String>,
+    /// Navigation, if there is any.
+    pub nav: Option<Nav>,
+    /// Age of the last good fix, s.
+    pub nav_age_s: Option<f64>,
+    /// Battery, V.
+    pub battery_v: Option<f64>,
+    /// The sentence that was sent last.
+    pub last_sent: String,
+    /// Counts of everything, by name.
+    pub counts: Vec<(String, u64)>,
+    /// Median and 99th percentile in µs of: sentence in to topic out, order in to sentence out. What was not measured
+    /// yet is missing.
+    pub latency_us: [Option<[f64; 2]>; 2],
+}
+
+/// One time that a boat was stopped.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TripReport {
+    /// Time since the gateway began, s.
+    pub at_s: f64,
+    /// Why, in words.
+    pub cause: String,
+}

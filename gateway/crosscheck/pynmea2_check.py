@@ -1,0 +1,181 @@
+"""Our NMEA codec against pynmea2, both ways: `pynmea2_check.py path/to/peer` (the example of this crate).
+
+1. pynmea2 reads what we write, and finds the same values.
+2. We read what pynmea2 makes of those values when it renders them by itself, and of sentences put together here.
+"""
+
+import random
+import subprocess
+import sys
+
+import pynmea2
+
+KNOT_M_S = 1852.0 / 3600.0
+UNIT_M_S = {"M": 1.0, "K": 1.0 / 3.6, "N": KNOT_M_S, "S": 0.44704}
+
+
+def real(text):
+    return None if text in ("", None) else float(text)
+
+
+def signed(size, letter):
+    return None if size in ("", None) else float(size) * (-1.0 if letter == "W" else 1.0)
+
+
+def time_ms(time):
+    if not time:
+        return None
+    return ((time.hour * 60 + time.minute) * 60 + time.second) * 1e3 + time.microsecond / 1e3
+
+
+def place(msg):
+    # By the class, since a WPL of pynmea2 has coordinates but not this mixin.
+    fix = pynmea2.nmea_utils.LatLonFix
+    return {"lat": fix.latitude.fget(msg) if msg.lat else None, "lon": fix.longitude.fget(msg) if msg.lon else None}
+
+
+def wind_m_s(msg):
+    speed = real(msg.wind_speed)
+    return None if speed is None else speed * UNIT_M_S[msg.wind_speed_units]
+
+
+def date_text(date):
+    return date.isoformat() if date else None
+
+
+def proprietary(msg):
+    """What a PSEAx says: pynmea2 has the letter and the fields, and no names."""
+    kind, *fields = msg.data
+    names = {
+        "C": "mode heading thrust difference words",
+        "A": "pitch roll heading - box ahead starboard down yaw_rate",
+        "B": "volts charge amps celsius charge_used reset_time reset_date port_volts - system_amps - - - - hours",
+        "D": "mode heading thrust difference words transmission sent_to operator",
+        "G": "code",
+        "R": "- - throttle - -",
+    }[kind].split()
+    assert len(fields) == len(names), (len(fields), msg)
+    return {name: text for name, text in zip(names, fields) if name != "-"}
+
+
+READERS = {
+    "GGA": lambda m: {
+        **place(m), "time": time_ms(m.timestamp), "quality": m.gps_qual, "satellites": m.num_sats,
+        "hdop": m.horizontal_dil, "altitude": m.altitude, "geoid": m.geo_sep,
+    },
+    "RMC": lambda m: {
+        **place(m), "time": time_ms(m.timestamp), "valid": m.status == "A", "speed": m.spd_over_grnd,
+        "course": m.true_course, "date": date_text(m.datestamp),
+    },
+    "VTG": lambda m: {
+        "true": m.true_track, "magnetic": m.mag_track, "knots": m.spd_over_grnd_kts, "km_h": m.spd_over_grnd_kmph,
+    },
+    "HDT": lambda m: {"heading": m.heading},
+    "HDG": lambda m: {
+        "heading": m.heading, "deviation": signed(m.deviation, m.dev_dir), "variation": signed(m.variation, m.var_dir),
+    },
+    "ZDA": lambda m: {"time": time_ms(m.timestamp), "date": date_text(m.datestamp) if m.day else None},
+    "GLL": lambda m: {**place(m), "time": time_ms(m.timestamp), "valid": m.status == "A"},
+    "MWV": lambda m: {
+        "angle": m.wind_angle, "reference": m.reference, "m_s": wind_m_s(m), "valid": m.status == "A",
+    },
+    "VHW": lambda m: {"true": m.heading_true, "magnetic": m.heading_magnetic, "knots": m.water_speed_knots},
+    "WPL": lambda m: {**place(m), "index": m.waypoint_id},
+}
+
+# Half of the last digit that we write.
+TOLERANCE = {"lat": 5.01e-5 / 60, "lon": 5.01e-5 / 60, "time": 0.001}
+HUNDREDTHS = {"hdop", "speed", "knots", "km_h", "ahead", "starboard", "down", "yaw_rate"}
+WHOLES = {"thrust", "difference", "charge", "charge_used", "hours", "throttle"}
+TEXTS = {"mode", "words", "code", "reference", "date", "transmission", "reset_time", "reset_date"}
+
+
+def tolerance(name, values):
+    if name in WHOLES or name == "heading" and values.get("mode") == "T":
+        return 0.501
+    return TOLERANCE.get(name, 0.00501 if name in HUNDREDTHS else 0.0501)
+
+
+def values_of(msg):
+    if isinstance(msg, pynmea2.ProprietarySentence):
+        return proprietary(msg)
+    return READERS[msg.sentence_type](msg)
+
+
+def compare(ours, theirs, wire):
+    """Fails unless both say the same; `ours` are texts."""
+    assert ours.keys() == theirs.keys(), (sorted(ours), sorted(theirs), wire)
+    for name, text in ours.items():
+        value = theirs[name]
+        if name in TEXTS:
+            same = text == (value or "")
+        elif name == "valid":
+            same = text == str(value).lower()
+        elif text == "" or value in ("", None):
+            same = text == "" and value in ("", None)
+        else:
+            off = abs(float(text) - float(value))
+            same = min(off, abs(off - 360.0)) <= tolerance(name, ours)
+        assert same, f"{name} is {text!r} here and {value!r} there: {wire}"
+
+
+def pairs(text):
+    return dict(pair.split("=", 1) for pair in text.split("\t"))
+
+
+def listen(peer, wires):
+    answers = subprocess.run(
+        [peer, "listen"], input="".join(wire + "\n" for wire in wires), capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    assert len(answers) == len(wires), (len(answers), len(wires))
+    return answers
+
+
+def foreign(dice):
+    """Sentences that pynmea2 makes from values, in other widths than ours."""
+    def number(low, high, places):
+        return "" if dice.random() < 0.1 else f"{dice.uniform(low, high):.{places}f}"
+
+    lat = f"{dice.randrange(90):02d}{dice.uniform(0, 59.99):09.6f}"
+    lon = f"{dice.randrange(180):03d}{dice.uniform(0, 59.99):08.5f}"
+    where = (lat, dice.choice("NS"), lon, dice.choice("EW"))
+    time = f"{dice.randrange(24):02d}{dice.randrange(60):02d}{dice.randrange(60):02d}" + dice.choice(["", ".5", ".250"])
+    date = f"{dice.randint(1, 28):02d}{dice.randint(1, 12):02d}{dice.randint(0, 60):02d}"
+    yield pynmea2.GGA("GN", "GGA", (time, *where, "4", "08", number(0, 9, 1), number(-9, 99, 3), "M", number(-50, 50, 2), "M", "1.2", "0031"))
+    yield pynmea2.RMC("GP", "RMC", (time, dice.choice("AV"), *where, number(0, 9, 3), number(0, 359, 2), date, "", "", "A"))
+    yield pynmea2.VTG("GP", "VTG", (number(0, 359, 2), "T", number(0, 359, 0), "M", number(0, 9, 3), "N", number(0, 9, 3), "K"))
+    yield pynmea2.HDT("HE", "HDT", (number(0, 359, 3), "T"))
+    yield pynmea2.HDG("HC", "HDG", (number(0, 359, 2), f"{dice.uniform(0, 9):.1f}", "E", f"{dice.uniform(0, 9):.2f}", "W"))
+    yield pynmea2.ZDA("GP", "ZDA", (time, f"{dice.randint(1, 28):02d}", f"{dice.randint(1, 12):02d}", str(dice.randint(2000, 2060)), "00", "00"))
+    yield pynmea2.GLL("LC", "GLL", (*where, time, dice.choice("AV"), "A"))
+    yield pynmea2.MWV("WI", "MWV", (number(0, 359, 0), dice.choice("RT"), number(0, 40, 2), dice.choice("KMNS"), dice.choice("AV")))
+    yield pynmea2.VHW("VW", "VHW", (number(0, 359, 1), "T", number(0, 359, 1), "M", f"{dice.uniform(0, 9):.3f}", "N", "", "K"))
+    yield pynmea2.WPL("OI", "WPL", (*where, str(dice.randrange(65536))))
+
+
+def main(peer):
+    spoken = subprocess.run([peer, "speak"], capture_output=True, text=True, check=True).stdout.splitlines()
+    kinds, rendered = {}, []
+    for line in spoken:
+        wire, said = line.split("\t", 1)
+        msg = pynmea2.parse(wire, check=True)
+        compare(pairs(said), values_of(msg), wire)
+        assert str(msg) == wire, (str(msg), wire)
+        rendered.append((str(msg), values_of(msg)))
+        kind = wire[1:6] if wire.startswith("$P") else wire[3:6]
+        kinds[kind] = kinds.get(kind, 0) + 1
+    assert len(kinds) == 16, sorted(kinds)
+    print(f"pynmea2 reads what we write: {sum(kinds.values())} sentences of {len(kinds)} kinds")
+
+    seed = 20261120
+    dice = random.Random(seed)
+    for _ in range(200):
+        rendered.extend((str(msg), values_of(pynmea2.parse(str(msg), check=True))) for msg in foreign(dice))
+    for (wire, values), answer in zip(rendered, listen(peer, [wire for wire, _ in rendered])):
+        assert "=" in answer, f"{wire}: {answer}"
+        compare(pairs(answer), values, wire)
+    print(f"we read what pynmea2 renders: {len(rendered)} sentences (seed {seed})")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,278 @@
+//! The nmea crate reads what we write, and we read what it reads, with the same values.
+//!
+//! It has no writer. The sentences of the second test are therefore put together here, in the ways in which
+//! devices differ: zeros before numbers, more or fewer decimals, fields that are empty.
+
+use chrono::{Datelike, Timelike};
+use game::LatLon;
+use gateway::nmea::{
+    Date, Framer, Gga, Gll, Hdt, Mwv, Rmc, Sentence, SpeedUnit, Talker, TimeOfDay, Vhw, Vtg, WindReference, Zda,
+    checksum,
+};
+use nmea::ParseResult;
+use nmea::sentences::mwv::{MwvReference, MwvWindSpeedUnits};
+use nmea::sentences::rmc::RmcStatusOfFix;
+use proptest::option;
+use proptest::prelude::*;
+use proptest::sample::select;
+
+/// Half of the last digit that we write, and a little: the crate computes most numbers in single precision.
+const TENTH: f64 = 0.0501;
+const HUNDREDTH: f64 = 0.00502;
+const POSITION_DEG: f64 = 0.000_005_01 / 60.0;
+
+fn near(what: &str, ours: Option<f64>, theirs: Option<f64>, tolerance: f64) {
+    let close = match (ours, theirs) {
+        (Some(ours), Some(theirs)) => (ours - theirs).abs() <= tolerance,
+        (ours, theirs) => ours.is_none() && theirs.is_none(),
+    };
+    assert!(close, "{what}: {ours:?} here, {theirs:?} there");
+}
+
+fn near_place(ours: Option<LatLon>, lat_deg: Option<f64>, lon_deg: Option<f64>) {
+    near("latitude", ours.map(|at| at.lat_deg), lat_deg, POSITION_DEG);
+    near("longitude", ours.map(|at| at.lon_deg), lon_deg, POSITION_DEG);
+}
+
+/// The same within the rounding of a floating second.
+fn same_time(ours: Option<TimeOfDay>, theirs: Option<chrono::NaiveTime>) {
+    let ms = |time: chrono::NaiveTime| {
+        f64::from(time.num_seconds_from_midnight()) * 1e3 + f64::from(time.nanosecond()) / 1e6
+    };
+    near("time", ours.map(|time| f64::from(time.0)), theirs.map(ms), 1.001);
+}
+
+fn same_date(ours: Option<Date>, theirs: Option<chrono::NaiveDate>) {
+    let theirs = theirs.map(|date| (date.year(), date.month(), date.day()));
+    let ours = ours.map(|date| (i32::from(date.year), u32::from(date.month), u32::from(date.day)));
+    assert_eq!(ours, theirs);
+}
+
+/// Checks that both say the same.
+fn agree(ours: &Sentence, theirs: &ParseResult) {
+    match (ours, theirs) {
+        (Sentence::Gga(a), ParseResult::GGA(b)) => {
+            same_time(a.time, b.fix_time);
+            near_place(a.at, b.latitude, b.longitude);
+            let quality = char::from(b'0' + a.quality);
+            assert_eq!(Some(nmea::sentences::FixType::from(quality)), b.fix_type);
+            assert_eq!(a.satellites.map(u32::from), b.fix_satellites);
+            near("hdop", a.hdop, b.hdop.map(f64::from), HUNDREDTH);
+            near("altitude", a.altitude_m, b.altitude.map(f64::from), TENTH);
+            near("geoid", a.geoid_m, b.geoid_separation.map(f64::from), TENTH);
+        }
+        (Sentence::Rmc(a), ParseResult::RMC(b)) => {
+            same_time(a.time, b.fix_time);
+            same_date(a.date, b.fix_date);
+            near_place(a.at, b.lat, b.lon);
+            assert_eq!(a.valid, b.status_of_fix != RmcStatusOfFix::Invalid);
+            near("speed", a.speed_kn, b.speed_over_ground.map(f64::from), HUNDREDTH);
+            near("course", a.course_deg, b.true_course.map(f64::from), TENTH);
+        }
+        (Sentence::Vtg(a), ParseResult::VTG(b)) => {
+            near("course", a.course_true_deg, b.true_course.map(f64::from), TENTH);
+            near("speed", a.speed_kn, b.speed_over_ground.map(f64::from), HUNDREDTH);
+        }
+        (Sentence::Gll(a), ParseResult::GLL(b)) => {
+            same_time(a.time, b.fix_time);
+            near_place(a.at, b.latitude, b.longitude);
+            assert_eq!(a.valid, b.valid);
+        }
+        (Sentence::Hdt(a), ParseResult::HDT(b)) => near("heading", a.heading_deg, b.heading.map(f64::from), TENTH),
+        (Sentence::Mwv(a), ParseResult::MWV(b)) => same_wind(a, b),
+        (Sentence::Vhw(a), ParseResult::VHW(b)) => {
+            near("true heading", a.heading_true_deg, b.heading_true, TENTH);
+            near("magnetic heading", a.heading_magnetic_deg, b.heading_magnetic, TENTH);
+            near("knots", a.speed_kn, b.relative_speed_knots, HUNDREDTH);
+            near("km/h", a.speed_kn.map(|kn| kn * 1.852), b.relative_speed_kmph, 2.0 * HUNDREDTH);
+        }
+        (Sentence::Zda(a), ParseResult::ZDA(b)) => {
+            same_time(a.time, b.utc_time);
+            same_date(a.date, b.utc_date());
+        }
+        (ours, theirs) => panic!("{ours:?} here is {theirs:?} there"),
+    }
+}
+
+fn same_wind(a: &Mwv, b: &nmea::sentences::mwv::MwvData) {
+    let unit = match b.wind_speed_units {
+        Some(MwvWindSpeedUnits::KilometersPerHour) => SpeedUnit::KilometresPerHour,
+        Some(MwvWindSpeedUnits::MetersPerSecond) => SpeedUnit::MetresPerSecond,
+        Some(MwvWindSpeedUnits::Knots) => SpeedUnit::Knots,
+        Some(MwvWindSpeedUnits::MilesPerHour) => SpeedUnit::MilesPerHour,
+        None => panic!("{b:?} has no unit"),
+    };
+    let relative = b.reference == Some(MwvReference::Relative);
+    assert_eq!((a.unit, a.reference == WindReference::Relative, a.valid), (unit, relative, b.data_valid));
+    near("angle", a.angle_deg, b.wind_direction.map(f64::from), TENTH);
+    near("speed", a.speed_m_s.map(|speed| speed / unit.m_s()), b.wind_speed.map(f64::from), TENTH);
+}
+
+/// What the crate makes of a line.
+fn theirs(line: &str) -> ParseResult {
+    nmea::parse_str(line.trim_end()).unwrap_or_else(|e| panic!("the crate refuses {line}: {e:?}"))
+}
+
+/// What we make of a line.
+fn ours(line: &str) -> Sentence {
+    let mut found = Vec::new();
+    Framer::new().push(line.as_bytes(), &mut |body| found.push(Sentence::parse(body)));
+    assert_eq!(found.len(), 1, "{line} is one sentence");
+    found.remove(0).unwrap_or_else(|e| panic!("we refuse {line}: {e}"))
+}
+
+fn written(sentence: &Sentence) -> String {
+    let mut out = Vec::new();
+    sentence.write(&mut out);
+    String::from_utf8(out).expect("ASCII")
+}
+
+fn talker() -> impl Strategy<Value = Talker> {
+    select(vec![Talker::GP, Talker::GN, Talker::WI, Talker::VW])
+}
+
+fn angle() -> impl Strategy<Value = Option<f64>> {
+    option::of(0.0..359.9)
+}
+
+fn speed() -> impl Strategy<Value = Option<f64>> {
+    option::of(0.0..99.0)
+}
+
+fn time() -> impl Strategy<Value = Option<TimeOfDay>> {
+    option::of((0..86_400_000_u32).prop_map(TimeOfDay))
+}
+
+/// The crate takes 80 to 82 for this century.
+fn date() -> impl Strategy<Value = Option<Date>> {
+    let days = (1983..2080_u16, 1..=12_u8, 1..=28_u8);
+    option::of(days.prop_map(|(year, month, day)| Date { year, month, day }))
+}
+
+fn place() -> impl Strategy<Value = Option<LatLon>> {
+    option::of((-90.0..90.0, -180.0..180.0).prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg }))
+}
+
+fn sentence() -> BoxedStrategy<Sentence> {
+    prop_oneof![fix(), heading_or_wind()].boxed()
+}
+
+fn fix() -> BoxedStrategy<Sentence> {
+    let heights = (option::of(-99.0..999.0), option::of(-99.0..99.0));
+    let gga = (talker(), time(), place(), 0..9_u8, option::of(0..99_u8), speed(), heights).prop_map(
+        |(talker, time, at, quality, satellites, hdop, (altitude_m, geoid_m))| {
+            Sentence::Gga(Gga { talker, time, at, quality, satellites, hdop, altitude_m, geoid_m })
+        },
+    );
+    let rmc = (talker(), time(), any::<bool>(), place(), speed(), angle(), date()).prop_map(
+        |(talker, time, valid, at, speed_kn, course_deg, date)| {
+            Sentence::Rmc(Rmc { talker, time, valid, at, speed_kn, course_deg, date })
+        },
+    );
+    let vtg = (talker(), angle(), angle(), 0.0..99.0, any::<bool>()).prop_map(
+        |(talker, course_true_deg, course_magnetic_deg, knots, with_mode)| {
+            let (speed_kn, speed_km_h) = (Some(knots), Some(knots * 1.852));
+            Sentence::Vtg(Vtg { talker, course_true_deg, course_magnetic_deg, speed_kn, speed_km_h, with_mode })
+        },
+    );
+    let gll = (talker(), place(), time(), any::<bool>())
+        .prop_map(|(talker, at, time, valid)| Sentence::Gll(Gll { talker, at, time, valid }));
+    let zda = (talker(), time(), date()).prop_map(|(talker, time, date)| Sentence::Zda(Zda { talker, time, date }));
+    prop_oneof![gga, rmc, vtg, gll, zda].boxed()
+}
+
+fn heading_or_wind() -> BoxedStrategy<Sentence> {
+    let units = select(vec![
+        SpeedUnit::MetresPerSecond,
+        SpeedUnit::KilometresPerHour,
+        SpeedUnit::Knots,
+        SpeedUnit::MilesPerHour,
+    ]);
+    let references = select(vec![WindReference::Relative, WindReference::Theoretical]);
+    let hdt = (talker(), (0.0..359.9).prop_map(Some))
+        .prop_map(|(talker, heading_deg)| Sentence::Hdt(Hdt { talker, heading_deg }));
+    let mwv = (talker(), angle(), references, speed(), units, any::<bool>()).prop_map(
+        |(talker, angle_deg, reference, speed_m_s, unit, valid)| {
+            Sentence::Mwv(Mwv { talker, angle_deg, reference, speed_m_s, unit, valid })
+        },
+    );
+    let some = |end: f64| (0.0..end).prop_map(Some);
+    let vhw = (talker(), some(359.9), some(359.9), some(99.0)).prop_map(
+        |(talker, heading_true_deg, heading_magnetic_deg, speed_kn)| {
+            Sentence::Vhw(Vhw { talker, heading_true_deg, heading_magnetic_deg, speed_kn })
+        },
+    );
+    prop_oneof![hdt, mwv, vhw].boxed()
+}
+
+/// Lines as other devices write them.
+fn foreign() -> BoxedStrategy<String> {
+    let number = || select(vec!["0", "0.0", "000.1", "7", "08.25", "45.1", "123.456", "359.9"]);
+    let maybe = || prop_oneof![number(), Just("")];
+    let time = || select(vec!["000000", "235959.999", "150502.00", "120000.5", ""]);
+    let place = || {
+        select(vec![
+            "4221.50616,N,07105.24688,W",
+            "3507.5600,S,15042.6600,E",
+            "0000.0000,N,00000.0000,W",
+            "8959.999999,S,17959.999999,E",
+            "4221.5,N,07105.2,W",
+            ",,,",
+        ])
+    };
+    let status = || select(vec!["A", "V"]);
+    let body = prop_oneof![
+        (time(), place(), 0..9_u8, 0..24_u8, maybe(), maybe(), maybe())
+            .prop_map(|(t, p, q, n, h, a, g)| format!("GNGGA,{t},{p},{q},{n:02},{h},{a},M,{g},M,1.2,0031")),
+        (time(), status(), place(), maybe(), maybe(), select(vec!["010100", "201126", "311299", "290224", ""]))
+            .prop_map(|(t, s, p, v, c, d)| format!("GPRMC,{t},{s},{p},{v},{c},{d},14.5,W,A")),
+        (maybe(), maybe(), number()).prop_map(|(c, m, v)| format!("GPVTG,{c},T,{m},M,{v},N,0000.14,K")),
+        (place(), time(), status()).prop_map(|(p, t, s)| format!("LCGLL,{p},{t},{s},A")),
+        number().prop_map(|h| format!("HEHDT,{h},T")),
+        (maybe(), select(vec!["R", "T"]), maybe(), select(vec!["K", "M", "N", "S"]), status())
+            .prop_map(|(a, r, v, u, s)| format!("WIMWV,{a},{r},{v},{u},{s}")),
+        (time(), 1..=28_u8, 1..=12_u8, 1983..2100_u16)
+            .prop_map(|(t, d, m, y)| format!("GPZDA,{t},{d:02},{m:02},{y},-05,00")),
+    ];
+    body.prop_map(|body| format!("${body}*{:02X}\r\n", checksum(body.as_bytes()))).boxed()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn it_reads_what_we_write(sentence in sentence()) {
+        agree(&sentence, &theirs(&written(&sentence)));
+    }
+
+    #[test]
+    fn we_read_what_it_reads(line in foreign()) {
+        agree(&ours(&line), &theirs(&line));
+    }
+}
+
+#[test]
+fn goldens_mean_the_same_to_both() {
+    for line in [
+        "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62",
+        "$GPRMC,150502.00,A,4221.50616,N,07105.24688,W,2.10,045.0,201126,,,A*79",
+        "$GPVTG,045.0,T,059.5,M,2.10,N,3.89,K,A*2A",
+        "$GPVTG,045.0,T,059.5,M,2.10,N,3.89,K*47",
+        "$GPVTG,000.0,T,012.7,M,000.08,N,0000.14,K*77",
+        "$GPHDT,044.2,T*37",
+        "$GPZDA,150502.00,20,11,2026,00,00*61",
+        "$WIMWV,214.8,R,5.1,M,A*2B",
+        "$WIMWV,214.8,T,9.9,N,A*2A",
+        "$VWVHW,044.2,T,058.7,M,2.00,N,3.70,K*5A",
+    ] {
+        agree(&ours(&format!("{line}\r\n")), &theirs(line));
+    }
+}
+
+#[test]
+fn what_it_cannot_read_is_why_there_is_a_codec_of_ours() {
+    for line in ["$PSEAD,T,58.7,20,-10,,T,2,2*79", "$HCHDG,058.7,,,14.5,W*01", "$OIWPL,2545.4912,N,08022.4373,W,1*7A"] {
+        ours(&format!("{line}\r\n"));
+        assert!(!matches!(nmea::parse_str(line), Ok(found) if !matches!(found, ParseResult::Unsupported(_))), "{line}");
+    }
+}

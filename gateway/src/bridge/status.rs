@@ -1,0 +1,72 @@
+//! How a gateway is, in numbers and words.
+
+use super::{Bridge, voice};
+use crate::nmea::Operator;
+use crate::supervisor::State;
+use game::SimTime;
+use game::external::GatewayStatus;
+
+impl Bridge {
+    /// How it is now. What only the shell knows (the link's name, latencies) is left to it.
+    #[must_use]
+    pub fn status(&mut self, now: SimTime) -> GatewayStatus {
+        let conditions = self.conditions(now);
+        let known = self.estimator.nav(now);
+        let last_sent = self.last_sent.as_ref().map(|(_, command)| voice::bytes_of(std::slice::from_ref(command)));
+        GatewayStatus {
+            vehicle: self.plan.vehicle.clone(),
+            at_s: now.as_s(),
+            link: if self.link_up { "up" } else { "down" }.to_owned(),
+            state: self.state_in_words(),
+            missing: conditions.missing().iter().map(ToString::to_string).collect(),
+            trips: self.trips.clone(),
+            mode: self.control.mode().map(|mode| mode.letter()),
+            operator: self.control.operator().map(name_of),
+            nav: known.map(|(nav, _)| nav),
+            nav_age_s: known.map(|(_, age_s)| age_s),
+            battery_v: self.volts,
+            last_sent: last_sent.map(|bytes| String::from_utf8_lossy(&bytes).trim_end().to_owned()).unwrap_or_default(),
+            counts: self.counts(),
+            latency_us: [None; 2],
+        }
+    }
+
+    fn state_in_words(&self) -> String {
+        match self.supervisor.state() {
+            State::EStopped => format!("e-stopped (by an E-stop of {})", self.supervisor.stopped_by()),
+            state if self.upload.is_some() => format!("{state}, sending a mission"),
+            state => state.to_string(),
+        }
+    }
+
+    /// What was counted, by name.
+    fn counts(&self) -> Vec<(String, u64)> {
+        let framed = self.framer.counts();
+        let tally = &self.tally;
+        let known = [
+            ("sentences in", framed.sentences),
+            ("bad checksums", framed.bad_checksum),
+            ("overlong", framed.overlong),
+            ("broken", framed.broken),
+            ("bytes of garbage", framed.garbage),
+            ("unreadable", tally.unreadable),
+            ("orders", tally.orders),
+            ("bad orders", tally.bad_orders),
+            ("old orders", tally.old_orders),
+            ("commands out", tally.sent),
+        ];
+        let unknown = tally.unknown.iter().map(|(name, count)| (format!("unknown {name}"), *count));
+        known.into_iter().map(|(name, count)| (name.to_owned(), count)).chain(unknown).collect()
+    }
+}
+
+fn name_of(operator: Operator) -> String {
+    match operator {
+        Operator::Primary => "primary (1)".to_owned(),
+        Operator::Secondary => "secondary (2): us".to_owned(),
+        Operator::PrimaryBackup => "primary's backup link (3)".to_owned(),
+        Operator::Rc => "remote control (5)".to_owned(),
+        Operator::ObstacleAvoidance => "obstacle avoidance (6)".to_owned(),
+        Operator::Other(number) => number.to_string(),
+    }
+}

@@ -1,0 +1,73 @@
+//! A mission on its way into the boat: lines one after the other, with pauses.
+
+use super::voice;
+use crate::nmea::{MissionSettings, Sentence, Waypoint};
+use game::SimTime;
+use game::external::Mission;
+use game::frame::LatLon;
+use std::collections::VecDeque;
+
+/// Most waypoints of a mission.
+const WAYPOINTS_MAX: usize = 200;
+/// Largest throttle that other drivers of this boat send, per cent.
+const THROTTLE_MAX_PCT: f64 = 70.0;
+
+/// What is still to be sent.
+#[derive(Clone, Debug)]
+pub(super) struct Upload {
+    lines: VecDeque<Sentence>,
+    gap: SimTime,
+    due: SimTime,
+}
+
+/// What is next.
+pub(super) enum Next {
+    /// This line, now.
+    Line(Box<Sentence>),
+    /// Nothing yet.
+    Wait,
+    /// All lines are sent.
+    Done,
+}
+
+impl Upload {
+    /// The lines of a mission: start of download, settings, emergency recovery point (index 0), waypoints, end.
+    ///
+    /// # Errors
+    /// What is wrong with the mission.
+    pub(super) fn new(mission: &Mission, gap_s: f64, now: SimTime) -> Result<Upload, String> {
+        if !(0.0..=THROTTLE_MAX_PCT).contains(&mission.throttle_pct) {
+            return Err(format!("throttle_pct is {}, expected 0 to {THROTTLE_MAX_PCT}", mission.throttle_pct));
+        }
+        if !(1..=WAYPOINTS_MAX).contains(&mission.waypoints.len()) {
+            return Err(format!("waypoints are {}, expected 1 to {WAYPOINTS_MAX}", mission.waypoints.len()));
+        }
+        let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
+        let mut lines = VecDeque::from([
+            Sentence::Command(voice::start_of_download(mission.waypoints.len() + 2)),
+            Sentence::MissionSettings(MissionSettings { throttle_pct: mission.throttle_pct }),
+        ]);
+        for (index, [lat_deg, lon_deg]) in places.enumerate() {
+            if !((-90.0..=90.0).contains(lat_deg) && (-180.0..=180.0).contains(lon_deg)) {
+                return Err(format!("waypoint {index} is [{lat_deg}, {lon_deg}], expected latitude and longitude"));
+            }
+            let at = LatLon { lat_deg: *lat_deg, lon_deg: *lon_deg };
+            lines.push_back(Sentence::Waypoint(Waypoint { at, index: index as u16 }));
+        }
+        lines.push_back(Sentence::Command(voice::end_of_download()));
+        Ok(Upload { lines, gap: SimTime::from_s(gap_s), due: now })
+    }
+
+    pub(super) fn next(&mut self, now: SimTime) -> Next {
+        if now < self.due {
+            return Next::Wait;
+        }
+        self.due = now + self.gap;
+        self.lines.pop_front().map_or(Next::Done, |line| Next::Line(Box::new(line)))
+    }
+
+    /// When it wants to go on.
+    pub(super) fn due(&self) -> SimTime {
+        self.due
+    }
+}

@@ -1,0 +1,124 @@
+//! Declination: how far a compass points east of true north, by the World Magnetic Model of 2025.
+//!
+//! The model is one of the earth's core. Iron in the ground turns a compass by some degrees more in places, and
+//! the compass of a boat has its own faults.
+
+use crate::nmea::Date;
+use game::LatLon;
+use thiserror::Error;
+use world_magnetic_model::GeomagneticField;
+use world_magnetic_model::time::{self, Month};
+use world_magnetic_model::uom::si::angle::degree;
+use world_magnetic_model::uom::si::f32::{Angle, Length};
+use world_magnetic_model::uom::si::length::meter;
+
+/// Years of WMM2025, both included.
+const YEARS: (u16, u16) = (2025, 2029);
+
+/// Why there is no declination.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum DeclinationError {
+    /// The model does not hold then.
+    #[error("the magnetic model does not know {}-{:02}-{:02}, expected a date from 2025 to 2029", .0.year, .0.month, .0.day)]
+    Date(Date),
+    /// Not a place on earth.
+    #[error("{}, {} is no place on earth, expected latitude -90 to 90 and longitude -180 to 180", .0.lat_deg, .0.lon_deg)]
+    Position(LatLon),
+}
+
+/// Degrees from true to magnetic north at the ellipsoid's surface, east positive: true = magnetic + declination.
+///
+/// # Errors
+/// [`DeclinationError`] for a date before 2025 or after 2029, or a position off the globe.
+pub fn declination_deg(at: LatLon, date: Date) -> Result<f64, DeclinationError> {
+    let day = day(date).ok_or(DeclinationError::Date(date))?;
+    // The model is in single precision: 1 m of position, far finer than it is right.
+    let (lat, lon) = (Angle::new::<degree>(at.lat_deg as f32), Angle::new::<degree>(at.lon_deg as f32));
+    let field = GeomagneticField::new(Length::new::<meter>(0.0), lat, lon, day);
+    let field = field.map_err(|_| DeclinationError::Position(at))?;
+    Ok(f64::from(field.declination().get::<degree>()))
+}
+
+/// The date as the model takes it, if it is one that the model is for.
+fn day(date: Date) -> Option<time::Date> {
+    let month = Month::try_from(date.month).ok()?;
+    let day = time::Date::from_calendar_date(i32::from(date.year), month, date.day).ok()?;
+    // The crate knows the model of 2020 too, which was made with older measurements.
+    (YEARS.0..=YEARS.1).contains(&date.year).then_some(day)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(lat_deg: f64, lon_deg: f64) -> LatLon {
+        LatLon { lat_deg, lon_deg }
+    }
+
+    fn on(year: u16, month: u8, day: u8) -> Date {
+        Date { year, month, day }
+    }
+
+    #[test]
+    fn published_values_of_the_model_are_met() {
+        // WMM2025_TestValues (NOAA and BGS) at height 0, 2025.0 and 2027.5; NOAA's calculator for 2026-07-04.
+        let tolerance_deg = 0.01;
+        let (first, middle, summer) = (on(2025, 1, 1), on(2027, 7, 2), on(2026, 7, 4));
+        for (lat_deg, lon_deg, date, want_deg) in [
+            (80.0, 0.0, first, 1.28),
+            (0.0, 120.0, first, -0.16),
+            (-80.0, -120.0, first, 68.78),
+            (80.0, 0.0, middle, 2.59),
+            (0.0, 120.0, middle, -0.24),
+            (-80.0, -120.0, middle, 68.49),
+            (-33.8688, 151.2093, summer, 12.820_83),
+            (51.5074, -0.1278, summer, 1.162_80),
+            (64.1466, -21.9426, summer, -11.133_49),
+        ] {
+            let got_deg = declination_deg(at(lat_deg, lon_deg), date).unwrap();
+            assert!((got_deg - want_deg).abs() <= tolerance_deg, "{lat_deg}, {lon_deg}, {date:?}: {got_deg}");
+        }
+    }
+
+    #[test]
+    fn compasses_point_west_of_north_at_west_point_and_east_at_jervis_bay() {
+        let tolerance_deg = 0.5;
+        for (place, lat_deg, lon_deg, want_deg) in [
+            ("Lake Popolopen", 41.349_28, -74.063_645, -12.5),
+            ("Boston", 42.358_436, -71.087_448, -14.2),
+            ("Jervis Bay", -35.126, 150.711, 13.1),
+        ] {
+            let got_deg = declination_deg(at(lat_deg, lon_deg), on(2026, 11, 20)).unwrap();
+            assert!((got_deg - want_deg).abs() < tolerance_deg, "{place}: {got_deg}");
+        }
+    }
+
+    #[test]
+    fn the_model_holds_for_five_years() {
+        for (date, known) in [
+            (on(2024, 12, 31), false),
+            (on(2025, 1, 1), true),
+            (on(2028, 2, 29), true),
+            (on(2029, 12, 31), true),
+            (on(2030, 1, 1), false),
+            (on(2026, 2, 29), false),
+            (on(2026, 13, 1), false),
+            (on(2026, 0, 0), false),
+        ] {
+            let got = declination_deg(at(42.0, -71.0), date);
+            assert_eq!(got.is_ok(), known, "{date:?}");
+            assert_eq!(got.err(), (!known).then_some(DeclinationError::Date(date)));
+        }
+    }
+
+    #[test]
+    fn what_is_no_place_on_earth_has_none() {
+        for (lat_deg, lon_deg) in [(90.1, 0.0), (0.0, 180.1), (f64::NAN, 0.0), (0.0, f64::INFINITY)] {
+            let error = declination_deg(at(lat_deg, lon_deg), on(2026, 1, 1)).unwrap_err();
+            assert!(error.to_string().contains("is no place on earth"), "{error}");
+        }
+        for pole_deg in [-90.0, 90.0] {
+            assert!(declination_deg(at(pole_deg, 0.0), on(2026, 1, 1)).unwrap().is_finite());
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! What a boat does by its own means: settings, station keeping, missions.
+
+use game::angle::wrap_pi;
+use game::frame::{Ned, Pose};
+use game::{Order, math};
+use std::collections::BTreeMap;
+
+/// A place is reached, or kept, within this distance, m.
+const NEAR_M: f64 = 3.0;
+/// How fast a boat goes back to its station at most, m/s.
+const KEEP_M_S: f64 = 1.0;
+/// How fast it approaches a place, m/s per m of distance.
+const APPROACH_PER_S: f64 = 0.2;
+/// Throttle of a mission that names none, per cent.
+const THROTTLE_PCT: f64 = 40.0;
+/// Thrust in per cent and speed in m/s: the thrust map of the West Point missions of 2024.
+const THRUST_MAP: [(f64, f64); 6] = [(0.0, 0.0), (20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)];
+
+/// Where it is going by itself.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Helm {
+    /// By index; 0 is the emergency recovery point.
+    places: BTreeMap<u16, Ned>,
+    throttle_pct: Option<f64>,
+    /// What is being taken up, while it is.
+    coming: Option<Download>,
+    station: Option<Ned>,
+    /// The waypoint that is next.
+    next: u16,
+}
+
+/// A mission on its way.
+#[derive(Clone, Debug, Default)]
+struct Download {
+    /// How many lines were announced, and have come.
+    announced: f64,
+    lines: u32,
+    throttle_pct: Option<f64>,
+    places: BTreeMap<u16, Ned>,
+}
+
+/// The order for thrust and difference in per cent.
+pub(super) fn thrust(thrust_pct: f64, difference_pct: f64) -> Order {
+    let share = |pct: f64| (0.01 * pct).clamp(-1.0, 1.0);
+    Order::Thrust { port: share(thrust_pct + difference_pct), starboard: share(thrust_pct - difference_pct) }
+}
+
+/// The order for a heading and a speed; none of them may be missing.
+pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
+    match (heading_rad, speed_m_s) {
+        (Some(heading_rad), Some(speed_m_s)) => {
+            Order::Steer { heading_rad: wrap_pi(heading_rad), speed_m_s: speed_m_s.clamp(0.0, 100.0) }
+        }
+        _ => Order::Hold,
+    }
+}
+
+pub(super) fn m_s_from_kn(speed_kn: f64) -> f64 {
+    speed_kn * 1852.0 / 3600.0
+}
+
+/// The speed that a thrust gives, m/s.
+pub(super) fn speed_of_thrust(thrust_pct: Option<f64>) -> Option<f64> {
+    let thrust_pct = thrust_pct?.clamp(0.0, 100.0);
+    let pairs = THRUST_MAP.windows(2).map(|pair| (pair[0], pair[1]));
+    let (low, high) = pairs.into_iter().find(|(_, high)| thrust_pct <= high.0)?;
+    Some(low.1 + (high.1 - low.1) * (thrust_pct - low.0) / (high.0 - low.0))
+}
+
+impl Helm {
+    /// Something new begins here.
+    pub(super) fn begin(&mut self, at: Ned) {
+        self.station = Some(at);
+        self.next = 1;
+    }
+
+    /// A mission is coming: the one before is gone.
+    pub(super) fn begin_download(&mut self, announced: f64) {
+        self.places.clear();
+        self.throttle_pct = None;
+        self.coming = Some(Download { announced, ..Download::default() });
+    }
+
+    /// All of it is there, or not: then there is no mission, and this says why.
+    pub(super) fn end_download(&mut self) -> Option<String> {
+        let coming = self.coming.take()?;
+        if f64::from(coming.lines) != coming.announced {
+            return Some(format!(
+                "mission refused: {} lines were announced, {} could be read",
+                coming.announced, coming.lines
+            ));
+        }
+        (self.places, self.throttle_pct) = (coming.places, coming.throttle_pct);
+        Some(format!("a mission of {} places is taken up", self.places.len()))
+    }
+
+    pub(super) fn take_throttle(&mut self, throttle_pct: f64) {
+        if let Some(coming) = &mut self.coming {
+            coming.lines += 1;
+            coming.throttle_pct = Some(throttle_pct);
+        }
+    }
+
+    /// A place that comes outside of a download is none of the mission's.
+    pub(super) fn take_waypoint(&mut self, index: u16, at: Ned) {
+        if let Some(coming) = &mut self.coming {
+            coming.lines += 1;
+            coming.places.insert(index, at);
+        }
+    }
+
+    /// Stays where it began.
+    pub(super) fn keep(&mut self, pose: Pose) -> Order {
+        let station = *self.station.get_or_insert(pose.at);
+        go(pose, station, KEEP_M_S).unwrap_or(Order::Hold)
+    }
+
+    /// Goes to the recovery point, and stays there; without one it stays where it is.
+    pub(super) fn go_to_erp(&mut self, pose: Pose) -> Order {
+        match self.places.get(&0) {
+            Some(erp) => go(pose, *erp, self.speed_m_s()).unwrap_or(Order::Hold),
+            None => self.keep(pose),
+        }
+    }
+
+    /// Sails the mission, and stays at its end.
+    pub(super) fn sail(&mut self, pose: Pose) -> Order {
+        while let Some(place) = self.places.get(&self.next.max(1)).copied() {
+            if let Some(order) = go(pose, place, self.speed_m_s()) {
+                return order;
+            }
+            self.next = self.next.max(1) + 1;
+            self.station = Some(place);
+        }
+        self.keep(pose)
+    }
+
+    fn speed_m_s(&self) -> f64 {
+        speed_of_thrust(Some(self.throttle_pct.unwrap_or(THROTTLE_PCT))).unwrap_or(0.0)
+    }
+}
+
+/// The way to a place, unless it is reached: slowly while the boat does not point there, and near it, lest it circles.
+fn go(pose: Pose, place: Ned, speed_m_s: f64) -> Option<Order> {
+    let distance_m = pose.at.distance(place);
+    if distance_m <= NEAR_M {
+        return None;
+    }
+    let heading_rad = pose.at.bearing_rad(place);
+    let (_, ahead) = math::sin_cos(wrap_pi(heading_rad - pose.psi_rad));
+    let share = ahead.max(0.0) * ahead.max(0.0);
+    let limit_m_s = (APPROACH_PER_S * distance_m).min(speed_m_s);
+    Some(Order::Steer { heading_rad, speed_m_s: limit_m_s * share })
+}

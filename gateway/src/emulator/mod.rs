@@ -1,0 +1,261 @@
+//! A simulated boat that speaks as the real one: commands in, telemetry out, with no socket and no clock.
+//!
+//! It is as strict and as forgiving as a Surveyor is known to be: it talks even while it lies in standby, takes commands
+//! only from whoever has control, reads four to six fields, and by default has no watchdog of its own: what it was told
+//! last it does for ever.
+
+mod helm;
+mod telemetry;
+
+pub use telemetry::Extra;
+
+use crate::geodesy::LocalFrame;
+use crate::nmea::{Command, Counts, Date, Framer, Mode, Operator, Sentence, TimeOfDay};
+use game::frame::LatLon;
+use game::picture::OwnBoat;
+use game::{Order, SimTime};
+use helm::Helm;
+
+/// What a boat is emulated by.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The origin of the field.
+    pub datum: LatLon,
+    /// Magnetic north, east of true, rad.
+    pub declination_rad: f64,
+    /// Without a command for this long the boat goes to standby, s; `None` is never.
+    pub watchdog_s: Option<f64>,
+    /// Whether a setting that is no whole number leaves the one before in force, as in one known stand-in.
+    pub integers: bool,
+    /// Sentences beyond those that a Surveyor sends.
+    pub extra: Vec<Extra>,
+    /// Whether VTG has its mode field: new boats leave it out.
+    pub vtg_mode: bool,
+    /// Day and time when the clock of whoever plays it shows zero.
+    pub began: (Date, TimeOfDay),
+}
+
+/// What the battery shows until it is told otherwise, V.
+const FULL_V: f64 = 24.8;
+
+/// From whom bytes come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Port {
+    /// The primary operator's: shore.
+    Primary,
+    /// The secondary operator's: the back seat.
+    Secondary,
+}
+
+/// A boat's front seat, played.
+pub struct Emulator {
+    plan: Plan,
+    frame: LocalFrame,
+    primary: Framer,
+    secondary: Framer,
+    /// Who commands it.
+    operator: Operator,
+    /// The last command that it took, and when.
+    command: Command,
+    commanded_at: SimTime,
+    /// In force in mode T: thrust and difference, per cent.
+    thrust_pct: f64,
+    difference_pct: f64,
+    helm: Helm,
+    own: Option<OwnBoat>,
+    /// When the fix that `own` has was first seen, and which it is.
+    fix: Option<(SimTime, SimTime)>,
+    volts: f64,
+    remark: Option<String>,
+    /// Commands that were taken, and those that were not for want of control.
+    taken: u64,
+    ignored: u64,
+}
+
+impl Emulator {
+    /// A boat in standby; the back seat has control.
+    #[must_use]
+    pub fn new(plan: Plan) -> Emulator {
+        Emulator {
+            frame: LocalFrame::new(plan.datum),
+            plan,
+            primary: Framer::new(),
+            secondary: Framer::new(),
+            operator: Operator::Secondary,
+            command: standby(),
+            commanded_at: SimTime::ZERO,
+            thrust_pct: 0.0,
+            difference_pct: 0.0,
+            helm: Helm::default(),
+            own: None,
+            fix: None,
+            volts: FULL_V,
+            remark: None,
+            taken: 0,
+            ignored: 0,
+        }
+    }
+
+    /// Gives control to somebody else; the boat goes to standby.
+    pub fn give_control(&mut self, now: SimTime, operator: Operator) {
+        if self.operator != operator {
+            self.operator = operator;
+            self.obey(now, standby());
+        }
+    }
+
+    /// Takes bytes from a port.
+    pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
+        let place = |boat: &mut Emulator| match port {
+            Port::Primary => std::mem::take(&mut boat.primary),
+            Port::Secondary => std::mem::take(&mut boat.secondary),
+        };
+        let mut framer = place(self);
+        framer.push(bytes, &mut |body| {
+            // What it does not know a boat does not mind.
+            if let Ok(sentence) = Sentence::parse(body) {
+                self.heed(now, port, sentence);
+            }
+        });
+        match port {
+            Port::Primary => self.primary = framer,
+            Port::Secondary => self.secondary = framer,
+        }
+    }
+
+    /// Sets the receiver's clock: it is now so late, UTC.
+    pub fn set_clock(&mut self, now: SimTime, (date, TimeOfDay(ms)): (Date, TimeOfDay)) {
+        const DAY_MS: i64 = 86_400_000;
+        let at_zero_ms = i64::from(ms) - (now.as_s() * 1000.0).round() as i64;
+        self.plan.began = (date, TimeOfDay(at_zero_ms.rem_euclid(DAY_MS) as u32));
+    }
+
+    /// Something to tell whoever plays the boat, once.
+    pub fn take_remark(&mut self) -> Option<String> {
+        self.remark.take()
+    }
+
+    /// What the battery shows from now on, V.
+    pub fn set_volts(&mut self, volts: f64) {
+        self.volts = volts;
+    }
+
+    /// What its sensors tell.
+    pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
+        if self.fix.is_none_or(|(_, fix)| fix != own.fix_ns) {
+            self.fix = Some((now, own.fix_ns));
+        }
+        self.own = Some(*own);
+    }
+
+    /// What the boat does now.
+    pub fn order(&mut self, now: SimTime) -> Order {
+        let watchdog = self.plan.watchdog_s.map(SimTime::from_s);
+        let silent = watchdog.is_some_and(|limit| now - self.commanded_at > limit);
+        if silent && self.command.mode != Mode::Standby {
+            self.command = standby();
+        }
+        let Some(own) = &self.own else { return Order::Hold };
+        let heading = |command: &Command| command.heading_deg.map(|deg| deg.to_radians() + self.plan.declination_rad);
+        match self.command.mode {
+            Mode::Thruster => helm::thrust(self.thrust_pct, self.difference_pct),
+            Mode::Heading => helm::steer(heading(&self.command), helm::speed_of_thrust(self.command.thrust)),
+            Mode::Speed => helm::steer(heading(&self.command), self.command.thrust.map(helm::m_s_from_kn)),
+            Mode::StationKeep => self.helm.keep(own.nav.pose()),
+            Mode::GoToErp => self.helm.go_to_erp(own.nav.pose()),
+            Mode::Waypoint => self.helm.sail(own.nav.pose()),
+            _ => Order::Hold,
+        }
+    }
+
+    /// One burst of telemetry.
+    pub fn telemetry(&self, now: SimTime, out: &mut Vec<u8>) {
+        telemetry::burst(self, now, out);
+    }
+
+    /// What it was commanded last.
+    #[must_use]
+    pub fn command(&self) -> &Command {
+        &self.command
+    }
+
+    /// Who commands it.
+    #[must_use]
+    pub fn operator(&self) -> Operator {
+        self.operator
+    }
+
+    /// Commands taken, and ignored for want of control.
+    #[must_use]
+    pub fn tally(&self) -> (u64, u64) {
+        (self.taken, self.ignored)
+    }
+
+    /// What came in on the back seat's port.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        self.secondary.counts()
+    }
+
+    fn heed(&mut self, now: SimTime, port: Port, sentence: Sentence) {
+        if port == Port::Primary {
+            self.heed_primary(now, &sentence);
+        }
+        let in_control = match port {
+            Port::Primary => self.operator == Operator::Primary,
+            Port::Secondary => self.operator == Operator::Secondary,
+        };
+        match sentence {
+            Sentence::Command(_) if !in_control => self.ignored += 1,
+            Sentence::Command(command) => {
+                self.taken += 1;
+                self.obey(now, command);
+            }
+            Sentence::MissionSettings(settings) if in_control => self.helm.take_throttle(settings.throttle_pct),
+            Sentence::Waypoint(waypoint) if in_control => {
+                self.helm.take_waypoint(waypoint.index, self.frame.ned(waypoint.at));
+            }
+            _ => {}
+        }
+    }
+
+    /// The primary operator takes control by any command; with `OP2_ON` in it the secondary gets it, with `OP2_OFF` not
+    /// any more. The words are ours: how the real operator's console says it is not public.
+    fn heed_primary(&mut self, now: SimTime, sentence: &Sentence) {
+        let Sentence::Command(command) = sentence else { return };
+        let operator = if command.words == "OP2_ON" { Operator::Secondary } else { Operator::Primary };
+        self.give_control(now, operator);
+    }
+
+    fn obey(&mut self, now: SimTime, command: Command) {
+        self.commanded_at = now;
+        match command.mode {
+            Mode::Thruster => {
+                let whole = |value: &f64| !self.plan.integers || value.fract() == 0.0;
+                let of = |given: Option<f64>, before: f64| given.filter(whole).unwrap_or(before).clamp(-100.0, 100.0);
+                (self.thrust_pct, self.difference_pct) =
+                    (of(command.thrust, self.thrust_pct), of(command.difference, self.difference_pct));
+            }
+            Mode::FileDownload => {
+                let lines = command.heading_deg.unwrap_or(0.0);
+                if lines > 0.0 {
+                    self.helm.begin_download(lines);
+                } else {
+                    self.remark = self.helm.end_download();
+                }
+            }
+            mode => {
+                (self.thrust_pct, self.difference_pct) = (0.0, 0.0);
+                // A command of the same mode goes on with what is under way.
+                if let (true, Some(own)) = (mode != self.command.mode, &self.own) {
+                    self.helm.begin(own.nav.at());
+                }
+            }
+        }
+        self.command = command;
+    }
+}
+
+fn standby() -> Command {
+    Command { mode: Mode::Standby, heading_deg: None, thrust: None, difference: None, words: String::new() }
+}

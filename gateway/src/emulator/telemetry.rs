@@ -1,0 +1,186 @@
+//! What a Surveyor tells, in one burst: fix, course, attitude, battery, who commands it, and that nothing is wrong.
+
+use super::Emulator;
+use crate::nmea::{
+    Attitude, Battery, BoatError, ControlState, Date, Gga, Hdg, Hdt, Mode, Rmc, Sentence, Talker, TimeOfDay, Vtg, Zda,
+};
+use game::angle::compass_deg_from_rad;
+use game::frame::{Body, ned_from_body};
+use game::math;
+use game::picture::{Imu, Nav};
+use game::{LatLon, SimTime};
+
+/// A fix older than this the receiver no longer calls one, s.
+const FIX_AGE_MAX_S: f64 = 1.0;
+/// Below this speed a receiver knows no course, m/s.
+const COURSE_FROM_M_S: f64 = 0.1;
+const M_S_PER_KN: f64 = 1852.0 / 3600.0;
+const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+const DAY_MS: i64 = 86_400_000;
+
+/// Sentences that a Surveyor does not send, for readers that want them: gpsd has no time and no speed without RMC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extra {
+    /// Fix with date, course and speed.
+    Rmc,
+    /// True heading.
+    Hdt,
+    /// Magnetic heading and variation.
+    Hdg,
+    /// Time and date.
+    Zda,
+}
+
+/// All of it, now.
+pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
+    if let (Some(own), Some((seen, _))) = (&boat.own, boat.fix) {
+        let told = Told::new(boat, now, seen, &own.nav);
+        Sentence::Gga(told.gga()).write(out);
+        Sentence::Vtg(told.vtg(boat)).write(out);
+        for extra in &boat.plan.extra {
+            told.extra(boat, *extra).write(out);
+        }
+        Sentence::Attitude(attitude(boat, &own.nav, &own.imu)).write(out);
+    }
+    Sentence::Battery(battery(boat.volts, now)).write(out);
+    Sentence::ControlState(control_state(boat)).write(out);
+    Sentence::BoatError(BoatError { code: "N".to_owned() }).write(out);
+}
+
+/// A fix as it is told.
+struct Told {
+    date: Date,
+    now: TimeOfDay,
+    time: TimeOfDay,
+    /// Nothing if the receiver has lost its fix.
+    at: Option<LatLon>,
+    psi_rad: f64,
+    /// Course, rad, if there is one, and speed, m/s.
+    course_rad: Option<f64>,
+    speed_m_s: f64,
+}
+
+impl Told {
+    fn new(boat: &Emulator, now: SimTime, seen: SimTime, nav: &Nav) -> Told {
+        let (date, began) = boat.plan.began;
+        let is_lost = (now - seen).as_s() > FIX_AGE_MAX_S;
+        let body = Body { ahead: nav.surge_m_s, starboard: nav.sway_m_s };
+        let velocity = ned_from_body(math::sin_cos(nav.psi_rad), body);
+        let speed_m_s = velocity.length();
+        Told {
+            date,
+            now: time_at(began, now),
+            time: time_at(began, seen),
+            at: (!is_lost).then(|| boat.frame.lat_lon(nav.at())),
+            psi_rad: nav.psi_rad,
+            course_rad: (speed_m_s >= COURSE_FROM_M_S).then(|| math::atan2(velocity.east, velocity.north)),
+            speed_m_s,
+        }
+    }
+
+    fn gga(&self) -> Gga {
+        Gga {
+            talker: Talker::GP,
+            time: Some(self.time),
+            at: self.at,
+            quality: if self.at.is_some() { 2 } else { 0 },
+            satellites: Some(if self.at.is_some() { 11 } else { 0 }),
+            hdop: self.at.map(|_| 0.98),
+            altitude_m: Some(5.5),
+            geoid_m: Some(-33.2),
+        }
+    }
+
+    fn vtg(&self, boat: &Emulator) -> Vtg {
+        let degrees = |rad: f64| compass_deg_from_rad(rad);
+        Vtg {
+            talker: Talker::GP,
+            course_true_deg: self.course_rad.map(degrees),
+            course_magnetic_deg: self.course_rad.map(|rad| degrees(rad - boat.plan.declination_rad)),
+            speed_kn: Some(self.speed_m_s / M_S_PER_KN),
+            speed_km_h: Some(3.6 * self.speed_m_s),
+            with_mode: boat.plan.vtg_mode,
+        }
+    }
+
+    fn extra(&self, boat: &Emulator, extra: Extra) -> Sentence {
+        let east_deg = boat.plan.declination_rad.to_degrees();
+        match extra {
+            Extra::Rmc => Sentence::Rmc(Rmc {
+                talker: Talker::GP,
+                time: Some(self.time),
+                valid: self.at.is_some(),
+                at: self.at,
+                speed_kn: Some(self.speed_m_s / M_S_PER_KN),
+                course_deg: self.course_rad.map(compass_deg_from_rad),
+                date: Some(self.date),
+            }),
+            Extra::Hdt => {
+                Sentence::Hdt(Hdt { talker: Talker::GP, heading_deg: Some(compass_deg_from_rad(self.psi_rad)) })
+            }
+            Extra::Hdg => Sentence::Hdg(Hdg {
+                talker: Talker::HC,
+                heading_deg: Some(compass_deg_from_rad(self.psi_rad - boat.plan.declination_rad)),
+                deviation_deg: None,
+                variation_deg: Some(east_deg),
+            }),
+            Extra::Zda => Sentence::Zda(Zda { talker: Talker::GP, time: Some(self.now), date: Some(self.date) }),
+        }
+    }
+}
+
+fn time_at(began: TimeOfDay, at: SimTime) -> TimeOfDay {
+    let ms = i64::from(began.0) + (at.as_s() * 1000.0).round() as i64;
+    TimeOfDay(ms.rem_euclid(DAY_MS) as u32)
+}
+
+fn attitude(boat: &Emulator, nav: &Nav, imu: &Imu) -> Attitude {
+    let g = |acceleration_m_s2: f64| Some(acceleration_m_s2 / STANDARD_GRAVITY_M_S2);
+    Attitude {
+        pitch_deg: Some(0.0),
+        roll_deg: Some(0.0),
+        heading_deg: Some(compass_deg_from_rad(nav.psi_rad - boat.plan.declination_rad)),
+        heave_m: None,
+        box_c: Some(31.0),
+        accel_ahead_g: g(imu.ahead_m_s2),
+        accel_starboard_g: g(imu.starboard_m_s2),
+        accel_down_g: g(imu.down_m_s2),
+        yaw_rate_deg_s: Some(nav.yaw_rate_rad_s.to_degrees()),
+    }
+}
+
+fn battery(volts: f64, now: SimTime) -> Battery {
+    Battery {
+        volts: Some(volts),
+        charge: Some(15_433.0),
+        amps: Some(1.3),
+        celsius: Some(22.3),
+        charge_used: Some(0.0),
+        reset_time: String::new(),
+        reset_date: String::new(),
+        port_volts: Some(volts),
+        starboard_volts: None,
+        system_amps: Some(1.3),
+        port_amps: Some(0.0),
+        starboard_amps: Some(0.0),
+        port_bilge_amps: None,
+        starboard_bilge_amps: None,
+        hours: Some((now.as_s() / 3600.0).floor()),
+    }
+}
+
+fn control_state(boat: &Emulator) -> ControlState {
+    // Where it steers no heading, it shows the one it has.
+    let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
+    let has = || boat.own.as_ref().map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad));
+    ControlState {
+        mode: boat.command.mode,
+        heading_deg: if steers { boat.command.heading_deg } else { has() },
+        thrust: boat.command.thrust,
+        difference: boat.command.difference,
+        words: boat.command.words.clone(),
+        transmission: Some('T'),
+        sent_to: Some(boat.operator.number()),
+        operator: Some(boat.operator),
+    }
+}

@@ -1,0 +1,21 @@
+//! The door to real boats: Surveyor NMEA both ways, links, a safety supervisor, and an emulated boat.
+//!
+//! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how sentences, orders and navigation meet), then
+//! [`nmea`]. [`emulator`] is the other end of the line. Sockets and clocks are in [`link`] and `node` alone.
+
+pub mod bridge;
+pub mod declination;
+pub mod emulator;
+pub mod estimate;
+pub mod fence;
+pub mod front_seat;
+pub mod geodesy;
+pub mod link;
+pub mod nmea;
+#[cfg(feature = "net")]
+pub mod node;
+pub mod record;
+pub mod replay;
+pub mod supervisor;
+pub mod survey;
+pub mod utc;

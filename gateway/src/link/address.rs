@@ -1,0 +1,194 @@
+//! Where the other side of a link is, as people type it.
+
+use std::fmt;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// The speeds a serial line may have, baud.
+pub const BAUDS: [u32; 6] = [4800, 9600, 19_200, 38_400, 57_600, 115_200];
+
+/// The speed of a serial line of which nobody said otherwise, NMEA 0183's fast one.
+const BAUD: u32 = 38_400;
+
+const BAUDS_ALLOWED: &str = "4800, 9600, 19200, 38400, 57600, 115200";
+const TO_CONNECT: &str = "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400";
+const TO_LISTEN: &str =
+    "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400, pty, pty:///path/of/symlink";
+
+/// Where the other side is, as people type it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LinkAddress {
+    /// A TCP port to connect to.
+    TcpClient {
+        /// Name or number of the machine; IPv6 without brackets.
+        host: String,
+        /// Its port.
+        port: u16,
+    },
+    /// A TCP port of our own.
+    TcpServer {
+        /// Where to listen; `0.0.0.0` for everywhere.
+        host: String,
+        /// The port; 0 for any that is free.
+        port: u16,
+    },
+    /// A UDP port to send to.
+    UdpClient {
+        /// Name or number of the machine; IPv6 without brackets.
+        host: String,
+        /// Its port.
+        port: u16,
+    },
+    /// A UDP port of our own, that answers whoever spoke to it.
+    UdpServer {
+        /// Where to listen; `0.0.0.0` for everywhere.
+        host: String,
+        /// The port; 0 for any that is free.
+        port: u16,
+    },
+    /// A serial line, 8N1.
+    Serial {
+        /// The device.
+        path: PathBuf,
+        /// One of [`BAUDS`].
+        baud: u32,
+    },
+    /// A new pseudo-terminal, which others open as if it was a serial line.
+    Pty {
+        /// Where a symlink to it is wanted.
+        link: Option<PathBuf>,
+    },
+}
+
+/// An address that is none.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("link address {text:?}: {found}, allowed: {allowed}")]
+pub struct LinkAddressError {
+    /// What was typed.
+    pub text: String,
+    /// What is wrong with it.
+    pub found: String,
+    /// What would be right.
+    pub allowed: &'static str,
+}
+
+/// What is wrong with it, and what would be right.
+type Fault = (String, &'static str);
+
+/// Who waits for whom.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Connects,
+    Listens,
+}
+
+impl LinkAddress {
+    /// For the side that connects: `tcp://HOST:PORT`, `udp://HOST:PORT`, `serial:///dev/ttyUSB0?baud=38400`.
+    ///
+    /// # Errors
+    /// [`LinkAddressError`] says what was found and what is allowed.
+    pub fn to_connect(text: &str) -> Result<LinkAddress, LinkAddressError> {
+        parse(text, Side::Connects).map_err(|fault| error(text, fault))
+    }
+
+    /// For the side that waits: as [`LinkAddress::to_connect`], or `pty`, or `pty:///path/of/symlink`.
+    ///
+    /// # Errors
+    /// [`LinkAddressError`] says what was found and what is allowed.
+    pub fn to_listen(text: &str) -> Result<LinkAddress, LinkAddressError> {
+        parse(text, Side::Listens).map_err(|fault| error(text, fault))
+    }
+}
+
+impl fmt::Display for LinkAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            LinkAddress::TcpClient { host, port } | LinkAddress::TcpServer { host, port } => {
+                write!(f, "tcp://{}:{port}", bracketed(host))
+            }
+            LinkAddress::UdpClient { host, port } | LinkAddress::UdpServer { host, port } => {
+                write!(f, "udp://{}:{port}", bracketed(host))
+            }
+            LinkAddress::Serial { path, baud } => write!(f, "serial://{}?baud={baud}", path.display()),
+            LinkAddress::Pty { link: None } => write!(f, "pty"),
+            LinkAddress::Pty { link: Some(link) } => write!(f, "pty://{}", link.display()),
+        }
+    }
+}
+
+fn error(text: &str, (found, allowed): Fault) -> LinkAddressError {
+    LinkAddressError { text: text.to_owned(), found, allowed }
+}
+
+fn bracketed(host: &str) -> String {
+    if host.contains(':') { format!("[{host}]") } else { host.to_owned() }
+}
+
+fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
+    let forms = if side == Side::Connects { TO_CONNECT } else { TO_LISTEN };
+    let listens = side == Side::Listens;
+    if listens && text == "pty" {
+        return Ok(LinkAddress::Pty { link: None });
+    }
+    let Some((scheme, rest)) = text.split_once("://") else {
+        return Err(("it has no `://`".to_owned(), forms));
+    };
+    match scheme {
+        "tcp" => host_and_port(rest, side).map(|(host, port)| match side {
+            Side::Connects => LinkAddress::TcpClient { host, port },
+            Side::Listens => LinkAddress::TcpServer { host, port },
+        }),
+        "udp" => host_and_port(rest, side).map(|(host, port)| match side {
+            Side::Connects => LinkAddress::UdpClient { host, port },
+            Side::Listens => LinkAddress::UdpServer { host, port },
+        }),
+        "serial" => serial(rest),
+        "pty" if listens => Ok(LinkAddress::Pty { link: Some(absolute(rest)?) }),
+        "pty" => Err(("a pty can only be listened on".to_owned(), forms)),
+        _ => Err((format!("the scheme is {scheme:?}"), forms)),
+    }
+}
+
+fn host_and_port(text: &str, side: Side) -> Result<(String, u16), Fault> {
+    let Some((host, port)) = text.rsplit_once(':').filter(|(_, port)| !port.ends_with(']')) else {
+        return Err(("it has no port".to_owned(), "HOST:PORT"));
+    };
+    let inside = host.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
+    if inside.is_none() && host.contains(':') {
+        return Err((format!("the host is {host:?}"), "an IPv6 address in brackets, as in [::1]:8003"));
+    }
+    let name = inside.unwrap_or(host);
+    // What is in no name and in no number would reach the resolver, which says less about it.
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.:%".contains(c);
+    if name.is_empty() || !name.chars().all(plain) {
+        let hosts = "a name, an IPv4 address, or an IPv6 address in brackets; 0.0.0.0 listens everywhere";
+        return Err((format!("the host is {host:?}"), hosts));
+    }
+    let (first, ports) = if side == Side::Connects { (1, "1 to 65535") } else { (0, "0 to 65535; 0 is any free one") };
+    // `parse` alone would take "+80".
+    let number = Some(port).filter(|port| port.bytes().all(|b| b.is_ascii_digit()));
+    match number.and_then(|port| port.parse::<u16>().ok()) {
+        Some(number) if number >= first => Ok((name.to_owned(), number)),
+        _ => Err((format!("the port is {port:?}"), ports)),
+    }
+}
+
+fn serial(text: &str) -> Result<LinkAddress, Fault> {
+    let (path, query) = text.split_once('?').map_or((text, None), |(path, query)| (path, Some(query)));
+    let path = absolute(path)?;
+    let Some(query) = query else { return Ok(LinkAddress::Serial { path, baud: BAUD }) };
+    let Some(wanted) = query.strip_prefix("baud=") else {
+        return Err((format!("{query:?} follows the `?`"), "baud=38400"));
+    };
+    match BAUDS.into_iter().find(|baud| baud.to_string() == wanted) {
+        Some(baud) => Ok(LinkAddress::Serial { path, baud }),
+        None => Err((format!("baud is {wanted:?}"), BAUDS_ALLOWED)),
+    }
+}
+
+fn absolute(path: &str) -> Result<PathBuf, Fault> {
+    if path.starts_with('/') && path.len() > 1 && !path.contains('\0') {
+        return Ok(PathBuf::from(path));
+    }
+    Err((format!("the path is {path:?}"), "an absolute path, which makes three slashes: serial:///dev/ttyUSB0"))
+}

@@ -1,0 +1,76 @@
+//! How long a link waits before it tries again.
+
+use std::time::Duration;
+
+/// Bytes must have come for this long before a connection counts as a good one. A peer that accepts and
+/// closes at once, or says one line and dies, keeps the waits growing.
+pub(super) const STEADY: Duration = Duration::from_secs(1);
+
+/// A zero in the settings would be a busy loop.
+const SHORTEST: Duration = Duration::from_millis(10);
+
+/// Waits that double, from the first to the longest.
+pub(super) struct Backoff {
+    first: Duration,
+    longest: Duration,
+    next: Duration,
+}
+
+impl Backoff {
+    pub(super) fn new((first, longest): (Duration, Duration)) -> Backoff {
+        let first = first.max(SHORTEST);
+        Backoff { first, longest: longest.max(first), next: first }
+    }
+
+    /// The wait before the next attempt.
+    pub(super) fn wait(&mut self) -> Duration {
+        let wait = self.next;
+        self.next = wait.saturating_mul(2).min(self.longest);
+        wait
+    }
+
+    /// Begins again with the first wait.
+    pub(super) fn reset(&mut self) {
+        self.next = self.first;
+    }
+
+    /// After a connection on which bytes came for this long.
+    pub(super) fn judge(&mut self, heard_for: Duration) {
+        if heard_for >= STEADY {
+            self.reset();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn waits_ms(backoff: &mut Backoff, count: usize) -> Vec<u128> {
+        (0..count).map(|_| backoff.wait().as_millis()).collect()
+    }
+
+    #[test]
+    fn waits_double_up_to_the_longest() {
+        let ms = Duration::from_millis;
+        for (first, longest, want) in [
+            (ms(100), ms(5000), vec![100, 200, 400, 800, 1600, 3200, 5000, 5000]),
+            (ms(100), ms(100), vec![100, 100]),
+            (ms(300), ms(100), vec![300, 300]),
+            (ms(0), ms(0), vec![10, 10]),
+        ] {
+            let mut backoff = Backoff::new((first, longest));
+            assert_eq!(waits_ms(&mut backoff, want.len()), want, "{first:?} to {longest:?}");
+        }
+    }
+
+    #[test]
+    fn only_a_connection_that_was_heard_for_some_time_resets_them() {
+        let mut backoff = Backoff::new((Duration::from_millis(100), Duration::from_secs(5)));
+        waits_ms(&mut backoff, 2);
+        backoff.judge(STEADY / 2);
+        assert_eq!(waits_ms(&mut backoff, 1), [400]);
+        backoff.judge(STEADY);
+        assert_eq!(waits_ms(&mut backoff, 2), [100, 200]);
+    }
+}

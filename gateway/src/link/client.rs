@@ -1,0 +1,143 @@
+//! The side that connects, and does so again and again.
+
+use super::backoff::Backoff;
+use super::clock;
+use super::crew::{Crew, Woken};
+use super::peer::Seat;
+use super::port::{Port, TICK};
+use super::{LinkAddress, LinkEvent};
+use serial2::SerialPort;
+use socket2::{Domain, Protocol, Socket, TcpKeepalive, Type};
+use std::io::{self, ErrorKind};
+use std::net::{Ipv6Addr, SocketAddr, TcpStream, ToSocketAddrs, UdpSocket};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The longest attempt to connect.
+const CONNECT: Duration = Duration::from_secs(2);
+
+/// How often an attempt is looked at.
+const GLANCE: Duration = Duration::from_millis(5);
+
+/// What TCP may hold of ours unacknowledged before the connection is dead, and how long.
+const SEND_BUFFER: usize = 4096;
+const UNACKNOWLEDGED: Duration = Duration::from_secs(2);
+
+/// Connects, serves, waits, until the link is closed.
+pub(super) fn keep(crew: &Arc<Crew>, address: &LinkAddress) {
+    let mut backoff = Backoff::new(crew.settings.retry);
+    let mut seen = crew.reconnects();
+    loop {
+        let seat = connect(crew, address).and_then(|(port, name)| Seat::take(crew, port, name));
+        let mut wait = match seat {
+            Ok(seat) => {
+                backoff.judge(seat.serve().heard_for);
+                backoff.wait()
+            }
+            Err(_) if crew.is_stopped() => return,
+            Err(e) => {
+                let again = backoff.wait();
+                crew.tell(LinkEvent::Failed { reason: format!("{address}: {e}"), again });
+                again
+            }
+        };
+        loop {
+            match crew.pause(wait, &mut seen) {
+                Woken::Rested => break,
+                Woken::Stopped => return,
+                Woken::Asked => {
+                    backoff.reset();
+                    wait = backoff.wait();
+                }
+            }
+        }
+    }
+}
+
+fn connect(crew: &Crew, address: &LinkAddress) -> io::Result<(Port, String)> {
+    match address {
+        LinkAddress::TcpClient { host, port } => connect_tcp(crew, host, *port),
+        LinkAddress::UdpClient { host, port } => connect_udp(host, *port),
+        LinkAddress::Serial { path, baud } => open_serial(path, *baud),
+        _ => Err(io::Error::new(ErrorKind::Unsupported, "nothing to connect to")),
+    }
+}
+
+fn connect_tcp(crew: &Crew, host: &str, port: u16) -> io::Result<(Port, String)> {
+    let mut last = io::Error::new(ErrorKind::NotFound, "the host has no address");
+    for address in (host, port).to_socket_addrs()? {
+        match dial(crew, address) {
+            Ok(stream) => return Ok((Port::Tcp(stream), address.to_string())),
+            Err(e) => last = e,
+        }
+    }
+    Err(last)
+}
+
+/// Connects in steps: `connect_timeout` would not let go when the link is closed meanwhile.
+fn dial(crew: &Crew, address: SocketAddr) -> io::Result<TcpStream> {
+    let socket = Socket::new(Domain::for_address(address), Type::STREAM, Some(Protocol::TCP))?;
+    socket.set_nonblocking(true)?;
+    let start = clock::now();
+    match socket.connect(&address.into()) {
+        Err(e) if e.raw_os_error() == Some(rustix::io::Errno::INPROGRESS.raw_os_error()) => {}
+        done => done?,
+    }
+    while socket.peer_addr().is_err() {
+        if let Some(e) = socket.take_error()? {
+            return Err(e);
+        }
+        if clock::since(start) >= CONNECT {
+            return Err(io::Error::new(ErrorKind::TimedOut, format!("no answer for {CONNECT:?}")));
+        }
+        if crew.rest(GLANCE) == Woken::Stopped {
+            return Err(ErrorKind::Interrupted.into());
+        }
+    }
+    if let Some(e) = socket.take_error()? {
+        return Err(e);
+    }
+    // Nobody listens at one of the ports that are given to clients, and ours was given that very one.
+    if socket.local_addr()?.as_socket() == Some(address) {
+        return Err(ErrorKind::ConnectionRefused.into());
+    }
+    socket.set_nonblocking(false)?;
+    tune(socket)
+}
+
+/// Makes a TCP connection fit for commands: at once or never.
+pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
+    socket.set_tcp_nodelay(true)?;
+    socket.set_tcp_keepalive(
+        &TcpKeepalive::new().with_time(UNACKNOWLEDGED).with_interval(Duration::from_secs(1)).with_retries(2),
+    )?;
+    socket.set_tcp_user_timeout(Some(UNACKNOWLEDGED))?;
+    socket.set_send_buffer_size(SEND_BUFFER)?;
+    socket.set_read_timeout(Some(TICK))?;
+    socket.set_write_timeout(Some(TICK))?;
+    Ok(socket.into())
+}
+
+fn connect_udp(host: &str, port: u16) -> io::Result<(Port, String)> {
+    let mut addresses = (host, port).to_socket_addrs()?;
+    let Some(address) = addresses.next() else {
+        return Err(io::Error::new(ErrorKind::NotFound, "the host has no address"));
+    };
+    let any: SocketAddr = if address.is_ipv4() { ([0, 0, 0, 0], 0).into() } else { (Ipv6Addr::UNSPECIFIED, 0).into() };
+    let socket = UdpSocket::bind(any)?;
+    socket.connect(address)?;
+    socket.set_read_timeout(Some(TICK))?;
+    socket.set_write_timeout(Some(TICK))?;
+    Ok((Port::Udp(socket), address.to_string()))
+}
+
+fn open_serial(path: &Path, baud: u32) -> io::Result<(Port, String)> {
+    // A speed alone sets the rest to raw 8N1 without flow control.
+    let mut line = SerialPort::open(path, baud)?;
+    line.set_read_timeout(TICK)?;
+    line.set_write_timeout(TICK)?;
+    // What came before anybody listened is old.
+    line.discard_input_buffer()?;
+    Ok((Port::Serial { line, baud }, path.display().to_string()))
+}

@@ -1,0 +1,170 @@
+//! One connection as the operating system gives it: bytes in, bytes out, each wait a short one.
+
+use super::clock;
+use super::pty::Pty;
+use serial2::SerialPort;
+use socket2::SockRef;
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{Shutdown, SocketAddr, TcpStream, UdpSocket};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The longest wait in a system call. What must end a thread is looked at in between.
+pub(super) const TICK: Duration = Duration::from_millis(25);
+
+/// A peer that takes nothing for this long is gone.
+pub(super) const STALL: Duration = Duration::from_secs(2);
+
+/// How long a good-bye waits for the other side's.
+const LINGER: Duration = Duration::from_millis(80);
+
+/// A connection. Reads and writes may happen at once, in two threads.
+pub(super) enum Port {
+    Tcp(TcpStream),
+    /// Connected.
+    Udp(UdpSocket),
+    /// Shared by all peers of a server, which reads it.
+    UdpTo(Arc<UdpSocket>, SocketAddr),
+    Serial {
+        line: SerialPort,
+        baud: u32,
+    },
+    Pty(Arc<Pty>),
+}
+
+/// What a read brought.
+pub(super) enum Heard {
+    Bytes(usize),
+    Nothing,
+    End,
+}
+
+/// What became of bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wrote {
+    All,
+    /// There was no room for them, and that is no error.
+    Dropped,
+}
+
+impl Port {
+    /// Waits for bytes, a tick at most.
+    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Heard> {
+        let read = match self {
+            Port::Tcp(stream) => (&mut &*stream).read(buffer),
+            Port::Udp(socket) => socket.recv(buffer),
+            Port::UdpTo(..) => Err(ErrorKind::Unsupported.into()),
+            Port::Serial { line, .. } => line.read(buffer),
+            Port::Pty(pty) => pty.read(buffer),
+        };
+        match read {
+            // An empty datagram is one.
+            Ok(0) if matches!(self, Port::Udp(_)) => Ok(Heard::Nothing),
+            Ok(0) => Ok(Heard::End),
+            Ok(count) => Ok(Heard::Bytes(count)),
+            Err(e) if is_pause(&e) => Ok(Heard::Nothing),
+            Err(e) => Err(e),
+        }
+    }
+
+    /// Writes all of it, in one call if the system takes it so; gives up when told to, or after a stall.
+    pub(super) fn write(&self, bytes: &[u8], is_given_up: impl Fn() -> bool) -> io::Result<Wrote> {
+        if let Port::Pty(pty) = self {
+            pty.begin()?;
+        }
+        let flushes = self.flushes();
+        let mut rest = bytes;
+        let mut moved_at = clock::now();
+        while !rest.is_empty() {
+            if is_given_up() {
+                return Err(io::Error::other("given up"));
+            }
+            match self.write_some(rest) {
+                Ok(0) => return Err(ErrorKind::WriteZero.into()),
+                Ok(count) => {
+                    rest = &rest[count..];
+                    moved_at = clock::now();
+                }
+                Err(e) if !is_pause(&e) => return Err(e),
+                // Its beginning was thrown away: the rest would be a torn sentence.
+                Err(_) if self.flushes() != flushes => return Ok(Wrote::Dropped),
+                Err(_) if clock::since(moved_at) >= STALL => {
+                    return Err(io::Error::new(ErrorKind::TimedOut, format!("nothing taken for {STALL:?}")));
+                }
+                Err(_) => {}
+            }
+        }
+        Ok(Wrote::All)
+    }
+
+    fn write_some(&self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Port::Tcp(stream) => (&mut &*stream).write(bytes),
+            Port::Udp(socket) => socket.send(bytes),
+            Port::UdpTo(socket, to) => socket.send_to(bytes, *to),
+            Port::Serial { line, .. } => line.write(bytes),
+            Port::Pty(pty) => pty.write(bytes),
+        }
+    }
+
+    /// Throws away what nobody reads, where that is ours to do.
+    pub(super) fn freshen(&self) -> io::Result<()> {
+        if let Port::Pty(pty) = self { pty.freshen() } else { Ok(()) }
+    }
+
+    fn flushes(&self) -> u64 {
+        if let Port::Pty(pty) = self { pty.flushes() } else { 0 }
+    }
+
+    /// Whether silence says anything about the other side. Who opens a terminal may only want to read.
+    pub(super) fn can_fall_silent(&self) -> bool {
+        !matches!(self, Port::Pty(_))
+    }
+
+    /// Says good-bye: what was written still arrives.
+    pub(super) fn finish(&self) {
+        let Port::Tcp(stream) = self else { return };
+        // Closing a socket with unread bytes makes the system send a reset, which may overtake what was
+        // written last: so read until the other side has closed too, for a moment.
+        if stream.shutdown(Shutdown::Write).is_err() {
+            return;
+        }
+        let start = clock::now();
+        let mut waste = [0; 4096];
+        while clock::since(start) < LINGER {
+            if matches!(self.read(&mut waste), Ok(Heard::End) | Err(_)) {
+                return;
+            }
+        }
+    }
+
+    /// Cuts the line: what the system still holds would be stale when it arrived. A line that is gone
+    /// already cannot be cut, and need not be.
+    pub(super) fn reset(&self) {
+        match self {
+            Port::Tcp(stream) => drop(SockRef::from(stream).set_linger(Some(Duration::ZERO))),
+            Port::Serial { line, .. } => drop(line.discard_output_buffer()),
+            _ => {}
+        }
+    }
+
+    /// How long so many bytes are on their way to the other side, where that is long. The driver of a serial
+    /// line takes 4 KiB at once, which are 8 s of old commands at 4800 baud.
+    pub(super) fn transit(&self, count: usize) -> Duration {
+        // Eight bits, a start and a stop bit.
+        if let Port::Serial { baud, .. } = self {
+            Duration::from_secs_f64(10.0 * count as f64 / f64::from(*baud))
+        } else {
+            Duration::ZERO
+        }
+    }
+}
+
+/// Whether a wait ended without a result. A timeout that has a number is TCP's own: that connection is lost.
+fn is_pause(error: &io::Error) -> bool {
+    match error.kind() {
+        ErrorKind::WouldBlock | ErrorKind::Interrupted => true,
+        ErrorKind::TimedOut => error.raw_os_error().is_none(),
+        _ => false,
+    }
+}

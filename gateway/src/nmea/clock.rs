@@ -1,0 +1,153 @@
+//! The clock of a receiver as sentences carry it: a time of day, a date.
+
+use super::field::Fields;
+use super::{Line, ParseError};
+use serde::{Deserialize, Serialize};
+
+/// Milliseconds of a day, and one second more for the day that ends with a leap second.
+const DAY_MS: u32 = 86_400_000;
+
+/// A time of day, UTC, in milliseconds since midnight.
+///
+/// Written with two decimals, or three where the milliseconds need them. A leap second is 86 400 000 to
+/// 86 400 999; what lies beyond is written as an empty field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct TimeOfDay(pub u32);
+
+/// A date of the Gregorian calendar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Date {
+    /// The year, all four digits.
+    pub year: u16,
+    /// The month, 1 to 12.
+    pub month: u8,
+    /// The day, 1 to 31.
+    pub day: u8,
+}
+
+impl Date {
+    /// Whether the calendar has this date.
+    #[must_use]
+    pub fn is_valid(self) -> bool {
+        let leap = self.year.is_multiple_of(4) && (!self.year.is_multiple_of(100) || self.year.is_multiple_of(400));
+        let days = match self.month {
+            1 | 3 | 5 | 7 | 8 | 10 | 12 => 31,
+            4 | 6 | 9 | 11 => 30,
+            2 => 28 + u8::from(leap),
+            _ => 0,
+        };
+        (1..=days).contains(&self.day)
+    }
+}
+
+impl Fields<'_> {
+    /// The time `hhmmss` with or without decimals in field `at`.
+    pub(super) fn time(&self, at: usize) -> Result<Option<TimeOfDay>, ParseError> {
+        match self.text(at) {
+            "" => Ok(None),
+            text => time(text).map(Some).ok_or_else(|| self.wrong(at, "a time hhmmss.ss or nothing")),
+        }
+    }
+
+    /// The date `ddmmyy` in field `at`: years 00 to 79 are of this century.
+    pub(super) fn date(&self, at: usize) -> Result<Option<Date>, ParseError> {
+        let text = self.text(at);
+        if text.is_empty() {
+            return Ok(None);
+        }
+        let date = pairs(text).map(|[day, month, year]| {
+            let century = if year < 80 { 2000 } else { 1900 };
+            Date { year: century + u16::from(year), month, day }
+        });
+        date.filter(|date| date.is_valid()).map(Some).ok_or_else(|| self.wrong(at, "a date ddmmyy or nothing"))
+    }
+}
+
+impl Line<'_> {
+    /// A time of day, or an empty field.
+    pub(super) fn time(&mut self, time: Option<TimeOfDay>) {
+        let Some(TimeOfDay(ms)) = time.filter(|time| time.0 < DAY_MS + 1000) else { return self.empty() };
+        // In a leap second the minute goes on.
+        let (minute, ms) = if ms < DAY_MS { (ms / 60_000, ms % 60_000) } else { (1439, ms - DAY_MS + 60_000) };
+        let clock = format!("{:02}{:02}{:02}", minute / 60, minute % 60, ms / 1000);
+        match ms % 1000 {
+            ms if ms % 10 == 0 => self.fixed(&format!("{clock}.{:02}", ms / 10)),
+            ms => self.fixed(&format!("{clock}.{ms:03}")),
+        }
+    }
+
+    /// A date `ddmmyy`, or an empty field for one that two digits of a year cannot say.
+    pub(super) fn date(&mut self, date: Option<Date>) {
+        match date.filter(|date| date.is_valid() && (1980..2080).contains(&date.year)) {
+            Some(Date { year, month, day }) => self.fixed(&format!("{day:02}{month:02}{:02}", year % 100)),
+            None => self.empty(),
+        }
+    }
+}
+
+/// Three numbers of two digits each.
+fn pairs(text: &str) -> Option<[u8; 3]> {
+    let digits = <[u8; 6]>::try_from(text.as_bytes()).ok().filter(|digits| digits.iter().all(u8::is_ascii_digit))?;
+    let pair = |i: usize| (digits[i] - b'0') * 10 + digits[i + 1] - b'0';
+    Some([pair(0), pair(2), pair(4)])
+}
+
+fn time(text: &str) -> Option<TimeOfDay> {
+    let (clock, decimals) = text.split_once('.').unwrap_or((text, "0"));
+    let [hour, minute, second] = pairs(clock)?.map(u32::from);
+    if decimals.is_empty() || !decimals.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    // Milliseconds, cut off: a time must not become the next second's.
+    let digit = |i: usize| u32::from(decimals.as_bytes().get(i).map_or(0, |byte| byte - b'0'));
+    let ms = digit(0) * 100 + digit(1) * 10 + digit(2);
+    let seconds_max = if (hour, minute) == (23, 59) { 60 } else { 59 };
+    let known = hour < 24 && minute < 60 && second <= seconds_max;
+    known.then_some(TimeOfDay(((hour * 60 + minute) * 60 + second) * 1000 + ms))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_has_six_digits_and_perhaps_decimals() {
+        let midnight_ms = 0;
+        for (text, want_ms) in [
+            ("000000", Some(midnight_ms)),
+            ("150502.00", Some(54_302_000)),
+            ("150502.1239", Some(54_302_123)),
+            ("235959.999", Some(86_399_999)),
+            ("235960.5", Some(86_400_500)),
+            ("120060", None),
+            ("240000", None),
+            ("126000", None),
+            ("15050", None),
+            ("1505022", None),
+            ("150502.", None),
+            ("150502.+1", None),
+            ("15 502", None),
+            ("-50502", None),
+            ("1505é", None),
+        ] {
+            assert_eq!(time(text), want_ms.map(TimeOfDay), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn february_has_29_days_every_fourth_year_but_for_three_centuries_in_four() {
+        for (year, month, day, valid) in [
+            (2024, 2, 29, true),
+            (2026, 2, 29, false),
+            (2000, 2, 29, true),
+            (2100, 2, 29, false),
+            (2026, 4, 31, false),
+            (2026, 12, 31, true),
+            (2026, 13, 1, false),
+            (2026, 0, 1, false),
+            (2026, 1, 0, false),
+        ] {
+            assert_eq!(Date { year, month, day }.is_valid(), valid, "{year}-{month}-{day}");
+        }
+    }
+}

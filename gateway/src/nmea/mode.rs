@@ -1,0 +1,89 @@
+//! The control modes of a Surveyor, by their letters on the wire.
+
+use serde::{Deserialize, Serialize};
+
+/// What a boat's own controller is told to do, or says that it does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Mode {
+    /// `L`: thrusters idle.
+    Standby,
+    /// `T`: thrust and difference as told.
+    Thruster,
+    /// `C`: hold a compass heading at a thrust.
+    Heading,
+    /// `G`: hold a heading and a speed.
+    Speed,
+    /// `R`: keep station.
+    StationKeep,
+    /// `N`: river navigation.
+    RiverNav,
+    /// `W`: sail the uploaded waypoints.
+    Waypoint,
+    /// `I`: autopilot.
+    Autopilot,
+    /// `3`: calibrate the compass.
+    CompassCalibration,
+    /// `H`: go to the emergency recovery point.
+    GoToErp,
+    /// `D`: depth.
+    Depth,
+    /// `S`: direction of gravity.
+    GravityVector,
+    /// `F`: take a file (a mission) line by line.
+    FileDownload,
+    /// `!`: boot loader.
+    BootLoader,
+}
+
+impl Mode {
+    /// Every mode with its letter.
+    const LETTERS: [(Mode, char); 14] = [
+        (Mode::Standby, 'L'),
+        (Mode::Thruster, 'T'),
+        (Mode::Heading, 'C'),
+        (Mode::Speed, 'G'),
+        (Mode::StationKeep, 'R'),
+        (Mode::RiverNav, 'N'),
+        (Mode::Waypoint, 'W'),
+        (Mode::Autopilot, 'I'),
+        (Mode::CompassCalibration, '3'),
+        (Mode::GoToErp, 'H'),
+        (Mode::Depth, 'D'),
+        (Mode::GravityVector, 'S'),
+        (Mode::FileDownload, 'F'),
+        (Mode::BootLoader, '!'),
+    ];
+
+    /// Every mode, in the order above.
+    #[must_use]
+    pub fn all() -> [Mode; 14] {
+        Mode::LETTERS.map(|(mode, _)| mode)
+    }
+
+    /// The letter on the wire.
+    #[must_use]
+    pub fn letter(self) -> char {
+        Mode::LETTERS[self as usize].1
+    }
+
+    /// The mode of a letter, in its own case.
+    #[must_use]
+    pub fn from_letter(letter: char) -> Option<Mode> {
+        Mode::LETTERS.iter().find(|(_, known)| *known == letter).map(|(mode, _)| *mode)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_mode_is_found_by_its_letter() {
+        for (mode, letter) in Mode::LETTERS {
+            assert_eq!((mode.letter(), Mode::from_letter(letter)), (letter, Some(mode)));
+        }
+        for unknown in ['l', 'X', ' ', '0', 'é'] {
+            assert_eq!(Mode::from_letter(unknown), None, "{unknown:?}");
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! The gateway's clock: it never steps, and in a game that runs faster than the wall's it runs as fast as the game.
+
+use game::SimTime;
+use std::time::{Duration, Instant};
+
+/// Time since the gateway began.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    start: Instant,
+    factor: f64,
+}
+
+#[expect(clippy::disallowed_methods, reason = "this is the one place where a gateway reads the clock")]
+impl Clock {
+    pub(super) fn start(factor: f64) -> Clock {
+        Clock { start: Instant::now(), factor }
+    }
+
+    pub(super) fn now(&self) -> SimTime {
+        self.at(Instant::now())
+    }
+
+    /// The gateway's time at a moment of the wall's clock.
+    pub(super) fn at(&self, moment: Instant) -> SimTime {
+        SimTime::from_s(moment.saturating_duration_since(self.start).as_secs_f64() * self.factor)
+    }
+
+    /// How long it is, by the wall's clock, until the gateway's shows `due`.
+    pub(super) fn until(&self, due: SimTime) -> Duration {
+        let wait_s = (due - self.now()).as_s() / self.factor;
+        Duration::from_secs_f64(wait_s.clamp(0.0, 1.0))
+    }
+}
+
+/// This moment.
+#[expect(clippy::disallowed_methods, reason = "latencies are measured by the clock")]
+pub(super) fn moment() -> Instant {
+    Instant::now()
+}

@@ -1,0 +1,287 @@
+//! A gateway on the network: brings a real boat into a game, and plays a boat for real back seats.
+//!
+//! [`serve`] is the way to a real boat, [`emulate`] the way from a simulated one. Everything that decides is in
+//! [`crate::bridge`] and [`crate::emulator`]; here are the sockets, the clocks and the threads.
+
+mod clock;
+mod desk;
+mod latency;
+mod logbook;
+mod mooring;
+mod player;
+
+pub use player::{EmulatorSettings, emulate};
+
+use crate::bridge::{Bridge, Event, Plan};
+use crate::declination::{DeclinationError, declination_deg};
+use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
+use crate::record::RecordError;
+use crate::utc;
+use bus::lookout::{self, Lookout, NotFound};
+use bus::{Bus, BusError, Delivery, Net, Standing, inbox};
+use clock::Clock;
+use desk::{Call, Desk, Papers, Tray};
+use game::external::GatewayStatus;
+use game::frame::LatLon;
+use game::gateway::Gateway;
+use game::message::{Control, Notice};
+use game::scenario::Source;
+use game::topic::{self, GameName, Part};
+use game::{VehicleId, codec};
+use logbook::Logbook;
+use mooring::Mooring;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, PoisonError};
+use std::time::Duration;
+use thiserror::Error;
+
+/// What a gateway to a real boat needs to know.
+pub struct Settings {
+    /// The game; without a name, the only one there is.
+    pub game: Option<GameName>,
+    /// Where the sim is.
+    pub net: Net,
+    /// The boat's name in the game.
+    pub vehicle: String,
+    /// Where the boat is.
+    pub link: LinkAddress,
+    /// After this long without a byte the boat counts as gone.
+    pub silence: Duration,
+    /// How it is driven and stopped.
+    pub gateway: Gateway,
+    /// Whether it arms by itself, once.
+    pub arms_itself: bool,
+    /// Whether its clock runs as fast as the game's: for emulated boats.
+    pub at_game_pace: bool,
+    /// Where to record.
+    pub record: Option<PathBuf>,
+    /// How long to look for the game.
+    pub wait: Duration,
+    /// Set from outside to end.
+    pub stop: Arc<AtomicBool>,
+}
+
+/// What a gateway tells the shell that runs it.
+pub enum News<'a> {
+    /// What is missing before it can begin.
+    Looking {
+        /// In words.
+        reason: &'a str,
+    },
+    /// Something happened.
+    Event {
+        /// Time since it began, s.
+        at_s: f64,
+        /// What.
+        event: &'a Event,
+    },
+    /// The shell saw something.
+    Remark {
+        /// Time since it began, s.
+        at_s: f64,
+        /// What.
+        text: &'a str,
+    },
+    /// How it is: twice a second.
+    Status(&'a GatewayStatus),
+    /// It has ended; how it was.
+    Ended(&'a GatewayStatus),
+    /// Others can connect here.
+    Listening {
+        /// Which port this is.
+        what: &'a str,
+        /// Its address.
+        reach: &'a str,
+    },
+}
+
+/// Why a gateway cannot work.
+#[derive(Debug, Error)]
+pub enum NodeError {
+    /// The network failed.
+    #[error(transparent)]
+    Bus(#[from] BusError),
+    /// There is no game, or it says no.
+    #[error(transparent)]
+    NotFound(#[from] NotFound),
+    /// The link can never work.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// The recording cannot be written.
+    #[error("{path}: {source}")]
+    Record {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: RecordError,
+    },
+    /// The declination is not known.
+    #[error("{0}; declination_deg in the gateway's file says it otherwise")]
+    Declination(#[from] DeclinationError),
+    /// The game and the gateway do not go together.
+    #[error("{0}")]
+    Refused(String),
+}
+
+/// Calls that may wait at the desk.
+const INBOX: usize = 4096;
+
+/// Brings a real boat into a game until it is told to stop. However it ends, the boat is told standby.
+///
+/// # Errors
+/// [`NodeError`] if there is no such game or boat, or if the network, the link or the recording cannot work. A boat or a
+/// sim that goes away is none: the gateway waits for it.
+pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+    let mut look = Lookout::new(settings.wait, &settings.stop);
+    let (bus, game, notice) = find_game(&mut look, &settings.net, settings.game.as_ref(), tell)?;
+    let vehicle = external_vehicle(&notice, &settings.vehicle)?;
+    let factor = pace_factor(&notice.pace, settings.at_game_pace)?;
+    let field = notice.scenario.field.clone();
+    let declination_rad = match settings.gateway.declination_rad {
+        Some(rad) => rad,
+        None => declination_today_rad(field.plan.datum)?,
+    };
+    let plan = Plan {
+        vehicle: settings.vehicle.clone(),
+        gateway: settings.gateway.clone(),
+        field,
+        length_m: notice.scenario.boat_of(vehicle).length_m,
+        declination_rad,
+        arms_itself: settings.arms_itself,
+    };
+    let logbook = match &settings.record {
+        Some(path) => {
+            Some(Logbook::open(path, &plan).map_err(|source| NodeError::Record { path: path.clone(), source })?)
+        }
+        None => None,
+    };
+    let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;
+    // Not a word to a boat that another gateway has. The thread that keeps it moored asks again, and gets it again.
+    let names = [settings.vehicle.clone()];
+    let mut say = |reason: &str| tell(News::Looking { reason });
+    look.until(&mut say, || lookout::seat(&bus, &topic::moor(&game), &names, "gateway"))?;
+    let (outlet, inbox) = inbox(INBOX);
+    let tray = Tray::default();
+    let e_stop = Arc::new(AtomicBool::new(false));
+    let standing = lines(&bus, &game, &notice, vehicle, (&tray, &e_stop, &outlet))?;
+    let calls = outlet.clone();
+    let link_settings = LinkSettings { silence: Some(settings.silence), ..LinkSettings::default() };
+    let link = Link::open(&settings.link, link_settings, move |event: LinkEvent| calls.put(Call::Link(event)))?;
+    let others = notice.scenario.vehicles.iter().enumerate().filter(|(_, other)| other.source == Source::External);
+    let mut desk = Desk {
+        bridge: Bridge::new(plan),
+        link,
+        clock: Clock::start(factor),
+        inbox,
+        tray,
+        e_stop,
+        nav: bus.publisher(topic::nav(&game, &notice.scenario, vehicle), Delivery::Drop)?,
+        status: bus.publisher(topic::status(&game, &settings.vehicle), Delivery::Drop)?,
+        vehicle,
+        others: others.map(|(i, _)| VehicleId::at(i)).filter(|other| *other != vehicle).collect(),
+        logbook,
+        papers: Papers::new(),
+    };
+    let mooring = Mooring::begin(&bus, &game, &settings.vehicle, outlet)?;
+    let worked = desk.work(&settings.stop, tell);
+    let status = desk.full_status();
+    // The boat first, then the network.
+    drop(desk);
+    drop((mooring, standing));
+    tell(News::Ended(&status));
+    bus.close();
+    worked
+}
+
+/// What comes from the sim and from people, into the tray and to the desk.
+fn lines(
+    bus: &Bus,
+    game: &GameName,
+    notice: &Notice,
+    vehicle: VehicleId,
+    (tray, e_stop, outlet): (&Tray, &Arc<AtomicBool>, &bus::Outlet<Call>),
+) -> Result<Vec<Standing>, BusError> {
+    let scenario = &notice.scenario;
+    let (tray, orders) = (Arc::clone(tray), outlet.clone());
+    let take_order = move |bytes: &[u8]| {
+        let Ok(order) = codec::decode(bytes) else { return };
+        let mut tray = tray.lock().unwrap_or_else(PoisonError::into_inner);
+        // Who has yet to look into the tray will find the newest.
+        if tray.replace((order, clock::moment())).is_none() {
+            orders.put(Call::Order);
+        }
+    };
+    let (questions, controls, frames) = (outlet.clone(), outlet.clone(), outlet.clone());
+    let e_stop = Arc::clone(e_stop);
+    let name = &scenario.vehicles[vehicle.index()].name;
+    let mut standing = vec![
+        bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
+        bus.answer(topic::operate(game, name), move |question| questions.put(Call::Operate(question)))?,
+        bus.subscribe(topic::control(game), move |bytes| match serde_json::from_slice(bytes) {
+            Ok(Control::EStop) => {
+                e_stop.store(true, Ordering::Relaxed);
+                controls.put(Call::EStop);
+            }
+            Ok(Control::Release) => controls.put(Call::Release),
+            Ok(Control::Stop) | Err(_) => {}
+        })?,
+    ];
+    // The truth is made only where somebody asks for it.
+    let real = scenario.vehicles.iter().filter(|vehicle| vehicle.source == Source::External).count();
+    if real > 1 {
+        standing.push(bus.subscribe(topic::frame(game), move |bytes| frames.put(Call::Frame(bytes.to_vec())))?);
+    }
+    Ok(standing)
+}
+
+/// The game, and what it is.
+fn find_game(
+    look: &mut Lookout<'_>,
+    net: &Net,
+    game: Option<&GameName>,
+    tell: &mut dyn FnMut(News<'_>),
+) -> Result<(Bus, GameName, Notice), NodeError> {
+    let mut say = |reason: &str| tell(News::Looking { reason });
+    let bus = look.until(&mut say, || Ok(Bus::leaf(net)?))?;
+    let game = match game {
+        Some(game) => game.clone(),
+        None => look.until(&mut say, || lookout::only_game(&bus))?,
+    };
+    let notice = look.until(&mut say, || lookout::notice(&bus, &game))?;
+    Ok((bus, game, notice))
+}
+
+fn vehicle_of(notice: &Notice, name: &str) -> Result<VehicleId, NodeError> {
+    notice.scenario.vehicle_by_name(name).ok_or_else(|| {
+        let names: Vec<&str> = notice.scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
+        NodeError::Refused(format!("there is no vehicle {name:?} in this game; there are {}", names.join(", ")))
+    })
+}
+
+fn external_vehicle(notice: &Notice, name: &str) -> Result<VehicleId, NodeError> {
+    let vehicle = vehicle_of(notice, name)?;
+    if notice.scenario.vehicles[vehicle.index()].source == Source::External {
+        return Ok(vehicle);
+    }
+    Err(NodeError::Refused(format!("{name} is simulated in this game: a real boat needs source = \"external\"")))
+}
+
+/// How many seconds of the game go by in one of the wall's.
+fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeError> {
+    match (pace, at_game_pace) {
+        ("realtime", _) => Ok(1.0),
+        (pace, true) => pace
+            .strip_suffix('x')
+            .and_then(|factor| factor.parse().ok())
+            .ok_or_else(|| NodeError::Refused(format!("the game's pace is {pace}, expected realtime or a factor"))),
+        (pace, false) => Err(NodeError::Refused(format!(
+            "the game's pace is {pace}, expected realtime: a real boat knows no other (--at-game-pace is for emulated ones)"
+        ))),
+    }
+}
+
+/// Magnetic north here and today, east of true, rad.
+fn declination_today_rad(at: LatLon) -> Result<f64, NodeError> {
+    Ok(declination_deg(at, utc::now().0)?.to_radians())
+}

@@ -1,0 +1,194 @@
+//! The framer against noise: nothing lost, nothing made up, nothing that grows.
+
+use crate::bodies;
+use gateway::nmea::{ACCEPTED_MAX, Counts, Framer, checksum};
+use proptest::prelude::*;
+
+const GGA: &str = "$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n";
+const COMMAND: &str = "$PSEAC,T,0,20,-10,*22\r\n";
+
+/// What a framer should make of a whole stream, worked out from its end: cut at every `$`, then look at each part.
+fn model(bytes: &[u8]) -> (Vec<String>, Counts) {
+    let (mut found, mut counts) = (Vec::new(), Counts::default());
+    let noise = |bytes: &[u8]| bytes.iter().filter(|byte| !b"\r\n".contains(byte)).count() as u64;
+    let mut parts = bytes.split(|byte| *byte == b'$').peekable();
+    counts.garbage += noise(parts.next().expect("a split has a first part"));
+    while let Some(part) = parts.next() {
+        let end = part.iter().position(|byte| !(b' '..=b'~').contains(byte)).unwrap_or(part.len());
+        let (content, rest) = part.split_at(end.min(ACCEPTED_MAX - 3));
+        counts.garbage += noise(rest);
+        match rest.first() {
+            None => counts.broken += u64::from(parts.peek().is_some()),
+            Some(b'\r' | b'\n') => judge(content, &mut found, &mut counts),
+            Some(b' '..=b'~') => counts.overlong += 1,
+            Some(_) => counts.broken += 1,
+        }
+    }
+    (found, counts)
+}
+
+fn judge(content: &[u8], found: &mut Vec<String>, counts: &mut Counts) {
+    let text = String::from_utf8(content.to_vec()).expect("only ASCII is left");
+    let stated = text.split_once('*').filter(|(_, digits)| digits.len() == 2 && !digits.contains('+'));
+    match stated.and_then(|(body, digits)| Some((body, u8::from_str_radix(digits, 16).ok()?))) {
+        None => counts.broken += 1,
+        Some((body, sum)) if sum != checksum(body.as_bytes()) => counts.bad_checksum += 1,
+        Some((body, _)) => {
+            counts.sentences += 1;
+            found.push(body.to_owned());
+        }
+    }
+}
+
+/// A sentence of `length` bytes with everything.
+fn long(length: usize) -> String {
+    let body = "A".repeat(length - 6);
+    let sum = checksum(body.as_bytes());
+    format!("${body}*{sum:02X}\r\n")
+}
+
+fn framed(pieces: impl IntoIterator<Item = impl AsRef<[u8]>>) -> (Vec<String>, Counts) {
+    let mut framer = Framer::new();
+    let mut found = Vec::new();
+    for piece in pieces {
+        framer.push(piece.as_ref(), &mut |body| found.push(body.to_owned()));
+    }
+    (found, framer.counts())
+}
+
+/// Streams in which something happens: sentences, their pieces, noise.
+fn stream() -> impl Strategy<Value = Vec<u8>> {
+    let piece = prop_oneof![
+        4 => Just(GGA.as_bytes().to_vec()),
+        4 => Just(COMMAND.as_bytes().to_vec()),
+        2 => (6..400_usize).prop_map(|length| long(length).into_bytes()),
+        2 => prop::collection::vec(prop::sample::select(b"$*,\r\n0AaF~ \x00\x7f\x80+".to_vec()), 0..12),
+        1 => prop::collection::vec(any::<u8>(), 0..40),
+        2 => (any::<prop::sample::Index>(), any::<u8>()).prop_map(|(at, byte)| {
+            let mut line = GGA.as_bytes().to_vec();
+            let at = at.index(line.len());
+            line[at] = byte;
+            line
+        }),
+        1 => (0..GGA.len()).prop_map(|end| GGA.as_bytes()[..end].to_vec()),
+    ];
+    prop::collection::vec(piece, 0..8).prop_map(|pieces| pieces.concat())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_byte_is_accounted_for(bytes in stream()) {
+        let (found, counts) = framed([&bytes]);
+        prop_assert_eq!((found, counts), model(&bytes));
+        let begun = bytes.iter().filter(|byte| **byte == b'$').count() as u64;
+        let ended = counts.sentences + counts.bad_checksum + counts.overlong + counts.broken;
+        prop_assert!(begun == ended || begun == ended + 1, "{begun} begun, {ended} ended");
+    }
+
+    #[test]
+    fn arbitrary_bytes_are_accounted_for_too(bytes in prop::collection::vec(any::<u8>(), 0..2000)) {
+        prop_assert_eq!(framed([&bytes]), model(&bytes));
+    }
+
+    #[test]
+    fn it_does_not_matter_how_a_stream_is_cut(bytes in stream(), sizes in prop::collection::vec(0..50_usize, 1..20)) {
+        let mut rest = bytes.as_slice();
+        let mut pieces = Vec::new();
+        for size in sizes.iter().cycle().take(2000) {
+            let (piece, later) = rest.split_at(rest.len().min(*size));
+            pieces.push(piece);
+            rest = later;
+        }
+        pieces.push(rest);
+        prop_assert_eq!(framed(pieces), framed([&bytes]));
+        prop_assert_eq!(framed(bytes.chunks(1)), framed([&bytes]));
+    }
+
+    #[test]
+    fn after_any_noise_the_next_sentence_is_found(noise in prop::collection::vec(any::<u8>(), 0..600)) {
+        let bytes = [noise.as_slice(), COMMAND.as_bytes()].concat();
+        let found = bodies(&bytes);
+        prop_assert_eq!(found.last().map(String::as_str), Some("PSEAC,T,0,20,-10,"));
+    }
+
+    #[test]
+    fn one_flipped_byte_never_makes_another_sentence(at in 1..COMMAND.len() - 2, byte in any::<u8>()) {
+        let mut line = COMMAND.as_bytes().to_vec();
+        line[at] = byte;
+        for body in bodies(&line) {
+            prop_assert_eq!(body, "PSEAC,T,0,20,-10,");
+        }
+    }
+}
+
+#[test]
+fn lines_end_with_cr_or_lf_or_both() {
+    for end in ["\r\n", "\n", "\r", "\n\r", "\r\n\r\n"] {
+        let stream = format!("$PSEAG,N*22{end}$PSEAG,N*22{end}");
+        assert_eq!(framed([&stream]).1, Counts { sentences: 2, ..Counts::default() }, "{end:?}");
+    }
+    assert_eq!(framed(["$PSEAG,N*22"]).1, Counts::default(), "a line without its end is still under way");
+    assert_eq!(bodies(b"$PSEAC,T,0,20,-10,THR_ON*5f\r\n").len(), 0, "a wrong checksum in small letters");
+    assert_eq!(bodies(b"$HCHDG,58.7,,,,*78\r\n"), ["HCHDG,58.7,,,,"], "a right one");
+}
+
+#[test]
+fn each_fault_has_its_count() {
+    let nothing = Counts::default();
+    let cases: [(&[u8], Counts); 13] = [
+        (b"$PSEAG,N*23\r\n", Counts { bad_checksum: 1, ..nothing }),
+        (b"$PSEAG,N\r\n", Counts { broken: 1, ..nothing }),
+        (b"$PSEAG,N*2\r\n", Counts { broken: 1, ..nothing }),
+        (b"$PSEAG,N*222\r\n", Counts { broken: 1, ..nothing }),
+        (b"$PSEAG,N*2G\r\n", Counts { broken: 1, ..nothing }),
+        (b"$PSEAG,N*+2\r\n", Counts { broken: 1, ..nothing }),
+        (b"$PSEAG*N*22\r\n", Counts { broken: 1, ..nothing }),
+        (b"$\r\n", Counts { broken: 1, ..nothing }),
+        (b"$PSE$PSEAG,N*22\r\n", Counts { sentences: 1, broken: 1, ..nothing }),
+        (b"$PSE\x00AG,N*22\r\n", Counts { broken: 1, garbage: 8, ..nothing }),
+        (b"$PSEAG,\xc3\x9c*22\r\n", Counts { broken: 1, garbage: 5, ..nothing }),
+        (b"\r\n\n\r", nothing),
+        (b"!AIVDM,1\r\n$PSEAG,N*22\r\n\x8e", Counts { sentences: 1, garbage: 9, ..nothing }),
+    ];
+    for (bytes, want) in cases {
+        assert_eq!(framed([bytes]).1, want, "{}", bytes.escape_ascii());
+        assert_eq!(model(bytes).1, want, "the model of {}", bytes.escape_ascii());
+    }
+}
+
+#[test]
+fn a_sentence_of_256_bytes_is_read_and_one_of_257_is_not() {
+    for (length, want) in [(ACCEPTED_MAX, (1, 0)), (ACCEPTED_MAX + 1, (0, 1)), (100_000, (0, 1))] {
+        let (found, counts) = framed([&long(length)]);
+        assert_eq!((counts.sentences, counts.overlong), want, "{length} bytes");
+        assert_eq!(found.len() as u64, counts.sentences);
+    }
+}
+
+#[test]
+fn what_follows_an_overlong_sentence_is_read() {
+    let stream = format!("{}{COMMAND}", "$".to_owned() + &"x".repeat(1000));
+    let (found, counts) = framed([&stream]);
+    assert_eq!(found, ["PSEAC,T,0,20,-10,"]);
+    assert_eq!(counts, Counts { sentences: 1, overlong: 1, garbage: 1000 - 253, ..Counts::default() });
+}
+
+#[test]
+fn what_gpsd_writes_to_find_out_who_we_are_does_no_harm() {
+    let probes =
+        b"$PGRMCE*0E\r\n$PSRF100,0,4800,8,1,0*0F\r\n\xb5\x62\x06\x8e\x00\x00\xff\xb5\x62\x0a\x04\x00\x00\x0e\x34";
+    let stream = [probes.as_slice(), COMMAND.as_bytes()].concat();
+    let (found, counts) = framed([&stream]);
+    assert_eq!(found.last().map(String::as_str), Some("PSEAC,T,0,20,-10,"));
+    assert_eq!((found.len(), counts), (model(&stream).0.len(), model(&stream).1));
+}
+
+#[test]
+fn sixty_four_kibibytes_at_once_are_as_good_as_byte_by_byte() {
+    let stream = GGA.repeat(64 * 1024 / GGA.len()) + "$GP";
+    let (found, counts) = framed([&stream]);
+    assert_eq!(found.len(), 64 * 1024 / GGA.len());
+    assert_eq!(framed(stream.as_bytes().chunks(1)), (found, counts));
+}

@@ -1,0 +1,22 @@
+//! The NMEA codec against bytes from real boats, against noise, and against itself.
+
+mod framing;
+mod golden;
+mod oddity;
+mod round_trip;
+
+use gateway::nmea::{Framer, Sentence};
+
+/// The bodies that a fresh framer takes from `bytes`.
+fn bodies(bytes: &[u8]) -> Vec<String> {
+    let mut found = Vec::new();
+    Framer::new().push(bytes, &mut |body| found.push(body.to_owned()));
+    found
+}
+
+/// The sentence on the wire.
+fn written(sentence: &Sentence) -> String {
+    let mut out = Vec::new();
+    sentence.write(&mut out);
+    String::from_utf8(out).expect("a sentence is ASCII")
+}

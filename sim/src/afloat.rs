@@ -1,0 +1,115 @@
+//! Only the water of a game: some of its boats afloat, and nobody who judges them.
+//!
+//! This is where emulated boats float, while the game that they play in takes them for real ones. The sea, the boats and
+//! their sensors are those of the game; there are no tags, no flags that matter, no limits of sharing and no radio.
+
+use crate::spawn;
+use crate::world::NoStart;
+use game::SimTime;
+use game::link::Sharing;
+use game::rules::{Rules, TaggedBoat};
+use game::scenario::{Berth, Scenario, Source};
+use thiserror::Error;
+
+/// As long as a file may make a game.
+const DAY_S: f64 = 86_400.0;
+
+/// Why there is no such water.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum NotAfloat {
+    /// A boat is not in the game.
+    #[error("there is no vehicle {name:?}; there are {known}")]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// Those there are.
+        known: String,
+    },
+    /// The game itself cannot start.
+    #[error(transparent)]
+    NoStart(#[from] NoStart),
+}
+
+/// The water of the game of `scenario` that `seed` chooses, with these of its boats in it, where they start.
+///
+/// # Errors
+/// [`NotAfloat`] for a boat that is not in the game, and for a game that cannot start.
+pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenario, NotAfloat> {
+    let scenario = scenario.of_seed(seed).map_err(NoStart::from)?;
+    let unknown = names.iter().find(|name| scenario.vehicle_by_name(name).is_none());
+    if let Some(name) = unknown {
+        let known: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
+        return Err(NotAfloat::Unknown { name: name.clone(), known: known.join(", ") });
+    }
+    let poses = spawn::berths(&scenario, seed).map_err(NoStart::from)?;
+    let mut water = scenario.clone();
+    for (vehicle, pose) in water.vehicles.iter_mut().zip(poses) {
+        (vehicle.berth, vehicle.source) = (Berth::At(pose), Source::Simulated);
+    }
+    water.vehicles.retain(|vehicle| names.contains(&vehicle.name));
+    water.name = format!("{}_afloat", scenario.name);
+    water.link = None;
+    water.rules = without_consequences(&scenario.rules);
+    // Its numbers are drawn: it must not be made anew from the files.
+    water.recipe = None;
+    Ok(water)
+}
+
+/// Rules by which nothing happens to a boat, whatever the referee sees.
+fn without_consequences(rules: &Rules) -> Rules {
+    Rules {
+        boundary_tags: false,
+        tagged_boat: TaggedBoat::DrivesItself,
+        tagged_speed_factor: 1.0,
+        outside_speed_factor: 1.0,
+        sharing: Sharing::default(),
+        flag_keepout_m: 0.0,
+        win_score: None,
+        time_limit: SimTime::from_s(DAY_S),
+        power_play: SimTime::ZERO,
+        ..rules.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Contest;
+    use game::Order;
+    use std::path::Path;
+
+    fn game(name: &str) -> Scenario {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/games/{name}.toml"));
+        game::scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}"))
+    }
+
+    #[test]
+    fn boats_start_where_the_game_has_them_and_sail_alike() {
+        let whole = Scenario { rules: without_consequences(&game("pav01_afloat").rules), ..game("pav01_afloat") };
+        let names = ["blue_one".to_owned(), "red_one".to_owned()];
+        let mut alone = Contest::new(&afloat(&whole, 7, &names).unwrap_or_else(|e| panic!("{e}")), 7)
+            .unwrap_or_else(|e| panic!("{e}"));
+        let mut all = Contest::new(&Scenario { link: None, ..whole.of_seed(7).unwrap_or_else(|e| panic!("{e}")) }, 7)
+            .unwrap_or_else(|e| panic!("{e}"));
+        for contest in [&mut alone, &mut all] {
+            let blue = contest.scenario().vehicle_by_name("blue_one").expect("it plays");
+            for _ in 0..100 {
+                contest.order(blue, Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 });
+                contest.advance();
+            }
+        }
+        for name in &names {
+            let pose = |contest: &Contest| {
+                let vehicle = contest.scenario().vehicle_by_name(name).expect("it plays");
+                contest.world().state().boats[vehicle.index()].pose
+            };
+            assert_eq!(pose(&alone), pose(&all), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_boat_that_is_not_in_the_game_is_refused() {
+        let error = afloat(&game("mixed_2v2"), 1, &["green_one".to_owned()]).expect_err("there is none");
+        assert!(error.to_string().contains("\"green_one\"; there are blue_one, blue_two, red_one, red_two"), "{error}");
+    }
+}

@@ -1,0 +1,191 @@
+//! Real boats on the field of a game: where they are taken to be between one report and the next.
+//!
+//! A real boat has no physics here. Its gateway reports where it was and how it moved; from then on it goes on like that,
+//! tick by tick, until the next report sets it right.
+
+use crate::hull::Planar;
+use game::angle::wrap_pi;
+use game::frame::{self, Body};
+use game::picture::{Nav, OwnBoat};
+use game::{Event, Pose, SimTime, VehicleId, math};
+use serde::Serialize;
+use thiserror::Error;
+
+/// So long after its last fix a boat is taken to go on as it did. From then on it is taken to lie where that has brought
+/// it. The error of going on grows with the square of the time: a boat that slows down by 1 m/s² is half a metre off
+/// after one second, and two after another. A boat that nobody hears of is likely to slow down, for it does not hear
+/// either, and its own watchdog stops its thrusters. And one that is only imagined must not sail on to a flag.
+pub const CARRY_ON: SimTime = SimTime(1_000_000_000);
+/// A boat whose last fix is older than this is lost. It is more than [`CARRY_ON`], so that a fix a second with the usual
+/// delays is enough, and little more, since its mind knows less and less of where it is.
+pub const NAV_TTL: SimTime = SimTime(1_500_000_000);
+
+/// Beyond this from the datum, m, no boat is: as far as scenario files reach.
+const ABSURD_M: f64 = 1e6;
+/// Faster than this over the ground, m/s, no boat of these games is.
+const ABSURD_M_S: f64 = 30.0;
+/// Faster than this, rad/s, no boat turns: once round in a second.
+const ABSURD_RAD_S: f64 = std::f64::consts::TAU;
+
+/// Why a report of a boat cannot be taken in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum BadReport {
+    /// The boat is a simulated one.
+    #[error("the vehicle is not external: it is simulated")]
+    Simulated,
+    /// A number in it is not one that a boat can have.
+    #[error("a number is not finite, or absurd (position 1000 km, speed 30 m/s, yaw rate 2π rad/s at most)")]
+    BadNumber,
+}
+
+/// What is known of a real boat. As bytes, what changes.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Track {
+    #[serde(skip)]
+    pub(crate) vehicle: VehicleId,
+    fix: Option<Fix>,
+    /// Whether it was told that it is lost.
+    told_lost: bool,
+}
+
+/// Where a boat was at some time.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Fix {
+    nav: Nav,
+    at: SimTime,
+}
+
+impl Track {
+    /// A boat that has not been heard of.
+    pub(crate) fn new(vehicle: VehicleId) -> Track {
+        Track { vehicle, fix: None, told_lost: false }
+    }
+
+    /// Takes in where the boat was at some time.
+    pub(crate) fn take(&mut self, nav: Nav, at: SimTime) {
+        self.fix = Some(Fix { nav, at });
+    }
+
+    /// Whether it has ever been heard of.
+    pub(crate) fn is_heard(&self) -> bool {
+        self.fix.is_some()
+    }
+
+    /// Whether it has not been heard of for too long, or never.
+    pub(crate) fn is_lost(&self, now: SimTime) -> bool {
+        self.fix.is_none_or(|fix| now > fix.at + NAV_TTL)
+    }
+
+    /// Where it is taken to be, and how it moves over the ground, since its last fix.
+    pub(crate) fn under_way(&self, now: SimTime) -> Option<(Pose, Planar)> {
+        let Fix { nav, at } = self.fix?;
+        let since = now - at;
+        let nu = Planar { surge: nav.surge_m_s, sway: nav.sway_m_s, yaw: nav.yaw_rate_rad_s };
+        // A fix may have been taken after the tick that the world stands at; then it goes back a little.
+        let span = since.clamp(SimTime::ZERO - CARRY_ON, CARRY_ON);
+        let pose = carried_on(nav.pose(), nu, span.as_s());
+        Some((pose, if since < CARRY_ON { nu } else { Planar::default() }))
+    }
+
+    /// What to tell of it: that it is lost, or that it is back, once each.
+    pub(crate) fn news(&mut self, now: SimTime) -> Option<Event> {
+        let (vehicle, is_lost) = (self.vehicle, self.is_lost(now));
+        let was_lost = std::mem::replace(&mut self.told_lost, is_lost);
+        (is_lost != was_lost).then_some(if is_lost { Event::NavLost { vehicle } } else { Event::NavBack { vehicle } })
+    }
+
+    /// Puts what the boat itself says in the place of what is made of it: its navigation, and when that was.
+    pub(crate) fn tell(&self, own: &mut OwnBoat) {
+        match self.fix {
+            Some(Fix { nav, at }) => (own.nav, own.fix_ns) = (nav, at),
+            None => own.fix_ns = SimTime::LONG_AGO,
+        }
+    }
+}
+
+/// Where a boat comes to that goes on for so long with the velocity over the ground and the yaw rate that it has, both
+/// constant in its own axes: along an arc.
+pub(crate) fn carried_on(from: Pose, nu: Planar, span_s: f64) -> Pose {
+    let half_turn_rad = 0.5 * nu.yaw * span_s;
+    // The chord of the arc points half-way between both headings, and is shorter than the arc by sin(x) / x.
+    let chord = if half_turn_rad.abs() < 1e-4 {
+        1.0 - half_turn_rad * half_turn_rad / 6.0
+    } else {
+        math::sin_cos(half_turn_rad).0 / half_turn_rad
+    };
+    let middle = math::sin_cos(from.psi_rad + half_turn_rad);
+    let velocity = frame::ned_from_body(middle, Body { ahead: nu.surge, starboard: nu.sway });
+    Pose { at: from.at + velocity.scaled(chord * span_s), psi_rad: wrap_pi(from.psi_rad + 2.0 * half_turn_rad) }
+}
+
+/// The navigation with its heading within ±π, if all its numbers are ones that a boat can have.
+pub(crate) fn sound(nav: Nav) -> Result<Nav, BadReport> {
+    // A NaN fails every comparison.
+    let is_sound = nav.north_m.abs() <= ABSURD_M
+        && nav.east_m.abs() <= ABSURD_M
+        && nav.psi_rad.abs() <= 1e3
+        && math::length(nav.surge_m_s, nav.sway_m_s) <= ABSURD_M_S
+        && nav.yaw_rate_rad_s.abs() <= ABSURD_RAD_S;
+    if is_sound { Ok(Nav { psi_rad: wrap_pi(nav.psi_rad), ..nav }) } else { Err(BadReport::BadNumber) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::Ned;
+
+    #[test]
+    fn a_boat_that_goes_on_turning_sails_round_a_circle() {
+        let from = Pose { at: Ned { north: 3.0, east: -4.0 }, psi_rad: 0.7 };
+        let nu = Planar { surge: 2.0, sway: -0.5, yaw: 0.4 };
+        let once_round_s = std::f64::consts::TAU / nu.yaw;
+        let back = carried_on(from, nu, once_round_s);
+        assert!(back.at.distance(from.at) < 1e-9 && (back.psi_rad - from.psi_rad).abs() < 1e-9, "{back:?}");
+        // In many steps it comes to the same place as in one, and backwards to where it was.
+        for yaw in [0.4, 0.0, 1e-6, -3.0] {
+            let nu = Planar { yaw, ..nu };
+            let stepped = (0..20).fold(from, |pose, _| carried_on(pose, nu, 0.05));
+            let at_once = carried_on(from, nu, 1.0);
+            assert!(stepped.at.distance(at_once.at) < 1e-9, "{stepped:?} {at_once:?}");
+            assert!(wrap_pi(stepped.psi_rad - at_once.psi_rad).abs() < 1e-9);
+            assert!(carried_on(at_once, nu, -1.0).at.distance(from.at) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_boat_goes_on_for_a_second_and_is_lost_after_a_second_and_a_half() {
+        let mut track = Track::new(VehicleId(3));
+        assert!(track.is_lost(SimTime::ZERO) && track.under_way(SimTime::ZERO).is_none());
+        assert_eq!(track.news(SimTime::ZERO), Some(Event::NavLost { vehicle: VehicleId(3) }));
+        assert_eq!(track.news(SimTime::ZERO), None);
+        track.take(Nav { surge_m_s: 2.0, ..Nav::default() }, SimTime::from_s(10.0));
+        for (now_s, want_m, want_m_s, is_lost) in
+            [(9.95, -0.1, 2.0, false), (10.5, 1.0, 2.0, false), (11.0, 2.0, 0.0, false), (20.0, 2.0, 0.0, true)]
+        {
+            let now = SimTime::from_s(now_s);
+            let (pose, nu) = track.under_way(now).expect("it was heard of");
+            assert!((pose.at.north - want_m).abs() < 1e-12, "{now_s}: {pose:?}");
+            assert_eq!((nu.surge, track.is_lost(now)), (want_m_s, is_lost), "{now_s}");
+        }
+        assert_eq!(track.news(SimTime::from_s(11.0)), Some(Event::NavBack { vehicle: VehicleId(3) }));
+        assert!(!track.is_lost(SimTime::from_s(11.5)) && track.is_lost(SimTime(11_500_000_001)));
+    }
+
+    #[test]
+    fn numbers_that_no_boat_has_are_refused() {
+        let good = Nav { north_m: 5.0, psi_rad: 7.0, surge_m_s: -1.0, ..Nav::default() };
+        assert_eq!(sound(good), Ok(Nav { psi_rad: wrap_pi(7.0), ..good }));
+        for bad in [
+            Nav { north_m: f64::NAN, ..good },
+            Nav { east_m: f64::INFINITY, ..good },
+            Nav { east_m: -1.1e6, ..good },
+            Nav { psi_rad: f64::NAN, ..good },
+            Nav { psi_rad: 1e4, ..good },
+            Nav { surge_m_s: 40.0, ..good },
+            Nav { sway_m_s: f64::NAN, ..good },
+            Nav { yaw_rate_rad_s: -7.0, ..good },
+        ] {
+            assert_eq!(sound(bad), Err(BadReport::BadNumber), "{bad:?}");
+        }
+    }
+}

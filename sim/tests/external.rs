@@ -1,0 +1,223 @@
+//! Real boats on the field of a game: reported, judged, bumped into, lost and found.
+
+mod common;
+
+use common::{gap_m, written};
+use game::angle::{rad_from_compass_deg, wrap_pi};
+use game::event::TagCause;
+use game::external::ExternalOrder;
+use game::message::Message;
+use game::picture::Nav;
+use game::rules::TaggedBoat;
+use game::{Event, FlagId, Ned, Order, Scenario, SimTime, VehicleId};
+use sim::{BadReport, Contest};
+
+/// A real boat, and a simulated one of the other team.
+const REAL: VehicleId = VehicleId(0);
+const OTHER: VehicleId = VehicleId(1);
+
+/// Blue one, a real boat at (50, 40), and red one where it is said; its flag is at (140, 40), blue's at (20, 40).
+fn game(red_at: &str, more: &str) -> Scenario {
+    written(&format!(
+        "base = \"../games/pav01_vs_pav01.toml\"\n{more}\n\
+         [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nsource = \"external\"\n\
+         [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\n{red_at}\n"
+    ))
+}
+
+fn afloat(scenario: &Scenario) -> Contest {
+    Contest::new(scenario, 1).expect("there is room")
+}
+
+fn nav(x: f64, y: f64, heading_deg: f64, speed_m_s: f64) -> Nav {
+    let psi_rad = rad_from_compass_deg(heading_deg);
+    Nav { north_m: y, east_m: x, psi_rad, surge_m_s: speed_m_s, ..Nav::default() }
+}
+
+fn report(contest: &mut Contest, nav: Nav) {
+    contest.report(REAL, nav, contest.now(), true).expect("a sound report");
+}
+
+/// Sails the real boat along y = 40 from one place to another, reported at every decision.
+fn sail(contest: &mut Contest, from_x: f64, to_x: f64, speed_m_s: f64) {
+    let decisions = ((to_x - from_x) / speed_m_s / 0.1).round() as u32;
+    for i in 0..decisions {
+        report(contest, nav(from_x + f64::from(i) * 0.1 * speed_m_s, 40.0, 90.0, speed_m_s));
+        contest.advance();
+    }
+}
+
+fn advance(contest: &mut Contest, decisions: u32) {
+    (0..decisions).for_each(|_| contest.advance());
+}
+
+fn events(contest: &Contest) -> Vec<Event> {
+    contest.events().iter().map(|logged| logged.event).collect()
+}
+
+#[test]
+fn a_real_boat_that_is_reported_at_the_flag_grabs_it() {
+    let mut contest = afloat(&game("at = [150, 5]", ""));
+    sail(&mut contest, 50.0, 135.0, 3.0);
+    assert!(events(&contest).contains(&Event::Grabbed { vehicle: REAL, flag: FlagId(1) }), "{:?}", events(&contest));
+    assert_eq!(contest.frame().vehicles[0].carrying, 1);
+    assert!(!events(&contest).contains(&Event::NavLost { vehicle: REAL }));
+}
+
+#[test]
+fn a_real_boat_is_tagged_and_what_it_obeys_is_what_the_rules_make_of_its_orders() {
+    let steer = Order::Steer { heading_rad: 1.0, speed_m_s: 9.0 };
+    let thrust = Order::Thrust { port: 1.0, starboard: -0.5 };
+    let slow = |tagged_boat| {
+        let mut scenario = game("", "");
+        (scenario.rules.tagged_boat, scenario.rules.tagged_speed_factor) = (tagged_boat, 0.5);
+        let mut contest = afloat(&scenario);
+        contest.order(REAL, steer);
+        report(&mut contest, nav(50.0, 40.0, 90.0, 0.0));
+        assert_eq!(contest.obeyed(REAL), Order::Steer { heading_rad: 1.0, speed_m_s: 3.0 }, "its top speed");
+        sail(&mut contest, 60.0, 103.0, 3.0);
+        let tagged = Event::Tagged { vehicle: REAL, cause: TagCause::Opponent(OTHER) };
+        assert!(events(&contest).contains(&tagged), "{:?}", events(&contest));
+        contest
+    };
+    let mut contest = slow(TaggedBoat::DrivesItself);
+    assert_eq!(contest.obeyed(REAL), Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 });
+    contest.order(REAL, thrust);
+    assert_eq!(contest.obeyed(REAL), Order::Thrust { port: 0.5, starboard: -0.25 });
+
+    let mut contest = slow(TaggedBoat::IsDriven);
+    let Order::Steer { heading_rad, speed_m_s } = contest.obeyed(REAL) else { panic!("it is driven home") };
+    assert!(wrap_pi(heading_rad - rad_from_compass_deg(270.0)).abs() < 1e-9 && speed_m_s == 1.5);
+    // What goes to the boat is sound.
+    let sent = game::message::VehicleOrder::new(REAL, contest.obeyed(REAL));
+    assert!(sent.order().expect("a known kind").check().is_ok() && ExternalOrder::VERSION == 1);
+    // Nobody drives a boat that nobody minds.
+    contest.lose_mind(REAL);
+    assert_eq!(contest.obeyed(REAL), Order::Hold);
+}
+
+#[test]
+fn a_simulated_boat_that_bumps_into_a_real_one_is_stopped_and_the_real_one_is_not() {
+    let scenario = game("at = [62, 40]\nheading_deg = 270", "");
+    let mut contest = afloat(&scenario);
+    let mut least_m = f64::INFINITY;
+    for _ in 0..300 {
+        report(&mut contest, nav(50.0, 40.0, 0.0, 0.0));
+        contest.order(OTHER, Order::Thrust { port: 1.0, starboard: 1.0 });
+        contest.advance();
+        least_m = least_m.min(gap_m(contest.world(), &scenario, 0, 1));
+    }
+    let [real, other] = [0, 1].map(|i| contest.world().state().boats[i]);
+    assert!((-0.03..0.05).contains(&least_m), "hulls come as near as {least_m} m");
+    assert_eq!((real.pose.at, real.nu.surge), (Ned::from_xy(50.0, 40.0), 0.0));
+    assert!(!other.quarantined && !real.quarantined);
+}
+
+#[test]
+fn a_real_boat_pushes_a_simulated_one_out_of_its_way() {
+    let scenario = game("at = [58, 40]\nheading_deg = 0", "");
+    let mut contest = afloat(&scenario);
+    sail(&mut contest, 50.0, 65.0, 1.5);
+    let [real, other] = [0, 1].map(|i| contest.world().state().boats[i].pose.at);
+    assert!(real.distance(Ned::from_xy(65.0, 40.0)) < 1e-9, "{real:?}");
+    assert!(other.distance(Ned::from_xy(58.0, 40.0)) > 1.0, "{other:?}");
+    assert!(gap_m(contest.world(), &scenario, 0, 1) > -0.05);
+    // One that is suddenly reported on top of another does not throw it out of the sea.
+    report(&mut contest, nav(other.east, other.north, 45.0, 0.0));
+    advance(&mut contest, 10);
+    let thrown_m = contest.world().state().boats[1].pose.at.distance(other);
+    assert!(thrown_m < 3.0, "{thrown_m} m");
+}
+
+#[test]
+fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
+    let mut contest = afloat(&game("", "link = { delay_s = 5 }"));
+    advance(&mut contest, 3);
+    assert_eq!(events(&contest), [Event::NavLost { vehicle: REAL }], "it was never heard of");
+    assert!(!contest.is_heard(REAL) && contest.is_heard(OTHER));
+    let berth = contest.world().state().boats[0].pose;
+    let unknown = *contest.pictures()[0].own(REAL).expect("its own boat");
+    assert_eq!((unknown.nav.pose(), unknown.fix_ns), (berth, SimTime::LONG_AGO), "it lies at its berth");
+
+    let (u, r) = (2.0, 0.25);
+    let fix = Nav { yaw_rate_rad_s: r, ..nav(50.0, 40.0, 0.0, u) };
+    contest.advance();
+    // Taken 0.1 s ago, on the wire since.
+    let fix_at = contest.now() - SimTime::from_s(0.1);
+    contest.report(REAL, fix, fix_at, true).expect("a sound report");
+    // No radio of ours comes between it and its mind.
+    contest.order(REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
+    for decisions in 0..30 {
+        let since_s = (contest.now() - fix_at).as_s();
+        let (turn, boat) = (game::math::sin_cos(r * since_s.min(1.0)), contest.world().state().boats[0]);
+        let want = Ned::from_xy(50.0 + u / r * (1.0 - turn.1), 40.0 + u / r * turn.0);
+        assert!(boat.pose.at.distance(want) < 1e-9, "after {since_s} s: {:?} is not {want:?}", boat.pose.at);
+        assert!(since_s > 0.999 || boat.nu.surge == u);
+        let own = *contest.pictures()[0].own(REAL).expect("its own boat");
+        assert_eq!((own.nav, own.fix_ns), (fix, fix_at), "its own people know what it said");
+        let seen = contest.pictures()[1].contacts[0];
+        assert!(Ned { north: seen.north_m, east: seen.east_m }.distance(want) < 1e-9, "others see where it is by now");
+        let is_lost = since_s > 1.5;
+        assert_eq!(contest.obeyed(REAL) == Order::Hold, is_lost, "after {since_s} s, {decisions} decisions");
+        contest.advance();
+    }
+    assert_eq!(contest.world().state().boats[0].nu, sim::hull::Planar::default(), "it lies where it was");
+    let lost = Event::NavLost { vehicle: REAL };
+    let back = Event::NavBack { vehicle: REAL };
+    assert_eq!(events(&contest), [lost, back, lost]);
+    report(&mut contest, fix);
+    contest.advance();
+    assert_eq!(events(&contest), [lost, back, lost, back]);
+    assert_eq!(contest.obeyed(REAL), Order::Thrust { port: 1.0, starboard: 1.0 });
+}
+
+#[test]
+fn reports_that_cannot_be_relied_on_change_nothing_and_bad_ones_are_refused() {
+    let mut contest = afloat(&game("", ""));
+    report(&mut contest, nav(50.0, 40.0, 90.0, 1.0));
+    contest.advance();
+    let before = contest.digest();
+    let now = contest.now();
+    assert_eq!(contest.report(REAL, nav(90.0, 40.0, 0.0, 3.0), now, false), Ok(()));
+    let bad = [Nav { east_m: f64::NAN, ..Nav::default() }, nav(50.0, 40.0, 0.0, 1e9), nav(1e300, 0.0, 0.0, 0.0)];
+    for bad in bad {
+        assert_eq!(contest.report(REAL, bad, now, true), Err(BadReport::BadNumber), "{bad:?}");
+    }
+    assert_eq!(contest.report(OTHER, Nav::default(), now, true), Err(BadReport::Simulated));
+    assert_eq!(contest.digest(), before);
+    // A fix of the future is one of the next decision at most.
+    assert_eq!(contest.report(REAL, nav(50.0, 40.0, 0.0, 1.0), SimTime::NEVER, true), Ok(()));
+    assert!(contest.world().state().boats[0].pose.at.distance(Ned::from_xy(50.0, 39.9)) < 1e-9);
+    advance(&mut contest, 40);
+    let quarantined = Event::Quarantined { vehicle: REAL };
+    assert!(!events(&contest).contains(&quarantined));
+}
+
+#[test]
+fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
+    let mut scenario = game("at = [62, 40]", "sea = \"../seas/gale.toml\"");
+    scenario.rules.flag_keepout_m = 8.0;
+    let mut contest = afloat(&scenario);
+    contest.order(REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
+    // In the keep-out circle of its own flag.
+    for _ in 0..50 {
+        report(&mut contest, nav(22.0, 40.0, 30.0, 0.0));
+        contest.advance();
+    }
+    let truth = contest.frame().vehicles[0];
+    assert_eq!((truth.nav.east_m, truth.nav.north_m), (22.0, 40.0), "nobody sets it back, and no wind drives it");
+    let unknown = [truth.heave_m, truth.roll_rad, truth.pitch_rad, truth.port_newton, truth.starboard_newton];
+    assert_eq!(unknown, [0.0; 5]);
+    assert!(events(&contest).contains(&Event::EnteredKeepout { vehicle: REAL }), "the referee has seen it");
+}
+
+#[test]
+fn the_same_reports_make_the_same_game() {
+    let play = |speed_m_s: f64| {
+        let mut contest = afloat(&game("at = [100, 40]", "sea = \"../seas/gale.toml\""));
+        sail(&mut contest, 50.0, 110.0, speed_m_s);
+        (contest.digest(), contest.world().snapshot())
+    };
+    assert_eq!(play(2.0), play(2.0));
+    assert_ne!(play(2.0).0, play(2.5).0);
+}

@@ -1,0 +1,119 @@
+//! `squall gateway emulate`: a simulated boat for a real back seat.
+
+use super::log_line::Log;
+use crate::net_args::LeafArgs;
+use crate::screen;
+use crate::sim_command::seconds;
+use crate::stop;
+use anyhow::{Context, Result, anyhow};
+use clap::ValueEnum;
+use gateway::emulator::Extra;
+use gateway::link::LinkAddress;
+use gateway::node::{EmulatorSettings, News};
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Which boat, and where.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The vehicle in the game, by name: the back seat becomes its mind
+    #[arg(long, value_name = "NAME")]
+    vehicle: String,
+    /// Where the back seat connects: tcp://HOST:PORT, udp://HOST:PORT, pty, pty:///LINK, serial:///dev/ttyUSB0?baud=38400
+    #[arg(long, value_name = "URL")]
+    listen: String,
+    /// Where the primary operator connects, who takes control by any command and gives it back with OP2_ON in its words
+    #[arg(long, value_name = "URL")]
+    primary: Option<String>,
+    /// Magnetic north, degrees east of true [default: by the World Magnetic Model, for the field and today]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    declination_deg: Option<f64>,
+    /// After this long without a command the boat goes to standby, s, or none: of the real one nothing is known
+    #[arg(long, value_name = "S", default_value = "none", value_parser = watchdog)]
+    watchdog_s: Watchdog,
+    /// Settings that are no whole numbers leave the ones before in force, as in one known stand-in
+    #[arg(long)]
+    integers: bool,
+    /// Sentences beyond a Surveyor's: gpsd has time, speed and course only from rmc
+    #[arg(long, value_name = "KIND", value_delimiter = ',')]
+    extra: Vec<ExtraArg>,
+    /// How long to look for the game, s
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    wait_s: f64,
+    /// After this long without a picture the sim counts as gone, s
+    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
+    silence_s: f64,
+    #[command(flatten)]
+    leaf: LeafArgs,
+    /// Says nothing that is well, and stops when standard input ends
+    #[arg(long, hide = true)]
+    for_parent: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ExtraArg {
+    /// Fix with date, course and speed
+    Rmc,
+    /// True heading
+    Hdt,
+    /// Magnetic heading and variation
+    Hdg,
+    /// Time and date
+    Zda,
+}
+
+/// A watchdog's time, or none.
+#[derive(Clone, Copy, Debug)]
+struct Watchdog(Option<f64>);
+
+fn watchdog(text: &str) -> Result<Watchdog, String> {
+    match text {
+        "none" => Ok(Watchdog(None)),
+        text => seconds(text).map(Some).map(Watchdog).map_err(|e| format!("{e}, nor none")),
+    }
+}
+
+fn address(option: &str, text: &str) -> Result<LinkAddress> {
+    LinkAddress::to_listen(text).map_err(|e| anyhow!("{option}: {e}"))
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let listen = address("--listen", &args.listen)?;
+    let primary = args.primary.as_deref().map(|text| address("--primary", text)).transpose()?;
+    let stop = stop::on_ctrl_c()?;
+    if args.for_parent {
+        stop::with_parent(&stop);
+    }
+    let extra = |kind: &ExtraArg| match kind {
+        ExtraArg::Rmc => Extra::Rmc,
+        ExtraArg::Hdt => Extra::Hdt,
+        ExtraArg::Hdg => Extra::Hdg,
+        ExtraArg::Zda => Extra::Zda,
+    };
+    let settings = EmulatorSettings {
+        game: args.leaf.game.clone(),
+        net: args.leaf.net()?,
+        vehicle: args.vehicle.clone(),
+        listen,
+        primary,
+        declination_rad: args.declination_deg.map(f64::to_radians),
+        watchdog_s: args.watchdog_s.0,
+        integers: args.integers,
+        extra: args.extra.iter().map(extra).collect(),
+        wait: Duration::from_secs_f64(args.wait_s),
+        silence: Duration::from_secs_f64(args.silence_s),
+        stop,
+    };
+    let mut log = Log::new(args.for_parent);
+    let mut tell = |news: News<'_>| match news {
+        News::Looking { reason } if !args.for_parent => {
+            screen::remark(&format!("{}: looking for the game: {reason}", args.vehicle));
+        }
+        // Whoever started us may want to know where a free port was.
+        News::Listening { what, reach } => screen::print(&format!("{what} at {reach}\n")),
+        News::Remark { at_s, text } => log.line(at_s, text),
+        News::Looking { .. } | News::Event { .. } | News::Status(_) | News::Ended(_) => {}
+    };
+    gateway::node::emulate(&settings, &mut tell).with_context(|| format!("the emulator of {}", args.vehicle))?;
+    Ok(ExitCode::SUCCESS)
+}

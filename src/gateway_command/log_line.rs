@@ -1,0 +1,107 @@
+//! What a gateway tells, line by line: events to the terminal, the status as one line that is written over.
+
+use crate::screen;
+use game::external::GatewayStatus;
+use gateway::bridge::Event;
+use std::io::IsTerminal;
+
+/// Shows what a gateway tells.
+pub(super) struct Log {
+    live: bool,
+    quiet: bool,
+    status: String,
+}
+
+impl Log {
+    /// A log; a quiet one keeps what is well to itself.
+    pub(super) fn new(quiet: bool) -> Log {
+        Log { live: std::io::stdout().is_terminal(), quiet, status: String::new() }
+    }
+
+    pub(super) fn event(&mut self, at_s: f64, event: &Event) {
+        self.line(at_s, &text_of(event));
+    }
+
+    /// A line that stays.
+    pub(super) fn line(&mut self, at_s: f64, text: &str) {
+        if self.quiet {
+            return;
+        }
+        let clear = if self.live { "\r\x1b[K" } else { "" };
+        let status = if self.live { self.status.as_str() } else { "" };
+        screen::print(&format!("{clear}{at_s:>8.1} s  {text}\n{status}"));
+    }
+
+    /// A line that the next one is written over; on paper it is left out.
+    pub(super) fn status(&mut self, status: &GatewayStatus) {
+        if self.live && !self.quiet {
+            self.status = brief(status);
+            screen::print(&format!("\r\x1b[K{}", self.status));
+        }
+    }
+}
+
+/// An event in words.
+pub(super) fn text_of(event: &Event) -> String {
+    match event {
+        Event::State { from, to } => format!("{to} (was {from})"),
+        Event::Blocked(true) => "another boat is in the way: thrust zero".to_owned(),
+        Event::Blocked(false) => "the way is clear again".to_owned(),
+        Event::Warning(text) => format!("WARNING: {text}"),
+        Event::Remark(text) => text.clone(),
+    }
+}
+
+fn brief(status: &GatewayStatus) -> String {
+    let nav = match (status.nav, status.nav_age_s) {
+        (Some(nav), Some(age_s)) => format!(
+            "x {:.1} y {:.1} m, {:03.0} deg, {:.1} m/s, {age_s:.1} s old",
+            nav.east_m,
+            nav.north_m,
+            game::angle::compass_deg_from_rad(nav.psi_rad),
+            nav.surge_m_s
+        ),
+        _ => "no navigation".to_owned(),
+    };
+    let mode = status.mode.map_or("-".to_owned(), String::from);
+    let text = format!("{} | link {} | mode {mode} | {nav} | {}", status.state, status.link, status.last_sent);
+    text.chars().take(150).collect()
+}
+
+/// Everything there is to say of a gateway.
+pub(super) fn full(status: &GatewayStatus) -> String {
+    let or_none = |text: Option<String>| text.unwrap_or_else(|| "unknown".to_owned());
+    let nav = status.nav.map(|nav| {
+        format!(
+            "x {:.2} m, y {:.2} m, heading {:.1} deg, {:.2} m/s ahead, {:.1} s old",
+            nav.east_m,
+            nav.north_m,
+            game::angle::compass_deg_from_rad(nav.psi_rad),
+            nav.surge_m_s,
+            status.nav_age_s.unwrap_or(0.0)
+        )
+    });
+    let mut lines = vec![
+        format!("{}: {}", status.vehicle, status.state),
+        format!("  link        {}", status.link),
+        format!("  mode        {}", or_none(status.mode.map(String::from))),
+        format!("  operator    {}", or_none(status.operator.clone())),
+        format!("  navigation  {}", or_none(nav)),
+        format!("  battery     {}", or_none(status.battery_v.map(|volts| format!("{volts:.1} V")))),
+        format!("  last sent   {}", status.last_sent),
+    ];
+    if !status.missing.is_empty() {
+        lines.push(format!("  missing     {}", status.missing.join("; ")));
+    }
+    lines.extend(status.trips.iter().map(|trip| format!("  stopped     {:>8.1} s  {}", trip.at_s, trip.cause)));
+    let named = ["sentence in, topic out", "order in, sentence out"];
+    for (name, latency) in named.iter().zip(status.latency_us) {
+        if let Some([median, p99]) = latency {
+            lines.push(format!("  latency     {name}: median {median:.0} us, p99 {p99:.0} us"));
+        }
+    }
+    let counts: Vec<String> =
+        status.counts.iter().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{count} {name}")).collect();
+    lines.push(format!("  counts      {}", counts.join(", ")));
+    lines.join("\n") + "\n"
+}

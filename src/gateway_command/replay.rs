@@ -1,0 +1,43 @@
+//! `squall gateway replay`: a recording through the codec and the supervisor again.
+
+use super::log_line::{full, text_of};
+use crate::screen;
+use anyhow::{Context, Result};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Which recording.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The recording
+    file: PathBuf,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let name = || args.file.display().to_string();
+    let bytes = std::fs::read(&args.file).with_context(|| format!("cannot read {}", name()))?;
+    let replay = gateway::replay::replay(&bytes).with_context(name)?;
+    for (at, event) in &replay.events {
+        screen::print(&format!("{:>8.1} s  {}\n", at.as_s(), text_of(event)));
+    }
+    screen::print(&full(&replay.status));
+    let cut = if replay.is_cut { " (the file ends abruptly)" } else { "" };
+    screen::print(&format!(
+        "{} inputs over {:.1} s, {} bytes from the boat, {} to it{cut}\n",
+        replay.inputs,
+        replay.lasted.as_s(),
+        replay.bytes_in,
+        replay.bytes_out
+    ));
+    let Some(difference) = replay.difference else {
+        screen::print("the replay is the recording, byte for byte\n");
+        return Ok(ExitCode::SUCCESS);
+    };
+    screen::print(&format!(
+        "at {:.3} s the replay differs\n  recorded  {}\n  replayed  {}\n",
+        difference.at.as_s(),
+        difference.recorded,
+        difference.replayed
+    ));
+    Ok(ExitCode::FAILURE)
+}

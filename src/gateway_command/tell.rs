@@ -1,0 +1,159 @@
+//! `squall gateway tell`: what a person asks of a boat's gateway.
+
+use super::log_line::full;
+use crate::net_args::LeafArgs;
+use crate::onlooker::Onlooker;
+use crate::screen;
+use anyhow::{Context, Result, anyhow, bail};
+use bus::Delivery;
+use clap::ValueEnum;
+use game::external::{Mission, OperatorCommand, OperatorReply};
+use game::message::Control;
+use game::scenario::Source;
+use game::topic;
+use gateway::nmea::{Framer, Sentence};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+const ANSWER: Duration = Duration::from_secs(2);
+/// All boats at once.
+const ALL: &str = "all";
+
+/// Whom, and what.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The vehicle, by name; all of them with "all", for estop, release and status
+    vehicle: String,
+    /// What to tell it
+    command: Word,
+    /// For mission: a .sea file, its lines as the boat gets them (PSEAR, then OIWPL; index 0 is the recovery point)
+    file: Option<PathBuf>,
+    #[command(flatten)]
+    leaf: LeafArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Word {
+    /// How it is
+    Status,
+    /// Follow orders, if everything that this needs is there
+    Arm,
+    /// Do not follow orders any more: standby
+    Disarm,
+    /// Standby, and nothing else until it is released
+    Estop,
+    /// The E-stop is over; the boat stays safed
+    Release,
+    /// Keep the station by the boat's own means
+    StationKeep,
+    /// Go to the emergency recovery point by the boat's own means
+    GoToErp,
+    /// Take up a mission and sail it by the boat's own means
+    Mission,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let command = command_of(args)?;
+    let onlooker = Onlooker::come(&args.leaf)?;
+    let told = if args.vehicle == ALL { tell_all(&onlooker, args.command) } else { tell(&onlooker, args, &command) };
+    onlooker.bus.close();
+    told
+}
+
+fn command_of(args: &Args) -> Result<OperatorCommand> {
+    Ok(match (args.command, &args.file) {
+        (Word::Mission, None) => bail!("mission needs a .sea file"),
+        (Word::Mission, Some(path)) => OperatorCommand::Mission(mission(path)?),
+        (_, Some(path)) => bail!("{} is given, and only mission takes a file", path.display()),
+        (Word::Status, None) => OperatorCommand::Status,
+        (Word::Arm, None) => OperatorCommand::Arm,
+        (Word::Disarm, None) => OperatorCommand::Disarm,
+        (Word::Estop, None) => OperatorCommand::EStop,
+        (Word::Release, None) => OperatorCommand::Release,
+        (Word::StationKeep, None) => OperatorCommand::StationKeep,
+        (Word::GoToErp, None) => OperatorCommand::GoToErp,
+    })
+}
+
+fn tell(onlooker: &Onlooker, args: &Args, command: &OperatorCommand) -> Result<ExitCode> {
+    onlooker.vehicle(&args.vehicle)?;
+    let reply = ask(onlooker, &args.vehicle, command)?;
+    screen::print(&full(&reply.status));
+    match reply.refused {
+        None => Ok(ExitCode::SUCCESS),
+        Some(reason) => Err(anyhow!("{} refuses: {reason}", args.vehicle)),
+    }
+}
+
+fn ask(onlooker: &Onlooker, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
+    let question = serde_json::to_vec(command).context("a command is JSON")?;
+    let answer = onlooker.bus.ask(&topic::operate(&onlooker.game, vehicle), question, ANSWER)?;
+    let bytes = answer.with_context(|| format!("no gateway of {vehicle} answers"))?;
+    serde_json::from_slice(&bytes).context("the gateway is of another version of Squall")
+}
+
+/// What goes to everybody at once, the sim too; then how every real boat is.
+fn tell_all(onlooker: &Onlooker, word: Word) -> Result<ExitCode> {
+    let control = match word {
+        Word::Status => None,
+        Word::Estop => Some(Control::EStop),
+        Word::Release => Some(Control::Release),
+        _ => bail!("only estop, release and status go to all; tell each boat by its name"),
+    };
+    if let Some(control) = control {
+        let line = onlooker.bus.publisher(topic::control(&onlooker.game), Delivery::Wait)?;
+        line.send_json(serde_json::to_vec(&control).context("a command is JSON")?)?;
+    }
+    let scenario = &onlooker.notice.scenario;
+    let mut silent = Vec::new();
+    for vehicle in scenario.vehicles.iter().filter(|vehicle| vehicle.source == Source::External) {
+        match ask(onlooker, &vehicle.name, &OperatorCommand::Status) {
+            Ok(reply) => screen::print(&full(&reply.status)),
+            Err(_) => silent.push(vehicle.name.as_str()),
+        }
+    }
+    if silent.is_empty() {
+        return Ok(ExitCode::SUCCESS);
+    }
+    Err(anyhow!("no gateway answers of {}", silent.join(", ")))
+}
+
+/// The mission in a `.sea` file.
+fn mission(path: &Path) -> Result<Mission> {
+    let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let (mut throttle_pct, mut places, mut wrong) = (None, Vec::new(), None);
+    let mut framer = Framer::new();
+    framer.push(&[bytes.as_slice(), b"\r\n"].concat(), &mut |body| match Sentence::parse(body) {
+        Ok(Sentence::MissionSettings(settings)) => throttle_pct = Some(settings.throttle_pct),
+        Ok(Sentence::Waypoint(waypoint)) => places.push((waypoint.index, [waypoint.at.lat_deg, waypoint.at.lon_deg])),
+        Ok(Sentence::Command(_)) => {}
+        Ok(_) => wrong = Some(format!("{body:?} has no place in a mission")),
+        Err(e) => wrong = Some(e.to_string()),
+    });
+    let counts = framer.counts();
+    let unread = counts.bad_checksum + counts.broken + counts.overlong + counts.garbage;
+    if unread > 0 {
+        wrong = Some(format!(
+            "{} wrong checksums, {} lines that are no sentences",
+            counts.bad_checksum,
+            unread - counts.bad_checksum
+        ));
+    }
+    places.sort_by_key(|(index, _)| *index);
+    let in_order = places.iter().enumerate().all(|(i, (index, _))| usize::from(*index) == i);
+    if let Some(wrong) = wrong {
+        bail!("{}: {wrong}", path.display());
+    }
+    if !in_order || places.len() < 2 {
+        bail!(
+            "{}: waypoints {:?}, expected 0 (the recovery point), 1 and so on",
+            path.display(),
+            places.iter().map(|(i, _)| i).collect::<Vec<_>>()
+        );
+    }
+    let throttle_pct = throttle_pct.with_context(|| format!("{}: no PSEAR line with the throttle", path.display()))?;
+    let mut places = places.into_iter().map(|(_, place)| place);
+    let erp = places.next().context("a recovery point is there")?;
+    Ok(Mission { throttle_pct, erp, waypoints: places.collect() })
+}

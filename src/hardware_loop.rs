@@ -1,0 +1,152 @@
+//! The hardware loop, closed on one machine: water of its own, an emulated boat and a gateway for every real one.
+
+use crate::net_args::unique_game_name;
+use crate::offspring::{self, Offspring};
+use crate::override_args;
+use anyhow::{Context, Result, anyhow, bail};
+use game::Scenario;
+use game::scenario::Overrides;
+use sim::node::Pace;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::time::Duration;
+
+/// What `run` is asked of it.
+#[derive(clap::Args)]
+pub(crate) struct LoopArgs {
+    /// Emulated boats stand in for the real ones: they float in water of their own, speak the Surveyor's sentences and are
+    /// driven through gateways, which tell how they were in the end
+    #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
+    emulate: bool,
+    /// How the gateways drive them: a gateway file [default: a Surveyor, carefully]
+    #[arg(long, value_name = "FILE", requires = "emulate")]
+    gateway: Option<PathBuf>,
+    /// Records what goes through each gateway into this folder, as NAME.mcap
+    #[arg(long, value_name = "DIR", requires = "emulate")]
+    record_gateways: Option<PathBuf>,
+}
+
+/// The game that the boats are to play in.
+pub(crate) struct Match<'a> {
+    pub(crate) file: &'a Path,
+    pub(crate) scenario: &'a Scenario,
+    pub(crate) overrides: &'a Overrides,
+    pub(crate) seed: u64,
+    pub(crate) pace: Pace,
+    pub(crate) game: &'a str,
+    pub(crate) endpoint: &'a str,
+}
+
+/// How long an emulator may take to say where it listens.
+const WINDOW: Duration = Duration::from_secs(20);
+/// How long everybody may take to end.
+const LEAVE: Duration = Duration::from_secs(5);
+
+/// The processes of the loop.
+pub(crate) struct HardwareLoop {
+    /// Gateways, then emulators: the order in which they are to end.
+    ends: Vec<Offspring>,
+    water: Offspring,
+}
+
+impl LoopArgs {
+    /// Starts the loop, if it is asked for and there are real boats.
+    pub(crate) fn start(&self, game: &Match<'_>) -> Result<Option<HardwareLoop>> {
+        let vehicles = game.scenario.externals().map(|vehicle| &game.scenario.vehicles[vehicle.index()]);
+        let names: Vec<&str> = vehicles.map(|vehicle| vehicle.name.as_str()).collect();
+        if !self.emulate {
+            return Ok(None);
+        }
+        if names.is_empty() {
+            bail!("no boat of this game is real: --emulate has nothing to stand in for");
+        }
+        let declination_deg = match &self.gateway {
+            None => None,
+            Some(path) => {
+                let gateway = game::scenario::load_gateway(path)
+                    .with_context(|| format!("cannot drive by {}", path.display()))?;
+                gateway.declination_rad.map(f64::to_degrees)
+            }
+        };
+        if let Some(folder) = &self.record_gateways {
+            std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+        }
+        let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
+        let name = unique_game_name("water")?.as_str().to_owned();
+        let endpoint = format!("tcp/127.0.0.1:{port}");
+        let place = (name.as_str(), endpoint.as_str());
+        let water = start_water(game, &names, place)?;
+        let (mut emulators, mut gateways) = (Vec::new(), Vec::new());
+        for vehicle in names {
+            let mut emulator = start_emulator(vehicle, declination_deg, place)?;
+            let link = reach(&mut emulator).with_context(|| format!("the emulator of {vehicle}"))?;
+            emulators.push(emulator);
+            gateways.push(self.start_gateway(vehicle, &link, game)?);
+        }
+        gateways.extend(emulators);
+        Ok(Some(HardwareLoop { ends: gateways, water }))
+    }
+
+    fn start_gateway(&self, name: &str, link: &str, game: &Match<'_>) -> Result<Offspring> {
+        let mut words = words(&["gateway", "surveyor", "--vehicle", name, "--link", link, "--arm", "--at-game-pace"]);
+        words.extend(self::words(&["--game", game.game, "--connect", game.endpoint, "--for-parent"]));
+        let option = |name: &str, path: PathBuf| [name.to_owned(), path.display().to_string()];
+        words.extend(self.gateway.clone().into_iter().flat_map(|path| option("--config", path)));
+        match &self.record_gateways {
+            Some(folder) => words.extend(option("--record", folder.join(format!("{name}.mcap")))),
+            None => words.push("--no-record".to_owned()),
+        }
+        Offspring::start(&format!("the gateway of {name}"), &words, Stdio::inherit())
+    }
+}
+
+impl HardwareLoop {
+    /// Ends it all, gateways first: they leave their boats at rest. Says who ended badly.
+    pub(crate) fn end(mut self) -> Vec<String> {
+        let mut badly = Vec::new();
+        for one in &mut self.ends {
+            one.ask_to_stop();
+            badly.extend(offspring::wait_for_all(std::slice::from_mut(one), LEAVE));
+        }
+        // The water has no end of its own: it is cut short, and says so.
+        self.water.ask_to_stop();
+        offspring::wait_for_all(std::slice::from_mut(&mut self.water), LEAVE);
+        badly
+    }
+}
+
+fn words(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+fn start_water(game: &Match<'_>, names: &[&str], (water, endpoint): (&str, &str)) -> Result<Offspring> {
+    let (file, pace, seed) = (game.file.display().to_string(), game.pace.to_string(), game.seed.to_string());
+    let mut words = words(&["sim", &file, "--pace", &pace, "--seed", &seed, "--game", water, "--listen", endpoint]);
+    words.extend(override_args::words(game.overrides));
+    words.push("--for-parent".to_owned());
+    words.push("--afloat".to_owned());
+    words.extend(names.iter().map(|name| (*name).to_owned()));
+    Offspring::start("the water", &words, Stdio::null())
+}
+
+fn start_emulator(name: &str, declination_deg: Option<f64>, (water, endpoint): (&str, &str)) -> Result<Offspring> {
+    let mut words = words(&["gateway", "emulate", "--vehicle", name, "--listen", "tcp://127.0.0.1:0"]);
+    words.extend(self::words(&["--game", water, "--connect", endpoint, "--for-parent"]));
+    words.extend(declination_deg.into_iter().flat_map(|deg| ["--declination-deg".to_owned(), deg.to_string()]));
+    Offspring::start(&format!("the emulator of {name}"), &words, Stdio::piped())
+}
+
+/// Where an emulator says that it can be reached.
+fn reach(emulator: &mut Offspring) -> Result<String> {
+    let output = emulator.output().context("it has no output")?;
+    let (sender, receiver) = std::sync::mpsc::sync_channel(1);
+    std::thread::spawn(move || {
+        let mut lines = BufReader::new(output).lines().map_while(std::result::Result::ok);
+        let first = lines.find_map(|line| line.strip_prefix("back seat at ").map(str::to_owned));
+        first.into_iter().for_each(|reach| drop(sender.send(reach)));
+        // It must be able to say more, whoever listens.
+        lines.for_each(drop);
+    });
+    receiver.recv_timeout(WINDOW).map_err(|_| anyhow!("it does not say where it listens"))
+}

@@ -1,0 +1,195 @@
+//! Real boats: a gateway of the test's own brings one, sails it by the orders that come, and falls silent.
+
+use crate::support::{LIMIT, Sim, real_attacker, result_of, run, scenarios, write};
+use bus::{Bus, Delivery, Publisher, Standing};
+use game::angle::rad_from_compass_deg;
+use game::external::{ExternalOrder, NavReport};
+use game::message::{JoinReply, JoinRequest, Message, Stamp};
+use game::picture::Nav;
+use game::topic::{self, GameName, Part};
+use game::{Order, VehicleId, codec};
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+const ME: VehicleId = VehicleId(0);
+/// Simulated seconds a second.
+const FACTOR: f64 = 4.0;
+
+/// A gateway with a boat that does at once what it is told.
+struct Gateway {
+    bus: Bus,
+    name: GameName,
+    alive: Vec<Standing>,
+    nav: Publisher,
+    orders: Arc<Mutex<Vec<ExternalOrder>>>,
+    ticket: u64,
+    seq: u64,
+    at: Nav,
+    moved: Instant,
+}
+
+fn moor(bus: &Bus, name: &GameName, vehicle: &str) -> JoinReply {
+    let (version, vehicles) = (game::VERSION.to_owned(), vec![vehicle.to_owned()]);
+    let request = serde_json::to_vec(&JoinRequest { version, agent: bus.id(), vehicles }).expect("JSON");
+    let answer = bus.ask(&topic::moor(name), request, LIMIT).expect("the hub is there").expect("an answer");
+    serde_json::from_slice(&answer).expect("a reply")
+}
+
+impl Gateway {
+    fn moored(sim: &Sim, file: &Path) -> Gateway {
+        let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
+        let scenario = game::scenario::load(file).unwrap_or_else(|e| panic!("{e}"));
+        let orders = Arc::new(Mutex::new(Vec::new()));
+        let inbox = Arc::clone(&orders);
+        let take = move |bytes: &[u8]| inbox.lock().expect("whole").push(codec::decode(bytes).expect("an order"));
+        let alive = vec![
+            bus.subscribe(topic::external_order(&name, &scenario, ME), take).expect("the hub is there"),
+            bus.show_alive(topic::alive(&name, Part::Gateway, &bus.id())).expect("the hub is there"),
+        ];
+        let nav = bus.publisher(topic::nav(&name, &scenario, ME), Delivery::Drop).expect("the hub is there");
+        let JoinReply::Granted { ticket, vehicles } = moor(&bus, &name, "blue_one") else { panic!("no berth") };
+        assert_eq!(vehicles, [ME]);
+        let at = Nav { north_m: 40.0, east_m: 52.0, psi_rad: rad_from_compass_deg(90.0), ..Nav::default() };
+        Gateway { bus, name, alive, nav, orders, ticket, seq: 0, at, moved: Instant::now() }
+    }
+
+    fn newest(&self) -> Option<ExternalOrder> {
+        self.orders.lock().expect("whole").last().copied()
+    }
+
+    fn received(&self) -> usize {
+        self.orders.lock().expect("whole").len()
+    }
+
+    fn is_held(&self) -> bool {
+        self.newest().is_some_and(|newest| newest.order.order() == Some(Order::Hold))
+    }
+
+    /// Does what it was told last, and reports.
+    fn sail(&mut self) {
+        let passed_s = self.moved.elapsed().as_secs_f64() * FACTOR;
+        self.moved = Instant::now();
+        let order = self.newest().and_then(|newest| newest.order.order());
+        self.at.surge_m_s = 0.0;
+        if let Some(Order::Steer { heading_rad, speed_m_s }) = order {
+            (self.at.psi_rad, self.at.surge_m_s) = (heading_rad, speed_m_s);
+        }
+        let (sin, cos) = game::math::sin_cos(self.at.psi_rad);
+        self.at.north_m += self.at.surge_m_s * passed_s * cos;
+        self.at.east_m += self.at.surge_m_s * passed_s * sin;
+        self.report(self.ticket);
+    }
+
+    fn report(&mut self, ticket: u64) {
+        self.seq += 1;
+        let stamp = Stamp { seq: self.seq, version: NavReport::VERSION, ..Stamp::default() };
+        let report = NavReport { stamp, ticket, vehicle: ME, valid: true, age_ns: 0, nav: self.at };
+        self.nav.send(&report).expect("the hub is there");
+    }
+
+    /// Sails on until something is so.
+    fn sail_until(&mut self, what: &str, is_so: impl Fn(&Gateway) -> bool) {
+        let start = Instant::now();
+        while !is_so(self) {
+            assert!(start.elapsed() < LIMIT, "never: {what}");
+            self.sail();
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Waits in silence until something is so.
+    fn wait_until(&self, what: &str, is_so: impl Fn(&Gateway) -> bool) {
+        let start = Instant::now();
+        while !is_so(self) {
+            assert!(start.elapsed() < LIMIT, "never: {what}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+#[test]
+fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let file = real_attacker(dir.path());
+    let sim = Sim::start(&file, &["--pace", &format!("{FACTOR}x")]);
+    let mut agent = sim.agent(&["blue_one"]);
+    let _still = sim.agent(&["red_one"]);
+    let waiting = sim.wait_for(|t| t["tell"] == "waiting" && t["missing"].as_array().is_some_and(Vec::is_empty));
+    assert_eq!(waiting["gateways"][0], "blue_one", "{waiting}");
+
+    let mut gateway = Gateway::moored(&sim, &file);
+    let other = sim.bus();
+    let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
+    assert_eq!(moor(&other, &gateway.name, "blue_one"), busy, "somebody else brings it");
+    let JoinReply::Refused { reason } = moor(&other, &gateway.name, "red_one") else { panic!("it is simulated") };
+    assert!(reason.contains("red_one is simulated"), "{reason}");
+
+    gateway.sail_until("its mind takes it towards the flag", |gateway| gateway.at.east_m > 70.0);
+    let orders = gateway.orders.lock().expect("whole").clone();
+    assert!(orders.iter().any(|order| order.given_ns > orders[0].given_ns), "its mind goes on thinking");
+    assert!(orders.iter().all(|order| order.order.vehicle == ME && order.given_ns <= order.stamp.valid_ns));
+
+    // It falls silent, and is heard of again.
+    sim.wait_for_event("nav_lost", "blue_one");
+    gateway.wait_until("what is lost is told to hold", Gateway::is_held);
+    gateway.sail_until("what is back is driven again", |gateway| !gateway.is_held());
+    sim.wait_for_event("nav_back", "blue_one");
+    let before = gateway.newest().expect("an order").given_ns;
+    gateway.sail_until("its mind goes on", |gateway| gateway.newest().is_some_and(|newest| newest.given_ns > before));
+
+    // Its mind dies: it holds, and from now on nobody thinks.
+    agent.kill();
+    gateway.sail_until("a boat without a mind holds", Gateway::is_held);
+    sim.wait_for_event("mind_lost", "blue_one");
+    let (count, given_ns) = (gateway.received(), gateway.newest().expect("an order").given_ns);
+    gateway.sail_until("it is told so again", |gateway| gateway.received() > count + 3);
+    assert!(gateway.newest().is_some_and(|newest| newest.given_ns == given_ns) && gateway.is_held());
+
+    // Its gateway dies: another may bring it, and the old one has no say.
+    gateway.alive.remove(1);
+    gateway.wait_until("the berth is free again", |gateway| moor(&other, &gateway.name, "blue_one") != busy);
+    gateway.report(gateway.ticket);
+    gateway.bus.close();
+    sim.play_on(1.0);
+    let report = sim.stop();
+    assert!(report["run"]["refused"]["ticket"].as_u64() >= Some(1), "{}", report["run"]);
+    assert_eq!(report["outcome"]["counts"]["boats"]["blue_one"]["minds_lost"], 1);
+}
+
+#[test]
+fn real_boats_are_not_played_where_nothing_keeps_time_and_it_is_said_what_to_do() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let mixed = "scenarios/games/mixed_2v2.toml";
+    let root = scenarios();
+    let entry = |name: &str| format!("[[entry]]\nname = \"{name}\"\nstrategy = \"{root}/strategies/{name}.toml\"\n");
+    let text = format!("game = \"{root}/games/mixed_2v2.toml\"\n{}{}", entry("pav01"), entry("idle"));
+    let tournament = write(dir.path(), "tournament.toml", &text).display().to_string();
+    for args in [
+        &["run", mixed][..],
+        &["run", mixed, "--in-process"],
+        &["sim", mixed],
+        &["tournament", &tournament, "--games", "2"],
+    ] {
+        let output = run(args);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success(), "{args:?}");
+        for part in ["blue_one, red_one", "--pace realtime", "--rehearse"] {
+            assert!(said.contains(part), "{args:?}: {said}");
+        }
+    }
+}
+
+#[test]
+fn a_rehearsal_is_the_game_of_simulated_boats_in_one_process_and_across() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let short = |name: &str| {
+        let text = format!("base = \"{}/games/{name}.toml\"\nduration_s = 30\n", scenarios());
+        write(dir.path(), &format!("short_{name}.toml"), &text).display().to_string()
+    };
+    let (mixed, simulated) = (short("mixed_2v2"), short("pav01_vs_pav01"));
+    let want = result_of(&[&simulated, "--in-process"])["digest"].clone();
+    assert!(want.is_string());
+    assert_eq!(result_of(&[&mixed, "--rehearse", "--in-process"])["digest"], want);
+    assert_eq!(result_of(&[&mixed, "--rehearse", "--agents-per-process", "4"])["digest"], want);
+}

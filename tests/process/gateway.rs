@@ -1,0 +1,342 @@
+//! The hardware loop with real processes and real sockets: whatever dies or is cut, the boat comes to rest in time.
+//!
+//! Water with one boat, its emulator, a proxy that can be cut, the gateway, the game and its minds. The boat is watched
+//! in the water itself, by the truth about its thrusters.
+
+use crate::support::{LIMIT, Process, Sim, real_attacker, result_of, squall};
+use bus::{Bus, Standing};
+use game::codec;
+use game::external::{GatewayStatus, OperatorCommand, OperatorReply};
+use game::message::Frame;
+use game::topic::{self, GameName};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::process::Stdio;
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// What is allowed on a busy machine beyond the time that is stated.
+const SLACK: Duration = Duration::from_millis(1500);
+
+/// A thruster that is told to stop takes a fifth of its range a second, with a lag of 0.25 s: from 70 % it pushes less than
+/// this after 3.5 + 1.1 s.
+const STILL_NEWTON: f64 = 0.5;
+const LAG: Duration = Duration::from_millis(4600);
+
+/// A link that can be cut: passes, swallows everything both ways, or refuses.
+struct Proxy {
+    port: u16,
+    state: Arc<AtomicU8>,
+    open: Arc<Mutex<Vec<TcpStream>>>,
+}
+
+const PASS: u8 = 0;
+const SWALLOW: u8 = 1;
+const REFUSE: u8 = 2;
+
+impl Proxy {
+    fn start(to: String) -> Proxy {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
+        let port = listener.local_addr().expect("bound").port();
+        let (state, open) = (Arc::new(AtomicU8::new(PASS)), Arc::new(Mutex::new(Vec::new())));
+        let (now, streams) = (Arc::clone(&state), Arc::clone(&open));
+        std::thread::spawn(move || {
+            for inner in listener.incoming().map_while(Result::ok) {
+                if now.load(Ordering::Relaxed) == REFUSE {
+                    continue;
+                }
+                let Ok(outer) = TcpStream::connect(&to) else { continue };
+                for (from, into) in [(&inner, &outer), (&outer, &inner)] {
+                    let (from, into) = (from.try_clone().expect("a stream"), into.try_clone().expect("a stream"));
+                    let now = Arc::clone(&now);
+                    std::thread::spawn(move || pass(from, into, &now));
+                }
+                streams.lock().expect("whole").extend([inner, outer]);
+            }
+        });
+        Proxy { port, state, open }
+    }
+
+    fn set(&self, state: u8) {
+        self.state.store(state, Ordering::Relaxed);
+    }
+
+    fn cut(&self) {
+        for stream in self.open.lock().expect("whole").drain(..) {
+            let _ = stream.shutdown(Shutdown::Both);
+        }
+    }
+}
+
+/// Carries bytes one way. A connection that has begun to swallow never gives back what it swallowed.
+fn pass(mut from: TcpStream, mut into: TcpStream, state: &AtomicU8) {
+    let mut buffer = [0; 4096];
+    let mut swallowing = false;
+    while let Ok(count) = from.read(&mut buffer) {
+        swallowing |= state.load(Ordering::Relaxed) == SWALLOW;
+        if count == 0 {
+            break;
+        }
+        if !swallowing && into.write_all(&buffer[..count]).is_err() {
+            break;
+        }
+    }
+    let _ = into.shutdown(Shutdown::Both);
+}
+
+/// All of it.
+struct Loop {
+    sim: Sim,
+    agents: Process,
+    gateway: Process,
+    emulator: Process,
+    proxy: Proxy,
+    primary: Option<String>,
+    water: Sim,
+    frame: Arc<Mutex<Frame>>,
+    _eyes: (Bus, Standing),
+    _dir: tempfile::TempDir,
+}
+
+impl Loop {
+    /// A boat under way by its mind's orders.
+    fn under_way(watchdog: &str) -> Loop {
+        let dir = tempfile::tempdir().expect("a temporary directory");
+        let file = real_attacker(dir.path());
+        let sim = Sim::start(&file, &["--pace", "realtime"]);
+        let water = Sim::start(&file, &["--pace", "realtime", "--afloat", "blue_one"]);
+        let (emulator, back_seat, primary) = start_emulator(&water, watchdog);
+        let proxy = Proxy::start(back_seat);
+        let gateway = start_gateway(&sim, proxy.port, &["--arm"]);
+        let agents = sim.agent(&["blue_one", "red_one"]);
+        let (frame, eyes) = watch(&water);
+        let all = Loop { sim, agents, gateway, emulator, proxy, primary, water, frame, _eyes: eyes, _dir: dir };
+        all.wait(LIMIT, "the boat sails", |boat| boat.0 > 0.6);
+        all
+    }
+
+    /// The boat's speed, and whether its thrusters stand still.
+    fn boat(&self) -> (f64, bool) {
+        let frame = self.frame.lock().expect("whole");
+        frame.vehicles.first().map_or((0.0, true), |boat| {
+            let still = boat.port_newton.abs() < STILL_NEWTON && boat.starboard_newton.abs() < STILL_NEWTON;
+            (boat.nav.surge_m_s, still)
+        })
+    }
+
+    fn wait(&self, limit: Duration, what: &str, is_so: impl Fn((f64, bool)) -> bool) -> Duration {
+        let start = Instant::now();
+        while !is_so(self.boat()) {
+            assert!(start.elapsed() < limit, "not within {limit:?}: {what}; {:?}", self.boat());
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        start.elapsed()
+    }
+
+    /// The thrusters stand still within this time, and from then on.
+    fn stops_within(&self, stated: Duration) -> Duration {
+        let took = self.wait(stated + LAG + SLACK, "the thrusters stand still", |(_, still)| still);
+        for _ in 0..20 {
+            std::thread::sleep(Duration::from_millis(100));
+            assert!(self.boat().1, "it goes on again");
+        }
+        took
+    }
+
+    fn ask(&self, command: &OperatorCommand) -> OperatorReply {
+        let bus = self.sim.bus();
+        let key = topic::operate(&GameName::new(&self.sim.game).expect("a name"), "blue_one");
+        let question = serde_json::to_vec(command).expect("JSON");
+        let answer = bus.ask(&key, question, Duration::from_secs(10)).expect("the hub is there");
+        serde_json::from_slice(&answer.expect("the gateway answers")).expect("a reply")
+    }
+
+    fn status(&self) -> GatewayStatus {
+        self.ask(&OperatorCommand::Status).status
+    }
+
+    /// Waits until the gateway's state contains these words.
+    fn wait_for_state(&self, words: &str) {
+        let start = Instant::now();
+        while !self.status().state.contains(words) {
+            assert!(start.elapsed() < LIMIT, "never {words:?}: {:?}", self.status());
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    /// Arms it, as soon as it can be.
+    fn arm(&self) {
+        let start = Instant::now();
+        while let Some(reason) = self.ask(&OperatorCommand::Arm).refused {
+            assert!(start.elapsed() < LIMIT, "never: {reason}");
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        self.wait(LIMIT, "it sails again", |boat| boat.0 > 0.6);
+    }
+}
+
+fn start_emulator(water: &Sim, watchdog: &str) -> (Process, String, Option<String>) {
+    let listen = ["--listen", "tcp://127.0.0.1:0", "--primary", "tcp://127.0.0.1:0", "--watchdog-s", watchdog];
+    let game = ["gateway", "emulate", "--vehicle", "blue_one", "--connect", &water.endpoint, "--game", &water.game];
+    let mut command = squall(&[&game[..], &listen].concat());
+    command.stdout(Stdio::piped()).stderr(Stdio::null());
+    let mut process = Process::start(command);
+    let mut lines = BufReader::new(process.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
+    let mut reach = |what: &str| {
+        let line = lines.find(|line| line.starts_with(what)).expect("it says where it listens");
+        line.rsplit("tcp://").next().expect("an address").to_owned()
+    };
+    let (back_seat, primary) = (reach("back seat at "), reach("primary operator at "));
+    std::thread::spawn(move || lines.for_each(drop));
+    (process, back_seat, Some(primary))
+}
+
+fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
+    let link = format!("tcp://127.0.0.1:{port}");
+    let game = ["gateway", "surveyor", "--vehicle", "blue_one", "--connect", &sim.endpoint, "--game", &sim.game];
+    let mut command = squall(&[&game[..], &["--link", &link, "--no-record"], more].concat());
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    Process::start(command)
+}
+
+/// The truth about the water, the newest of it.
+fn watch(water: &Sim) -> (Arc<Mutex<Frame>>, (Bus, Standing)) {
+    let frame = Arc::new(Mutex::new(Frame::default()));
+    let newest = Arc::clone(&frame);
+    let bus = water.bus();
+    let key = topic::frame(&GameName::new(&water.game).expect("a name"));
+    let take = move |bytes: &[u8]| *newest.lock().expect("whole") = codec::decode(bytes).expect("a frame");
+    let standing = bus.subscribe(key, take).expect("the hub is there");
+    (frame, (bus, standing))
+}
+
+#[test]
+fn a_killed_mind_stops_the_boat_and_only_a_person_sets_it_going_again() {
+    let mut all = Loop::under_way("none");
+    all.agents.kill();
+    all.stops_within(Duration::from_secs(1));
+    all.wait_for_state("no fresh order");
+    all.agents = all.sim.agent(&["blue_one", "red_one"]);
+    all.sim.wait_for_event("mind_back", "blue_one");
+    std::thread::sleep(Duration::from_secs(1));
+    assert!(all.boat().1, "new orders alone do not set it going");
+    all.arm();
+}
+
+#[test]
+fn a_killed_sim_stops_the_boat_when_its_orders_are_too_old() {
+    let mut all = Loop::under_way("none");
+    all.sim.process.kill();
+    all.stops_within(Duration::from_secs(1));
+}
+
+#[test]
+fn a_killed_gateway_leaves_the_boat_to_its_watchdog_and_the_next_one_begins_with_standby() {
+    let mut all = Loop::under_way("2");
+    all.gateway.kill();
+    all.stops_within(Duration::from_secs(2));
+    // Without a watchdog nobody can stop the boat but the next gateway.
+    let mut all = Loop::under_way("none");
+    all.gateway.kill();
+    std::thread::sleep(Duration::from_secs(4));
+    assert!(!all.boat().1, "it does for ever what it was told last");
+    all.gateway = start_gateway(&all.sim, all.proxy.port, &[]);
+    all.stops_within(Duration::from_secs(3));
+    all.wait_for_state("safed");
+    all.arm();
+}
+
+#[test]
+fn a_gateway_that_is_asked_to_end_stops_the_boat_first() {
+    for signal in ["TERM", "INT"] {
+        let mut all = Loop::under_way("none");
+        all.gateway.signal(signal);
+        assert!(all.gateway.wait().success());
+        all.stops_within(Duration::from_millis(200));
+    }
+}
+
+#[test]
+fn a_link_that_is_cut_half_open_or_comes_and_goes_leaves_the_boat_at_rest() {
+    // Cut: tripped at once; the first word on the next connection is standby.
+    let all = Loop::under_way("none");
+    all.proxy.cut();
+    all.stops_within(Duration::from_millis(300));
+    all.wait_for_state("the link is lost");
+    all.arm();
+    // Half open: nothing goes through though nobody hung up. It is found out after three seconds of silence.
+    all.proxy.set(SWALLOW);
+    std::thread::sleep(Duration::from_millis(1500));
+    all.proxy.set(PASS);
+    all.stops_within(Duration::from_secs(3));
+    all.arm();
+    // It comes and goes.
+    let start = Instant::now();
+    while start.elapsed() < Duration::from_secs(4) {
+        all.proxy.cut();
+        std::thread::sleep(Duration::from_millis(150));
+    }
+    all.stops_within(Duration::from_millis(300));
+    // Gone for long, it comes back by itself.
+    all.proxy.set(REFUSE);
+    all.proxy.cut();
+    std::thread::sleep(Duration::from_secs(2));
+    all.proxy.set(PASS);
+    all.arm();
+}
+
+#[test]
+fn whoever_has_the_boat_ashore_and_an_e_stop_are_heard_through_all_of_it() {
+    let all = Loop::under_way("none");
+    let mut operator = TcpStream::connect(all.primary.as_deref().expect("it listens")).expect("it accepts");
+    operator.write_all(b"$PSEAC,L,0,0,0,*14\r\n").expect("a command");
+    all.stops_within(Duration::from_millis(300));
+    all.wait_for_state("the primary operator has taken over");
+    assert!(all.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("secondary control")));
+    operator.write_all(b"$PSEAC,L,0,0,0,OP2_ON*67\r\n").expect("a command");
+    all.arm();
+    let told = squall(&["gateway", "tell", "all", "estop", "--connect", &all.sim.endpoint, "--game", &all.sim.game]);
+    let mut told = told;
+    let output = told.output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    all.stops_within(Duration::from_millis(300));
+    all.wait_for_state("e-stopped");
+    assert!(all.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("release it first")));
+    let release = ["gateway", "tell", "all", "release", "--connect", &all.sim.endpoint, "--game", &all.sim.game];
+    assert!(squall(&release).status().expect("the program starts").success());
+    all.wait_for_state("safed");
+    all.arm();
+    drop((all.emulator, all.water));
+}
+
+#[test]
+fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let (game, gateways) = ("scenarios/games/mixed_2v2.toml", "scenarios/gateways/emulated.toml");
+    let records = dir.path().display().to_string();
+    let looped = result_of(&[game, "--emulate", "--pace", "10x", "--gateway", gateways, "--record-gateways", &records]);
+    let pure = result_of(&[game, "--rehearse", "--in-process"]);
+    let count = |result: &serde_json::Value, what: &str| -> u64 {
+        let teams = result["counts"]["teams"].as_object().expect("teams");
+        teams.values().map(|counts| counts[what].as_u64().expect("a count")).sum()
+    };
+    for what in ["grabs", "tags"] {
+        let (got, want) = (count(&looped, what), count(&pure, what));
+        assert!(
+            got > 0 && want > 0 && got <= 4 * want && want <= 4 * got,
+            "{what}: {got} through gateways, {want} without"
+        );
+    }
+    let events = looped["events"].as_array().expect("events");
+    for bad in ["nav_lost", "mind_lost", "quarantined"] {
+        assert!(!events.iter().any(|event| event["event"] == bad), "{bad}: {events:?}");
+    }
+    assert_eq!(looped["duration_s"], pure["duration_s"]);
+    for name in ["blue_one", "red_one"] {
+        let file = dir.path().join(format!("{name}.mcap")).display().to_string();
+        let output = squall(&["gateway", "replay", &file]).output().expect("the program starts");
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success() && said.contains("the recording, byte for byte"), "{said}");
+    }
+}
