@@ -33,11 +33,7 @@ impl Onlooker {
 
     /// The vehicle of this name.
     pub(crate) fn vehicle(&self, name: &str) -> Result<VehicleId> {
-        let scenario = &self.notice.scenario;
-        scenario.vehicle_by_name(name).with_context(|| {
-            let names: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
-            format!("there is no vehicle {name:?}; there are {}", names.join(", "))
-        })
+        Ok(self.notice.scenario.vehicle_named(name)?)
     }
 
     /// What a vehicle's helm thinks; nothing if nobody minds it now.

@@ -1,6 +1,6 @@
 //! Looking for a game and being let in: what agents, gateways and onlookers do alike.
 
-use crate::{Bus, BusError};
+use crate::{Bus, BusError, Net};
 use game::VehicleId;
 use game::message::{JoinReply, JoinRequest, Notice};
 use game::topic::{self, GameName, Part};
@@ -90,6 +90,26 @@ impl<'a> Lookout<'a> {
             }
             std::thread::sleep(LOOK_AGAIN);
         }
+    }
+}
+
+impl Lookout<'_> {
+    /// A session at the hub that `net` leads to, and the game: this one, or the only one there is.
+    ///
+    /// # Errors
+    /// [`NotFound`] says what was missing to the end.
+    pub fn game(
+        &mut self,
+        tell: &mut dyn FnMut(&str),
+        net: &Net,
+        game: Option<&GameName>,
+    ) -> Result<(Bus, GameName), NotFound> {
+        let bus = self.until(tell, || Ok(Bus::leaf(net)?))?;
+        let game = match game {
+            Some(game) => game.clone(),
+            None => self.until(tell, || only_game(&bus))?,
+        };
+        Ok((bus, game))
     }
 }
 

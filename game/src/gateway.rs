@@ -140,6 +140,10 @@ pub struct ControlWatch {
     pub echo_s: f64,
 }
 
+/// The Surveyor's thrust map, by the West Point missions of 2024: thrust in per cent, speed in m/s.
+pub const SURVEYOR_THRUST_MAP: [(f64, f64); 7] =
+    [(-100.0, -2.0), (0.0, 0.0), (20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)];
+
 /// Our own heading and speed loops, for [`Drive::Thrust`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Loops {

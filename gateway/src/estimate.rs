@@ -5,7 +5,7 @@
 //! last one younger.
 
 use crate::geodesy::LocalFrame;
-use crate::nmea::{Attitude, Gga, Rmc, Sentence, TimeOfDay, Vtg};
+use crate::nmea::{Attitude, Gga, M_S_PER_KN, Rmc, Sentence, TimeOfDay, Vtg};
 use crate::supervisor::NavFault;
 use game::angle::{rad_from_compass_deg, wrap_pi};
 use game::frame::{Body, LatLon, Ned, body_from_ned};
@@ -13,7 +13,6 @@ use game::gateway::{CompassFrame, NavWatch};
 use game::picture::Nav;
 use game::{SimTime, math};
 
-const M_S_PER_KN: f64 = 1852.0 / 3600.0;
 /// After a jump the position must be consistent for this long before it is believed again, s.
 const JUMP_MEMORY_S: f64 = 2.0;
 /// A velocity told is used for this long; then it is taken from the change of position, s.

@@ -3,6 +3,7 @@
 //! With `drive = "thrust"` the heading and speed loops are here; with `drive = "speed"` they are the boat's. Thrust is in
 //! per cent, its difference positive to starboard: port = thrust + difference, starboard = thrust − difference.
 
+use crate::thrust_map::thrust_for;
 use game::angle::{compass_deg_from_rad, wrap_pi};
 use game::gateway::{Drive, Gateway, Limits, Loops};
 use game::picture::Nav;
@@ -136,20 +137,6 @@ fn slewed(from: f64, to: f64, growth: f64) -> f64 {
     to.clamp(least, most)
 }
 
-/// The thrust that gives a speed, by the map; its ends beyond it.
-fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
-    let Some(next) = map.iter().position(|(_, speed)| *speed >= speed_m_s) else {
-        return map.last().map_or(0.0, |(thrust, _)| *thrust);
-    };
-    let (thrust, speed) = map[next];
-    match next.checked_sub(1).map(|before| map[before]) {
-        Some((thrust_before, speed_before)) if speed > speed_before => {
-            thrust_before + (thrust - thrust_before) * (speed_m_s - speed_before) / (speed - speed_before)
-        }
-        _ => thrust,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -226,15 +213,5 @@ mod tests {
         // Magnetic north is west of true: the compass shows more.
         assert!((heading_deg - 102.5).abs() < 1e-9, "{heading_deg}");
         assert_eq!(speed_m_s, 3.0);
-    }
-
-    #[test]
-    fn a_speed_between_two_of_the_map_takes_thrust_between() {
-        let map = gateway("thrust").loops.thrust_map;
-        for (speed, want) in
-            [(0.0, 0.0), (0.5, 10.0), (1.25, 30.0), (3.0, 100.0), (4.0, 100.0), (-2.0, -100.0), (-3.0, -100.0)]
-        {
-            assert!((thrust_for(&map, speed) - want).abs() < 1e-9, "{speed}");
-        }
     }
 }

@@ -18,4 +18,5 @@ pub mod record;
 pub mod replay;
 pub mod supervisor;
 pub mod survey;
+mod thrust_map;
 pub mod utc;

@@ -6,7 +6,6 @@ use game::angle::wrap_pi;
 use game::frame::LatLon;
 use std::collections::BTreeMap;
 
-const DAY_S: f64 = 86_400.0;
 /// Below this rate a sentence comes too seldom to drive a boat by, 1/s.
 const RATE_MIN_HZ: f64 = 1.0;
 /// Compass and true heading that are nearer than this are the same, rad.
@@ -96,11 +95,9 @@ impl Survey {
         }
         found.extend(self.volts.map(|volts| format!("battery: {volts} V")));
         found.extend(self.error.as_ref().map(|code| format!("error code: {code}")));
-        if let Some((came, TimeOfDay(ms))) = self.clock {
-            let (at, TimeOfDay(host_ms)) = utc;
-            let host_s = f64::from(host_ms) * 1e-3 + (came - at).as_s();
-            let behind_s = host_s - f64::from(ms) * 1e-3;
-            let behind_s = behind_s - DAY_S * (behind_s / DAY_S).round();
+        if let Some((came, time)) = self.clock {
+            let (at, host) = utc;
+            let behind_s = host.later(came - at).since_s(time);
             let date = self
                 .date
                 .map_or("it sends no date".to_owned(), |d| format!("date {}-{:02}-{:02}", d.year, d.month, d.day));

@@ -8,7 +8,7 @@ use crate::world::NoStart;
 use game::SimTime;
 use game::link::Sharing;
 use game::rules::{Rules, TaggedBoat};
-use game::scenario::{Berth, Scenario, Source};
+use game::scenario::{Berth, Scenario, Source, UnknownVehicle};
 use thiserror::Error;
 
 /// As long as a file may make a game.
@@ -18,13 +18,8 @@ const DAY_S: f64 = 86_400.0;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NotAfloat {
     /// A boat is not in the game.
-    #[error("there is no vehicle {name:?}; there are {known}")]
-    Unknown {
-        /// What was asked for.
-        name: String,
-        /// Those there are.
-        known: String,
-    },
+    #[error(transparent)]
+    Unknown(#[from] UnknownVehicle),
     /// The game itself cannot start.
     #[error(transparent)]
     NoStart(#[from] NoStart),
@@ -36,10 +31,8 @@ pub enum NotAfloat {
 /// [`NotAfloat`] for a boat that is not in the game, and for a game that cannot start.
 pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenario, NotAfloat> {
     let scenario = scenario.of_seed(seed).map_err(NoStart::from)?;
-    let unknown = names.iter().find(|name| scenario.vehicle_by_name(name).is_none());
-    if let Some(name) = unknown {
-        let known: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
-        return Err(NotAfloat::Unknown { name: name.clone(), known: known.join(", ") });
+    for name in names {
+        scenario.vehicle_named(name)?;
     }
     let poses = spawn::berths(&scenario, seed).map_err(NoStart::from)?;
     let mut water = scenario.clone();

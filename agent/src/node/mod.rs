@@ -13,7 +13,7 @@ mod window;
 pub use ignored::Ignored;
 
 use bus::lookout::{self, Lookout, NotFound, Refusal};
-use bus::{Bus, BusError, Net};
+use bus::{BusError, Net};
 use game::strategy::Strategy;
 use game::topic::{self, GameName, Part};
 use std::sync::Arc;
@@ -97,11 +97,7 @@ const SILENCE_AFTER_DEATH: Duration = Duration::from_secs(3);
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
     let mut look = Lookout::new(settings.wait, &settings.stop);
     let mut say = |reason: &str| tell(News::Looking { reason });
-    let bus = look.until(&mut say, || Ok(Bus::leaf(&settings.net)?))?;
-    let game = match &settings.game {
-        Some(game) => game.clone(),
-        None => look.until(&mut say, || lookout::only_game(&bus))?,
-    };
+    let (bus, game) = look.game(&mut say, &settings.net, settings.game.as_ref())?;
     let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &bus.id()))?;
     let notice = look.until(&mut say, || lookout::notice(&bus, &game))?;
     let mut table = Table::lay(&bus, &game, &notice, settings)?;

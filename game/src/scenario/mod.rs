@@ -41,6 +41,7 @@ use crate::sea::Sea;
 use crate::strategy::Strategy;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 /// A game, ready to be played.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -86,6 +87,17 @@ impl Scenario {
         self.vehicles.iter().position(|vehicle| vehicle.name == name).map(VehicleId::at)
     }
 
+    /// The vehicle with this name, where a person has said it.
+    ///
+    /// # Errors
+    /// [`UnknownVehicle`] names those there are.
+    pub fn vehicle_named(&self, name: &str) -> Result<VehicleId, UnknownVehicle> {
+        self.vehicle_by_name(name).ok_or_else(|| {
+            let known = self.vehicles.iter().map(|vehicle| vehicle.name.clone()).collect();
+            UnknownVehicle { name: name.to_owned(), known }
+        })
+    }
+
     /// The team with this name.
     #[must_use]
     pub fn team_by_name(&self, name: &str) -> Option<TeamId> {
@@ -109,6 +121,16 @@ impl Scenario {
     pub fn strategy_of(&self, vehicle: VehicleId) -> &Strategy {
         &self.strategies[self.vehicles[vehicle.index()].strategy]
     }
+}
+
+/// A name that no vehicle of the game has.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("there is no vehicle {name:?}; there are {}", .known.join(", "))]
+pub struct UnknownVehicle {
+    /// The name.
+    pub name: String,
+    /// Those there are.
+    pub known: Vec<String>,
 }
 
 /// A team.

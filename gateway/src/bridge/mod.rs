@@ -80,13 +80,15 @@ pub struct Bridge {
     volts: Option<f64>,
     low_since: Option<SimTime>,
     boat_error: String,
-    clock_offset_s: Option<f64>,
+    /// The receiver's time of day, and when it came.
+    clock: Option<(SimTime, TimeOfDay)>,
     upload: Option<Upload>,
     /// What was sent last, and when.
     last_sent: Option<(SimTime, Command)>,
     /// Whether the boat may be moving by what it was sent.
     under_way: bool,
-    blocked: bool,
+    /// What was true at the last step.
+    seen: Conditions,
     nav_is_news: bool,
     /// When navigation was told last, and whether as valid.
     nav_told: (SimTime, bool),
@@ -119,11 +121,11 @@ impl Bridge {
             volts: None,
             low_since: None,
             boat_error: String::new(),
-            clock_offset_s: None,
+            clock: None,
             upload: None,
             last_sent: None,
             under_way: false,
-            blocked: false,
+            seen: Conditions::NOTHING,
             nav_is_news: false,
             nav_told: (SimTime::LONG_AGO, false),
             standby_ignored: false,
@@ -204,7 +206,7 @@ impl Bridge {
         self.framer.push(b"\r\n", &mut |_| {});
         self.estimator.forget();
         self.control.forget();
-        (self.volts, self.low_since, self.clock_offset_s) = (None, None, None);
+        (self.volts, self.low_since, self.clock) = (None, None, None);
         self.upload = None;
         self.last_sent = None;
         self.under_way = true;
@@ -249,17 +251,13 @@ impl Bridge {
 
     /// Says so when the receiver's time of day goes another way than our clock.
     fn watch_clock(&mut self, now: SimTime, time: Option<TimeOfDay>, out: &mut Outbox) {
-        const DAY_S: f64 = 86_400.0;
-        let Some(TimeOfDay(ms)) = time else { return };
-        let offset_s = f64::from(ms) * 1e-3 - now.as_s();
-        if let Some(before_s) = self.clock_offset_s {
-            let step_s = offset_s - before_s;
-            let step_s = step_s - DAY_S * (step_s / DAY_S).round();
+        let Some(time) = time else { return };
+        if let Some((at, before)) = self.clock.replace((now, time)) {
+            let step_s = time.since_s(before.later(now - at));
             if step_s.abs() > CLOCK_STEP_S {
                 out.events.push(Event::Warning(format!("the receiver's clock stepped by {step_s:.1} s")));
             }
         }
-        self.clock_offset_s = Some(offset_s);
     }
 
     fn take_order(&mut self, now: SimTime, order: Order, given: SimTime) {
@@ -328,12 +326,11 @@ impl Bridge {
         if let Some(before) = before {
             self.note_change(now, before, out);
         }
-        if self.supervisor.state() == State::Armed && self.blocked != conditions.blocked {
+        let changed = std::mem::replace(&mut self.seen, conditions).blocked != conditions.blocked;
+        if self.supervisor.state() == State::Armed && changed {
             out.events.push(Event::Blocked(conditions.blocked));
         }
-        let urgent =
-            before.is_some() || wish.is_some() || self.last_sent.is_none() || self.blocked != conditions.blocked;
-        self.blocked = conditions.blocked;
+        let urgent = before.is_some() || wish.is_some() || self.last_sent.is_none() || changed;
         if !self.link_up {
             self.upload = None;
         } else if self.upload.is_some() && action == Action::Standby && !(urgent && self.under_way) {

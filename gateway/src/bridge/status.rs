@@ -7,10 +7,10 @@ use game::SimTime;
 use game::external::GatewayStatus;
 
 impl Bridge {
-    /// How it is now. What only the shell knows (the link's name, latencies) is left to it.
+    /// How it is now, with what was missing at the last step. It changes nothing, so that how often somebody asks makes no
+    /// difference to a replay. What only the shell knows (the link's name, latencies) is left to it.
     #[must_use]
-    pub fn status(&mut self, now: SimTime) -> GatewayStatus {
-        let conditions = self.conditions(now);
+    pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self.estimator.nav(now);
         let last_sent = self.last_sent.as_ref().map(|(_, command)| voice::bytes_of(std::slice::from_ref(command)));
         GatewayStatus {
@@ -18,7 +18,7 @@ impl Bridge {
             at_s: now.as_s(),
             link: if self.link_up { "up" } else { "down" }.to_owned(),
             state: self.state_in_words(),
-            missing: conditions.missing().iter().map(ToString::to_string).collect(),
+            missing: self.seen.missing().iter().map(ToString::to_string).collect(),
             trips: self.trips.clone(),
             mode: self.control.mode().map(|mode| mode.letter()),
             operator: self.control.operator().map(name_of),

@@ -1,10 +1,8 @@
 //! What is said to the boat: commands as sentences.
 
 use crate::front_seat::Setting;
-use crate::nmea::{Command, Mode, Sentence};
+use crate::nmea::{Command, M_S_PER_KN, Mode, Sentence};
 use crate::supervisor::Task;
-
-const M_S_PER_KN: f64 = 1852.0 / 3600.0;
 
 /// `PSEAC` with these numbers in its second to fourth field.
 fn command(mode: Mode, numbers: [Option<f64>; 3]) -> Command {

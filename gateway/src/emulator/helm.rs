@@ -1,7 +1,9 @@
 //! What a boat does by its own means: settings, station keeping, missions.
 
+use crate::thrust_map::speed_for;
 use game::angle::wrap_pi;
 use game::frame::{Ned, Pose};
+use game::gateway::SURVEYOR_THRUST_MAP;
 use game::{Order, math};
 use std::collections::BTreeMap;
 
@@ -13,9 +15,6 @@ const KEEP_M_S: f64 = 1.0;
 const APPROACH_PER_S: f64 = 0.2;
 /// Throttle of a mission that names none, per cent.
 const THROTTLE_PCT: f64 = 40.0;
-/// Thrust in per cent and speed in m/s: the thrust map of the West Point missions of 2024.
-const THRUST_MAP: [(f64, f64); 6] = [(0.0, 0.0), (20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)];
-
 /// Where it is going by itself.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Helm {
@@ -55,16 +54,9 @@ pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
     }
 }
 
-pub(super) fn m_s_from_kn(speed_kn: f64) -> f64 {
-    speed_kn * 1852.0 / 3600.0
-}
-
-/// The speed that a thrust gives, m/s.
-pub(super) fn speed_of_thrust(thrust_pct: Option<f64>) -> Option<f64> {
-    let thrust_pct = thrust_pct?.clamp(0.0, 100.0);
-    let pairs = THRUST_MAP.windows(2).map(|pair| (pair[0], pair[1]));
-    let (low, high) = pairs.into_iter().find(|(_, high)| thrust_pct <= high.0)?;
-    Some(low.1 + (high.1 - low.1) * (thrust_pct - low.0) / (high.0 - low.0))
+/// The speed ahead that a thrust gives, m/s.
+pub(super) fn speed_of_thrust(thrust_pct: f64) -> f64 {
+    speed_for(&SURVEYOR_THRUST_MAP, thrust_pct.clamp(0.0, 100.0))
 }
 
 impl Helm {
@@ -136,7 +128,7 @@ impl Helm {
     }
 
     fn speed_m_s(&self) -> f64 {
-        speed_of_thrust(Some(self.throttle_pct.unwrap_or(THROTTLE_PCT))).unwrap_or(0.0)
+        speed_of_thrust(self.throttle_pct.unwrap_or(THROTTLE_PCT))
     }
 }
 

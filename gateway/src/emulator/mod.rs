@@ -10,7 +10,7 @@ mod telemetry;
 pub use telemetry::Extra;
 
 use crate::geodesy::LocalFrame;
-use crate::nmea::{Command, Counts, Date, Framer, Mode, Operator, Sentence, TimeOfDay};
+use crate::nmea::{Command, Counts, Date, Framer, M_S_PER_KN, Mode, Operator, Sentence, TimeOfDay};
 use game::frame::LatLon;
 use game::picture::OwnBoat;
 use game::{Order, SimTime};
@@ -106,28 +106,26 @@ impl Emulator {
 
     /// Takes bytes from a port.
     pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
-        let place = |boat: &mut Emulator| match port {
-            Port::Primary => std::mem::take(&mut boat.primary),
-            Port::Secondary => std::mem::take(&mut boat.secondary),
-        };
-        let mut framer = place(self);
+        let mut framer = std::mem::take(self.framer(port));
         framer.push(bytes, &mut |body| {
             // What it does not know a boat does not mind.
             if let Ok(sentence) = Sentence::parse(body) {
                 self.heed(now, port, sentence);
             }
         });
+        *self.framer(port) = framer;
+    }
+
+    fn framer(&mut self, port: Port) -> &mut Framer {
         match port {
-            Port::Primary => self.primary = framer,
-            Port::Secondary => self.secondary = framer,
+            Port::Primary => &mut self.primary,
+            Port::Secondary => &mut self.secondary,
         }
     }
 
     /// Sets the receiver's clock: it is now so late, UTC.
-    pub fn set_clock(&mut self, now: SimTime, (date, TimeOfDay(ms)): (Date, TimeOfDay)) {
-        const DAY_MS: i64 = 86_400_000;
-        let at_zero_ms = i64::from(ms) - (now.as_s() * 1000.0).round() as i64;
-        self.plan.began = (date, TimeOfDay(at_zero_ms.rem_euclid(DAY_MS) as u32));
+    pub fn set_clock(&mut self, now: SimTime, (date, time): (Date, TimeOfDay)) {
+        self.plan.began = (date, time.later(SimTime::ZERO - now));
     }
 
     /// Something to tell whoever plays the boat, once.
@@ -159,8 +157,10 @@ impl Emulator {
         let heading = |command: &Command| command.heading_deg.map(|deg| deg.to_radians() + self.plan.declination_rad);
         match self.command.mode {
             Mode::Thruster => helm::thrust(self.thrust_pct, self.difference_pct),
-            Mode::Heading => helm::steer(heading(&self.command), helm::speed_of_thrust(self.command.thrust)),
-            Mode::Speed => helm::steer(heading(&self.command), self.command.thrust.map(helm::m_s_from_kn)),
+            Mode::Heading => helm::steer(heading(&self.command), self.command.thrust.map(helm::speed_of_thrust)),
+            Mode::Speed => {
+                helm::steer(heading(&self.command), self.command.thrust.map(|speed_kn| speed_kn * M_S_PER_KN))
+            }
             Mode::StationKeep => self.helm.keep(own.nav.pose()),
             Mode::GoToErp => self.helm.go_to_erp(own.nav.pose()),
             Mode::Waypoint => self.helm.sail(own.nav.pose()),

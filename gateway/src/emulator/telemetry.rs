@@ -2,7 +2,8 @@
 
 use super::Emulator;
 use crate::nmea::{
-    Attitude, Battery, BoatError, ControlState, Date, Gga, Hdg, Hdt, Mode, Rmc, Sentence, Talker, TimeOfDay, Vtg, Zda,
+    Attitude, Battery, BoatError, ControlState, Date, Gga, Hdg, Hdt, M_S_PER_KN, Mode, Rmc, Sentence, Talker,
+    TimeOfDay, Vtg, Zda,
 };
 use game::angle::compass_deg_from_rad;
 use game::frame::{Body, ned_from_body};
@@ -14,9 +15,7 @@ use game::{LatLon, SimTime};
 const FIX_AGE_MAX_S: f64 = 1.0;
 /// Below this speed a receiver knows no course, m/s.
 const COURSE_FROM_M_S: f64 = 0.1;
-const M_S_PER_KN: f64 = 1852.0 / 3600.0;
 const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
-const DAY_MS: i64 = 86_400_000;
 
 /// Sentences that a Surveyor does not send, for readers that want them: gpsd has no time and no speed without RMC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,8 +68,8 @@ impl Told {
         let speed_m_s = velocity.length();
         Told {
             date,
-            now: time_at(began, now),
-            time: time_at(began, seen),
+            now: began.later(now),
+            time: began.later(seen),
             at: (!is_lost).then(|| boat.frame.lat_lon(nav.at())),
             psi_rad: nav.psi_rad,
             course_rad: (speed_m_s >= COURSE_FROM_M_S).then(|| math::atan2(velocity.east, velocity.north)),
@@ -127,11 +126,6 @@ impl Told {
             Extra::Zda => Sentence::Zda(Zda { talker: Talker::GP, time: Some(self.now), date: Some(self.date) }),
         }
     }
-}
-
-fn time_at(began: TimeOfDay, at: SimTime) -> TimeOfDay {
-    let ms = i64::from(began.0) + (at.as_s() * 1000.0).round() as i64;
-    TimeOfDay(ms.rem_euclid(DAY_MS) as u32)
 }
 
 fn attitude(boat: &Emulator, nav: &Nav, imu: &Imu) -> Attitude {

@@ -2,6 +2,7 @@
 
 use super::field::Fields;
 use super::{Line, ParseError};
+use game::SimTime;
 use serde::{Deserialize, Serialize};
 
 /// Milliseconds of a day, and one second more for the day that ends with a leap second.
@@ -13,6 +14,23 @@ const DAY_MS: u32 = 86_400_000;
 /// 86 400 999; what lies beyond is written as an empty field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct TimeOfDay(pub u32);
+
+impl TimeOfDay {
+    /// So much later (or earlier), round the clock.
+    #[must_use]
+    pub fn later(self, by: SimTime) -> TimeOfDay {
+        let ms = i64::from(self.0) + (by.as_s() * 1000.0).round() as i64;
+        TimeOfDay(ms.rem_euclid(i64::from(DAY_MS)) as u32)
+    }
+
+    /// The time from `other` to this one, s: the shorter way round the clock, negative if this one is earlier.
+    #[must_use]
+    pub fn since_s(self, other: TimeOfDay) -> f64 {
+        let day_s = f64::from(DAY_MS) * 1e-3;
+        let apart_s = (f64::from(self.0) - f64::from(other.0)) * 1e-3;
+        apart_s - day_s * (apart_s / day_s).round()
+    }
+}
 
 /// A date of the Gregorian calendar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -109,6 +127,14 @@ fn time(text: &str) -> Option<TimeOfDay> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_of_day_go_round_the_clock() {
+        let (evening, morning) = (TimeOfDay(86_399_500), TimeOfDay(700));
+        assert_eq!(evening.later(SimTime::from_s(1.2)), morning);
+        assert_eq!(morning.later(SimTime::from_s(-1.2)), evening);
+        assert!((morning.since_s(evening) - 1.2).abs() < 1e-9 && (evening.since_s(morning) + 1.2).abs() < 1e-9);
+    }
 
     #[test]
     fn a_time_has_six_digits_and_perhaps_decimals() {

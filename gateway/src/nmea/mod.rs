@@ -57,6 +57,9 @@ use thiserror::Error;
 /// The longest sentence written, bytes with `$` and CR LF (NMEA 0183 v3.01, 5.3).
 pub const EMITTED_MAX: usize = 82;
 
+/// A knot, m/s.
+pub const M_S_PER_KN: f64 = 1852.0 / 3600.0;
+
 /// A sentence, read or to be written.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sentence {

@@ -56,7 +56,7 @@ impl SpeedUnit {
         match self {
             SpeedUnit::MetresPerSecond => 1.0,
             SpeedUnit::KilometresPerHour => 1.0 / 3.6,
-            SpeedUnit::Knots => 1852.0 / 3600.0,
+            SpeedUnit::Knots => super::M_S_PER_KN,
             SpeedUnit::MilesPerHour => 0.44704,
         }
     }

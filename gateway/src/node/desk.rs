@@ -121,7 +121,7 @@ impl Desk {
     }
 
     /// How everything is.
-    pub(super) fn full_status(&mut self) -> GatewayStatus {
+    pub(super) fn full_status(&self) -> GatewayStatus {
         let mut status = self.bridge.status(self.clock.now());
         if status.link != "up" {
             status.link.clone_from(&self.papers.link);

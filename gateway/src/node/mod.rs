@@ -25,7 +25,7 @@ use game::external::GatewayStatus;
 use game::frame::LatLon;
 use game::gateway::Gateway;
 use game::message::{Control, Notice};
-use game::scenario::Source;
+use game::scenario::{Source, UnknownVehicle};
 use game::topic::{self, GameName, Part};
 use game::{VehicleId, codec};
 use logbook::Logbook;
@@ -119,6 +119,9 @@ pub enum NodeError {
     /// The declination is not known.
     #[error("{0}; declination_deg in the gateway's file says it otherwise")]
     Declination(#[from] DeclinationError),
+    /// The game has no such boat.
+    #[error(transparent)]
+    UnknownVehicle(#[from] UnknownVehicle),
     /// The game and the gateway do not go together.
     #[error("{0}")]
     Refused(String),
@@ -243,24 +246,13 @@ fn find_game(
     tell: &mut dyn FnMut(News<'_>),
 ) -> Result<(Bus, GameName, Notice), NodeError> {
     let mut say = |reason: &str| tell(News::Looking { reason });
-    let bus = look.until(&mut say, || Ok(Bus::leaf(net)?))?;
-    let game = match game {
-        Some(game) => game.clone(),
-        None => look.until(&mut say, || lookout::only_game(&bus))?,
-    };
+    let (bus, game) = look.game(&mut say, net, game)?;
     let notice = look.until(&mut say, || lookout::notice(&bus, &game))?;
     Ok((bus, game, notice))
 }
 
-fn vehicle_of(notice: &Notice, name: &str) -> Result<VehicleId, NodeError> {
-    notice.scenario.vehicle_by_name(name).ok_or_else(|| {
-        let names: Vec<&str> = notice.scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
-        NodeError::Refused(format!("there is no vehicle {name:?} in this game; there are {}", names.join(", ")))
-    })
-}
-
 fn external_vehicle(notice: &Notice, name: &str) -> Result<VehicleId, NodeError> {
-    let vehicle = vehicle_of(notice, name)?;
+    let vehicle = notice.scenario.vehicle_named(name)?;
     if notice.scenario.vehicles[vehicle.index()].source == Source::External {
         return Ok(vehicle);
     }

@@ -1,6 +1,6 @@
 //! The player: minds a simulated boat in a game, and lets a back seat be that mind, by the boat's own sentences.
 
-use super::{News, NodeError, clock, declination_today_rad, find_game, pace_factor, vehicle_of};
+use super::{News, NodeError, clock, declination_today_rad, find_game, pace_factor};
 use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
@@ -63,7 +63,7 @@ struct Incoming {
 pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
     let mut look = Lookout::new(settings.wait, &settings.stop);
     let (bus, game, notice) = find_game(&mut look, &settings.net, settings.game.as_ref(), tell)?;
-    let vehicle = vehicle_of(&notice, &settings.vehicle)?;
+    let vehicle = notice.scenario.vehicle_named(&settings.vehicle)?;
     // A back seat lives by the clock.
     pace_factor(&notice.pace, true)?;
     let scenario = &notice.scenario;

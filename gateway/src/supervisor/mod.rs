@@ -48,6 +48,19 @@ pub struct Conditions {
     pub order_fresh: bool,
 }
 
+impl Conditions {
+    /// What is true before anything has come.
+    pub const NOTHING: Conditions = Conditions {
+        link: false,
+        control: Control::Unknown,
+        nav: Some(NavFault::NoFix),
+        inside: false,
+        battery_low: false,
+        blocked: false,
+        order_fresh: false,
+    };
+}
+
 /// What the boat says about who commands it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {

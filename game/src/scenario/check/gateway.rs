@@ -3,16 +3,13 @@
 use super::boat::thrust_map;
 use crate::gateway::{
     BatteryWatch, CompassFrame, ControlWatch, Drive, Fence, Gateway, Halt, Limits, Loops, LowBattery, NavWatch,
+    SURVEYOR_THRUST_MAP,
 };
 use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{
     At, RawBatteryWatch, RawControlWatch, RawFence, RawGateway, RawHalt, RawLimits, RawLoops, RawNavWatch,
 };
 use crate::scenario::read::Document;
-
-/// The Surveyor's, by the West Point missions of 2024: thrust in per cent, speed in m/s.
-const SURVEYOR_THRUST_MAP: [(f64, f64); 7] =
-    [(-100.0, -2.0), (0.0, 0.0), (20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)];
 
 /// Checks a gateway.
 pub(in crate::scenario) fn gateway(ledger: &mut Ledger, document: &Document<RawGateway>) -> Option<Gateway> {
