@@ -66,6 +66,18 @@ pub fn all_say(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
     say(game, scenario, team, "*")
 }
 
+/// What all minds of all teams tell (subscribe).
+#[must_use]
+pub fn everybody_says(game: &GameName) -> String {
+    format!("squall/{}/say/*/*", game.0)
+}
+
+/// What policies outside propose (subscribe).
+#[must_use]
+pub fn all_policies(game: &GameName) -> String {
+    format!("squall/{}/policy/*", game.0)
+}
+
 /// What a policy outside proposes for a boat (publish).
 #[must_use]
 pub fn policy(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
@@ -96,6 +108,18 @@ pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) 
     format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
+/// What all real boats are to do (subscribe).
+#[must_use]
+pub fn all_external_orders(game: &GameName) -> String {
+    format!("squall/{}/external/*", game.0)
+}
+
+/// The bytes between a gateway and its boat (publish).
+#[must_use]
+pub fn link(game: &GameName, vehicle: &str) -> String {
+    format!("squall/{}/link/{vehicle}", game.0)
+}
+
 /// How a gateway and its boat are (publish).
 #[must_use]
 pub fn status(game: &GameName, vehicle: &str) -> String {
@@ -106,6 +130,24 @@ pub fn status(game: &GameName, vehicle: &str) -> String {
 #[must_use]
 pub fn operate(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/operate/{vehicle}", game.0)
+}
+
+/// How the run of the game stands (publish).
+#[must_use]
+pub fn run(game: &GameName) -> String {
+    format!("squall/{}/run", game.0)
+}
+
+/// Everything that has happened so far (query).
+#[must_use]
+pub fn events(game: &GameName) -> String {
+    format!("squall/{}/events", game.0)
+}
+
+/// The waves (query).
+#[must_use]
+pub fn water(game: &GameName) -> String {
+    format!("squall/{}/water", game.0)
 }
 
 /// The quay at which gateways ask to bring their boat (query).

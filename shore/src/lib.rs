@@ -1,0 +1,3 @@
+//! What people use ashore: recordings of games, and a page to watch them.
+
+pub mod recording;
