@@ -30,6 +30,13 @@ impl GameName {
     }
 }
 
+/// A topic of a game by the name that recordings have for it; what comes from several is one of theirs.
+#[must_use]
+pub fn recorded(game: &GameName, name: &str) -> String {
+    let several = if name.starts_with("say/") { "/*" } else { "" };
+    format!("squall/{}/{name}{several}", game.0)
+}
+
 /// The truth for observers (publish).
 #[must_use]
 pub fn frame(game: &GameName) -> String {
@@ -66,18 +73,6 @@ pub fn all_say(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
     say(game, scenario, team, "*")
 }
 
-/// What all minds of all teams tell (subscribe).
-#[must_use]
-pub fn everybody_says(game: &GameName) -> String {
-    format!("squall/{}/say/*/*", game.0)
-}
-
-/// What policies outside propose (subscribe).
-#[must_use]
-pub fn all_policies(game: &GameName) -> String {
-    format!("squall/{}/policy/*", game.0)
-}
-
 /// What a policy outside proposes for a boat (publish).
 #[must_use]
 pub fn policy(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
@@ -106,12 +101,6 @@ pub fn all_nav(game: &GameName) -> String {
 #[must_use]
 pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
     format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
-}
-
-/// What all real boats are to do (subscribe).
-#[must_use]
-pub fn all_external_orders(game: &GameName) -> String {
-    format!("squall/{}/external/*", game.0)
 }
 
 /// The bytes between a gateway and its boat (publish).
