@@ -13,6 +13,7 @@ mod offspring;
 mod onlooker;
 mod override_args;
 mod plot;
+mod replay_command;
 mod result_table;
 mod rose_plot;
 mod run_command;
@@ -22,6 +23,7 @@ mod sea_plot;
 mod sim_command;
 mod stop;
 mod strategy_command;
+mod tape;
 mod telling;
 mod tournament_command;
 mod tournament_progress;
@@ -57,6 +59,8 @@ enum Command {
     Agent(agent_command::Args),
     /// Shows a running game in the terminal, or what one boat's helm thinks.
     Watch(watch_command::Args),
+    /// Shows a recorded game again, or checks that the same comes of it.
+    Replay(replay_command::Args),
     /// Dumps one decision of a boat's helm: a table, numbers, pictures.
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
@@ -84,6 +88,7 @@ fn main() -> ExitCode {
         Command::Sim(args) => sim_command::run(&args),
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),
+        Command::Replay(args) => replay_command::run(&args),
         Command::Helm(args) => helm_command::run(&args),
         Command::Gateway(args) => gateway_command::run(&args),
         Command::List(args) => list_command::run(&args),

@@ -1,4 +1,4 @@
-//! What a game is given between two decisions. With it a game can be played again without its minds.
+//! What a game is given as it goes on. With it a game can be played again without its minds.
 
 use crate::id::VehicleId;
 use crate::message::{Message, Stamp, VehicleOrder};
@@ -49,12 +49,14 @@ pub enum Input {
     EStopped(bool),
     /// All boats were made to hold, or that was over.
     Halted(bool),
+    /// It was played until the next decision.
+    Played,
 }
 
-/// Everything that a game was given from one decision to the next.
+/// Everything that a game was given since the frame before, in order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
-    /// The decision, and its time.
+    /// That of the frame that came of it.
     pub stamp: Stamp,
     /// In order.
     pub inputs: Vec<InputRecord>,
@@ -97,6 +99,7 @@ impl From<Input> for InputRecord {
             }
             Input::EStopped(stopped) => record(if stopped { 9 } else { 10 }, None, &[]),
             Input::Halted(halted) => record(if halted { 11 } else { 12 }, None, &[]),
+            Input::Played => record(13, None, &[]),
         }
     }
 }
@@ -128,6 +131,7 @@ impl InputRecord {
             },
             (kind @ 9..=10, []) => Input::EStopped(kind == 9),
             (kind @ 11..=12, []) => Input::Halted(kind == 11),
+            (13, []) => Input::Played,
             _ => return None,
         })
     }
@@ -164,12 +168,13 @@ mod tests {
             Input::EStopped(false),
             Input::Halted(true),
             Input::Halted(false),
+            Input::Played,
         ] {
             let record = InputRecord::from(input);
             assert_eq!(record.input(), Some(input), "{record:?}");
             assert_eq!(InputRecord { numbers: vec![0.0; 9], ..record }.input(), None, "{input:?}");
         }
-        assert_eq!(InputRecord { kind: 13, ..InputRecord::default() }.input(), None);
+        assert_eq!(InputRecord { kind: 14, ..InputRecord::default() }.input(), None);
         assert_eq!(InputRecord { kind: 4, vehicle: -1, ..InputRecord::default() }.input(), None);
     }
 }

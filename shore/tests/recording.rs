@@ -80,10 +80,10 @@ fn what_is_recorded_is_read_again() {
     assert_eq!(said.schema, Some("squall_msgs/msg/Frame"));
     let inputs: Vec<Inputs> = recording.on("inputs").map(|said| said.read().expect("inputs")).collect();
     let given = |inputs: &Inputs| inputs.inputs.iter().map(|record| record.input().expect("known")).collect::<Vec<_>>();
-    assert_eq!(inputs.iter().map(|inputs| inputs.stamp.seq).collect::<Vec<_>>(), [0, 1, 2]);
-    assert_eq!(given(&inputs[1]), turn(2, 3.0).inputs);
+    assert_eq!(inputs.iter().map(|inputs| inputs.stamp.seq).collect::<Vec<_>>(), [0, 1, 2, 3]);
+    assert_eq!(given(&inputs[2]), turn(2, 3.0).inputs);
     let topics: Vec<(&str, usize)> = recording.topics().into_iter().collect();
-    let want = [("frame", 4), ("inputs", 3), ("picture/blue", 3), ("picture/red", 3), ("status/blue_one", 1)];
+    let want = [("frame", 4), ("inputs", 4), ("picture/blue", 3), ("picture/red", 3), ("status/blue_one", 1)];
     assert_eq!(topics, want);
     let Note::Heard { bytes, .. } = status() else { panic!("it was heard") };
     let said = recording.on("status/blue_one").next().expect("it is there");
@@ -96,7 +96,7 @@ fn what_is_recorded_is_read_again() {
 fn the_file_is_one_that_the_library_reads() {
     let bytes = recorded(&[1.0, 2.0, 3.0, 4.0]);
     let summary = mcap::Summary::read(&bytes).expect("a summary").expect("a summary");
-    assert!(summary.chunk_indexes.len() > 1 && summary.stats.as_ref().is_some_and(|stats| stats.message_count == 14));
+    assert!(summary.chunk_indexes.len() > 1 && summary.stats.as_ref().is_some_and(|stats| stats.message_count == 15));
     let mut count = 0;
     for message in mcap::MessageStream::new(&bytes).expect("it is MCAP") {
         let message = message.expect("a message");
@@ -107,7 +107,7 @@ fn the_file_is_one_that_the_library_reads() {
             other => assert_eq!((other, schema.encoding.as_str()), ("json", "jsonschema")),
         }
     }
-    assert_eq!(count, 14);
+    assert_eq!(count, 15);
 }
 
 /// What was said, message by message.

@@ -49,9 +49,8 @@ pub struct Contest {
     /// By team.
     pictures: Vec<Picture>,
     decision: u64,
-    /// What was given since the open decision was opened, and between that and the one before.
-    given: Vec<Input>,
-    given_before: Vec<Input>,
+    /// What was given since somebody last asked, where somebody wants to know.
+    given: Option<Vec<Input>>,
 }
 
 impl Contest {
@@ -83,8 +82,7 @@ impl Contest {
             pictured_for: None,
             pictures: pictures.collect(),
             decision: 0,
-            given: Vec::new(),
-            given_before: Vec::new(),
+            given: None,
             scenario,
         })
     }
@@ -144,7 +142,7 @@ impl Contest {
             return &self.pictures;
         }
         self.pictured_for = Some(self.decision);
-        self.given.push(Input::Pictured);
+        self.note(Input::Pictured);
         self.gather();
         let news = (self.decision, &self.events[self.pictured..]);
         for picture in &mut self.pictures {
@@ -191,10 +189,20 @@ impl Contest {
         &self.pictures
     }
 
-    /// Everything that was given from the last decision to the open one, in order.
-    #[must_use]
-    pub fn last_inputs(&self) -> &[Input] {
-        &self.given_before
+    /// From now on, keeps what it is given, for [`Contest::take_inputs`].
+    pub fn keep_inputs(&mut self) {
+        self.given.get_or_insert_default();
+    }
+
+    /// Everything that was given since this was asked last, in order.
+    pub fn take_inputs(&mut self) -> Vec<Input> {
+        self.given.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    fn note(&mut self, input: Input) {
+        if let Some(given) = &mut self.given {
+            given.push(input);
+        }
     }
 
     /// Gives what was once given, as it is recorded.
@@ -209,13 +217,14 @@ impl Contest {
             Input::Reported { vehicle, nav, fix_at, valid } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
             Input::Halted(halted) => self.halt(halted),
+            Input::Played => self.advance(),
         }
     }
 
     /// Sends an order to a vehicle: it is in force from when it arrives until the next one does. To a real boat it goes
     /// over a real link, and none of ours.
     pub fn order(&mut self, vehicle: VehicleId, order: Order) {
-        self.given.push(Input::Ordered { vehicle, order });
+        self.note(Input::Ordered { vehicle, order });
         let (i, now) = (vehicle.index(), self.now());
         let is_external = self.track(vehicle).is_some();
         match &mut self.radio {
@@ -259,7 +268,7 @@ impl Contest {
             track.take(nav, fix_at.min(now + decision));
             self.carry(vehicle);
         }
-        self.given.push(Input::Reported { vehicle, nav, fix_at, valid });
+        self.note(Input::Reported { vehicle, nav, fix_at, valid });
         Ok(())
     }
 
@@ -298,7 +307,7 @@ impl Contest {
     /// Makes a vehicle hold at once, whatever it was told: nothing of it goes over the air, and orders under way do not
     /// arrive any more.
     pub fn hold(&mut self, vehicle: VehicleId) {
-        self.given.push(Input::Held { vehicle });
+        self.note(Input::Held { vehicle });
         self.hold_now(vehicle);
     }
 
@@ -362,7 +371,7 @@ impl Contest {
     /// lost already.
     pub fn lose_mind(&mut self, vehicle: VehicleId) {
         if !std::mem::replace(&mut self.mind_lost[vehicle.index()], true) {
-            self.given.push(Input::MindLost { vehicle });
+            self.note(Input::MindLost { vehicle });
             self.hold_now(vehicle);
             self.log(Event::MindLost { vehicle });
         }
@@ -371,7 +380,7 @@ impl Contest {
     /// Says that a vehicle's mind is there again: what was sent before does not arrive. Does nothing if it was not lost.
     pub fn regain_mind(&mut self, vehicle: VehicleId) {
         if std::mem::replace(&mut self.mind_lost[vehicle.index()], false) {
-            self.given.push(Input::MindBack { vehicle });
+            self.note(Input::MindBack { vehicle });
             self.forget_orders(vehicle);
             self.log(Event::MindBack { vehicle });
         }
@@ -380,7 +389,7 @@ impl Contest {
     /// Makes all boats hold, or lets them go on. Says so, if that is news.
     pub fn e_stop(&mut self, stopped: bool) {
         if std::mem::replace(&mut self.stopped, stopped) != stopped {
-            self.given.push(Input::EStopped(stopped));
+            self.note(Input::EStopped(stopped));
             self.world.halt(self.stopped || self.halted);
             self.log(if stopped { Event::EStopped } else { Event::Released });
         }
@@ -389,7 +398,7 @@ impl Contest {
     /// Makes all boats hold for now, or lets them go on where nobody has stopped them. Says so, if that is news.
     pub fn halt(&mut self, halted: bool) {
         if std::mem::replace(&mut self.halted, halted) != halted {
-            self.given.push(Input::Halted(halted));
+            self.note(Input::Halted(halted));
             self.world.halt(self.stopped || self.halted);
             self.log(if halted { Event::Halted } else { Event::WentOn });
         }
@@ -408,8 +417,7 @@ impl Contest {
             self.events.extend(self.world.events().iter().map(|event| Logged { tick, at, event: *event }));
         }
         self.decision += 1;
-        std::mem::swap(&mut self.given, &mut self.given_before);
-        self.given.clear();
+        self.note(Input::Played);
         if let Some(radio) = &mut self.radio {
             radio.open_next();
         }

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `frame` | the truth, at every decision | CDR |
 //! | `picture/<team>` | what a team's minds were shown | CDR |
-//! | `inputs` | all that the game was given from one decision to the next: it can be played again from this | CDR |
+//! | `inputs` | before each frame, all that the game was given since the last: it can be played again from this | CDR |
 //! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: where they are, what they are to do, every byte of the link | CDR |
 //! | `say/<team>`, `policy/<boat>` | what minds and policies said | CDR |
 //! | `status/<boat>` | how gateways are | JSON |

@@ -37,9 +37,9 @@ pub enum Note {
 pub struct Turn {
     /// The truth, with the events since the turn before.
     pub frame: Frame,
-    /// What was shown at the decision before this one.
+    /// What was shown since the turn before.
     pub pictures: Vec<Picture>,
-    /// What was given from the decision before this one until now, in order.
+    /// What was given since the turn before, in order.
     pub inputs: Vec<Input>,
 }
 
@@ -123,18 +123,13 @@ impl<W: Write + Seek> Writer<W> {
     }
 
     fn turn(&mut self, turn: &Turn, utc_ns: u64) -> Result<(), RecordError> {
-        let Stamp { valid_ns, seq, .. } = turn.frame.stamp;
-        let before = turn.pictures.first().map_or(Stamp::default(), |picture| picture.stamp);
-        if !turn.inputs.is_empty() {
-            for picture in &turn.pictures {
-                let topic = self.teams.get(usize::from(picture.team)).cloned().unwrap_or_default();
-                self.put_message(&topic, picture, utc_ns)?;
-            }
-            let seq = seq.saturating_sub(1);
-            let stamp = Stamp { valid_ns: before.valid_ns.min(valid_ns), seq, version: Inputs::VERSION };
-            let inputs = turn.inputs.iter().map(|input| (*input).into()).collect();
-            self.put_message(INPUTS, &Inputs { stamp, inputs }, utc_ns)?;
+        for picture in &turn.pictures {
+            let topic = self.teams.get(usize::from(picture.team)).cloned().unwrap_or_default();
+            self.put_message(&topic, picture, utc_ns)?;
         }
+        let stamp = Stamp { version: Inputs::VERSION, ..turn.frame.stamp };
+        let inputs = turn.inputs.iter().map(|input| (*input).into()).collect();
+        self.put_message(INPUTS, &Inputs { stamp, inputs }, utc_ns)?;
         self.put_message(FRAME, &turn.frame, utc_ns)
     }
 

@@ -85,7 +85,6 @@ impl<'w> Booth<'w> {
         let bus = Bus::hub(&settings.net)?;
         let (outlet, inbox) = inbox(INBOX);
         let game = &settings.game;
-        let scenario = contest.scenario();
         let on = |call: fn(Vec<u8>) -> Call| {
             let outlet = outlet.clone();
             move |bytes: &[u8]| outlet.put(call(bytes.to_vec()))
@@ -100,6 +99,11 @@ impl<'w> Booth<'w> {
                 gone.put(Call::Gone(part, node));
             }
         };
+        let mut contest = contest;
+        if witness.state().is_some() {
+            contest.keep_inputs();
+        }
+        let scenario = contest.scenario();
         let heard_topics = if witness.state().is_some() { telling::heard_topics(scenario) } else { vec![] };
         let mut standing = vec![
             bus.subscribe(topic::all_orders(game), on(Call::Orders))?,
@@ -200,7 +204,7 @@ impl<'w> Booth<'w> {
 
     /// Shows the witness how it stands, and what led to it.
     pub(super) fn bear_witness(&mut self) {
-        self.witness.turn(&self.contest);
+        self.witness.turn(&mut self.contest);
     }
 
     /// Sends observers the truth, if there are any.

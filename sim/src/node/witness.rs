@@ -6,8 +6,8 @@ use game::run_state::RecordingState;
 
 /// Somebody who is shown everything. Nobody waits for it: it must be quick.
 pub trait Witness {
-    /// A decision: the contest before it, with what was given since the one before and what was shown then.
-    fn turn(&mut self, contest: &Contest);
+    /// A decision: the contest before it, with what was given since the one before ([`Contest::take_inputs`]).
+    fn turn(&mut self, contest: &mut Contest);
     /// Something that went over the network.
     fn heard(&mut self, heard: Heard);
     /// How what it writes stands, if it writes.
@@ -31,7 +31,7 @@ pub struct Heard {
 pub struct Nobody;
 
 impl Witness for Nobody {
-    fn turn(&mut self, _: &Contest) {}
+    fn turn(&mut self, _: &mut Contest) {}
     fn heard(&mut self, _: Heard) {}
     fn state(&self) -> Option<RecordingState> {
         None
