@@ -11,8 +11,8 @@ mod words;
 
 pub use behaviour::{
     Attractor, AvoidCollision, AvoidObstacle, Behaviour, ConstantHeading, ConstantSpeed, Contacts, CutRange, FullStop,
-    Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, Moment, OpRegion, Parameter, Policy, Post, Shape, Shield,
-    StationKeep, Task, Timer, Trail, Turn, Waypoint,
+    Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, Moment, OpRegion, Parameter, Policy, Post, Proposer, Shape,
+    Shield, StationKeep, Task, Timer, Trail, Turn, Waypoint,
 };
 pub use expression::{Expression, Join, Measure, Values};
 pub use fact::{Fact, Kind};
@@ -38,6 +38,17 @@ pub struct Strategy {
     pub roles: Vec<Program>,
     /// How they are dealt.
     pub assignment: Assignment,
+}
+
+impl Program {
+    /// Who proposes courses and speeds from outside, if the program lets anybody.
+    #[must_use]
+    pub fn proposer(&self) -> Option<Proposer> {
+        self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
+            Task::Policy(policy) => Some(policy.by),
+            _ => None,
+        })
+    }
 }
 
 /// How roles are dealt to a team's boats.
