@@ -22,7 +22,7 @@ use bid::Entry;
 use game::helm::HelmReport;
 use game::message::Word;
 use game::scenario::Scenario;
-use game::strategy::{Expression, Moment, Program, Rule, Task, What, Who};
+use game::strategy::{Expression, Moment, Program, Rule, What, Who};
 use game::{Event, Order, Picture, SimTime, VehicleId};
 use life::Life;
 use scene::Proposed;
@@ -203,7 +203,7 @@ impl Mind for HelmMind {
     }
 
     fn heeds_policy(&self) -> bool {
-        self.program.behaviours.iter().any(|behaviour| matches!(behaviour.task, Task::Policy(_)))
+        self.program.heeds_policy()
     }
 
     fn say(&self, words: &mut Vec<Word>) {

@@ -156,7 +156,21 @@ pub enum What {
     Collides,
 }
 
+impl Strategy {
+    /// Whether a boat that plays it may heed what policies outside propose.
+    #[must_use]
+    pub fn heeds_policy(&self) -> bool {
+        self.roles.iter().any(Program::heeds_policy)
+    }
+}
+
 impl Program {
+    /// Whether it weighs what a policy outside proposes.
+    #[must_use]
+    pub fn heeds_policy(&self) -> bool {
+        self.behaviours.iter().any(|behaviour| matches!(behaviour.task, Task::Policy(_)))
+    }
+
     /// Whether a mode has no parts.
     #[must_use]
     pub fn is_leaf(&self, mode: usize) -> bool {
