@@ -1,7 +1,7 @@
 //! The live page: a web server that shows a game, or a recording of one, to browsers.
 //!
 //! [`Page`] serves the files of the page and talks with each browser that opens it as `PROTOCOL.md` says. What it shows
-//! is a [`Show`]: [`replay::ReplayShow`]. Each page has a [`Viewer`] of its own, which is asked what
+//! is a [`Show`]: `live::LiveShow` or [`replay::ReplayShow`]. Each page has a [`Viewer`] of its own, which is asked what
 //! to say next whenever the page can take it; so a slow page sees fewer frames, and nobody waits for it.
 
 mod ask;
@@ -11,6 +11,8 @@ mod clock;
 mod conversation;
 mod guard;
 mod line;
+#[cfg(feature = "net")]
+pub mod live;
 pub mod replay;
 mod rose;
 mod show;
