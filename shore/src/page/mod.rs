@@ -113,7 +113,7 @@ impl Page {
                     tokio::time::sleep(LOOK_AGAIN).await;
                 }
             })));
-            runtime.block_on(tokio::time::sleep(GOODBYE));
+            runtime.block_on(async { tokio::time::sleep(GOODBYE).await });
             runtime.shutdown_timeout(GOODBYE);
         };
         let thread = std::thread::Builder::new().name("page".to_owned()).spawn(serve).map_err(PageError::Begin)?;

@@ -2,10 +2,10 @@
 
 use super::asker::Asker;
 use super::stage::Play;
-use super::{Command, Theatre};
+use super::{Command, Place, Theatre};
 use crate::page::clock;
 use bus::lookout::{self, Missing};
-use bus::{Board, Bus, BusError, Delivery, Inbox, Net, Publisher, Standing};
+use bus::{Board, Bus, BusError, Delivery, Publisher, Standing};
 use game::codec;
 use game::external::GatewayStatus;
 use game::message::{Frame, Message, PolicyProposal, Stamp};
@@ -16,6 +16,7 @@ use game::topic::{self, GameName, Part};
 use game::water::Water;
 use game::{TeamId, VehicleId};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -23,6 +24,8 @@ use std::time::{Duration, Instant};
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 /// How often to see to what changes by itself.
 const ROUND: Duration = Duration::from_millis(50);
+/// After so many attempts the session may be what is wrong.
+const ATTEMPTS: u64 = 20;
 /// How long to wait for an answer.
 const ANSWER: Duration = Duration::from_secs(2);
 /// A sim whose sign of life is missing for so long is gone; a link that was cut and came back is not.
@@ -35,9 +38,9 @@ const PICTURE_AGAIN: Duration = Duration::from_millis(50);
 /// Keeps the show going.
 pub(super) struct Keeper {
     theatre: Arc<Theatre>,
-    net: Net,
+    place: Place,
     game: Option<GameName>,
-    commands: Inbox<Command>,
+    commands: Receiver<Command>,
     tell: Box<dyn Fn(&str) + Send>,
 }
 
@@ -55,18 +58,18 @@ struct Visit {
 impl Keeper {
     pub(super) fn new(
         theatre: Arc<Theatre>,
-        net: Net,
+        place: Place,
         game: Option<GameName>,
-        commands: Inbox<Command>,
+        commands: Receiver<Command>,
         tell: Box<dyn Fn(&str) + Send>,
     ) -> Keeper {
-        Keeper { theatre, net, game, commands, tell }
+        Keeper { theatre, place, game, commands, tell }
     }
 
     /// Shows one game after the other until the show closes.
     pub(super) fn keep(self) {
         let mut bus = None;
-        let mut said = String::new();
+        let (mut said, mut attempts) = (String::new(), 0_u64);
         while !self.theatre.is_closing() {
             match self.come(&mut bus) {
                 Ok(visit) => {
@@ -80,18 +83,28 @@ impl Keeper {
                         (self.tell)(&reason);
                         said = reason;
                     }
-                    // Nobody can have a wish for a game that is not there; those of before are void.
-                    drop(self.commands.take(LOOK_AGAIN));
+                    // What was wanted of a game that is gone is not wanted of the next.
+                    while self.commands.try_recv().is_ok() {}
+                    attempts += 1;
+                    if attempts % ATTEMPTS == 0 {
+                        bus = None;
+                    }
+                    Self::rest(LOOK_AGAIN);
                 }
             }
         }
+    }
+
+    /// Waits a while, for nothing.
+    fn rest(time: Duration) {
+        Board::new(()).wait(time, |()| false);
     }
 
     /// Comes to a game, if there is one. The session stays open for the next attempt.
     fn come(&self, bus: &mut Option<Bus>) -> Result<Visit, Missing> {
         let bus = match bus {
             Some(bus) => bus.clone(),
-            None => bus.insert(Bus::leaf(&self.net)?).clone(),
+            None => bus.insert(Bus::leaf(&(self.place)().map_err(Missing::Yet)?)?).clone(),
         };
         let name = match &self.game {
             Some(name) => name.clone(),
@@ -112,9 +125,10 @@ impl Keeper {
             scope.spawn(|| asker.ask(&left));
             let mut watch = SignOfLife::new(clock::now());
             while !self.theatre.is_closing() && !watch.is_gone(&visit.sims, clock::now()) {
-                if let Some(command) = self.commands.take(ROUND) {
-                    visit.send(&self.theatre, command);
+                if let Ok(command) = self.commands.recv_timeout(ROUND) {
+                    visit.send(command);
                 }
+                visit.steer(&self.theatre);
                 visit.see_to_wheels(&self.theatre);
                 visit.see_to_pictures(&self.theatre);
             }
@@ -191,22 +205,32 @@ impl Visit {
     }
 
     /// Passes on what a page wants. What cannot be sent now is lost with the session, which is looked at anew.
-    fn send(&mut self, theatre: &Theatre, command: Command) {
+    fn send(&self, command: Command) {
         match command {
             Command::Control(control) => {
                 let json = serde_json::to_vec(&control).unwrap_or_default();
                 drop(self.control.send_json(json));
             }
-            Command::Drive { vehicle, course_rad, speed_m_s } => {
-                let stamp = Stamp { version: PolicyProposal::VERSION, ..theatre.stage().roll.stamp };
-                if !self.policies.contains_key(&vehicle) {
-                    let key = topic::policy(&self.play.name, self.play.scenario(), vehicle);
-                    let Ok(publisher) = self.bus.publisher(key, Delivery::Drop) else { return };
-                    self.policies.insert(vehicle, publisher);
-                }
-                if let Some(publisher) = self.policies.get(&vehicle) {
-                    drop(publisher.send(&PolicyProposal { stamp, vehicle, course_rad, speed_m_s }));
-                }
+            // It is seen to in every round; this only begins one.
+            Command::Steer => {}
+        }
+    }
+
+    /// Tells steered boats where to go, as of the newest frame.
+    fn steer(&mut self, theatre: &Theatre) {
+        let (steering, stamp) = {
+            let mut stage = theatre.stage();
+            (std::mem::take(&mut stage.steering), stage.roll.stamp)
+        };
+        let stamp = Stamp { version: PolicyProposal::VERSION, ..stamp };
+        for (vehicle, (course_rad, speed_m_s)) in steering {
+            if !self.policies.contains_key(&vehicle) {
+                let key = topic::policy(&self.play.name, self.play.scenario(), vehicle);
+                let Ok(publisher) = self.bus.publisher(key, Delivery::Drop) else { continue };
+                self.policies.insert(vehicle, publisher);
+            }
+            if let Some(publisher) = self.policies.get(&vehicle) {
+                drop(publisher.send(&PolicyProposal { stamp, vehicle, course_rad, speed_m_s }));
             }
         }
     }

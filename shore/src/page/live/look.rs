@@ -20,6 +20,8 @@ pub(super) struct Look {
     theatre: Arc<Theatre>,
     guest: Guest,
     page: u64,
+    /// Whose helm the page looks at, and whether with utilities: also in the next game, if it has that boat.
+    wish: Option<(String, bool)>,
     told: Told,
 }
 
@@ -44,7 +46,7 @@ struct Told {
 
 impl Look {
     pub(super) fn new(theatre: Arc<Theatre>, guest: Guest, page: u64) -> Look {
-        Look { theatre, guest, page, told: Told::default() }
+        Look { theatre, guest, page, wish: None, told: Told::default() }
     }
 
     /// The game that is on, for something to be done in it.
@@ -54,20 +56,16 @@ impl Look {
         play.ok_or_else(|| "there is no game now".to_owned())
     }
 
-    fn send(&self, command: Command) {
-        self.theatre.commands.put(command);
+    fn send(&self, command: Command) -> Result<(), String> {
+        self.theatre.commands.try_send(command).map_err(|_| "the network does not keep up: ask again".to_owned())
     }
 
     fn select(&mut self, vehicle: Option<&str>, functions: bool) -> Result<(), String> {
-        let mut stage = self.theatre.stage();
-        let (Some(name), Some(play)) = (vehicle, stage.play.clone()) else {
-            stage.selected.remove(&self.page);
-            return Ok(());
-        };
-        let vehicle = play.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
-        stage.selected.insert(self.page, (vehicle, functions));
+        self.wish = vehicle.map(|name| (name.to_owned(), functions));
         (self.told.helm, self.told.estimate) = (0, None);
-        Ok(())
+        let mut stage = self.theatre.stage();
+        stage.selected.remove(&self.page);
+        stage.select(self.page, self.wish.as_ref())
     }
 
     fn set_speed(&self, factor: Option<f64>) -> Result<(), String> {
@@ -77,8 +75,7 @@ impl Look {
         if factor.is_some_and(|factor| !(factor > 0.0 && factor <= SPEED_MAX)) {
             return Err(format!("the speed must be more than 0 and at most {SPEED_MAX}"));
         }
-        self.send(Command::Control(Control::Speed(factor)));
-        Ok(())
+        self.send(Command::Control(Control::Speed(factor)))
     }
 
     fn drive(&self, name: &str, course_deg: f64, speed_m_s: f64, now: Instant) -> Result<(), String> {
@@ -91,14 +88,21 @@ impl Look {
         if !course_deg.is_finite() || !speed_m_s.is_finite() {
             return Err("course and speed must be numbers".to_owned());
         }
-        if !self.theatre.stage().wheels.grip(vehicle, self.page, now) {
-            return Err(format!("somebody else steers {name}"));
-        }
         let speed_m_s = speed_m_s.clamp(0.0, scenario.boat_of(vehicle).speed_max_m_s());
         let course_rad = course_deg.rem_euclid(360.0).to_radians();
-        self.send(Command::Drive { vehicle, course_rad, speed_m_s });
-        self.theatre.news.ring();
-        Ok(())
+        let mut stage = self.theatre.stage();
+        let had = stage.wheels.holder(vehicle);
+        if !stage.wheels.grip(vehicle, self.page, now) {
+            return Err(format!("somebody else steers {name}"));
+        }
+        let is_news = stage.wheels.holder(vehicle) != had;
+        let is_on_its_way = !stage.steering.is_empty();
+        stage.steering.insert(vehicle, (course_rad, speed_m_s));
+        drop(stage);
+        if is_news {
+            self.theatre.news.ring();
+        }
+        if is_on_its_way { Ok(()) } else { self.send(Command::Steer) }
     }
 
     fn let_go(&self, name: &str) -> Result<(), String> {
@@ -121,8 +125,7 @@ impl Viewer for Look {
             Ask::Select { vehicle, functions } => self.select(vehicle.as_deref(), *functions),
             Ask::Control { what } => {
                 self.play()?;
-                self.send(Command::Control(control(*what)));
-                Ok(())
+                self.send(Command::Control(control(*what)))
             }
             Ask::Speed { factor } => self.set_speed(*factor),
             Ask::Drive { vehicle, course_deg, speed_m_s } => self.drive(vehicle, *course_deg, *speed_m_s, now),
@@ -132,10 +135,12 @@ impl Viewer for Look {
     }
 
     fn say(&mut self, now: Instant, room: bool) -> Option<Said> {
-        let stage = self.theatre.stage();
+        let mut stage = self.theatre.stage();
         let play = stage.play.clone()?;
         if self.told.generation != stage.generation {
             self.told = Told { generation: stage.generation, ..Told::default() };
+            // The boat may not be in this game; then the page selects another.
+            drop(stage.select(self.page, self.wish.as_ref()));
             let hello =
                 Tell::hello(&play.notice.version, Mode::Live, self.guest.rights, play.name.as_str(), &play.chart);
             return Some(Said::Text(hello.json()));

@@ -12,17 +12,20 @@ mod stage;
 mod wheel;
 
 use super::show::{Guest, News, Show, Viewer};
-use bus::{Net, Outlet, inbox};
-use game::VehicleId;
+use bus::Net;
 use game::message::Control;
 use game::topic::GameName;
 use look::Look;
 use stage::Stage;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The most things to be sent that wait for the network.
 const COMMANDS_MAX: usize = 64;
+
+/// Where a game can be reached, or why that is not known: asked anew for every search, since the next may be elsewhere.
+pub type Place = Box<dyn Fn() -> Result<Net, String> + Send>;
 
 /// A game on the network, shown to pages.
 pub struct LiveShow {
@@ -33,7 +36,7 @@ pub struct LiveShow {
 struct Theatre {
     stage: Mutex<Stage>,
     news: News,
-    commands: Outlet<Command>,
+    commands: SyncSender<Command>,
     pages: AtomicU64,
     is_closing: AtomicBool,
 }
@@ -43,18 +46,18 @@ struct Theatre {
 enum Command {
     /// For all of it.
     Control(Control),
-    /// For a boat: course and speed.
-    Drive { vehicle: VehicleId, course_rad: f64, speed_m_s: f64 },
+    /// For boats that are steered: where to stands on the stage.
+    Steer,
 }
 
 impl LiveShow {
-    /// Looks for a game where `net` leads, this one or the only one there is, for as long as the show is kept. `tell` is
-    /// told what is missing meanwhile, whenever that is news.
+    /// Looks for a game at `place`, this one or the only one there is, for as long as the show is kept. `tell` is told what
+    /// is missing meanwhile, whenever that is news.
     ///
     /// # Errors
     /// If the system has no thread to give.
-    pub fn open(net: Net, game: Option<GameName>, tell: Box<dyn Fn(&str) + Send>) -> std::io::Result<LiveShow> {
-        let (commands, to_do) = inbox(COMMANDS_MAX);
+    pub fn open(place: Place, game: Option<GameName>, tell: Box<dyn Fn(&str) + Send>) -> std::io::Result<LiveShow> {
+        let (commands, to_do) = sync_channel(COMMANDS_MAX);
         let theatre = Arc::new(Theatre {
             stage: Mutex::default(),
             news: News::default(),
@@ -62,7 +65,7 @@ impl LiveShow {
             pages: AtomicU64::new(1),
             is_closing: AtomicBool::new(false),
         });
-        let keeper = keeper::Keeper::new(Arc::clone(&theatre), net, game, to_do, tell);
+        let keeper = keeper::Keeper::new(Arc::clone(&theatre), place, game, to_do, tell);
         std::thread::Builder::new().name("page-live".to_owned()).spawn(move || keeper.keep())?;
         Ok(LiveShow { theatre })
     }

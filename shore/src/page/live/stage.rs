@@ -68,6 +68,8 @@ pub(super) struct Stage {
     pub(super) estimates: Latest<(OwnBoat, SimTime)>,
     pub(super) statuses: Latest<GatewayStatus>,
     pub(super) wheels: Wheels,
+    /// What is to be passed on to steered boats: course, rad, and speed, m/s.
+    pub(super) steering: BTreeMap<VehicleId, (f64, f64)>,
     /// By page whose helm it looks at, and whether with utilities.
     pub(super) selected: BTreeMap<u64, (VehicleId, bool)>,
     /// Numbers what comes.
@@ -114,6 +116,7 @@ impl Stage {
     pub(super) fn end(&mut self) {
         (self.is_gone, self.run_news) = (true, self.run_news + 1);
         self.wheels = Wheels::default();
+        self.steering.clear();
     }
 
     /// A frame, with its CDR.
@@ -165,6 +168,14 @@ impl Stage {
         let full = functions.then(|| helm_text(play.scenario(), vehicle, true, answer));
         self.counter += 1;
         self.helms.insert(vehicle, Numbered { number: self.counter, value: HelmTold { light, full } });
+    }
+
+    /// A page wants to look at a boat's helm, with utilities or without.
+    pub(super) fn select(&mut self, page: u64, wish: Option<&(String, bool)>) -> Result<(), String> {
+        let (Some((name, functions)), Some(play)) = (wish, &self.play) else { return Ok(()) };
+        let vehicle = play.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+        self.selected.insert(page, (vehicle, *functions));
+        Ok(())
     }
 
     /// Whose helm somebody looks at, and whether anybody wants utilities with it.

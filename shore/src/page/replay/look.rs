@@ -142,8 +142,7 @@ impl Look {
 
     fn say_helm(&mut self, frame: usize, now: Instant) -> Option<Said> {
         let (vehicle, functions) = self.selected?;
-        let number = self.reel.film.frame_bytes(frame).get(DECISION).and_then(|bytes| bytes.try_into().ok());
-        let wish = HelmWish { vehicle, decision: u64::from_le_bytes(number?), functions };
+        let wish = HelmWish { vehicle, decision: self.decision(frame)?, functions };
         let is_due = self.wished.is_none_or(|(before, at)| {
             let chosen_anew = (before.vehicle, before.functions) != (vehicle, functions);
             before != wish && (chosen_anew || now.saturating_duration_since(at) >= HELM_AGAIN)
@@ -154,6 +153,18 @@ impl Look {
         }
         let (answered, text) = self.reel.desk.take(self.reader)?;
         (answered.vehicle == vehicle).then_some(Said::Text(text))
+    }
+
+    /// The decision that a frame is of.
+    fn decision(&self, frame: usize) -> Option<u64> {
+        let bytes = self.reel.film.frame_bytes(frame).get(DECISION)?;
+        Some(u64::from_le_bytes(bytes.try_into().ok()?))
+    }
+
+    /// Whether something else is shown than what was wished for last.
+    fn is_outdated(&self, wish: HelmWish) -> bool {
+        let decision = self.shown.and_then(|frame| self.decision(frame));
+        decision.is_some_and(|decision| decision != wish.decision)
     }
 
     fn say_estimate(&mut self, frame: usize, now: Instant) -> Option<Said> {
@@ -259,13 +270,19 @@ impl Viewer for Look {
     }
 
     fn due(&self, now: Instant) -> Option<Instant> {
-        if !self.player.is_playing() {
-            return None;
-        }
+        let playing = self.player.is_playing();
         let times = self.reel.film.frame_times();
         let next = self.shown.and_then(|frame| times.get(frame + 1)).and_then(|time| self.player.when(*time));
-        let told = self.told_player.as_ref().map(|(_, at)| *at + TELL_AGAIN);
-        Some(next.into_iter().chain(told).min().unwrap_or(now).max(now + FRAME_AGAIN))
+        let told = self.told_player.as_ref().filter(|_| playing).map(|(_, at)| *at + TELL_AGAIN);
+        // What was held back because the same was told shortly before.
+        let is_old = |frame: usize| self.shown.is_some_and(|shown| shown != frame);
+        let selected = self.selected.is_some();
+        let estimate =
+            self.estimated.filter(|(frame, _)| selected && is_old(*frame)).map(|(_, at)| at + ESTIMATE_AGAIN);
+        let helm = self.wished.filter(|(wish, _)| selected && self.is_outdated(*wish)).map(|(_, at)| at + HELM_AGAIN);
+        let status = self.looked.filter(|(frame, _)| is_old(*frame)).map(|(_, at)| at + TELL_AGAIN);
+        let due = [next, told, estimate, helm, status].into_iter().flatten().min();
+        due.map(|due| due.max(now + FRAME_AGAIN))
     }
 }
 
