@@ -16,6 +16,7 @@ pub(super) const PROTOCOL: u32 = 1;
 /// A message to a page.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
+#[cfg_attr(not(feature = "net"), expect(dead_code, reason = "some is only said of a game on the network"))]
 pub(super) enum Tell<'a> {
     Hello {
         protocol: u32,
@@ -112,6 +113,11 @@ impl<'a> EventTell<'a> {
     }
 }
 
+/// A time in seconds as people write it: 120 and not 120.00000000000001, which multiplying by 1e-9 gives.
+pub(super) fn seconds(time: SimTime) -> f64 {
+    time.0 as f64 / 1e9
+}
+
 impl Tell<'_> {
     /// The first words to a page.
     pub(super) fn hello<'a>(version: &'a str, mode: Mode, rights: bool, game: &'a str, chart: &'a Chart) -> Tell<'a> {
@@ -128,8 +134,8 @@ impl Tell<'_> {
             y: nav.north_m,
             heading_deg: nav.psi_rad.to_degrees().rem_euclid(360.0),
             speed_m_s: game::math::length(nav.surge_m_s, nav.sway_m_s),
-            fix_age_s: SimTime(at.0.saturating_sub(boat.fix_ns.0)).as_s(),
-            at_s: at.as_s(),
+            fix_age_s: seconds(SimTime(at.0.saturating_sub(boat.fix_ns.0))),
+            at_s: seconds(at),
         }
     }
 

@@ -136,6 +136,6 @@ pub(crate) fn get(address: SocketAddr, path: &str, host: &str) -> (u16, String) 
 }
 
 #[expect(clippy::disallowed_methods, reason = "a test waits no longer than a limit")]
-fn now() -> Instant {
+pub(crate) fn now() -> Instant {
     Instant::now()
 }

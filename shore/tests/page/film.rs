@@ -75,8 +75,13 @@ pub(crate) fn report(vehicle: VehicleId) -> HelmReport {
 impl MadeUp {
     /// A recording of two minutes.
     pub(crate) fn new() -> MadeUp {
+        MadeUp::of(1201)
+    }
+
+    /// A recording of so many frames.
+    pub(crate) fn of(frames: u64) -> MadeUp {
         let scenario = scenario("pav01_vs_pav01.toml");
-        let frames: Vec<Frame> = (0..=1200).map(|seq| frame(&scenario, seq)).collect();
+        let frames: Vec<Frame> = (0..frames).map(|seq| frame(&scenario, seq)).collect();
         let event = |tick: u64, event: &str| EventOutcome {
             tick,
             at_s: tick as f64 * 0.05,

@@ -1,11 +1,13 @@
 //! A recording, played by pages.
 
 use super::film::{MadeUp, Rememberer, seq_of};
-use super::{look, page};
+use super::{client, look, page};
+use proptest::prelude::*;
 use serde_json::json;
-use shore::page::Show;
 use shore::page::replay::ReplayShow;
+use shore::page::{Ask, Guest, Said, Show, Word};
 use std::sync::Arc;
+use std::time::Duration;
 
 pub(crate) fn show() -> Arc<dyn Show> {
     Arc::new(ReplayShow::new(Arc::new(MadeUp::new()), Some(Box::new(Rememberer))))
@@ -117,5 +119,55 @@ fn what_a_recording_cannot_do_is_refused() {
     ] {
         client.send(ask);
         assert_eq!(client.until("refused", |_| true)["what"], what, "{ask}");
+    }
+}
+
+#[test]
+fn a_recording_without_frames_is_shown_too() {
+    let page = page(Arc::new(ReplayShow::new(Arc::new(MadeUp::of(0)), None)), None, &[]);
+    let mut client = look(&page);
+    for ask in [r#"{"do":"control","what":"resume"}"#, r#"{"do":"step","by":1}"#, r#"{"do":"seek","t_s":9}"#] {
+        client.send(ask);
+    }
+    client.until("player", |player| player["t_s"] == 0.0 && player["to_s"] == 0.0);
+}
+
+fn any_ask() -> impl Strategy<Value = Ask> {
+    let vehicle = prop::sample::select(vec!["blue_one", "red_two", "whale"]);
+    prop_oneof![
+        (vehicle, any::<bool>())
+            .prop_map(|(name, functions)| Ask::Select { vehicle: Some(name.to_owned()), functions }),
+        prop::sample::select(vec![Word::Pause, Word::Resume, Word::Step, Word::Stop])
+            .prop_map(|what| Ask::Control { what }),
+        prop::option::of(any::<f64>()).prop_map(|factor| Ask::Speed { factor }),
+        any::<i64>().prop_map(|by| Ask::Step { by }),
+        (-2..3_i64).prop_map(|by| Ask::Step { by }),
+        any::<f64>().prop_map(|t_s| Ask::Seek { t_s }),
+        (0.0..130.0).prop_map(|t_s| Ask::Seek { t_s }),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn whatever_is_asked_frames_come_in_order_between_jumps(
+        asks in prop::collection::vec((any_ask(), 0..2_000_u64, any::<bool>()), 1..30),
+    ) {
+        let show = ReplayShow::new(Arc::new(MadeUp::new()), None);
+        let mut viewer = show.admit(Guest { rights: false });
+        let mut now = client::now();
+        for (ask, wait_ms, room) in asks {
+            drop(viewer.ask(&ask, now));
+            now += Duration::from_millis(wait_ms);
+            let said: Vec<Said> = std::iter::from_fn(|| viewer.say(now, room)).take(1000).collect();
+            prop_assert!(said.len() < 1000, "it has no end of things to say after {ask:?}");
+            let frames: Vec<u64> = said.iter().filter_map(|said| match said {
+                Said::Past(bytes) | Said::Now(bytes) => Some(seq_of(bytes)),
+                Said::Text(_) => None,
+            }).collect();
+            prop_assert!(frames.is_sorted() && (room || frames.is_empty()), "{frames:?} after {ask:?}");
+            prop_assert!(said.iter().filter(|said| matches!(said, Said::Now(_))).count() <= 1);
+            prop_assert!(viewer.due(now).is_none_or(|due| due > now));
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::stage::{Play, Stage};
 use super::{Command, Theatre};
 use crate::page::ask::{Ask, Word};
 use crate::page::show::{ESTIMATE_AGAIN, Guest, Said, TELL_AGAIN, Viewer};
-use crate::page::tell::{EventTell, Mode, Tell};
+use crate::page::tell::{EventTell, Mode, Tell, seconds};
 use axum::body::Bytes;
 use game::VehicleId;
 use game::message::Control;
@@ -194,7 +194,7 @@ impl Told {
         let is_told = stage.run.is_some();
         let tell = Tell::State {
             phase: stage.phase(now),
-            now_s: if is_told { run.now_s } else { stage.roll.stamp.valid_ns.as_s() },
+            now_s: if is_told { run.now_s } else { seconds(stage.roll.stamp.valid_ns) },
             pace: if is_told { &run.pace } else { &play.notice.pace },
             speed: run.speed,
             rate: run.rate,

@@ -99,6 +99,3 @@ impl Theatre {
         self.is_closing.load(Ordering::Relaxed)
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -5,7 +5,7 @@ use super::desk::HelmWish;
 use super::player::Player;
 use crate::page::ask::{Ask, Word};
 use crate::page::show::{ESTIMATE_AGAIN, Guest, HELM_AGAIN, Said, TELL_AGAIN, TRAIL_S, TRAIL_STEP_S, Viewer};
-use crate::page::tell::{EventTell, Mode, Tell};
+use crate::page::tell::{EventTell, Mode, Tell, seconds};
 use game::external::GatewayStatus;
 use game::scenario::Source;
 use game::{SimTime, VehicleId};
@@ -130,10 +130,10 @@ impl Look {
         let (film, times) = (&self.reel.film, self.reel.film.frame_times());
         let tell = Tell::Player {
             playing: self.player.is_playing(),
-            t_s: self.player.at(now).as_s(),
+            t_s: seconds(self.player.at(now)),
             speed: self.player.speed(),
-            from_s: times.first().map_or(0.0, |time| time.as_s()),
-            to_s: times.last().map_or(0.0, |time| time.as_s()),
+            from_s: times.first().map_or(0.0, |time| seconds(*time)),
+            to_s: times.last().map_or(0.0, |time| seconds(*time)),
             cut: film.is_cut(),
             file: film.file(),
         };

@@ -50,6 +50,3 @@ impl Show for ReplayShow {
         &self.news
     }
 }
-
-#[cfg(test)]
-mod tests;
