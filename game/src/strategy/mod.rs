@@ -40,17 +40,6 @@ pub struct Strategy {
     pub assignment: Assignment,
 }
 
-impl Program {
-    /// Who proposes courses and speeds from outside, if the program lets anybody.
-    #[must_use]
-    pub fn proposer(&self) -> Option<Proposer> {
-        self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
-            Task::Policy(policy) => Some(policy.by),
-            _ => None,
-        })
-    }
-}
-
 /// How roles are dealt to a team's boats.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -167,7 +156,24 @@ pub enum What {
     Collides,
 }
 
+impl Strategy {
+    /// Whether a person may steer boats that play it.
+    #[must_use]
+    pub fn is_steered(&self) -> bool {
+        self.roles.iter().any(|role| role.proposer() == Some(Proposer::Person))
+    }
+}
+
 impl Program {
+    /// Who proposes courses and speeds from outside, if the program lets anybody.
+    #[must_use]
+    pub fn proposer(&self) -> Option<Proposer> {
+        self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
+            Task::Policy(policy) => Some(policy.by),
+            _ => None,
+        })
+    }
+
     /// Whether a mode has no parts.
     #[must_use]
     pub fn is_leaf(&self, mode: usize) -> bool {
