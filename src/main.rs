@@ -12,6 +12,7 @@ mod net_args;
 mod offspring;
 mod onlooker;
 mod override_args;
+mod page_args;
 mod plot;
 mod replay_command;
 mod result_table;
@@ -30,6 +31,7 @@ mod tournament_progress;
 mod tournament_table;
 mod trial_command;
 mod trial_plot;
+mod view_command;
 mod watch_command;
 mod water_args;
 
@@ -59,6 +61,8 @@ enum Command {
     Agent(agent_command::Args),
     /// Shows a running game in the terminal, or what one boat's helm thinks.
     Watch(watch_command::Args),
+    /// Shows a running game on a page.
+    View(view_command::Args),
     /// Shows a recorded game again, or checks that the same comes of it.
     Replay(replay_command::Args),
     /// Dumps one decision of a boat's helm: a table, numbers, pictures.
@@ -88,6 +92,7 @@ fn main() -> ExitCode {
         Command::Sim(args) => sim_command::run(&args),
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),
+        Command::View(args) => view_command::run(&args),
         Command::Replay(args) => replay_command::run(&args),
         Command::Helm(args) => helm_command::run(&args),
         Command::Gateway(args) => gateway_command::run(&args),

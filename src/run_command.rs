@@ -4,6 +4,7 @@ use crate::hardware_loop::{HardwareLoop, LoopArgs, Match};
 use crate::net_args::unique_game_name;
 use crate::offspring::{self, Offspring};
 use crate::override_args::{self, OverrideArgs};
+use crate::page_args::PageArgs;
 use crate::screen::{self, Screen};
 use crate::sim_command::{load, seconds, speed, write_json};
 use crate::stop;
@@ -38,6 +39,11 @@ pub(crate) struct Args {
     speed: Option<f64>,
     #[command(flatten)]
     record: RecordArgs,
+    /// Shows the game on a page, and its recording when it is over; in lockstep at 10x unless --speed says otherwise
+    #[arg(long, conflicts_with = "in_process")]
+    view: bool,
+    #[command(flatten)]
+    page: PageArgs,
     /// Plays in this process, without a network: the same game, byte for byte
     #[arg(long, conflicts_with_all = ["pace", "agents_per_process"])]
     in_process: bool,
@@ -54,6 +60,8 @@ pub(crate) struct Args {
     join_s: f64,
 }
 
+/// As fast as a person can follow a game, simulated seconds a second.
+const SPEED_TO_WATCH: f64 = 10.0;
 /// How long processes may take to end once the game is over.
 const LEAVE: Duration = Duration::from_secs(5);
 
@@ -134,6 +142,7 @@ fn play_across_processes(
     let endpoint = format!("tcp/127.0.0.1:{port}");
     let mut sim = start_sim(args, &game, &endpoint, file)?;
     let tellings = read_tellings(&mut sim)?;
+    let page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
     let names: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
     let mut agents = Vec::new();
     for names in names.chunks(usize::from(args.agents_per_process)) {
@@ -161,7 +170,19 @@ fn play_across_processes(
     if report.is_none() && !stop.load(Ordering::Relaxed) {
         bail!("the sim ended without a result");
     }
+    if let Some(mut page) = page {
+        // Whoever has seen a game wants to look at it again.
+        while page.ended().is_none() && !stop::is_set_soon(stop) {}
+        page.ask_to_stop();
+        offspring::wait_for_all(std::slice::from_mut(&mut page), LEAVE);
+    }
     Ok(report)
+}
+
+fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<Offspring> {
+    let mut words = ["view", "--game", game, "--connect", endpoint, "--for-parent"].map(str::to_owned).to_vec();
+    words.extend(args.page.words());
+    Offspring::start("the page", &words, Stdio::inherit())
 }
 
 fn start_sim(args: &Args, game: &str, endpoint: &str, file: Option<&Path>) -> Result<Offspring> {
@@ -175,7 +196,8 @@ fn start_sim(args: &Args, game: &str, endpoint: &str, file: Option<&Path>) -> Re
     words.extend(options.into_iter().flat_map(|(name, value)| [name.to_owned(), value]));
     words.extend(override_args::words(&args.instead.overrides(&args.scenario)?));
     words.extend(args.seed.into_iter().flat_map(|seed| ["--seed".to_owned(), seed.to_string()]));
-    words.extend(args.speed.into_iter().flat_map(|speed| ["--speed".to_owned(), speed.to_string()]));
+    let speed = args.speed.or((args.view && args.pace == Pace::Lockstep).then_some(SPEED_TO_WATCH));
+    words.extend(speed.into_iter().flat_map(|speed| ["--speed".to_owned(), speed.to_string()]));
     words.extend(file.into_iter().flat_map(|file| ["--record".to_owned(), file.display().to_string()]));
     words.push("--for-parent".to_owned());
     Offspring::start("the sim", &words, Stdio::piped())

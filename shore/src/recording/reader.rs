@@ -172,6 +172,21 @@ impl Recording {
         (0..self.pieces.len()).filter(is_wanted).map(|i| self.said(i))
     }
 
+    /// The places of the messages of one topic, for [`Recording::message`].
+    #[must_use]
+    pub fn places(&self, topic: &str) -> Vec<usize> {
+        (0..self.pieces.len()).filter(|i| self.message(*i).topic == topic).collect()
+    }
+
+    /// The message at a place.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    #[must_use]
+    pub fn message(&self, place: usize) -> Said<'_> {
+        self.said(place)
+    }
+
     /// The topics that there are messages on, with their numbers of messages, by name.
     #[must_use]
     pub fn topics(&self) -> BTreeMap<&str, usize> {

@@ -12,7 +12,7 @@ use game::message::{Control, EventRecord, Message, Notice, PolicyProposal, Stamp
 use game::outcome::EventOutcome;
 use game::picture::Picture;
 use game::run_state::{Phase, RunState};
-use game::strategy::{Behaviour, Expression, Parameter, Policy, Task};
+use game::strategy::{Behaviour, Expression, Parameter, Policy, Proposer, Task};
 use game::topic::{self, GameName, Part};
 use game::water::{PlaneWave, Water};
 use game::{Scenario, SimTime, TeamId, VehicleId};
@@ -45,6 +45,7 @@ fn steered(file: &str) -> Scenario {
     let number = |value| Parameter { expression: Expression::Constant(value), range: (0.0, 1000.0) };
     let mut strategy = scenario.strategies[scenario.vehicles[0].strategy].clone();
     let policy = Policy {
+        by: Proposer::Person,
         ttl_s: number(1.0),
         peak_width_deg: number(10.0),
         base_width_deg: number(60.0),

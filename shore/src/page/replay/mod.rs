@@ -4,8 +4,10 @@ mod desk;
 mod film;
 mod look;
 mod player;
+mod recorded;
 
 pub use film::{Film, Helms};
+pub use recorded::Recorded;
 
 use super::chart::Chart;
 use super::show::{Guest, News, Show, Viewer};
