@@ -1,9 +1,9 @@
 //! The asker: asks a game for what is not published, in a thread of its own, since answers take their time.
 
 use super::Theatre;
-use super::stage::Play;
+use super::stage::{HelmTold, Play};
 use crate::page::clock;
-use crate::page::rose::HelmAnswer;
+use crate::page::rose::{HelmAnswer, helm_text};
 use crate::page::show::HELM_AGAIN;
 use bus::{Board, Bus};
 use game::VehicleId;
@@ -18,6 +18,8 @@ use std::time::{Duration, Instant};
 const ROUND: Duration = Duration::from_millis(50);
 /// How long a helm may think about its answer.
 const HELM_ANSWER: Duration = Duration::from_secs(1);
+/// No more than one part in so many of the time is spent on the answers of a helm.
+const SHARE: u32 = 5;
 /// How long the sim may collect its events.
 const EVENTS_ANSWER: Duration = Duration::from_secs(3);
 
@@ -28,6 +30,21 @@ pub(super) struct Asker<'a> {
     play: Arc<Play>,
 }
 
+/// A question that was asked of a helm.
+struct Asked {
+    start: Instant,
+    functions: bool,
+    took: Duration,
+}
+
+impl Asked {
+    /// Whether to ask again. In lockstep a game waits while a mind answers: a long answer is asked for less often.
+    fn is_due_again(&self, functions: bool, now: Instant) -> bool {
+        let rest = HELM_AGAIN.max(self.took * SHARE);
+        (functions && !self.functions) || now.saturating_duration_since(self.start) >= rest
+    }
+}
+
 impl Asker<'_> {
     pub(super) fn new(theatre: &Theatre, bus: Bus, play: Arc<Play>) -> Asker<'_> {
         Asker { theatre, bus, play }
@@ -35,19 +52,17 @@ impl Asker<'_> {
 
     /// Asks until the game is left.
     pub(super) fn ask(&self, left: &Board<bool>) {
-        let mut asked: BTreeMap<VehicleId, (Instant, bool)> = BTreeMap::new();
+        let mut asked: BTreeMap<VehicleId, Asked> = BTreeMap::new();
         while !left.wait(ROUND, |left| *left) {
             self.ask_events();
             let wanted = self.theatre.stage().wanted();
             asked.retain(|vehicle, _| wanted.contains_key(vehicle));
             for (vehicle, functions) in wanted {
-                let now = clock::now();
-                let is_due = asked
-                    .get(&vehicle)
-                    .is_none_or(|(at, with)| now.saturating_duration_since(*at) >= HELM_AGAIN || (functions && !with));
-                if is_due {
-                    asked.insert(vehicle, (now, functions));
+                let start = clock::now();
+                if asked.get(&vehicle).is_none_or(|asked| asked.is_due_again(functions, start)) {
                     self.ask_helm(vehicle, functions);
+                    let took = clock::now().saturating_duration_since(start);
+                    asked.insert(vehicle, Asked { start, functions, took });
                 }
             }
         }
@@ -78,11 +93,29 @@ impl Asker<'_> {
             Some(Err(_)) => because(format!("the mind of {name} is of another version of Squall")),
             None => because(format!("nobody minds {name} now")),
         };
-        self.theatre.stage().take_helm(vehicle, functions, answer);
+        // Long work with a long report, for which the stage is not kept from others.
+        let full = functions.then(|| helm_text(self.play.scenario(), vehicle, true, answer.clone()));
+        let light = helm_text(self.play.scenario(), vehicle, false, answer);
+        self.theatre.stage().take_helm(vehicle, HelmTold { light, full });
         self.theatre.news.ring();
     }
 }
 
 fn because(reason: String) -> HelmAnswer {
     HelmAnswer { reason: Some(reason), ..HelmAnswer::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_answers_are_asked_for_less_often() {
+        let start = clock::now();
+        let later = |ms| start + Duration::from_millis(ms);
+        let asked = |took_ms| Asked { start, functions: false, took: Duration::from_millis(took_ms) };
+        assert!(!asked(1).is_due_again(false, later(499)) && asked(1).is_due_again(false, later(500)));
+        assert!(!asked(400).is_due_again(false, later(1999)) && asked(400).is_due_again(false, later(2000)));
+        assert!(asked(400).is_due_again(true, later(1)), "somebody wants utilities too");
+    }
 }

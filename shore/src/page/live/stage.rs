@@ -4,7 +4,6 @@ use super::chronicle::Chronicle;
 use super::roll::Roll;
 use super::wheel::Wheels;
 use crate::page::chart::Chart;
-use crate::page::rose::{HelmAnswer, helm_text};
 use game::external::GatewayStatus;
 use game::message::{Frame, Notice};
 use game::outcome::EventOutcome;
@@ -162,12 +161,9 @@ impl Stage {
     }
 
     /// What a helm thinks.
-    pub(super) fn take_helm(&mut self, vehicle: VehicleId, functions: bool, answer: HelmAnswer) {
-        let Some(play) = &self.play else { return };
-        let light = helm_text(play.scenario(), vehicle, false, answer.clone());
-        let full = functions.then(|| helm_text(play.scenario(), vehicle, true, answer));
+    pub(super) fn take_helm(&mut self, vehicle: VehicleId, told: HelmTold) {
         self.counter += 1;
-        self.helms.insert(vehicle, Numbered { number: self.counter, value: HelmTold { light, full } });
+        self.helms.insert(vehicle, Numbered { number: self.counter, value: told });
     }
 
     /// A page wants to look at a boat's helm, with utilities or without.
