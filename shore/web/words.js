@@ -60,3 +60,26 @@ export function bytes(count) {
 
 /** `blue_one` as people read it. */
 export const plain = (name) => String(name).replaceAll('_', ' ');
+
+/** Makes the children of `parent` stand for `items`: rows are made when missing, told what to show, and removed. */
+export function fill(parent, items, makeRow, tellRow) {
+  while (parent.children.length > items.length) parent.lastElementChild.remove();
+  for (let i = 0; i < items.length; i++) {
+    if (i === parent.children.length) parent.append(makeRow(i));
+    tellRow(parent.children[i], items[i], i);
+  }
+}
+
+/** Gives a select these options, `[value, text]`, if it has others. */
+export function options(select, wanted) {
+  const key = JSON.stringify(wanted);
+  if (said.get(select) === key) return;
+  said.set(select, key);
+  const value = select.value;
+  select.replaceChildren(...wanted.map(([each, text]) => {
+    const option = make('option', '', text);
+    option.value = each;
+    return option;
+  }));
+  if (wanted.some(([each]) => each === value)) select.value = value;
+}
