@@ -58,7 +58,8 @@ export function drawFlag(context, x, y, team, size) {
   context.stroke();
 }
 
-function inside(corners, x, y) {
+/** Whether a place is within corners. */
+export function inside(corners, x, y) {
   let odd = false;
   for (let i = 0, j = corners.length - 1; i < corners.length; j = i++) {
     const [xi, yi] = corners[i];
@@ -271,7 +272,7 @@ export class Boats {
   nameStrength(game, view) {
     const { left, right, bottom, top } = view.bounds;
     const room = Math.sqrt(((right - left) * (top - bottom)) / Math.max(1, game.count)) * view.scale;
-    return Math.min(1, Math.max(0, (room - 44) / 30));
+    return Math.min(1, Math.max(0, (room - 56) / 24));
   }
 
   drawNames(game, view, shown, selected, ratio) {

@@ -46,8 +46,8 @@ export class Details {
     this.helmBox = make('div', '', '', make('h3', '', 'Why it steers so'), this.chooser, this.canvas, this.key,
       this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
     this.gatewayBox = make('div', '', '', make('h3', '', 'Gateway'), this.gateway);
-    this.body = make('div', '', '', make('div', 'boat-head', '', this.name, this.about), buttons, this.wheelNote, this.matter,
-      this.facts, this.gatewayBox, make('h3', '', 'Thrust'), this.thrust, this.reason, this.helmBox);
+    this.body = make('div', 'boat', '', make('div', 'boat-head', '', this.name, this.about), buttons, this.wheelNote, this.matter,
+      this.facts, this.reason, this.helmBox, make('h3', '', 'Thrust'), this.thrust, this.gatewayBox);
     this.pane.replaceChildren(this.none, this.body);
   }
 

@@ -33,6 +33,7 @@ export class Drive {
       this.drag(event);
     });
     this.canvas.addEventListener('pointermove', (event) => event.buttons > 0 && this.drag(event));
+    document.getElementById('let-go').addEventListener('click', () => this.letGo());
     addEventListener('blur', () => this.letGo());
     addEventListener('pagehide', () => this.letGo());
     document.addEventListener('visibilitychange', () => document.hidden && this.letGo());

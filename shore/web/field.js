@@ -1,5 +1,6 @@
 // The chart itself: grid, field, zones, scrimmage line, flags' homes, obstacles, circles, scale and north.
 
+import { inside } from './boats.js';
 import { palette, teamColour } from './palette.js';
 import { number, plain } from './words.js';
 
@@ -92,7 +93,7 @@ function drawGridNumbers(context, view, step, left, bottom) {
   for (let x = left; x <= view.eastOf(view.width); x += step) {
     const at = view.xOf(x);
     // The corners belong to the scale and to the buttons.
-    if (at > 190 && at < view.width - 70) context.fillText(number(x, places), at, view.height - 3);
+    if (at > 150 && at < view.width - 170) context.fillText(number(x, places), at, view.height - 3);
   }
   context.textAlign = 'left';
   context.textBaseline = 'middle';
@@ -201,19 +202,22 @@ function drawZoneNames(context, view, chart) {
     named.add(zone.team);
     const xs = zone.corners.map((corner) => corner[0]);
     const ys = zone.corners.map((corner) => corner[1]);
-    const x = view.xOf((Math.min(...xs) + Math.max(...xs)) / 2);
-    const y = view.yOf(ys.reduce((sum, each) => sum + each, 0) / ys.length);
+    const middle = ys.reduce((sum, each) => sum + each, 0) / ys.length;
+    const east = (Math.min(...xs) + Math.max(...xs)) / 2;
+    // Near the upper edge it is out of the way of the boats.
+    const high = Math.max(...ys) - 26 / view.scale;
+    const y = view.yOf(inside(zone.corners, east, high) ? high : middle);
     const across = (Math.max(...xs) - Math.min(...xs)) * view.scale;
     if (across < 70) continue;
-    context.globalAlpha = 0.55;
-    haloText(context, plain(name).toUpperCase(), x, y + 10, teamColour(zone.team));
+    context.globalAlpha = 0.7;
+    haloText(context, plain(name).toUpperCase(), view.xOf(east), y - 18, teamColour(zone.team));
     context.globalAlpha = 1;
   }
   context.font = FONT;
 }
 
 function drawScale(context, view) {
-  const metres = niceStep(60 / view.scale);
+  const metres = niceStep(44 / view.scale);
   const px = metres * view.scale;
   const left = 14;
   const base = view.height - 14;

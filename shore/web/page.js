@@ -273,6 +273,9 @@ class Page {
     // On a wide page the events have a place of their own.
     this.tabName = name === 'events' && this.wide.matches ? 'boats' : name;
     document.body.dataset.tab = this.tabName;
+    // A phone has no room for these below the chart.
+    const place = this.wide.matches ? byId('controls') : byId('pane-game');
+    if (byId('shown').parentElement !== place) place.insertBefore(byId('shown'), this.wide.matches ? byId('help') : place.firstChild);
     for (const each of ['boats', 'boat', 'events', 'game']) {
       const chosen = each === this.tabName;
       byId(`tab-${each}`).setAttribute('aria-selected', String(chosen));

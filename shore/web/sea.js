@@ -11,7 +11,7 @@ const COMPONENTS_MAX = 40;
 /** How often the shading moves, ms. */
 const STEP_MS = 80;
 /** Strength of the shading, of 255. */
-const STRENGTH = 150;
+const STRENGTH = 115;
 
 export class Sea {
   constructor(canvas) {
@@ -125,14 +125,15 @@ export class Weather {
     const wind = Math.hypot(sea.wind_north_m_s, sea.wind_east_m_s);
     const currentTo = wrapDeg((Math.atan2(sea.current_east_m_s, sea.current_north_m_s) * 180) / Math.PI);
     const current = Math.hypot(sea.current_north_m_s, sea.current_east_m_s);
-    this.line(this.wind, wind, windTo, `Wind from ${bearing(windTo + 180)} ${number(wind, 1, 'm/s')}`, 'No wind');
-    this.line(this.current, current, currentTo, `Current to ${bearing(currentTo)} ${number(current, 2, 'm/s')}`, 'No current');
+    this.line(this.wind, wind, windTo, 'Wind from', `${bearing(windTo + 180)} ${number(wind, 1, 'm/s')}`, 'No wind');
+    this.line(this.current, current, currentTo, 'Current to', `${bearing(currentTo)} ${number(current, 2, 'm/s')}`, 'No current');
     // Four times the standard deviation is the significant height (Holthuijsen 2007, 4.2).
     write(this.state, waves_m > 0 ? `Waves ${number(4 * waves_m, 2, 'm')}` : 'No waves');
   }
 
-  line(place, speed, to_deg, words, none) {
+  line(place, speed, to_deg, lead, words, none) {
     const some = speed >= 0.005;
+    write(place.children[1], some ? lead : '');
     write(place.lastElementChild, some ? words : none);
     const arrow = place.firstElementChild;
     arrow.style.visibility = some ? 'visible' : 'hidden';

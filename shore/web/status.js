@@ -18,7 +18,7 @@ export class Status {
     this.drawnBox = make('details', '', '', make('summary', '', 'Drawn by lot'), this.drawn);
     this.rights = make('p', 'note', 'This page may only watch. Open it at the address with a token to act.');
     this.trouble = make('p', 'matter');
-    this.pane.replaceChildren(this.rights, this.trouble, this.facts, this.drawnBox);
+    this.pane.prepend(this.rights, this.trouble, this.facts, this.drawnBox);
   }
 
   greet(game) {

@@ -189,7 +189,7 @@ export class Timeline {
     context.fillStyle = palette.ink;
     context.strokeStyle = palette.ink;
     drawShape(context, shape, 8, 8, 5);
-    return make('span', 'legend-entry', '', canvas, make('span', '', `${name} ${count}`));
+    return make('span', 'legend-entry', '', canvas, make('span', '', name), make('span', 'count', String(count)));
   }
 
   draw() {

@@ -10,6 +10,8 @@ const LEAP_M_S = 12;
 const LEAP_M = 6;
 /** No more pieces than this are drawn at a time. */
 const PIECES_MAX = 9000;
+/** Trails of this many boats are drawn at full strength. */
+const CLEAR = 30;
 /** Ages at which a trail gets fainter, as parts of its length, and its strengths. */
 const BANDS = [[0, 0.2, 0.8], [0.2, 0.5, 0.45], [0.5, 1, 0.2]];
 
@@ -58,13 +60,15 @@ export class Trails {
     // A power of two, so that the rows left out stay the same while the ring turns.
     const stride = 2 ** Math.max(0, Math.ceil(Math.log2((this.count * this.kept) / PIECES_MAX)));
     context.lineJoin = 'round';
+    // The more there are, the fainter, or they hide the boats.
+    const fade = Math.min(1, Math.sqrt(CLEAR / this.count));
     for (const [young, old, strength] of BANDS) {
       for (let team = 0; team < colours.length; team++) {
         context.beginPath();
         for (let boat = 0; boat < this.count; boat++) {
           if (teams[boat] === team && boat !== selected) this.path(context, view, boat, stride, now_s, young, old);
         }
-        context.globalAlpha = strength;
+        context.globalAlpha = strength * fade;
         context.strokeStyle = colours[team];
         context.lineWidth = 1.25;
         context.stroke();

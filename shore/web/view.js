@@ -53,12 +53,15 @@ export class View {
 
   fit() {
     const { left, right, bottom, top } = this.bounds;
-    // Room for names beside the boats, and below for the scale.
-    const across = Math.max(60, this.width - 2 * Math.min(48, this.width * 0.06));
-    const down = Math.max(60, this.height - 2 * Math.min(56, this.height * 0.11));
+    // Room for the weather above, and for the scale and the buttons below.
+    const side = Math.min(44, this.width * 0.05);
+    const above = Math.min(52, this.height * 0.14);
+    const below = Math.min(72, this.height * 0.24);
+    const across = Math.max(60, this.width - 2 * side);
+    const down = Math.max(60, this.height - above - below);
     this.scale = this.limit(Math.min(across / Math.max(1, right - left), down / Math.max(1, top - bottom)));
     this.centreX = (left + right) / 2;
-    this.centreY = (bottom + top) / 2;
+    this.centreY = (bottom + top) / 2 - (below - above) / 2 / this.scale;
     this.fitted = true;
     this.version += 1;
   }
