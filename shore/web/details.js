@@ -101,16 +101,17 @@ export class Details {
     const flag = game.chart.field.flags?.[game.carrying[index]];
     const facts = [
       ['Heading', bearing((game.toH[index] * 180) / Math.PI)],
-      ['Over ground', `${bearing((game.course[index] * 180) / Math.PI)}, ${number(game.speed[index], 2, 'm/s')}`],
+      ['Over ground', `${bearing((game.course[index] * 180) / Math.PI)} at ${number(game.speed[index], 2, 'm/s')}`],
     ];
     if (flag) facts.push(['Carries', `the ${plain(game.chart.teams[flag.team]?.name ?? '')} flag`]);
     if (game.estimate) {
-      facts.push(['Own estimate', error === null ? '–' : `off by ${number(error, 2, 'm')}`]);
-      if (Number.isFinite(game.estimate.fix_age_s)) facts.push(['Last fix', `${number(game.estimate.fix_age_s, 1, 's')} ago`]);
+      const fix_age_s = game.estimate.fix_age_s;
+      const fix = Number.isFinite(fix_age_s) ? `; fix ${number(fix_age_s, 1, 's')} old` : '';
+      facts.push(['Own estimate', error === null ? `–${fix}` : `off by ${number(error, 2, 'm')}${fix}`]);
     }
     if (report) {
       facts.push(['Mode', plain(report.mode || '–').replaceAll(':', ' › ')]);
-      facts.push(['Decision', report.hold ? `holds: ${report.hold}` : `${bearing(report.course_deg)}, ${number(report.speed_m_s, 2, 'm/s')}`]);
+      facts.push(['Decision', report.hold ? `holds: ${report.hold}` : `${bearing(report.course_deg)} at ${number(report.speed_m_s, 2, 'm/s')}`]);
     }
     this.tellPairs(this.facts, facts);
   }

@@ -10,6 +10,9 @@ const CIRCLES = [
   ['grab_m', 'grab', []], ['capture_m', 'capture', [7, 4]], ['untag_m', 'untag', [7, 4]], ['keepout_m', 'keep out', [2, 4]],
 ];
 
+/** With more boats than this circles are not said to be what they are. */
+const WORDS_MAX = 12;
+
 /** A step of 1, 2 or 5 times a power of ten that is at least `least`. */
 function niceStep(least) {
   const power = 10 ** Math.floor(Math.log10(least));
@@ -153,7 +156,8 @@ function drawCircles(context, view, chart) {
       context.stroke();
       context.setLineDash([]);
       context.globalAlpha = 1;
-      if (px < 55) continue;
+      // Among many boats they would only be in the way.
+      if (px < 55 || chart.vehicles.length > WORDS_MAX) continue;
       context.font = '11px system-ui, sans-serif';
       haloText(context, `${word} ${number(metres, metres % 1 ? 1 : 0)} m`, view.xOf(flag.x), view.yOf(flag.y) - px - 2, palette.faint);
       context.font = FONT;

@@ -112,7 +112,7 @@ export class Status {
     if (state.pace !== undefined && state.pace !== null) pairs.push(['Pace', plain(String(state.pace))]);
     if (Number.isFinite(state.rate)) pairs.push(['Achieved', `${number(state.rate, 1)}× real time`]);
     if (Number.isFinite(state.frames_hz)) pairs.push(['Frames', `${number(state.frames_hz, 0)} a second`]);
-    const lists = [['Minds', state.minds], ['Gateways', state.gateways]];
+    const lists = [['Minds waited for', state.minds], ['Gateways waited for', state.gateways]];
     for (const [name, list] of lists) {
       if (Array.isArray(list) ? list.length > 0 : list) pairs.push([name, Array.isArray(list) ? list.map(plain).join(', ') : String(list)]);
     }
