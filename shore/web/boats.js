@@ -14,6 +14,8 @@ const LENGTH_MANY_PX = 13;
 const MANY = 60;
 /** How far ahead the line at the bow reaches, s. */
 const AHEAD_S = 3;
+/** What a carried flag takes, px. */
+const FLAG_ROOM_PX = 24;
 /** Circles of more boats than this are a tangle. */
 const CIRCLES_MAX = 40;
 
@@ -284,12 +286,16 @@ export class Boats {
       const y = view.yOf(game.y[index]);
       if (x < -60 || y < -20 || x > view.width + 60 || y > view.height + 20) return;
       context.globalAlpha = alpha;
-      labels.draw(context, index, x, y, force);
+      labels.draw(context, index, x, y, Math.max(12, this.lengths[index] * 0.45) + (index === selected ? 8 : 0), force);
     };
     if (strength > 0.02) {
       for (let i = 0; i < game.count; i++) {
         const half = this.lengths[i] * 0.3;
-        labels.claim(view.xOf(game.x[i]) - half, view.yOf(game.y[i]) - half, 2 * half, 2 * half, true);
+        const x = view.xOf(game.x[i]);
+        const y = view.yOf(game.y[i]);
+        labels.claim(x - half, y - half, 2 * half, 2 * half, true);
+        if (game.carrying[i] >= 0) labels.claim(x, y - FLAG_ROOM_PX, FLAG_ROOM_PX * 0.7, FLAG_ROOM_PX, true);
+        if (game.marks[i] !== 0) labels.claim(x + half, y - half - 14, 16, 14, true);
       }
     }
     if (selected >= 0) single(selected, 1, true);

@@ -51,6 +51,7 @@ export class Game {
     this.vehicles = chart.vehicles;
     this.indexOf = new Map(chart.vehicles.map((vehicle, index) => [vehicle.name, index]));
     this.count = count;
+    this.teams = chart.vehicles.map((vehicle) => vehicle.team);
     Object.assign(this, {
       fromX: floats(count), fromY: floats(count), fromH: floats(count),
       toX: floats(count), toY: floats(count), toH: floats(count),

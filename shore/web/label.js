@@ -7,8 +7,8 @@ const FONT = '600 12px system-ui, sans-serif';
 const HEIGHT = 18;
 /** Cells in which room is counted, px. */
 const CELL = 9;
-/** Places of a name about its boat: right, left, below, above; parts of its width, and pixels. */
-const PLACES = [[0, 12, -9], [-1, -12, -9], [-0.5, 0, 12], [-0.5, 0, -30]];
+/** Places of a name about its boat: right, left, below, above; parts of its width, of its height, and of the room it keeps. */
+const PLACES = [[0, -0.5, 1, 0], [-1, -0.5, -1, 0], [-0.5, 0, 0, 1], [-0.5, -1, 0, -1]];
 
 export class Labels {
   constructor() {
@@ -75,17 +75,18 @@ export class Labels {
     return true;
   }
 
-  /** Draws a name beside its boat, where it stood before if there is room. `force` draws it anyhow. */
-  draw(context, index, x, y, force) {
+  /** Draws a name at least `room` pixels from its boat's middle, where it stood before if there is room. `force` draws it anyhow. */
+  draw(context, index, x, y, room, force) {
     const { canvas, width } = this.sprite(index);
     for (let attempt = 0; attempt <= PLACES.length; attempt++) {
       const place = attempt === 0 ? this.place[index] : attempt - 1;
-      const [part, dx, dy] = PLACES[place];
-      const left = x + part * width + dx;
+      const [alongX, alongY, outX, outY] = PLACES[place];
+      const left = x + alongX * width + outX * room;
+      const top = y + alongY * HEIGHT + outY * room;
       const last = force && attempt === PLACES.length;
-      if (!this.claim(left, y + dy, width - 2, HEIGHT - 3, last)) continue;
+      if (!this.claim(left, top, width - 2, HEIGHT - 3, last)) continue;
       this.place[index] = place;
-      context.drawImage(canvas, left, y + dy, width, HEIGHT);
+      context.drawImage(canvas, left, top, width, HEIGHT);
       return;
     }
   }

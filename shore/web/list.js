@@ -52,6 +52,8 @@ export class BoatList {
   }
 
   tell(game) {
+    this.selected = game.selected;
+    if (this.place.offsetParent === null) return;
     for (const { button, at, state, speed } of this.rows) {
       const chosen = game.vehicles[at].name === game.selected;
       if ((button.getAttribute('aria-pressed') === 'true') !== chosen) button.setAttribute('aria-pressed', String(chosen));

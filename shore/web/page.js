@@ -55,7 +55,7 @@ class Page {
   constructor() {
     this.game = new Game();
     this.view = new View();
-    const send = (message) => this.link.send(message);
+    const send = (message) => this.send(message);
     this.link = new Link({
       open: () => {},
       lost: () => this.lost(),
@@ -116,6 +116,12 @@ class Page {
       requestAnimationFrame(loop);
     };
     requestAnimationFrame(loop);
+  }
+
+  /** Sends what somebody asked for; says so if it cannot. */
+  send(message) {
+    if (this.link.send(message) || message.do === 'drive' || message.do === 'let_go') return;
+    notice('No connection. The server did not hear this.');
   }
 
   lost() {
@@ -306,23 +312,22 @@ class Page {
     if (!game.hello) return;
     this.controls.tell(game);
     this.details.tell(game, this.following, this.driver);
-    if (this.ticks % LIST_EVERY === 0) this.list.tell(game);
+    if (this.ticks % LIST_EVERY === 0 || this.list.selected !== game.selected) this.list.tell(game);
     this.log.tell(game);
     this.timeline.tell(game);
-    this.weather.tell(game.sea, this.sea.height_m);
+    this.weather.tell(game.sea, this.sea.deviation_m);
     if (document.hidden) this.status.tellFrame(game);
   }
 
   resize() {
     const { clientWidth, clientHeight } = this.sheet;
     this.ratio = Math.min(2, devicePixelRatio || 1);
-    this.layers.forEach((canvas, index) => {
-      // The sea is blurred anyway.
-      const ratio = index === 0 ? 1 : this.ratio;
-      canvas.width = Math.max(1, Math.round(clientWidth * ratio));
-      canvas.height = Math.max(1, Math.round(clientHeight * ratio));
-      if (index > 0) canvas.getContext('2d').setTransform(ratio, 0, 0, ratio, 0, 0);
-    });
+    // The sea sees to its own size.
+    for (const canvas of this.layers.slice(1)) {
+      canvas.width = Math.max(1, Math.round(clientWidth * this.ratio));
+      canvas.height = Math.max(1, Math.round(clientHeight * this.ratio));
+      canvas.getContext('2d').setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    }
     this.view.resize(clientWidth, clientHeight);
     this.view.version += 1;
   }
@@ -362,8 +367,7 @@ class Page {
     this.drawnTrails = key;
     this.trails.clearRect(0, 0, this.view.width, this.view.height);
     if (!shown.trails || !Number.isFinite(game.t_s)) return;
-    const teams = game.vehicles.map((vehicle) => vehicle.team);
-    game.trails.draw(this.trails, this.view, teams, palette.teams, game.t_s, index);
+    game.trails.draw(this.trails, this.view, game.teams, palette.teams, game.t_s, index);
   }
 }
 

@@ -4,21 +4,22 @@ import { palette, rgb } from './palette.js';
 import { bearing, number, show, wrapDeg, write } from './words.js';
 
 /** Pixels of the chart to a cell of the shading. */
-const CELL_PX = 9;
+const CELL_PX = 8;
 const CELLS_MAX = 14000;
 /** More components than these cost time and change little. */
 const COMPONENTS_MAX = 40;
 /** How often the shading moves, ms. */
 const STEP_MS = 80;
-/** Strength of the shading, of 255. */
-const STRENGTH = 115;
+/** Strength of the shading at most. */
+const STRENGTH = 0.45;
 
 export class Sea {
+  /** The canvas has a pixel for a cell; the browser spreads it over the chart. */
   constructor(canvas) {
+    this.canvas = canvas;
     this.context = canvas.getContext('2d', { alpha: false });
-    this.small = document.createElement('canvas');
-    this.smallContext = this.small.getContext('2d');
     this.components = [];
+    this.heights = new Float32Array(0);
     this.drawn = '';
     this.last_ms = -1e9;
   }
@@ -27,41 +28,36 @@ export class Sea {
   greet(waves) {
     const sorted = [...(waves ?? [])].sort((a, b) => Math.abs(b.amplitude_m) - Math.abs(a.amplitude_m));
     this.components = sorted.slice(0, COMPONENTS_MAX);
-    this.height_m = Math.sqrt(this.components.reduce((sum, wave) => sum + wave.amplitude_m ** 2, 0) / 2);
+    this.deviation_m = Math.sqrt(sorted.reduce((sum, wave) => sum + wave.amplitude_m ** 2, 0) / 2);
     this.drawn = '';
   }
 
-  /** Draws water, and waves on it, if something changed. Whether it drew. */
+  /** Draws the water if something changed. */
   draw(view, t_s, shown, now_ms) {
-    const waves = shown.waves && this.height_m > 0 && Number.isFinite(t_s);
-    const key = `${view.version} ${palette.version} ${waves ? t_s : '-'}`;
-    if (key === this.drawn) return false;
-    const moved = !this.drawn.startsWith(`${view.version} ${palette.version} `);
-    if (!moved && waves && now_ms - this.last_ms < STEP_MS) return false;
+    const waves = shown.waves && this.deviation_m > 0 && Number.isFinite(t_s);
+    const place = `${waves ? view.version : 'flat'} ${palette.version} `;
+    const key = `${place}${waves ? t_s : '-'}`;
+    if (key === this.drawn) return;
+    if (this.drawn.startsWith(place) && now_ms - this.last_ms < STEP_MS) return;
     this.drawn = key;
     this.last_ms = now_ms;
-    this.context.fillStyle = palette.water;
-    this.context.fillRect(0, 0, view.width, view.height);
-    if (waves) this.shade(view, t_s);
-    return true;
+    const cell = Math.max(CELL_PX, Math.sqrt((view.width * view.height) / CELLS_MAX));
+    this.fit(cell, Math.ceil(view.width / cell) + 1, Math.ceil(view.height / cell) + 1);
+    if (waves) this.sum(view, t_s, cell, this.canvas.width, this.canvas.height);
+    else this.heights.fill(0);
+    this.paint();
   }
 
-  shade(view, t_s) {
-    const cell = Math.max(CELL_PX, Math.sqrt((view.width * view.height) / CELLS_MAX));
-    const across = Math.ceil(view.width / cell) + 1;
-    const down = Math.ceil(view.height / cell) + 1;
-    if (this.small.width !== across || this.small.height !== down) {
-      this.small.width = across;
-      this.small.height = down;
-      this.image = this.smallContext.createImageData(across, down);
-      this.heights = new Float32Array(across * down);
-    }
-    this.sum(view, t_s, cell, across, down);
-    this.paint(across * down);
-    this.smallContext.putImageData(this.image, 0, 0);
-    this.context.imageSmoothingEnabled = true;
-    this.context.imageSmoothingQuality = 'high';
-    this.context.drawImage(this.small, -cell / 2, -cell / 2, across * cell, down * cell);
+  fit(cell, across, down) {
+    const { canvas } = this;
+    if (canvas.width === across && canvas.height === down && this.cell === cell) return;
+    this.cell = cell;
+    canvas.width = across;
+    canvas.height = down;
+    // The middle of the first pixel lies in the chart's corner.
+    Object.assign(canvas.style, { left: `${-cell / 2}px`, top: `${-cell / 2}px`, width: `${across * cell}px`, height: `${down * cell}px` });
+    this.image = this.context.createImageData(across, down);
+    this.heights = new Float32Array(across * down);
   }
 
   /** Adds up the components. Along a row each is a turning pointer, which costs four products a cell and no cosine. */
@@ -92,19 +88,22 @@ export class Sea {
     }
   }
 
-  paint(count) {
-    const [cr, cg, cb] = rgb(palette.crest);
-    const [tr, tg, tb] = rgb(palette.trough);
-    const data = this.image.data;
-    const scale = STRENGTH / (3 * this.height_m);
-    for (let i = 0; i < count; i++) {
+  paint() {
+    const water = rgb(palette.water);
+    const crest = rgb(palette.crest);
+    const trough = rgb(palette.trough);
+    const { data } = this.image;
+    const scale = this.deviation_m > 0 ? STRENGTH / (3 * this.deviation_m) : 0;
+    for (let i = 0, at = 0; i < this.heights.length; i++, at += 4) {
       const height = this.heights[i];
-      const up = height > 0;
-      data[4 * i] = up ? cr : tr;
-      data[4 * i + 1] = up ? cg : tg;
-      data[4 * i + 2] = up ? cb : tb;
-      data[4 * i + 3] = Math.min(STRENGTH, (up ? height : -height) * scale);
+      const shade = height > 0 ? crest : trough;
+      const part = Math.min(STRENGTH, Math.abs(height) * scale);
+      data[at] = water[0] + (shade[0] - water[0]) * part;
+      data[at + 1] = water[1] + (shade[1] - water[1]) * part;
+      data[at + 2] = water[2] + (shade[2] - water[2]) * part;
+      data[at + 3] = 255;
     }
+    this.context.putImageData(this.image, 0, 0);
   }
 }
 

@@ -21,6 +21,7 @@ export class Trails {
     this.times = new Float64Array(SAMPLES);
     this.xs = new Float32Array(SAMPLES * count);
     this.ys = new Float32Array(SAMPLES * count);
+    this.near = new Uint8Array(count);
     this.version = 0;
     this.clear();
   }
@@ -58,15 +59,16 @@ export class Trails {
   draw(context, view, teams, colours, now_s, selected) {
     if (this.kept < 2) return;
     // A power of two, so that the rows left out stay the same while the ring turns.
-    const stride = 2 ** Math.max(0, Math.ceil(Math.log2((this.count * this.kept) / PIECES_MAX)));
+    const near = this.nearby(view);
+    const stride = 2 ** Math.max(0, Math.ceil(Math.log2((near * this.kept) / PIECES_MAX)));
     context.lineJoin = 'round';
     // The more there are, the fainter, or they hide the boats.
-    const fade = Math.min(1, Math.sqrt(CLEAR / this.count));
+    const fade = Math.min(1, Math.sqrt(CLEAR / near));
     for (const [young, old, strength] of BANDS) {
       for (let team = 0; team < colours.length; team++) {
         context.beginPath();
         for (let boat = 0; boat < this.count; boat++) {
-          if (teams[boat] === team && boat !== selected) this.path(context, view, boat, stride, now_s, young, old);
+          if (teams[boat] === team && boat !== selected && this.near[boat]) this.path(context, view, boat, stride, now_s, young, old);
         }
         context.globalAlpha = strength * fade;
         context.strokeStyle = colours[team];
@@ -81,6 +83,20 @@ export class Trails {
       }
     }
     context.globalAlpha = 1;
+  }
+
+  /** Marks the boats that are on the chart or not far off it, and counts them. */
+  nearby(view) {
+    const row = this.head * this.count;
+    const reachX = view.width / view.scale;
+    const reachY = view.height / view.scale;
+    let count = 0;
+    for (let boat = 0; boat < this.count; boat++) {
+      const near = Math.abs(this.xs[row + boat] - view.centreX) < reachX && Math.abs(this.ys[row + boat] - view.centreY) < reachY;
+      this.near[boat] = near ? 1 : 0;
+      count += this.near[boat];
+    }
+    return Math.max(1, count);
   }
 
   path(context, view, boat, stride, now_s, young, old) {
