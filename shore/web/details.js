@@ -47,7 +47,7 @@ export class Details {
       this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
     this.gatewayBox = make('div', '', '', make('h3', '', 'Gateway'), this.gateway);
     this.body = make('div', 'boat', '', make('div', 'boat-head', '', this.name, this.about), buttons, this.wheelNote, this.matter,
-      this.facts, this.reason, this.helmBox, make('h3', '', 'Thrust'), this.thrust, this.gatewayBox);
+      this.facts, this.gatewayBox, this.reason, this.helmBox, make('h3', '', 'Thrust'), this.thrust);
     this.pane.replaceChildren(this.none, this.body);
   }
 

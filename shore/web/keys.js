@@ -14,7 +14,8 @@ const HELP = [
   ['The game', [['space', 'pause or go on'], ['s', 'one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or let them go on'],
     ['e', 'E-stop, or release it; Enter says yes']]],
   ['Driving', [['d', 'take the wheel of a boat that lets you'], ['arrows, w a s d', 'course and speed'], ['Escape', 'let go']]],
-  ['A replay', [['n  p', 'next event, event before'], [KINDS.map(([, key]) => key).join('  '), `next of the ${KINDS.map(([name]) => name.toLowerCase()).join(', ')}; with Shift before`],
+  ['A replay', [['n  p', 'next event, event before'], [KINDS.map(([, key]) => key).join('  '),
+    `next of the ${KINDS.map(([name]) => name.toLowerCase()).join(', ')}; with Shift before`],
     ['Shift+s', 'one decision back'], ['left, right', 'a second back or on (with Shift: ten)']]],
 ];
 

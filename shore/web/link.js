@@ -20,7 +20,8 @@ export class Link {
     this.tries = 0;
     this.owed = 0;
     this.socket = null;
-    setInterval(() => document.hidden && this.drawn(), HIDDEN_ACK_S * 1000);
+    this.acked_ms = 0;
+    setInterval(() => this.drawnUnseen(), HIDDEN_ACK_S * 1000);
   }
 
   start() {
@@ -52,7 +53,15 @@ export class Link {
     setTimeout(() => this.start(), wait_s * 1000);
   }
 
+  /** Lets a hidden page have a frame now and then. */
+  drawnUnseen() {
+    if (!document.hidden || performance.now() - this.acked_ms < HIDDEN_ACK_S * 900) return;
+    this.drawn();
+  }
+
   take(data) {
+    // Browsers let the timers of hidden pages sleep for a minute; messages wake us.
+    this.drawnUnseen();
     if (typeof data !== 'string') {
       const kind = data.byteLength > 4 ? new DataView(data).getUint8(0) : 0;
       if (kind === 1) this.owed += 1;
@@ -72,6 +81,7 @@ export class Link {
 
   /** To be called once what has come is on the screen. */
   drawn() {
+    if (this.owed > 0) this.acked_ms = performance.now();
     for (; this.owed > 0; this.owed--) this.send({ do: 'ack' });
   }
 

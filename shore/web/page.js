@@ -46,6 +46,8 @@ const LIST_EVERY = 3;
 /** How near a pointer must be to a boat, px. */
 const REACH_MOUSE_PX = 8;
 const REACH_TOUCH_PX = 22;
+/** Trails are drawn no more often than this while only they or the place of the chart change, ms. */
+const TRAILS_MS = 150;
 /** With little motion wanted, waves move this seldom, ms. */
 const CALM_SEA_MS = 5000;
 
@@ -82,7 +84,7 @@ class Page {
     this.asked = '';
     this.stats = { drawn: 0, fps: 0, draw_ms: 0, last_ms: 0 };
     this.drawnField = '';
-    this.drawnTrails = '';
+    this.trailed = { look: '', soft: '', at_ms: 0, x: 0, y: 0 };
     this.drawnBoats = '';
     this.ticks = 0;
     this.bind();
@@ -112,8 +114,9 @@ class Page {
     this.link.start();
     setInterval(() => this.tell(), TELL_MS);
     const loop = (now_ms) => {
-      this.draw(now_ms);
+      // First, so that a picture that fails is not the last.
       requestAnimationFrame(loop);
+      this.draw(now_ms);
     };
     requestAnimationFrame(loop);
   }
@@ -330,6 +333,7 @@ class Page {
     }
     this.view.resize(clientWidth, clientHeight);
     this.view.version += 1;
+    this.trailed.look = '';
   }
 
   draw(now_ms) {
@@ -345,7 +349,7 @@ class Page {
     const look = `${view.version} ${palette.version} ${this.controls.shownVersion}`;
     if (look !== this.drawnField) drawField(this.field, view, game.chart, shown);
     this.drawnField = look;
-    this.drawTrails(look, shown, index);
+    this.drawTrails(shown, index, now_ms);
     const boats = `${look} ${game.frames} ${index} ${this.boats.hovered} ${game.estimate?.at_s}`;
     if (moving || boats !== this.drawnBoats) this.boats.draw(game, view, shown, this.ratio);
     this.drawnBoats = moving ? '' : boats;
@@ -360,14 +364,24 @@ class Page {
     stats.last_ms = now_ms;
   }
 
-  drawTrails(look, shown, index) {
-    const { game } = this;
-    const key = `${look} ${game.trails.version} ${index} ${game.count}`;
-    if (key === this.drawnTrails) return;
-    this.drawnTrails = key;
-    this.trails.clearRect(0, 0, this.view.width, this.view.height);
+  /** Draws the trails anew now and then; in between they move along with the chart, which costs next to nothing. */
+  drawTrails(shown, index, now_ms) {
+    const { game, view, trailed } = this;
+    const look = `${view.scale} ${view.width} ${view.height} ${palette.version} ${this.controls.shownVersion} ${index} ${game.trails.epoch}`;
+    const soft = `${view.version} ${game.trails.version}`;
+    if (look === trailed.look && soft === trailed.soft) return;
+    const layer = this.layers[2];
+    if (look === trailed.look && now_ms - trailed.at_ms < TRAILS_MS) {
+      const right = (trailed.x - view.centreX) * view.scale;
+      const down = (view.centreY - trailed.y) * view.scale;
+      layer.style.transform = `translate(${right}px, ${down}px)`;
+      return;
+    }
+    this.trailed = { look, soft, at_ms: now_ms, x: view.centreX, y: view.centreY };
+    layer.style.transform = '';
+    this.trails.clearRect(0, 0, view.width, view.height);
     if (!shown.trails || !Number.isFinite(game.t_s)) return;
-    game.trails.draw(this.trails, this.view, game.teams, palette.teams, game.t_s, index);
+    game.trails.draw(this.trails, view, game.teams, palette.teams, game.t_s, index);
   }
 }
 

@@ -102,7 +102,9 @@ export class Status {
       [name, typeof value === 'number' ? number(value, 3) : String(value)]);
     show(this.drawnBox, drawn.length > 0);
     this.tellPairs(this.drawn, drawn);
-    const trouble = state?.recording?.failed ? `The recording failed${typeof state.recording.failed === 'string' ? `: ${state.recording.failed}` : ''}.` : '';
+    const failed = state?.recording?.failed;
+    const why = typeof failed === 'string' ? `: ${failed}` : '';
+    const trouble = failed ? `The recording failed${why}.` : '';
     write(this.trouble, trouble);
     show(this.trouble, trouble !== '');
   }

@@ -23,12 +23,15 @@ export class Trails {
     this.ys = new Float32Array(SAMPLES * count);
     this.near = new Uint8Array(count);
     this.version = 0;
+    /** Grows when all is forgotten. */
+    this.epoch = 0;
     this.clear();
   }
 
   clear() {
     this.head = -1;
     this.kept = 0;
+    this.epoch += 1;
     this.version += 1;
   }
 
