@@ -102,7 +102,7 @@ function drawGridNumbers(context, view, step, left, bottom) {
   context.textBaseline = 'middle';
   for (let y = bottom; y <= view.northOf(0); y += step) {
     const at = view.yOf(y);
-    if (at > 110 && at < view.height - 60) context.fillText(number(y, places), 4, at);
+    if (at > 110 && at < view.height - 60) haloText(context, number(y, places), 4, at, palette.faint);
   }
   context.font = FONT;
 }

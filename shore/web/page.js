@@ -30,7 +30,7 @@ import { Keys } from './keys.js';
 import { Link } from './link.js';
 import { BoatList } from './list.js';
 import { Log } from './log.js';
-import { calmly, palette } from './palette.js';
+import { palette } from './palette.js';
 import { Pointer } from './pointer.js';
 import { Sea, Weather } from './sea.js';
 import { notice, Status } from './status.js';
@@ -48,8 +48,6 @@ const REACH_MOUSE_PX = 8;
 const REACH_TOUCH_PX = 22;
 /** Trails are drawn no more often than this while only they or the place of the chart change, ms. */
 const TRAILS_MS = 150;
-/** With little motion wanted, waves move this seldom, ms. */
-const CALM_SEA_MS = 5000;
 
 const byId = (id) => document.getElementById(id);
 
@@ -343,9 +341,7 @@ class Page {
     const index = game.indexOf.get(game.selected) ?? -1;
     if (this.following && index >= 0) view.centreOn(game.x[index], game.y[index]);
     const shown = this.controls.shown;
-    const calm = calmly() && now_ms - this.sea.last_ms < CALM_SEA_MS && this.calmVersion === view.version;
-    if (!calm) this.sea.draw(view, game.t_s, shown, now_ms);
-    this.calmVersion = view.version;
+    this.sea.draw(view, game.t_s, shown, now_ms);
     const look = `${view.version} ${palette.version} ${this.controls.shownVersion}`;
     if (look !== this.drawnField) drawField(this.field, view, game.chart, shown);
     this.drawnField = look;

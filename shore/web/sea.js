@@ -1,6 +1,6 @@
 // The sea: waves as a faint shading, and wind and current in words beside their arrows.
 
-import { palette, rgb } from './palette.js';
+import { calmly, palette, rgb } from './palette.js';
 import { bearing, number, show, wrapDeg, write } from './words.js';
 
 /** Pixels of the chart to a cell of the shading. */
@@ -10,6 +10,8 @@ const CELLS_MAX = 14000;
 const COMPONENTS_MAX = 40;
 /** How often the shading moves, ms. */
 const STEP_MS = 80;
+/** The same where people want little motion, ms. */
+const STEP_CALM_MS = 5000;
 /** Strength of the shading at most. */
 const STRENGTH = 0.45;
 
@@ -38,7 +40,7 @@ export class Sea {
     const place = `${waves ? view.version : 'flat'} ${palette.version} `;
     const key = `${place}${waves ? t_s : '-'}`;
     if (key === this.drawn) return;
-    if (this.drawn.startsWith(place) && now_ms - this.last_ms < STEP_MS) return;
+    if (this.drawn.startsWith(place) && now_ms - this.last_ms < (calmly() ? STEP_CALM_MS : STEP_MS)) return;
     this.drawn = key;
     this.last_ms = now_ms;
     const cell = Math.max(CELL_PX, Math.sqrt((view.width * view.height) / CELLS_MAX));
