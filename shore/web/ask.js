@@ -19,30 +19,29 @@ export class Ask {
     this.confirm = element('-confirm');
     this.button.setAttribute('aria-expanded', 'false');
     this.button.setAttribute('aria-controls', this.box.id);
+    this.cancel = element('-cancel');
     this.confirm.addEventListener('click', () => {
-      this.close(true);
+      // Not back to the button: a second Enter would ask for the opposite.
+      this.close(false);
+      document.getElementById('sheet').focus({ preventScroll: true });
       this.act?.();
     });
-    element('-cancel').addEventListener('click', () => this.close(true));
+    this.cancel.addEventListener('click', () => this.close(true));
     document.addEventListener('pointerdown', (event) => {
       if (open === this && !this.box.contains(event.target) && !this.button.contains(event.target)) this.close(false);
     });
   }
 
-  /** Asks; `act` is called once somebody says yes. Asked again it closes. */
-  ask(question, yes, act) {
-    if (open === this) {
-      this.close(true);
-      return;
-    }
-    closeAsk();
+  /** Asks; `act` is called once somebody says yes. `slow` waits on the no, for what is not to be done by a second Enter. */
+  ask(question, yes, act, slow = false) {
+    if (open !== this) closeAsk();
     open = this;
     this.act = act;
     this.question.textContent = question;
     this.confirm.textContent = yes;
     this.box.hidden = false;
     this.button.setAttribute('aria-expanded', 'true');
-    this.confirm.focus();
+    (slow ? this.cancel : this.confirm).focus();
   }
 
   close(back) {

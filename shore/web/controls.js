@@ -100,7 +100,7 @@ export class Controls {
   eStop() {
     if (this.mode !== 'live' || !this.rights) return;
     if (this.eStopped) {
-      this.asks.estop.ask('Release the E-stop? Real boats must then be armed again.', 'Yes, release', () => this.control('release'));
+      this.asks.estop.ask('Release the E-stop? Real boats must then be armed again.', 'Yes, release', () => this.control('release'), true);
     } else {
       this.asks.estop.ask('Stop every boat now?', 'Yes, E-stop', () => this.control('e_stop'));
     }
@@ -108,7 +108,7 @@ export class Controls {
 
   stop() {
     if (this.mode !== 'live' || !this.rights) return;
-    this.asks.stop.ask('End this game for good?', 'Yes, end it', () => this.control('stop'));
+    this.asks.stop.ask('End this game for good?', 'Yes, end it', () => this.control('stop'), true);
   }
 
   greet(hello) {
