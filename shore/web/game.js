@@ -23,6 +23,8 @@ export const MARKS = [
 
 /** Frames farther apart than this are not joined by smooth motion, ms. */
 const GAP_MAX_MS = 600;
+/** Motion takes this much longer than a gap, so that a frame that comes a little late finds the boats under way. */
+const STRETCH = 1.15;
 /** Frames closer together than this need none, ms. */
 const GAP_MIN_MS = 22;
 /** How far a boat may get beyond its speed before it has jumped, m. */
@@ -68,6 +70,9 @@ export class Game {
     this.unread = 0;
     this.arrival_ms = 0;
     this.gap_ms = 0;
+    this.posed_ms = 0;
+    this.begun_ms = 0;
+    this.posedFrames = 0;
     this.past = false;
     this.smooth = true;
     this.trails = new Trails(count);
@@ -197,7 +202,11 @@ export class Game {
 
   /** Moves the boats to where they are shown at this time: one gap behind the newest frame. Whether they still move. */
   pose(now_ms) {
-    const done = this.gap_ms < GAP_MIN_MS ? 1 : Math.min(1, (now_ms - this.arrival_ms) / this.gap_ms);
+    // Where motion begins was shown in the picture before, not when the frame came.
+    if (this.posedFrames !== this.frames) this.begun_ms = this.posed_ms;
+    this.posedFrames = this.frames;
+    this.posed_ms = now_ms;
+    const done = this.gap_ms < GAP_MIN_MS ? 1 : Math.min(1, Math.max(0, (now_ms - this.begun_ms) / (this.gap_ms * STRETCH)));
     for (let i = 0; i < this.count; i++) {
       let turn = this.toH[i] - this.fromH[i];
       turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
