@@ -32,7 +32,7 @@ impl Guard {
         }
         Err(format!(
             "This server is not known as {name:?}: it may have been asked by a page that should not. If it should be, \
-             begin it with --page-host {name}.\n"
+             begin it with --host {name}.\n"
         ))
     }
 
