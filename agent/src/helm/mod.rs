@@ -22,7 +22,7 @@ use bid::Entry;
 use game::helm::HelmReport;
 use game::message::Word;
 use game::scenario::Scenario;
-use game::strategy::{Expression, Moment, Program, Proposer, Rule, Task, What, Who};
+use game::strategy::{Expression, Moment, Program, Proposer, Rule, What, Who};
 use game::{Event, Order, Picture, SimTime, VehicleId};
 use life::Life;
 use scene::Proposed;

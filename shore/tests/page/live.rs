@@ -105,7 +105,7 @@ impl Sim {
                 heard.visit(|all| all.push(serde_json::from_slice(bytes).expect("a control")));
             })
             .expect("it listens"),
-            bus.subscribe(topic::all_policies(&game), move |bytes| {
+            bus.subscribe(topic::recorded(&game, "policy/*"), move |bytes| {
                 proposed.visit(|all| all.push(codec::decode(bytes).expect("a proposal")));
             })
             .expect("it listens"),
