@@ -25,4 +25,4 @@ pub use gateway::{Gateway, Traffic};
 pub use response::{Response, SETTLED_S};
 pub use sentence::{Line, Lines};
 pub use summary::{Summary, Topic};
-pub use track::Apart;
+pub use track::{Apart, distances};

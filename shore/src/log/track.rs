@@ -26,13 +26,10 @@ const SHAPE_POINTS: usize = 2000;
 /// How far a boat of one game was from that of another, while both games were on; none where they have no moment in common.
 #[must_use]
 pub(super) fn apart((a, in_a): (&Book, &Boat), (b, in_b): (&Book, &Boat)) -> Option<Apart> {
-    let end_s = a.times_s.last()?.min(*b.times_s.last()?);
-    let begin_s = a.times_s.first()?.max(*b.times_s.first()?);
+    let (begin_s, end_s) = common_s(a, b)?;
     let is_common = |time_s: &f64| (begin_s..=end_s).contains(time_s);
     let [track_a, track_b]: [Vec<Ned>; 2] = [in_a.track().collect(), in_b.track().collect()];
-    let common = a.times_s.iter().copied().zip(track_a.iter().copied()).filter(|(time_s, _)| is_common(time_s));
-    let distances_m: Vec<f64> =
-        common.map(|(time_s, at)| at.distance(place_at(&b.times_s, &track_b, time_s))).collect();
+    let distances_m: Vec<f64> = distances((a, in_a), (b, in_b)).into_iter().map(|(_, distance_m)| distance_m).collect();
     let final_m = *distances_m.last()?;
     let during = |times_s: &[f64], track: &[Ned]| -> Vec<Ned> {
         let all: Vec<Ned> =
@@ -46,6 +43,22 @@ pub(super) fn apart((a, in_a): (&Book, &Boat), (b, in_b): (&Book, &Boat)) -> Opt
         final_m,
         frechet_m: frechet_m(&during(&a.times_s, &track_a), &during(&b.times_s, &track_b)),
     })
+}
+
+/// From when until when both games were on, s.
+fn common_s(a: &Book, b: &Book) -> Option<(f64, f64)> {
+    let end_s = a.times_s.last()?.min(*b.times_s.last()?);
+    Some((a.times_s.first()?.max(*b.times_s.first()?), end_s))
+}
+
+/// How far a boat of one game was from that of another, while both games were on: the time, s, and the distance, m, at the
+/// moments of the first.
+#[must_use]
+pub fn distances((a, in_a): (&Book, &Boat), (b, in_b): (&Book, &Boat)) -> Vec<(f64, f64)> {
+    let Some((begin_s, end_s)) = common_s(a, b) else { return vec![] };
+    let other: Vec<Ned> = in_b.track().collect();
+    let common = a.times_s.iter().zip(in_a.track()).filter(|(time_s, _)| (begin_s..=end_s).contains(*time_s));
+    common.map(|(time_s, at)| (*time_s, at.distance(place_at(&b.times_s, &other, *time_s)))).collect()
 }
 
 /// Where a track is at a time, straight between two moments.

@@ -81,15 +81,25 @@ pub fn topics(recording: &Recording) -> Vec<String> {
     known
 }
 
+/// Whether there is such a topic.
+///
+/// # Errors
+/// [`SheetError::Unknown`] names those there are.
+pub fn check(recording: &Recording, topic: &str) -> Result<(), SheetError> {
+    let known = topics(recording);
+    if known.iter().any(|known| known == topic) {
+        Ok(())
+    } else {
+        Err(SheetError::Unknown { topic: topic.to_owned(), known })
+    }
+}
+
 /// Gives the table of a topic, row by row.
 ///
 /// # Errors
 /// [`SheetError`] if there is no such topic, it is damaged, or the rows are not taken.
 pub fn write(recording: &Recording, topic: &str, sink: &mut Sink<'_>) -> Result<(), SheetError> {
-    let known = topics(recording);
-    if !known.iter().any(|known| known == topic) {
-        return Err(SheetError::Unknown { topic: topic.to_owned(), known });
-    }
+    check(recording, topic)?;
     let scenario = &recording.header().notice.scenario;
     if topic == EVENTS {
         return events(recording, scenario, &mut Row::new(sink));
