@@ -2,12 +2,15 @@
 
 mod agent_command;
 mod check_command;
+mod field_plot;
 mod gateway_command;
 mod hardware_loop;
 mod helm_command;
 mod helm_page;
 mod identify_command;
 mod list_command;
+mod log_command;
+mod log_plot;
 mod net_args;
 mod offspring;
 mod onlooker;
@@ -65,6 +68,8 @@ enum Command {
     View(view_command::Args),
     /// Shows a recorded game again, or checks that the same comes of it.
     Replay(replay_command::Args),
+    /// Says what a recorded game tells: a summary, tables, plots, MOOS logs, and how it differs from another.
+    Log(log_command::Args),
     /// Dumps one decision of a boat's helm: a table, numbers, pictures.
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
@@ -94,6 +99,7 @@ fn main() -> ExitCode {
         Command::Watch(args) => watch_command::run(&args),
         Command::View(args) => view_command::run(&args),
         Command::Replay(args) => replay_command::run(&args),
+        Command::Log(args) => log_command::run(&args),
         Command::Helm(args) => helm_command::run(&args),
         Command::Gateway(args) => gateway_command::run(&args),
         Command::List(args) => list_command::run(&args),
