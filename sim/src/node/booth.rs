@@ -1,6 +1,7 @@
 //! The referee's booth: the contest, who is who in it, and the lines to agents, gateways and observers.
 
 use super::clock;
+use super::line::{self, Call};
 use super::quay::Quay;
 use super::roster::{Accepted, Refused, Roster, Timing};
 use super::tempo::Tempo;
@@ -25,21 +26,6 @@ const INBOX: usize = 8192;
 const NEWS_EVERY: Duration = Duration::from_millis(100);
 /// How long the last words may take to reach everybody.
 const GOOD_BYE: Duration = Duration::from_secs(2);
-
-/// What comes in from the network.
-enum Call {
-    Orders(Vec<u8>),
-    Nav(Vec<u8>),
-    Join(Question),
-    Moor(Question),
-    Scenario(Question),
-    Events(Question),
-    Water(Question),
-    /// To be written down only: the topic's place in the list, and the message.
-    Heard(usize, Vec<u8>),
-    Gone(Part, String),
-    Control(Vec<u8>),
-}
 
 /// Everything a served game needs.
 pub(super) struct Booth<'w> {
@@ -78,51 +64,19 @@ pub(super) struct Booth<'w> {
 impl<'w> Booth<'w> {
     /// Opens the hub and the door.
     pub(super) fn open(
-        contest: Contest,
+        mut contest: Contest,
         settings: &Settings,
         witness: &'w mut dyn Witness,
     ) -> Result<Booth<'w>, NodeError> {
         let bus = Bus::hub(&settings.net)?;
         let (outlet, inbox) = inbox(INBOX);
         let game = &settings.game;
-        let on = |call: fn(Vec<u8>) -> Call| {
-            let outlet = outlet.clone();
-            move |bytes: &[u8]| outlet.put(call(bytes.to_vec()))
-        };
-        let asked = |call: fn(Question) -> Call| {
-            let outlet = outlet.clone();
-            move |question| outlet.put(call(question))
-        };
-        let gone = outlet.clone();
-        let watch = move |key: &str, alive: bool| {
-            if let (Some((_, part, node)), false) = (topic::parse_alive(key), alive) {
-                gone.put(Call::Gone(part, node));
-            }
-        };
-        let mut contest = contest;
         if witness.state().is_some() {
             contest.keep_inputs();
         }
         let scenario = contest.scenario();
         let heard_topics = if witness.state().is_some() { telling::heard_topics(scenario) } else { vec![] };
-        let mut standing = vec![
-            bus.subscribe(topic::all_orders(game), on(Call::Orders))?,
-            bus.subscribe(topic::control(game), on(Call::Control))?,
-            bus.subscribe(topic::all_nav(game), on(Call::Nav))?,
-            bus.watch_alive(topic::all_alive(game, Part::Agent), watch.clone())?,
-            bus.watch_alive(topic::all_alive(game, Part::Gateway), watch)?,
-            bus.answer(topic::scenario(game), asked(Call::Scenario))?,
-            bus.answer(topic::events(game), asked(Call::Events))?,
-            bus.answer(topic::water(game), asked(Call::Water))?,
-            bus.answer(topic::join(game), asked(Call::Join))?,
-            bus.answer(topic::moor(game), asked(Call::Moor))?,
-            bus.show_alive(topic::alive(game, Part::Sim, &bus.id()))?,
-        ];
-        for (i, (name, _)) in heard_topics.iter().enumerate() {
-            let outlet = outlet.clone();
-            let take = move |bytes: &[u8]| outlet.put(Call::Heard(i, bytes.to_vec()));
-            standing.push(bus.subscribe(topic::recorded(game, name), take)?);
-        }
+        let standing = line::open(&bus, game, &outlet, &heard_topics)?;
         let is_lockstep = settings.pace == Pace::Lockstep;
         let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };

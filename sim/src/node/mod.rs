@@ -5,6 +5,7 @@
 
 mod booth;
 mod clock;
+mod line;
 mod lockstep;
 pub mod quay;
 mod realtime;
