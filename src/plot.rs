@@ -91,10 +91,37 @@ pub(crate) const COLOURS: [RGBColor; 6] = [
 /// Where something is drawn.
 type Area<B> = DrawingArea<B, Shift>;
 
+/// How lines are made thick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ink {
+    /// By their width: a viewer knows what to do at sharp corners.
+    Vector,
+    /// By lines beside each other: the library's thick ones stick out at sharp corners of pixels, and have gaps.
+    Pixels,
+}
+
+impl Ink {
+    /// How wide a stroke is.
+    pub(crate) fn width(self) -> u32 {
+        match self {
+            Ink::Vector => 2,
+            Ink::Pixels => 1,
+        }
+    }
+
+    /// Where strokes are, pixels right and down.
+    pub(crate) fn strokes(self) -> &'static [(i32, i32)] {
+        match self {
+            Ink::Vector => &[(0, 0)],
+            Ink::Pixels => &[(0, 0), (1, 0), (0, 1)],
+        }
+    }
+}
+
 /// Draws a page into an SVG file.
 pub(crate) fn write_svg(path: &Path, page: &Page) -> Result<()> {
     let mut svg = String::new();
-    draw(SVGBackend::with_string(&mut svg, size(page)), page)
+    draw(SVGBackend::with_string(&mut svg, size(page)), page, Ink::Vector)
         .with_context(|| format!("cannot draw {}", path.display()))?;
     std::fs::write(path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))
 }
@@ -103,7 +130,7 @@ pub(crate) fn write_svg(path: &Path, page: &Page) -> Result<()> {
 pub(crate) fn write_png(path: &Path, page: &Page) -> Result<()> {
     let (wide, high) = size(page);
     let mut pixels = vec![0; 3 * wide as usize * high as usize];
-    draw(BitMapBackend::with_buffer(&mut pixels, (wide, high)), page)
+    draw(BitMapBackend::with_buffer(&mut pixels, (wide, high)), page, Ink::Pixels)
         .with_context(|| format!("cannot draw {}", path.display()))?;
     save_png(path, (wide, high), &pixels)
 }
@@ -125,7 +152,7 @@ fn size(page: &Page) -> (u32, u32) {
     (page.panel.0 * page.columns as u32, TITLE_HEIGHT + page.panel.1 * rows)
 }
 
-fn draw<B: DrawingBackend>(backend: B, page: &Page) -> Result<()>
+fn draw<B: DrawingBackend>(backend: B, page: &Page, ink: Ink) -> Result<()>
 where
     B::ErrorType: 'static,
 {
@@ -136,12 +163,12 @@ where
     let (top, rest) = root.split_vertically(TITLE_HEIGHT);
     top.draw(&Text::new(page.title.clone(), (24, 14), (FONT, 20).into_font())).map_err(failed)?;
     for (area, panel) in rest.split_evenly((rows, page.columns)).iter().zip(&page.panels) {
-        draw_panel(area, panel)?;
+        draw_panel(area, panel, ink)?;
     }
     root.present().map_err(failed)
 }
 
-fn draw_panel<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Result<()>
+fn draw_panel<B: DrawingBackend>(area: &Area<B>, panel: &Panel, ink: Ink) -> Result<()>
 where
     B::ErrorType: 'static,
 {
@@ -172,16 +199,23 @@ where
         .y_label_formatter(&|y| label(*y, y1 - y0))
         .draw()
         .map_err(failed)?;
+    let (wide, high) = chart.plotting_area().dim_in_pixel();
+    let pixel = ((x1 - x0) / f64::from(wide.max(1)), (y0 - y1) / f64::from(high.max(1)));
     for (line, colour) in panel.lines.iter().zip(COLOURS.iter().cycle()) {
         let colour = line.colour.unwrap_or(*colour);
-        let style = colour.stroke_width(2);
+        let style = colour.stroke_width(ink.width());
         for (i, piece) in pieces(&line.points).into_iter().enumerate() {
             if line.filled {
                 chart.draw_series([Polygon::new(down_to_0(piece), colour.mix(FILLING))]).map_err(failed)?;
             }
-            let drawn = chart.draw_series(LineSeries::new(piece.iter().copied(), style)).map_err(failed)?;
-            if i == 0 && !line.name.is_empty() {
-                drawn.label(&line.name).legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], style));
+            for (right, down) in ink.strokes() {
+                let beside = (f64::from(*right) * pixel.0, f64::from(*down) * pixel.1);
+                let points = piece.iter().map(move |(x, y)| (x + beside.0, y + beside.1));
+                let drawn = chart.draw_series(LineSeries::new(points, style)).map_err(failed)?;
+                if i == 0 && (*right, *down) == (0, 0) && !line.name.is_empty() {
+                    let key = colour.stroke_width(2);
+                    drawn.label(&line.name).legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], key));
+                }
             }
         }
     }

@@ -24,7 +24,11 @@ pub(super) fn csv(recording: &Recording, topic: &str, file: Option<&Path>) -> Re
 }
 
 fn rows<W: Write>(recording: &Recording, topic: &str, csv: &mut csv::Writer<W>) -> Result<(), sheet::SheetError> {
-    sheet::write(recording, topic, &mut |cells| csv.write_record(cells).map_err(std::io::Error::from))?;
+    let io = |e: csv::Error| match e.into_kind() {
+        csv::ErrorKind::Io(e) => e,
+        other => std::io::Error::other(format!("{other:?}")),
+    };
+    sheet::write(recording, topic, &mut |cells| csv.write_record(cells).map_err(io))?;
     Ok(csv.flush()?)
 }
 

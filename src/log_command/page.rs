@@ -87,7 +87,11 @@ fn boats(boats: &[Figures]) -> String {
 
 fn gateway_text(gateway: &Gateway) -> String {
     let state = gateway.state.as_deref().unwrap_or("unknown");
-    let mut text = format!("\ngateway of {}: {state}, {} trips\n", gateway.boat, gateway.trips.len());
+    let trips = match gateway.trips.len() {
+        1 => "1 trip".to_owned(),
+        count => format!("{count} trips"),
+    };
+    let mut text = format!("\ngateway of {}: {state} in the end, {trips}\n", gateway.boat);
     for trip in &gateway.trips {
         line(&mut text, format_args!("{:>7.1} s of the gateway  {}", trip.at_s, trip.cause));
     }

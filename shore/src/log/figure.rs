@@ -70,16 +70,16 @@ pub(super) fn figures(book: &Book) -> Vec<Figures> {
 fn of(boat: &Boat, counts: Counts, steps_s: &[f64], teams: &[String]) -> Figures {
     let lasted = |is: fn(&Moment) -> bool| {
         let steps = boat.moments.iter().zip(steps_s).filter(|(moment, _)| is(moment));
-        steps.map(|(_, step_s)| step_s).sum()
+        total(steps.map(|(_, step_s)| *step_s))
     };
-    let span_s: f64 = steps_s.iter().sum();
+    let span_s = total(steps_s.iter().copied());
     let travelled_m = boat.moments.iter().zip(steps_s).map(|(moment, step_s)| moment.speed_m_s() * step_s);
     Figures {
         boat: boat.name.clone(),
         team: teams.get(boat.team).cloned().unwrap_or_default(),
         is_real: boat.is_real,
         distance_m: length_m(boat),
-        speed_mean_m_s: if span_s > 0.0 { travelled_m.sum::<f64>() / span_s } else { 0.0 },
+        speed_mean_m_s: if span_s > 0.0 { total(travelled_m) / span_s } else { 0.0 },
         speed_max_m_s: boat.moments.iter().map(Moment::speed_m_s).fold(0.0, f64::max),
         tagged_s: lasted(|moment| moment.tagged),
         outside_s: lasted(|moment| moment.outside),
@@ -93,7 +93,7 @@ fn of(boat: &Boat, counts: Counts, steps_s: &[f64], teams: &[String]) -> Figures
 }
 
 fn length_m(boat: &Boat) -> f64 {
-    boat.moments.windows(2).map(|two| two[0].truth.at().distance(two[1].truth.at())).sum()
+    total(boat.moments.windows(2).map(|two| two[0].truth.at().distance(two[1].truth.at())))
 }
 
 fn navigation(boat: &Boat) -> Option<NavigationError> {
@@ -110,8 +110,13 @@ fn steering(boat: &Boat, steps_s: &[f64]) -> Option<SteeringError> {
     let heading_rad = rms(steered().map(|(truth, (heading_rad, _))| wrap_pi(truth.psi_rad - heading_rad)))?;
     let speed_rms_m_s = rms(steered().map(|(truth, (_, speed_m_s))| truth.surge_m_s - speed_m_s))?;
     let steps = boat.moments.iter().zip(steps_s).filter(|(moment, _)| moment.steered().is_some());
-    let steered_s = steps.map(|(_, step_s)| step_s).sum();
+    let steered_s = total(steps.map(|(_, step_s)| *step_s));
     Some(SteeringError { heading_rms_deg: heading_rad.to_degrees(), speed_rms_m_s, steered_s })
+}
+
+/// The sum, which of nothing is 0: that of the library is then -0.
+fn total(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.fold(0.0, |sum, number| sum + number)
 }
 
 /// The root of the mean square; none of nothing.
@@ -180,7 +185,9 @@ mod tests {
         assert!((error.heading_rms_deg - 0.1_f64.to_degrees()).abs() < 1e-9, "{error:?}");
         assert!((error.speed_rms_m_s - 0.5).abs() < 1e-9 && (error.steered_s - 5.0).abs() < 1e-9, "{error:?}");
         assert!((figures.tagged_s - 5.0).abs() < 1e-9 && (figures.carrying_s - 1.0).abs() < 1e-9);
-        assert_eq!((figures.outside_s, figures.mind_lost_s, figures.nav_lost_s), (0.0, 0.0, 0.0));
+        for none_s in [figures.outside_s, figures.mind_lost_s, figures.nav_lost_s] {
+            assert_eq!(format!("{none_s:.1}"), "0.0");
+        }
     }
 
     #[test]

@@ -32,6 +32,8 @@ pub const SETTLED_S: f64 = 10.0;
 /// An order that varies less than this, as a standard deviation, tells nothing of a delay.
 const VARIES_M_S: f64 = 0.05;
 const VARIES_RAD: f64 = 0.05;
+/// Speeds that go together less than this tell no delay either: there would be a best one all the same.
+const CORRELATED: f64 = 0.5;
 /// Fewer moments than this tell nothing.
 const MOMENTS_MIN: usize = 100;
 
@@ -95,7 +97,7 @@ fn correlation(told: &[Told]) -> Option<f64> {
         (xx, yy, xy) = (xx + x * x, yy + y * y, xy + x * y);
     }
     let coefficient = xy / (xx * yy).sqrt();
-    coefficient.is_finite().then_some(coefficient)
+    (coefficient >= CORRELATED).then_some(coefficient)
 }
 
 /// Whether there are enough orders, and they vary.
