@@ -10,7 +10,7 @@ import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
 /** The limit of every wait, ms: machines are slow. */
-export const LIMIT_MS = 60_000;
+export const LIMIT_MS = Number(process.env.LIMIT_MS ?? 60_000);
 /** How often a condition is looked at, ms. */
 const LOOK_MS = 40;
 /** How long a program has to end by itself, ms. */
@@ -19,7 +19,7 @@ const LEAVE_MS = 10_000;
 /** The repository. */
 export const ROOT = resolve(fileURLToPath(import.meta.url), '../../..');
 const SQUALL = resolve(process.env.SQUALL ?? join(ROOT, 'target/release/squall'));
-/** To work on the page without building the program: its files are taken from this folder. */
+/** To work on the page without building the program: its scripts and styles are taken from this folder. */
 const WEB = process.env.SQUALL_WEB;
 const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
   '--disable-component-update', '--disable-sync'];
@@ -41,12 +41,6 @@ function browserPath() {
   });
   assert(found, 'no chromium on PATH: install it, or say in CHROMIUM where it is');
   return found;
-}
-
-/** Answers with a file of the folder instead of the program's own. */
-function serve(route) {
-  const { pathname } = new URL(route.request().url());
-  return route.fulfill({ path: join(WEB, pathname === '/' ? 'index.html' : pathname) });
 }
 
 /** A browser without a window. */
@@ -145,13 +139,18 @@ export async function squall(t, ...args) {
 
 /** A page in a browser. A test with it fails on any error that the page's console shows, but for those it `allows`. */
 export class Sight {
-  static async open(t, browser, url, { size = { width: 1440, height: 900 }, allows = null, ...more } = {}) {
+  static async open(t, browser, url, { size = { width: 1440, height: 900 }, allows = null, before = null, ...more } = {}) {
     const context = await browser.newContext({ viewport: size, ...more });
     const page = await context.newPage();
     page.setDefaultTimeout(LIMIT_MS);
+    if (before) await page.addInitScript(before);
     const sight = new Sight(context, page, allows);
     t.after(() => sight.close());
-    if (WEB) await page.route((address) => existsSync(join(WEB, address.pathname)), (route) => serve(route));
+    if (WEB) {
+      // The page itself is the program's: a browser trusts no page from elsewhere to talk to this machine.
+      const file = (address) => join(WEB, new URL(address).pathname.replace('/web/', '/'));
+      await page.route((address) => address.pathname !== '/' && existsSync(file(address)), (route) => route.fulfill({ path: file(route.request().url()) }));
+    }
     await page.goto(url);
     await sight.until('a picture is drawn', () => squall.drawn > 2 && squall.frame !== null);
     return sight;

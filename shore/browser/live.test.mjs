@@ -32,7 +32,7 @@ test('a game is shown as it is played, up to its result', async (t) => {
   const shown = await sight.get(() => ({ score: squall.score, t_s: squall.t_s, events: squall.events.map(({ text, ...event }) => event) }));
   await run.end();
   const told = readJson(result);
-  assert.deepEqual(shown.score, [told.score.blue, told.score.red]);
+  assert.deepEqual(shown.score, [told.score.teams.blue, told.score.teams.red]);
   assert(shown.score[0] > 0, 'a game without points shows little');
   assert.deepEqual(await Promise.all([sight.text('#score-blue'), sight.text('#score-red')]), shown.score.map(String));
   assert.equal(shown.t_s, told.duration_s);
