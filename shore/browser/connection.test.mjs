@@ -37,7 +37,7 @@ test('a page that is loaded again, or whose server is, goes on by itself', async
   await sight.goesOn();
   assert(await sight.get(() => document.getElementById('connection').hidden));
   assert.equal(await sight.get(() => squall.selected), 'red_one', 'the boat stays selected');
-  await sight.until('its helm is told again', () => squall.helm?.report?.courses?.length > 0);
+  await sight.until('its helm is told again', () => squall.helm?.report?.collective);
 
   await sim.kill();
   await sight.until('the game is gone', () => squall.state.phase === 'gone');

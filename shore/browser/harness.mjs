@@ -46,6 +46,13 @@ function browserPath() {
 /** A browser without a window. */
 export const openBrowser = () => chromium.launch({ executablePath: browserPath(), args: FLAGS });
 
+/** Another browser, as another person has, for one test. */
+export async function openAnother(t) {
+  const browser = await openBrowser();
+  afterwards(t, () => browser.close());
+  return browser;
+}
+
 /** Waits until `condition` gives something true, and gives it. */
 export async function until(what, condition, limit_ms = LIMIT_MS) {
   const end_ms = Date.now() + limit_ms;
@@ -57,10 +64,24 @@ export async function until(what, condition, limit_ms = LIMIT_MS) {
   }
 }
 
+const left = new WeakMap();
+
+/** Does this once the test is over: what was begun last ends first. */
+function afterwards(t, end) {
+  if (!left.has(t)) {
+    const ends = [];
+    left.set(t, ends);
+    t.after(async () => {
+      while (ends.length > 0) await ends.pop()();
+    });
+  }
+  left.get(t).push(end);
+}
+
 /** A folder that goes with the test. */
 export function folder(t) {
   const path = mkdtempSync(join(tmpdir(), 'squall-page-'));
-  t.after(() => rmSync(path, { recursive: true, force: true }));
+  afterwards(t, () => rmSync(path, { recursive: true, force: true }));
   return path;
 }
 
@@ -96,7 +117,7 @@ export class Program {
     });
     this.ended.then((code) => { this.code = code; });
     for (const stream of [this.child.stdout, this.child.stderr]) stream.on('data', (text) => { this.said += text; });
-    t.after(() => this.end());
+    afterwards(t, () => this.end());
   }
 
   /** Waits until it has said something, and gives that. */
@@ -145,14 +166,14 @@ export class Sight {
     page.setDefaultTimeout(LIMIT_MS);
     if (before) await page.addInitScript(before);
     const sight = new Sight(context, page, allows);
-    t.after(() => sight.close());
+    afterwards(t, () => sight.close());
     if (WEB) {
       // The page itself is the program's: a browser trusts no page from elsewhere to talk to this machine.
       const file = (address) => join(WEB, new URL(address).pathname.replace('/web/', '/'));
       await page.route((address) => address.pathname !== '/' && existsSync(file(address)), (route) => route.fulfill({ path: file(route.request().url()) }));
     }
     await page.goto(url);
-    await sight.until('a picture is drawn', () => squall.drawn > 2 && squall.frame !== null);
+    await sight.until('a picture is drawn', () => squall.drawn > 0 && squall.frame !== null);
     return sight;
   }
 
@@ -176,7 +197,7 @@ export class Sight {
       const handle = await this.page.waitForFunction(condition, arg, { polling: LOOK_MS, timeout: LIMIT_MS });
       return await handle.jsonValue();
     } catch (error) {
-      const now = await this.get(() => JSON.stringify({ mode: squall.mode, t_s: squall.t_s, score: squall.score, state: squall.state,
+      const now = await this.get(() => JSON.stringify({ mode: squall.mode, helm: squall.helm && { ...squall.helm, report: Object.keys(squall.helm.report ?? {}) }, t_s: squall.t_s, score: squall.score, state: squall.state,
         player: squall.player, selected: squall.selected, driving: squall.driving, connected: squall.connected,
         notices: document.getElementById('notices').textContent })).catch(() => 'nothing');
       throw new Error(`${what}: ${error.message.split('\n')[0]}; the page shows ${now}`);

@@ -18,7 +18,8 @@ const pav01 = scenario('games/pav01_vs_pav01.toml');
 
 test('a game is shown as it is played, up to its result', async (t) => {
   const result = join(folder(t), 'result.json');
-  const run = new Program(t, 'run', pav01, '--view', '--speed', '20x', '--no-record', '--json', result, '--listen', '127.0.0.1:0');
+  const game = gameFile(t, 'short', 'pav01_vs_pav01.toml', 'duration_s = 240');
+  const run = new Program(t, 'run', game, '--view', '--speed', '20x', '--no-record', '--json', result, '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url());
   const names = ['blue_one', 'blue_two', 'red_one', 'red_two'];
   assert.deepEqual(await sight.get(() => squall.frame.boats.map((boat) => boat.name)), names);
@@ -46,7 +47,7 @@ test('pause, one decision, speed and going on', async (t) => {
   await sight.goesOn();
   await sight.press('#pause');
   await sight.phase('paused');
-  const before = await sight.until('it stands', () => squall.state.now_s === squall.t_s && { t_s: squall.t_s, tick: squall.frame.tick });
+  const before = await sight.until('it stands', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6 && { t_s: squall.t_s, tick: squall.frame.tick });
   await sight.press('#step');
   const after = await sight.until('a decision is made', (then) => squall.t_s > then.t_s && { t_s: squall.t_s, tick: squall.frame.tick }, before);
   const decision_s = await sight.get(() => squall.hello.chart.decision_s);

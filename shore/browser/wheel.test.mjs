@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { Program, Sight, openBrowser, scenario } from './harness.mjs';
+import { Program, Sight, openAnother, openBrowser, scenario } from './harness.mjs';
 
 let browser;
 before(async () => { browser = await openBrowser(); });
@@ -32,8 +32,7 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   const run = new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--pace', 'realtime', '--no-record', '--listen', '127.0.0.1:0');
   const url = await run.url();
   // Two browsers, as two people have: a page that is not in front is shown nothing.
-  const other = await openBrowser();
-  t.after(() => other.close());
+  const other = await openAnother(t);
   const [mine, theirs] = [await Sight.open(t, browser, url), await Sight.open(t, other, url)];
   const look = (sight) => sight.get(() => ({ t_s: squall.t_s, places: squall.frame.boats.map(({ name, x, y }) => [name, x, y]) }));
   await Promise.all([mine.goesOn(), theirs.goesOn()]);
