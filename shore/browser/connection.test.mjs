@@ -40,9 +40,8 @@ test('a page that is loaded again, or whose server is, goes on by itself', async
   await sight.until('its helm is told again', () => squall.helm?.report?.collective);
 
   await sim.kill();
-  await sight.until('the game is gone', () => squall.state.phase === 'gone');
-  const [, said] = await sight.get(() => [squall.connected, document.getElementById('over').textContent]);
-  assert.match(said, /gone/);
+  await sight.until('the game is gone', () => squall.state.phase === 'gone' && /gone/.test(document.getElementById('over').textContent));
+  assert(await sight.get(() => squall.connected));
   assert.equal(view.code, undefined, 'the server stays');
   new Program(t, 'sim', file, '--speed', '5x', '--game', name, '--listen', endpoint);
   new Program(t, 'agent', ...place, '--vehicle', 'blue_one', 'blue_two', 'red_one', 'red_two');

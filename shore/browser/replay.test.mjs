@@ -85,7 +85,8 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   const { file, result } = await record(t);
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await replay.url());
-  const at = (t_s) => sight.until(`it is ${t_s} s`, (want) => Math.abs(squall.t_s - want) < 0.11 && squall.t_s, t_s);
+  // An event is shown with the first picture in which it has happened.
+  const at = (t_s) => sight.until(`it is ${t_s} s`, (want) => squall.t_s > want - 1e-6 && squall.t_s < want + 0.1 && squall.t_s, t_s);
   const times = (kind) => [...new Set(result.events.filter(({ event }) => event === kind).map(({ at_s }) => at_s))];
   const [first, second] = times('captured');
   await sight.page.selectOption('#event-kind', { label: 'captures' });
@@ -101,6 +102,7 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   await at(times('grabbed').find((at_s) => at_s > first + 0.1));
   await sight.keys('Shift+G');
   await at(times('grabbed').findLast((at_s) => at_s < first));
+  await sight.until('the flag is on the boat', () => squall.flags.some((flag) => flag.carrier !== null));
 
   const before = await sight.get(() => ({ t_s: squall.t_s, decision_s: squall.hello.chart.decision_s }));
   await sight.press('#step');

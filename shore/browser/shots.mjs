@@ -42,7 +42,8 @@ const select = (name) => async (sight) => {
   await sight.until('its helm is known', () => squall.helm?.report?.collective || squall.helm?.reason);
 };
 const toGrab = async (sight) => {
-  await sight.keys('g');
+  await sight.page.selectOption('#event-kind', { label: 'grabs' });
+  await sight.press('#event-next');
   await sight.until('a flag is carried', () => squall.flags.some((flag) => flag.carrier !== null));
 };
 const keys = (...each) => (sight) => sight.keys(...each);

@@ -273,7 +273,7 @@ class Page {
   /** To an event: the moment in a replay, and the boat. */
   goTo(event) {
     const { game } = this;
-    if (game.mode === 'replay') this.timeline.seek(event.at_s);
+    if (game.mode === 'replay') this.timeline.seek(this.timeline.seen_s(event.at_s));
     const index = game.indexOf.get(event.vehicle);
     if (index === undefined) return;
     this.select(event.vehicle);
