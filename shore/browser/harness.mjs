@@ -9,7 +9,7 @@ import { delimiter, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
-/** The limit of every wait, ms: machines are slow. */
+/** The limit of every wait, ms: machines are slow. Shorter ones are for those who write tests. */
 export const LIMIT_MS = Number(process.env.LIMIT_MS ?? 60_000);
 /** How often a condition is looked at, ms. */
 const LOOK_MS = 40;
@@ -169,8 +169,9 @@ export class Sight {
     afterwards(t, () => sight.close());
     if (WEB) {
       // The page itself is the program's: a browser trusts no page from elsewhere to talk to this machine.
-      const file = (address) => join(WEB, new URL(address).pathname.replace('/web/', '/'));
-      await page.route((address) => address.pathname !== '/' && existsSync(file(address)), (route) => route.fulfill({ path: file(route.request().url()) }));
+      const file = (address) => join(WEB, new URL(address).pathname);
+      const ours = (address) => address.pathname !== '/' && existsSync(file(address));
+      await page.route(ours, (route) => route.fulfill({ path: file(route.request().url()) }));
     }
     await page.goto(url);
     await sight.until('a picture is drawn', () => squall.drawn > 0 && squall.frame !== null);
@@ -218,7 +219,7 @@ export class Sight {
     return this.page.click(selector);
   }
 
-  /** Strikes keys, with the chart having the keyboard unless the page gives it to something else. */
+  /** Strikes keys, one after another. */
   async keys(...keys) {
     for (const key of keys) await this.page.keyboard.press(key);
   }
