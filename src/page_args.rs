@@ -44,7 +44,7 @@ impl PageArgs {
 
     /// Where a browser finds the page, with its rights.
     pub(crate) fn url(&self, page: &Page) -> String {
-        let token = self.token.as_ref().map(|token| format!("#token={token}")).unwrap_or_default();
+        let token = self.token.as_ref().map(|token| format!("#token={}", in_address(token))).unwrap_or_default();
         let mut address = page.address();
         if let (true, Some(own)) = (address.ip().is_unspecified(), own_ip()) {
             address.set_ip(own);
@@ -61,10 +61,29 @@ impl PageArgs {
     }
 }
 
+/// A text as it may stand in an address.
+fn in_address(text: &str) -> String {
+    let stands = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
+    let spell = |byte: u8| if stands(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
+    text.bytes().map(spell).collect()
+}
+
 /// The address of this machine on the network, if it is on one. Nothing is sent for it.
 fn own_ip() -> Option<IpAddr> {
     // An address that is kept free for documents (RFC 5737): the way there is the way out.
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
     socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
     socket.local_addr().ok().map(|address| address.ip())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_address;
+
+    #[test]
+    fn a_token_stands_in_an_address_as_one_word() {
+        for (token, want) in [("secret-1", "secret-1"), ("a b&c#é", "a%20b%26c%23%C3%A9"), ("50%+", "50%25%2B")] {
+            assert_eq!(in_address(token), want);
+        }
+    }
 }

@@ -100,6 +100,8 @@ export class Game {
     this.helm = null;
     this.estimate = null;
     this.wake = { t: floats(WAKE), x: floats(WAKE), y: floats(WAKE), at: 0, count: 0 };
+    // A replay that stands has no other frame to compare an estimate with.
+    if (this.frames > 0) this.keepWake();
   }
 
   /** Takes a frame: `kind` is 1 for one to show and 2 for one of the past. */

@@ -28,6 +28,8 @@ export class Labels {
     }
     this.vehicles = vehicles;
     this.ratio = ratio;
+    this.width = view.width;
+    this.height = view.height;
     this.across = Math.ceil(view.width / CELL);
     this.down = Math.ceil(view.height / CELL);
     if (this.taken.length < this.across * this.down) this.taken = new Uint8Array(this.across * this.down);
@@ -84,6 +86,8 @@ export class Labels {
       const left = x + alongX * width + outX * room;
       const top = y + alongY * HEIGHT + outY * room;
       const last = force && attempt === PLACES.length;
+      const within = left >= 0 && top >= 0 && left + width <= this.width && top + HEIGHT <= this.height;
+      if (!within && !last) continue;
       if (!this.claim(left, top, width - 2, HEIGHT - 3, last)) continue;
       this.place[index] = place;
       context.drawImage(canvas, left, top, width, HEIGHT);

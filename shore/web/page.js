@@ -149,7 +149,11 @@ class Page {
         game.drivers.set(message.vehicle, message.by);
         this.drive.hear(message);
         break;
-      case 'refused': notice(`Not done: ${plain(message.what)}. ${message.reason}`); break;
+      case 'refused':
+        // Whoever is refused the wheel does not have it.
+        if (message.what === 'drive') this.drive.letGo();
+        notice(`Not done: ${plain(message.what)}. ${message.reason}`);
+        break;
       // Kinds that we do not know are of a newer server.
       default: return;
     }
@@ -259,6 +263,7 @@ class Page {
     const { game, drive } = this;
     const index = game.indexOf.get(game.selected);
     if (drive.driving) drive.letGo();
+    else if (this.driver === 'other') notice(`Somebody else has the wheel of ${plain(game.selected)}.`);
     else if (index !== undefined && game.vehicles[index].teleop && game.mode === 'live' && game.hello.rights) {
       drive.take(game.vehicles[index], (game.heading[index] * 180) / Math.PI);
     }
@@ -268,7 +273,7 @@ class Page {
   /** To an event: the moment in a replay, and the boat. */
   goTo(event) {
     const { game } = this;
-    if (game.mode === 'replay') this.timeline.seek(event.at_s);
+    if (game.mode === 'replay') this.timeline.seek(this.timeline.seen_s(event.at_s));
     const index = game.indexOf.get(event.vehicle);
     if (index === undefined) return;
     this.select(event.vehicle);

@@ -150,8 +150,17 @@ export class Timeline {
     if (this.game?.mode !== 'replay') return;
     const marks = kind === ANY ? this.marks : this.marks.filter((mark) => mark.kind === Number(kind));
     const now_s = this.at_s;
-    const next = way > 0 ? marks.find((mark) => mark.at_s > now_s + STICK_S) : marks.findLast((mark) => mark.at_s < now_s - STICK_S);
-    if (next) this.seek(next.at_s);
+    const seen = (mark) => this.seen_s(mark.at_s);
+    const next = way > 0 ? marks.find((mark) => seen(mark) > now_s + STICK_S) : marks.findLast((mark) => seen(mark) < now_s - STICK_S);
+    if (next) this.seek(seen(next));
+  }
+
+  /** When what happens at this time is first seen: frames are of decisions, and events may fall between two. */
+  seen_s(at_s) {
+    const decision_s = this.game.chart.decision_s;
+    if (!(decision_s > 0)) return at_s;
+    // A little more, lest rounding shows the frame before.
+    return Math.ceil(at_s / decision_s - 1e-6) * decision_s + 1e-6;
   }
 
   tell(game) {

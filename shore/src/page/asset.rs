@@ -81,4 +81,15 @@ mod tests {
         assert_eq!(page.headers()[header::CONTENT_TYPE], "text/html; charset=utf-8");
         assert_eq!(kind("a.b.js"), "text/javascript; charset=utf-8");
     }
+
+    #[test]
+    fn what_the_page_asks_for_is_served() {
+        let page = WEB.get_file("index.html").and_then(include_dir::File::contents_utf8).expect("a page");
+        let words = ["href=\"", "src=\""].iter().flat_map(|word| page.split(word).skip(1));
+        let asked: Vec<&str> = words.filter_map(|rest| rest.split('"').next()).collect();
+        assert!(asked.len() >= 3, "{asked:?}");
+        for path in asked {
+            assert_eq!(answer(path).status(), StatusCode::OK, "{path}");
+        }
+    }
 }
