@@ -1,6 +1,6 @@
 //! A chart of the field with tracks on it, as SVG and PNG files.
 
-use crate::plot::{self, FONT, Ink, failed};
+use crate::plot::{self, FONT, failed};
 use anyhow::{Context, Result};
 use game::field::{Field, Obstacle};
 use game::{Ned, math};
@@ -83,13 +83,13 @@ pub(crate) fn write(stem: &Path, chart: &Chart<'_>) -> Result<()> {
     let view = View::of(chart);
     let path = stem.with_extension("svg");
     let mut svg = String::new();
-    draw(SVGBackend::with_string(&mut svg, view.size()), (chart, Ink::Vector), &view)
+    draw(SVGBackend::with_string(&mut svg, view.size()), chart, &view)
         .with_context(|| format!("cannot draw {}", path.display()))?;
     std::fs::write(&path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))?;
     let path = stem.with_extension("png");
     let (wide, high) = view.size();
     let mut pixels = vec![0; 3 * wide as usize * high as usize];
-    draw(BitMapBackend::with_buffer(&mut pixels, (wide, high)), (chart, Ink::Pixels), &view)
+    draw(BitMapBackend::with_buffer(&mut pixels, (wide, high)), chart, &view)
         .with_context(|| format!("cannot draw {}", path.display()))?;
     plot::save_png(&path, (wide, high), &pixels)
 }
@@ -141,7 +141,7 @@ impl View {
 
 type Area<B> = DrawingArea<B, Shift>;
 
-fn draw<B: DrawingBackend>(backend: B, (chart, ink): (&Chart<'_>, Ink), view: &View) -> Result<()>
+fn draw<B: DrawingBackend>(backend: B, chart: &Chart<'_>, view: &View) -> Result<()>
 where
     B::ErrorType: 'static,
 {
@@ -151,11 +151,8 @@ where
     draw_axes(&root, view)?;
     draw_field(&root, chart, view)?;
     for track in &chart.tracks {
-        let places = fine(&track.places, view);
-        for (right, down) in ink.strokes() {
-            let beside = places.iter().map(|(x, y)| (x + right, y + down)).collect::<Vec<_>>();
-            root.draw(&PathElement::new(beside, track.colour.stroke_width(ink.width()))).map_err(failed)?;
-        }
+        let line = PathElement::new(fine(&track.places, view), track.colour.stroke_width(2));
+        root.draw(&line).map_err(failed)?;
     }
     for flag in &chart.field.flags {
         let colour = chart.teams.get(flag.team.index()).map_or(GREY, |team| team.1);

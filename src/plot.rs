@@ -96,7 +96,7 @@ type Area<B> = DrawingArea<B, Shift>;
 pub(crate) enum Ink {
     /// By their width: a viewer knows what to do at sharp corners.
     Vector,
-    /// By lines beside each other: the library's thick ones stick out at sharp corners of pixels, and have gaps.
+    /// By lines beside each other: of a series, the library's thick ones stick out at sharp corners, and have gaps.
     Pixels,
 }
 
@@ -199,6 +199,8 @@ where
         .y_label_formatter(&|y| label(*y, y1 - y0))
         .draw()
         .map_err(failed)?;
+    // Tracks turn every way, and the library's thin lines have gaps where they go back.
+    let ink = if panel.equal { Ink::Vector } else { ink };
     let (wide, high) = chart.plotting_area().dim_in_pixel();
     let pixel = ((x1 - x0) / f64::from(wide.max(1)), (y0 - y1) / f64::from(high.max(1)));
     for (line, colour) in panel.lines.iter().zip(COLOURS.iter().cycle()) {
