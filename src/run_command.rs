@@ -73,8 +73,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
     let file = args.record.file(&scenario, args.seed.unwrap_or(scenario.seed))?;
-    let report = if args.in_process {
-        Some(play_here(args, &scenario, file.as_deref(), (&stop, &mut screen))?)
+    let (report, page) = if args.in_process {
+        (Some(play_here(args, &scenario, file.as_deref(), (&stop, &mut screen))?), None)
     } else {
         play_across_processes(args, &scenario, file.as_deref(), (&stop, &mut screen))?
     };
@@ -84,6 +84,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let Some(report) = report else { return Ok(stop::interrupted()) };
     if let Some(path) = &args.json {
         write_json(path, &report)?;
+    }
+    if let Some(mut page) = page {
+        screen.line("the game is over; the page stays until Ctrl-C");
+        while page.ended().is_none() && !stop::is_set_soon(&stop) {}
+        page.ask_to_stop();
+        offspring::wait_for_all(std::slice::from_mut(&mut page), LEAVE);
     }
     Ok(if report.run.cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
 }
@@ -130,13 +136,13 @@ fn play_here(
     Ok(report)
 }
 
-/// The game in a sim process and agent processes; none if it was stopped before it had a result.
+/// The game in a sim process and agent processes, and the page that shows it; no result if it was stopped before.
 fn play_across_processes(
     args: &Args,
     scenario: &Scenario,
     file: Option<&Path>,
     (stop, screen): (&AtomicBool, &mut Screen),
-) -> Result<Option<Report>> {
+) -> Result<(Option<Report>, Option<Offspring>)> {
     let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
     let game = unique_game_name(&scenario.name)?.as_str().to_owned();
     let endpoint = format!("tcp/127.0.0.1:{port}");
@@ -170,13 +176,7 @@ fn play_across_processes(
     if report.is_none() && !stop.load(Ordering::Relaxed) {
         bail!("the sim ended without a result");
     }
-    if let Some(mut page) = page {
-        // Whoever has seen a game wants to look at it again.
-        while page.ended().is_none() && !stop::is_set_soon(stop) {}
-        page.ask_to_stop();
-        offspring::wait_for_all(std::slice::from_mut(&mut page), LEAVE);
-    }
-    Ok(report)
+    Ok((report, page))
 }
 
 fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<Offspring> {

@@ -31,7 +31,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let page = args.page.open(&stop)?;
     let leaf = args.leaf.clone();
     let place = Box::new(move || leaf.net().map_err(|e| format!("{e:#}")));
-    let tell = Box::new(|missing: &str| screen::remark(&format!("no game to show: {missing}")));
+    // Who started us starts the game as well.
+    let is_told = !args.for_parent;
+    let tell = Box::new(move |missing: &str| {
+        if is_told {
+            screen::remark(&format!("no game to show: {missing}"));
+        }
+    });
     let live = LiveShow::open(place, args.leaf.game.clone(), tell).context("cannot look for games")?;
     let live = Arc::new(live);
     page.show(live.clone());

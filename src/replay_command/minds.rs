@@ -62,8 +62,9 @@ impl Minds {
         }
         let team = &mut self.teams[index];
         let next = team.last.as_ref().map_or(0, |(last, _)| last + 1);
-        let ahead: Vec<(u64, usize)> =
-            team.pictures.range(next..=decision).map(|(seq, place)| (*seq, *place)).collect();
+        // A mate may be asked about the decision that the team thought about last: then nothing is ahead.
+        let ahead = team.pictures.range(next..).take_while(|(seq, _)| **seq <= decision);
+        let ahead: Vec<(u64, usize)> = ahead.map(|(seq, place)| (*seq, *place)).collect();
         for (seq, place) in ahead {
             let picture: Picture = self.recording.message(place).read().ok()?;
             team.decide(&picture, &self.proposals, seq == decision);

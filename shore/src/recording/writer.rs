@@ -171,7 +171,7 @@ impl<W: Write + Seek> Writer<W> {
     fn open(&mut self, topic: &str, schema: Option<&'static str>) -> Result<u16, RecordError> {
         let (name, encoding, text) = match schema {
             Some(name) => (name, "ros2msg", ros::full_definition(name).unwrap_or_default()),
-            None => ("squall/Object", "jsonschema", r#"{"type": "object"}"#.to_owned()),
+            None => ("Object", "jsonschema", r#"{"type": "object"}"#.to_owned()),
         };
         let schema_id = self.mcap.add_schema(name, encoding, text.as_bytes())?;
         let message_encoding = if schema.is_some() { "cdr" } else { "json" };
