@@ -24,6 +24,8 @@ use std::time::{Duration, Instant};
 const INBOX: usize = 8192;
 /// How often progress is told.
 const NEWS_EVERY: Duration = Duration::from_millis(100);
+/// How often the state of the run is written down, where nothing is news.
+const WRITE_EVERY: Duration = Duration::from_secs(1);
 /// How long the last words may take to reach everybody.
 const GOOD_BYE: Duration = Duration::from_secs(2);
 
@@ -41,6 +43,8 @@ pub(super) struct Booth<'w> {
     run: Publisher,
     /// Whether somebody asked for something since the state of the run was told.
     is_news: bool,
+    /// When that was written down last.
+    written: Instant,
     pub(super) overruns: u64,
     /// Topics that are heard only to be written down, with their schemas.
     heard_topics: Vec<(String, Option<&'static str>)>,
@@ -98,6 +102,7 @@ impl<'w> Booth<'w> {
             frames: bus.publisher(topic::frame(game), Delivery::Drop)?,
             run: bus.publisher(topic::run(game), Delivery::Drop)?,
             is_news: false,
+            written: clock::now(),
             overruns: 0,
             heard_topics,
             tempo: Tempo::new(speed, is_lockstep, is_real),
@@ -286,7 +291,7 @@ impl<'w> Booth<'w> {
 
     /// Tells onlookers how the run stands, if there are any.
     fn tell_run(&mut self, phase: Phase, rate: f64) -> Result<(), NodeError> {
-        self.is_news = false;
+        let is_news = std::mem::take(&mut self.is_news);
         if !self.run.is_heard() && self.witness.state().is_none() {
             return Ok(());
         }
@@ -307,7 +312,10 @@ impl<'w> Booth<'w> {
         };
         let json = serde_json::to_vec(&state).expect("a state is JSON");
         self.run.send_json(json.clone())?;
-        self.write_down("run", None, json);
+        if is_news || clock::since(self.written) >= WRITE_EVERY {
+            self.written = clock::now();
+            self.write_down("run", None, json);
+        }
         Ok(())
     }
 
