@@ -31,7 +31,7 @@ test('a page that is loaded again, or whose server is, goes on by itself', async
   await view.kill();
   await sight.until('the page says that nobody answers', () => !squall.connected
     && /Connection lost/.test(document.getElementById('connection').textContent) && !document.getElementById('connection').hidden);
-  assert.equal(await sight.text('#phase'), 'no connection');
+  await sight.until('it says so beside the name', () => document.getElementById('phase').textContent.trim() === 'no connection');
   view = new Program(t, 'view', ...place, '--listen', listen);
   await sight.until('it is connected again, and to the same game', (before_s) => squall.connected && squall.t_s > before_s, before_s);
   await sight.goesOn();
