@@ -4,7 +4,8 @@ use std::path::Path;
 use std::process::Command;
 
 /// What the program is made of.
-const SOURCES: [&str; 9] = ["Cargo.toml", "Cargo.lock", "build.rs", "src", "game", "bus", "sim", "agent", "arena"];
+const SOURCES: [&str; 11] =
+    ["Cargo.toml", "Cargo.lock", "build.rs", "src", "game", "bus", "sim", "agent", "gateway", "arena", "shore"];
 
 fn main() {
     let commit = commit();

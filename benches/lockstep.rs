@@ -92,7 +92,7 @@ fn squall(case: &Case, in_process: bool) -> f64 {
     loop {
         std::fs::write(&game, text(duration_s)).expect("a file");
         let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
-        command.args(["run", &game.display().to_string(), "--json", &json.display().to_string()]);
+        command.args(["run", &game.display().to_string(), "--no-record", "--json", &json.display().to_string()]);
         if in_process {
             command.arg("--in-process");
         } else {

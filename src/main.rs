@@ -2,17 +2,22 @@
 
 mod agent_command;
 mod check_command;
+mod field_plot;
 mod gateway_command;
 mod hardware_loop;
 mod helm_command;
 mod helm_page;
 mod identify_command;
 mod list_command;
+mod log_command;
+mod log_plot;
 mod net_args;
 mod offspring;
 mod onlooker;
 mod override_args;
+mod page_args;
 mod plot;
+mod replay_command;
 mod result_table;
 mod rose_plot;
 mod run_command;
@@ -22,12 +27,14 @@ mod sea_plot;
 mod sim_command;
 mod stop;
 mod strategy_command;
+mod tape;
 mod telling;
 mod tournament_command;
 mod tournament_progress;
 mod tournament_table;
 mod trial_command;
 mod trial_plot;
+mod view_command;
 mod watch_command;
 mod water_args;
 
@@ -57,6 +64,12 @@ enum Command {
     Agent(agent_command::Args),
     /// Shows a running game in the terminal, or what one boat's helm thinks.
     Watch(watch_command::Args),
+    /// Shows a running game on a page.
+    View(view_command::Args),
+    /// Shows a recorded game again, or checks that the same comes of it.
+    Replay(replay_command::Args),
+    /// Says what a recorded game tells: a summary, tables, plots, MOOS logs, and how it differs from another.
+    Log(log_command::Args),
     /// Dumps one decision of a boat's helm: a table, numbers, pictures.
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
@@ -84,6 +97,9 @@ fn main() -> ExitCode {
         Command::Sim(args) => sim_command::run(&args),
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),
+        Command::View(args) => view_command::run(&args),
+        Command::Replay(args) => replay_command::run(&args),
+        Command::Log(args) => log_command::run(&args),
         Command::Helm(args) => helm_command::run(&args),
         Command::Gateway(args) => gateway_command::run(&args),
         Command::List(args) => list_command::run(&args),

@@ -1,4 +1,4 @@
-//! Plots as SVG files: panels with axes and units, each with a few lines and a legend.
+//! Plots as SVG and PNG files: panels with axes and units, each with a few lines and a legend.
 
 use anyhow::{Context, Result, anyhow};
 use plotters::coord::Shift;
@@ -12,6 +12,8 @@ pub(crate) struct Page {
     pub(crate) title: String,
     /// Panels per row.
     pub(crate) columns: usize,
+    /// Width and height of a panel, pixels.
+    pub(crate) panel: (u32, u32),
     /// Row by row.
     pub(crate) panels: Vec<Panel>,
 }
@@ -42,6 +44,7 @@ impl Panel {
 }
 
 /// A line through points; where a number is not finite it has a gap.
+#[derive(Default)]
 pub(crate) struct Line {
     /// What the legend calls it; without a name it is not in there.
     pub(crate) name: String,
@@ -49,6 +52,8 @@ pub(crate) struct Line {
     pub(crate) points: Vec<(f64, f64)>,
     /// Whether what lies between it and 0 is filled.
     pub(crate) filled: bool,
+    /// Its colour; none is that of its place among the lines.
+    pub(crate) colour: Option<RGBColor>,
 }
 
 /// A dot with a name beside it.
@@ -62,19 +67,19 @@ pub(crate) struct Mark {
 impl Line {
     /// A line with nothing under it.
     pub(crate) fn of(name: &str, points: Vec<(f64, f64)>) -> Line {
-        Line { name: name.into(), points, filled: false }
+        Line { name: name.into(), points, ..Line::default() }
     }
 }
 
-/// Size of a panel, pixels.
-const PANEL: (u32, u32) = (560, 400);
+/// The usual size of a panel, pixels.
+pub(crate) const PANEL: (u32, u32) = (560, 400);
 const TITLE_HEIGHT: u32 = 44;
 pub(crate) const FONT: &str = "sans-serif";
 const CAPTION: (&str, u32) = (FONT, 16);
 /// How much of a line's colour is in what it fills.
 const FILLING: f64 = 0.25;
 /// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
-const COLOURS: [RGBColor; 6] = [
+pub(crate) const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -83,35 +88,95 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(90, 90, 90),
 ];
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// Where something is drawn.
+type Area<B> = DrawingArea<B, Shift>;
 
-/// Draws a page into a file.
+/// How lines are made thick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ink {
+    /// By their width: a viewer knows what to do at sharp corners.
+    Vector,
+    /// By lines beside each other: of a series, the library's thick ones stick out at sharp corners, and have gaps.
+    Pixels,
+}
+
+impl Ink {
+    /// How wide a stroke is.
+    pub(crate) fn width(self) -> u32 {
+        match self {
+            Ink::Vector => 2,
+            Ink::Pixels => 1,
+        }
+    }
+
+    /// Where strokes are, pixels right and down.
+    pub(crate) fn strokes(self) -> &'static [(i32, i32)] {
+        match self {
+            Ink::Vector => &[(0, 0)],
+            Ink::Pixels => &[(0, 0), (1, 0), (0, 1)],
+        }
+    }
+}
+
+/// Draws a page into an SVG file.
 pub(crate) fn write_svg(path: &Path, page: &Page) -> Result<()> {
-    provide_font();
-    let rows = page.panels.len().div_ceil(page.columns);
-    let size = (PANEL.0 * page.columns as u32, TITLE_HEIGHT + PANEL.1 * rows as u32);
     let mut svg = String::new();
-    draw(&mut svg, size, page, rows).with_context(|| format!("cannot draw {}", path.display()))?;
+    draw(SVGBackend::with_string(&mut svg, size(page)), page, Ink::Vector)
+        .with_context(|| format!("cannot draw {}", path.display()))?;
     std::fs::write(path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))
 }
 
-fn draw(svg: &mut String, size: (u32, u32), page: &Page, rows: usize) -> Result<()> {
-    let root = SVGBackend::with_string(svg, size).into_drawing_area();
+/// Draws a page into a PNG file.
+pub(crate) fn write_png(path: &Path, page: &Page) -> Result<()> {
+    let (wide, high) = size(page);
+    let mut pixels = vec![0; 3 * wide as usize * high as usize];
+    draw(BitMapBackend::with_buffer(&mut pixels, (wide, high)), page, Ink::Pixels)
+        .with_context(|| format!("cannot draw {}", path.display()))?;
+    save_png(path, (wide, high), &pixels)
+}
+
+/// Writes a picture, three bytes a pixel, into a PNG file.
+pub(crate) fn save_png(path: &Path, (wide, high): (u32, u32), pixels: &[u8]) -> Result<()> {
+    let write = || -> Result<()> {
+        let file = std::io::BufWriter::new(std::fs::File::create(path)?);
+        let mut encoder = png::Encoder::new(file, wide, high);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.write_header()?.write_image_data(pixels)?;
+        Ok(())
+    };
+    write().with_context(|| format!("cannot write the plot to {}", path.display()))
+}
+
+fn size(page: &Page) -> (u32, u32) {
+    let rows = page.panels.len().div_ceil(page.columns) as u32;
+    (page.panel.0 * page.columns as u32, TITLE_HEIGHT + page.panel.1 * rows)
+}
+
+fn draw<B: DrawingBackend>(backend: B, page: &Page, ink: Ink) -> Result<()>
+where
+    B::ErrorType: 'static,
+{
+    provide_font();
+    let rows = page.panels.len().div_ceil(page.columns);
+    let root = backend.into_drawing_area();
     root.fill(&WHITE).map_err(failed)?;
     let (top, rest) = root.split_vertically(TITLE_HEIGHT);
     top.draw(&Text::new(page.title.clone(), (24, 14), (FONT, 20).into_font())).map_err(failed)?;
     for (area, panel) in rest.split_evenly((rows, page.columns)).iter().zip(&page.panels) {
-        draw_panel(area, panel)?;
+        draw_panel(area, panel, ink)?;
     }
     root.present().map_err(failed)
 }
 
-fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
+fn draw_panel<B: DrawingBackend>(area: &Area<B>, panel: &Panel, ink: Ink) -> Result<()>
+where
+    B::ErrorType: 'static,
+{
     if panel.lines.is_empty() {
         return draw_absent(area, panel);
     }
     let has_names = panel.lines.iter().any(|line| !line.name.is_empty());
-    let ((x0, x1), (y0, y1)) = ranges(panel, has_names);
+    let ((x0, x1), (y0, y1)) = ranges(panel, has_names, area.dim_in_pixel());
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .margin_right(24)
@@ -134,15 +199,25 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
         .y_label_formatter(&|y| label(*y, y1 - y0))
         .draw()
         .map_err(failed)?;
+    // Tracks turn every way, and the library's thin lines have gaps where they go back.
+    let ink = if panel.equal { Ink::Vector } else { ink };
+    let (wide, high) = chart.plotting_area().dim_in_pixel();
+    let pixel = ((x1 - x0) / f64::from(wide.max(1)), (y0 - y1) / f64::from(high.max(1)));
     for (line, colour) in panel.lines.iter().zip(COLOURS.iter().cycle()) {
-        let style = colour.stroke_width(2);
+        let colour = line.colour.unwrap_or(*colour);
+        let style = colour.stroke_width(ink.width());
         for (i, piece) in pieces(&line.points).into_iter().enumerate() {
             if line.filled {
                 chart.draw_series([Polygon::new(down_to_0(piece), colour.mix(FILLING))]).map_err(failed)?;
             }
-            let drawn = chart.draw_series(LineSeries::new(piece.iter().copied(), style)).map_err(failed)?;
-            if i == 0 && !line.name.is_empty() {
-                drawn.label(&line.name).legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], style));
+            for (right, down) in ink.strokes() {
+                let beside = (f64::from(*right) * pixel.0, f64::from(*down) * pixel.1);
+                let points = piece.iter().map(move |(x, y)| (x + beside.0, y + beside.1));
+                let drawn = chart.draw_series(LineSeries::new(points, style)).map_err(failed)?;
+                if i == 0 && (*right, *down) == (0, 0) && !line.name.is_empty() {
+                    let key = colour.stroke_width(2);
+                    drawn.label(&line.name).legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], key));
+                }
             }
         }
     }
@@ -170,7 +245,10 @@ fn draw_panel(area: &Area<'_>, panel: &Panel) -> Result<()> {
 }
 
 /// A panel of what there is not.
-fn draw_absent(area: &Area<'_>, panel: &Panel) -> Result<()> {
+fn draw_absent<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Result<()>
+where
+    B::ErrorType: 'static,
+{
     let area = area.margin(12, 12, 12, 24).titled(&panel.title, CAPTION).map_err(failed)?;
     let (wide, high) = area.dim_in_pixel();
     let frame = RGBColor(222, 222, 222).stroke_width(1);
@@ -180,11 +258,11 @@ fn draw_absent(area: &Area<'_>, panel: &Panel) -> Result<()> {
 }
 
 /// What a panel shows horizontally and vertically.
-fn ranges(panel: &Panel, has_names: bool) -> ((f64, f64), (f64, f64)) {
+fn ranges(panel: &Panel, has_names: bool, size: (u32, u32)) -> ((f64, f64), (f64, f64)) {
     let ((mut x0, mut x1), (mut y0, mut y1)) = (extent(panel, |p| p.0), extent(panel, |p| p.1));
     if panel.equal {
         // What labels and title leave of the panel.
-        let (wide, high) = (f64::from(PANEL.0) - 100.0, f64::from(PANEL.1) - 105.0);
+        let (wide, high) = (f64::from(size.0) - 100.0, f64::from(size.1) - 105.0);
         let metres_per_pixel = f64::max((x1 - x0) / wide, (y1 - y0) / high);
         (x0, x1) = about_middle(x0, x1, wide * metres_per_pixel);
         (y0, y1) = about_middle(y0, y1, high * metres_per_pixel);
@@ -254,7 +332,8 @@ mod tests {
     use super::*;
 
     fn page(points: Vec<(f64, f64)>) -> Page {
-        let line = |name: &str| Line { name: name.into(), points: points.clone(), filled: !name.is_empty() };
+        let line =
+            |name: &str| Line { name: name.into(), points: points.clone(), filled: !name.is_empty(), colour: None };
         let mark = |at: &(f64, f64)| Mark { name: "here".into(), at: *at };
         let panel = |equal| Panel {
             title: "speed".into(),
@@ -265,7 +344,7 @@ mod tests {
             absent: "nothing",
             marks: points.iter().map(mark).collect(),
         };
-        Page { title: "a trial".into(), columns: 2, panels: vec![panel(true), panel(false)] }
+        Page { title: "a trial".into(), columns: 2, panel: PANEL, panels: vec![panel(true), panel(false)] }
     }
 
     fn drawn(points: Vec<(f64, f64)>) -> String {

@@ -63,14 +63,7 @@ pub(crate) fn write_png(path: &Path, title: &str, roses: &[Rose]) -> Result<()> 
     let mut pixels = vec![0; 3 * wide as usize * high as usize];
     let backend = BitMapBackend::with_buffer(&mut pixels, (wide, high));
     draw(backend, title, roses, 1).with_context(|| format!("cannot draw {}", path.display()))?;
-    let write = || -> Result<()> {
-        let file = std::io::BufWriter::new(std::fs::File::create(path)?);
-        let mut encoder = png::Encoder::new(file, wide, high);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.write_header()?.write_image_data(&pixels)?;
-        Ok(())
-    };
-    write().with_context(|| format!("cannot write the plot to {}", path.display()))
+    plot::save_png(path, (wide, high), &pixels)
 }
 
 fn columns(roses: &[Rose]) -> usize {

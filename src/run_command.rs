@@ -4,16 +4,18 @@ use crate::hardware_loop::{HardwareLoop, LoopArgs, Match};
 use crate::net_args::unique_game_name;
 use crate::offspring::{self, Offspring};
 use crate::override_args::{self, OverrideArgs};
+use crate::page_args::PageArgs;
 use crate::screen::{self, Screen};
-use crate::sim_command::{load, seconds, write_json};
+use crate::sim_command::{load, seconds, speed, write_json};
 use crate::stop;
+use crate::tape::{RecordArgs, Tape};
 use crate::telling::{Teller, Telling};
 use anyhow::{Context, Result, anyhow, bail};
 use game::Scenario;
 use sim::Contest;
-use sim::node::{Pace, Report, Run};
+use sim::node::{Pace, Report, Run, Witness};
 use std::io::{BufRead, BufReader};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -32,6 +34,16 @@ pub(crate) struct Args {
     /// lockstep, realtime, or a factor such as 4x
     #[arg(long, default_value = "lockstep")]
     pace: Pace,
+    /// In lockstep: plays no faster than this many times real time, until somebody asks for another speed
+    #[arg(long, value_name = "FACTOR", value_parser = speed, conflicts_with = "in_process")]
+    speed: Option<f64>,
+    #[command(flatten)]
+    record: RecordArgs,
+    /// Shows the game on a page, and its recording when it is over; in lockstep at 10x unless --speed says otherwise
+    #[arg(long, conflicts_with = "in_process")]
+    view: bool,
+    #[command(flatten)]
+    page: PageArgs,
     /// Plays in this process, without a network: the same game, byte for byte
     #[arg(long, conflicts_with_all = ["pace", "agents_per_process"])]
     in_process: bool,
@@ -48,6 +60,8 @@ pub(crate) struct Args {
     join_s: f64,
 }
 
+/// As fast as a person can follow a game, simulated seconds a second.
+const SPEED_TO_WATCH: f64 = 10.0;
 /// How long processes may take to end once the game is over.
 const LEAVE: Duration = Duration::from_secs(5);
 
@@ -58,21 +72,36 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
-    let report = if args.in_process {
-        Some(play_here(args, &scenario, &stop, &mut screen)?)
+    let file = args.record.file(&scenario, args.seed.unwrap_or(scenario.seed))?;
+    let (report, page) = if args.in_process {
+        (Some(play_here(args, &scenario, file.as_deref(), (&stop, &mut screen))?), None)
     } else {
-        play_across_processes(args, &scenario, &stop, &mut screen)?
+        play_across_processes(args, &scenario, file.as_deref(), (&stop, &mut screen))?
     };
+    if let Some(file) = file.filter(|file| file.exists()) {
+        screen.line(&format!("recorded; look at it with: squall replay {}", file.display()));
+    }
     let Some(report) = report else { return Ok(stop::interrupted()) };
     if let Some(path) = &args.json {
         write_json(path, &report)?;
+    }
+    if let Some(mut page) = page {
+        screen.line("the game is over; the page stays until Ctrl-C");
+        while page.ended().is_none() && !stop::is_set_soon(&stop) {}
+        page.ask_to_stop();
+        offspring::wait_for_all(std::slice::from_mut(&mut page), LEAVE);
     }
     Ok(if report.run.cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
 }
 
 /// The game in this process.
 #[expect(clippy::disallowed_methods, reason = "progress is shown by the clock; the game does not see it")]
-fn play_here(args: &Args, scenario: &Scenario, stop: &AtomicBool, screen: &mut Screen) -> Result<Report> {
+fn play_here(
+    args: &Args,
+    scenario: &Scenario,
+    file: Option<&Path>,
+    (stop, screen): (&AtomicBool, &mut Screen),
+) -> Result<Report> {
     const SHOW_EVERY: Duration = Duration::from_millis(100);
     let seed = args.seed.unwrap_or(scenario.seed);
     let scenario = scenario.of_seed(seed)?;
@@ -80,7 +109,9 @@ fn play_here(args: &Args, scenario: &Scenario, stop: &AtomicBool, screen: &mut S
     let mut teller = Teller::default();
     let start = Instant::now();
     let mut shown = (start, 0.0);
-    let watch = |contest: &Contest| {
+    let mut tape = file.map(|path| Tape::new(path.to_owned(), &scenario.name, "in process"));
+    let watch = |contest: &mut Contest| {
+        tape.iter_mut().for_each(|tape| tape.turn(contest));
         // The clock is slower than a decision: look at it now and then.
         if contest.decision().is_multiple_of(64) && shown.0.elapsed() >= SHOW_EVERY {
             let now_s = contest.now().as_s();
@@ -98,22 +129,26 @@ fn play_here(args: &Args, scenario: &Scenario, stop: &AtomicBool, screen: &mut S
         ..Run::default()
     };
     let report = Report { outcome, run };
+    if let Some(trouble) = tape.map(|tape| tape.end(&report)).transpose()?.flatten() {
+        screen::remark(&trouble);
+    }
     teller.done(report.clone()).iter().for_each(|telling| screen.show(telling));
     Ok(report)
 }
 
-/// The game in a sim process and agent processes; none if it was stopped before it had a result.
+/// The game in a sim process and agent processes, and the page that shows it; no result if it was stopped before.
 fn play_across_processes(
     args: &Args,
     scenario: &Scenario,
-    stop: &AtomicBool,
-    screen: &mut Screen,
-) -> Result<Option<Report>> {
+    file: Option<&Path>,
+    (stop, screen): (&AtomicBool, &mut Screen),
+) -> Result<(Option<Report>, Option<Offspring>)> {
     let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
     let game = unique_game_name(&scenario.name)?.as_str().to_owned();
     let endpoint = format!("tcp/127.0.0.1:{port}");
-    let mut sim = start_sim(args, &game, &endpoint)?;
+    let mut sim = start_sim(args, &game, &endpoint, file)?;
     let tellings = read_tellings(&mut sim)?;
+    let page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
     let names: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
     let mut agents = Vec::new();
     for names in names.chunks(usize::from(args.agents_per_process)) {
@@ -141,10 +176,16 @@ fn play_across_processes(
     if report.is_none() && !stop.load(Ordering::Relaxed) {
         bail!("the sim ended without a result");
     }
-    Ok(report)
+    Ok((report, page))
 }
 
-fn start_sim(args: &Args, game: &str, endpoint: &str) -> Result<Offspring> {
+fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<Offspring> {
+    let mut words = ["view", "--game", game, "--connect", endpoint, "--for-parent"].map(str::to_owned).to_vec();
+    words.extend(args.page.words());
+    Offspring::start("the page", &words, Stdio::inherit())
+}
+
+fn start_sim(args: &Args, game: &str, endpoint: &str, file: Option<&Path>) -> Result<Offspring> {
     let mut words = vec!["sim".to_owned(), args.scenario.display().to_string()];
     let options = [
         ("--pace", args.pace.to_string()),
@@ -155,6 +196,9 @@ fn start_sim(args: &Args, game: &str, endpoint: &str) -> Result<Offspring> {
     words.extend(options.into_iter().flat_map(|(name, value)| [name.to_owned(), value]));
     words.extend(override_args::words(&args.instead.overrides(&args.scenario)?));
     words.extend(args.seed.into_iter().flat_map(|seed| ["--seed".to_owned(), seed.to_string()]));
+    let speed = args.speed.or((args.view && args.pace == Pace::Lockstep).then_some(SPEED_TO_WATCH));
+    words.extend(speed.into_iter().flat_map(|speed| ["--speed".to_owned(), speed.to_string()]));
+    words.extend(file.into_iter().flat_map(|file| ["--record".to_owned(), file.display().to_string()]));
     words.push("--for-parent".to_owned());
     Offspring::start("the sim", &words, Stdio::piped())
 }

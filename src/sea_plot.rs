@@ -38,7 +38,7 @@ pub(crate) struct Shown<'a> {
 /// Draws a sea into a file.
 pub(crate) fn write(path: &Path, shown: &Shown<'_>) -> Result<()> {
     let panels = vec![spectrum(shown), elevation(shown), wind(shown), drift(shown.drift)];
-    plot::write_svg(path, &Page { title: shown.title.clone(), columns: 2, panels })
+    plot::write_svg(path, &Page { title: shown.title.clone(), columns: 2, panel: plot::PANEL, panels })
 }
 
 /// Bars and curve are densities alike: the area of a bar is the variance of the components in its band.
@@ -54,6 +54,7 @@ fn spectrum(shown: &Shown<'_>) -> Panel {
                 name: format!("{} components of this seed", waves.components),
                 points: field.bands((low_hz, high_hz), BANDS).iter().flat_map(corners).collect(),
                 filled: true,
+                colour: None,
             },
             Line::of("asked for", (0..=CURVE).map(|i| (at(i), spectrum::density_m2_hz(waves, at(i)))).collect()),
         ];

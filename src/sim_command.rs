@@ -4,12 +4,13 @@ use crate::net_args::{HubArgs, unique_game_name};
 use crate::override_args::OverrideArgs;
 use crate::screen::{self, Screen};
 use crate::stop;
+use crate::tape::Tape;
 use crate::telling::{Teller, Telling};
 use anyhow::{Context, Result};
 use game::Scenario;
 use game::scenario::Overrides;
 use game::topic::GameName;
-use sim::node::{News, Pace, Report, Settings};
+use sim::node::{News, Nobody, Pace, Report, Settings, Witness};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -27,6 +28,12 @@ pub(crate) struct Args {
     /// lockstep, realtime, or a factor such as 4x
     #[arg(long, default_value = "lockstep")]
     pace: Pace,
+    /// In lockstep: plays no faster than this many times real time, until somebody asks for another speed
+    #[arg(long, value_name = "FACTOR", value_parser = speed)]
+    speed: Option<f64>,
+    /// Records the game into this new file
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// The game's name on the network [default: the file's name and a random number]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     game: Option<GameName>,
@@ -50,6 +57,13 @@ pub(crate) struct Args {
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     let seconds: f64 = text.parse().map_err(|_| format!("{text:?} is not a number of seconds"))?;
     if (0.0..=1e6).contains(&seconds) { Ok(seconds) } else { Err(format!("{text} is not within 0 to 1000000 s")) }
+}
+
+/// A speed from the command line, as in `10x` or `0.5`.
+pub(crate) fn speed(text: &str) -> Result<f64, String> {
+    let factor = text.strip_suffix('x').unwrap_or(text).parse().ok();
+    let factor = factor.filter(|factor| (0.01..=1000.0).contains(factor));
+    factor.ok_or_else(|| format!("speed {text:?} is not a factor from 0.01x to 1000x such as 10x"))
 }
 
 /// The scenario in a file, some files of its own replaced, with every problem in the error.
@@ -88,10 +102,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let entry = bus::Entry { game: game.as_str().to_owned(), endpoint, pid: std::process::id() };
     let mut registration = None;
-    let settings =
-        Settings { game, net, pace: args.pace, join_limit: Duration::from_secs_f64(args.join_s), stop: stop.clone() };
+    let mut tape = args.record.clone().map(|path| Tape::new(path, game.as_str(), &args.pace.to_string()));
+    let settings = Settings {
+        game,
+        net,
+        pace: args.pace,
+        join_limit: Duration::from_secs_f64(args.join_s),
+        speed: args.speed,
+        stop: stop.clone(),
+    };
     let mut teller = Teller::default();
-    let report = sim::node::serve(&scenario, seed, &settings, &mut |news| {
+    let mut nobody = Nobody;
+    let witness: &mut dyn Witness = if let Some(tape) = &mut tape { tape } else { &mut nobody };
+    let report = sim::node::serve(&scenario, seed, &settings, witness, &mut |news| {
         if let News::Open = news {
             // Without a phonebook others must be told where the game is; nothing else is lost.
             registration = bus::register(&entry).ok();
@@ -100,6 +123,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         teller.news(&news).iter().for_each(&mut show);
     })?;
     drop(registration);
+    if let Some(trouble) = tape.map(|tape| tape.end(&report)).transpose()?.flatten() {
+        screen::remark(&trouble);
+    }
     if let Some(path) = &args.json {
         write_json(path, &report)?;
     }

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// What a shell says of a program that Ctrl-C ended.
 pub(crate) fn interrupted() -> ExitCode {
@@ -33,4 +34,16 @@ pub(crate) fn with_parent(stop: &Arc<AtomicBool>) {
         while input.read(&mut sink).is_ok_and(|count| count > 0) {}
         flag.store(true, Ordering::Relaxed);
     });
+}
+
+/// Whether the flag is set, after a little while.
+#[expect(clippy::disallowed_methods, reason = "somebody waits for a person")]
+pub(crate) fn is_set_soon(stop: &AtomicBool) -> bool {
+    std::thread::sleep(Duration::from_millis(100));
+    stop.load(Ordering::Relaxed)
+}
+
+/// Waits for the flag.
+pub(crate) fn wait(stop: &AtomicBool) {
+    while !is_set_soon(stop) {}
 }

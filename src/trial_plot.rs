@@ -24,7 +24,7 @@ pub(crate) fn write(path: &Path, title: &str, samples: &[Sample]) -> Result<()> 
     ];
     let drive = drive(samples);
     let panels = panels.into_iter().chain(drive).collect();
-    plot::write_svg(path, &Page { title: title.to_owned(), columns: 2, panels })
+    plot::write_svg(path, &Page { title: title.to_owned(), columns: 2, panel: plot::PANEL, panels })
 }
 
 /// Thrusts where there are thrusters; commands in per cent.

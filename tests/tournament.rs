@@ -85,7 +85,7 @@ fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
     for game in matches {
         let (blue, red, seed) = (strategy(&game["blue"]), strategy(&game["red"]), game["seed"].to_string());
         let options = ["--sea", SEA, "--blue", &blue, "--red", &red, "--seed", &seed, "--in-process"];
-        said(&[&["run", GAME], &options[..], &["--json", &result]].concat());
+        said(&[&["run", GAME, "--no-record"], &options[..], &["--json", &result]].concat());
         let played = json(&result);
         assert_eq!(played["digest"], game["digest"], "{game}");
         assert_eq!(played["score"]["teams"]["blue"], game["score"][0], "{game}");
@@ -242,7 +242,7 @@ fn run_gives_teams_other_strategies_in_one_process_and_across_processes() {
     let result = place(&dir, "result.json");
     let game = "scenarios/games/attack_1v1.toml";
     let digest = |args: &[&str]| {
-        said(&[&["run", game], args, &["--json", &result]].concat());
+        said(&[&["run", game, "--no-record"], args, &["--json", &result]].concat());
         json(&result)["digest"].as_str().unwrap().to_owned()
     };
     let path = "scenarios/strategies/easy_defenders.toml";

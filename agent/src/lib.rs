@@ -15,7 +15,7 @@ pub use helm::HelmMind;
 use game::helm::HelmReport;
 use game::message::Word;
 use game::scenario::Scenario;
-use game::strategy::Strategy;
+use game::strategy::{Proposer, Strategy};
 use game::{Order, Picture, SimTime, VehicleId};
 
 /// What decides for one boat.
@@ -31,9 +31,9 @@ pub trait Mind: Send {
         false
     }
 
-    /// Whether proposals of a policy are heeded, ever.
-    fn heeds_policy(&self) -> bool {
-        false
+    /// Whose proposals are heeded, if anybody's are, ever.
+    fn heeds(&self) -> Option<Proposer> {
+        None
     }
 
     /// Adds what the boat tells its team after deciding.

@@ -24,7 +24,7 @@ pub fn play(scenario: &Scenario, minds: &mut [Box<dyn Mind>], seed: u64) -> Resu
     play_watched(scenario, minds, seed, |_| true)
 }
 
-/// As [`play`], but shows the contest to `watch` before every decision, and stops when that says `false`.
+/// As [`play`], but shows the contest to `watch` before every decision and at the end, and stops when that says `false`.
 ///
 /// # Errors
 /// [`NoStart`] where the boats do not fit into their spawn area, numbers drawn by lot do not go together, or boats are
@@ -36,13 +36,13 @@ pub fn play_watched(
     scenario: &Scenario,
     minds: &mut [Box<dyn Mind>],
     seed: u64,
-    mut watch: impl FnMut(&Contest) -> bool,
+    mut watch: impl FnMut(&mut Contest) -> bool,
 ) -> Result<Outcome, NoStart> {
     assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
     scenario.has_no_real_boats()?;
     let mut contest = Contest::new(scenario, seed)?;
     let mut talk = Talk::default();
-    while !contest.is_over() && watch(&contest) {
+    while watch(&mut contest) && !contest.is_over() {
         decide(&mut contest, minds, &mut talk);
         contest.advance();
     }

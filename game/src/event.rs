@@ -121,6 +121,10 @@ pub enum Event {
     EStopped,
     /// That stop is over.
     Released,
+    /// Somebody ashore makes all boats hold for now.
+    Halted,
+    /// They may go on.
+    WentOn,
     /// The game is over.
     Ended {
         /// Who won; `None` is a draw.
@@ -149,7 +153,7 @@ impl Event {
             | Event::NavLost { vehicle }
             | Event::NavBack { vehicle } => Some(vehicle),
             Event::Collided { first, .. } => Some(first),
-            Event::EStopped | Event::Released | Event::Ended { .. } => None,
+            Event::EStopped | Event::Released | Event::Halted | Event::WentOn | Event::Ended { .. } => None,
         }
     }
 }

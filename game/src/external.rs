@@ -57,6 +57,28 @@ impl Message for ExternalOrder {
     }
 }
 
+/// Bytes between a gateway and its boat.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LinkBytes {
+    /// Time: that of the game as the gateway last heard it. Number: counts these messages.
+    pub stamp: Stamp,
+    /// The boat.
+    pub vehicle: VehicleId,
+    /// Whether they go to the boat.
+    pub outward: bool,
+    /// The bytes.
+    pub data: Vec<u8>,
+}
+
+impl Message for LinkBytes {
+    const SCHEMA: &'static str = "squall_msgs/msg/LinkBytes";
+    const VERSION: u8 = 1;
+    const DEFINITION: &'static str = include_str!("../msg/LinkBytes.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
+}
+
 /// What a person asks of a gateway.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -50,6 +50,8 @@ pub struct Frame {
     pub score: Vec<u32>,
     /// What happened since the frame before.
     pub events: Vec<EventRecord>,
+    /// Whether somebody ashore has stopped all boats, or makes them hold.
+    pub stopped: bool,
     /// Whether the game is over.
     pub over: bool,
 }
@@ -96,6 +98,8 @@ pub struct VehicleTruth {
     pub mind_lost: bool,
     /// Whether its numbers went bad.
     pub quarantined: bool,
+    /// Whether it is a real one that was not heard of for too long.
+    pub nav_lost: bool,
 }
 
 /// An event as two numbers.
@@ -185,6 +189,8 @@ impl From<Logged> for EventRecord {
             Event::NavBack { vehicle } => (17, v(vehicle), -1),
             Event::EStopped => (18, -1, -1),
             Event::Released => (19, -1, -1),
+            Event::Halted => (20, -1, -1),
+            Event::WentOn => (21, -1, -1),
             Event::Ended { winner } => (15, winner.map_or(-1, |team| i32::from(team.0)), -1),
         };
         EventRecord { tick: logged.tick, at_ns: logged.at, kind, subject, object }
@@ -219,6 +225,8 @@ impl EventRecord {
             17 => Event::NavBack { vehicle: vehicle? },
             18 => Event::EStopped,
             19 => Event::Released,
+            20 => Event::Halted,
+            21 => Event::WentOn,
             _ => return None,
         };
         Some(Logged { tick: self.tick, at: self.at_ns, event })
@@ -227,7 +235,7 @@ impl EventRecord {
 
 impl Message for Frame {
     const SCHEMA: &'static str = "squall_msgs/msg/Frame";
-    const VERSION: u8 = 2;
+    const VERSION: u8 = 3;
     const DEFINITION: &'static str = include_str!("../msg/Frame.msg");
     fn stamp(&self) -> &Stamp {
         &self.stamp
@@ -337,11 +345,24 @@ pub enum JoinReply {
 }
 
 /// What the shore asks of a game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {
     /// Ends the game now.
     Stop,
+    /// Stands still until resumed. Real boats hold meanwhile.
+    Pause,
+    /// Goes on.
+    Resume,
+    /// Where it is paused: plays one decision.
+    Step,
+    /// Plays so many simulated seconds a second; none is as fast as can be. A game in lockstep plays no faster than that,
+    /// one by the clock as fast as that. A game with real boats keeps its pace.
+    Speed(Option<f64>),
+    /// All boats hold for now, the game goes on.
+    Halt,
+    /// They may go on.
+    GoOn,
     /// All boats stop, real and simulated, and stay stopped.
     EStop,
     /// The stop is over. Real boats have to be armed again.

@@ -92,6 +92,8 @@ impl EventOutcome {
             Event::NavBack { .. } => ("nav_back", None, None),
             Event::EStopped => ("e_stopped", None, None),
             Event::Released => ("released", None, None),
+            Event::Halted => ("halted", None, None),
+            Event::WentOn => ("went_on", None, None),
             Event::Ended { winner } => ("ended", None, winner.and_then(team)),
         };
         EventOutcome {
@@ -130,6 +132,8 @@ impl EventOutcome {
             "nav_back" => format!("{who} is found again"),
             "e_stopped" => "E-STOP: all boats hold".to_owned(),
             "released" => "the E-stop is released".to_owned(),
+            "halted" => "all boats hold".to_owned(),
+            "went_on" => "boats go on".to_owned(),
             "ended" if self.team.is_none() => "the game ends in a draw".to_owned(),
             "ended" => format!("{team} wins"),
             other => other.to_owned(),

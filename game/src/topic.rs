@@ -30,6 +30,13 @@ impl GameName {
     }
 }
 
+/// A topic of a game by the name that recordings have for it; what comes from several is one of theirs.
+#[must_use]
+pub fn recorded(game: &GameName, name: &str) -> String {
+    let several = if name.starts_with("say/") { "/*" } else { "" };
+    format!("squall/{}/{name}{several}", game.0)
+}
+
 /// The truth for observers (publish).
 #[must_use]
 pub fn frame(game: &GameName) -> String {
@@ -96,6 +103,12 @@ pub fn external_order(game: &GameName, scenario: &Scenario, vehicle: VehicleId) 
     format!("squall/{}/external/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
+/// The bytes between a gateway and its boat (publish).
+#[must_use]
+pub fn link(game: &GameName, vehicle: &str) -> String {
+    format!("squall/{}/link/{vehicle}", game.0)
+}
+
 /// How a gateway and its boat are (publish).
 #[must_use]
 pub fn status(game: &GameName, vehicle: &str) -> String {
@@ -106,6 +119,24 @@ pub fn status(game: &GameName, vehicle: &str) -> String {
 #[must_use]
 pub fn operate(game: &GameName, vehicle: &str) -> String {
     format!("squall/{}/operate/{vehicle}", game.0)
+}
+
+/// How the run of the game stands (publish).
+#[must_use]
+pub fn run(game: &GameName) -> String {
+    format!("squall/{}/run", game.0)
+}
+
+/// Everything that has happened so far (query).
+#[must_use]
+pub fn events(game: &GameName) -> String {
+    format!("squall/{}/events", game.0)
+}
+
+/// The waves (query).
+#[must_use]
+pub fn water(game: &GameName) -> String {
+    format!("squall/{}/water", game.0)
 }
 
 /// The quay at which gateways ask to bring their boat (query).

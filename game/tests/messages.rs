@@ -2,7 +2,8 @@
 
 use game::codec::{DecodeError, decode, encode};
 use game::event::{Event, Logged, TagCause};
-use game::external::{ExternalOrder, NavReport};
+use game::external::{ExternalOrder, LinkBytes, NavReport};
+use game::input::Inputs;
 use game::message::{
     EventRecord, Frame, Message, Orders, PolicyProposal, Say, Stamp, VehicleOrder, VehicleTruth, Word,
 };
@@ -22,6 +23,8 @@ fn registry() -> Registry {
     tracer.trace_type::<PolicyProposal>(&samples).expect("a plain struct");
     tracer.trace_type::<NavReport>(&samples).expect("a plain struct");
     tracer.trace_type::<ExternalOrder>(&samples).expect("a plain struct");
+    tracer.trace_type::<Inputs>(&samples).expect("a plain struct");
+    tracer.trace_type::<LinkBytes>(&samples).expect("a plain struct");
     tracer.registry().expect("all is known")
 }
 
@@ -82,6 +85,8 @@ fn definitions_belong_to_their_messages() {
         (PolicyProposal::SCHEMA, PolicyProposal::DEFINITION),
         (NavReport::SCHEMA, NavReport::DEFINITION),
         (ExternalOrder::SCHEMA, ExternalOrder::DEFINITION),
+        (Inputs::SCHEMA, Inputs::DEFINITION),
+        (LinkBytes::SCHEMA, LinkBytes::DEFINITION),
     ] {
         let name = schema.rsplit('/').next().expect("a name");
         let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("msg/{name}.msg")));
@@ -217,6 +222,8 @@ fn every_event_survives_its_record() {
         Event::NavBack { vehicle: v },
         Event::EStopped,
         Event::Released,
+        Event::Halted,
+        Event::WentOn,
         Event::Ended { winner: Some(TeamId(1)) },
         Event::Ended { winner: None },
     ] {

@@ -12,6 +12,7 @@ use crate::view;
 use crate::world::{NoStart, World};
 use game::boat::Drive;
 use game::event::Logged;
+use game::input::Input;
 use game::message::Frame;
 use game::outcome::{Outcome, Played};
 use game::picture::{Nav, OwnBoat};
@@ -30,8 +31,9 @@ pub struct Contest {
     /// After how long without one each vehicle's thrusters stop.
     watchdogs: Vec<Option<SimTime>>,
     mind_lost: Vec<bool>,
-    /// Whether all boats hold, by somebody ashore.
+    /// Whether all boats hold, by somebody ashore: for good, or for now.
     stopped: bool,
+    halted: bool,
     /// The real boats, in order.
     tracks: Vec<Track>,
     radio: Option<Radio>,
@@ -47,6 +49,8 @@ pub struct Contest {
     /// By team.
     pictures: Vec<Picture>,
     decision: u64,
+    /// What was given since somebody last asked, where somebody wants to know.
+    given: Option<Vec<Input>>,
 }
 
 impl Contest {
@@ -70,6 +74,7 @@ impl Contest {
             watchdogs: (0..count).map(|i| watchdog(&scenario, VehicleId::at(i))).collect(),
             mind_lost: vec![false; count],
             stopped: false,
+            halted: false,
             tracks: scenario.externals().map(Track::new).collect(),
             events: Vec::new(),
             pictured: 0,
@@ -77,6 +82,7 @@ impl Contest {
             pictured_for: None,
             pictures: pictures.collect(),
             decision: 0,
+            given: None,
             scenario,
         })
     }
@@ -136,6 +142,7 @@ impl Contest {
             return &self.pictures;
         }
         self.pictured_for = Some(self.decision);
+        self.note(Input::Pictured);
         self.gather();
         let news = (self.decision, &self.events[self.pictured..]);
         for picture in &mut self.pictures {
@@ -154,14 +161,70 @@ impl Contest {
 
     /// The truth, with the events since the last frame.
     pub fn frame(&mut self) -> Frame {
-        let frame = view::frame(&self.world, self.decision, &self.events[self.framed..], &self.mind_lost);
+        let frame = self.frame_since(self.framed);
         self.framed = self.events.len();
         frame
+    }
+
+    /// The truth, with all events but so many, the first.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    #[must_use]
+    pub fn frame_since(&self, events: usize) -> Frame {
+        let mut frame = view::frame(&self.world, self.decision, &self.events[events..]);
+        for (truth, mind_lost) in frame.vehicles.iter_mut().zip(&self.mind_lost) {
+            truth.mind_lost = *mind_lost;
+        }
+        for track in &self.tracks {
+            frame.vehicles[track.vehicle.index()].nav_lost = track.is_lost(self.now());
+        }
+        frame.stopped = self.stopped || self.halted;
+        frame
+    }
+
+    /// The pictures as [`Contest::pictures`] last made them.
+    #[must_use]
+    pub fn last_pictures(&self) -> &[Picture] {
+        &self.pictures
+    }
+
+    /// From now on, keeps what it is given, for [`Contest::take_inputs`].
+    pub fn keep_inputs(&mut self) {
+        self.given.get_or_insert_default();
+    }
+
+    /// Everything that was given since this was asked last, in order.
+    pub fn take_inputs(&mut self) -> Vec<Input> {
+        self.given.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    fn note(&mut self, input: Input) {
+        if let Some(given) = &mut self.given {
+            given.push(input);
+        }
+    }
+
+    /// Gives what was once given, as it is recorded.
+    pub fn give(&mut self, input: Input) {
+        match input {
+            Input::Pictured => drop(self.pictures()),
+            Input::Ordered { vehicle, order } => self.order(vehicle, order),
+            Input::Held { vehicle } => self.hold(vehicle),
+            Input::MindLost { vehicle } => self.lose_mind(vehicle),
+            Input::MindBack { vehicle } => self.regain_mind(vehicle),
+            // What was taken in then is taken in again.
+            Input::Reported { vehicle, nav, fix_at, valid } => drop(self.report(vehicle, nav, fix_at, valid)),
+            Input::EStopped(stopped) => self.e_stop(stopped),
+            Input::Halted(halted) => self.halt(halted),
+            Input::Played => self.advance(),
+        }
     }
 
     /// Sends an order to a vehicle: it is in force from when it arrives until the next one does. To a real boat it goes
     /// over a real link, and none of ours.
     pub fn order(&mut self, vehicle: VehicleId, order: Order) {
+        self.note(Input::Ordered { vehicle, order });
         let (i, now) = (vehicle.index(), self.now());
         let is_external = self.track(vehicle).is_some();
         match &mut self.radio {
@@ -205,6 +268,7 @@ impl Contest {
             track.take(nav, fix_at.min(now + decision));
             self.carry(vehicle);
         }
+        self.note(Input::Reported { vehicle, nav, fix_at, valid });
         Ok(())
     }
 
@@ -243,6 +307,11 @@ impl Contest {
     /// Makes a vehicle hold at once, whatever it was told: nothing of it goes over the air, and orders under way do not
     /// arrive any more.
     pub fn hold(&mut self, vehicle: VehicleId) {
+        self.note(Input::Held { vehicle });
+        self.hold_now(vehicle);
+    }
+
+    fn hold_now(&mut self, vehicle: VehicleId) {
         self.orders[vehicle.index()] = Order::Hold;
         self.forget_orders(vehicle);
     }
@@ -302,7 +371,8 @@ impl Contest {
     /// lost already.
     pub fn lose_mind(&mut self, vehicle: VehicleId) {
         if !std::mem::replace(&mut self.mind_lost[vehicle.index()], true) {
-            self.hold(vehicle);
+            self.note(Input::MindLost { vehicle });
+            self.hold_now(vehicle);
             self.log(Event::MindLost { vehicle });
         }
     }
@@ -310,6 +380,7 @@ impl Contest {
     /// Says that a vehicle's mind is there again: what was sent before does not arrive. Does nothing if it was not lost.
     pub fn regain_mind(&mut self, vehicle: VehicleId) {
         if std::mem::replace(&mut self.mind_lost[vehicle.index()], false) {
+            self.note(Input::MindBack { vehicle });
             self.forget_orders(vehicle);
             self.log(Event::MindBack { vehicle });
         }
@@ -318,8 +389,18 @@ impl Contest {
     /// Makes all boats hold, or lets them go on. Says so, if that is news.
     pub fn e_stop(&mut self, stopped: bool) {
         if std::mem::replace(&mut self.stopped, stopped) != stopped {
-            self.world.halt(stopped);
+            self.note(Input::EStopped(stopped));
+            self.world.halt(self.stopped || self.halted);
             self.log(if stopped { Event::EStopped } else { Event::Released });
+        }
+    }
+
+    /// Makes all boats hold for now, or lets them go on where nobody has stopped them. Says so, if that is news.
+    pub fn halt(&mut self, halted: bool) {
+        if std::mem::replace(&mut self.halted, halted) != halted {
+            self.note(Input::Halted(halted));
+            self.world.halt(self.stopped || self.halted);
+            self.log(if halted { Event::Halted } else { Event::WentOn });
         }
     }
 
@@ -336,6 +417,7 @@ impl Contest {
             self.events.extend(self.world.events().iter().map(|event| Logged { tick, at, event: *event }));
         }
         self.decision += 1;
+        self.note(Input::Played);
         if let Some(radio) = &mut self.radio {
             radio.open_next();
         }

@@ -30,8 +30,8 @@ fn flags(state: &State) -> impl Iterator<Item = FlagView> {
     state.standing.flags.iter().map(|flag| FlagView { carrier: flag.carrier.map_or(-1, |v| i32::from(v.0)) })
 }
 
-/// The truth about everything, with the events since the frame before.
-pub(crate) fn frame(world: &World, seq: u64, events: &[Logged], mind_lost: &[bool]) -> Frame {
+/// The truth about everything that the world knows of, with these events.
+pub(crate) fn frame(world: &World, seq: u64, events: &[Logged]) -> Frame {
     let state = world.state();
     let truth = |i: usize| {
         let (boat, standing) = (&state.boats[i], &state.standing.vehicles[i]);
@@ -47,8 +47,8 @@ pub(crate) fn frame(world: &World, seq: u64, events: &[Logged], mind_lost: &[boo
             carrying: number_of_flag(standing.carrying),
             disabled: standing.disabled,
             outside: standing.outside,
-            mind_lost: mind_lost[i],
             quarantined: boat.quarantined,
+            ..VehicleTruth::default()
         }
     };
     Frame {
@@ -59,6 +59,7 @@ pub(crate) fn frame(world: &World, seq: u64, events: &[Logged], mind_lost: &[boo
         score: state.standing.score.clone(),
         events: events.iter().map(|logged| (*logged).into()).collect(),
         over: state.standing.over,
+        ..Frame::default()
     }
 }
 

@@ -87,7 +87,7 @@ fn watch_shows_a_helm_and_helm_writes_its_functions() {
 fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
     let dir = tempfile::tempdir().expect("a temporary directory");
     let scenario = long_game(dir.path(), "").display().to_string();
-    let mut command = squall(&["run", &scenario, "--pace", "1x"]);
+    let mut command = squall(&["run", &scenario, "--pace", "1x", "--no-record"]);
     command.stdout(Stdio::piped());
     let mut game = Process::start(command);
     let mut lines = BufReader::new(game.0.stdout.take().expect("piped")).lines().map_while(Result::ok);

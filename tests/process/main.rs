@@ -12,6 +12,8 @@ mod gateway;
 mod helm;
 mod hosts;
 mod policy;
+mod recording;
 mod refusals;
+mod shore;
 mod support;
 mod talk;

@@ -28,7 +28,8 @@ pub(crate) fn result_of(args: &[&str]) -> Value {
     let dir = tempfile::tempdir().expect("a temporary directory");
     let json = dir.path().join("result.json");
     let json_text = json.display().to_string();
-    let output = run(&[&["run"], args, &["--json", &json_text]].concat());
+    let unrecorded: &[&str] = if args.contains(&"--record") { &[] } else { &["--no-record"] };
+    let output = run(&[&["run"], args, unrecorded, &["--json", &json_text]].concat());
     assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_str(&std::fs::read_to_string(&json).expect("a result was written")).expect("it is JSON")
 }

@@ -22,7 +22,7 @@ use bid::Entry;
 use game::helm::HelmReport;
 use game::message::Word;
 use game::scenario::Scenario;
-use game::strategy::{Expression, Moment, Program, Rule, Task, What, Who};
+use game::strategy::{Expression, Moment, Program, Proposer, Rule, What, Who};
 use game::{Event, Order, Picture, SimTime, VehicleId};
 use life::Life;
 use scene::Proposed;
@@ -202,8 +202,8 @@ impl Mind for HelmMind {
         self.scene.ears.talks()
     }
 
-    fn heeds_policy(&self) -> bool {
-        self.program.behaviours.iter().any(|behaviour| matches!(behaviour.task, Task::Policy(_)))
+    fn heeds(&self) -> Option<Proposer> {
+        self.program.proposer()
     }
 
     fn say(&self, words: &mut Vec<Word>) {

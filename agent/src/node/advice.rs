@@ -7,6 +7,7 @@ use crate::Proposal;
 use bus::{Board, Bus, Standing};
 use game::codec::{self, DecodeError};
 use game::message::{PolicyProposal, Stamp};
+use game::strategy::Proposer;
 use game::topic::{self, GameName};
 use game::{Scenario, SimTime, VehicleId};
 use std::sync::Arc;
@@ -16,6 +17,8 @@ use std::time::Duration;
 #[derive(Clone, Debug)]
 struct Adviser {
     vehicle: VehicleId,
+    /// Nobody waits for a person.
+    is_awaited: bool,
     newest: Option<PolicyProposal>,
 }
 
@@ -44,8 +47,11 @@ impl Advice {
         seated: &[Seated],
         patience: Duration,
     ) -> Result<Advice, NodeError> {
-        let heeding = seated.iter().filter(|seat| seat.mind.heeds_policy()).map(|seat| seat.vehicle);
-        let advisers: Vec<Adviser> = heeding.map(|vehicle| Adviser { vehicle, newest: None }).collect();
+        let adviser = |seat: &Seated| {
+            let is_awaited = seat.mind.heeds()? == Proposer::Program;
+            Some(Adviser { vehicle: seat.vehicle, is_awaited, newest: None })
+        };
+        let advisers: Vec<Adviser> = seated.iter().filter_map(adviser).collect();
         let heap = Arc::new(Board::new(Heap { advisers: advisers.clone(), ignored: Ignored::default() }));
         let mut standing = Vec::new();
         for (i, adviser) in advisers.iter().enumerate() {
@@ -66,7 +72,7 @@ impl Advice {
             heap.ignored.unadvised += u64::from(!advised);
             heap.advisers.clone()
         });
-        for Adviser { vehicle, newest } in advisers {
+        for Adviser { vehicle, newest, .. } in advisers {
             let mind = seated.iter_mut().find(|seat| seat.vehicle == vehicle).map(|seat| &mut seat.mind);
             if let (Some(mind), Some(proposal)) = (mind, newest) {
                 let PolicyProposal { course_rad, speed_m_s, .. } = proposal;
@@ -97,10 +103,10 @@ impl Heap {
         }
     }
 
-    /// Whether everybody's proposal for decision `seq` is there.
+    /// Whether the proposals for decision `seq` are there that are waited for.
     fn is_for(&self, seq: u64) -> bool {
         let is_for = |proposal: &PolicyProposal| proposal.stamp.seq >= seq;
-        self.advisers.iter().all(|adviser| adviser.newest.as_ref().is_some_and(is_for))
+        self.advisers.iter().all(|adviser| !adviser.is_awaited || adviser.newest.as_ref().is_some_and(is_for))
     }
 }
 
@@ -121,8 +127,8 @@ mod tests {
 
     #[test]
     fn the_newest_good_proposal_stands_and_others_are_counted() {
-        let adviser = |v: u16| Adviser { vehicle: VehicleId(v), newest: None };
-        let mut heap = Heap { advisers: vec![adviser(0), adviser(1)], ignored: Ignored::default() };
+        let adviser = |v: u16| Adviser { vehicle: VehicleId(v), is_awaited: v < 2, newest: None };
+        let mut heap = Heap { advisers: vec![adviser(0), adviser(1), adviser(2)], ignored: Ignored::default() };
         heap.take(0, &codec::encode(&proposal(0, 4, 1.0)));
         assert!(!heap.is_for(4), "the other is missing");
         heap.take(1, &codec::encode(&proposal(1, 4, 1.0)));

@@ -413,9 +413,22 @@ pub struct Attractor {
     pub speed_m_s: Parameter,
 }
 
+/// Who proposes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Proposer {
+    /// A program: in lockstep it is waited for.
+    #[default]
+    Program,
+    /// A person ashore: nothing waits.
+    Person,
+}
+
 /// Lets a policy outside of the helm propose course and speed, weighed with everything else.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Policy {
+    /// Who proposes.
+    pub by: Proposer,
     /// A proposal older than this is not heard any more, s.
     pub ttl_s: Parameter,
     /// Half width of the peak at the proposed course, degrees.

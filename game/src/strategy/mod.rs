@@ -11,8 +11,8 @@ mod words;
 
 pub use behaviour::{
     Attractor, AvoidCollision, AvoidObstacle, Behaviour, ConstantHeading, ConstantSpeed, Contacts, CutRange, FullStop,
-    Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, Moment, OpRegion, Parameter, Policy, Post, Shape, Shield,
-    StationKeep, Task, Timer, Trail, Turn, Waypoint,
+    Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, Moment, OpRegion, Parameter, Policy, Post, Proposer, Shape,
+    Shield, StationKeep, Task, Timer, Trail, Turn, Waypoint,
 };
 pub use expression::{Expression, Join, Measure, Values};
 pub use fact::{Fact, Kind};
@@ -156,7 +156,24 @@ pub enum What {
     Collides,
 }
 
+impl Strategy {
+    /// Whether a person may steer boats that play it.
+    #[must_use]
+    pub fn is_steered(&self) -> bool {
+        self.roles.iter().any(|role| role.proposer() == Some(Proposer::Person))
+    }
+}
+
 impl Program {
+    /// Who proposes courses and speeds from outside, if the program lets anybody.
+    #[must_use]
+    pub fn proposer(&self) -> Option<Proposer> {
+        self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
+            Task::Policy(policy) => Some(policy.by),
+            _ => None,
+        })
+    }
+
     /// Whether a mode has no parts.
     #[must_use]
     pub fn is_leaf(&self, mode: usize) -> bool {

@@ -51,7 +51,8 @@ impl Mirror {
             }
             Event::Ended { winner } => Event::Ended { winner: winner.map(|team| TeamId(1 - team.0)) },
             Event::MindLost { .. } | Event::MindBack { .. } | Event::Quarantined { .. } => event,
-            Event::NavLost { .. } | Event::NavBack { .. } | Event::EStopped | Event::Released => event,
+            Event::NavLost { .. } | Event::NavBack { .. } => event,
+            Event::EStopped | Event::Released | Event::Halted | Event::WentOn => event,
         }
     }
 

@@ -8,7 +8,7 @@ use crate::bridge::{Bridge, FleetCommand, Input, NavOut, Outbox};
 use crate::link::{Link, LinkEvent};
 use bus::{Inbox, Publisher, Question};
 use game::codec;
-use game::external::{ExternalOrder, GatewayStatus, NavReport, OperatorCommand, OperatorReply};
+use game::external::{ExternalOrder, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply};
 use game::frame::Ned;
 use game::message::{Frame, Message, Stamp};
 use game::{Order, SimTime, VehicleId};
@@ -54,6 +54,8 @@ pub(super) struct Desk {
     pub(super) e_stop: Arc<AtomicBool>,
     pub(super) nav: Publisher,
     pub(super) status: Publisher,
+    /// Every byte of the link, for recorders.
+    pub(super) wire: Publisher,
     pub(super) vehicle: VehicleId,
     /// The other real boats.
     pub(super) others: Vec<VehicleId>,
@@ -67,6 +69,7 @@ pub(super) struct Papers {
     /// Time of the game, as heard last.
     game_now: SimTime,
     reports: u64,
+    wired: u64,
     link: String,
     tag: u64,
     /// Sentences with orders on their way: tag, and when the order came.
@@ -86,6 +89,7 @@ impl Papers {
             ticket: None,
             game_now: SimTime::ZERO,
             reports: 0,
+            wired: 0,
             link: "not connected yet".to_owned(),
             tag: 0,
             writing: VecDeque::new(),
@@ -265,10 +269,26 @@ impl Desk {
         for event in &out.events {
             tell(News::Event { at_s: now.as_s(), event });
         }
+        if self.wire.is_heard() {
+            if let Input::Bytes(bytes) = &input {
+                self.tell_wire(false, bytes)?;
+            }
+            self.tell_wire(true, &out.bytes)?;
+        }
         if let Some(logbook) = &self.logbook {
             logbook.turn(now, input, &out);
         }
         Ok(out.refused)
+    }
+
+    /// Tells what went over the link, if anything.
+    fn tell_wire(&mut self, outward: bool, data: &[u8]) -> Result<(), NodeError> {
+        if data.is_empty() {
+            return Ok(());
+        }
+        let stamp = Stamp { valid_ns: self.papers.game_now, seq: self.papers.wired, version: LinkBytes::VERSION };
+        self.papers.wired += 1;
+        Ok(self.wire.send(&LinkBytes { stamp, vehicle: self.vehicle, outward, data: data.to_vec() })?)
     }
 
     fn report(&mut self, out: &NavOut) -> Result<(), NodeError> {

@@ -181,6 +181,7 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         e_stop,
         nav: bus.publisher(topic::nav(&game, &notice.scenario, vehicle), Delivery::Drop)?,
         status: bus.publisher(topic::status(&game, &settings.vehicle), Delivery::Drop)?,
+        wire: bus.publisher(topic::link(&game, &settings.vehicle), Delivery::Drop)?,
         vehicle,
         others: others.map(|(i, _)| VehicleId::at(i)).filter(|other| *other != vehicle).collect(),
         logbook,
@@ -227,7 +228,8 @@ fn lines(
                 controls.put(Call::EStop);
             }
             Ok(Control::Release) => controls.put(Call::Release),
-            Ok(Control::Stop) | Err(_) => {}
+            // Everything else reaches the boat as an order, if at all.
+            Ok(_) | Err(_) => {}
         })?,
     ];
     // The truth is made only where somebody asks for it.

@@ -1,14 +1,18 @@
 //! The referee's booth: the contest, who is who in it, and the lines to agents, gateways and observers.
 
 use super::clock;
+use super::line::{self, Call};
 use super::quay::Quay;
 use super::roster::{Accepted, Refused, Roster, Timing};
-use super::{News, NodeError, Pace, Settings};
+use super::tempo::Tempo;
+use super::witness::{Heard, Witness};
+use super::{News, NodeError, Pace, Settings, telling};
 use crate::contest::Contest;
 use bus::{Bus, Delivery, Inbox, Publisher, Question, Standing, inbox};
 use game::codec::{self, DecodeError};
 use game::external::{ExternalOrder, NavReport};
 use game::message::{Control, JoinReply, JoinRequest, Message, Notice, Orders, Stamp, VehicleOrder};
+use game::run_state::{Phase, RunState};
 use game::topic::{self, Part};
 use game::{Order, SimTime, TeamId, VehicleId};
 use std::hash::{BuildHasher, Hasher, RandomState};
@@ -20,29 +24,30 @@ use std::time::{Duration, Instant};
 const INBOX: usize = 8192;
 /// How often progress is told.
 const NEWS_EVERY: Duration = Duration::from_millis(100);
+/// How often the state of the run is written down, where nothing is news.
+const WRITE_EVERY: Duration = Duration::from_secs(1);
 /// How long the last words may take to reach everybody.
 const GOOD_BYE: Duration = Duration::from_secs(2);
 
-/// What comes in from the network.
-enum Call {
-    Orders(Vec<u8>),
-    Nav(Vec<u8>),
-    Join(Question),
-    Moor(Question),
-    Scenario(Question),
-    Gone(Part, String),
-    Control(Vec<u8>),
-}
-
 /// Everything a served game needs.
-pub(super) struct Booth {
+pub(super) struct Booth<'w> {
     pub(super) contest: Contest,
+    pub(super) tempo: Tempo,
+    witness: &'w mut dyn Witness,
     pub(super) roster: Roster,
     quay: Quay,
     inbox: Inbox<Call>,
     bus: Bus,
     pictures: Vec<Publisher>,
     frames: Publisher,
+    run: Publisher,
+    /// Whether somebody asked for something since the state of the run was told.
+    is_news: bool,
+    /// When that was written down last.
+    written: Instant,
+    pub(super) overruns: u64,
+    /// Topics that are heard only to be written down, with their schemas.
+    heard_topics: Vec<(String, Option<&'static str>)>,
     /// What each real boat is to do.
     helms: Vec<(VehicleId, Publisher)>,
     /// Answers the question what the game is.
@@ -54,50 +59,38 @@ pub(super) struct Booth {
     /// When each vehicle's mind was last heard.
     heard: Vec<Instant>,
     last_news: (Instant, SimTime),
-    /// When the open decision was opened, once the game runs; and simulated seconds a second, none in lockstep.
+    /// When the open decision was opened, once the game runs.
     opened: Option<Instant>,
-    factor: f64,
+    pace: Pace,
     _standing: Vec<Standing>,
 }
 
-impl Booth {
+impl<'w> Booth<'w> {
     /// Opens the hub and the door.
-    pub(super) fn open(contest: Contest, settings: &Settings, timing: Timing) -> Result<Booth, NodeError> {
+    pub(super) fn open(
+        mut contest: Contest,
+        settings: &Settings,
+        witness: &'w mut dyn Witness,
+    ) -> Result<Booth<'w>, NodeError> {
         let bus = Bus::hub(&settings.net)?;
         let (outlet, inbox) = inbox(INBOX);
         let game = &settings.game;
+        if witness.state().is_some() {
+            contest.keep_inputs();
+        }
         let scenario = contest.scenario();
-        let on = |call: fn(Vec<u8>) -> Call| {
-            let outlet = outlet.clone();
-            move |bytes: &[u8]| outlet.put(call(bytes.to_vec()))
-        };
-        let asked = |call: fn(Question) -> Call| {
-            let outlet = outlet.clone();
-            move |question| outlet.put(call(question))
-        };
-        let gone = outlet.clone();
-        let watch = move |key: &str, alive: bool| {
-            if let (Some((_, part, node)), false) = (topic::parse_alive(key), alive) {
-                gone.put(Call::Gone(part, node));
-            }
-        };
-        let standing = vec![
-            bus.subscribe(topic::all_orders(game), on(Call::Orders))?,
-            bus.subscribe(topic::control(game), on(Call::Control))?,
-            bus.subscribe(topic::all_nav(game), on(Call::Nav))?,
-            bus.watch_alive(topic::all_alive(game, Part::Agent), watch.clone())?,
-            bus.watch_alive(topic::all_alive(game, Part::Gateway), watch)?,
-            bus.answer(topic::scenario(game), asked(Call::Scenario))?,
-            bus.answer(topic::join(game), asked(Call::Join))?,
-            bus.answer(topic::moor(game), asked(Call::Moor))?,
-            bus.show_alive(topic::alive(game, Part::Sim, &bus.id()))?,
-        ];
-        let delivery = if settings.pace == Pace::Lockstep { Delivery::Wait } else { Delivery::Drop };
+        let heard_topics = if witness.state().is_some() { telling::heard_topics(scenario) } else { vec![] };
+        let standing = line::open(&bus, game, &outlet, &heard_topics)?;
+        let is_lockstep = settings.pace == Pace::Lockstep;
+        let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
+        let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
+        let delivery = if is_lockstep { Delivery::Wait } else { Delivery::Drop };
         let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
         let pictures: Result<Vec<Publisher>, _> = teams.map(|key| bus.publisher(key, delivery)).collect();
         // A gateway that does not keep up must not stop the game, and gets the next order soon.
         let helm = |v| Ok((v, bus.publisher(topic::external_order(game, scenario, v), Delivery::Drop)?));
-        let helms: Result<Vec<_>, NodeError> = scenario.externals().map(helm).collect();
+        let helms: Vec<_> = scenario.externals().map(helm).collect::<Result<_, NodeError>>()?;
+        let is_real = !helms.is_empty();
         let notice =
             Notice { version: game::VERSION.to_owned(), pace: settings.pace.to_string(), scenario: scenario.clone() };
         Ok(Booth {
@@ -105,8 +98,15 @@ impl Booth {
             quay: Quay::new(scenario),
             inbox,
             pictures: pictures?,
-            helms: helms?,
+            helms,
             frames: bus.publisher(topic::frame(game), Delivery::Drop)?,
+            run: bus.publisher(topic::run(game), Delivery::Drop)?,
+            is_news: false,
+            written: clock::now(),
+            overruns: 0,
+            heard_topics,
+            tempo: Tempo::new(speed, is_lockstep, is_real),
+            witness,
             notice: serde_json::to_vec(&notice).expect("a scenario is JSON"),
             stop: Arc::clone(&settings.stop),
             refused: Refused::default(),
@@ -114,7 +114,7 @@ impl Booth {
             heard: vec![clock::now(); scenario.vehicles.len()],
             last_news: (clock::now(), SimTime::ZERO),
             opened: None,
-            factor: if let Pace::Realtime { factor } = settings.pace { factor } else { 0.0 },
+            pace: settings.pace,
             _standing: standing,
             bus,
             contest,
@@ -138,7 +138,9 @@ impl Booth {
                 let [minds, gateways] = [&mindless, &unheard]
                     .map(|list| list.iter().map(|v| scenario.vehicles[v.index()].name.as_str()).collect());
                 tell(News::Waiting { minds, gateways });
+                self.is_news = true;
             }
+            self.tell_run(Phase::Waiting, 0.0)?;
             if told == (0, 0) || self.is_stopped() {
                 break;
             }
@@ -159,6 +161,11 @@ impl Booth {
         self.quay.externals().filter(is_missing).map(|(vehicle, _)| vehicle).collect()
     }
 
+    /// Shows the witness how it stands, and what led to it.
+    pub(super) fn bear_witness(&mut self) {
+        self.witness.turn(&mut self.contest);
+    }
+
     /// Sends observers the truth, if there are any.
     pub(super) fn show(&mut self) -> Result<(), NodeError> {
         if !self.frames.is_heard() {
@@ -174,26 +181,37 @@ impl Booth {
         for (picture, line) in self.contest.pictures().iter().zip(&self.pictures) {
             line.send(picture)?;
         }
-        self.helms.iter().try_for_each(|(boat, _)| self.pass_on(*boat))
+        (0..self.helms.len()).try_for_each(|i| self.pass_on(self.helms[i].0))
     }
 
     /// Sends a real boat the order in force for it; holding, where that is older than it may grow. For simulated boats
     /// there is nothing to send.
-    fn pass_on(&self, vehicle: VehicleId) -> Result<(), NodeError> {
-        let Some((_, helm)) = self.helms.iter().find(|(boat, _)| *boat == vehicle) else { return Ok(()) };
+    fn pass_on(&mut self, vehicle: VehicleId) -> Result<(), NodeError> {
+        let Some(helm) = self.helms.iter().position(|(boat, _)| *boat == vehicle) else { return Ok(()) };
         let age_s = (self.contest.now() - self.ordered_at[vehicle.index()]).as_s();
         let is_old = age_s > self.contest.scenario().order_ttl_s;
-        self.send_order(helm, vehicle, if is_old { Order::Hold } else { self.contest.obeyed(vehicle) })
+        let holds = is_old || self.tempo.is_held();
+        self.send_order(helm, if holds { Order::Hold } else { self.contest.obeyed(vehicle) })
     }
 
-    fn send_order(&self, helm: &Publisher, vehicle: VehicleId, order: Order) -> Result<(), NodeError> {
+    fn send_order(&mut self, helm: usize, order: Order) -> Result<(), NodeError> {
+        let (vehicle, helm) = &self.helms[helm];
+        let vehicle = *vehicle;
         if !helm.is_heard() {
             return Ok(());
         }
         let (valid_ns, seq) = (self.contest.now(), self.contest.decision());
         let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
         let given_ns = self.ordered_at[vehicle.index()];
-        Ok(helm.send(&ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) })?)
+        let order = ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) };
+        helm.send(&order)?;
+        if self.witness.state().is_some() {
+            let topic = format!("external/{}", self.contest.scenario().vehicles[vehicle.index()].name);
+            let heard =
+                Heard { topic, schema: Some(ExternalOrder::SCHEMA), bytes: codec::encode(&order), at: valid_ns };
+            self.witness.heard(heard);
+        }
+        Ok(())
     }
 
     /// Takes in what comes, waiting up to `limit` for the first of it.
@@ -206,6 +224,12 @@ impl Booth {
                 Call::Join(question) => self.let_in(question),
                 Call::Moor(question) => self.moor(question),
                 Call::Scenario(question) => question.answer(self.notice.clone()),
+                Call::Events(question) => question.answer(telling::story(&self.contest)),
+                Call::Water(question) => question.answer(telling::water_json(&self.contest)),
+                Call::Heard(i, bytes) => {
+                    let (topic, schema) = self.heard_topics[i].clone();
+                    self.witness.heard(Heard { topic, schema, bytes, at: self.contest.now() });
+                }
                 Call::Gone(Part::Gateway, gateway) => self.quay.gone(&gateway),
                 Call::Gone(_, agent) => {
                     let vehicles = self.roster.gone(&agent);
@@ -253,15 +277,51 @@ impl Booth {
     }
 
     /// Tells progress, if it is time again.
-    pub(super) fn tell_progress(&mut self, tell: &mut dyn FnMut(News<'_>)) {
+    pub(super) fn tell_progress(&mut self, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
         let (then, then_sim) = self.last_news;
         let passed = clock::since(then);
-        if passed < NEWS_EVERY {
-            return;
+        if passed < NEWS_EVERY && !self.is_news {
+            return Ok(());
         }
-        let rate = (self.contest.now() - then_sim).as_s() / passed.as_secs_f64();
+        let rate = (self.contest.now() - then_sim).as_s() / passed.as_secs_f64().max(1e-3);
         self.last_news = (clock::now(), self.contest.now());
         tell(News::Progress { contest: &self.contest, rate, refused: self.refused() });
+        self.tell_run(if self.tempo.is_paused() { Phase::Paused } else { Phase::Playing }, rate)
+    }
+
+    /// Tells onlookers how the run stands, if there are any.
+    fn tell_run(&mut self, phase: Phase, rate: f64) -> Result<(), NodeError> {
+        let is_news = std::mem::take(&mut self.is_news);
+        if !self.run.is_heard() && self.witness.state().is_none() {
+            return Ok(());
+        }
+        let scenario = self.contest.scenario();
+        let names = |list: Vec<VehicleId>| list.iter().map(|v| scenario.vehicles[v.index()].name.clone()).collect();
+        let is_waiting = phase == Phase::Waiting;
+        let state = RunState {
+            phase,
+            now_s: self.contest.now().as_s(),
+            pace: self.pace.to_string(),
+            speed: self.tempo.speed(),
+            rate,
+            minds: if is_waiting { names(self.roster.mindless()) } else { vec![] },
+            gateways: if is_waiting { names(self.unheard()) } else { vec![] },
+            refused: self.refused().total(),
+            overruns: self.overruns,
+            recording: self.witness.state(),
+        };
+        let json = serde_json::to_vec(&state).expect("a state is JSON");
+        self.run.send_json(json.clone())?;
+        if is_news || clock::since(self.written) >= WRITE_EVERY {
+            self.written = clock::now();
+            self.write_down("run", None, json);
+        }
+        Ok(())
+    }
+
+    /// Shows the witness something that goes over the network.
+    fn write_down(&mut self, topic: &str, schema: Option<&'static str>, bytes: Vec<u8>) {
+        self.witness.heard(Heard { topic: topic.to_owned(), schema, bytes, at: self.contest.now() });
     }
 
     /// Tells everybody that it is over, and waits a little for the agents to leave.
@@ -272,7 +332,8 @@ impl Booth {
         let frame = game::message::Frame { over: true, ..self.contest.frame() };
         self.frames.send(&frame)?;
         // Real boats hold from now on, also where the game is cut short.
-        self.helms.iter().try_for_each(|(boat, helm)| self.send_order(helm, *boat, Order::Hold))?;
+        (0..self.helms.len()).try_for_each(|helm| self.send_order(helm, Order::Hold))?;
+        self.tell_run(Phase::Over, 0.0)?;
         let start = clock::now();
         while self.roster.present() > 0 && clock::since(start) < GOOD_BYE {
             self.listen(Duration::from_millis(20));
@@ -302,7 +363,7 @@ impl Booth {
     }
 
     /// Sends a real boat its order between two decisions. That the session is closed shows at the next of them.
-    fn pass_on_now(&self, vehicle: VehicleId) {
+    fn pass_on_now(&mut self, vehicle: VehicleId) {
         self.pass_on(vehicle).unwrap_or_default();
     }
 
@@ -312,6 +373,12 @@ impl Booth {
             Err(DecodeError::Version { .. }) => return self.refused.version += 1,
             Err(_) => return self.refused.garbage += 1,
         };
+        if self.witness.state().is_some()
+            && let Some(vehicle) = self.contest.scenario().vehicles.get(report.vehicle.index())
+        {
+            let topic = format!("nav/{}", vehicle.name);
+            self.write_down(&topic, Some(NavReport::SCHEMA), bytes.to_vec());
+        }
         let Some(sighted) = self.quay.take(&report, self.moment()) else { return };
         let taken = self.contest.report(sighted.vehicle, sighted.nav, sighted.fix_at, sighted.valid);
         self.refused.bad_number += u64::from(taken.is_err());
@@ -322,7 +389,8 @@ impl Booth {
     fn moment(&self) -> SimTime {
         let scenario = self.contest.scenario();
         let decision = scenario.tick * i64::from(scenario.ticks_per_decision);
-        let passed = self.opened.map_or(0.0, |opened| clock::since(opened).as_secs_f64() * self.factor);
+        let factor = if self.pace == Pace::Lockstep { 0.0 } else { self.tempo.speed().unwrap_or(0.0) };
+        let passed = self.opened.map_or(0.0, |opened| clock::since(opened).as_secs_f64() * factor);
         self.contest.now() + SimTime::from_s(passed).min(decision)
     }
 
@@ -352,16 +420,37 @@ impl Booth {
     fn obey(&mut self, bytes: &[u8]) {
         match serde_json::from_slice(bytes) {
             Ok(Control::Stop) => self.stop.store(true, Ordering::Relaxed),
-            Ok(Control::EStop) => self.e_stop(true),
-            Ok(Control::Release) => self.e_stop(false),
-            Err(_) => self.refused.garbage += 1,
+            Ok(Control::EStop) => self.contest.e_stop(true),
+            Ok(Control::Release) => self.contest.e_stop(false),
+            Ok(Control::Halt) => self.contest.halt(true),
+            Ok(Control::GoOn) => self.contest.halt(false),
+            Ok(tempo) => self.refused.out_of_place += u64::from(!self.tempo.obey(tempo)),
+            Err(_) => return self.refused.garbage += 1,
         }
+        self.is_news = true;
+        self.write_down("control", None, bytes.to_vec());
+        (0..self.helms.len()).for_each(|i| self.pass_on_now(self.helms[i].0));
     }
 
-    fn e_stop(&mut self, stopped: bool) {
-        self.contest.e_stop(stopped);
-        let boats: Vec<VehicleId> = self.helms.iter().map(|(boat, _)| *boat).collect();
-        boats.into_iter().for_each(|boat| self.pass_on_now(boat));
+    /// Whether the game stands still, paused by somebody: then minds and boats are kept, and who calls is heard.
+    pub(super) fn stand_still(&mut self, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+        /// Minds that hear nothing for too long leave.
+        const SEND_AGAIN: Duration = Duration::from_secs(1);
+        if !self.tempo.is_held() {
+            return Ok(());
+        }
+        let mut sent = clock::now();
+        while self.tempo.is_held() && !self.is_stopped() {
+            self.listen(Duration::from_millis(50));
+            self.tell_progress(tell)?;
+            if clock::since(sent) >= SEND_AGAIN {
+                self.ask()?;
+                sent = clock::now();
+            }
+        }
+        // Whoever was silent meanwhile had nothing to answer.
+        self.heard.fill(clock::now());
+        Ok(())
     }
 }
 

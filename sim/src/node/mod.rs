@@ -5,10 +5,17 @@
 
 mod booth;
 mod clock;
+mod line;
 mod lockstep;
 pub mod quay;
 mod realtime;
 pub mod roster;
+mod telling;
+mod tempo;
+mod witness;
+
+pub use telling::water;
+pub use witness::{Heard, Nobody, Witness};
 
 use crate::contest::Contest;
 use crate::world::NoStart;
@@ -16,7 +23,7 @@ use booth::Booth;
 use bus::{BusError, Net};
 use game::topic::GameName;
 use game::{Outcome, Scenario};
-use roster::{Refused, Timing};
+use roster::Refused;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -45,6 +52,8 @@ pub struct Settings {
     pub pace: Pace,
     /// How long to wait for minds, and for gateways of real boats, before starting without the missing ones.
     pub join_limit: Duration,
+    /// In lockstep: plays no more simulated seconds a second than this, until somebody asks for another speed.
+    pub speed: Option<f64>,
     /// Set from outside to end the game early.
     pub stop: Arc<AtomicBool>,
 }
@@ -133,7 +142,7 @@ impl std::str::FromStr for Pace {
     }
 }
 
-/// Serves the game of `scenario` that `seed` chooses, and plays it to its end.
+/// Serves the game of `scenario` that `seed` chooses, and plays it to its end. `witness` is shown everything.
 ///
 /// # Errors
 /// [`NodeError`] if the boats do not fit on the field or the network fails, or for real boats in lockstep: nothing makes
@@ -142,30 +151,28 @@ pub fn serve(
     scenario: &Scenario,
     seed: u64,
     settings: &Settings,
+    witness: &mut dyn Witness,
     tell: &mut dyn FnMut(News<'_>),
 ) -> Result<Report, NodeError> {
     if settings.pace == Pace::Lockstep {
         scenario.has_no_real_boats().map_err(NoStart::from)?;
     }
     let contest = Contest::new(scenario, seed)?;
-    let timing = if settings.pace == Pace::Lockstep { Timing::Lockstep } else { Timing::Realtime };
-    let mut booth = Booth::open(contest, settings, timing)?;
+    let mut booth = Booth::open(contest, settings, witness)?;
     tell(News::Open);
     booth.wait_for_everybody(settings.join_limit, tell)?;
     tell(News::Started);
     let started = clock::now();
-    let overruns = match settings.pace {
-        Pace::Lockstep => {
-            lockstep::play(&mut booth, tell)?;
-            0
-        }
-        Pace::Realtime { factor } => realtime::play(&mut booth, factor, tell)?,
-    };
+    match settings.pace {
+        Pace::Lockstep => lockstep::play(&mut booth, tell)?,
+        Pace::Realtime { .. } => realtime::play(&mut booth, tell)?,
+    }
     let cut_short = !booth.contest.is_over();
     let wall_s = clock::since(started).as_secs_f64();
     // The result stands before the agents leave: that they do is not part of the game.
     let outcome = booth.contest.outcome();
     booth.say_good_bye()?;
+    let overruns = booth.overruns;
     let run = Run { pace: settings.pace.to_string(), wall_s, refused: booth.refused(), overruns, cut_short };
     Ok(Report { outcome, run })
 }

@@ -5,14 +5,11 @@ use super::{News, NodeError, clock};
 use game::VehicleId;
 use std::time::Duration;
 
-/// Plays until the game is over or stopped; gives the number of decision ticks that began late.
-pub(super) fn play(booth: &mut Booth, factor: f64, tell: &mut dyn FnMut(News<'_>)) -> Result<u64, NodeError> {
-    let scenario = booth.contest.scenario();
-    let period = (scenario.tick * i64::from(scenario.ticks_per_decision)).as_s() / factor;
-    let period = Duration::from_secs_f64(period);
-    let mut due = clock::now() + period;
-    let mut overruns = 0;
+/// Plays until the game is over or stopped, and counts the decision ticks that began late.
+pub(super) fn play(booth: &mut Booth<'_>, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+    let mut due = clock::now() + period(booth);
     while !booth.contest.is_over() && !booth.is_stopped() {
+        booth.bear_witness();
         booth.ask()?;
         booth.show()?;
         // Listens until the next tick is due, and at least once.
@@ -22,22 +19,36 @@ pub(super) fn play(booth: &mut Booth, factor: f64, tell: &mut dyn FnMut(News<'_>
                 break;
             }
         }
+        let period = period(booth);
+        if booth.tempo.is_held() {
+            booth.stand_still(tell)?;
+            due = clock::now();
+        }
         let late = clock::since(due);
         if late > period {
             // What is lost is lost: the game runs slower than asked, and says so.
-            overruns += 1;
+            booth.overruns += 1;
             due = clock::now();
         }
         due += period;
         expire(booth);
         booth.contest.advance();
-        booth.tell_progress(tell);
+        booth.tempo.played();
+        booth.tell_progress(tell)?;
     }
-    Ok(overruns)
+    booth.bear_witness();
+    Ok(())
+}
+
+/// The wall-clock time between two decisions.
+fn period(booth: &Booth<'_>) -> Duration {
+    let scenario = booth.contest.scenario();
+    let decision_s = (scenario.tick * i64::from(scenario.ticks_per_decision)).as_s();
+    Duration::from_secs_f64(decision_s / booth.tempo.speed().unwrap_or(1.0))
 }
 
 /// Boats whose order is too old hold; minds that are silent for longer than patience are lost.
-fn expire(booth: &mut Booth) {
+fn expire(booth: &mut Booth<'_>) {
     let now = booth.contest.now();
     let (ttl_s, patience_s) = (booth.contest.scenario().order_ttl_s, booth.contest.scenario().patience_s);
     for i in 0..booth.ordered_at.len() {

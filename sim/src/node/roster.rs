@@ -25,6 +25,9 @@ pub struct Refused {
     pub bad_number: u64,
     /// A vehicle of its own that an agent gave no order for. The boat holds.
     pub missing: u64,
+    /// Wishes of people that the game cannot follow: another speed with real boats, a step of a game that goes on.
+    #[serde(default)]
+    pub out_of_place: u64,
     /// Messages that came faster than they could be looked at.
     pub flood: u64,
 }
@@ -33,8 +36,9 @@ impl Refused {
     /// How many there were in all.
     #[must_use]
     pub fn total(&self) -> u64 {
-        let Refused { garbage, version, ticket, wrong_tick, not_yours, bad_number, missing, flood } = self;
-        garbage + version + ticket + wrong_tick + not_yours + bad_number + missing + flood
+        let Refused { garbage, version, ticket, wrong_tick, not_yours, bad_number, missing, out_of_place, flood } =
+            self;
+        garbage + version + ticket + wrong_tick + not_yours + bad_number + missing + out_of_place + flood
     }
 }
 
@@ -49,6 +53,7 @@ impl std::ops::Add for Refused {
             not_yours: self.not_yours + other.not_yours,
             bad_number: self.bad_number + other.bad_number,
             missing: self.missing + other.missing,
+            out_of_place: self.out_of_place + other.out_of_place,
             flood: self.flood + other.flood,
         }
     }

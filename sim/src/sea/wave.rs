@@ -215,6 +215,19 @@ impl WaveField {
         self.waves.iter().map(|w| &w.component)
     }
 
+    /// The components as onlookers draw them.
+    #[must_use]
+    pub fn plane_waves(&self) -> Vec<game::water::PlaneWave> {
+        let plane = |wave: &PlaneWave| game::water::PlaneWave {
+            amplitude_m: wave.component.amplitude_m,
+            wavenumber_rad_m: wave.wavenumber_rad_m,
+            toward_rad: wave.component.toward_rad,
+            omega_rad_s: wave.component.omega_rad_s,
+            phase_rad: wave.component.phase_rad,
+        };
+        self.waves.iter().map(plane).collect()
+    }
+
     /// The surface at a place and time, of all components.
     #[must_use]
     pub fn surface(&self, at: Ned, time_s: f64) -> Surface {

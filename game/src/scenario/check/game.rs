@@ -11,7 +11,7 @@ use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawBoat, RawFleet, RawGame, RawSource, RawStrategy, RawVehicle};
 use crate::scenario::read::{self, Document, Typed};
 use crate::scenario::source::tidied;
-use crate::scenario::{Berth, Scenario, Source, Team, Vehicle};
+use crate::scenario::{Berth, Kind, Scenario, Source, Team, Vehicle};
 use crate::sea::Sea;
 use crate::strategy::Strategy;
 use crate::time::SimTime;
@@ -264,7 +264,7 @@ impl Roster<'_> {
         for (name, strategy) in &self.teams {
             match (ledger.overrides.strategies.get(name).cloned(), strategy) {
                 (Some(path), _) => drop(self.strategies.index_at(ledger, &path, None, RawStrategy::OWNER)),
-                (None, Some(given)) => drop(self.strategies.index(ledger, given, RawStrategy::OWNER)),
+                (None, Some(given)) => drop(self.strategies.index(ledger, &strategy_path(given), RawStrategy::OWNER)),
                 (None, None) => {}
             }
         }
@@ -400,6 +400,14 @@ impl Roster<'_> {
             }
             return None;
         }
-        self.strategies.index(ledger, given.or(of_team.as_ref())?, RawStrategy::OWNER)
+        self.strategies.index(ledger, &strategy_path(given.or(of_team.as_ref())?), RawStrategy::OWNER)
     }
+}
+
+/// The path of a strategy that is given by a path, or by the name of one in the folder of strategies.
+fn strategy_path(given: &At<String>) -> At<String> {
+    let is_name = !given.value.contains(['/', '\\', '.']);
+    let value =
+        if is_name { format!("../{}/{}.toml", Kind::Strategy.folder(), given.value) } else { given.value.clone() };
+    At { value, at: given.at }
 }

@@ -53,7 +53,7 @@ pub(in crate::scenario) struct RawGame {
 pub(in crate::scenario) struct RawTeam {
     /// Its name: a-z, 0-9 and _. Required.
     pub(in crate::scenario) name: Option<At<String>>,
-    /// The strategy file of its boats that name none.
+    /// The strategy of its boats that name none: the path of a file, or the name of one in the folder of strategies.
     pub(in crate::scenario) strategy: Option<At<String>>,
 }
 
@@ -68,7 +68,7 @@ pub(in crate::scenario) struct RawVehicle {
     pub(in crate::scenario) team: Option<At<String>>,
     /// Its boat file. Default the game's.
     pub(in crate::scenario) boat: Option<At<String>>,
-    /// Its strategy file. Default its team's.
+    /// Its strategy, by path or name. Default its team's.
     pub(in crate::scenario) strategy: Option<At<String>>,
     /// Where it starts: [x, y] in m from the datum, or a named point of its own team such as "PH".
     /// Default, without `spawn`: on the team's line midway between own flag and scrimmage line.
@@ -105,7 +105,7 @@ pub(in crate::scenario) struct RawFleet {
     pub(in crate::scenario) name: Option<At<String>>,
     /// Their boat file. Default the game's.
     pub(in crate::scenario) boat: Option<At<String>>,
-    /// Their strategy file. Default their team's.
+    /// Their strategy, by path or name. Default their team's.
     pub(in crate::scenario) strategy: Option<At<String>>,
     /// Somewhere in a rectangle, drawn anew for every seed. Default: on the team's line midway between
     /// own flag and scrimmage line.

@@ -10,8 +10,8 @@ use crate::scenario::raw::{
 };
 use crate::strategy::{
     Attractor, AvoidCollision, AvoidObstacle, Boat, ConstantHeading, ConstantSpeed, Contacts, CutRange, Expression,
-    FullStop, Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion, Parameter, Place, Policy, Shape, Shield,
-    StationKeep, Task, Timer, Trail, Turn, Variable, Waypoint,
+    FullStop, Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion, Parameter, Place, Policy, Proposer, Shape,
+    Shield, StationKeep, Task, Timer, Trail, Turn, Variable, Waypoint,
 };
 
 /// Ranges of what behaviours have in common.
@@ -364,6 +364,7 @@ fn attractor(keys: &mut Keys<'_>, raw: &RawAttractor) -> Option<Attractor> {
 
 fn policy(keys: &mut Keys<'_>, raw: &RawPolicy) -> Policy {
     Policy {
+        by: raw.by.as_ref().map_or(Proposer::Program, |by| by.value),
         ttl_s: keys.number("ttl_s", raw.ttl_s.as_ref(), (0.01, 600.0), 1.0),
         peak_width_deg: keys.number("peak_width_deg", raw.peak_width_deg.as_ref(), WIDTH_DEG, 10.0),
         base_width_deg: keys.number("base_width_deg", raw.base_width_deg.as_ref(), WIDTH_DEG, 60.0),

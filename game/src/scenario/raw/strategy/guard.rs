@@ -2,7 +2,7 @@
 
 use super::Amount;
 use crate::scenario::raw::At;
-use crate::strategy::{Contacts, Grade};
+use crate::strategy::{Contacts, Grade, Proposer};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -126,6 +126,8 @@ pub(in crate::scenario) struct RawFullStop {}
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scenario) struct RawPolicy {
+    /// Who proposes: `program` is waited for in lockstep, `person` (somebody at the page) is not. Default `program`.
+    pub(in crate::scenario) by: Option<At<Proposer>>,
     /// A proposal older than this is not heard any more, s: 0.01 to 600. Default 1.
     pub(in crate::scenario) ttl_s: Option<At<Amount>>,
     /// Half width of the peak at the proposed course, degrees: 0 to 180. Default 10.

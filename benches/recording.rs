@@ -1,0 +1,72 @@
+//! What recording costs: the rate of a lockstep game of 20 against 20 with a recording over its rate without.
+//!
+//! Games with and without take turns, so that both see the same machine; medians are printed.
+#![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
+
+use std::path::Path;
+use std::process::Command;
+
+/// How many games of each kind.
+const ROUNDS: usize = 7;
+
+fn main() {
+    // `cargo test --benches` runs this with `--test`: there is nothing to check.
+    if !std::env::args().any(|arg| arg == "--bench") {
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let game = dir.path().join("twenty.toml");
+    let team = |name: &str| {
+        let strategy = root.join("strategies/pav01.toml");
+        format!(
+            "[[team]]\nname = \"{name}\"\nstrategy = \"{}\"\n[[fleet]]\nteam = \"{name}\"\nname = \"{name}_{{}}\"\n\
+             count = 20\nspawn = {{}}\n",
+            strategy.display()
+        )
+    };
+    let text = format!(
+        "field = \"{0}/fields/open_800x400.toml\"\nrules = \"{0}/rules/aquaticus_2023.toml\"\n\
+         boat = \"{0}/boats/surveyor_m1_8.toml\"\nduration_s = 60\n{1}{2}",
+        root.display(),
+        team("blue"),
+        team("red")
+    );
+    std::fs::write(&game, text).expect("a file can be written");
+    println!("20 against 20 for 60 s in lockstep, median of {ROUNDS} games each, taking turns");
+    println!("| agent processes | without, x real time | with a recording | with over without | MB recorded |");
+    println!("|---|---|---|---|---|");
+    for boats_each in ["1", "10"] {
+        let mut rates = Vec::new();
+        let mut bytes = 0;
+        for _ in 0..ROUNDS {
+            let runs = dir.path().join("runs");
+            let without = rate(&game, &["--no-record", "--agents-per-process", boats_each], dir.path());
+            let folder = runs.display().to_string();
+            let with = rate(&game, &["--record", &folder, "--agents-per-process", boats_each], dir.path());
+            let files = std::fs::read_dir(&runs).expect("recordings").map(|file| file.expect("a file"));
+            bytes = files.map(|file| file.metadata().expect("it is there").len()).sum();
+            std::fs::remove_dir_all(&runs).expect("they can be removed");
+            rates.push([without, with, with / without]);
+        }
+        let median = |i: usize| {
+            let mut values: Vec<f64> = rates.iter().map(|rate| rate[i]).collect();
+            values.sort_by(f64::total_cmp);
+            values[values.len() / 2]
+        };
+        let processes = 40 / boats_each.parse::<u32>().expect("a number");
+        let megabytes = bytes as f64 / 1e6;
+        println!("| {processes} | {:.1} | {:.1} | {:.3} | {megabytes:.1} |", median(0), median(1), median(2));
+    }
+}
+
+/// Simulated seconds a second of a game.
+fn rate(game: &Path, options: &[&str], dir: &Path) -> f64 {
+    let json = dir.join("result.json");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
+    command.arg("run").arg(game).args(options).arg("--json").arg(&json);
+    assert!(command.output().expect("the program starts").status.success(), "{command:?}");
+    let result: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&json).expect("a result")).expect("it is JSON");
+    result["duration_s"].as_f64().expect("a time") / result["run"]["wall_s"].as_f64().expect("a time")
+}

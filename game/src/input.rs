@@ -1,0 +1,180 @@
+//! What a game is given as it goes on. With it a game can be played again without its minds.
+
+use crate::id::VehicleId;
+use crate::message::{Message, Stamp, VehicleOrder};
+use crate::order::Order;
+use crate::picture::Nav;
+use crate::time::SimTime;
+use serde::{Deserialize, Serialize};
+
+/// One thing that a game was given. Their order counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Input {
+    /// The teams were shown their pictures: boats looked round and reported.
+    Pictured,
+    /// A vehicle was sent an order.
+    Ordered {
+        /// Whose.
+        vehicle: VehicleId,
+        /// Which.
+        order: Order,
+    },
+    /// A vehicle was made to hold.
+    Held {
+        /// Which.
+        vehicle: VehicleId,
+    },
+    /// A vehicle's mind was lost.
+    MindLost {
+        /// Whose.
+        vehicle: VehicleId,
+    },
+    /// A vehicle has a mind again.
+    MindBack {
+        /// Which.
+        vehicle: VehicleId,
+    },
+    /// A gateway told where its boat was.
+    Reported {
+        /// Which boat.
+        vehicle: VehicleId,
+        /// Where, and how it moved.
+        nav: Nav,
+        /// When that was.
+        fix_at: SimTime,
+        /// Whether it can be relied on.
+        valid: bool,
+    },
+    /// All boats were stopped, or that was over.
+    EStopped(bool),
+    /// All boats were made to hold, or that was over.
+    Halted(bool),
+    /// It was played until the next decision.
+    Played,
+}
+
+/// Everything that a game was given since the frame before, in order.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Inputs {
+    /// That of the frame that came of it.
+    pub stamp: Stamp,
+    /// In order.
+    pub inputs: Vec<InputRecord>,
+}
+
+/// An input as numbers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct InputRecord {
+    /// Which: the constants of `InputRecord.msg`.
+    pub kind: u8,
+    /// Whose, or -1.
+    pub vehicle: i32,
+    /// For a report: when the boat was there, ns.
+    pub at_ns: SimTime,
+    /// What belongs to it.
+    pub numbers: Vec<f64>,
+}
+
+impl From<Input> for InputRecord {
+    fn from(input: Input) -> InputRecord {
+        let record = |kind: u8, vehicle: Option<VehicleId>, numbers: &[f64]| InputRecord {
+            kind,
+            vehicle: vehicle.map_or(-1, |vehicle| i32::from(vehicle.0)),
+            at_ns: SimTime::ZERO,
+            numbers: numbers.to_vec(),
+        };
+        match input {
+            Input::Ordered { vehicle, order } => {
+                let VehicleOrder { kind, first, second, .. } = VehicleOrder::new(vehicle, order);
+                let numbers = if kind == 0 { vec![] } else { vec![first, second] };
+                record(kind, Some(vehicle), &numbers)
+            }
+            Input::Pictured => record(3, None, &[]),
+            Input::Held { vehicle } => record(4, Some(vehicle), &[]),
+            Input::MindLost { vehicle } => record(5, Some(vehicle), &[]),
+            Input::MindBack { vehicle } => record(6, Some(vehicle), &[]),
+            Input::Reported { vehicle, nav, fix_at, valid } => {
+                let numbers = [nav.north_m, nav.east_m, nav.psi_rad, nav.surge_m_s, nav.sway_m_s, nav.yaw_rate_rad_s];
+                InputRecord { at_ns: fix_at, ..record(if valid { 7 } else { 8 }, Some(vehicle), &numbers) }
+            }
+            Input::EStopped(stopped) => record(if stopped { 9 } else { 10 }, None, &[]),
+            Input::Halted(halted) => record(if halted { 11 } else { 12 }, None, &[]),
+            Input::Played => record(13, None, &[]),
+        }
+    }
+}
+
+impl InputRecord {
+    /// The input, if kind and numbers are ones we know.
+    #[must_use]
+    pub fn input(&self) -> Option<Input> {
+        let vehicle = u16::try_from(self.vehicle).ok().map(VehicleId);
+        Some(match (self.kind, self.numbers.as_slice()) {
+            (kind @ 0..=2, numbers) => {
+                let (first, second) = match (kind, numbers) {
+                    (0, []) => (0.0, 0.0),
+                    (1 | 2, [first, second]) => (*first, *second),
+                    _ => return None,
+                };
+                let order = VehicleOrder { vehicle: vehicle?, kind, first, second }.order()?;
+                Input::Ordered { vehicle: vehicle?, order }
+            }
+            (3, []) => Input::Pictured,
+            (4, []) => Input::Held { vehicle: vehicle? },
+            (5, []) => Input::MindLost { vehicle: vehicle? },
+            (6, []) => Input::MindBack { vehicle: vehicle? },
+            (kind @ 7..=8, &[north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s]) => Input::Reported {
+                vehicle: vehicle?,
+                nav: Nav { north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s },
+                fix_at: self.at_ns,
+                valid: kind == 7,
+            },
+            (kind @ 9..=10, []) => Input::EStopped(kind == 9),
+            (kind @ 11..=12, []) => Input::Halted(kind == 11),
+            (13, []) => Input::Played,
+            _ => return None,
+        })
+    }
+}
+
+impl Message for Inputs {
+    const SCHEMA: &'static str = "squall_msgs/msg/Inputs";
+    const VERSION: u8 = 1;
+    const DEFINITION: &'static str = include_str!("../msg/Inputs.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_input_comes_back_from_its_record() {
+        let vehicle = VehicleId(3);
+        let nav = Nav { north_m: 1.0, east_m: 2.0, psi_rad: 3.0, surge_m_s: 4.0, sway_m_s: 5.0, yaw_rate_rad_s: 6.0 };
+        for input in [
+            Input::Pictured,
+            Input::Ordered { vehicle, order: Order::Hold },
+            Input::Ordered { vehicle, order: Order::Steer { heading_rad: 0.5, speed_m_s: 2.0 } },
+            Input::Ordered { vehicle, order: Order::Thrust { port: -1.0, starboard: 0.25 } },
+            Input::Held { vehicle },
+            Input::MindLost { vehicle },
+            Input::MindBack { vehicle },
+            Input::Reported { vehicle, nav, fix_at: SimTime(7), valid: true },
+            Input::Reported { vehicle, nav, fix_at: SimTime(-7), valid: false },
+            Input::EStopped(true),
+            Input::EStopped(false),
+            Input::Halted(true),
+            Input::Halted(false),
+            Input::Played,
+        ] {
+            let record = InputRecord::from(input);
+            assert_eq!(record.input(), Some(input), "{record:?}");
+            assert_eq!(InputRecord { numbers: vec![0.0; 9], ..record }.input(), None, "{input:?}");
+        }
+        assert_eq!(InputRecord { kind: 14, ..InputRecord::default() }.input(), None);
+        assert_eq!(InputRecord { kind: 4, vehicle: -1, ..InputRecord::default() }.input(), None);
+    }
+}

@@ -1,0 +1,56 @@
+//! How the run of a game stands: what depends on the machine and the people, not on the game.
+
+use serde::{Deserialize, Serialize};
+
+/// How the run of a game stands, from its sim to whoever looks on. JSON.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RunState {
+    /// What it is about now.
+    pub phase: Phase,
+    /// Simulated time, s.
+    pub now_s: f64,
+    /// How it was started to be paced: `lockstep`, `realtime` or a factor such as `4x`.
+    pub pace: String,
+    /// Simulated seconds a second: what is aimed at, or in lockstep what is not exceeded. None is as fast as can be.
+    pub speed: Option<f64>,
+    /// Simulated seconds a second, lately.
+    pub rate: f64,
+    /// Vehicles without a mind, while they are waited for.
+    pub minds: Vec<String>,
+    /// Real boats that were not heard of, while they are waited for.
+    pub gateways: Vec<String>,
+    /// Messages refused so far.
+    pub refused: u64,
+    /// Decisions that began late so far.
+    pub overruns: u64,
+    /// The recording, if there is one.
+    pub recording: Option<RecordingState>,
+}
+
+/// What a run is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// Minds or real boats are waited for.
+    #[default]
+    Waiting,
+    /// The game is on.
+    Playing,
+    /// Somebody paused it.
+    Paused,
+    /// It has ended.
+    Over,
+}
+
+/// How a recording stands.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RecordingState {
+    /// The file, as the sim's machine names it.
+    pub file: String,
+    /// Bytes written so far.
+    pub bytes: u64,
+    /// Messages that the disk was too slow for.
+    pub dropped: u64,
+    /// Why nothing is written any more, if so.
+    pub failed: Option<String>,
+}

@@ -1,0 +1,26 @@
+//! The waves of a game as an onlooker draws them.
+
+use serde::{Deserialize, Serialize};
+
+/// The waves of a game: the sum of these.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Water {
+    /// None in calm water.
+    pub waves: Vec<PlaneWave>,
+}
+
+/// One plane wave. Its elevation at a place x north and y east of the datum at the time t is
+/// a cos(k (x cos χ + y sin χ) − ω t + φ).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PlaneWave {
+    /// a, m.
+    pub amplitude_m: f64,
+    /// k.
+    pub wavenumber_rad_m: f64,
+    /// χ, the compass bearing it travels to.
+    pub toward_rad: f64,
+    /// ω.
+    pub omega_rad_s: f64,
+    /// φ.
+    pub phase_rad: f64,
+}

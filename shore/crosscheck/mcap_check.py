@@ -1,0 +1,69 @@
+"""Reads a recording with the Python packages `mcap` and `mcap-ros2-support`, and compares it with the game's result.
+
+Usage: mcap_check.py RECORDING RESULT.json
+"""
+
+import io
+import json
+import sys
+
+from mcap.reader import NonSeekingReader, make_reader
+from mcap_ros2.decoder import DecoderFactory
+
+
+def check(condition, what):
+    if not condition:
+        sys.exit(f"mcap_check: {what}")
+
+
+def metadata_of(reader):
+    return {record.name: record.metadata for record in reader.iter_metadata()}
+
+
+def main(recording, result_path):
+    data = open(recording, "rb").read()
+    result = json.load(open(result_path, encoding="utf-8"))
+    reader = make_reader(io.BytesIO(data), decoder_factories=[DecoderFactory()])
+    metadata = metadata_of(reader)
+    check(metadata["squall"]["seed"] == str(result["seed"]), "the seed is another")
+    check(metadata["result"]["digest"] == result["digest"], "the digest is another")
+    scenario = json.loads(metadata["squall"]["scenario"])
+    names = [vehicle["name"] for vehicle in scenario["vehicles"]]
+    teams = [team["name"] for team in scenario["teams"]]
+
+    # Every message on every topic, by the schemas in the file alone.
+    counts, last, events, log_times = {}, None, 0, []
+    for schema, channel, message, decoded in reader.iter_decoded_messages():
+        counts[channel.topic] = counts.get(channel.topic, 0) + 1
+        if channel.message_encoding != "cdr":
+            continue
+        check(schema.encoding == "ros2msg", f"{channel.topic} has a schema that is no ROS 2 message")
+        if channel.topic == "frame":
+            check(len(decoded.vehicles) == len(names), "a frame has another number of boats")
+            check(decoded.stamp.version == 3, "a frame of another version")
+            last, events = decoded, events + len(decoded.events)
+            log_times.append(message.log_time)
+    check(last is not None and last.over, "the last frame is not the end of the game")
+    check(log_times == sorted(log_times), "frames are not in order of time")
+    score = dict(zip(teams, last.score))
+    check(score == result["score"]["teams"], f"the score is {score}, not {result['score']['teams']}")
+    check(events == len(result["events"]), f"{events} events, not {len(result['events'])}")
+    check(abs(last.stamp.valid_ns * 1e-9 - result["duration_s"]) < 1e-6, "the game ends at another time")
+    check(log_times[-1] - log_times[0] == last.stamp.valid_ns, "log_time is not simulated time")
+    summary = reader.get_summary()
+    check(summary.statistics.message_count == sum(counts.values()), "the summary counts other messages")
+
+    # A file that was cut in the middle: what is there is there.
+    cut = NonSeekingReader(io.BytesIO(data[: len(data) // 2]), decoder_factories=[DecoderFactory()])
+    some = 0
+    try:
+        for _, channel, _, _ in cut.iter_decoded_messages(topics=["frame"], log_time_order=False):
+            some += 1
+    except Exception as end:  # noqa: BLE001: the package says that the file ends, each version in its own words
+        print(f"cut in the middle it ends with {type(end).__name__}")
+    check(some > counts["frame"] // 4, f"of a file cut in half only {some} of {counts['frame']} frames are left")
+    print(f"{recording}: {sum(counts.values())} messages on {len(counts)} topics agree; {some} frames in the first half")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2])

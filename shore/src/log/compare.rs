@@ -1,0 +1,265 @@
+//! Two games beside each other: the same boats on the water and in simulation, or the same game played twice.
+
+use super::book::{Boat, Book};
+use super::response::{Response, response};
+use super::track::{Apart, apart};
+use crate::recording::Header;
+use game::outcome::EventOutcome;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// What differs between two games, A and B.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// How long each is, s.
+    pub durations_s: [f64; 2],
+    /// What tracks and events are compared over: from the begin of both to the end of the shorter, s.
+    pub common_s: f64,
+    /// Differences of what was played, in words.
+    pub notes: Vec<String>,
+    /// Boats that are in both.
+    pub boats: Vec<Pair>,
+    /// Points by team, at the end of each file.
+    pub score: BTreeMap<String, [Option<u32>; 2]>,
+    /// What happened in one and not in the other.
+    pub events: EventDifference,
+}
+
+/// A boat in both games.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pair {
+    /// Its name.
+    pub boat: String,
+    /// Its team in A.
+    pub team: String,
+    /// How far apart its tracks are.
+    pub apart: Apart,
+    /// How it answered its orders in each.
+    pub response: [Response; 2],
+}
+
+/// What happened in one game and not in the other. Two events are the same if kind, boats and team are, and their times
+/// are near.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EventDifference {
+    /// How near, s.
+    pub tolerance_s: f64,
+    /// How many happened in both.
+    pub in_both: u32,
+    /// What happened only in A.
+    pub only_in_a: Vec<EventOutcome>,
+    /// What happened only in B.
+    pub only_in_b: Vec<EventOutcome>,
+    /// How often what happened in each, by kind.
+    pub counts: BTreeMap<String, [u32; 2]>,
+}
+
+/// Why two games cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Incomparable {
+    /// Their places are not from the same point.
+    #[error("the fields {a} and {b} have different datums: places of one mean nothing on the other")]
+    Datum {
+        /// The field of A.
+        a: String,
+        /// The field of B.
+        b: String,
+    },
+    /// No boat is in both.
+    #[error("no boat is in both: A has {a}, B has {b}")]
+    Boats {
+        /// The boats of A.
+        a: String,
+        /// The boats of B.
+        b: String,
+    },
+    /// There is no time at which both were on.
+    #[error("there is no time at which both games were on: one of the recordings has no frames")]
+    Time,
+}
+
+/// How far two datums may be apart, degrees: a millimetre.
+const DATUM_DEG: f64 = 1e-8;
+
+impl Comparison {
+    /// Compares two games.
+    ///
+    /// # Errors
+    /// [`Incomparable`] says why nothing can be said.
+    pub fn of(
+        [head_a, head_b]: [&Header; 2],
+        [a, b]: [&Book; 2],
+        tolerance_s: f64,
+    ) -> Result<Comparison, Incomparable> {
+        let [scenario_a, scenario_b] = [head_a, head_b].map(|header| &header.notice.scenario);
+        let [plan_a, plan_b] = [scenario_a, scenario_b].map(|scenario| &scenario.field.plan);
+        let off_deg = f64::max(
+            (plan_a.datum.lat_deg - plan_b.datum.lat_deg).abs(),
+            (plan_a.datum.lon_deg - plan_b.datum.lon_deg).abs(),
+        );
+        if off_deg > DATUM_DEG {
+            return Err(Incomparable::Datum { a: plan_a.name.clone(), b: plan_b.name.clone() });
+        }
+        let both: Vec<(&Boat, &Boat)> = a.boats.iter().filter_map(|boat| Some((boat, b.boat(&boat.name)?))).collect();
+        if both.is_empty() {
+            return Err(Incomparable::Boats { a: names(&a.boats), b: names(&b.boats) });
+        }
+        let pair = |(in_a, in_b): &(&Boat, &Boat)| {
+            Some(Pair {
+                boat: in_a.name.clone(),
+                team: a.teams.get(in_a.team).cloned().unwrap_or_default(),
+                apart: apart((a, in_a), (b, in_b))?,
+                response: [response(a, in_a), response(b, in_b)],
+            })
+        };
+        let boats = both.iter().map(pair).collect::<Option<Vec<Pair>>>().ok_or(Incomparable::Time)?;
+        let end_s = [a, b].map(|book| book.times_s.last().copied().unwrap_or(0.0));
+        let until_s = end_s[0].min(end_s[1]);
+        Ok(Comparison {
+            durations_s: [a.span_s(), b.span_s()],
+            common_s: a.span_s().min(b.span_s()),
+            notes: notes([head_a, head_b], [a, b]),
+            boats,
+            score: score(a, b),
+            events: events([a.named_events(scenario_a), b.named_events(scenario_b)], until_s, tolerance_s),
+        })
+    }
+}
+
+fn names(boats: &[Boat]) -> String {
+    boats.iter().map(|boat| boat.name.as_str()).collect::<Vec<_>>().join(", ")
+}
+
+/// What else differs, so that nobody takes it for the boats' doing.
+fn notes(heads: [&Header; 2], [a, b]: [&Book; 2]) -> Vec<String> {
+    let [one, other] = heads.map(|header| &header.notice.scenario);
+    let mut notes = vec![];
+    let mut differ = |what: &str, in_a: &str, in_b: &str| {
+        if in_a != in_b {
+            notes.push(format!("{what}: {in_a} in A, {in_b} in B"));
+        }
+    };
+    differ("scenario", &one.name, &other.name);
+    differ("seed", &one.seed.to_string(), &other.seed.to_string());
+    differ("field", &one.field.plan.name, &other.field.plan.name);
+    differ("rules", &one.rules.name, &other.rules.name);
+    differ("sea", &one.sea.name, &other.sea.name);
+    differ("commit", &heads[0].commit, &heads[1].commit);
+    let kind = |is_real: bool| if is_real { "real" } else { "simulated" };
+    for (i, boat) in a.boats.iter().enumerate() {
+        let Some(j) = b.boats.iter().position(|there| there.name == boat.name) else { continue };
+        let of = |scenario: &game::Scenario, i: usize| scenario.boat_of(game::VehicleId::at(i)).name.clone();
+        differ(&boat.name, &of(one, i), &of(other, j));
+        differ(&boat.name, kind(boat.is_real), kind(b.boats[j].is_real));
+    }
+    let alone = |of: &Book, without: &Book| -> Vec<String> {
+        of.boats.iter().filter(|boat| without.boat(&boat.name).is_none()).map(|boat| boat.name.clone()).collect()
+    };
+    for (name, alone) in [("A", alone(a, b)), ("B", alone(b, a))] {
+        if !alone.is_empty() {
+            notes.push(format!("only in {name}: {}", alone.join(", ")));
+        }
+    }
+    if one.field.plan.name == other.field.plan.name && one.field.plan != other.field.plan {
+        notes.push(format!("the field {} is laid out differently", one.field.plan.name));
+    }
+    if (a.span_s() - b.span_s()).abs() > 0.05 {
+        notes.push(format!("A lasts {:.1} s, B {:.1} s: compared until the shorter ends", a.span_s(), b.span_s()));
+    }
+    notes
+}
+
+fn score(a: &Book, b: &Book) -> BTreeMap<String, [Option<u32>; 2]> {
+    let mut score: BTreeMap<String, [Option<u32>; 2]> = BTreeMap::new();
+    for (i, book) in [a, b].into_iter().enumerate() {
+        let last = book.score.last().map_or(&[][..], Vec::as_slice);
+        for (team, points) in book.teams.iter().zip(last) {
+            score.entry(team.clone()).or_default()[i] = Some(*points);
+        }
+    }
+    score
+}
+
+/// What makes events the same, but for their time.
+type Kind = (String, Option<String>, Option<String>, Option<String>);
+
+fn kind(event: &EventOutcome) -> Kind {
+    (event.event.clone(), event.vehicle.clone(), event.other.clone(), event.team.clone())
+}
+
+/// Pairs the events of each kind in order: the earlier one of two that are too far apart has no counterpart, since all that
+/// follow on the other side are later still.
+fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> EventDifference {
+    let mut counts: BTreeMap<String, [u32; 2]> = BTreeMap::new();
+    let mut kinds: BTreeMap<Kind, [Vec<EventOutcome>; 2]> = BTreeMap::new();
+    for (i, all) in [a, b].into_iter().enumerate() {
+        for event in all {
+            counts.entry(event.event.clone()).or_default()[i] += 1;
+            kinds.entry(kind(&event)).or_default()[i].push(event);
+        }
+    }
+    let (mut only_in_a, mut only_in_b, mut in_both) = (vec![], vec![], 0);
+    for [of_a, of_b] in kinds.into_values() {
+        let (mut of_a, mut of_b) = (of_a.into_iter().peekable(), of_b.into_iter().peekable());
+        while let (Some(a), Some(b)) = (of_a.peek(), of_b.peek()) {
+            let later_s = b.at_s - a.at_s;
+            if later_s.abs() <= tolerance_s {
+                in_both += 1;
+                of_a.next();
+                of_b.next();
+            } else if later_s > 0.0 {
+                only_in_a.extend(of_a.next());
+            } else {
+                only_in_b.extend(of_b.next());
+            }
+        }
+        only_in_a.extend(of_a);
+        only_in_b.extend(of_b);
+    }
+    // After the end of the shorter game there is nothing to miss.
+    for only in [&mut only_in_a, &mut only_in_b] {
+        only.retain(|event: &EventOutcome| event.at_s <= until_s + tolerance_s);
+        only.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
+    }
+    EventDifference { tolerance_s, in_both, only_in_a, only_in_b, counts }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn event(at_s: f64, event: &str, vehicle: &str) -> EventOutcome {
+        let vehicle = Some(vehicle.to_owned());
+        EventOutcome { tick: 0, at_s, event: event.to_owned(), vehicle, other: None, team: None }
+    }
+
+    fn times(events: &[EventOutcome]) -> Vec<f64> {
+        events.iter().map(|event| event.at_s).collect()
+    }
+
+    #[test]
+    fn events_are_the_same_within_the_tolerance() {
+        let a = vec![event(10.0, "grabbed", "x"), event(20.0, "tagged", "x"), event(50.0, "tagged", "x")];
+        let b = vec![event(11.9, "grabbed", "x"), event(20.0, "tagged", "y"), event(49.0, "tagged", "x")];
+        let found = events([a.clone(), b], 100.0, 2.0);
+        assert_eq!((found.in_both, times(&found.only_in_a), times(&found.only_in_b)), (2, vec![20.0], vec![20.0]));
+        assert_eq!(found.counts.get("tagged"), Some(&[2, 2]));
+        let same = events([a.clone(), a], 100.0, 0.0);
+        assert_eq!((same.in_both, same.only_in_a.len(), same.only_in_b.len()), (3, 0, 0));
+    }
+
+    #[test]
+    fn each_event_has_one_counterpart_at_most() {
+        let a = vec![event(10.0, "tagged", "x"), event(11.0, "tagged", "x"), event(12.0, "tagged", "x")];
+        let b = vec![event(11.5, "tagged", "x")];
+        let found = events([a, b], 100.0, 2.0);
+        assert_eq!((found.in_both, times(&found.only_in_a), times(&found.only_in_b)), (1, vec![11.0, 12.0], vec![]));
+    }
+
+    #[test]
+    fn what_comes_after_the_shorter_game_is_not_missing() {
+        let found = events([vec![event(10.0, "tagged", "x"), event(90.0, "tagged", "x")], vec![]], 60.0, 2.0);
+        assert_eq!((found.in_both, times(&found.only_in_a)), (0, vec![10.0]));
+    }
+}

@@ -1,0 +1,112 @@
+//! The lines in the bytes of a link, each way.
+
+use game::external::LinkBytes;
+
+/// A line this long is given as it is, ended or not, bytes: no sentence is.
+const LONGEST: usize = 1024;
+
+/// A line on a link.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Whether it goes to the boat.
+    pub outward: bool,
+    /// The line without its end; what is not ASCII that can be printed is escaped.
+    pub text: String,
+}
+
+impl Line {
+    /// The kind of sentence, such as `GPRMC`; `other` for what is none.
+    #[must_use]
+    pub fn kind(&self) -> &str {
+        let body = self.text.strip_prefix(['$', '!']).unwrap_or_default();
+        let kind = body.split([',', '*']).next().unwrap_or_default();
+        let is_kind = !kind.is_empty() && kind.len() <= 8 && kind.bytes().all(|byte| byte.is_ascii_alphanumeric());
+        if is_kind { kind } else { "other" }
+    }
+}
+
+/// Puts lines together from pieces.
+#[derive(Clone, Debug, Default)]
+pub struct Lines {
+    /// What has not ended yet: from the boat, to the boat.
+    begun: [Vec<u8>; 2],
+}
+
+impl Lines {
+    /// Takes some bytes; the lines that end in them.
+    pub fn take(&mut self, bytes: &LinkBytes) -> Vec<Line> {
+        let mut lines = vec![];
+        let begun = &mut self.begun[usize::from(bytes.outward)];
+        for byte in &bytes.data {
+            if *byte != b'\n' {
+                begun.push(*byte);
+            }
+            if *byte == b'\n' || begun.len() >= LONGEST {
+                lines.extend(line(std::mem::take(begun), bytes.outward));
+            }
+        }
+        lines
+    }
+
+    /// What has begun and not ended.
+    #[must_use]
+    pub fn rest(self) -> Vec<Line> {
+        let [inward, outward] = self.begun;
+        [line(inward, false), line(outward, true)].into_iter().flatten().collect()
+    }
+}
+
+/// A line, unless there is nothing in it.
+fn line(bytes: Vec<u8>, outward: bool) -> Option<Line> {
+    let bytes = bytes.strip_suffix(b"\r").unwrap_or(&bytes);
+    (!bytes.is_empty()).then(|| Line { outward, text: bytes.escape_ascii().to_string() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::VehicleId;
+    use game::message::Stamp;
+
+    fn bytes(outward: bool, data: &[u8]) -> LinkBytes {
+        LinkBytes { stamp: Stamp::default(), vehicle: VehicleId(0), outward, data: data.to_vec() }
+    }
+
+    #[test]
+    fn lines_come_whole_whatever_the_pieces() {
+        let said = b"$GPRMC,1*00\r\n\r\n$PSEAC,T,0*0D\r\nrest";
+        for cut in 0..said.len() {
+            let mut lines = Lines::default();
+            let mut all = lines.take(&bytes(false, &said[..cut]));
+            // The other way does not mix with it.
+            assert_eq!(lines.take(&bytes(true, b"$PSEAC,L")), []);
+            all.extend(lines.take(&bytes(false, &said[cut..])));
+            all.extend(lines.rest());
+            let texts: Vec<(&str, bool)> = all.iter().map(|line| (line.text.as_str(), line.outward)).collect();
+            let want = [("$GPRMC,1*00", false), ("$PSEAC,T,0*0D", false), ("rest", false), ("$PSEAC,L", true)];
+            assert_eq!(texts, want, "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn kinds_are_the_first_words_of_sentences() {
+        for (text, want) in [
+            ("$GPRMC,1*00", "GPRMC"),
+            ("!AIVDM,1", "AIVDM"),
+            ("$PSEAG*22", "PSEAG"),
+            ("hello", "other"),
+            ("$,", "other"),
+            ("", "other"),
+        ] {
+            assert_eq!(Line { outward: false, text: text.to_owned() }.kind(), want, "{text}");
+        }
+    }
+
+    #[test]
+    fn noise_is_cut_and_escaped() {
+        let mut lines = Lines::default();
+        let all = lines.take(&bytes(false, &[0xff; 3000]));
+        assert_eq!((all.len(), lines.begun[0].len()), (2, 3000 - 2 * LONGEST));
+        assert!(all[0].text.starts_with("\\xff\\xff"));
+    }
+}

@@ -1,0 +1,117 @@
+//! A recorded game on one page.
+
+use super::book::Book;
+use super::figure::{Figures, figures};
+use super::gateway::{Gateway, gateways};
+use crate::recording::{Recording, RecordingError};
+use game::outcome::EventOutcome;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A game on one page.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// The game's name on the network.
+    pub game: String,
+    /// The scenario's name.
+    pub scenario: String,
+    /// The seed that chose the game.
+    pub seed: u64,
+    /// The version of Squall that played it.
+    pub version: String,
+    /// The commit that it was built from.
+    pub commit: String,
+    /// How it was paced.
+    pub pace: String,
+    /// When it began: UTC, ns since 1970.
+    pub began_utc_ns: u64,
+    /// How long it was, simulated, s.
+    pub duration_s: f64,
+    /// How long it took by the clock, s.
+    pub wall_s: f64,
+    /// Whether the file ends before the game did.
+    pub is_cut: bool,
+    /// Messages that are missing, since the disk was too slow for them; none where the file ends abruptly.
+    pub dropped: Option<u64>,
+    /// Size of the file, bytes.
+    pub bytes: u64,
+    /// Points by team, at the end of the file.
+    pub score: BTreeMap<String, u32>,
+    /// Who won; none is a draw, or that the file ends before.
+    pub winner: Option<String>,
+    /// The digest of the game; none where the file ends before.
+    pub digest: Option<String>,
+    /// Everything that happened, in order.
+    pub events: Vec<EventOutcome>,
+    /// By boat.
+    pub boats: Vec<Figures>,
+    /// By real boat.
+    pub gateways: Vec<Gateway>,
+    /// What is in the file, by topic.
+    pub topics: BTreeMap<String, Topic>,
+}
+
+/// A topic of a recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Topic {
+    /// How many messages.
+    pub count: u64,
+    /// How many bytes in them.
+    pub bytes: u64,
+    /// Messages a simulated second, from the first to the last; none where there are no two of different times.
+    pub rate_hz: Option<f64>,
+}
+
+impl Summary {
+    /// The summary of a recording, and the book that it was made of.
+    ///
+    /// # Errors
+    /// [`RecordingError::Damaged`] names the first message that is not what it should be.
+    pub fn of(recording: &Recording) -> Result<(Summary, Book), RecordingError> {
+        let book = Book::of(recording)?;
+        let header = recording.header();
+        let scenario = &header.notice.scenario;
+        let ending = recording.ending();
+        let last = book.score.last().cloned().unwrap_or_default();
+        let utc_ns = || recording.messages().map(|said| said.utc_ns);
+        let wall_ns = utc_ns().max().unwrap_or(0).saturating_sub(utc_ns().min().unwrap_or(0));
+        let summary = Summary {
+            game: header.game.clone(),
+            scenario: scenario.name.clone(),
+            seed: scenario.seed,
+            version: header.notice.version.clone(),
+            commit: header.commit.clone(),
+            pace: header.notice.pace.clone(),
+            began_utc_ns: header.began_utc_ns,
+            duration_s: book.span_s(),
+            wall_s: wall_ns as f64 * 1e-9,
+            is_cut: recording.is_cut(),
+            dropped: ending.map(|ending| ending.dropped),
+            bytes: recording.size() as u64,
+            score: book.teams.iter().cloned().zip(last).collect(),
+            winner: ending.and_then(|ending| ending.outcome.winner.clone()),
+            digest: ending.map(|ending| ending.outcome.digest.clone()),
+            events: book.named_events(scenario),
+            boats: figures(&book),
+            gateways: gateways(recording)?,
+            topics: topics(recording),
+        };
+        Ok((summary, book))
+    }
+}
+
+fn topics(recording: &Recording) -> BTreeMap<String, Topic> {
+    let mut topics: BTreeMap<&str, (Topic, [i64; 2])> = BTreeMap::new();
+    for said in recording.messages() {
+        let (topic, [first, last]) = topics.entry(said.topic).or_insert((Topic::default(), [i64::MAX, i64::MIN]));
+        topic.count += 1;
+        topic.bytes += said.bytes.len() as u64;
+        (*first, *last) = ((*first).min(said.at.0), (*last).max(said.at.0));
+    }
+    let rated = |(name, (topic, [first, last])): (&str, (Topic, [i64; 2]))| {
+        let span_s = (last - first) as f64 * 1e-9;
+        let rate_hz = (span_s > 0.0).then(|| (topic.count - 1) as f64 / span_s);
+        (name.to_owned(), Topic { rate_hz, ..topic })
+    };
+    topics.into_iter().map(rated).collect()
+}

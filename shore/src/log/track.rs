@@ -1,0 +1,165 @@
+//! How far two tracks are apart, moment by moment and as shapes.
+
+use super::book::{Boat, Book};
+use game::Ned;
+use serde::{Deserialize, Serialize};
+
+/// How far apart a boat was in two games.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Apart {
+    /// Mean of the distance between the places at the same time, m.
+    pub mean_m: f64,
+    /// Its root mean square, m.
+    pub rms_m: f64,
+    /// The largest, m.
+    pub max_m: f64,
+    /// At the end of what the games have in common, m.
+    pub final_m: f64,
+    /// Discrete Fréchet distance of the tracks as shapes, m: the shortest leash with which two can walk them, one each,
+    /// stopping as they like but never going back. Where a boat was early or late does not count.
+    pub frechet_m: f64,
+}
+
+/// Points of each track that shapes are told from at most: time and memory go with their product and their sum.
+const SHAPE_POINTS: usize = 2000;
+
+/// How far a boat of one game was from that of another, while both games were on; none where they have no moment in common.
+#[must_use]
+pub(super) fn apart((a, in_a): (&Book, &Boat), (b, in_b): (&Book, &Boat)) -> Option<Apart> {
+    let (begin_s, end_s) = common_s(a, b)?;
+    let is_common = |time_s: &f64| (begin_s..=end_s).contains(time_s);
+    let [track_a, track_b]: [Vec<Ned>; 2] = [in_a.track().collect(), in_b.track().collect()];
+    let distances_m: Vec<f64> = distances((a, in_a), (b, in_b)).into_iter().map(|(_, distance_m)| distance_m).collect();
+    let final_m = *distances_m.last()?;
+    let during = |times_s: &[f64], track: &[Ned]| -> Vec<Ned> {
+        let all: Vec<Ned> =
+            times_s.iter().zip(track).filter(|(time_s, _)| is_common(time_s)).map(|(_, at)| *at).collect();
+        thinned(&all)
+    };
+    Some(Apart {
+        mean_m: distances_m.iter().sum::<f64>() / distances_m.len() as f64,
+        rms_m: super::figure::rms(distances_m.iter().copied())?,
+        max_m: distances_m.iter().copied().fold(0.0, f64::max),
+        final_m,
+        frechet_m: frechet_m(&during(&a.times_s, &track_a), &during(&b.times_s, &track_b)),
+    })
+}
+
+/// From when until when both games were on, s.
+fn common_s(a: &Book, b: &Book) -> Option<(f64, f64)> {
+    let end_s = a.times_s.last()?.min(*b.times_s.last()?);
+    Some((a.times_s.first()?.max(*b.times_s.first()?), end_s))
+}
+
+/// How far a boat of one game was from that of another, while both games were on: the time, s, and the distance, m, at the
+/// moments of the first.
+#[must_use]
+pub fn distances((a, in_a): (&Book, &Boat), (b, in_b): (&Book, &Boat)) -> Vec<(f64, f64)> {
+    let Some((begin_s, end_s)) = common_s(a, b) else { return vec![] };
+    let other: Vec<Ned> = in_b.track().collect();
+    let common = a.times_s.iter().zip(in_a.track()).filter(|(time_s, _)| (begin_s..=end_s).contains(*time_s));
+    common.map(|(time_s, at)| (*time_s, at.distance(place_at(&b.times_s, &other, *time_s)))).collect()
+}
+
+/// Where a track is at a time, straight between two moments.
+fn place_at(times_s: &[f64], track: &[Ned], time_s: f64) -> Ned {
+    let after = times_s.partition_point(|t| *t < time_s).min(track.len() - 1);
+    let before = after.saturating_sub(1);
+    let step_s = times_s[after] - times_s[before];
+    let share = if step_s > 0.0 { ((time_s - times_s[before]) / step_s).clamp(0.0, 1.0) } else { 1.0 };
+    // As a weighted sum it gives each moment's own place exactly.
+    track[before].scaled(1.0 - share) + track[after].scaled(share)
+}
+
+/// Every so manieth point, and the last.
+fn thinned(track: &[Ned]) -> Vec<Ned> {
+    let every = track.len().div_ceil(SHAPE_POINTS).max(1);
+    let last = track.last().filter(|_| !(track.len() - 1).is_multiple_of(every));
+    track.iter().step_by(every).chain(last).copied().collect()
+}
+
+/// The discrete Fréchet distance of two tracks, m (Eiter and Mannila, "Computing discrete Fréchet distance", Technical
+/// Report CD-TR 94/64, TU Wien 1994), row by row in place of their recursion.
+#[must_use]
+fn frechet_m(a: &[Ned], b: &[Ned]) -> f64 {
+    let mut row: Vec<f64> = vec![];
+    for (i, place) in a.iter().enumerate() {
+        let mut diagonal = f64::INFINITY;
+        for (j, other) in b.iter().enumerate() {
+            let left = if j > 0 { row[j - 1] } else { f64::INFINITY };
+            let above = if i > 0 { row[j] } else { f64::INFINITY };
+            let reached = if i == 0 && j == 0 { 0.0 } else { left.min(above).min(diagonal) };
+            let leash = reached.max(place.distance_squared(*other));
+            diagonal = above;
+            if i == 0 { row.push(leash) } else { row[j] = leash }
+        }
+    }
+    row.last().copied().unwrap_or(0.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn line(points: &[(f64, f64)]) -> Vec<Ned> {
+        points.iter().map(|(x, y)| Ned::from_xy(*x, *y)).collect()
+    }
+
+    #[test]
+    fn the_leash_is_as_long_as_the_worst_place() {
+        let there = line(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]);
+        let beside = line(&[(0.0, 2.0), (1.0, 2.0), (2.0, 2.0), (3.0, 2.0)]);
+        let mut back = there.clone();
+        back.reverse();
+        // The same way with a rest on it; a detour; the way back, whose ends are 3 m apart.
+        let rest = line(&[(0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]);
+        let detour = line(&[(0.0, 0.0), (1.0, 5.0), (3.0, 0.0)]);
+        for (other, want_m) in
+            [(&there, 0.0), (&beside, 2.0), (&rest, 0.0), (&detour, 26.0_f64.sqrt().min(5.0)), (&back, 3.0)]
+        {
+            let got_m = frechet_m(&there, other);
+            assert!((got_m - want_m).abs() < 1e-12, "{other:?}: {got_m}");
+            assert_eq!(got_m, frechet_m(other, &there));
+        }
+        assert_eq!(frechet_m(&[], &[]), 0.0);
+    }
+
+    #[test]
+    fn a_boat_that_is_late_is_apart_in_time_and_not_in_shape() {
+        let a = sample::circle(20.0, 100.0);
+        let mut b = a.clone();
+        // 5 s late, it waits at the start.
+        let moments = b.boats[0].moments.clone();
+        for (i, moment) in b.boats[0].moments.iter_mut().enumerate() {
+            *moment = moments[i.saturating_sub(50)];
+        }
+        let apart = apart((&a, &a.boats[0]), (&b, &b.boats[0])).expect("they were on together");
+        let chord_m = 2.0 * 20.0 * game::math::sin_cos(TAU * 5.0 / 100.0 / 2.0).0;
+        assert!((apart.max_m - chord_m).abs() < 1e-9 && (apart.final_m - chord_m).abs() < 1e-9, "{apart:?}");
+        assert!(apart.mean_m < chord_m && apart.rms_m < chord_m && apart.mean_m > 0.9 * chord_m, "{apart:?}");
+    }
+
+    #[test]
+    fn a_track_lies_on_itself_however_it_is_sampled() {
+        let a = sample::circle(20.0, 50.0);
+        let same = apart((&a, &a.boats[0]), (&a, &a.boats[0])).expect("a track");
+        let zero = Apart { mean_m: 0.0, rms_m: 0.0, max_m: 0.0, final_m: 0.0, frechet_m: 0.0 };
+        assert_eq!(same, zero);
+        let mut coarse = a.clone();
+        let even = |i: &usize| i.is_multiple_of(2);
+        coarse.times_s = (0..a.times_s.len()).filter(even).map(|i| a.times_s[i]).collect();
+        coarse.boats[0].moments = (0..a.times_s.len()).filter(even).map(|i| a.boats[0].moments[i]).collect();
+        let apart = apart((&a, &a.boats[0]), (&coarse, &coarse.boats[0])).expect("a track");
+        assert!(apart.max_m < 1e-3, "{apart:?}");
+    }
+
+    #[test]
+    fn long_tracks_are_thinned_and_keep_their_ends() {
+        let long: Vec<Ned> = (0..10_001).map(|i| Ned::from_xy(f64::from(i), 0.0)).collect();
+        let thin = thinned(&long);
+        assert!(thin.len() <= SHAPE_POINTS + 1 && thin[0] == long[0] && thin.last() == long.last());
+        assert_eq!(thinned(&long[..7]), &long[..7]);
+    }
+}

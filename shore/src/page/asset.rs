@@ -1,0 +1,95 @@
+//! The files of the page: the folder `web`, inside of the program.
+
+use axum::body::Body;
+use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
+use axum::http::{Response, StatusCode};
+use include_dir::{Dir, include_dir};
+
+static WEB: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/web");
+
+/// What every answer carries. The page is made of its own files only, talks to its own server only, and cannot be put
+/// into a frame, where somebody else's page could lead clicks to it.
+const HEADERS: [(HeaderName, &str); 5] = [
+    (
+        header::CONTENT_SECURITY_POLICY,
+        "default-src 'self'; connect-src 'self'; img-src 'self' data:; object-src 'none'; base-uri 'none'; \
+         form-action 'none'; frame-ancestors 'none'",
+    ),
+    (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+    (header::REFERRER_POLICY, "no-referrer"),
+    (header::CACHE_CONTROL, "no-cache"),
+    (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+];
+
+/// The file at this path of the page's address.
+pub(super) fn answer(path: &str) -> Response<Body> {
+    let name = match path.trim_start_matches('/') {
+        "" => "index.html",
+        name => name,
+    };
+    let Some(file) = WEB.get_file(name) else { return text(StatusCode::NOT_FOUND, "There is no such file.\n") };
+    plain(StatusCode::OK, kind(name), Body::from(file.contents()))
+}
+
+/// An answer in words.
+pub(super) fn text(status: StatusCode, words: &str) -> Response<Body> {
+    plain(status, "text/plain; charset=utf-8", Body::from(words.to_owned()))
+}
+
+/// Adds what every answer carries.
+pub(super) fn seal(headers: &mut HeaderMap) {
+    for (name, value) in HEADERS {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+}
+
+fn plain(status: StatusCode, kind: &'static str, body: Body) -> Response<Body> {
+    let mut response = Response::new(body);
+    *response.status_mut() = status;
+    response.headers_mut().insert(header::CONTENT_TYPE, HeaderValue::from_static(kind));
+    response
+}
+
+fn kind(name: &str) -> &'static str {
+    match name.rsplit('.').next() {
+        Some("html") => "text/html; charset=utf-8",
+        Some("js") => "text/javascript; charset=utf-8",
+        Some("css") => "text/css; charset=utf-8",
+        Some("svg") => "image/svg+xml",
+        Some("png") => "image/png",
+        Some("json") => "application/json",
+        _ => "application/octet-stream",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_and_nothing_else_is_served() {
+        for (path, status) in [
+            ("/", StatusCode::OK),
+            ("/index.html", StatusCode::OK),
+            ("/../Cargo.toml", StatusCode::NOT_FOUND),
+            ("/%2e%2e/Cargo.toml", StatusCode::NOT_FOUND),
+            ("/whale.js", StatusCode::NOT_FOUND),
+        ] {
+            assert_eq!(answer(path).status(), status, "{path}");
+        }
+        let page = answer("/");
+        assert_eq!(page.headers()[header::CONTENT_TYPE], "text/html; charset=utf-8");
+        assert_eq!(kind("a.b.js"), "text/javascript; charset=utf-8");
+    }
+
+    #[test]
+    fn what_the_page_asks_for_is_served() {
+        let page = WEB.get_file("index.html").and_then(include_dir::File::contents_utf8).expect("a page");
+        let words = ["href=\"", "src=\""].iter().flat_map(|word| page.split(word).skip(1));
+        let asked: Vec<&str> = words.filter_map(|rest| rest.split('"').next()).collect();
+        assert!(asked.len() >= 3, "{asked:?}");
+        for path in asked {
+            assert_eq!(answer(path).status(), StatusCode::OK, "{path}");
+        }
+    }
+}

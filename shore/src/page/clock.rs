@@ -1,0 +1,9 @@
+//! The wall clock of the page's server: everything else is told the time.
+
+use std::time::Instant;
+
+/// This moment.
+#[expect(clippy::disallowed_methods, reason = "a page is told news by the clock")]
+pub(super) fn now() -> Instant {
+    Instant::now()
+}

@@ -1,0 +1,181 @@
+//! Who may look at the page, under which name, and who may act.
+//!
+//! A page that somebody on this machine opens from elsewhere can send requests to this machine too: by its address, or
+//! by a name that is made to lead here. `Host` and `Origin`, which browsers set and pages cannot, tell them apart.
+
+use std::net::{IpAddr, SocketAddr};
+
+/// What is let in.
+#[derive(Clone, Debug)]
+pub(super) struct Guard {
+    bound: SocketAddr,
+    hosts: Vec<String>,
+    token: Option<String>,
+}
+
+impl Guard {
+    /// A guard at this address, with names under which it may be asked for, and the token of those who may act.
+    pub(super) fn new(bound: SocketAddr, hosts: &[String], token: Option<String>) -> Guard {
+        Guard { bound, hosts: hosts.iter().map(|host| host.to_ascii_lowercase()).collect(), token }
+    }
+
+    /// Whether a request for this host (as in the header) is meant for this server.
+    ///
+    /// # Errors
+    /// Says why not, and what would help.
+    pub(super) fn check_host(&self, host: Option<&str>) -> Result<(), String> {
+        let Some(host) = host else { return Err("The request does not say which host it is for.\n".to_owned()) };
+        let host = host.to_ascii_lowercase();
+        let name = name_of(&host);
+        if self.hosts.iter().any(|known| *known == host || *known == name) || self.is_own(name) {
+            return Ok(());
+        }
+        Err(format!(
+            "This server is not known as {name:?}: it may have been asked by a page that should not. If it should be, \
+             begin it with --host {name}.\n"
+        ))
+    }
+
+    fn is_own(&self, name: &str) -> bool {
+        match name.parse::<IpAddr>() {
+            // Where it listens on all addresses, an address cannot be somebody else's name for it.
+            Ok(ip) => ip.is_loopback() || ip == self.bound.ip() || self.bound.ip().is_unspecified(),
+            Err(_) => name == "localhost",
+        }
+    }
+
+    /// Whether whoever opens a websocket comes from our own page, or is no browser.
+    ///
+    /// # Errors
+    /// Says why not.
+    pub(super) fn check_origin(host: Option<&str>, origin: Option<&str>) -> Result<(), String> {
+        let Some(origin) = origin else { return Ok(()) };
+        let site = origin.split_once("://").map(|(_, site)| site);
+        match (site, host) {
+            (Some(site), Some(host)) if site.eq_ignore_ascii_case(host) => Ok(()),
+            _ => Err(format!("A page of {origin:?} has no business here.\n")),
+        }
+    }
+
+    /// Whether a page whose address has this query may act.
+    pub(super) fn has_rights(&self, query: Option<&str>) -> bool {
+        let Some(token) = &self.token else { return true };
+        let shown = query.unwrap_or_default().split('&').find_map(|pair| pair.strip_prefix("token="));
+        shown.is_some_and(|shown| is_same(&decoded(shown), token.as_bytes()))
+    }
+}
+
+/// The host without its port, and an IPv6 address without its brackets.
+fn name_of(host: &str) -> &str {
+    if let Some(rest) = host.strip_prefix('[') {
+        return rest.split_once(']').map_or(rest, |(address, _)| address);
+    }
+    host.rsplit_once(':').map_or(host, |(name, _)| name)
+}
+
+/// Whether two words are the same, in a time that does not tell how much of them is.
+fn is_same(a: &[u8], b: &[u8]) -> bool {
+    let differences = a.iter().zip(b).fold(0, |all, (a, b)| std::hint::black_box(all | (a ^ b)));
+    a.len() == b.len() && differences == 0
+}
+
+/// The bytes that a part of an address stands for.
+fn decoded(text: &str) -> Vec<u8> {
+    let digit = |c: &u8| char::from(*c).to_digit(16);
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let [first, after @ ..] = rest {
+        rest = after;
+        match (first, after) {
+            (b'%', [high, low, after @ ..]) if digit(high).is_some() && digit(low).is_some() => {
+                let value = digit(high).unwrap_or(0) * 16 + digit(low).unwrap_or(0);
+                bytes.push(value as u8);
+                rest = after;
+            }
+            (b'+', _) => bytes.push(b' '),
+            (other, _) => bytes.push(*other),
+        }
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn guard(bound: &str, hosts: &[&str]) -> Guard {
+        let hosts: Vec<String> = hosts.iter().map(|host| (*host).to_owned()).collect();
+        Guard::new(bound.parse().expect("an address"), &hosts, None)
+    }
+
+    #[test]
+    fn only_its_own_names_lead_to_it() {
+        for (bound, host, good) in [
+            ("127.0.0.1:8080", "localhost:8080", true),
+            ("127.0.0.1:8080", "LOCALHOST", true),
+            ("127.0.0.1:8080", "127.0.0.1:8080", true),
+            ("127.0.0.1:8080", "[::1]:8080", true),
+            ("127.0.0.1:8080", "evil.example:8080", false),
+            ("127.0.0.1:8080", "localhost.evil.example", false),
+            ("127.0.0.1:8080", "192.168.1.4:8080", false),
+            ("127.0.0.1:8080", "boat.local", true),
+            ("127.0.0.1:8080", "Boat.local:8080", true),
+            ("127.0.0.1:8080", "tug.local:81", true),
+            ("127.0.0.1:8080", "tug.local:82", false),
+            ("127.0.0.1:8080", "", false),
+            ("192.168.1.4:80", "192.168.1.4", true),
+            ("192.168.1.4:80", "192.168.1.5", false),
+            ("0.0.0.0:80", "192.168.1.5", true),
+            ("[::]:80", "[fe80::1]:80", true),
+            ("0.0.0.0:80", "evil.example", false),
+        ] {
+            let checked = guard(bound, &["boat.local", "tug.local:81"]).check_host(Some(host));
+            assert_eq!(checked.is_ok(), good, "{host} at {bound}: {checked:?}");
+        }
+        assert!(guard("127.0.0.1:1", &[]).check_host(None).is_err());
+    }
+
+    #[test]
+    fn other_peoples_pages_open_no_websocket() {
+        for (host, origin, good) in [
+            (Some("localhost:8080"), None, true),
+            (Some("localhost:8080"), Some("http://localhost:8080"), true),
+            (Some("Boat.local"), Some("https://boat.local"), true),
+            (Some("localhost:8080"), Some("http://localhost:8081"), false),
+            (Some("localhost:8080"), Some("http://evil.example"), false),
+            (Some("localhost:8080"), Some("null"), false),
+            (None, Some("http://localhost"), false),
+        ] {
+            assert_eq!(Guard::check_origin(host, origin).is_ok(), good, "{origin:?} at {host:?}");
+        }
+    }
+
+    #[test]
+    fn the_token_gives_rights() {
+        let locked = Guard { token: Some("a b+c%".to_owned()), ..guard("127.0.0.1:1", &[]) };
+        for (query, rights) in [
+            (None, false),
+            (Some(""), false),
+            (Some("token="), false),
+            (Some("token=a"), false),
+            (Some("token=a%20b%2Bc%25"), true),
+            (Some("x=1&token=a+b%2bc%"), true),
+            (Some("token=a%20b%2Bc%25d"), false),
+        ] {
+            assert_eq!(locked.has_rights(query), rights, "{query:?}");
+        }
+        assert!(guard("127.0.0.1:1", &[]).has_rights(None), "without a token all may act");
+    }
+
+    proptest! {
+        #[test]
+        fn no_header_makes_it_panic(host in ".{0,30}", origin in ".{0,30}", query in "[%a-f0-9+&=token]{0,30}") {
+            let guard = guard("0.0.0.0:80", &[]);
+            drop(guard.check_host(Some(&host)));
+            drop(Guard::check_origin(Some(&host), Some(&origin)));
+            guard.has_rights(Some(&query));
+            decoded(&query);
+        }
+    }
+}

@@ -1,0 +1,277 @@
+//! One page's look at a game.
+
+use super::stage::{Play, Stage};
+use super::{Command, Theatre};
+use crate::page::ask::{Ask, Word};
+use crate::page::show::{ESTIMATE_AGAIN, Guest, Said, TELL_AGAIN, Viewer};
+use crate::page::tell::{EventTell, Mode, Tell, seconds};
+use axum::body::Bytes;
+use game::VehicleId;
+use game::message::Control;
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The greatest factor of speed that makes sense.
+const SPEED_MAX: f64 = 10_000.0;
+
+/// One page's look at a game.
+pub(super) struct Look {
+    theatre: Arc<Theatre>,
+    guest: Guest,
+    page: u64,
+    /// Whose helm the page looks at, and whether with utilities: also in the next game, if it has that boat.
+    wish: Option<(String, bool)>,
+    told: Told,
+}
+
+/// What a page was told of one game.
+#[derive(Default)]
+struct Told {
+    /// Which game it is.
+    generation: u64,
+    events: super::chronicle::Bookmark,
+    /// News of the run, and when.
+    run: Option<(u64, Instant)>,
+    /// Who has which wheel.
+    wheels: BTreeMap<VehicleId, &'static str>,
+    statuses: BTreeMap<VehicleId, u64>,
+    helm: u64,
+    estimate: Option<(u64, Instant)>,
+    /// The newest frame; 0 is none.
+    frame: u64,
+    /// The frames of the past that come before it, once there is one.
+    past: Option<VecDeque<Bytes>>,
+}
+
+impl Look {
+    pub(super) fn new(theatre: Arc<Theatre>, guest: Guest, page: u64) -> Look {
+        Look { theatre, guest, page, wish: None, told: Told::default() }
+    }
+
+    /// The game that is on, for something to be done in it.
+    fn play(&self) -> Result<Arc<Play>, String> {
+        let stage = self.theatre.stage();
+        let play = stage.play.clone().filter(|_| !stage.is_gone);
+        play.ok_or_else(|| "there is no game now".to_owned())
+    }
+
+    fn send(&self, command: Command) -> Result<(), String> {
+        self.theatre.commands.try_send(command).map_err(|_| "the network does not keep up: ask again".to_owned())
+    }
+
+    fn select(&mut self, vehicle: Option<&str>, functions: bool) -> Result<(), String> {
+        self.wish = vehicle.map(|name| (name.to_owned(), functions));
+        (self.told.helm, self.told.estimate) = (0, None);
+        let mut stage = self.theatre.stage();
+        stage.selected.remove(&self.page);
+        stage.select(self.page, self.wish.as_ref())
+    }
+
+    fn set_speed(&self, factor: Option<f64>) -> Result<(), String> {
+        if self.play()?.has_real_boats() {
+            return Err("a game with real boats keeps its pace".to_owned());
+        }
+        if factor.is_some_and(|factor| !(factor > 0.0 && factor <= SPEED_MAX)) {
+            return Err(format!("the speed must be more than 0 and at most {SPEED_MAX}"));
+        }
+        self.send(Command::Control(Control::Speed(factor)))
+    }
+
+    fn drive(&self, name: &str, course_deg: f64, speed_m_s: f64, now: Instant) -> Result<(), String> {
+        let play = self.play()?;
+        let scenario = play.scenario();
+        let vehicle = scenario.vehicle_named(name).map_err(|e| e.to_string())?;
+        if !scenario.strategy_of(vehicle).is_steered() {
+            return Err(format!("the strategy of {name} heeds no policy: it cannot be steered from here"));
+        }
+        if !course_deg.is_finite() || !speed_m_s.is_finite() {
+            return Err("course and speed must be numbers".to_owned());
+        }
+        let speed_m_s = speed_m_s.clamp(0.0, scenario.boat_of(vehicle).speed_max_m_s());
+        let course_rad = course_deg.rem_euclid(360.0).to_radians();
+        let mut stage = self.theatre.stage();
+        let had = stage.wheels.holder(vehicle);
+        if !stage.wheels.grip(vehicle, self.page, now) {
+            return Err(format!("somebody else steers {name}"));
+        }
+        let is_news = stage.wheels.holder(vehicle) != had;
+        let is_on_its_way = !stage.steering.is_empty();
+        stage.steering.insert(vehicle, (course_rad, speed_m_s));
+        drop(stage);
+        if is_news {
+            self.theatre.news.ring();
+        }
+        if is_on_its_way { Ok(()) } else { self.send(Command::Steer) }
+    }
+
+    fn let_go(&self, name: &str) -> Result<(), String> {
+        let vehicle = self.play()?.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+        if self.theatre.stage().wheels.let_go(vehicle, self.page) {
+            self.theatre.news.ring();
+        }
+        Ok(())
+    }
+}
+
+impl Viewer for Look {
+    fn mode(&self) -> Mode {
+        Mode::Live
+    }
+
+    fn ask(&mut self, ask: &Ask, now: Instant) -> Result<(), String> {
+        match ask {
+            Ask::Ack => Ok(()),
+            Ask::Select { vehicle, functions } => self.select(vehicle.as_deref(), *functions),
+            Ask::Control { what } => {
+                self.play()?;
+                self.send(Command::Control(control(*what)))
+            }
+            Ask::Speed { factor } => self.set_speed(*factor),
+            Ask::Drive { vehicle, course_deg, speed_m_s } => self.drive(vehicle, *course_deg, *speed_m_s, now),
+            Ask::LetGo { vehicle } => self.let_go(vehicle),
+            Ask::Step { .. } | Ask::Seek { .. } => Err("a game that is being played cannot be wound".to_owned()),
+        }
+    }
+
+    fn say(&mut self, now: Instant, room: bool) -> Option<Said> {
+        let mut stage = self.theatre.stage();
+        let play = stage.play.clone()?;
+        if self.told.generation != stage.generation {
+            self.told = Told { generation: stage.generation, ..Told::default() };
+            // The boat may not be in this game; then the page selects another.
+            drop(stage.select(self.page, self.wish.as_ref()));
+            let hello =
+                Tell::hello(&play.notice.version, Mode::Live, self.guest.rights, play.name.as_str(), &play.chart);
+            return Some(Said::Text(hello.json()));
+        }
+        let told = &mut self.told;
+        let text = told
+            .say_events(&stage)
+            .or_else(|| told.say_run(&stage, &play, now))
+            .or_else(|| told.say_wheel(&stage, &play, self.page))
+            .or_else(|| told.say_status(&stage, &play))
+            .or_else(|| told.say_selected(&stage, &play, self.page, now));
+        match text {
+            Some(text) => Some(Said::Text(text)),
+            None if room => told.say_frame(&stage),
+            None => None,
+        }
+    }
+
+    fn due(&self, now: Instant) -> Option<Instant> {
+        let run = self.told.run.map(|(_, at)| at + TELL_AGAIN);
+        let estimate = self.told.estimate.map(|(_, at)| at + ESTIMATE_AGAIN).filter(|at| *at > now);
+        run.into_iter().chain(estimate).min()
+    }
+}
+
+impl Drop for Look {
+    fn drop(&mut self) {
+        let mut stage = self.theatre.stage();
+        stage.selected.remove(&self.page);
+        stage.wheels.leave(self.page);
+        drop(stage);
+        self.theatre.news.ring();
+    }
+}
+
+impl Told {
+    fn say_events(&mut self, stage: &Stage) -> Option<String> {
+        let (reset, unread, mark) = stage.chronicle.unread(self.events)?;
+        self.events = mark;
+        Some(Tell::Events { reset, events: unread.map(EventTell::new).collect() }.json())
+    }
+
+    fn say_run(&mut self, stage: &Stage, play: &Play, now: Instant) -> Option<String> {
+        let is_told =
+            |(news, at): (u64, Instant)| news == stage.run_news && now.saturating_duration_since(at) < TELL_AGAIN;
+        if self.run.is_some_and(is_told) {
+            return None;
+        }
+        self.run = Some((stage.run_news, now));
+        let run = stage.run.clone().unwrap_or_default();
+        let is_told = stage.run.is_some();
+        let tell = Tell::State {
+            phase: stage.phase(now),
+            now_s: if is_told { run.now_s } else { seconds(stage.roll.stamp.valid_ns) },
+            pace: if is_told { &run.pace } else { &play.notice.pace },
+            speed: run.speed,
+            rate: run.rate,
+            minds: &run.minds,
+            gateways: &run.gateways,
+            refused: run.refused,
+            overruns: run.overruns,
+            recording: run.recording.as_ref(),
+            frames_hz: stage.roll.rate_hz(now),
+            can_speed: !play.has_real_boats(),
+        };
+        Some(tell.json())
+    }
+
+    fn say_wheel(&mut self, stage: &Stage, play: &Play, page: u64) -> Option<String> {
+        let by = |vehicle| stage.wheels.holder(vehicle).map(|holder| if holder == page { "you" } else { "other" });
+        let mut known = self.wheels.keys().copied().chain(stage.wheels.held());
+        let vehicle = known.find(|vehicle| self.wheels.get(vehicle).copied() != by(*vehicle))?;
+        match by(vehicle) {
+            Some(who) => self.wheels.insert(vehicle, who),
+            None => self.wheels.remove(&vehicle),
+        };
+        Some(Tell::Drive { vehicle: play.name_of(vehicle), by: by(vehicle) }.json())
+    }
+
+    fn say_status(&mut self, stage: &Stage, play: &Play) -> Option<String> {
+        let is_news = |told: &BTreeMap<VehicleId, u64>, vehicle, number| told.get(vehicle) != Some(number);
+        let (vehicle, status) = stage.statuses.iter().find(|(v, status)| is_news(&self.statuses, v, &status.number))?;
+        self.statuses.insert(*vehicle, status.number);
+        Some(Tell::Status { vehicle: play.name_of(*vehicle), status: &status.value }.json())
+    }
+
+    /// What is known of the boat that the page has selected.
+    fn say_selected(&mut self, stage: &Stage, play: &Play, page: u64, now: Instant) -> Option<String> {
+        let (vehicle, functions) = *stage.selected.get(&page)?;
+        if let Some(helm) = stage.helms.get(&vehicle).filter(|helm| helm.number != self.helm) {
+            let text = if functions { helm.value.full.as_ref() } else { Some(&helm.value.light) };
+            if let Some(text) = text {
+                self.helm = helm.number;
+                return Some(text.clone());
+            }
+        }
+        let estimate = stage.estimates.get(&vehicle)?;
+        let is_told = |(number, at): (u64, Instant)| {
+            number == estimate.number || now.saturating_duration_since(at) < ESTIMATE_AGAIN
+        };
+        if self.estimate.is_some_and(is_told) {
+            return None;
+        }
+        self.estimate = Some((estimate.number, now));
+        let (boat, at) = &estimate.value;
+        Some(Tell::estimate(play.name_of(vehicle), boat, *at).json())
+    }
+
+    /// The newest frame, before the first of all those of the past.
+    fn say_frame(&mut self, stage: &Stage) -> Option<Said> {
+        if stage.roll.count == self.frame {
+            return None;
+        }
+        if let Some(past) = self.past.get_or_insert_with(|| stage.roll.past()).pop_front() {
+            return Some(Said::Past(past));
+        }
+        self.frame = stage.roll.count;
+        Some(Said::Now(stage.roll.newest()))
+    }
+}
+
+/// What a page's word means to a game.
+fn control(word: Word) -> Control {
+    match word {
+        Word::Pause => Control::Pause,
+        Word::Resume => Control::Resume,
+        Word::Step => Control::Step,
+        Word::Halt => Control::Halt,
+        Word::GoOn => Control::GoOn,
+        Word::EStop => Control::EStop,
+        Word::Release => Control::Release,
+        Word::Stop => Control::Stop,
+    }
+}

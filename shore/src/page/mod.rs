@@ -1,0 +1,180 @@
+//! The live page: a web server that shows a game, or a recording of one, to browsers.
+//!
+//! [`Page`] serves the files of the page and talks with each browser that opens it as `PROTOCOL.md` says. What it shows
+//! is a [`Show`]: `live::LiveShow` or [`replay::ReplayShow`]. Each page has a [`Viewer`] of its own, which is asked what
+//! to say next whenever the page can take it; so a slow page sees fewer frames, and nobody waits for it.
+
+mod ask;
+mod asset;
+mod chart;
+mod clock;
+mod conversation;
+mod guard;
+mod line;
+#[cfg(feature = "net")]
+pub mod live;
+pub mod replay;
+mod rose;
+mod show;
+mod site;
+mod socket;
+mod tell;
+
+pub use ask::{Ask, Word};
+pub use rose::{HelmAnswer, is_sound};
+pub use show::{Guest, News, Said, Show, Viewer};
+pub use tell::Mode;
+
+use guard::Guard;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+use thiserror::Error;
+use tokio::sync::watch;
+
+/// What a page's server needs to know.
+pub struct PageSettings {
+    /// Where it listens; port 0 is any that is free.
+    pub listen: SocketAddr,
+    /// What pages that may act have to show. Without one all may.
+    pub token: Option<String>,
+    /// Further names under which it may be asked for.
+    pub hosts: Vec<String>,
+    /// Set from outside to end it.
+    pub stop: Arc<AtomicBool>,
+}
+
+/// Why a page cannot be served.
+#[derive(Debug, Error)]
+pub enum PageError {
+    /// Everybody on the network could act.
+    #[error(
+        "the page would be open to the network at {0}: listen on a loopback address such as 127.0.0.1, or give a token \
+         that those who may act have to show"
+    )]
+    Open(SocketAddr),
+    /// A token that is none.
+    #[error("the page's token is empty")]
+    EmptyToken,
+    /// It cannot listen there.
+    #[error("the page cannot listen on {address}: {source}")]
+    Listen {
+        /// Where.
+        address: SocketAddr,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The server's thread cannot be had.
+    #[error("the page's server cannot begin: {0}")]
+    Begin(std::io::Error),
+}
+
+/// A web server in a thread of its own.
+pub struct Page {
+    address: SocketAddr,
+    shown: Option<watch::Sender<Option<Arc<dyn Show>>>>,
+    ended: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// How often it looks whether it is to end.
+const LOOK_AGAIN: Duration = Duration::from_millis(50);
+/// How long pages have to hear that it ends.
+const GOODBYE: Duration = Duration::from_millis(200);
+
+impl Page {
+    /// Listens, and serves pages that have nothing to look at yet.
+    ///
+    /// # Errors
+    /// [`PageError`] if it cannot listen there, or should not.
+    pub fn open(settings: PageSettings) -> Result<Page, PageError> {
+        let PageSettings { listen, token, hosts, stop } = settings;
+        if token.as_ref().is_some_and(String::is_empty) {
+            return Err(PageError::EmptyToken);
+        }
+        if !listen.ip().is_loopback() && token.is_none() {
+            return Err(PageError::Open(listen));
+        }
+        let at = |source| PageError::Listen { address: listen, source };
+        let listener = std::net::TcpListener::bind(listen).map_err(at)?;
+        listener.set_nonblocking(true).map_err(at)?;
+        let address = listener.local_addr().map_err(at)?;
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(PageError::Begin)?;
+        let (shown, to_show) = watch::channel(None);
+        let ended = Arc::new(AtomicBool::new(false));
+        let end = Arc::clone(&ended);
+        let serve = move || {
+            let guard = Guard::new(address, &hosts, token);
+            // What cannot be taken over by the runtime was never a listener.
+            drop(runtime.block_on(site::serve(listener, guard, to_show, async {
+                while !end.load(Ordering::Relaxed) && !stop.load(Ordering::Relaxed) {
+                    tokio::time::sleep(LOOK_AGAIN).await;
+                }
+            })));
+            runtime.block_on(async { tokio::time::sleep(GOODBYE).await });
+            runtime.shutdown_timeout(GOODBYE);
+        };
+        let thread = std::thread::Builder::new().name("page".to_owned()).spawn(serve).map_err(PageError::Begin)?;
+        Ok(Page { address, shown: Some(shown), ended, thread: Some(thread) })
+    }
+
+    /// Where it listens.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// From now on all pages are shown this.
+    pub fn show(&self, show: Arc<dyn Show>) {
+        if let Some(shown) = &self.shown {
+            shown.send_replace(Some(show));
+        }
+    }
+
+    /// Says good-bye to all pages.
+    pub fn close(self) {
+        drop(self);
+    }
+}
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+        // Pages hear of it by the end of what is shown.
+        self.shown = None;
+        if let Some(thread) = self.thread.take() {
+            // A server that panicked has said so by itself.
+            drop(thread.join());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn open(listen: &str, token: Option<&str>) -> Result<Page, PageError> {
+        let listen = listen.parse().expect("an address");
+        let token = token.map(str::to_owned);
+        Page::open(PageSettings { listen, token, hosts: vec![], stop: Arc::default() })
+    }
+
+    #[test]
+    fn the_network_is_not_let_in_without_a_token() {
+        assert!(matches!(open("0.0.0.0:0", None), Err(PageError::Open(_))));
+        assert!(matches!(open("[::]:0", None), Err(PageError::Open(_))));
+        assert!(matches!(open("0.0.0.0:0", Some("")), Err(PageError::EmptyToken)));
+        assert!(open("0.0.0.0:0", Some("secret")).is_ok());
+        assert!(open("127.0.0.1:0", None).is_ok());
+    }
+
+    #[test]
+    fn a_port_that_is_taken_is_an_error() {
+        let first = open("127.0.0.1:0", None).expect("any port");
+        let again = open(&first.address().to_string(), None);
+        assert!(matches!(again, Err(PageError::Listen { .. })));
+        first.close();
+    }
+}

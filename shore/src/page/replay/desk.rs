@@ -1,0 +1,109 @@
+//! The desk where replays ask what helms thought: a thread of its own, since the answer may take a while.
+
+use super::film::Helms;
+use crate::page::rose::{HelmAnswer, helm_text};
+use crate::page::show::News;
+use game::{Scenario, VehicleId};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+/// What is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct HelmWish {
+    /// Whose helm.
+    pub(super) vehicle: VehicleId,
+    /// At which decision.
+    pub(super) decision: u64,
+    /// Whether with utilities.
+    pub(super) functions: bool,
+}
+
+/// Those who wait, by number.
+#[derive(Default)]
+struct Queue {
+    wishes: BTreeMap<u64, HelmWish>,
+    answers: BTreeMap<u64, (HelmWish, String)>,
+    /// Who was served last: all get their turn.
+    last: u64,
+    is_closed: bool,
+}
+
+struct Counter {
+    queue: Mutex<Queue>,
+    wished: Condvar,
+}
+
+/// The desk.
+pub(super) struct Desk(Arc<Counter>);
+
+impl Desk {
+    /// Opens it. Without helms nobody knows what they thought.
+    pub(super) fn open(scenario: Scenario, helms: Option<Box<dyn Helms>>, news: News) -> Desk {
+        let counter = Arc::new(Counter { queue: Mutex::default(), wished: Condvar::new() });
+        let server = Arc::clone(&counter);
+        let serve = move || server.serve(&scenario, helms, &news);
+        // Without a thread nobody answers; pages see that.
+        drop(std::thread::Builder::new().name("page-helms".to_owned()).spawn(serve));
+        Desk(counter)
+    }
+
+    /// A reader wishes this now, and nothing else any more.
+    pub(super) fn wish(&self, reader: u64, wish: HelmWish) {
+        self.0.lock().wishes.insert(reader, wish);
+        self.0.wished.notify_one();
+    }
+
+    /// The newest answer to a reader, as it goes to the page.
+    pub(super) fn take(&self, reader: u64) -> Option<(HelmWish, String)> {
+        self.0.lock().answers.remove(&reader)
+    }
+
+    /// A reader goes.
+    pub(super) fn leave(&self, reader: u64) {
+        let mut queue = self.0.lock();
+        queue.wishes.remove(&reader);
+        queue.answers.remove(&reader);
+    }
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        self.0.lock().is_closed = true;
+        // It may be at work for a while; it ends by itself.
+        self.0.wished.notify_one();
+    }
+}
+
+impl Counter {
+    fn serve(&self, scenario: &Scenario, mut helms: Option<Box<dyn Helms>>, news: &News) {
+        while let Some((reader, wish)) = self.next() {
+            let answer = match &mut helms {
+                Some(helms) => helms.report(wish.vehicle, wish.decision, wish.functions),
+                None => HelmAnswer { reason: Some("the recording does not tell".to_owned()), ..HelmAnswer::default() },
+            };
+            let text = helm_text(scenario, wish.vehicle, wish.functions, answer);
+            self.lock().answers.insert(reader, (wish, text));
+            news.ring();
+        }
+    }
+
+    /// The next wish in turn; none when the desk is closed.
+    fn next(&self) -> Option<(u64, HelmWish)> {
+        let idle = |queue: &mut Queue| queue.wishes.is_empty() && !queue.is_closed;
+        let mut queue = self.wished.wait_while(self.lock(), idle).unwrap_or_else(PoisonError::into_inner);
+        if queue.is_closed {
+            return None;
+        }
+        let after = queue.last + 1;
+        let reader =
+            queue.wishes.range(after..).next().or_else(|| queue.wishes.iter().next()).map(|(reader, _)| *reader)?;
+        queue.last = reader;
+        let wish = queue.wishes.remove(&reader)?;
+        Some((reader, wish))
+    }
+
+    /// Wishes and answers are put in and taken out whole.
+    fn lock(&self) -> MutexGuard<'_, Queue> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

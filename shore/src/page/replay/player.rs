@@ -1,0 +1,121 @@
+//! A player: which moment of a recording is shown, and how that moves on.
+
+use game::SimTime;
+use std::time::{Duration, Instant};
+
+/// The slowest and the fastest that a recording is played, simulated seconds a second.
+const SPEED: (f64, f64) = (0.01, 100.0);
+
+/// The state of a player.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Player {
+    from: SimTime,
+    to: SimTime,
+    at: SimTime,
+    /// Since when `at` has moved on, if it does.
+    since: Option<Instant>,
+    speed: f64,
+}
+
+impl Player {
+    /// A player that stands at the beginning.
+    pub(super) fn new(from: SimTime, to: SimTime) -> Player {
+        Player { from, to, at: from, since: None, speed: 1.0 }
+    }
+
+    /// The moment shown.
+    pub(super) fn at(&self, now: Instant) -> SimTime {
+        let Some(since) = self.since else { return self.at };
+        let passed_s = now.saturating_duration_since(since).as_secs_f64() * self.speed;
+        (self.at + SimTime::from_s(passed_s)).min(self.to)
+    }
+
+    /// Whether it moves on.
+    pub(super) fn is_playing(&self) -> bool {
+        self.since.is_some()
+    }
+
+    /// Simulated seconds a second.
+    pub(super) fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// When a moment will be shown, if nobody intervenes.
+    pub(super) fn when(&self, moment: SimTime) -> Option<Instant> {
+        let ahead_s = (moment - self.at).as_s().max(0.0) / self.speed;
+        self.since?.checked_add(Duration::try_from_secs_f64(ahead_s).ok()?)
+    }
+
+    /// Plays; from the beginning if it stands at the end.
+    pub(super) fn play(&mut self, now: Instant) {
+        if self.since.is_none() {
+            self.at = if self.at >= self.to { self.from } else { self.at };
+            self.since = Some(now);
+        }
+    }
+
+    /// Stands.
+    pub(super) fn pause(&mut self, now: Instant) {
+        self.at = self.at(now);
+        self.since = None;
+    }
+
+    /// Stands if it has come to the end; says whether it did just now.
+    pub(super) fn end(&mut self, now: Instant) -> bool {
+        let ends = self.since.is_some() && self.at(now) >= self.to;
+        if ends {
+            self.pause(now);
+        }
+        ends
+    }
+
+    /// Shows another moment, and plays on if it played.
+    pub(super) fn seek(&mut self, moment: SimTime, now: Instant) {
+        self.at = moment.clamp(self.from, self.to.max(self.from));
+        self.since = self.since.map(|_| now);
+    }
+
+    /// Plays so many simulated seconds a second; none is as fast as it goes.
+    pub(super) fn set_speed(&mut self, speed: Option<f64>, now: Instant) {
+        self.at = self.at(now);
+        self.since = self.since.map(|_| now);
+        self.speed = speed.unwrap_or(SPEED.1).clamp(SPEED.0, SPEED.1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::page::clock;
+
+    #[test]
+    fn it_plays_by_the_clock_to_the_end_and_then_from_the_beginning() {
+        let start = clock::now();
+        let later = |s: f64| start + Duration::from_secs_f64(s);
+        let mut player = Player::new(SimTime::from_s(10.0), SimTime::from_s(20.0));
+        assert_eq!(player.at(later(5.0)), SimTime::from_s(10.0), "it stands at first");
+        player.play(start);
+        assert_eq!(player.at(later(2.0)), SimTime::from_s(12.0));
+        player.set_speed(Some(4.0), later(2.0));
+        assert_eq!(player.at(later(3.0)), SimTime::from_s(16.0));
+        assert_eq!(player.when(SimTime::from_s(20.0)), Some(later(4.0)));
+        assert!(!player.end(later(3.9)) && player.end(later(9.0)) && !player.end(later(9.0)));
+        assert_eq!((player.is_playing(), player.at(later(9.0))), (false, SimTime::from_s(20.0)));
+        player.play(later(9.0));
+        assert_eq!(player.at(later(9.0)), SimTime::from_s(10.0));
+    }
+
+    #[test]
+    fn it_goes_where_it_is_told_within_the_recording() {
+        let start = clock::now();
+        let mut player = Player::new(SimTime::from_s(10.0), SimTime::from_s(20.0));
+        for (to_s, want_s) in [(15.0, 15.0), (-4.0, 10.0), (1e30, 20.0)] {
+            player.seek(SimTime::from_s(to_s), start);
+            assert_eq!(player.at(start), SimTime::from_s(want_s), "{to_s}");
+        }
+        player.set_speed(None, start);
+        assert_eq!(player.speed(), SPEED.1);
+        player.set_speed(Some(0.0), start);
+        assert_eq!(player.speed(), SPEED.0);
+    }
+}

@@ -1,0 +1,130 @@
+//! A recording as a replay needs it.
+
+use super::Film;
+use crate::recording::{Recording, RecordingError, picture};
+use game::event::Logged;
+use game::external::GatewayStatus;
+use game::message::Notice;
+use game::outcome::EventOutcome;
+use game::picture::{OwnBoat, Picture};
+use game::water::Water;
+use game::{SimTime, VehicleId};
+use std::sync::Arc;
+
+/// A recording, ready to be shown.
+pub struct Recorded {
+    recording: Arc<Recording>,
+    file: String,
+    times: Vec<SimTime>,
+    /// By team, the time and place of every picture.
+    pictures: Vec<Vec<(SimTime, usize)>>,
+    /// By vehicle, the same of what its gateway told.
+    statuses: Vec<Vec<(SimTime, usize)>>,
+    events: Vec<EventOutcome>,
+}
+
+impl Recorded {
+    /// Reads all of it once.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the first frame that is none.
+    pub fn new(recording: Arc<Recording>, file: String) -> Result<Recorded, RecordingError> {
+        let scenario = &recording.header().notice.scenario;
+        let told = |topic: String| {
+            let places = recording.places(&topic).into_iter();
+            places.map(|place| (recording.message(place).at, place)).collect::<Vec<_>>()
+        };
+        let pictures = scenario.teams.iter().map(|team| told(picture(&team.name))).collect();
+        let statuses = scenario.vehicles.iter().map(|vehicle| told(format!("status/{}", vehicle.name))).collect();
+        let mut recorded =
+            Recorded { file, times: Vec::new(), pictures, statuses, events: Vec::new(), recording: recording.clone() };
+        for frame in recording.frames() {
+            let frame = frame?;
+            recorded.times.push(frame.stamp.valid_ns);
+            let logged = frame.events.iter().filter_map(game::message::EventRecord::logged);
+            recorded.events.extend(logged.map(|logged: Logged| EventOutcome::new(scenario, &logged)));
+        }
+        recorded.add_trips();
+        Ok(recorded)
+    }
+
+    /// Gateways' trips among the events, where they were first told of.
+    fn add_trips(&mut self) {
+        let scenario = &self.recording.header().notice.scenario;
+        for (vehicle, told) in scenario.vehicles.iter().zip(&self.statuses) {
+            let mut known = 0;
+            for (at, place) in told {
+                let Some(status) = self.status_at(*place) else { continue };
+                // A gateway that began anew counts from nothing.
+                known = known.min(status.trips.len());
+                for trip in &status.trips[known..] {
+                    self.events.push(EventOutcome {
+                        tick: u64::try_from(at.0 / scenario.tick.0.max(1)).unwrap_or(0),
+                        at_s: at.as_s(),
+                        event: "tripped".to_owned(),
+                        vehicle: Some(vehicle.name.clone()),
+                        other: Some(trip.cause.clone()),
+                        team: None,
+                    });
+                }
+                known = status.trips.len();
+            }
+        }
+        self.events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+    }
+
+    fn status_at(&self, place: usize) -> Option<GatewayStatus> {
+        serde_json::from_slice(self.recording.message(place).bytes).ok()
+    }
+}
+
+/// The last of these that is not after `at`.
+fn last_until(told: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
+    let after = told.partition_point(|(when, _)| *when <= at);
+    told[..after].last().map(|(_, place)| *place)
+}
+
+impl Film for Recorded {
+    fn notice(&self) -> &Notice {
+        &self.recording.header().notice
+    }
+
+    fn game(&self) -> &str {
+        &self.recording.header().game
+    }
+
+    fn file(&self) -> &str {
+        &self.file
+    }
+
+    fn is_cut(&self) -> bool {
+        self.recording.is_cut()
+    }
+
+    fn water(&self) -> &Water {
+        &self.recording.header().water
+    }
+
+    fn frame_times(&self) -> &[SimTime] {
+        &self.times
+    }
+
+    fn frame_bytes(&self, frame: usize) -> &[u8] {
+        self.recording.frame(frame).bytes
+    }
+
+    fn events(&self) -> &[EventOutcome] {
+        &self.events
+    }
+
+    fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat> {
+        let team = self.notice().scenario.vehicles.get(vehicle.index())?.team;
+        let place = last_until(&self.pictures[team.index()], *self.times.get(frame)?)?;
+        let picture: Picture = self.recording.message(place).read().ok()?;
+        picture.own(vehicle).copied()
+    }
+
+    fn status(&self, vehicle: VehicleId, at: SimTime) -> Option<GatewayStatus> {
+        self.status_at(last_until(self.statuses.get(vehicle.index())?, at)?)
+    }
+}

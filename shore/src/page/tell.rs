@@ -1,0 +1,185 @@
+//! What the server tells a page, as it stands in `PROTOCOL.md`.
+
+use super::chart::Chart;
+use super::rose::Helm;
+use game::SimTime;
+use game::external::GatewayStatus;
+use game::outcome::EventOutcome;
+use game::picture::OwnBoat;
+use game::run_state::RecordingState;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The version of the protocol.
+pub(super) const PROTOCOL: u32 = 1;
+
+/// A message to a page.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+#[cfg_attr(not(feature = "net"), expect(dead_code, reason = "some is only said of a game on the network"))]
+pub(super) enum Tell<'a> {
+    Hello {
+        protocol: u32,
+        version: &'a str,
+        mode: Mode,
+        rights: bool,
+        game: &'a str,
+        definitions: BTreeMap<&'static str, &'static str>,
+        chart: &'a Chart,
+    },
+    State {
+        phase: &'a str,
+        now_s: f64,
+        pace: &'a str,
+        speed: Option<f64>,
+        rate: f64,
+        minds: &'a [String],
+        gateways: &'a [String],
+        refused: u64,
+        overruns: u64,
+        recording: Option<&'a RecordingState>,
+        frames_hz: f64,
+        can_speed: bool,
+    },
+    Player {
+        playing: bool,
+        t_s: f64,
+        speed: f64,
+        from_s: f64,
+        to_s: f64,
+        cut: bool,
+        file: &'a str,
+    },
+    Events {
+        reset: bool,
+        events: Vec<EventTell<'a>>,
+    },
+    Helm {
+        vehicle: &'a str,
+        report: Option<&'a Helm>,
+        reason: Option<&'a str>,
+        computed: bool,
+        agrees: Option<bool>,
+    },
+    Estimate {
+        vehicle: &'a str,
+        x: f64,
+        y: f64,
+        heading_deg: f64,
+        speed_m_s: f64,
+        fix_age_s: f64,
+        at_s: f64,
+    },
+    Status {
+        vehicle: &'a str,
+        status: &'a GatewayStatus,
+    },
+    Drive {
+        vehicle: &'a str,
+        by: Option<&'static str>,
+    },
+    Refused {
+        what: &'a str,
+        reason: &'a str,
+    },
+}
+
+/// What a page looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mode {
+    /// A game that is being played: what is done to it is done to everybody.
+    Live,
+    /// A recording: everybody has a player of their own.
+    Replay,
+}
+
+/// An event, with a sentence about it.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct EventTell<'a> {
+    #[serde(flatten)]
+    event: &'a EventOutcome,
+    text: String,
+}
+
+impl<'a> EventTell<'a> {
+    /// The event as a page shows it.
+    pub(super) fn new(event: &'a EventOutcome) -> EventTell<'a> {
+        let text = match (event.event.as_str(), &event.vehicle) {
+            ("tripped", Some(vehicle)) => format!("{vehicle} is STOPPED by its gateway"),
+            _ => event.sentence(),
+        };
+        EventTell { event, text }
+    }
+}
+
+/// A time in seconds as people write it: 120 and not 120.00000000000001, which multiplying by 1e-9 gives.
+pub(super) fn seconds(time: SimTime) -> f64 {
+    time.0 as f64 / 1e9
+}
+
+impl Tell<'_> {
+    /// The first words to a page.
+    pub(super) fn hello<'a>(version: &'a str, mode: Mode, rights: bool, game: &'a str, chart: &'a Chart) -> Tell<'a> {
+        let definitions = game::ros::DEFINITIONS.into_iter().collect();
+        Tell::Hello { protocol: PROTOCOL, version, mode, rights, game, definitions, chart }
+    }
+
+    /// Where a boat's own sensors put it at this time.
+    pub(super) fn estimate<'a>(vehicle: &'a str, boat: &OwnBoat, at: SimTime) -> Tell<'a> {
+        let nav = &boat.nav;
+        Tell::Estimate {
+            vehicle,
+            x: nav.east_m,
+            y: nav.north_m,
+            heading_deg: nav.psi_rad.to_degrees().rem_euclid(360.0),
+            speed_m_s: game::math::length(nav.surge_m_s, nav.sway_m_s),
+            fix_age_s: seconds(SimTime(at.0.saturating_sub(boat.fix_ns.0))),
+            at_s: seconds(at),
+        }
+    }
+
+    /// The message as it goes over the wire.
+    pub(super) fn json(&self) -> String {
+        serde_json::to_string(self).expect("a plain struct is JSON")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{EventTell, Tell};
+    use game::outcome::EventOutcome;
+    use serde_json::{Value, json};
+
+    fn value(tell: &Tell<'_>) -> Value {
+        serde_json::from_str(&tell.json()).expect("it is JSON")
+    }
+
+    #[test]
+    fn events_carry_a_sentence() {
+        let event = |event: &str| EventOutcome {
+            tick: 7,
+            at_s: 0.35,
+            event: event.into(),
+            vehicle: Some("a".into()),
+            other: Some("b".into()),
+            team: None,
+        };
+        let (tagged, tripped) = (event("tagged"), event("tripped"));
+        let tell = Tell::Events { reset: true, events: vec![EventTell::new(&tagged), EventTell::new(&tripped)] };
+        let want = json!({"tick": 7, "at_s": 0.35, "event": "tagged", "vehicle": "a", "other": "b",
+            "text": "a is tagged by b"});
+        assert_eq!(value(&tell)["kind"], "events");
+        assert_eq!(value(&tell)["events"][0], want);
+        assert_eq!(value(&tell)["events"][1]["text"], "a is STOPPED by its gateway");
+    }
+
+    #[test]
+    fn what_is_not_known_is_null_and_not_left_out() {
+        let tell = value(&Tell::Drive { vehicle: "a", by: None });
+        assert_eq!(tell, json!({"kind": "drive", "vehicle": "a", "by": null}));
+        let tell = value(&Tell::Helm { vehicle: "a", report: None, reason: Some("x"), computed: true, agrees: None });
+        assert_eq!(tell["report"], Value::Null);
+        assert_eq!(tell["agrees"], Value::Null);
+    }
+}

@@ -1,0 +1,305 @@
+//! What a recording tells afterwards: figures, tables and logs of a small made-up game, to the byte where others read them.
+
+use game::event::{Event, Logged};
+use game::external::{GatewayStatus, LinkBytes, TripReport};
+use game::input::Input;
+use game::message::{Frame, Message, Notice, Stamp, VehicleTruth};
+use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
+use game::water::Water;
+use game::{FlagId, Order, Outcome, Picture, SimTime, TeamId, VehicleId};
+use shore::log::{Book, Comparison, Incomparable, Summary, alog, sheet};
+use shore::recording::{Ending, Header, Note, Recording, Turn, Writer};
+use std::io::Cursor;
+use std::path::Path;
+
+fn header() -> Header {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+    let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+    Header {
+        commit: "c0ffee".to_owned(),
+        game: "pav01-1".to_owned(),
+        began_utc_ns: 1_700_000_000_000_000_000,
+        notice: Notice { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        water: Water { waves: vec![] },
+    }
+}
+
+fn ending() -> Ending {
+    let outcome = serde_json::json!({
+        "scenario": "pav01", "seed": 1, "version": "0", "digest": "ab", "duration_s": 1.0, "ticks": 20,
+        "winner": "blue", "boats": {}, "score": {"teams": {}, "boats": {}}, "counts": {"teams": {}, "boats": {}},
+        "events": [],
+    });
+    let outcome: Outcome = serde_json::from_value(outcome).expect("an outcome");
+    Ending { outcome, run: serde_json::json!({"pace": "lockstep"}), dropped: 3 }
+}
+
+/// The decision `seq`: the first boat goes north at 2 m/s, and believes to be 3 m north and 4 m east of where it is. At
+/// the third frame it has a flag.
+fn turn(seq: u64) -> Turn {
+    let at = |seq: u64, version| Stamp { valid_ns: SimTime(seq as i64 * 100_000_000), seq, version };
+    let nav = |seq: u64| Nav { north_m: 10.0 + 0.2 * seq as f64, surge_m_s: 2.0, ..Nav::default() };
+    let has_flag = seq >= 2;
+    let first = VehicleTruth { nav: nav(seq), carrying: if has_flag { 1 } else { -1 }, ..VehicleTruth::default() };
+    let mut vehicles = vec![VehicleTruth { carrying: -1, ..VehicleTruth::default() }; 4];
+    vehicles[0] = first;
+    let grabbed = Event::Grabbed { vehicle: VehicleId(0), flag: FlagId(1) };
+    let events =
+        if seq == 2 { vec![Logged { tick: 3, at: SimTime(150_000_000), event: grabbed }.into()] } else { vec![] };
+    let flags = vec![FlagView { carrier: -1 }, FlagView { carrier: if has_flag { 0 } else { -1 } }];
+    let score = vec![u32::from(has_flag), 0];
+    let stamp = at(seq, Frame::VERSION);
+    let frame = Frame { stamp, vehicles, score: score.clone(), flags: flags.clone(), events, ..Frame::default() };
+    let Some(before) = seq.checked_sub(1) else { return Turn { frame, ..Turn::default() } };
+    let believed = Nav { north_m: nav(before).north_m + 3.0, east_m: 4.0, ..nav(before) };
+    let own = OwnBoat {
+        vehicle: VehicleId(0),
+        nav: believed,
+        fix_ns: SimTime(0),
+        imu: Imu::default(),
+        tagged: false,
+        carrying: -1,
+        disabled: false,
+        outside: false,
+        tag_ready_ns: SimTime(0),
+    };
+    let contact = Contact {
+        vehicle: VehicleId(2),
+        team: TeamId(1),
+        seen_ns: SimTime(50_000_000),
+        north_m: 1.0,
+        east_m: 2.0,
+        psi_rad: 0.5,
+        velocity_north_m_s: 0.25,
+        velocity_east_m_s: 0.0,
+        tagged: true,
+        carrying: -1,
+    };
+    let stamp = at(before, Picture::VERSION);
+    let picture = Picture { stamp, own: vec![own], contacts: vec![contact], flags, score, ..Picture::default() };
+    let order = Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 };
+    let inputs = vec![Input::Pictured, Input::Ordered { vehicle: VehicleId(0), order }, Input::Played];
+    Turn { frame, pictures: vec![picture], inputs }
+}
+
+fn link(outward: bool, data: &[u8]) -> Note {
+    let stamp = Stamp { version: LinkBytes::VERSION, ..Stamp::default() };
+    let bytes = LinkBytes { stamp, vehicle: VehicleId(0), outward, data: data.to_vec() };
+    let bytes = game::codec::encode(&bytes);
+    Note::Heard { topic: "link/blue_one".to_owned(), schema: Some(LinkBytes::SCHEMA), bytes, at: SimTime(250_000_000) }
+}
+
+fn status(trips: &[&str]) -> Note {
+    let trip = |cause: &&str| TripReport { at_s: 1.0, cause: (*cause).to_owned() };
+    let trips = trips.iter().map(trip).collect();
+    let status = GatewayStatus { state: "armed".to_owned(), trips, ..GatewayStatus::default() };
+    let bytes = serde_json::to_vec(&status).expect("JSON");
+    Note::Heard { topic: "status/blue_one".to_owned(), schema: None, bytes, at: SimTime(200_000_000) }
+}
+
+fn bytes_of(header: &Header, turns: u64) -> Vec<u8> {
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), header).expect("it begins");
+    let mut note = |note: &Note, utc_ns| writer.note(note, utc_ns).expect("it is written");
+    (0..turns).for_each(|seq| note(&Note::Turn(Box::new(turn(seq))), 1_000_000_000 * (1 + seq)));
+    note(&link(false, b"$GPRMC,1*00\r\n$PSE"), 1_000_000_000);
+    note(&link(true, b"$PSEAC,T,0*0D\r\n"), 1_000_000_000);
+    note(&link(false, b"AA,2*11\r\n"), 1_000_000_000);
+    note(&status(&[]), 1_000_000_000);
+    note(&status(&["link down"]), 1_000_000_000);
+    note(&status(&["link down", "no orders"]), 1_000_000_000);
+    writer.end(&ending()).expect("it ends").into_inner()
+}
+
+fn recording() -> Recording {
+    Recording::of(bytes_of(&header(), 4)).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn a_summary_has_the_figures_of_the_game() {
+    let (summary, book) = Summary::of(&recording()).expect("it is whole");
+    assert_eq!((summary.game.as_str(), summary.seed, summary.commit.as_str()), ("pav01-1", 1, "c0ffee"));
+    assert!((summary.duration_s - 0.3).abs() < 1e-9 && (summary.wall_s - 3.0).abs() < 1e-9);
+    assert_eq!((summary.is_cut, summary.dropped, summary.winner.as_deref()), (false, Some(3), Some("blue")));
+    assert_eq!(summary.score.get("blue"), Some(&1));
+    assert_eq!(summary.events.len(), 1);
+    assert_eq!(summary.events[0].sentence(), "blue_one grabs the red flag");
+    let blue_one = &summary.boats[0];
+    assert!((blue_one.distance_m - 0.6).abs() < 1e-9 && (blue_one.speed_max_m_s - 2.0).abs() < 1e-9);
+    assert!((blue_one.carrying_s - 0.2).abs() < 1e-9 && blue_one.counts.grabs == 1);
+    let navigation = blue_one.navigation.expect("it was in pictures");
+    assert!((navigation.rms_m - 5.0).abs() < 1e-9 && (navigation.p95_m - 5.0).abs() < 1e-9);
+    let steering = blue_one.steering.expect("it was ordered");
+    assert!((steering.speed_rms_m_s - 0.5).abs() < 1e-9 && steering.heading_rms_deg < 1e-9);
+    assert_eq!(summary.boats[1].steering, None);
+    let rates: Vec<(&str, u64)> = summary.topics.iter().map(|(name, topic)| (name.as_str(), topic.count)).collect();
+    let want = [("frame", 4), ("inputs", 4), ("link/blue_one", 3), ("picture/blue", 3), ("status/blue_one", 3)];
+    assert_eq!(rates, want);
+    assert!(summary.topics["frame"].rate_hz.is_some_and(|rate_hz| (rate_hz - 10.0).abs() < 1e-9));
+    assert_eq!(summary.topics["link/blue_one"].rate_hz, None);
+    assert_eq!(book.boats[0].moments[3].order, Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 });
+    assert_eq!(book.boats[0].moments[0].order, Order::Hold);
+}
+
+#[test]
+fn a_gateway_is_told_by_its_bytes_and_trips() {
+    let (summary, _) = Summary::of(&recording()).expect("it is whole");
+    let [gateway] = summary.gateways.as_slice() else { panic!("{:?}", summary.gateways) };
+    assert_eq!((gateway.boat.as_str(), gateway.state.as_deref()), ("blue_one", Some("armed")));
+    assert_eq!((gateway.from_boat.bytes, gateway.to_boat.bytes), (26, 15));
+    let kinds: Vec<(&str, u64)> = gateway.from_boat.sentences.iter().map(|(kind, n)| (kind.as_str(), *n)).collect();
+    assert_eq!(kinds, [("GPRMC", 1), ("PSEAA", 1)]);
+    let causes: Vec<&str> = gateway.trips.iter().map(|trip| trip.cause.as_str()).collect();
+    assert_eq!(causes, ["link down", "no orders"]);
+}
+
+/// The table of a topic, rows as lines.
+fn table(recording: &Recording, topic: &str) -> Vec<String> {
+    let mut lines = vec![];
+    let mut sink = |cells: &[String]| {
+        lines.push(cells.join(","));
+        Ok(())
+    };
+    sheet::write(recording, topic, &mut sink).unwrap_or_else(|e| panic!("{topic}: {e}"));
+    lines
+}
+
+#[test]
+fn every_topic_is_a_table() {
+    let recording = recording();
+    for (topic, rows) in
+        [("frame", 4), ("inputs", 9), ("picture/blue", 6), ("link/blue_one", 3), ("status/blue_one", 3), ("events", 1)]
+    {
+        let lines = table(&recording, topic);
+        assert_eq!(lines.len(), rows + 1, "{topic}");
+        let columns = lines[0].split(',').count();
+        assert!(
+            lines.iter().all(|line| line.split(',').count() >= columns && line.starts_with(['t', '0'])),
+            "{lines:?}"
+        );
+    }
+    let frame = table(&recording, "frame");
+    assert!(frame[0].starts_with("t_s,seq,blue_one.north_m,blue_one.east_m,blue_one.psi_rad,"), "{}", frame[0]);
+    assert!(frame[0].ends_with(",flag.blue.carrier,flag.red.carrier,score.blue,score.red,events,stopped,over"));
+    assert!(frame[3].starts_with("0.2,2,10.4,0,0,2,") && frame[3].contains("blue_one grabs the red flag"));
+    assert!(frame[3].contains(",,blue_one,1,0,"), "{}", frame[3]);
+    assert_eq!(table(&recording, "events")[1], "0.15,3,grabbed,blue_one,,red,blue_one grabs the red flag");
+    assert_eq!(
+        table(&recording, "link/blue_one"),
+        [
+            "t_s,direction,text",
+            "0.25,from_boat,$GPRMC,1*00",
+            "0.25,to_boat,$PSEAC,T,0*0D",
+            "0.25,from_boat,$PSEAA,2*11"
+        ]
+    );
+    let inputs = table(&recording, "inputs");
+    assert!(inputs[2].starts_with("0.1,1,steer,blue_one,0,2.5,,"), "{}", inputs[2]);
+    let picture = table(&recording, "picture/blue");
+    assert!(picture[1].starts_with("0,0,own,blue_one,0,13,4,"), "{}", picture[1]);
+    assert!(picture[2].starts_with("0,0,contact,red_one,0.05,1,2,0.5,,,,0.25,0,true,"), "{}", picture[2]);
+    let status = table(&recording, "status/blue_one");
+    assert!(status[0].contains(",trips.1.cause,") && status[3].contains(",no orders,"), "{status:?}");
+}
+
+#[test]
+fn an_unknown_topic_is_refused_with_those_there_are() {
+    let refused = sheet::write(&recording(), "picture/green", &mut |_| Ok(())).expect_err("there is none").to_string();
+    assert!(refused.contains("no topic \"picture/green\"") && refused.contains("events, frame, inputs, link/blue_one"));
+}
+
+#[test]
+fn the_log_of_a_vehicle_is_what_moos_tools_read() {
+    let recording = recording();
+    let book = Book::of(&recording).expect("it is whole");
+    let log = alog::vehicle(recording.header(), &book, 0).expect("a boat");
+    let begin = "\
+%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%
+%% LOG FILE:       blue_one.alog
+%% FILE OPENED ON  Tue Nov 14 22:13:20 2023
+%% LOGSTART               1700000000.00
+%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%
+0.00000         NAV_X                squall          4.0000
+0.00000         NAV_Y                squall          13.0000
+0.00000         NAV_HEADING          squall          0.0000
+0.00000         NAV_SPEED            squall          2.0000
+0.00000         NAV_GT_X             squall          0.0000
+0.00000         NAV_GT_Y             squall          10.0000
+0.00000         NAV_GT_HEADING       squall          0.0000
+0.00000         NAV_GT_SPEED         squall          2.0000
+0.00000         DESIRED_SPEED        squall          0.0000
+0.00000         HAS_FLAG             squall          false
+0.00000         TAGGED               squall          false
+";
+    assert!(log.starts_with(begin), "{log}");
+    assert!(log.contains("\n0.10000         DESIRED_HEADING      squall          0.0000\n"), "{log}");
+    assert!(log.contains("\n0.20000         HAS_FLAG             squall          true\n"), "{log}");
+    assert_eq!(alog::vehicle(recording.header(), &book, 4), None);
+    assert_eq!(alog::names(&book), ["shoreside", "blue_one", "blue_two", "red_one", "red_two"]);
+}
+
+#[test]
+fn the_log_of_the_shoreside_has_reports_and_what_happened() {
+    let recording = recording();
+    let book = Book::of(&recording).expect("it is whole");
+    let log = alog::shoreside(recording.header(), &book);
+    let length_m = recording.header().notice.scenario.boat_of(VehicleId(0)).length_m;
+    let report = format!(
+        "NAME=blue_one,TYPE=kayak,TIME=1700000000.00,X=0.00,Y=10.00,SPD=2.00,HDG=0.00,DEPTH=0,LENGTH={length_m},MODE=PLAYING,GROUP=blue"
+    );
+    for row in [
+        "0.00000         AQUATICUS_GAME_ALL   squall          play".to_owned(),
+        format!("0.00000         NODE_REPORT          squall          {report}"),
+        "0.15000         HAS_FLAG_BLUE_ONE    squall          true".to_owned(),
+        "0.15000         RED_FLAG_GRABBED     squall          true".to_owned(),
+        "0.15000         SQUALL_EVENT         squall          event=grabbed,vname=blue_one,team=red,game=pav01_vs_pav01"
+            .to_owned(),
+        "0.20000         BLUE_SCORES          squall          1".to_owned(),
+    ] {
+        assert!(log.lines().any(|line| line == row), "{row}\nis not in\n{log}");
+    }
+    let rows: Vec<&str> = log.lines().skip(5).collect();
+    assert!(rows.iter().all(|row| row.split_whitespace().count() == 4), "no value has blanks");
+    let times: Vec<f64> = rows.iter().filter_map(|row| row.split(' ').next()?.parse().ok()).collect();
+    assert!(times.len() == rows.len() && times.is_sorted());
+}
+
+#[test]
+fn a_game_differs_in_nothing_from_itself() {
+    let recording = recording();
+    let book = Book::of(&recording).expect("it is whole");
+    let same = Comparison::of([recording.header(); 2], [&book; 2], 0.0).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((same.boats.len(), same.notes.len()), (4, 0));
+    for pair in &same.boats {
+        let apart = pair.apart;
+        assert_eq!([apart.mean_m, apart.rms_m, apart.max_m, apart.final_m, apart.frechet_m], [0.0; 5], "{}", pair.boat);
+        assert_eq!(pair.response[0], pair.response[1]);
+    }
+    assert_eq!((same.events.in_both, same.events.only_in_a.len(), same.events.only_in_b.len()), (1, 0, 0));
+    assert_eq!(same.score.get("blue"), Some(&[Some(1), Some(1)]));
+}
+
+#[test]
+fn games_that_differ_say_in_what_and_strangers_are_refused() {
+    let a = recording();
+    let mut other = header();
+    other.notice.scenario.seed = 7;
+    other.notice.scenario.vehicles[3].name = "red_three".to_owned();
+    let b = Recording::of(bytes_of(&other, 3)).unwrap_or_else(|e| panic!("{e}"));
+    let books = [&a, &b].map(|recording| Book::of(recording).expect("it is whole"));
+    let compare = |header: &Header, b: &Book| Comparison::of([a.header(), header], [&books[0], b], 1.0);
+    let found = compare(b.header(), &books[1]).unwrap_or_else(|e| panic!("{e}"));
+    let notes = found.notes.join("\n");
+    for part in ["seed: 1 in A, 7 in B", "only in A: red_two", "only in B: red_three", "A lasts 0.3 s, B 0.2 s"] {
+        assert!(notes.contains(part), "{part} is not in {notes}");
+    }
+    assert!(found.boats.len() == 3 && (found.common_s - 0.2).abs() < 1e-9);
+    let mut far = header();
+    far.notice.scenario.field.plan.datum.lat_deg += 0.1;
+    assert!(matches!(compare(&far, &books[1]), Err(Incomparable::Datum { .. })));
+    let strangers = Book { boats: vec![], ..books[1].clone() };
+    assert!(matches!(compare(b.header(), &strangers), Err(Incomparable::Boats { .. })));
+    let mut empty = books[1].clone();
+    empty.times_s.clear();
+    empty.boats.iter_mut().for_each(|boat| boat.moments.clear());
+    assert_eq!(compare(b.header(), &empty), Err(Incomparable::Time));
+}

@@ -1,0 +1,141 @@
+//! A browser's side of the talk.
+
+use serde_json::Value;
+use std::io::{ErrorKind, Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::time::{Duration, Instant};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::http::{HeaderName, HeaderValue};
+use tungstenite::{Error, Message, WebSocket};
+
+/// How long anything may take.
+const LIMIT: Duration = Duration::from_secs(30);
+/// How long it takes to believe that nothing comes.
+const QUIET: Duration = Duration::from_millis(400);
+
+pub(crate) struct Client {
+    socket: WebSocket<TcpStream>,
+}
+
+impl Client {
+    /// A websocket at this path, with these headers; or the answer's status.
+    pub(crate) fn connect(address: SocketAddr, path: &str, headers: &[(&str, &str)]) -> Result<Client, u16> {
+        let mut request = format!("ws://{address}{path}").into_client_request().expect("a sound request");
+        for (name, value) in headers {
+            let name: HeaderName = name.parse().expect("a header");
+            request.headers_mut().insert(name, HeaderValue::from_str(value).expect("a value"));
+        }
+        let stream = TcpStream::connect(address).expect("somebody listens");
+        match tungstenite::client(request, stream) {
+            Ok((socket, _)) => {
+                socket.get_ref().set_read_timeout(Some(Duration::from_millis(20))).expect("a socket has time-outs");
+                Ok(Client { socket })
+            }
+            Err(tungstenite::HandshakeError::Failure(Error::Http(response))) => Err(response.status().as_u16()),
+            Err(other) => panic!("{other}"),
+        }
+    }
+
+    pub(crate) fn send(&mut self, json: &str) {
+        self.socket.send(Message::text(json)).expect("the server takes it");
+    }
+
+    pub(crate) fn send_raw(&mut self, message: Message) -> Result<(), Error> {
+        self.socket.send(message)
+    }
+
+    pub(crate) fn ack(&mut self) {
+        self.send(r#"{"do":"ack"}"#);
+    }
+
+    /// What comes next within a time; nothing if the server has hung up.
+    fn next_within(&mut self, limit: Duration) -> Option<Message> {
+        let end = now() + limit;
+        while now() < end {
+            match self.socket.read() {
+                Ok(Message::Ping(_) | Message::Pong(_)) => {}
+                Ok(message) => return Some(message),
+                Err(Error::Io(e)) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+                Err(_) => return None,
+            }
+        }
+        None
+    }
+
+    /// The next message that is one.
+    pub(crate) fn next(&mut self) -> Message {
+        self.next_within(LIMIT).expect("something comes in time")
+    }
+
+    /// The next text, which must be next of all.
+    pub(crate) fn text(&mut self) -> Value {
+        match self.next() {
+            Message::Text(text) => serde_json::from_str(&text).expect("texts are JSON"),
+            other => panic!("a text is expected, not {other:?}"),
+        }
+    }
+
+    /// The next text of a kind that is as it should be; everything else is passed over, frames are drawn at once.
+    pub(crate) fn until(&mut self, kind: &str, is_good: impl Fn(&Value) -> bool) -> Value {
+        let end = now() + LIMIT;
+        let mut last = Value::Null;
+        while now() < end {
+            match self.next() {
+                Message::Text(text) => {
+                    let value: Value = serde_json::from_str(&text).expect("texts are JSON");
+                    if value["kind"] == kind && is_good(&value) {
+                        return value;
+                    }
+                    last = if value["kind"] == kind { value } else { last };
+                }
+                Message::Binary(bytes) if bytes.first() == Some(&1) => self.ack(),
+                _ => {}
+            }
+        }
+        panic!("no such {kind} in time; the last was {last}");
+    }
+
+    /// The next frame with its first byte; texts are passed over.
+    pub(crate) fn frame(&mut self) -> Vec<u8> {
+        loop {
+            if let Message::Binary(bytes) = self.next() {
+                return bytes.to_vec();
+            }
+        }
+    }
+
+    /// All that comes until it is quiet for a while.
+    pub(crate) fn rest(&mut self) -> Vec<Message> {
+        std::iter::from_fn(|| self.next_within(QUIET)).collect()
+    }
+
+    /// Whether the server hangs up in time.
+    pub(crate) fn is_hung_up_on(&mut self) -> bool {
+        let end = now() + LIMIT;
+        while now() < end {
+            match self.socket.read() {
+                Err(Error::Io(e)) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+                Err(_) => return true,
+                Ok(_) => {}
+            }
+        }
+        false
+    }
+}
+
+/// A request for a file, as a browser makes it: the answer's status, and all of it.
+pub(crate) fn get(address: SocketAddr, path: &str, host: &str) -> (u16, String) {
+    let mut stream = TcpStream::connect(address).expect("somebody listens");
+    stream.set_read_timeout(Some(LIMIT)).expect("a socket has time-outs");
+    let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");
+    stream.write_all(request.as_bytes()).expect("it listens");
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).expect("it answers in words");
+    let status = answer.split(' ').nth(1).and_then(|status| status.parse().ok()).expect("a status");
+    (status, answer)
+}
+
+#[expect(clippy::disallowed_methods, reason = "a test waits no longer than a limit")]
+pub(crate) fn now() -> Instant {
+    Instant::now()
+}

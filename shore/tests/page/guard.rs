@@ -1,0 +1,78 @@
+//! Who is let in, and who may act.
+
+use super::client::{Client, get};
+use super::replay::show;
+use super::{look, page};
+
+#[test]
+fn the_page_is_served_under_its_own_names_and_sealed() {
+    let page = page(show(), None, &["boat.local"]);
+    let at = page.address();
+    for (host, path, status) in [
+        (at.to_string(), "/", 200),
+        (format!("localhost:{}", at.port()), "/index.html", 200),
+        ("boat.local".to_owned(), "/", 200),
+        ("evil.example".to_owned(), "/", 403),
+        ("evil.example".to_owned(), "/ws", 403),
+        (at.to_string(), "/whale", 404),
+        (at.to_string(), "/ws", 400),
+    ] {
+        let (got, answer) = get(at, path, &host);
+        assert_eq!(got, status, "{path} of {host}");
+        let low = answer.to_lowercase();
+        for header in [
+            "content-security-policy: default-src 'self'",
+            "x-content-type-options: nosniff",
+            "referrer-policy: no-referrer",
+            "cache-control: no-cache",
+        ] {
+            assert!(low.contains(header), "{header} in {answer}");
+        }
+        assert!(status != 403 || answer.contains("not known as"), "it says why: {answer}");
+    }
+    page.close();
+}
+
+#[test]
+fn other_pages_open_no_websocket() {
+    let page = page(show(), None, &[]);
+    let own = format!("http://{}", page.address());
+    for (headers, refused) in [
+        (vec![("Origin", own.as_str())], None),
+        (vec![("Origin", "http://evil.example")], Some(403)),
+        (vec![("Origin", "null")], Some(403)),
+        (vec![("Host", "evil.example"), ("Origin", "http://evil.example")], Some(403)),
+    ] {
+        assert_eq!(Client::connect(page.address(), "/ws", &headers).err(), refused, "{headers:?}");
+    }
+}
+
+#[test]
+fn with_a_token_only_those_who_show_it_have_rights() {
+    let page = page(show(), Some("a secret"), &[]);
+    for (path, rights) in [("/ws", false), ("/ws?token=guess", false), ("/ws?token=a%20secret", true)] {
+        let mut client = Client::connect(page.address(), path, &[]).expect("all may look");
+        assert_eq!(client.text()["rights"], rights, "{path}");
+    }
+}
+
+#[test]
+fn so_many_may_look_and_no_more() {
+    let page = page(show(), None, &[]);
+    let mut clients: Vec<Client> = (0..64).map(|_| look(&page)).collect();
+    assert_eq!(Client::connect(page.address(), "/ws", &[]).err(), Some(503));
+    assert_eq!(clients[63].text()["kind"], "hello");
+    drop(clients.pop());
+    // The place is free as soon as the server has noticed.
+    let again = (0..1000).find_map(|_| Client::connect(page.address(), "/ws", &[]).ok());
+    assert_eq!(again.expect("a place is free").text()["kind"], "hello");
+}
+
+#[test]
+fn pages_hear_of_the_end() {
+    let page = page(show(), None, &[]);
+    let mut client = look(&page);
+    client.text();
+    page.close();
+    assert!(client.is_hung_up_on());
+}

@@ -1,0 +1,371 @@
+//! A game on a network, seen by pages: a made-up sim, and the real way to it.
+
+use super::client::Client;
+use super::film::{frame, own_boat, report, scenario, seq_of};
+use super::{look, page};
+use bus::{Board, Bus, Delivery, Net, Publisher, Standing};
+use game::codec;
+use game::event::{Event, Logged};
+use game::external::GatewayStatus;
+use game::helm::{HelmQuestion, HelmReport};
+use game::message::{Control, EventRecord, Message, Notice, PolicyProposal, Stamp};
+use game::outcome::EventOutcome;
+use game::picture::Picture;
+use game::run_state::{Phase, RunState};
+use game::strategy::{Behaviour, Expression, Parameter, Policy, Proposer, Task};
+use game::topic::{self, GameName, Part};
+use game::water::{PlaneWave, Water};
+use game::{Scenario, SimTime, TeamId, VehicleId};
+use serde_json::json;
+use shore::page::live::LiveShow;
+use shore::page::{Page, Show};
+use std::sync::Arc;
+use std::time::Duration;
+
+const LIMIT: Duration = Duration::from_secs(30);
+const BLUE_ONE: VehicleId = VehicleId(0);
+
+/// A sim that plays nothing: it says what a test wants said.
+struct Sim {
+    bus: Bus,
+    port: u16,
+    frames: Publisher,
+    run: Publisher,
+    pictures: Publisher,
+    scenario: Scenario,
+    events: Arc<Board<Vec<EventOutcome>>>,
+    controls: Arc<Board<Vec<Control>>>,
+    proposals: Arc<Board<Vec<PolicyProposal>>>,
+    _standing: Vec<Standing>,
+}
+
+/// A game in which the first boat heeds a policy, and the others do not.
+fn steered(file: &str) -> Scenario {
+    let mut scenario = scenario(file);
+    let number = |value| Parameter { expression: Expression::Constant(value), range: (0.0, 1000.0) };
+    let mut strategy = scenario.strategies[scenario.vehicles[0].strategy].clone();
+    let policy = Policy {
+        by: Proposer::Person,
+        ttl_s: number(1.0),
+        peak_width_deg: number(10.0),
+        base_width_deg: number(60.0),
+        course_share: number(0.5),
+    };
+    for role in &mut strategy.roles {
+        role.behaviours.push(Behaviour {
+            name: "steered".to_owned(),
+            modes: vec![true; role.modes.len()],
+            when: None,
+            weight: number(100.0),
+            duration_s: None,
+            perpetual: false,
+            posts: vec![],
+            task: Task::Policy(policy.clone()),
+        });
+    }
+    scenario.vehicles[0].strategy = scenario.strategies.len();
+    scenario.strategies.push(strategy);
+    scenario
+}
+
+fn json<T: serde::Serialize>(value: &T) -> Vec<u8> {
+    serde_json::to_vec(value).expect("it is JSON")
+}
+
+impl Sim {
+    fn open(port: u16, name: &str, scenario: Scenario) -> Sim {
+        let net = Net { listen: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
+        let bus = Bus::hub(&net).expect("the port is free");
+        let game = GameName::new(name).expect("a good name");
+        let publisher = |key: String| bus.publisher(key, Delivery::Wait).expect("it publishes");
+        let (frames, run) = (publisher(topic::frame(&game)), publisher(topic::run(&game)));
+        let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
+        let events = Arc::new(Board::new(vec![]));
+        let (controls, proposals) = (Arc::new(Board::new(vec![])), Arc::new(Board::new(vec![])));
+        let notice = Notice { version: game::VERSION.to_owned(), pace: "1x".to_owned(), scenario: scenario.clone() };
+        let wave = PlaneWave { amplitude_m: 0.25, ..PlaneWave::default() };
+        let fixed = |key: String, answer: Vec<u8>| {
+            bus.answer(key, move |question| question.answer(answer.clone())).expect("it answers")
+        };
+        let told = Arc::clone(&events);
+        let heard = Arc::clone(&controls);
+        let proposed = Arc::clone(&proposals);
+        let standing = vec![
+            fixed(topic::scenario(&game), json(&notice)),
+            fixed(topic::water(&game), json(&Water { waves: vec![wave] })),
+            bus.answer(topic::events(&game), move |question| question.answer(told.visit(|events| json(events))))
+                .expect("it answers"),
+            bus.answer(topic::helm(&game, &scenario, BLUE_ONE), |question| {
+                let asked: HelmQuestion = serde_json::from_slice(&question.payload).expect("a question");
+                let mode = format!("functions:{}", asked.functions);
+                question.answer(json(&Some(HelmReport { mode, ..report(BLUE_ONE) })));
+            })
+            .expect("it answers"),
+            bus.subscribe(topic::control(&game), move |bytes| {
+                heard.visit(|all| all.push(serde_json::from_slice(bytes).expect("a control")));
+            })
+            .expect("it listens"),
+            bus.subscribe(topic::recorded(&game, "policy/*"), move |bytes| {
+                proposed.visit(|all| all.push(codec::decode(bytes).expect("a proposal")));
+            })
+            .expect("it listens"),
+            bus.show_alive(topic::alive(&game, Part::Sim, &bus.id())).expect("it is alive"),
+        ];
+        Sim { bus, port, frames, run, pictures, scenario, events, controls, proposals, _standing: standing }
+    }
+
+    fn show(&self, seq: u64, events: &[Logged]) {
+        let mut frame = frame(&self.scenario, seq);
+        frame.events = events.iter().map(|logged| EventRecord::from(*logged)).collect();
+        self.frames.send(&frame).expect("it is open");
+    }
+
+    fn tell_run(&self, phase: Phase) {
+        let run = RunState { phase, now_s: 7.0, pace: "1x".to_owned(), rate: 1.0, ..RunState::default() };
+        self.run.send_json(json(&run)).expect("it is open");
+    }
+
+    /// Waits until the page's server listens to frames.
+    fn wait_for_ears(&self) {
+        let ears = Board::new(());
+        let heard = (0..3000).any(|_| {
+            ears.wait(Duration::from_millis(10), |()| false);
+            self.frames.is_heard() && self.run.is_heard()
+        });
+        assert!(heard, "nobody listens");
+    }
+
+    fn close(self) {
+        self.bus.close();
+    }
+}
+
+fn port() -> u16 {
+    bus::free_port(false).expect("a free port")
+}
+
+fn live(port: u16, game: Option<&str>) -> Arc<dyn Show> {
+    let net = Net { connect: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
+    let game = game.map(|name| GameName::new(name).expect("a good name"));
+    let show = LiveShow::open(Box::new(move || Ok(net.clone())), game, Box::new(|_| ()));
+    Arc::new(show.expect("a thread"))
+}
+
+/// A game, a server, and a page in it that has been greeted.
+fn meet(file: &str) -> (Sim, Page, Client) {
+    let port = port();
+    let sim = Sim::open(port, "pond", steered(file));
+    let page = page(live(port, None), None, &[]);
+    let mut client = look(&page);
+    let hello = client.text();
+    assert_eq!((&hello["kind"], &hello["mode"], &hello["game"]), (&json!("hello"), &json!("live"), &json!("pond")));
+    sim.wait_for_ears();
+    (sim, page, client)
+}
+
+fn tagged(tick: u64) -> Logged {
+    Logged { tick, at: SimTime(50_000_000 * tick as i64), event: Event::Untagged { vehicle: BLUE_ONE } }
+}
+
+#[test]
+fn a_page_sees_frames_their_past_and_how_the_run_stands() {
+    let (sim, page, mut client) = meet("pav01_vs_pav01.toml");
+    sim.tell_run(Phase::Paused);
+    client.until("state", |state| state["phase"] == "paused" && state["now_s"] == 7.0 && state["can_speed"] == true);
+    (0..=100).for_each(|seq| sim.show(seq, &[]));
+    let shown = std::iter::from_fn(|| {
+        let frame = client.frame();
+        client.ack();
+        Some(frame)
+    })
+    .find(|frame| seq_of(frame) == 100);
+    assert_eq!(shown.expect("the newest comes")[0], 1);
+    // A newcomer gets the past first.
+    let mut newcomer = look(&page);
+    assert_eq!(newcomer.text()["chart"]["waves"][0]["amplitude_m"], 0.25);
+    let past: Vec<u64> =
+        (0..20).map(|_| newcomer.frame()).inspect(|f| assert_eq!(f[0], 2)).map(|f| seq_of(&f)).collect();
+    assert_eq!(past, (0..20).map(|step| step * 5).collect::<Vec<u64>>());
+    let now = newcomer.frame();
+    assert_eq!((now[0], seq_of(&now)), (1, 100));
+    sim.close();
+}
+
+#[test]
+fn events_come_with_frames_and_missed_ones_are_asked_for() {
+    let (sim, _page, mut client) = meet("pav01_vs_pav01.toml");
+    client.until("events", |events| events["reset"] == true);
+    let outcome = |tick| EventOutcome::new(&sim.scenario, &tagged(tick));
+    sim.events.visit(|events| *events = vec![outcome(2), outcome(4)]);
+    sim.show(1, &[tagged(2)]);
+    client.until("events", |events| events["events"][0]["tick"] == 2);
+    // The frame between, with its event, is lost.
+    sim.show(3, &[]);
+    let news = client.until("events", |events| events["events"].as_array().is_some_and(|all| !all.is_empty()));
+    let last = news["events"].as_array().and_then(|all| all.last()).expect("an event");
+    assert_eq!((&last["tick"], &last["text"]), (&json!(4), &json!("blue_one is home and plays again")));
+    sim.close();
+}
+
+#[test]
+fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
+    let (sim, page, mut client) = meet("pav01_vs_pav01.toml");
+    for (ask, want) in [
+        (r#"{"do":"control","what":"e_stop"}"#, Control::EStop),
+        (r#"{"do":"control","what":"go_on"}"#, Control::GoOn),
+        (r#"{"do":"speed","factor":4}"#, Control::Speed(Some(4.0))),
+        (r#"{"do":"speed","factor":null}"#, Control::Speed(None)),
+    ] {
+        client.send(ask);
+        assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&want)), "{ask}");
+    }
+    for ask in [r#"{"do":"speed","factor":0}"#, r#"{"do":"seek","t_s":0}"#, r#"{"do":"step","by":1}"#] {
+        client.send(ask);
+        client.until("refused", |_| true);
+    }
+    page.close();
+    let locked = super::page(live_again(&sim), Some("secret"), &[]);
+    let mut onlooker = look(&locked);
+    assert_eq!(onlooker.text()["rights"], false);
+    onlooker.send(r#"{"do":"control","what":"stop"}"#);
+    assert_eq!(onlooker.until("refused", |_| true)["what"], "control");
+    let mut master = Client::connect(locked.address(), "/ws?token=secret", &[]).expect("all may look");
+    master.send(r#"{"do":"control","what":"halt"}"#);
+    assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::Halt)));
+    sim.controls.visit(|all| assert!(!all.contains(&Control::Stop)));
+    sim.close();
+}
+
+/// Another server in the same game.
+fn live_again(sim: &Sim) -> Arc<dyn Show> {
+    live(sim.port, Some("pond"))
+}
+
+#[test]
+fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
+    let (sim, page, mut one) = meet("pav01_vs_pav01.toml");
+    let mut other = look(&page);
+    sim.show(5, &[]);
+    one.frame();
+    let steer = r#"{"do":"drive","vehicle":"blue_one","course_deg":-90,"speed_m_s":99}"#;
+    one.send(steer);
+    one.until("drive", |drive| drive["vehicle"] == "blue_one" && drive["by"] == "you");
+    other.until("drive", |drive| drive["by"] == "other");
+    assert!(sim.proposals.wait(LIMIT, |all| !all.is_empty()));
+    let proposal = sim.proposals.visit(|all| all[0]);
+    let stamp = Stamp { version: PolicyProposal::VERSION, ..frame(&sim.scenario, 5).stamp };
+    assert_eq!((proposal.stamp, proposal.vehicle), (stamp, BLUE_ONE));
+    assert!((proposal.course_rad - 270.0_f64.to_radians()).abs() < 1e-12);
+    assert_eq!(proposal.speed_m_s, sim.scenario.boat_of(BLUE_ONE).speed_max_m_s());
+    other.send(steer);
+    assert_eq!(other.until("refused", |_| true)["what"], "drive");
+    other.send(r#"{"do":"drive","vehicle":"blue_two","course_deg":0,"speed_m_s":1}"#);
+    let refused = other.until("refused", |_| true);
+    assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains("heeds no policy")), "{refused}");
+    one.send(r#"{"do":"let_go","vehicle":"blue_one"}"#);
+    other.until("drive", |drive| drive["by"].is_null());
+    other.send(steer);
+    other.until("drive", |drive| drive["by"] == "you");
+    one.until("drive", |drive| drive["by"] == "other");
+    // Silent for two seconds, it has let go.
+    one.until("drive", |drive| drive["by"].is_null());
+    one.send(steer);
+    other.until("drive", |drive| drive["by"] == "other");
+    drop(one);
+    other.until("drive", |drive| drive["by"].is_null());
+    sim.close();
+}
+
+#[test]
+fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
+    let (sim, page, mut client) = meet("pav01_vs_pav01.toml");
+    let mut other = look(&page);
+    assert!(!sim.pictures.is_heard(), "nobody looks at a boat yet");
+    client.send(r#"{"do":"select","vehicle":"blue_one","functions":true}"#);
+    other.send(r#"{"do":"select","vehicle":"red_one","functions":false}"#);
+    let helm = client.until("helm", |helm| helm["report"]["mode"] == "functions:true");
+    assert_eq!((&helm["computed"], &helm["agrees"]), (&json!(false), &json!(null)));
+    let none = other.until("helm", |_| true);
+    assert_eq!((&none["report"], &none["reason"]), (&json!(null), &json!("nobody minds red_one now")));
+    let ears = Board::new(());
+    let heard = (0..3000).any(|_| {
+        ears.wait(Duration::from_millis(10), |()| false);
+        sim.pictures.is_heard()
+    });
+    assert!(heard, "the picture of its team is wanted");
+    let stamp = Stamp { valid_ns: SimTime::from_s(2.0), seq: 20, version: Picture::VERSION };
+    let picture = Picture { stamp, own: vec![own_boat(BLUE_ONE)], ..Picture::default() };
+    sim.pictures.send(&picture).expect("it is open");
+    let estimate = client.until("estimate", |_| true);
+    assert_eq!(
+        (&estimate["vehicle"], &estimate["x"], &estimate["at_s"]),
+        (&json!("blue_one"), &json!(4.0), &json!(2.0))
+    );
+    client.send(r#"{"do":"select","vehicle":null}"#);
+    let unheard = (0..3000).any(|_| {
+        ears.wait(Duration::from_millis(10), |()| false);
+        !sim.pictures.is_heard()
+    });
+    // The other page looks at a red boat; nobody wants blue's picture any more.
+    assert!(unheard, "nobody looks at it any more");
+    sim.close();
+}
+
+#[test]
+fn gateways_tell_and_real_boats_keep_their_pace() {
+    let (sim, _page, mut client) = meet("mixed_2v2.toml");
+    let external = sim.scenario.vehicles.iter().find(|v| v.source == game::scenario::Source::External);
+    let name = external.expect("a real boat").name.clone();
+    let game = GameName::new("pond").expect("a good name");
+    let gateway = sim.bus.publisher(topic::status(&game, &name), Delivery::Wait).expect("it publishes");
+    let status = GatewayStatus { vehicle: name.clone(), state: "armed".to_owned(), ..GatewayStatus::default() };
+    gateway.send_json(json(&status)).expect("it is open");
+    let told = client.until("status", |_| true);
+    assert_eq!((&told["vehicle"], &told["status"]["state"]), (&json!(name), &json!("armed")));
+    client.send(r#"{"do":"speed","factor":4}"#);
+    client.until("refused", |refused| refused["what"] == "speed");
+    client.until("state", |state| state["can_speed"] == false);
+    sim.close();
+}
+
+#[test]
+fn a_game_that_goes_is_gone_and_the_next_is_another() {
+    let port = port();
+    let page = page(live(port, None), None, &[]);
+    let mut client = look(&page);
+    assert_eq!(client.rest(), [], "there is no game yet");
+    let first = Sim::open(port, "pond", scenario("pav01_vs_pav01.toml"));
+    assert_eq!(client.until("hello", |_| true)["game"], "pond");
+    first.wait_for_ears();
+    first.show(9, &[]);
+    client.until("state", |state| state["phase"] == "playing");
+    first.close();
+    client.until("state", |state| state["phase"] == "gone");
+    client.send(r#"{"do":"control","what":"stop"}"#);
+    client.until("refused", |_| true);
+    let second = Sim::open(port, "lake", scenario("pav01_vs_pav01.toml"));
+    assert_eq!(client.until("hello", |_| true)["game"], "lake");
+    client.until("events", |events| events["reset"] == true);
+    client.until("state", |state| state["phase"] == "waiting");
+    second.controls.visit(|all| assert_eq!(all.len(), 0, "what was asked of the first game is not done to the second"));
+    second.close();
+}
+
+#[test]
+fn noise_on_the_network_is_ignored() {
+    let (sim, _page, mut client) = meet("pav01_vs_pav01.toml");
+    for noise in [&b""[..], b"ahoy", &[0, 1, 0, 0], &[0; 64], &[255; 200]] {
+        sim.frames.send_raw(noise.to_vec()).expect("it is open");
+        sim.run.send_raw(noise.to_vec()).expect("it is open");
+    }
+    let mut odd = frame(&sim.scenario, 1);
+    odd.stamp.valid_ns = SimTime(i64::MIN);
+    sim.frames.send(&odd).expect("it is open");
+    odd = frame(&sim.scenario, 1);
+    odd.events = vec![EventRecord { tick: 1, at_ns: SimTime(1), kind: 8, subject: 900, object: 901 }];
+    sim.frames.send(&odd).expect("it is open");
+    sim.show(2, &[tagged(1)]);
+    let events = client.until("events", |events| events["events"].as_array().is_some_and(|all| !all.is_empty()));
+    assert_eq!(events["events"][0]["event"], "untagged");
+    sim.close();
+}

@@ -1,0 +1,31 @@
+//! The page's server, seen from a browser: over TCP, with websockets.
+
+mod client;
+mod film;
+mod guard;
+#[cfg(feature = "net")]
+mod live;
+mod replay;
+mod talk;
+
+use client::Client;
+use shore::page::{Page, PageSettings, Show};
+use std::sync::Arc;
+
+/// A server on a free port that shows this.
+fn page(show: Arc<dyn Show>, token: Option<&str>, hosts: &[&str]) -> Page {
+    let settings = PageSettings {
+        listen: "127.0.0.1:0".parse().expect("an address"),
+        token: token.map(str::to_owned),
+        hosts: hosts.iter().map(|host| (*host).to_owned()).collect(),
+        stop: Arc::default(),
+    };
+    let page = Page::open(settings).expect("a free port");
+    page.show(show);
+    page
+}
+
+/// A page that looks at it.
+fn look(page: &Page) -> Client {
+    Client::connect(page.address(), "/ws", &[]).expect("all may look")
+}

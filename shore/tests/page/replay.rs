@@ -1,0 +1,173 @@
+//! A recording, played by pages.
+
+use super::film::{MadeUp, Rememberer, seq_of};
+use super::{client, look, page};
+use proptest::prelude::*;
+use serde_json::json;
+use shore::page::replay::ReplayShow;
+use shore::page::{Ask, Guest, Said, Show, Word};
+use std::sync::Arc;
+use std::time::Duration;
+
+pub(crate) fn show() -> Arc<dyn Show> {
+    Arc::new(ReplayShow::new(Arc::new(MadeUp::new()), Some(Box::new(Rememberer))))
+}
+
+#[test]
+fn a_replay_says_hello_tells_all_events_and_stands_at_the_beginning() {
+    let page = page(show(), None, &[]);
+    let mut client = look(&page);
+    let hello = client.text();
+    assert_eq!((&hello["kind"], &hello["protocol"]), (&json!("hello"), &json!(1)));
+    assert_eq!((&hello["mode"], &hello["game"]), (&json!("replay"), &json!("made_up")));
+    assert!(hello["definitions"]["Frame"].as_str().is_some_and(|text| text.contains("VehicleTruth")));
+    assert_eq!(hello["chart"]["vehicles"][0]["name"], "blue_one");
+    let events = client.text();
+    assert_eq!((&events["kind"], &events["reset"]), (&json!("events"), &json!(true)));
+    assert_eq!(events["events"].as_array().map(Vec::len), Some(2));
+    let want = json!({"kind": "player", "playing": false, "t_s": 0.0, "speed": 1.0, "from_s": 0.0, "to_s": 120.0,
+        "cut": true, "file": "made_up.mcap"});
+    assert_eq!(client.text(), want);
+    let first = client.frame();
+    assert_eq!((first[0], seq_of(&first)), (1, 0));
+    client.ack();
+    assert_eq!(client.rest(), [], "it stands");
+}
+
+#[test]
+fn seeking_brings_the_past_and_the_moment() {
+    let page = page(show(), None, &[]);
+    let mut client = look(&page);
+    client.frame();
+    client.ack();
+    client.send(r#"{"do":"seek","t_s":100.04}"#);
+    client.until("player", |player| player["t_s"] == 100.04);
+    let past: Vec<Vec<u8>> = (0..120).map(|_| client.frame()).collect();
+    assert!(past.iter().all(|frame| frame[0] == 2));
+    assert_eq!((seq_of(&past[0]), seq_of(&past[119])), (400, 995));
+    let moment = client.frame();
+    assert_eq!((moment[0], seq_of(&moment)), (1, 1000));
+    client.ack();
+    for (ask, want) in [
+        (r#"{"do":"step","by":1}"#, 1001),
+        (r#"{"do":"control","what":"step"}"#, 1002),
+        (r#"{"do":"step","by":-3}"#, 999),
+        (r#"{"do":"step","by":999999}"#, 1200),
+        (r#"{"do":"seek","t_s":-5}"#, 0),
+    ] {
+        client.send(ask);
+        let shown = std::iter::from_fn(|| Some(client.frame())).find(|frame| frame[0] == 1).expect("one comes");
+        assert_eq!(seq_of(&shown), want, "{ask}");
+        client.ack();
+    }
+}
+
+#[test]
+fn it_plays_as_fast_as_asked_and_to_the_end() {
+    let page = page(show(), None, &[]);
+    let mut client = look(&page);
+    client.send(r#"{"do":"speed","factor":50}"#);
+    client.until("player", |player| player["speed"] == 50.0);
+    client.send(r#"{"do":"seek","t_s":100}"#);
+    client.send(r#"{"do":"control","what":"resume"}"#);
+    client.until("player", |player| player["playing"] == true);
+    client.until("player", |player| player["playing"] == false && player["t_s"] == 120.0);
+    client.send(r#"{"do":"control","what":"resume"}"#);
+    client.until("player", |player| player["playing"] == true && player["t_s"].as_f64().is_some_and(|t_s| t_s < 60.0));
+}
+
+#[test]
+fn each_page_has_a_player_of_its_own() {
+    let page = page(show(), None, &[]);
+    let (mut one, mut other) = (look(&page), look(&page));
+    one.frame();
+    one.ack();
+    other.frame();
+    other.ack();
+    one.send(r#"{"do":"seek","t_s":3}"#);
+    one.until("player", |player| player["t_s"] == 3.0);
+    assert_eq!(other.rest(), []);
+}
+
+#[test]
+fn a_selected_boat_tells_what_its_helm_thought_and_where_it_believed_to_be() {
+    let page = page(show(), None, &[]);
+    let mut client = look(&page);
+    client.send(r#"{"do":"seek","t_s":10}"#);
+    client.send(r#"{"do":"select","vehicle":"red_one","functions":true}"#);
+    let helm = client.until("helm", |helm| helm["report"]["mode"] == "sailing:100");
+    assert_eq!((&helm["vehicle"], &helm["computed"], &helm["agrees"]), (&json!("red_one"), &json!(true), &json!(true)));
+    client.send(r#"{"do":"step","by":1}"#);
+    let estimate = client.until("estimate", |estimate| estimate["at_s"] == 10.1);
+    let want = json!({"kind": "estimate", "vehicle": "red_one", "x": 4.0, "y": 3.0, "heading_deg": 90.0,
+        "speed_m_s": 1.5, "fix_age_s": 10.1, "at_s": 10.1});
+    assert_eq!(estimate, want);
+    client.send(r#"{"do":"select","vehicle":"whale"}"#);
+    let refused = client.until("refused", |_| true);
+    assert_eq!(refused["what"], "select");
+    assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains("red_one")), "{refused}");
+}
+
+#[test]
+fn what_a_recording_cannot_do_is_refused() {
+    let page = page(show(), None, &[]);
+    let mut client = look(&page);
+    for (ask, what) in [
+        (r#"{"do":"control","what":"e_stop"}"#, "control"),
+        (r#"{"do":"drive","vehicle":"blue_one","course_deg":0,"speed_m_s":1}"#, "drive"),
+        (r#"{"do":"speed","factor":-1}"#, "speed"),
+    ] {
+        client.send(ask);
+        assert_eq!(client.until("refused", |_| true)["what"], what, "{ask}");
+    }
+}
+
+#[test]
+fn a_recording_without_frames_is_shown_too() {
+    let page = page(Arc::new(ReplayShow::new(Arc::new(MadeUp::of(0)), None)), None, &[]);
+    let mut client = look(&page);
+    for ask in [r#"{"do":"control","what":"resume"}"#, r#"{"do":"step","by":1}"#, r#"{"do":"seek","t_s":9}"#] {
+        client.send(ask);
+    }
+    client.until("player", |player| player["t_s"] == 0.0 && player["to_s"] == 0.0);
+}
+
+fn any_ask() -> impl Strategy<Value = Ask> {
+    let vehicle = prop::sample::select(vec!["blue_one", "red_two", "whale"]);
+    prop_oneof![
+        (vehicle, any::<bool>())
+            .prop_map(|(name, functions)| Ask::Select { vehicle: Some(name.to_owned()), functions }),
+        prop::sample::select(vec![Word::Pause, Word::Resume, Word::Step, Word::Stop])
+            .prop_map(|what| Ask::Control { what }),
+        prop::option::of(any::<f64>()).prop_map(|factor| Ask::Speed { factor }),
+        any::<i64>().prop_map(|by| Ask::Step { by }),
+        (-2..3_i64).prop_map(|by| Ask::Step { by }),
+        any::<f64>().prop_map(|t_s| Ask::Seek { t_s }),
+        (0.0..130.0).prop_map(|t_s| Ask::Seek { t_s }),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn whatever_is_asked_frames_come_in_order_between_jumps(
+        asks in prop::collection::vec((any_ask(), 0..2_000_u64, any::<bool>()), 1..30),
+    ) {
+        let show = ReplayShow::new(Arc::new(MadeUp::new()), None);
+        let mut viewer = show.admit(Guest { rights: false });
+        let mut now = client::now();
+        for (ask, wait_ms, room) in asks {
+            drop(viewer.ask(&ask, now));
+            now += Duration::from_millis(wait_ms);
+            let said: Vec<Said> = std::iter::from_fn(|| viewer.say(now, room)).take(1000).collect();
+            prop_assert!(said.len() < 1000, "it has no end of things to say after {ask:?}");
+            let frames: Vec<u64> = said.iter().filter_map(|said| match said {
+                Said::Past(bytes) | Said::Now(bytes) => Some(seq_of(bytes)),
+                Said::Text(_) => None,
+            }).collect();
+            prop_assert!(frames.is_sorted() && (room || frames.is_empty()), "{frames:?} after {ask:?}");
+            prop_assert!(said.iter().filter(|said| matches!(said, Said::Now(_))).count() <= 1);
+            prop_assert!(viewer.due(now).is_none_or(|due| due > now));
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! How the server and a page talk, whatever is shown.
+
+use super::film::seq_of;
+use super::replay::show;
+use super::{look, page};
+use tungstenite::Message;
+
+/// What is on its way to a page that draws nothing.
+fn frames(messages: &[Message]) -> Vec<u64> {
+    let bytes = messages.iter().filter_map(|message| match message {
+        Message::Binary(bytes) if bytes.first() == Some(&1) => Some(bytes),
+        _ => None,
+    });
+    bytes.map(|bytes| seq_of(bytes)).collect()
+}
+
+#[test]
+fn a_page_that_draws_nothing_gets_two_frames() {
+    let page = page(show(), None, &[]);
+    let mut client = look(&page);
+    client.send(r#"{"do":"control","what":"resume"}"#);
+    let messages: Vec<Message> = std::iter::from_fn(|| Some(client.next())).take(20).collect();
+    assert_eq!(frames(&messages).len(), 2, "while it plays for seconds");
+    client.send(r#"{"do":"control","what":"pause"}"#);
+    let paused = client.until("player", |player| player["playing"] == false);
+    assert!(frames(&client.rest()).is_empty());
+    client.ack();
+    let newest = (paused["t_s"].as_f64().expect("a time") * 10.0 + 1e-6) as u64;
+    assert_eq!(frames(&client.rest()), [newest], "those between are left out");
+}
+
+#[test]
+fn another_show_begins_with_a_hello() {
+    let page = page(show(), None, &[]);
+    let mut client = look(&page);
+    client.frame();
+    page.show(show());
+    client.until("hello", |_| true);
+    assert_eq!(client.text()["kind"], "events");
+    // One frame is on its way from the show before.
+    let rest = client.rest();
+    assert_eq!(frames(&rest), [0]);
+}
+
+#[test]
+fn a_page_opened_before_there_is_a_show_waits_for_it() {
+    let settings = shore::page::PageSettings {
+        listen: "127.0.0.1:0".parse().expect("an address"),
+        token: None,
+        hosts: vec![],
+        stop: std::sync::Arc::default(),
+    };
+    let page = shore::page::Page::open(settings).expect("a free port");
+    let mut client = look(&page);
+    client.ack();
+    assert_eq!(client.rest(), []);
+    page.show(show());
+    assert_eq!(client.text()["kind"], "hello");
+}
+
+#[test]
+fn garbage_is_refused_and_survived() {
+    let page = page(show(), None, &[]);
+    let (mut rude, mut polite) = (look(&page), look(&page));
+    for garbage in [
+        Message::text("ahoy"),
+        Message::text(r#"{"do":"fly"}"#),
+        Message::text(r#"{"do":"seek","t_s":1e999}"#),
+        Message::text("[".repeat(10_000)),
+        Message::binary(vec![0; 100]),
+    ] {
+        rude.send_raw(garbage).expect("it listens on");
+        assert_eq!(rude.until("refused", |_| true)["what"], "message");
+    }
+    // Too long a message ends the talk, with this page only.
+    drop(rude.send_raw(Message::text("x".repeat(17 * 1024))));
+    assert!(rude.is_hung_up_on());
+    polite.send(r#"{"do":"seek","t_s":5}"#);
+    polite.until("player", |player| player["t_s"] == 5.0);
+}

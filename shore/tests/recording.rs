@@ -1,0 +1,198 @@
+//! Recordings: what is written is read again, also from a file that was cut, and other files are refused.
+
+use game::helm::HelmQuestion;
+use game::input::{Input, Inputs};
+use game::message::{Frame, Message, Notice, Orders, Stamp, VehicleTruth};
+use game::picture::Nav;
+use game::water::{PlaneWave, Water};
+use game::{Order, Outcome, Picture, SimTime, VehicleId};
+use proptest::prelude::*;
+use shore::recording::{Ending, Header, Note, Recorder, Recording, RecordingError, Turn, Writer};
+use std::io::Cursor;
+use std::path::Path;
+
+fn header() -> Header {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+    let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+    let wave = PlaneWave { amplitude_m: 0.1, wavenumber_rad_m: 0.3, ..PlaneWave::default() };
+    Header {
+        commit: "c0ffee".to_owned(),
+        game: "pav01-1".to_owned(),
+        began_utc_ns: 1_700_000_000_000_000_000,
+        notice: Notice { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        water: Water { waves: vec![wave] },
+    }
+}
+
+fn ending() -> Ending {
+    let outcome = serde_json::json!({
+        "scenario": "pav01", "seed": 1, "version": "0", "digest": "ab", "duration_s": 1.0, "ticks": 20,
+        "winner": null, "boats": {}, "score": {"teams": {}, "boats": {}}, "counts": {"teams": {}, "boats": {}}, "events": [],
+    });
+    let outcome: Outcome = serde_json::from_value(outcome).expect("an outcome");
+    Ending { outcome, run: serde_json::json!({"pace": "lockstep"}), dropped: 0 }
+}
+
+/// The decision `seq`, at which the first boat is at `north_m`.
+fn turn(seq: u64, north_m: f64) -> Turn {
+    let at = |seq: u64, version| Stamp { valid_ns: SimTime(seq as i64 * 100_000_000), seq, version };
+    let nav = Nav { north_m, ..Nav::default() };
+    let vehicles = vec![VehicleTruth { nav, ..VehicleTruth::default() }; 4];
+    let frame = Frame { stamp: at(seq, Frame::VERSION), vehicles, score: vec![0, 0], ..Frame::default() };
+    let Some(before) = seq.checked_sub(1) else { return Turn { frame, ..Turn::default() } };
+    let picture = |team| Picture { stamp: at(before, Picture::VERSION), team, ..Picture::default() };
+    let order = Order::Steer { heading_rad: north_m, speed_m_s: 1.0 / 3.0 };
+    let inputs = vec![Input::Pictured, Input::Ordered { vehicle: VehicleId(1), order }];
+    Turn { frame, pictures: vec![picture(0), picture(1)], inputs }
+}
+
+fn status() -> Note {
+    let bytes = serde_json::to_vec(&HelmQuestion { functions: true }).expect("JSON");
+    Note::Heard { topic: "status/blue_one".to_owned(), schema: None, bytes, at: SimTime(50_000_000) }
+}
+
+/// A recording of a few turns; `north_m` are where the first boat was.
+fn recorded(north_m: &[f64]) -> Vec<u8> {
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header()).expect("it begins");
+    for (seq, north_m) in north_m.iter().enumerate() {
+        writer.note(&Note::Turn(Box::new(turn(seq as u64, *north_m))), 7 + seq as u64).expect("it is written");
+        if seq == 1 {
+            writer.note(&status(), 8).expect("it is written");
+        }
+        if seq % 3 == 2 {
+            writer.flush().expect("it is flushed");
+        }
+    }
+    writer.end(&ending()).expect("it ends").into_inner()
+}
+
+#[test]
+fn what_is_recorded_is_read_again() {
+    let recording = Recording::of(recorded(&[1.0, 2.0, 3.0, 4.0])).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(recording.header(), &header());
+    assert_eq!(recording.ending(), Some(&ending()));
+    assert!(!recording.is_cut());
+    let frames: Vec<Frame> = recording.frames().collect::<Result<_, _>>().unwrap_or_else(|e| panic!("{e}"));
+    let want: Vec<Frame> = (0..4).map(|seq| turn(seq, seq as f64 + 1.0).frame).collect();
+    assert_eq!(frames, want);
+    let said = recording.frame(2);
+    assert_eq!((said.topic, said.number, said.at, said.utc_ns), ("frame", 2, SimTime(200_000_000), 9));
+    assert_eq!(said.schema, Some("squall_msgs/msg/Frame"));
+    let inputs: Vec<Inputs> = recording.on("inputs").map(|said| said.read().expect("inputs")).collect();
+    let given = |inputs: &Inputs| inputs.inputs.iter().map(|record| record.input().expect("known")).collect::<Vec<_>>();
+    assert_eq!(inputs.iter().map(|inputs| inputs.stamp.seq).collect::<Vec<_>>(), [0, 1, 2, 3]);
+    assert_eq!(given(&inputs[2]), turn(2, 3.0).inputs);
+    let topics: Vec<(&str, usize)> = recording.topics().into_iter().collect();
+    let want = [("frame", 4), ("inputs", 4), ("picture/blue", 3), ("picture/red", 3), ("status/blue_one", 1)];
+    assert_eq!(topics, want);
+    let Note::Heard { bytes, .. } = status() else { panic!("it was heard") };
+    let said = recording.on("status/blue_one").next().expect("it is there");
+    assert_eq!((said.bytes, said.schema), (bytes.as_slice(), None));
+    assert!(matches!(said.read::<Orders>(), Err(RecordingError::Damaged { .. })));
+    assert_eq!(recording.on("whales").count(), 0);
+}
+
+#[test]
+fn the_file_is_one_that_the_library_reads() {
+    let bytes = recorded(&[1.0, 2.0, 3.0, 4.0]);
+    let summary = mcap::Summary::read(&bytes).expect("a summary").expect("a summary");
+    assert!(summary.chunk_indexes.len() > 1 && summary.stats.as_ref().is_some_and(|stats| stats.message_count == 15));
+    let mut count = 0;
+    for message in mcap::MessageStream::new(&bytes).expect("it is MCAP") {
+        let message = message.expect("a message");
+        count += 1;
+        let schema = message.channel.schema.as_ref().expect("each has a schema");
+        match message.channel.message_encoding.as_str() {
+            "cdr" => assert!(schema.encoding == "ros2msg" && !schema.data.is_empty()),
+            other => assert_eq!((other, schema.encoding.as_str()), ("json", "jsonschema")),
+        }
+    }
+    assert_eq!(count, 15);
+}
+
+/// What was said, message by message.
+fn all_of(recording: &Recording) -> Vec<(String, u32, Vec<u8>)> {
+    recording.messages().map(|said| (said.topic.to_owned(), said.number, said.bytes.to_vec())).collect()
+}
+
+#[test]
+fn a_file_cut_at_any_byte_opens_up_to_the_cut() {
+    let whole = recorded(&[1.0, 2.0, 3.0, 4.0]);
+    let all = all_of(&Recording::of(whole.clone()).unwrap_or_else(|e| panic!("{e}")));
+    // Every message ends where its bytes do.
+    let mut from = 0;
+    let mut ends = Vec::new();
+    for (topic, number, bytes) in &all {
+        let place = whole[from..].windows(bytes.len()).position(|window| window == bytes);
+        from += place.unwrap_or_else(|| panic!("{topic} {number} is there")) + bytes.len();
+        ends.push(from);
+    }
+    let first = (0..whole.len()).find(|cut| Recording::of(whole[..*cut].to_vec()).is_ok()).expect("it opens at last");
+    assert!(first < ends[0], "the beginning alone opens");
+    for cut in 0..whole.len() {
+        match Recording::of(whole[..cut].to_vec()) {
+            Err(RecordingError::Foreign(_)) => assert!(cut < first, "cut at {cut}"),
+            Err(e) => panic!("cut at {cut}: {e}"),
+            Ok(recording) => {
+                let count = ends.iter().filter(|end| **end <= cut).count();
+                assert_eq!(all_of(&recording), all[..count], "cut at {cut}");
+                assert!(recording.is_cut() || count == all.len(), "cut at {cut}");
+            }
+        }
+    }
+}
+
+#[test]
+fn other_files_are_refused_with_the_reason() {
+    let reason = |bytes: &[u8]| Recording::of(bytes.to_vec()).expect_err("it is refused").to_string();
+    assert!(reason(b"ahoy").contains("does not begin as MCAP"), "{}", reason(b"ahoy"));
+    let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).expect("it begins");
+    writer.finish().expect("it ends");
+    let said = reason(writer.into_inner().get_ref());
+    assert!(said.contains("there is no metadata \"squall\""), "{said}");
+    let mut header = header();
+    header.notice.version = "0.0.1".to_owned();
+    let other = Writer::begin(Cursor::new(Vec::new()), &header).and_then(|writer| writer.end(&ending()));
+    let said = reason(other.expect("a file").get_ref());
+    assert!(said.contains("recorded by Squall 0.0.1, this is"), "{said}");
+    let missing = Recording::open(Path::new("/nowhere/at.mcap")).expect_err("there is none").to_string();
+    assert!(missing.contains("/nowhere/at.mcap"), "{missing}");
+}
+
+#[test]
+#[expect(clippy::disallowed_methods, reason = "a file is looked at again, with a limit")]
+fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("game.mcap");
+    let recorder = Recorder::begin(&path, &header()).unwrap_or_else(|e| panic!("{e}"));
+    (0..50).for_each(|seq| recorder.note(Note::Turn(Box::new(turn(seq, seq as f64)))));
+    let mut frames = 0;
+    for _ in 0..3000 {
+        frames = Recording::open(&path).unwrap_or_else(|e| panic!("{e}")).frame_count();
+        if frames == 50 {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert_eq!(frames, 50, "what was recorded is on the disk though nobody ended it");
+    assert!(Recorder::begin(&path, &header()).is_err(), "nothing is overwritten");
+    let state = recorder.end(ending());
+    assert_eq!((state.dropped, state.failed), (0, None));
+    assert_eq!(state.bytes, std::fs::metadata(&path).expect("it is there").len());
+    let recording = Recording::open(&path).unwrap_or_else(|e| panic!("{e}"));
+    assert!(!recording.is_cut() && recording.frame_count() == 50);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn damaged_files_never_panic(place in 0.0..1.0_f64, byte in any::<u8>()) {
+        let mut bytes = recorded(&[1.0, 2.0]);
+        let place = (place * bytes.len() as f64) as usize;
+        bytes[place] = byte;
+        if let Ok(recording) = Recording::of(bytes) {
+            recording.frames().for_each(drop);
+        }
+    }
+}

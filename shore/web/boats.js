@@ -1,0 +1,322 @@
+// The boats: hulls, marks, names, carried flags, and the circles within which they may tag.
+
+import { DISABLED, MARKS, NAV_LOST, TAGGED } from './game.js';
+import { Labels } from './label.js';
+import { palette, teamColour } from './palette.js';
+
+/** A hull of length 1, bow first: ahead, to starboard. */
+const HULL = [[0.5, 0], [0.22, 0.42], [-0.15, 0.5], [-0.5, 0.4], [-0.5, -0.4], [-0.15, -0.5], [0.22, -0.42]];
+/** The second team's stripe across the hull. */
+const STRIPE = [[0.12, 0.62], [-0.12, 0.62], [-0.12, -0.62], [0.12, -0.62]];
+/** Least length of a hull, px: of few boats and of many. */
+const LENGTH_FEW_PX = 20;
+const LENGTH_MANY_PX = 13;
+const MANY = 60;
+/** How far ahead the line at the bow reaches, s. */
+const AHEAD_S = 3;
+/** What a carried flag takes, px. */
+const FLAG_ROOM_PX = 24;
+/** Circles of more boats than this are a tangle. */
+const CIRCLES_MAX = 40;
+
+/** Traces `shape` at a place: length and width in pixels. */
+function trace(context, shape, x, y, heading, length, width) {
+  const ahead = Math.sin(heading);
+  const up = -Math.cos(heading);
+  for (let i = 0; i < shape.length; i++) {
+    const along = shape[i][0] * length;
+    const across = shape[i][1] * width;
+    const px = x + along * ahead - across * up;
+    const py = y + along * up + across * ahead;
+    if (i === 0) context.moveTo(px, py);
+    else context.lineTo(px, py);
+  }
+  context.closePath();
+}
+
+/** A flag on its pole, foot at the place. The second team's has a stripe. */
+export function drawFlag(context, x, y, team, size) {
+  context.beginPath();
+  context.moveTo(x, y);
+  context.lineTo(x, y - size * 1.7);
+  context.lineWidth = 2;
+  context.strokeStyle = palette.ink;
+  context.stroke();
+  context.beginPath();
+  context.moveTo(x + 1, y - size * 1.7);
+  context.lineTo(x + size * 1.35, y - size * 1.22);
+  context.lineTo(x + 1, y - size * 0.74);
+  context.closePath();
+  context.fillStyle = teamColour(team);
+  context.fill();
+  context.lineWidth = 1.25;
+  context.strokeStyle = palette.halo;
+  context.stroke();
+  if (team !== 1) return;
+  context.beginPath();
+  context.moveTo(x + size * 0.4, y - size * 1.5);
+  context.lineTo(x + size * 0.4, y - size * 0.92);
+  context.lineWidth = Math.max(1.5, size * 0.16);
+  context.stroke();
+}
+
+/** Whether a place is within corners. */
+export function inside(corners, x, y) {
+  let odd = false;
+  for (let i = 0, j = corners.length - 1; i < corners.length; j = i++) {
+    const [xi, yi] = corners[i];
+    const [xj, yj] = corners[j];
+    if (yi > y !== yj > y && x < ((xj - xi) * (y - yi)) / (yj - yi) + xi) odd = !odd;
+  }
+  return odd;
+}
+
+export class Boats {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.context = canvas.getContext('2d');
+    this.labels = new Labels();
+    this.lengths = new Float32Array(0);
+    this.hovered = -1;
+  }
+
+  /** Draws all boats as posed. */
+  draw(game, view, shown, ratio) {
+    const { context } = this;
+    const selected = game.indexOf.get(game.selected) ?? -1;
+    context.clearRect(0, 0, view.width, view.height);
+    this.measure(game, view);
+    this.drawFlagsAtHome(game, view);
+    if (shown.circles) this.drawCircles(game, view, selected);
+    this.drawLeads(game, view);
+    for (let i = 0; i < game.count; i++) if (i !== selected) this.drawHull(game, view, i);
+    if (selected >= 0) {
+      this.drawGhost(game, view, selected);
+      this.drawHull(game, view, selected);
+      this.drawRing(game, view, selected);
+    }
+    this.drawMarks(game, view);
+    this.drawNames(game, view, shown, selected, ratio);
+  }
+
+  /** Lengths on the chart, px. */
+  measure(game, view) {
+    if (this.lengths.length !== game.count) this.lengths = new Float32Array(game.count);
+    const least = game.count > MANY ? LENGTH_MANY_PX : LENGTH_FEW_PX;
+    for (let i = 0; i < game.count; i++) this.lengths[i] = Math.max(least, game.vehicles[i].length_m * view.scale);
+  }
+
+  width(game, index) {
+    const { beam_m, length_m } = game.vehicles[index];
+    return this.lengths[index] * Math.min(0.62, Math.max(0.42, beam_m / length_m || 0.5));
+  }
+
+  drawHull(game, view, index) {
+    const { context } = this;
+    const x = view.xOf(game.x[index]);
+    const y = view.yOf(game.y[index]);
+    const length = this.lengths[index];
+    if (x < -length || y < -length || x > view.width + length || y > view.height + length) return;
+    const width = this.width(game, index);
+    const { team } = game.vehicles[index];
+    const colour = teamColour(team);
+    const idle = (game.marks[index] & (TAGGED | DISABLED)) !== 0;
+    context.beginPath();
+    trace(context, HULL, x, y, game.heading[index], length, width);
+    context.fillStyle = idle ? palette.halo : colour;
+    context.fill();
+    context.lineWidth = idle ? 2.25 : 1.25;
+    context.strokeStyle = idle ? colour : palette.halo;
+    context.stroke();
+    if (team === 1) {
+      context.beginPath();
+      trace(context, STRIPE, x, y, game.heading[index], length, width * 0.8);
+      context.fillStyle = idle ? colour : palette.halo;
+      context.fill();
+    }
+    if (game.marks[index] & DISABLED) this.drawCross(x, y, length * 0.42);
+    if (game.carrying[index] >= 0) {
+      const flag = game.chart.field?.flags?.[game.carrying[index]];
+      drawFlag(context, x, y, flag ? flag.team : 0, Math.max(11, length * 0.55));
+    }
+  }
+
+  drawCross(x, y, half) {
+    const { context } = this;
+    context.beginPath();
+    context.moveTo(x - half, y - half);
+    context.lineTo(x + half, y + half);
+    context.moveTo(x + half, y - half);
+    context.lineTo(x - half, y + half);
+    context.lineWidth = 2;
+    context.strokeStyle = palette.ink;
+    context.stroke();
+  }
+
+  /** Lines from the bows over the ground, as far as the boats get in a few seconds. */
+  drawLeads(game, view) {
+    const { context } = this;
+    for (let team = 0; team < palette.teams.length; team++) {
+      context.beginPath();
+      for (let i = 0; i < game.count; i++) {
+        if (game.vehicles[i].team !== team || game.speed[i] < 0.05) continue;
+        const reach = this.lengths[i] / 2 + game.speed[i] * AHEAD_S * view.scale;
+        const x = view.xOf(game.x[i]);
+        const y = view.yOf(game.y[i]);
+        context.moveTo(x, y);
+        context.lineTo(x + Math.sin(game.course[i]) * reach, y - Math.cos(game.course[i]) * reach);
+      }
+      context.lineWidth = 1.25;
+      context.strokeStyle = teamColour(team);
+      context.stroke();
+    }
+  }
+
+  /** Where boats may tag: those in play, in their own zone. */
+  drawCircles(game, view, selected) {
+    const radius = game.chart.radii?.tag_m * view.scale;
+    const zones = game.chart.field?.zones;
+    if (!(radius > 3) || !zones) return;
+    const { context } = this;
+    const alone = game.count > CIRCLES_MAX;
+    context.lineWidth = 1;
+    context.setLineDash([3, 4]);
+    context.globalAlpha = 0.8;
+    for (let team = 0; team < palette.teams.length; team++) {
+      context.beginPath();
+      for (let i = 0; i < game.count; i++) {
+        if (game.vehicles[i].team !== team || (alone && i !== selected) || game.marks[i] & (TAGGED | DISABLED)) continue;
+        if (!zones.some((zone) => zone.team === team && inside(zone.corners, game.x[i], game.y[i]))) continue;
+        const x = view.xOf(game.x[i]);
+        const y = view.yOf(game.y[i]);
+        context.moveTo(x + radius, y);
+        context.arc(x, y, radius, 0, 2 * Math.PI);
+      }
+      context.strokeStyle = teamColour(team);
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+    context.setLineDash([]);
+  }
+
+  drawFlagsAtHome(game, view) {
+    const flags = game.chart.field?.flags ?? [];
+    for (let i = 0; i < flags.length; i++) {
+      if (game.carrierOf(i) < 0) drawFlag(this.context, view.xOf(flags[i].x), view.yOf(flags[i].y), flags[i].team, 14);
+    }
+  }
+
+  /** The selected boat's own opinion of where it is. */
+  drawGhost(game, view, index) {
+    const { context } = this;
+    const ghost = game.estimate;
+    if (!ghost) return;
+    const x = view.xOf(ghost.x);
+    const y = view.yOf(ghost.y);
+    context.setLineDash([3, 3]);
+    context.lineWidth = 1.5;
+    context.strokeStyle = palette.ink;
+    context.beginPath();
+    trace(context, HULL, x, y, (ghost.heading_deg * Math.PI) / 180, this.lengths[index], this.width(game, index));
+    context.stroke();
+    context.setLineDash([]);
+  }
+
+  drawRing(game, view, index) {
+    const { context } = this;
+    const radius = this.lengths[index] * 0.5 + 9;
+    const x = view.xOf(game.x[index]);
+    const y = view.yOf(game.y[index]);
+    context.lineWidth = 2.25;
+    context.strokeStyle = palette.accent;
+    for (let quarter = 0; quarter < 4; quarter++) {
+      const middle = Math.PI / 4 + (quarter * Math.PI) / 2;
+      context.beginPath();
+      context.arc(x, y, radius, middle - 0.45, middle + 0.45);
+      context.stroke();
+    }
+  }
+
+  /** Letters above boats with which something is the matter. */
+  drawMarks(game, view) {
+    const { context } = this;
+    context.font = '700 11px system-ui, sans-serif';
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    for (let i = 0; i < game.count; i++) {
+      if (game.marks[i] === 0) continue;
+      let x = view.xOf(game.x[i]) + this.lengths[i] * 0.35 + 5;
+      const y = view.yOf(game.y[i]) - this.lengths[i] * 0.35 - 7;
+      for (let mark = 0; mark < MARKS.length; mark++) {
+        if ((game.marks[i] & MARKS[mark][0]) === 0) continue;
+        context.fillStyle = palette.ink;
+        context.fillRect(x - 6.5, y - 6.5, 13, 13);
+        context.fillStyle = palette.paper;
+        context.fillText(MARKS[mark][1], x, y + 0.5);
+        x += 14;
+      }
+      if (game.marks[i] & NAV_LOST) this.drawLostRing(view.xOf(game.x[i]), view.yOf(game.y[i]), this.lengths[i]);
+    }
+  }
+
+  drawLostRing(x, y, length) {
+    const { context } = this;
+    context.beginPath();
+    context.arc(x, y, length * 0.8, 0, 2 * Math.PI);
+    context.setLineDash([2, 5]);
+    context.lineWidth = 2;
+    context.strokeStyle = palette.danger;
+    context.stroke();
+    context.setLineDash([]);
+  }
+
+  /** How strongly names are drawn: they fade as boats get crowded. */
+  nameStrength(game, view) {
+    const { left, right, bottom, top } = view.bounds;
+    const room = Math.sqrt(((right - left) * (top - bottom)) / Math.max(1, game.count)) * view.scale;
+    return Math.min(1, Math.max(0, (room - 56) / 24));
+  }
+
+  drawNames(game, view, shown, selected, ratio) {
+    const { context, labels } = this;
+    labels.begin(game.vehicles, view, ratio);
+    const strength = shown.names ? this.nameStrength(game, view) : 0;
+    const single = (index, alpha, force) => {
+      const x = view.xOf(game.x[index]);
+      const y = view.yOf(game.y[index]);
+      if (x < -60 || y < -20 || x > view.width + 60 || y > view.height + 20) return;
+      context.globalAlpha = alpha;
+      labels.draw(context, index, x, y, Math.max(12, this.lengths[index] * 0.45) + (index === selected ? 8 : 0), force);
+    };
+    if (strength > 0.02) {
+      for (let i = 0; i < game.count; i++) {
+        const half = this.lengths[i] * 0.3;
+        const x = view.xOf(game.x[i]);
+        const y = view.yOf(game.y[i]);
+        labels.claim(x - half, y - half, 2 * half, 2 * half, true);
+        if (game.carrying[i] >= 0) labels.claim(x, y - FLAG_ROOM_PX, FLAG_ROOM_PX * 0.7, FLAG_ROOM_PX, true);
+        if (game.marks[i] !== 0) labels.claim(x + half, y - half - 14, 16, 14, true);
+      }
+    }
+    if (selected >= 0) single(selected, 1, true);
+    if (this.hovered >= 0 && this.hovered !== selected && this.hovered < game.count) single(this.hovered, 1, true);
+    for (let i = 0; i < game.count && strength > 0.02; i++) {
+      if (i !== selected && i !== this.hovered) single(i, strength, false);
+    }
+    context.globalAlpha = 1;
+  }
+
+  /** The boat at a pixel, or -1. */
+  at(game, view, px, py, reach) {
+    let best = -1;
+    let least = reach;
+    for (let i = 0; i < game.count; i++) {
+      const far = Math.hypot(view.xOf(game.x[i]) - px, view.yOf(game.y[i]) - py) - this.lengths[i] / 2;
+      if (far < least) {
+        least = far;
+        best = i;
+      }
+    }
+    return best;
+  }
+}

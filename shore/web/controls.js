@@ -1,0 +1,175 @@
+// The buttons: pause, step, speed, halt, E-stop, and what the chart shows.
+
+import { Ask, closeAsk } from './ask.js';
+import { options, show, write } from './words.js';
+
+const SPEEDS = [0.5, 1, 2, 5, 10, 50];
+const FASTEST = 'max';
+const SHOWN_KEY = 'squall.shown';
+const WATCHING = 'This page may only watch. Open it at the address with a token to act.';
+const REAL = 'Real boats play: the game goes by the clock.';
+
+const byId = (id) => document.getElementById(id);
+
+/** What the chart showed last time; some browsers keep nothing. */
+function remembered() {
+  const all = { names: true, trails: true, circles: true, waves: true };
+  try {
+    return { ...all, ...JSON.parse(localStorage.getItem(SHOWN_KEY) ?? '{}') };
+  } catch {
+    return all;
+  }
+}
+
+export class Controls {
+  /** `send(message)` goes to the server. */
+  constructor(send) {
+    this.send = send;
+    this.shown = remembered();
+    this.shownVersion = 0;
+    this.mode = null;
+    this.rights = false;
+    this.paused = false;
+    this.stopped = false;
+    this.eStopped = false;
+    this.asks = { estop: new Ask('estop'), halt: new Ask('halt'), stop: new Ask('stop') };
+    byId('pause').addEventListener('click', () => this.pause());
+    byId('step').addEventListener('click', () => this.step(1));
+    byId('step-back').addEventListener('click', () => this.step(-1));
+    byId('halt').addEventListener('click', () => this.halt());
+    byId('estop').addEventListener('click', () => this.eStop());
+    byId('stop').addEventListener('click', () => this.stop());
+    byId('speed').addEventListener('change', (event) => this.setSpeed(event.target.value));
+    for (const what of Object.keys(this.shown)) this.bindShown(what);
+  }
+
+  bindShown(what) {
+    const button = byId(`show-${what}`);
+    if (!button) return;
+    button.setAttribute('aria-pressed', String(this.shown[what]));
+    button.addEventListener('click', () => this.toggleShown(what));
+  }
+
+  toggleShown(what) {
+    this.shown[what] = !this.shown[what];
+    this.shownVersion += 1;
+    byId(`show-${what}`).setAttribute('aria-pressed', String(this.shown[what]));
+    try {
+      localStorage.setItem(SHOWN_KEY, JSON.stringify(this.shown));
+    } catch {
+      // Then it is forgotten with the page.
+    }
+  }
+
+  control(what) {
+    this.send({ do: 'control', what });
+  }
+
+  get mayAct() {
+    return this.mode === 'replay' || (this.mode === 'live' && this.rights);
+  }
+
+  pause() {
+    if (this.mayAct) this.control(this.paused ? 'resume' : 'pause');
+  }
+
+  step(by) {
+    if (!this.mayAct) return;
+    if (this.mode === 'replay') this.send({ do: 'step', by });
+    else if (by > 0) this.control('step');
+  }
+
+  setSpeed(value) {
+    if (this.mayAct && !byId('speed').disabled) this.send({ do: 'speed', factor: value === FASTEST ? null : Number(value) });
+  }
+
+  /** To the next speed up or down. */
+  shiftSpeed(by) {
+    const select = byId('speed');
+    const at = select.selectedIndex + by;
+    if (select.disabled || at < 0 || at >= select.options.length) return;
+    this.setSpeed(select.options[at].value);
+  }
+
+  halt() {
+    if (this.mode !== 'live' || !this.rights) return;
+    if (this.stopped) this.asks.halt.ask('Let all boats go on?', 'Yes, go on', () => this.control('go_on'));
+    else this.asks.halt.ask('Make all boats hold?', 'Yes, halt all', () => this.control('halt'));
+  }
+
+  eStop() {
+    if (this.mode !== 'live' || !this.rights) return;
+    if (this.eStopped) {
+      this.asks.estop.ask('Release the E-stop? Real boats must then be armed again.', 'Yes, release', () => this.control('release'), true);
+    } else {
+      this.asks.estop.ask('Stop every boat now?', 'Yes, E-stop', () => this.control('e_stop'));
+    }
+  }
+
+  stop() {
+    if (this.mode !== 'live' || !this.rights) return;
+    this.asks.stop.ask('End this game for good?', 'Yes, end it', () => this.control('stop'), true);
+  }
+
+  greet(hello) {
+    closeAsk();
+    this.mode = hello.mode;
+    this.rights = Boolean(hello.rights);
+    this.stopped = false;
+    this.eStopped = false;
+    const live = hello.mode === 'live';
+    show(byId('estop-place'), live);
+    show(byId('halt-place'), live);
+    show(byId('stop-place'), live);
+    show(byId('step-back'), !live);
+    show(byId('rights'), live && !this.rights);
+    byId('rights').title = WATCHING;
+  }
+
+  /** Takes what the events say of halts and E-stops; the newest word counts. */
+  tellEvents(events, reset) {
+    if (reset) this.eStopped = false;
+    for (const { event } of events) {
+      if (event === 'e_stopped') this.eStopped = true;
+      if (event === 'released') this.eStopped = false;
+    }
+  }
+
+  /** Shows how the game stands. */
+  tell(game) {
+    const { state, player } = game;
+    const live = this.mode === 'live';
+    const phase = state?.phase;
+    this.paused = live ? phase === 'paused' : player ? !player.playing : false;
+    // An E-stop holds all boats as well; going on is only for a halt.
+    this.stopped = live && game.stopped && !this.eStopped;
+    const act = live ? this.rights : this.mode === 'replay';
+    const going = !live || phase === 'playing' || phase === 'paused' || phase === undefined;
+    this.button('pause', live ? (this.paused ? 'Go on' : 'Pause') : this.paused ? 'Play' : 'Pause', act && going, 'Pause or go on (space)');
+    this.button('step', live ? 'Step' : 'Step +', act && going, 'One decision (s)');
+    this.button('halt', this.stopped ? 'Go on' : 'Halt all', act && !this.eStopped, 'All boats hold, or go on (h)');
+    this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act, 'Stop every boat now (e)');
+    this.button('stop', 'End game', act && phase !== 'over' && phase !== 'gone', 'End the game now');
+    byId('estop').classList.toggle('released', this.eStopped);
+    this.tellSpeed(live ? state?.speed : player?.speed, act, live && state?.can_speed === false);
+  }
+
+  button(id, text, enabled, title) {
+    const button = byId(id);
+    write(button, text);
+    if (button.disabled === enabled) button.disabled = !enabled;
+    const said = this.mode === 'live' && !this.rights ? WATCHING : title;
+    if (button.title !== said) button.title = said;
+  }
+
+  tellSpeed(speed, act, real) {
+    const select = byId('speed');
+    const value = speed === null ? FASTEST : Number.isFinite(speed) ? String(speed) : '1';
+    const speeds = speed !== null && Number.isFinite(speed) && !SPEEDS.includes(speed) ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
+    options(select, [...speeds.map((each) => [String(each), `${each}×`]), [FASTEST, 'max']]);
+    if (document.activeElement !== select && select.value !== value) select.value = value;
+    if (select.disabled === (act && !real)) select.disabled = !act || real;
+    const title = real ? REAL : act ? 'Speed of the game (, and .)' : WATCHING;
+    if (select.title !== title) select.title = title;
+  }
+}

@@ -1,0 +1,205 @@
+// What is to be known of the selected boat: what it does, why, how it steers, and how well it knows where it is.
+
+import { MARKS } from './game.js';
+import { Rose } from './rose.js';
+import { bearing, fill, make, number, options, plain, show, write } from './words.js';
+
+const COLLECTIVE = 'all together';
+
+export class Details {
+  /** `on` has `follow()`, `drive()` and `close()`. */
+  constructor(on) {
+    this.pane = document.getElementById('pane-boat');
+    this.build(on);
+    this.rose = new Rose(this.canvas);
+    this.wanted = COLLECTIVE;
+    this.chooser.addEventListener('change', () => { this.wanted = this.chooser.value; });
+  }
+
+  build(on) {
+    this.none = make('p', 'faint', 'No boat is selected. Press one on the chart or in the list.');
+    this.name = make('h2');
+    this.about = make('p', 'faint');
+    this.follow = this.button('follow', 'Follow', 'Keep this boat in the middle of the chart (o)', on.follow);
+    this.drive = this.button('drive', 'Drive', 'Steer this boat yourself (d)', on.drive);
+    this.close = this.button('deselect', 'Close', 'Select no boat (Escape)', on.close);
+    const buttons = make('div', 'row', '', this.follow, this.drive, this.close);
+    this.wheelNote = make('p', 'note');
+    this.matter = make('p', 'matter');
+    this.facts = make('dl', 'facts');
+    this.thrust = make('div', 'thrust', '', this.bar('Port'), this.bar('Starboard'));
+    this.canvas = make('canvas');
+    this.canvas.id = 'rose';
+    this.canvas.setAttribute('role', 'img');
+    this.chooser = make('select');
+    this.chooser.id = 'rose-function';
+    this.chooser.setAttribute('aria-label', 'Objective function');
+    this.reason = make('p', 'faint');
+    this.reason.id = 'helm-reason';
+    this.key = make('p', 'rose-key faint', 'Course around, speed outward. Bright is wanted. Ring: chosen. Diamond: the boat now.');
+    this.behaviours = make('div', 'behaviours');
+    this.behaviours.id = 'behaviours';
+    this.variables = make('dl', 'facts');
+    this.variables.id = 'variables';
+    this.gateway = make('dl', 'facts');
+    this.gateway.id = 'gateway';
+    this.helmBox = make('div', '', '', make('h3', '', 'Why it steers so'), this.chooser, this.canvas, this.key,
+      this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
+    this.gatewayBox = make('div', '', '', make('h3', '', 'Gateway'), this.gateway);
+    this.body = make('div', 'boat', '', make('div', 'boat-head', '', this.name, this.about), buttons, this.wheelNote, this.matter,
+      this.facts, this.gatewayBox, this.reason, this.helmBox, make('h3', '', 'Thrust'), this.thrust);
+    this.pane.replaceChildren(this.none, this.body);
+  }
+
+  button(id, text, title, press) {
+    const button = make('button', '', text);
+    Object.assign(button, { id, type: 'button', title });
+    button.addEventListener('click', press);
+    return button;
+  }
+
+  bar(side) {
+    return make('div', 'bar-row', '', make('span', '', side), make('span', 'bar middle', '', make('span', 'fill')), make('span', 'value'));
+  }
+
+  /** Whether the rose can be seen, so that its functions are worth asking for. */
+  get visible() {
+    return this.pane.offsetParent !== null;
+  }
+
+  tell(game, following, driver) {
+    const index = game.indexOf.get(game.selected) ?? -1;
+    show(this.none, index < 0);
+    show(this.body, index >= 0);
+    if (index < 0 || !this.visible) return;
+    const vehicle = game.vehicles[index];
+    const team = game.chart.teams[vehicle.team]?.name ?? '';
+    write(this.name, plain(vehicle.name));
+    this.name.className = `team-${vehicle.team}`;
+    const source = vehicle.external ? 'real boat' : vehicle.strategy && plain(vehicle.strategy);
+    write(this.about, [plain(team), source, `${number(vehicle.length_m)} m`].filter(Boolean).join(' · '));
+    this.follow.setAttribute('aria-pressed', String(following));
+    show(this.drive, Boolean(vehicle.teleop) && game.mode === 'live');
+    this.drive.disabled = !game.hello.rights;
+    this.drive.title = game.hello.rights ? 'Steer this boat yourself (d)' : 'This page may only watch.';
+    this.drive.setAttribute('aria-pressed', String(driver === 'you'));
+    const wheel = { you: 'You have the wheel. Escape lets go.', other: 'Somebody else has the wheel.' }[driver] ?? '';
+    write(this.wheelNote, wheel);
+    show(this.wheelNote, wheel !== '');
+    this.tellFacts(game, index);
+    this.tellThrust(game, index);
+    this.tellGateway(game.statuses.get(vehicle.name));
+    this.tellHelm(game, index);
+  }
+
+  tellFacts(game, index) {
+    const matter = MARKS.filter(([bit]) => game.marks[index] & bit).map(([, , text]) => text);
+    write(this.matter, matter.length > 0 ? `${matter.join(', ')}.` : '');
+    show(this.matter, matter.length > 0);
+    const report = game.helm?.report;
+    const error = game.estimateError();
+    const flag = game.chart.field.flags?.[game.carrying[index]];
+    const facts = [
+      ['Heading', bearing((game.toH[index] * 180) / Math.PI)],
+      ['Over ground', `${bearing((game.course[index] * 180) / Math.PI)} at ${number(game.speed[index], 2, 'm/s')}`],
+    ];
+    if (flag) facts.push(['Carries', `the ${plain(game.chart.teams[flag.team]?.name ?? '')} flag`]);
+    if (game.estimate) {
+      const fix_age_s = game.estimate.fix_age_s;
+      const fix = Number.isFinite(fix_age_s) ? `; fix ${number(fix_age_s, 1, 's')} old` : '';
+      facts.push(['Own estimate', error === null ? `–${fix}` : `off by ${number(error, 2, 'm')}${fix}`]);
+    }
+    if (report) {
+      facts.push(['Mode', plain(report.mode || '–').replaceAll(':', ' › ')]);
+      facts.push(['Decision', report.hold ? `holds: ${report.hold}` : `${bearing(report.course_deg)} at ${number(report.speed_m_s, 2, 'm/s')}`]);
+    }
+    this.tellPairs(this.facts, facts);
+  }
+
+  tellPairs(place, pairs) {
+    fill(place, pairs, () => make('div', '', '', make('dt'), make('dd')), (row, [name, value]) => {
+      write(row.firstElementChild, name);
+      write(row.lastElementChild, value);
+    });
+  }
+
+  tellThrust(game, index) {
+    const values = [game.port[index], game.starboard[index]];
+    this.most = Math.max(this.forBoat === game.selected ? this.most : 10, ...values.map(Math.abs));
+    this.forBoat = game.selected;
+    values.forEach((value, side) => {
+      const row = this.thrust.children[side];
+      const bar = row.children[1].firstElementChild;
+      const part = Math.round((Math.abs(value) / this.most) * 50);
+      bar.style.left = `${value < 0 ? 50 - part : 50}%`;
+      bar.style.width = `${part}%`;
+      write(row.children[2], number(value, 0, 'N'));
+    });
+  }
+
+  tellGateway(status) {
+    show(this.gatewayBox, Boolean(status));
+    if (!status) return;
+    const pairs = [['State', status.state ?? '–'], ['Link', status.link ?? '–']];
+    if (status.mode) pairs.push(['Mode', status.mode]);
+    if (status.operator) pairs.push(['In control', status.operator]);
+    if (Number.isFinite(status.nav_age_s)) pairs.push(['Last fix', `${number(status.nav_age_s, 1, 's')} ago`]);
+    if (Number.isFinite(status.battery_v)) pairs.push(['Battery', number(status.battery_v, 1, 'V')]);
+    if (status.missing?.length > 0) pairs.push(['Missing', status.missing.join('; ')]);
+    const trip = status.trips?.at(-1);
+    if (trip) pairs.push([`Trips: ${status.trips.length}`, `last: ${trip.cause ?? trip}`]);
+    this.tellPairs(this.gateway, pairs);
+  }
+
+  tellHelm(game, index) {
+    const helm = game.helm;
+    const report = helm?.report;
+    const words = report ? this.computedWords(helm) : helm?.reason ?? 'Asking its helm …';
+    write(this.reason, words);
+    show(this.reason, words !== '');
+    show(this.helmBox, Boolean(report));
+    if (!report) return;
+    const functions = report.functions ?? [];
+    const named = functions.map((each) => [each.contact ? `${each.behaviour} · ${each.contact}` : each.behaviour, each]);
+    const known = new Map(named);
+    options(this.chooser, [[COLLECTIVE, 'All together'], ...[...known.keys()].map((name) => [name, plain(name)])]);
+    const chosen = known.get(this.wanted);
+    const value = chosen ? this.wanted : COLLECTIVE;
+    if (this.chooser.value !== value) this.chooser.value = value;
+    const utilities = chosen ? chosen.utilities : report.collective;
+    this.rose.draw(report, utilities?.length > 0 ? utilities : null, {
+      course_deg: (game.course[index] * 180) / Math.PI,
+      speed_m_s: game.speed[index],
+      speed_max_m_s: game.vehicles[index].speed_max_m_s || 1,
+    });
+    this.canvas.setAttribute('aria-label',
+      `Rose: chosen course ${bearing(report.course_deg)}, speed ${number(report.speed_m_s, 1)} metres a second`);
+    this.tellBehaviours(report);
+    const variables = (report.variables ?? []).map((each) => [plain(each.name), String(each.value)]);
+    show(this.variableHead, variables.length > 0);
+    this.tellPairs(this.variables, variables);
+  }
+
+  computedWords(helm) {
+    if (!helm.computed) return '';
+    if (helm.agrees === false) return 'Worked out again from the recording. It does NOT agree with the order recorded.';
+    return `Worked out again from the recording${helm.agrees ? '; it agrees with the order recorded.' : '.'}`;
+  }
+
+  tellBehaviours(report) {
+    const behaviours = report.behaviours ?? [];
+    show(this.behaviourHead, behaviours.length > 0);
+    const most = Math.max(1, ...behaviours.map((each) => each.weight));
+    const row = () => make('div', 'behaviour', '', make('span', 'name'), make('span', 'stage'),
+      make('span', 'bar', '', make('span', 'fill')), make('span', 'value'));
+    fill(this.behaviours, behaviours, row, (line, each) => {
+      const classes = `behaviour ${each.stage}`;
+      if (line.className !== classes) line.className = classes;
+      write(line.children[0], plain(each.name));
+      line.children[0].title = `${each.name} (${each.kind})`;
+      write(line.children[1], each.stage);
+      line.children[2].firstElementChild.style.width = `${Math.round((100 * each.weight) / most)}%`;
+      write(line.children[3], number(each.weight, 0));
+    });
+  }
+}

@@ -1,0 +1,183 @@
+// The wheel: steers a boat by keys, by a point dragged on a rose, or by a gamepad's stick.
+
+import { notice } from './status.js';
+import { palette } from './palette.js';
+import { bearing, number, plain, show, wrapDeg, write } from './words.js';
+
+/** How often the boat hears from us, ms. */
+const SEND_MS = 200;
+const TURN_DEG = 5;
+const SPEED_STEP_M_S = 0.25;
+/** A stick nearer to its middle than this is let go. */
+const DEAD_ZONE = 0.18;
+const RIM = 16;
+
+const KEYS = {
+  arrowleft: [-TURN_DEG, 0], a: [-TURN_DEG, 0], arrowright: [TURN_DEG, 0], d: [TURN_DEG, 0],
+  arrowup: [0, SPEED_STEP_M_S], w: [0, SPEED_STEP_M_S], arrowdown: [0, -SPEED_STEP_M_S], s: [0, -SPEED_STEP_M_S],
+};
+
+export class Drive {
+  constructor(send) {
+    this.send = send;
+    this.place = document.getElementById('wheel-place');
+    this.canvas = document.getElementById('wheel');
+    this.text = document.getElementById('wheel-text');
+    this.context = this.canvas.getContext('2d');
+    this.vehicle = null;
+    this.timer = 0;
+    this.canvas.addEventListener('pointerdown', (event) => {
+      event.preventDefault();
+      this.canvas.focus();
+      this.canvas.setPointerCapture(event.pointerId);
+      this.drag(event);
+    });
+    this.canvas.addEventListener('pointermove', (event) => event.buttons > 0 && this.drag(event));
+    document.getElementById('let-go').addEventListener('click', () => this.letGo());
+    addEventListener('blur', () => this.letGo());
+    addEventListener('pagehide', () => this.letGo());
+    document.addEventListener('visibilitychange', () => document.hidden && this.letGo());
+  }
+
+  get driving() {
+    return this.vehicle !== null;
+  }
+
+  /** Takes the wheel of a boat, at its heading and at rest. */
+  take(vehicle, heading_deg) {
+    this.letGo();
+    this.vehicle = vehicle.name;
+    this.speedMax = vehicle.speed_max_m_s > 0 ? vehicle.speed_max_m_s : 1;
+    this.course_deg = wrapDeg(Math.round(heading_deg));
+    this.speed_m_s = 0;
+    this.had = false;
+    this.stick = false;
+    show(this.place, true);
+    document.body.classList.add('driving');
+    this.canvas.focus();
+    this.timer = setInterval(() => this.tick(), SEND_MS);
+    this.tick();
+  }
+
+  letGo() {
+    if (!this.driving) return;
+    clearInterval(this.timer);
+    this.send({ do: 'let_go', vehicle: this.vehicle });
+    this.vehicle = null;
+    show(this.place, false);
+    document.body.classList.remove('driving');
+  }
+
+  /** Takes word of who has the wheel of a boat. */
+  hear({ vehicle, by }) {
+    if (vehicle !== this.vehicle) return;
+    if (by === 'you') this.had = true;
+    else if (by === 'other' || this.had) {
+      this.letGo();
+      notice(by === 'other' ? `Somebody else has the wheel of ${plain(vehicle)}.` : `You no longer have the wheel of ${plain(vehicle)}.`);
+    }
+  }
+
+  tick() {
+    this.readStick();
+    this.send({ do: 'drive', vehicle: this.vehicle, course_deg: this.course_deg, speed_m_s: this.speed_m_s });
+    this.draw();
+  }
+
+  /** Whether the key steers. */
+  key(event) {
+    const change = KEYS[event.key.toLowerCase()];
+    if (!this.driving || !change || event.ctrlKey || event.metaKey || event.altKey) return false;
+    this.set(this.course_deg + change[0], this.speed_m_s + change[1]);
+    return true;
+  }
+
+  set(course_deg, speed_m_s) {
+    this.course_deg = wrapDeg(course_deg);
+    this.speed_m_s = Math.min(this.speedMax, Math.max(0, speed_m_s));
+    this.draw();
+  }
+
+  drag(event) {
+    if (!this.driving) return;
+    const box = this.canvas.getBoundingClientRect();
+    const right = event.clientX - box.left - box.width / 2;
+    const up = box.height / 2 - (event.clientY - box.top);
+    const out = Math.min(1, Math.hypot(right, up) / (box.width / 2 - RIM));
+    // Near the middle a finger's tremble would turn the boat about.
+    if (out < 0.08) this.set(this.course_deg, 0);
+    else this.set(Math.round((Math.atan2(right, up) * 180) / Math.PI), out * this.speedMax);
+  }
+
+  readStick() {
+    const pad = [...(navigator.getGamepads?.() ?? [])].find((each) => each?.connected && each.axes.length >= 2);
+    if (!pad) return;
+    const [right, down] = pad.axes;
+    const out = Math.hypot(right, down);
+    if (out > DEAD_ZONE) {
+      this.stick = true;
+      this.set(Math.round((Math.atan2(right, -down) * 180) / Math.PI), Math.min(1, out) * this.speedMax);
+    } else if (this.stick) {
+      this.stick = false;
+      this.set(this.course_deg, 0);
+    }
+  }
+
+  draw() {
+    const side = this.canvas.clientWidth;
+    if (side === 0) return;
+    const ratio = Math.min(2, devicePixelRatio);
+    if (this.canvas.width !== side * ratio) {
+      this.canvas.width = side * ratio;
+      this.canvas.height = side * ratio;
+    }
+    const { context } = this;
+    const middle = side / 2;
+    const radius = middle - RIM;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, side, side);
+    this.drawRim(context, middle, radius);
+    const angle = (this.course_deg * Math.PI) / 180;
+    const far = (this.speed_m_s / this.speedMax) * radius;
+    const x = middle + Math.sin(angle) * far;
+    const y = middle - Math.cos(angle) * far;
+    context.beginPath();
+    context.moveTo(middle, middle);
+    context.lineTo(x, y);
+    context.strokeStyle = palette.accent;
+    context.lineWidth = 3;
+    context.stroke();
+    context.beginPath();
+    context.arc(x, y, 11, 0, 2 * Math.PI);
+    context.fillStyle = palette.accent;
+    context.fill();
+    // Where the bow would point stays to be seen at rest.
+    context.beginPath();
+    context.arc(middle + Math.sin(angle) * radius, middle - Math.cos(angle) * radius, 4, 0, 2 * Math.PI);
+    context.fill();
+    write(this.text, `${bearing(this.course_deg)}  ${number(this.speed_m_s, 2, 'm/s')}`);
+  }
+
+  drawRim(context, middle, radius) {
+    context.beginPath();
+    context.arc(middle, middle, radius, 0, 2 * Math.PI);
+    context.fillStyle = palette.paper;
+    context.globalAlpha = 0.88;
+    context.fill();
+    context.globalAlpha = 1;
+    context.strokeStyle = palette.edge;
+    context.lineWidth = 1.5;
+    context.stroke();
+    context.beginPath();
+    context.arc(middle, middle, radius / 2, 0, 2 * Math.PI);
+    context.globalAlpha = 0.4;
+    context.stroke();
+    context.globalAlpha = 1;
+    context.font = '600 12px system-ui, sans-serif';
+    context.fillStyle = palette.ink;
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    [['N', 0, -1], ['E', 1, 0], ['S', 0, 1], ['W', -1, 0]].forEach(([letter, x, y]) =>
+      context.fillText(letter, middle + x * (radius - 12), middle + y * (radius - 12)));
+  }
+}

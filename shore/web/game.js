@@ -1,0 +1,232 @@
+// What is known of the game that is shown: its boats as numbers in arrays, its events, and what the server says of it.
+
+import { readerOf } from './cdr.js';
+import { Trails } from './trail.js';
+
+/** Marks of a boat, as bits. */
+export const TAGGED = 1;
+export const DISABLED = 2;
+export const OUTSIDE = 4;
+export const MIND_LOST = 8;
+export const QUARANTINED = 16;
+export const NAV_LOST = 32;
+
+/** Bit, letter and words of each mark. */
+export const MARKS = [
+  [TAGGED, 'T', 'tagged'],
+  [DISABLED, 'X', 'out of action'],
+  [OUTSIDE, 'O', 'outside the field'],
+  [MIND_LOST, 'M', 'has lost its mind'],
+  [QUARANTINED, 'Q', 'quarantined'],
+  [NAV_LOST, 'N', 'nobody knows where it is'],
+];
+
+/** Frames farther apart than this are not joined by smooth motion, ms. */
+const GAP_MAX_MS = 600;
+/** Motion takes this much longer than a gap, so that a frame that comes a little late finds the boats under way. */
+const STRETCH = 1.15;
+/** Frames closer together than this need none, ms. */
+const GAP_MIN_MS = 22;
+/** How far a boat may get beyond its speed before it has jumped, m. */
+const JUMP_M = 4;
+/** How many past places of the selected boat are kept, to compare estimates with. */
+const WAKE = 64;
+
+const floats = (count) => new Float64Array(count);
+
+export class Game {
+  constructor() {
+    this.hello = null;
+    this.clear({ vehicles: [], teams: [], field: null });
+  }
+
+  /** Begins anew with another game. */
+  greet(hello) {
+    this.hello = hello;
+    this.clear(hello.chart);
+    this.read = readerOf(hello.definitions, 'Frame');
+  }
+
+  clear(chart) {
+    const count = chart.vehicles.length;
+    this.chart = chart;
+    this.vehicles = chart.vehicles;
+    this.indexOf = new Map(chart.vehicles.map((vehicle, index) => [vehicle.name, index]));
+    this.count = count;
+    this.teams = chart.vehicles.map((vehicle) => vehicle.team);
+    Object.assign(this, {
+      fromX: floats(count), fromY: floats(count), fromH: floats(count),
+      toX: floats(count), toY: floats(count), toH: floats(count),
+      x: floats(count), y: floats(count), heading: floats(count),
+      speed: floats(count), course: floats(count), port: floats(count), starboard: floats(count),
+      marks: new Uint8Array(count), carrying: new Int16Array(count).fill(-1),
+    });
+    this.read = null;
+    this.raw = undefined;
+    this.pastRaw = undefined;
+    this.t_s = NaN;
+    this.tick = 0;
+    this.frames = 0;
+    this.unread = 0;
+    this.arrival_ms = 0;
+    this.gap_ms = 0;
+    this.posed_ms = 0;
+    this.begun_ms = 0;
+    this.posedFrames = 0;
+    this.past = false;
+    this.smooth = true;
+    this.trails = new Trails(count);
+    this.score = [];
+    this.flags = [];
+    this.sea = null;
+    this.stopped = false;
+    this.over = false;
+    this.events = [];
+    this.eventVersion = 0;
+    this.state = null;
+    this.player = null;
+    this.statuses = new Map();
+    this.drivers = new Map();
+    this.select(null);
+  }
+
+  get mode() {
+    return this.hello?.mode ?? null;
+  }
+
+  /** Forgets what belonged to the boat selected before. */
+  select(name) {
+    this.selected = name;
+    this.helm = null;
+    this.estimate = null;
+    this.wake = { t: floats(WAKE), x: floats(WAKE), y: floats(WAKE), at: 0, count: 0 };
+    // A replay that stands has no other frame to compare an estimate with.
+    if (this.frames > 0) this.keepWake();
+  }
+
+  /** Takes a frame: `kind` is 1 for one to show and 2 for one of the past. */
+  takeFrame(kind, buffer, now_ms) {
+    if (!this.read) return;
+    try {
+      if (kind === 2) this.takePast(buffer);
+      else this.takePresent(buffer, now_ms);
+    } catch {
+      this.unread += 1;
+    }
+  }
+
+  takePast(buffer) {
+    if (!this.past) {
+      this.trails.clear();
+      this.past = true;
+    }
+    this.pastRaw = this.read(buffer, 1, this.pastRaw);
+    const { vehicles, stamp } = this.pastRaw;
+    const count = Math.min(this.count, vehicles.length);
+    this.trails.begin(stamp.valid_ns / 1e9);
+    for (let i = 0; i < count; i++) this.trails.put(i, vehicles[i].nav.east_m, vehicles[i].nav.north_m);
+  }
+
+  takePresent(buffer, now_ms) {
+    const raw = this.read(buffer, 1, this.raw);
+    this.raw = raw;
+    const t_s = raw.stamp.valid_ns / 1e9;
+    const step_s = t_s - this.t_s;
+    const back = step_s < 0;
+    const fresh = this.frames === 0 || this.past || back;
+    if (back && !this.past) this.trails.clear();
+    this.past = false;
+    const gap_ms = now_ms - this.arrival_ms;
+    this.gap_ms = fresh || gap_ms > GAP_MAX_MS ? 0 : this.gap_ms * 0.7 + gap_ms * 0.3;
+    this.arrival_ms = now_ms;
+    this.t_s = t_s;
+    this.tick = raw.stamp.seq;
+    this.frames += 1;
+    const still = fresh || !this.smooth || this.gap_ms < GAP_MIN_MS;
+    this.takeBoats(raw.vehicles, still, Number.isFinite(step_s) ? Math.abs(step_s) : 0);
+    this.score = raw.score;
+    this.flags = raw.flags;
+    this.sea = raw.sea;
+    this.stopped = raw.stopped;
+    this.over = raw.over;
+    this.keepWake();
+  }
+
+  takeBoats(vehicles, still, step_s) {
+    const count = Math.min(this.count, vehicles.length);
+    const sampled = this.trails.wants(this.t_s);
+    if (sampled) this.trails.begin(this.t_s);
+    for (let i = 0; i < count; i++) {
+      const truth = vehicles[i];
+      const nav = truth.nav;
+      const speed = Math.hypot(nav.surge_m_s, nav.sway_m_s);
+      const far = Math.hypot(nav.east_m - this.toX[i], nav.north_m - this.toY[i]);
+      const jump = still || far > JUMP_M + 2 * step_s * Math.max(speed, this.speed[i]);
+      this.toX[i] = nav.east_m;
+      this.toY[i] = nav.north_m;
+      this.toH[i] = nav.psi_rad;
+      this.fromX[i] = jump ? nav.east_m : this.x[i];
+      this.fromY[i] = jump ? nav.north_m : this.y[i];
+      this.fromH[i] = jump ? nav.psi_rad : this.heading[i];
+      this.speed[i] = speed;
+      this.course[i] = nav.psi_rad + Math.atan2(nav.sway_m_s, nav.surge_m_s);
+      this.port[i] = truth.port_newton;
+      this.starboard[i] = truth.starboard_newton;
+      this.carrying[i] = truth.carrying;
+      this.marks[i] = (truth.tagged ? TAGGED : 0) | (truth.disabled ? DISABLED : 0) | (truth.outside ? OUTSIDE : 0)
+        | (truth.mind_lost ? MIND_LOST : 0) | (truth.quarantined ? QUARANTINED : 0) | (truth.nav_lost ? NAV_LOST : 0);
+      if (sampled) this.trails.put(i, nav.east_m, nav.north_m);
+    }
+  }
+
+  keepWake() {
+    const index = this.indexOf.get(this.selected);
+    if (index === undefined) return;
+    const wake = this.wake;
+    wake.t[wake.at] = this.t_s;
+    wake.x[wake.at] = this.toX[index];
+    wake.y[wake.at] = this.toY[index];
+    wake.at = (wake.at + 1) % WAKE;
+    wake.count = Math.min(WAKE, wake.count + 1);
+  }
+
+  /** How far the estimate is from where the boat truly was then, m; null without either. */
+  estimateError() {
+    const { estimate, wake } = this;
+    if (!estimate || wake.count === 0) return null;
+    let best = -1;
+    for (let i = 0; i < wake.count; i++) {
+      if (best < 0 || Math.abs(wake.t[i] - estimate.at_s) < Math.abs(wake.t[best] - estimate.at_s)) best = i;
+    }
+    if (Math.abs(wake.t[best] - estimate.at_s) > 2) return null;
+    return Math.hypot(estimate.x - wake.x[best], estimate.y - wake.y[best]);
+  }
+
+  /** Moves the boats to where they are shown at this time: one gap behind the newest frame. Whether they still move. */
+  pose(now_ms) {
+    // Where motion begins was shown in the picture before, not when the frame came.
+    if (this.posedFrames !== this.frames) this.begun_ms = this.posed_ms;
+    this.posedFrames = this.frames;
+    this.posed_ms = now_ms;
+    const done = this.gap_ms < GAP_MIN_MS ? 1 : Math.min(1, Math.max(0, (now_ms - this.begun_ms) / (this.gap_ms * STRETCH)));
+    for (let i = 0; i < this.count; i++) {
+      let turn = this.toH[i] - this.fromH[i];
+      turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
+      this.x[i] = this.fromX[i] + (this.toX[i] - this.fromX[i]) * done;
+      this.y[i] = this.fromY[i] + (this.toY[i] - this.fromY[i]) * done;
+      this.heading[i] = this.fromH[i] + turn * done;
+    }
+    return done < 1;
+  }
+
+  takeEvents(message) {
+    if (message.reset) this.events = [];
+    for (const event of message.events ?? []) this.events.push(event);
+    this.eventVersion += 1;
+  }
+
+  /** The boat that carries the flag, or -1. */
+  carrierOf(flag) {
+    return this.flags[flag]?.carrier ?? -1;
+  }
+}

@@ -1,0 +1,90 @@
+// The list of events, newest first: a press goes to the boat, and in a replay to the moment.
+
+import { clock, fill, make, plain, show, write } from './words.js';
+
+/** Lines on the page; there may be thousands of events. */
+const LINES_MAX = 300;
+
+/** What each filter lets through. */
+const KINDS = {
+  flags: ['grabbed', 'captured', 'flag_returned', 'ended'],
+  tags: ['tagged', 'tagged_by_boundary', 'untagged'],
+  collisions: ['collided', 'entered_keepout'],
+  trouble: ['collided', 'disabled', 'mind_lost', 'mind_back', 'quarantined', 'nav_lost', 'nav_back', 'e_stopped', 'released', 'halted',
+    'went_on', 'tripped', 'left_field'],
+};
+
+/** Events that are said more loudly. */
+const LOUD = ['captured', 'grabbed', 'ended', 'e_stopped', 'mind_lost', 'quarantined', 'nav_lost', 'tripped', 'collided'];
+
+export class Log {
+  /** `go(event)` is called for the event that somebody presses. */
+  constructor(go) {
+    this.place = document.getElementById('events');
+    this.none = document.getElementById('events-none');
+    this.filter = document.getElementById('event-filter');
+    this.go = go;
+    this.lines = [];
+    this.drawn = '';
+    this.filter.addEventListener('change', () => { this.drawn = ''; });
+    this.place.addEventListener('click', (event) => {
+      const at = [...this.place.children].indexOf(event.target.closest('li'));
+      if (at >= 0) this.go(this.lines[at]);
+    });
+  }
+
+  tell(game) {
+    const replay = game.mode === 'replay';
+    const kinds = KINDS[this.filter.value];
+    const known = kinds ? game.events.filter((event) => kinds.includes(event.event)) : game.events;
+    const t_s = replay ? game.t_s : Infinity;
+    const past = replay ? upTo(known, t_s) : known.length;
+    const key = `${game.eventVersion} ${this.filter.value} ${past}`;
+    if (key === this.drawn) return;
+    this.drawn = key;
+    // In a replay what is yet to come stands above, so far as there is room.
+    const last = replay ? Math.min(known.length, past + LINES_MAX / 2) : known.length;
+    const first = Math.max(0, last - LINES_MAX);
+    this.lines = known.slice(first, last).reverse();
+    show(this.none, this.lines.length === 0);
+    fill(this.place, this.lines, () => this.row(), (row, event) => this.tellRow(row, event, game, event.at_s > t_s + 1e-6));
+    if (replay) this.keepInSight(last - past);
+  }
+
+  row() {
+    const button = make('button', 'event', '', make('time'), make('span', 'swatch'), make('span', 'text'));
+    button.type = 'button';
+    return make('li', '', '', button);
+  }
+
+  tellRow(row, event, game, ahead) {
+    const button = row.firstElementChild;
+    const team = game.vehicles[game.indexOf.get(event.vehicle)]?.team;
+    const classes = `event${team === undefined ? '' : ` team-${team}`}${LOUD.includes(event.event) ? ' loud' : ''}${ahead ? ' ahead' : ''}`;
+    if (button.className !== classes) button.className = classes;
+    write(button.children[0], clock(event.at_s));
+    write(button.children[2], plain(event.text ?? event.event));
+  }
+
+  /** Scrolls so that the newest event of a replay can be seen, unless somebody reads the list. */
+  keepInSight(at) {
+    const row = this.place.children[Math.max(0, at)];
+    if (!row || this.place.matches(':hover, :focus-within')) return;
+    const pane = this.place.closest('.pane');
+    const box = row.getBoundingClientRect();
+    const within = pane.getBoundingClientRect();
+    if (box.top < within.top + 60 || box.bottom > within.bottom) pane.scrollTop += box.top - within.top - within.height / 3;
+  }
+}
+
+/** How many events have happened by a time; they come in order. */
+export function upTo(events, t_s) {
+  let low = 0;
+  let high = events.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (events[middle].at_s <= t_s + 1e-6) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}

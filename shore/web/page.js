@@ -1,0 +1,391 @@
+// The page: joins the link, the game and everything that shows it, and draws.
+//
+// For tests and the curious, `window.squall` can be read (nothing in it can be set):
+//   mode, hello, state, player    as the server sent them last; null before
+//   connected, t_s, score         score by team
+//   frame                         { t_s, tick, stopped, over, boats: [{ name, team, x, y, heading_deg, course_deg, speed_m_s,
+//                                 tagged, carrying, disabled, outside, mind_lost, quarantined, nav_lost }] }; null before;
+//                                 carrying is the number of a flag, or -1
+//   flags                         [{ team, x, y, carrier }]: where each is now; carrier is a boat's name, or null
+//   events                        all that are known
+//   selected, following, driving  the boat's name or null; whether; its name or null
+//   helm, estimate                of the selected boat, as sent; null without
+//   statuses                      of gateways, by boat
+//   drawn, fps, draw_ms           frames drawn; pictures a second; mean time of a picture's making
+//   view                          { x, y, scale }: middle, and pixels to a metre
+//
+// Elements with an id that stays: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
+// rose-function, behaviours, variables, gateway, helm-reason, follow, drive, deselect, wheel, pause, step, step-back, speed, halt,
+// halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop, stop-confirm, stop-cancel, timeline, event-kind, event-back,
+// event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game, zoom-in, zoom-out, fit, show-names, show-trails,
+// show-circles, show-waves, help, help-box, sheet.
+
+import { Boats } from './boats.js';
+import { Controls } from './controls.js';
+import { Details } from './details.js';
+import { Drive } from './drive.js';
+import { drawField } from './field.js';
+import { Game } from './game.js';
+import { Keys } from './keys.js';
+import { Link } from './link.js';
+import { BoatList } from './list.js';
+import { Log } from './log.js';
+import { palette } from './palette.js';
+import { Pointer } from './pointer.js';
+import { Sea, Weather } from './sea.js';
+import { notice, Status } from './status.js';
+import { Timeline } from './timeline.js';
+import { View } from './view.js';
+import { expose } from './window.js';
+import { plain, show, write } from './words.js';
+
+/** How often words are written anew, ms. */
+const TELL_MS = 200;
+/** How often the list of boats is. */
+const LIST_EVERY = 3;
+/** How near a pointer must be to a boat, px. */
+const REACH_MOUSE_PX = 8;
+const REACH_TOUCH_PX = 22;
+/** Trails are drawn no more often than this while only they or the place of the chart change, ms. */
+const TRAILS_MS = 150;
+
+const byId = (id) => document.getElementById(id);
+
+class Page {
+  constructor() {
+    this.game = new Game();
+    this.view = new View();
+    const send = (message) => this.send(message);
+    this.link = new Link({
+      open: () => {},
+      lost: () => this.lost(),
+      message: (message) => this.take(message),
+      frame: (kind, buffer) => this.game.takeFrame(kind, buffer, performance.now()),
+    });
+    this.sheet = byId('sheet');
+    this.layers = ['sea', 'field', 'trails', 'boats'].map((name) => byId(`layer-${name}`));
+    this.sea = new Sea(this.layers[0]);
+    this.field = this.layers[1].getContext('2d');
+    this.trails = this.layers[2].getContext('2d');
+    this.boats = new Boats(this.layers[3]);
+    this.weather = new Weather();
+    this.status = new Status();
+    this.controls = new Controls(send);
+    this.drive = new Drive(send);
+    this.timeline = new Timeline(send);
+    this.list = new BoatList((name) => this.select(name, true));
+    this.log = new Log((event) => this.goTo(event));
+    this.details = new Details({
+      follow: () => this.toggleFollow(), drive: () => this.toggleDrive(), close: () => this.select(null),
+    });
+    this.following = false;
+    this.asked = '';
+    this.stats = { drawn: 0, fps: 0, draw_ms: 0, last_ms: 0 };
+    this.drawnField = '';
+    this.trailed = { look: '', soft: '', at_ms: 0, x: 0, y: 0 };
+    this.drawnBoats = '';
+    this.ticks = 0;
+    this.bind();
+    this.keys = new Keys(this);
+  }
+
+  bind() {
+    byId('zoom-in').addEventListener('click', () => this.zoom(1.4));
+    byId('zoom-out').addEventListener('click', () => this.zoom(1 / 1.4));
+    byId('fit').addEventListener('click', () => this.fit());
+    for (const name of ['boats', 'boat', 'events', 'game']) byId(`tab-${name}`).addEventListener('click', () => this.tab(name));
+    byId('tabs').addEventListener('keydown', (event) => this.tabKey(event));
+    this.wide = matchMedia('(min-width: 900px)');
+    this.wide.addEventListener('change', () => this.tab(this.tabName));
+    this.tab('boats');
+    this.pointer = new Pointer(this.sheet, this.view, {
+      tap: (x, y, touch) => this.tap(x, y, touch),
+      hover: (x, y) => this.hover(x, y),
+      moved: () => this.setFollowing(false),
+      zoomed: () => {},
+    });
+    new ResizeObserver(() => this.resize()).observe(this.sheet);
+    this.resize();
+  }
+
+  start() {
+    this.link.start();
+    setInterval(() => this.tell(), TELL_MS);
+    const loop = (now_ms) => {
+      // First, so that a picture that fails is not the last.
+      requestAnimationFrame(loop);
+      this.draw(now_ms);
+    };
+    requestAnimationFrame(loop);
+  }
+
+  /** Sends what somebody asked for; says so if it cannot. */
+  send(message) {
+    if (this.link.send(message) || message.do === 'drive' || message.do === 'let_go') return;
+    notice('No connection. The server did not hear this.');
+  }
+
+  lost() {
+    this.drive.letGo();
+    document.body.classList.add('lost');
+    write(byId('connection'), 'Connection lost. Trying again.');
+    show(byId('connection'), true);
+  }
+
+  take(message) {
+    const { game } = this;
+    switch (message.kind) {
+      case 'hello': return this.greet(message);
+      case 'state': game.state = message; break;
+      case 'player': game.player = message; break;
+      case 'events':
+        game.takeEvents(message);
+        this.controls.tellEvents(message.events ?? [], message.reset);
+        break;
+      case 'helm': if (message.vehicle === game.selected) game.helm = message; break;
+      case 'estimate': if (message.vehicle === game.selected) game.estimate = message; break;
+      case 'status': game.statuses.set(message.vehicle, message.status); break;
+      case 'drive':
+        game.drivers.set(message.vehicle, message.by);
+        this.drive.hear(message);
+        break;
+      case 'refused':
+        // Whoever is refused the wheel does not have it.
+        if (message.what === 'drive') this.drive.letGo();
+        notice(`Not done: ${plain(message.what)}. ${message.reason}`);
+        break;
+      // Kinds that we do not know are of a newer server.
+      default: return;
+    }
+    if (message.kind === 'state' || message.kind === 'player') this.controls.tell(game);
+  }
+
+  greet(hello) {
+    const { game } = this;
+    const before = game.selected;
+    const sameField = game.chart.field && JSON.stringify(game.chart.field) === JSON.stringify(hello.chart.field);
+    this.drive.letGo();
+    try {
+      game.greet(hello);
+    } catch (error) {
+      notice(`This page cannot read the server's frames: ${error.message}`);
+    }
+    document.body.classList.remove('connecting', 'lost');
+    document.body.classList.toggle('replay', hello.mode === 'replay');
+    show(byId('connection'), false);
+    const field = hello.chart.field;
+    if (!sameField && field) this.view.setBounds([...field.corners, ...(field.flags ?? []).map(({ x, y }) => [x, y])]);
+    this.sea.greet(hello.chart.waves);
+    this.boats.hovered = -1;
+    this.status.greet(game);
+    this.controls.greet(hello);
+    this.list.greet(game);
+    this.timeline.greet(game);
+    this.drawnField = '';
+    this.asked = '';
+    if (game.indexOf.has(before)) this.select(before);
+    else this.setFollowing(false);
+    this.tell();
+  }
+
+  /** Selects a boat, or none. `look` brings up its details. */
+  select(name, look = false) {
+    const { game } = this;
+    if (name !== null && !game.indexOf.has(name)) return;
+    if (name !== game.selected) {
+      if (this.drive.driving) this.drive.letGo();
+      game.select(name);
+    }
+    if (name === null) this.setFollowing(false);
+    if (look) this.tab('boat');
+    else if (name === null && this.tabName === 'boat') this.tab('boats');
+    this.tell();
+  }
+
+  selectNext(by) {
+    const { count, indexOf, selected, vehicles } = this.game;
+    if (count === 0) return;
+    const at = indexOf.get(selected);
+    const next = at === undefined ? (by > 0 ? 0 : count - 1) : (at + by + count) % count;
+    this.select(vehicles[next].name, true);
+  }
+
+  /** Asks the server for the helm and the estimate of the selected boat, if what is wanted has changed. */
+  ask() {
+    const vehicle = this.game.selected;
+    const functions = vehicle !== null && this.details.visible;
+    const key = `${vehicle} ${functions}`;
+    if (key === this.asked || !this.game.hello) return;
+    if (vehicle === null && this.asked === '') return;
+    if (this.link.send({ do: 'select', vehicle, functions })) this.asked = key;
+  }
+
+  tap(x, y, touch) {
+    this.sheet.focus({ preventScroll: true });
+    const at = this.boats.at(this.game, this.view, x, y, touch ? REACH_TOUCH_PX : REACH_MOUSE_PX);
+    if (at >= 0) this.select(this.game.vehicles[at].name, true);
+  }
+
+  hover(x, y) {
+    this.boats.hovered = this.boats.at(this.game, this.view, x, y, REACH_MOUSE_PX);
+    this.sheet.classList.toggle('over-boat', this.boats.hovered >= 0);
+  }
+
+  zoom(factor) {
+    this.view.zoomAt(this.view.width / 2, this.view.height / 2, factor);
+  }
+
+  fit() {
+    this.setFollowing(false);
+    this.view.fit();
+  }
+
+  pan(dx, dy) {
+    this.setFollowing(false);
+    this.view.panBy(dx, dy);
+  }
+
+  setFollowing(following) {
+    if (this.following === following) return;
+    this.following = following && this.game.selected !== null;
+    this.details.tell(this.game, this.following, this.driver);
+  }
+
+  toggleFollow() {
+    this.setFollowing(!this.following);
+  }
+
+  get driver() {
+    return this.game.drivers.get(this.game.selected) ?? null;
+  }
+
+  toggleDrive() {
+    const { game, drive } = this;
+    const index = game.indexOf.get(game.selected);
+    if (drive.driving) drive.letGo();
+    else if (this.driver === 'other') notice(`Somebody else has the wheel of ${plain(game.selected)}.`);
+    else if (index !== undefined && game.vehicles[index].teleop && game.mode === 'live' && game.hello.rights) {
+      drive.take(game.vehicles[index], (game.heading[index] * 180) / Math.PI);
+    }
+    this.tell();
+  }
+
+  /** To an event: the moment in a replay, and the boat. */
+  goTo(event) {
+    const { game } = this;
+    if (game.mode === 'replay') this.timeline.seek(this.timeline.seen_s(event.at_s));
+    const index = game.indexOf.get(event.vehicle);
+    if (index === undefined) return;
+    this.select(event.vehicle);
+    if (game.mode === 'replay') this.setFollowing(true);
+    else this.view.centreOn(game.toX[index], game.toY[index]);
+  }
+
+  tab(name) {
+    // On a wide page the events have a place of their own.
+    this.tabName = name === 'events' && this.wide.matches ? 'boats' : name;
+    document.body.dataset.tab = this.tabName;
+    // A phone has no room for these below the chart.
+    const place = this.wide.matches ? byId('controls') : byId('pane-game');
+    if (byId('shown').parentElement !== place) place.insertBefore(byId('shown'), this.wide.matches ? byId('help') : place.firstChild);
+    for (const each of ['boats', 'boat', 'events', 'game']) {
+      const chosen = each === this.tabName;
+      byId(`tab-${each}`).setAttribute('aria-selected', String(chosen));
+      byId(`tab-${each}`).tabIndex = chosen ? 0 : -1;
+    }
+    if (this.link) this.tell();
+  }
+
+  tabKey(event) {
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+    if (!step) return;
+    const tabs = [...byId('tabs').children].filter((each) => each.offsetParent !== null);
+    const at = tabs.indexOf(document.activeElement);
+    const next = tabs[(at + step + tabs.length) % tabs.length];
+    next.focus();
+    next.click();
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  /** Writes all words that are not of a single frame. */
+  tell() {
+    const { game } = this;
+    this.ticks += 1;
+    this.ask();
+    game.smooth = game.mode === 'replay' ? game.player?.speed !== null : game.state?.speed !== null;
+    this.status.tell(game, this.link.connected, this.controls.eStopped);
+    if (!game.hello) return;
+    this.controls.tell(game);
+    this.details.tell(game, this.following, this.driver);
+    if (this.ticks % LIST_EVERY === 0 || this.list.selected !== game.selected) this.list.tell(game);
+    this.log.tell(game);
+    this.timeline.tell(game);
+    this.weather.tell(game.sea, this.sea.deviation_m);
+    if (document.hidden) this.status.tellFrame(game);
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.sheet;
+    this.ratio = Math.min(2, devicePixelRatio || 1);
+    // The sea sees to its own size.
+    for (const canvas of this.layers.slice(1)) {
+      canvas.width = Math.max(1, Math.round(clientWidth * this.ratio));
+      canvas.height = Math.max(1, Math.round(clientHeight * this.ratio));
+      canvas.getContext('2d').setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    }
+    this.view.resize(clientWidth, clientHeight);
+    this.view.version += 1;
+    this.trailed.look = '';
+  }
+
+  draw(now_ms) {
+    const began_ms = performance.now();
+    const { game, view, stats } = this;
+    const moving = game.pose(now_ms);
+    const index = game.indexOf.get(game.selected) ?? -1;
+    if (this.following && index >= 0) view.centreOn(game.x[index], game.y[index]);
+    const shown = this.controls.shown;
+    this.sea.draw(view, game.t_s, shown, now_ms);
+    const look = `${view.version} ${palette.version} ${this.controls.shownVersion}`;
+    if (look !== this.drawnField) drawField(this.field, view, game.chart, shown);
+    this.drawnField = look;
+    this.drawTrails(shown, index, now_ms);
+    const boats = `${look} ${game.frames} ${index} ${this.boats.hovered} ${game.estimate?.at_s}`;
+    if (moving || boats !== this.drawnBoats) this.boats.draw(game, view, shown, this.ratio);
+    this.drawnBoats = moving ? '' : boats;
+    this.timeline.draw();
+    if (game.frames > 0 || game.hello) this.status.tellFrame(game);
+    if (this.link.owed > 0) {
+      stats.drawn += this.link.owed;
+      this.link.drawn();
+    }
+    stats.draw_ms = stats.draw_ms * 0.95 + (performance.now() - began_ms) * 0.05;
+    if (stats.last_ms > 0) stats.fps = stats.fps * 0.95 + (1000 / Math.max(1, now_ms - stats.last_ms)) * 0.05;
+    stats.last_ms = now_ms;
+  }
+
+  /** Draws the trails anew now and then; in between they move along with the chart, which costs next to nothing. */
+  drawTrails(shown, index, now_ms) {
+    const { game, view, trailed } = this;
+    const look = `${view.scale} ${view.width} ${view.height} ${palette.version} ${this.controls.shownVersion} ${index} ${game.trails.epoch}`;
+    const soft = `${view.version} ${game.trails.version}`;
+    if (look === trailed.look && soft === trailed.soft) return;
+    const layer = this.layers[2];
+    if (look === trailed.look && now_ms - trailed.at_ms < TRAILS_MS) {
+      const right = (trailed.x - view.centreX) * view.scale;
+      const down = (view.centreY - trailed.y) * view.scale;
+      layer.style.transform = `translate(${right}px, ${down}px)`;
+      return;
+    }
+    this.trailed = { look, soft, at_ms: now_ms, x: view.centreX, y: view.centreY };
+    layer.style.transform = '';
+    this.trails.clearRect(0, 0, view.width, view.height);
+    if (!shown.trails || !Number.isFinite(game.t_s)) return;
+    game.trails.draw(this.trails, view, game.teams, palette.teams, game.t_s, index);
+  }
+}
+
+const page = new Page();
+expose(page);
+page.start();

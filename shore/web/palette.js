@@ -1,0 +1,33 @@
+// The colours of the chart, taken from the style sheet so that light and dark live in one place.
+
+const NAMES = [
+  'water', 'crest', 'trough', 'grid', 'ink', 'faint', 'edge', 'wall', 'land', 'halo', 'accent', 'danger', 'paper',
+  'team-0', 'team-1', 'team-2', 'team-3',
+];
+
+const dark = matchMedia('(prefers-color-scheme: dark)');
+const calm = matchMedia('(prefers-reduced-motion: reduce)');
+
+export const palette = { version: 0 };
+
+function readColours() {
+  const style = getComputedStyle(document.documentElement);
+  for (const name of NAMES) palette[name] = style.getPropertyValue(`--${name}`).trim();
+  palette.teams = [0, 1, 2, 3].map((team) => palette[`team-${team}`]);
+  palette.version += 1;
+}
+
+readColours();
+dark.addEventListener('change', readColours);
+
+/** Whether people asked for little motion. */
+export const calmly = () => calm.matches;
+
+/** The colour of a team; grey for none. */
+export const teamColour = (team) => palette.teams[team] ?? palette.faint;
+
+/** Red, green and blue of `#rrggbb`. */
+export function rgb(colour) {
+  const bits = Number.parseInt(colour.slice(1), 16);
+  return [(bits >> 16) & 255, (bits >> 8) & 255, bits & 255];
+}

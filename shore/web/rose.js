@@ -1,0 +1,133 @@
+// The rose: an objective function of a helm as a polar heat map, courses around and speeds outward.
+
+import { palette } from './palette.js';
+import { number, wrapDeg } from './words.js';
+
+/** From least to greatest; brightness alone tells as much as colour (after cividis: Nuñez, Anderton and Renslow 2018). */
+const STOPS = [[0, 32, 77], [49, 68, 107], [102, 105, 112], [149, 143, 120], [202, 185, 105], [255, 233, 69]];
+/** Room around the rose for its letters, px. */
+const RIM = 20;
+
+const SHADES = Uint32Array.from({ length: 101 }, (_, value) => {
+  const at = (value / 100) * (STOPS.length - 1);
+  const low = Math.min(STOPS.length - 2, Math.floor(at));
+  const [r, g, b] = STOPS[low].map((channel, i) => Math.round(channel + (STOPS[low + 1][i] - channel) * (at - low)));
+  return (255 << 24) | (b << 16) | (g << 8) | r;
+});
+
+export class Rose {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.context = canvas.getContext('2d');
+    this.small = document.createElement('canvas');
+    this.drawn = null;
+  }
+
+  /** Draws `utilities` of a report; null draws the empty rose. `now` is where the boat truly goes. */
+  draw(report, utilities, now) {
+    const side = this.canvas.clientWidth;
+    if (side === 0) return;
+    const ratio = Math.min(2, devicePixelRatio);
+    const key = [report?.at_s, utilities, palette.version, side, ratio, Math.round(now.course_deg), now.speed_m_s.toFixed(1)];
+    if (this.drawn?.every((each, i) => each === key[i])) return;
+    this.drawn = key;
+    if (this.canvas.width !== side * ratio) {
+      this.canvas.width = side * ratio;
+      this.canvas.height = side * ratio;
+    }
+    const { context } = this;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, side, side);
+    const middle = side / 2;
+    const radius = middle - RIM;
+    if (utilities && report.courses > 0 && report.speeds > 0) this.heat(report, utilities.flat(), middle, radius, ratio);
+    this.frame(middle, radius, report?.speed_max_m_s ?? now.speed_max_m_s);
+    const speedMax = report?.speed_max_m_s || now.speed_max_m_s;
+    this.dot(middle, radius, now.course_deg, now.speed_m_s / speedMax, false);
+    if (report && report.course_deg !== null && report.course_deg !== undefined) {
+      this.dot(middle, radius, report.course_deg, report.speed_m_s / speedMax, true);
+    }
+  }
+
+  heat(report, utilities, middle, radius, ratio) {
+    const size = Math.ceil(radius * 2 * ratio);
+    if (this.small.width !== size) {
+      this.small.width = size;
+      this.small.height = size;
+    }
+    const context = this.small.getContext('2d');
+    const image = context.createImageData(size, size);
+    const pixels = new Uint32Array(image.data.buffer);
+    const half = size / 2;
+    const { courses, speeds } = report;
+    for (let row = 0; row < size; row++) {
+      const up = half - row - 0.5;
+      for (let column = 0; column < size; column++) {
+        const right = column + 0.5 - half;
+        const out = Math.hypot(right, up) / half;
+        if (out > 1) continue;
+        const turn = Math.atan2(right, up) / (2 * Math.PI);
+        const course = ((Math.round(turn * courses) % courses) + courses) % courses;
+        const speed = Math.round(out * (speeds - 1));
+        const value = Math.min(100, Math.max(0, Math.round(utilities[course * speeds + speed] ?? 0)));
+        pixels[row * size + column] = SHADES[value];
+      }
+    }
+    context.putImageData(image, 0, 0);
+    this.context.drawImage(this.small, middle - radius, middle - radius, 2 * radius, 2 * radius);
+  }
+
+  frame(middle, radius, speedMax) {
+    const { context } = this;
+    context.strokeStyle = palette.edge;
+    context.lineWidth = 1;
+    for (const part of [0.5, 1]) {
+      context.globalAlpha = part === 1 ? 1 : 0.5;
+      context.beginPath();
+      context.arc(middle, middle, radius * part, 0, 2 * Math.PI);
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+    context.font = '600 12px system-ui, sans-serif';
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    context.fillStyle = palette.ink;
+    [['N', 0, -1], ['E', 1, 0], ['S', 0, 1], ['W', -1, 0]].forEach(([letter, x, y]) => {
+      context.fillText(letter, middle + x * (radius + 11), middle + y * (radius + 11));
+    });
+    context.font = '11px system-ui, sans-serif';
+    context.fillStyle = palette.faint;
+    context.textAlign = 'left';
+    const at = radius * Math.SQRT1_2;
+    if (speedMax > 0) context.fillText(number(speedMax, 1), middle + at + 3, middle + at + 7);
+  }
+
+  /** The chosen course and speed as a ring with a point; those of the boat as a small diamond. */
+  dot(middle, radius, course_deg, out, chosen) {
+    const { context } = this;
+    const angle = (wrapDeg(course_deg) * Math.PI) / 180;
+    const far = radius * Math.min(1, Math.max(0, out || 0));
+    const x = middle + Math.sin(angle) * far;
+    const y = middle - Math.cos(angle) * far;
+    context.beginPath();
+    if (chosen) context.arc(x, y, 7, 0, 2 * Math.PI);
+    else {
+      context.moveTo(x, y - 6);
+      context.lineTo(x + 6, y);
+      context.lineTo(x, y + 6);
+      context.lineTo(x - 6, y);
+      context.closePath();
+    }
+    context.lineWidth = 4.5;
+    context.strokeStyle = '#000000';
+    context.stroke();
+    context.lineWidth = 2;
+    context.strokeStyle = '#ffffff';
+    context.stroke();
+    if (!chosen) return;
+    context.beginPath();
+    context.arc(x, y, 2, 0, 2 * Math.PI);
+    context.fillStyle = '#ffffff';
+    context.fill();
+  }
+}

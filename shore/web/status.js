@@ -1,0 +1,151 @@
+// How the game stands: score, clock, phase, and the pane about the game and its server.
+
+import { bytes, clock, clockShort, fill, make, number, plain, show, write } from './words.js';
+
+const PHASES = { waiting: 'waiting', playing: 'playing', paused: 'paused', over: 'over', gone: 'gone' };
+
+const byId = (id) => document.getElementById(id);
+
+/** A name as an id may hold it. */
+const idOf = (name) => String(name).replace(/[^\w-]/g, '_');
+
+export class Status {
+  constructor() {
+    this.score = byId('score');
+    this.pane = byId('pane-game');
+    this.facts = make('dl', 'facts');
+    this.drawn = make('dl', 'facts');
+    this.drawnBox = make('details', '', '', make('summary', '', 'Drawn by lot'), this.drawn);
+    this.rights = make('p', 'note', 'This page may only watch. Open it at the address with a token to act.');
+    this.trouble = make('p', 'matter');
+    this.pane.prepend(this.rights, this.trouble, this.facts, this.drawnBox);
+  }
+
+  greet(game) {
+    const { chart, hello } = game;
+    write(byId('game-name'), plain(hello.game || chart.name || 'Squall'));
+    document.title = `${plain(hello.game || chart.name || '')} – Squall`;
+    this.values = chart.teams.map((team, index) => {
+      const value = make('span', 'value', '–');
+      value.id = `score-${idOf(team.name)}`;
+      const box = make('div', `team team-${index}`, '', make('span', 'swatch'), make('span', 'name', plain(team.name)), value);
+      return { box, value };
+    });
+    this.score.replaceChildren(...this.values.map(({ box }) => box));
+    show(this.rights, hello.mode === 'live' && !hello.rights);
+  }
+
+  /** Score and clock, which go by the frames. */
+  tellFrame(game) {
+    this.values?.forEach(({ value }, team) => write(value, String(game.score[team] ?? '–')));
+    const duration = game.chart.duration_s;
+    write(byId('clock'), Number.isFinite(game.t_s) ? clock(game.t_s) : '–');
+    write(byId('rate'), this.rateWords(game, duration));
+  }
+
+  rateWords(game, duration) {
+    const words = Number.isFinite(duration) ? `of ${clockShort(duration)}` : '';
+    const rate = game.state?.rate;
+    return Number.isFinite(rate) && game.state.phase === 'playing' ? `${words} · ${number(rate, rate < 9.95 ? 1 : 0)}×` : words;
+  }
+
+  tell(game, connected, eStopped) {
+    const words = this.phaseWords(game, connected, eStopped);
+    const chip = byId('phase');
+    write(chip, words[0]);
+    if (chip.dataset.tone !== words[1]) chip.dataset.tone = words[1];
+    if (this.pane.offsetParent !== null) this.tellPane(game);
+    this.tellOver(game);
+  }
+
+  phaseWords(game, connected, eStopped) {
+    if (!connected) return ['no connection', 'bad'];
+    if (!game.hello) return ['connecting', 'plain'];
+    if (game.mode === 'replay') return [game.player?.playing ? 'replay' : 'replay, paused', 'plain'];
+    if (eStopped) return ['E-STOPPED', 'bad'];
+    if (game.stopped) return ['halted', 'warn'];
+    const phase = game.state?.phase;
+    return [PHASES[phase] ?? phase ?? 'live', phase === 'playing' ? 'good' : 'warn'];
+  }
+
+  /** What is over the chart while nobody plays. */
+  tellOver(game) {
+    const { state } = game;
+    let words = '';
+    const waited = [...(state?.gateways ?? []).map((name) => `the gateway of ${plain(name)}`)];
+    if (state?.minds && state.phase === 'waiting') waited.unshift(...this.mindWords(state.minds));
+    if (state?.phase === 'waiting') words = waited.length > 0 ? `Waiting for ${waited.join(', ')}` : 'Waiting to begin';
+    if (state?.phase === 'gone') words = 'The game is gone. Waiting for another.';
+    const over = byId('over');
+    write(over, words);
+    show(over, words !== '');
+  }
+
+  mindWords(minds) {
+    if (Array.isArray(minds)) return minds.map((name) => `the mind of ${plain(name)}`);
+    return Number.isFinite(minds) && minds > 0 ? [`${minds} minds`] : [];
+  }
+
+  tellPane(game) {
+    const { chart, hello, state, player } = game;
+    const pairs = [['Field', plain(chart.field?.name ?? '–')], ['Rules', plain(chart.rules ?? '–')], ['Sea', plain(chart.sea ?? '–')],
+      ['Seed', String(chart.seed ?? '–')], ['Boats', String(game.count)], ['Decision every', number(chart.decision_s, 2, 's')]];
+    if (state) pairs.push(...this.stateFacts(state));
+    if (player) {
+      pairs.push(['File', player.file ?? '–'], ['From', clock(player.from_s)], ['To', clock(player.to_s)]);
+      if (player.cut) pairs.push(['The file', 'ends abruptly']);
+    }
+    if (game.unread > 0) pairs.push(['Frames not understood', String(game.unread)]);
+    pairs.push(['Squall', hello?.version ?? '–']);
+    this.tellPairs(this.facts, pairs);
+    const drawn = Object.entries(chart.drawn ?? {}).map(([name, value]) =>
+      [name, typeof value === 'number' ? number(value, 3) : String(value)]);
+    show(this.drawnBox, drawn.length > 0);
+    this.tellPairs(this.drawn, drawn);
+    const failed = state?.recording?.failed;
+    const why = typeof failed === 'string' ? `: ${failed}` : '';
+    const trouble = failed ? `The recording failed${why}.` : '';
+    write(this.trouble, trouble);
+    show(this.trouble, trouble !== '');
+  }
+
+  stateFacts(state) {
+    const pairs = [];
+    if (state.pace !== undefined && state.pace !== null) pairs.push(['Pace', plain(String(state.pace))]);
+    if (Number.isFinite(state.rate)) pairs.push(['Achieved', `${number(state.rate, 1)}× real time`]);
+    if (Number.isFinite(state.frames_hz)) pairs.push(['Frames', `${number(state.frames_hz, 0)} a second`]);
+    const lists = [['Minds waited for', state.minds], ['Gateways waited for', state.gateways]];
+    for (const [name, list] of lists) {
+      if (Array.isArray(list) ? list.length > 0 : list) pairs.push([name, Array.isArray(list) ? list.map(plain).join(', ') : String(list)]);
+    }
+    if (state.refused > 0) pairs.push(['Refused orders', String(state.refused)]);
+    if (state.overruns > 0) pairs.push(['Late ticks', String(state.overruns)]);
+    const { recording } = state;
+    pairs.push(['Recording', recording ? `${recording.file}, ${bytes(recording.bytes)}` : 'none']);
+    if (recording?.dropped > 0) pairs.push(['Not recorded', `${recording.dropped} messages`]);
+    return pairs;
+  }
+
+  tellPairs(place, pairs) {
+    fill(place, pairs, () => make('div', '', '', make('dt'), make('dd')), (row, [name, value]) => {
+      write(row.firstElementChild, name);
+      write(row.lastElementChild, value);
+    });
+  }
+}
+
+/** How long a notice stands, ms. */
+const NOTICE_MS = 6000;
+const NOTICES_MAX = 3;
+
+/** Tells people something for a while. The same twice is told once. */
+export function notice(text) {
+  const place = byId('notices');
+  const same = [...place.children].find((each) => each.dataset.text === text);
+  same?.remove();
+  const line = make('div', 'notice', text);
+  line.dataset.text = text;
+  place.append(line);
+  while (place.children.length > NOTICES_MAX) place.firstElementChild.remove();
+  setTimeout(() => line.remove(), NOTICE_MS);
+}

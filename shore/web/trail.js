@@ -1,0 +1,127 @@
+// Where boats have been in the last minute: one ring of places for all of them.
+
+/** Length of a trail, s. */
+export const TRAIL_S = 60;
+const SAMPLES = 256;
+/** Time between two samples, s. */
+const STEP_S = 0.25;
+/** A boat that gets this much farther between two samples than a fast boat could has jumped, m/s and m. */
+const LEAP_M_S = 12;
+const LEAP_M = 6;
+/** No more pieces than this are drawn at a time. */
+const PIECES_MAX = 9000;
+/** Trails of this many boats are drawn at full strength. */
+const CLEAR = 30;
+/** Ages at which a trail gets fainter, as parts of its length, and its strengths. */
+const BANDS = [[0, 0.2, 0.8], [0.2, 0.5, 0.45], [0.5, 1, 0.2]];
+
+export class Trails {
+  constructor(count) {
+    this.count = count;
+    this.times = new Float64Array(SAMPLES);
+    this.xs = new Float32Array(SAMPLES * count);
+    this.ys = new Float32Array(SAMPLES * count);
+    this.near = new Uint8Array(count);
+    this.version = 0;
+    /** Grows when all is forgotten. */
+    this.epoch = 0;
+    this.clear();
+  }
+
+  clear() {
+    this.head = -1;
+    this.kept = 0;
+    this.epoch += 1;
+    this.version += 1;
+  }
+
+  /** Whether it is time for the next sample. */
+  wants(t_s) {
+    return this.kept === 0 || Math.abs(t_s - this.times[this.head]) >= STEP_S - 1e-6;
+  }
+
+  begin(t_s) {
+    if (!this.wants(t_s)) return;
+    this.head = (this.head + 1) % SAMPLES;
+    this.kept = Math.min(SAMPLES, this.kept + 1);
+    this.times[this.head] = t_s;
+    this.version += 1;
+  }
+
+  put(boat, x, y) {
+    this.xs[this.head * this.count + boat] = x;
+    this.ys[this.head * this.count + boat] = y;
+  }
+
+  /** The row of the sample `back` before the newest. */
+  row(back) {
+    return (this.head - back + SAMPLES) % SAMPLES;
+  }
+
+  /** Draws the trails of all boats for which `colourOf` gives a colour; the selected one stands out. */
+  draw(context, view, teams, colours, now_s, selected) {
+    if (this.kept < 2) return;
+    // A power of two, so that the rows left out stay the same while the ring turns.
+    const near = this.nearby(view);
+    const stride = 2 ** Math.max(0, Math.ceil(Math.log2((near * this.kept) / PIECES_MAX)));
+    context.lineJoin = 'round';
+    // The more there are, the fainter, or they hide the boats.
+    const fade = Math.min(1, Math.sqrt(CLEAR / near));
+    for (const [young, old, strength] of BANDS) {
+      for (let team = 0; team < colours.length; team++) {
+        context.beginPath();
+        for (let boat = 0; boat < this.count; boat++) {
+          if (teams[boat] === team && boat !== selected && this.near[boat]) this.path(context, view, boat, stride, now_s, young, old);
+        }
+        context.globalAlpha = strength * fade;
+        context.strokeStyle = colours[team];
+        context.lineWidth = 1.25;
+        context.stroke();
+        if (teams[selected] !== team) continue;
+        context.beginPath();
+        this.path(context, view, selected, 1, now_s, young, old);
+        context.globalAlpha = Math.min(1, strength + 0.2);
+        context.lineWidth = 2.25;
+        context.stroke();
+      }
+    }
+    context.globalAlpha = 1;
+  }
+
+  /** Marks the boats that are on the chart or not far off it, and counts them. */
+  nearby(view) {
+    const row = this.head * this.count;
+    const reachX = view.width / view.scale;
+    const reachY = view.height / view.scale;
+    let count = 0;
+    for (let boat = 0; boat < this.count; boat++) {
+      const near = Math.abs(this.xs[row + boat] - view.centreX) < reachX && Math.abs(this.ys[row + boat] - view.centreY) < reachY;
+      this.near[boat] = near ? 1 : 0;
+      count += this.near[boat];
+    }
+    return Math.max(1, count);
+  }
+
+  path(context, view, boat, stride, now_s, young, old) {
+    let drawn = false;
+    let lastX = 0;
+    let lastY = 0;
+    let last_s = 0;
+    for (let back = 0; back < this.kept; back += back === 0 ? this.head % stride || stride : stride) {
+      const row = this.row(back);
+      const age = (now_s - this.times[row]) / TRAIL_S;
+      if (age > old + 0.01) break;
+      const x = this.xs[row * this.count + boat];
+      const y = this.ys[row * this.count + boat];
+      if (age >= young - 0.01) {
+        const leap = drawn && Math.abs(x - lastX) + Math.abs(y - lastY) > LEAP_M + LEAP_M_S * Math.abs(this.times[row] - last_s);
+        if (drawn && !leap) context.lineTo(view.xOf(x), view.yOf(y));
+        else context.moveTo(view.xOf(x), view.yOf(y));
+        drawn = true;
+      }
+      lastX = x;
+      lastY = y;
+      last_s = this.times[row];
+    }
+  }
+}

@@ -1,0 +1,95 @@
+// Which part of the water the chart shows: north is up, and transforms go between metres and pixels.
+
+const SCALE_MIN = 0.02;
+const SCALE_MAX = 120;
+
+export class View {
+  constructor() {
+    this.width = 1;
+    this.height = 1;
+    /** Pixels per metre. */
+    this.scale = 1;
+    this.centreX = 0;
+    this.centreY = 0;
+    this.bounds = { left: 0, right: 100, bottom: 0, top: 100 };
+    /** Grows with every change, so that layers know when to be drawn anew. */
+    this.version = 0;
+    /** Whether nobody has moved it since it was fitted. */
+    this.fitted = true;
+  }
+
+  xOf(x) {
+    return (x - this.centreX) * this.scale + this.width / 2;
+  }
+
+  yOf(y) {
+    return this.height / 2 - (y - this.centreY) * this.scale;
+  }
+
+  /** East, from a pixel. */
+  eastOf(px) {
+    return (px - this.width / 2) / this.scale + this.centreX;
+  }
+
+  /** North, from a pixel. */
+  northOf(py) {
+    return (this.height / 2 - py) / this.scale + this.centreY;
+  }
+
+  resize(width, height) {
+    if (width === this.width && height === this.height) return;
+    this.width = Math.max(1, width);
+    this.height = Math.max(1, height);
+    this.version += 1;
+    if (this.fitted) this.fit();
+  }
+
+  setBounds(points) {
+    const xs = points.map((point) => point[0]);
+    const ys = points.map((point) => point[1]);
+    this.bounds = { left: Math.min(...xs), right: Math.max(...xs), bottom: Math.min(...ys), top: Math.max(...ys) };
+    this.fit();
+  }
+
+  fit() {
+    const { left, right, bottom, top } = this.bounds;
+    // Room for the weather above, and for the scale and the buttons below.
+    const side = Math.min(44, this.width * 0.05);
+    const above = Math.min(54, this.height * 0.17);
+    const below = Math.min(72, this.height * 0.24);
+    const across = Math.max(60, this.width - 2 * side);
+    const down = Math.max(60, this.height - above - below);
+    this.scale = this.limit(Math.min(across / Math.max(1, right - left), down / Math.max(1, top - bottom)));
+    this.centreX = (left + right) / 2;
+    this.centreY = (bottom + top) / 2 - (below - above) / 2 / this.scale;
+    this.fitted = true;
+    this.version += 1;
+  }
+
+  limit(scale) {
+    return Math.min(SCALE_MAX, Math.max(SCALE_MIN, scale));
+  }
+
+  centreOn(x, y) {
+    if (x === this.centreX && y === this.centreY) return;
+    this.centreX = x;
+    this.centreY = y;
+    this.fitted = false;
+    this.version += 1;
+  }
+
+  panBy(dx, dy) {
+    this.centreOn(this.centreX - dx / this.scale, this.centreY + dy / this.scale);
+  }
+
+  /** Zooms so that what is under the pixel stays there. */
+  zoomAt(px, py, factor) {
+    const east = this.eastOf(px);
+    const north = this.northOf(py);
+    this.scale = this.limit(this.scale * factor);
+    this.centreX = east - (px - this.width / 2) / this.scale;
+    this.centreY = north + (py - this.height / 2) / this.scale;
+    this.fitted = false;
+    this.version += 1;
+  }
+}

@@ -1,0 +1,46 @@
+// What tests may read of the page: `window.squall`, described at the top of page.js.
+
+import { wrapDeg } from './words.js';
+
+const degrees = (rad) => wrapDeg((rad * 180) / Math.PI);
+
+function boatOf(game, index) {
+  const truth = game.raw.vehicles[index];
+  const { name, team } = game.vehicles[index];
+  return {
+    name, team, x: game.toX[index], y: game.toY[index], heading_deg: degrees(game.toH[index]), course_deg: degrees(game.course[index]),
+    speed_m_s: game.speed[index], tagged: truth.tagged, carrying: truth.carrying, disabled: truth.disabled, outside: truth.outside,
+    mind_lost: truth.mind_lost, quarantined: truth.quarantined, nav_lost: truth.nav_lost,
+  };
+}
+
+function frameOf(game) {
+  if (game.frames === 0) return null;
+  const count = Math.min(game.count, game.raw.vehicles.length);
+  const boats = Array.from({ length: count }, (_, index) => boatOf(game, index));
+  return { t_s: game.t_s, tick: game.tick, stopped: game.stopped, over: game.over, boats };
+}
+
+function flagsOf(game) {
+  return (game.chart.field?.flags ?? []).map(({ team, x, y }, index) => {
+    const carrier = game.carrierOf(index);
+    if (carrier < 0) return { team, x, y, carrier: null };
+    return { team, x: game.toX[carrier], y: game.toY[carrier], carrier: game.vehicles[carrier].name };
+  });
+}
+
+/** Lets `window.squall` be read. */
+export function expose(page) {
+  const { game, link, stats, view, drive } = page;
+  const readers = {
+    mode: () => game.mode, hello: () => game.hello, state: () => game.state, player: () => game.player,
+    connected: () => link.connected, t_s: () => game.t_s, score: () => [...game.score], frame: () => frameOf(game), flags: () => flagsOf(game),
+    events: () => [...game.events], selected: () => game.selected, following: () => page.following, driving: () => drive.vehicle,
+    helm: () => game.helm, estimate: () => game.estimate, statuses: () => Object.fromEntries(game.statuses),
+    drawn: () => stats.drawn, fps: () => stats.fps, draw_ms: () => stats.draw_ms,
+    view: () => ({ x: view.centreX, y: view.centreY, scale: view.scale }),
+  };
+  const squall = {};
+  for (const [name, get] of Object.entries(readers)) Object.defineProperty(squall, name, { get, enumerable: true });
+  Object.defineProperty(window, 'squall', { value: Object.freeze(squall) });
+}

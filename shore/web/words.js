@@ -1,0 +1,85 @@
+// How numbers and places are put into words, and how words get onto the page only when they change.
+
+const said = new WeakMap();
+
+/** Writes the text into the element unless it stands there. */
+export function write(element, text) {
+  if (said.get(element) === text) return;
+  said.set(element, text);
+  element.textContent = text;
+}
+
+/** Shows or hides the element. */
+export function show(element, visible) {
+  if (element.hidden === visible) element.hidden = !visible;
+}
+
+/** An element with classes, text and children. */
+export function make(tag, classes = '', text = '', ...children) {
+  const element = document.createElement(tag);
+  if (classes) element.className = classes;
+  if (text !== '') write(element, text);
+  element.append(...children);
+  return element;
+}
+
+/** `mm:ss.t` */
+export function clock(t_s) {
+  if (!Number.isFinite(t_s)) return '–';
+  const tenths = Math.floor(Math.max(0, t_s) * 10 + 1e-6);
+  const minutes = String(Math.floor(tenths / 600)).padStart(2, '0');
+  const seconds = String(Math.floor(tenths / 10) % 60).padStart(2, '0');
+  return `${minutes}:${seconds}.${tenths % 10}`;
+}
+
+/** `mm:ss` */
+export const clockShort = (t_s) => clock(t_s).slice(0, -2);
+
+/** A compass course of three digits. */
+export function bearing(deg) {
+  return Number.isFinite(deg) ? `${String(Math.round(wrapDeg(deg)) % 360).padStart(3, '0')}°` : '–';
+}
+
+export function wrapDeg(deg) {
+  return ((deg % 360) + 360) % 360;
+}
+
+/** A number with so many places, or a dash. */
+export function number(value, places = 1, unit = '') {
+  if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
+  const text = value.toFixed(places).replace('-', '−');
+  return unit ? `${text}\u00a0${unit}` : text;
+}
+
+/** Bytes as people read them. */
+export function bytes(count) {
+  if (!Number.isFinite(count)) return '–';
+  if (count < 1e6) return `${Math.round(count / 1e3)} kB`;
+  return count < 1e9 ? `${(count / 1e6).toFixed(1)} MB` : `${(count / 1e9).toFixed(2)} GB`;
+}
+
+/** `blue_one` as people read it. */
+export const plain = (name) => String(name).replaceAll('_', ' ');
+
+/** Makes the children of `parent` stand for `items`: rows are made when missing, told what to show, and removed. */
+export function fill(parent, items, makeRow, tellRow) {
+  while (parent.children.length > items.length) parent.lastElementChild.remove();
+  for (let i = 0; i < items.length; i++) {
+    if (i === parent.children.length) parent.append(makeRow(i));
+    tellRow(parent.children[i], items[i], i);
+  }
+}
+
+/** Gives a select these options, `[value, text]`, if it has others. */
+export function options(select, wanted) {
+  const key = JSON.stringify(wanted);
+  if (said.get(select) === key) return;
+  said.set(select, key);
+  const value = select.value;
+  select.replaceChildren(...wanted.map(([each, text]) => {
+    const option = make('option', '', text);
+    option.value = each;
+    return option;
+  }));
+  if (wanted.some(([each]) => each === value)) select.value = value;
+}

@@ -1,0 +1,392 @@
+//! A chart of the field with tracks on it, as SVG and PNG files.
+
+use crate::plot::{self, FONT, failed};
+use anyhow::{Context, Result};
+use game::field::{Field, Obstacle};
+use game::{Ned, math};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::path::Path;
+
+/// A chart.
+pub(crate) struct Chart<'a> {
+    /// What stands on top.
+    pub(crate) title: String,
+    /// The field.
+    pub(crate) field: &'a Field,
+    /// Names and colours of the teams.
+    pub(crate) teams: Vec<(String, RGBColor)>,
+    /// What boats sailed.
+    pub(crate) tracks: Vec<Track>,
+    /// Where something happened.
+    pub(crate) spots: Vec<Spot>,
+}
+
+/// What a boat sailed.
+pub(crate) struct Track {
+    /// What stands at its start; nothing where it would be too many names.
+    pub(crate) name: String,
+    /// Its colour.
+    pub(crate) colour: RGBColor,
+    /// From the start on.
+    pub(crate) places: Vec<Ned>,
+}
+
+/// Where something happened.
+pub(crate) struct Spot {
+    /// What.
+    pub(crate) symbol: Symbol,
+    /// Where.
+    pub(crate) at: Ned,
+    /// In the colour of whoever it happened to.
+    pub(crate) colour: RGBColor,
+}
+
+/// What a spot looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Symbol {
+    /// A ring: a boat's start.
+    Start,
+    /// A triangle: a flag was taken.
+    Grab,
+    /// A star: a flag was brought in.
+    Capture,
+    /// A cross: a boat was tagged.
+    Tag,
+    /// A flag on its staff: where one stands.
+    Flag,
+}
+
+const LEGEND: [(Symbol, &str); 5] = [
+    (Symbol::Flag, "flag"),
+    (Symbol::Start, "start"),
+    (Symbol::Grab, "grab"),
+    (Symbol::Capture, "capture"),
+    (Symbol::Tag, "tagged"),
+];
+
+/// What the water may take up at most, pixels.
+const WATER_MAX: (f64, f64) = (1100.0, 820.0);
+/// Room for the title, the legend, the labels at the left and below, and around it all, pixels.
+const TITLE: u32 = 48;
+const BELOW: u32 = 44;
+const LABELS: (u32, u32) = (64, 42);
+const MARGIN: u32 = 24;
+const GREY: RGBColor = RGBColor(90, 90, 90);
+/// Tracks are drawn no finer than this, pixels.
+const FINE: f64 = 0.7;
+
+/// Draws a chart into an SVG and a PNG file of this name.
+pub(crate) fn write(stem: &Path, chart: &Chart<'_>) -> Result<()> {
+    plot::provide_font();
+    let view = View::of(chart);
+    let path = stem.with_extension("svg");
+    let mut svg = String::new();
+    draw(SVGBackend::with_string(&mut svg, view.size()), chart, &view)
+        .with_context(|| format!("cannot draw {}", path.display()))?;
+    std::fs::write(&path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))?;
+    let path = stem.with_extension("png");
+    let (wide, high) = view.size();
+    let mut pixels = vec![0; 3 * wide as usize * high as usize];
+    draw(BitMapBackend::with_buffer(&mut pixels, (wide, high)), chart, &view)
+        .with_context(|| format!("cannot draw {}", path.display()))?;
+    plot::save_png(&path, (wide, high), &pixels)
+}
+
+/// What part of the world is shown, and how large.
+struct View {
+    east_m: (f64, f64),
+    north_m: (f64, f64),
+    /// Pixels.
+    water: (u32, u32),
+}
+
+impl View {
+    /// The field and all tracks, with some water around, a metre as long either way.
+    fn of(chart: &Chart<'_>) -> View {
+        let corners = chart.field.corners.iter();
+        let places = corners.chain(chart.tracks.iter().flat_map(|track| &track.places));
+        let places = places.filter(|place| place.is_finite());
+        let (mut low, mut high) = (Ned { north: f64::MAX, east: f64::MAX }, Ned { north: f64::MIN, east: f64::MIN });
+        for place in places {
+            low = Ned { north: low.north.min(place.north), east: low.east.min(place.east) };
+            high = Ned { north: high.north.max(place.north), east: high.east.max(place.east) };
+        }
+        let margin_m = 0.04 * (high - low).length();
+        let (wide_m, high_m) = (high.east - low.east + 2.0 * margin_m, high.north - low.north + 2.0 * margin_m);
+        let pixels_per_m = f64::min(WATER_MAX.0 / wide_m, WATER_MAX.1 / high_m);
+        // The legend needs a certain width however narrow the field is.
+        let wide = (wide_m * pixels_per_m).max(560.0);
+        let middle_m = 0.5 * (low.east + high.east);
+        let half_m = 0.5 * wide / pixels_per_m;
+        View {
+            east_m: (middle_m - half_m, middle_m + half_m),
+            north_m: (low.north - margin_m, high.north + margin_m),
+            water: (wide.round() as u32, (high_m * pixels_per_m).round() as u32),
+        }
+    }
+
+    fn size(&self) -> (u32, u32) {
+        (self.water.0 + LABELS.0 + 2 * MARGIN, TITLE + self.water.1 + LABELS.1 + BELOW + MARGIN)
+    }
+
+    /// A place in pixels.
+    fn pixel(&self, at: Ned) -> (i32, i32) {
+        let right = (at.east - self.east_m.0) / (self.east_m.1 - self.east_m.0) * f64::from(self.water.0);
+        let down = (self.north_m.1 - at.north) / (self.north_m.1 - self.north_m.0) * f64::from(self.water.1);
+        ((right + f64::from(MARGIN + LABELS.0)).round() as i32, (down + f64::from(TITLE)).round() as i32)
+    }
+}
+
+type Area<B> = DrawingArea<B, Shift>;
+
+fn draw<B: DrawingBackend>(backend: B, chart: &Chart<'_>, view: &View) -> Result<()>
+where
+    B::ErrorType: 'static,
+{
+    let root = backend.into_drawing_area();
+    root.fill(&WHITE).map_err(failed)?;
+    root.draw(&Text::new(chart.title.clone(), (24, 16), (FONT, 20).into_font())).map_err(failed)?;
+    draw_axes(&root, view)?;
+    draw_field(&root, chart, view)?;
+    for track in &chart.tracks {
+        let line = PathElement::new(fine(&track.places, view), track.colour.stroke_width(2));
+        root.draw(&line).map_err(failed)?;
+    }
+    for flag in &chart.field.flags {
+        let colour = chart.teams.get(flag.team.index()).map_or(GREY, |team| team.1);
+        draw_symbol(&root, Symbol::Flag, view.pixel(flag.home), colour)?;
+    }
+    for spot in &chart.spots {
+        draw_symbol(&root, spot.symbol, view.pixel(spot.at), spot.colour)?;
+    }
+    draw_names(&root, chart, view)?;
+    draw_legend(&root, chart, view)?;
+    root.present().map_err(failed)
+}
+
+/// The frame of the water with metres beside it.
+fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Result<()>
+where
+    B::ErrorType: 'static,
+{
+    let area = root.margin(TITLE, BELOW + MARGIN, MARGIN, MARGIN);
+    let mut axes = ChartBuilder::on(&area)
+        .x_label_area_size(LABELS.1)
+        .y_label_area_size(LABELS.0)
+        .build_cartesian_2d(view.east_m.0..view.east_m.1, view.north_m.0..view.north_m.1)
+        .map_err(failed)?;
+    // What is drawn is placed by the view: the axes must agree with it.
+    for (east_m, north_m) in [(view.east_m.0, view.north_m.0), (view.east_m.1, view.north_m.1)] {
+        let (on_axes, drawn) =
+            (axes.backend_coord(&(east_m, north_m)), view.pixel(Ned { north: north_m, east: east_m }));
+        assert!((on_axes.0 - drawn.0).abs() <= 2 && (on_axes.1 - drawn.1).abs() <= 2, "{on_axes:?} {drawn:?}");
+    }
+    axes.configure_mesh()
+        .x_desc("x (east) in m")
+        .y_desc("y (north) in m")
+        .axis_desc_style((FONT, 14))
+        .label_style((FONT, 12))
+        .x_labels(12)
+        .y_labels(10)
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(RGBColor(232, 232, 232))
+        .x_label_formatter(&|x| arena::trial::decimal(*x, 0))
+        .y_label_formatter(&|y| arena::trial::decimal(*y, 0))
+        .draw()
+        .map_err(failed)
+}
+
+/// Zones in their teams' colours, the outline, the scrimmage line, and what stands in the water.
+fn draw_field<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Result<()>
+where
+    B::ErrorType: 'static,
+{
+    let pixels = |places: &[Ned]| places.iter().map(|place| view.pixel(*place)).collect::<Vec<_>>();
+    for (zone, (_, colour)) in chart.field.zones.iter().zip(&chart.teams) {
+        root.draw(&Polygon::new(pixels(&zone.corners), colour.mix(0.08))).map_err(failed)?;
+    }
+    let outline: Vec<Ned> = chart.field.corners.iter().chain(chart.field.corners.first()).copied().collect();
+    root.draw(&PathElement::new(pixels(&outline), GREY.stroke_width(1))).map_err(failed)?;
+    root.draw(&PathElement::new(pixels(&chart.field.scrimmage), GREY.mix(0.6).stroke_width(1))).map_err(failed)?;
+    for obstacle in &chart.field.plan.obstacles {
+        let corners = match obstacle {
+            Obstacle::Polygon { corners } => corners.clone(),
+            Obstacle::Circle { centre, radius_m } => {
+                let toward = |i: i32| Ned::toward_deg(10.0 * f64::from(i));
+                (0..36).map(|i| *centre + toward(i).scaled(*radius_m)).collect()
+            }
+        };
+        root.draw(&Polygon::new(pixels(&corners), GREY.mix(0.5))).map_err(failed)?;
+    }
+    Ok(())
+}
+
+/// The places of a track in pixels, without those that change nothing.
+fn fine(places: &[Ned], view: &View) -> Vec<(i32, i32)> {
+    let least_m = FINE * (view.east_m.1 - view.east_m.0) / f64::from(view.water.0);
+    let mut kept: Vec<Ned> = vec![];
+    for place in places.iter().filter(|place| place.is_finite()) {
+        if kept.last().is_none_or(|last| last.distance(*place) >= least_m) {
+            kept.push(*place);
+        }
+    }
+    kept.into_iter().map(|place| view.pixel(place)).collect()
+}
+
+fn draw_symbol<B: DrawingBackend>(root: &Area<B>, symbol: Symbol, at: (i32, i32), colour: RGBColor) -> Result<()>
+where
+    B::ErrorType: 'static,
+{
+    let off = |(right, down): (i32, i32)| (at.0 + right, at.1 + down);
+    let edge = BLACK.stroke_width(1);
+    let solid = |corners: Vec<(i32, i32)>| {
+        let corners: Vec<(i32, i32)> = corners.into_iter().map(off).collect();
+        root.draw(&Polygon::new(corners.clone(), colour.filled()))?;
+        let closed = corners.iter().chain(corners.first()).copied();
+        root.draw(&PathElement::new(closed.collect::<Vec<_>>(), edge))
+    };
+    match symbol {
+        Symbol::Start => {
+            root.draw(&Circle::new(at, 6, WHITE.filled())).map_err(failed)?;
+            root.draw(&Circle::new(at, 6, colour.stroke_width(3))).map_err(failed)
+        }
+        Symbol::Grab => solid(vec![(0, -8), (7, 5), (-7, 5)]).map_err(failed),
+        Symbol::Capture => solid(star(10.0)).map_err(failed),
+        Symbol::Tag => {
+            for corners in [[(-5, -5), (5, 5)], [(-5, 5), (5, -5)]] {
+                root.draw(&PathElement::new(corners.map(off), WHITE.stroke_width(5))).map_err(failed)?;
+                root.draw(&PathElement::new(corners.map(off), colour.stroke_width(3))).map_err(failed)?;
+            }
+            Ok(())
+        }
+        Symbol::Flag => {
+            root.draw(&PathElement::new([(0, 2), (0, -18)].map(off), BLACK.stroke_width(2))).map_err(failed)?;
+            solid(vec![(1, -18), (14, -13), (1, -8)]).map_err(failed)?;
+            root.draw(&Circle::new(at, 3, BLACK.filled())).map_err(failed)
+        }
+    }
+}
+
+/// The corners of a star.
+fn star(radius: f64) -> Vec<(i32, i32)> {
+    let corner = |i: i32| {
+        let (sin, cos) = math::sin_cos_deg(36.0 * f64::from(i));
+        let radius = if i % 2 == 0 { radius } else { 0.45 * radius };
+        ((radius * sin).round() as i32, (-radius * cos).round() as i32)
+    };
+    (0..10).map(corner).collect()
+}
+
+/// Names beside the starts, on a light ground so that tracks do not hide them.
+fn draw_names<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Result<()>
+where
+    B::ErrorType: 'static,
+{
+    for track in chart.tracks.iter().filter(|track| !track.name.is_empty()) {
+        let Some(start) = track.places.first() else { continue };
+        let at = view.pixel(*start);
+        // Away from the middle of the field there are fewer tracks, and away from the edge there is room.
+        let is_right = start.east > 0.5 * (view.east_m.0 + view.east_m.1);
+        let (side, x) = if is_right { (HPos::Right, at.0 - 11) } else { (HPos::Left, at.0 + 11) };
+        let wide = 8 + 7 * track.name.chars().count() as i32;
+        let left = if is_right { x - wide } else { x };
+        let ground = Rectangle::new([(left - 1, at.1 - 9), (left + wide, at.1 + 8)], WHITE.mix(0.75).filled());
+        root.draw(&ground).map_err(failed)?;
+        let x = if is_right { x - 3 } else { x + 3 };
+        let style = (FONT, 14).into_font().color(&BLACK).pos(Pos::new(side, VPos::Center));
+        root.draw(&Text::new(track.name.clone(), (x, at.1), style)).map_err(failed)?;
+    }
+    Ok(())
+}
+
+fn draw_legend<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Result<()>
+where
+    B::ErrorType: 'static,
+{
+    let y = (TITLE + view.water.1 + LABELS.1 + BELOW / 2) as i32;
+    let mut x = (MARGIN + LABELS.0) as i32;
+    let name = |text: &str, x: i32| {
+        let style = (FONT, 14).into_font().color(&BLACK).pos(Pos::new(HPos::Left, VPos::Center));
+        root.draw(&Text::new(text.to_owned(), (x, y), style)).map_err(failed)
+    };
+    let width = |text: &str| 8 * text.chars().count() as i32;
+    for (team, colour) in &chart.teams {
+        root.draw(&PathElement::new([(x, y), (x + 22, y)], colour.stroke_width(3))).map_err(failed)?;
+        name(team, x + 28)?;
+        x += 28 + width(team) + 18;
+    }
+    for (symbol, text) in LEGEND {
+        let middle = if symbol == Symbol::Flag { y + 8 } else { y };
+        draw_symbol(root, symbol, (x + 7, middle), GREY)?;
+        name(text, x + 24)?;
+        x += 24 + width(text) + 18;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::field::{Plan, Walls};
+
+    fn field(along_deg: f64) -> Field {
+        Field::new(Plan {
+            name: "test".into(),
+            datum: game::LatLon::default(),
+            corner: Ned::default(),
+            along_deg,
+            width_m: 160.0,
+            depth_m: 80.0,
+            flag_inset_m: 20.0,
+            extra_flags: vec![],
+            obstacles: vec![Obstacle::Circle { centre: Ned::from_xy(80.0, 40.0), radius_m: 5.0 }],
+            walls: Walls::None,
+        })
+    }
+
+    fn chart(field: &Field, places: Vec<Ned>) -> Chart<'_> {
+        let blue = RGBColor(0, 114, 178);
+        let spots = places.last().map(|at| Spot { symbol: Symbol::Capture, at: *at, colour: blue });
+        Chart {
+            title: "a game".into(),
+            field,
+            teams: vec![("blue".into(), blue), ("red".into(), RGBColor(213, 94, 0))],
+            spots: spots.into_iter().collect(),
+            tracks: vec![Track { name: "blue_one".into(), colour: blue, places }],
+        }
+    }
+
+    #[test]
+    fn a_metre_is_as_long_either_way_and_everything_is_shown() {
+        for along_deg in [90.0, 20.0, 0.0] {
+            let field = field(along_deg);
+            let chart = chart(&field, vec![Ned::from_xy(-50.0, 10.0), Ned::from_xy(200.0, 10.0)]);
+            let view = View::of(&chart);
+            let (wide, high) = view.size();
+            for place in field.corners.iter().chain(&chart.tracks[0].places) {
+                let (x, y) = view.pixel(*place);
+                assert!((0..wide as i32).contains(&x) && (0..high as i32).contains(&y), "{place:?} at {along_deg}");
+            }
+            let (a, b, c) = (Ned::default(), Ned::from_xy(100.0, 0.0), Ned::from_xy(0.0, 100.0));
+            let (east, north) = (view.pixel(b).0 - view.pixel(a).0, view.pixel(a).1 - view.pixel(c).1);
+            assert!((east - north).abs() <= 3, "{east} and {north} pixels at {along_deg}");
+        }
+    }
+
+    #[test]
+    fn a_chart_has_names_and_a_legend_and_stands_odd_places() {
+        let dir = tempfile::tempdir().expect("a temporary directory");
+        for places in [vec![], vec![Ned { north: f64::NAN, east: 1.0 }, Ned::from_xy(5.0, 5.0)]] {
+            let stem = dir.path().join("tracks");
+            let field = field(90.0);
+            write(&stem, &chart(&field, places)).expect("it can be drawn");
+            let svg = std::fs::read_to_string(stem.with_extension("svg")).expect("it is there");
+            for text in ["a game", "blue", "red", "capture", "tagged", "x (east) in m"] {
+                assert!(svg.contains(text), "{text}");
+            }
+            assert!(stem.with_extension("png").exists());
+        }
+    }
+}

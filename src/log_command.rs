@@ -1,0 +1,127 @@
+//! `squall log`: what a recorded game tells afterwards.
+
+use crate::{log_plot, screen};
+use anyhow::{Context, Result};
+use serde::Serialize;
+use shore::log::{Book, Comparison, Summary};
+use shore::recording::Recording;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+mod difference;
+mod export;
+mod page;
+
+/// Which recording, and what of it.
+#[derive(clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(crate) struct Args {
+    /// The recording
+    #[arg(required_unless_present = "compare")]
+    file: Option<PathBuf>,
+    /// Prints what happened and nothing else
+    #[arg(long)]
+    events: bool,
+    /// Writes everything that the summary, or the comparison, says into this file
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Prints a topic as CSV; `events` is one as well
+    #[arg(long, value_name = "TOPIC", conflicts_with = "compare")]
+    csv: Option<String>,
+    /// Writes the CSV into this file
+    #[arg(long, value_name = "FILE", requires = "csv")]
+    out: Option<PathBuf>,
+    /// Draws tracks, score, and every boat's speed, heading and navigation into this folder, as SVG and PNG
+    #[arg(long, value_name = "DIR")]
+    plot: Option<PathBuf>,
+    /// Writes MOOS logs into this folder, for the shoreside and for every boat; of a name that ends in .alog only the
+    /// shoreside's
+    #[arg(long, value_name = "DIR", conflicts_with = "compare")]
+    alog: Option<PathBuf>,
+    /// Lays two recordings side by side, for example a game on the water and its simulation
+    #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["file", "events"])]
+    compare: Option<Vec<PathBuf>>,
+    /// Events of two recordings that are nearer than this are the same, s
+    #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = tolerance, requires = "compare")]
+    tolerance_s: f64,
+}
+
+const AFTER_HELP: &str = "\
+Topics are in the summary. Tables have one row a message, except: pictures one a boat seen, inputs one an input, say one \
+a word, link one a sentence.";
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    crate::water_args::within(text, 0.0, 3600.0, "s")
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    match (&args.compare, &args.file) {
+        (Some(files), _) => compare(args, files)?,
+        (None, Some(file)) => look_at(args, file)?,
+        (None, None) => anyhow::bail!("neither a recording nor --compare"),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn open(file: &Path) -> Result<Recording> {
+    Recording::open(file).with_context(|| format!("cannot look at {}", file.display()))
+}
+
+fn look_at(args: &Args, file: &Path) -> Result<()> {
+    let recording = open(file)?;
+    if let Some(topic) = &args.csv {
+        export::csv(&recording, topic, args.out.as_deref())?;
+    }
+    let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none();
+    if !(wants_page || args.events || args.json.is_some() || args.plot.is_some() || args.alog.is_some()) {
+        return Ok(());
+    }
+    let (summary, book) = Summary::of(&recording).with_context(|| format!("cannot read {}", file.display()))?;
+    if args.events {
+        screen::print(&page::events(&summary));
+    } else if wants_page {
+        screen::print(&page::text(&summary));
+    }
+    if let Some(path) = &args.json {
+        write_json(path, &summary)?;
+    }
+    if let Some(dir) = &args.plot {
+        make_folder(dir)?;
+        let files = log_plot::write(dir, recording.header(), &book)?;
+        screen::remark(&format!("{files} plots in {}, each as SVG and PNG", dir.display()));
+    }
+    if let Some(path) = &args.alog {
+        let files = export::alog(&recording, &book, path)?;
+        screen::remark(&format!("{files} MOOS log{} in {}", if files == 1 { "" } else { "s" }, path.display()));
+    }
+    Ok(())
+}
+
+fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
+    let [a, b] = files else { anyhow::bail!("--compare takes two recordings") };
+    let recordings = [open(a)?, open(b)?];
+    let book = |i: usize| Book::of(&recordings[i]).with_context(|| format!("cannot read {}", files[i].display()));
+    let books = [book(0)?, book(1)?];
+    let headers = recordings.each_ref().map(Recording::header);
+    let comparison = Comparison::of(headers, books.each_ref(), args.tolerance_s)
+        .with_context(|| format!("cannot compare {} with {}", a.display(), b.display()))?;
+    screen::print(&difference::text([a, b], &comparison));
+    if let Some(path) = &args.json {
+        write_json(path, &comparison)?;
+    }
+    if let Some(dir) = &args.plot {
+        make_folder(dir)?;
+        log_plot::write_comparison(dir, [a, b], books.each_ref(), &comparison)?;
+        screen::remark(&format!("compare.svg and compare.png in {}", dir.display()));
+    }
+    Ok(())
+}
+
+fn make_folder(dir: &Path) -> Result<()> {
+    std::fs::create_dir_all(dir).with_context(|| format!("cannot make the folder {}", dir.display()))
+}
+
+fn write_json(path: &Path, what: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(what).context("this is not JSON")?;
+    std::fs::write(path, text + "\n").with_context(|| format!("cannot write {}", path.display()))
+}

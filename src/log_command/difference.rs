@@ -1,0 +1,100 @@
+//! Two recorded games beside each other, as text.
+
+use super::page::line;
+use shore::log::{Comparison, Pair, Response, SETTLED_S};
+use std::path::Path;
+
+/// The whole page.
+pub(super) fn text([a, b]: [&Path; 2], comparison: &Comparison) -> String {
+    let mut text = String::new();
+    for (name, file, duration_s) in [("A", a, comparison.durations_s[0]), ("B", b, comparison.durations_s[1])] {
+        line(&mut text, format_args!("{name}  {}  {duration_s:.1} s", file.display()));
+    }
+    for note in &comparison.notes {
+        line(&mut text, format_args!("   {note}"));
+    }
+    let width = comparison.boats.iter().map(|pair| pair.boat.len()).max().unwrap_or(0).max(8) + 2;
+    tracks(&mut text, width, comparison);
+    responses(&mut text, width, &comparison.boats);
+    events(&mut text, comparison);
+    text
+}
+
+fn tracks(text: &mut String, width: usize, comparison: &Comparison) {
+    line(text, format_args!("\nbetween the tracks over {:.1} s, m", comparison.common_s));
+    let heads = ["mean", "rms", "max", "at the end", "as shapes"].map(|head| format!("{head:>12}")).concat();
+    line(text, format_args!("{:width$}{heads}", ""));
+    for Pair { boat, apart, .. } in &comparison.boats {
+        let cells = [apart.mean_m, apart.rms_m, apart.max_m, apart.final_m, apart.frechet_m];
+        let cells = cells.map(|metres| format!("{metres:>12.2}")).concat();
+        line(text, format_args!("{boat:width$}{cells}"));
+    }
+    line(
+        text,
+        format_args!(
+            "as shapes: discrete Fréchet distance (Eiter and Mannila 1994), which forgives being early or late"
+        ),
+    );
+}
+
+/// A name of a number of a response, its unit, how many places it has, and where it is.
+type Measure = (&'static str, &'static str, usize, fn(&Response) -> Option<f64>);
+
+const MEASURES: [Measure; 6] = [
+    ("heading lag", "s", 1, |response| response.heading_lag_s),
+    ("off then", "deg", 1, |response| response.heading_rms_deg),
+    ("speed lag", "s", 1, |response| response.speed_lag_s),
+    ("gain", "", 2, |response| response.speed_gain),
+    ("off then", "m/s", 2, |response| response.speed_rms_m_s),
+    ("set to stbd", "m/s", 3, |response| response.cross_track_m_s),
+];
+
+fn responses(text: &mut String, width: usize, boats: &[Pair]) {
+    line(text, format_args!("\nhow boats answer to their orders"));
+    let heads = MEASURES.map(|(name, ..)| format!("{name:>13}")).concat();
+    line(text, format_args!("{:width$}  {heads}{:>22}", "", "drift while holding"));
+    let units = MEASURES.map(|(_, unit, ..)| format!("{unit:>13}")).concat();
+    line(text, format_args!("{:width$}  {units}{:>22}", "", "north, east m/s"));
+    for pair in boats {
+        for (game, response) in ["A", "B"].into_iter().zip(&pair.response) {
+            let cell = |(_, _, places, of): Measure| match of(response) {
+                Some(number) => format!("{:>13}", arena::trial::decimal(number, places)),
+                None => format!("{:>13}", "-"),
+            };
+            let drift = match response.hold_drift_m_s {
+                Some(drift) => drift.map(|m_s| arena::trial::decimal(m_s, 3)).join(", "),
+                None => "-".to_owned(),
+            };
+            let name = if game == "A" { pair.boat.as_str() } else { "" };
+            line(text, format_args!("{name:width$}{game} {}{drift:>22}", MEASURES.map(cell).concat()));
+        }
+    }
+    line(
+        text,
+        format_args!(
+            "drift counts from {SETTLED_S:.0} s after the order to hold on; - is what the game gave no occasion to tell"
+        ),
+    );
+}
+
+fn events(text: &mut String, comparison: &Comparison) {
+    line(text, format_args!("\n{:20}{:>7}{:>7}", "", "A", "B"));
+    for (team, points) in &comparison.score {
+        let [a, b] = points.map(|points| points.map_or("-".to_owned(), |points| points.to_string()));
+        line(text, format_args!("{:20}{a:>7}{b:>7}", format!("score of {team}")));
+    }
+    let found = &comparison.events;
+    for (kind, [a, b]) in &found.counts {
+        line(text, format_args!("{:20}{a:>7}{b:>7}", kind.replace('_', " ")));
+    }
+    let tolerance_s = found.tolerance_s;
+    line(text, format_args!("\n{} events are in both within {tolerance_s:.1} s", found.in_both));
+    for (name, only) in [("A", &found.only_in_a), ("B", &found.only_in_b)] {
+        if !only.is_empty() {
+            line(text, format_args!("only in {name}:"));
+        }
+        for event in only {
+            line(text, format_args!("{:>7.1} s  {}", event.at_s, event.sentence()));
+        }
+    }
+}

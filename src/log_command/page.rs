@@ -1,0 +1,124 @@
+//! The summary of a recorded game as text.
+
+use shore::log::{Figures, Gateway, Summary, Traffic, utc};
+use std::fmt::Write;
+
+/// The whole page.
+pub(super) fn text(summary: &Summary) -> String {
+    let mut text = head(summary);
+    if !summary.events.is_empty() {
+        text += &format!("\n{}", events(summary));
+    }
+    text += &boats(&summary.boats);
+    for gateway in &summary.gateways {
+        text += &gateway_text(gateway);
+    }
+    text + &topics(summary)
+}
+
+/// What happened, one a line.
+pub(super) fn events(summary: &Summary) -> String {
+    summary.events.iter().map(|event| format!("{:>7.1} s  {}\n", event.at_s, event.sentence())).collect()
+}
+
+fn head(summary: &Summary) -> String {
+    let Summary { scenario, seed, version, commit, pace, duration_s, wall_s, bytes, .. } = summary;
+    let mut text = format!("{}  {scenario}  seed {seed}\n", summary.game);
+    line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(summary.began_utc_ns)));
+    let megabytes = *bytes as f64 * 1e-6;
+    line(&mut text, format_args!("{pace}, {duration_s:.1} s in {wall_s:.1} s by the clock, {megabytes:.1} MB"));
+    if summary.is_cut {
+        line(&mut text, format_args!("the file ends before the game did: what follows holds up to there"));
+    }
+    if let Some(dropped) = summary.dropped.filter(|dropped| *dropped > 0) {
+        line(&mut text, format_args!("{dropped} messages are missing: the disk was too slow"));
+    }
+    let score: Vec<String> = summary.score.iter().map(|(team, points)| format!("{team} {points}")).collect();
+    let end = match (&summary.winner, summary.is_cut) {
+        (Some(team), _) => format!("{team} wins"),
+        (None, true) => "not decided here".to_owned(),
+        (None, false) if summary.events.iter().any(|event| event.event == "ended") => "a draw".to_owned(),
+        (None, false) => "cut short".to_owned(),
+    };
+    line(&mut text, format_args!("{}  {end}", score.join("  ")));
+    if let Some(digest) = &summary.digest {
+        line(&mut text, format_args!("digest {digest}"));
+    }
+    text
+}
+
+/// Three tables, so that each fits a terminal: how it moved, for how long it was what, how well it knew and did.
+fn boats(boats: &[Figures]) -> String {
+    let width = boats.iter().map(|boat| boat.boat.len()).max().unwrap_or(0).max(8) + 2;
+    let mut text = format!("\n{:width$}{:>10}{:>8}{:>7}", "", "distance", "speed", "max");
+    line(&mut text, format_args!("{:>7}{:>10}{:>6}{:>8}{:>12}", "grabs", "captures", "tags", "tagged", "collisions"));
+    line(&mut text, format_args!("{:width$}{:>10}{:>8}{:>7}", "", "m", "m/s", "m/s"));
+    for boat in boats {
+        let moved = format!("{:>10.0}{:>8.2}{:>7.2}", boat.distance_m, boat.speed_mean_m_s, boat.speed_max_m_s);
+        let c = &boat.counts;
+        let did = format!("{:>7}{:>10}{:>6}{:>8}{:>12}", c.grabs, c.captures, c.tags, c.tagged, c.collisions);
+        line(&mut text, format_args!("{:width$}{moved}{did}", boat.boat));
+    }
+    let heads = ["carrying", "tagged", "outside", "no mind", "lost"].map(|head| format!("{head:>9}")).concat();
+    line(&mut text, format_args!("\n{:width$}{heads}{:>22}{:>22}", "", "navigation error", "off its orders"));
+    let (navigation, orders) =
+        (format!("{:>12}{:>10}", "rms m", "95 % m"), format!("{:>12}{:>10}", "rms deg", "rms m/s"));
+    line(&mut text, format_args!("{:width$}{}{navigation}{orders}", "", format!("{:>9}", "s").repeat(5)));
+    for boat in boats {
+        let spans_s = [boat.carrying_s, boat.tagged_s, boat.outside_s, boat.mind_lost_s, boat.nav_lost_s];
+        let spans = spans_s.map(|span_s| format!("{span_s:>9.1}")).concat();
+        let navigation = match &boat.navigation {
+            Some(error) => format!("{:>12.2}{:>10.2}", error.rms_m, error.p95_m),
+            None => format!("{:>12}{:>10}", "-", "-"),
+        };
+        let orders = match &boat.steering {
+            Some(error) => format!("{:>12.1}{:>10.2}", error.heading_rms_deg, error.speed_rms_m_s),
+            None => format!("{:>12}{:>10}", "-", "-"),
+        };
+        line(&mut text, format_args!("{:width$}{spans}{navigation}{orders}", boat.boat));
+    }
+    let real: Vec<&str> = boats.iter().filter(|boat| boat.is_real).map(|boat| boat.boat.as_str()).collect();
+    if !real.is_empty() {
+        let real = real.join(", ");
+        line(&mut text, format_args!("{real}: real; the truth about them is what their gateways reported"));
+    }
+    text
+}
+
+fn gateway_text(gateway: &Gateway) -> String {
+    let state = gateway.state.as_deref().unwrap_or("unknown");
+    let trips = match gateway.trips.len() {
+        1 => "1 trip".to_owned(),
+        count => format!("{count} trips"),
+    };
+    let mut text = format!("\ngateway of {}: {state} in the end, {trips}\n", gateway.boat);
+    for trip in &gateway.trips {
+        line(&mut text, format_args!("{:>7.1} s of the gateway  {}", trip.at_s, trip.cause));
+    }
+    for (way, traffic) in [("from the boat", &gateway.from_boat), ("to the boat", &gateway.to_boat)] {
+        let Traffic { bytes, sentences } = traffic;
+        let kinds: Vec<String> = sentences.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
+        line(&mut text, format_args!("  {way:<14}{bytes:>9} bytes  {}", kinds.join("  ")));
+    }
+    text
+}
+
+fn topics(summary: &Summary) -> String {
+    let width = summary.topics.keys().map(String::len).max().unwrap_or(0).max(5) + 2;
+    let mut text = String::new();
+    line(&mut text, format_args!("\n{:width$}{:>10}{:>10}{:>10}", "topic", "messages", "a second", "kB"));
+    for (name, topic) in &summary.topics {
+        let rate = topic.rate_hz.map_or("-".to_owned(), |rate_hz| format!("{rate_hz:.1}"));
+        let kilobytes = topic.bytes as f64 * 1e-3;
+        line(&mut text, format_args!("{name:width$}{:>10}{rate:>10}{kilobytes:>10.0}", topic.count));
+    }
+    text
+}
+
+/// A line without blanks at its end.
+pub(super) fn line(text: &mut String, args: std::fmt::Arguments<'_>) {
+    let mut whole = String::new();
+    whole.write_fmt(args).expect("writing to a String cannot fail");
+    text.push_str(whole.trim_end());
+    text.push('\n');
+}

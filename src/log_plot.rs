@@ -1,0 +1,183 @@
+//! A recorded game in plots: tracks on the field, the score, every boat; and two games over each other.
+
+use crate::field_plot::{self, Chart, Spot, Symbol, Track};
+use crate::plot::{self, Line, Page, Panel};
+use anyhow::Result;
+use game::angle::compass_deg_from_rad;
+use game::event::Event;
+use game::{Ned, Order};
+use plotters::style::RGBColor;
+use shore::log::{Boat, Book, Comparison, Moment, distances};
+use shore::recording::Header;
+use std::path::Path;
+
+/// More boats than this have no names on the chart: they would hide it.
+const NAMES_MAX: usize = 12;
+/// A panel as wide as a page.
+const WIDE: (u32, u32) = (1120, 300);
+/// What was ordered.
+const ORDERED: RGBColor = RGBColor(90, 90, 90);
+const TIME: &str = "simulated time in s";
+
+/// Draws a game into files in a folder, and says how many plots there are.
+pub(crate) fn write(dir: &Path, header: &Header, book: &Book) -> Result<usize> {
+    field_plot::write(&dir.join("tracks"), &chart(header, book))?;
+    write_page(&dir.join("score"), &score(header, book))?;
+    for boat in &book.boats {
+        write_page(&dir.join(format!("boat_{}", boat.name)), &boat_page(header, book, boat))?;
+    }
+    Ok(2 + book.boats.len())
+}
+
+/// Draws two games over each other into a file in a folder.
+pub(crate) fn write_comparison(
+    dir: &Path,
+    [name_a, name_b]: [&Path; 2],
+    [a, b]: [&Book; 2],
+    comparison: &Comparison,
+) -> Result<()> {
+    let mut panels = vec![];
+    for pair in &comparison.boats {
+        let (Some(in_a), Some(in_b)) = (a.boat(&pair.boat), b.boat(&pair.boat)) else { continue };
+        let lines = vec![Line::of("A", track(in_a)), Line::of("B", track(in_b))];
+        let axes = ["x (east) in m", "y (north) in m"];
+        panels.push(Panel { equal: true, ..Panel::of(&format!("{}: tracks", pair.boat), axes, lines, "") });
+        let apart = Line::of("", distances((a, in_a), (b, in_b)));
+        let title = format!("{}: distance at the same time", pair.boat);
+        panels.push(Panel::of(&title, [TIME, "m"], vec![apart], ""));
+    }
+    let title = format!("A {}   B {}", stem(name_a), stem(name_b));
+    write_page(&dir.join("compare"), &Page { title, columns: 2, panel: plot::PANEL, panels })
+}
+
+fn write_page(stem: &Path, page: &Page) -> Result<()> {
+    plot::write_svg(&stem.with_extension("svg"), page)?;
+    plot::write_png(&stem.with_extension("png"), page)
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+}
+
+fn title(header: &Header, what: &str) -> String {
+    let scenario = &header.notice.scenario;
+    format!("{}, seed {}: {what}", scenario.name, scenario.seed)
+}
+
+/// The colour of a team: the first two are blue and vermilion, whatever they are called.
+fn colour(team: usize) -> RGBColor {
+    plot::COLOURS[team % plot::COLOURS.len()]
+}
+
+/// The colours of a team's boats: from its own to half of it in white.
+fn shades(book: &Book) -> Vec<RGBColor> {
+    let shade = |(i, boat): (usize, &Boat)| {
+        let mates = |boats: &[Boat]| boats.iter().filter(|other| other.team == boat.team).count();
+        let (place, all) = (mates(&book.boats[..i]), mates(&book.boats));
+        let white = if all > 1 { 0.5 * place as f64 / (all - 1) as f64 } else { 0.0 };
+        let mix = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
+        let RGBColor(red, green, blue) = colour(boat.team);
+        RGBColor(mix(red), mix(green), mix(blue))
+    };
+    book.boats.iter().enumerate().map(shade).collect()
+}
+
+fn chart<'a>(header: &'a Header, book: &Book) -> Chart<'a> {
+    let named = book.boats.len() <= NAMES_MAX;
+    let track = |(boat, colour): (&Boat, RGBColor)| Track {
+        name: if named { boat.name.clone() } else { String::new() },
+        colour,
+        places: boat.track().collect(),
+    };
+    let start = |boat: &Boat| Some(Spot { symbol: Symbol::Start, at: boat.track().next()?, colour: colour(boat.team) });
+    let mut spots: Vec<Spot> = book.boats.iter().filter_map(start).collect();
+    for logged in &book.events {
+        let symbol = match logged.event {
+            Event::Grabbed { .. } => Symbol::Grab,
+            Event::Captured { .. } => Symbol::Capture,
+            Event::Tagged { .. } => Symbol::Tag,
+            _ => continue,
+        };
+        let boat = logged.event.vehicle().and_then(|vehicle| book.boats.get(vehicle.index()));
+        let place = |boat: &Boat| boat.moments.get(book.moment_at(logged.at.as_s())).map(|moment| moment.truth.at());
+        if let Some((boat, at)) = boat.and_then(|boat| Some((boat, place(boat)?))) {
+            spots.push(Spot { symbol, at, colour: colour(boat.team) });
+        }
+    }
+    Chart {
+        title: title(header, "tracks"),
+        field: &header.notice.scenario.field,
+        teams: book.teams.iter().enumerate().map(|(i, name)| (name.clone(), colour(i))).collect(),
+        tracks: book.boats.iter().zip(shades(book)).map(track).collect(),
+        spots,
+    }
+}
+
+/// The score as steps.
+fn score(header: &Header, book: &Book) -> Page {
+    let steps = |team: usize| {
+        let points = book.score.iter().map(|score| score.get(team).copied().unwrap_or(0));
+        let mut line: Vec<(f64, f64)> = vec![];
+        for (time_s, points) in book.times_s.iter().zip(points.map(f64::from)) {
+            let before = line.last().map_or(points, |last| last.1);
+            if before != points {
+                line.push((*time_s, before));
+            }
+            line.push((*time_s, points));
+        }
+        line
+    };
+    let line = |(team, name): (usize, &String)| Line { colour: Some(colour(team)), ..Line::of(name, steps(team)) };
+    let lines = book.teams.iter().enumerate().map(line).collect();
+    let panels = vec![Panel::of("Score", [TIME, "points"], lines, "nothing was recorded")];
+    Page { title: title(header, "score"), columns: 1, panel: WIDE, panels }
+}
+
+/// Speed, heading and navigation of a boat.
+fn boat_page(header: &Header, book: &Book, boat: &Boat) -> Page {
+    let series = |of: &dyn Fn(&Moment) -> Option<f64>| -> Vec<(f64, f64)> {
+        let moments = book.times_s.iter().zip(&boat.moments);
+        moments.map(|(time_s, moment)| (*time_s, of(moment).unwrap_or(f64::NAN))).collect()
+    };
+    let ordered = |points| Line { colour: Some(ORDERED), ..Line::of("ordered", points) };
+    let sailed = |points| Line { colour: Some(colour(boat.team)), ..Line::of("sailed", points) };
+    let speed = |moment: &Moment| match moment.order {
+        Order::Steer { speed_m_s, .. } => Some(speed_m_s),
+        Order::Hold => Some(0.0),
+        Order::Thrust { .. } => None,
+    };
+    let heading = |moment: &Moment| match moment.order {
+        Order::Steer { heading_rad, .. } => Some(compass_deg_from_rad(heading_rad)),
+        Order::Hold | Order::Thrust { .. } => None,
+    };
+    let speeds = vec![ordered(series(&speed)), sailed(series(&|moment| Some(moment.truth.surge_m_s)))];
+    let headings = vec![
+        ordered(unwound(series(&heading))),
+        sailed(unwound(series(&|moment| Some(compass_deg_from_rad(moment.truth.psi_rad))))),
+    ];
+    let error = Line { colour: Some(colour(boat.team)), ..Line::of("", series(&Moment::nav_error_m)) };
+    let is_known = error.points.iter().any(|(_, error_m)| error_m.is_finite());
+    let absent = "no picture showed where this boat believed to be";
+    let panels = vec![
+        Panel::of("Speed ahead, over the ground", [TIME, "m/s"], speeds, ""),
+        Panel::of("Heading", [TIME, "degrees"], headings, ""),
+        Panel::of("Error of its own navigation", [TIME, "m"], if is_known { vec![error] } else { vec![] }, absent),
+    ];
+    Page { title: title(header, &boat.name), columns: 1, panel: WIDE, panels }
+}
+
+/// Headings with a gap where the compass goes through north, so that no line crosses the panel.
+fn unwound(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let mut line: Vec<(f64, f64)> = Vec::with_capacity(points.len());
+    for (time_s, heading_deg) in points {
+        if line.last().is_some_and(|last| (last.1 - heading_deg).abs() > 180.0) {
+            line.push((time_s, f64::NAN));
+        }
+        line.push((time_s, heading_deg));
+    }
+    line
+}
+
+fn track(boat: &Boat) -> Vec<(f64, f64)> {
+    boat.track().map(|Ned { north, east }| (east, north)).collect()
+}

@@ -1,0 +1,89 @@
+//! The command line's way of saying where the page is served.
+
+use anyhow::Result;
+use shore::page::{Page, PageError, PageSettings};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// The port of the page, if it is free.
+const PORT: u16 = 8088;
+
+/// Where the page is served.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct PageArgs {
+    /// Address of the page; beyond this machine, for example 0.0.0.0:8088, it needs a token [default: 127.0.0.1:8088, or
+    /// another port if that is taken]
+    #[arg(long, value_name = "ADDRESS")]
+    listen: Option<SocketAddr>,
+    /// What a page has to show to pause, stop or drive; looking is free
+    #[arg(long, value_name = "TEXT")]
+    token: Option<String>,
+    /// A further name under which the page may be asked for
+    #[arg(long, value_name = "NAME")]
+    host: Vec<String>,
+}
+
+impl PageArgs {
+    /// Serves a page that shows nothing yet.
+    pub(crate) fn open(&self, stop: &Arc<AtomicBool>) -> Result<Page> {
+        let at = |listen| PageSettings {
+            listen,
+            token: self.token.clone(),
+            hosts: self.host.clone(),
+            stop: Arc::clone(stop),
+        };
+        let usual = SocketAddr::from((Ipv4Addr::LOCALHOST, PORT));
+        let page = match (self.listen, Page::open(at(self.listen.unwrap_or(usual)))) {
+            // Another page is there already.
+            (None, Err(PageError::Listen { .. })) => Page::open(at(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)))),
+            (_, page) => page,
+        };
+        Ok(page?)
+    }
+
+    /// Where a browser finds the page, with its rights.
+    pub(crate) fn url(&self, page: &Page) -> String {
+        let token = self.token.as_ref().map(|token| format!("#token={}", in_address(token))).unwrap_or_default();
+        let mut address = page.address();
+        if let (true, Some(own)) = (address.ip().is_unspecified(), own_ip()) {
+            address.set_ip(own);
+        }
+        format!("http://{address}/{token}")
+    }
+
+    /// The same as arguments of another process of this program.
+    pub(crate) fn words(&self) -> Vec<String> {
+        let listen = self.listen.iter().map(|listen| ("--listen", listen.to_string()));
+        let token = self.token.iter().map(|token| ("--token", token.clone()));
+        let hosts = self.host.iter().map(|host| ("--host", host.clone()));
+        listen.chain(token).chain(hosts).flat_map(|(name, value)| [name.to_owned(), value]).collect()
+    }
+}
+
+/// A text as it may stand in an address.
+fn in_address(text: &str) -> String {
+    let stands = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
+    let spell = |byte: u8| if stands(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
+    text.bytes().map(spell).collect()
+}
+
+/// The address of this machine on the network, if it is on one. Nothing is sent for it.
+fn own_ip() -> Option<IpAddr> {
+    // An address that is kept free for documents (RFC 5737): the way there is the way out.
+    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
+    socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
+    socket.local_addr().ok().map(|address| address.ip())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_address;
+
+    #[test]
+    fn a_token_stands_in_an_address_as_one_word() {
+        for (token, want) in [("secret-1", "secret-1"), ("a b&c#é", "a%20b%26c%23%C3%A9"), ("50%+", "50%25%2B")] {
+            assert_eq!(in_address(token), want);
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! `squall replay`: a recorded game again.
+
+use crate::page_args::PageArgs;
+use crate::screen::{self, Screen};
+use crate::stop;
+use anyhow::{Context, Result};
+use minds::Minds;
+use shore::page::replay::{Recorded, ReplayShow};
+use shore::recording::Recording;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+mod check;
+mod minds;
+
+/// Which recording, and what to do with it.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The recording
+    file: PathBuf,
+    /// Plays the game again from what it was given, without minds, and says whether the same comes of it
+    #[arg(long)]
+    check: bool,
+    #[command(flatten)]
+    page: PageArgs,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    if args.check {
+        let recording = open(&args.file)?;
+        let verdict = check::check(&recording).with_context(|| format!("cannot play {} again", args.file.display()))?;
+        screen::print(&verdict.text());
+        return Ok(if verdict.is_same() { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+    }
+    let show = show(&args.file)?;
+    let stop = stop::on_ctrl_c()?;
+    let page = args.page.open(&stop)?;
+    page.show(Arc::new(show));
+    Screen::new().line(&format!("{} at {} (Ctrl-C ends it)", args.file.display(), args.page.url(&page)));
+    stop::wait(&stop);
+    page.close();
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A recording as a page shows it.
+pub(crate) fn show(file: &Path) -> Result<ReplayShow> {
+    let recording = Arc::new(open(file)?);
+    let film = Recorded::new(Arc::clone(&recording), file.display().to_string())
+        .with_context(|| format!("cannot replay {}", file.display()))?;
+    Ok(ReplayShow::new(Arc::new(film), Some(Box::new(Minds::new(recording)))))
+}
+
+fn open(file: &Path) -> Result<Recording> {
+    Recording::open(file).with_context(|| format!("cannot replay {}", file.display()))
+}

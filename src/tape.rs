@@ -1,0 +1,123 @@
+//! The recording of a run: where it goes, and what of the game goes into it.
+
+use anyhow::{Context, Result};
+use game::Scenario;
+use game::input::Input;
+use game::message::Notice;
+use game::run_state::RecordingState;
+use gateway::utc;
+use shore::recording::{Ending, Header, Note, Recorder, Turn};
+use sim::Contest;
+use sim::node::{Heard, Report, Witness};
+use std::path::PathBuf;
+
+/// Whether and where `run` records.
+#[derive(clap::Args)]
+pub(crate) struct RecordArgs {
+    /// Records the game into this folder
+    #[arg(long, value_name = "DIR", default_value = "runs")]
+    record: PathBuf,
+    /// Does not record
+    #[arg(long, conflicts_with = "record")]
+    no_record: bool,
+}
+
+impl RecordArgs {
+    /// A new file for a game of this scenario, in a folder that is there.
+    pub(crate) fn file(&self, scenario: &Scenario, seed: u64) -> Result<Option<PathBuf>> {
+        if self.no_record {
+            return Ok(None);
+        }
+        std::fs::create_dir_all(&self.record)
+            .with_context(|| format!("cannot make the folder {} for recordings", self.record.display()))?;
+        let stem = format!("{}_{}_{seed}", utc::name(), scenario.name);
+        let names = std::iter::once(format!("{stem}.mcap")).chain((2..).map(|n| format!("{stem}_{n}.mcap")));
+        Ok(names.map(|name| self.record.join(name)).find(|path| !path.exists()))
+    }
+}
+
+/// Writes a game down as it is played, from its first decision on.
+pub(crate) struct Tape {
+    path: PathBuf,
+    game: String,
+    pace: String,
+    /// None before the first decision; then the recorder, or why there is none.
+    recorder: Option<Result<Recorder, String>>,
+    /// Events that are told already.
+    told: usize,
+}
+
+impl Tape {
+    /// Of a game of this name at this pace, into a new file.
+    pub(crate) fn new(path: PathBuf, game: &str, pace: &str) -> Tape {
+        Tape { path, game: game.to_owned(), pace: pace.to_owned(), recorder: None, told: 0 }
+    }
+
+    fn begin(&self, contest: &Contest) -> Result<Recorder, String> {
+        let notice =
+            Notice { version: game::VERSION.to_owned(), pace: self.pace.clone(), scenario: contest.scenario().clone() };
+        let header = Header {
+            commit: env!("SQUALL_COMMIT").to_owned(),
+            game: self.game.clone(),
+            began_utc_ns: utc::now_ns(),
+            notice,
+            water: sim::node::water(contest),
+        };
+        Recorder::begin(&self.path, &header).map_err(|e| e.to_string())
+    }
+
+    /// Ends it well, and says what is missing in it, if anything is.
+    pub(crate) fn end(self, report: &Report) -> Result<Option<String>> {
+        let run = serde_json::to_value(&report.run).context("the result is not JSON")?;
+        let ending = Ending { outcome: report.outcome.clone(), run, dropped: 0 };
+        let state = self.state();
+        let state = match self.recorder {
+            Some(Ok(recorder)) => Some(recorder.end(ending)),
+            _ => state,
+        };
+        Ok(state.as_ref().and_then(trouble))
+    }
+}
+
+impl Witness for Tape {
+    fn turn(&mut self, contest: &mut Contest) {
+        contest.keep_inputs();
+        if self.recorder.is_none() {
+            self.recorder = Some(self.begin(contest));
+        }
+        let Some(Ok(recorder)) = &self.recorder else { return };
+        let inputs = contest.take_inputs();
+        let pictures = if inputs.contains(&Input::Pictured) { contest.last_pictures().to_vec() } else { vec![] };
+        let turn = Turn { frame: contest.frame_since(self.told), pictures, inputs };
+        self.told = contest.events().len();
+        recorder.note(Note::Turn(Box::new(turn)));
+    }
+
+    fn heard(&mut self, heard: Heard) {
+        let Heard { topic, schema, bytes, at } = heard;
+        if let Some(Ok(recorder)) = &self.recorder {
+            recorder.note(Note::Heard { topic, schema, bytes, at });
+        }
+    }
+
+    fn state(&self) -> Option<RecordingState> {
+        let file = self.path.display().to_string();
+        Some(match &self.recorder {
+            None => RecordingState { file, ..RecordingState::default() },
+            Some(Ok(recorder)) => recorder.state(),
+            Some(Err(reason)) => RecordingState { file, failed: Some(reason.clone()), ..RecordingState::default() },
+        })
+    }
+}
+
+/// What is wrong with a recording, in words, if anything is.
+fn trouble(state: &RecordingState) -> Option<String> {
+    let file = &state.file;
+    match &state.failed {
+        Some(reason) => Some(format!("the recording {file} is not complete: {reason}")),
+        None if state.dropped > 0 => {
+            Some(format!("the recording {file} lacks {} messages: the disk was too slow", state.dropped))
+        }
+        None => None,
+    }
+}

@@ -1,0 +1,170 @@
+//! `squall log` from outside: a short game is recorded, then looked at in every way there is; mistakes are explained.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+use tempfile::TempDir;
+
+fn squall(args: &[&str]) -> Output {
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR"));
+    Command::new(env!("CARGO_BIN_EXE_squall")).current_dir(scenarios).args(args).output().expect("the program starts")
+}
+
+/// A recorded game and its result, made once for all tests.
+struct Game {
+    _dir: TempDir,
+    recording: String,
+    result: Value,
+}
+
+fn game() -> &'static Game {
+    static GAME: OnceLock<Game> = OnceLock::new();
+    GAME.get_or_init(|| {
+        let dir = tempfile::tempdir().unwrap();
+        let (runs, json) = (text(dir.path().join("runs")), text(dir.path().join("result.json")));
+        let game = "scenarios/games/attack_1v1.toml";
+        let output = squall(&["run", game, "--in-process", "--record", &runs, "--json", &json]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let recording = std::fs::read_dir(&runs).unwrap().next().unwrap().unwrap().path();
+        let result = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
+        Game { _dir: dir, recording: text(recording), result }
+    })
+}
+
+fn text(path: PathBuf) -> String {
+    path.display().to_string()
+}
+
+/// What `squall log` prints of the game, where it must succeed.
+fn log(args: &[&str]) -> String {
+    let output = squall(&[&["log"], args].concat());
+    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Why it is refused.
+fn refusal(args: &[&str]) -> String {
+    let output = squall(&[&["log"], args].concat());
+    assert!(!output.status.success(), "{args:?} is accepted");
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(!text.contains("panicked"), "{text}");
+    text
+}
+
+#[test]
+fn the_summary_agrees_with_the_result_of_the_game() {
+    let game = game();
+    let dir = tempfile::tempdir().unwrap();
+    let json = text(dir.path().join("summary.json"));
+    let page = log(&[&game.recording, "--json", &json]);
+    for part in ["attack_1v1", "seed 1", "in process", "blue", "digest", "navigation error", "picture/blue", "messages"]
+    {
+        assert!(page.contains(part), "{part} is not in\n{page}");
+    }
+    let summary: Value = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
+    let outcome = &game.result;
+    let outcome = if outcome["outcome"].is_object() { &outcome["outcome"] } else { outcome };
+    // What the frames told is all that happened.
+    assert_eq!(summary["events"], outcome["events"]);
+    assert_eq!(summary["score"], outcome["score"]["teams"]);
+    assert_eq!((&summary["digest"], &summary["winner"]), (&outcome["digest"], &outcome["winner"]));
+    assert_eq!(summary["is_cut"], Value::Bool(false));
+    for boat in summary["boats"].as_array().unwrap() {
+        let name = boat["boat"].as_str().unwrap();
+        assert_eq!(boat["counts"], outcome["counts"]["boats"][name], "{name}");
+        assert!(boat["distance_m"].as_f64().unwrap() >= 0.0);
+    }
+    let events = log(&[&game.recording, "--events"]);
+    assert_eq!(events.lines().count(), outcome["events"].as_array().unwrap().len());
+}
+
+#[test]
+fn every_topic_comes_as_csv() {
+    let game = game();
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("table.csv");
+    for topic in ["frame", "inputs", "picture/blue", "picture/red", "events"] {
+        let printed = log(&[&game.recording, "--csv", topic]);
+        assert!(printed.starts_with("t_s,") && printed.lines().count() > 1, "{topic}: {printed}");
+        assert_eq!(log(&[&game.recording, "--csv", topic, "--out", out.to_str().unwrap()]), "");
+        assert_eq!(std::fs::read_to_string(&out).unwrap(), printed, "{topic}");
+    }
+    let frame = log(&[&game.recording, "--csv", "frame"]);
+    let mut rows = csv::Reader::from_reader(frame.as_bytes());
+    let heads = rows.headers().unwrap().clone();
+    assert!(heads.iter().any(|head| head.ends_with(".north_m")), "{heads:?}");
+    assert!(rows.records().all(|row| row.unwrap().len() == heads.len()));
+}
+
+#[test]
+fn plots_are_drawn_as_svg_and_png() {
+    let game = game();
+    let dir = tempfile::tempdir().unwrap();
+    let plots = dir.path().join("plots");
+    log(&[&game.recording, "--plot", plots.to_str().unwrap()]);
+    let names: Vec<String> =
+        std::fs::read_dir(&plots).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    let boats = names.iter().filter(|name| name.starts_with("boat_") && name.ends_with(".svg")).count();
+    assert_eq!((boats, names.len()), (2, 8), "{names:?}");
+    for name in ["tracks", "score"] {
+        let svg = std::fs::read_to_string(plots.join(format!("{name}.svg"))).unwrap();
+        assert!(svg.ends_with("</svg>\n") && svg.contains("attack_1v1") && svg.contains("blue"), "{name}");
+        let file = std::io::BufReader::new(std::fs::File::open(plots.join(format!("{name}.png"))).unwrap());
+        assert!(png::Decoder::new(file).read_info().unwrap().info().width > 500, "{name}");
+    }
+}
+
+#[test]
+fn moos_logs_are_written_for_shore_and_boats() {
+    let game = game();
+    let dir = tempfile::tempdir().unwrap();
+    let logs = dir.path().join("logs");
+    log(&[&game.recording, "--alog", logs.to_str().unwrap()]);
+    assert_eq!(std::fs::read_dir(&logs).unwrap().count(), 3);
+    let shoreside = std::fs::read_to_string(logs.join("shoreside.alog")).unwrap();
+    assert!(
+        shoreside.starts_with("%%%%") && shoreside.contains(" NODE_REPORT ") && shoreside.contains(" BLUE_SCORES ")
+    );
+    let alone = dir.path().join("shore.alog");
+    log(&[&game.recording, "--alog", alone.to_str().unwrap()]);
+    assert_eq!(std::fs::read_to_string(alone).unwrap(), shoreside);
+}
+
+#[test]
+fn a_game_beside_itself_differs_in_nothing() {
+    let game = game();
+    let dir = tempfile::tempdir().unwrap();
+    let (json, plots) = (text(dir.path().join("compare.json")), text(dir.path().join("plots")));
+    let same = [game.recording.as_str(), game.recording.as_str()];
+    let page = log(&["--compare", same[0], same[1], "--json", &json, "--plot", &plots]);
+    assert!(page.contains("as shapes") && !page.contains("only in"), "{page}");
+    let comparison: Value = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
+    for pair in comparison["boats"].as_array().unwrap() {
+        for (what, metres) in pair["apart"].as_object().unwrap() {
+            assert_eq!(metres.as_f64(), Some(0.0), "{what}");
+        }
+    }
+    for name in ["compare.svg", "compare.png"] {
+        assert!(Path::new(&plots).join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn mistakes_are_explained() {
+    let recording = game().recording.as_str();
+    let toml = "scenarios/games/attack_1v1.toml";
+    for (args, said) in [
+        (&["nowhere.mcap"][..], "cannot look at nowhere.mcap"),
+        (&[toml], "not a recording of a game"),
+        (&[recording, "--csv", "whales"], "there is no topic \"whales\" in this recording; there are events, frame"),
+        (&["--compare", recording, "nowhere.mcap"], "cannot look at nowhere.mcap"),
+        (&["--compare", recording], "2 values"),
+        (&[], "FILE"),
+        (&[recording, "--plot", toml], "cannot make the folder"),
+    ] {
+        let refused = refusal(args);
+        assert!(refused.contains(said), "{args:?} should say {said:?}, but says {refused}");
+    }
+}

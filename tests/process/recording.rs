@@ -1,0 +1,171 @@
+//! Recordings as people make them: of whole games, of games that were killed, of real boats; and games played again.
+
+use crate::support::{FOUR, Sim, long_game, result_of, run, squall};
+use game::external::LinkBytes;
+use shore::recording::Recording;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// The only recording in a folder.
+fn only_recording(dir: &Path) -> PathBuf {
+    let files: Vec<PathBuf> =
+        std::fs::read_dir(dir).expect("the folder is there").map(|f| f.expect("a file").path()).collect();
+    assert_eq!(files.len(), 1, "{files:?}");
+    files[0].clone()
+}
+
+fn opened(path: &Path) -> Recording {
+    Recording::open(path).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// What playing it again says, and whether it is the same.
+fn checked(path: &Path) -> (bool, String) {
+    let output = run(&["replay", "--check", &path.display().to_string()]);
+    let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+    (output.status.success(), said)
+}
+
+#[test]
+fn a_game_recorded_replayed_and_played_again_is_one_game() {
+    let game = "scenarios/games/pav01_vs_pav01.toml";
+    let mut digests = Vec::new();
+    for how in [&["--in-process"][..], &["--agents-per-process", "2"]] {
+        let dir = tempfile::tempdir().expect("a temporary directory");
+        let folder = dir.path().join("runs").display().to_string();
+        let result = result_of(&[&[game, "--record", &folder], how].concat());
+        let path = only_recording(Path::new(&folder));
+        let recording = opened(&path);
+        let ending = recording.ending().expect("it ended well");
+        assert_eq!(ending.outcome.digest, result["digest"].as_str().expect("a digest"));
+        assert_eq!((ending.dropped, recording.is_cut()), (0, false));
+        assert_eq!(recording.frame_count(), 6001, "a frame a decision, and the last");
+        let score = recording.frames().last().expect("frames").expect("a frame").score;
+        let told = &result["score"]["teams"];
+        assert_eq!([told["blue"].as_u64(), told["red"].as_u64()], [score[0], score[1]].map(|n| Some(u64::from(n))));
+        let (same, said) = checked(&path);
+        assert!(
+            same && said.contains("6001 frames to 600.0 s to the last bit") && said.contains(&ending.outcome.digest),
+            "{said}"
+        );
+        digests.push(ending.outcome.digest.clone());
+    }
+    assert_eq!(digests[0], digests[1]);
+}
+
+#[test]
+fn a_killed_sim_leaves_a_recording_up_to_the_last_second() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let path = dir.path().join("killed.mcap");
+    let file = path.display().to_string();
+    let mut sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x", "--record", &file]);
+    let _agent = sim.agent(&FOUR);
+    let now_s = sim.play_on(40.0);
+    sim.process.kill();
+    let recording = opened(&path);
+    assert!(recording.is_cut() && recording.ending().is_none());
+    let last_s = recording.frame(recording.frame_count() - 1).at.as_s();
+    assert!(last_s > now_s - 20.0, "{last_s} s recorded of {now_s} s: more than a second is lost");
+    let (same, said) = checked(&path);
+    assert!(same && said.contains("the file ends abruptly there"), "{said}");
+}
+
+#[test]
+fn a_recording_that_was_changed_is_found_out() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let folder = dir.path().display().to_string();
+    result_of(&["scenarios/games/attack_1v1.toml", "--in-process", "--record", &folder]);
+    let path = only_recording(dir.path());
+    let mut bytes = std::fs::read(&path).expect("it is there");
+    // A speed that was ordered, in the middle of the game; the library would notice by a checksum, we look closer.
+    let place = {
+        let recording = opened(&path);
+        let said = recording.on("inputs").nth(recording.frame_count() / 2).expect("inputs").bytes.to_vec();
+        let place = bytes.windows(said.len()).position(|window| window == said).expect("they are there");
+        place + said.len() - 60
+    };
+    bytes[place..place + 8].copy_from_slice(&0.123_f64.to_le_bytes());
+    std::fs::write(&path, bytes).expect("it can be written");
+    let (same, said) = checked(&path);
+    assert!(!same && (said.contains("DIFFERENT from tick") || said.contains("not understood")), "{said}");
+}
+
+#[test]
+fn what_is_no_recording_is_refused_with_the_reason() {
+    for (file, part) in
+        [("README.md", "does not begin as MCAP files do"), ("nowhere.mcap", "cannot read the recording")]
+    {
+        for how in [&["replay", file][..], &["replay", "--check", file]] {
+            let output = squall(how).output().expect("it starts");
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(!output.status.success() && said.contains(file) && said.contains(part), "{how:?}: {said}");
+        }
+    }
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let taken = dir.path().join("file");
+    std::fs::write(&taken, "").expect("it can be written");
+    let taken = taken.display().to_string();
+    let output = run(&["run", "scenarios/games/attack_1v1.toml", "--in-process", "--record", &taken]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && said.contains("cannot make the folder"), "{said}");
+}
+
+#[test]
+fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let (runs, gateways) = (dir.path().join("runs"), dir.path().join("gateways"));
+    let game = dir.path().join("short.toml");
+    let text = format!("base = \"{}/games/mixed_2v2.toml\"\nduration_s = 60\n", crate::support::scenarios());
+    std::fs::write(&game, text).expect("a file can be written");
+    let [game, runs_text, gateways_text] = [&game, &runs, &gateways].map(|path| path.display().to_string());
+    let config = "scenarios/gateways/emulated.toml";
+    let options = ["--emulate", "--pace", "10x", "--gateway", config, "--record-gateways", &gateways_text];
+    result_of(&[&[game.as_str(), "--record", &runs_text][..], &options].concat());
+    let path = only_recording(&runs);
+    let recording = opened(&path);
+    let topics = recording.topics();
+    for topic in ["nav/blue_one", "external/blue_one", "status/blue_one", "link/blue_one", "link/red_one", "run"] {
+        assert!(topics.contains_key(topic), "{topic} is not in {topics:?}");
+    }
+    // What the gateway itself recorded, as far as the game went.
+    let bytes = |outward: bool| -> Vec<u8> {
+        let said = recording.on("link/blue_one").map(|said| said.read::<LinkBytes>().expect("bytes"));
+        said.filter(|link| link.outward == outward).flat_map(|link| link.data).collect()
+    };
+    let own = std::fs::read(gateways.join("blue_one.mcap")).expect("it is there");
+    let sentences = |bytes: &[u8]| bytes.split(|byte| *byte == b'\n').filter(|line| line.len() > 9).count();
+    for (topic, outward) in [("link/in", false), ("link/out", true)] {
+        let ours = bytes(outward);
+        let theirs: Vec<u8> = mcap_bytes(&own, topic);
+        let place = theirs.windows(ours.len()).position(|window| window == ours);
+        assert!(place.is_some() && sentences(&ours) > 100, "{topic}: {} of {} bytes", ours.len(), theirs.len());
+    }
+    let (same, said) = checked(&path);
+    assert!(same, "{said}");
+}
+
+/// Everything on one topic of a gateway's own recording.
+fn mcap_bytes(file: &[u8], topic: &str) -> Vec<u8> {
+    let messages = mcap::MessageStream::new(file).expect("a recording").map(|message| message.expect("a message"));
+    messages.filter(|message| message.channel.topic == topic).flat_map(|message| message.data.into_owned()).collect()
+}
+
+#[test]
+fn a_recording_can_be_read_while_the_game_goes_on() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let path = dir.path().join("live.mcap");
+    let file = path.display().to_string();
+    let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x", "--record", &file]);
+    let _agent = sim.agent(&FOUR);
+    sim.play_on(20.0);
+    let start = Instant::now();
+    let mut counts = vec![opened(&path).frame_count()];
+    while counts.len() < 3 && start.elapsed() < crate::support::LIMIT {
+        let count = opened(&path).frame_count();
+        if Some(&count) != counts.last() {
+            counts.push(count);
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert!(counts.len() == 3 && counts.is_sorted(), "{counts:?}");
+    sim.stop();
+}

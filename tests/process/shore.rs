@@ -1,0 +1,139 @@
+//! People ashore have a hand in a game: they pause it, step it, slow it down, and make boats hold.
+
+use crate::support::{FOUR, LIMIT, Sim, long_game, result_of, scenarios, write};
+use bus::{Board, Bus, Delivery, Publisher, Standing};
+use game::message::{Control, Frame};
+use game::run_state::{Phase, RunState};
+use game::topic::{self, GameName};
+use game::{codec, math};
+use std::sync::Arc;
+
+/// Somebody ashore.
+struct Shore {
+    control: Publisher,
+    run: Arc<Board<RunState>>,
+    frame: Arc<Board<Frame>>,
+    _standing: Vec<Standing>,
+    _bus: Bus,
+}
+
+impl Shore {
+    fn of(sim: &Sim) -> Shore {
+        let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
+        let (run, frame) = (Arc::new(Board::new(RunState::default())), Arc::new(Board::new(Frame::default())));
+        let (to_run, to_frame) = (Arc::clone(&run), Arc::clone(&frame));
+        let take_run = move |bytes: &[u8]| {
+            let state = serde_json::from_slice(bytes).expect("a state");
+            to_run.visit(|run| *run = state);
+        };
+        let take_frame = move |bytes: &[u8]| {
+            let frame = codec::decode(bytes).expect("a frame");
+            to_frame.visit(|newest| *newest = frame);
+        };
+        let standing = vec![
+            bus.subscribe(topic::run(&name), take_run).expect("the hub is there"),
+            bus.subscribe(topic::frame(&name), take_frame).expect("the hub is there"),
+        ];
+        let control = bus.publisher(topic::control(&name), Delivery::Wait).expect("the hub is there");
+        Shore { control, run, frame, _standing: standing, _bus: bus }
+    }
+
+    fn ask(&self, control: Control) {
+        self.control.send_json(serde_json::to_vec(&control).expect("JSON")).expect("the hub is there");
+    }
+
+    fn wait_for_run(&self, what: &str, is_it: impl Fn(&RunState) -> bool) -> RunState {
+        assert!(self.run.wait(LIMIT, is_it), "{what}: {:?}", self.run.visit(|run| run.clone()));
+        self.run.visit(|run| run.clone())
+    }
+
+    fn wait_for_frame(&self, what: &str, is_it: impl Fn(&Frame) -> bool) {
+        assert!(self.frame.wait(LIMIT, is_it), "{what}");
+    }
+
+    fn pause(&self) -> RunState {
+        self.ask(Control::Pause);
+        self.wait_for_run("it pauses", |run| run.phase == Phase::Paused)
+    }
+}
+
+#[test]
+fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let text = format!("base = \"{}/games/pav01_vs_pav01.toml\"\nduration_s = 120\n", scenarios());
+    let game = write(dir.path(), "short.toml", &text);
+    let want = result_of(&[&game.display().to_string(), "--in-process"])["digest"].clone();
+    let sim = Sim::start(&game, &["--speed", "20x"]);
+    let shore = Shore::of(&sim);
+    let _agents = [sim.agent(&FOUR[..2]), sim.agent(&FOUR[2..])];
+    sim.play_on(2.0);
+    let paused_s = shore.pause().now_s;
+    // It is told again that it stands, and that it stands where it stood.
+    for _ in 0..5 {
+        shore.run.visit(|run| run.now_s = -1.0);
+        assert_eq!(shore.wait_for_run("it is told", |run| run.now_s >= 0.0).now_s, paused_s);
+    }
+    for step in 1..=3 {
+        shore.ask(Control::Step);
+        let want_s = paused_s + 0.1 * f64::from(step);
+        let is_there = |run: &RunState| (run.now_s - want_s).abs() < 1e-9 && run.phase == Phase::Paused;
+        shore.wait_for_run("it plays one decision", is_there);
+    }
+    shore.ask(Control::Resume);
+    shore.wait_for_run("it goes on", |run| run.phase == Phase::Playing);
+    shore.ask(Control::Speed(None));
+    let done = sim.wait_for(|telling| telling["tell"] == "done");
+    assert_eq!(done["outcome"]["digest"], want, "pauses are not part of a game");
+    assert_eq!(done["run"]["refused"]["out_of_place"], 0);
+}
+
+#[test]
+fn a_game_goes_as_fast_as_it_is_asked_to() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    for (pace, is_lockstep) in [("lockstep", true), ("realtime", false)] {
+        let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", pace]);
+        let shore = Shore::of(&sim);
+        let _agent = sim.agent(&FOUR);
+        sim.play_on(0.5);
+        shore.ask(Control::Speed(Some(3.0)));
+        shore.wait_for_run("it goes at that speed", |run| run.speed == Some(3.0) && (2.0..4.0).contains(&run.rate));
+        shore.ask(Control::Speed(Some(12.0)));
+        shore.wait_for_run("it goes faster", |run| run.speed == Some(12.0) && run.rate > 6.0);
+        shore.ask(Control::Speed(None));
+        shore.ask(Control::Step);
+        let refused = if is_lockstep { 1 } else { 2 };
+        let is_refused = |run: &RunState| run.refused == refused && run.speed.is_none() == is_lockstep;
+        shore.wait_for_run("what cannot be is refused", is_refused);
+        sim.stop();
+    }
+}
+
+#[test]
+fn boats_hold_for_as_long_as_somebody_ashore_wants_it() {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x"]);
+    let shore = Shore::of(&sim);
+    let _agent = sim.agent(&FOUR);
+    let speed = |frame: &Frame| {
+        let speeds = frame.vehicles.iter().map(|boat| math::length(boat.nav.surge_m_s, boat.nav.sway_m_s));
+        speeds.fold(0.0, f64::max)
+    };
+    for (stop, go, stopped, gone_on) in [
+        (Control::Halt, Control::GoOn, "halted", "went_on"),
+        (Control::EStop, Control::Release, "e_stopped", "released"),
+    ] {
+        shore.wait_for_frame("they are under way", |frame| speed(frame) > 1.0);
+        shore.ask(stop);
+        sim.wait_for(|telling| telling["tell"] == "event" && telling["event"] == stopped);
+        shore.wait_for_frame("all stop", |frame| frame.stopped && speed(frame) < 0.1);
+        shore.ask(go);
+        sim.wait_for(|telling| telling["tell"] == "event" && telling["event"] == gone_on);
+    }
+    // Whoever lets them go on after a halt does not lift an E-stop.
+    for control in [Control::Halt, Control::EStop, Control::GoOn] {
+        shore.ask(control);
+    }
+    sim.wait_for(|telling| telling["tell"] == "event" && telling["event"] == "went_on");
+    shore.wait_for_frame("they stay stopped", |frame| frame.stopped && speed(frame) < 0.1);
+    sim.stop();
+}
