@@ -45,12 +45,19 @@ pub(crate) struct Tape {
     recorder: Option<Result<Recorder, String>>,
     /// Events that are told already.
     told: usize,
+    /// Whether pictures are heard, encoded as they are, since they go over the network.
+    hears_pictures: bool,
 }
 
 impl Tape {
-    /// Of a game of this name at this pace, into a new file.
-    pub(crate) fn new(path: PathBuf, game: &str, pace: &str) -> Tape {
-        Tape { path, game: game.to_owned(), pace: pace.to_owned(), recorder: None, told: 0 }
+    /// Of a game of this name at this pace on the network, into a new file.
+    pub(crate) fn on_network(path: PathBuf, game: &str, pace: &str) -> Tape {
+        Tape { path, game: game.to_owned(), pace: pace.to_owned(), recorder: None, told: 0, hears_pictures: true }
+    }
+
+    /// Of a game in this process, into a new file.
+    pub(crate) fn in_process(path: PathBuf, game: &str) -> Tape {
+        Tape { hears_pictures: false, ..Tape::on_network(path, game, "in process") }
     }
 
     fn begin(&self, contest: &Contest) -> Result<Recorder, String> {
@@ -87,7 +94,8 @@ impl Witness for Tape {
         }
         let Some(Ok(recorder)) = &self.recorder else { return };
         let inputs = contest.take_inputs();
-        let pictures = if inputs.contains(&Input::Pictured) { contest.last_pictures().to_vec() } else { vec![] };
+        let shows = !self.hears_pictures && inputs.contains(&Input::Pictured);
+        let pictures = if shows { contest.last_pictures().to_vec() } else { vec![] };
         let turn = Turn { frame: contest.frame_since(self.told), pictures, inputs };
         self.told = contest.events().len();
         recorder.note(Note::Turn(Box::new(turn)));

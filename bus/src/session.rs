@@ -212,8 +212,16 @@ impl Publisher {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn send<M: Message + Serialize>(&self, message: &M) -> Result<(), BusError> {
+        self.send_encoded::<M>(codec::encode(message))
+    }
+
+    /// Sends a per-tick message that is CDR already.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn send_encoded<M: Message>(&self, bytes: Vec<u8>) -> Result<(), BusError> {
         let encoding = Encoding::APPLICATION_CDR.with_schema(format!("{}@{}", M::SCHEMA, M::VERSION));
-        self.put(codec::encode(message), encoding)
+        self.put(bytes, encoding)
     }
 
     /// Sends bytes that are JSON.

@@ -47,7 +47,9 @@ pub enum DecodeError {
 /// Never: every message is a plain struct of numbers, lists and strings.
 #[must_use]
 pub fn encode<M: Message + Serialize>(message: &M) -> Vec<u8> {
-    let mut bytes = ENCAPSULATION.to_vec();
+    // Room for most: growing costs as much as writing.
+    let mut bytes = Vec::with_capacity(4096);
+    bytes.extend(ENCAPSULATION);
     cdr_encoding::to_writer::<M, LittleEndian, _>(&mut bytes, message).expect("a plain struct always encodes");
     bytes
 }

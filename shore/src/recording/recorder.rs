@@ -8,13 +8,15 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// What was recorded is handed to the system this often.
 const FLUSH: Duration = Duration::from_millis(250);
+/// So long the writer leaves notes to gather: to be woken for each would cost the game more than the writing does.
+const GATHER: Duration = Duration::from_millis(20);
 /// Memory that notes may take up that wait for the disk, bytes.
 const WAITING_BYTES: usize = 128 << 20;
 
@@ -106,7 +108,7 @@ fn write(mut writer: Writer<BufWriter<File>>, jobs: &Receiver<Job>, shared: &Sha
     };
     let mut is_broken = false;
     loop {
-        let written = match jobs.recv_timeout(FLUSH) {
+        let written = match jobs.try_recv() {
             Ok(Job::Note(..)) if is_broken => {
                 shared.dropped.fetch_add(1, Ordering::Relaxed);
                 Ok(())
@@ -118,8 +120,11 @@ fn write(mut writer: Writer<BufWriter<File>>, jobs: &Receiver<Job>, shared: &Sha
                 }
                 return tell_size();
             }
-            Err(RecvTimeoutError::Timeout) => Ok(()),
-            Err(RecvTimeoutError::Disconnected) => return drop(writer.flush()),
+            Err(TryRecvError::Empty) => {
+                clock::rest(GATHER);
+                Ok(())
+            }
+            Err(TryRecvError::Disconnected) => return drop(writer.flush()),
         };
         let now = clock::now();
         let flush = now.duration_since(flushed) >= FLUSH;

@@ -14,7 +14,7 @@ use game::external::{ExternalOrder, NavReport};
 use game::message::{Control, JoinReply, JoinRequest, Message, Notice, Orders, Stamp, VehicleOrder};
 use game::run_state::{Phase, RunState};
 use game::topic::{self, Part};
-use game::{Order, SimTime, TeamId, VehicleId};
+use game::{Order, Picture, SimTime, TeamId, VehicleId};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -39,6 +39,8 @@ pub(super) struct Booth<'w> {
     inbox: Inbox<Call>,
     bus: Bus,
     pictures: Vec<Publisher>,
+    /// The decision whose pictures were sent last.
+    asked: Option<u64>,
     frames: Publisher,
     run: Publisher,
     /// Whether somebody asked for something since the state of the run was told.
@@ -98,6 +100,7 @@ impl<'w> Booth<'w> {
             quay: Quay::new(scenario),
             inbox,
             pictures: pictures?,
+            asked: None,
             helms,
             frames: bus.publisher(topic::frame(game), Delivery::Drop)?,
             run: bus.publisher(topic::run(game), Delivery::Drop)?,
@@ -178,8 +181,15 @@ impl<'w> Booth<'w> {
     /// Sends every team the picture of the open decision, and every real boat its order. Sending them twice does no harm.
     pub(super) fn ask(&mut self) -> Result<(), NodeError> {
         self.opened = Some(clock::now());
-        for (picture, line) in self.contest.pictures().iter().zip(&self.pictures) {
-            line.send(picture)?;
+        let is_again = self.asked.replace(self.contest.decision()) == Some(self.contest.decision());
+        let is_recorded = !is_again && self.witness.state().is_some();
+        let pictures: Vec<Vec<u8>> = self.contest.pictures().iter().map(codec::encode).collect();
+        for (i, bytes) in pictures.into_iter().enumerate() {
+            if is_recorded {
+                let topic = format!("picture/{}", self.contest.scenario().teams[i].name);
+                self.write_down(&topic, Some(Picture::SCHEMA), bytes.clone());
+            }
+            self.pictures[i].send_encoded::<Picture>(bytes)?;
         }
         (0..self.helms.len()).try_for_each(|i| self.pass_on(self.helms[i].0))
     }

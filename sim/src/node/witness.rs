@@ -6,7 +6,8 @@ use game::run_state::RecordingState;
 
 /// Somebody who is shown everything. Nobody waits for it: it must be quick.
 pub trait Witness {
-    /// A decision: the contest before it, with what was given since the one before ([`Contest::take_inputs`]).
+    /// A decision: the contest before it, with what was given since the one before ([`Contest::take_inputs`]). The pictures
+    /// that were shown are heard.
     fn turn(&mut self, contest: &mut Contest);
     /// Something that went over the network.
     fn heard(&mut self, heard: Heard);
