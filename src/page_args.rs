@@ -42,6 +42,11 @@ impl PageArgs {
         Ok(page?)
     }
 
+    /// Whether anything is said of the page.
+    pub(crate) fn is_given(&self) -> bool {
+        self.listen.is_some() || self.token.is_some() || !self.host.is_empty()
+    }
+
     /// Where a browser finds the page, with its rights.
     pub(crate) fn url(&self, page: &Page) -> String {
         let token = self.token.as_ref().map(|token| format!("#token={}", in_address(token))).unwrap_or_default();

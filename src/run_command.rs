@@ -70,6 +70,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.in_process || args.pace == Pace::Lockstep {
         scenario.has_no_real_boats()?;
     }
+    if args.page.is_given() && !args.view {
+        bail!("--listen, --token and --host say how the page is served: they need --view");
+    }
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
     let file = args.record.file(&scenario, args.seed.unwrap_or(scenario.seed))?;

@@ -107,6 +107,12 @@ fn what_is_no_recording_is_refused_with_the_reason() {
     let output = run(&["run", "scenarios/games/attack_1v1.toml", "--in-process", "--record", &taken]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success() && said.contains("cannot make the folder"), "{said}");
+    let output = run(&["run", "scenarios/games/attack_1v1.toml", "--no-record", "--token", "secret"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && said.contains("they need --view"), "{said}");
+    let output = run(&["view", "--listen", "0.0.0.0:0"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && said.contains("or give a token"), "{said}");
 }
 
 #[test]
