@@ -59,11 +59,12 @@ fn watch_field(Onlooker { bus, game, notice }: &Onlooker, pause: Duration, stop:
     let counter = Arc::clone(&count);
     let news = Arc::new(std::sync::Mutex::new(VecDeque::new()));
     let inbox = Arc::clone(&news);
+    let scenario = notice.scenario.clone();
     let take = move |bytes: &[u8]| {
         counter.fetch_add(1, Ordering::Relaxed);
         if let Ok(frame) = codec::decode::<Frame>(bytes) {
             let mut queue = inbox.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            queue.extend(frame.events.iter().copied());
+            queue.extend(frame.logged(&scenario));
             let surplus = queue.len().saturating_sub(EVENTS);
             queue.drain(..surplus);
             events.put(0, frame);
@@ -76,8 +77,7 @@ fn watch_field(Onlooker { bus, game, notice }: &Onlooker, pause: Duration, stop:
         let Some(frame) = frames.take(SILENCE).pop().flatten() else { bail!("game {} is gone", game.as_str()) };
         let rates = meter.read(frame.stamp.valid_ns, count.load(Ordering::Relaxed));
         let queue = news.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
-        let told: Vec<String> =
-            queue.iter().filter_map(|r| r.logged()).map(|l| sentence(&notice.scenario, &l)).collect();
+        let told: Vec<String> = queue.iter().map(|logged| sentence(&notice.scenario, logged)).collect();
         let text = if live {
             format!("\x1b[H\x1b[J{}", chart::page(notice, game, &frame, &told, &rates))
         } else {

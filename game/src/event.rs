@@ -1,6 +1,7 @@
 //! What happened in a game, in the past tense.
 
 use crate::id::{FlagId, TeamId, VehicleId};
+use crate::scenario::Scenario;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
@@ -155,5 +156,23 @@ impl Event {
             Event::Collided { first, .. } => Some(first),
             Event::EStopped | Event::Released | Event::Halted | Event::WentOn | Event::Ended { .. } => None,
         }
+    }
+
+    /// Whether everything that it names is in the game: whoever sends it is not therefore right.
+    #[must_use]
+    pub fn is_of(self, scenario: &Scenario) -> bool {
+        let other = match self {
+            Event::Tagged { cause: TagCause::Opponent(by), .. } => Some(by),
+            Event::Collided { second, .. } => Some(second),
+            _ => None,
+        };
+        let flag = match self {
+            Event::Grabbed { flag, .. } | Event::Captured { flag, .. } | Event::FlagReturned { flag, .. } => Some(flag),
+            _ => None,
+        };
+        let team = if let Event::Ended { winner } = self { winner } else { None };
+        [self.vehicle(), other].into_iter().flatten().all(|vehicle| vehicle.index() < scenario.vehicles.len())
+            && flag.is_none_or(|flag| flag.index() < scenario.field.flags.len())
+            && team.is_none_or(|team| team.index() < scenario.teams.len())
     }
 }

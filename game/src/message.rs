@@ -233,6 +233,13 @@ impl EventRecord {
     }
 }
 
+impl Frame {
+    /// What happened since the frame before, but for what names something that is not in the game.
+    pub fn logged<'a>(&'a self, scenario: &'a Scenario) -> impl Iterator<Item = Logged> + 'a {
+        self.events.iter().filter_map(EventRecord::logged).filter(|logged| logged.event.is_of(scenario))
+    }
+}
+
 impl Message for Frame {
     const SCHEMA: &'static str = "squall_msgs/msg/Frame";
     const VERSION: u8 = 3;

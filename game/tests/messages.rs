@@ -233,6 +233,24 @@ fn every_event_survives_its_record() {
     assert_eq!(EventRecord { tick: 0, at_ns: SimTime(0), kind: 99, subject: 0, object: 0 }.logged(), None);
 }
 
+#[test]
+fn what_names_nothing_in_the_game_is_left_out_of_a_frame() {
+    let game = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+    let scenario = game::scenario::load(&game).unwrap_or_else(|e| panic!("{e}"));
+    let left = |subject: i32, object: i32| {
+        let record = |kind| EventRecord { tick: 1, at_ns: SimTime(5), kind, subject, object };
+        let frame = Frame { events: (0..=22).map(record).collect(), ..Frame::default() };
+        frame.logged(&scenario).map(|logged| EventRecord::from(logged).kind).collect::<Vec<_>>()
+    };
+    assert_eq!(left(1, 1), (0..=21).collect::<Vec<_>>(), "there are four boats, two flags and two teams");
+    assert_eq!(left(4, 1), [18, 19, 20, 21], "no such boat, no such team");
+    assert_eq!(
+        left(3, 4),
+        [3, 4, 6, 7, 9, 10, 11, 12, 13, 14, 16, 17, 18, 19, 20, 21],
+        "no such flag, no such other boat"
+    );
+}
+
 prop_compose! {
     fn nav()(a in any::<[f64; 6]>()) -> Nav {
         Nav { north_m: a[0], east_m: a[1], psi_rad: a[2], surge_m_s: a[3], sway_m_s: a[4], yaw_rate_rad_s: a[5] }

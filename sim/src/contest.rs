@@ -261,11 +261,10 @@ impl Contest {
     /// [`BadReport`] for numbers that no boat has, and for a simulated boat; nothing changes then.
     pub fn report(&mut self, vehicle: VehicleId, nav: Nav, fix_at: SimTime, valid: bool) -> Result<(), BadReport> {
         let now = self.now();
-        let decision = self.scenario.tick * i64::from(self.scenario.ticks_per_decision);
         let track = self.tracks.iter_mut().find(|track| track.vehicle == vehicle).ok_or(BadReport::Simulated)?;
         let nav = external::sound(nav)?;
         if valid {
-            track.take(nav, fix_at.min(now + decision));
+            track.take(nav, fix_at.min(now + self.scenario.decision()));
             self.carry(vehicle);
         }
         self.note(Input::Reported { vehicle, nav, fix_at, valid });

@@ -78,11 +78,10 @@ impl Model {
         let external: Vec<bool> = scenario.vehicles.iter().map(|vehicle| vehicle.source == Source::External).collect();
         let points = kinds.iter().zip(&external).map(|(kind, real)| !real && matches!(drives[*kind], Drive::Point(_)));
         let sensors = scenario.vehicles.iter().map(|vehicle| &scenario.boats[vehicle.boat].sensors);
-        let decision = scenario.tick * i64::from(scenario.ticks_per_decision);
         let is_sensed = sensors.clone().zip(&external).map(|(sensors, real)| !real && *sensors != Sensors::default());
         let places = numbered(is_sensed);
         let sensed = places.into_iter().zip(sensors).zip(&scenario.vehicles).map(|((place, sensors), vehicle)| {
-            place.map(|place| (place, SensorModel::new(sensors, decision, seed, &vehicle.name)))
+            place.map(|place| (place, SensorModel::new(sensors, scenario.decision(), seed, &vehicle.name)))
         });
         let encoded = postcard::to_stdvec(scenario).expect("a checked scenario always encodes");
         Model {

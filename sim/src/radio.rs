@@ -97,9 +97,8 @@ impl Radio {
     /// The links of this scenario in the game that its seed chooses, if it states any.
     pub(crate) fn new(scenario: &Scenario) -> Option<Radio> {
         let link = scenario.link.clone()?;
-        let decision = scenario.tick * i64::from(scenario.ticks_per_decision);
         let noise = |name: &str| Noise::new(scenario.seed, &format!("link/{name}"));
-        Some(Radio::over(link, decision, scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name))))
+        Some(Radio::over(link, scenario.decision(), scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name))))
     }
 
     fn over(link: Link, decision: SimTime, noises: impl Iterator<Item = Noise>) -> Radio {

@@ -79,7 +79,7 @@ impl Team {
     fn new(recording: &Recording, team: TeamId) -> Team {
         let scenario: &Scenario = &recording.header().notice.scenario;
         let mates = (0..scenario.vehicles.len()).map(VehicleId::at).filter(|v| scenario.team_of(*v) == team);
-        let places = recording.places(&picture(&scenario.teams[team.index()].name));
+        let topic = picture(&scenario.teams[team.index()].name);
         let decision = |place: usize| {
             let picture: Picture = recording.message(place).read().ok()?;
             Some((picture.stamp.seq, place))
@@ -87,7 +87,7 @@ impl Team {
         Team {
             seated: mates.map(|vehicle| (vehicle, mind_of(scenario, vehicle))).collect(),
             words: Vec::new(),
-            pictures: places.into_iter().filter_map(decision).collect(),
+            pictures: recording.places(&topic).filter_map(decision).collect(),
             last: None,
         }
     }

@@ -98,6 +98,12 @@ impl Scenario {
         })
     }
 
+    /// The simulated time from one decision to the next.
+    #[must_use]
+    pub fn decision(&self) -> SimTime {
+        self.tick * i64::from(self.ticks_per_decision)
+    }
+
     /// The team with this name.
     #[must_use]
     pub fn team_by_name(&self, name: &str) -> Option<TeamId> {

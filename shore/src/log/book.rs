@@ -1,7 +1,7 @@
 //! A recorded game as series: where each boat was at every decision, where it believed to be, what it was ordered.
 
 use crate::recording::{FRAME, INPUTS, Recording, RecordingError, Said};
-use game::event::{Event, Logged, TagCause};
+use game::event::Logged;
 use game::input::{Input, Inputs};
 use game::message::{Frame, VehicleTruth};
 use game::outcome::EventOutcome;
@@ -176,8 +176,7 @@ impl<'a> Scribe<'a> {
             let truth = frame.vehicles.get(i).copied().unwrap_or_default();
             boat.moments.push(moment(&truth, *order, frame.stopped));
         }
-        let logged = frame.events.iter().filter_map(|record| record.logged());
-        self.book.events.extend(logged.filter(|logged| is_known(self.scenario, logged.event)));
+        self.book.events.extend(frame.logged(self.scenario));
         self.book.score.push(frame.score);
         Ok(())
     }
@@ -224,21 +223,4 @@ fn moment(truth: &VehicleTruth, order: Order, stopped: bool) -> Moment {
         mind_lost,
         nav_lost,
     }
-}
-
-/// Whether everything that an event names is in the scenario.
-pub(super) fn is_known(scenario: &Scenario, event: Event) -> bool {
-    let other = match event {
-        Event::Tagged { cause: TagCause::Opponent(by), .. } => Some(by),
-        Event::Collided { second, .. } => Some(second),
-        _ => None,
-    };
-    let flag = match event {
-        Event::Grabbed { flag, .. } | Event::Captured { flag, .. } | Event::FlagReturned { flag, .. } => Some(flag),
-        _ => None,
-    };
-    let team = if let Event::Ended { winner } = event { winner } else { None };
-    [event.vehicle(), other].into_iter().flatten().all(|vehicle| vehicle.index() < scenario.vehicles.len())
-        && flag.is_none_or(|flag| flag.index() < scenario.field.flags.len())
-        && team.is_none_or(|team| team.index() < scenario.teams.len())
 }

@@ -125,7 +125,7 @@ impl Chart {
             name: scenario.name.clone(),
             seed: scenario.seed,
             duration_s: rules.time_limit.as_s(),
-            decision_s: (scenario.tick * i64::from(scenario.ticks_per_decision)).as_s(),
+            decision_s: scenario.decision().as_s(),
             rules: rules.name.clone(),
             sea: scenario.sea.name.clone(),
             teams: scenario.teams.iter().map(|team| TeamMark { name: team.name.clone() }).collect(),

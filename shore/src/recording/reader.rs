@@ -162,20 +162,18 @@ impl Recording {
 
     /// All messages, in the order in which they were recorded.
     pub fn messages(&self) -> impl ExactSizeIterator<Item = Said<'_>> {
-        (0..self.pieces.len()).map(|i| self.said(i))
+        (0..self.pieces.len()).map(|place| self.message(place))
     }
 
     /// The messages of one topic.
     pub fn on<'a>(&'a self, topic: &'a str) -> impl Iterator<Item = Said<'a>> {
-        let wanted = self.channels.iter().find(|(_, channel)| channel.topic == topic).map(|(id, _)| *id);
-        let is_wanted = move |i: &usize| Some(self.pieces[*i].channel) == wanted;
-        (0..self.pieces.len()).filter(is_wanted).map(|i| self.said(i))
+        self.places(topic).map(|place| self.message(place))
     }
 
     /// The places of the messages of one topic, for [`Recording::message`].
-    #[must_use]
-    pub fn places(&self, topic: &str) -> Vec<usize> {
-        (0..self.pieces.len()).filter(|i| self.message(*i).topic == topic).collect()
+    pub fn places(&self, topic: &str) -> impl Iterator<Item = usize> {
+        let wanted = self.channels.iter().find(|(_, channel)| channel.topic == topic).map(|(id, _)| *id);
+        (0..self.pieces.len()).filter(move |place| Some(self.pieces[*place].channel) == wanted)
     }
 
     /// The message at a place.
@@ -184,7 +182,16 @@ impl Recording {
     /// If there are fewer.
     #[must_use]
     pub fn message(&self, place: usize) -> Said<'_> {
-        self.said(place)
+        let Piece { channel, number, at, utc_ns, place } = &self.pieces[place];
+        let channel = self.channels.get(channel);
+        Said {
+            topic: channel.map_or("", |channel| &channel.topic),
+            schema: channel.and_then(|channel| channel.schema.as_deref()),
+            number: *number,
+            at: *at,
+            utc_ns: *utc_ns,
+            bytes: &self.bytes[place.clone()],
+        }
     }
 
     /// The topics that there are messages on, with their numbers of messages, by name.
@@ -207,7 +214,7 @@ impl Recording {
     /// If there are fewer.
     #[must_use]
     pub fn frame(&self, i: usize) -> Said<'_> {
-        self.said(self.frames[i])
+        self.message(self.frames[i])
     }
 
     /// All frames.
@@ -216,19 +223,6 @@ impl Recording {
     /// [`RecordingError::Damaged`] names the first that is none.
     pub fn frames(&self) -> impl ExactSizeIterator<Item = Result<Frame, RecordingError>> {
         (0..self.frames.len()).map(|i| self.frame(i).read())
-    }
-
-    fn said(&self, i: usize) -> Said<'_> {
-        let Piece { channel, number, at, utc_ns, place } = &self.pieces[i];
-        let channel = self.channels.get(channel);
-        Said {
-            topic: channel.map_or("", |channel| &channel.topic),
-            schema: channel.and_then(|channel| channel.schema.as_deref()),
-            number: *number,
-            at: *at,
-            utc_ns: *utc_ns,
-            bytes: &self.bytes[place.clone()],
-        }
     }
 }
 

@@ -34,6 +34,8 @@ pub(super) struct Booth<'w> {
     pub(super) contest: Contest,
     pub(super) tempo: Tempo,
     witness: &'w mut dyn Witness,
+    /// Whether the witness writes down what it is shown.
+    is_recorded: bool,
     pub(super) roster: Roster,
     quay: Quay,
     inbox: Inbox<Call>,
@@ -77,11 +79,12 @@ impl<'w> Booth<'w> {
         let bus = Bus::hub(&settings.net)?;
         let (outlet, inbox) = inbox(INBOX);
         let game = &settings.game;
-        if witness.state().is_some() {
+        let is_recorded = witness.state().is_some();
+        if is_recorded {
             contest.keep_inputs();
         }
         let scenario = contest.scenario();
-        let heard_topics = if witness.state().is_some() { telling::heard_topics(scenario) } else { vec![] };
+        let heard_topics = if is_recorded { telling::heard_topics(scenario) } else { vec![] };
         let standing = line::open(&bus, game, &outlet, &heard_topics)?;
         let is_lockstep = settings.pace == Pace::Lockstep;
         let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
@@ -110,6 +113,7 @@ impl<'w> Booth<'w> {
             heard_topics,
             tempo: Tempo::new(speed, is_lockstep, is_real),
             witness,
+            is_recorded,
             notice: serde_json::to_vec(&notice).expect("a scenario is JSON"),
             stop: Arc::clone(&settings.stop),
             refused: Refused::default(),
@@ -182,10 +186,9 @@ impl<'w> Booth<'w> {
     pub(super) fn ask(&mut self) -> Result<(), NodeError> {
         self.opened = Some(clock::now());
         let is_again = self.asked.replace(self.contest.decision()) == Some(self.contest.decision());
-        let is_recorded = !is_again && self.witness.state().is_some();
         let pictures: Vec<Vec<u8>> = self.contest.pictures().iter().map(codec::encode).collect();
         for (i, bytes) in pictures.into_iter().enumerate() {
-            if is_recorded {
+            if self.is_recorded && !is_again {
                 let topic = format!("picture/{}", self.contest.scenario().teams[i].name);
                 self.write_down(&topic, Some(Picture::SCHEMA), bytes.clone());
             }
@@ -215,11 +218,9 @@ impl<'w> Booth<'w> {
         let given_ns = self.ordered_at[vehicle.index()];
         let order = ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) };
         helm.send(&order)?;
-        if self.witness.state().is_some() {
+        if self.is_recorded {
             let topic = format!("external/{}", self.contest.scenario().vehicles[vehicle.index()].name);
-            let heard =
-                Heard { topic, schema: Some(ExternalOrder::SCHEMA), bytes: codec::encode(&order), at: valid_ns };
-            self.witness.heard(heard);
+            self.write_down(&topic, Some(ExternalOrder::SCHEMA), codec::encode(&order));
         }
         Ok(())
     }
@@ -238,7 +239,7 @@ impl<'w> Booth<'w> {
                 Call::Water(question) => question.answer(telling::water_json(&self.contest)),
                 Call::Heard(i, bytes) => {
                     let (topic, schema) = self.heard_topics[i].clone();
-                    self.witness.heard(Heard { topic, schema, bytes, at: self.contest.now() });
+                    self.write_down(&topic, schema, bytes);
                 }
                 Call::Gone(Part::Gateway, gateway) => self.quay.gone(&gateway),
                 Call::Gone(_, agent) => {
@@ -302,7 +303,8 @@ impl<'w> Booth<'w> {
     /// Tells onlookers how the run stands, if there are any.
     fn tell_run(&mut self, phase: Phase, rate: f64) -> Result<(), NodeError> {
         let is_news = std::mem::take(&mut self.is_news);
-        if !self.run.is_heard() && self.witness.state().is_none() {
+        let is_due = self.is_recorded && (is_news || clock::since(self.written) >= WRITE_EVERY);
+        if !self.run.is_heard() && !is_due {
             return Ok(());
         }
         let scenario = self.contest.scenario();
@@ -322,7 +324,7 @@ impl<'w> Booth<'w> {
         };
         let json = serde_json::to_vec(&state).expect("a state is JSON");
         self.run.send_json(json.clone())?;
-        if is_news || clock::since(self.written) >= WRITE_EVERY {
+        if is_due {
             self.written = clock::now();
             self.write_down("run", None, json);
         }
@@ -383,7 +385,7 @@ impl<'w> Booth<'w> {
             Err(DecodeError::Version { .. }) => return self.refused.version += 1,
             Err(_) => return self.refused.garbage += 1,
         };
-        if self.witness.state().is_some()
+        if self.is_recorded
             && let Some(vehicle) = self.contest.scenario().vehicles.get(report.vehicle.index())
         {
             let topic = format!("nav/{}", vehicle.name);
@@ -397,11 +399,9 @@ impl<'w> Booth<'w> {
     /// Simulated time by the clock: the open decision's, and what has passed since it was opened. Only fixes are told the
     /// time by it: a fix would seem up to a decision older than it is otherwise.
     fn moment(&self) -> SimTime {
-        let scenario = self.contest.scenario();
-        let decision = scenario.tick * i64::from(scenario.ticks_per_decision);
         let factor = if self.pace == Pace::Lockstep { 0.0 } else { self.tempo.speed().unwrap_or(0.0) };
         let passed = self.opened.map_or(0.0, |opened| clock::since(opened).as_secs_f64() * factor);
-        self.contest.now() + SimTime::from_s(passed).min(decision)
+        self.contest.now() + SimTime::from_s(passed).min(self.contest.scenario().decision())
     }
 
     fn moor(&mut self, question: Question) {

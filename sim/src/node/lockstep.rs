@@ -33,8 +33,7 @@ pub(super) fn play(booth: &mut Booth<'_>, tell: &mut dyn FnMut(News<'_>)) -> Res
 /// Waits until a decision's time has passed at the speed that is not to be exceeded; gives the moment.
 fn keep_speed(booth: &mut Booth<'_>, due: Instant, tell: &mut dyn FnMut(News<'_>)) -> Result<Instant, NodeError> {
     let Some(speed) = booth.tempo.speed() else { return Ok(due) };
-    let scenario = booth.contest.scenario();
-    let decision_s = (scenario.tick * i64::from(scenario.ticks_per_decision)).as_s();
+    let decision_s = booth.contest.scenario().decision().as_s();
     let now = clock::now();
     // What was lost is lost.
     let due = (due + Duration::from_secs_f64(decision_s / speed)).max(now);

@@ -42,8 +42,7 @@ pub(super) fn play(booth: &mut Booth<'_>, tell: &mut dyn FnMut(News<'_>)) -> Res
 
 /// The wall-clock time between two decisions.
 fn period(booth: &Booth<'_>) -> Duration {
-    let scenario = booth.contest.scenario();
-    let decision_s = (scenario.tick * i64::from(scenario.ticks_per_decision)).as_s();
+    let decision_s = booth.contest.scenario().decision().as_s();
     Duration::from_secs_f64(decision_s / booth.tempo.speed().unwrap_or(1.0))
 }
 

@@ -42,9 +42,7 @@ impl Table for Frame {
 
 /// What happened in a frame, with names; what names something that is not in the scenario is left out.
 pub(super) fn events_of(scenario: &Scenario, frame: &Frame) -> Vec<EventOutcome> {
-    let logged = frame.events.iter().filter_map(|record| record.logged());
-    let known = logged.filter(|logged| crate::log::book::is_known(scenario, logged.event));
-    known.map(|logged| EventOutcome::new(scenario, &logged)).collect()
+    frame.logged(scenario).map(|logged| EventOutcome::new(scenario, &logged)).collect()
 }
 
 impl Table for Picture {

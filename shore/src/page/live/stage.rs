@@ -127,8 +127,7 @@ impl Stage {
         if self.roll.take(frame, cdr, now) {
             self.chronicle.miss();
         }
-        let logged = frame.events.iter().filter_map(game::message::EventRecord::logged);
-        for event in logged.filter(|logged| is_known(logged, play.scenario())) {
+        for event in frame.logged(play.scenario()) {
             self.chronicle.add(EventOutcome::new(play.scenario(), &event));
         }
     }
@@ -216,22 +215,4 @@ fn is_of(frame: &Frame, scenario: &Scenario) -> bool {
         && frame.vehicles.len() == scenario.vehicles.len()
         && frame.flags.len() == scenario.field.flags.len()
         && frame.score.len() == scenario.teams.len()
-}
-
-/// Whether all that an event names is in the game: whoever sends frames is not therefore right.
-fn is_known(logged: &game::event::Logged, scenario: &Scenario) -> bool {
-    use game::Event;
-    use game::event::TagCause;
-    let boat = |vehicle: VehicleId| vehicle.index() < scenario.vehicles.len();
-    let subject = logged.event.vehicle().is_none_or(boat);
-    let object = match logged.event {
-        Event::Grabbed { flag, .. } | Event::Captured { flag, .. } | Event::FlagReturned { flag, .. } => {
-            flag.index() < scenario.field.flags.len()
-        }
-        Event::Tagged { cause: TagCause::Opponent(by), .. } => boat(by),
-        Event::Collided { second, .. } => boat(second),
-        Event::Ended { winner: Some(team) } => team.index() < scenario.teams.len(),
-        _ => true,
-    };
-    subject && object
 }

@@ -2,7 +2,6 @@
 
 use super::Film;
 use crate::recording::{Recording, RecordingError, picture};
-use game::event::Logged;
 use game::external::GatewayStatus;
 use game::message::Notice;
 use game::outcome::EventOutcome;
@@ -31,8 +30,7 @@ impl Recorded {
     pub fn new(recording: Arc<Recording>, file: String) -> Result<Recorded, RecordingError> {
         let scenario = &recording.header().notice.scenario;
         let told = |topic: String| {
-            let places = recording.places(&topic).into_iter();
-            places.map(|place| (recording.message(place).at, place)).collect::<Vec<_>>()
+            recording.places(&topic).map(|place| (recording.message(place).at, place)).collect::<Vec<_>>()
         };
         let pictures = scenario.teams.iter().map(|team| told(picture(&team.name))).collect();
         let statuses = scenario.vehicles.iter().map(|vehicle| told(format!("status/{}", vehicle.name))).collect();
@@ -41,8 +39,7 @@ impl Recorded {
         for frame in recording.frames() {
             let frame = frame?;
             recorded.times.push(frame.stamp.valid_ns);
-            let logged = frame.events.iter().filter_map(game::message::EventRecord::logged);
-            recorded.events.extend(logged.map(|logged: Logged| EventOutcome::new(scenario, &logged)));
+            recorded.events.extend(frame.logged(scenario).map(|logged| EventOutcome::new(scenario, &logged)));
         }
         recorded.add_trips();
         Ok(recorded)
