@@ -70,7 +70,8 @@ fn open(file: &Path) -> Result<Recording> {
 fn look_at(args: &Args, file: &Path) -> Result<()> {
     let recording = open(file)?;
     if let Some(topic) = &args.csv {
-        export::csv(&recording, topic, args.out.as_deref())?;
+        export::csv(&recording, topic, args.out.as_deref())
+            .with_context(|| format!("cannot make a table of {}", file.display()))?;
     }
     let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none();
     if !(wants_page || args.events || args.json.is_some() || args.plot.is_some() || args.alog.is_some()) {

@@ -3,7 +3,7 @@
 use crate::page_args::PageArgs;
 use crate::screen::{self, Screen};
 use crate::stop;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use minds::Minds;
 use shore::page::replay::{Recorded, ReplayShow};
 use shore::recording::Recording;
@@ -28,6 +28,9 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.check {
+        if args.page.is_given() {
+            bail!("--check shows no page: --listen, --token and --host are of no use with it");
+        }
         let recording = open(&args.file)?;
         let verdict = check::check(&recording).with_context(|| format!("cannot play {} again", args.file.display()))?;
         screen::print(&verdict.text());

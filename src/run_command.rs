@@ -112,7 +112,7 @@ fn play_here(
     let mut teller = Teller::default();
     let start = Instant::now();
     let mut shown = (start, 0.0);
-    let mut tape = file.map(|path| Tape::in_process(path.to_owned(), &scenario.name));
+    let mut tape = file.map(|path| Tape::in_process(path.to_owned(), &scenario.name)).transpose()?;
     let watch = |contest: &mut Contest| {
         tape.iter_mut().for_each(|tape| tape.turn(contest));
         // The clock is slower than a decision: look at it now and then.

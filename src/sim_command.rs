@@ -102,7 +102,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let entry = bus::Entry { game: game.as_str().to_owned(), endpoint, pid: std::process::id() };
     let mut registration = None;
-    let mut tape = args.record.clone().map(|path| Tape::on_network(path, game.as_str(), &args.pace.to_string()));
+    let tape = args.record.clone().map(|path| Tape::on_network(path, game.as_str(), &args.pace.to_string()));
+    let mut tape = tape.transpose()?;
     let settings = Settings {
         game,
         net,

@@ -6,7 +6,7 @@ use game::input::Input;
 use game::message::Notice;
 use game::run_state::RecordingState;
 use gateway::utc;
-use shore::recording::{Ending, Header, Note, Recorder, Turn};
+use shore::recording::{Blank, Ending, Header, Note, Recorder, Turn};
 use sim::Contest;
 use sim::node::{Heard, Report, Witness};
 use std::path::PathBuf;
@@ -36,13 +36,21 @@ impl RecordArgs {
     }
 }
 
+/// How far a recording is.
+enum Stage {
+    /// Before the first decision there is only the file.
+    Blank(Blank),
+    Begun(Recorder),
+    /// Why there is none.
+    Failed(String),
+}
+
 /// Writes a game down as it is played, from its first decision on.
 pub(crate) struct Tape {
     path: PathBuf,
     game: String,
     pace: String,
-    /// None before the first decision; then the recorder, or why there is none.
-    recorder: Option<Result<Recorder, String>>,
+    recorder: Stage,
     /// Events that are told already.
     told: usize,
     /// Whether pictures are heard, encoded as they are, since they go over the network.
@@ -51,26 +59,39 @@ pub(crate) struct Tape {
 
 impl Tape {
     /// Of a game of this name at this pace on the network, into a new file.
-    pub(crate) fn on_network(path: PathBuf, game: &str, pace: &str) -> Tape {
-        Tape { path, game: game.to_owned(), pace: pace.to_owned(), recorder: None, told: 0, hears_pictures: true }
+    pub(crate) fn on_network(path: PathBuf, game: &str, pace: &str) -> Result<Tape> {
+        let blank = Blank::create(&path).with_context(|| format!("cannot record into {}", path.display()))?;
+        let (game, pace) = (game.to_owned(), pace.to_owned());
+        Ok(Tape { path, game, pace, recorder: Stage::Blank(blank), told: 0, hears_pictures: true })
     }
 
     /// Of a game in this process, into a new file.
-    pub(crate) fn in_process(path: PathBuf, game: &str) -> Tape {
-        Tape { hears_pictures: false, ..Tape::on_network(path, game, "in process") }
+    pub(crate) fn in_process(path: PathBuf, game: &str) -> Result<Tape> {
+        Ok(Tape { hears_pictures: false, ..Tape::on_network(path, game, "in process")? })
     }
 
-    fn begin(&self, contest: &Contest) -> Result<Recorder, String> {
+    fn header(&self, contest: &Contest) -> Header {
         let notice =
             Notice { version: game::VERSION.to_owned(), pace: self.pace.clone(), scenario: contest.scenario().clone() };
-        let header = Header {
+        Header {
             commit: env!("SQUALL_COMMIT").to_owned(),
             game: self.game.clone(),
             began_utc_ns: utc::now_ns(),
             notice,
             water: sim::node::water(contest),
+        }
+    }
+
+    /// Begins at the first decision.
+    fn begin(&mut self, contest: &Contest) {
+        let header = self.header(contest);
+        self.recorder = match std::mem::replace(&mut self.recorder, Stage::Failed(String::new())) {
+            Stage::Blank(blank) => match Recorder::begin(blank, &header) {
+                Ok(recorder) => Stage::Begun(recorder),
+                Err(e) => Stage::Failed(e.to_string()),
+            },
+            later => later,
         };
-        Recorder::begin(&self.path, &header).map_err(|e| e.to_string())
     }
 
     /// Ends it well, and says what is missing in it, if anything is.
@@ -79,7 +100,7 @@ impl Tape {
         let ending = Ending { outcome: report.outcome.clone(), run, dropped: 0 };
         let state = self.state();
         let state = match self.recorder {
-            Some(Ok(recorder)) => Some(recorder.end(ending)),
+            Stage::Begun(recorder) => Some(recorder.end(ending)),
             _ => state,
         };
         Ok(state.as_ref().and_then(trouble))
@@ -89,11 +110,11 @@ impl Tape {
 impl Witness for Tape {
     fn turn(&mut self, contest: &mut Contest) {
         contest.keep_inputs();
-        if self.recorder.is_none() {
-            self.recorder = Some(self.begin(contest));
+        if matches!(self.recorder, Stage::Blank(_)) {
+            self.begin(contest);
         }
-        let Some(Ok(recorder)) = &self.recorder else { return };
         let inputs = contest.take_inputs();
+        let Stage::Begun(recorder) = &self.recorder else { return };
         let shows = !self.hears_pictures && inputs.contains(&Input::Pictured);
         let pictures = if shows { contest.last_pictures().to_vec() } else { vec![] };
         let turn = Turn { frame: contest.frame_since(self.told), pictures, inputs };
@@ -103,7 +124,7 @@ impl Witness for Tape {
 
     fn heard(&mut self, heard: Heard) {
         let Heard { topic, schema, bytes, at } = heard;
-        if let Some(Ok(recorder)) = &self.recorder {
+        if let Stage::Begun(recorder) = &self.recorder {
             recorder.note(Note::Heard { topic, schema, bytes, at });
         }
     }
@@ -111,9 +132,9 @@ impl Witness for Tape {
     fn state(&self) -> Option<RecordingState> {
         let file = self.path.display().to_string();
         Some(match &self.recorder {
-            None => RecordingState { file, ..RecordingState::default() },
-            Some(Ok(recorder)) => recorder.state(),
-            Some(Err(reason)) => RecordingState { file, failed: Some(reason.clone()), ..RecordingState::default() },
+            Stage::Blank(_) => RecordingState { file, ..RecordingState::default() },
+            Stage::Begun(recorder) => recorder.state(),
+            Stage::Failed(reason) => RecordingState { file, failed: Some(reason.clone()), ..RecordingState::default() },
         })
     }
 }

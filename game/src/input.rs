@@ -4,6 +4,7 @@ use crate::id::VehicleId;
 use crate::message::{Message, Stamp, VehicleOrder};
 use crate::order::Order;
 use crate::picture::Nav;
+use crate::scenario::Scenario;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +52,24 @@ pub enum Input {
     Halted(bool),
     /// It was played until the next decision.
     Played,
+}
+
+impl Input {
+    /// Whether it can be given to this game: it has the vehicle, and times are some.
+    #[must_use]
+    pub fn is_of(self, scenario: &Scenario) -> bool {
+        let has = |vehicle: VehicleId| vehicle.index() < scenario.vehicles.len();
+        match self {
+            Input::Ordered { vehicle, .. }
+            | Input::Held { vehicle }
+            | Input::MindLost { vehicle }
+            | Input::MindBack { vehicle } => has(vehicle),
+            Input::Reported { vehicle, fix_at, .. } => {
+                has(vehicle) && (SimTime(-SimTime::NEVER.0)..SimTime::NEVER).contains(&fix_at)
+            }
+            Input::Pictured | Input::EStopped(_) | Input::Halted(_) | Input::Played => true,
+        }
+    }
 }
 
 /// Everything that a game was given since the frame before, in order.

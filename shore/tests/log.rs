@@ -8,9 +8,10 @@ use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
 use game::water::Water;
 use game::{FlagId, Order, Outcome, Picture, SimTime, TeamId, VehicleId};
 use proptest::prelude::*;
+use shore::log::sheet::SheetError;
 use shore::log::{Book, Comparison, Incomparable, Summary, alog, sheet};
 use shore::page::replay::{Film, Recorded};
-use shore::recording::{Ending, Header, Note, Recording, Turn, Writer};
+use shore::recording::{Ending, Header, Note, Recording, RecordingError, Turn, Writer};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
@@ -267,6 +268,21 @@ fn the_log_of_the_shoreside_has_reports_and_what_happened() {
 }
 
 #[test]
+fn an_order_ends_with_the_mind_that_gave_it() {
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header()).expect("it begins");
+    for seq in 0..3 {
+        let mut turn = turn(seq);
+        if seq == 2 {
+            turn.inputs = vec![Input::MindLost { vehicle: VehicleId(0) }, Input::Played];
+        }
+        writer.note(&Note::Turn(Box::new(turn)), 1).expect("it is written");
+    }
+    let book = Book::of(&Recording::of(writer.end(&ending()).expect("it ends").into_inner()).expect("a recording"));
+    let orders: Vec<Order> = book.expect("it is whole").boats[0].moments.iter().map(|moment| moment.order).collect();
+    assert_eq!(orders, [Order::Hold, Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 }, Order::Hold]);
+}
+
+#[test]
 fn a_game_differs_in_nothing_from_itself() {
     let recording = recording();
     let book = Book::of(&recording).expect("it is whole");
@@ -372,6 +388,28 @@ prop_compose! {
     }
 }
 
+/// Everything that can be made of a recording.
+fn look_at_all_of(recording: Recording) -> Result<(), RecordingError> {
+    let (summary, book) = Summary::of(&recording)?;
+    serde_json::to_string(&summary).expect("a summary is JSON");
+    for topic in sheet::topics(&recording) {
+        match sheet::write(&recording, &topic, &mut |_| Ok(())) {
+            Ok(()) | Err(SheetError::Recording(_) | SheetError::Json { .. } | SheetError::Strange { .. }) => {}
+            Err(e) => panic!("{topic}: {e}"),
+        }
+    }
+    assert!(alog::shoreside(recording.header(), &book).starts_with("%%"));
+    (0..book.boats.len()).for_each(|boat| drop(alog::vehicle(recording.header(), &book, boat)));
+    // Whether there is anything to compare is another matter.
+    Comparison::of([recording.header(); 2], [&book; 2], 0.0).ok();
+    let film = Recorded::new(Arc::new(recording), "odd.mcap".to_owned())?;
+    for frame in 0..film.frame_times().len() {
+        film.estimate(VehicleId(0), frame);
+        film.status(VehicleId(0), film.frame_times()[frame]);
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -382,19 +420,16 @@ proptest! {
             writer.note(&Note::Turn(Box::new(turn)), 1_000_000_000).expect("it is written");
         }
         let recording = Recording::of(writer.end(&ending()).expect("it ends").into_inner()).expect("it is a recording");
-        let (summary, book) = Summary::of(&recording).expect("its messages are sound");
-        serde_json::to_string(&summary).expect("a summary is JSON");
-        for topic in sheet::topics(&recording) {
-            table(&recording, &topic);
-        }
-        assert!(alog::shoreside(recording.header(), &book).starts_with("%%"));
-        (0..book.boats.len()).for_each(|boat| drop(alog::vehicle(recording.header(), &book, boat)));
-        // Whether there is anything to compare is another matter.
-        Comparison::of([recording.header(); 2], [&book; 2], 0.0).ok();
-        let film = Recorded::new(Arc::new(recording), "odd.mcap".to_owned()).expect("its frames are sound");
-        for frame in 0..film.frame_times().len() {
-            film.estimate(VehicleId(0), frame);
-            film.status(VehicleId(0), film.frame_times()[frame]);
+        look_at_all_of(recording).expect("its messages are sound");
+    }
+
+    #[test]
+    fn damaged_files_never_panic(place in 0.0..1.0_f64, byte in any::<u8>()) {
+        let mut bytes = bytes_of(&header(), 4);
+        let place = (place * bytes.len() as f64) as usize;
+        bytes[place] = byte;
+        if let Ok(recording) = Recording::of(bytes) {
+            look_at_all_of(recording).ok();
         }
     }
 }

@@ -6,8 +6,7 @@ use game::message::{Frame, Message, Notice, Orders, Stamp, VehicleTruth};
 use game::picture::Nav;
 use game::water::{PlaneWave, Water};
 use game::{Order, Outcome, Picture, SimTime, VehicleId};
-use proptest::prelude::*;
-use shore::recording::{Ending, Header, Note, Recorder, Recording, RecordingError, Turn, Writer};
+use shore::recording::{Blank, Ending, Header, Note, Recorder, Recording, RecordingError, Turn, Writer};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -164,7 +163,11 @@ fn other_files_are_refused_with_the_reason() {
 fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
     let dir = tempfile::tempdir().expect("a directory");
     let path = dir.path().join("game.mcap");
-    let recorder = Recorder::begin(&path, &header()).unwrap_or_else(|e| panic!("{e}"));
+    let blank = || Blank::create(&path);
+    drop(blank().unwrap_or_else(|e| panic!("{e}")));
+    assert!(!path.exists(), "of a game that never began there is no recording");
+    let recorder = Recorder::begin(blank().unwrap_or_else(|e| panic!("{e}")), &header());
+    let recorder = recorder.unwrap_or_else(|e| panic!("{e}"));
     (0..50).for_each(|seq| recorder.note(Note::Turn(Box::new(turn(seq, seq as f64)))));
     let mut frames = 0;
     for _ in 0..3000 {
@@ -175,7 +178,7 @@ fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     assert_eq!(frames, 50, "what was recorded is on the disk though nobody ended it");
-    assert!(Recorder::begin(&path, &header()).is_err(), "nothing is overwritten");
+    assert!(blank().is_err(), "nothing is overwritten");
     let state = recorder.end(ending());
     assert_eq!((state.dropped, state.failed), (0, None));
     assert_eq!(state.bytes, std::fs::metadata(&path).expect("it is there").len());
@@ -183,16 +186,45 @@ fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
     assert!(!recording.is_cut() && recording.frame_count() == 50);
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+/// A file with this record right at its beginning.
+fn with_record(opcode: u8, content: &[u8]) -> Vec<u8> {
+    let mut bytes = recorded(&[1.0]);
+    let length = (content.len() as u64).to_le_bytes();
+    let record = [&[opcode][..], &length, content].concat();
+    bytes.splice(mcap::MAGIC.len()..mcap::MAGIC.len(), record);
+    bytes
+}
 
-    #[test]
-    fn damaged_files_never_panic(place in 0.0..1.0_f64, byte in any::<u8>()) {
-        let mut bytes = recorded(&[1.0, 2.0]);
-        let place = (place * bytes.len() as f64) as usize;
-        bytes[place] = byte;
-        if let Ok(recording) = Recording::of(bytes) {
-            recording.frames().for_each(drop);
-        }
+#[test]
+fn records_that_say_they_are_longer_than_they_are_do_no_harm() {
+    let attachment = Recording::of(with_record(9, &[0; 32])).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(attachment.frame_count(), 1, "an attachment is of no interest, however damaged");
+    let huge = [&[1, 0][..], &u32::MAX.to_le_bytes()].concat();
+    for (opcode, content) in [(3, huge.clone()), (4, [&huge[..2], &huge].concat()), (12, huge[2..].to_vec())] {
+        let refused = Recording::of(with_record(opcode, &content)).expect_err("it is damaged").to_string();
+        assert!(refused.contains("a text in it is longer than the record"), "{opcode}: {refused}");
+    }
+}
+
+#[test]
+fn a_header_that_refers_to_nothing_is_refused() {
+    let refused = |change: fn(&mut game::Scenario)| {
+        let mut header = header();
+        change(&mut header.notice.scenario);
+        let writer = Writer::begin(Cursor::new(Vec::new()), &header).expect("it begins");
+        let bytes = writer.end(&ending()).expect("it ends").into_inner();
+        Recording::of(bytes).expect_err("it is refused").to_string()
+    };
+    for (said, part) in [
+        (refused(|scenario| scenario.vehicles[0].boat = 7), "the boat of blue_one is 7, expected less than 1"),
+        (refused(|scenario| scenario.vehicles[0].strategy = 9), "the strategy of blue_one is 9"),
+        (
+            refused(|scenario| scenario.vehicles[2].team = game::TeamId(2)),
+            "the team of red_one is 2, expected less than 2",
+        ),
+        (refused(|scenario| scenario.field.flags[1].team = game::TeamId(5)), "the team of flag 1 is 5"),
+        (refused(|scenario| scenario.vehicles[1].name = "../x".to_owned()), "\"../x\" is no name"),
+    ] {
+        assert!(said.contains("its scenario is not understood") && said.contains(part), "{said}");
     }
 }

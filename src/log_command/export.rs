@@ -20,7 +20,10 @@ pub(super) fn csv(recording: &Recording, topic: &str, file: Option<&Path>) -> Re
     // An unknown topic leaves no empty file behind.
     sheet::check(recording, topic)?;
     let file = std::fs::File::create(path).with_context(trying)?;
-    rows(recording, topic, &mut csv::Writer::from_writer(BufWriter::new(file))).with_context(trying)
+    match rows(recording, topic, &mut csv::Writer::from_writer(BufWriter::new(file))) {
+        Err(sheet::SheetError::Sink(e)) => Err(e).with_context(trying),
+        other => Ok(other?),
+    }
 }
 
 fn rows<W: Write>(recording: &Recording, topic: &str, csv: &mut csv::Writer<W>) -> Result<(), sheet::SheetError> {

@@ -1,6 +1,7 @@
 //! A recorded game played again from what it was given, beside what was recorded.
 
 use anyhow::{Result, bail};
+use game::Scenario;
 use game::codec;
 use game::input::{Input, Inputs};
 use game::message::Frame;
@@ -61,19 +62,22 @@ impl Verdict {
 pub(super) fn check(recording: &Recording) -> Result<Verdict> {
     let scenario = &recording.header().notice.scenario;
     let mut rerun = Rerun::new(scenario)?;
-    let (mut inputs, mut next_input) = (Vec::new(), 0_u32);
+    let mut inputs = Vec::new();
     let mut verdict = Verdict { frames: 0, end_s: 0.0, is_cut: recording.is_cut(), difference: None, digests: None };
     let ticks = u64::from(scenario.ticks_per_decision);
     for said in recording.messages().filter(|said| [FRAME, INPUTS].contains(&said.topic)) {
         if said.topic == INPUTS {
-            if said.number != next_input {
-                bail!("{} inputs are missing before {:.1} s", said.number.wrapping_sub(next_input), said.at.as_s());
-            }
-            next_input = said.number.wrapping_add(1);
-            inputs.extend(read(&said.read::<Inputs>()?)?);
+            inputs.push(said.read::<Inputs>()?);
             continue;
         }
-        let again = rerun.frame_after(inputs.drain(..));
+        // A decision that the disk was too slow for is missing with all that it was given.
+        let seq = verdict.frames as u64;
+        let [given] = inputs.as_slice() else { bail!("{} inputs before frame {seq}, expected one", inputs.len()) };
+        if given.stamp.seq != seq {
+            bail!("decisions {seq} to {} are missing in this recording", given.stamp.seq.saturating_sub(1));
+        }
+        let again = rerun.frame_after(read(given, scenario)?);
+        inputs.clear();
         if codec::encode(&again) != said.bytes {
             let recorded: Frame = said.read()?;
             let [what, then, now] = first_difference(&recorded, &again, scenario)?;
@@ -84,15 +88,21 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
         verdict.frames += 1;
         verdict.end_s = said.at.as_s();
     }
-    verdict.digests = recording.ending().map(|ending| [ending.outcome.digest.clone(), rerun.outcome().digest]);
-    if let Some(dropped) = recording.ending().map(|ending| ending.dropped).filter(|dropped| *dropped > 0) {
-        bail!("{dropped} messages are missing in this recording: it cannot be played again");
+    if verdict.frames == 0 {
+        bail!("there are no frames in it");
+    }
+    let outcome = rerun.outcome();
+    if let Some(ending) = recording.ending() {
+        if ending.outcome.ticks != outcome.ticks {
+            bail!("the game went on to tick {}, the recording to {}", ending.outcome.ticks, outcome.ticks);
+        }
+        verdict.digests = Some([ending.outcome.digest.clone(), outcome.digest]);
     }
     Ok(verdict)
 }
 
-fn read(inputs: &Inputs) -> Result<Vec<Input>> {
-    let known = inputs.inputs.iter().map(|record| record.input());
+fn read(inputs: &Inputs, scenario: &Scenario) -> Result<Vec<Input>> {
+    let known = inputs.inputs.iter().map(|record| record.input().filter(|input| input.is_of(scenario)));
     match known.collect::<Option<Vec<Input>>>() {
         Some(inputs) => Ok(inputs),
         None => bail!("an input at {:.1} s is not understood", inputs.stamp.valid_ns.as_s()),
@@ -100,7 +110,7 @@ fn read(inputs: &Inputs) -> Result<Vec<Input>> {
 }
 
 /// What differs first between two frames: its name, and both values.
-fn first_difference(recorded: &Frame, again: &Frame, scenario: &game::Scenario) -> Result<[String; 3]> {
+fn first_difference(recorded: &Frame, again: &Frame, scenario: &Scenario) -> Result<[String; 3]> {
     let (a, b) = (serde_json::to_value(recorded)?, serde_json::to_value(again)?);
     let [path, a, b] = differing("", &a, &b).unwrap_or_else(|| ["a number's last bit".into(), "?".into(), "?".into()]);
     // A boat by its name.
@@ -122,5 +132,87 @@ fn differing(path: &str, a: &Value, b: &Value) -> Option<[String; 3]> {
         }
         (a, b) if a == b => None,
         (a, b) => Some([path.to_owned(), a.to_string(), b.to_string()]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::message::Notice;
+    use game::{Order, VehicleId};
+    use shore::recording::{Ending, Header, Note, Turn, Writer};
+    use std::io::Cursor;
+
+    /// The first second of a game with pictures that nobody wrote down; `change` may leave turns out.
+    fn recorded(change: impl Fn(Turn) -> Option<Turn>) -> Recording {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/attack_1v1.toml");
+        let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
+        let header = Header {
+            commit: String::new(),
+            game: "made_up".to_owned(),
+            began_utc_ns: 0,
+            notice: Notice { version: game::VERSION.to_owned(), pace: String::new(), scenario: scenario.clone() },
+            water: game::water::Water::default(),
+        };
+        let mut writer = Writer::begin(Cursor::new(Vec::new()), &header).expect("memory");
+        let mut told = 0;
+        let watch = |contest: &mut sim::Contest| {
+            contest.keep_inputs();
+            let turn = Turn { frame: contest.frame_since(told), pictures: vec![], inputs: contest.take_inputs() };
+            told = contest.events().len();
+            if let Some(turn) = change(turn) {
+                writer.note(&Note::Turn(Box::new(turn)), 0).expect("memory");
+            }
+            contest.decision() < 10
+        };
+        let mut minds = agent::minds_of(&scenario);
+        let outcome = arena::play_watched(&scenario, &mut minds, scenario.seed, watch).expect("it starts");
+        let ending = Ending { outcome, run: Value::Null, dropped: 0 };
+        Recording::of(writer.end(&ending).expect("memory").into_inner()).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    /// The game with another input at the end of its fifth decision.
+    fn with(input: Input) -> Recording {
+        recorded(|mut turn| {
+            if turn.frame.stamp.seq == 5 {
+                turn.inputs.insert(turn.inputs.len() - 1, input);
+            }
+            Some(turn)
+        })
+    }
+
+    fn refused(recording: &Recording) -> String {
+        check(recording).expect_err("it cannot be played again").to_string()
+    }
+
+    #[test]
+    fn what_was_played_is_played_again() {
+        let verdict = check(&recorded(Some)).unwrap_or_else(|e| panic!("{e}"));
+        assert!(verdict.is_same(), "{}", verdict.text());
+        assert!(verdict.text().starts_with("the same: 11 frames to 1.0 s to the last bit, digest "));
+    }
+
+    #[test]
+    fn another_order_is_found_at_the_tick_after_it() {
+        let order = Order::Thrust { port: -1.0, starboard: 0.25 };
+        let verdict = check(&with(Input::Ordered { vehicle: VehicleId(1), order })).unwrap_or_else(|e| panic!("{e}"));
+        assert!(!verdict.is_same());
+        let name = &recorded(Some).header().notice.scenario.vehicles[1].name.clone();
+        assert!(
+            verdict.text().starts_with(&format!("DIFFERENT from tick 10 on (0.5 s): {name} ")),
+            "{}",
+            verdict.text()
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_played_again_is_refused_with_the_reason() {
+        let nobody = Input::Held { vehicle: VehicleId(200) };
+        assert_eq!(refused(&with(nobody)), "an input at 0.5 s is not understood");
+        let gap = recorded(|turn| Some(turn).filter(|turn| ![5, 6].contains(&turn.frame.stamp.seq)));
+        assert_eq!(refused(&gap), "decisions 5 to 6 are missing in this recording");
+        let end = recorded(|turn| Some(turn).filter(|turn| turn.frame.stamp.seq != 10));
+        assert_eq!(refused(&end), "the game went on to tick 20, the recording to 18");
+        assert_eq!(refused(&recorded(|_| None)), "there are no frames in it");
     }
 }

@@ -167,11 +167,16 @@ impl Ledger {
 
     /// Whether `name` is fit to be one: `a` to `z`, `0` to `9` and `_`, at most 40 of them.
     pub(super) fn is_name(&mut self, at: usize, key: &str, name: &str) -> bool {
-        let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-        let is_fit = !name.is_empty() && name.len() <= 40 && name.chars().all(fits);
+        let is_fit = is_name(name);
         if !is_fit {
             self.note(at, format!("{key} is {name:?}, expected 1 to 40 of a-z, 0-9 and _"));
         }
         is_fit
     }
+}
+
+/// Whether a vehicle, a team or a rival can be called this.
+pub(super) fn is_name(name: &str) -> bool {
+    let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    !name.is_empty() && name.len() <= 40 && name.chars().all(fits)
 }

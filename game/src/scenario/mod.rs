@@ -98,6 +98,29 @@ impl Scenario {
         })
     }
 
+    /// Whether everything in it refers to something that is there, and names are names: what was loaded from files is so,
+    /// what others made of it need not be.
+    ///
+    /// # Errors
+    /// Says what is not.
+    pub fn check_references(&self) -> Result<(), String> {
+        let within = |what: &str, index: usize, count: usize| {
+            if index < count { Ok(()) } else { Err(format!("{what} is {index}, expected less than {count}")) }
+        };
+        let names =
+            || self.vehicles.iter().map(|vehicle| &vehicle.name).chain(self.teams.iter().map(|team| &team.name));
+        if let Some(name) = names().find(|name| !ledger::is_name(name)) {
+            return Err(format!("{name:?} is no name of a vehicle or a team"));
+        }
+        for Vehicle { name, team, boat, strategy, .. } in &self.vehicles {
+            within(&format!("the team of {name}"), team.index(), self.teams.len())?;
+            within(&format!("the boat of {name}"), *boat, self.boats.len())?;
+            within(&format!("the strategy of {name}"), *strategy, self.strategies.len())?;
+        }
+        let flags = self.field.flags.iter().enumerate();
+        flags.map(|(i, flag)| within(&format!("the team of flag {i}"), flag.team.index(), self.teams.len())).collect()
+    }
+
     /// The simulated time from one decision to the next.
     #[must_use]
     pub fn decision(&self) -> SimTime {

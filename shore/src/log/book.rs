@@ -199,7 +199,7 @@ impl<'a> Scribe<'a> {
         for input in inputs.inputs.iter().filter_map(|record| record.input()) {
             let (vehicle, order) = match input {
                 Input::Ordered { vehicle, order } => (vehicle, order),
-                Input::Held { vehicle } => (vehicle, Order::Hold),
+                Input::Held { vehicle } | Input::MindLost { vehicle } => (vehicle, Order::Hold),
                 _ => continue,
             };
             if let Some(in_force) = self.orders.get_mut(vehicle.index()) {

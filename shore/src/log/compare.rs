@@ -219,7 +219,7 @@ fn events([a, b]: [Vec<EventOutcome>; 2], until_s: f64, tolerance_s: f64) -> Eve
     }
     // After the end of the shorter game there is nothing to miss.
     for only in [&mut only_in_a, &mut only_in_b] {
-        only.retain(|event: &EventOutcome| event.at_s <= until_s + tolerance_s);
+        only.retain(|event: &EventOutcome| event.at_s <= until_s);
         only.sort_by(|one, other| one.at_s.total_cmp(&other.at_s));
     }
     EventDifference { tolerance_s, in_both, only_in_a, only_in_b, counts }
@@ -259,7 +259,7 @@ mod tests {
 
     #[test]
     fn what_comes_after_the_shorter_game_is_not_missing() {
-        let found = events([vec![event(10.0, "tagged", "x"), event(90.0, "tagged", "x")], vec![]], 60.0, 2.0);
+        let found = events([vec![event(10.0, "tagged", "x"), event(61.0, "tagged", "x")], vec![]], 60.0, 2.0);
         assert_eq!((found.in_both, times(&found.only_in_a)), (0, vec![10.0]));
     }
 }

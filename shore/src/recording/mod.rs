@@ -24,7 +24,7 @@ mod walk;
 mod writer;
 
 pub use reader::{Recording, RecordingError, Said};
-pub use recorder::Recorder;
+pub use recorder::{Blank, Recorder};
 pub use writer::{Note, Turn, Writer};
 
 use game::Outcome;

@@ -2,9 +2,9 @@
 
 use super::walk::{Stop, walk};
 use super::{Ending, FRAME, Header, RESULT, SQUALL};
-use game::SimTime;
 use game::codec::{self, DecodeError};
 use game::message::{Frame, Message, Notice};
+use game::{Scenario, SimTime};
 use mcap::records::{MessageHeader, Record};
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -265,7 +265,8 @@ fn header_of(facts: Option<&BTreeMap<String, String>>) -> Result<Header, Recordi
         return Err(RecordingError::Version { found: text("version").to_owned() });
     }
     let strange = |what: &str, e: &dyn std::fmt::Display| foreign(&format!("its {what} is not understood: {e}"));
-    let scenario = serde_json::from_str(text("scenario")).map_err(|e| strange("scenario", &e))?;
+    let scenario: Scenario = serde_json::from_str(text("scenario")).map_err(|e| strange("scenario", &e))?;
+    scenario.check_references().map_err(|e| strange("scenario", &e))?;
     Ok(Header {
         commit: text("commit").to_owned(),
         game: text("game").to_owned(),

@@ -4,6 +4,7 @@
 //! compressed, so the records in it can be read as far as they go.
 
 use mcap::records::{Record, op};
+use std::fmt::Display;
 use std::ops::Range;
 
 /// Opcode and length before every record.
@@ -18,7 +19,8 @@ pub(super) enum Stop {
     Cut,
 }
 
-/// Calls `take` with every record and the place of its body in `bytes`, those in chunks included.
+/// Calls `take` with every schema, channel, message and metadata, and the place of its body in `bytes`, those in chunks
+/// included.
 pub(super) fn walk(
     bytes: &[u8],
     mut take: impl FnMut(Record<'_>, Range<usize>) -> Result<(), String>,
@@ -73,8 +75,41 @@ fn give(
     body: Range<usize>,
     take: &mut impl FnMut(Record<'_>, Range<usize>) -> Result<(), String>,
 ) -> Result<(), String> {
-    let record = mcap::parse_record(opcode, &bytes[body.clone()]);
-    take(record.map_err(|e| format!("the record at byte {} is damaged: {e}", body.start))?, body)
+    let damaged = |reason: &dyn Display| format!("the record at byte {} is damaged: {reason}", body.start);
+    let content = &bytes[body.clone()];
+    // What texts are in it, after how many bytes, and whether a list of texts follows. Other kinds are of no interest.
+    let (fixed, texts, has_list) = match opcode {
+        op::SCHEMA => (2, 3, false),
+        op::CHANNEL => (4, 2, true),
+        op::MESSAGE => (0, 0, false),
+        op::METADATA => (0, 1, true),
+        _ => return Ok(()),
+    };
+    // The library makes room for as much as a length says before it looks whether that is there.
+    if texts_of(content, fixed, texts, has_list).is_none() {
+        return Err(damaged(&"a text in it is longer than the record"));
+    }
+    let record = mcap::parse_record(opcode, content).map_err(|e| damaged(&e))?;
+    take(record, body)
+}
+
+/// Whether so many texts are in there, as long as they say; nothing if not.
+fn texts_of(content: &[u8], fixed: usize, texts: usize, has_list: bool) -> Option<()> {
+    let mut rest = content.get(fixed..)?;
+    for _ in 0..texts {
+        (_, rest) = text(rest)?;
+    }
+    let (mut list, _) = if has_list { text(rest)? } else { (&[][..], rest) };
+    while !list.is_empty() {
+        (_, list) = text(list)?;
+    }
+    Some(())
+}
+
+/// A text with its length before it, and what comes after it.
+fn text(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = bytes.split_first_chunk::<4>()?;
+    rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
 }
 
 /// The place of the records in a chunk, as far as they are there.

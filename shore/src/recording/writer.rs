@@ -32,6 +32,20 @@ pub enum Note {
     },
 }
 
+impl Note {
+    /// About how much memory it takes up, bytes.
+    pub(super) fn size(&self) -> usize {
+        match self {
+            Note::Turn(turn) => {
+                let Turn { frame, pictures, inputs } = turn.as_ref();
+                let boats = pictures.iter().map(|picture| size_of_val(&*picture.own) + size_of_val(&*picture.contacts));
+                size_of::<Turn>() + size_of_val(&*frame.vehicles) + size_of_val(&**inputs) + boats.sum::<usize>()
+            }
+            Note::Heard { topic, bytes, .. } => size_of::<Note>() + topic.len() + bytes.len(),
+        }
+    }
+}
+
 /// A decision of the game, and what led to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Turn {

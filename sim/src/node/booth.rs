@@ -4,9 +4,10 @@ use super::clock;
 use super::line::{self, Call};
 use super::quay::Quay;
 use super::roster::{Accepted, Refused, Roster, Timing};
+use super::telling::{self, HeardTopic};
 use super::tempo::Tempo;
 use super::witness::{Heard, Witness};
-use super::{News, NodeError, Pace, Settings, telling};
+use super::{News, NodeError, Pace, Settings};
 use crate::contest::Contest;
 use bus::{Bus, Delivery, Inbox, Publisher, Question, Standing, inbox};
 use game::codec::{self, DecodeError};
@@ -50,8 +51,8 @@ pub(super) struct Booth<'w> {
     /// When that was written down last.
     written: Instant,
     pub(super) overruns: u64,
-    /// Topics that are heard only to be written down, with their schemas.
-    heard_topics: Vec<(String, Option<&'static str>)>,
+    /// Topics that are heard only to be written down.
+    heard_topics: Vec<HeardTopic>,
     /// What each real boat is to do.
     helms: Vec<(VehicleId, Publisher)>,
     /// Answers the question what the game is.
@@ -238,8 +239,13 @@ impl<'w> Booth<'w> {
                 Call::Events(question) => question.answer(telling::story(&self.contest)),
                 Call::Water(question) => question.answer(telling::water_json(&self.contest)),
                 Call::Heard(i, bytes) => {
-                    let (topic, schema) = self.heard_topics[i].clone();
-                    self.write_down(&topic, schema, bytes);
+                    let HeardTopic { topic, schema, is_sound } = &self.heard_topics[i];
+                    if is_sound(&bytes) {
+                        let (topic, schema) = (topic.clone(), *schema);
+                        self.witness.heard(Heard { topic, schema, bytes, at: self.contest.now() });
+                    } else {
+                        self.refused.garbage += 1;
+                    }
                 }
                 Call::Gone(Part::Gateway, gateway) => self.quay.gone(&gateway),
                 Call::Gone(_, agent) => {
@@ -345,6 +351,7 @@ impl<'w> Booth<'w> {
         self.frames.send(&frame)?;
         // Real boats hold from now on, also where the game is cut short.
         (0..self.helms.len()).try_for_each(|helm| self.send_order(helm, Order::Hold))?;
+        self.is_news = true;
         self.tell_run(Phase::Over, 0.0)?;
         let start = clock::now();
         while self.roster.present() > 0 && clock::since(start) < GOOD_BYE {
@@ -428,17 +435,19 @@ impl<'w> Booth<'w> {
     }
 
     fn obey(&mut self, bytes: &[u8]) {
-        match serde_json::from_slice(bytes) {
-            Ok(Control::Stop) => self.stop.store(true, Ordering::Relaxed),
-            Ok(Control::EStop) => self.contest.e_stop(true),
-            Ok(Control::Release) => self.contest.e_stop(false),
-            Ok(Control::Halt) => self.contest.halt(true),
-            Ok(Control::GoOn) => self.contest.halt(false),
-            Ok(tempo) => self.refused.out_of_place += u64::from(!self.tempo.obey(tempo)),
-            Err(_) => return self.refused.garbage += 1,
+        let Ok(control) = serde_json::from_slice(bytes) else { return self.refused.garbage += 1 };
+        match control {
+            Control::Stop => self.stop.store(true, Ordering::Relaxed),
+            Control::EStop => self.contest.e_stop(true),
+            Control::Release => self.contest.e_stop(false),
+            Control::Halt => self.contest.halt(true),
+            Control::GoOn => self.contest.halt(false),
+            tempo => self.refused.out_of_place += u64::from(!self.tempo.obey(tempo)),
         }
         self.is_news = true;
-        self.write_down("control", None, bytes.to_vec());
+        // An object, since all JSON in a recording is.
+        let json = serde_json::json!({"control": control}).to_string();
+        self.write_down("control", None, json.into_bytes());
         (0..self.helms.len()).for_each(|i| self.pass_on_now(self.helms[i].0));
     }
 

@@ -1,5 +1,6 @@
 //! The lines to a sim: what comes in on them goes to its inbox.
 
+use super::telling::HeardTopic;
 use bus::{Bus, BusError, Outlet, Question, Standing};
 use game::topic::{self, GameName, Part};
 
@@ -23,7 +24,7 @@ pub(super) fn open(
     bus: &Bus,
     game: &GameName,
     outlet: &Outlet<Call>,
-    heard: &[(String, Option<&'static str>)],
+    heard: &[HeardTopic],
 ) -> Result<Vec<Standing>, BusError> {
     let on = |call: fn(Vec<u8>) -> Call| {
         let outlet = outlet.clone();
@@ -52,10 +53,10 @@ pub(super) fn open(
         bus.answer(topic::moor(game), asked(Call::Moor))?,
         bus.show_alive(topic::alive(game, Part::Sim, &bus.id()))?,
     ];
-    for (i, (name, _)) in heard.iter().enumerate() {
+    for (i, HeardTopic { topic, .. }) in heard.iter().enumerate() {
         let outlet = outlet.clone();
         let take = move |bytes: &[u8]| outlet.put(Call::Heard(i, bytes.to_vec()));
-        standing.push(bus.subscribe(topic::recorded(game, name), take)?);
+        standing.push(bus.subscribe(topic::recorded(game, topic), take)?);
     }
     Ok(standing)
 }

@@ -2,11 +2,12 @@
 
 use crate::contest::Contest;
 use crate::sea::WaveField;
-use game::Scenario;
-use game::external::LinkBytes;
+use game::external::{GatewayStatus, LinkBytes};
 use game::message::{Message, PolicyProposal, Say};
 use game::outcome::EventOutcome;
 use game::water::Water;
+use game::{Scenario, codec};
+use serde::de::DeserializeOwned;
 
 /// The waves of a game.
 #[must_use]
@@ -26,13 +27,33 @@ pub(super) fn story(contest: &Contest) -> Vec<u8> {
     serde_json::to_vec(&events.collect::<Vec<_>>()).expect("events are JSON")
 }
 
-/// Topics that are heard only to be written down, with their schemas: words, proposals, and what gateways tell.
-pub(super) fn heard_topics(scenario: &Scenario) -> Vec<(String, Option<&'static str>)> {
+/// A topic that is heard only to be written down.
+pub(super) struct HeardTopic {
+    pub(super) topic: String,
+    /// For CDR; none for JSON.
+    pub(super) schema: Option<&'static str>,
+    /// Whether these bytes are what they should be: whoever reads the recording must not stumble.
+    pub(super) is_sound: fn(&[u8]) -> bool,
+}
+
+impl HeardTopic {
+    fn cdr<M: Message + DeserializeOwned>(topic: String) -> HeardTopic {
+        HeardTopic { topic, schema: Some(M::SCHEMA), is_sound: |bytes| codec::decode::<M>(bytes).is_ok() }
+    }
+
+    fn status(vehicle: &str) -> HeardTopic {
+        let is_sound = |bytes: &[u8]| serde_json::from_slice::<GatewayStatus>(bytes).is_ok();
+        HeardTopic { topic: format!("status/{vehicle}"), schema: None, is_sound }
+    }
+}
+
+/// Words, proposals, and what gateways tell.
+pub(super) fn heard_topics(scenario: &Scenario) -> Vec<HeardTopic> {
     let boats = scenario.vehicles.iter().map(|vehicle| &vehicle.name);
     let real = || scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()].name);
-    let says = scenario.teams.iter().map(|team| (format!("say/{}", team.name), Some(Say::SCHEMA)));
-    let proposals = boats.map(|name| (format!("policy/{name}"), Some(PolicyProposal::SCHEMA)));
-    let links = real().map(|name| (format!("link/{name}"), Some(LinkBytes::SCHEMA)));
-    let statuses = real().map(|name| (format!("status/{name}"), None));
+    let says = scenario.teams.iter().map(|team| HeardTopic::cdr::<Say>(format!("say/{}", team.name)));
+    let proposals = boats.map(|name| HeardTopic::cdr::<PolicyProposal>(format!("policy/{name}")));
+    let links = real().map(|name| HeardTopic::cdr::<LinkBytes>(format!("link/{name}")));
+    let statuses = real().map(|name| HeardTopic::status(name));
     says.chain(proposals).chain(links).chain(statuses).collect()
 }
