@@ -194,10 +194,10 @@ mod tests {
 
     #[test]
     fn another_order_is_found_at_the_tick_after_it() {
-        let order = Order::Thrust { port: -1.0, starboard: 0.25 };
-        let verdict = check(&with(Input::Ordered { vehicle: VehicleId(1), order })).unwrap_or_else(|e| panic!("{e}"));
+        let order = Order::Thrust { port: 1.0, starboard: -1.0 };
+        let verdict = check(&with(Input::Ordered { vehicle: VehicleId(0), order })).unwrap_or_else(|e| panic!("{e}"));
         assert!(!verdict.is_same());
-        let name = &recorded(Some).header().notice.scenario.vehicles[1].name.clone();
+        let name = &recorded(Some).header().notice.scenario.vehicles[0].name.clone();
         assert!(
             verdict.text().starts_with(&format!("DIFFERENT from tick 10 on (0.5 s): {name} ")),
             "{}",
