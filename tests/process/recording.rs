@@ -82,6 +82,8 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     let _agent = sim.agent(&FOUR);
     let (bus, game) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
     let scenario = game::scenario::load(&long_game(dir.path(), "")).unwrap_or_else(|e| panic!("{e}"));
+    // A recording begins with the game.
+    sim.play_on(1.0);
     let publisher = |key| bus.publisher(key, Delivery::Wait).expect("a session");
     publisher(topic::control(&game)).send_json(b"\"halt\"".to_vec()).expect("a session");
     let proposals = publisher(topic::policy(&game, &scenario, VehicleId(0)));
