@@ -117,8 +117,8 @@ impl Scenario {
             within(&format!("the boat of {name}"), *boat, self.boats.len())?;
             within(&format!("the strategy of {name}"), *strategy, self.strategies.len())?;
         }
-        let flags = self.field.flags.iter().enumerate();
-        flags.map(|(i, flag)| within(&format!("the team of flag {i}"), flag.team.index(), self.teams.len())).collect()
+        let mut flags = self.field.flags.iter().enumerate();
+        flags.try_for_each(|(i, flag)| within(&format!("the team of flag {i}"), flag.team.index(), self.teams.len()))
     }
 
     /// The simulated time from one decision to the next.
