@@ -6,7 +6,7 @@ use super::{look, page};
 
 #[test]
 fn the_page_is_served_under_its_own_names_and_sealed() {
-    let page = page(show(), None, &["boat.local"]);
+    let page = page(show(), Some("a secret"), &["boat.local"]);
     let at = page.address();
     for (host, path, status) in [
         (at.to_string(), "/", 200),
