@@ -49,11 +49,10 @@ impl Look {
         Look { theatre, guest, page, wish: None, told: Told::default() }
     }
 
-    /// The game that is on, for something to be done in it.
-    fn play(&self) -> Result<Arc<Play>, String> {
-        let stage = self.theatre.stage();
-        let play = stage.play.clone().filter(|_| !stage.is_gone);
-        play.ok_or_else(|| "there is no game now".to_owned())
+    /// Passes on what is wanted of the game that is on: the stage is kept meanwhile, so that it is not wanted of the next.
+    fn control(&self, stage: &Stage, control: Control) -> Result<(), String> {
+        stage.on()?;
+        self.send(Command::Control(control))
     }
 
     fn send(&self, command: Command) -> Result<(), String> {
@@ -69,17 +68,19 @@ impl Look {
     }
 
     fn set_speed(&self, factor: Option<f64>) -> Result<(), String> {
-        if self.play()?.has_real_boats() {
+        let stage = self.theatre.stage();
+        if stage.on()?.has_real_boats() {
             return Err("a game with real boats keeps its pace".to_owned());
         }
         if factor.is_some_and(|factor| !(factor > 0.0 && factor <= SPEED_MAX)) {
             return Err(format!("the speed must be more than 0 and at most {SPEED_MAX}"));
         }
-        self.send(Command::Control(Control::Speed(factor)))
+        self.control(&stage, Control::Speed(factor))
     }
 
     fn drive(&self, name: &str, course_deg: f64, speed_m_s: f64, now: Instant) -> Result<(), String> {
-        let play = self.play()?;
+        let mut stage = self.theatre.stage();
+        let play = stage.on()?;
         let scenario = play.scenario();
         let vehicle = scenario.vehicle_named(name).map_err(|e| e.to_string())?;
         if !scenario.strategy_of(vehicle).is_steered() {
@@ -90,7 +91,6 @@ impl Look {
         }
         let speed_m_s = speed_m_s.clamp(0.0, scenario.boat_of(vehicle).speed_max_m_s());
         let course_rad = course_deg.rem_euclid(360.0).to_radians();
-        let mut stage = self.theatre.stage();
         let had = stage.wheels.holder(vehicle);
         if !stage.wheels.grip(vehicle, self.page, now) {
             return Err(format!("somebody else steers {name}"));
@@ -106,8 +106,11 @@ impl Look {
     }
 
     fn let_go(&self, name: &str) -> Result<(), String> {
-        let vehicle = self.play()?.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
-        if self.theatre.stage().wheels.let_go(vehicle, self.page) {
+        let mut stage = self.theatre.stage();
+        let vehicle = stage.on()?.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+        let had = stage.wheels.let_go(vehicle, self.page);
+        drop(stage);
+        if had {
             self.theatre.news.ring();
         }
         Ok(())
@@ -123,10 +126,7 @@ impl Viewer for Look {
         match ask {
             Ask::Ack => Ok(()),
             Ask::Select { vehicle, functions } => self.select(vehicle.as_deref(), *functions),
-            Ask::Control { what } => {
-                self.play()?;
-                self.send(Command::Control(control(*what)))
-            }
+            Ask::Control { what } => self.control(&self.theatre.stage(), control(*what)),
             Ask::Speed { factor } => self.set_speed(*factor),
             Ask::Drive { vehicle, course_deg, speed_m_s } => self.drive(vehicle, *course_deg, *speed_m_s, now),
             Ask::LetGo { vehicle } => self.let_go(vehicle),

@@ -111,6 +111,12 @@ impl Stage {
         };
     }
 
+    /// The game that is on, for something to be done in it.
+    pub(super) fn on(&self) -> Result<Arc<Play>, String> {
+        let play = self.play.clone().filter(|_| !self.is_gone);
+        play.ok_or_else(|| "there is no game now".to_owned())
+    }
+
     /// The game is gone.
     pub(super) fn end(&mut self) {
         (self.is_gone, self.run_news) = (true, self.run_news + 1);
