@@ -12,9 +12,6 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The greatest factor of speed that makes sense.
-const SPEED_MAX: f64 = 10_000.0;
-
 /// One page's look at a game.
 pub(super) struct Look {
     theatre: Arc<Theatre>,
@@ -69,13 +66,20 @@ impl Look {
 
     fn set_speed(&self, factor: Option<f64>) -> Result<(), String> {
         let stage = self.theatre.stage();
-        if stage.on()?.has_real_boats() {
+        let play = stage.on()?;
+        if play.has_real_boats() {
             return Err("a game with real boats keeps its pace".to_owned());
         }
-        if factor.is_some_and(|factor| !(factor > 0.0 && factor <= SPEED_MAX)) {
-            return Err(format!("the speed must be more than 0 and at most {SPEED_MAX}"));
+        match factor {
+            None if !play.is_lockstep() => {
+                Err("only a game in lockstep goes as fast as can be: this one goes by the clock".to_owned())
+            }
+            Some(factor) if !Control::SPEEDS.contains(&factor) => {
+                let (min, max) = (Control::SPEEDS.start(), Control::SPEEDS.end());
+                Err(format!("the speed is {factor}, expected {min} to {max}"))
+            }
+            _ => self.control(&stage, Control::Speed(factor)),
         }
-        self.control(&stage, Control::Speed(factor))
     }
 
     fn drive(&self, name: &str, course_deg: f64, speed_m_s: f64, now: Instant) -> Result<(), String> {

@@ -92,6 +92,11 @@ impl Play {
         &self.scenario().vehicles[vehicle.index()].name
     }
 
+    /// Whether the sim waits for minds, rather than going by the clock.
+    pub(super) fn is_lockstep(&self) -> bool {
+        self.notice.pace == "lockstep"
+    }
+
     /// Whether there are real boats.
     pub(super) fn has_real_boats(&self) -> bool {
         self.scenario().vehicles.iter().any(|vehicle| vehicle.source == Source::External)
