@@ -22,7 +22,7 @@ mod tell;
 
 pub use ask::{Ask, Word};
 pub use rose::{HelmAnswer, is_sound};
-pub use show::{Guest, News, Said, Show, Viewer};
+pub use show::{Guest, News, Room, Said, Show, Viewer};
 pub use tell::Mode;
 
 use guard::Guard;

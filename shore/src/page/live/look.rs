@@ -3,7 +3,7 @@
 use super::stage::{Play, Stage};
 use super::{Command, Theatre};
 use crate::page::ask::{Ask, Word};
-use crate::page::show::{ESTIMATE_AGAIN, Guest, Said, TELL_AGAIN, Viewer};
+use crate::page::show::{ESTIMATE_AGAIN, Guest, Room, Said, TELL_AGAIN, Viewer};
 use crate::page::tell::{EventTell, Mode, Tell, seconds};
 use axum::body::Bytes;
 use game::VehicleId;
@@ -138,7 +138,7 @@ impl Viewer for Look {
         }
     }
 
-    fn say(&mut self, now: Instant, room: bool) -> Option<Said> {
+    fn say(&mut self, now: Instant, room: Room) -> Option<Said> {
         let mut stage = self.theatre.stage();
         let play = stage.play.clone()?;
         if self.told.generation != stage.generation {
@@ -155,10 +155,10 @@ impl Viewer for Look {
             .or_else(|| told.say_run(&stage, &play, now))
             .or_else(|| told.say_wheel(&stage, &play, self.page))
             .or_else(|| told.say_status(&stage, &play))
-            .or_else(|| told.say_selected(&stage, &play, self.page, now));
+            .or_else(|| if room == Room::All { told.say_selected(&stage, &play, self.page, now) } else { None });
         match text {
             Some(text) => Some(Said::Text(text)),
-            None if room => told.say_frame(&stage),
+            None if room >= Room::Frames => told.say_frame(&stage),
             None => None,
         }
     }
@@ -277,5 +277,37 @@ fn control(word: Word) -> Control {
         Word::EStop => Control::EStop,
         Word::Release => Control::Release,
         Word::Stop => Control::Stop,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::stage::HelmTold;
+    use super::*;
+    use crate::page::clock;
+    use game::message::{Frame, Notice};
+    use game::topic::GameName;
+    use game::water::Water;
+    use std::path::Path;
+    use std::sync::mpsc::sync_channel;
+
+    #[test]
+    fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
+        let theatre = Arc::new(Theatre::new(sync_channel(1).0));
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+        let (scenario, now) = (game::scenario::load(&file).unwrap(), clock::now());
+        let notice = Notice { version: String::new(), pace: "lockstep".to_owned(), scenario };
+        let name = GameName::new("pond").unwrap();
+        theatre.stage().begin(Arc::new(Play::new(name, notice, &Water::default())));
+        let mut look = Look::new(Arc::clone(&theatre), Guest { rights: false }, 1);
+        let mut say = |room| std::iter::from_fn(|| look.say(now, room)).collect::<Vec<Said>>();
+        say(Room::None);
+        theatre.stage().select(1, Some(&("red_one".to_owned(), false))).unwrap();
+        let light = "what it thinks".to_owned();
+        theatre.stage().take_helm(VehicleId(2), HelmTold { light: light.clone(), full: None });
+        theatre.stage().roll.take(&Frame::default(), &[], now);
+        assert_eq!(say(Room::None), []);
+        assert_eq!(say(Room::Frames), [Said::now(&[])]);
+        assert_eq!(say(Room::All), [Said::Text(light)]);
     }
 }
