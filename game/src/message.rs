@@ -11,6 +11,7 @@ use crate::picture::{FlagView, Nav, Picture};
 use crate::scenario::Scenario;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// A per-tick message: named and versioned.
 pub trait Message {
@@ -374,6 +375,11 @@ pub enum Control {
     EStop,
     /// The stop is over. Real boats have to be armed again.
     Release,
+}
+
+impl Control {
+    /// The speeds that may be asked for, simulated seconds a second.
+    pub const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
 }
 
 /// What a sim says of its game to anyone who asks.

@@ -12,8 +12,9 @@ use std::time::{Duration, Instant};
 const INBOX: usize = 32;
 /// A mind keeps what people look at for this long after the last question.
 const LOOKED_AT: Duration = Duration::from_secs(5);
-/// A question that came before anything was kept waits this long for the next decision.
-const NEXT_DECISION: Duration = Duration::from_millis(1500);
+/// A question that came before anything was kept waits this long for the next decision. In a game that is paused there is
+/// none, and the page waits no longer than a second.
+const NEXT_DECISION: Duration = Duration::from_millis(500);
 /// Answers between two looks at the pictures: a flood of questions must not keep a boat from deciding.
 const ANSWERS: usize = 2;
 

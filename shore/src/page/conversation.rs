@@ -1,13 +1,15 @@
 //! What passes between the server and one page, without the network in between.
 
 use super::ask::Ask;
-use super::show::{Guest, Said, Show, Viewer};
+use super::show::{Guest, Room, Said, Show, Viewer};
 use super::tell::{Mode, Tell};
 use std::collections::VecDeque;
 use std::time::Instant;
 
 /// The most frames on their way to a page.
 const UNDRAWN_MAX: u8 = 2;
+/// After so much text a page is asked whether it has arrived, bytes: a frame is answered when it is drawn, a text is not.
+const UNMARKED_MAX: usize = 4096;
 /// The most refusals that wait to be told; a page that asks for nonsense faster than it listens misses some.
 const REFUSALS_MAX: usize = 8;
 
@@ -17,6 +19,10 @@ pub(super) struct Conversation {
     guest: Guest,
     /// Frames sent and not yet drawn.
     undrawn: u8,
+    /// Text sent since the last mark, bytes.
+    unmarked: usize,
+    /// The last mark that was made, and the last that came back.
+    marks: (u64, u64),
     /// Refusals to be told: what, and why.
     refusals: VecDeque<(String, String)>,
 }
@@ -24,7 +30,8 @@ pub(super) struct Conversation {
 impl Conversation {
     /// Begins to show something to a page.
     pub(super) fn new(show: &dyn Show, guest: Guest) -> Conversation {
-        Conversation { viewer: show.admit(guest), guest, undrawn: 0, refusals: VecDeque::new() }
+        let viewer = show.admit(guest);
+        Conversation { viewer, guest, undrawn: 0, unmarked: 0, marks: (0, 0), refusals: VecDeque::new() }
     }
 
     /// From now on something else is shown. Frames on their way stay on their way.
@@ -61,9 +68,43 @@ impl Conversation {
         if let Some((what, reason)) = self.refusals.pop_front() {
             return Some(Said::Text(Tell::Refused { what: &what, reason: &reason }.json()));
         }
-        let said = self.viewer.say(now, self.undrawn < UNDRAWN_MAX);
-        self.undrawn += u8::from(matches!(said, Some(Said::Now(_))));
+        let said = self.viewer.say(now, self.room());
+        match &said {
+            Some(Said::Now(_)) => self.undrawn += 1,
+            Some(Said::Text(text)) => self.unmarked += text.len(),
+            Some(Said::Past(_)) | None => {}
+        }
         said
+    }
+
+    /// What the page can take now: of frames and of text no more is on its way than it can be late by.
+    fn room(&self) -> Room {
+        let (made, back) = self.marks;
+        match self.undrawn < UNDRAWN_MAX {
+            false => Room::None,
+            true if back < made || self.unmarked >= UNMARKED_MAX => Room::Frames,
+            true => Room::All,
+        }
+    }
+
+    /// A mark to be sent after what was said last, if it is time for one. The page sends it back at once.
+    pub(super) fn mark(&mut self) -> Option<u64> {
+        if self.unmarked < UNMARKED_MAX {
+            return None;
+        }
+        (self.unmarked, self.marks.0) = (0, self.marks.0 + 1);
+        Some(self.marks.0)
+    }
+
+    /// The mark that was made last.
+    pub(super) fn last_mark(&self) -> u64 {
+        self.marks.0
+    }
+
+    /// A mark comes back: all that was said before it has arrived.
+    pub(super) fn hear_mark(&mut self, mark: u64) {
+        let (made, back) = self.marks;
+        self.marks.1 = back.max(mark.min(made));
     }
 
     /// When there will be something to say though nothing is news.
@@ -116,9 +157,10 @@ mod tests {
             self.asked.lock().unwrap().push(ask.clone());
             if matches!(ask, Ask::Seek { .. }) { Err("no".to_owned()) } else { Ok(()) }
         }
-        fn say(&mut self, _: Instant, room: bool) -> Option<Said> {
-            self.frames = self.frames.wrapping_add(u8::from(room));
-            room.then(|| Said::now(&[self.frames]))
+        fn say(&mut self, _: Instant, room: Room) -> Option<Said> {
+            let fits = room >= Room::Frames;
+            self.frames = self.frames.wrapping_add(u8::from(fits));
+            fits.then(|| Said::now(&[self.frames]))
         }
         fn due(&self, _: Instant) -> Option<Instant> {
             None
@@ -143,6 +185,28 @@ mod tests {
         // A page that claims to have drawn more than it got gets no more than two.
         (0..9).for_each(|_| talk.hear(r#"{"do":"ack"}"#, now));
         assert_eq!(std::iter::from_fn(|| talk.say(now)).take(9).count(), 2);
+    }
+
+    #[test]
+    fn a_long_text_is_on_its_way_until_its_mark_is_back() {
+        let (mut talk, _) = talk(Mode::Live, false);
+        assert_eq!((talk.room(), talk.mark()), (Room::All, None));
+        talk.unmarked = UNMARKED_MAX - 1;
+        assert_eq!((talk.room(), talk.mark()), (Room::All, None), "a short one does not matter");
+        talk.unmarked = UNMARKED_MAX;
+        assert_eq!(talk.room(), Room::Frames, "frames go on");
+        assert_eq!((talk.mark(), talk.mark(), talk.last_mark()), (Some(1), None, 1));
+        talk.hear_mark(0);
+        assert_eq!(talk.room(), Room::Frames, "an older mark says nothing of it");
+        talk.hear_mark(1);
+        assert_eq!(talk.room(), Room::All);
+        // A page that claims marks it never got has not got what is said next.
+        talk.hear_mark(u64::MAX);
+        talk.unmarked = UNMARKED_MAX;
+        assert_eq!((talk.mark(), talk.room()), (Some(2), Room::Frames));
+        talk.undrawn = UNDRAWN_MAX;
+        talk.hear_mark(2);
+        assert_eq!(talk.room(), Room::None);
     }
 
     #[test]

@@ -57,6 +57,11 @@ impl Guard {
         }
     }
 
+    /// Whether there is anything to show for those who may act.
+    pub(super) fn has_token(&self) -> bool {
+        self.token.is_some()
+    }
+
     /// Whether a page whose address has this query may act.
     pub(super) fn has_rights(&self, query: Option<&str>) -> bool {
         let Some(token) = &self.token else { return true };

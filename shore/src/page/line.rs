@@ -1,8 +1,6 @@
 //! The lines to browsers: no more than so many, and none that is silent for ever.
 
-use axum::serve::Listener;
 use std::io;
-use std::net::SocketAddr;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
@@ -16,6 +14,8 @@ use tokio::time::{Instant, Sleep, sleep};
 const LINES_MAX: usize = 192;
 /// A line on which nothing comes for so long is cut. Websockets are asked for a sign of life more often.
 const SILENCE: Duration = Duration::from_secs(60);
+/// A line that takes nothing for so long, while there is something for it, is cut.
+const DEAF: Duration = Duration::from_secs(20);
 /// How long to wait when the system has no line to give.
 const AGAIN: Duration = Duration::from_millis(200);
 
@@ -35,28 +35,20 @@ impl Quay {
     async fn place(&self) -> Option<OwnedSemaphorePermit> {
         Arc::clone(&self.free).acquire_owned().await.ok()
     }
-}
 
-impl Listener for Quay {
-    type Io = Line;
-    type Addr = SocketAddr;
-
-    async fn accept(&mut self) -> (Line, SocketAddr) {
+    /// The next line.
+    pub(super) async fn accept(&self) -> Line {
         loop {
             let place = self.place().await;
             match (place, self.listener.accept().await) {
-                (Some(place), Ok((stream, from))) => {
+                (Some(place), Ok((stream, _))) => {
                     // A frame is one small write; waiting for more only makes it late.
                     drop(stream.set_nodelay(true));
-                    return (Line { stream, silence: Box::pin(sleep(SILENCE)), _place: place }, from);
+                    return Line { stream, silence: Box::pin(sleep(SILENCE)), deaf: None, _place: place };
                 }
                 _ => sleep(AGAIN).await,
             }
         }
-    }
-
-    fn local_addr(&self) -> io::Result<SocketAddr> {
-        self.listener.local_addr()
     }
 }
 
@@ -64,7 +56,21 @@ impl Listener for Quay {
 pub(super) struct Line {
     stream: TcpStream,
     silence: Pin<Box<Sleep>>,
+    /// Ends the wait for a browser to take something, while there is one.
+    deaf: Option<Pin<Box<Sleep>>>,
     _place: OwnedSemaphorePermit,
+}
+
+impl Line {
+    /// What comes of an attempt to write, unless attempts have been in vain for too long.
+    fn written(&mut self, context: &mut Context<'_>, tried: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
+        if tried.is_ready() {
+            self.deaf = None;
+            return tried;
+        }
+        let deaf = self.deaf.get_or_insert_with(|| Box::pin(sleep(DEAF)));
+        deaf.as_mut().poll(context).map(|()| Err(io::ErrorKind::TimedOut.into()))
+    }
 }
 
 impl AsyncRead for Line {
@@ -82,7 +88,8 @@ impl AsyncRead for Line {
 
 impl AsyncWrite for Line {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.stream).poll_write(context, bytes)
+        let tried = Pin::new(&mut self.stream).poll_write(context, bytes);
+        self.written(context, tried)
     }
 
     fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
@@ -98,7 +105,8 @@ impl AsyncWrite for Line {
         context: &mut Context<'_>,
         slices: &[io::IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.stream).poll_write_vectored(context, slices)
+        let tried = Pin::new(&mut self.stream).poll_write_vectored(context, slices);
+        self.written(context, tried)
     }
 
     fn is_write_vectored(&self) -> bool {

@@ -22,7 +22,7 @@ mod tell;
 
 pub use ask::{Ask, Word};
 pub use rose::{HelmAnswer, is_sound};
-pub use show::{Guest, News, Said, Show, Viewer};
+pub use show::{Guest, News, Room, Said, Show, Viewer};
 pub use tell::Mode;
 
 use guard::Guard;
@@ -40,7 +40,7 @@ pub struct PageSettings {
     pub listen: SocketAddr,
     /// What pages that may act have to show. Without one all may.
     pub token: Option<String>,
-    /// Further names under which it may be asked for.
+    /// Further names under which it may be asked for. They need a token: whoever has a name for it comes from elsewhere.
     pub hosts: Vec<String>,
     /// Set from outside to end it.
     pub stop: Arc<AtomicBool>,
@@ -55,6 +55,12 @@ pub enum PageError {
          that those who may act have to show"
     )]
     Open(SocketAddr),
+    /// Everybody who comes by the name could act: a proxy in front of a loopback address lets in whom it likes.
+    #[error(
+        "the page would be open to all who reach it as {0:?} (--host): give a token (--token) that those who may act have to \
+         show"
+    )]
+    Named(String),
     /// A token that is none.
     #[error("the page's token is empty")]
     EmptyToken,
@@ -96,6 +102,9 @@ impl Page {
         }
         if !listen.ip().is_loopback() && token.is_none() {
             return Err(PageError::Open(listen));
+        }
+        if let (Some(host), None) = (hosts.first(), &token) {
+            return Err(PageError::Named(host.clone()));
         }
         let at = |source| PageError::Listen { address: listen, source };
         let listener = std::net::TcpListener::bind(listen).map_err(at)?;
@@ -168,6 +177,17 @@ mod tests {
         assert!(matches!(open("0.0.0.0:0", Some("")), Err(PageError::EmptyToken)));
         assert!(open("0.0.0.0:0", Some("secret")).is_ok());
         assert!(open("127.0.0.1:0", None).is_ok());
+    }
+
+    #[test]
+    fn a_further_name_needs_a_token() {
+        let open = |token: Option<&str>| {
+            let (listen, hosts) = ("127.0.0.1:0".parse().unwrap(), vec!["boat.local".to_owned()]);
+            Page::open(PageSettings { listen, token: token.map(str::to_owned), hosts, stop: Arc::default() })
+        };
+        let error = open(None).err().expect("it is refused").to_string();
+        assert!(["boat.local", "--host", "--token"].iter().all(|word| error.contains(word)), "{error}");
+        assert!(open(Some("secret")).is_ok());
     }
 
     #[test]

@@ -43,11 +43,22 @@ pub trait Viewer: Send {
     /// Why it is not done.
     fn ask(&mut self, ask: &Ask, now: Instant) -> Result<(), String>;
 
-    /// The next thing to say, if there is one now; frames only where `room` says that the page can take one.
-    fn say(&mut self, now: Instant, room: bool) -> Option<Said>;
+    /// The next thing to say, if there is one now; what can wait only where there is room for it.
+    fn say(&mut self, now: Instant, room: Room) -> Option<Said>;
 
     /// When there will be something to say though nothing is news.
     fn due(&self, now: Instant) -> Option<Instant>;
+}
+
+/// What a page can take now, of that which comes again newer if it is left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Room {
+    /// Nothing.
+    None,
+    /// Frames.
+    Frames,
+    /// Frames, and what is told again and again of the boat that is selected.
+    All,
 }
 
 /// Something said to a page.

@@ -2,7 +2,7 @@
 
 use super::asset;
 use super::guard::Guard;
-use super::line::Quay;
+use super::line::{Line, Quay};
 use super::show::Guest;
 use super::socket::{self, HEARD_MAX, Shown};
 use axum::Router;
@@ -14,12 +14,20 @@ use axum::http::header::{HOST, HeaderMap, HeaderName, ORIGIN};
 use axum::http::{Method, Response, StatusCode, Uri};
 use axum::middleware::{self, Next};
 use axum::routing::get;
+use hyper_util::rt::{TokioExecutor, TokioIo, TokioTimer};
+use hyper_util::server::conn::auto::Builder;
+use hyper_util::service::TowerToHyperService;
 use std::future::Future;
 use std::sync::Arc;
-use tokio::sync::Semaphore;
+use std::time::Duration;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 /// The most pages that look at a time.
 const PAGES_MAX: usize = 64;
+/// Places besides these for pages that show the token: whoever may stop a game is not kept out by those who only look.
+const MASTERS_MAX: usize = 8;
+/// How long a request may take to come, counted from the line's beginning or the answer before.
+const REQUEST: Duration = Duration::from_secs(10);
 
 /// What all requests have in common.
 #[derive(Clone)]
@@ -27,6 +35,17 @@ struct Desk {
     guard: Arc<Guard>,
     shown: Shown,
     places: Arc<Semaphore>,
+    masters: Arc<Semaphore>,
+}
+
+impl Desk {
+    /// A place for a page that comes with this query, and who it is.
+    fn admit(&self, query: Option<&str>) -> Option<(OwnedSemaphorePermit, Guest)> {
+        let guest = Guest { rights: self.guard.has_rights(query) };
+        let free = |places: &Arc<Semaphore>| Arc::clone(places).try_acquire_owned().ok();
+        let own = if guest.rights && self.guard.has_token() { free(&self.masters) } else { None };
+        Some((own.or_else(|| free(&self.places))?, guest))
+    }
 }
 
 /// Answers until the end.
@@ -37,16 +56,33 @@ pub(super) async fn serve(
     end: impl Future<Output = ()>,
 ) -> std::io::Result<()> {
     let quay = Quay::new(tokio::net::TcpListener::from_std(listener)?);
-    let desk = Desk { guard: Arc::new(guard), shown, places: Arc::new(Semaphore::new(PAGES_MAX)) };
+    let places = |places| Arc::new(Semaphore::new(places));
+    let desk = Desk { guard: Arc::new(guard), shown, places: places(PAGES_MAX), masters: places(MASTERS_MAX) };
     let site = Router::new()
         .route("/ws", get(upgrade))
         .fallback(file)
         .layer(middleware::from_fn_with_state(desk.clone(), check))
         .with_state(desk);
+    let answer_all = async {
+        loop {
+            let line = quay.accept().await;
+            // Whatever ends a line ends it for one browser only.
+            let answer = answer(line, site.clone());
+            tokio::spawn(async { drop(answer.await) });
+        }
+    };
     tokio::select! {
-        served = axum::serve(quay, site) => served,
-        () = end => Ok(()),
+        () = answer_all => {}
+        () = end => {}
     }
+    Ok(())
+}
+
+/// Answers what is asked on one line. `axum::serve` would wait for ever for a request that does not come to its end.
+async fn answer(line: Line, site: Router) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    let mut server = Builder::new(TokioExecutor::new()).http1_only();
+    server.http1().timer(TokioTimer::new()).header_read_timeout(REQUEST);
+    server.serve_connection_with_upgrades(TokioIo::new(line), TowerToHyperService::new(site)).await
 }
 
 /// Lets nothing through that is not meant for this server, and seals what it answers.
@@ -76,10 +112,9 @@ async fn upgrade(
     if let Err(reason) = Guard::check_origin(text_of(&headers, &HOST), text_of(&headers, &ORIGIN)) {
         return asset::text(StatusCode::FORBIDDEN, &reason);
     }
-    let Ok(place) = desk.places.try_acquire_owned() else {
+    let Some((place, guest)) = desk.admit(uri.query()) else {
         return asset::text(StatusCode::SERVICE_UNAVAILABLE, "Too many pages look already.\n");
     };
-    let guest = Guest { rights: desk.guard.has_rights(uri.query()) };
     let upgrade = upgrade.max_message_size(HEARD_MAX).max_frame_size(HEARD_MAX);
     upgrade.on_upgrade(move |socket| socket::serve(socket, desk.shown, guest, place))
 }

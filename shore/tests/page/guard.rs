@@ -1,12 +1,15 @@
 //! Who is let in, and who may act.
 
-use super::client::{Client, get};
+use super::client::{Client, get, now};
 use super::replay::show;
 use super::{look, page};
+use std::io::{ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
 
 #[test]
 fn the_page_is_served_under_its_own_names_and_sealed() {
-    let page = page(show(), None, &["boat.local"]);
+    let page = page(show(), Some("a secret"), &["boat.local"]);
     let at = page.address();
     for (host, path, status) in [
         (at.to_string(), "/", 200),
@@ -66,6 +69,37 @@ fn so_many_may_look_and_no_more() {
     // The place is free as soon as the server has noticed.
     let again = (0..1000).find_map(|_| Client::connect(page.address(), "/ws", &[]).ok());
     assert_eq!(again.expect("a place is free").text()["kind"], "hello");
+}
+
+#[test]
+fn those_who_only_look_keep_nobody_out_who_may_act() {
+    let page = page(show(), Some("secret"), &[]);
+    let _onlookers: Vec<Client> = (0..64).map(|_| look(&page)).collect();
+    assert_eq!(Client::connect(page.address(), "/ws?token=guess", &[]).err(), Some(503));
+    let come = || Client::connect(page.address(), "/ws?token=secret", &[]);
+    let masters: Vec<Client> = (0..8).map(|_| come().expect("there is a place of its own")).collect();
+    assert_eq!(come().err(), Some(503));
+    for mut master in masters {
+        assert_eq!(master.text()["rights"], true);
+    }
+}
+
+#[test]
+fn a_request_that_does_not_come_to_its_end_is_not_waited_for() {
+    let page = page(show(), None, &[]);
+    let end = now() + Duration::from_secs(25);
+    let mut line = TcpStream::connect(page.address()).expect("somebody listens");
+    line.set_read_timeout(Some(Duration::from_millis(100))).expect("a socket has time-outs");
+    line.write_all(b"GET / HTTP/1.1\r\nHost: localhost\r\nX-Slow: ").expect("it listens");
+    let is_cut =
+        std::iter::from_fn(|| (now() < end).then(|| (line.write(b"x"), line.read(&mut [0; 64])))).find_map(|tried| {
+            match tried {
+                (Ok(_), Err(e)) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => None,
+                (Ok(_), Ok(0)) | (Err(_), _) | (_, Err(_)) => Some(true),
+                (_, Ok(_)) => None,
+            }
+        });
+    assert_eq!(is_cut, Some(true), "a byte now and then keeps it open");
 }
 
 #[test]

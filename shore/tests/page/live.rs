@@ -74,6 +74,10 @@ fn json<T: serde::Serialize>(value: &T) -> Vec<u8> {
 
 impl Sim {
     fn open(port: u16, name: &str, scenario: Scenario) -> Sim {
+        Sim::paced(port, name, scenario, "1x")
+    }
+
+    fn paced(port: u16, name: &str, scenario: Scenario, pace: &str) -> Sim {
         let net = Net { listen: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
         let bus = Bus::hub(&net).expect("the port is free");
         let game = GameName::new(name).expect("a good name");
@@ -82,7 +86,7 @@ impl Sim {
         let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
         let events = Arc::new(Board::new(vec![]));
         let (controls, proposals) = (Arc::new(Board::new(vec![])), Arc::new(Board::new(vec![])));
-        let notice = Notice { version: game::VERSION.to_owned(), pace: "1x".to_owned(), scenario: scenario.clone() };
+        let notice = Notice { version: game::VERSION.to_owned(), pace: pace.to_owned(), scenario: scenario.clone() };
         let wave = PlaneWave { amplitude_m: 0.25, ..PlaneWave::default() };
         let fixed = |key: String, answer: Vec<u8>| {
             bus.answer(key, move |question| question.answer(answer.clone())).expect("it answers")
@@ -214,14 +218,21 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
         (r#"{"do":"control","what":"e_stop"}"#, Control::EStop),
         (r#"{"do":"control","what":"go_on"}"#, Control::GoOn),
         (r#"{"do":"speed","factor":4}"#, Control::Speed(Some(4.0))),
-        (r#"{"do":"speed","factor":null}"#, Control::Speed(None)),
+        (r#"{"do":"speed","factor":1000}"#, Control::Speed(Some(1000.0))),
     ] {
         client.send(ask);
         assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&want)), "{ask}");
     }
-    for ask in [r#"{"do":"speed","factor":0}"#, r#"{"do":"seek","t_s":0}"#, r#"{"do":"step","by":1}"#] {
+    for (ask, why) in [
+        (r#"{"do":"speed","factor":0}"#, "expected 0.01 to 1000"),
+        (r#"{"do":"speed","factor":1001}"#, "expected 0.01 to 1000"),
+        (r#"{"do":"speed","factor":null}"#, "only a game in lockstep"),
+        (r#"{"do":"seek","t_s":0}"#, "cannot be wound"),
+        (r#"{"do":"step","by":1}"#, "cannot be wound"),
+    ] {
         client.send(ask);
-        client.until("refused", |_| true);
+        let refused = client.until("refused", |_| true);
+        assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains(why)), "{ask}: {refused}");
     }
     page.close();
     let locked = super::page(live_again(&sim), Some("secret"), &[]);
@@ -233,6 +244,19 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
     master.send(r#"{"do":"control","what":"halt"}"#);
     assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::Halt)));
     sim.controls.visit(|all| assert!(!all.contains(&Control::Stop)));
+    sim.close();
+}
+
+#[test]
+fn a_game_in_lockstep_goes_as_fast_as_can_be_if_asked() {
+    let port = port();
+    let sim = Sim::paced(port, "pond", scenario("pav01_vs_pav01.toml"), "lockstep");
+    let page = page(live(port, None), None, &[]);
+    let mut client = look(&page);
+    client.until("hello", |_| true);
+    sim.wait_for_ears();
+    client.send(r#"{"do":"speed","factor":null}"#);
+    assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::Speed(None))));
     sim.close();
 }
 

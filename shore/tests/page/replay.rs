@@ -5,7 +5,7 @@ use super::{client, look, page};
 use proptest::prelude::*;
 use serde_json::json;
 use shore::page::replay::ReplayShow;
-use shore::page::{Ask, Guest, Said, Show, Word};
+use shore::page::{Ask, Guest, Room, Said, Show, Word};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -147,11 +147,33 @@ fn any_ask() -> impl Strategy<Value = Ask> {
     ]
 }
 
+fn any_room() -> impl Strategy<Value = Room> {
+    prop::sample::select(vec![Room::None, Room::Frames, Room::All])
+}
+
+/// Whether it is told again and again of the boat that is selected.
+fn is_of_selected(said: &Said) -> bool {
+    let kinds = [r#"{"kind":"helm""#, r#"{"kind":"estimate""#];
+    matches!(said, Said::Text(text) if kinds.iter().any(|kind| text.starts_with(kind)))
+}
+
+#[test]
+fn what_can_wait_waits_until_there_is_room() {
+    let show = ReplayShow::new(Arc::new(MadeUp::new()), None);
+    let (mut viewer, now) = (show.admit(Guest { rights: false }), client::now());
+    while viewer.say(now, Room::All).is_some() {}
+    viewer.ask(&Ask::Select { vehicle: Some("red_one".to_owned()), functions: true }, now).expect("it is there");
+    let said: Vec<Said> = std::iter::from_fn(|| viewer.say(now, Room::Frames)).collect();
+    assert!(!said.iter().any(is_of_selected), "{said:?}");
+    let estimate = viewer.say(now, Room::All).expect("it has waited");
+    assert!(is_of_selected(&estimate), "{estimate:?}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
     fn whatever_is_asked_frames_come_in_order_between_jumps(
-        asks in prop::collection::vec((any_ask(), 0..2_000_u64, any::<bool>()), 1..30),
+        asks in prop::collection::vec((any_ask(), 0..2_000_u64, any_room()), 1..30),
     ) {
         let show = ReplayShow::new(Arc::new(MadeUp::new()), None);
         let mut viewer = show.admit(Guest { rights: false });
@@ -165,7 +187,8 @@ proptest! {
                 Said::Past(bytes) | Said::Now(bytes) => Some(seq_of(bytes)),
                 Said::Text(_) => None,
             }).collect();
-            prop_assert!(frames.is_sorted() && (room || frames.is_empty()), "{frames:?} after {ask:?}");
+            prop_assert!(frames.is_sorted() && (room != Room::None || frames.is_empty()), "{frames:?} after {ask:?}");
+            prop_assert!(room == Room::All || !said.iter().any(is_of_selected));
             prop_assert!(said.iter().filter(|said| matches!(said, Said::Now(_))).count() <= 1);
             prop_assert!(viewer.due(now).is_none_or(|due| due > now));
         }

@@ -3,7 +3,41 @@
 use super::film::seq_of;
 use super::replay::show;
 use super::{look, page};
+use shore::page::{Ask, Guest, Mode, News, Room, Said, Show, Viewer};
+use std::sync::Arc;
+use std::sync::mpsc::{Sender, channel};
+use std::time::{Duration, Instant};
 use tungstenite::Message;
+
+/// A show that never stops talking, whatever a page can take, and passes on what it is asked.
+struct Talker(Sender<Ask>, News);
+
+/// A look at it.
+struct Ear(Sender<Ask>);
+
+impl Show for Talker {
+    fn admit(&self, _: Guest) -> Box<dyn Viewer> {
+        Box::new(Ear(self.0.clone()))
+    }
+    fn news(&self) -> &News {
+        &self.1
+    }
+}
+
+impl Viewer for Ear {
+    fn mode(&self) -> Mode {
+        Mode::Live
+    }
+    fn ask(&mut self, ask: &Ask, _: Instant) -> Result<(), String> {
+        self.0.send(ask.clone()).map_err(|e| e.to_string())
+    }
+    fn say(&mut self, _: Instant, _: Room) -> Option<Said> {
+        Some(Said::Text("x".repeat(1 << 20)))
+    }
+    fn due(&self, _: Instant) -> Option<Instant> {
+        None
+    }
+}
 
 /// What is on its way to a page that draws nothing.
 fn frames(messages: &[Message]) -> Vec<u64> {
@@ -27,6 +61,22 @@ fn a_page_that_draws_nothing_gets_two_frames() {
     client.ack();
     let newest = (paused["t_s"].as_f64().expect("a time") * 10.0 + 1e-6) as u64;
     assert_eq!(frames(&client.rest()), [newest], "those between are left out");
+}
+
+#[test]
+fn a_page_is_heard_while_it_takes_nothing() {
+    let (asked, asks) = channel();
+    let page = page(Arc::new(Talker(asked, News::default())), None, &[]);
+    let mut client = look(&page);
+    // The lines between are full when the page has read nothing for a while.
+    assert!(asks.recv_timeout(Duration::from_secs(1)).is_err());
+    for ask in [r#"{"do":"control","what":"halt"}"#, r#"{"do":"control","what":"e_stop"}"#] {
+        client.send(ask);
+        let want: Ask = serde_json::from_str(ask).expect("an ask");
+        assert_eq!(asks.recv_timeout(Duration::from_secs(10)), Ok(want));
+    }
+    // What was half sent meanwhile is whole.
+    (0..40).for_each(|_| assert_eq!(client.next(), Message::text("x".repeat(1 << 20))));
 }
 
 #[test]

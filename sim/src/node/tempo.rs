@@ -15,9 +15,6 @@ pub(super) struct Tempo {
     is_real: bool,
 }
 
-/// The speeds that may be asked for.
-const SPEEDS: std::ops::RangeInclusive<f64> = 0.01..=1000.0;
-
 impl Tempo {
     /// The tempo of a game that nobody has touched.
     pub(super) fn new(speed: Option<f64>, is_lockstep: bool, is_real: bool) -> Tempo {
@@ -50,7 +47,9 @@ impl Tempo {
             Control::Pause => (self.is_paused, self.steps) = (true, 0),
             Control::Resume => (self.is_paused, self.steps) = (false, 0),
             Control::Step if self.is_paused => self.steps = self.steps.saturating_add(1),
-            Control::Speed(Some(speed)) if SPEEDS.contains(&speed) && !self.is_real => self.speed = Some(speed),
+            Control::Speed(Some(speed)) if Control::SPEEDS.contains(&speed) && !self.is_real => {
+                self.speed = Some(speed);
+            }
             Control::Speed(None) if self.is_lockstep => self.speed = None,
             _ => return false,
         }

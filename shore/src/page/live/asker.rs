@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 const ROUND: Duration = Duration::from_millis(50);
 /// How long a helm may think about its answer.
 const HELM_ANSWER: Duration = Duration::from_secs(1);
-/// No more than one part in so many of the time is spent on the answers of a helm.
+/// No more than one part in so many of the time is spent on the answers of helms.
 const SHARE: u32 = 5;
 /// How long the sim may collect its events.
 const EVENTS_ANSWER: Duration = Duration::from_secs(3);
@@ -30,18 +30,37 @@ pub(super) struct Asker<'a> {
     play: Arc<Play>,
 }
 
-/// A question that was asked of a helm.
-struct Asked {
-    start: Instant,
-    functions: bool,
-    took: Duration,
+/// Whose helm is asked next.
+#[derive(Default)]
+struct Turns {
+    /// When each was asked last, and whether with utilities.
+    asked: BTreeMap<VehicleId, (Instant, bool)>,
+    /// Until when nobody is asked.
+    rest: Option<Instant>,
 }
 
-impl Asked {
-    /// Whether to ask again. In lockstep a game waits while a mind answers: a long answer is asked for less often.
-    fn is_due_again(&self, functions: bool, now: Instant) -> bool {
-        let rest = HELM_AGAIN.max(self.took * SHARE);
-        (functions && !self.functions) || now.saturating_duration_since(self.start) >= rest
+impl Turns {
+    /// Whose turn it is, if it is anybody's: of those that are due, the one that has waited longest.
+    fn next(&mut self, wanted: &BTreeMap<VehicleId, bool>, now: Instant) -> Option<(VehicleId, bool)> {
+        self.asked.retain(|vehicle, _| wanted.contains_key(vehicle));
+        if self.rest.is_some_and(|rest| now < rest) {
+            return None;
+        }
+        let is_due = |vehicle: &VehicleId, functions: bool| {
+            self.asked
+                .get(vehicle)
+                .is_none_or(|(start, had)| (functions && !had) || now.saturating_duration_since(*start) >= HELM_AGAIN)
+        };
+        let due = wanted.iter().filter(|(vehicle, functions)| is_due(vehicle, **functions));
+        let longest = due.min_by_key(|(vehicle, _)| self.asked.get(vehicle).map(|(start, _)| *start));
+        longest.map(|(vehicle, functions)| (*vehicle, *functions))
+    }
+
+    /// A helm was asked from `start` to `end`. In lockstep a game waits while a mind answers, and one process may mind all
+    /// boats: after a long answer all have a rest. A game that stands waits for nobody.
+    fn note(&mut self, asked: (VehicleId, bool), start: Instant, end: Instant, is_going: bool) {
+        self.asked.insert(asked.0, (start, asked.1));
+        self.rest = is_going.then(|| start + end.saturating_duration_since(start) * SHARE);
     }
 }
 
@@ -52,18 +71,16 @@ impl Asker<'_> {
 
     /// Asks until the game is left.
     pub(super) fn ask(&self, left: &Board<bool>) {
-        let mut asked: BTreeMap<VehicleId, Asked> = BTreeMap::new();
+        let mut turns = Turns::default();
         while !left.wait(ROUND, |left| *left) {
             self.ask_events();
             let wanted = self.theatre.stage().wanted();
-            asked.retain(|vehicle, _| wanted.contains_key(vehicle));
-            for (vehicle, functions) in wanted {
-                let start = clock::now();
-                if asked.get(&vehicle).is_none_or(|asked| asked.is_due_again(functions, start)) {
-                    self.ask_helm(vehicle, functions);
-                    let took = clock::now().saturating_duration_since(start);
-                    asked.insert(vehicle, Asked { start, functions, took });
-                }
+            let start = clock::now();
+            if let Some((vehicle, functions)) = turns.next(&wanted, start) {
+                self.ask_helm(vehicle, functions);
+                let end = clock::now();
+                let is_going = self.theatre.stage().phase(end) == "playing";
+                turns.note((vehicle, functions), start, end, is_going);
             }
         }
     }
@@ -109,13 +126,58 @@ fn because(reason: String) -> HelmAnswer {
 mod tests {
     use super::*;
 
-    #[test]
-    fn long_answers_are_asked_for_less_often() {
+    const BOATS: [VehicleId; 3] = [VehicleId(0), VehicleId(1), VehicleId(2)];
+
+    /// Asks for so long, each answer after as long: who was asked when, ms.
+    fn asked(wanted: &BTreeMap<VehicleId, bool>, took_ms: u64, until_ms: u64, is_going: bool) -> Vec<(VehicleId, u64)> {
         let start = clock::now();
-        let later = |ms| start + Duration::from_millis(ms);
-        let asked = |took_ms| Asked { start, functions: false, took: Duration::from_millis(took_ms) };
-        assert!(!asked(1).is_due_again(false, later(499)) && asked(1).is_due_again(false, later(500)));
-        assert!(!asked(400).is_due_again(false, later(1999)) && asked(400).is_due_again(false, later(2000)));
-        assert!(asked(400).is_due_again(true, later(1)), "somebody wants utilities too");
+        let at = |ms| start + Duration::from_millis(ms);
+        let (mut turns, mut now_ms, mut asked) = (Turns::default(), 0, vec![]);
+        while now_ms < until_ms {
+            if let Some(turn) = turns.next(wanted, at(now_ms)) {
+                turns.note(turn, at(now_ms), at(now_ms + took_ms), is_going);
+                asked.push((turn.0, now_ms));
+                now_ms += took_ms;
+            }
+            now_ms += 50;
+        }
+        asked
+    }
+
+    #[test]
+    fn long_answers_leave_most_of_the_time_to_the_game_however_many_boats_are_looked_at() {
+        for boats in 1..=BOATS.len() {
+            let wanted: BTreeMap<VehicleId, bool> = BOATS[..boats].iter().map(|boat| (*boat, true)).collect();
+            let all = asked(&wanted, 400, 12_000, true);
+            assert_eq!(all.iter().map(|(_, at_ms)| *at_ms).collect::<Vec<_>>(), [0, 2000, 4000, 6000, 8000, 10_000]);
+            let turns: Vec<VehicleId> = BOATS[..boats].iter().copied().cycle().take(all.len()).collect();
+            assert_eq!(all.iter().map(|(boat, _)| *boat).collect::<Vec<_>>(), turns, "each gets its turn");
+        }
+    }
+
+    #[test]
+    fn short_answers_come_as_often_as_pages_are_told() {
+        let wanted = BTreeMap::from([(BOATS[0], false), (BOATS[1], false)]);
+        let all = asked(&wanted, 0, 2000, true);
+        for boat in &BOATS[..2] {
+            assert_eq!(all.iter().filter(|(asked, _)| asked == boat).count(), 4, "{all:?}");
+        }
+    }
+
+    #[test]
+    fn in_a_game_that_stands_a_miss_is_soon_asked_for_again() {
+        let wanted = BTreeMap::from([(BOATS[0], true)]);
+        let took_ms = HELM_ANSWER.as_millis() as u64;
+        let times = |is_going| asked(&wanted, took_ms, 6000, is_going).iter().map(|(_, at)| *at).collect::<Vec<_>>();
+        assert_eq!(times(true), [0, 5000]);
+        assert_eq!(times(false), [0, 1050, 2100, 3150, 4200, 5250]);
+    }
+
+    #[test]
+    fn who_wants_utilities_too_does_not_wait_for_the_next_round() {
+        let (mut turns, start) = (Turns::default(), clock::now());
+        turns.note((BOATS[0], false), start, start, true);
+        assert_eq!(turns.next(&BTreeMap::from([(BOATS[0], false)]), start), None);
+        assert_eq!(turns.next(&BTreeMap::from([(BOATS[0], true)]), start), Some((BOATS[0], true)));
     }
 }

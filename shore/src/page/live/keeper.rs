@@ -71,6 +71,8 @@ impl Keeper {
         let mut bus = None;
         let (mut said, mut attempts) = (String::new(), 0_u64);
         while !self.theatre.is_closing() {
+            // What was wanted of a game that is gone is not wanted of the next.
+            while self.commands.try_recv().is_ok() {}
             match self.come(&mut bus) {
                 Ok(visit) => {
                     said.clear();
@@ -83,8 +85,6 @@ impl Keeper {
                         (self.tell)(&reason);
                         said = reason;
                     }
-                    // What was wanted of a game that is gone is not wanted of the next.
-                    while self.commands.try_recv().is_ok() {}
                     attempts += 1;
                     if attempts % ATTEMPTS == 0 {
                         bus = None;
@@ -326,6 +326,26 @@ impl Ear {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use game::message::Control;
+    use std::sync::atomic::Ordering;
+    use std::sync::mpsc::sync_channel;
+
+    #[test]
+    fn what_was_asked_of_one_game_is_forgotten_before_the_next_is_looked_for() {
+        let (commands, to_do) = sync_channel(1);
+        let theatre = Arc::new(Theatre::new(commands.clone()));
+        commands.send(Command::Control(Control::Stop)).unwrap();
+        let (found, finds) = sync_channel(1);
+        let searched = Arc::clone(&theatre);
+        let place = move || {
+            // There is room for one command only, and so for none if the one before is still there.
+            found.send(commands.try_send(Command::Steer).is_ok()).unwrap();
+            searched.is_closing.store(true, Ordering::Relaxed);
+            Err("there is no network".to_owned())
+        };
+        Keeper::new(theatre, Box::new(place), None, to_do, Box::new(|_| ())).keep();
+        assert!(finds.recv().unwrap());
+    }
 
     #[test]
     fn a_sim_is_gone_when_it_is_not_the_same_or_not_there_for_a_while() {

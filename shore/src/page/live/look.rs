@@ -3,7 +3,7 @@
 use super::stage::{Play, Stage};
 use super::{Command, Theatre};
 use crate::page::ask::{Ask, Word};
-use crate::page::show::{ESTIMATE_AGAIN, Guest, Said, TELL_AGAIN, Viewer};
+use crate::page::show::{ESTIMATE_AGAIN, Guest, Room, Said, TELL_AGAIN, Viewer};
 use crate::page::tell::{EventTell, Mode, Tell, seconds};
 use axum::body::Bytes;
 use game::VehicleId;
@@ -11,9 +11,6 @@ use game::message::Control;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
-
-/// The greatest factor of speed that makes sense.
-const SPEED_MAX: f64 = 10_000.0;
 
 /// One page's look at a game.
 pub(super) struct Look {
@@ -49,11 +46,10 @@ impl Look {
         Look { theatre, guest, page, wish: None, told: Told::default() }
     }
 
-    /// The game that is on, for something to be done in it.
-    fn play(&self) -> Result<Arc<Play>, String> {
-        let stage = self.theatre.stage();
-        let play = stage.play.clone().filter(|_| !stage.is_gone);
-        play.ok_or_else(|| "there is no game now".to_owned())
+    /// Passes on what is wanted of the game that is on: the stage is kept meanwhile, so that it is not wanted of the next.
+    fn control(&self, stage: &Stage, control: Control) -> Result<(), String> {
+        stage.on()?;
+        self.send(Command::Control(control))
     }
 
     fn send(&self, command: Command) -> Result<(), String> {
@@ -69,17 +65,26 @@ impl Look {
     }
 
     fn set_speed(&self, factor: Option<f64>) -> Result<(), String> {
-        if self.play()?.has_real_boats() {
+        let stage = self.theatre.stage();
+        let play = stage.on()?;
+        if play.has_real_boats() {
             return Err("a game with real boats keeps its pace".to_owned());
         }
-        if factor.is_some_and(|factor| !(factor > 0.0 && factor <= SPEED_MAX)) {
-            return Err(format!("the speed must be more than 0 and at most {SPEED_MAX}"));
+        match factor {
+            None if !play.is_lockstep() => {
+                Err("only a game in lockstep goes as fast as can be: this one goes by the clock".to_owned())
+            }
+            Some(factor) if !Control::SPEEDS.contains(&factor) => {
+                let (min, max) = (Control::SPEEDS.start(), Control::SPEEDS.end());
+                Err(format!("the speed is {factor}, expected {min} to {max}"))
+            }
+            _ => self.control(&stage, Control::Speed(factor)),
         }
-        self.send(Command::Control(Control::Speed(factor)))
     }
 
     fn drive(&self, name: &str, course_deg: f64, speed_m_s: f64, now: Instant) -> Result<(), String> {
-        let play = self.play()?;
+        let mut stage = self.theatre.stage();
+        let play = stage.on()?;
         let scenario = play.scenario();
         let vehicle = scenario.vehicle_named(name).map_err(|e| e.to_string())?;
         if !scenario.strategy_of(vehicle).is_steered() {
@@ -90,7 +95,6 @@ impl Look {
         }
         let speed_m_s = speed_m_s.clamp(0.0, scenario.boat_of(vehicle).speed_max_m_s());
         let course_rad = course_deg.rem_euclid(360.0).to_radians();
-        let mut stage = self.theatre.stage();
         let had = stage.wheels.holder(vehicle);
         if !stage.wheels.grip(vehicle, self.page, now) {
             return Err(format!("somebody else steers {name}"));
@@ -106,8 +110,11 @@ impl Look {
     }
 
     fn let_go(&self, name: &str) -> Result<(), String> {
-        let vehicle = self.play()?.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
-        if self.theatre.stage().wheels.let_go(vehicle, self.page) {
+        let mut stage = self.theatre.stage();
+        let vehicle = stage.on()?.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+        let had = stage.wheels.let_go(vehicle, self.page);
+        drop(stage);
+        if had {
             self.theatre.news.ring();
         }
         Ok(())
@@ -123,10 +130,7 @@ impl Viewer for Look {
         match ask {
             Ask::Ack => Ok(()),
             Ask::Select { vehicle, functions } => self.select(vehicle.as_deref(), *functions),
-            Ask::Control { what } => {
-                self.play()?;
-                self.send(Command::Control(control(*what)))
-            }
+            Ask::Control { what } => self.control(&self.theatre.stage(), control(*what)),
             Ask::Speed { factor } => self.set_speed(*factor),
             Ask::Drive { vehicle, course_deg, speed_m_s } => self.drive(vehicle, *course_deg, *speed_m_s, now),
             Ask::LetGo { vehicle } => self.let_go(vehicle),
@@ -134,7 +138,7 @@ impl Viewer for Look {
         }
     }
 
-    fn say(&mut self, now: Instant, room: bool) -> Option<Said> {
+    fn say(&mut self, now: Instant, room: Room) -> Option<Said> {
         let mut stage = self.theatre.stage();
         let play = stage.play.clone()?;
         if self.told.generation != stage.generation {
@@ -151,10 +155,10 @@ impl Viewer for Look {
             .or_else(|| told.say_run(&stage, &play, now))
             .or_else(|| told.say_wheel(&stage, &play, self.page))
             .or_else(|| told.say_status(&stage, &play))
-            .or_else(|| told.say_selected(&stage, &play, self.page, now));
+            .or_else(|| if room == Room::All { told.say_selected(&stage, &play, self.page, now) } else { None });
         match text {
             Some(text) => Some(Said::Text(text)),
-            None if room => told.say_frame(&stage),
+            None if room >= Room::Frames => told.say_frame(&stage),
             None => None,
         }
     }
@@ -273,5 +277,37 @@ fn control(word: Word) -> Control {
         Word::EStop => Control::EStop,
         Word::Release => Control::Release,
         Word::Stop => Control::Stop,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::stage::HelmTold;
+    use super::*;
+    use crate::page::clock;
+    use game::message::{Frame, Notice};
+    use game::topic::GameName;
+    use game::water::Water;
+    use std::path::Path;
+    use std::sync::mpsc::sync_channel;
+
+    #[test]
+    fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
+        let theatre = Arc::new(Theatre::new(sync_channel(1).0));
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+        let (scenario, now) = (game::scenario::load(&file).unwrap(), clock::now());
+        let notice = Notice { version: String::new(), pace: "lockstep".to_owned(), scenario };
+        let name = GameName::new("pond").unwrap();
+        theatre.stage().begin(Arc::new(Play::new(name, notice, &Water::default())));
+        let mut look = Look::new(Arc::clone(&theatre), Guest { rights: false }, 1);
+        let mut say = |room| std::iter::from_fn(|| look.say(now, room)).collect::<Vec<Said>>();
+        say(Room::None);
+        theatre.stage().select(1, Some(&("red_one".to_owned(), false))).unwrap();
+        let light = "what it thinks".to_owned();
+        theatre.stage().take_helm(VehicleId(2), HelmTold { light: light.clone(), full: None });
+        theatre.stage().roll.take(&Frame::default(), &[], now);
+        assert_eq!(say(Room::None), []);
+        assert_eq!(say(Room::Frames), [Said::now(&[])]);
+        assert_eq!(say(Room::All), [Said::Text(light)]);
     }
 }

@@ -59,13 +59,7 @@ impl LiveShow {
     /// If the system has no thread to give.
     pub fn open(place: Place, game: Option<GameName>, tell: Box<dyn Fn(&str) + Send>) -> std::io::Result<LiveShow> {
         let (commands, to_do) = sync_channel(COMMANDS_MAX);
-        let theatre = Arc::new(Theatre {
-            stage: Mutex::default(),
-            news: News::default(),
-            commands,
-            pages: AtomicU64::new(1),
-            is_closing: AtomicBool::new(false),
-        });
+        let theatre = Arc::new(Theatre::new(commands));
         let keeper = keeper::Keeper::new(Arc::clone(&theatre), place, game, to_do, tell);
         std::thread::Builder::new().name("page-live".to_owned()).spawn(move || keeper.keep())?;
         Ok(LiveShow { theatre })
@@ -100,6 +94,17 @@ impl Show for LiveShow {
 }
 
 impl Theatre {
+    /// A theatre with an empty stage.
+    fn new(commands: SyncSender<Command>) -> Theatre {
+        Theatre {
+            stage: Mutex::default(),
+            news: News::default(),
+            commands,
+            pages: AtomicU64::new(1),
+            is_closing: AtomicBool::new(false),
+        }
+    }
+
     /// The stage: looked at and changed for moments only.
     fn stage(&self) -> MutexGuard<'_, Stage> {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)

@@ -92,6 +92,11 @@ impl Play {
         &self.scenario().vehicles[vehicle.index()].name
     }
 
+    /// Whether the sim waits for minds, rather than going by the clock.
+    pub(super) fn is_lockstep(&self) -> bool {
+        self.notice.pace == "lockstep"
+    }
+
     /// Whether there are real boats.
     pub(super) fn has_real_boats(&self) -> bool {
         self.scenario().vehicles.iter().any(|vehicle| vehicle.source == Source::External)
@@ -109,6 +114,12 @@ impl Stage {
             counter: self.counter,
             ..Stage::default()
         };
+    }
+
+    /// The game that is on, for something to be done in it.
+    pub(super) fn on(&self) -> Result<Arc<Play>, String> {
+        let play = self.play.clone().filter(|_| !self.is_gone);
+        play.ok_or_else(|| "there is no game now".to_owned())
     }
 
     /// The game is gone.

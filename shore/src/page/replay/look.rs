@@ -4,7 +4,7 @@ use super::Reel;
 use super::desk::HelmWish;
 use super::player::Player;
 use crate::page::ask::{Ask, Word};
-use crate::page::show::{ESTIMATE_AGAIN, Guest, HELM_AGAIN, Said, TELL_AGAIN, TRAIL_S, TRAIL_STEP_S, Viewer};
+use crate::page::show::{ESTIMATE_AGAIN, Guest, HELM_AGAIN, Room, Said, TELL_AGAIN, TRAIL_S, TRAIL_STEP_S, Viewer};
 use crate::page::tell::{EventTell, Mode, Tell, seconds};
 use game::external::GatewayStatus;
 use game::scenario::Source;
@@ -246,7 +246,7 @@ impl Viewer for Look {
         Ok(())
     }
 
-    fn say(&mut self, now: Instant, room: bool) -> Option<Said> {
+    fn say(&mut self, now: Instant, room: Room) -> Option<Said> {
         let film = Arc::clone(&self.reel.film);
         if !std::mem::replace(&mut self.greeted, true) {
             let version = &film.notice().version;
@@ -261,12 +261,16 @@ impl Viewer for Look {
             return Some(said);
         }
         if let Some(frame) = self.shown {
-            let said = self.say_helm(frame, now).or_else(|| self.say_estimate(frame, now));
-            if let Some(said) = said.or_else(|| self.say_status(frame, now)) {
+            let selected = if room == Room::All {
+                self.say_helm(frame, now).or_else(|| self.say_estimate(frame, now))
+            } else {
+                None
+            };
+            if let Some(said) = selected.or_else(|| self.say_status(frame, now)) {
                 return Some(said);
             }
         }
-        if room { self.say_frame(now) } else { None }
+        if room >= Room::Frames { self.say_frame(now) } else { None }
     }
 
     fn due(&self, now: Instant) -> Option<Instant> {
