@@ -19,7 +19,7 @@ pub(crate) struct PageArgs {
     /// What a page has to show to pause, stop or drive; looking is free
     #[arg(long, value_name = "TEXT")]
     token: Option<String>,
-    /// A further name under which the page may be asked for
+    /// A further name under which the page may be asked for; it needs a token
     #[arg(long, value_name = "NAME")]
     host: Vec<String>,
 }
