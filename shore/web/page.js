@@ -57,8 +57,7 @@ class Page {
     this.view = new View();
     const send = (message) => this.send(message);
     this.link = new Link({
-      open: () => {},
-      lost: () => this.lost(),
+      lost: (unheard) => this.lost(unheard),
       message: (message) => this.take(message),
       frame: (kind, buffer) => this.game.takeFrame(kind, buffer, performance.now()),
     });
@@ -125,8 +124,9 @@ class Page {
     notice('No connection. The server did not hear this.');
   }
 
-  lost() {
+  lost(unheard) {
     this.drive.letGo();
+    if (unheard) notice('The connection broke before the server answered. It may not have heard what was asked last.');
     document.body.classList.add('lost');
     write(byId('connection'), 'Connection lost. Trying again.');
     show(byId('connection'), true);
