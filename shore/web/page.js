@@ -157,6 +157,7 @@ class Page {
       // Kinds that we do not know are of a newer server.
       default: return;
     }
+    if (message.kind === 'state') this.drive.hearState(message);
     if (message.kind === 'state' || message.kind === 'player') this.controls.tell(game);
   }
 
