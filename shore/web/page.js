@@ -7,7 +7,7 @@
 //                                 tagged, carrying, disabled, outside, mind_lost, quarantined, nav_lost }] }; null before;
 //                                 carrying is the number of a flag, or -1
 //   flags                         [{ team, x, y, carrier }]: where each is now; carrier is a boat's name, or null
-//   events                        all that are known
+//   events                        all that are known; of a game that is played the newest 20000
 //   selected, following, driving  the boat's name or null; whether; its name or null
 //   helm, estimate                of the selected boat, as sent; null without
 //   statuses                      of gateways, by boat
