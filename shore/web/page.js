@@ -22,7 +22,7 @@
 
 import { Boats } from './boats.js';
 import { Controls } from './controls.js';
-import { Details } from './details.js';
+import { Details, isBare } from './details.js';
 import { Drive } from './drive.js';
 import { drawField } from './field.js';
 import { Game } from './game.js';
@@ -218,7 +218,10 @@ class Page {
     const key = `${vehicle} ${functions}`;
     if (key === this.asked || !this.game.hello) return;
     if (vehicle === null && this.asked === '') return;
-    if (this.link.send({ do: 'select', vehicle, functions })) this.asked = key;
+    if (!this.link.send({ do: 'select', vehicle, functions })) return;
+    this.asked = key;
+    // What is known was told to a page that did not look.
+    if (functions && isBare(this.game.helm?.report)) this.game.helm = null;
   }
 
   tap(x, y, touch) {
