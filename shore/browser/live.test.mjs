@@ -60,6 +60,12 @@ test('pause, one decision, speed and going on', async (t) => {
   await sight.keys(' ');
   await sight.phase('playing');
   await sight.goesOn();
+  await sight.keys('s');
+  await sight.phase('paused');
+  await sight.until('a step stands', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
+  await sight.keys(' ');
+  await sight.phase('playing');
+  await sight.goesOn();
   await sight.page.selectOption('#speed', '1');
   await sight.until('real time', () => squall.state.speed === 1 && Math.abs(squall.state.rate - 1) < 0.3);
   await sight.page.selectOption('#speed', '10');
@@ -98,6 +104,9 @@ test('an E-stop asks once and holds every boat until it is released; a halt as w
   await sight.phase('E-STOPPED');
   await sight.until('the event is told', () => squall.events.some((each) => each.event === 'e_stopped')
     && /stop/i.test(document.querySelector('#events li')?.textContent));
+  await sight.page.focus('#sheet');
+  await sight.keys('h');
+  assert(!(await sight.page.isVisible('#halt-ask')), 'a key does no more than its button, which is off');
   await stand();
   await stay();
   await sight.press('#estop');
