@@ -74,6 +74,21 @@ test('pause, one decision, speed and going on', async (t) => {
   await sight.until('as fast as can be', () => squall.state.speed === null && squall.state.rate > 12);
 });
 
+test('a helm that nobody looked at before the pause says so, and shows its rose after a step', async (t) => {
+  const run = new Program(t, 'run', pav01, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
+  const sight = await Sight.open(t, browser, await run.url());
+  await sight.goesOn();
+  await sight.press('#pause');
+  await sight.phase('paused');
+  await sight.press('[data-vehicle=blue_two]');
+  await sight.until('it says so', () => /before anybody looked/.test(document.getElementById('helm-reason').textContent));
+  assert(!(await sight.page.isVisible('#rose')));
+  assert(await sight.page.isVisible('#behaviours'));
+  await sight.press('#step');
+  await sight.until('it is seen', () => squall.helm?.report?.collective && document.getElementById('helm-reason').hidden);
+  assert(await sight.page.isVisible('#rose'));
+});
+
 test('an E-stop asks once and holds every boat until it is released; a halt as well', async (t) => {
   const game = gameFile(t, 'long', 'pav01_vs_pav01.toml', 'duration_s = 3600');
   const run = new Program(t, 'run', game, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
