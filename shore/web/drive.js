@@ -86,7 +86,7 @@ export class Drive {
     const rates = [state?.speed, state?.rate].filter((each) => each > 0);
     this.wait_ms = Math.min(SEND_MAX_MS, Math.max(SEND_MIN_MS, SEND_SIMULATED_MS / Math.max(1, ...rates)));
     const wild = state?.speed === null && state.pace === 'lockstep';
-    write(this.note, wild ? 'The game goes as fast as it can, and nobody can steer at that. Choose a speed of 1×.' : '');
+    write(this.note, wild ? 'Too fast to be steered by hand. Choose 1×.' : '');
     show(this.note, wild);
   }
 
