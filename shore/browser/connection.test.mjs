@@ -8,6 +8,37 @@ let browser;
 before(async () => { browser = await openBrowser(); });
 after(() => browser.close());
 
+/** A connection on which nothing comes for so long is given up, s. */
+const SILENCE_S = 4;
+
+/** Lets a test cut the newest connection as a phone does that leaves a network: nothing comes, goes or ends. */
+const CUTTABLE = () => {
+  const Real = window.WebSocket;
+  window.sockets = [];
+  window.WebSocket = class extends Real {
+    constructor(...place) {
+      super(...place);
+      window.sockets.push(this);
+      this.addEventListener('message', (event) => this.isCut && event.stopImmediatePropagation());
+    }
+
+    send(text) {
+      if (!this.isCut) super.send(text);
+    }
+
+    close() {
+      if (!this.isCut) super.close();
+    }
+  };
+};
+
+/** Notes what the page says of its connection, since it may say so for a moment only. */
+const NOTE = () => {
+  window.noted = [];
+  const box = document.getElementById('connection');
+  new MutationObserver(() => window.noted.push(box.hidden ? '' : box.textContent)).observe(box, { attributes: true });
+};
+
 /** A browser says it, whatever the page does, when nobody listens. */
 const NOBODY = /WebSocket connection to .* failed/;
 
@@ -28,13 +59,14 @@ test('a page that is loaded again, or whose server is, goes on by itself', async
   await sight.press('[data-vehicle=red_one]');
   const before_s = await sight.goesOn();
 
-  await view.kill();
-  await sight.until('the page says that nobody answers', () => !squall.connected
-    && /Connection lost/.test(document.getElementById('connection').textContent) && !document.getElementById('connection').hidden);
-  await sight.until('it says so beside the name', () => document.getElementById('phase').textContent.trim() === 'no connection');
-  view = new Program(t, 'view', ...place, '--listen', listen);
-  await sight.until('it is connected again, and to the same game', (before_s) => squall.connected && squall.t_s > before_s, before_s);
-  await sight.goesOn();
+  await sight.greetedAnew(async () => {
+    await view.kill();
+    await sight.until('the page says that nobody answers', () => !squall.connected
+      && /Connection lost/.test(document.getElementById('connection').textContent) && !document.getElementById('connection').hidden);
+    await sight.until('it says so beside the name', () => document.getElementById('phase').textContent.trim() === 'no connection');
+    view = new Program(t, 'view', ...place, '--listen', listen);
+  });
+  assert((await sight.goesOn()) > before_s, 'it is the same game');
   assert(await sight.get(() => document.getElementById('connection').hidden));
   assert.equal(await sight.get(() => squall.selected), 'red_one', 'the boat stays selected');
   await sight.until('its helm is told again', () => squall.helm?.report?.collective);
@@ -47,4 +79,30 @@ test('a page that is loaded again, or whose server is, goes on by itself', async
   new Program(t, 'agent', ...place, '--vehicle', 'blue_one', 'blue_two', 'red_one', 'red_two');
   await sight.until('the next game is shown', () => squall.state?.phase === 'playing' && squall.t_s > 1 && document.getElementById('over').hidden);
   await until('the server still serves', async () => (await fetch(`http://${listen}/`)).ok);
+});
+
+test('a connection that dies in silence is given up; one on which nothing has to come is not', async (t) => {
+  const game = gameFile(t, 'long', 'pav01_vs_pav01.toml', 'duration_s = 3600');
+  const run = new Program(t, 'run', game, '--view', '--speed', '2x', '--no-record', '--listen', '127.0.0.1:0');
+  const sight = await Sight.open(t, browser, await run.url(), { before: CUTTABLE });
+  await sight.goesOn();
+  await sight.press('#pause');
+  await sight.phase('paused');
+  const stands_s = await sight.get(() => squall.t_s);
+  await sight.page.waitForTimeout((SILENCE_S + 3) * 1000);
+  assert.equal(await sight.get(() => window.sockets.length), 1, 'a game that stands is no dead connection');
+  await sight.get(NOTE);
+  await sight.greetedAnew(async () => {
+    await sight.get(() => { window.sockets.at(-1).isCut = true; });
+    await sight.press('#pause');
+  });
+  const { noted, notices } = await sight.get(() => ({ noted: window.noted, notices: document.getElementById('notices').textContent }));
+  assert(noted.some((text) => /Connection lost/.test(text)), `the page says so: ${noted}`);
+  assert.match(notices, /may not have heard/);
+  assert(await sight.get(() => document.getElementById('connection').hidden));
+  await sight.phase('paused');
+  assert.equal(await sight.get(() => squall.t_s), stands_s, 'it was not heard');
+  await sight.press('#pause');
+  await sight.phase('playing');
+  await sight.goesOn();
 });

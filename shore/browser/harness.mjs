@@ -224,6 +224,14 @@ export class Sight {
     for (const key of keys) await this.page.keyboard.press(key);
   }
 
+  /** What is done to the connection meanwhile: waits until the page was greeted on another one. */
+  async greetedAnew(act) {
+    const hello = await this.page.evaluateHandle(() => squall.hello);
+    await act();
+    await this.until('the page is greeted anew', (before) => squall.connected && squall.hello !== before, hello);
+    await this.until('it shows a picture', () => squall.frame !== null);
+  }
+
   /** Waits until the chip beside the game's name says this. */
   phase(word) {
     return this.until(`the phase is ${word}`, (want) => document.getElementById('phase').textContent === want, word);
@@ -231,7 +239,8 @@ export class Sight {
 
   /** Waits for a picture of a later time than now. */
   async goesOn() {
-    const t_s = await this.get(() => squall.t_s);
+    // A page that was greeted a moment ago shows no time yet.
+    const { t_s } = await this.until('there is a picture', () => Number.isFinite(squall.t_s) && { t_s: squall.t_s });
     return this.until(`the clock runs on from ${t_s}`, (before) => squall.t_s > before && squall.t_s, t_s);
   }
 }

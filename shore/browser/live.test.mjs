@@ -60,12 +60,33 @@ test('pause, one decision, speed and going on', async (t) => {
   await sight.keys(' ');
   await sight.phase('playing');
   await sight.goesOn();
+  await sight.keys('s');
+  await sight.phase('paused');
+  await sight.until('a step stands', () => Math.abs(squall.state.now_s - squall.t_s) < 1e-6);
+  await sight.keys(' ');
+  await sight.phase('playing');
+  await sight.goesOn();
   await sight.page.selectOption('#speed', '1');
   await sight.until('real time', () => squall.state.speed === 1 && Math.abs(squall.state.rate - 1) < 0.3);
   await sight.page.selectOption('#speed', '10');
   await sight.until('ten times real time', () => squall.state.speed === 10 && Math.abs(squall.state.rate - 10) < 2);
   await sight.page.selectOption('#speed', 'max');
   await sight.until('as fast as can be', () => squall.state.speed === null && squall.state.rate > 12);
+});
+
+test('a helm that nobody looked at before the pause says so, and shows its rose after a step', async (t) => {
+  const run = new Program(t, 'run', pav01, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
+  const sight = await Sight.open(t, browser, await run.url());
+  await sight.goesOn();
+  await sight.press('#pause');
+  await sight.phase('paused');
+  await sight.press('[data-vehicle=blue_two]');
+  await sight.until('it says so', () => /before anybody looked/.test(document.getElementById('helm-reason').textContent));
+  assert(!(await sight.page.isVisible('#rose')));
+  assert(await sight.page.isVisible('#behaviours'));
+  await sight.press('#step');
+  await sight.until('it is seen', () => squall.helm?.report?.collective && document.getElementById('helm-reason').hidden);
+  assert(await sight.page.isVisible('#rose'));
 });
 
 test('an E-stop asks once and holds every boat until it is released; a halt as well', async (t) => {
@@ -98,6 +119,9 @@ test('an E-stop asks once and holds every boat until it is released; a halt as w
   await sight.phase('E-STOPPED');
   await sight.until('the event is told', () => squall.events.some((each) => each.event === 'e_stopped')
     && /stop/i.test(document.querySelector('#events li')?.textContent));
+  await sight.page.focus('#sheet');
+  await sight.keys('h');
+  assert(!(await sight.page.isVisible('#halt-ask')), 'a key does no more than its button, which is off');
   await stand();
   await stay();
   await sight.press('#estop');

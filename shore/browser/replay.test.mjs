@@ -83,6 +83,10 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
   const { file, result } = await record(t);
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await replay.url());
+  // A replay that stands says nothing for as long as it does, and is not taken for dead.
+  const hello = await sight.page.evaluateHandle(() => squall.hello);
+  await sight.page.waitForTimeout(7000);
+  assert(await sight.get((hello) => squall.connected && squall.hello === hello, hello));
   // An event is shown with the first picture in which it has happened.
   const at = (t_s) => sight.until(`it is ${t_s} s`, (want) => squall.t_s > want - 1e-6 && squall.t_s < want + 0.1 && squall.t_s, t_s);
   const times = (kind) => [...new Set(result.events.filter(({ event }) => event === kind).map(({ at_s }) => at_s))];

@@ -25,7 +25,8 @@ const forge = (sight, message) => sight.get((message) => new Promise((done, fail
 
 test('a page without the token looks on, and one with it acts', async (t) => {
   const port = await freePort();
-  const run = new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '2x', '--no-record', '--listen', `0.0.0.0:${port}`,
+  // With a boat that whoever has rights may steer.
+  const run = new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--speed', '2x', '--no-record', '--listen', `0.0.0.0:${port}`,
     '--token', 'secret');
   const url = await run.url();
   assert.match(url, /#token=secret$/);
@@ -37,7 +38,7 @@ test('a page without the token looks on, and one with it acts', async (t) => {
   await watching.press('#tab-game');
   assert(await watching.page.isDisabled('#stop'));
   await watching.press('#tab-boats');
-  await watching.press('[data-vehicle=blue_one]');
+  await watching.press('[data-vehicle=blue_two]');
   await watching.until('it may look into a helm', () => squall.helm?.report?.mode);
   await watching.page.focus('#sheet');
   await watching.keys(' ', 's', 'h', 'e', 'Enter', '.');
@@ -46,6 +47,11 @@ test('a page without the token looks on, and one with it acts', async (t) => {
     const refused = await forge(watching, message);
     assert(refused.reason.length > 0, JSON.stringify(refused));
   }
+  await watching.press('#tab-boats');
+  await watching.press('[data-vehicle=blue_one]');
+  assert(await watching.page.isDisabled('#drive'));
+  await watching.keys('d');
+  assert.equal(await watching.get(() => squall.driving), null);
   await watching.goesOn();
   const still = await watching.get(() => ({ phase: squall.state.phase, speed: squall.state.speed, stopped: squall.frame.stopped, over: squall.frame.over }));
   assert.deepEqual(still, { phase: 'playing', speed: 2, stopped: false, over: false });
@@ -56,6 +62,10 @@ test('a page without the token looks on, and one with it acts', async (t) => {
   const acting = await Sight.open(t, browser, `http://127.0.0.1:${port}/#token=secret`);
   assert.equal(await acting.get(() => squall.hello.rights), true);
   assert(!(await acting.page.isVisible('#rights')));
+  await acting.press('[data-vehicle=blue_one]');
+  await acting.press('#drive');
+  await acting.until('it has the wheel', () => /You have the wheel/.test(document.getElementById('pane-boat').textContent));
+  await acting.press('#let-go');
   await acting.press('#pause');
   await acting.phase('paused');
   await watching.phase('paused');
@@ -71,4 +81,18 @@ test('the address that is printed is one that other machines can use', async (t)
   const url = await run.url();
   const sight = await Sight.open(t, browser, url);
   assert.equal(await sight.get(() => squall.hello.rights), true, `with ${url}`);
+});
+
+test('a token that is pasted into the open page counts at once', async (t) => {
+  const port = await freePort();
+  const run = new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '2x', '--no-record', '--listen', `0.0.0.0:${port}`,
+    '--token', 'secret');
+  await run.url();
+  const sight = await Sight.open(t, browser, `http://127.0.0.1:${port}/`);
+  assert.equal(await sight.get(() => squall.hello.rights), false);
+  await sight.get(() => { window.same = true; });
+  await sight.greetedAnew(() => sight.page.goto(`http://127.0.0.1:${port}/#token=secret`));
+  assert(await sight.get(() => squall.hello.rights && window.same), 'on the same page');
+  await sight.press('#pause');
+  await sight.phase('paused');
 });

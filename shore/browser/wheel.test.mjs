@@ -22,6 +22,22 @@ const goes = (sight, course_deg, speed_m_s) => sight.until(`${BOAT} goes ${cours
     return off < off_deg && Math.abs(boat.speed_m_s - speed_m_s) < off_m_s && { course_deg: boat.course_deg, speed_m_s: boat.speed_m_s };
   }, [BOAT, course_deg, speed_m_s, OFF_DEG, OFF_M_S]);
 
+/** Course and speed that are ordered, as the page says them. */
+const ordered = async (sight) => (await sight.text('#wheel-text')).match(/(\d+)°\s+([\d.]+)/).slice(1).map(Number);
+
+/** Waits until these are ordered. */
+const orders = (sight, course_deg, speed_m_s) => sight.until(`${course_deg}° at ${speed_m_s} m/s are ordered`, ([course_deg, speed_m_s]) => {
+  const [, deg, m_s] = document.getElementById('wheel-text').textContent.match(/(\d+)°\s+([\d.]+)/).map(Number);
+  return deg === course_deg && m_s === speed_m_s;
+}, [course_deg, speed_m_s]);
+
+/** Waits until the boat stands. */
+const stands = (sight) => sight.until(`${BOAT} stands`, (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s < 0.2, BOAT);
+
+/** Waits until nobody has its wheel, as the server says. */
+const isFree = (sight) => sight.until('the wheel is free', () => squall.driving === null
+  && document.querySelector('#pane-boat .note').hidden);
+
 /** Takes the wheel of the boat. */
 async function take(sight) {
   await sight.press(`[data-vehicle=${BOAT}]`);
@@ -52,24 +68,127 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   const begun_deg = await mine.get(() => Number(document.getElementById('wheel-text').textContent.match(/\d+/)[0]));
   const turn = Math.round((((course_deg - begun_deg + 540) % 360) - 180) / 5);
   await mine.keys(...Array(Math.abs(turn)).fill(turn < 0 ? 'a' : 'd'), 'w', 'w', 'w', 'w', 'w', 'w');
-  const ordered = await mine.text('#wheel-text');
-  const [, ordered_deg, ordered_m_s] = ordered.match(/(\d+)°\s+([\d.]+)/).map(Number);
-  assert(Math.abs(ordered_deg - course_deg) <= 3 && ordered_m_s === 1.5, ordered);
+  const [ordered_deg, ordered_m_s] = await ordered(mine);
+  assert(Math.abs(ordered_deg - course_deg) <= 3 && ordered_m_s === 1.5, `${ordered_deg}° at ${ordered_m_s} m/s`);
   const went = await goes(mine, ordered_deg, ordered_m_s);
   const { x, y } = await mine.get((name) => squall.frame.boats.find((boat) => boat.name === name), BOAT);
   await mine.until('it gets on eastward', ([name, x]) => squall.frame.boats.find((boat) => boat.name === name).x > x + 3, [BOAT, x]);
-  t.diagnostic(`from ${start.x.toFixed(1)}, ${start.y.toFixed(1)} to ${x.toFixed(1)}, ${y.toFixed(1)}; ordered ${ordered}, went ${JSON.stringify(went)}`);
+  t.diagnostic(`from ${start.x.toFixed(1)}, ${start.y.toFixed(1)} to ${x.toFixed(1)}, ${y.toFixed(1)}; ordered ${ordered_deg}° at ${ordered_m_s} m/s, went ${JSON.stringify(went)}`);
   await theirs.press('#drive');
   await theirs.until('they are refused the wheel', () => squall.driving === null
     && /Somebody else/.test(document.getElementById('notices').textContent));
   assert.equal(await mine.get(() => squall.driving), BOAT, 'and it stays ours');
   await mine.page.focus('#wheel');
   await mine.keys(...Array(6).fill('ArrowDown'));
-  await mine.until('it stops', (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s < 0.2, BOAT);
+  await stands(mine);
   await mine.keys('Escape');
   assert.equal(await mine.get(() => squall.driving), null);
   await theirs.until('the wheel is free', () => !/Somebody else has the wheel/.test(document.querySelector('.note:not([hidden])')?.textContent ?? ''));
   await theirs.press('#drive');
   await theirs.until('it is theirs', () => /You have the wheel/.test(document.getElementById('pane-boat').textContent));
   await mine.until('and we are told', () => /Somebody else has the wheel/.test(document.getElementById('pane-boat').textContent));
+});
+
+const person = (t, ...words) => new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--no-record', '--listen', '127.0.0.1:0', ...words);
+
+/** Gamepads of a test: what is in `pads` is what there is. */
+const PADS = () => {
+  window.pads = [];
+  navigator.getGamepads = () => window.pads;
+};
+
+/** Waits until the page has read the gamepads several times. */
+const read = (sight) => sight.get(() => new Promise((done) => {
+  let left = 5;
+  navigator.getGamepads = () => {
+    left -= 1;
+    if (left === 0) done();
+    return window.pads;
+  };
+}));
+
+test('a gamepad steers once its stick was seen at rest; the boat stops when it is gone', async (t) => {
+  const sight = await Sight.open(t, browser, await person(t, '--pace', 'realtime').url(), { before: PADS });
+  const plug = (...pads) => sight.get((pads) => {
+    window.pads = pads.map(([axes, mapping], index) => ({ index, id: `pad ${index}`, mapping, connected: true,
+      axes: axes.map((axis) => axis ?? NaN), buttons: [] }));
+  }, pads);
+  const leans = [[0, -1], ''];
+  const out = [[1, 0, 0, 0], 'standard'];
+  const rests = [[0.02, null, 0, 0], 'standard'];
+  await plug(leans, out);
+  await take(sight);
+  const [start_deg] = await ordered(sight);
+  await read(sight);
+  assert.deepEqual(await ordered(sight), [start_deg, 0], 'a stick that was out from the start steers nothing');
+  await plug(leans, rests);
+  await read(sight);
+  assert.deepEqual(await ordered(sight), [start_deg, 0], 'nor does one at rest, nor what is no gamepad');
+  await plug(leans, out);
+  await orders(sight, 90, 3);
+  await goes(sight, 90, 3);
+  await plug(leans);
+  await orders(sight, 90, 0);
+  assert.match(await sight.text('#notices'), /gamepad is gone/);
+  await stands(sight);
+  await plug(out);
+  await read(sight);
+  assert.deepEqual(await ordered(sight), [90, 0], 'one that comes back must be seen at rest again');
+  await plug(rests);
+  await read(sight);
+  await plug([[0, 0.5, 0, 0], 'standard']);
+  await orders(sight, 180, 1.5);
+  await plug(rests);
+  await orders(sight, 180, 0);
+});
+
+test('whoever looks elsewhere lets go, and the boat stops', async (t) => {
+  const sight = await Sight.open(t, browser, await person(t, '--pace', 'realtime').url());
+  const away = {
+    'another window is in front': () => dispatchEvent(new Event('blur')),
+    'the page is hidden': () => {
+      Object.defineProperty(document, 'hidden', { configurable: true, value: true });
+      document.dispatchEvent(new Event('visibilitychange'));
+      delete document.hidden;
+    },
+  };
+  for (const [why, go] of Object.entries(away)) {
+    await take(sight);
+    await sight.until('it has the wheel', () => /You have the wheel/.test(document.getElementById('pane-boat').textContent));
+    await sight.keys(...Array(8).fill('w'));
+    await sight.until('it goes', (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s > 0.8, BOAT);
+    await sight.get(go);
+    assert.equal(await sight.get(() => squall.driving), null, why);
+    await isFree(sight);
+    await stands(sight);
+    await sight.press('#tab-boats');
+  }
+});
+
+test('a fast game is steered without gaps, and one as fast as can be is said to be too fast', async (t) => {
+  const sight = await Sight.open(t, browser, await person(t, '--speed', '10x').url());
+  await take(sight);
+  // Whatever has the focus: a list would take the arrow keys for itself.
+  await sight.page.focus('#speed');
+  await sight.keys(...Array(4).fill('ArrowUp'));
+  const [course_deg, speed_m_s] = await ordered(sight);
+  assert.equal(speed_m_s, 1);
+  assert.equal(await sight.get(() => squall.state.speed), 10);
+  await goes(sight, course_deg, speed_m_s);
+  const from_s = await sight.get(() => squall.t_s);
+  const slowest = await sight.get(([name, from_s]) => new Promise((done) => {
+    let slowest = Infinity;
+    const look = setInterval(() => {
+      const boat = squall.frame.boats.find((each) => each.name === name);
+      slowest = Math.min(slowest, boat.speed_m_s);
+      if (squall.t_s < from_s + 10) return;
+      clearInterval(look);
+      done(slowest);
+    }, 20);
+  }), [BOAT, from_s]);
+  assert(slowest > speed_m_s - OFF_M_S, `it slowed down to ${slowest} m/s`);
+  assert(!(await sight.page.isVisible('#wheel-note')));
+  await sight.page.selectOption('#speed', 'max');
+  await sight.until('the page says that nobody can', () => /Too fast/.test(document.getElementById('wheel-note').textContent)
+    && !document.getElementById('wheel-note').hidden);
 });

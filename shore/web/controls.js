@@ -39,8 +39,20 @@ export class Controls {
     byId('halt').addEventListener('click', () => this.halt());
     byId('estop').addEventListener('click', () => this.eStop());
     byId('stop').addEventListener('click', () => this.stop());
-    byId('speed').addEventListener('change', (event) => this.setSpeed(event.target.value));
+    this.bindSpeed();
     for (const what of Object.keys(this.shown)) this.bindShown(what);
+  }
+
+  bindSpeed() {
+    const select = byId('speed');
+    let byHand = false;
+    select.addEventListener('pointerdown', () => { byHand = true; });
+    select.addEventListener('keydown', () => { byHand = false; });
+    select.addEventListener('change', () => {
+      this.setSpeed(select.value);
+      // Arrow keys are for the wheel and the chart again; who chooses by keys goes on choosing.
+      if (byHand) byId(document.body.classList.contains('driving') ? 'wheel' : 'sheet').focus({ preventScroll: true });
+    });
   }
 
   bindShown(what) {
@@ -69,18 +81,31 @@ export class Controls {
     return this.mode === 'replay' || (this.mode === 'live' && this.rights);
   }
 
-  pause() {
-    if (this.mayAct) this.control(this.paused ? 'resume' : 'pause');
+  /** Whether what a button does may be done: keys do no more than buttons. */
+  may(id) {
+    return this.mayAct && !byId(id).disabled;
   }
 
+  pause() {
+    if (this.may('pause')) this.control(this.paused ? 'resume' : 'pause');
+  }
+
+  /** One decision on or back; a game or replay that goes on stands then. */
   step(by) {
-    if (!this.mayAct) return;
+    if (!this.may('step')) return;
     if (this.mode === 'replay') this.send({ do: 'step', by });
-    else if (by > 0) this.control('step');
+    else if (by > 0) this.stepGame();
+  }
+
+  stepGame() {
+    if (!this.paused) this.control('pause');
+    // Word of it is on its way; to pause again would undo steps that are still to come.
+    this.paused = true;
+    this.control('step');
   }
 
   setSpeed(value) {
-    if (this.mayAct && !byId('speed').disabled) this.send({ do: 'speed', factor: value === FASTEST ? null : Number(value) });
+    if (this.may('speed')) this.send({ do: 'speed', factor: value === FASTEST ? null : Number(value) });
   }
 
   /** To the next speed up or down. */
@@ -92,13 +117,13 @@ export class Controls {
   }
 
   halt() {
-    if (this.mode !== 'live' || !this.rights) return;
+    if (this.mode !== 'live' || !this.may('halt')) return;
     if (this.stopped) this.asks.halt.ask('Let all boats go on?', 'Yes, go on', () => this.control('go_on'));
     else this.asks.halt.ask('Make all boats hold?', 'Yes, halt all', () => this.control('halt'));
   }
 
   eStop() {
-    if (this.mode !== 'live' || !this.rights) return;
+    if (this.mode !== 'live' || !this.may('estop')) return;
     if (this.eStopped) {
       this.asks.estop.ask('Release the E-stop? Real boats must then be armed again.', 'Yes, release', () => this.control('release'), true);
     } else {
@@ -107,7 +132,7 @@ export class Controls {
   }
 
   stop() {
-    if (this.mode !== 'live' || !this.rights) return;
+    if (this.mode !== 'live' || !this.may('stop')) return;
     this.asks.stop.ask('End this game for good?', 'Yes, end it', () => this.control('stop'), true);
   }
 
@@ -146,7 +171,7 @@ export class Controls {
     const act = live ? this.rights : this.mode === 'replay';
     const going = !live || phase === 'playing' || phase === 'paused' || phase === undefined;
     this.button('pause', live ? (this.paused ? 'Go on' : 'Pause') : this.paused ? 'Play' : 'Pause', act && going, 'Pause or go on (space)');
-    this.button('step', live ? 'Step' : 'Step +', act && going, 'One decision (s)');
+    this.button('step', live ? 'Step' : 'Step +', act && going, 'One decision, then stand (s)');
     this.button('halt', this.stopped ? 'Go on' : 'Halt all', act && !this.eStopped, 'All boats hold, or go on (h)');
     this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act, 'Stop every boat now (e)');
     this.button('stop', 'End game', act && phase !== 'over' && phase !== 'gone', 'End the game now');

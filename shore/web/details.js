@@ -5,6 +5,10 @@ import { Rose } from './rose.js';
 import { bearing, fill, make, number, options, plain, show, write } from './words.js';
 
 const COLLECTIVE = 'all together';
+const UNSEEN = 'Weighed before anybody looked: step once to see what courses are worth.';
+
+/** Whether a report has functions, but not what courses and speeds are worth to them. */
+export const isBare = (report) => report?.functions?.length > 0 && !report.functions.some((each) => each.utilities?.length > 0);
 
 export class Details {
   /** `on` has `follow()`, `drive()` and `close()`. */
@@ -154,10 +158,13 @@ export class Details {
   tellHelm(game, index) {
     const helm = game.helm;
     const report = helm?.report;
-    const words = report ? this.computedWords(helm) : helm?.reason ?? 'Asking its helm …';
+    // A helm keeps what it weighed only while somebody looks; a game that stands weighs nothing again.
+    const unseen = isBare(report) && game.state?.phase === 'paused';
+    const words = unseen ? UNSEEN : report ? this.computedWords(helm) : helm?.reason ?? 'Asking its helm …';
     write(this.reason, words);
     show(this.reason, words !== '');
     show(this.helmBox, Boolean(report));
+    for (const part of [this.chooser, this.canvas, this.key]) show(part, !unseen);
     if (!report) return;
     const functions = report.functions ?? [];
     const named = functions.map((each) => [each.contact ? `${each.behaviour} · ${each.contact}` : each.behaviour, each]);

@@ -2,14 +2,16 @@
 
 import { notice } from './status.js';
 import { palette } from './palette.js';
+import { Stick } from './stick.js';
 import { bearing, number, plain, show, wrapDeg, write } from './words.js';
 
-/** How often the boat hears from us, ms. */
-const SEND_MS = 200;
+/** The boat hears from us twice in a simulated second: its helm heeds a word for 1.5 of them. */
+const SEND_SIMULATED_MS = 500;
+/** No more and no less often than this, whatever the speed of the game, ms. */
+const SEND_MIN_MS = 20;
+const SEND_MAX_MS = 200;
 const TURN_DEG = 5;
 const SPEED_STEP_M_S = 0.25;
-/** A stick nearer to its middle than this is let go. */
-const DEAD_ZONE = 0.18;
 const RIM = 16;
 
 const KEYS = {
@@ -23,9 +25,11 @@ export class Drive {
     this.place = document.getElementById('wheel-place');
     this.canvas = document.getElementById('wheel');
     this.text = document.getElementById('wheel-text');
+    this.note = document.getElementById('wheel-note');
     this.context = this.canvas.getContext('2d');
     this.vehicle = null;
     this.timer = 0;
+    this.wait_ms = SEND_MAX_MS;
     this.canvas.addEventListener('pointerdown', (event) => {
       event.preventDefault();
       this.canvas.focus();
@@ -51,17 +55,16 @@ export class Drive {
     this.course_deg = wrapDeg(Math.round(heading_deg));
     this.speed_m_s = 0;
     this.had = false;
-    this.stick = false;
+    this.stick = new Stick();
     show(this.place, true);
     document.body.classList.add('driving');
     this.canvas.focus();
-    this.timer = setInterval(() => this.tick(), SEND_MS);
     this.tick();
   }
 
   letGo() {
     if (!this.driving) return;
-    clearInterval(this.timer);
+    clearTimeout(this.timer);
     this.send({ do: 'let_go', vehicle: this.vehicle });
     this.vehicle = null;
     show(this.place, false);
@@ -78,7 +81,18 @@ export class Drive {
     }
   }
 
+  /** Takes how the game goes: the faster, the more often the boat must hear from us. */
+  hearState(state) {
+    const rates = [state?.speed, state?.rate].filter((each) => each > 0);
+    this.wait_ms = Math.min(SEND_MAX_MS, Math.max(SEND_MIN_MS, SEND_SIMULATED_MS / Math.max(1, ...rates)));
+    const wild = state?.speed === null && state.pace === 'lockstep';
+    write(this.note, wild ? 'Too fast to be steered by hand. Choose 1×.' : '');
+    show(this.note, wild);
+  }
+
   tick() {
+    // First, so that a picture that fails does not end the steering.
+    this.timer = setTimeout(() => this.tick(), this.wait_ms);
     this.readStick();
     this.send({ do: 'drive', vehicle: this.vehicle, course_deg: this.course_deg, speed_m_s: this.speed_m_s });
     this.draw();
@@ -110,17 +124,10 @@ export class Drive {
   }
 
   readStick() {
-    const pad = [...(navigator.getGamepads?.() ?? [])].find((each) => each?.connected && each.axes.length >= 2);
-    if (!pad) return;
-    const [right, down] = pad.axes;
-    const out = Math.hypot(right, down);
-    if (out > DEAD_ZONE) {
-      this.stick = true;
-      this.set(Math.round((Math.atan2(right, -down) * 180) / Math.PI), Math.min(1, out) * this.speedMax);
-    } else if (this.stick) {
-      this.stick = false;
-      this.set(this.course_deg, 0);
-    }
+    const wish = this.stick.read();
+    if (!wish) return;
+    this.set(wish.course_deg ?? this.course_deg, wish.out * this.speedMax);
+    if (wish.gone) notice(`The gamepad is gone: ${plain(this.vehicle)} is to stop.`);
   }
 
   draw() {

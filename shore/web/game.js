@@ -32,6 +32,9 @@ const JUMP_M = 4;
 /** How many past places of the selected boat are kept, to compare estimates with. */
 const WAKE = 64;
 
+/** How many of the newest events of a game are kept: some games go on for days. */
+const EVENTS_MAX = 20_000;
+
 const floats = (count) => new Float64Array(count);
 
 export class Game {
@@ -222,6 +225,8 @@ export class Game {
   takeEvents(message) {
     if (message.reset) this.events = [];
     for (const event of message.events ?? []) this.events.push(event);
+    // The time line of a replay needs them all, and there they are given once.
+    if (this.mode === 'live' && this.events.length > EVENTS_MAX) this.events.splice(0, this.events.length - EVENTS_MAX);
     this.eventVersion += 1;
   }
 

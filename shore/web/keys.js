@@ -8,12 +8,15 @@ import { make } from './words.js';
 const PAN_PX = 60;
 const ZOOM = 1.3;
 
+const PAD = `its left stick, once you have pressed one of its buttons${isSecureContext ? '' : '. Not here: browsers give gamepads only to pages of this machine or with TLS'}`;
+
 const HELP = [
   ['The chart', [['+  −', 'zoom'], ['arrows', 'move the chart'], ['f  0', 'fit the field'], ['[  ]', 'choose the boat before or after'],
     ['o', 'follow the boat'], ['Escape', 'close, let go, or select no boat'], ['1 to 4', 'boats, details, events, game']]],
-  ['The game', [['space', 'pause or go on'], ['s', 'one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or let them go on'],
+  ['The game', [['space', 'pause or go on'], ['s', 'pause, and one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or let them go on'],
     ['e', 'E-stop, or release it; Enter says yes']]],
-  ['Driving', [['d', 'take the wheel of a boat that lets you'], ['arrows, w a s d', 'course and speed'], ['Escape', 'let go']]],
+  ['Driving', [['d', 'take the wheel of a boat that lets you'], ['arrows, w a s d', 'course and speed'], ['Escape', 'let go'],
+    ['gamepad', PAD]]],
   ['A replay', [['n  p', 'next event, event before'], [KINDS.map(([, key]) => key).join('  '),
     `next of the ${KINDS.map(([name]) => name.toLowerCase()).join(', ')}; with Shift before`],
     ['Shift+s', 'one decision back'], ['left, right', 'a second back or on (with Shift: ten)']]],
@@ -46,8 +49,9 @@ export class Keys {
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     if (event.key === 'Escape') this.escape();
-    else if (takesKeys(event.target) || event.key === 'Tab') return;
+    // Whoever steers does so wherever the focus was left: lists are changed by arrow keys, too.
     else if (this.page.drive.key(event)) event.preventDefault();
+    else if (takesKeys(event.target) || event.key === 'Tab') return;
     else if (event.key === ' ' && !isPressed(event.target)) {
       event.preventDefault();
       this.page.controls.pause();

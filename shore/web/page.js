@@ -7,7 +7,7 @@
 //                                 tagged, carrying, disabled, outside, mind_lost, quarantined, nav_lost }] }; null before;
 //                                 carrying is the number of a flag, or -1
 //   flags                         [{ team, x, y, carrier }]: where each is now; carrier is a boat's name, or null
-//   events                        all that are known
+//   events                        all that are known; of a game that is played the newest 20000
 //   selected, following, driving  the boat's name or null; whether; its name or null
 //   helm, estimate                of the selected boat, as sent; null without
 //   statuses                      of gateways, by boat
@@ -22,7 +22,7 @@
 
 import { Boats } from './boats.js';
 import { Controls } from './controls.js';
-import { Details } from './details.js';
+import { Details, isBare } from './details.js';
 import { Drive } from './drive.js';
 import { drawField } from './field.js';
 import { Game } from './game.js';
@@ -57,8 +57,7 @@ class Page {
     this.view = new View();
     const send = (message) => this.send(message);
     this.link = new Link({
-      open: () => {},
-      lost: () => this.lost(),
+      lost: (unheard) => this.lost(unheard),
       message: (message) => this.take(message),
       frame: (kind, buffer) => this.game.takeFrame(kind, buffer, performance.now()),
     });
@@ -125,8 +124,9 @@ class Page {
     notice('No connection. The server did not hear this.');
   }
 
-  lost() {
+  lost(unheard) {
     this.drive.letGo();
+    if (unheard) notice('The connection broke before the server answered. It may not have heard what was asked last.');
     document.body.classList.add('lost');
     write(byId('connection'), 'Connection lost. Trying again.');
     show(byId('connection'), true);
@@ -157,6 +157,7 @@ class Page {
       // Kinds that we do not know are of a newer server.
       default: return;
     }
+    if (message.kind === 'state') this.drive.hearState(message);
     if (message.kind === 'state' || message.kind === 'player') this.controls.tell(game);
   }
 
@@ -217,7 +218,10 @@ class Page {
     const key = `${vehicle} ${functions}`;
     if (key === this.asked || !this.game.hello) return;
     if (vehicle === null && this.asked === '') return;
-    if (this.link.send({ do: 'select', vehicle, functions })) this.asked = key;
+    if (!this.link.send({ do: 'select', vehicle, functions })) return;
+    this.asked = key;
+    // What is known was told to a page that did not look.
+    if (functions && isBare(this.game.helm?.report)) this.game.helm = null;
   }
 
   tap(x, y, touch) {

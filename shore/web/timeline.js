@@ -74,6 +74,10 @@ export class Timeline {
 
   greet(game) {
     this.game = game;
+    // A jump that was still to be sent belonged to what was shown before.
+    clearTimeout(this.timer);
+    this.timer = 0;
+    this.scrubbing = false;
     this.wanted_s = null;
     this.marksVersion = -1;
     show(this.box, game.mode === 'replay');

@@ -55,7 +55,7 @@ export class View {
     const { left, right, bottom, top } = this.bounds;
     // Room for the weather above, and for the scale and the buttons below.
     const side = Math.min(44, this.width * 0.05);
-    const above = Math.min(54, this.height * 0.17);
+    const above = Math.min(92, this.height * 0.17);
     const below = Math.min(72, this.height * 0.24);
     const across = Math.max(60, this.width - 2 * side);
     const down = Math.max(60, this.height - above - below);
