@@ -176,7 +176,7 @@ export class Controls {
     this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act, 'Stop every boat now (e)');
     this.button('stop', 'End game', act && phase !== 'over' && phase !== 'gone', 'End the game now');
     byId('estop').classList.toggle('released', this.eStopped);
-    this.tellSpeed(live ? state?.speed : player?.speed, act, live && state?.can_speed === false);
+    this.tellSpeed(live ? state?.speed : player?.speed, act, live && state?.can_speed === false, !live || state?.pace === 'lockstep');
   }
 
   button(id, text, enabled, title) {
@@ -187,11 +187,11 @@ export class Controls {
     if (button.title !== said) button.title = said;
   }
 
-  tellSpeed(speed, act, real) {
+  tellSpeed(speed, act, real, fastest) {
     const select = byId('speed');
     const value = speed === null ? FASTEST : Number.isFinite(speed) ? String(speed) : '1';
     const speeds = speed !== null && Number.isFinite(speed) && !SPEEDS.includes(speed) ? [...SPEEDS, speed].sort((a, b) => a - b) : SPEEDS;
-    options(select, [...speeds.map((each) => [String(each), `${each}×`]), [FASTEST, 'max']]);
+    options(select, [...speeds.map((each) => [String(each), `${each}×`]), ...(fastest ? [[FASTEST, 'max']] : [])]);
     if (document.activeElement !== select && select.value !== value) select.value = value;
     if (select.disabled === (act && !real)) select.disabled = !act || real;
     const title = real ? REAL : act ? 'Speed of the game (, and .)' : WATCHING;
