@@ -27,7 +27,9 @@ impl Screen {
         match telling {
             Telling::Open { game, endpoint } => {
                 self.line(&format!("game {game} at {endpoint}"));
-                self.line(&format!("look on with: squall watch --game {game}"));
+                self.line(&format!(
+                    "look on with: squall watch --game {game}, or on a page: squall view --game {game}"
+                ));
             }
             Telling::Waiting { missing, gateways } => match waiting(missing, gateways) {
                 Some(text) => self.status(&text),

@@ -10,6 +10,8 @@ const SEND_SIMULATED_MS = 500;
 /** No more and no less often than this, whatever the speed of the game, ms. */
 const SEND_MIN_MS = 20;
 const SEND_MAX_MS = 200;
+/** In a game that may go faster than this a word is old before the next can come, times real time. */
+const STEERED_MAX = 50;
 const TURN_DEG = 5;
 const SPEED_STEP_M_S = 0.25;
 const RIM = 16;
@@ -85,7 +87,7 @@ export class Drive {
   hearState(state) {
     const rates = [state?.speed, state?.rate].filter((each) => each > 0);
     this.wait_ms = Math.min(SEND_MAX_MS, Math.max(SEND_MIN_MS, SEND_SIMULATED_MS / Math.max(1, ...rates)));
-    const wild = state?.speed === null && state.pace === 'lockstep';
+    const wild = Boolean(state) && (state.speed ?? Infinity) > STEERED_MAX;
     write(this.note, wild ? 'Too fast to be steered by hand. Choose 1×.' : '');
     show(this.note, wild);
   }
