@@ -107,9 +107,9 @@ impl Scenario {
         let within = |what: &str, index: usize, count: usize| {
             if index < count { Ok(()) } else { Err(format!("{what} is {index}, expected less than {count}")) }
         };
-        let names =
-            || self.vehicles.iter().map(|vehicle| &vehicle.name).chain(self.teams.iter().map(|team| &team.name));
-        if let Some(name) = names().find(|name| !ledger::is_name(name)) {
+        let mut names =
+            self.vehicles.iter().map(|vehicle| &vehicle.name).chain(self.teams.iter().map(|team| &team.name));
+        if let Some(name) = names.find(|name| !ledger::is_name(name)) {
             return Err(format!("{name:?} is no name of a vehicle or a team"));
         }
         for Vehicle { name, team, boat, strategy, .. } in &self.vehicles {

@@ -5,7 +5,7 @@ use super::writer::{Note, Writer};
 use super::{Ending, Header, RecordError};
 use game::run_state::RecordingState;
 use std::fs::File;
-use std::io::{BufWriter, ErrorKind, Seek, Write};
+use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
@@ -78,8 +78,11 @@ impl Recorder {
     ///
     /// # Errors
     /// [`RecordError`] if the file does not take the beginning.
+    ///
+    /// # Panics
+    /// Never: a blank is used once.
     pub fn begin(mut blank: Blank, header: &Header) -> Result<Recorder, RecordError> {
-        let Some(file) = blank.file.take() else { return Err(std::io::Error::from(ErrorKind::NotFound).into()) };
+        let file = blank.file.take().expect("a blank is used once");
         Recorder::over(BufWriter::with_capacity(1 << 16, file), blank.path.clone(), header, WAITING_BYTES)
     }
 
@@ -184,9 +187,9 @@ fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &
 mod tests {
     use super::*;
     use crate::recording::{INPUTS, Recording, Turn};
-    use game::SimTime;
     use game::message::{Frame, Message, Notice, Stamp};
     use game::water::Water;
+    use game::{Outcome, SimTime};
     use std::io::{Cursor, SeekFrom};
 
     /// A disk that takes nothing while somebody else has it.
@@ -228,12 +231,7 @@ mod tests {
             noted += 1;
         }
         drop(stuck);
-        let outcome = serde_json::json!({
-            "scenario": "", "seed": 1, "version": "", "digest": "", "duration_s": 1.0, "ticks": 20, "winner": null,
-            "boats": {}, "score": {"teams": {}, "boats": {}}, "counts": {"teams": {}, "boats": {}}, "events": [],
-        });
-        let outcome = serde_json::from_value(outcome).expect("an outcome");
-        let state = recorder.end(Ending { outcome, run: serde_json::Value::Null, dropped: 0 });
+        let state = recorder.end(Ending { outcome: Outcome::default(), run: serde_json::Value::Null, dropped: 0 });
         assert_eq!((state.dropped, state.failed), (3, None));
         let recording = Recording::of(disk.0.lock().expect("nobody panics").get_ref().clone()).expect("a recording");
         assert_eq!(recording.ending().map(|ending| ending.dropped), Some(3));

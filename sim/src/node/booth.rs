@@ -191,7 +191,7 @@ impl<'w> Booth<'w> {
         for (i, bytes) in pictures.into_iter().enumerate() {
             if self.is_recorded && !is_again {
                 let topic = format!("picture/{}", self.contest.scenario().teams[i].name);
-                self.write_down(&topic, Some(Picture::SCHEMA), bytes.clone());
+                self.write_down(topic, Some(Picture::SCHEMA), bytes.clone());
             }
             self.pictures[i].send_encoded::<Picture>(bytes)?;
         }
@@ -221,7 +221,7 @@ impl<'w> Booth<'w> {
         helm.send(&order)?;
         if self.is_recorded {
             let topic = format!("external/{}", self.contest.scenario().vehicles[vehicle.index()].name);
-            self.write_down(&topic, Some(ExternalOrder::SCHEMA), codec::encode(&order));
+            self.write_down(topic, Some(ExternalOrder::SCHEMA), codec::encode(&order));
         }
         Ok(())
     }
@@ -241,8 +241,7 @@ impl<'w> Booth<'w> {
                 Call::Heard(i, bytes) => {
                     let HeardTopic { topic, schema, is_sound } = &self.heard_topics[i];
                     if is_sound(&bytes) {
-                        let (topic, schema) = (topic.clone(), *schema);
-                        self.witness.heard(Heard { topic, schema, bytes, at: self.contest.now() });
+                        self.write_down(topic.clone(), *schema, bytes);
                     } else {
                         self.refused.garbage += 1;
                     }
@@ -338,8 +337,8 @@ impl<'w> Booth<'w> {
     }
 
     /// Shows the witness something that goes over the network.
-    fn write_down(&mut self, topic: &str, schema: Option<&'static str>, bytes: Vec<u8>) {
-        self.witness.heard(Heard { topic: topic.to_owned(), schema, bytes, at: self.contest.now() });
+    fn write_down(&mut self, topic: impl Into<String>, schema: Option<&'static str>, bytes: Vec<u8>) {
+        self.witness.heard(Heard { topic: topic.into(), schema, bytes, at: self.contest.now() });
     }
 
     /// Tells everybody that it is over, and waits a little for the agents to leave.
@@ -396,7 +395,7 @@ impl<'w> Booth<'w> {
             && let Some(vehicle) = self.contest.scenario().vehicles.get(report.vehicle.index())
         {
             let topic = format!("nav/{}", vehicle.name);
-            self.write_down(&topic, Some(NavReport::SCHEMA), bytes.to_vec());
+            self.write_down(topic, Some(NavReport::SCHEMA), bytes.to_vec());
         }
         let Some(sighted) = self.quay.take(&report, self.moment()) else { return };
         let taken = self.contest.report(sighted.vehicle, sighted.nav, sighted.fix_at, sighted.valid);
