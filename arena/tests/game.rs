@@ -10,7 +10,11 @@ fn shipped(name: &str) -> Scenario {
 }
 
 fn play(game: &str, seed: u64) -> Outcome {
-    let scenario = Scenario { seed, ..shipped(game) };
+    play_scenario(&shipped(game), seed)
+}
+
+fn play_scenario(scenario: &Scenario, seed: u64) -> Outcome {
+    let scenario = Scenario { seed, ..scenario.clone() };
     arena::play(&scenario, &mut agent::minds_of(&scenario), seed).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -48,10 +52,7 @@ fn the_same_seed_is_the_same_game() {
     // Forty boats that heed each other take long to play: two minutes of theirs will do.
     let mut swarm = shipped("swarm_20v20.toml");
     swarm.rules.time_limit = SimTime::from_s(120.0);
-    let [first, again, other] = [5, 5, 6].map(|seed| {
-        let scenario = Scenario { seed, ..swarm.clone() };
-        arena::play(&scenario, &mut agent::minds_of(&scenario), seed).unwrap_or_else(|e| panic!("{e}"))
-    });
+    let [first, again, other] = [5, 5, 6].map(|seed| play_scenario(&swarm, seed));
     assert_eq!(first, again);
     assert_ne!(first.digest, other.digest);
     assert!(all(&first, |counts| counts.tags) > 5, "much happens in it: {:?}", first.counts);
