@@ -1,6 +1,7 @@
 //! The processes that `run` starts: none of them outlives it.
 
 use anyhow::{Context, Result};
+use std::io::Write;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -34,6 +35,16 @@ impl Offspring {
     pub(crate) fn ended(&mut self) -> Option<Option<String>> {
         let status = self.child.try_wait().ok().flatten()?;
         Some((!status.success()).then(|| format!("{} ended with {status}", self.name)))
+    }
+
+    /// Tells it a line.
+    ///
+    /// # Errors
+    /// If it does not listen any more.
+    pub(crate) fn tell(&mut self, line: &str) -> Result<()> {
+        let name = &self.name;
+        let mut said = self.life_line.as_ref().with_context(|| format!("{name} was asked to stop"))?;
+        writeln!(said, "{line}").with_context(|| format!("{name} does not listen"))
     }
 
     /// Asks it to stop.

@@ -81,7 +81,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     } else {
         play_across_processes(args, &scenario, file.as_deref(), (&stop, &mut screen))?
     };
-    if let Some(file) = file.filter(|file| file.exists()) {
+    let file = file.filter(|file| file.exists());
+    if let Some(file) = &file {
         screen.line(&format!("recorded; look at it with: squall replay {}", file.display()));
     }
     let Some(report) = report else { return Ok(stop::interrupted()) };
@@ -90,6 +91,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     if let Some(mut page) = page {
         screen.line("the game is over; the page stays until Ctrl-C");
+        // The sim has ended, so that the recording is whole.
+        if let (Some(file), false) = (&file, stop::is_set_soon(&stop)) {
+            page.tell(&file.display().to_string())?;
+        }
         while page.ended().is_none() && !stop::is_set_soon(&stop) {}
         page.ask_to_stop();
         offspring::wait_for_all(std::slice::from_mut(&mut page), LEAVE);

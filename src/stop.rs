@@ -1,10 +1,11 @@
 //! The wish to stop: Ctrl-C, SIGTERM, or the end of the process that started us.
 
-use anyhow::{Context, Result};
-use std::io::Read;
+use anyhow::Context;
+use std::io::BufRead;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 /// What a shell says of a program that Ctrl-C ended.
@@ -13,7 +14,7 @@ pub(crate) fn interrupted() -> ExitCode {
 }
 
 /// A flag that Ctrl-C or SIGTERM sets; pressed a second time they end the process at once.
-pub(crate) fn on_ctrl_c() -> Result<Arc<AtomicBool>> {
+pub(crate) fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     let pressed = move || {
@@ -25,15 +26,19 @@ pub(crate) fn on_ctrl_c() -> Result<Arc<AtomicBool>> {
     Ok(stop)
 }
 
-/// Sets the flag when standard input ends: a child whose parent has died, however it died, must not stay.
-pub(crate) fn with_parent(stop: &Arc<AtomicBool>) {
+/// Sets the flag when standard input ends: a child whose parent has died, however it died, must not stay. Gives what the
+/// parent says before, line by line.
+pub(crate) fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
     let flag = Arc::clone(stop);
+    let (sender, said) = channel();
     std::thread::spawn(move || {
-        let mut sink = [0; 64];
-        let mut input = std::io::stdin();
-        while input.read(&mut sink).is_ok_and(|count| count > 0) {}
+        for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
+            // Not every child listens.
+            drop(sender.send(String::from_utf8_lossy(&line).into_owned()));
+        }
         flag.store(true, Ordering::Relaxed);
     });
+    said
 }
 
 /// Whether the flag is set, after a little while.

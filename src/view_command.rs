@@ -18,16 +18,14 @@ pub(crate) struct Args {
     leaf: LeafArgs,
     #[command(flatten)]
     page: PageArgs,
-    /// Stops when standard input ends, and shows the game's recording once it is over
+    /// Stops when standard input ends; shows the recordings that it names, one a line
     #[arg(long, hide = true)]
     for_parent: bool,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
-    if args.for_parent {
-        stop::with_parent(&stop);
-    }
+    let recordings = args.for_parent.then(|| stop::with_parent(&stop));
     let page = args.page.open(&stop)?;
     let leaf = args.leaf.clone();
     let place = Box::new(move || leaf.net().map_err(|e| format!("{e:#}")));
@@ -39,22 +37,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
     });
     let live = LiveShow::open(place, args.leaf.game.clone(), tell).context("cannot look for games")?;
-    let live = Arc::new(live);
-    page.show(live.clone());
+    page.show(Arc::new(live));
     Screen::new().line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));
     while !stop::is_set_soon(&stop) {
-        if !args.for_parent {
-            continue;
-        }
-        if let Some(recording) = live.recording_of_the_end() {
-            match replay_command::show(Path::new(&recording.file)) {
-                Ok(show) => page.show(Arc::new(show)),
-                Err(error) => screen::remark(&format!("{error:#}")),
-            }
-            break;
+        let Some(file) = recordings.as_ref().and_then(|named| named.try_recv().ok()) else { continue };
+        match replay_command::show(Path::new(&file)) {
+            Ok(show) => page.show(Arc::new(show)),
+            Err(error) => screen::remark(&format!("{error:#}")),
         }
     }
-    stop::wait(&stop);
     page.close();
     Ok(ExitCode::SUCCESS)
 }

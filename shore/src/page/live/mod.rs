@@ -14,7 +14,6 @@ mod wheel;
 use super::show::{Guest, News, Show, Viewer};
 use bus::Net;
 use game::message::Control;
-use game::run_state::{Phase, RecordingState};
 use game::topic::GameName;
 use look::Look;
 use stage::Stage;
@@ -63,15 +62,6 @@ impl LiveShow {
         let keeper = keeper::Keeper::new(Arc::clone(&theatre), place, game, to_do, tell);
         std::thread::Builder::new().name("page-live".to_owned()).spawn(move || keeper.keep())?;
         Ok(LiveShow { theatre })
-    }
-}
-
-impl LiveShow {
-    /// Where the game that was shown was recorded, once it is over.
-    #[must_use]
-    pub fn recording_of_the_end(&self) -> Option<RecordingState> {
-        let run = self.theatre.stage().run.clone()?;
-        run.recording.filter(|_| run.phase == Phase::Over)
     }
 }
 
