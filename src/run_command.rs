@@ -92,8 +92,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(mut page) = page {
         screen.line("the game is over; the page stays until Ctrl-C");
         // The sim has ended, so that the recording is whole.
-        if let (Some(file), false) = (&file, stop::is_set_soon(&stop)) {
-            page.tell(&file.display().to_string())?;
+        if let (Some(file), false) = (&file, stop::is_set_soon(&stop))
+            && let Err(error) = page.tell(&file.display().to_string())
+        {
+            screen::remark(&format!("{error:#}"));
         }
         while page.ended().is_none() && !stop::is_set_soon(&stop) {}
         page.ask_to_stop();
