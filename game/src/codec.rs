@@ -9,8 +9,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
-/// CDR, little-endian, plain.
-const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
+/// What every message begins with: CDR, little-endian, plain.
+pub const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
 
 /// Why bytes are not a message.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

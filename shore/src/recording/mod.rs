@@ -1,15 +1,16 @@
 //! Recordings of games: MCAP files that other tools read as well.
 //!
-//! | topic | what | encoding |
+//! | topic | what | as |
 //! |---|---|---|
-//! | `frame` | the truth, at every decision | CDR |
-//! | `picture/<team>` | what a team's minds were shown | CDR |
-//! | `inputs` | before each frame, all that the game was given since the last: it can be played again from this | CDR |
-//! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: where they are, what they are to do, every byte of the link | CDR |
-//! | `say/<team>`, `policy/<boat>` | what minds and policies said | CDR |
+//! | `frame` | the truth, at every decision | message |
+//! | `picture/<team>` | what a team's minds were shown | message |
+//! | `inputs` | before each frame, all that the game was given since the last: it can be played again from this | message |
+//! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: where they are, what they are to do, every byte of the link | message |
+//! | `say/<team>`, `policy/<boat>` | what minds and policies said | message |
 //! | `status/<boat>` | how gateways are | JSON |
 //! | `control`, `run` | what people asked for, and how the run stood | JSON |
 //!
+//! All of it is CDR, as the profile `ros2` demands: a message of ours, or JSON as the text of a `std_msgs/msg/String`.
 //! `log_time` is simulated time, counted from the moment at which the game began; `publish_time` is UTC when it was
 //! recorded. Both in ns since 1970. `sequence` counts within a topic. Schemas are ROS 2 message definitions, complete.
 //! Chunks are not compressed and are written whole, so that a file that ends abruptly is good up to there.
@@ -20,6 +21,7 @@
 mod clock;
 mod reader;
 mod recorder;
+mod text;
 mod walk;
 mod writer;
 

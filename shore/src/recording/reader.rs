@@ -1,5 +1,6 @@
 //! A recording, opened: what it says, message by message, also where it ends abruptly.
 
+use super::text;
 use super::walk::{Stop, walk};
 use super::{Ending, FRAME, Header, RESULT, SQUALL};
 use game::codec::{self, DecodeError};
@@ -62,6 +63,8 @@ struct Channel {
     topic: String,
     /// None for JSON.
     schema: Option<String>,
+    /// Whether that is the text of a message.
+    is_text: bool,
 }
 
 /// Where a message is.
@@ -184,13 +187,15 @@ impl Recording {
     pub fn message(&self, place: usize) -> Said<'_> {
         let Piece { channel, number, at, utc_ns, place } = &self.pieces[place];
         let channel = self.channels.get(channel);
+        let is_text = channel.is_some_and(|channel| channel.is_text);
+        let place = if is_text { text::place_in(&self.bytes, place.clone()) } else { place.clone() };
         Said {
             topic: channel.map_or("", |channel| &channel.topic),
             schema: channel.and_then(|channel| channel.schema.as_deref()),
             number: *number,
             at: *at,
             utc_ns: *utc_ns,
-            bytes: &self.bytes[place.clone()],
+            bytes: &self.bytes[place],
         }
     }
 
@@ -244,7 +249,9 @@ impl Found {
             Record::Channel(channel) => {
                 let schema = self.schemas.get(&channel.schema_id).filter(|(_, encoding)| encoding == "ros2msg");
                 let schema = schema.map(|(name, _)| name.clone());
-                self.channels.insert(channel.id, Channel { topic: channel.topic, schema });
+                let is_text = schema.as_deref() == Some(text::SCHEMA);
+                let schema = schema.filter(|_| !is_text);
+                self.channels.insert(channel.id, Channel { topic: channel.topic, schema, is_text });
             }
             Record::Message { header, data } => {
                 let data = place.end - data.len()..place.end;

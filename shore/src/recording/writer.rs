@@ -1,5 +1,6 @@
 //! Notes of a game to the bytes of a recording.
 
+use super::text;
 use super::{DRAWN, Ending, FRAME, Header, INPUTS, RESULT, RecordError, SQUALL, picture};
 use game::codec;
 use game::input::{Input, Inputs};
@@ -105,7 +106,10 @@ impl<W: Write + Seek> Writer<W> {
         self.is_dirty = true;
         match note {
             Note::Turn(turn) => self.turn(turn, utc_ns),
-            Note::Heard { topic, schema, bytes, at } => self.put(topic, *schema, *at, utc_ns, bytes),
+            Note::Heard { topic, schema: Some(schema), bytes, at } => self.put(topic, schema, *at, utc_ns, bytes),
+            Note::Heard { topic, schema: None, bytes, at } => {
+                self.put(topic, text::SCHEMA, *at, utc_ns, &text::wrap(bytes))
+            }
         }
     }
 
@@ -154,17 +158,10 @@ impl<W: Write + Seek> Writer<W> {
         utc_ns: u64,
     ) -> Result<(), RecordError> {
         let at = message.stamp().valid_ns;
-        self.put(topic, Some(M::SCHEMA), at, utc_ns, &codec::encode(message))
+        self.put(topic, M::SCHEMA, at, utc_ns, &codec::encode(message))
     }
 
-    fn put(
-        &mut self,
-        topic: &str,
-        schema: Option<&'static str>,
-        at: SimTime,
-        utc_ns: u64,
-        bytes: &[u8],
-    ) -> Result<(), RecordError> {
+    fn put(&mut self, topic: &str, schema: &str, at: SimTime, utc_ns: u64, bytes: &[u8]) -> Result<(), RecordError> {
         let (channel_id, sequence) = match self.channels.get_mut(topic) {
             Some((id, count)) => {
                 *count = count.wrapping_add(1);
@@ -182,14 +179,15 @@ impl<W: Write + Seek> Writer<W> {
     }
 
     /// A channel for this topic.
-    fn open(&mut self, topic: &str, schema: Option<&'static str>) -> Result<u16, RecordError> {
-        let (name, encoding, text) = match schema {
-            Some(name) => (name, "ros2msg", ros::full_definition(name).unwrap_or_default()),
-            None => ("Object", "jsonschema", r#"{"type": "object"}"#.to_owned()),
+    fn open(&mut self, topic: &str, schema: &str) -> Result<u16, RecordError> {
+        let definition = match schema {
+            text::SCHEMA => text::DEFINITION.to_owned(),
+            ours => ros::full_definition(ours).unwrap_or_default(),
         };
-        let schema_id = self.mcap.add_schema(name, encoding, text.as_bytes())?;
-        let message_encoding = if schema.is_some() { "cdr" } else { "json" };
-        Ok(self.mcap.add_channel(schema_id, topic, message_encoding, &BTreeMap::new())?)
+        let schema_id = self.mcap.add_schema(schema, "ros2msg", definition.as_bytes())?;
+        // Nobody offered any: the profile wants to be told.
+        let qos = BTreeMap::from([("offered_qos_profiles".to_owned(), "[]".to_owned())]);
+        Ok(self.mcap.add_channel(schema_id, topic, "cdr", &qos)?)
     }
 }
 
