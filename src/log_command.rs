@@ -1,6 +1,6 @@
 //! `squall log`: what a recorded game tells afterwards.
 
-use crate::{log_plot, screen};
+use crate::{log_plot, recording_file, screen};
 use anyhow::{Context, Result};
 use serde::Serialize;
 use shore::log::{Book, Comparison, Summary};
@@ -64,7 +64,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn open(file: &Path) -> Result<Recording> {
-    Recording::open(file).with_context(|| format!("cannot look at {}", file.display()))
+    recording_file::open(file, "look at")
 }
 
 fn look_at(args: &Args, file: &Path) -> Result<()> {

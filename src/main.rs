@@ -17,6 +17,7 @@ mod onlooker;
 mod override_args;
 mod page_args;
 mod plot;
+mod recording_file;
 mod replay_command;
 mod result_table;
 mod rose_plot;

@@ -1,6 +1,7 @@
 //! `squall replay`: a recorded game again.
 
 use crate::page_args::PageArgs;
+use crate::recording_file;
 use crate::screen::{self, Screen};
 use crate::stop;
 use anyhow::{Context, Result, bail};
@@ -55,5 +56,5 @@ pub(crate) fn show(file: &Path) -> Result<ReplayShow> {
 }
 
 fn open(file: &Path) -> Result<Recording> {
-    Recording::open(file).with_context(|| format!("cannot replay {}", file.display()))
+    recording_file::open(file, "replay")
 }

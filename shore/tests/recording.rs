@@ -210,6 +210,44 @@ fn records_that_say_they_are_longer_than_they_are_do_no_harm() {
     }
 }
 
+/// Where the first schema is, in the first chunk. Before that is the header, without which nothing opens.
+fn first_schema(bytes: &[u8]) -> usize {
+    let encoding = b"ros2msg";
+    bytes.windows(encoding.len()).position(|window| window == encoding).expect("there are schemas")
+}
+
+#[test]
+fn a_byte_that_is_another_is_noticed_and_its_chunk_named() {
+    let whole = recorded(&[1.0]);
+    let opened = Recording::of(whole.clone()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(opened.damage().is_empty(), "nothing is");
+    let (all, schema) = (all_of(&opened), first_schema(&whole));
+    for place in schema - 60..whole.len() {
+        let mut bytes = whole.clone();
+        bytes[place] ^= 0x10;
+        let Ok(recording) = Recording::of(bytes) else { continue };
+        let is_noticed = recording.is_cut() || !recording.damage().is_empty();
+        assert!(is_noticed || all_of(&recording) == all, "byte {place} is another, and nobody says so");
+    }
+    let mut bytes = whole;
+    bytes[schema] ^= 0x10;
+    let damaged = Recording::of(bytes).unwrap_or_else(|e| panic!("{e}"));
+    let [range] = damaged.damage() else { panic!("{:?}", damaged.damage()) };
+    assert!((schema - 60..schema).contains(&range.start) && range.end > schema, "{range:?} of the schema at {schema}");
+}
+
+#[test]
+fn a_damaged_header_is_refused_also_in_a_file_that_is_cut() {
+    let mut bytes = recorded(&[1.0]);
+    let seed = b"\"seed\":";
+    let seed = bytes.windows(seed.len()).position(|window| window == seed).expect("the scenario is there") + seed.len();
+    bytes[seed] ^= 1;
+    for end in [bytes.len(), first_schema(&bytes)] {
+        let refused = Recording::of(bytes[..end].to_vec()).expect_err("it is damaged").to_string();
+        assert!(refused.ends_with("its header is damaged"), "{refused}");
+    }
+}
+
 #[test]
 fn a_header_that_refers_to_nothing_is_refused() {
     let refused = |change: fn(&mut game::Scenario)| {

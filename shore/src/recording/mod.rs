@@ -33,12 +33,26 @@ use game::Outcome;
 use game::message::Notice;
 use game::water::Water;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use thiserror::Error;
 
 /// The names of the metadata.
 const SQUALL: &str = "squall";
 const DRAWN: &str = "drawn";
 const RESULT: &str = "result";
+
+/// In the first of them, the checksum of the others.
+const CHECKSUM: &str = "checksum";
+
+/// The CRC-32 of these facts but for the checksum itself. MCAP has one for each chunk, and one of the whole at its end;
+/// whether a header can be believed must be known of a file without an end, too.
+fn checksum(facts: &BTreeMap<String, String>) -> String {
+    let mut hasher = crc32fast::Hasher::new();
+    for (key, value) in facts.iter().filter(|(key, _)| *key != CHECKSUM) {
+        [key, "\0", value, "\0"].iter().for_each(|text| hasher.update(text.as_bytes()));
+    }
+    hasher.finalize().to_string()
+}
 
 /// The topic of the truth.
 pub const FRAME: &str = "frame";

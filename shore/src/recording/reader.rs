@@ -1,8 +1,8 @@
 //! A recording, opened: what it says, message by message, also where it ends abruptly.
 
 use super::text;
-use super::walk::{Stop, walk};
-use super::{Ending, FRAME, Header, RESULT, SQUALL};
+use super::walk::{Stop, Walk, walk};
+use super::{CHECKSUM, Ending, FRAME, Header, RESULT, SQUALL, checksum};
 use game::codec::{self, DecodeError};
 use game::message::{Frame, Message, Notice};
 use game::{Scenario, SimTime};
@@ -52,6 +52,7 @@ pub struct Recording {
     header: Header,
     ending: Option<Ending>,
     is_cut: bool,
+    damage: Vec<Range<usize>>,
     channels: BTreeMap<u16, Channel>,
     pieces: Vec<Piece>,
     /// The pieces that are frames.
@@ -121,7 +122,8 @@ impl Recording {
     /// [`RecordingError`] if they are none, or of another version.
     pub fn of(bytes: Vec<u8>) -> Result<Recording, RecordingError> {
         let mut found = Found::default();
-        let stop = walk(&bytes, |record, place| found.take(record, place)).map_err(RecordingError::Foreign)?;
+        let Walk { stop, damage } =
+            walk(&bytes, |record, place| found.take(record, place)).map_err(RecordingError::Foreign)?;
         let header = header_of(found.metadata.get(SQUALL))?;
         let ending = found.metadata.get(RESULT).and_then(ending_of);
         let began = header.began_utc_ns;
@@ -136,7 +138,7 @@ impl Recording {
         let is_frame = |piece: &Piece| found.channels.get(&piece.channel).is_some_and(|channel| channel.topic == FRAME);
         let frames = (0..pieces.len()).filter(|i| is_frame(&pieces[*i])).collect();
         let is_cut = stop == Stop::Cut || ending.is_none();
-        Ok(Recording { header, ending, is_cut, channels: found.channels, pieces, frames, bytes })
+        Ok(Recording { header, ending, is_cut, damage, channels: found.channels, pieces, frames, bytes })
     }
 
     /// What it says of its game.
@@ -155,6 +157,12 @@ impl Recording {
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.is_cut
+    }
+
+    /// Which of its bytes are not what was written, as far as checksums tell: what is said there may be wrong or missing.
+    #[must_use]
+    pub fn damage(&self) -> &[Range<usize>] {
+        &self.damage
     }
 
     /// Its size, bytes.
@@ -270,6 +278,9 @@ fn header_of(facts: Option<&BTreeMap<String, String>>) -> Result<Header, Recordi
     let text = |key: &str| facts.get(key).map_or("", String::as_str);
     if text("version") != game::VERSION {
         return Err(RecordingError::Version { found: text("version").to_owned() });
+    }
+    if facts.get(CHECKSUM).is_some_and(|written| *written != checksum(facts)) {
+        return Err(foreign("its header is damaged"));
     }
     let strange = |what: &str, e: &dyn std::fmt::Display| foreign(&format!("its {what} is not understood: {e}"));
     let scenario: Scenario = serde_json::from_str(text("scenario")).map_err(|e| strange("scenario", &e))?;

@@ -9,6 +9,8 @@ use std::ops::Range;
 
 /// Opcode and length before every record.
 const PREFIX: usize = 9;
+/// In a chunk, before its checksum: times of the first and the last message, and size.
+const CHUNK_CRC_AT: usize = 3 * 8;
 
 /// Why a file ends before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,24 +21,44 @@ pub(super) enum Stop {
     Cut,
 }
 
+/// How a walk ended.
+#[derive(Debug)]
+pub(super) struct Walk {
+    pub stop: Stop,
+    /// The bytes that are not what was written, by the checksum of their chunk; if no chunk is to blame, all of them.
+    pub damage: Vec<Range<usize>>,
+}
+
 /// Calls `take` with every schema, channel, message and metadata, and the place of its body in `bytes`, those in chunks
-/// included.
+/// included. Of a damaged chunk the records are given up to the first that makes no sense.
 pub(super) fn walk(
     bytes: &[u8],
     mut take: impl FnMut(Record<'_>, Range<usize>) -> Result<(), String>,
-) -> Result<Stop, String> {
+) -> Result<Walk, String> {
     if bytes.len() < mcap::MAGIC.len() || !bytes.starts_with(mcap::MAGIC) {
         return Err("it does not begin as MCAP files do".to_owned());
     }
     let mut place = mcap::MAGIC.len();
     let mut stop = Stop::Cut;
+    let mut damage = Vec::new();
     while let Some((opcode, body)) = record_at(bytes, place, bytes.len()) {
         if opcode == op::CHUNK {
             let inner = chunk_records(bytes, &body)?;
-            records_in(bytes, inner, &mut take)?;
+            let is_whole = body.end <= bytes.len();
+            let is_damaged = is_whole && !agrees(bytes, body.start + CHUNK_CRC_AT, inner.clone());
+            if is_damaged {
+                damage.push(inner.clone());
+            }
+            match records_in(bytes, inner, &mut take) {
+                Err(_) if is_damaged => {}
+                other => other?,
+            }
         } else if body.end <= bytes.len() {
             if opcode == op::DATA_END {
                 stop = Stop::AtEnd;
+                if damage.is_empty() && !agrees(bytes, body.start, 0..place) {
+                    damage.push(0..place);
+                }
             }
             give(bytes, opcode, body.clone(), &mut take)?;
         }
@@ -45,7 +67,14 @@ pub(super) fn walk(
             break;
         }
     }
-    Ok(stop)
+    Ok(Walk { stop, damage })
+}
+
+/// Whether the checksum (CRC-32) that stands there is that of the bytes in `place`; 0 says that there is none.
+fn agrees(bytes: &[u8], checksum_at: usize, place: Range<usize>) -> bool {
+    let written =
+        bytes.get(checksum_at..).and_then(|rest| rest.first_chunk()).map_or(0, |crc| u32::from_le_bytes(*crc));
+    written == 0 || written == crc32fast::hash(&bytes[place])
 }
 
 /// Opcode and body of the record there; the body may reach beyond what is there.
@@ -114,8 +143,8 @@ fn text(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
 
 /// The place of the records in a chunk, as far as they are there.
 fn chunk_records(bytes: &[u8], body: &Range<usize>) -> Result<Range<usize>, String> {
-    // Times of the first and the last message, size, and a checksum of what follows the name of the compression.
-    const NUMBERS: usize = 3 * 8 + 4;
+    // The checksum is of what follows the name of the compression.
+    const NUMBERS: usize = CHUNK_CRC_AT + 4;
     let nothing = Ok(bytes.len()..bytes.len());
     let number = |from: usize, size: usize| bytes.get(from..from + size);
     let Some(name_length) = number(body.start + NUMBERS, 4) else { return nothing };

@@ -1,7 +1,7 @@
 //! Notes of a game to the bytes of a recording.
 
 use super::text;
-use super::{DRAWN, Ending, FRAME, Header, INPUTS, RESULT, RecordError, SQUALL, picture};
+use super::{CHECKSUM, DRAWN, Ending, FRAME, Header, INPUTS, RESULT, RecordError, SQUALL, checksum, picture};
 use game::codec;
 use game::input::{Input, Inputs};
 use game::message::{Frame, Message, Stamp};
@@ -90,7 +90,9 @@ impl<W: Write + Seek> Writer<W> {
             ("scenario", serde_json::to_string(scenario)?),
             ("water", serde_json::to_string(&header.water)?),
         ];
-        write_metadata(&mut mcap, SQUALL, facts)?;
+        let mut facts: BTreeMap<String, String> = facts.map(|(key, value)| (key.to_owned(), value)).into();
+        facts.insert(CHECKSUM.to_owned(), checksum(&facts));
+        mcap.write_metadata(&Metadata { name: SQUALL.to_owned(), metadata: facts })?;
         let drawn = scenario.drawn.iter().map(|drawn| (drawn.parameter.as_str(), drawn.value.to_string()));
         write_metadata(&mut mcap, DRAWN, drawn)?;
         mcap.flush()?;
