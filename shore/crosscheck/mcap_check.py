@@ -45,7 +45,8 @@ def main(recording, result_path):
         check(channel.message_encoding == "cdr", f"{channel.topic} is not CDR")
         check(schema.encoding == "ros2msg", f"{channel.topic} has a schema that is no ROS 2 message")
         if schema.name == TEXT:
-            json.loads(decoded.data)
+            is_object = isinstance(json.loads(decoded.data), dict)
+            check(is_object, f"{channel.topic} has something else than an object")
             continue
         if channel.topic == "frame":
             check(len(decoded.vehicles) == len(names), "a frame has another number of boats")
