@@ -45,7 +45,7 @@ fn load_strategy(path: &Path) -> Result<Strategy> {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     if args.for_parent {
-        drop(stop::with_parent(&stop));
+        stop::with_parent(&stop);
     }
     let names = args.vehicle.join(", ");
     let strategy = args.strategy.as_deref().map(load_strategy).transpose()?;

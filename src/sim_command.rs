@@ -85,7 +85,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let scenario = if args.afloat.is_empty() { scenario } else { sim::afloat(&scenario, seed, &args.afloat)? };
     let stop = stop::on_ctrl_c()?;
     if args.for_parent {
-        drop(stop::with_parent(&stop));
+        stop::with_parent(&stop);
     }
     let game = match &args.game {
         Some(game) => game.clone(),

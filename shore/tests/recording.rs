@@ -210,10 +210,14 @@ fn records_that_say_they_are_longer_than_they_are_do_no_harm() {
     }
 }
 
+/// Where this is first.
+fn place_of(part: &[u8], bytes: &[u8]) -> usize {
+    bytes.windows(part.len()).position(|window| window == part).expect("it is there")
+}
+
 /// Where the first schema is, in the first chunk. Before that is the header, without which nothing opens.
 fn first_schema(bytes: &[u8]) -> usize {
-    let encoding = b"ros2msg";
-    bytes.windows(encoding.len()).position(|window| window == encoding).expect("there are schemas")
+    place_of(b"ros2msg", bytes)
 }
 
 #[test]
@@ -239,8 +243,7 @@ fn a_byte_that_is_another_is_noticed_and_its_chunk_named() {
 #[test]
 fn a_damaged_header_is_refused_also_in_a_file_that_is_cut() {
     let mut bytes = recorded(&[1.0]);
-    let seed = b"\"seed\":";
-    let seed = bytes.windows(seed.len()).position(|window| window == seed).expect("the scenario is there") + seed.len();
+    let seed = place_of(b"\"seed\":", &bytes) + "\"seed\":".len();
     bytes[seed] ^= 1;
     for end in [bytes.len(), first_schema(&bytes)] {
         let refused = Recording::of(bytes[..end].to_vec()).expect_err("it is damaged").to_string();

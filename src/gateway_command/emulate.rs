@@ -82,7 +82,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let primary = args.primary.as_deref().map(|text| address("--primary", text)).transpose()?;
     let stop = stop::on_ctrl_c()?;
     if args.for_parent {
-        drop(stop::with_parent(&stop));
+        stop::with_parent(&stop);
     }
     let extra = |kind: &ExtraArg| match kind {
         ExtraArg::Rmc => Extra::Rmc,

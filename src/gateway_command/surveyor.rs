@@ -59,7 +59,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let stop = stop::on_ctrl_c()?;
     if args.for_parent {
-        drop(stop::with_parent(&stop));
+        stop::with_parent(&stop);
     }
     let record = recording(args)?;
     if let (Some(path), false) = (&record, args.for_parent) {

@@ -1,7 +1,7 @@
 //! A recording, opened: what it says, message by message, also where it ends abruptly.
 
 use super::text;
-use super::walk::{Stop, Walk, walk};
+use super::walk::{Walk, walk};
 use super::{CHECKSUM, Ending, FRAME, Header, RESULT, SQUALL, checksum};
 use game::codec::{self, DecodeError};
 use game::message::{Frame, Message, Notice};
@@ -122,7 +122,7 @@ impl Recording {
     /// [`RecordingError`] if they are none, or of another version.
     pub fn of(bytes: Vec<u8>) -> Result<Recording, RecordingError> {
         let mut found = Found::default();
-        let Walk { stop, damage } =
+        let Walk { is_cut, damage } =
             walk(&bytes, |record, place| found.take(record, place)).map_err(RecordingError::Foreign)?;
         let header = header_of(found.metadata.get(SQUALL))?;
         let ending = found.metadata.get(RESULT).and_then(ending_of);
@@ -137,7 +137,7 @@ impl Recording {
         let pieces: Vec<Piece> = found.messages.into_iter().map(piece).collect();
         let is_frame = |piece: &Piece| found.channels.get(&piece.channel).is_some_and(|channel| channel.topic == FRAME);
         let frames = (0..pieces.len()).filter(|i| is_frame(&pieces[*i])).collect();
-        let is_cut = stop == Stop::Cut || ending.is_none();
+        let is_cut = is_cut || ending.is_none();
         Ok(Recording { header, ending, is_cut, damage, channels: found.channels, pieces, frames, bytes })
     }
 

@@ -12,19 +12,11 @@ const PREFIX: usize = 9;
 /// In a chunk, before its checksum: times of the first and the last message, and size.
 const CHUNK_CRC_AT: usize = 3 * 8;
 
-/// Why a file ends before its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stop {
-    /// The last record is whole.
-    AtEnd,
-    /// The rest is missing.
-    Cut,
-}
-
 /// How a walk ended.
 #[derive(Debug)]
 pub(super) struct Walk {
-    pub stop: Stop,
+    /// Whether the rest of the file is missing.
+    pub is_cut: bool,
     /// The bytes that are not what was written, by the checksum of their chunk; if no chunk is to blame, all of them.
     pub damage: Vec<Range<usize>>,
 }
@@ -39,7 +31,7 @@ pub(super) fn walk(
         return Err("it does not begin as MCAP files do".to_owned());
     }
     let mut place = mcap::MAGIC.len();
-    let mut stop = Stop::Cut;
+    let mut is_cut = true;
     let mut damage = Vec::new();
     while let Some((opcode, body)) = record_at(bytes, place, bytes.len()) {
         if opcode == op::CHUNK {
@@ -55,7 +47,7 @@ pub(super) fn walk(
             }
         } else if body.end <= bytes.len() {
             if opcode == op::DATA_END {
-                stop = Stop::AtEnd;
+                is_cut = false;
                 if damage.is_empty() && !agrees(bytes, body.start, 0..place) {
                     damage.push(0..place);
                 }
@@ -63,11 +55,11 @@ pub(super) fn walk(
             give(bytes, opcode, body.clone(), &mut take)?;
         }
         place = body.end;
-        if stop == Stop::AtEnd {
+        if !is_cut {
             break;
         }
     }
-    Ok(Walk { stop, damage })
+    Ok(Walk { is_cut, damage })
 }
 
 /// Whether the checksum (CRC-32) that stands there is that of the bytes in `place`; 0 says that there is none.
