@@ -22,8 +22,8 @@ pub(crate) struct Args {
     /// How long to look for the sim and to wait for a free seat, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// After this long without a picture the sim counts as dead, s (3 s once its sign of life is gone)
-    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
+    /// After this long without a picture the sim counts as dead, s (5 s where it dies and the network does not)
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     silence_s: f64,
     /// Plays by this strategy file in place of the one that the sim's scenario names
     #[arg(long, value_name = "FILE")]

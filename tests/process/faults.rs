@@ -1,6 +1,6 @@
 //! Nodes that die or fall silent: the game goes on, nobody waits forever.
 
-use crate::support::{FOUR, Process, Sim, long_game};
+use crate::support::{FOUR, Process, Sim, long_game, squall};
 use std::io::Read;
 use std::time::Instant;
 
@@ -65,8 +65,27 @@ fn agents_report_a_killed_sim_and_fail() {
         agent.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
         assert!(said.contains("the sim is gone"), "{said}");
     }
-    // Three seconds are stated; the rest is room for a busy machine.
+    // Five seconds are stated; the rest is room for a busy machine.
     assert!(killed.elapsed().as_secs_f64() < 15.0, "{:?}", killed.elapsed());
+}
+
+#[test]
+fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
+    let (dir, mut sim, mut agents) = game("lockstep");
+    sim.play_on(2.0);
+    let (endpoint, name) = (sim.endpoint.clone(), sim.game.clone());
+    sim.process.kill();
+    let args = ["--listen", &endpoint, "--game", &name];
+    let next = Sim::start_with(squall(&[]), &long_game(dir.path(), PATIENCE), &args);
+    for agent in &mut agents {
+        assert!(!agent.wait().success());
+        let mut said = String::new();
+        agent.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+        assert!(said.contains("the sim is gone"), "{said}");
+    }
+    let _others = FOUR.map(|vehicle| next.agent(&[vehicle]));
+    next.wait_for(|telling| telling["tell"] == "started");
+    next.stop();
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod ignored;
 mod mailbag;
 mod table;
 mod talk;
+mod vigil;
 mod window;
 
 pub use ignored::Ignored;
@@ -83,12 +84,13 @@ pub enum NodeError {
     /// The sim fell silent.
     #[error("the sim is gone: no picture for {0:.1?}")]
     SimGone(Duration),
+    /// Another sim serves a game of the same name, and knows nothing of us.
+    #[error("the sim is gone, and another one serves the game: join again")]
+    SimReplaced,
 }
 
 /// How often an agent that hears nothing looks whether the sim is still there.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
-/// How long the sim may be silent once its sign of life is gone.
-const SILENCE_AFTER_DEATH: Duration = Duration::from_secs(3);
 
 /// Joins a game and plays until it is over.
 ///

@@ -3,16 +3,17 @@
 use super::advice::Advice;
 use super::ignored::Ignored;
 use super::talk::Talk;
+use super::vigil::{Signs, Vigil};
 use super::window::Window;
-use super::{LOOK_AGAIN, NodeError, SILENCE_AFTER_DEATH, Settings, clock};
+use super::{LOOK_AGAIN, NodeError, Settings, clock};
 use crate::{Mind, mind_by, mind_of};
-use bus::{Bus, Delivery, Publisher, Slots, Standing};
+use bus::{Board, Bus, Delivery, Publisher, Slots, Standing};
 use game::codec::{self, DecodeError};
 use game::message::{Message, Notice, Orders, Stamp, VehicleOrder};
 use game::topic::{self, GameName, Part};
 use game::{Picture, Scenario, TeamId, VehicleId};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// In lockstep words of mates are there before the picture, unless something on the way between several hubs changes
@@ -96,12 +97,12 @@ impl Table {
 
     /// Decides until the game is over.
     pub(super) fn play(&mut self, settings: &Settings) -> Result<(), NodeError> {
-        let mut heard = clock::now();
+        let mut vigil = Vigil::begin(settings.silence, clock::now());
         while !settings.stop.load(Ordering::Relaxed) {
             let mut decided = false;
             for (cell, unread) in self.line.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
                 let Some(unread) = unread else { continue };
-                heard = clock::now();
+                vigil.hears(clock::now());
                 unread.iter().try_for_each(|bytes| self.see(cell, bytes))?;
                 if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
                     return Ok(());
@@ -111,10 +112,12 @@ impl Table {
             if let Some(window) = &mut self.window {
                 window.answer(&mut self.seated, decided);
             }
-            let sim_alive = self.line.sim_alive.load(Ordering::Relaxed);
-            let limit = if sim_alive { settings.silence } else { settings.silence.min(SILENCE_AFTER_DEATH) };
-            if clock::since(heard) > limit {
-                return Err(NodeError::SimGone(clock::since(heard)));
+            let (is_alive, is_replaced) = self.line.signs.visit(|signs| (signs.is_alive(), signs.is_replaced()));
+            if is_replaced {
+                return Err(NodeError::SimReplaced);
+            }
+            if let Some(silent) = vigil.dead_for(is_alive, clock::now()) {
+                return Err(NodeError::SimGone(silent));
             }
         }
         Ok(())
@@ -184,7 +187,7 @@ fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Op
 /// What comes in from the sim: the newest pictures of each team, oldest first, and whether it shows signs of life.
 struct Line {
     pictures: Arc<Slots<Vec<Vec<u8>>>>,
-    sim_alive: Arc<AtomicBool>,
+    signs: Arc<Board<Signs>>,
     /// The teams whose pictures come.
     teams: Vec<TeamId>,
     _standing: Vec<Standing>,
@@ -193,7 +196,7 @@ struct Line {
 impl Line {
     fn open(bus: &Bus, game: &GameName, scenario: &Scenario, seated: &[Seated]) -> Result<Line, NodeError> {
         let pictures = Arc::new(Slots::new(scenario.teams.len()));
-        let sim_alive = Arc::new(AtomicBool::new(true));
+        let signs = Arc::new(Board::new(Signs::default()));
         let mut teams: Vec<TeamId> = seated.iter().map(|seat| scenario.team_of(seat.vehicle)).collect();
         teams.sort_unstable();
         teams.dedup();
@@ -210,10 +213,10 @@ impl Line {
             };
             standing.push(bus.subscribe(topic::picture(game, scenario, *team), take)?);
         }
-        let flag = Arc::clone(&sim_alive);
-        let watch = move |_: &str, alive: bool| flag.store(alive, Ordering::Relaxed);
+        let seen = Arc::clone(&signs);
+        let watch = move |sim: &str, alive: bool| seen.visit(|signs| signs.take(sim, alive));
         standing.push(bus.watch_alive(topic::all_alive(game, Part::Sim), watch)?);
-        Ok(Line { pictures, sim_alive, teams, _standing: standing })
+        Ok(Line { pictures, signs, teams, _standing: standing })
     }
 }
 
