@@ -24,7 +24,7 @@ fn a_killed_agents_boat_holds_and_a_new_agent_takes_it_on() {
         let killed = Instant::now();
         sim.wait_for_event("mind_lost", "blue_two");
         // Patience is 2 s; the rest is room for a busy machine.
-        assert!(killed.elapsed().as_secs_f64() < 12.0, "{pace}: lost after {:?}", killed.elapsed());
+        assert!(killed.elapsed().as_secs_f64() < 20.0, "{pace}: lost after {:?}", killed.elapsed());
         sim.play_on(5.0);
         agents[1] = sim.agent(&["blue_two"]);
         sim.wait_for_event("mind_back", "blue_two");
@@ -66,7 +66,7 @@ fn agents_report_a_killed_sim_and_fail() {
         assert!(said.contains("the sim is gone"), "{said}");
     }
     // Five seconds are stated; the rest is room for a busy machine.
-    assert!(killed.elapsed().as_secs_f64() < 15.0, "{:?}", killed.elapsed());
+    assert!(killed.elapsed().as_secs_f64() < 30.0, "{:?}", killed.elapsed());
 }
 
 #[test]

@@ -11,7 +11,7 @@ use tungstenite::{Error, Message, WebSocket};
 /// How long anything may take.
 const LIMIT: Duration = Duration::from_secs(30);
 /// How long it takes to believe that nothing comes.
-const QUIET: Duration = Duration::from_millis(400);
+const QUIET: Duration = Duration::from_secs(1);
 
 pub(crate) struct Client {
     socket: WebSocket<TcpStream>,
