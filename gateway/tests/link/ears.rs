@@ -7,9 +7,6 @@ use std::time::{Duration, Instant};
 /// Anything takes less, unless it never comes.
 pub(crate) const LIMIT: Duration = Duration::from_secs(10);
 
-/// How long a busy machine may keep somebody waiting who need not wait. Whatever would hold a link up takes two seconds.
-pub(crate) const AT_ONCE: Duration = Duration::from_secs(1);
-
 /// Everything that a link has told so far.
 #[derive(Default)]
 pub(crate) struct Ears {

@@ -1,6 +1,6 @@
 //! A link that is a pseudo-terminal.
 
-use crate::ears::{AT_ONCE, LIMIT, listen, patient};
+use crate::ears::{LIMIT, listen, patient};
 use gateway::link::{Link, LinkAddress, LinkError};
 use serial2::{KeepSettings, SerialPort};
 use std::fs;
@@ -44,7 +44,7 @@ fn who_comes_late_gets_what_is_new() {
     let (link, ears) = listen("pty");
     let (_, start) = ears.up(0);
     let mut sent_at = Vec::new();
-    while start.elapsed() < Duration::from_secs(3) {
+    while start.elapsed() < Duration::from_millis(1500) {
         let number = sent_at.len() as u64;
         sent_at.push(Instant::now());
         link.send(line(number), number);
@@ -55,7 +55,7 @@ fn who_comes_late_gets_what_is_new() {
     let attached = Instant::now();
     let first: usize = String::from_utf8(read(&reader, 7)).unwrap().trim().parse().unwrap();
     let age = attached - sent_at[first];
-    assert!(age < Duration::from_millis(500) + AT_ONCE, "{age:?} old: {first} of {}", sent_at.len());
+    assert!(age < Duration::from_millis(700), "{age:?} old: {first} of {}", sent_at.len());
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn nobody_on_it_blocks_nothing() {
     while start.elapsed() < Duration::from_millis(1500) {
         let sent_at = Instant::now();
         link.send(vec![b'x'; 20_000], tag);
-        assert!(sent_at.elapsed() < AT_ONCE, "{:?}", sent_at.elapsed());
+        assert!(sent_at.elapsed() < Duration::from_millis(200), "{:?}", sent_at.elapsed());
         tag += 1;
         pause(Duration::from_millis(5));
     }
@@ -97,7 +97,7 @@ fn nobody_on_it_blocks_nothing() {
     assert_eq!(ears.all().iter().filter_map(crate::ears::up).count(), 1, "nothing is lost for it");
     let start = Instant::now();
     drop(link);
-    assert!(start.elapsed() < AT_ONCE, "{:?}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! A link that connects by TCP.
 
-use crate::ears::{AT_ONCE, Ears, LIMIT, connect, patient, up, wait};
+use crate::ears::{Ears, LIMIT, connect, patient, up, wait};
 use gateway::link::{Link, LinkSettings};
 use socket2::SockRef;
 use std::io::{Read, Write};
@@ -104,9 +104,9 @@ fn a_peer_that_accepts_and_closes_at_once_is_not_stormed() {
     // After 0, 100, 300, 700, 1500, 3100 ms.
     let (_, sixth) = ears.up(5);
     let first = ears.up(0).1;
-    assert!(sixth - first >= Duration::from_millis(2500), "six attempts in {:?}", sixth - first);
+    assert!(sixth - first >= Duration::from_millis(3000), "six attempts in {:?}", sixth - first);
     let in_a_second = ears.all().iter().filter_map(up).filter(|(_, at)| *at - first < Duration::from_secs(1)).count();
-    assert!(in_a_second <= 5, "{in_a_second} attempts in a second");
+    assert!((3..=4).contains(&in_a_second), "{in_a_second} attempts in a second");
     slam.join().unwrap();
 }
 
@@ -123,11 +123,11 @@ fn a_peer_that_says_one_line_and_closes_is_not_stormed_either() {
 
 #[test]
 fn a_link_that_was_good_for_some_time_is_tried_again_quickly() {
-    let retry = (Duration::from_millis(80), Duration::from_secs(60));
+    let retry = (Duration::from_millis(20), Duration::from_secs(60));
     let (listener, address) = listener();
     let (_link, ears) = connect(&address, LinkSettings { silence: None, retry });
     (0..5).for_each(|_| drop(accept(&listener)));
-    // The next wait would be 2560 ms.
+    // The next wait would be 640 ms.
     let mut boat = accept(&listener);
     let (_, start) = ears.up(5);
     let told = || boat.write_all(b"here\n").unwrap();
@@ -136,7 +136,7 @@ fn a_link_that_was_good_for_some_time_is_tried_again_quickly() {
     let (_, gone) = ears.down(5);
     drop(accept(&listener));
     let wait = ears.up(6).1 - gone;
-    assert!(wait < Duration::from_millis(80) + AT_ONCE, "{wait:?}");
+    assert!(wait < Duration::from_millis(300), "{wait:?}");
 }
 
 /// Talks until some moment, with pauses in which nobody comes.
@@ -158,7 +158,7 @@ fn a_peer_that_falls_silent_counts_as_gone() {
     let (reason, down) = ears.down(0);
     assert!(reason.contains("no bytes for 300ms"), "{reason}");
     assert!(down - up >= 3 * silence - Duration::from_millis(60), "chatter was not heard: {:?}", down - up);
-    assert!(down - up < 3 * silence + AT_ONCE, "{:?}", down - up);
+    assert!(down - up < 3 * silence + Duration::from_millis(500), "{:?}", down - up);
     // And it is tried again, though this peer still holds the old connection.
     let _second = accept(&listener);
     assert_eq!(ears.up(1).0, 1);
@@ -179,7 +179,7 @@ fn a_peer_that_does_not_read_gets_the_newest_late_instead_of_all_in_order() {
         link.send(format!("{tag:0width$}\n", width = SIZE - 1).into_bytes(), tag);
         slowest = slowest.max(start.elapsed());
     }
-    assert!(slowest < AT_ONCE, "a send took {slowest:?}");
+    assert!(slowest < Duration::from_millis(200), "a send took {slowest:?}");
     assert!(link.displaced() > SENT / 2, "{} displaced", link.displaced());
 
     let mut got: Vec<u64> = Vec::new();
@@ -228,20 +228,20 @@ fn a_reconnect_breaks_the_connection_and_makes_a_new_one() {
 #[test]
 fn a_reconnect_shortens_a_long_wait_to_the_first() {
     let (listener, address) = listener();
-    let first = Duration::from_millis(100);
+    let first = Duration::from_millis(50);
     let (link, ears) = connect(&address, LinkSettings { silence: None, retry: (first, Duration::from_secs(60)) });
     (0..5).for_each(|_| drop(accept(&listener)));
-    // 1600 ms would follow.
+    // 800 ms would follow.
     ears.down(4);
     let asked = Instant::now();
     link.reconnect();
     let _boat = accept(&listener);
     let wait = ears.up(5).1 - asked;
-    assert!(wait >= first && wait < first + AT_ONCE, "{wait:?}");
+    assert!(wait >= first && wait < Duration::from_millis(500), "{wait:?}");
 }
 
 #[test]
-fn a_dropped_link_says_good_bye_at_once() {
+fn a_dropped_link_says_good_bye_within_200_ms() {
     let (link, ears, mut boat, listener) = joined(patient());
     link.send(b"last".to_vec(), 0);
     ears.written(0);
@@ -250,7 +250,7 @@ fn a_dropped_link_says_good_bye_at_once() {
     let start = Instant::now();
     drop(link);
     let took = start.elapsed();
-    assert!(took < AT_ONCE, "{took:?}");
+    assert!(took < Duration::from_millis(200), "{took:?}");
     let mut got = Vec::new();
     boat.read_to_end(&mut got).unwrap();
     assert_eq!(got, b"last");
@@ -288,7 +288,7 @@ fn a_link_that_cannot_reach_anybody_is_dropped_as_quickly() {
     let (link, ears) = connect(&format!("tcp://{address}"), patient());
     let start = Instant::now();
     drop(link);
-    assert!(start.elapsed() < AT_ONCE, "{:?}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
     assert!(ears.all().is_empty(), "{:?}", ears.all());
 }
 
@@ -303,5 +303,5 @@ fn a_peer_that_never_answers_is_given_up_after_two_seconds() {
     let (_link, ears) = connect(&format!("tcp://{address}"), patient());
     ears.until("failure", |events| events.iter().find_map(wait));
     let took = start.elapsed();
-    assert!(took > Duration::from_millis(1900) && took < Duration::from_secs(2) + AT_ONCE, "{took:?}");
+    assert!(took > Duration::from_millis(1900) && took < Duration::from_millis(2500), "{took:?}");
 }

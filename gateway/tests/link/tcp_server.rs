@@ -1,6 +1,6 @@
 //! A link that listens on a TCP port.
 
-use crate::ears::{AT_ONCE, LIMIT, listen, open, patient};
+use crate::ears::{LIMIT, listen, open, patient};
 use gateway::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -80,7 +80,7 @@ fn a_peer_that_does_not_read_holds_up_nobody_and_is_dropped() {
         slowest = slowest.max(sent_at.elapsed());
         tag += 1;
     }
-    assert!(slowest < AT_ONCE, "{slowest:?}");
+    assert!(slowest < Duration::from_millis(500), "{slowest:?}");
     assert!(link.displaced() > 0);
     let (_, down) = ears.down(0);
     assert!(down - start > Duration::from_millis(1900) && down - start < Duration::from_millis(5000));
@@ -102,7 +102,7 @@ fn a_silent_peer_stays_unless_the_settings_say_otherwise() {
 }
 
 #[test]
-fn a_dropped_link_frees_its_port_at_once() {
+fn a_dropped_link_frees_its_port_within_200_ms() {
     let (link, ears) = listen(ANY);
     let mut back_seat = join(&link);
     ears.up(0);
@@ -110,7 +110,7 @@ fn a_dropped_link_frees_its_port_at_once() {
     let start = Instant::now();
     drop(link);
     let took = start.elapsed();
-    assert!(took < AT_ONCE, "{took:?}");
+    assert!(took < Duration::from_millis(200), "{took:?}");
     assert_eq!(back_seat.read(&mut [0]).unwrap(), 0);
     let (again, ears) = listen(&address);
     let _back_seat = join(&again);
