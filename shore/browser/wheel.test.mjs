@@ -189,20 +189,18 @@ test('a fast game is steered without gaps, and one as fast as can be is said to 
   assert.equal(await sight.get(() => squall.state.speed), 10);
   await goes(sight, course_deg, speed_m_s);
   // A machine may well stall for a while, and then the boat stops as it should: one stretch in ten must be steered.
-  const stretch = async () => {
-    const from_s = await sight.get(() => squall.t_s);
-    return sight.get(([name, from_s]) => new Promise((done) => {
-      const middle = (values) => values.sort((one, other) => one - other)[Math.floor(values.length / 2)];
-      const speeds = [];
-      const look = setInterval(() => {
-        speeds.push(squall.frame.boats.find((each) => each.name === name).speed_m_s);
-        if (squall.t_s < from_s + 20) return;
-        clearInterval(look);
-        const sent = driveSent_s.filter((t_s) => t_s >= from_s);
-        done({ gap_s: middle(sent.slice(1).map((t_s, at) => t_s - sent[at])), went_m_s: middle(speeds) });
-      }, 20);
-    }), [BOAT, from_s]);
-  };
+  const stretch = () => sight.get((name) => new Promise((done) => {
+    const middle = (values) => values.sort((one, other) => one - other)[Math.floor(values.length / 2)];
+    const from_s = squall.t_s;
+    const speeds = [];
+    const look = setInterval(() => {
+      speeds.push(squall.frame.boats.find((each) => each.name === name).speed_m_s);
+      if (squall.t_s < from_s + 20) return;
+      clearInterval(look);
+      const sent = driveSent_s.filter((t_s) => t_s >= from_s);
+      done({ gap_s: middle(sent.slice(1).map((t_s, at) => t_s - sent[at])), went_m_s: middle(speeds) });
+    }, 20);
+  }), BOAT);
   const seen = [];
   const isSteered = ({ gap_s, went_m_s }) => gap_s < HEEDED_S && Math.abs(went_m_s - speed_m_s) < OFF_M_S / 2;
   while (seen.length < 10 && !seen.some(isSteered)) seen.push(await stretch());
