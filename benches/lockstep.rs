@@ -123,9 +123,9 @@ fn sizes(case: &Case) -> (usize, usize) {
     scenario.vehicles = own.chain(others).collect();
     for (i, vehicle) in scenario.vehicles.iter_mut().enumerate() {
         let at = game::Ned { north: i as f64 * 8.0, east: 0.0 };
-        vehicle.berth = game::scenario::Berth::At(game::Pose { at, psi_rad: 0.0 });
+        vehicle.start_position = game::scenario::StartPosition::At(game::Pose { at, psi_rad: 0.0 });
     }
-    let mut contest = sim::Contest::new(&scenario, 1).expect("berths were given");
+    let mut contest = sim::Contest::new(&scenario, 1).expect("start_positions were given");
     let picture = encode(&contest.pictures()[0]).len();
     let mine = (0..case.vehicles / case.processes).map(|i| VehicleOrder::new(VehicleId(i as u16), Order::Hold));
     let orders = encode(&Orders { orders: mine.collect(), ..Orders::default() }).len();

@@ -1,7 +1,7 @@
 //! The hardware loop, closed on one machine: water of its own, an emulated boat and a gateway for every real one.
 
+use crate::child_process::{self, ChildProcess};
 use crate::net_args::unique_game_name;
-use crate::offspring::{self, Offspring};
 use crate::override_args;
 use anyhow::{Context, Result, anyhow, bail};
 use game::Scenario;
@@ -46,8 +46,8 @@ const LEAVE: Duration = Duration::from_secs(5);
 /// The processes of the loop.
 pub(crate) struct HardwareLoop {
     /// Gateways, then emulators: the order in which they are to end.
-    ends: Vec<Offspring>,
-    water: Offspring,
+    ends: Vec<ChildProcess>,
+    water: ChildProcess,
 }
 
 impl LoopArgs {
@@ -88,7 +88,7 @@ impl LoopArgs {
         Ok(Some(HardwareLoop { ends: gateways, water }))
     }
 
-    fn start_gateway(&self, name: &str, link: &str, game: &Match<'_>) -> Result<Offspring> {
+    fn start_gateway(&self, name: &str, link: &str, game: &Match<'_>) -> Result<ChildProcess> {
         let mut words = words(&["gateway", "surveyor", "--vehicle", name, "--link", link, "--arm", "--at-game-pace"]);
         words.extend(self::words(&["--game", game.game, "--connect", game.endpoint, "--for-parent"]));
         let option = |name: &str, path: PathBuf| [name.to_owned(), path.display().to_string()];
@@ -97,7 +97,7 @@ impl LoopArgs {
             Some(folder) => words.extend(option("--record", folder.join(format!("{name}.mcap")))),
             None => words.push("--no-record".to_owned()),
         }
-        Offspring::start(&format!("the gateway of {name}"), &words, Stdio::inherit())
+        ChildProcess::start(&format!("the gateway of {name}"), &words, Stdio::inherit())
     }
 }
 
@@ -107,11 +107,11 @@ impl HardwareLoop {
         let mut badly = Vec::new();
         for one in &mut self.ends {
             one.ask_to_stop();
-            badly.extend(offspring::wait_for_all(std::slice::from_mut(one), LEAVE));
+            badly.extend(child_process::wait_for_all(std::slice::from_mut(one), LEAVE));
         }
         // The water has no end of its own: it is cut short, and says so.
         self.water.ask_to_stop();
-        offspring::wait_for_all(std::slice::from_mut(&mut self.water), LEAVE);
+        child_process::wait_for_all(std::slice::from_mut(&mut self.water), LEAVE);
         badly
     }
 }
@@ -120,25 +120,25 @@ fn words(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-fn start_water(game: &Match<'_>, names: &[&str], (water, endpoint): (&str, &str)) -> Result<Offspring> {
+fn start_water(game: &Match<'_>, names: &[&str], (water, endpoint): (&str, &str)) -> Result<ChildProcess> {
     let (file, pace, seed) = (game.file.display().to_string(), game.pace.to_string(), game.seed.to_string());
     let mut words = words(&["sim", &file, "--pace", &pace, "--seed", &seed, "--game", water, "--listen", endpoint]);
     words.extend(override_args::words(game.overrides));
     words.push("--for-parent".to_owned());
     words.push("--afloat".to_owned());
     words.extend(names.iter().map(|name| (*name).to_owned()));
-    Offspring::start("the water", &words, Stdio::null())
+    ChildProcess::start("the water", &words, Stdio::null())
 }
 
-fn start_emulator(name: &str, declination_deg: Option<f64>, (water, endpoint): (&str, &str)) -> Result<Offspring> {
+fn start_emulator(name: &str, declination_deg: Option<f64>, (water, endpoint): (&str, &str)) -> Result<ChildProcess> {
     let mut words = words(&["gateway", "emulate", "--vehicle", name, "--listen", "tcp://127.0.0.1:0"]);
     words.extend(self::words(&["--game", water, "--connect", endpoint, "--for-parent"]));
     words.extend(declination_deg.into_iter().flat_map(|deg| ["--declination-deg".to_owned(), deg.to_string()]));
-    Offspring::start(&format!("the emulator of {name}"), &words, Stdio::piped())
+    ChildProcess::start(&format!("the emulator of {name}"), &words, Stdio::piped())
 }
 
 /// Where an emulator says that it can be reached.
-fn reach(emulator: &mut Offspring) -> Result<String> {
+fn reach(emulator: &mut ChildProcess) -> Result<String> {
     let output = emulator.output().context("it has no output")?;
     let (sender, receiver) = std::sync::mpsc::sync_channel(1);
     std::thread::spawn(move || {

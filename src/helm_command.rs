@@ -1,7 +1,7 @@
 //! `squall helm`: one decision of a boat's helm, in a table, as numbers and as pictures.
 
 use crate::net_args::LeafArgs;
-use crate::onlooker::Onlooker;
+use crate::observer::Observer;
 use crate::rose_plot::{self, Rose};
 use crate::{helm_page, screen};
 use anyhow::{Context, Result, bail};
@@ -34,11 +34,11 @@ pub(crate) struct Args {
 const COLLECTIVE: &str = "collective";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let onlooker = Onlooker::come(&args.leaf)?;
-    let vehicle = onlooker.vehicle(&args.vehicle)?;
-    let report = onlooker.helm(vehicle, HelmQuestion { functions: true })?;
+    let observer = Observer::come(&args.leaf)?;
+    let vehicle = observer.vehicle(&args.vehicle)?;
+    let report = observer.helm(vehicle, HelmQuestion { functions: true })?;
     let Some(report) = report else { bail!("nobody minds {}", args.vehicle) };
-    let scenario = &onlooker.notice.scenario;
+    let scenario = &observer.notice.scenario;
     if report.functions.iter().any(|function| function.utilities.is_empty()) {
         bail!("the helm of {} has not decided since it was asked; ask again", args.vehicle);
     }
@@ -64,7 +64,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             rose_plot::write_svg(path, &title, &roses)?;
         }
     }
-    onlooker.bus.close();
+    observer.bus.close();
     Ok(ExitCode::SUCCESS)
 }
 

@@ -4,7 +4,7 @@ use crate::net_args::LeafArgs;
 use crate::screen;
 use anyhow::Result;
 use bus::{Bus, Net};
-use game::message::Notice;
+use game::message::GameInfo;
 use game::topic::{self, GameName, Part};
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -25,8 +25,9 @@ const ANSWER: Duration = Duration::from_secs(2);
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut places: Vec<Net> = Vec::new();
     if !args.elsewhere {
-        places
-            .extend(bus::phonebook().into_iter().map(|entry| Net { connect: vec![entry.endpoint], ..Net::default() }));
+        places.extend(
+            bus::local_registry().into_iter().map(|entry| Net { connect: vec![entry.endpoint], ..Net::default() }),
+        );
     }
     // Several games on this machine are no error here: all are listed.
     places.extend(args.leaf.net().ok().filter(|net| net.lan || !places.iter().any(|p| p.connect == net.connect)));
@@ -54,7 +55,7 @@ fn games_at(bus: &Bus, place: &Net) -> Result<BTreeMap<GameName, String>> {
         let mut text = format!("{}  {}\n  sim {sim}\n", game.as_str(), place.connect.join(" "));
         agents.for_each(|(_, _, agent)| text.push_str(&format!("  agent {agent}\n")));
         let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
-        if let Some(notice) = answer.and_then(|bytes| serde_json::from_slice::<Notice>(&bytes).ok()) {
+        if let Some(notice) = answer.and_then(|bytes| serde_json::from_slice::<GameInfo>(&bytes).ok()) {
             let scenario = &notice.scenario;
             text.push_str(&format!(
                 "  {} seed {}, {}, {} boats, Squall {}\n",

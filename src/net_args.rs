@@ -53,7 +53,7 @@ impl HubArgs {
 }
 
 impl LeafArgs {
-    /// Where to connect: as asked for, or where this machine's phonebook says.
+    /// Where to connect: as asked for, or where this machine's local_registry says.
     pub(crate) fn net(&self) -> Result<Net> {
         let mut connect = self.connect.clone();
         if connect.is_empty() && !self.lan {
@@ -64,7 +64,7 @@ impl LeafArgs {
 
     fn local_endpoint(&self) -> Result<String> {
         let wanted = |entry: &bus::Entry| self.game.as_ref().is_none_or(|game| game.as_str() == entry.game);
-        let entries: Vec<bus::Entry> = bus::phonebook().into_iter().filter(wanted).collect();
+        let entries: Vec<bus::Entry> = bus::local_registry().into_iter().filter(wanted).collect();
         match entries.as_slice() {
             [] => Ok(format!("tcp/127.0.0.1:{}", bus::DEFAULT_PORT)),
             [entry] => Ok(entry.endpoint.clone()),

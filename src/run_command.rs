@@ -1,19 +1,19 @@
 //! `squall run`: a whole game from one command.
 
+use crate::child_process::{self, ChildProcess};
 use crate::hardware_loop::{HardwareLoop, LoopArgs, Match};
 use crate::net_args::unique_game_name;
-use crate::offspring::{self, Offspring};
 use crate::override_args::{self, OverrideArgs};
 use crate::page_args::PageArgs;
+use crate::progress_message::{ProgressMessage, Teller};
 use crate::screen::{self, Screen};
 use crate::sim_command::{load, seconds, speed, write_json};
 use crate::stop;
 use crate::tape::{RecordArgs, Tape};
-use crate::telling::{Teller, Telling};
 use anyhow::{Context, Result, anyhow, bail};
 use game::Scenario;
 use sim::Contest;
-use sim::node::{Pace, Report, Run, Witness};
+use sim::node::{Pace, Recorder, Report, Run};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         while page.ended().is_none() && !stop::is_set_soon(&stop) {}
         page.ask_to_stop();
-        offspring::wait_for_all(std::slice::from_mut(&mut page), LEAVE);
+        child_process::wait_for_all(std::slice::from_mut(&mut page), LEAVE);
     }
     Ok(if report.run.cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
 }
@@ -152,7 +152,7 @@ fn play_across_processes(
     scenario: &Scenario,
     file: Option<&Path>,
     (stop, screen): (&AtomicBool, &mut Screen),
-) -> Result<(Option<Report>, Option<Offspring>)> {
+) -> Result<(Option<Report>, Option<ChildProcess>)> {
     let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
     let game = unique_game_name(&scenario.name)?.as_str().to_owned();
     let endpoint = format!("tcp/127.0.0.1:{port}");
@@ -177,7 +177,7 @@ fn play_across_processes(
     let mut problems = hardware_loop.map(HardwareLoop::end).unwrap_or_default();
     let mut everybody = agents;
     everybody.push(sim);
-    problems.extend(offspring::wait_for_all(&mut everybody, LEAVE));
+    problems.extend(child_process::wait_for_all(&mut everybody, LEAVE));
     for problem in problems {
         if !stop.load(Ordering::Relaxed) {
             screen::remark(&problem);
@@ -189,13 +189,13 @@ fn play_across_processes(
     Ok((report, page))
 }
 
-fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<Offspring> {
+fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<ChildProcess> {
     let mut words = ["view", "--game", game, "--connect", endpoint, "--for-parent"].map(str::to_owned).to_vec();
     words.extend(args.page.words());
-    Offspring::start("the page", &words, Stdio::inherit())
+    ChildProcess::start("the page", &words, Stdio::inherit())
 }
 
-fn start_sim(args: &Args, game: &str, endpoint: &str, file: Option<&Path>) -> Result<Offspring> {
+fn start_sim(args: &Args, game: &str, endpoint: &str, file: Option<&Path>) -> Result<ChildProcess> {
     let mut words = vec!["sim".to_owned(), args.scenario.display().to_string()];
     let options = [
         ("--pace", args.pace.to_string()),
@@ -210,18 +210,18 @@ fn start_sim(args: &Args, game: &str, endpoint: &str, file: Option<&Path>) -> Re
     words.extend(speed.into_iter().flat_map(|speed| ["--speed".to_owned(), speed.to_string()]));
     words.extend(file.into_iter().flat_map(|file| ["--record".to_owned(), file.display().to_string()]));
     words.push("--for-parent".to_owned());
-    Offspring::start("the sim", &words, Stdio::piped())
+    ChildProcess::start("the sim", &words, Stdio::piped())
 }
 
-fn start_agent(names: &[&str], game: &str, endpoint: &str) -> Result<Offspring> {
+fn start_agent(names: &[&str], game: &str, endpoint: &str) -> Result<ChildProcess> {
     let mut words: Vec<String> =
         ["agent", "--game", game, "--connect", endpoint, "--for-parent", "--vehicle"].map(str::to_owned).to_vec();
     words.extend(names.iter().map(|name| (*name).to_owned()));
-    Offspring::start(&format!("the agent of {}", names.join(", ")), &words, Stdio::null())
+    ChildProcess::start(&format!("the agent of {}", names.join(", ")), &words, Stdio::null())
 }
 
 /// What the sim tells, line by line.
-fn read_tellings(sim: &mut Offspring) -> Result<Receiver<Telling>> {
+fn read_tellings(sim: &mut ChildProcess) -> Result<Receiver<ProgressMessage>> {
     let output = sim.output().context("the sim has no output")?;
     let (sender, receiver) = sync_channel(1024);
     std::thread::spawn(move || {
@@ -235,8 +235,8 @@ fn read_tellings(sim: &mut Offspring) -> Result<Receiver<Telling>> {
 
 /// Shows what the sim tells until it has told the result, or has ended.
 fn follow(
-    tellings: &Receiver<Telling>,
-    sim: &mut Offspring,
+    tellings: &Receiver<ProgressMessage>,
+    sim: &mut ChildProcess,
     stop: &AtomicBool,
     screen: &mut Screen,
 ) -> Result<Option<Report>> {
@@ -245,7 +245,7 @@ fn follow(
         match tellings.recv_timeout(Duration::from_millis(100)) {
             Ok(telling) => {
                 screen.show(&telling);
-                if let Telling::Done(report) = telling {
+                if let ProgressMessage::Done(report) = telling {
                     return Ok(Some(*report));
                 }
             }

@@ -1,7 +1,7 @@
 //! The terminal: events as lines, how the game stands as one line that is written over.
 
+use crate::progress_message::{Progress, ProgressMessage};
 use crate::result_table;
-use crate::telling::{Progress, Telling};
 use std::io::{IsTerminal, Write};
 
 /// Shows tellings to a person.
@@ -23,22 +23,22 @@ impl Screen {
     }
 
     /// Shows one thing.
-    pub(crate) fn show(&mut self, telling: &Telling) {
+    pub(crate) fn show(&mut self, telling: &ProgressMessage) {
         match telling {
-            Telling::Open { game, endpoint } => {
+            ProgressMessage::Open { game, endpoint } => {
                 self.line(&format!("game {game} at {endpoint}"));
                 self.line(&format!(
                     "look on with: squall watch --game {game}, or on a page: squall view --game {game}"
                 ));
             }
-            Telling::Waiting { missing, gateways } => match waiting(missing, gateways) {
+            ProgressMessage::Waiting { missing, gateways } => match waiting(missing, gateways) {
                 Some(text) => self.status(&text),
                 None => self.line("every boat has a mind"),
             },
-            Telling::Started => {}
-            Telling::Event(event) => self.line(&format!("{:>7.1} s  {}", event.at_s, event.sentence())),
-            Telling::Progress(progress) => self.progress(progress),
-            Telling::Done(report) => {
+            ProgressMessage::Started => {}
+            ProgressMessage::Event(event) => self.line(&format!("{:>7.1} s  {}", event.at_s, event.sentence())),
+            ProgressMessage::Progress(progress) => self.progress(progress),
+            ProgressMessage::Done(report) => {
                 self.clear();
                 print(&result_table::text(report));
             }

@@ -2,15 +2,15 @@
 
 use crate::net_args::{HubArgs, unique_game_name};
 use crate::override_args::OverrideArgs;
+use crate::progress_message::{ProgressMessage, Teller};
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::tape::Tape;
-use crate::telling::{Teller, Telling};
 use anyhow::{Context, Result};
 use game::Scenario;
 use game::scenario::Overrides;
 use game::topic::GameName;
-use sim::node::{News, Nobody, Pace, Report, Settings, Witness};
+use sim::node::{News, NoRecorder, Pace, Recorder, Report, Settings};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -93,7 +93,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let (net, endpoint) = args.hub.net()?;
     let mut screen = Screen::new();
-    let mut show = |telling: &Telling| {
+    let mut show = |telling: &ProgressMessage| {
         if args.for_parent {
             screen::print(&(serde_json::to_string(telling).expect("a telling is JSON") + "\n"));
         } else {
@@ -113,13 +113,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     let mut teller = Teller::default();
-    let mut nobody = Nobody;
-    let witness: &mut dyn Witness = if let Some(tape) = &mut tape { tape } else { &mut nobody };
-    let report = sim::node::serve(&scenario, seed, &settings, witness, &mut |news| {
+    let mut nobody = NoRecorder;
+    let recorder: &mut dyn Recorder = if let Some(tape) = &mut tape { tape } else { &mut nobody };
+    let report = sim::node::serve(&scenario, seed, &settings, recorder, &mut |news| {
         if let News::Open = news {
-            // Without a phonebook others must be told where the game is; nothing else is lost.
+            // Without a local_registry others must be told where the game is; nothing else is lost.
             registration = bus::register(&entry).ok();
-            show(&Telling::Open { game: entry.game.clone(), endpoint: entry.endpoint.clone() });
+            show(&ProgressMessage::Open { game: entry.game.clone(), endpoint: entry.endpoint.clone() });
         }
         teller.news(&news).iter().for_each(&mut show);
     })?;

@@ -3,12 +3,12 @@
 use anyhow::{Context, Result};
 use game::Scenario;
 use game::input::Input;
-use game::message::Notice;
+use game::message::GameInfo;
 use game::run_state::RecordingState;
 use gateway::utc;
 use shore::recording::{Blank, Ending, Header, Note, Recorder, Turn};
 use sim::Contest;
-use sim::node::{Heard, Report, Witness};
+use sim::node::{RecordedMessage, Recorder as NodeRecorder, Report};
 use std::path::PathBuf;
 
 /// Whether and where `run` records.
@@ -71,8 +71,11 @@ impl Tape {
     }
 
     fn header(&self, contest: &Contest) -> Header {
-        let notice =
-            Notice { version: game::VERSION.to_owned(), pace: self.pace.clone(), scenario: contest.scenario().clone() };
+        let notice = GameInfo {
+            version: game::VERSION.to_owned(),
+            pace: self.pace.clone(),
+            scenario: contest.scenario().clone(),
+        };
         Header {
             commit: env!("SQUALL_COMMIT").to_owned(),
             game: self.game.clone(),
@@ -107,7 +110,7 @@ impl Tape {
     }
 }
 
-impl Witness for Tape {
+impl NodeRecorder for Tape {
     fn turn(&mut self, contest: &mut Contest) {
         contest.keep_inputs();
         if matches!(self.recorder, Stage::Blank(_)) {
@@ -122,8 +125,8 @@ impl Witness for Tape {
         recorder.note(Note::Turn(Box::new(turn)));
     }
 
-    fn heard(&mut self, heard: Heard) {
-        let Heard { topic, schema, bytes, at } = heard;
+    fn heard(&mut self, heard: RecordedMessage) {
+        let RecordedMessage { topic, schema, bytes, at } = heard;
         if let Stage::Begun(recorder) = &self.recorder {
             recorder.note(Note::Heard { topic, schema, bytes, at });
         }

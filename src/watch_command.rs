@@ -1,11 +1,11 @@
 //! `squall watch`: a running game in the terminal, or what one boat's helm thinks.
 
 use crate::net_args::LeafArgs;
-use crate::onlooker::Onlooker;
+use crate::observer::Observer;
 use crate::screen;
 use crate::stop;
 use anyhow::{Result, bail};
-use bus::Slots;
+use bus::Latest;
 use game::codec;
 use game::message::Frame;
 use game::outcome::EventOutcome;
@@ -41,20 +41,20 @@ const EVENTS: usize = 6;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
-    let onlooker = Onlooker::come(&args.leaf)?;
+    let observer = Observer::come(&args.leaf)?;
     let pause = Duration::from_secs_f64(1.0 / f64::from(args.rate));
     match &args.helm {
-        Some(name) => helm::watch(&onlooker, name, pause, &stop)?,
-        None => watch_field(&onlooker, pause, &stop)?,
+        Some(name) => helm::watch(&observer, name, pause, &stop)?,
+        None => watch_field(&observer, pause, &stop)?,
     }
-    onlooker.bus.close();
+    observer.bus.close();
     Ok(ExitCode::SUCCESS)
 }
 
 /// Shows the field until the game is over, this often.
-fn watch_field(Onlooker { bus, game, notice }: &Onlooker, pause: Duration, stop: &AtomicBool) -> Result<()> {
-    let frames: Arc<Slots<Frame>> = Arc::new(Slots::new(1));
-    let events: Arc<Slots<Frame>> = Arc::clone(&frames);
+fn watch_field(Observer { bus, game, notice }: &Observer, pause: Duration, stop: &AtomicBool) -> Result<()> {
+    let frames: Arc<Latest<Frame>> = Arc::new(Latest::new(1));
+    let events: Arc<Latest<Frame>> = Arc::clone(&frames);
     let count = Arc::new(AtomicU64::new(0));
     let counter = Arc::clone(&count);
     let news = Arc::new(std::sync::Mutex::new(VecDeque::new()));

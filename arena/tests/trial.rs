@@ -15,7 +15,7 @@ fn game_of(boat: &game::Boat, sea: &game::sea::Sea, tick: SimTime) -> Scenario {
     (game.tick, game.sea) = (tick, sea.clone());
     game.boats.push(boat.clone());
     game.vehicles[0].boat = game.boats.len() - 1;
-    game.vehicles[0].berth = scenario::Berth::At(Pose { at: Ned::from_xy(10.0, 40.0), psi_rad: 0.0 });
+    game.vehicles[0].start_position = scenario::StartPosition::At(Pose { at: Ned::from_xy(10.0, 40.0), psi_rad: 0.0 });
     game
 }
 

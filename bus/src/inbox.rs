@@ -6,14 +6,14 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
 /// The sending side, for callbacks. Never blocks: what does not fit is dropped and counted.
-pub struct Outlet<T> {
+pub struct InboxSender<T> {
     sender: SyncSender<T>,
     dropped: Arc<AtomicU64>,
 }
 
-impl<T> Clone for Outlet<T> {
-    fn clone(&self) -> Outlet<T> {
-        Outlet { sender: self.sender.clone(), dropped: Arc::clone(&self.dropped) }
+impl<T> Clone for InboxSender<T> {
+    fn clone(&self) -> InboxSender<T> {
+        InboxSender { sender: self.sender.clone(), dropped: Arc::clone(&self.dropped) }
     }
 }
 
@@ -25,13 +25,13 @@ pub struct Inbox<T> {
 
 /// A queue for `capacity` items.
 #[must_use]
-pub fn inbox<T>(capacity: usize) -> (Outlet<T>, Inbox<T>) {
+pub fn inbox<T>(capacity: usize) -> (InboxSender<T>, Inbox<T>) {
     let (sender, receiver) = sync_channel(capacity);
     let dropped = Arc::new(AtomicU64::new(0));
-    (Outlet { sender, dropped: Arc::clone(&dropped) }, Inbox { receiver, dropped })
+    (InboxSender { sender, dropped: Arc::clone(&dropped) }, Inbox { receiver, dropped })
 }
 
-impl<T> Outlet<T> {
+impl<T> InboxSender<T> {
     /// Hands `item` over.
     pub fn put(&self, item: T) {
         if let Err(TrySendError::Full(_)) = self.sender.try_send(item) {

@@ -6,22 +6,22 @@
 //!
 //! Everything here is blocking or calls back; callbacks run on zenoh's threads and must only hand over.
 
-mod board;
 mod error;
+pub mod game_search;
 mod inbox;
-pub mod lookout;
+mod latest;
+mod local_registry;
 mod net;
-mod phonebook;
 mod session;
-mod slots;
+mod watched;
 
-pub use board::Board;
 pub use error::BusError;
-pub use inbox::{Inbox, Outlet, inbox};
+pub use inbox::{Inbox, InboxSender, inbox};
+pub use latest::Latest;
+pub use local_registry::{Entry, Registration, list as local_registry, register};
 pub use net::{DEFAULT_PORT, Net, free_port};
-pub use phonebook::{Entry, Registration, list as phonebook, register};
-pub use session::{Bus, Delivery, Publisher, Question, Standing};
-pub use slots::Slots;
+pub use session::{Bus, Declaration, Delivery, Publisher, Query};
+pub use watched::Watched;
 
 /// A value of the environment variable `ZENOH_RUNTIME` for a process that is one node: two threads in place of zenoh's pools,
 /// which takes a quarter to a half off a lockstep round trip. What is received has one to itself: a hub that passes

@@ -22,7 +22,7 @@ pub enum Delivery {
 }
 
 /// Something declared that lasts as long as this is kept.
-pub struct Standing(#[expect(dead_code, reason = "kept for its drop")] Kept);
+pub struct Declaration(#[expect(dead_code, reason = "kept for its drop")] Kept);
 
 #[expect(dead_code, reason = "kept for their drop")]
 enum Kept {
@@ -44,7 +44,7 @@ pub struct Publisher {
 }
 
 /// A question somebody asked, to be answered once.
-pub struct Question {
+pub struct Query {
     query: zenoh::query::Query,
     /// What came with it.
     pub payload: Vec<u8>,
@@ -107,34 +107,42 @@ impl Bus {
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn subscribe(&self, key: String, take: impl Fn(&[u8]) + Send + Sync + 'static) -> Result<Standing, BusError> {
+    pub fn subscribe(
+        &self,
+        key: String,
+        take: impl Fn(&[u8]) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
         let callback = move |sample: zenoh::sample::Sample| take(&sample.payload().to_bytes());
         let subscriber = self.session.declare_subscriber(key.clone()).callback(callback).wait();
-        Ok(Standing(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
+        Ok(Declaration(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
     }
 
     /// As [`Bus::subscribe`], but not with what this session publishes itself.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn overhear(&self, key: String, take: impl Fn(&[u8]) + Send + Sync + 'static) -> Result<Standing, BusError> {
+    pub fn subscribe_remote(
+        &self,
+        key: String,
+        take: impl Fn(&[u8]) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
         let callback = move |sample: zenoh::sample::Sample| take(&sample.payload().to_bytes());
         let builder = self.session.declare_subscriber(key.clone()).allowed_origin(Locality::Remote);
         let subscriber = builder.callback(callback).wait();
-        Ok(Standing(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
+        Ok(Declaration(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
     }
 
     /// Calls `take` with every question asked at `key`.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn answer(&self, key: String, take: impl Fn(Question) + Send + Sync + 'static) -> Result<Standing, BusError> {
+    pub fn answer(&self, key: String, take: impl Fn(Query) + Send + Sync + 'static) -> Result<Declaration, BusError> {
         let callback = move |query: zenoh::query::Query| {
             let payload = query.payload().map(|bytes| bytes.to_bytes().into_owned()).unwrap_or_default();
-            take(Question { query, payload });
+            take(Query { query, payload });
         };
         let queryable = self.session.declare_queryable(key.clone()).callback(callback).wait();
-        Ok(Standing(Kept::Queryable(queryable.map_err(failed("answer at", &key))?)))
+        Ok(Declaration(Kept::Queryable(queryable.map_err(failed("answer at", &key))?)))
     }
 
     /// Asks at `key`; gives the first answer that comes within `limit`.
@@ -152,9 +160,9 @@ impl Bus {
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn show_alive(&self, key: String) -> Result<Standing, BusError> {
+    pub fn show_alive(&self, key: String) -> Result<Declaration, BusError> {
         let token = self.session.liveliness().declare_token(key.clone()).wait();
-        Ok(Standing(Kept::Token(token.map_err(failed("be alive as", &key))?)))
+        Ok(Declaration(Kept::Token(token.map_err(failed("be alive as", &key))?)))
     }
 
     /// Calls `take` with the key of every node under `key` that comes (`true`) or goes, beginning with those that are there.
@@ -165,12 +173,12 @@ impl Bus {
         &self,
         key: String,
         take: impl Fn(&str, bool) + Send + Sync + 'static,
-    ) -> Result<Standing, BusError> {
+    ) -> Result<Declaration, BusError> {
         let callback = move |sample: zenoh::sample::Sample| {
             take(sample.key_expr().as_str(), sample.kind() == SampleKind::Put);
         };
         let watch = self.session.liveliness().declare_subscriber(key.clone()).history(true).callback(callback);
-        Ok(Standing(Kept::Subscriber(watch.wait().map_err(failed("watch", &key))?)))
+        Ok(Declaration(Kept::Subscriber(watch.wait().map_err(failed("watch", &key))?)))
     }
 
     /// The keys of all nodes under `key` that are there now.
@@ -246,7 +254,7 @@ impl Publisher {
     }
 }
 
-impl Question {
+impl Query {
     /// Answers with bytes that are JSON.
     pub fn answer(self, json: Vec<u8>) {
         let key = self.query.key_expr().clone();

@@ -20,7 +20,7 @@ pub struct Counts {
     /// Collisions the boat was in. A team's count adds up its boats', so one between team-mates is two.
     pub collisions: u32,
     /// Times the boat's mind was lost.
-    pub minds_lost: u32,
+    pub agents_lost: u32,
 }
 
 /// The tally of a game, kept from its events.
@@ -56,7 +56,7 @@ impl Tally {
                 count(first, |c| &mut c.collisions);
                 count(second, |c| &mut c.collisions);
             }
-            Event::MindLost { vehicle } => count(vehicle, |c| &mut c.minds_lost),
+            Event::AgentLost { vehicle } => count(vehicle, |c| &mut c.agents_lost),
             _ => {}
         }
     }
@@ -72,7 +72,7 @@ impl Tally {
             sum.tagged += c.tagged;
             sum.out_of_bounds += c.out_of_bounds;
             sum.collisions += c.collisions;
-            sum.minds_lost += c.minds_lost;
+            sum.agents_lost += c.agents_lost;
         }
         sum
     }

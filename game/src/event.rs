@@ -94,12 +94,12 @@ pub enum Event {
         vehicle: VehicleId,
     },
     /// A boat's mind fell silent: the boat holds from now on.
-    MindLost {
+    AgentLost {
         /// Whose mind.
         vehicle: VehicleId,
     },
     /// A boat's mind is back.
-    MindBack {
+    AgentBack {
         /// Whose mind.
         vehicle: VehicleId,
     },
@@ -148,8 +148,8 @@ impl Event {
             | Event::EnteredKeepout { vehicle }
             | Event::Disabled { vehicle }
             | Event::Enabled { vehicle }
-            | Event::MindLost { vehicle }
-            | Event::MindBack { vehicle }
+            | Event::AgentLost { vehicle }
+            | Event::AgentBack { vehicle }
             | Event::Quarantined { vehicle }
             | Event::NavLost { vehicle }
             | Event::NavBack { vehicle } => Some(vehicle),

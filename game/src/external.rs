@@ -135,7 +135,7 @@ pub struct GatewayStatus {
     /// What keeps it from being armed, in words.
     pub missing: Vec<String>,
     /// What made it stop, newest last.
-    pub trips: Vec<TripReport>,
+    pub trips: Vec<FailsafeReport>,
     /// Control mode that the boat says it is in: the Surveyor's letter.
     pub mode: Option<char>,
     /// Who the boat says is in control.
@@ -157,7 +157,7 @@ pub struct GatewayStatus {
 
 /// One time that a boat was stopped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TripReport {
+pub struct FailsafeReport {
     /// Time since the gateway began, s.
     pub at_s: f64,
     /// Why, in words.

@@ -24,7 +24,7 @@ pub struct Gateway {
     /// What navigation must be like.
     pub nav: NavWatch,
     /// Where the boat must not be, nor be unable to stop before.
-    pub fence: Fence,
+    pub fence: Geofence,
     /// When another real boat is too near.
     pub halt: Halt,
     /// When the battery is low, and what then.
@@ -85,7 +85,7 @@ pub struct NavWatch {
 
 /// Where a boat must not be.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Fence {
+pub struct Geofence {
     /// The fence lies this far outside of the field, m.
     pub margin_m: f64,
     /// How hard the boat slows down with thrust at zero, m/s²: v² / (2 a) is its way to rest.

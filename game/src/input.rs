@@ -26,12 +26,12 @@ pub enum Input {
         vehicle: VehicleId,
     },
     /// A vehicle's mind was lost.
-    MindLost {
+    AgentLost {
         /// Whose.
         vehicle: VehicleId,
     },
     /// A vehicle has a mind again.
-    MindBack {
+    AgentBack {
         /// Which.
         vehicle: VehicleId,
     },
@@ -62,8 +62,8 @@ impl Input {
         match self {
             Input::Ordered { vehicle, .. }
             | Input::Held { vehicle }
-            | Input::MindLost { vehicle }
-            | Input::MindBack { vehicle } => has(vehicle),
+            | Input::AgentLost { vehicle }
+            | Input::AgentBack { vehicle } => has(vehicle),
             Input::Reported { vehicle, fix_at, .. } => {
                 has(vehicle) && (SimTime(-SimTime::NEVER.0)..SimTime::NEVER).contains(&fix_at)
             }
@@ -110,8 +110,8 @@ impl From<Input> for InputRecord {
             }
             Input::Pictured => record(3, None, &[]),
             Input::Held { vehicle } => record(4, Some(vehicle), &[]),
-            Input::MindLost { vehicle } => record(5, Some(vehicle), &[]),
-            Input::MindBack { vehicle } => record(6, Some(vehicle), &[]),
+            Input::AgentLost { vehicle } => record(5, Some(vehicle), &[]),
+            Input::AgentBack { vehicle } => record(6, Some(vehicle), &[]),
             Input::Reported { vehicle, nav, fix_at, valid } => {
                 let numbers = [nav.north_m, nav.east_m, nav.psi_rad, nav.surge_m_s, nav.sway_m_s, nav.yaw_rate_rad_s];
                 InputRecord { at_ns: fix_at, ..record(if valid { 7 } else { 8 }, Some(vehicle), &numbers) }
@@ -140,8 +140,8 @@ impl InputRecord {
             }
             (3, []) => Input::Pictured,
             (4, []) => Input::Held { vehicle: vehicle? },
-            (5, []) => Input::MindLost { vehicle: vehicle? },
-            (6, []) => Input::MindBack { vehicle: vehicle? },
+            (5, []) => Input::AgentLost { vehicle: vehicle? },
+            (6, []) => Input::AgentBack { vehicle: vehicle? },
             (kind @ 7..=8, &[north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s]) => Input::Reported {
                 vehicle: vehicle?,
                 nav: Nav { north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s },
@@ -179,8 +179,8 @@ mod tests {
             Input::Ordered { vehicle, order: Order::Steer { heading_rad: 0.5, speed_m_s: 2.0 } },
             Input::Ordered { vehicle, order: Order::Thrust { port: -1.0, starboard: 0.25 } },
             Input::Held { vehicle },
-            Input::MindLost { vehicle },
-            Input::MindBack { vehicle },
+            Input::AgentLost { vehicle },
+            Input::AgentBack { vehicle },
             Input::Reported { vehicle, nav, fix_at: SimTime(7), valid: true },
             Input::Reported { vehicle, nav, fix_at: SimTime(-7), valid: false },
             Input::EStopped(true),

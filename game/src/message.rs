@@ -96,7 +96,7 @@ pub struct VehicleTruth {
     /// Whether it is outside of the field.
     pub outside: bool,
     /// Whether its mind is lost.
-    pub mind_lost: bool,
+    pub agent_lost: bool,
     /// Whether its numbers went bad.
     pub quarantined: bool,
     /// Whether it is a real one that was not heard of for too long.
@@ -183,8 +183,8 @@ impl From<Logged> for EventRecord {
             Event::EnteredKeepout { vehicle } => (9, v(vehicle), -1),
             Event::Disabled { vehicle } => (10, v(vehicle), -1),
             Event::Enabled { vehicle } => (11, v(vehicle), -1),
-            Event::MindLost { vehicle } => (12, v(vehicle), -1),
-            Event::MindBack { vehicle } => (13, v(vehicle), -1),
+            Event::AgentLost { vehicle } => (12, v(vehicle), -1),
+            Event::AgentBack { vehicle } => (13, v(vehicle), -1),
             Event::Quarantined { vehicle } => (14, v(vehicle), -1),
             Event::NavLost { vehicle } => (16, v(vehicle), -1),
             Event::NavBack { vehicle } => (17, v(vehicle), -1),
@@ -218,8 +218,8 @@ impl EventRecord {
             9 => Event::EnteredKeepout { vehicle: vehicle? },
             10 => Event::Disabled { vehicle: vehicle? },
             11 => Event::Enabled { vehicle: vehicle? },
-            12 => Event::MindLost { vehicle: vehicle? },
-            13 => Event::MindBack { vehicle: vehicle? },
+            12 => Event::AgentLost { vehicle: vehicle? },
+            13 => Event::AgentBack { vehicle: vehicle? },
             14 => Event::Quarantined { vehicle: vehicle? },
             15 => Event::Ended { winner: u8::try_from(self.subject).ok().map(TeamId) },
             16 => Event::NavLost { vehicle: vehicle? },
@@ -384,7 +384,7 @@ impl Control {
 
 /// What a sim says of its game to anyone who asks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Notice {
+pub struct GameInfo {
     /// The sim's version of Squall.
     pub version: String,
     /// How the game is paced.

@@ -144,7 +144,7 @@ pub struct Current {
     /// Eddies at stated places.
     pub eddies: Vec<Eddy>,
     /// Eddies drawn by lot over the field.
-    pub eddies_by_lot: Option<EddiesByLot>,
+    pub eddies_by_lot: Option<RandomEddies>,
 }
 
 /// A first-order Gauss-Markov process that is added to the mean speed.
@@ -197,7 +197,7 @@ pub struct Eddy {
 
 /// Eddies whose places, sizes and senses are drawn from the stream `eddies`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EddiesByLot {
+pub struct RandomEddies {
     /// How many.
     pub count: u32,
     /// Core radius, from and to, m.

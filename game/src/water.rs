@@ -1,4 +1,4 @@
-//! The waves of a game as an onlooker draws them.
+//! The waves of a game as an observer draws them.
 
 use serde::{Deserialize, Serialize};
 

@@ -4,7 +4,7 @@
 
 use game::field::Walls;
 use game::id::{TeamId, VehicleId};
-use game::scenario::{self, Berth, Checked, Kind};
+use game::scenario::{self, Checked, Kind, StartPosition};
 use game::{Ned, Scenario};
 use std::path::{Path, PathBuf};
 
@@ -112,9 +112,9 @@ fn boats_without_a_berth_lie_in_line_and_mirror_each_other() {
     let poses: Vec<_> = game
         .vehicles
         .iter()
-        .map(|vehicle| match &vehicle.berth {
-            Berth::At(pose) => (pose.at.east, pose.at.north, pose.psi_rad.to_degrees().round()),
-            Berth::Somewhere { .. } => panic!("{} has no place", vehicle.name),
+        .map(|vehicle| match &vehicle.start_position {
+            StartPosition::At(pose) => (pose.at.east, pose.at.north, pose.psi_rad.to_degrees().round()),
+            StartPosition::Somewhere { .. } => panic!("{} has no place", vehicle.name),
         })
         .collect();
     let third_m = 80.0 / 3.0;
@@ -128,7 +128,9 @@ fn boats_without_a_berth_lie_in_line_and_mirror_each_other() {
     let game = self::game("pav01_4v4");
     assert_eq!(game.vehicles.len(), 8);
     for i in 0..4 {
-        let (Berth::At(blue), Berth::At(red)) = (&game.vehicles[i].berth, &game.vehicles[4 + i].berth) else {
+        let (StartPosition::At(blue), StartPosition::At(red)) =
+            (&game.vehicles[i].start_position, &game.vehicles[4 + i].start_position)
+        else {
             panic!("no places");
         };
         // Half a turn about the middle of the field takes one team to the other.

@@ -7,15 +7,15 @@ pub mod bridge;
 pub mod declination;
 pub mod emulator;
 pub mod estimate;
-pub mod fence;
-pub mod front_seat;
 pub mod geodesy;
+pub mod geofence;
 pub mod link;
 pub mod nmea;
 #[cfg(feature = "net")]
 pub mod node;
 pub mod record;
 pub mod replay;
+pub mod set_point;
 pub mod supervisor;
 pub mod survey;
 mod thrust_map;

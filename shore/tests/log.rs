@@ -1,16 +1,16 @@
 //! What a recording tells afterwards: figures, tables and logs of a small made-up game, to the byte where others read them.
 
 use game::event::{Event, Logged};
-use game::external::{GatewayStatus, LinkBytes, TripReport};
+use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use game::input::Input;
-use game::message::{EventRecord, Frame, Message, Notice, Stamp, VehicleTruth};
+use game::message::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth};
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
 use game::water::Water;
 use game::{FlagId, Order, Outcome, Picture, SimTime, TeamId, VehicleId};
 use proptest::prelude::*;
 use shore::log::sheet::SheetError;
 use shore::log::{Book, Comparison, Incomparable, Summary, alog, sheet};
-use shore::page::replay::{Film, Recorded};
+use shore::page::replay::{Recorded, ReplaySource};
 use shore::recording::{Ending, Header, Note, Recording, RecordingError, Turn, Writer};
 use std::io::Cursor;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn header() -> Header {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        notice: Notice { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        notice: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
         water: Water { waves: vec![] },
     }
 }
@@ -98,7 +98,7 @@ fn link(outward: bool, data: &[u8]) -> Note {
 }
 
 fn status(trips: &[&str]) -> Note {
-    let trip = |cause: &&str| TripReport { at_s: 1.0, cause: (*cause).to_owned() };
+    let trip = |cause: &&str| FailsafeReport { at_s: 1.0, cause: (*cause).to_owned() };
     let trips = trips.iter().map(trip).collect();
     let status = GatewayStatus { state: "armed".to_owned(), trips, ..GatewayStatus::default() };
     let bytes = serde_json::to_vec(&status).expect("JSON");
@@ -277,7 +277,7 @@ fn an_order_ends_with_the_mind_that_gave_it() {
     for seq in 0..3 {
         let mut turn = turn(seq);
         if seq == 2 {
-            turn.inputs = vec![Input::MindLost { vehicle: VehicleId(0) }, Input::Played];
+            turn.inputs = vec![Input::AgentLost { vehicle: VehicleId(0) }, Input::Played];
         }
         writer.note(&Note::Turn(Box::new(turn)), 1).expect("it is written");
     }

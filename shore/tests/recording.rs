@@ -2,7 +2,7 @@
 
 use game::helm::HelmQuestion;
 use game::input::{Input, Inputs};
-use game::message::{Frame, Message, Notice, Orders, Stamp, VehicleTruth};
+use game::message::{Frame, GameInfo, Message, Orders, Stamp, VehicleTruth};
 use game::picture::Nav;
 use game::water::{PlaneWave, Water};
 use game::{Order, Outcome, Picture, SimTime, VehicleId};
@@ -18,7 +18,7 @@ fn header() -> Header {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        notice: Notice { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        notice: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
         water: Water { waves: vec![wave] },
     }
 }

@@ -7,7 +7,7 @@ import { Trails } from './trail.js';
 export const TAGGED = 1;
 export const DISABLED = 2;
 export const OUTSIDE = 4;
-export const MIND_LOST = 8;
+export const AGENT_LOST = 8;
 export const QUARANTINED = 16;
 export const NAV_LOST = 32;
 
@@ -16,7 +16,7 @@ export const MARKS = [
   [TAGGED, 'T', 'tagged'],
   [DISABLED, 'X', 'out of action'],
   [OUTSIDE, 'O', 'outside the field'],
-  [MIND_LOST, 'M', 'has lost its mind'],
+  [AGENT_LOST, 'M', 'has lost its mind'],
   [QUARANTINED, 'Q', 'quarantined'],
   [NAV_LOST, 'N', 'nobody knows where it is'],
 ];
@@ -177,7 +177,7 @@ export class Game {
       this.starboard[i] = truth.starboard_newton;
       this.carrying[i] = truth.carrying;
       this.marks[i] = (truth.tagged ? TAGGED : 0) | (truth.disabled ? DISABLED : 0) | (truth.outside ? OUTSIDE : 0)
-        | (truth.mind_lost ? MIND_LOST : 0) | (truth.quarantined ? QUARANTINED : 0) | (truth.nav_lost ? NAV_LOST : 0);
+        | (truth.agent_lost ? AGENT_LOST : 0) | (truth.quarantined ? QUARANTINED : 0) | (truth.nav_lost ? NAV_LOST : 0);
       if (sampled) this.trails.put(i, nav.east_m, nav.north_m);
     }
   }

@@ -6,7 +6,7 @@ const WAITS_S = [0.3, 0.6, 1, 2, 3, 5];
 const HIDDEN_ACK_S = 1;
 /** A connection that has not opened after this time is given up, s. */
 const OPEN_S = 8;
-/** One on which nothing comes for so long, though something should, is dead, s. Nobody else says so for minutes. */
+/** One on which nothing comes for so long, though something should, is dead, s. NoRecorder else says so for minutes. */
 const SILENCE_S = 4;
 /** How often to look whether it is, s. */
 const WATCH_S = 1;

@@ -4,7 +4,7 @@
 //   mode, hello, state, player    as the server sent them last; null before
 //   connected, t_s, score         score by team
 //   frame                         { t_s, tick, stopped, over, boats: [{ name, team, x, y, heading_deg, course_deg, speed_m_s,
-//                                 tagged, carrying, disabled, outside, mind_lost, quarantined, nav_lost }] }; null before;
+//                                 tagged, carrying, disabled, outside, agent_lost, quarantined, nav_lost }] }; null before;
 //                                 carrying is the number of a flag, or -1
 //   flags                         [{ team, x, y, carrier }]: where each is now; carrier is a boat's name, or null
 //   events                        all that are known; of a game that is played the newest 20000

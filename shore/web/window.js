@@ -10,7 +10,7 @@ function boatOf(game, index) {
   return {
     name, team, x: game.toX[index], y: game.toY[index], heading_deg: degrees(game.toH[index]), course_deg: degrees(game.course[index]),
     speed_m_s: game.speed[index], tagged: truth.tagged, carrying: truth.carrying, disabled: truth.disabled, outside: truth.outside,
-    mind_lost: truth.mind_lost, quarantined: truth.quarantined, nav_lost: truth.nav_lost,
+    agent_lost: truth.agent_lost, quarantined: truth.quarantined, nav_lost: truth.nav_lost,
   };
 }
 

@@ -8,7 +8,7 @@ use crate::world::NoStart;
 use game::SimTime;
 use game::link::Sharing;
 use game::rules::{Rules, TaggedBoat};
-use game::scenario::{Berth, Scenario, Source, UnknownVehicle};
+use game::scenario::{Scenario, Source, StartPosition, UnknownVehicle};
 use thiserror::Error;
 
 /// As long as a file may make a game.
@@ -34,10 +34,10 @@ pub fn afloat(scenario: &Scenario, seed: u64, names: &[String]) -> Result<Scenar
     for name in names {
         scenario.vehicle_named(name)?;
     }
-    let poses = spawn::berths(&scenario, seed).map_err(NoStart::from)?;
+    let poses = spawn::start_positions(&scenario, seed).map_err(NoStart::from)?;
     let mut water = scenario.clone();
     for (vehicle, pose) in water.vehicles.iter_mut().zip(poses) {
-        (vehicle.berth, vehicle.source) = (Berth::At(pose), Source::Simulated);
+        (vehicle.start_position, vehicle.source) = (StartPosition::At(pose), Source::Simulated);
     }
     water.vehicles.retain(|vehicle| names.contains(&vehicle.name));
     water.name = format!("{}_afloat", scenario.name);

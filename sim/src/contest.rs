@@ -30,7 +30,7 @@ pub struct Contest {
     ordered_at: Vec<SimTime>,
     /// After how long without one each vehicle's thrusters stop.
     watchdogs: Vec<Option<SimTime>>,
-    mind_lost: Vec<bool>,
+    agent_lost: Vec<bool>,
     /// Whether all boats hold, by somebody ashore: for good, or for now.
     stopped: bool,
     halted: bool,
@@ -72,7 +72,7 @@ impl Contest {
             orders: vec![Order::Hold; count],
             ordered_at: vec![SimTime::ZERO; count],
             watchdogs: (0..count).map(|i| watchdog(&scenario, VehicleId::at(i))).collect(),
-            mind_lost: vec![false; count],
+            agent_lost: vec![false; count],
             stopped: false,
             halted: false,
             tracks: scenario.externals().map(Track::new).collect(),
@@ -173,8 +173,8 @@ impl Contest {
     #[must_use]
     pub fn frame_since(&self, events: usize) -> Frame {
         let mut frame = view::frame(&self.world, self.decision, &self.events[events..]);
-        for (truth, mind_lost) in frame.vehicles.iter_mut().zip(&self.mind_lost) {
-            truth.mind_lost = *mind_lost;
+        for (truth, agent_lost) in frame.vehicles.iter_mut().zip(&self.agent_lost) {
+            truth.agent_lost = *agent_lost;
         }
         for track in &self.tracks {
             frame.vehicles[track.vehicle.index()].nav_lost = track.is_lost(self.now());
@@ -211,8 +211,8 @@ impl Contest {
             Input::Pictured => drop(self.pictures()),
             Input::Ordered { vehicle, order } => self.order(vehicle, order),
             Input::Held { vehicle } => self.hold(vehicle),
-            Input::MindLost { vehicle } => self.lose_mind(vehicle),
-            Input::MindBack { vehicle } => self.regain_mind(vehicle),
+            Input::AgentLost { vehicle } => self.lose_agent(vehicle),
+            Input::AgentBack { vehicle } => self.regain_agent(vehicle),
             // What was taken in then is taken in again.
             Input::Reported { vehicle, nav, fix_at, valid } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
@@ -238,7 +238,7 @@ impl Contest {
     /// when the game is over: whatever the rules want of it, somebody must be looking.
     #[must_use]
     pub fn obeyed(&self, vehicle: VehicleId) -> Order {
-        let is_lost = |track: &Track| track.is_lost(self.now()) || self.mind_lost[vehicle.index()] || self.is_over();
+        let is_lost = |track: &Track| track.is_lost(self.now()) || self.agent_lost[vehicle.index()] || self.is_over();
         if self.track(vehicle).is_some_and(is_lost) {
             return Order::Hold;
         }
@@ -356,7 +356,7 @@ impl Contest {
         let now = self.now();
         for (i, order) in self.orders.iter_mut().enumerate() {
             if let Some(arrived) = self.radio.as_mut().and_then(|radio| radio.order(i, now))
-                && !self.mind_lost[i]
+                && !self.agent_lost[i]
             {
                 (*order, self.ordered_at[i]) = (arrived, now);
             }
@@ -368,20 +368,20 @@ impl Contest {
 
     /// Says that a vehicle's mind is lost: it holds as by [`Contest::hold`], and an event says so. Does nothing if it is
     /// lost already.
-    pub fn lose_mind(&mut self, vehicle: VehicleId) {
-        if !std::mem::replace(&mut self.mind_lost[vehicle.index()], true) {
-            self.note(Input::MindLost { vehicle });
+    pub fn lose_agent(&mut self, vehicle: VehicleId) {
+        if !std::mem::replace(&mut self.agent_lost[vehicle.index()], true) {
+            self.note(Input::AgentLost { vehicle });
             self.hold_now(vehicle);
-            self.log(Event::MindLost { vehicle });
+            self.log(Event::AgentLost { vehicle });
         }
     }
 
     /// Says that a vehicle's mind is there again: what was sent before does not arrive. Does nothing if it was not lost.
-    pub fn regain_mind(&mut self, vehicle: VehicleId) {
-        if std::mem::replace(&mut self.mind_lost[vehicle.index()], false) {
-            self.note(Input::MindBack { vehicle });
+    pub fn regain_agent(&mut self, vehicle: VehicleId) {
+        if std::mem::replace(&mut self.agent_lost[vehicle.index()], false) {
+            self.note(Input::AgentBack { vehicle });
             self.forget_orders(vehicle);
-            self.log(Event::MindBack { vehicle });
+            self.log(Event::AgentBack { vehicle });
         }
     }
 

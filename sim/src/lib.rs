@@ -17,7 +17,7 @@ pub mod motion;
 pub mod node;
 mod radio;
 mod ramp;
-pub mod rerun;
+pub mod resimulation;
 pub mod sea;
 pub mod sensor;
 mod sighting;

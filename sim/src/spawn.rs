@@ -2,18 +2,18 @@
 
 use game::angle::wrap_pi;
 use game::frame::{Ned, Pose};
-use game::scenario::{Berth, Scenario};
+use game::scenario::{Scenario, StartPosition};
 use game::stream::Stream;
 use game::{Field, TeamId};
 use thiserror::Error;
 
-/// How often a berth is drawn before the field counts as full.
+/// How often a start_position is drawn before the field counts as full.
 const TRIES: u32 = 10_000;
 
 /// No room on the field.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("no free berth for {vehicle} after {TRIES} tries: enlarge its spawn area or lower gap_m")]
-pub struct NoBerth {
+#[error("no free start_position for {vehicle} after {TRIES} tries: enlarge its spawn area or lower gap_m")]
+pub struct SpawnError {
     /// Which vehicle found none.
     pub vehicle: String,
 }
@@ -21,24 +21,24 @@ pub struct NoBerth {
 /// Where every vehicle starts. Boats placed by hand come first, then the others in order.
 ///
 /// # Errors
-/// [`NoBerth`] where a spawn area is too full.
-pub fn berths(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, NoBerth> {
+/// [`SpawnError`] where a spawn area is too full.
+pub fn start_positions(scenario: &Scenario, seed: u64) -> Result<Vec<Pose>, SpawnError> {
     let mut stream = Stream::new(seed, "spawn");
     let mut taken: Vec<(usize, Pose)> = Vec::new();
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        if let Berth::At(pose) = vehicle.berth {
+        if let StartPosition::At(pose) = vehicle.start_position {
             taken.push((i, pose));
         }
     }
     for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        if let Berth::Somewhere { along_m, across_m, gap_m } = vehicle.berth {
+        if let StartPosition::Somewhere { along_m, across_m, gap_m } = vehicle.start_position {
             let free = |at: Ned| {
                 let apart = |other: &(usize, Pose)| other.1.at.distance(at) >= gap_m;
                 taken.iter().all(apart) && clear_of_obstacles(&scenario.field, at, gap_m)
             };
             let mut draw = || seen_from(&scenario.field, vehicle.team, (along_m, across_m), &mut stream);
             let at = (0..TRIES).map(|_| draw()).find(|at| free(*at));
-            let at = at.ok_or_else(|| NoBerth { vehicle: vehicle.name.clone() })?;
+            let at = at.ok_or_else(|| SpawnError { vehicle: vehicle.name.clone() })?;
             let psi_rad = wrap_pi(scenario.field.facing_deg(vehicle.team).to_radians());
             taken.push((i, Pose { at, psi_rad }));
         }

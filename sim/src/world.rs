@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::motion::{Effort, Motion};
 use crate::sea::{Attitude, SeaNow};
 use crate::sensor::{Reading, Truth};
-use crate::spawn::{self, NoBerth};
+use crate::spawn::{self, SpawnError};
 use crate::state::{BoatState, RestoreError, State};
 use game::frame::{self, Ned};
 use game::near::{Near, Pair};
@@ -34,7 +34,7 @@ pub struct World {
 pub enum NoStart {
     /// The boats do not fit into their spawn area.
     #[error(transparent)]
-    NoBerth(#[from] NoBerth),
+    SpawnError(#[from] SpawnError),
     /// The numbers drawn for this seed are each allowed, but not together.
     #[error("what was drawn for this seed does not go together\n{0}")]
     Draw(#[from] Problems),
@@ -70,7 +70,8 @@ impl World {
     pub fn new(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
         let scenario = scenario.of_seed(seed)?;
         let model = Model::new(&scenario, seed);
-        let boats = spawn::berths(&scenario, seed)?.into_iter().map(|pose| BoatState { pose, ..BoatState::default() });
+        let boats =
+            spawn::start_positions(&scenario, seed)?.into_iter().map(|pose| BoatState { pose, ..BoatState::default() });
         let mut state = State {
             tick: 0,
             now: SimTime::ZERO,

@@ -186,7 +186,7 @@ fn crowd(world: &World, orders: &mut Vec<Order>) {
 fn asking_rapier_only_about_close_hulls_changes_no_byte() {
     let crowded = |scenario: &mut Scenario| {
         for vehicle in &mut scenario.vehicles {
-            if let game::scenario::Berth::Somewhere { along_m, across_m, gap_m } = &mut vehicle.berth {
+            if let game::scenario::StartPosition::Somewhere { along_m, across_m, gap_m } = &mut vehicle.start_position {
                 (*along_m, *across_m, *gap_m) = ((60.0, 75.0), (25.0, 55.0), 3.0);
             }
         }

@@ -3,7 +3,7 @@
 use game::field::{Plan, Walls};
 use game::frame::LatLon;
 use game::math;
-use game::sea::{Current, EddiesByLot, Eddy, Shear, Tide, Wander};
+use game::sea::{Current, Eddy, RandomEddies, Shear, Tide, Wander};
 use game::{Field, Ned, SimTime};
 use sim::sea::current::CurrentField;
 use sim::sea::eddy;
@@ -175,7 +175,7 @@ fn an_eddy_turns_a_hull_as_the_flow_at_its_ends_says() {
 
 #[test]
 fn eddies_by_lot_lie_on_the_field_in_their_bounds_and_add_up() {
-    let lot = EddiesByLot { count: 200, radius_m: (10.0, 40.0), peak_m_s: (0.1, 0.3) };
+    let lot = RandomEddies { count: 200, radius_m: (10.0, 40.0), peak_m_s: (0.1, 0.3) };
     let drawn = eddy::draw(&lot, &field(), 4);
     assert_eq!(drawn.len(), 200);
     assert!(drawn.iter().all(|eddy| field().contains(eddy.centre)));

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{alone, put, set, shipped};
-use game::scenario::Berth;
+use game::scenario::StartPosition;
 use game::{Event, Order, Scenario, VehicleId};
 use sim::{RestoreError, World};
 
@@ -187,7 +187,9 @@ fn boats_start_inside_of_their_areas_and_apart() {
         let world = World::new(&scenario, seed).unwrap();
         let boats = &world.state().boats;
         for (i, (boat, vehicle)) in boats.iter().zip(&scenario.vehicles).enumerate() {
-            let Berth::Somewhere { along_m, across_m, gap_m } = vehicle.berth else { panic!("{}", vehicle.name) };
+            let StartPosition::Somewhere { along_m, across_m, gap_m } = vehicle.start_position else {
+                panic!("{}", vehicle.name)
+            };
             let corner = scenario.field.seen_from(vehicle.team, along_m.0, across_m.0);
             let opposite = scenario.field.seen_from(vehicle.team, along_m.1, across_m.1);
             let between = |x: f64, a: f64, b: f64| (a.min(b)..=a.max(b)).contains(&x);
@@ -208,12 +210,12 @@ fn boats_start_inside_of_their_areas_and_apart() {
 fn a_full_area_says_which_boat_has_no_berth() {
     let mut scenario = shipped("swarm_20v20.toml");
     for vehicle in &mut scenario.vehicles {
-        if let Berth::Somewhere { gap_m, .. } = &mut vehicle.berth {
+        if let StartPosition::Somewhere { gap_m, .. } = &mut vehicle.start_position {
             *gap_m = 30.0;
         }
     }
     let error = World::new(&scenario, 1).err().expect("no room for twenty boats 30 m apart");
-    let sim::NoStart::NoBerth(error) = error else { panic!("{error}") };
+    let sim::NoStart::SpawnError(error) = error else { panic!("{error}") };
     assert!(scenario.vehicles.iter().any(|vehicle| vehicle.name == error.vehicle), "{error}");
     assert!(error.to_string().contains(&error.vehicle) && error.to_string().contains("gap_m"), "{error}");
 }

@@ -91,8 +91,8 @@ fn a_real_boat_is_tagged_and_what_it_obeys_is_what_the_rules_make_of_its_orders(
     // What goes to the boat is sound.
     let sent = game::message::VehicleOrder::new(REAL, contest.obeyed(REAL));
     assert!(sent.order().expect("a known kind").check().is_ok() && ExternalOrder::VERSION == 1);
-    // Nobody drives a boat that nobody minds.
-    contest.lose_mind(REAL);
+    // NoRecorder drives a boat that nobody minds.
+    contest.lose_agent(REAL);
     assert_eq!(contest.obeyed(REAL), Order::Hold);
 }
 
@@ -135,9 +135,13 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     advance(&mut contest, 3);
     assert_eq!(events(&contest), [Event::NavLost { vehicle: REAL }], "it was never heard of");
     assert!(!contest.is_heard(REAL) && contest.is_heard(OTHER));
-    let berth = contest.world().state().boats[0].pose;
+    let start_position = contest.world().state().boats[0].pose;
     let unknown = *contest.pictures()[0].own(REAL).expect("its own boat");
-    assert_eq!((unknown.nav.pose(), unknown.fix_ns), (berth, SimTime::LONG_AGO), "it lies at its berth");
+    assert_eq!(
+        (unknown.nav.pose(), unknown.fix_ns),
+        (start_position, SimTime::LONG_AGO),
+        "it lies at its start_position"
+    );
 
     let (u, r) = (2.0, 0.25);
     let fix = Nav { yaw_rate_rad_s: r, ..nav(50.0, 40.0, 0.0, u) };

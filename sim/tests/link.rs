@@ -5,7 +5,7 @@ mod common;
 use common::alone;
 use game::boat::Drive;
 use game::link::{Link, Loss};
-use game::scenario::Berth;
+use game::scenario::StartPosition;
 use game::{Ned, Order, Pose, Scenario, SimTime, VehicleId};
 use sim::Contest;
 
@@ -24,7 +24,8 @@ fn over(link: Link) -> Scenario {
     let mut scenario = alone("surveyor_m1_8", "calm");
     scenario.rules.time_limit = SimTime::from_s(80_000.0);
     let psi_rad = std::f64::consts::FRAC_PI_2;
-    scenario.vehicles[BLUE.index()].berth = Berth::At(Pose { at: Ned::from_xy(150.0, 200.0), psi_rad });
+    scenario.vehicles[BLUE.index()].start_position =
+        StartPosition::At(Pose { at: Ned::from_xy(150.0, 200.0), psi_rad });
     scenario.link = Some(link);
     scenario
 }
@@ -155,12 +156,12 @@ fn holding_stops_what_is_under_way() {
     type Stop = fn(&mut Contest);
     let ways: [(&str, Stop); 3] = [
         ("hold", |contest| contest.hold(BLUE)),
-        ("lose", |contest| contest.lose_mind(BLUE)),
+        ("lose", |contest| contest.lose_agent(BLUE)),
         ("regain", |contest| {
-            contest.lose_mind(BLUE);
-            // Nobody's order: its mind is lost.
+            contest.lose_agent(BLUE);
+            // NoRecorder's order: its mind is lost.
             contest.order(BLUE, labelled(77));
-            contest.regain_mind(BLUE);
+            contest.regain_agent(BLUE);
         }),
     ];
     for (name, stop) in ways {
@@ -173,7 +174,7 @@ fn holding_stops_what_is_under_way() {
             assert_eq!(contest.orders()[0], Order::Hold, "{name}");
         }
         assert_eq!(contest.orders()[1], labelled(29), "{name}: red's go on");
-        contest.regain_mind(BLUE);
+        contest.regain_agent(BLUE);
         (0..20).for_each(|_| play(&mut contest));
         assert_ne!(contest.orders()[0], Order::Hold, "{name}: the next order counts again");
     }

@@ -7,7 +7,7 @@ use common::alone;
 use game::angle::rad_from_compass_deg;
 use game::link::{Link, Loss, Sharing};
 use game::picture::Contact;
-use game::scenario::Berth;
+use game::scenario::StartPosition;
 use game::{Ned, Order, Pose, Scenario, SimTime, VehicleId};
 use sim::Contest;
 
@@ -20,8 +20,8 @@ fn clear_sight() -> Sharing {
     Sharing { range_m: Some(1e6), memory_s: 1e4, ..Sharing::default() }
 }
 
-fn berth((x, y, heading_deg): (f64, f64, f64)) -> Berth {
-    Berth::At(Pose { at: Ned::from_xy(x, y), psi_rad: rad_from_compass_deg(heading_deg) })
+fn start_position((x, y, heading_deg): (f64, f64, f64)) -> StartPosition {
+    StartPosition::At(Pose { at: Ned::from_xy(x, y), psi_rad: rad_from_compass_deg(heading_deg) })
 }
 
 /// One boat a side, at x (m), y (m) and a compass heading (deg).
@@ -29,8 +29,8 @@ fn facing(sharing: Sharing, blue: (f64, f64, f64), red: (f64, f64, f64)) -> Scen
     let mut scenario = alone("surveyor_m1_8", "calm");
     scenario.rules.sharing = sharing;
     scenario.rules.time_limit = SimTime::from_s(80_000.0);
-    scenario.vehicles[BLUE.index()].berth = berth(blue);
-    scenario.vehicles[RED.index()].berth = berth(red);
+    scenario.vehicles[BLUE.index()].start_position = start_position(blue);
+    scenario.vehicles[RED.index()].start_position = start_position(red);
     scenario
 }
 
@@ -198,7 +198,7 @@ fn a_boat_out_of_radio_range_tells_nobody_what_it_sees() {
         let mut scenario = facing(sharing, (400.0, 200.0, 0.0), (560.0, 200.0, 90.0));
         let mut second = scenario.vehicles[BLUE.index()].clone();
         second.name = "blue_two".to_owned();
-        second.berth = berth((540.0, 200.0, 0.0));
+        second.start_position = start_position((540.0, 200.0, 0.0));
         scenario.vehicles.push(second);
         let station = Ned::from_xy(400.0, 200.0);
         scenario.link = Some(Link { delay_s: 0.0, jitter_s: 0.0, loss: Loss::default(), range_m, station });
@@ -217,7 +217,7 @@ fn a_boat_out_of_radio_range_tells_nobody_what_it_sees() {
 fn the_referee_announces_a_carrier_that_nobody_sees() {
     let mut scenario = facing(Sharing { range_m: Some(1.0), ..clear_sight() }, (400.0, 100.0, 0.0), (0.0, 0.0, 0.0));
     let flag = scenario.field.flags[0].home;
-    scenario.vehicles[RED.index()].berth = Berth::At(Pose { at: flag, psi_rad: 0.0 });
+    scenario.vehicles[RED.index()].start_position = StartPosition::At(Pose { at: flag, psi_rad: 0.0 });
     let mut contest = started(&scenario);
     contest.advance();
     assert_eq!(shown(&mut contest), None);

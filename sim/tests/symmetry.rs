@@ -6,7 +6,7 @@ mod common;
 use common::{alone, put};
 use game::field::Plan;
 use game::math::sin_cos;
-use game::sea::{EddiesByLot, Eddy, Gusts, Sea, Shear, Spreading, Tide, Wander, Waves, Wind};
+use game::sea::{Eddy, Gusts, RandomEddies, Sea, Shear, Spreading, Tide, Wander, Waves, Wind};
 use game::{Field, Ned, Order, Pose, Scenario};
 use sim::World;
 
@@ -195,7 +195,7 @@ const NOTHINGS: [Change; 9] = [
         sea.current.eddies = vec![Eddy { centre: Ned { north: 210.0, east: 190.0 }, radius_m: 20.0, peak_m_s: 0.0 }];
     }),
     ("eddies by lot of no strength", |sea| {
-        sea.current.eddies_by_lot = Some(EddiesByLot { count: 5, radius_m: (10.0, 40.0), peak_m_s: (0.0, 0.0) });
+        sea.current.eddies_by_lot = Some(RandomEddies { count: 5, radius_m: (10.0, 40.0), peak_m_s: (0.0, 0.0) });
     }),
 ];
 

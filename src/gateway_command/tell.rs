@@ -2,7 +2,7 @@
 
 use super::log_line::full;
 use crate::net_args::LeafArgs;
-use crate::onlooker::Onlooker;
+use crate::observer::Observer;
 use crate::screen;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::Delivery;
@@ -55,9 +55,9 @@ enum Word {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let command = command_of(args)?;
-    let onlooker = Onlooker::come(&args.leaf)?;
-    let told = if args.vehicle == ALL { tell_all(&onlooker, args.command) } else { tell(&onlooker, args, &command) };
-    onlooker.bus.close();
+    let observer = Observer::come(&args.leaf)?;
+    let told = if args.vehicle == ALL { tell_all(&observer, args.command) } else { tell(&observer, args, &command) };
+    observer.bus.close();
     told
 }
 
@@ -76,9 +76,9 @@ fn command_of(args: &Args) -> Result<OperatorCommand> {
     })
 }
 
-fn tell(onlooker: &Onlooker, args: &Args, command: &OperatorCommand) -> Result<ExitCode> {
-    onlooker.vehicle(&args.vehicle)?;
-    let reply = ask(onlooker, &args.vehicle, command)?;
+fn tell(observer: &Observer, args: &Args, command: &OperatorCommand) -> Result<ExitCode> {
+    observer.vehicle(&args.vehicle)?;
+    let reply = ask(observer, &args.vehicle, command)?;
     screen::print(&full(&reply.status));
     match reply.refused {
         None => Ok(ExitCode::SUCCESS),
@@ -86,15 +86,15 @@ fn tell(onlooker: &Onlooker, args: &Args, command: &OperatorCommand) -> Result<E
     }
 }
 
-fn ask(onlooker: &Onlooker, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
+fn ask(observer: &Observer, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
     let question = serde_json::to_vec(command).context("a command is JSON")?;
-    let answer = onlooker.bus.ask(&topic::operate(&onlooker.game, vehicle), question, ANSWER)?;
+    let answer = observer.bus.ask(&topic::operate(&observer.game, vehicle), question, ANSWER)?;
     let bytes = answer.with_context(|| format!("no gateway of {vehicle} answers"))?;
     serde_json::from_slice(&bytes).context("the gateway is of another version of Squall")
 }
 
 /// What goes to everybody at once, the sim too; then how every real boat is.
-fn tell_all(onlooker: &Onlooker, word: Word) -> Result<ExitCode> {
+fn tell_all(observer: &Observer, word: Word) -> Result<ExitCode> {
     let control = match word {
         Word::Status => None,
         Word::Estop => Some(Control::EStop),
@@ -102,13 +102,13 @@ fn tell_all(onlooker: &Onlooker, word: Word) -> Result<ExitCode> {
         _ => bail!("only estop, release and status go to all; tell each boat by its name"),
     };
     if let Some(control) = control {
-        let line = onlooker.bus.publisher(topic::control(&onlooker.game), Delivery::Wait)?;
+        let line = observer.bus.publisher(topic::control(&observer.game), Delivery::Wait)?;
         line.send_json(serde_json::to_vec(&control).context("a command is JSON")?)?;
     }
-    let scenario = &onlooker.notice.scenario;
+    let scenario = &observer.notice.scenario;
     let mut silent = Vec::new();
     for vehicle in scenario.vehicles.iter().filter(|vehicle| vehicle.source == Source::External) {
-        match ask(onlooker, &vehicle.name, &OperatorCommand::Status) {
+        match ask(observer, &vehicle.name, &OperatorCommand::Status) {
             Ok(reply) => screen::print(&full(&reply.status)),
             Err(_) => silent.push(vehicle.name.as_str()),
         }

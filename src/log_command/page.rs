@@ -65,7 +65,7 @@ fn boats(boats: &[Figures]) -> String {
         (format!("{:>12}{:>10}", "rms m", "95 % m"), format!("{:>12}{:>10}", "rms deg", "rms m/s"));
     line(&mut text, format_args!("{:width$}{}{navigation}{orders}", "", format!("{:>9}", "s").repeat(5)));
     for boat in boats {
-        let spans_s = [boat.carrying_s, boat.tagged_s, boat.outside_s, boat.mind_lost_s, boat.nav_lost_s];
+        let spans_s = [boat.carrying_s, boat.tagged_s, boat.outside_s, boat.agent_lost_s, boat.nav_lost_s];
         let spans = spans_s.map(|span_s| format!("{span_s:>9.1}")).concat();
         let navigation = match &boat.navigation {
             Some(error) => format!("{:>12.2}{:>10.2}", error.rms_m, error.p95_m),

@@ -7,7 +7,7 @@ use game::input::{Input, Inputs};
 use game::message::Frame;
 use serde_json::Value;
 use shore::recording::{FRAME, INPUTS, Recording};
-use sim::rerun::Rerun;
+use sim::resimulation::Resimulation;
 
 /// What came of it.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ impl Verdict {
 /// Plays the game again.
 pub(super) fn check(recording: &Recording) -> Result<Verdict> {
     let scenario = &recording.header().notice.scenario;
-    let mut rerun = Rerun::new(scenario)?;
+    let mut resimulation = Resimulation::new(scenario)?;
     let mut inputs = Vec::new();
     let mut verdict = Verdict { frames: 0, end_s: 0.0, is_cut: recording.is_cut(), difference: None, digests: None };
     let ticks = u64::from(scenario.ticks_per_decision);
@@ -76,7 +76,7 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
         if given.stamp.seq != seq {
             bail!("decisions {seq} to {} are missing in this recording", given.stamp.seq.saturating_sub(1));
         }
-        let again = rerun.frame_after(read(given, scenario)?);
+        let again = resimulation.frame_after(read(given, scenario)?);
         inputs.clear();
         if codec::encode(&again) != said.bytes {
             let recorded: Frame = said.read()?;
@@ -91,7 +91,7 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
     if verdict.frames == 0 {
         bail!("there are no frames in it");
     }
-    let outcome = rerun.outcome();
+    let outcome = resimulation.outcome();
     if let Some(ending) = recording.ending() {
         if ending.outcome.ticks != outcome.ticks {
             bail!("the game went on to tick {}, the recording to {}", ending.outcome.ticks, outcome.ticks);
@@ -138,7 +138,7 @@ fn differing(path: &str, a: &Value, b: &Value) -> Option<[String; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::message::Notice;
+    use game::message::GameInfo;
     use game::{Order, VehicleId};
     use shore::recording::{Ending, Header, Note, Turn, Writer};
     use std::io::Cursor;
@@ -151,7 +151,7 @@ mod tests {
             commit: String::new(),
             game: "made_up".to_owned(),
             began_utc_ns: 0,
-            notice: Notice { version: game::VERSION.to_owned(), pace: String::new(), scenario: scenario.clone() },
+            notice: GameInfo { version: game::VERSION.to_owned(), pace: String::new(), scenario: scenario.clone() },
             water: game::water::Water::default(),
         };
         let mut writer = Writer::begin(Cursor::new(Vec::new()), &header).expect("memory");

@@ -2,7 +2,7 @@
 
 use super::Rates;
 use game::angle::compass_deg_from_rad;
-use game::message::{Frame, Notice, VehicleTruth};
+use game::message::{Frame, GameInfo, VehicleTruth};
 use game::topic::GameName;
 use game::{Ned, Scenario};
 use std::fmt::Write;
@@ -15,7 +15,7 @@ const COLOURS: [&str; 2] = ["\x1b[94m", "\x1b[91m"];
 const PLAIN: &str = "\x1b[0m";
 
 /// One picture of the game.
-pub(super) fn page(notice: &Notice, game: &GameName, frame: &Frame, events: &[String], rates: &Rates) -> String {
+pub(super) fn page(notice: &GameInfo, game: &GameName, frame: &Frame, events: &[String], rates: &Rates) -> String {
     let scenario = &notice.scenario;
     let mut text = format!(
         "{}  {}  {:.1} s of {:.0} s  {:.0}x  {:.0} frames/s\n",
@@ -40,7 +40,7 @@ pub(super) fn page(notice: &Notice, game: &GameName, frame: &Frame, events: &[St
 
 /// How the game stands, in one line.
 pub(super) fn line(scenario: &Scenario, frame: &Frame, rates: &Rates) -> String {
-    let lost = frame.vehicles.iter().filter(|boat| boat.mind_lost).count();
+    let lost = frame.vehicles.iter().filter(|boat| boat.agent_lost).count();
     let lost = if lost > 0 { format!("  {lost} without a mind") } else { String::new() };
     format!(
         "{:>7.1} s  {}  {:.0}x  {:.0} frames/s{lost}\n",
@@ -114,7 +114,7 @@ fn boats<'a>(scenario: &'a Scenario, frame: &'a Frame) -> impl Iterator<Item = S
 
 fn state(boat: &VehicleTruth) -> String {
     let words = [
-        (boat.mind_lost, "NO MIND"),
+        (boat.agent_lost, "NO MIND"),
         (boat.quarantined, "QUARANTINED"),
         (boat.carrying >= 0, "carries a flag"),
         (boat.tagged, "tagged"),

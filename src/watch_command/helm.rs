@@ -1,7 +1,7 @@
 //! One boat's helm, live.
 
 use super::rest;
-use crate::onlooker::Onlooker;
+use crate::observer::Observer;
 use crate::{helm_page, screen};
 use anyhow::{Result, bail};
 use game::helm::HelmQuestion;
@@ -14,14 +14,14 @@ const SILENCE: Duration = Duration::from_secs(10);
 
 /// Shows what the helm of the vehicle of this name thinks until the game is over, this often.
 #[expect(clippy::disallowed_methods, reason = "silence is measured by the clock")]
-pub(super) fn watch(onlooker: &Onlooker, name: &str, pause: Duration, stop: &AtomicBool) -> Result<()> {
-    let vehicle = onlooker.vehicle(name)?;
-    let scenario = &onlooker.notice.scenario;
+pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &AtomicBool) -> Result<()> {
+    let vehicle = observer.vehicle(name)?;
+    let scenario = &observer.notice.scenario;
     let live = std::io::stdout().is_terminal();
     let mut last = None;
     let mut heard = Instant::now();
     while !stop.load(Ordering::Relaxed) {
-        match onlooker.helm(vehicle, HelmQuestion { functions: false })? {
+        match observer.helm(vehicle, HelmQuestion { functions: false })? {
             Some(report) => {
                 heard = Instant::now();
                 // On paper a decision is told once.
@@ -34,7 +34,7 @@ pub(super) fn watch(onlooker: &Onlooker, name: &str, pause: Duration, stop: &Ato
                     return Ok(());
                 }
             }
-            None if !onlooker.is_on()? => return Ok(()),
+            None if !observer.is_on()? => return Ok(()),
             None if heard.elapsed() > SILENCE => bail!("nobody minds {name}"),
             None => {}
         }

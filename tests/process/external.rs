@@ -1,7 +1,7 @@
 //! Real boats: a gateway of the test's own brings one, sails it by the orders that come, and falls silent.
 
 use crate::support::{LIMIT, Sim, real_attacker, result_of, run, scenarios, write};
-use bus::{Bus, Delivery, Publisher, Standing};
+use bus::{Bus, Declaration, Delivery, Publisher};
 use game::angle::rad_from_compass_deg;
 use game::external::{ExternalOrder, NavReport};
 use game::message::{JoinReply, JoinRequest, Message, Stamp};
@@ -20,7 +20,7 @@ const FACTOR: f64 = 4.0;
 struct Gateway {
     bus: Bus,
     name: GameName,
-    alive: Vec<Standing>,
+    alive: Vec<Declaration>,
     nav: Publisher,
     orders: Arc<Mutex<Vec<ExternalOrder>>>,
     ticket: u64,
@@ -48,7 +48,9 @@ impl Gateway {
             bus.show_alive(topic::alive(&name, Part::Gateway, &bus.id())).expect("the hub is there"),
         ];
         let nav = bus.publisher(topic::nav(&name, &scenario, ME), Delivery::Drop).expect("the hub is there");
-        let JoinReply::Granted { ticket, vehicles } = moor(&bus, &name, "blue_one") else { panic!("no berth") };
+        let JoinReply::Granted { ticket, vehicles } = moor(&bus, &name, "blue_one") else {
+            panic!("no start_position")
+        };
         assert_eq!(vehicles, [ME]);
         let at = Nav { north_m: 40.0, east_m: 52.0, psi_rad: rad_from_compass_deg(90.0), ..Nav::default() };
         Gateway { bus, name, alive, nav, orders, ticket, seq: 0, at, moved: Instant::now() }
@@ -141,20 +143,20 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     // Its mind dies: it holds, and from now on nobody thinks.
     agent.kill();
     gateway.sail_until("a boat without a mind holds", Gateway::is_held);
-    sim.wait_for_event("mind_lost", "blue_one");
+    sim.wait_for_event("agent_lost", "blue_one");
     let (count, given_ns) = (gateway.received(), gateway.newest().expect("an order").given_ns);
     gateway.sail_until("it is told so again", |gateway| gateway.received() > count + 3);
     assert!(gateway.newest().is_some_and(|newest| newest.given_ns == given_ns) && gateway.is_held());
 
     // Its gateway dies: another may bring it, and the old one has no say.
     gateway.alive.remove(1);
-    gateway.wait_until("the berth is free again", |gateway| moor(&other, &gateway.name, "blue_one") != busy);
+    gateway.wait_until("the start_position is free again", |gateway| moor(&other, &gateway.name, "blue_one") != busy);
     gateway.report(gateway.ticket);
     gateway.bus.close();
     sim.play_on(1.0);
     let report = sim.stop();
     assert!(report["run"]["refused"]["ticket"].as_u64() >= Some(1), "{}", report["run"]);
-    assert_eq!(report["outcome"]["counts"]["boats"]["blue_one"]["minds_lost"], 1);
+    assert_eq!(report["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"], 1);
 }
 
 #[test]

@@ -32,16 +32,16 @@ fn a_killed_agents_boat_holds_and_a_new_agent_takes_it_on() {
         sim.play_on(5.0);
         agents[1].kill();
         let killed = Instant::now();
-        sim.wait_for_event("mind_lost", "blue_two");
+        sim.wait_for_event("agent_lost", "blue_two");
         // Patience is 2 s; the rest is room for a busy machine.
         assert!(killed.elapsed().as_secs_f64() < 12.0, "{pace}: lost after {:?}", killed.elapsed());
         sim.play_on(5.0);
         agents[1] = sim.agent(&["blue_two"]);
-        sim.wait_for_event("mind_back", "blue_two");
+        sim.wait_for_event("agent_back", "blue_two");
         sim.play_on(5.0);
         let done = sim.stop();
-        assert_eq!(done["outcome"]["counts"]["boats"]["blue_two"]["minds_lost"], 1, "{pace}");
-        assert_eq!(done["outcome"]["counts"]["boats"]["blue_one"]["minds_lost"], 0, "{pace}");
+        assert_eq!(done["outcome"]["counts"]["boats"]["blue_two"]["agents_lost"], 1, "{pace}");
+        assert_eq!(done["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"], 0, "{pace}");
         assert!(agents.iter_mut().all(|agent| agent.wait().success()), "{pace}: they leave in peace");
     }
 }
@@ -53,11 +53,11 @@ fn an_agent_that_hangs_is_given_up_after_patience_and_may_come_back() {
         sim.play_on(2.0);
         agents[2].signal("STOP");
         let hung = Instant::now();
-        sim.wait_for_event("mind_lost", "red_one");
+        sim.wait_for_event("agent_lost", "red_one");
         assert!(hung.elapsed().as_secs_f64() > 1.5, "{pace}: patience was {:?}", hung.elapsed());
         sim.play_on(2.0);
         agents[2].signal("CONT");
-        sim.wait_for_event("mind_back", "red_one");
+        sim.wait_for_event("agent_back", "red_one");
         sim.play_on(2.0);
         sim.stop();
     }

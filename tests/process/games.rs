@@ -145,7 +145,7 @@ fn agents_may_come_before_the_sim_and_in_any_order() {
     sim.wait_for(|telling| telling["tell"] == "started");
     sim.play_on(5.0);
     let done = sim.stop();
-    assert!(done["outcome"]["events"].as_array().expect("a list").iter().all(|e| e["event"] != "mind_lost"), "{done}");
+    assert!(done["outcome"]["events"].as_array().expect("a list").iter().all(|e| e["event"] != "agent_lost"), "{done}");
     for agent in &mut agents {
         assert!(agent.wait().success(), "an agent leaves in peace when the game ends");
     }
@@ -156,9 +156,9 @@ fn a_mind_may_join_late() {
     let dir = tempfile::tempdir().expect("a temporary directory");
     let sim = Sim::start(&long_game(dir.path(), ""), &["--join-s", "1"]);
     let _three = sim.agent(&FOUR[..3]);
-    sim.wait_for_event("mind_lost", "red_two");
+    sim.wait_for_event("agent_lost", "red_two");
     let _late = sim.agent(&FOUR[3..]);
-    sim.wait_for_event("mind_back", "red_two");
+    sim.wait_for_event("agent_back", "red_two");
     sim.play_on(5.0);
     sim.stop();
 }

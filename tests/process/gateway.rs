@@ -4,7 +4,7 @@
 //! in the water itself, by the truth about its thrusters.
 
 use crate::support::{LIMIT, Process, Sim, real_attacker, result_of, squall};
-use bus::{Bus, Standing};
+use bus::{Bus, Declaration};
 use game::codec;
 use game::external::{GatewayStatus, OperatorCommand, OperatorReply};
 use game::message::Frame;
@@ -95,7 +95,7 @@ struct Loop {
     primary: Option<String>,
     water: Sim,
     frame: Arc<Mutex<Frame>>,
-    _eyes: (Bus, Standing),
+    _eyes: (Bus, Declaration),
     _dir: tempfile::TempDir,
 }
 
@@ -201,7 +201,7 @@ fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
 }
 
 /// The truth about the water, the newest of it.
-fn watch(water: &Sim) -> (Arc<Mutex<Frame>>, (Bus, Standing)) {
+fn watch(water: &Sim) -> (Arc<Mutex<Frame>>, (Bus, Declaration)) {
     let frame = Arc::new(Mutex::new(Frame::default()));
     let newest = Arc::clone(&frame);
     let bus = water.bus();
@@ -218,7 +218,7 @@ fn a_killed_mind_stops_the_boat_and_only_a_person_sets_it_going_again() {
     all.stops_within(Duration::from_secs(1));
     all.wait_for_state("no fresh order");
     all.agents = all.sim.agent(&["blue_one", "red_one"]);
-    all.sim.wait_for_event("mind_back", "blue_one");
+    all.sim.wait_for_event("agent_back", "blue_one");
     std::thread::sleep(Duration::from_secs(1));
     assert!(all.boat().1, "new orders alone do not set it going");
     all.arm();
@@ -329,7 +329,7 @@ fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
         );
     }
     let events = looped["events"].as_array().expect("events");
-    for bad in ["nav_lost", "mind_lost", "quarantined"] {
+    for bad in ["nav_lost", "agent_lost", "quarantined"] {
         assert!(!events.iter().any(|event| event["event"] == bad), "{bad}: {events:?}");
     }
     assert_eq!(looped["duration_s"], pure["duration_s"]);

@@ -2,7 +2,7 @@
 
 use crate::support::{FOUR, LIMIT, Process, Sim, long_game, run, scenarios, squall, write};
 use game::helm::HelmReport;
-use game::message::Notice;
+use game::message::GameInfo;
 use game::topic::{self, GameName};
 use std::io::{BufRead, BufReader, Read};
 use std::process::Stdio;
@@ -22,7 +22,7 @@ fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
     let (_dir, sim, _agents) = game();
     let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
     let notice = bus.ask(&topic::scenario(&name), Vec::new(), LIMIT).expect("the hub is there").expect("an answer");
-    let notice: Notice = serde_json::from_slice(&notice).expect("a notice");
+    let notice: GameInfo = serde_json::from_slice(&notice).expect("a notice");
     let two = notice.scenario.vehicle_by_name("blue_two").expect("it is there");
     let ask = |question: &[u8]| -> HelmReport {
         let key = topic::helm(&name, &notice.scenario, two);
@@ -139,7 +139,7 @@ fn an_agent_plays_by_a_strategy_file_of_its_own() {
 fn mistakes_in_a_strategy_file_are_told_before_joining() {
     let dir = tempfile::tempdir().expect("a temporary directory");
     let bad = write(dir.path(), "bad.toml", "about = \"bad\"\n[behaviour.go]\nkind = \"fly\"\n").display().to_string();
-    // Nobody is there to join: it does not even look.
+    // NoRecorder is there to join: it does not even look.
     let mut command = squall(&["agent", "--vehicle", "blue_one", "--strategy", &bad, "--wait-s", "50"]);
     command.stderr(Stdio::piped());
     let mut agent = Process::start(command);

@@ -91,14 +91,14 @@ fn two_machines_play_a_game_and_survive_a_cable_that_is_cut() {
         sim.play_on(5.0);
         hosts.cable("down");
         // Longer than the sim's patience: the boats over there are without a mind, the game goes on.
-        sim.wait_for_event("mind_lost", "red_one");
+        sim.wait_for_event("agent_lost", "red_one");
         sim.play_on(1.0);
         std::thread::sleep(Duration::from_secs(cut_s));
         hosts.cable("up");
-        sim.wait_for_event("mind_back", "red_one");
+        sim.wait_for_event("agent_back", "red_one");
     }
     sim.play_on(5.0);
     let done = sim.stop();
-    assert_eq!(done["outcome"]["counts"]["boats"]["blue_one"]["minds_lost"], 0, "only the far side was cut off");
+    assert_eq!(done["outcome"]["counts"]["boats"]["blue_one"]["agents_lost"], 0, "only the far side was cut off");
     assert!(blue.wait().success() && red.wait().success(), "everybody leaves in peace");
 }

@@ -1,8 +1,8 @@
 //! Policies outside of the helm: another program proposes, the helm weighs it against keeping inside of the field.
 
 use crate::support::{LIMIT, Process, Sim, scenarios, squall, write};
-use bus::{Bus, Delivery, Standing};
-use game::message::{Frame, Message, Notice, PolicyProposal, Stamp};
+use bus::{Bus, Declaration, Delivery};
+use game::message::{Frame, GameInfo, Message, PolicyProposal, Stamp};
 use game::topic::{self, GameName};
 use game::{Picture, TeamId, VehicleId, codec};
 use std::path::{Path, PathBuf};
@@ -40,7 +40,7 @@ fn game(dir: &Path, is_safe: bool) -> (PathBuf, PathBuf) {
 
 /// A policy as another program would be: it sees the picture and wants to drive north in a zigzag, whatever happens. Now
 /// and then it is slow.
-fn drive_north(bus: &Bus, name: &GameName, notice: &Notice) -> Standing {
+fn drive_north(bus: &Bus, name: &GameName, notice: &GameInfo) -> Declaration {
     let publisher = bus.publisher(topic::policy(name, &notice.scenario, ME), Delivery::Wait).expect("the hub is there");
     let answer = move |bytes: &[u8]| {
         let picture: Picture = codec::decode(bytes).expect("a picture");
@@ -65,7 +65,7 @@ fn play(is_safe: bool, has_policy: bool) -> (serde_json::Value, Vec<Frame>) {
     let sim = Sim::start(&game, &[]);
     let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
     let notice = bus.ask(&topic::scenario(&name), Vec::new(), LIMIT).expect("the hub is there").expect("an answer");
-    let notice: Notice = serde_json::from_slice(&notice).expect("a notice");
+    let notice: GameInfo = serde_json::from_slice(&notice).expect("a notice");
     let frames = Arc::new(Mutex::new(Vec::new()));
     let film = Arc::clone(&frames);
     let see = move |bytes: &[u8]| film.lock().expect("whole").push(codec::decode(bytes).expect("a frame"));
@@ -96,7 +96,7 @@ fn a_boat_follows_a_policy_but_not_out_of_the_field_and_the_game_is_the_same_aga
     let north_m = navs.iter().map(|nav| nav.north_m).fold(f64::NEG_INFINITY, f64::max) - navs[0].north_m;
     assert!(north_m > 20.0, "it went {north_m} m north");
     assert!(frames.iter().all(|frame| !frame.vehicles[ME.index()].outside), "it stayed inside");
-    assert_eq!(outcome["counts"]["boats"]["blue_1"]["minds_lost"], 0);
+    assert_eq!(outcome["counts"]["boats"]["blue_1"]["agents_lost"], 0);
     // Without a behaviour that keeps it inside, the same policy takes it out.
     let (_, frames) = play(false, true);
     assert!(frames.iter().any(|frame| frame.vehicles[ME.index()].outside), "it went out");

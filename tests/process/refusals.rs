@@ -1,7 +1,7 @@
 //! Agents that send what they should not: refused with a counted reason, the game unharmed.
 
 use crate::support::{FOUR, Sim, long_game};
-use bus::{Bus, Delivery, Publisher, Slots};
+use bus::{Bus, Delivery, Latest, Publisher};
 use game::codec;
 use game::message::{JoinReply, JoinRequest, Message, Orders, Stamp, VehicleOrder};
 use game::topic::{self, GameName};
@@ -13,10 +13,10 @@ use std::time::Duration;
 /// A session that has joined as a rogue.
 struct Rogue {
     _bus: Bus,
-    pictures: Arc<Slots<Picture>>,
+    pictures: Arc<Latest<Picture>>,
     orders: Publisher,
     ticket: u64,
-    _standing: bus::Standing,
+    _standing: bus::Declaration,
 }
 
 fn join(bus: &Bus, game: &GameName, request: &JoinRequest) -> JoinReply {
@@ -34,7 +34,7 @@ impl Rogue {
     fn enter(sim: &Sim) -> Rogue {
         let bus = sim.bus();
         let game = GameName::new(&sim.game).expect("a name");
-        let pictures = Arc::new(Slots::new(1));
+        let pictures = Arc::new(Latest::new(1));
         let slots = Arc::clone(&pictures);
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/pav01_vs_pav01.toml");
         let scenario = game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));

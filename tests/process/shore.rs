@@ -1,7 +1,7 @@
 //! People ashore have a hand in a game: they pause it, step it, slow it down, and make boats hold.
 
 use crate::support::{FOUR, LIMIT, Sim, long_game, result_of, scenarios, write};
-use bus::{Board, Bus, Delivery, Publisher, Standing};
+use bus::{Bus, Declaration, Delivery, Publisher, Watched};
 use game::message::{Control, Frame};
 use game::run_state::{Phase, RunState};
 use game::topic::{self, GameName};
@@ -11,16 +11,16 @@ use std::sync::Arc;
 /// Somebody ashore.
 struct Shore {
     control: Publisher,
-    run: Arc<Board<RunState>>,
-    frame: Arc<Board<Frame>>,
-    _standing: Vec<Standing>,
+    run: Arc<Watched<RunState>>,
+    frame: Arc<Watched<Frame>>,
+    _standing: Vec<Declaration>,
     _bus: Bus,
 }
 
 impl Shore {
     fn of(sim: &Sim) -> Shore {
         let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
-        let (run, frame) = (Arc::new(Board::new(RunState::default())), Arc::new(Board::new(Frame::default())));
+        let (run, frame) = (Arc::new(Watched::new(RunState::default())), Arc::new(Watched::new(Frame::default())));
         let (to_run, to_frame) = (Arc::clone(&run), Arc::clone(&frame));
         let take_run = move |bytes: &[u8]| {
             let state = serde_json::from_slice(bytes).expect("a state");

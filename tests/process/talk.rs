@@ -3,7 +3,7 @@
 use crate::games::game_itself;
 use crate::support::{LIMIT, Process, Sim, result_of, scenarios, write};
 use game::helm::HelmReport;
-use game::message::{Message, Notice, Say, Stamp, Word};
+use game::message::{GameInfo, Message, Say, Stamp, Word};
 use game::topic::{self, GameName};
 use game::{TeamId, VehicleId, codec};
 use std::path::{Path, PathBuf};
@@ -65,7 +65,7 @@ fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
 }
 
 /// A variable of a boat, as its helm tells it.
-fn variable(bus: &bus::Bus, name: &GameName, notice: &Notice, vehicle: &str, variable: &str) -> String {
+fn variable(bus: &bus::Bus, name: &GameName, notice: &GameInfo, vehicle: &str, variable: &str) -> String {
     let scenario = &notice.scenario;
     let key = topic::helm(name, scenario, scenario.vehicle_by_name(vehicle).expect("it is there"));
     let answer = bus.ask(&key, Vec::new(), Duration::from_secs(10)).expect("the hub is there").expect("an answer");
@@ -82,11 +82,11 @@ fn a_killed_mate_does_not_silence_the_others_and_nonsense_hurts_nobody() {
     sim.wait_for(|telling| telling["tell"] == "started");
     sim.play_on(5.0);
     agents[1].kill();
-    sim.wait_for_event("mind_lost", "blue_2");
+    sim.wait_for_event("agent_lost", "blue_2");
 
     let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
     let notice = bus.ask(&topic::scenario(&name), Vec::new(), LIMIT).expect("the hub is there").expect("an answer");
-    let notice: Notice = serde_json::from_slice(&notice).expect("a notice");
+    let notice: GameInfo = serde_json::from_slice(&notice).expect("a notice");
     let (sender, said) = channel();
     let hear = move |bytes: &[u8]| sender.send(codec::decode::<Say>(bytes)).unwrap_or_default();
     let _standing = bus.subscribe(topic::all_say(&name, &notice.scenario, TeamId(0)), hear).expect("the hub is there");
@@ -114,6 +114,6 @@ fn a_killed_mate_does_not_silence_the_others_and_nonsense_hurts_nobody() {
         assert!(start.elapsed() < LIMIT, "it hears nothing any more");
     }
     let done = sim.stop();
-    let lost = |boat: &str| done["outcome"]["counts"]["boats"][boat]["minds_lost"].as_u64();
+    let lost = |boat: &str| done["outcome"]["counts"]["boats"][boat]["agents_lost"].as_u64();
     assert_eq!([lost("blue_1"), lost("blue_2"), lost("blue_3")], [Some(0), Some(1), Some(0)]);
 }

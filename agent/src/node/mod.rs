@@ -2,25 +2,25 @@
 //!
 //! Everything but the vehicles' names comes from the sim: field, rules, strategies, seed.
 
-mod advice;
+mod agent_loop;
 mod clock;
+mod helm_queries;
 mod ignored;
-mod mailbag;
-mod table;
+mod policy_inbox;
+mod sim_liveness;
 mod talk;
-mod vigil;
-mod window;
+mod team_inbox;
 
 pub use ignored::Ignored;
 
-use bus::lookout::{self, Lookout, NotFound, Refusal};
+use agent_loop::AgentLoop;
+use bus::game_search::{self, GameSearch, NotFound, Refusal};
 use bus::{BusError, Net};
 use game::strategy::Strategy;
 use game::topic::{self, GameName, Part};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use table::Table;
 use thiserror::Error;
 
 /// What an agent node needs to know.
@@ -97,13 +97,13 @@ const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// # Errors
 /// [`NodeError`] says what went wrong; a sim that dies is an error.
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-    let mut look = Lookout::new(settings.wait, &settings.stop);
+    let mut look = GameSearch::new(settings.wait, &settings.stop);
     let mut say = |reason: &str| tell(News::Looking { reason });
     let (bus, game) = look.game(&mut say, &settings.net, settings.game.as_ref())?;
     let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &bus.id()))?;
-    let notice = look.until(&mut say, || lookout::notice(&bus, &game))?;
-    let mut table = Table::lay(&bus, &game, &notice, settings)?;
-    let seat = look.until(&mut say, || lookout::seat(&bus, &topic::join(&game), &settings.vehicles, "mind"))?;
+    let notice = look.until(&mut say, || game_search::game_info(&bus, &game))?;
+    let mut table = AgentLoop::lay(&bus, &game, &notice, settings)?;
+    let seat = look.until(&mut say, || game_search::join(&bus, &topic::join(&game), &settings.vehicles, "mind"))?;
     table.seat(&bus, &game, &notice.scenario, seat)?;
     tell(News::Joined { game: game.as_str() });
     let played = table.play(settings);

@@ -1,10 +1,10 @@
 //! Team talk over the network: what the minds here tell their mates elsewhere, and hear from them.
 
 use super::NodeError;
+use super::agent_loop::Seated;
 use super::ignored::Ignored;
-use super::mailbag::Mailbag;
-use super::table::Seated;
-use bus::{Board, Bus, Delivery, Publisher, Standing};
+use super::team_inbox::TeamInbox;
+use bus::{Bus, Declaration, Delivery, Publisher, Watched};
 use game::message::{Message, Say, Stamp, Word};
 use game::topic::{self, GameName};
 use game::{Scenario, TeamId, VehicleId};
@@ -22,12 +22,12 @@ struct Line {
 /// The talk of the teams whose minds here talk.
 pub(super) struct Talk {
     lines: Vec<Line>,
-    mailbag: Arc<Board<Mailbag>>,
+    team_inbox: Arc<Watched<TeamInbox>>,
     teams: Vec<TeamId>,
     /// How long words that should be there may take.
     patience: Duration,
     words: Vec<Word>,
-    _standing: Vec<Standing>,
+    _standing: Vec<Declaration>,
 }
 
 impl Talk {
@@ -45,16 +45,16 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let minded: Vec<VehicleId> = seated.iter().map(|seat| seat.vehicle).collect();
-        let mailbag = Arc::new(Board::new(Mailbag::new(teams.iter().copied(), &minded)));
+        let team_inbox = Arc::new(Watched::new(TeamInbox::new(teams.iter().copied(), &minded)));
         let (mut lines, mut standing) = (Vec::new(), Vec::new());
         for team in talking {
-            let inbox = Arc::clone(&mailbag);
-            let take = move |bytes: &[u8]| inbox.visit(|mailbag| mailbag.take(team, bytes));
-            standing.push(bus.overhear(topic::all_say(game, scenario, team), take)?);
+            let inbox = Arc::clone(&team_inbox);
+            let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.take(team, bytes));
+            standing.push(bus.subscribe_remote(topic::all_say(game, scenario, team), take)?);
             let publisher = bus.publisher(topic::say(game, scenario, team, &bus.id()), Delivery::Wait)?;
             lines.push(Line { team, publisher, said: None });
         }
-        Ok(Talk { lines, mailbag, teams, patience, words: Vec::new(), _standing: standing })
+        Ok(Talk { lines, team_inbox, teams, patience, words: Vec::new(), _standing: standing })
     }
 
     /// Lets the minds hear what mates elsewhere said after the decision before.
@@ -65,12 +65,12 @@ impl Talk {
         // In real time nobody waits, and nobody counts either: mates decide when they do.
         let waits = !self.patience.is_zero();
         if waits {
-            self.mailbag.wait(self.patience, |mailbag| mailbag.is_complete(seq));
+            self.team_inbox.wait(self.patience, |team_inbox| team_inbox.is_complete(seq));
         }
         self.words.clear();
-        self.mailbag.visit(|mailbag| {
-            let missed = mailbag.hear(seq, &mut self.words);
-            mailbag.ignored.unheard += if waits { missed } else { 0 };
+        self.team_inbox.visit(|team_inbox| {
+            let missed = team_inbox.hear(seq, &mut self.words);
+            team_inbox.ignored.unheard += if waits { missed } else { 0 };
         });
         self.pass_on(seated);
     }
@@ -110,6 +110,6 @@ impl Talk {
     }
 
     pub(super) fn ignored(&self) -> Ignored {
-        self.mailbag.visit(|mailbag| mailbag.ignored)
+        self.team_inbox.visit(|team_inbox| team_inbox.ignored)
     }
 }

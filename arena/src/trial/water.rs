@@ -6,7 +6,7 @@ use game::frame::LatLon;
 use game::id::TeamId;
 use game::link::Sharing;
 use game::rules::{CaptureAt, Points, TagChoice, TaggedBoat, UntagAt, UntagOn};
-use game::scenario::{Berth, Source, Team, Vehicle};
+use game::scenario::{Source, StartPosition, Team, Vehicle};
 use game::sea::{Current, Sea};
 use game::{Field, Ned, Pose, Rules, Scenario, SimTime};
 
@@ -52,7 +52,7 @@ pub fn open_water(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Scenario 
             team: TeamId(0),
             boat: 0,
             strategy: 0,
-            berth: Berth::At(Pose::default()),
+            start_position: StartPosition::At(Pose::default()),
             source: Source::Simulated,
         }],
         drawn: vec![],

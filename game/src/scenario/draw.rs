@@ -4,7 +4,7 @@
 //! only. Files with distributions are checked at both ends of them as well: what passes there will not be refused in
 //! the middle of a campaign.
 
-use super::ledger::Ledger;
+use super::diagnostics::Diagnostics;
 use super::overrides::Overrides;
 use crate::stream::Stream;
 use serde::{Deserialize, Serialize};
@@ -68,14 +68,19 @@ enum Distribution {
 }
 
 /// The numbers, as text, that take the place of the distributions in `table`, in the order of [`put`].
-pub(super) fn numbers(ledger: &mut Ledger, table: &DeTable<'_>, drawable: Drawable, owner: &str) -> Vec<String> {
+pub(super) fn numbers(
+    diagnostics: &mut Diagnostics,
+    table: &DeTable<'_>,
+    drawable: Drawable,
+    owner: &str,
+) -> Vec<String> {
     let mut found = vec![];
     match drawable {
         Drawable::Nothing => {}
-        Drawable::Everything => in_table(ledger, table, owner, "", &mut found),
+        Drawable::Everything => in_table(diagnostics, table, owner, "", &mut found),
         Drawable::Table(key) => {
             if let Some(DeValue::Table(inner)) = table.get(key).map(Spanned::get_ref) {
-                in_table(ledger, inner, key, "", &mut found);
+                in_table(diagnostics, inner, key, "", &mut found);
             }
         }
     }
@@ -109,29 +114,36 @@ fn put_in<'i>(value: &mut DeValue<'i>, numbers: &mut std::slice::Iter<'i, String
     }
 }
 
-fn in_table(ledger: &mut Ledger, table: &DeTable<'_>, owner: &str, path: &str, found: &mut Vec<String>) {
+fn in_table(diagnostics: &mut Diagnostics, table: &DeTable<'_>, owner: &str, path: &str, found: &mut Vec<String>) {
     for (key, value) in table.iter() {
         let dot = if path.is_empty() { "" } else { "." };
-        in_value(ledger, value, owner, &format!("{path}{dot}{}", key.get_ref()), found);
+        in_value(diagnostics, value, owner, &format!("{path}{dot}{}", key.get_ref()), found);
     }
 }
 
-fn in_value(ledger: &mut Ledger, value: &Spanned<DeValue<'_>>, owner: &str, path: &str, found: &mut Vec<String>) {
+fn in_value(
+    diagnostics: &mut Diagnostics,
+    value: &Spanned<DeValue<'_>>,
+    owner: &str,
+    path: &str,
+    found: &mut Vec<String>,
+) {
     match value.get_ref() {
         DeValue::Table(table) => match kind_of(table) {
             Some(kind) => {
-                let number = distribution(ledger, table, kind, value.span().start, path).map_or(0.0, |distribution| {
-                    let value = distribution.number(ledger.drawing, owner, path);
-                    ledger.drawn.push(Drawn { parameter: format!("{owner}/{path}"), value });
-                    value
-                });
+                let number =
+                    distribution(diagnostics, table, kind, value.span().start, path).map_or(0.0, |distribution| {
+                        let value = distribution.number(diagnostics.drawing, owner, path);
+                        diagnostics.drawn.push(Drawn { parameter: format!("{owner}/{path}"), value });
+                        value
+                    });
                 found.push(written(number));
             }
-            None => in_table(ledger, table, owner, path, found),
+            None => in_table(diagnostics, table, owner, path, found),
         },
         DeValue::Array(array) => {
             for (i, value) in array.iter().enumerate() {
-                in_value(ledger, value, owner, &format!("{path}.{i}"), found);
+                in_value(diagnostics, value, owner, &format!("{path}.{i}"), found);
             }
         }
         _ => {}
@@ -151,7 +163,13 @@ fn kind_of(table: &DeTable<'_>) -> Option<&'static str> {
 }
 
 /// The distribution that a table is; a bad one is noted.
-fn distribution(ledger: &mut Ledger, table: &DeTable<'_>, kind: &str, at: usize, path: &str) -> Option<Distribution> {
+fn distribution(
+    diagnostics: &mut Diagnostics,
+    table: &DeTable<'_>,
+    kind: &str,
+    at: usize,
+    path: &str,
+) -> Option<Distribution> {
     let times = table.get("times").map_or(Some(1.0), |times| as_number(times.get_ref()));
     let numbers: Option<Vec<f64>> = match table.get(kind).map(Spanned::get_ref) {
         Some(DeValue::Array(array)) => array.iter().map(|value| as_number(value.get_ref())).collect(),
@@ -166,7 +184,7 @@ fn distribution(ledger: &mut Ledger, table: &DeTable<'_>, kind: &str, at: usize,
              {{ log_normal = [median, sigma] }} with a median above 0, {{ choice = [a, b, ...] }}; \
              and times = a factor, if wanted"
         );
-        ledger.note(at, message);
+        diagnostics.note(at, message);
     }
     found
 }

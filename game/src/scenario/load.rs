@@ -1,8 +1,8 @@
 //! The ways in: a path, and out comes what the file says, or everything that is wrong with it.
 
+use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn, Recipe};
 use super::kind::Kind;
-use super::ledger::Ledger;
 use super::overrides::Overrides;
 use super::problem::Problems;
 use super::read::{self, Document, Typed};
@@ -84,9 +84,9 @@ pub fn load(path: &Path) -> Result<Scenario, Problems> {
 /// Everything that is wrong in any file, by file, line and column; also a strategy for a team that is not in the game.
 pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
     let read = |drawing: Drawing| {
-        let mut ledger = Ledger::new(drawing);
-        ledger.overrides = overrides.clone();
-        game_of(ledger, path)
+        let mut diagnostics = Diagnostics::new(drawing);
+        diagnostics.overrides = overrides.clone();
+        game_of(diagnostics, path)
     };
     let least = read(Drawing::Least)?;
     if least.recipe.is_none() {
@@ -96,13 +96,14 @@ pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problem
     least.of_seed(least.seed)
 }
 
-fn game_of(mut ledger: Ledger, path: &Path) -> Result<Scenario, Problems> {
-    let value = read::document(&mut ledger, path, None).and_then(|document| check::game(&mut ledger, &document));
-    let mut scenario = ledger.close(value)?;
-    scenario.drawn = std::mem::take(&mut ledger.drawn);
+fn game_of(mut diagnostics: Diagnostics, path: &Path) -> Result<Scenario, Problems> {
+    let value =
+        read::document(&mut diagnostics, path, None).and_then(|document| check::game(&mut diagnostics, &document));
+    let mut scenario = diagnostics.close(value)?;
+    scenario.drawn = std::mem::take(&mut diagnostics.drawn);
     if !scenario.drawn.is_empty() {
-        let (game, overrides) = (path.to_owned(), ledger.overrides.clone());
-        scenario.recipe = Some(Recipe { game, overrides, files: ledger.sources.texts(), seed: None });
+        let (game, overrides) = (path.to_owned(), diagnostics.overrides.clone());
+        scenario.recipe = Some(Recipe { game, overrides, files: diagnostics.sources.texts(), seed: None });
     }
     Ok(scenario)
 }
@@ -116,10 +117,10 @@ impl Scenario {
         let Some(recipe) = self.recipe.as_ref().filter(|recipe| recipe.seed != Some(seed)) else {
             return Ok(Scenario { seed, ..self.clone() });
         };
-        let mut ledger = Ledger::new(Drawing::Seed(seed));
-        ledger.files = Some(recipe.files.clone());
-        ledger.overrides.clone_from(&recipe.overrides);
-        let mut drawn = game_of(ledger, &recipe.game)?;
+        let mut diagnostics = Diagnostics::new(Drawing::Seed(seed));
+        diagnostics.files = Some(recipe.files.clone());
+        diagnostics.overrides.clone_from(&recipe.overrides);
+        let mut drawn = game_of(diagnostics, &recipe.game)?;
         drawn.seed = seed;
         if let Some(recipe) = &mut drawn.recipe {
             recipe.seed = Some(seed);
@@ -191,10 +192,10 @@ pub fn load_gateway(path: &Path) -> Result<Gateway, Problems> {
 #[must_use]
 pub fn default_gateway() -> Gateway {
     let path = Path::new("default.toml");
-    let mut ledger = Ledger::new(Drawing::Least);
-    ledger.files = Some(vec![(path.to_owned(), String::new())]);
-    let document = read::document(&mut ledger, path, None);
-    document.and_then(|document| check::gateway(&mut ledger, &document)).expect("every key has a default")
+    let mut diagnostics = Diagnostics::new(Drawing::Least);
+    diagnostics.files = Some(vec![(path.to_owned(), String::new())]);
+    let document = read::document(&mut diagnostics, path, None);
+    document.and_then(|document| check::gateway(&mut diagnostics, &document)).expect("every key has a default")
 }
 
 /// Reads and checks a scenario file of any kind.
@@ -222,13 +223,14 @@ pub fn check_file(path: &Path) -> Result<Checked, Problems> {
 /// A file of one kind, and what was drawn for it.
 fn one<R: Typed, T>(
     path: &Path,
-    check: fn(&mut Ledger, &Document<R>) -> Option<T>,
+    check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
     seed: u64,
 ) -> Result<(T, Vec<Drawn>), Problems> {
     let read = |drawing: Drawing| {
-        let mut ledger = Ledger::new(drawing);
-        let value = read::document(&mut ledger, path, None).and_then(|document| check(&mut ledger, &document));
-        ledger.close(value).map(|value| (value, std::mem::take(&mut ledger.drawn)))
+        let mut diagnostics = Diagnostics::new(drawing);
+        let value =
+            read::document(&mut diagnostics, path, None).and_then(|document| check(&mut diagnostics, &document));
+        diagnostics.close(value).map(|value| (value, std::mem::take(&mut diagnostics.drawn)))
     };
     let (value, drawn) = read(Drawing::Least)?;
     if drawn.is_empty() {
@@ -240,6 +242,6 @@ fn one<R: Typed, T>(
 
 /// The top-level keys of a file and its bases; what is wrong with them is found again by the check.
 fn top_keys(path: &Path) -> BTreeSet<String> {
-    let Some(chain) = read::chain(&mut Ledger::new(Drawing::Least), path, None) else { return BTreeSet::new() };
+    let Some(chain) = read::chain(&mut Diagnostics::new(Drawing::Least), path, None) else { return BTreeSet::new() };
     read::merged(&chain).get_ref().keys().map(|key| key.get_ref().to_string()).collect()
 }

@@ -2,13 +2,13 @@
 //!
 //! [`Scenario`] is the checked form, SI and radians, and travels to every process that joins the game.
 //! [`load`] makes one: `read` finds the files and lays them over their bases, `raw` is what people type,
-//! `check` makes of it what the program believes, and the `ledger` collects every [`Problem`] on the way.
+//! `check` makes of it what the program believes, and the `diagnostics` collects every [`Problem`] on the way.
 
 mod check;
+mod diagnostics;
 mod draw;
 mod explain;
 mod kind;
-mod ledger;
 mod load;
 mod overrides;
 mod problem;
@@ -109,7 +109,7 @@ impl Scenario {
         };
         let mut names =
             self.vehicles.iter().map(|vehicle| &vehicle.name).chain(self.teams.iter().map(|team| &team.name));
-        if let Some(name) = names.find(|name| !ledger::is_name(name)) {
+        if let Some(name) = names.find(|name| !diagnostics::is_name(name)) {
             return Err(format!("{name:?} is no name of a vehicle or a team"));
         }
         for Vehicle { name, team, boat, strategy, .. } in &self.vehicles {
@@ -181,7 +181,7 @@ pub struct Vehicle {
     /// Index into [`Scenario::strategies`].
     pub strategy: usize,
     /// Where it starts.
-    pub berth: Berth,
+    pub start_position: StartPosition,
     /// Where its motion comes from.
     pub source: Source,
 }
@@ -198,7 +198,7 @@ pub enum Source {
 
 /// Where a vehicle starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Berth {
+pub enum StartPosition {
     /// Just here.
     At(Pose),
     /// Somewhere in a rectangle of the field, drawn from the game's `spawn` stream, pointing at the

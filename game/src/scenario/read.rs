@@ -1,8 +1,8 @@
 //! From a path to what the file says: text, bases, merging, and every complaint about its form.
 
+use super::diagnostics::Diagnostics;
 use super::draw::{self, Drawable};
 use super::explain::explain;
-use super::ledger::Ledger;
 use super::raw::At;
 use super::source::tidied;
 use serde::de::DeserializeOwned;
@@ -50,27 +50,31 @@ pub(super) trait Typed: DeserializeOwned + Default {
     const OWN: &'static [&'static str] = &[];
 
     /// Reads the value of [`Typed::APART`].
-    fn put_apart(&mut self, _: &mut Ledger, _: Spanned<DeValue<'_>>) {}
+    fn put_apart(&mut self, _: &mut Diagnostics, _: Spanned<DeValue<'_>>) {}
 }
 
 /// Reads the file at `path` with its bases. Problems with finding it stand at `asked_at`, the reference.
-pub(super) fn document<T: Typed>(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -> Option<Document<T>> {
-    document_of(ledger, path, asked_at, T::OWNER)
+pub(super) fn document<T: Typed>(
+    diagnostics: &mut Diagnostics,
+    path: &Path,
+    asked_at: Option<usize>,
+) -> Option<Document<T>> {
+    document_of(diagnostics, path, asked_at, T::OWNER)
 }
 
 /// The same, for an owner who draws numbers of its own.
 pub(super) fn document_of<T: Typed>(
-    ledger: &mut Ledger,
+    diagnostics: &mut Diagnostics,
     path: &Path,
     asked_at: Option<usize>,
     owner: &str,
 ) -> Option<Document<T>> {
-    let chain = chain(ledger, path, asked_at)?;
+    let chain = chain(diagnostics, path, asked_at)?;
     let start = chain[0].0;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    ledger.is_name(start, "the file's name", &name);
+    diagnostics.is_name(start, "the file's name", &name);
     let typed = merged(&chain);
-    let numbers = draw::numbers(ledger, typed.get_ref(), T::DRAWABLE, owner);
+    let numbers = draw::numbers(diagnostics, typed.get_ref(), T::DRAWABLE, owner);
     let mut table: Table<'_> = typed;
     let own = start..start + chain[0].1.len();
     for key in T::OWN {
@@ -81,15 +85,15 @@ pub(super) fn document_of<T: Typed>(
     }
     draw::put(table.get_mut(), T::DRAWABLE, &numbers);
     let apart = T::APART.and_then(|key| table.get_mut().remove(key));
-    let mut raw: T = deserialised(ledger, start, table);
+    let mut raw: T = deserialised(diagnostics, start, table);
     if let Some(value) = apart {
-        raw.put_apart(ledger, value);
+        raw.put_apart(diagnostics, value);
     }
     Some(Document { name, start, raw })
 }
 
 /// Reads a file and its bases, and notes what is wrong with their syntax.
-pub(super) fn chain(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -> Option<Chain> {
+pub(super) fn chain(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) -> Option<Chain> {
     let mut chain: Chain = vec![];
     let mut paths: Vec<PathBuf> = vec![];
     let (mut path, mut asked_at) = (tidied(path), asked_at);
@@ -99,16 +103,16 @@ pub(super) fn chain(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -
         {
             let through = paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" on ");
             let why = if paths.contains(&path) { "goes round in a circle" } else { "is too deep" };
-            ledger.note(at, format!("base {why} ({through} on {}), expected an end", path.display()));
+            diagnostics.note(at, format!("base {why} ({through} on {}), expected an end", path.display()));
             return None;
         }
-        let (start, text) = text_of(ledger, &path, asked_at)?;
-        let base = syntax_of(ledger, start, &text);
+        let (start, text) = text_of(diagnostics, &path, asked_at)?;
+        let base = syntax_of(diagnostics, start, &text);
         chain.push((start, text));
         paths.push(path);
         match base {
             Some(base) => {
-                path = ledger.sources.resolve(base.at, &base.value);
+                path = diagnostics.sources.resolve(base.at, &base.value);
                 asked_at = Some(base.at);
             }
             None => return Some(chain),
@@ -117,13 +121,13 @@ pub(super) fn chain(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -
 }
 
 /// Reads one file into the virtual text.
-fn text_of(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -> Option<(usize, Arc<str>)> {
-    let bytes = match bytes_of(ledger, path) {
+fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) -> Option<(usize, Arc<str>)> {
+    let bytes = match bytes_of(diagnostics, path) {
         Ok(bytes) => bytes,
         Err(why) => {
             match asked_at {
-                Some(at) => ledger.note(at, format!("{} {why}", path.display())),
-                None => ledger.note_file(path.to_owned(), why),
+                Some(at) => diagnostics.note(at, format!("{} {why}", path.display())),
+                None => diagnostics.note_file(path.to_owned(), why),
             }
             return None;
         }
@@ -131,20 +135,20 @@ fn text_of(ledger: &mut Ledger, path: &Path, asked_at: Option<usize>) -> Option<
     match String::from_utf8(bytes) {
         Ok(text) => {
             let text: Arc<str> = text.into();
-            Some((ledger.sources.add(path.to_owned(), text.clone()), text))
+            Some((diagnostics.sources.add(path.to_owned(), text.clone()), text))
         }
         Err(error) => {
             let good = error.utf8_error().valid_up_to();
             let text = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
-            let start = ledger.sources.add(path.to_owned(), text.into());
-            ledger.note_syntax(start + good, "found a byte that is not UTF-8, expected text");
+            let start = diagnostics.sources.add(path.to_owned(), text.into());
+            diagnostics.note_syntax(start + good, "found a byte that is not UTF-8, expected text");
             None
         }
     }
 }
 
-fn bytes_of(ledger: &Ledger, path: &Path) -> Result<Vec<u8>, String> {
-    if let Some(files) = &ledger.files {
+fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
+    if let Some(files) = &diagnostics.files {
         let kept = files.iter().find(|(kept, _)| kept == path);
         return kept.map(|(_, text)| text.clone().into_bytes()).ok_or_else(|| "is not among the files kept".into());
     }
@@ -160,9 +164,9 @@ fn bytes_of(ledger: &Ledger, path: &Path) -> Result<Vec<u8>, String> {
 }
 
 /// Notes what is wrong with the syntax, and returns the base the file names.
-fn syntax_of(ledger: &mut Ledger, start: usize, text: &str) -> Option<At<String>> {
+fn syntax_of(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Option<At<String>> {
     if let Some(at) = too_deep(text) {
-        ledger.note_syntax(
+        diagnostics.note_syntax(
             start + at,
             format!("found a key of more than {MOST_PARTS} parts, expected at most 3").as_str(),
         );
@@ -171,7 +175,7 @@ fn syntax_of(ledger: &mut Ledger, start: usize, text: &str) -> Option<At<String>
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in errors {
         let at = error.span().map_or(0, |span| span.start);
-        ledger.note_syntax(start + at, error.message());
+        diagnostics.note_syntax(start + at, error.message());
     }
     let base = table.get_ref().get("base")?;
     let at = start + base.span().start;
@@ -253,7 +257,7 @@ fn lay_over<'i>(over: &mut DeTable<'i>, base: DeTable<'i>) {
 
 /// Reads the table into `T`; an entry that does not fit is noted, taken out, and the rest tried again.
 pub(super) fn deserialised<T: DeserializeOwned + Default>(
-    ledger: &mut Ledger,
+    diagnostics: &mut Diagnostics,
     start: usize,
     mut table: Table<'_>,
 ) -> T {
@@ -264,17 +268,17 @@ pub(super) fn deserialised<T: DeserializeOwned + Default>(
         };
         let at = error.span().map_or(table.span().start, |span| span.start);
         let Some(key) = take_out(table.get_mut(), at) else {
-            ledger.note(at, explain(error.message(), "the file"));
+            diagnostics.note(at, explain(error.message(), "the file"));
             break;
         };
-        ledger.mark_unfit(start, &key);
-        ledger.mark_unfit(at, &key);
+        diagnostics.mark_unfit(start, &key);
+        diagnostics.mark_unfit(at, &key);
         let message = explain(error.message(), &key);
         // A table head with broken syntax leaves its keys to the table before.
         if error.message().starts_with("unknown field") {
-            ledger.note_if_intact(at, message);
+            diagnostics.note_if_intact(at, message);
         } else {
-            ledger.note(at, message);
+            diagnostics.note(at, message);
         }
     }
     T::default()

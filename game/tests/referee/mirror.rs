@@ -50,7 +50,7 @@ impl Mirror {
                 Event::Collided { first, second }
             }
             Event::Ended { winner } => Event::Ended { winner: winner.map(|team| TeamId(1 - team.0)) },
-            Event::MindLost { .. } | Event::MindBack { .. } | Event::Quarantined { .. } => event,
+            Event::AgentLost { .. } | Event::AgentBack { .. } | Event::Quarantined { .. } => event,
             Event::NavLost { .. } | Event::NavBack { .. } => event,
             Event::EStopped | Event::Released | Event::Halted | Event::WentOn => event,
         }

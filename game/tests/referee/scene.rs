@@ -58,11 +58,11 @@ impl Scene {
     pub(crate) fn on(rules: Rules, field: Field, team_of: Vec<TeamId>) -> Scene {
         let referee = Referee::new(rules, field, team_of);
         let standing = referee.start(&mut Stream::new(1, "rules"));
-        let berth = |(i, team): (usize, &TeamId)| {
+        let start_position = |(i, team): (usize, &TeamId)| {
             let before = referee.team_of()[..i].iter().filter(|other| *other == team).count();
             Ned::from_xy(if team.0 == 0 { 45.0 } else { 115.0 }, 5.0 + 12.0 * before as f64)
         };
-        let fleet = referee.team_of().iter().enumerate().map(berth).collect();
+        let fleet = referee.team_of().iter().enumerate().map(start_position).collect();
         Scene { standing, fleet, referee, notes: Notes::default(), near: Near::default(), now: SimTime::ZERO }
     }
 

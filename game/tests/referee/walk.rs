@@ -47,8 +47,8 @@ impl Walk {
     /// Where every boat is, look by look. Boats hurry from one interesting place to the next.
     fn fleets(&self) -> Vec<Vec<Ned>> {
         let mut stream = Stream::new(self.seed, "walk");
-        let berth = |_| Ned::from_xy(80.0, 40.0);
-        let mut fleet: Vec<Ned> = (0..2 * self.boats).map(berth).collect();
+        let start_position = |_| Ned::from_xy(80.0, 40.0);
+        let mut fleet: Vec<Ned> = (0..2 * self.boats).map(start_position).collect();
         let mut targets: Vec<Ned> = fleet.iter().map(|_| place(&mut stream)).collect();
         let mut look = |_| {
             for (at, target) in fleet.iter_mut().zip(&mut targets) {

@@ -10,15 +10,15 @@ mod upload;
 mod voice;
 
 use crate::estimate::Estimator;
-use crate::fence::{BowWatch, FenceWatch};
-use crate::front_seat::{FrontSeat, Setting};
 use crate::geodesy::LocalFrame;
+use crate::geofence::{BowWatch, GeofenceWatch};
 use crate::nmea::{Command, Framer, Mode, ParseError, Sentence, TimeOfDay};
+use crate::set_point::{SetPointMapper, Setting};
 use crate::supervisor::{Action, Conditions, Control, Reach, Refusal, State, Step, Supervisor, Task, Wish};
 pub use exchange::{Event, FleetCommand, Input, NavOut, Outbox, Plan};
 
 use control::ControlLog;
-use game::external::{Mission, OperatorCommand, TripReport};
+use game::external::{FailsafeReport, Mission, OperatorCommand};
 use game::frame::Ned;
 use game::gateway::Gateway;
 use game::{Order, SimTime};
@@ -66,9 +66,9 @@ pub struct Bridge {
     framer: Framer,
     estimator: Estimator,
     control: ControlLog,
-    fence: FenceWatch,
+    fence: GeofenceWatch,
     bow: BowWatch,
-    seat: FrontSeat,
+    seat: SetPointMapper,
     supervisor: Supervisor,
     link_up: bool,
     order: Option<Standing>,
@@ -93,7 +93,7 @@ pub struct Bridge {
     /// When navigation was told last, and whether as valid.
     nav_told: (SimTime, bool),
     standby_ignored: bool,
-    trips: Vec<TripReport>,
+    trips: Vec<FailsafeReport>,
     tally: Tally,
 }
 
@@ -106,10 +106,10 @@ impl Bridge {
         let estimator = Estimator::new(frame, nav, (compass, plan.declination_rad), limits.speed_max_m_s);
         Bridge {
             framer: Framer::new(),
-            seat: FrontSeat::new(&plan.gateway, estimator.compass_to_true_rad()),
+            seat: SetPointMapper::new(&plan.gateway, estimator.compass_to_true_rad()),
             estimator,
             control: ControlLog::new(control),
-            fence: FenceWatch::new(&plan.field, fence),
+            fence: GeofenceWatch::new(&plan.field, fence),
             bow: BowWatch::new(halt, plan.length_m),
             supervisor: Supervisor::new(plan.arms_itself, battery.action),
             plan,
@@ -344,8 +344,8 @@ impl Bridge {
     fn note_change(&mut self, now: SimTime, before: State, out: &mut Outbox) {
         let state = self.supervisor.state();
         out.events.push(Event::State { from: before.to_string(), to: state.to_string() });
-        if let State::Tripped(cause) = state {
-            self.trips.push(TripReport { at_s: now.as_s(), cause: cause.to_string() });
+        if let State::Failsafe(cause) = state {
+            self.trips.push(FailsafeReport { at_s: now.as_s(), cause: cause.to_string() });
             let surplus = self.trips.len().saturating_sub(TRIPS_MAX);
             self.trips.drain(..surplus);
         }

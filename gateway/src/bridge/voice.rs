@@ -1,7 +1,7 @@
 //! What is said to the boat: commands as sentences.
 
-use crate::front_seat::Setting;
 use crate::nmea::{Command, M_S_PER_KN, Mode, Sentence};
+use crate::set_point::Setting;
 use crate::supervisor::Task;
 
 /// `PSEAC` with these numbers in its second to fourth field.

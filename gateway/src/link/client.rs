@@ -2,9 +2,9 @@
 
 use super::backoff::Backoff;
 use super::clock;
-use super::crew::{Crew, Woken};
 use super::peer::Seat;
 use super::port::{Port, TICK};
+use super::threads::{Threads, Woken};
 use super::{LinkAddress, LinkEvent};
 use serial2::SerialPort;
 use socket2::{Domain, Protocol, Socket, TcpKeepalive, Type};
@@ -25,7 +25,7 @@ const SEND_BUFFER: usize = 4096;
 const UNACKNOWLEDGED: Duration = Duration::from_secs(2);
 
 /// Connects, serves, waits, until the link is closed.
-pub(super) fn keep(crew: &Arc<Crew>, address: &LinkAddress) {
+pub(super) fn keep(crew: &Arc<Threads>, address: &LinkAddress) {
     let mut backoff = Backoff::new(crew.settings.retry);
     let mut seen = crew.reconnects();
     loop {
@@ -55,7 +55,7 @@ pub(super) fn keep(crew: &Arc<Crew>, address: &LinkAddress) {
     }
 }
 
-fn connect(crew: &Crew, address: &LinkAddress) -> io::Result<(Port, String)> {
+fn connect(crew: &Threads, address: &LinkAddress) -> io::Result<(Port, String)> {
     match address {
         LinkAddress::TcpClient { host, port } => connect_tcp(crew, host, *port),
         LinkAddress::UdpClient { host, port } => connect_udp(host, *port),
@@ -64,7 +64,7 @@ fn connect(crew: &Crew, address: &LinkAddress) -> io::Result<(Port, String)> {
     }
 }
 
-fn connect_tcp(crew: &Crew, host: &str, port: u16) -> io::Result<(Port, String)> {
+fn connect_tcp(crew: &Threads, host: &str, port: u16) -> io::Result<(Port, String)> {
     let mut last = io::Error::new(ErrorKind::NotFound, "the host has no address");
     for address in (host, port).to_socket_addrs()? {
         match dial(crew, address) {
@@ -76,7 +76,7 @@ fn connect_tcp(crew: &Crew, host: &str, port: u16) -> io::Result<(Port, String)>
 }
 
 /// Connects in steps: `connect_timeout` would not let go when the link is closed meanwhile.
-fn dial(crew: &Crew, address: SocketAddr) -> io::Result<TcpStream> {
+fn dial(crew: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
     let socket = Socket::new(Domain::for_address(address), Type::STREAM, Some(Protocol::TCP))?;
     socket.set_nonblocking(true)?;
     let start = clock::now();

@@ -9,17 +9,16 @@ mod address;
 mod backoff;
 mod client;
 mod clock;
-mod crew;
 mod outbox;
 mod peer;
 mod port;
 mod pty;
 mod tcp_server;
+mod threads;
 mod udp_server;
 
 pub use address::{BAUDS, LinkAddress, LinkAddressError};
 
-use crew::Crew;
 use outbox::Rank;
 use std::io;
 use std::net::SocketAddr;
@@ -27,6 +26,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use thiserror::Error;
+use threads::Threads;
 
 /// The most peers that a link serves at once.
 const PEERS_MAX: usize = 8;
@@ -145,7 +145,7 @@ pub enum LinkError {
 /// was written still arrives, what was only handed over is lost. For last words there is
 /// [`Link::send_and_wait`].
 pub struct Link {
-    crew: Arc<Crew>,
+    crew: Arc<Threads>,
     reach: String,
 }
 
@@ -159,7 +159,7 @@ impl Link {
         settings: LinkSettings,
         take: impl Fn(LinkEvent) + Send + Sync + 'static,
     ) -> Result<Link, LinkError> {
-        let crew = Crew::new(settings, take);
+        let crew = Threads::new(settings, take);
         let hand = Arc::clone(&crew);
         let (reach, work) = plan(hand, address)?;
         let failed = |source| LinkError::Thread { address: address.to_string(), source };
@@ -208,7 +208,7 @@ impl Drop for Link {
 /// Where others reach the link, and what keeps it up.
 type Plan = (String, Box<dyn FnOnce() + Send>);
 
-fn plan(crew: Arc<Crew>, address: &LinkAddress) -> Result<Plan, LinkError> {
+fn plan(crew: Arc<Threads>, address: &LinkAddress) -> Result<Plan, LinkError> {
     Ok(match address {
         LinkAddress::TcpServer { host, port } => {
             let (listener, at) = tcp_server::bind(host, *port)?;

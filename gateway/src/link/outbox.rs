@@ -12,16 +12,16 @@ pub(super) enum Rank {
     LastWords,
 }
 
-/// Bytes for one peer. Dropped before it was taken, it is lost, and its receipt knows.
-pub(super) struct Parcel {
+/// Bytes for one peer. Dropped before it was taken, it is lost, and its completion knows.
+pub(super) struct WriteRequest {
     bytes: Arc<Vec<u8>>,
-    receipt: Arc<Receipt>,
+    completion: Arc<Completion>,
     rank: Rank,
     taken: bool,
 }
 
 /// Who of all peers has taken the same bytes.
-pub(super) struct Receipt {
+pub(super) struct Completion {
     tag: Option<u64>,
     count: Mutex<Count>,
     settled: Condvar,
@@ -40,7 +40,7 @@ pub(super) struct Outbox {
 
 #[derive(Default)]
 struct State {
-    queued: Option<Parcel>,
+    queued: Option<WriteRequest>,
     shut: bool,
 }
 
@@ -50,12 +50,12 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Receipt {
+impl Completion {
     /// For bytes that go to so many peers.
-    pub(super) fn new(tag: Option<u64>, peers: usize) -> Arc<Receipt> {
+    pub(super) fn new(tag: Option<u64>, peers: usize) -> Arc<Completion> {
         // What nobody is there to take is lost.
         let count = Mutex::new(Count { open: peers, lost: peers == 0 });
-        Arc::new(Receipt { tag, count, settled: Condvar::new() })
+        Arc::new(Completion { tag, count, settled: Condvar::new() })
     }
 
     /// Waits up to `limit`; whether every peer took the bytes.
@@ -76,9 +76,9 @@ impl Receipt {
     }
 }
 
-impl Parcel {
-    pub(super) fn new(bytes: &Arc<Vec<u8>>, receipt: &Arc<Receipt>, rank: Rank) -> Parcel {
-        Parcel { bytes: Arc::clone(bytes), receipt: Arc::clone(receipt), rank, taken: false }
+impl WriteRequest {
+    pub(super) fn new(bytes: &Arc<Vec<u8>>, completion: &Arc<Completion>, rank: Rank) -> WriteRequest {
+        WriteRequest { bytes: Arc::clone(bytes), completion: Arc::clone(completion), rank, taken: false }
     }
 
     pub(super) fn bytes(&self) -> &[u8] {
@@ -88,14 +88,14 @@ impl Parcel {
     /// Notes that the peer took it; gives the tag once all did.
     pub(super) fn take(mut self) -> Option<u64> {
         self.taken = true;
-        if self.receipt.settle(false) { self.receipt.tag } else { None }
+        if self.completion.settle(false) { self.completion.tag } else { None }
     }
 }
 
-impl Drop for Parcel {
+impl Drop for WriteRequest {
     fn drop(&mut self) {
         if !self.taken {
-            self.receipt.settle(true);
+            self.completion.settle(true);
         }
     }
 }
@@ -105,22 +105,22 @@ impl Outbox {
         Outbox { state: Mutex::default(), news: Condvar::new() }
     }
 
-    /// Queues a parcel; whether one had to go for it (the queued one, or this if last words are queued).
-    pub(super) fn put(&self, parcel: Parcel) -> bool {
+    /// Queues a request; whether one had to go for it (the queued one, or this if last words are queued).
+    pub(super) fn put(&self, request: WriteRequest) -> bool {
         let mut state = lock(&self.state);
         if state.shut {
             return false;
         }
-        if parcel.rank == Rank::Usual && state.queued.as_ref().is_some_and(|queued| queued.rank == Rank::LastWords) {
+        if request.rank == Rank::Usual && state.queued.as_ref().is_some_and(|queued| queued.rank == Rank::LastWords) {
             return true;
         }
-        let displaced = state.queued.replace(parcel).is_some();
+        let displaced = state.queued.replace(request).is_some();
         self.news.notify_one();
         displaced
     }
 
-    /// Waits for a parcel; none comes any more once it is shut.
-    pub(super) fn next(&self) -> Option<Parcel> {
+    /// Waits for a request; none comes any more once it is shut.
+    pub(super) fn next(&self) -> Option<WriteRequest> {
         let guard = lock(&self.state);
         let idle = |state: &mut State| state.queued.is_none() && !state.shut;
         let mut state = self.news.wait_while(guard, idle).unwrap_or_else(PoisonError::into_inner);

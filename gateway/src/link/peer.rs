@@ -2,9 +2,9 @@
 
 use super::LinkEvent;
 use super::clock;
-use super::crew::Crew;
 use super::outbox::{Outbox, lock};
 use super::port::{Heard, Port, TICK, Wrote};
+use super::threads::Threads;
 use std::fmt;
 use std::io;
 use std::sync::{Arc, Mutex};
@@ -35,7 +35,7 @@ pub(super) struct Peer {
 
 /// A peer that is up; gone when dropped, said to be gone with [`Seat::leave`].
 pub(super) struct Seat {
-    crew: Arc<Crew>,
+    crew: Arc<Threads>,
     pub(super) peer: Arc<Peer>,
     writer: Option<JoinHandle<()>>,
 }
@@ -70,13 +70,13 @@ impl Peer {
     }
 
     /// Writes what is handed over, until the end.
-    fn write_on(&self, crew: &Crew) {
-        while let Some(parcel) = self.outbox.next() {
-            let (begun_at, transit) = (clock::now(), self.port.transit(parcel.bytes().len()));
-            match self.port.write(parcel.bytes(), || self.is_over()) {
+    fn write_on(&self, crew: &Threads) {
+        while let Some(request) = self.outbox.next() {
+            let (begun_at, transit) = (clock::now(), self.port.transit(request.bytes().len()));
+            match self.port.write(request.bytes(), || self.is_over()) {
                 Ok(Wrote::All) => {
                     let at = clock::now();
-                    if let Some(tag) = parcel.take() {
+                    if let Some(tag) = request.take() {
                         crew.tell(LinkEvent::Written { tag, at });
                     }
                 }
@@ -97,7 +97,7 @@ impl Peer {
 
 impl Seat {
     /// Makes a peer of a connection.
-    pub(super) fn take(crew: &Arc<Crew>, port: Port, name: String) -> io::Result<Seat> {
+    pub(super) fn take(crew: &Arc<Threads>, port: Port, name: String) -> io::Result<Seat> {
         let peer = Peer { number: crew.number(), outbox: Outbox::new(), port, end: Mutex::new(None) };
         let mut seat = Seat { crew: Arc::clone(crew), peer: Arc::new(peer), writer: None };
         // First there, then said to be: who answers `Up` with bytes wants them to reach this peer. And only

@@ -1,10 +1,10 @@
 //! A pseudo-terminal of our own, which others open as if a boat was on a serial line.
 
 use super::clock;
-use super::crew::{Crew, Woken};
 use super::outbox::lock;
 use super::peer::{End, Seat, Served};
 use super::port::{Port, TICK};
+use super::threads::{Threads, Woken};
 use super::{LinkError, LinkEvent};
 use rustix::fs::{Mode, OFlags};
 use rustix::pty::OpenptFlags;
@@ -124,7 +124,7 @@ impl Drop for Pty {
 }
 
 /// Serves whoever opens it, until the link is closed.
-pub(super) fn keep(crew: &Arc<Crew>, pty: &Arc<Pty>) {
+pub(super) fn keep(crew: &Arc<Threads>, pty: &Arc<Pty>) {
     let again = crew.settings.retry.0;
     loop {
         let port = Port::Pty(Arc::clone(pty));

@@ -1,9 +1,9 @@
 //! A TCP port of our own, for some peers at once.
 
 use super::client::tune;
-use super::crew::{Crew, Woken};
 use super::peer::Seat;
 use super::port::{Port, TICK};
+use super::threads::{Threads, Woken};
 use super::{LinkError, PEERS_MAX};
 use socket2::SockRef;
 use std::io;
@@ -23,7 +23,7 @@ pub(super) fn bind(host: &str, port: u16) -> Result<(TcpListener, SocketAddr), L
 }
 
 /// Takes whoever comes, until the link is closed.
-pub(super) fn keep(crew: &Arc<Crew>, listener: &TcpListener) {
+pub(super) fn keep(crew: &Arc<Threads>, listener: &TcpListener) {
     while !crew.is_stopped() {
         match listener.accept() {
             Ok((stream, from)) => welcome(crew, stream, from),
@@ -35,7 +35,7 @@ pub(super) fn keep(crew: &Arc<Crew>, listener: &TcpListener) {
     }
 }
 
-fn welcome(crew: &Arc<Crew>, stream: TcpStream, from: SocketAddr) {
+fn welcome(crew: &Arc<Threads>, stream: TcpStream, from: SocketAddr) {
     if crew.count() >= PEERS_MAX {
         return;
     }

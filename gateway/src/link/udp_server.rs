@@ -1,8 +1,8 @@
 //! A UDP port of our own, whose peers are those who spoke to it lately.
 
-use super::crew::{Crew, Woken};
 use super::peer::{CHUNK, End, Seat};
 use super::port::{Port, TICK};
+use super::threads::{Threads, Woken};
 use super::{LinkError, LinkEvent, PEERS_MAX, clock};
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
@@ -31,7 +31,7 @@ pub(super) fn bind(host: &str, port: u16) -> Result<(UdpSocket, SocketAddr), Lin
 }
 
 /// Listens to whoever speaks, until the link is closed.
-pub(super) fn keep(crew: &Arc<Crew>, socket: &Arc<UdpSocket>) {
+pub(super) fn keep(crew: &Arc<Threads>, socket: &Arc<UdpSocket>) {
     let patience = crew.settings.silence.map_or(FORGOTTEN, |silence| silence.min(FORGOTTEN));
     let mut guests: Vec<Guest> = Vec::new();
     let mut buffer = vec![0; CHUNK];
@@ -51,7 +51,7 @@ pub(super) fn keep(crew: &Arc<Crew>, socket: &Arc<UdpSocket>) {
     }
 }
 
-fn hear(crew: &Arc<Crew>, socket: &Arc<UdpSocket>, guests: &mut Vec<Guest>, from: SocketAddr, bytes: &[u8]) {
+fn hear(crew: &Arc<Threads>, socket: &Arc<UdpSocket>, guests: &mut Vec<Guest>, from: SocketAddr, bytes: &[u8]) {
     let at = clock::now();
     let known = guests.iter_mut().find(|guest| guest.from == from);
     let peer = if let Some(guest) = known {

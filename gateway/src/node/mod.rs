@@ -4,32 +4,32 @@
 //! [`crate::bridge`] and [`crate::emulator`]; here are the sockets, the clocks and the threads.
 
 mod clock;
-mod desk;
+mod emulator;
+mod gateway_loop;
+mod join;
 mod latency;
 mod logbook;
-mod mooring;
-mod player;
 
-pub use player::{EmulatorSettings, emulate};
+pub use emulator::{EmulatorSettings, emulate};
 
 use crate::bridge::{Bridge, Event, Plan};
 use crate::declination::{DeclinationError, declination_deg};
 use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use crate::record::RecordError;
 use crate::utc;
-use bus::lookout::{self, Lookout, NotFound};
-use bus::{Bus, BusError, Delivery, Net, Standing, inbox};
+use bus::game_search::{self, GameSearch, NotFound};
+use bus::{Bus, BusError, Declaration, Delivery, Net, inbox};
 use clock::Clock;
-use desk::{Call, Desk, Papers, Tray};
 use game::external::GatewayStatus;
 use game::frame::LatLon;
 use game::gateway::Gateway;
-use game::message::{Control, Notice};
+use game::message::{Control, GameInfo};
 use game::scenario::{Source, UnknownVehicle};
 use game::topic::{self, GameName, Part};
 use game::{VehicleId, codec};
+use gateway_loop::{Call, Counters, GatewayLoop, LatestOrder};
+use join::Join;
 use logbook::Logbook;
-use mooring::Mooring;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, PoisonError};
@@ -136,7 +136,7 @@ const INBOX: usize = 4096;
 /// [`NodeError`] if there is no such game or boat, or if the network, the link or the recording cannot work. A boat or a
 /// sim that goes away is none: the gateway waits for it.
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-    let mut look = Lookout::new(settings.wait, &settings.stop);
+    let mut look = GameSearch::new(settings.wait, &settings.stop);
     let (bus, game, notice) = find_game(&mut look, &settings.net, settings.game.as_ref(), tell)?;
     let vehicle = external_vehicle(&notice, &settings.vehicle)?;
     let factor = pace_factor(&notice.pace, settings.at_game_pace)?;
@@ -163,21 +163,21 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     // Not a word to a boat that another gateway has. The thread that keeps it moored asks again, and gets it again.
     let names = [settings.vehicle.clone()];
     let mut say = |reason: &str| tell(News::Looking { reason });
-    look.until(&mut say, || lookout::seat(&bus, &topic::moor(&game), &names, "gateway"))?;
-    let (outlet, inbox) = inbox(INBOX);
-    let tray = Tray::default();
+    look.until(&mut say, || game_search::join(&bus, &topic::moor(&game), &names, "gateway"))?;
+    let (inbox_sender, inbox) = inbox(INBOX);
+    let latest_order = LatestOrder::default();
     let e_stop = Arc::new(AtomicBool::new(false));
-    let standing = lines(&bus, &game, &notice, vehicle, (&tray, &e_stop, &outlet))?;
-    let calls = outlet.clone();
+    let standing = lines(&bus, &game, &notice, vehicle, (&latest_order, &e_stop, &inbox_sender))?;
+    let calls = inbox_sender.clone();
     let link_settings = LinkSettings { silence: Some(settings.silence), ..LinkSettings::default() };
     let link = Link::open(&settings.link, link_settings, move |event: LinkEvent| calls.put(Call::Link(event)))?;
     let others = notice.scenario.vehicles.iter().enumerate().filter(|(_, other)| other.source == Source::External);
-    let mut desk = Desk {
+    let mut desk = GatewayLoop {
         bridge: Bridge::new(plan),
         link,
         clock: Clock::start(factor),
         inbox,
-        tray,
+        latest_order,
         e_stop,
         nav: bus.publisher(topic::nav(&game, &notice.scenario, vehicle), Delivery::Drop)?,
         status: bus.publisher(topic::status(&game, &settings.vehicle), Delivery::Drop)?,
@@ -185,9 +185,9 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         vehicle,
         others: others.map(|(i, _)| VehicleId::at(i)).filter(|other| *other != vehicle).collect(),
         logbook,
-        papers: Papers::new(),
+        counters: Counters::new(),
     };
-    let mooring = Mooring::begin(&bus, &game, &settings.vehicle, outlet)?;
+    let mooring = Join::begin(&bus, &game, &settings.vehicle, inbox_sender)?;
     let worked = desk.work(&settings.stop, tell);
     let status = desk.full_status();
     // The boat first, then the network.
@@ -198,25 +198,25 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     worked
 }
 
-/// What comes from the sim and from people, into the tray and to the desk.
+/// What comes from the sim and from people, into the latest_order and to the desk.
 fn lines(
     bus: &Bus,
     game: &GameName,
-    notice: &Notice,
+    notice: &GameInfo,
     vehicle: VehicleId,
-    (tray, e_stop, outlet): (&Tray, &Arc<AtomicBool>, &bus::Outlet<Call>),
-) -> Result<Vec<Standing>, BusError> {
+    (latest_order, e_stop, inbox_sender): (&LatestOrder, &Arc<AtomicBool>, &bus::InboxSender<Call>),
+) -> Result<Vec<Declaration>, BusError> {
     let scenario = &notice.scenario;
-    let (tray, orders) = (Arc::clone(tray), outlet.clone());
+    let (latest_order, orders) = (Arc::clone(latest_order), inbox_sender.clone());
     let take_order = move |bytes: &[u8]| {
         let Ok(order) = codec::decode(bytes) else { return };
-        let mut tray = tray.lock().unwrap_or_else(PoisonError::into_inner);
-        // Who has yet to look into the tray will find the newest.
-        if tray.replace((order, clock::moment())).is_none() {
+        let mut latest_order = latest_order.lock().unwrap_or_else(PoisonError::into_inner);
+        // Who has yet to look into the latest_order will find the newest.
+        if latest_order.replace((order, clock::moment())).is_none() {
             orders.put(Call::Order);
         }
     };
-    let (questions, controls, frames) = (outlet.clone(), outlet.clone(), outlet.clone());
+    let (questions, controls, frames) = (inbox_sender.clone(), inbox_sender.clone(), inbox_sender.clone());
     let e_stop = Arc::clone(e_stop);
     let name = &scenario.vehicles[vehicle.index()].name;
     let mut standing = vec![
@@ -242,18 +242,18 @@ fn lines(
 
 /// The game, and what it is.
 fn find_game(
-    look: &mut Lookout<'_>,
+    look: &mut GameSearch<'_>,
     net: &Net,
     game: Option<&GameName>,
     tell: &mut dyn FnMut(News<'_>),
-) -> Result<(Bus, GameName, Notice), NodeError> {
+) -> Result<(Bus, GameName, GameInfo), NodeError> {
     let mut say = |reason: &str| tell(News::Looking { reason });
     let (bus, game) = look.game(&mut say, net, game)?;
-    let notice = look.until(&mut say, || lookout::notice(&bus, &game))?;
+    let notice = look.until(&mut say, || game_search::game_info(&bus, &game))?;
     Ok((bus, game, notice))
 }
 
-fn external_vehicle(notice: &Notice, name: &str) -> Result<VehicleId, NodeError> {
+fn external_vehicle(notice: &GameInfo, name: &str) -> Result<VehicleId, NodeError> {
     let vehicle = notice.scenario.vehicle_named(name)?;
     if notice.scenario.vehicles[vehicle.index()].source == Source::External {
         return Ok(vehicle);

@@ -11,7 +11,7 @@ pub enum Cause {
     /// Navigation cannot be relied on.
     Nav(NavFault),
     /// It was outside of the fence, or could not have stopped inside.
-    Fence,
+    Geofence,
     /// The battery was low.
     BatteryLow,
     /// Somebody else took it over: PSEAD's number of the operator.
@@ -80,7 +80,7 @@ impl fmt::Display for Cause {
         match self {
             Cause::OrderStale => f.write_str("no fresh order"),
             Cause::Nav(fault) => write!(f, "navigation: {fault}"),
-            Cause::Fence => f.write_str("outside of the fence, or unable to stop inside"),
+            Cause::Geofence => f.write_str("outside of the fence, or unable to stop inside"),
             Cause::BatteryLow => f.write_str("the battery is low"),
             Cause::TakenOver(by) => write!(f, "{} has taken over", operator(*by)),
             Cause::ControlUnknown => f.write_str("the boat no longer says who commands it"),
@@ -125,7 +125,7 @@ impl fmt::Display for State {
         match self {
             State::Safed => f.write_str("safed"),
             State::Armed => f.write_str("armed"),
-            State::Tripped(cause) => write!(f, "tripped: {cause}"),
+            State::Failsafe(cause) => write!(f, "tripped: {cause}"),
             State::Delegated(Task::StationKeep) => f.write_str("the boat keeps its station"),
             State::Delegated(Task::GoToErp) => f.write_str("the boat goes to its emergency recovery point"),
             State::Delegated(Task::Mission) => f.write_str("the boat sails its mission"),

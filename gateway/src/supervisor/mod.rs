@@ -3,7 +3,7 @@
 //! ```text
 //!                    arm [ready]                       any condition fails
 //!        ┌────────┐ ────────────▶ ┌─────────┐ ───────────────────────────▶ ┌───────────────┐
-//!   ●──▶ │ Safed  │               │  Armed  │                              │ Tripped(why)  │
+//!   ●──▶ │ Safed  │               │  Armed  │                              │ Failsafe(why)  │
 //!        └────────┘ ◀──────────── └─────────┘ ◀─────────────────────────── └───────────────┘
 //!          ▲ ▲  │      disarm          │                arm [ready]           │         ▲
 //!          │ │  │                      │ delegate [fit]                       │ disarm  │ a condition of
@@ -117,7 +117,7 @@ pub enum State {
     /// Following orders.
     Armed,
     /// Standby since something went wrong.
-    Tripped(Cause),
+    Failsafe(Cause),
     /// The boat sails by its own means.
     Delegated(Task),
     /// Standby until the E-stop is released.
@@ -239,21 +239,21 @@ impl Supervisor {
             State::Armed => match now.trip() {
                 // A boat that is sound but for its battery may have somewhere to go by itself.
                 Some(Cause::BatteryLow) => self.on_low_battery(),
-                Some(cause) => State::Tripped(cause),
+                Some(cause) => State::Failsafe(cause),
                 None => State::Armed,
             },
             State::Delegated(task) => match now.trip_of_fitness() {
                 Some(Cause::BatteryLow) if self.low_battery_task() == Some(task) => self.state,
                 Some(Cause::BatteryLow) => self.on_low_battery(),
-                Some(cause) => State::Tripped(cause),
+                Some(cause) => State::Failsafe(cause),
                 None => self.state,
             },
-            State::Safed | State::Tripped(_) => self.state,
+            State::Safed | State::Failsafe(_) => self.state,
         };
     }
 
     fn on_low_battery(&self) -> State {
-        self.low_battery_task().map_or(State::Tripped(Cause::BatteryLow), State::Delegated)
+        self.low_battery_task().map_or(State::Failsafe(Cause::BatteryLow), State::Delegated)
     }
 
     fn low_battery_task(&self) -> Option<Task> {
@@ -269,7 +269,7 @@ impl Supervisor {
             State::Armed if now.blocked => Action::Zero,
             State::Armed => Action::Follow,
             State::Delegated(task) => Action::Task(task),
-            State::Safed | State::Tripped(_) | State::EStopped => Action::Standby,
+            State::Safed | State::Failsafe(_) | State::EStopped => Action::Standby,
         }
     }
 }
@@ -293,7 +293,7 @@ impl Conditions {
             .then_some(Cause::LinkLost)
             .or(control)
             .or(self.nav.map(Cause::Nav))
-            .or((!self.inside).then_some(Cause::Fence))
+            .or((!self.inside).then_some(Cause::Geofence))
             .or(self.battery_low.then_some(Cause::BatteryLow))
     }
 

@@ -148,13 +148,13 @@ fn whatever_stops_a_boat_is_told_and_true_and_brings_standby() {
     explore(|before, now, wish, after, step| {
         let case = format!("{before:?}, {now:?}, {wish:?} -> {step:?}");
         assert_eq!(step.before, (before.state != after.state).then_some(before.state), "{case}");
-        if let State::Tripped(cause) = after.state
+        if let State::Failsafe(cause) = after.state
             && before.state != after.state
         {
             let is_true = match cause {
                 Cause::OrderStale => !now.order_fresh,
                 Cause::Nav(_) => now.nav.is_some(),
-                Cause::Fence => !now.inside,
+                Cause::Geofence => !now.inside,
                 Cause::BatteryLow => now.battery_low,
                 Cause::TakenOver(by) => now.control == Control::Other(by),
                 Cause::ControlUnknown => now.control == Control::Unknown,
@@ -163,7 +163,7 @@ fn whatever_stops_a_boat_is_told_and_true_and_brings_standby() {
             };
             assert!(is_true, "{case}");
         }
-        let at_rest = matches!(after.state, State::Safed | State::Tripped(_));
+        let at_rest = matches!(after.state, State::Safed | State::Failsafe(_));
         if at_rest {
             assert_eq!(step.action, Action::Standby, "{case}");
         }
@@ -205,6 +205,6 @@ fn the_gravest_cause_is_the_one_that_is_told() {
     machine.step(&GOOD, Some(Wish::Arm));
     let bad = Conditions { link: false, control: Control::Other(1), order_fresh: false, ..GOOD };
     machine.step(&bad, None);
-    assert_eq!(machine.state(), State::Tripped(Cause::LinkLost));
+    assert_eq!(machine.state(), State::Failsafe(Cause::LinkLost));
     assert_eq!(Cause::TakenOver(5).to_string(), "the remote control has taken over");
 }

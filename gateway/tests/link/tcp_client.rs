@@ -267,7 +267,7 @@ fn a_boat_that_keeps_talking_hears_the_good_bye_whole() {
     let mut got = Vec::new();
     boat.read_to_end(&mut got).unwrap();
     assert_eq!(got, b"last");
-    // A boat takes a moment to notice. Nobody slams the door in its face meanwhile: a reset could make it
+    // A boat takes a moment to notice. NoRecorder slams the door in its face meanwhile: a reset could make it
     // forget what it has not read yet.
     for _ in 0..10 {
         boat.write_all(b"$GPGGA").expect("the link listens on for a moment");

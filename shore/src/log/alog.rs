@@ -201,7 +201,7 @@ fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) {
 fn mode(moment: &Moment) -> &'static str {
     match moment {
         Moment { nav_lost: true, .. } => "LOST",
-        Moment { mind_lost: true, .. } => "MINDLESS",
+        Moment { agent_lost: true, .. } => "MINDLESS",
         Moment { tagged: true, .. } => "TAGGED",
         Moment { outside: true, .. } => "OUTSIDE",
         Moment { carrying: true, .. } => "CARRYING",

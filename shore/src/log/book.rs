@@ -55,7 +55,7 @@ pub struct Moment {
     /// Whether it was outside of the field.
     pub outside: bool,
     /// Whether it had no mind.
-    pub mind_lost: bool,
+    pub agent_lost: bool,
     /// Whether nobody knew where it was.
     pub nav_lost: bool,
 }
@@ -199,7 +199,7 @@ impl<'a> Scribe<'a> {
         for input in inputs.inputs.iter().filter_map(|record| record.input()) {
             let (vehicle, order) = match input {
                 Input::Ordered { vehicle, order } => (vehicle, order),
-                Input::Held { vehicle } | Input::MindLost { vehicle } => (vehicle, Order::Hold),
+                Input::Held { vehicle } | Input::AgentLost { vehicle } => (vehicle, Order::Hold),
                 _ => continue,
             };
             if let Some(in_force) = self.orders.get_mut(vehicle.index()) {
@@ -211,16 +211,16 @@ impl<'a> Scribe<'a> {
 }
 
 fn moment(truth: &VehicleTruth, order: Order, stopped: bool) -> Moment {
-    let VehicleTruth { tagged, disabled, outside, mind_lost, quarantined, nav_lost, .. } = *truth;
+    let VehicleTruth { tagged, disabled, outside, agent_lost, quarantined, nav_lost, .. } = *truth;
     Moment {
         truth: truth.nav,
         believed: None,
         order,
-        is_free: !(stopped || tagged || disabled || outside || mind_lost || quarantined || nav_lost),
+        is_free: !(stopped || tagged || disabled || outside || agent_lost || quarantined || nav_lost),
         tagged,
         carrying: truth.carrying >= 0,
         outside,
-        mind_lost,
+        agent_lost,
         nav_lost,
     }
 }

@@ -27,7 +27,7 @@ pub struct Figures {
     /// How long it carried a flag, s.
     pub carrying_s: f64,
     /// How long it had no mind, s.
-    pub mind_lost_s: f64,
+    pub agent_lost_s: f64,
     /// How long nobody knew where it was, s.
     pub nav_lost_s: f64,
     /// What it did, how often.
@@ -84,7 +84,7 @@ fn of(boat: &Boat, counts: Counts, steps_s: &[f64], teams: &[String]) -> Figures
         tagged_s: lasted(|moment| moment.tagged),
         outside_s: lasted(|moment| moment.outside),
         carrying_s: lasted(|moment| moment.carrying),
-        mind_lost_s: lasted(|moment| moment.mind_lost),
+        agent_lost_s: lasted(|moment| moment.agent_lost),
         nav_lost_s: lasted(|moment| moment.nav_lost),
         counts,
         navigation: navigation(boat),
@@ -185,7 +185,7 @@ mod tests {
         assert!((error.heading_rms_deg - 0.1_f64.to_degrees()).abs() < 1e-9, "{error:?}");
         assert!((error.speed_rms_m_s - 0.5).abs() < 1e-9 && (error.steered_s - 5.0).abs() < 1e-9, "{error:?}");
         assert!((figures.tagged_s - 5.0).abs() < 1e-9 && (figures.carrying_s - 1.0).abs() < 1e-9);
-        for none_s in [figures.outside_s, figures.mind_lost_s, figures.nav_lost_s] {
+        for none_s in [figures.outside_s, figures.agent_lost_s, figures.nav_lost_s] {
             assert_eq!(format!("{none_s:.1}"), "0.0");
         }
     }

@@ -2,7 +2,7 @@
 
 use super::sentence::Lines;
 use crate::recording::{Recording, RecordingError};
-use game::external::{GatewayStatus, LinkBytes, TripReport};
+use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ pub struct Gateway {
     /// The supervisor's state, as it was told last.
     pub state: Option<String>,
     /// What made it stop, oldest first.
-    pub trips: Vec<TripReport>,
+    pub trips: Vec<FailsafeReport>,
     /// What came from the boat.
     pub from_boat: Traffic,
     /// What went to the boat.

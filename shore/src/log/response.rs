@@ -118,7 +118,7 @@ fn proportion(told: &[Told]) -> (f64, f64) {
 fn hold_drift(book: &Book, boat: &Boat) -> Option<[f64; 2]> {
     let (mut held_s, mut sum, mut count) = (0.0, Ned::default(), 0_u32);
     for (moment, step_s) in boat.moments.iter().zip(book.steps_s()) {
-        let holds = moment.order == Order::Hold && (moment.is_free || moment.mind_lost);
+        let holds = moment.order == Order::Hold && (moment.is_free || moment.agent_lost);
         held_s = if holds { held_s + step_s } else { 0.0 };
         if held_s > SETTLED_S {
             sum = sum + velocity(moment);

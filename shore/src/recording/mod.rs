@@ -30,7 +30,7 @@ pub use recorder::{Blank, Recorder};
 pub use writer::{Note, Turn, Writer};
 
 use game::Outcome;
-use game::message::Notice;
+use game::message::GameInfo;
 use game::water::Water;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -75,7 +75,7 @@ pub struct Header {
     /// When it began: UTC, ns since 1970.
     pub began_utc_ns: u64,
     /// Version, pace, and the scenario with the seed and all numbers drawn.
-    pub notice: Notice,
+    pub notice: GameInfo,
     /// The waves.
     pub water: Water,
 }

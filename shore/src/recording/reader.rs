@@ -4,7 +4,7 @@ use super::text;
 use super::walk::{Walk, walk};
 use super::{CHECKSUM, Ending, FRAME, Header, RESULT, SQUALL, checksum};
 use game::codec::{self, DecodeError};
-use game::message::{Frame, Message, Notice};
+use game::message::{Frame, GameInfo, Message};
 use game::{Scenario, SimTime};
 use mcap::records::{MessageHeader, Record};
 use serde::de::DeserializeOwned;
@@ -289,7 +289,7 @@ fn header_of(facts: Option<&BTreeMap<String, String>>) -> Result<Header, Recordi
         commit: text("commit").to_owned(),
         game: text("game").to_owned(),
         began_utc_ns: text("began_utc_ns").parse().map_err(|e| strange("beginning", &e))?,
-        notice: Notice { version: text("version").to_owned(), pace: text("pace").to_owned(), scenario },
+        notice: GameInfo { version: text("version").to_owned(), pace: text("pace").to_owned(), scenario },
         water: serde_json::from_str(text("water")).map_err(|e| strange("water", &e))?,
     })
 }

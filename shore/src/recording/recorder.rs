@@ -187,7 +187,7 @@ fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &
 mod tests {
     use super::*;
     use crate::recording::{INPUTS, Recording, Turn};
-    use game::message::{Frame, Message, Notice, Stamp};
+    use game::message::{Frame, GameInfo, Message, Stamp};
     use game::water::Water;
     use game::{Outcome, SimTime};
     use std::io::{Cursor, SeekFrom};
@@ -214,7 +214,7 @@ mod tests {
     fn header() -> Header {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/attack_1v1.toml");
         let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
-        let notice = Notice { version: game::VERSION.to_owned(), pace: String::new(), scenario };
+        let notice = GameInfo { version: game::VERSION.to_owned(), pace: String::new(), scenario };
         Header { commit: String::new(), game: String::new(), began_utc_ns: 0, notice, water: Water::default() }
     }
 

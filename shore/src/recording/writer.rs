@@ -187,7 +187,7 @@ impl<W: Write + Seek> Writer<W> {
             ours => ros::full_definition(ours).unwrap_or_default(),
         };
         let schema_id = self.mcap.add_schema(schema, "ros2msg", definition.as_bytes())?;
-        // Nobody offered any: the profile wants to be told.
+        // NoRecorder offered any: the profile wants to be told.
         let qos = BTreeMap::from([("offered_qos_profiles".to_owned(), "[]".to_owned())]);
         Ok(self.mcap.add_channel(schema_id, topic, "cdr", &qos)?)
     }

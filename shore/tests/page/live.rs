@@ -1,14 +1,14 @@
 //! A game on a network, seen by pages: a made-up sim, and the real way to it.
 
 use super::client::Client;
-use super::film::{frame, own_boat, report, scenario, seq_of};
+use super::source::{frame, own_boat, report, scenario, seq_of};
 use super::{look, page};
-use bus::{Board, Bus, Delivery, Net, Publisher, Standing};
+use bus::{Bus, Declaration, Delivery, Net, Publisher, Watched};
 use game::codec;
 use game::event::{Event, Logged};
 use game::external::GatewayStatus;
 use game::helm::{HelmQuestion, HelmReport};
-use game::message::{Control, EventRecord, Message, Notice, PolicyProposal, Stamp};
+use game::message::{Control, EventRecord, GameInfo, Message, PolicyProposal, Stamp};
 use game::outcome::EventOutcome;
 use game::picture::Picture;
 use game::run_state::{Phase, RunState};
@@ -33,10 +33,10 @@ struct Sim {
     run: Publisher,
     pictures: Publisher,
     scenario: Scenario,
-    events: Arc<Board<Vec<EventOutcome>>>,
-    controls: Arc<Board<Vec<Control>>>,
-    proposals: Arc<Board<Vec<PolicyProposal>>>,
-    _standing: Vec<Standing>,
+    events: Arc<Watched<Vec<EventOutcome>>>,
+    controls: Arc<Watched<Vec<Control>>>,
+    proposals: Arc<Watched<Vec<PolicyProposal>>>,
+    _standing: Vec<Declaration>,
 }
 
 /// A game in which the first boat heeds a policy, and the others do not.
@@ -84,9 +84,9 @@ impl Sim {
         let publisher = |key: String| bus.publisher(key, Delivery::Wait).expect("it publishes");
         let (frames, run) = (publisher(topic::frame(&game)), publisher(topic::run(&game)));
         let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
-        let events = Arc::new(Board::new(vec![]));
-        let (controls, proposals) = (Arc::new(Board::new(vec![])), Arc::new(Board::new(vec![])));
-        let notice = Notice { version: game::VERSION.to_owned(), pace: pace.to_owned(), scenario: scenario.clone() };
+        let events = Arc::new(Watched::new(vec![]));
+        let (controls, proposals) = (Arc::new(Watched::new(vec![])), Arc::new(Watched::new(vec![])));
+        let notice = GameInfo { version: game::VERSION.to_owned(), pace: pace.to_owned(), scenario: scenario.clone() };
         let wave = PlaneWave { amplitude_m: 0.25, ..PlaneWave::default() };
         let fixed = |key: String, answer: Vec<u8>| {
             bus.answer(key, move |question| question.answer(answer.clone())).expect("it answers")
@@ -131,7 +131,7 @@ impl Sim {
 
     /// Waits until the page's server listens to frames.
     fn wait_for_ears(&self) {
-        let ears = Board::new(());
+        let ears = Watched::new(());
         let heard = (0..3000).any(|_| {
             ears.wait(Duration::from_millis(10), |()| false);
             self.frames.is_heard() && self.run.is_heard()
@@ -236,10 +236,10 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
     }
     page.close();
     let locked = super::page(live_again(&sim), Some("secret"), &[]);
-    let mut onlooker = look(&locked);
-    assert_eq!(onlooker.text()["rights"], false);
-    onlooker.send(r#"{"do":"control","what":"stop"}"#);
-    assert_eq!(onlooker.until("refused", |_| true)["what"], "control");
+    let mut observer = look(&locked);
+    assert_eq!(observer.text()["rights"], false);
+    observer.send(r#"{"do":"control","what":"stop"}"#);
+    assert_eq!(observer.until("refused", |_| true)["what"], "control");
     let mut master = Client::connect(locked.address(), "/ws?token=secret", &[]).expect("all may look");
     master.send(r#"{"do":"control","what":"halt"}"#);
     assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::Halt)));
@@ -311,7 +311,7 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     assert_eq!((&helm["computed"], &helm["agrees"]), (&json!(false), &json!(null)));
     let none = other.until("helm", |_| true);
     assert_eq!((&none["report"], &none["reason"]), (&json!(null), &json!("nobody minds red_one now")));
-    let ears = Board::new(());
+    let ears = Watched::new(());
     let heard = (0..3000).any(|_| {
         ears.wait(Duration::from_millis(10), |()| false);
         sim.pictures.is_heard()

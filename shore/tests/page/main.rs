@@ -1,11 +1,11 @@
 //! The page's server, seen from a browser: over TCP, with websockets.
 
 mod client;
-mod film;
 mod guard;
 #[cfg(feature = "net")]
 mod live;
 mod replay;
+mod source;
 mod talk;
 
 use client::Client;

@@ -1,6 +1,6 @@
 //! A recording, played by pages.
 
-use super::film::{MadeUp, Rememberer, seq_of};
+use super::source::{MadeUp, Rememberer, seq_of};
 use super::{client, look, page};
 use proptest::prelude::*;
 use serde_json::json;

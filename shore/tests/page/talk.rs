@@ -1,7 +1,7 @@
 //! How the server and a page talk, whatever is shown.
 
-use super::film::seq_of;
 use super::replay::show;
+use super::source::seq_of;
 use super::{look, page};
 use shore::page::{Ask, Guest, Mode, News, Room, Said, Show, Viewer};
 use std::sync::Arc;

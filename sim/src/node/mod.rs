@@ -1,30 +1,30 @@
 //! The sim on the network: opens the door, paces the game, tells observers.
 //!
 //! [`serve`] plays one game from the first join to the last frame. Everything that decides is in
-//! [`Contest`] and the roster of agents; here are the sockets and the clocks.
+//! [`Contest`] and the agents of agents; here are the sockets and the clocks.
 
-mod booth;
+pub mod agents;
 mod clock;
-mod line;
+pub mod gateways;
 mod lockstep;
-pub mod quay;
+mod observers;
+mod pacing;
 mod realtime;
-pub mod roster;
-mod telling;
-mod tempo;
-mod witness;
+mod recorder;
+mod server;
+mod subscriptions;
 
-pub use telling::water;
-pub use witness::{Heard, Nobody, Witness};
+pub use observers::water;
+pub use recorder::{NoRecorder, RecordedMessage, Recorder};
 
 use crate::contest::Contest;
 use crate::world::NoStart;
-use booth::Booth;
+use agents::Refused;
 use bus::{BusError, Net};
 use game::topic::GameName;
 use game::{Outcome, Scenario};
-use roster::Refused;
 use serde::{Deserialize, Serialize};
+use server::GameServer;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -142,7 +142,7 @@ impl std::str::FromStr for Pace {
     }
 }
 
-/// Serves the game of `scenario` that `seed` chooses, and plays it to its end. `witness` is shown everything.
+/// Serves the game of `scenario` that `seed` chooses, and plays it to its end. `recorder` is shown everything.
 ///
 /// # Errors
 /// [`NodeError`] if the boats do not fit on the field or the network fails, or for real boats in lockstep: nothing makes
@@ -151,28 +151,28 @@ pub fn serve(
     scenario: &Scenario,
     seed: u64,
     settings: &Settings,
-    witness: &mut dyn Witness,
+    recorder: &mut dyn Recorder,
     tell: &mut dyn FnMut(News<'_>),
 ) -> Result<Report, NodeError> {
     if settings.pace == Pace::Lockstep {
         scenario.has_no_real_boats().map_err(NoStart::from)?;
     }
     let contest = Contest::new(scenario, seed)?;
-    let mut booth = Booth::open(contest, settings, witness)?;
+    let mut server = GameServer::open(contest, settings, recorder)?;
     tell(News::Open);
-    booth.wait_for_everybody(settings.join_limit, tell)?;
+    server.wait_for_everybody(settings.join_limit, tell)?;
     tell(News::Started);
     let started = clock::now();
     match settings.pace {
-        Pace::Lockstep => lockstep::play(&mut booth, tell)?,
-        Pace::Realtime { .. } => realtime::play(&mut booth, tell)?,
+        Pace::Lockstep => lockstep::play(&mut server, tell)?,
+        Pace::Realtime { .. } => realtime::play(&mut server, tell)?,
     }
-    let cut_short = !booth.contest.is_over();
+    let cut_short = !server.contest.is_over();
     let wall_s = clock::since(started).as_secs_f64();
     // The result stands before the agents leave: that they do is not part of the game.
-    let outcome = booth.contest.outcome();
-    booth.say_good_bye()?;
-    let overruns = booth.overruns;
-    let run = Run { pace: settings.pace.to_string(), wall_s, refused: booth.refused(), overruns, cut_short };
+    let outcome = server.contest.outcome();
+    server.say_good_bye()?;
+    let overruns = server.overruns;
+    let run = Run { pace: settings.pace.to_string(), wall_s, refused: server.refused(), overruns, cut_short };
     Ok(Report { outcome, run })
 }

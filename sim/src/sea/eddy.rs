@@ -5,7 +5,7 @@
 
 use game::Field;
 use game::frame::Ned;
-use game::sea::{EddiesByLot, Eddy};
+use game::sea::{Eddy, RandomEddies};
 use game::stream::Stream;
 
 /// The root of e^α = 1 + 2 α other than 0.
@@ -71,7 +71,7 @@ impl Vortex {
 
 /// Eddies drawn from the stream `eddies` of this seed: evenly over the field, turning either way.
 #[must_use]
-pub fn draw(lot: &EddiesByLot, field: &Field, seed: u64) -> Vec<Eddy> {
+pub fn draw(lot: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
     let mut stream = Stream::new(seed, "eddies");
     let draw_one = |_| {
         let along_m = stream.between(0.0, field.plan.width_m);

@@ -1,4 +1,4 @@
-//! How a hull heaves, rolls and pitches on the waves: what its sensors feel, and what an onlooker sees.
+//! How a hull heaves, rolls and pitches on the waves: what its sensors feel, and what an observer sees.
 //!
 //! It follows the surface, averaged over the hull, as three damped springs would. Nothing of it acts back on the
 //! horizontal motion.

@@ -215,7 +215,7 @@ impl WaveField {
         self.waves.iter().map(|w| &w.component)
     }
 
-    /// The components as onlookers draw them.
+    /// The components as observers draw them.
     #[must_use]
     pub fn plane_waves(&self) -> Vec<game::water::PlaneWave> {
         let plane = |wave: &PlaneWave| game::water::PlaneWave {

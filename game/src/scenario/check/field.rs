@@ -4,7 +4,7 @@ use super::same_place;
 use crate::field::{Field, Flag, Obstacle, Plan, Walls, do_meet, turn};
 use crate::frame::{LatLon, Ned};
 use crate::id::TeamId;
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw::{At, Pair, RawField, RawObstacle, RawSide, RawWalls};
 use crate::scenario::read::Document;
 use std::ops::RangeInclusive;
@@ -17,19 +17,19 @@ const NEAR_M: f64 = 50.0;
 const MOST_EXTRA_FLAGS: usize = 100;
 
 /// Checks a field.
-pub(in crate::scenario) fn field(ledger: &mut Ledger, document: &Document<RawField>) -> Option<Field> {
-    let faults = ledger.faults();
+pub(in crate::scenario) fn field(diagnostics: &mut Diagnostics, document: &Document<RawField>) -> Option<Field> {
+    let faults = diagnostics.faults();
     let raw = &document.raw;
-    let corner = ledger.pair("corner", raw.corner.as_ref(), COORDINATE_M).unwrap_or((0.0, 0.0));
-    let width_m = ledger.required(document.start, "width_m", raw.width_m.as_ref(), 10.0..=20000.0);
+    let corner = diagnostics.pair("corner", raw.corner.as_ref(), COORDINATE_M).unwrap_or((0.0, 0.0));
+    let width_m = diagnostics.required(document.start, "width_m", raw.width_m.as_ref(), 10.0..=20000.0);
     let plan = Plan {
         name: document.name.clone(),
-        datum: datum(ledger, document),
+        datum: datum(diagnostics, document),
         corner: Ned::from_xy(corner.0, corner.1),
-        along_deg: ledger.number("along_deg", raw.along_deg.as_ref(), -360.0..=360.0).unwrap_or(90.0),
+        along_deg: diagnostics.number("along_deg", raw.along_deg.as_ref(), -360.0..=360.0).unwrap_or(90.0),
         width_m,
-        depth_m: ledger.required(document.start, "depth_m", raw.depth_m.as_ref(), 10.0..=20000.0),
-        flag_inset_m: inset(ledger, raw, width_m),
+        depth_m: diagnostics.required(document.start, "depth_m", raw.depth_m.as_ref(), 10.0..=20000.0),
+        flag_inset_m: inset(diagnostics, raw, width_m),
         extra_flags: vec![],
         obstacles: vec![],
         walls: match raw.walls {
@@ -37,56 +37,56 @@ pub(in crate::scenario) fn field(ledger: &mut Ledger, document: &Document<RawFie
             Some(RawWalls::None) | None => Walls::None,
         },
     };
-    if ledger.faults() != faults {
+    if diagnostics.faults() != faults {
         return None;
     }
     let mut plan = Field::new(plan).plan;
-    plan.extra_flags = extra_flags(ledger, document, &Field::new(plan.clone()));
+    plan.extra_flags = extra_flags(diagnostics, document, &Field::new(plan.clone()));
     let field = Field::new(plan.clone());
     for obstacle in raw.obstacle.iter().flatten() {
-        plan.obstacles.extend(self::obstacle(ledger, obstacle, &field));
+        plan.obstacles.extend(self::obstacle(diagnostics, obstacle, &field));
     }
-    (ledger.faults() == faults).then(|| Field::new(plan))
+    (diagnostics.faults() == faults).then(|| Field::new(plan))
 }
 
-fn datum(ledger: &mut Ledger, document: &Document<RawField>) -> LatLon {
+fn datum(diagnostics: &mut Diagnostics, document: &Document<RawField>) -> LatLon {
     let Some(datum) = &document.raw.datum else {
-        ledger.note_missing(document.start, "datum", "{ lat_deg = …, lon_deg = … }");
+        diagnostics.note_missing(document.start, "datum", "{ lat_deg = …, lon_deg = … }");
         return LatLon::default();
     };
     LatLon {
-        lat_deg: ledger.required(datum.at, "datum.lat_deg", datum.value.lat_deg.as_ref(), -90.0..=90.0),
-        lon_deg: ledger.required(datum.at, "datum.lon_deg", datum.value.lon_deg.as_ref(), -180.0..=180.0),
+        lat_deg: diagnostics.required(datum.at, "datum.lat_deg", datum.value.lat_deg.as_ref(), -90.0..=90.0),
+        lon_deg: diagnostics.required(datum.at, "datum.lon_deg", datum.value.lon_deg.as_ref(), -180.0..=180.0),
     }
 }
 
-fn inset(ledger: &mut Ledger, raw: &RawField, width_m: f64) -> f64 {
+fn inset(diagnostics: &mut Diagnostics, raw: &RawField, width_m: f64) -> f64 {
     let Some(inset) = &raw.flag_inset_m else { return width_m / 8.0 };
     let inset_m = inset.value;
     if !(inset_m > 0.0 && inset_m < width_m / 2.0) {
         let half_m = width_m / 2.0;
-        ledger.note(inset.at, format!("flag_inset_m is {inset_m}, expected more than 0 and less than {half_m}"));
+        diagnostics.note(inset.at, format!("flag_inset_m is {inset_m}, expected more than 0 and less than {half_m}"));
     }
     inset_m
 }
 
-fn extra_flags(ledger: &mut Ledger, document: &Document<RawField>, field: &Field) -> Vec<Flag> {
+fn extra_flags(diagnostics: &mut Diagnostics, document: &Document<RawField>, field: &Field) -> Vec<Flag> {
     let mut flags = vec![];
     for flag in document.raw.flag.iter().flatten() {
         if flags.len() == MOST_EXTRA_FLAGS {
-            ledger.note(flag.at, format!("flag is one too many, expected at most {MOST_EXTRA_FLAGS}"));
+            diagnostics.note(flag.at, format!("flag is one too many, expected at most {MOST_EXTRA_FLAGS}"));
             break;
         }
         if flag.value.team.is_none() {
-            ledger.note_missing(flag.at, "flag.team", "one of first, second");
+            diagnostics.note_missing(flag.at, "flag.team", "one of first, second");
         }
         let Some(at) = &flag.value.at else {
-            ledger.note_missing(flag.at, "flag.at", "[x, y]");
+            diagnostics.note_missing(flag.at, "flag.at", "[x, y]");
             continue;
         };
-        let home = ledger.pair("at", Some(at), COORDINATE_M).map(|(x, y)| Ned::from_xy(x, y));
+        let home = diagnostics.pair("at", Some(at), COORDINATE_M).map(|(x, y)| Ned::from_xy(x, y));
         if let Some((side, home)) = flag.value.team.zip(home)
-            && is_inside(ledger, field, at.at, home)
+            && is_inside(diagnostics, field, at.at, home)
         {
             let team = match side {
                 RawSide::First => TeamId(0),
@@ -99,12 +99,12 @@ fn extra_flags(ledger: &mut Ledger, document: &Document<RawField>, field: &Field
 }
 
 /// Whether `position`, given at `at`, is inside the field; notes it if not.
-pub(super) fn is_inside(ledger: &mut Ledger, field: &Field, at: usize, position: Ned) -> bool {
+pub(super) fn is_inside(diagnostics: &mut Diagnostics, field: &Field, at: usize, position: Ned) -> bool {
     let is_inside = field.contains(position);
     if !is_inside {
         let (along, across) = field.along_across(position);
         let (width, depth) = (field.plan.width_m, field.plan.depth_m);
-        ledger.note(
+        diagnostics.note(
             at,
             format!(
                 "at is [{}, {}], expected a position inside the field: it is {along:.2} m along (of {width}) \
@@ -116,26 +116,26 @@ pub(super) fn is_inside(ledger: &mut Ledger, field: &Field, at: usize, position:
     is_inside
 }
 
-fn obstacle(ledger: &mut Ledger, given: &At<RawObstacle>, field: &Field) -> Option<Obstacle> {
-    let faults = ledger.faults();
+fn obstacle(diagnostics: &mut Diagnostics, given: &At<RawObstacle>, field: &Field) -> Option<Obstacle> {
+    let faults = diagnostics.faults();
     let obstacle = match (&given.value.circle, &given.value.polygon) {
         (Some(circle), None) => {
             if circle.value.centre.is_none() {
-                ledger.note_missing(circle.at, "circle.centre", "[x, y]");
+                diagnostics.note_missing(circle.at, "circle.centre", "[x, y]");
             }
-            let centre = ledger.pair("centre", circle.value.centre.as_ref(), COORDINATE_M);
+            let centre = diagnostics.pair("centre", circle.value.centre.as_ref(), COORDINATE_M);
             let radius = circle.value.radius_m.as_ref();
-            let radius_m = ledger.required(circle.at, "circle.radius_m", radius, 0.01..=1e4);
+            let radius_m = diagnostics.required(circle.at, "circle.radius_m", radius, 0.01..=1e4);
             let (x, y) = centre?;
             Obstacle::Circle { centre: Ned::from_xy(x, y), radius_m }
         }
-        (None, Some(polygon)) => Obstacle::Polygon { corners: corners(ledger, polygon)? },
+        (None, Some(polygon)) => Obstacle::Polygon { corners: corners(diagnostics, polygon)? },
         _ => {
-            ledger.note_if_intact(given.at, "obstacle says neither or both, expected either circle or polygon");
+            diagnostics.note_if_intact(given.at, "obstacle says neither or both, expected either circle or polygon");
             return None;
         }
     };
-    if ledger.faults() != faults {
+    if diagnostics.faults() != faults {
         return None;
     }
     let is_near = |point: &Ned| {
@@ -148,29 +148,29 @@ fn obstacle(ledger: &mut Ledger, given: &At<RawObstacle>, field: &Field) -> Opti
         Obstacle::Polygon { corners } => corners.iter().all(is_near),
     };
     if !is_near {
-        ledger.note(given.at, format!("obstacle is off the field, expected at most {NEAR_M} m outside of it"));
+        diagnostics.note(given.at, format!("obstacle is off the field, expected at most {NEAR_M} m outside of it"));
     }
     if field.flags.iter().any(|flag| obstacle.distance(flag.home) <= 0.0) {
-        ledger.note(given.at, "obstacle stands on a flag, expected open water there");
+        diagnostics.note(given.at, "obstacle stands on a flag, expected open water there");
     }
     Some(obstacle)
 }
 
-fn corners(ledger: &mut Ledger, polygon: &At<Vec<At<Pair>>>) -> Option<Vec<Ned>> {
+fn corners(diagnostics: &mut Diagnostics, polygon: &At<Vec<At<Pair>>>) -> Option<Vec<Ned>> {
     let mut corners = vec![];
     for corner in &polygon.value {
-        let (x, y) = ledger.pair("polygon", Some(&same_place(corner, corner.value)), COORDINATE_M)?;
+        let (x, y) = diagnostics.pair("polygon", Some(&same_place(corner, corner.value)), COORDINATE_M)?;
         corners.push(Ned::from_xy(x, y));
     }
     let count = corners.len();
     if !(3..=1000).contains(&count) {
-        ledger.note(polygon.at, format!("polygon has {count} corners, expected 3 to 1000"));
+        diagnostics.note(polygon.at, format!("polygon has {count} corners, expected 3 to 1000"));
         return None;
     }
     let side = |i: usize| (corners[i], corners[(i + 1) % count]);
     for i in 0..count {
         if corners[i] == side(i).1 {
-            ledger.note(polygon.value[i].at, "polygon has two corners in one place, expected different ones");
+            diagnostics.note(polygon.value[i].at, "polygon has two corners in one place, expected different ones");
             return None;
         }
         // Neighbours share a corner; they may only not fold back onto one another.
@@ -184,7 +184,7 @@ fn corners(ledger: &mut Ledger, polygon: &At<Vec<At<Pair>>>) -> Option<Vec<Ned>>
         });
         if let Some(j) = crossing {
             let message = format!("polygon's side {} meets its side {}, expected no crossing", i + 1, j + 1);
-            ledger.note(polygon.value[j].at, message);
+            diagnostics.note(polygon.value[j].at, message);
             return None;
         }
     }

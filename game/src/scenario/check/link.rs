@@ -4,17 +4,17 @@ use crate::field::Field;
 use crate::frame::Ned;
 use crate::id::TeamId;
 use crate::link::{Link, Loss, Sharing};
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw::{At, RawLink, RawLoss, RawSharing};
 
 /// Checks the link of a game on this field.
-pub(super) fn link(ledger: &mut Ledger, raw: &RawLink, field: &Field) -> Link {
-    let station = ledger.pair("station", raw.station.as_ref(), -1e6..=1e6);
+pub(super) fn link(diagnostics: &mut Diagnostics, raw: &RawLink, field: &Field) -> Link {
+    let station = diagnostics.pair("station", raw.station.as_ref(), -1e6..=1e6);
     Link {
-        delay_s: ledger.number("delay_s", raw.delay_s.as_ref(), 0.0..=10.0).unwrap_or(0.02),
-        jitter_s: ledger.number("jitter_s", raw.jitter_s.as_ref(), 0.0..=10.0).unwrap_or(0.0),
-        loss: raw.loss.as_ref().map_or_else(Loss::default, |given| loss(ledger, &given.value)),
-        range_m: ledger.number("range_m", raw.range_m.as_ref(), 1.0..=1e6),
+        delay_s: diagnostics.number("delay_s", raw.delay_s.as_ref(), 0.0..=10.0).unwrap_or(0.02),
+        jitter_s: diagnostics.number("jitter_s", raw.jitter_s.as_ref(), 0.0..=10.0).unwrap_or(0.0),
+        loss: raw.loss.as_ref().map_or_else(Loss::default, |given| loss(diagnostics, &given.value)),
+        range_m: diagnostics.number("range_m", raw.range_m.as_ref(), 1.0..=1e6),
         station: station.map_or_else(
             || field.seen_from(TeamId(0), 0.5 * field.plan.width_m, 0.5 * field.plan.depth_m),
             |(x, y)| Ned::from_xy(x, y),
@@ -22,9 +22,9 @@ pub(super) fn link(ledger: &mut Ledger, raw: &RawLink, field: &Field) -> Link {
     }
 }
 
-fn loss(ledger: &mut Ledger, raw: &RawLoss) -> Loss {
+fn loss(diagnostics: &mut Diagnostics, raw: &RawLoss) -> Loss {
     let mut number = |key: &str, given: &Option<At<f64>>, low: f64, high: f64, default: f64| {
-        ledger.number(key, given.as_ref(), low..=high).unwrap_or(default)
+        diagnostics.number(key, given.as_ref(), low..=high).unwrap_or(default)
     };
     Loss {
         good: number("good", &raw.good, 0.0, 1.0, 0.0),
@@ -35,11 +35,11 @@ fn loss(ledger: &mut Ledger, raw: &RawLoss) -> Loss {
 }
 
 /// Checks what is shown of other boats.
-pub(super) fn sharing(ledger: &mut Ledger, raw: &RawSharing) -> Sharing {
-    let range_m = ledger.number("range_m", raw.range_m.as_ref(), 1.0..=1e6);
-    let view_deg = ledger.number("view_deg", raw.view_deg.as_ref(), 1.0..=360.0);
+pub(super) fn sharing(diagnostics: &mut Diagnostics, raw: &RawSharing) -> Sharing {
+    let range_m = diagnostics.number("range_m", raw.range_m.as_ref(), 1.0..=1e6);
+    let view_deg = diagnostics.number("view_deg", raw.view_deg.as_ref(), 1.0..=360.0);
     let mut number = |key: &str, given: &Option<At<f64>>, high: f64, default: f64| {
-        ledger.number(key, given.as_ref(), 0.0..=high).unwrap_or(default)
+        diagnostics.number(key, given.as_ref(), 0.0..=high).unwrap_or(default)
     };
     Sharing {
         range_m,

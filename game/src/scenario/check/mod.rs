@@ -1,8 +1,7 @@
 //! From files as typed to what the program believes: one function a kind of file.
 //!
-//! Every check notes all it finds in the [`Ledger`] and returns `None` if anything was wrong.
+//! Every check notes all it finds in the [`Diagnostics`] and returns `None` if anything was wrong.
 
-mod berth;
 mod boat;
 mod field;
 mod game;
@@ -10,6 +9,7 @@ mod gateway;
 mod link;
 mod rules;
 mod sea;
+mod start_position;
 mod strategy;
 mod tournament;
 
@@ -22,12 +22,12 @@ pub(super) use sea::sea;
 pub(super) use strategy::strategy;
 pub(super) use tournament::tournament;
 
-use super::ledger::Ledger;
+use super::diagnostics::Diagnostics;
 use super::raw::At;
 
 /// Notes that `key` must name a file and does not.
-fn missing_path(ledger: &mut Ledger, owner: usize, key: &str) {
-    ledger.note_missing(owner, key, "the path of a file");
+fn missing_path(diagnostics: &mut Diagnostics, owner: usize, key: &str) {
+    diagnostics.note_missing(owner, key, "the path of a file");
 }
 
 /// A copy of `given` for another type of value at the same place.

@@ -3,7 +3,7 @@
 use super::link::sharing;
 use crate::link::Sharing;
 use crate::rules::{CaptureAt, Points, Rules, TagChoice, TaggedBoat, UntagAt, UntagOn};
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw::{At, RawRules};
 use crate::scenario::read::Document;
 use crate::time::SimTime;
@@ -12,13 +12,13 @@ use crate::time::SimTime;
 const REACH_M: std::ops::RangeInclusive<f64> = 0.1..=1000.0;
 
 /// Checks rules.
-pub(in crate::scenario) fn rules(ledger: &mut Ledger, document: &Document<RawRules>) -> Option<Rules> {
-    let faults = ledger.faults();
+pub(in crate::scenario) fn rules(diagnostics: &mut Diagnostics, document: &Document<RawRules>) -> Option<Rules> {
+    let faults = diagnostics.faults();
     let raw = &document.raw;
     let points = raw.points.clone().unwrap_or_default();
     let is_set = |given: &Option<At<bool>>, default: bool| given.as_ref().map_or(default, |given| given.value);
     let mut number = |key: &str, given: &Option<At<f64>>, allowed, default: f64| {
-        ledger.number(key, given.as_ref(), allowed).unwrap_or(default)
+        diagnostics.number(key, given.as_ref(), allowed).unwrap_or(default)
     };
     let mut rules = Rules {
         name: document.name.clone(),
@@ -44,22 +44,22 @@ pub(in crate::scenario) fn rules(ledger: &mut Ledger, document: &Document<RawRul
         time_limit: SimTime::from_s(number("time_limit_s", &raw.time_limit_s, 1.0..=86400.0, 600.0)),
         power_play: SimTime::from_s(number("power_play_s", &raw.power_play_s, 0.0..=86400.0, 0.0)),
     };
-    let win_score = ledger.whole("win_score", raw.win_score.as_ref(), 0..=1_000_000, 0);
+    let win_score = diagnostics.whole("win_score", raw.win_score.as_ref(), 0..=1_000_000, 0);
     rules.win_score = (win_score > 0).then_some(win_score as u32);
     rules.points = Points {
-        grab: ledger.whole("grab", points.grab.as_ref(), 0..=1000, 1) as u32,
-        capture: ledger.whole("capture", points.capture.as_ref(), 0..=1000, 2) as u32,
-        tag: ledger.whole("tag", points.tag.as_ref(), 0..=1000, 0) as u32,
+        grab: diagnostics.whole("grab", points.grab.as_ref(), 0..=1000, 1) as u32,
+        capture: diagnostics.whole("capture", points.capture.as_ref(), 0..=1000, 2) as u32,
+        tag: diagnostics.whole("tag", points.tag.as_ref(), 0..=1000, 0) as u32,
     };
-    rules.sharing = raw.sharing.as_ref().map_or_else(Sharing::default, |given| sharing(ledger, &given.value));
-    if ledger.faults() == faults {
-        homes_can_be_reached(ledger, raw, &rules);
+    rules.sharing = raw.sharing.as_ref().map_or_else(Sharing::default, |given| sharing(diagnostics, &given.value));
+    if diagnostics.faults() == faults {
+        homes_can_be_reached(diagnostics, raw, &rules);
     }
-    (ledger.faults() == faults).then_some(rules)
+    (diagnostics.faults() == faults).then_some(rules)
 }
 
 /// A keep-out circle must leave room at the own flag for what boats have to do there.
-fn homes_can_be_reached(ledger: &mut Ledger, raw: &RawRules, rules: &Rules) {
+fn homes_can_be_reached(diagnostics: &mut Diagnostics, raw: &RawRules, rules: &Rules) {
     let Some(given) = &raw.flag_keepout_m else { return };
     let needed = [
         (rules.untag_at == UntagAt::OwnFlag, "untag_radius_m", rules.untag_radius_m),
@@ -69,7 +69,8 @@ fn homes_can_be_reached(ledger: &mut Ledger, raw: &RawRules, rules: &Rules) {
     {
         if rules.flag_keepout_m >= radius_m {
             let found = rules.flag_keepout_m;
-            ledger.note(given.at, format!("flag_keepout_m is {found}, expected less than {key}, which is {radius_m}"));
+            diagnostics
+                .note(given.at, format!("flag_keepout_m is {found}, expected less than {key}, which is {radius_m}"));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::game::{Shelf, referenced};
 use super::missing_path;
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw::{At, RawEntry, RawStrategy, RawTournament};
 use crate::scenario::read::{Document, Typed};
 use crate::scenario::{Entrant, Strategy, Tournament};
@@ -11,20 +11,23 @@ use crate::scenario::{Entrant, Strategy, Tournament};
 const MOST_ENTRIES: usize = 100;
 
 /// Checks a tournament.
-pub(in crate::scenario) fn tournament(ledger: &mut Ledger, document: &Document<RawTournament>) -> Option<Tournament> {
-    let faults = ledger.faults();
+pub(in crate::scenario) fn tournament(
+    diagnostics: &mut Diagnostics,
+    document: &Document<RawTournament>,
+) -> Option<Tournament> {
+    let faults = diagnostics.faults();
     let (raw, start) = (&document.raw, document.start);
-    referenced(ledger, start, "game", raw.game.as_ref(), super::game);
+    referenced(diagnostics, start, "game", raw.game.as_ref(), super::game);
     if raw.sea.is_some() {
-        referenced(ledger, start, "sea", raw.sea.as_ref(), super::sea);
+        referenced(diagnostics, start, "sea", raw.sea.as_ref(), super::sea);
     }
-    let games = ledger.whole("games", raw.games.as_ref(), 2..=1_000_000, 200);
-    let seed = ledger.whole("seed", raw.seed.as_ref(), 0..=i64::MAX, 1);
-    let entries = entries(ledger, document);
-    if ledger.faults() != faults {
+    let games = diagnostics.whole("games", raw.games.as_ref(), 2..=1_000_000, 200);
+    let seed = diagnostics.whole("seed", raw.seed.as_ref(), 0..=i64::MAX, 1);
+    let entries = entries(diagnostics, document);
+    if diagnostics.faults() != faults {
         return None;
     }
-    let path = |given: &At<String>| ledger.sources.resolve(given.at, &given.value);
+    let path = |given: &At<String>| diagnostics.sources.resolve(given.at, &given.value);
     Some(Tournament {
         name: document.name.clone(),
         game: raw.game.as_ref().map(path)?,
@@ -36,22 +39,22 @@ pub(in crate::scenario) fn tournament(ledger: &mut Ledger, document: &Document<R
     })
 }
 
-fn entries(ledger: &mut Ledger, document: &Document<RawTournament>) -> Vec<Entrant> {
+fn entries(diagnostics: &mut Diagnostics, document: &Document<RawTournament>) -> Vec<Entrant> {
     let given = document.raw.entry.as_deref().unwrap_or_default();
     if !(2..=MOST_ENTRIES).contains(&given.len()) {
         let message = format!("entry has {} entries, expected 2 to {MOST_ENTRIES} [[entry]]", given.len());
         match given.last() {
-            Some(last) => ledger.note(last.at, message),
-            None => ledger.note_if_intact(document.start, message),
+            Some(last) => diagnostics.note(last.at, message),
+            None => diagnostics.note_if_intact(document.start, message),
         }
     }
     let mut strategies: Shelf<RawStrategy, Strategy> = Shelf::new(super::strategy);
     let mut entries: Vec<Entrant> = vec![];
     for entry in given {
-        let Some(entrant) = entrant(ledger, entry, &mut strategies) else { continue };
+        let Some(entrant) = entrant(diagnostics, entry, &mut strategies) else { continue };
         if entries.iter().any(|other| other.name == entrant.name) {
             let at = entry.value.name.as_ref().map_or(entry.at, |name| name.at);
-            ledger.note(at, format!("name is {:?} again, expected a different one for each entry", entrant.name));
+            diagnostics.note(at, format!("name is {:?} again, expected a different one for each entry", entrant.name));
         }
         entries.push(entrant);
     }
@@ -59,22 +62,22 @@ fn entries(ledger: &mut Ledger, document: &Document<RawTournament>) -> Vec<Entra
 }
 
 fn entrant(
-    ledger: &mut Ledger,
+    diagnostics: &mut Diagnostics,
     entry: &At<RawEntry>,
     strategies: &mut Shelf<RawStrategy, Strategy>,
 ) -> Option<Entrant> {
     let RawEntry { name, strategy } = &entry.value;
     match name {
-        None => ledger.note_missing(entry.at, "entry.name", "1 to 40 of a-z, 0-9 and _"),
-        Some(name) => drop(ledger.is_name(name.at, "name", &name.value)),
+        None => diagnostics.note_missing(entry.at, "entry.name", "1 to 40 of a-z, 0-9 and _"),
+        Some(name) => drop(diagnostics.is_name(name.at, "name", &name.value)),
     }
     match strategy {
-        None => missing_path(ledger, entry.at, "entry.strategy"),
+        None => missing_path(diagnostics, entry.at, "entry.strategy"),
         Some(given) => {
-            let path = ledger.sources.resolve(given.at, &given.value);
-            strategies.index_at(ledger, &path, Some(given.at), RawStrategy::OWNER);
+            let path = diagnostics.sources.resolve(given.at, &given.value);
+            strategies.index_at(diagnostics, &path, Some(given.at), RawStrategy::OWNER);
         }
     }
     let (name, strategy) = (name.as_ref()?, strategy.as_ref()?);
-    Some(Entrant { name: name.value.clone(), strategy: ledger.sources.resolve(strategy.at, &strategy.value) })
+    Some(Entrant { name: name.value.clone(), strategy: diagnostics.sources.resolve(strategy.at, &strategy.value) })
 }

@@ -30,7 +30,7 @@ pub(in crate::scenario) struct RawGateway {
     /// What navigation must be like.
     pub(in crate::scenario) nav: Option<RawNavWatch>,
     /// Where the boat must not be, nor be unable to stop before.
-    pub(in crate::scenario) fence: Option<RawFence>,
+    pub(in crate::scenario) fence: Option<RawGeofence>,
     /// When another real boat is too near: the boat stops until it is clear.
     pub(in crate::scenario) halt: Option<RawHalt>,
     /// When the battery is low, and what then.
@@ -98,8 +98,8 @@ pub(in crate::scenario) struct RawNavWatch {
 /// The fence round the field: a boat outside, or unable to stop inside, is stopped.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Fence")]
-pub(in crate::scenario) struct RawFence {
+#[schemars(rename = "Geofence")]
+pub(in crate::scenario) struct RawGeofence {
     /// How far outside of the field it lies, m: 0 to 10000. Default 30.
     pub(in crate::scenario) margin_m: Option<At<f64>>,
     /// How hard the boat slows down with thrust at zero, m/s²: 0.01 to 10. Default 0.25.

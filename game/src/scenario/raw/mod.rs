@@ -19,7 +19,7 @@ pub(super) use boat::{RawAutopilot, RawBattery, RawBoat, RawHull, RawPropeller, 
 pub(super) use field::{RawField, RawObstacle, RawSide, RawWalls};
 pub(super) use game::{RawFleet, RawGame, RawSource, RawSpawn, RawVehicle, Whereabouts};
 pub(super) use gateway::{
-    RawBatteryWatch, RawControlWatch, RawFence, RawGateway, RawHalt, RawLimits, RawLoops, RawNavWatch,
+    RawBatteryWatch, RawControlWatch, RawGateway, RawGeofence, RawHalt, RawLimits, RawLoops, RawNavWatch,
 };
 pub(super) use kinematic::{RawKinematic, RawPid};
 pub(super) use link::{RawLink, RawLoss, RawSharing};
@@ -37,8 +37,8 @@ pub(super) use strategy::{
 };
 pub(super) use tournament::{RawEntry, RawTournament};
 
+use super::diagnostics::Diagnostics;
 use super::draw::Drawable;
-use super::ledger::Ledger;
 use super::read::Typed;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::Error;
@@ -122,8 +122,8 @@ impl Typed for RawStrategy {
     const APART: Option<&'static str> = Some("behaviour");
     const OWN: &'static [&'static str] = &["unsafe_i_know", "unsafe_because"];
 
-    fn put_apart(&mut self, ledger: &mut Ledger, value: Spanned<DeValue<'_>>) {
-        self.behaviour = RawBehaviours::of(ledger, value);
+    fn put_apart(&mut self, diagnostics: &mut Diagnostics, value: Spanned<DeValue<'_>>) {
+        self.behaviour = RawBehaviours::of(diagnostics, value);
     }
 }
 

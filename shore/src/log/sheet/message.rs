@@ -173,7 +173,7 @@ fn put_truth(row: &mut Row<'_>, scenario: &Scenario, of: &str, truth: &VehicleTr
         carrying,
         disabled,
         outside,
-        mind_lost,
+        agent_lost,
         quarantined,
         nav_lost,
     } = truth;
@@ -187,7 +187,7 @@ fn put_truth(row: &mut Row<'_>, scenario: &Scenario, of: &str, truth: &VehicleTr
     row.put_of(of, "carrying", flag_name(scenario, *carrying));
     row.put_of(of, "disabled", disabled);
     row.put_of(of, "outside", outside);
-    row.put_of(of, "mind_lost", mind_lost);
+    row.put_of(of, "agent_lost", agent_lost);
     row.put_of(of, "quarantined", quarantined);
     row.put_of(of, "nav_lost", nav_lost);
 }
@@ -272,8 +272,8 @@ fn put_input(row: &mut Row<'_>, scenario: &Scenario, record: &InputRecord) {
         Some(Input::Pictured) => "pictured",
         Some(Input::Ordered { order, .. }) => order_word(order),
         Some(Input::Held { .. }) => "held",
-        Some(Input::MindLost { .. }) => "mind_lost",
-        Some(Input::MindBack { .. }) => "mind_back",
+        Some(Input::AgentLost { .. }) => "agent_lost",
+        Some(Input::AgentBack { .. }) => "agent_back",
         Some(Input::Reported { valid: true, .. }) => "reported",
         Some(Input::Reported { valid: false, .. }) => "reported_invalid",
         Some(Input::EStopped(true)) => "e_stopped",

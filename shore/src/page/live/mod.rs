@@ -3,23 +3,23 @@
 //! A thread looks for the game, meets it, and looks again when it is gone (`keeper`); another asks for what is not
 //! published (`asker`). What both learn stands on a stage that all pages look at.
 
-mod asker;
-mod chronicle;
-mod keeper;
-mod look;
-mod roll;
-mod stage;
-mod wheel;
+mod event_log;
+mod frame_buffer;
+mod game_watcher;
+mod live_state;
+mod query_thread;
+mod steering;
+mod viewer;
 
 use super::show::{Guest, News, Show, Viewer};
 use bus::Net;
 use game::message::Control;
 use game::topic::GameName;
-use look::Look;
-use stage::Stage;
+use live_state::LiveState;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use viewer::PageViewer;
 
 /// The most things to be sent that wait for the network.
 const COMMANDS_MAX: usize = 64;
@@ -29,12 +29,12 @@ pub type Place = Box<dyn Fn() -> Result<Net, String> + Send>;
 
 /// A game on the network, shown to pages.
 pub struct LiveShow {
-    theatre: Arc<Theatre>,
+    shared: Arc<SharedState>,
 }
 
 /// What the threads and all who look share.
-struct Theatre {
-    stage: Mutex<Stage>,
+struct SharedState {
+    stage: Mutex<LiveState>,
     news: News,
     commands: SyncSender<Command>,
     pages: AtomicU64,
@@ -58,35 +58,35 @@ impl LiveShow {
     /// If the system has no thread to give.
     pub fn open(place: Place, game: Option<GameName>, tell: Box<dyn Fn(&str) + Send>) -> std::io::Result<LiveShow> {
         let (commands, to_do) = sync_channel(COMMANDS_MAX);
-        let theatre = Arc::new(Theatre::new(commands));
-        let keeper = keeper::Keeper::new(Arc::clone(&theatre), place, game, to_do, tell);
+        let shared = Arc::new(SharedState::new(commands));
+        let keeper = game_watcher::GameWatcher::new(Arc::clone(&shared), place, game, to_do, tell);
         std::thread::Builder::new().name("page-live".to_owned()).spawn(move || keeper.keep())?;
-        Ok(LiveShow { theatre })
+        Ok(LiveShow { shared })
     }
 }
 
 impl Drop for LiveShow {
     fn drop(&mut self) {
         // The thread may wait for an answer; it ends by itself.
-        self.theatre.is_closing.store(true, Ordering::Relaxed);
+        self.shared.is_closing.store(true, Ordering::Relaxed);
     }
 }
 
 impl Show for LiveShow {
     fn admit(&self, guest: Guest) -> Box<dyn Viewer> {
-        let page = self.theatre.pages.fetch_add(1, Ordering::Relaxed);
-        Box::new(Look::new(Arc::clone(&self.theatre), guest, page))
+        let page = self.shared.pages.fetch_add(1, Ordering::Relaxed);
+        Box::new(PageViewer::new(Arc::clone(&self.shared), guest, page))
     }
 
     fn news(&self) -> &News {
-        &self.theatre.news
+        &self.shared.news
     }
 }
 
-impl Theatre {
-    /// A theatre with an empty stage.
-    fn new(commands: SyncSender<Command>) -> Theatre {
-        Theatre {
+impl SharedState {
+    /// A shared with an empty stage.
+    fn new(commands: SyncSender<Command>) -> SharedState {
+        SharedState {
             stage: Mutex::default(),
             news: News::default(),
             commands,
@@ -96,7 +96,7 @@ impl Theatre {
     }
 
     /// The stage: looked at and changed for moments only.
-    fn stage(&self) -> MutexGuard<'_, Stage> {
+    fn stage(&self) -> MutexGuard<'_, LiveState> {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -1,9 +1,9 @@
 //! A recording as a replay needs it.
 
-use super::Film;
+use super::ReplaySource;
 use crate::recording::{Recording, RecordingError, picture};
 use game::external::GatewayStatus;
-use game::message::Notice;
+use game::message::GameInfo;
 use game::outcome::EventOutcome;
 use game::picture::{OwnBoat, Picture};
 use game::water::Water;
@@ -81,8 +81,8 @@ fn last_until(told: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
     told[..after].last().map(|(_, place)| *place)
 }
 
-impl Film for Recorded {
-    fn notice(&self) -> &Notice {
+impl ReplaySource for Recorded {
+    fn notice(&self) -> &GameInfo {
         &self.recording.header().notice
     }
 

@@ -7,7 +7,7 @@ mod thruster;
 pub(super) use kinematic::thrust_map;
 
 use crate::boat::{Boat, Drive, Hull, Sensors, ThrustCurve, Windage};
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw::{At, RawBoat, RawHull};
 use crate::scenario::read::Document;
 
@@ -20,29 +20,29 @@ const USUAL_TICK_S: f64 = 0.05;
 const RHO_KG_M3: f64 = 1000.0;
 
 /// Checks a boat.
-pub(in crate::scenario) fn boat(ledger: &mut Ledger, document: &Document<RawBoat>) -> Option<Boat> {
-    let faults = ledger.faults();
+pub(in crate::scenario) fn boat(diagnostics: &mut Diagnostics, document: &Document<RawBoat>) -> Option<Boat> {
+    let faults = diagnostics.faults();
     let (raw, start) = (&document.raw, document.start);
     let hull = raw.hull.clone().unwrap_or_default();
     let mut boat = Boat {
         name: document.name.clone(),
-        length_m: ledger.required(start, "length_m", raw.length_m.as_ref(), 0.1..=100.0),
-        beam_m: ledger.required(start, "beam_m", raw.beam_m.as_ref(), 0.05..=50.0),
-        draught_m: ledger.number("draught_m", raw.draught_m.as_ref(), 0.01..=20.0).unwrap_or(0.0),
-        hull: given_hull(ledger, start, &hull),
-        windage: windage(ledger, raw),
-        drive: drive(ledger, document),
+        length_m: diagnostics.required(start, "length_m", raw.length_m.as_ref(), 0.1..=100.0),
+        beam_m: diagnostics.required(start, "beam_m", raw.beam_m.as_ref(), 0.05..=50.0),
+        draught_m: diagnostics.number("draught_m", raw.draught_m.as_ref(), 0.01..=20.0).unwrap_or(0.0),
+        hull: given_hull(diagnostics, start, &hull),
+        windage: windage(diagnostics, raw),
+        drive: drive(diagnostics, document),
         sensors: Sensors {
-            gps: raw.gps.as_ref().map(|given| sensor::gps(ledger, given)),
-            compass: raw.compass.as_ref().map(|given| sensor::compass(ledger, &given.value)),
-            imu: raw.imu.as_ref().map(|given| sensor::imu(ledger, &given.value)),
+            gps: raw.gps.as_ref().map(|given| sensor::gps(diagnostics, given)),
+            compass: raw.compass.as_ref().map(|given| sensor::compass(diagnostics, &given.value)),
+            imu: raw.imu.as_ref().map(|given| sensor::imu(diagnostics, &given.value)),
         },
     };
-    if ledger.faults() != faults {
+    if diagnostics.faults() != faults {
         return None;
     }
     estimate(&mut boat, &hull);
-    check_inertia(ledger, start, &boat, &hull);
+    check_inertia(diagnostics, start, &boat, &hull);
     let (motion, rate_per_s) = fastest_decay(&boat);
     let allowed_per_s = FASTEST_PER_TICK / USUAL_TICK_S;
     if rate_per_s > allowed_per_s {
@@ -55,30 +55,30 @@ pub(in crate::scenario) fn boat(ledger: &mut Ledger, document: &Document<RawBoat
             "sway" => &hull.sway_linear_kg_s,
             _ => &hull.yaw_linear_kg_m2_s,
         };
-        ledger.note(culprit.or(hull.mass_kg).map_or(start, |given| given.at), message);
+        diagnostics.note(culprit.or(hull.mass_kg).map_or(start, |given| given.at), message);
     }
-    (ledger.faults() == faults).then_some(boat)
+    (diagnostics.faults() == faults).then_some(boat)
 }
 
-fn drive(ledger: &mut Ledger, document: &Document<RawBoat>) -> Drive {
+fn drive(diagnostics: &mut Diagnostics, document: &Document<RawBoat>) -> Drive {
     let (raw, start) = (&document.raw, document.start);
     let Some(given) = &raw.kinematic else {
         return Drive::Thrusters {
-            thruster: thruster::thruster(ledger, start, &raw.thruster.clone().unwrap_or_default()),
-            autopilot: thruster::autopilot(ledger, start, &raw.autopilot.clone().unwrap_or_default()),
+            thruster: thruster::thruster(diagnostics, start, &raw.thruster.clone().unwrap_or_default()),
+            autopilot: thruster::autopilot(diagnostics, start, &raw.autopilot.clone().unwrap_or_default()),
         };
     };
     if raw.thruster.is_some() || raw.autopilot.is_some() {
-        ledger.note(given.at, "kinematic beside thruster or autopilot, expected the one or the other");
+        diagnostics.note(given.at, "kinematic beside thruster or autopilot, expected the one or the other");
     }
-    Drive::Kinematic(kinematic::kinematic(ledger, given))
+    Drive::Kinematic(kinematic::kinematic(diagnostics, given))
 }
 
 /// The windage as given, with 0 for areas and heights that are not.
-fn windage(ledger: &mut Ledger, boat: &RawBoat) -> Windage {
+fn windage(diagnostics: &mut Diagnostics, boat: &RawBoat) -> Windage {
     let raw = boat.windage.clone().unwrap_or_default();
     let mut number = |key: &str, given: &Option<At<f64>>, low: f64, high: f64, default: f64| {
-        ledger.number(key, given.as_ref(), low..=high).unwrap_or(default)
+        diagnostics.number(key, given.as_ref(), low..=high).unwrap_or(default)
     };
     let size = |given: &Option<At<f64>>| given.as_ref().map_or(0.0, |given| given.value);
     let (length_m, beam_m) = (size(&boat.length_m), size(&boat.beam_m));
@@ -93,14 +93,14 @@ fn windage(ledger: &mut Ledger, boat: &RawBoat) -> Windage {
 }
 
 /// The hull as given, with 0 for what is not.
-fn given_hull(ledger: &mut Ledger, start: usize, raw: &RawHull) -> Hull {
-    let crossflow = ledger.number("crossflow_coefficient", raw.crossflow_coefficient.as_ref(), 0.0..=3.0);
+fn given_hull(diagnostics: &mut Diagnostics, start: usize, raw: &RawHull) -> Hull {
+    let crossflow = diagnostics.number("crossflow_coefficient", raw.crossflow_coefficient.as_ref(), 0.0..=3.0);
     if crossflow.is_some_and(|coefficient| coefficient > 0.0) && raw.crossflow_draught_m.is_none() {
-        ledger.note_missing(start, "hull.crossflow_draught_m", "0 to 20 with a crossflow_coefficient");
+        diagnostics.note_missing(start, "hull.crossflow_draught_m", "0 to 20 with a crossflow_coefficient");
     }
-    let mass_kg = ledger.required(start, "hull.mass_kg", raw.mass_kg.as_ref(), 0.1..=1e6);
+    let mass_kg = diagnostics.required(start, "hull.mass_kg", raw.mass_kg.as_ref(), 0.1..=1e6);
     let mut or_zero = |key: &str, given: &Option<At<f64>>, low: f64, high: f64| {
-        ledger.number(key, given.as_ref(), low..=high).unwrap_or(0.0)
+        diagnostics.number(key, given.as_ref(), low..=high).unwrap_or(0.0)
     };
     Hull {
         mass_kg,
@@ -120,7 +120,7 @@ fn given_hull(ledger: &mut Ledger, start: usize, raw: &RawHull) -> Hull {
         crossflow_coefficient: crossflow.unwrap_or(0.0),
         crossflow_draught_m: or_zero("crossflow_draught_m", &raw.crossflow_draught_m, 0.0, 20.0),
         crossflow_length_m: or_zero("crossflow_length_m", &raw.crossflow_length_m, 0.0, 200.0),
-        munk_factor: ledger.number("munk_factor", raw.munk_factor.as_ref(), 0.0..=1.0).unwrap_or(0.5),
+        munk_factor: diagnostics.number("munk_factor", raw.munk_factor.as_ref(), 0.0..=1.0).unwrap_or(0.5),
     }
 }
 
@@ -169,16 +169,16 @@ fn estimate(boat: &mut Boat, raw: &RawHull) {
 }
 
 /// A mass matrix with a direction that has no inertia would accelerate without bound.
-fn check_inertia(ledger: &mut Ledger, start: usize, boat: &Boat, raw: &RawHull) {
+fn check_inertia(diagnostics: &mut Diagnostics, start: usize, boat: &Boat, raw: &RawHull) {
     let hull = &boat.hull;
     let place = |given: &Option<At<f64>>| given.as_ref().map_or(start, |given| given.at);
     let (m, x_g, i_z) = (hull.mass_kg, hull.x_g_m, hull.yaw_inertia_kg_m2);
     if x_g.abs() > boat.length_m / 2.0 {
         let half_m = boat.length_m / 2.0;
-        ledger.note(place(&raw.x_g_m), format!("x_g_m is {x_g}, expected -{half_m} to {half_m}, within the hull"));
+        diagnostics.note(place(&raw.x_g_m), format!("x_g_m is {x_g}, expected -{half_m} to {half_m}, within the hull"));
     } else if i_z <= m * x_g * x_g {
         let message = format!("yaw_inertia_kg_m2 is {i_z}, expected more than m x_g² = {}", m * x_g * x_g);
-        ledger.note(place(&raw.yaw_inertia_kg_m2), message);
+        diagnostics.note(place(&raw.yaw_inertia_kg_m2), message);
     }
     let coupling = m * x_g + hull.added_sway_yaw_kg_m;
     if (m + hull.added_sway_kg) * (i_z + hull.added_yaw_kg_m2) <= coupling * coupling {
@@ -187,7 +187,7 @@ fn check_inertia(ledger: &mut Ledger, start: usize, boat: &Boat, raw: &RawHull) 
              (m + A22)(I + A66) more than (m x_g + A26)²",
             hull.added_sway_yaw_kg_m
         );
-        ledger.note(place(&raw.added_sway_yaw_kg_m), message);
+        diagnostics.note(place(&raw.added_sway_yaw_kg_m), message);
     }
 }
 

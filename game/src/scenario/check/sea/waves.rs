@@ -2,7 +2,7 @@
 
 use super::wind::PROFILE_EXPONENT;
 use crate::math;
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw::{At, RawSpectrum, RawSpreading, RawWaves, RawWind};
 use crate::sea::{GRAVITY_M_S2, Spreading, Waves};
 
@@ -13,60 +13,65 @@ const HIGHEST: f64 = 0.6;
 
 /// Checks waves.
 pub(super) fn waves(
-    ledger: &mut Ledger,
+    diagnostics: &mut Diagnostics,
     given: &At<RawWaves>,
     wind: Option<&At<RawWind>>,
     depth_m: Option<f64>,
 ) -> Option<Waves> {
-    let faults = ledger.faults();
+    let faults = diagnostics.faults();
     let (raw, at) = (&given.value, given.at);
-    let gamma = gamma(ledger, raw);
-    let components = ledger.whole("components", raw.components.as_ref(), 1..=1024, 64) as u32;
-    let drift_factor = ledger.number("drift_factor", raw.drift_factor.as_ref(), 0.0..=10.0).unwrap_or(1.0);
-    let spreading = spreading(ledger, raw);
+    let gamma = gamma(diagnostics, raw);
+    let components = diagnostics.whole("components", raw.components.as_ref(), 1..=1024, 64) as u32;
+    let drift_factor = diagnostics.number("drift_factor", raw.drift_factor.as_ref(), 0.0..=10.0).unwrap_or(1.0);
+    let spreading = spreading(diagnostics, raw);
     let from_wind = wind.and_then(|wind| wind.value.from_deg.as_ref());
-    let from_deg = ledger.required(at, "waves.from_deg", raw.from_deg.as_ref().or(from_wind), -360.0..=360.0);
-    let (hs_m, tp_s) = height_and_period(ledger, given, wind)?;
+    let from_deg = diagnostics.required(at, "waves.from_deg", raw.from_deg.as_ref().or(from_wind), -360.0..=360.0);
+    let (hs_m, tp_s) = height_and_period(diagnostics, given, wind)?;
     let steepness = hs_m / peak_length_m(tp_s, depth_m);
     let place = raw.hs_m.as_ref().or(raw.fetch_km.as_ref()).map_or(at, |given| given.at);
     if let Some(depth_m) = depth_m.filter(|depth_m| hs_m > HIGHEST * depth_m) {
         let highest_m = HIGHEST * depth_m;
-        ledger.note(place, format!("waves of hs_m {hs_m:.3} break in {depth_m} m, expected at most {highest_m:.3}"));
+        diagnostics
+            .note(place, format!("waves of hs_m {hs_m:.3} break in {depth_m} m, expected at most {highest_m:.3}"));
     } else if steepness > STEEPEST {
         let message = format!(
             "waves of hs_m {hs_m:.3} and tp_s {tp_s:.3} are {steepness:.3} of their length high, expected at most {STEEPEST}"
         );
-        ledger.note(place, message);
+        diagnostics.note(place, message);
     }
     let waves = Waves { hs_m, tp_s, gamma, from_rad: from_deg.to_radians(), spreading, components, drift_factor };
-    (ledger.faults() == faults).then_some(waves)
+    (diagnostics.faults() == faults).then_some(waves)
 }
 
-fn gamma(ledger: &mut Ledger, raw: &RawWaves) -> f64 {
+fn gamma(diagnostics: &mut Diagnostics, raw: &RawWaves) -> f64 {
     let jonswap = raw.spectrum.unwrap_or_default() == RawSpectrum::Jonswap;
     match &raw.gamma {
         Some(given) if !jonswap => {
-            ledger.note(given.at, format!("gamma is {}, expected none: it belongs to \"jonswap\"", given.value));
+            diagnostics.note(given.at, format!("gamma is {}, expected none: it belongs to \"jonswap\"", given.value));
             1.0
         }
-        given => ledger.number("gamma", given.as_ref(), 1.0..=7.0).unwrap_or(if jonswap { 3.3 } else { 1.0 }),
+        given => diagnostics.number("gamma", given.as_ref(), 1.0..=7.0).unwrap_or(if jonswap { 3.3 } else { 1.0 }),
     }
 }
 
 /// Significant height, m, and peak period, s.
-fn height_and_period(ledger: &mut Ledger, given: &At<RawWaves>, wind: Option<&At<RawWind>>) -> Option<(f64, f64)> {
+fn height_and_period(
+    diagnostics: &mut Diagnostics,
+    given: &At<RawWaves>,
+    wind: Option<&At<RawWind>>,
+) -> Option<(f64, f64)> {
     let (raw, at) = (&given.value, given.at);
-    let hs_m = ledger.number("hs_m", raw.hs_m.as_ref(), 0.0..=20.0);
-    let tp_s = ledger.number("tp_s", raw.tp_s.as_ref(), 0.5..=30.0);
-    let fetch_km = ledger.number("fetch_km", raw.fetch_km.as_ref(), 0.05..=1000.0);
-    let own_m_s = ledger.number("wind_m_s", raw.wind_m_s.as_ref(), 0.5..=50.0);
+    let hs_m = diagnostics.number("hs_m", raw.hs_m.as_ref(), 0.0..=20.0);
+    let tp_s = diagnostics.number("tp_s", raw.tp_s.as_ref(), 0.5..=30.0);
+    let fetch_km = diagnostics.number("fetch_km", raw.fetch_km.as_ref(), 0.05..=1000.0);
+    let own_m_s = diagnostics.number("wind_m_s", raw.wind_m_s.as_ref(), 0.5..=50.0);
     if let (Some(_), Some(fetch)) = (&raw.hs_m, &raw.fetch_km) {
-        ledger.note(fetch.at, "fetch_km beside hs_m, expected either height and period, or the fetch");
+        diagnostics.note(fetch.at, "fetch_km beside hs_m, expected either height and period, or the fetch");
         return None;
     }
     let fully_grown = raw.spectrum == Some(RawSpectrum::PiersonMoskowitz);
     if let (true, Some(tp)) = (fully_grown, &raw.tp_s) {
-        ledger.note(tp.at, "tp_s is given, expected none: that of \"pierson_moskowitz\" follows from the height");
+        diagnostics.note(tp.at, "tp_s is given, expected none: that of \"pierson_moskowitz\" follows from the height");
         return None;
     }
     // A sea without wind raises no waves; 0.5 m/s is the least that may be stated here.
@@ -90,7 +95,7 @@ fn height_and_period(ledger: &mut Ledger, given: &At<RawWaves>, wind: Option<&At
                 true => "hs_m, or wind_m_s, or a wind",
                 false => "hs_m and tp_s, or fetch_km with wind_m_s or a wind",
             };
-            ledger.note_missing(at, "waves' size", expected);
+            diagnostics.note_missing(at, "waves' size", expected);
             None
         }
     }
@@ -123,11 +128,11 @@ fn peak_length_m(tp_s: f64, depth_m: Option<f64>) -> f64 {
     std::f64::consts::TAU / k
 }
 
-fn spreading(ledger: &mut Ledger, raw: &RawWaves) -> Spreading {
+fn spreading(diagnostics: &mut Diagnostics, raw: &RawWaves) -> Spreading {
     let kind = raw.spreading.unwrap_or_default();
-    let s = ledger.number("spread_s", raw.spread_s.as_ref(), 1.0..=200.0);
+    let s = diagnostics.number("spread_s", raw.spread_s.as_ref(), 1.0..=200.0);
     if let (Some(given), true) = (&raw.spread_s, kind != RawSpreading::Cosine2s) {
-        ledger.note(given.at, "spread_s is given, expected spreading = \"cosine_2s\" with it");
+        diagnostics.note(given.at, "spread_s is given, expected spreading = \"cosine_2s\" with it");
     }
     match kind {
         RawSpreading::None => Spreading::None,

@@ -3,8 +3,8 @@
 use super::expression::{Wanted, expression};
 use super::task::{Keys, task};
 use super::variable::set;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
-use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawBehaviour, RawCommon, RawStrategy, RawTask};
 use crate::strategy::{Behaviour, Mode, Moment, Post, Variable};
 
@@ -13,7 +13,7 @@ const MOST: usize = 1000;
 
 /// Checks the behaviours. Where modes make no tree, nobody asks which of them are meant.
 pub(super) fn behaviours(
-    ledger: &mut Ledger,
+    diagnostics: &mut Diagnostics,
     variables: &[Variable],
     modes: Option<&[(usize, Mode)]>,
     raw: &RawStrategy,
@@ -21,25 +21,25 @@ pub(super) fn behaviours(
 ) -> Vec<Behaviour> {
     let given = raw.behaviour.0.as_slice();
     if given.is_empty() {
-        ledger.note_missing(start, "roles", "it, or at least one [behaviour.NAME]");
+        diagnostics.note_missing(start, "roles", "it, or at least one [behaviour.NAME]");
     }
     if given.len() > MOST {
-        ledger.note(given[MOST].at, format!("behaviour has {} entries, expected at most {MOST}", given.len()));
+        diagnostics.note(given[MOST].at, format!("behaviour has {} entries, expected at most {MOST}", given.len()));
     }
-    given.iter().take(MOST).filter_map(|given| one(ledger, variables, modes, given)).collect()
+    given.iter().take(MOST).filter_map(|given| one(diagnostics, variables, modes, given)).collect()
 }
 
 fn one(
-    ledger: &mut Ledger,
+    diagnostics: &mut Diagnostics,
     variables: &[Variable],
     modes: Option<&[(usize, Mode)]>,
     given: &At<RawBehaviour>,
 ) -> Option<Behaviour> {
     let RawBehaviour { name, common, task: raw_task } = &given.value;
-    let modes = modes.map(|modes| in_modes(ledger, modes, common)).unwrap_or_default();
-    let when = common.when.as_ref().and_then(|when| expression(ledger, variables, "when", when, Wanted::Truth));
-    let posts = posts(ledger, variables, common);
-    let mut keys = Keys { ledger, variables, owner: given.at, name };
+    let modes = modes.map(|modes| in_modes(diagnostics, modes, common)).unwrap_or_default();
+    let when = common.when.as_ref().and_then(|when| expression(diagnostics, variables, "when", when, Wanted::Truth));
+    let posts = posts(diagnostics, variables, common);
+    let mut keys = Keys { diagnostics, variables, owner: given.at, name };
     let default = match raw_task {
         Some(RawTask::OpRegion(_) | RawTask::AvoidCollision(_) | RawTask::AvoidObstacle(_)) => 300.0,
         _ => 100.0,
@@ -57,10 +57,10 @@ fn one(
 }
 
 /// The modes in which a behaviour may run, by mode.
-fn in_modes(ledger: &mut Ledger, modes: &[(usize, Mode)], common: &RawCommon) -> Vec<bool> {
+fn in_modes(diagnostics: &mut Diagnostics, modes: &[(usize, Mode)], common: &RawCommon) -> Vec<bool> {
     let Some(given) = &common.r#in else { return vec![true; modes.len()] };
     if given.value.is_empty() {
-        ledger.note(given.at, "in has 0 entries, expected at least one mode");
+        diagnostics.note(given.at, "in has 0 entries, expected at least one mode");
     }
     let mut allowed = vec![false; modes.len()];
     for name in &given.value {
@@ -70,7 +70,7 @@ fn in_modes(ledger: &mut Ledger, modes: &[(usize, Mode)], common: &RawCommon) ->
                 let names: Vec<&str> = modes.iter().map(|(_, mode)| mode.name.as_str()).collect();
                 let guess = nearest(&name.value, &names).map(|guess| format!(" (did you mean {guess}?)"));
                 let (names, guess) = (names.join(", "), guess.unwrap_or_default());
-                ledger.note(name.at, format!("in has {:?}, expected one of the modes {names}{guess}", name.value));
+                diagnostics.note(name.at, format!("in has {:?}, expected one of the modes {names}{guess}", name.value));
             }
         }
     }
@@ -81,7 +81,7 @@ fn in_modes(ledger: &mut Ledger, modes: &[(usize, Mode)], common: &RawCommon) ->
     allowed
 }
 
-fn posts(ledger: &mut Ledger, variables: &[Variable], common: &RawCommon) -> Vec<Post> {
+fn posts(diagnostics: &mut Diagnostics, variables: &[Variable], common: &RawCommon) -> Vec<Post> {
     let moments = [
         (Moment::Run, &common.on_run),
         (Moment::Idle, &common.on_idle),
@@ -92,7 +92,7 @@ fn posts(ledger: &mut Ledger, variables: &[Variable], common: &RawCommon) -> Vec
     ];
     let mut posts = vec![];
     for (at, given) in moments {
-        let set = set(ledger, variables, given.as_ref());
+        let set = set(diagnostics, variables, given.as_ref());
         posts.extend(set.into_iter().map(|(variable, value)| Post { at, variable, value }));
     }
     posts

@@ -1,6 +1,6 @@
 //! Expressions as text: parsed as CEL, with the place of every part in the file.
 
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw::At;
 use cel::common::ast::{IdedExpr, SourceInfo};
 use cel::parser::PrattParser;
@@ -28,14 +28,14 @@ impl Parsed {
 }
 
 /// Parses the expression given for `key`; what is wrong with its syntax is noted.
-pub(super) fn parse(ledger: &mut Ledger, key: &str, given: &At<String>) -> Option<Parsed> {
+pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, given: &At<String>) -> Option<Parsed> {
     let text = given.value.as_str();
     let length = text.chars().count();
     if length > LONGEST {
-        ledger.note(given.at, format!("{key} is {length} characters long, expected at most {LONGEST}"));
+        diagnostics.note(given.at, format!("{key} is {length} characters long, expected at most {LONGEST}"));
         return None;
     }
-    let offsets = offsets(ledger.sources.text_from(given.at), given.at, text);
+    let offsets = offsets(diagnostics.sources.text_from(given.at), given.at, text);
     let parser = || PrattParser::new().max_recursion_depth(DEEPEST as u16);
     match parser().parse(text) {
         Ok(root) => {
@@ -49,7 +49,7 @@ pub(super) fn parse(ledger: &mut Ledger, key: &str, given: &At<String>) -> Optio
             let start = byte_at(text, error.pos);
             let at = offsets.get(start).or(offsets.last()).copied().unwrap_or(given.at);
             let complaint = complaint(&error.msg, text.get(start..).unwrap_or_default());
-            ledger.note(at, format!("{key} {complaint}"));
+            diagnostics.note(at, format!("{key} {complaint}"));
             None
         }
     }

@@ -2,8 +2,8 @@
 
 use super::cel::{self, DEEPEST, Parsed};
 use crate::field::Field;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
-use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::At;
 use crate::strategy::{Boat, Expression, Fact, Join, Kind, Mark, Measure, Place, Variable};
 use ::cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, operators};
@@ -65,19 +65,19 @@ impl Type {
 
 /// The expression given for `key`, which must be of type `wanted`; what is wrong with it is noted.
 pub(super) fn expression(
-    ledger: &mut Ledger,
+    diagnostics: &mut Diagnostics,
     variables: &[Variable],
     key: &str,
     given: &At<String>,
     wanted: Wanted,
 ) -> Option<Expression> {
-    let parsed = cel::parse(ledger, key, given)?;
-    let mut reader = Reader { ledger, variables, key, parsed: &parsed, among_mates: false };
+    let parsed = cel::parse(diagnostics, key, given)?;
+    let mut reader = Reader { diagnostics, variables, key, parsed: &parsed, among_mates: false };
     reader.of_type(&parsed.root, wanted, 0)
 }
 
 struct Reader<'a> {
-    ledger: &'a mut Ledger,
+    diagnostics: &'a mut Diagnostics,
     variables: &'a [Variable],
     key: &'a str,
     parsed: &'a Parsed,
@@ -88,7 +88,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn note(&mut self, part: &IdedExpr, message: &str) {
         let message = format!("{} {message}", self.key);
-        self.ledger.note(self.parsed.place(part), message);
+        self.diagnostics.note(self.parsed.place(part), message);
     }
 
     fn of_type(&mut self, part: &IdedExpr, wanted: Wanted, depth: usize) -> Option<Expression> {

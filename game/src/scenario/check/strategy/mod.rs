@@ -12,8 +12,8 @@ mod task;
 mod variable;
 
 use crate::field::Field;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
-use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawStrategy};
 use crate::scenario::read::{self, Document};
 use crate::strategy::{Assignment, Program, Strategy};
@@ -23,19 +23,22 @@ use std::path::PathBuf;
 const MOST_ROLES: usize = 1000;
 
 /// Checks a strategy.
-pub(in crate::scenario) fn strategy(ledger: &mut Ledger, document: &Document<RawStrategy>) -> Option<Strategy> {
-    let faults = ledger.faults();
+pub(in crate::scenario) fn strategy(
+    diagnostics: &mut Diagnostics,
+    document: &Document<RawStrategy>,
+) -> Option<Strategy> {
+    let faults = diagnostics.faults();
     let raw = &document.raw;
     let roles = match &raw.roles {
         Some(given) => {
-            refuse_program(ledger, raw);
-            roles(ledger, given)
+            refuse_program(diagnostics, raw);
+            roles(diagnostics, given)
         }
         None => {
             if let Some(assignment) = &raw.assignment {
-                ledger.note(assignment.at, "assignment is given without roles, expected with them only");
+                diagnostics.note(assignment.at, "assignment is given without roles, expected with them only");
             }
-            vec![program::program(ledger, document)?]
+            vec![program::program(diagnostics, document)?]
         }
     };
     let strategy = Strategy {
@@ -44,11 +47,11 @@ pub(in crate::scenario) fn strategy(ledger: &mut Ledger, document: &Document<Raw
         roles,
         assignment: raw.assignment.as_ref().map_or(Assignment::Fixed, |assignment| assignment.value),
     };
-    (ledger.faults() == faults).then_some(strategy)
+    (diagnostics.faults() == faults).then_some(strategy)
 }
 
 /// Notes what a program says in a file that deals roles.
-fn refuse_program(ledger: &mut Ledger, raw: &RawStrategy) {
+fn refuse_program(diagnostics: &mut Diagnostics, raw: &RawStrategy) {
     let said = [
         ("helm", raw.helm.as_ref().map(|given| given.at)),
         ("unsafe_i_know", raw.unsafe_i_know.as_ref().map(|given| given.at)),
@@ -60,22 +63,22 @@ fn refuse_program(ledger: &mut Ledger, raw: &RawStrategy) {
     let said = said.into_iter().filter_map(|(key, at)| at.map(|at| (key.to_owned(), at)));
     let behaviours = raw.behaviour.0.iter().map(|given| (format!("behaviour.{}", given.value.name), given.at));
     for (key, at) in said.chain(behaviours) {
-        ledger.note(at, format!("{key} is given with roles, expected in the files that roles names"));
+        diagnostics.note(at, format!("{key} is given with roles, expected in the files that roles names"));
     }
 }
 
 /// The programs of the roles that a file names; a file named twice is read once.
-fn roles(ledger: &mut Ledger, given: &At<Vec<At<String>>>) -> Vec<Program> {
+fn roles(diagnostics: &mut Diagnostics, given: &At<Vec<At<String>>>) -> Vec<Program> {
     if !(1..=MOST_ROLES).contains(&given.value.len()) {
-        ledger.note(given.at, format!("roles has {} entries, expected 1 to {MOST_ROLES}", given.value.len()));
+        diagnostics.note(given.at, format!("roles has {} entries, expected 1 to {MOST_ROLES}", given.value.len()));
     }
     let mut read: Vec<(PathBuf, Option<Program>)> = vec![];
     let mut roles = vec![];
     for role in given.value.iter().take(MOST_ROLES) {
-        let path = ledger.sources.resolve(role.at, &role.value);
+        let path = diagnostics.sources.resolve(role.at, &role.value);
         if !read.iter().any(|(known, _)| *known == path) {
-            let document = read::document::<RawStrategy>(ledger, &path, Some(role.at));
-            let program = document.and_then(|document| one_role(ledger, role, &document));
+            let document = read::document::<RawStrategy>(diagnostics, &path, Some(role.at));
+            let program = document.and_then(|document| one_role(diagnostics, role, &document));
             read.push((path.clone(), program));
         }
         roles.extend(read.iter().find(|(known, _)| *known == path).and_then(|(_, program)| program.clone()));
@@ -83,24 +86,24 @@ fn roles(ledger: &mut Ledger, given: &At<Vec<At<String>>>) -> Vec<Program> {
     roles
 }
 
-fn one_role(ledger: &mut Ledger, role: &At<String>, document: &Document<RawStrategy>) -> Option<Program> {
+fn one_role(diagnostics: &mut Diagnostics, role: &At<String>, document: &Document<RawStrategy>) -> Option<Program> {
     if document.raw.roles.is_some() {
         let message =
             format!("roles names {:?}, which deals roles itself, expected the file of one program", role.value);
-        ledger.note(role.at, message);
+        diagnostics.note(role.at, message);
         return None;
     }
-    program::program(ledger, document)
+    program::program(diagnostics, document)
 }
 
 /// Whether `name` is one of the field's named points; notes it if not.
-pub(super) fn is_point(ledger: &mut Ledger, at: usize, key: &str, name: &str) -> bool {
+pub(super) fn is_point(diagnostics: &mut Diagnostics, at: usize, key: &str, name: &str) -> bool {
     let names = Field::point_names();
     let is_known = names.iter().any(|known| known == name);
     if !is_known {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let guess = nearest(name, &names).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default();
-        ledger.note(at, format!("{key} is {name:?}, expected a named point, one of {}{guess}", names.join(" ")));
+        diagnostics.note(at, format!("{key} is {name:?}, expected a named point, one of {}{guess}", names.join(" ")));
     }
     is_known
 }

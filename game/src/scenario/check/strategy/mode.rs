@@ -2,8 +2,8 @@
 
 use super::expression::{Wanted, expression};
 use super::variable::set;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
-use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawMode, RawStrategy};
 use crate::strategy::{Mode, Variable};
 
@@ -14,7 +14,7 @@ const DEEPEST: usize = 20;
 
 /// Checks the modes; each comes with its place in the file. Where they make no tree, nothing comes back.
 pub(super) fn modes(
-    ledger: &mut Ledger,
+    diagnostics: &mut Diagnostics,
     variables: &[Variable],
     raw: &RawStrategy,
     start: usize,
@@ -24,39 +24,44 @@ pub(super) fn modes(
         return Some(vec![(start, Mode { name: "active".to_owned(), parent: None, when: None, enter: vec![] })]);
     }
     if given.len() > MOST {
-        ledger.note(given[MOST].at, format!("mode has {} entries, expected at most {MOST}", given.len()));
+        diagnostics.note(given[MOST].at, format!("mode has {} entries, expected at most {MOST}", given.len()));
         return None;
     }
-    let faults = ledger.faults();
+    let faults = diagnostics.faults();
     let mut modes: Vec<(usize, Mode)> = vec![];
     for mode in given {
         let raw = &mode.value;
-        let name = name(ledger, &modes, mode);
-        let parent = raw.r#in.as_ref().and_then(|parent| self::parent(ledger, given, &modes, parent));
-        let enter = set(ledger, variables, raw.set.as_ref());
+        let name = name(diagnostics, &modes, mode);
+        let parent = raw.r#in.as_ref().and_then(|parent| self::parent(diagnostics, given, &modes, parent));
+        let enter = set(diagnostics, variables, raw.set.as_ref());
         modes.push((mode.at, Mode { name, parent, when: None, enter }));
     }
-    check_conditions(ledger, given, &modes);
-    let is_tree = ledger.faults() == faults;
+    check_conditions(diagnostics, given, &modes);
+    let is_tree = diagnostics.faults() == faults;
     for (i, mode) in given.iter().enumerate() {
         let when = mode.value.when.as_ref();
-        modes[i].1.when = when.and_then(|when| expression(ledger, variables, "when", when, Wanted::Truth));
+        modes[i].1.when = when.and_then(|when| expression(diagnostics, variables, "when", when, Wanted::Truth));
     }
     is_tree.then_some(modes)
 }
 
-fn name(ledger: &mut Ledger, modes: &[(usize, Mode)], mode: &At<RawMode>) -> String {
+fn name(diagnostics: &mut Diagnostics, modes: &[(usize, Mode)], mode: &At<RawMode>) -> String {
     let Some(name) = &mode.value.name else {
-        ledger.note_missing(mode.at, "mode.name", "1 to 40 of a-z, 0-9 and _");
+        diagnostics.note_missing(mode.at, "mode.name", "1 to 40 of a-z, 0-9 and _");
         return String::new();
     };
-    if ledger.is_name(name.at, "name", &name.value) && modes.iter().any(|(_, other)| other.name == name.value) {
-        ledger.note(name.at, format!("name is {:?} again, expected a different one for each mode", name.value));
+    if diagnostics.is_name(name.at, "name", &name.value) && modes.iter().any(|(_, other)| other.name == name.value) {
+        diagnostics.note(name.at, format!("name is {:?} again, expected a different one for each mode", name.value));
     }
     name.value.clone()
 }
 
-fn parent(ledger: &mut Ledger, given: &[At<RawMode>], before: &[(usize, Mode)], parent: &At<String>) -> Option<usize> {
+fn parent(
+    diagnostics: &mut Diagnostics,
+    given: &[At<RawMode>],
+    before: &[(usize, Mode)],
+    parent: &At<String>,
+) -> Option<usize> {
     let found = before.iter().position(|(_, mode)| mode.name == parent.value);
     let Some(found) = found else {
         let names: Vec<&str> = before.iter().map(|(_, mode)| mode.name.as_str()).collect();
@@ -68,18 +73,18 @@ fn parent(ledger: &mut Ledger, given: &[At<RawMode>], before: &[(usize, Mode)], 
             let names = if names.is_empty() { "of which there are none".to_owned() } else { names.join(", ") };
             format!("in is {:?}, expected one of the modes before, {names}{}", parent.value, guess.unwrap_or_default())
         };
-        ledger.note(parent.at, message);
+        diagnostics.note(parent.at, message);
         return None;
     };
     let depth = std::iter::successors(Some(found), |mode| before[*mode].1.parent).count();
     if depth >= DEEPEST {
-        ledger.note(parent.at, format!("in makes {} modes in each other, expected at most {DEEPEST}", depth + 1));
+        diagnostics.note(parent.at, format!("in makes {} modes in each other, expected at most {DEEPEST}", depth + 1));
     }
     Some(found)
 }
 
 /// Every part but the last needs a condition, the last must have none.
-fn check_conditions(ledger: &mut Ledger, given: &[At<RawMode>], modes: &[(usize, Mode)]) {
+fn check_conditions(diagnostics: &mut Diagnostics, given: &[At<RawMode>], modes: &[(usize, Mode)]) {
     for (i, (at, mode)) in modes.iter().enumerate() {
         // With a parent that is unknown nobody can say.
         if given[i].value.r#in.is_some() != mode.parent.is_some() {
@@ -91,7 +96,7 @@ fn check_conditions(ledger: &mut Ledger, given: &[At<RawMode>], modes: &[(usize,
         match (&given[i].value.when, next) {
             (None, Some(next)) => {
                 let (name, next) = (&mode.name, &modes[next].1.name);
-                ledger.note_missing(
+                diagnostics.note_missing(
                     *at,
                     "mode.when",
                     &format!("a condition: without one for {name} it is never {next}"),
@@ -101,7 +106,7 @@ fn check_conditions(ledger: &mut Ledger, given: &[At<RawMode>], modes: &[(usize,
                 let of =
                     mode.parent.map_or_else(|| "mode".to_owned(), |parent| format!("part of {}", modes[parent].1.name));
                 let name = &mode.name;
-                ledger.note(
+                diagnostics.note(
                     when.at,
                     format!("when is given for {name}, the last {of}, expected none: it is what remains"),
                 );

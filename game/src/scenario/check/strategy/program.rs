@@ -5,8 +5,8 @@ use super::expression::{Wanted, expression};
 use super::mode::modes;
 use super::variable::{set, variables};
 use super::{reach, safety};
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
-use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, RawRule, RawStrategy};
 use crate::scenario::read::Document;
 use crate::strategy::{Behaviour, FUNCTIONS_MAX, HEEDED_MAX, Helm, Program, Rule, Task, Trigger, Variable, What, Who};
@@ -17,16 +17,16 @@ const HYSTERESIS_MAX: f64 = 0.1;
 const MOST_RULES: usize = 1000;
 
 /// Checks a program.
-pub(super) fn program(ledger: &mut Ledger, document: &Document<RawStrategy>) -> Option<Program> {
-    let faults = ledger.faults();
+pub(super) fn program(diagnostics: &mut Diagnostics, document: &Document<RawStrategy>) -> Option<Program> {
+    let faults = diagnostics.faults();
     let (raw, start) = (&document.raw, document.start);
-    let helm = helm(ledger, raw);
-    let variables = variables(ledger, raw);
+    let helm = helm(diagnostics, raw);
+    let variables = variables(diagnostics, raw);
     let has_tasks = raw.behaviour.0.iter().all(|behaviour| behaviour.value.task.is_some());
-    let modes = modes(ledger, &variables, raw, start);
-    let behaviours = behaviours(ledger, &variables, modes.as_deref(), raw, start);
-    let rules = rules(ledger, &variables, raw);
-    let because = safety::because(ledger, raw);
+    let modes = modes(diagnostics, &variables, raw, start);
+    let behaviours = behaviours(diagnostics, &variables, modes.as_deref(), raw, start);
+    let rules = rules(diagnostics, &variables, raw);
+    let because = safety::because(diagnostics, raw);
     let (places, modes): (Vec<usize>, Vec<_>) = modes.unwrap_or_default().into_iter().unzip();
     let mut program = Program {
         name: document.name.clone(),
@@ -39,16 +39,16 @@ pub(super) fn program(ledger: &mut Ledger, document: &Document<RawStrategy>) -> 
         unsafe_because: because.as_ref().map(|because| because.value.clone()),
     };
     // What is wrong with a part may be all that is wrong with the whole.
-    if has_tasks && ledger.faults() == faults {
-        count_functions(ledger, &program, &places);
-        reach::check(ledger, &program, &places);
-        safety::check(ledger, &mut program, (&places, raw), because.as_ref());
+    if has_tasks && diagnostics.faults() == faults {
+        count_functions(diagnostics, &program, &places);
+        reach::check(diagnostics, &program, &places);
+        safety::check(diagnostics, &mut program, (&places, raw), because.as_ref());
     }
-    (ledger.faults() == faults).then_some(program)
+    (diagnostics.faults() == faults).then_some(program)
 }
 
 /// Notes modes in which the behaviours could ask for more functions than a helm hears.
-fn count_functions(ledger: &mut Ledger, program: &Program, places: &[usize]) {
+fn count_functions(diagnostics: &mut Diagnostics, program: &Program, places: &[usize]) {
     for leaf in program.leaves() {
         let most = |behaviour: &Behaviour| match behaviour.task {
             Task::AvoidCollision(_) | Task::AvoidObstacle(_) => HEEDED_MAX,
@@ -62,45 +62,46 @@ fn count_functions(ledger: &mut Ledger, program: &Program, places: &[usize]) {
                  avoid_collision and avoid_obstacle, 2 for each cut_range, 1 for each other behaviour",
                 program.path(leaf)
             );
-            ledger.note(places[leaf], message);
+            diagnostics.note(places[leaf], message);
         }
     }
 }
 
-fn helm(ledger: &mut Ledger, raw: &RawStrategy) -> Helm {
+fn helm(diagnostics: &mut Diagnostics, raw: &RawStrategy) -> Helm {
     let raw = raw.helm.as_ref().map(|helm| helm.value.clone()).unwrap_or_default();
     Helm {
-        courses: ledger.whole("courses", raw.courses.as_ref(), 8..=3600, 360) as usize,
-        speeds: ledger.whole("speeds", raw.speeds.as_ref(), 2..=1000, 36) as usize,
-        speed_max_m_s: ledger.number("speed_max_m_s", raw.speed_max_m_s.as_ref(), 0.1..=60.0),
-        hysteresis: ledger.number("hysteresis", raw.hysteresis.as_ref(), 0.0..=HYSTERESIS_MAX).unwrap_or(0.0),
+        courses: diagnostics.whole("courses", raw.courses.as_ref(), 8..=3600, 360) as usize,
+        speeds: diagnostics.whole("speeds", raw.speeds.as_ref(), 2..=1000, 36) as usize,
+        speed_max_m_s: diagnostics.number("speed_max_m_s", raw.speed_max_m_s.as_ref(), 0.1..=60.0),
+        hysteresis: diagnostics.number("hysteresis", raw.hysteresis.as_ref(), 0.0..=HYSTERESIS_MAX).unwrap_or(0.0),
     }
 }
 
-fn rules(ledger: &mut Ledger, variables: &[Variable], raw: &RawStrategy) -> Vec<Rule> {
+fn rules(diagnostics: &mut Diagnostics, variables: &[Variable], raw: &RawStrategy) -> Vec<Rule> {
     let given = raw.rule.as_ref().map_or(&[][..], |given| given.value.as_slice());
     if given.len() > MOST_RULES {
-        ledger.note(given[MOST_RULES].at, format!("rule has {} entries, expected at most {MOST_RULES}", given.len()));
+        diagnostics
+            .note(given[MOST_RULES].at, format!("rule has {} entries, expected at most {MOST_RULES}", given.len()));
     }
-    given.iter().take(MOST_RULES).map(|given| rule(ledger, variables, given)).collect()
+    given.iter().take(MOST_RULES).map(|given| rule(diagnostics, variables, given)).collect()
 }
 
-fn rule(ledger: &mut Ledger, variables: &[Variable], given: &At<RawRule>) -> Rule {
+fn rule(diagnostics: &mut Diagnostics, variables: &[Variable], given: &At<RawRule>) -> Rule {
     let raw = &given.value;
     if raw.on.is_none() && raw.when.is_none() {
-        ledger.note_missing(given.at, "rule.on", "it, or when, or both");
+        diagnostics.note_missing(given.at, "rule.on", "it, or when, or both");
     }
     if raw.set.as_ref().is_none_or(|set| set.is_empty()) {
-        ledger.note_missing(given.at, "rule.set", "values for variables");
+        diagnostics.note_missing(given.at, "rule.set", "values for variables");
     }
     Rule {
-        on: raw.on.as_ref().and_then(|on| trigger(ledger, on)),
-        when: raw.when.as_ref().and_then(|when| expression(ledger, variables, "when", when, Wanted::Truth)),
-        set: set(ledger, variables, raw.set.as_ref()),
+        on: raw.on.as_ref().and_then(|on| trigger(diagnostics, on)),
+        when: raw.when.as_ref().and_then(|when| expression(diagnostics, variables, "when", when, Wanted::Truth)),
+        set: set(diagnostics, variables, raw.set.as_ref()),
     }
 }
 
-fn trigger(ledger: &mut Ledger, on: &At<String>) -> Option<Trigger> {
+fn trigger(diagnostics: &mut Diagnostics, on: &At<String>) -> Option<Trigger> {
     let mut words = on.value.split_whitespace();
     let (who, what) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
     let found_who = Who::ALL.into_iter().find(|known| known.name() == who);
@@ -118,6 +119,6 @@ fn trigger(ledger: &mut Ledger, on: &At<String>) -> Option<Trigger> {
         all_who.join(", "),
         all_what.join(", ")
     );
-    ledger.note(on.at, message);
+    diagnostics.note(on.at, message);
     None
 }

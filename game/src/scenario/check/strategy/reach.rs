@@ -1,7 +1,7 @@
 //! Modes that can never be: decided over everything that their conditions can tell apart.
 
 use super::claim::{Claim, Claims, given_to};
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::strategy::{Expression, Program};
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ const MOST_CASES: usize = 200_000;
 const MOST_STEPS: usize = 50_000_000;
 
 /// Notes every mode whose conditions can never choose it. Parts of such a mode have had their say with it.
-pub(super) fn check(ledger: &mut Ledger, program: &Program, places: &[usize]) {
+pub(super) fn check(diagnostics: &mut Diagnostics, program: &Program, places: &[usize]) {
     let claims = Claims::of(program);
     let mut search = Search { claims: &claims, held: vec![None; claims.terms()], cases: 0, steps: 0 };
     let mut never = vec![false; program.modes.len()];
@@ -30,7 +30,7 @@ pub(super) fn check(ledger: &mut Ledger, program: &Program, places: &[usize]) {
         } else {
             format!("whenever it could be, one before it is: {}", before.join(", "))
         };
-        ledger.note(places[i], format!("mode {} can never be ({why}), expected one that can", program.path(i)));
+        diagnostics.note(places[i], format!("mode {} can never be ({why}), expected one that can", program.path(i)));
     }
 }
 

@@ -1,24 +1,25 @@
 //! Safety is not optional: every mode has what keeps a boat on the field and off other boats, or the file says why not.
 
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw::{At, RawStrategy};
 use crate::strategy::{Behaviour, Contacts, Program, Task};
 
 /// Why the file wants to do without, if it does.
-pub(super) fn because(ledger: &mut Ledger, raw: &RawStrategy) -> Option<At<String>> {
+pub(super) fn because(diagnostics: &mut Diagnostics, raw: &RawStrategy) -> Option<At<String>> {
     let knows = raw.unsafe_i_know.as_ref().filter(|knows| knows.value);
     match (knows, &raw.unsafe_because) {
         (None, None) => None,
         (None, Some(because)) => {
-            ledger.note(because.at, "unsafe_because is given without unsafe_i_know = true, expected both or neither");
+            diagnostics
+                .note(because.at, "unsafe_because is given without unsafe_i_know = true, expected both or neither");
             None
         }
         (Some(knows), None) => {
-            ledger.note_missing(knows.at, "unsafe_because", "the reason");
+            diagnostics.note_missing(knows.at, "unsafe_because", "the reason");
             None
         }
         (Some(_), Some(because)) if because.value.trim().is_empty() => {
-            ledger.note(because.at, "unsafe_because is empty, expected the reason");
+            diagnostics.note(because.at, "unsafe_because is empty, expected the reason");
             None
         }
         (Some(_), Some(because)) => Some(because.clone()),
@@ -28,7 +29,7 @@ pub(super) fn because(ledger: &mut Ledger, raw: &RawStrategy) -> Option<At<Strin
 /// Notes every mode that lacks something, or the reason that nothing needs. Whoever keeps the boat safe is outweighed by no
 /// other behaviour: numbers that would are noted, expressions are held below.
 pub(super) fn check(
-    ledger: &mut Ledger,
+    diagnostics: &mut Diagnostics,
     program: &mut Program,
     (places, raw): (&[usize], &RawStrategy),
     because: Option<&At<String>>,
@@ -44,7 +45,7 @@ pub(super) fn check(
     }
     match because {
         Some(because) if lacking.is_empty() => {
-            ledger.note(
+            diagnostics.note(
                 because.at,
                 "unsafe_because is not needed: every mode has op_region and avoid_collision, expected none",
             );
@@ -59,17 +60,17 @@ pub(super) fn check(
                      duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because",
                     program.path(*leaf)
                 );
-                ledger.note(places[*leaf], message);
+                diagnostics.note(places[*leaf], message);
             }
             if lacking.is_empty() {
-                hold_below_guards(ledger, program, raw);
+                hold_below_guards(diagnostics, program, raw);
             }
         }
     }
 }
 
 /// Sees to it that no behaviour outweighs what keeps the boat safe in a mode in which both run.
-fn hold_below_guards(ledger: &mut Ledger, program: &mut Program, raw: &RawStrategy) {
+fn hold_below_guards(diagnostics: &mut Diagnostics, program: &mut Program, raw: &RawStrategy) {
     for leaf in program.leaves().collect::<Vec<_>>() {
         let weight = |kind: &str| {
             let guards = program.behaviours.iter().filter(|b| b.task.kind() == kind && b.modes[leaf] && b.is_guard());
@@ -94,7 +95,7 @@ fn hold_below_guards(ledger: &mut Ledger, program: &mut Program, raw: &RawStrate
                 let message = format!(
                     "weight is {weight} in mode {path}, expected at most {most}, which op_region or avoid_collision has there"
                 );
-                ledger.note(at, message);
+                diagnostics.note(at, message);
             }
         }
     }

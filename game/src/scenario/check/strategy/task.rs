@@ -2,7 +2,7 @@
 
 use super::expression::{Wanted, expression, place_of, places_allowed};
 use crate::frame::Ned;
-use crate::scenario::ledger::Ledger;
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw::{
     Amount, At, RawAttractor, RawAvoidCollision, RawAvoidObstacle, RawConstantHeading, RawConstantSpeed, RawCutRange,
     RawEllipse, RawIntercept, RawLoiter, RawMaxSpeed, RawMemoryTurnLimit, RawOpRegion, RawPolicy, RawShield,
@@ -31,7 +31,7 @@ const FAR_M: f64 = 1e6;
 
 /// A behaviour whose keys are being checked.
 pub(super) struct Keys<'a> {
-    pub(super) ledger: &'a mut Ledger,
+    pub(super) diagnostics: &'a mut Diagnostics,
     pub(super) variables: &'a [Variable],
     /// Where the behaviour stands.
     pub(super) owner: usize,
@@ -58,24 +58,24 @@ impl Keys<'_> {
 
     fn missing(&mut self, key: &str, expected: &str) {
         let key = format!("behaviour.{}.{key}", self.name);
-        self.ledger.note_missing(self.owner, &key, expected);
+        self.diagnostics.note_missing(self.owner, &key, expected);
     }
 
     fn given(&mut self, key: &str, given: &At<Amount>, range: (f64, f64)) -> Option<Expression> {
         let expression = match &given.value {
             Amount::Number(number) => {
                 let value = At { value: *number, at: given.at };
-                return self.ledger.number(key, Some(&value), range.0..=range.1).map(Expression::Constant);
+                return self.diagnostics.number(key, Some(&value), range.0..=range.1).map(Expression::Constant);
             }
             Amount::Text(text) => {
                 let text = At { value: text.clone(), at: given.at };
-                expression(self.ledger, self.variables, key, &text, Wanted::Number)?
+                expression(self.diagnostics, self.variables, key, &text, Wanted::Number)?
             }
         };
         match expression.constant() {
             Some(value) => {
                 let value = At { value, at: given.at };
-                self.ledger.number(key, Some(&value), range.0..=range.1).map(|_| expression)
+                self.diagnostics.number(key, Some(&value), range.0..=range.1).map(|_| expression)
             }
             None => Some(expression),
         }
@@ -86,7 +86,7 @@ impl Keys<'_> {
         let (Some(a), Some(b)) = (low.2.constant(), high.2.constant()) else { return };
         let Some(at) = low.1.or(high.1).map(|given| given.at) else { return };
         if a > b {
-            self.ledger.note(at, format!("{} is {a}, expected at most {}, which is {b}", low.0, high.0));
+            self.diagnostics.note(at, format!("{} is {a}, expected at most {}, which is {b}", low.0, high.0));
         }
     }
 
@@ -97,14 +97,14 @@ impl Keys<'_> {
             }
             Whereabouts::Position([x, y]) => {
                 let message = format!("{key} is [{x}, {y}], expected both within {FAR_M} of 0");
-                self.ledger.note(given.at, message.replace("NaN", "nan"));
+                self.diagnostics.note(given.at, message.replace("NaN", "nan"));
                 None
             }
             Whereabouts::Point(name) => {
                 let place = place_of(name);
                 if place.is_none() {
                     let message = format!("{key} is {name:?}, expected [x, y], {}", &places_allowed(name)[9..]);
-                    self.ledger.note(given.at, message);
+                    self.diagnostics.note(given.at, message);
                 }
                 place
             }
@@ -124,7 +124,7 @@ impl Keys<'_> {
     fn places(&mut self, key: &str, given: &At<Vec<At<Whereabouts>>>, least: usize) -> Option<Vec<Place>> {
         let count = given.value.len();
         if !(least..=MOST_POINTS).contains(&count) {
-            self.ledger.note(given.at, format!("{key} has {count} entries, expected {least} to {MOST_POINTS}"));
+            self.diagnostics.note(given.at, format!("{key} has {count} entries, expected {least} to {MOST_POINTS}"));
             return None;
         }
         let places: Vec<Option<Place>> = given.value.iter().map(|place| self.place(key, place)).collect();
@@ -142,7 +142,7 @@ impl Keys<'_> {
             let guess = crate::scenario::explain::nearest(&given.value, &names);
             let guess = guess.map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default();
             let message = format!("{key} is {:?}, expected one of {}{guess}", given.value, names.join(", "));
-            self.ledger.note(given.at, message);
+            self.diagnostics.note(given.at, message);
         }
         boat
     }
@@ -202,7 +202,7 @@ fn loiter(keys: &mut Keys<'_>, raw: &RawLoiter) -> Option<Loiter> {
             None
         }
         (Some(_), Some(given)) => {
-            keys.ledger.note(given.at, "ellipse is given with polygon, expected one of them");
+            keys.diagnostics.note(given.at, "ellipse is given with polygon, expected one of them");
             None
         }
     };
@@ -216,11 +216,11 @@ fn loiter(keys: &mut Keys<'_>, raw: &RawLoiter) -> Option<Loiter> {
 
 fn ellipse(keys: &mut Keys<'_>, given: &At<RawEllipse>) -> Option<Shape> {
     let raw = &given.value;
-    let mut inner = Keys { ledger: keys.ledger, variables: keys.variables, owner: given.at, name: keys.name };
+    let mut inner = Keys { diagnostics: keys.diagnostics, variables: keys.variables, owner: given.at, name: keys.name };
     let centre = inner.required_place("ellipse.centre", raw.centre.as_ref());
-    let along_m = keys.ledger.required(given.at, "ellipse.along_m", raw.along_m.as_ref(), 1.0..=1e4);
-    let across_m = keys.ledger.required(given.at, "ellipse.across_m", raw.across_m.as_ref(), 1.0..=1e4);
-    let corners = keys.ledger.whole("corners", raw.corners.as_ref(), 3..=1000, 24) as usize;
+    let along_m = keys.diagnostics.required(given.at, "ellipse.along_m", raw.along_m.as_ref(), 1.0..=1e4);
+    let across_m = keys.diagnostics.required(given.at, "ellipse.across_m", raw.across_m.as_ref(), 1.0..=1e4);
+    let corners = keys.diagnostics.whole("corners", raw.corners.as_ref(), 3..=1000, 24) as usize;
     centre.map(|centre| Shape::Ellipse { centre, along_m, across_m, corners })
 }
 

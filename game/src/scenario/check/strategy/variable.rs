@@ -1,8 +1,8 @@
 //! Variables of a strategy, checked, and values that are given to them.
 
 use super::expression::{CALLS, RESERVED, Wanted, expression, place_of, values_allowed};
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
-use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::{At, Given, RawSet, RawStrategy, RawVariable, Stated};
 use crate::strategy::{Expression, Fact, Kind, Measure, SHARED_MAX, Variable};
 
@@ -12,32 +12,32 @@ const MOST: usize = 1000;
 const MOST_TEXTS: usize = 100;
 
 /// Checks the variables, by name.
-pub(super) fn variables(ledger: &mut Ledger, raw: &RawStrategy) -> Vec<Variable> {
+pub(super) fn variables(diagnostics: &mut Diagnostics, raw: &RawStrategy) -> Vec<Variable> {
     let Some(given) = &raw.variables else { return vec![] };
     if given.value.len() > MOST {
-        ledger.note(given.at, format!("variables has {} entries, expected at most {MOST}", given.value.len()));
+        diagnostics.note(given.at, format!("variables has {} entries, expected at most {MOST}", given.value.len()));
         return vec![];
     }
     let variables: Vec<Variable> =
-        given.value.iter().filter_map(|(name, variable)| one(ledger, name, variable)).collect();
+        given.value.iter().filter_map(|(name, variable)| one(diagnostics, name, variable)).collect();
     let shared = variables.iter().filter(|variable| variable.shared).count();
     if shared > SHARED_MAX {
-        ledger.note(given.at, format!("variables has {shared} shared ones, expected at most {SHARED_MAX}"));
+        diagnostics.note(given.at, format!("variables has {shared} shared ones, expected at most {SHARED_MAX}"));
     }
     variables
 }
 
-fn one(ledger: &mut Ledger, name: &str, given: &At<RawVariable>) -> Option<Variable> {
-    if !is_free(ledger, name, given.at) {
+fn one(diagnostics: &mut Diagnostics, name: &str, given: &At<RawVariable>) -> Option<Variable> {
+    if !is_free(diagnostics, name, given.at) {
         return None;
     }
     let (kind, initial, shared) = match &given.value {
         RawVariable::Plain(value) => {
-            let (kind, initial) = plain(ledger, name, given.at, value)?;
+            let (kind, initial) = plain(diagnostics, name, given.at, value)?;
             (kind, initial, false)
         }
         RawVariable::Stated(stated) => {
-            let (kind, initial) = stated_kind(ledger, name, given.at, stated)?;
+            let (kind, initial) = stated_kind(diagnostics, name, given.at, stated)?;
             (kind, initial, stated.shared.as_ref().is_some_and(|shared| shared.value))
         }
     };
@@ -45,8 +45,8 @@ fn one(ledger: &mut Ledger, name: &str, given: &At<RawVariable>) -> Option<Varia
 }
 
 /// Whether a variable may be called `name`: it must be a name for CEL too, and nobody else's.
-fn is_free(ledger: &mut Ledger, name: &str, at: usize) -> bool {
-    if !ledger.is_name(at, "variable", name) {
+fn is_free(diagnostics: &mut Diagnostics, name: &str, at: usize) -> bool {
+    if !diagnostics.is_name(at, "variable", name) {
         return false;
     }
     let measures = Measure::all().map(Measure::name);
@@ -63,20 +63,20 @@ fn is_free(ledger: &mut Ledger, name: &str, at: usize) -> bool {
     } else {
         return true;
     };
-    ledger.note(at, format!("variable is {name:?}, which {taken}, expected another name"));
+    diagnostics.note(at, format!("variable is {name:?}, which {taken}, expected another name"));
     false
 }
 
-fn plain(ledger: &mut Ledger, name: &str, at: usize, value: &Given) -> Option<(Kind, f64)> {
+fn plain(diagnostics: &mut Diagnostics, name: &str, at: usize, value: &Given) -> Option<(Kind, f64)> {
     match value {
         Given::Truth(is) => Some((Kind::Truth, f64::from(u8::from(*is)))),
         Given::Number(number) if number.is_finite() => Some((Kind::Number, *number)),
         Given::Number(number) => {
-            ledger.note(at, format!("{name} is {}, expected a finite number", shown(*number)));
+            diagnostics.note(at, format!("{name} is {}, expected a finite number", shown(*number)));
             None
         }
         Given::Text(text) => {
-            ledger.note(at, format!("{name} is the string {text:?}, expected its values as well: values = [...]"));
+            diagnostics.note(at, format!("{name} is the string {text:?}, expected its values as well: values = [...]"));
             None
         }
     }
@@ -86,45 +86,45 @@ fn shown(number: f64) -> String {
     if number.is_nan() { "nan".to_owned() } else { number.to_string() }
 }
 
-fn stated_kind(ledger: &mut Ledger, name: &str, at: usize, stated: &Stated) -> Option<(Kind, f64)> {
+fn stated_kind(diagnostics: &mut Diagnostics, name: &str, at: usize, stated: &Stated) -> Option<(Kind, f64)> {
     let Some(values) = &stated.values else {
         let Some(initial) = &stated.initial else {
-            ledger.note_missing(
+            diagnostics.note_missing(
                 at,
                 &format!("{name}.values"),
                 "the texts it may have, or initial, a number or a truth",
             );
             return None;
         };
-        return plain(ledger, name, initial.at, &initial.value);
+        return plain(diagnostics, name, initial.at, &initial.value);
     };
     if !(1..=MOST_TEXTS).contains(&values.value.len()) {
-        ledger.note(values.at, format!("values has {} entries, expected 1 to {MOST_TEXTS}", values.value.len()));
+        diagnostics.note(values.at, format!("values has {} entries, expected 1 to {MOST_TEXTS}", values.value.len()));
         return None;
     }
     let mut texts: Vec<String> = vec![];
     for value in &values.value {
-        if ledger.is_name(value.at, "values", &value.value) && texts.contains(&value.value) {
-            ledger.note(value.at, format!("values has {:?} again, expected different ones", value.value));
+        if diagnostics.is_name(value.at, "values", &value.value) && texts.contains(&value.value) {
+            diagnostics.note(value.at, format!("values has {:?} again, expected different ones", value.value));
         }
         texts.push(value.value.clone());
     }
     let initial = match stated.initial.as_ref().map(|initial| (initial.at, &initial.value)) {
         None => 0,
-        Some((at, Given::Text(text))) => text_of(ledger, "initial", at, &texts, text)?,
+        Some((at, Given::Text(text))) => text_of(diagnostics, "initial", at, &texts, text)?,
         Some((at, other)) => {
             let found = in_words(other);
-            ledger.note(at, format!("initial is {found}, expected one of {}", texts.join(", ")));
+            diagnostics.note(at, format!("initial is {found}, expected one of {}", texts.join(", ")));
             return None;
         }
     };
     Some((Kind::Text(texts), initial as f64))
 }
 
-fn text_of(ledger: &mut Ledger, key: &str, at: usize, values: &[String], text: &str) -> Option<usize> {
+fn text_of(diagnostics: &mut Diagnostics, key: &str, at: usize, values: &[String], text: &str) -> Option<usize> {
     let place = values.iter().position(|value| value == text);
     if place.is_none() {
-        ledger.note(at, format!("{key} is {text:?}, {}", values_allowed(values, text)));
+        diagnostics.note(at, format!("{key} is {text:?}, {}", values_allowed(values, text)));
     }
     place
 }
@@ -138,34 +138,43 @@ fn in_words(given: &Given) -> String {
 }
 
 /// Checks values given to variables.
-pub(super) fn set(ledger: &mut Ledger, variables: &[Variable], given: Option<&RawSet>) -> Vec<(u16, Expression)> {
+pub(super) fn set(
+    diagnostics: &mut Diagnostics,
+    variables: &[Variable],
+    given: Option<&RawSet>,
+) -> Vec<(u16, Expression)> {
     let mut set = vec![];
     for (name, value) in given.into_iter().flatten() {
         let Some(index) = variables.iter().position(|variable| variable.name == *name) else {
-            unknown(ledger, variables, name, value.at);
+            unknown(diagnostics, variables, name, value.at);
             continue;
         };
-        let value = assigned(ledger, variables, &variables[index], value);
+        let value = assigned(diagnostics, variables, &variables[index], value);
         set.extend(value.map(|value| (index as u16, value)));
     }
     set
 }
 
-fn unknown(ledger: &mut Ledger, variables: &[Variable], name: &str, at: usize) {
+fn unknown(diagnostics: &mut Diagnostics, variables: &[Variable], name: &str, at: usize) {
     let known: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
     let guess = nearest(name, &known).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default();
     let expected = match known.as_slice() {
         [] => "a name from [variables], which has none".to_owned(),
         _ => format!("one of the variables {}", known.join(", ")),
     };
-    ledger.note(at, format!("{name} is unknown, expected {expected}{guess}"));
+    diagnostics.note(at, format!("{name} is unknown, expected {expected}{guess}"));
 }
 
-fn assigned(ledger: &mut Ledger, variables: &[Variable], variable: &Variable, given: &At<Given>) -> Option<Expression> {
+fn assigned(
+    diagnostics: &mut Diagnostics,
+    variables: &[Variable],
+    variable: &Variable,
+    given: &At<Given>,
+) -> Option<Expression> {
     let name = &variable.name;
     let wanted = match (&variable.kind, &given.value) {
         (Kind::Text(values), Given::Text(text)) => {
-            let place = text_of(ledger, name, given.at, values, text)?;
+            let place = text_of(diagnostics, name, given.at, values, text)?;
             return Some(Expression::Constant(place as f64));
         }
         (Kind::Truth, Given::Truth(is)) => return Some(Expression::Constant(f64::from(u8::from(*is)))),
@@ -178,10 +187,10 @@ fn assigned(ledger: &mut Ledger, variables: &[Variable], variable: &Variable, gi
                 Kind::Truth => "true, false or an expression".to_owned(),
                 Kind::Number => "a finite number or an expression".to_owned(),
             };
-            ledger.note(given.at, format!("{name} is {}, expected {expected}", in_words(other)));
+            diagnostics.note(given.at, format!("{name} is {}, expected {expected}", in_words(other)));
             return None;
         }
     };
     let Given::Text(text) = &given.value else { unreachable!("only texts are left") };
-    expression(ledger, variables, name, &At { value: text.clone(), at: given.at }, wanted)
+    expression(diagnostics, variables, name, &At { value: text.clone(), at: given.at }, wanted)
 }

@@ -5,8 +5,8 @@ use super::{
     RawFullStop, RawIntercept, RawLoiter, RawMaxSpeed, RawMemoryTurnLimit, RawOpRegion, RawPolicy, RawSet, RawShield,
     RawStationKeep, RawTimer, RawTrail, RawWaypoint,
 };
+use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
-use crate::scenario::ledger::Ledger;
 use crate::scenario::raw::At;
 use crate::scenario::read::deserialised;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -100,7 +100,7 @@ pub(in crate::scenario) enum RawTask {
 /// A kind of behaviour: its name in files, how its own keys are read, and their schema.
 pub(in crate::scenario) struct RawKind {
     pub(in crate::scenario) name: &'static str,
-    read: fn(&mut Ledger, Own<'_>) -> RawTask,
+    read: fn(&mut Diagnostics, Own<'_>) -> RawTask,
     schema: fn(&mut SchemaGenerator) -> Schema,
     /// Its own keys, in order.
     pub(in crate::scenario) keys: fn() -> Vec<String>,
@@ -109,28 +109,35 @@ pub(in crate::scenario) struct RawKind {
 /// All kinds, in the order in which they are explained.
 pub(in crate::scenario) fn kinds() -> [RawKind; 18] {
     [
-        kind::<RawWaypoint>("waypoint", |ledger, own| RawTask::Waypoint(own.read(ledger))),
-        kind::<RawLoiter>("loiter", |ledger, own| RawTask::Loiter(own.read(ledger))),
-        kind::<RawStationKeep>("station_keep", |ledger, own| RawTask::StationKeep(own.read(ledger))),
-        kind::<RawCutRange>("cut_range", |ledger, own| RawTask::CutRange(own.read(ledger))),
-        kind::<RawTrail>("trail", |ledger, own| RawTask::Trail(own.read(ledger))),
-        kind::<RawIntercept>("intercept", |ledger, own| RawTask::Intercept(own.read(ledger))),
-        kind::<RawShield>("shield", |ledger, own| RawTask::Shield(own.read(ledger))),
-        kind::<RawAttractor>("attractor", |ledger, own| RawTask::Attractor(own.read(ledger))),
-        kind::<RawAvoidCollision>("avoid_collision", |ledger, own| RawTask::AvoidCollision(own.read(ledger))),
-        kind::<RawAvoidObstacle>("avoid_obstacle", |ledger, own| RawTask::AvoidObstacle(own.read(ledger))),
-        kind::<RawOpRegion>("op_region", |ledger, own| RawTask::OpRegion(own.read(ledger))),
-        kind::<RawMaxSpeed>("max_speed", |ledger, own| RawTask::MaxSpeed(own.read(ledger))),
-        kind::<RawConstantHeading>("constant_heading", |ledger, own| RawTask::ConstantHeading(own.read(ledger))),
-        kind::<RawConstantSpeed>("constant_speed", |ledger, own| RawTask::ConstantSpeed(own.read(ledger))),
-        kind::<RawMemoryTurnLimit>("memory_turn_limit", |ledger, own| RawTask::MemoryTurnLimit(own.read(ledger))),
-        kind::<RawTimer>("timer", |ledger, own| RawTask::Timer(own.read(ledger))),
-        kind::<RawFullStop>("full_stop", |ledger, own| RawTask::FullStop(own.read(ledger))),
-        kind::<RawPolicy>("policy", |ledger, own| RawTask::Policy(own.read(ledger))),
+        kind::<RawWaypoint>("waypoint", |diagnostics, own| RawTask::Waypoint(own.read(diagnostics))),
+        kind::<RawLoiter>("loiter", |diagnostics, own| RawTask::Loiter(own.read(diagnostics))),
+        kind::<RawStationKeep>("station_keep", |diagnostics, own| RawTask::StationKeep(own.read(diagnostics))),
+        kind::<RawCutRange>("cut_range", |diagnostics, own| RawTask::CutRange(own.read(diagnostics))),
+        kind::<RawTrail>("trail", |diagnostics, own| RawTask::Trail(own.read(diagnostics))),
+        kind::<RawIntercept>("intercept", |diagnostics, own| RawTask::Intercept(own.read(diagnostics))),
+        kind::<RawShield>("shield", |diagnostics, own| RawTask::Shield(own.read(diagnostics))),
+        kind::<RawAttractor>("attractor", |diagnostics, own| RawTask::Attractor(own.read(diagnostics))),
+        kind::<RawAvoidCollision>("avoid_collision", |diagnostics, own| RawTask::AvoidCollision(own.read(diagnostics))),
+        kind::<RawAvoidObstacle>("avoid_obstacle", |diagnostics, own| RawTask::AvoidObstacle(own.read(diagnostics))),
+        kind::<RawOpRegion>("op_region", |diagnostics, own| RawTask::OpRegion(own.read(diagnostics))),
+        kind::<RawMaxSpeed>("max_speed", |diagnostics, own| RawTask::MaxSpeed(own.read(diagnostics))),
+        kind::<RawConstantHeading>("constant_heading", |diagnostics, own| {
+            RawTask::ConstantHeading(own.read(diagnostics))
+        }),
+        kind::<RawConstantSpeed>("constant_speed", |diagnostics, own| RawTask::ConstantSpeed(own.read(diagnostics))),
+        kind::<RawMemoryTurnLimit>("memory_turn_limit", |diagnostics, own| {
+            RawTask::MemoryTurnLimit(own.read(diagnostics))
+        }),
+        kind::<RawTimer>("timer", |diagnostics, own| RawTask::Timer(own.read(diagnostics))),
+        kind::<RawFullStop>("full_stop", |diagnostics, own| RawTask::FullStop(own.read(diagnostics))),
+        kind::<RawPolicy>("policy", |diagnostics, own| RawTask::Policy(own.read(diagnostics))),
     ]
 }
 
-fn kind<T: DeserializeOwned + JsonSchema>(name: &'static str, read: fn(&mut Ledger, Own<'_>) -> RawTask) -> RawKind {
+fn kind<T: DeserializeOwned + JsonSchema>(
+    name: &'static str,
+    read: fn(&mut Diagnostics, Own<'_>) -> RawTask,
+) -> RawKind {
     RawKind { name, read, schema: T::json_schema, keys: keys_of::<T> }
 }
 
@@ -143,7 +150,7 @@ struct Own<'i> {
 
 impl Own<'_> {
     /// Reads them; one that the kind does not know is noted with all that may stand there.
-    fn read<T: DeserializeOwned + Default>(mut self, ledger: &mut Ledger) -> T {
+    fn read<T: DeserializeOwned + Default>(mut self, diagnostics: &mut Diagnostics) -> T {
         let own = keys_of::<T>();
         let known: Vec<&str> =
             std::iter::once("kind").chain(own.iter().map(String::as_str)).chain(COMMON_KEYS).collect();
@@ -156,9 +163,9 @@ impl Own<'_> {
             let guess = nearest(key.get_ref(), &known).map(|guess| format!(" (did you mean {guess}?)"));
             let (name, guess) = (key.get_ref(), guess.unwrap_or_default());
             let at = key.span().start;
-            ledger.note_if_intact(at, format!("{name} is unknown, expected one of {}{guess}", known.join(", ")));
+            diagnostics.note_if_intact(at, format!("{name} is unknown, expected one of {}{guess}", known.join(", ")));
         }
-        deserialised(ledger, self.at, self.table)
+        deserialised(diagnostics, self.at, self.table)
     }
 }
 
@@ -173,33 +180,33 @@ pub(in crate::scenario) fn keys_of<T: DeserializeOwned>() -> Vec<String> {
 
 impl RawBehaviours {
     /// Reads the table `behaviour` of a file.
-    pub(in crate::scenario) fn of(ledger: &mut Ledger, value: Spanned<DeValue<'_>>) -> RawBehaviours {
+    pub(in crate::scenario) fn of(diagnostics: &mut Diagnostics, value: Spanned<DeValue<'_>>) -> RawBehaviours {
         let at = value.span().start;
         match value.into_inner() {
             DeValue::Table(table) => RawBehaviours(
                 table
                     .into_iter()
-                    .filter_map(|(name, value)| one(ledger, name.get_ref(), name.span().start, value))
+                    .filter_map(|(name, value)| one(diagnostics, name.get_ref(), name.span().start, value))
                     .collect(),
             ),
             other => {
-                ledger.note(at, format!("behaviour is {}, expected tables [behaviour.NAME]", found(&other)));
+                diagnostics.note(at, format!("behaviour is {}, expected tables [behaviour.NAME]", found(&other)));
                 // Without it nobody can say whether roles are missing.
-                ledger.mark_unfit(at, "roles");
+                diagnostics.mark_unfit(at, "roles");
                 RawBehaviours::default()
             }
         }
     }
 }
 
-fn one(ledger: &mut Ledger, name: &str, at: usize, value: Spanned<DeValue<'_>>) -> Option<At<RawBehaviour>> {
-    ledger.is_name(at, "behaviour", name);
+fn one(diagnostics: &mut Diagnostics, name: &str, at: usize, value: Spanned<DeValue<'_>>) -> Option<At<RawBehaviour>> {
+    diagnostics.is_name(at, "behaviour", name);
     let span = value.span();
     let table = match value.into_inner() {
         DeValue::Table(table) => table,
         other => {
             let message = format!("behaviour.{name} is {}, expected a table with kind = ...", found(&other));
-            ledger.note(span.start, message);
+            diagnostics.note(span.start, message);
             return None;
         }
     };
@@ -211,17 +218,23 @@ fn one(ledger: &mut Ledger, name: &str, at: usize, value: Spanned<DeValue<'_>>) 
             _ => drop(own.insert(key, value)),
         }
     }
-    let common = deserialised(ledger, at, Spanned::new(span.clone(), common));
-    let kind = kind_of(ledger, name, at, kind.as_ref());
+    let common = deserialised(diagnostics, at, Spanned::new(span.clone(), common));
+    let kind = kind_of(diagnostics, name, at, kind.as_ref());
     let own = Own { at, table: Spanned::new(span, own) };
-    let task = kind.map(|kind| (kind.read)(ledger, own));
+    let task = kind.map(|kind| (kind.read)(diagnostics, own));
     Some(At { at, value: RawBehaviour { name: name.to_owned(), common, task } })
 }
 
-fn kind_of(ledger: &mut Ledger, name: &str, at: usize, given: Option<&Spanned<DeValue<'_>>>) -> Option<RawKind> {
+fn kind_of(
+    diagnostics: &mut Diagnostics,
+    name: &str,
+    at: usize,
+    given: Option<&Spanned<DeValue<'_>>>,
+) -> Option<RawKind> {
     let names = kinds().map(|kind| kind.name);
     let Some(given) = given else {
-        ledger.note_if_intact(at, format!("behaviour.{name}.kind is missing, expected one of {}", names.join(", ")));
+        diagnostics
+            .note_if_intact(at, format!("behaviour.{name}.kind is missing, expected one of {}", names.join(", ")));
         return None;
     };
     let kind = given.get_ref().as_str().and_then(|name| kinds().into_iter().find(|kind| kind.name == name));
@@ -229,7 +242,7 @@ fn kind_of(ledger: &mut Ledger, name: &str, at: usize, given: Option<&Spanned<De
         let guess = given.get_ref().as_str().and_then(|name| nearest(name, &names));
         let guess = guess.map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default();
         let found = found(given.get_ref());
-        ledger.note(given.span().start, format!("kind is {found}, expected one of {}{guess}", names.join(", ")));
+        diagnostics.note(given.span().start, format!("kind is {found}, expected one of {}{guess}", names.join(", ")));
     }
     kind
 }

@@ -1,0 +1,254 @@
+//! The table at which the minds of one process sit: pictures come in, words and orders go out.
+
+use super::helm_queries::HelmQueries;
+use super::ignored::Ignored;
+use super::policy_inbox::PolicyInbox;
+use super::sim_liveness::{Signs, SimLiveness};
+use super::talk::Talk;
+use super::{LOOK_AGAIN, NodeError, Settings, clock};
+use crate::{Mind, mind_by, mind_of};
+use bus::{Bus, Declaration, Delivery, Latest, Publisher, Watched};
+use game::codec::{self, DecodeError};
+use game::message::{GameInfo, Message, Orders, Stamp, VehicleOrder};
+use game::topic::{self, GameName, Part};
+use game::{Picture, Scenario, TeamId, VehicleId};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+/// In lockstep words of mates are there before the picture, unless something on the way between several hubs changes
+/// their order, or a link was cut: they are waited for this long, once.
+const WORDS_LATE: Duration = Duration::from_millis(500);
+
+/// Pictures of a team that are kept while the minds decide.
+const UNREAD_MAX: usize = 64;
+/// Events that are carried over from pictures on which nobody decided.
+const EVENTS_MAX: usize = 1024;
+
+/// A mind and its boat.
+pub(super) struct Seated {
+    pub(super) vehicle: VehicleId,
+    pub(super) mind: Box<dyn Mind>,
+}
+
+/// The minds at work.
+pub(super) struct AgentLoop {
+    seated: Vec<Seated>,
+    talk: Talk,
+    policies: PolicyInbox,
+    /// Opened with the seat: an agent that waits for one must not answer for the one that has it.
+    window: Option<HelmQueries>,
+    orders: Publisher,
+    line: Line,
+    ticket: u64,
+    /// The newest picture, by team.
+    pictures: Vec<Option<Picture>>,
+    /// The orders given last, to be sent again if they are asked for again.
+    last: Option<Orders>,
+}
+
+impl AgentLoop {
+    /// Makes the minds and opens all their lines, before the sim counts on them.
+    pub(super) fn lay(
+        bus: &Bus,
+        game: &GameName,
+        notice: &GameInfo,
+        settings: &Settings,
+    ) -> Result<AgentLoop, NodeError> {
+        let scenario = &notice.scenario;
+        let mind = |vehicle| match &settings.strategy {
+            Some(strategy) => mind_by(scenario, vehicle, strategy),
+            None => mind_of(scenario, vehicle),
+        };
+        // A name that is unknown the sim will refuse.
+        let known = settings.vehicles.iter().filter_map(|name| scenario.vehicle_by_name(name));
+        let seated: Vec<Seated> = known.map(|vehicle| Seated { vehicle, mind: mind(vehicle) }).collect();
+        let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
+        let is_lockstep = notice.pace == "lockstep";
+        let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
+        Ok(AgentLoop {
+            talk: Talk::open(bus, game, scenario, &seated, limit(WORDS_LATE))?,
+            policies: PolicyInbox::open(bus, game, scenario, &seated, limit(settings.policy_wait))?,
+            window: None,
+            orders: bus.publisher(topic::orders(game, &bus.id()), Delivery::Wait)?,
+            line: Line::open(bus, game, scenario, &seated)?,
+            seated,
+            ticket: 0,
+            pictures: vec![None; scenario.teams.len()],
+            last: None,
+        })
+    }
+
+    /// The sim has let these boats in, with this ticket.
+    pub(super) fn seat(
+        &mut self,
+        bus: &Bus,
+        game: &GameName,
+        scenario: &Scenario,
+        (ticket, vehicles): (u64, Vec<VehicleId>),
+    ) -> Result<(), NodeError> {
+        if !self.seated.iter().map(|seat| seat.vehicle).eq(vehicles) {
+            return Err(NodeError::Refused("it let other boats in than those that asked".to_owned()));
+        }
+        self.ticket = ticket;
+        self.window = Some(HelmQueries::open(bus, game, scenario, &self.seated)?);
+        Ok(())
+    }
+
+    /// Everything that was not heeded so far.
+    pub(super) fn ignored(&self) -> Ignored {
+        self.talk.ignored() + self.policies.ignored()
+    }
+
+    /// Decides until the game is over.
+    pub(super) fn play(&mut self, settings: &Settings) -> Result<(), NodeError> {
+        let mut sim_liveness = SimLiveness::begin(settings.silence, clock::now());
+        while !settings.stop.load(Ordering::Relaxed) {
+            let mut decided = false;
+            for (cell, unread) in self.line.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
+                let Some(unread) = unread else { continue };
+                sim_liveness.hears(clock::now());
+                unread.iter().try_for_each(|bytes| self.see(cell, bytes))?;
+                if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
+                    return Ok(());
+                }
+                decided |= self.decide()?;
+            }
+            if let Some(window) = &mut self.window {
+                window.answer(&mut self.seated, decided);
+            }
+            let (is_alive, is_replaced) = self.line.signs.visit(|signs| (signs.is_alive(), signs.is_replaced()));
+            if is_replaced {
+                return Err(NodeError::SimReplaced);
+            }
+            if let Some(silent) = sim_liveness.dead_for(is_alive, clock::now()) {
+                return Err(NodeError::SimGone(silent));
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes in a picture.
+    fn see(&mut self, cell: usize, bytes: &[u8]) -> Result<(), NodeError> {
+        let picture = match codec::decode(bytes) {
+            Ok(picture) => picture,
+            Err(e @ DecodeError::Version { .. }) => return Err(NodeError::Version { theirs: e.to_string() }),
+            // Damaged on the way; the sim sends it again.
+            Err(_) => return Ok(()),
+        };
+        let decided = self.last.as_ref().map(|last| last.stamp.seq);
+        let before = self.pictures[cell].take();
+        self.pictures[cell] = Some(with_missed_events(picture, before, decided));
+        Ok(())
+    }
+
+    /// Decides when the pictures of all teams are of one tick; answers a tick that is asked again as before. Says
+    /// whether the minds have decided.
+    fn decide(&mut self) -> Result<bool, NodeError> {
+        let stamp_of = |team: &TeamId| self.pictures[team.index()].as_ref().map(|picture| picture.stamp);
+        let Some(stamp) = self.line.teams.first().and_then(stamp_of) else { return Ok(false) };
+        if self.line.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
+            return Ok(false);
+        }
+        if let Some(last) = self.last.as_ref().filter(|last| last.stamp.seq == stamp.seq) {
+            self.talk.repeat()?;
+            self.orders.send(last)?;
+            return Ok(false);
+        }
+        self.talk.hear(&mut self.seated, stamp.seq);
+        self.policies.give(&mut self.seated, stamp);
+        let orders = self.orders_for(stamp);
+        // Words before orders: the sim goes on when it has the orders, and then the words are under way.
+        self.talk.say(&mut self.seated, stamp)?;
+        self.orders.send(&orders)?;
+        self.last = Some(orders);
+        Ok(true)
+    }
+
+    fn orders_for(&mut self, stamp: Stamp) -> Orders {
+        let pictures = &self.pictures;
+        let decide = |Seated { vehicle, mind }: &mut Seated| {
+            let mine = pictures.iter().flatten().find(|picture| picture.own(*vehicle).is_some());
+            VehicleOrder::new(*vehicle, mine.map(|picture| mind.decide(picture)).unwrap_or_default())
+        };
+        let stamp = Stamp { version: Orders::VERSION, ..stamp };
+        Orders { stamp, ticket: self.ticket, orders: self.seated.iter_mut().map(decide).collect() }
+    }
+}
+
+/// A picture with the events of the one before, if nobody decided on that: `decided` is the number of the last decision. An
+/// event is told in one picture only.
+fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Option<u64>) -> Picture {
+    let is_missed =
+        |old: &Picture| old.stamp.seq < picture.stamp.seq && decided.is_none_or(|decided| decided < old.stamp.seq);
+    if let Some(old) = before.filter(is_missed) {
+        picture.events.splice(0..0, old.events);
+        let surplus = picture.events.len().saturating_sub(EVENTS_MAX);
+        picture.events.drain(..surplus);
+    }
+    picture
+}
+
+/// What comes in from the sim: the newest pictures of each team, oldest first, and whether it shows signs of life.
+struct Line {
+    pictures: Arc<Latest<Vec<Vec<u8>>>>,
+    signs: Arc<Watched<Signs>>,
+    /// The teams whose pictures come.
+    teams: Vec<TeamId>,
+    _standing: Vec<Declaration>,
+}
+
+impl Line {
+    fn open(bus: &Bus, game: &GameName, scenario: &Scenario, seated: &[Seated]) -> Result<Line, NodeError> {
+        let pictures = Arc::new(Latest::new(scenario.teams.len()));
+        let signs = Arc::new(Watched::new(Signs::default()));
+        let mut teams: Vec<TeamId> = seated.iter().map(|seat| scenario.team_of(seat.vehicle)).collect();
+        teams.sort_unstable();
+        teams.dedup();
+        let mut standing = Vec::new();
+        for team in &teams {
+            let (slots, cell) = (Arc::clone(&pictures), team.index());
+            let take = move |bytes: &[u8]| {
+                slots.change(cell, |unread| {
+                    let mut unread: Vec<Vec<u8>> = unread.unwrap_or_default();
+                    unread.drain(..(unread.len() + 1).saturating_sub(UNREAD_MAX));
+                    unread.push(bytes.to_vec());
+                    unread
+                });
+            };
+            standing.push(bus.subscribe(topic::picture(game, scenario, *team), take)?);
+        }
+        let seen = Arc::clone(&signs);
+        let watch = move |sim: &str, alive: bool| seen.visit(|signs| signs.take(sim, alive));
+        standing.push(bus.watch_alive(topic::all_alive(game, Part::Sim), watch)?);
+        Ok(Line { pictures, signs, teams, _standing: standing })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::event::{Event, Logged};
+    use game::message::EventRecord;
+    use game::{SimTime, VehicleId};
+
+    /// A picture in which boat `seq` left the field.
+    fn picture(seq: u64) -> Picture {
+        let event = Event::LeftField { vehicle: VehicleId(seq as u16) };
+        let events = vec![EventRecord::from(Logged { tick: seq, at: SimTime::ZERO, event })];
+        Picture { stamp: Stamp { seq, ..Stamp::default() }, events, ..Picture::default() }
+    }
+
+    #[test]
+    fn events_of_pictures_on_which_nobody_decided_are_told_with_the_next() {
+        let told = |picture: &Picture| picture.events.iter().map(|event| event.subject).collect::<Vec<_>>();
+        let late = with_missed_events(picture(4), Some(picture(3)), Some(2));
+        assert_eq!(told(&late), [3, 4]);
+        let later = with_missed_events(picture(5), Some(late.clone()), Some(2));
+        assert_eq!(told(&later), [3, 4, 5]);
+        assert_eq!(told(&with_missed_events(picture(5), Some(late.clone()), Some(4))), [5], "it was decided on");
+        assert_eq!(told(&with_missed_events(picture(4), Some(late), None)), [4], "the same picture once more");
+        let many = (0..3000).fold(picture(0), |last, seq| with_missed_events(picture(seq + 1), Some(last), None));
+        assert_eq!((many.events.len(), many.events.last().map(|event| event.subject)), (EVENTS_MAX, Some(3000)));
+    }
+}

@@ -1,0 +1,182 @@
+//! The list of problems found so far, and the checks of single values that add to it.
+
+use super::draw::{Drawing, Drawn};
+use super::overrides::Overrides;
+use super::problem::{Problem, Problems};
+use super::raw::{At, Pair};
+use super::source::Sources;
+use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+/// What was read, and what is wrong with it.
+#[derive(Debug)]
+pub(super) struct Diagnostics {
+    pub(super) sources: Sources,
+    /// Which numbers are taken where a distribution is given.
+    pub(super) drawing: Drawing,
+    /// Those that were taken.
+    pub(super) drawn: Vec<Drawn>,
+    /// Instead of the file system.
+    pub(super) files: Option<Vec<(PathBuf, String)>>,
+    /// The files that take the place of the game's own.
+    pub(super) overrides: Overrides,
+    problems: Vec<Problem>,
+    faults: usize,
+    /// Keys that did not fit their type, by file: they are not missing as well.
+    unfit: BTreeSet<(usize, String)>,
+}
+
+impl Diagnostics {
+    /// An empty diagnostics.
+    pub(super) fn new(drawing: Drawing) -> Diagnostics {
+        Diagnostics {
+            sources: Sources::default(),
+            drawing,
+            drawn: vec![],
+            files: None,
+            overrides: Overrides::default(),
+            problems: vec![],
+            faults: 0,
+            unfit: BTreeSet::new(),
+        }
+    }
+
+    /// Notes that the value at `at` is wrong. A line whose syntax is wrong has had its say already.
+    pub(super) fn note(&mut self, at: usize, message: impl Into<String>) {
+        self.faults += 1;
+        if !self.sources.is_broken_line(at) {
+            self.push(at, message.into());
+        }
+    }
+
+    /// Notes what may follow from broken syntax elsewhere in the file, unless there is some.
+    pub(super) fn note_if_intact(&mut self, at: usize, message: impl Into<String>) {
+        self.faults += 1;
+        if !self.sources.is_broken_file(at) {
+            self.push(at, message.into());
+        }
+    }
+
+    /// Notes that `key` is missing from the table at `at`, unless it was there and did not fit.
+    pub(super) fn note_missing(&mut self, at: usize, key: &str, expected: &str) {
+        let file = self.sources.index_at(at);
+        if key.split('.').any(|part| self.unfit.contains(&(file, part.to_owned()))) {
+            self.faults += 1;
+        } else {
+            self.note_if_intact(at, format!("{key} is missing, expected {expected}"));
+        }
+    }
+
+    /// Remembers that `key`, in the file at `at`, did not fit.
+    pub(super) fn mark_unfit(&mut self, at: usize, key: &str) {
+        self.unfit.insert((self.sources.index_at(at), key.to_owned()));
+    }
+
+    /// Notes that the syntax at `at` is wrong.
+    pub(super) fn note_syntax(&mut self, at: usize, message: &str) {
+        self.faults += 1;
+        self.sources.mark_broken(at);
+        self.push(at, message.into());
+    }
+
+    /// Notes a problem with a whole file that could not be read.
+    pub(super) fn note_file(&mut self, path: PathBuf, message: impl Into<String>) {
+        self.faults += 1;
+        self.problems.push(Problem { path, line: 1, column: 1, message: message.into() });
+    }
+
+    fn push(&mut self, at: usize, message: String) {
+        let place = self.sources.place(at);
+        self.problems.push(Problem { path: place.path, line: place.line, column: place.column, message });
+    }
+
+    /// How much is wrong so far: checks that combine values run only if it has not grown.
+    pub(super) fn faults(&self) -> usize {
+        self.faults
+    }
+
+    /// The value, if nothing was wrong.
+    pub(super) fn close<T>(&mut self, value: Option<T>) -> Result<T, Problems> {
+        match value {
+            Some(value) if self.problems.is_empty() => Ok(value),
+            _ => {
+                assert!(!self.problems.is_empty(), "a check failed without saying why");
+                self.problems.sort();
+                self.problems.dedup();
+                Err(Problems(std::mem::take(&mut self.problems)))
+            }
+        }
+    }
+
+    /// The number given for `key`, if there is one and it is `allowed`.
+    pub(super) fn number(&mut self, key: &str, given: Option<&At<f64>>, allowed: RangeInclusive<f64>) -> Option<f64> {
+        let given = given?;
+        if allowed.contains(&given.value) {
+            return Some(given.value);
+        }
+        let key = key.rsplit('.').next().unwrap_or(key);
+        let found = if given.value.is_nan() { "nan".into() } else { given.value.to_string() };
+        self.note(given.at, format!("{key} is {found}, expected {} to {}", allowed.start(), allowed.end()));
+        None
+    }
+
+    /// The number given for `key`, which must be there; the smallest allowed one stands in if it is not.
+    pub(super) fn required(
+        &mut self,
+        owner: usize,
+        key: &str,
+        given: Option<&At<f64>>,
+        allowed: RangeInclusive<f64>,
+    ) -> f64 {
+        if given.is_none() {
+            self.note_missing(owner, key, &format!("{} to {}", allowed.start(), allowed.end()));
+        }
+        self.number(key, given, allowed.clone()).unwrap_or(*allowed.start())
+    }
+
+    /// The whole number given for `key`, or `default`.
+    pub(super) fn whole(
+        &mut self,
+        key: &str,
+        given: Option<&At<i64>>,
+        allowed: RangeInclusive<i64>,
+        default: i64,
+    ) -> i64 {
+        let Some(given) = given else { return default };
+        if allowed.contains(&given.value) {
+            return given.value;
+        }
+        self.note(given.at, format!("{key} is {}, expected {} to {}", given.value, allowed.start(), allowed.end()));
+        default
+    }
+
+    /// Both numbers of the pair given for `key`, if they are `allowed`.
+    pub(super) fn pair(
+        &mut self,
+        key: &str,
+        given: Option<&At<Pair>>,
+        allowed: RangeInclusive<f64>,
+    ) -> Option<(f64, f64)> {
+        let given = given?;
+        let [a, b] = given.value.0.map(|value| At { value, at: given.at });
+        let a = self.number(key, Some(&a), allowed.clone());
+        let b = self.number(key, Some(&b), allowed);
+        a.zip(b)
+    }
+
+    /// Whether `name` is fit to be one: `a` to `z`, `0` to `9` and `_`, at most 40 of them.
+    pub(super) fn is_name(&mut self, at: usize, key: &str, name: &str) -> bool {
+        let is_fit = is_name(name);
+        if !is_fit {
+            self.note(at, format!("{key} is {name:?}, expected 1 to 40 of a-z, 0-9 and _"));
+        }
+        is_fit
+    }
+}
+
+/// Whether a vehicle, a team or a rival can be called this.
+pub(super) fn is_name(name: &str) -> bool {
+    let fits = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    !name.is_empty() && name.len() <= 40 && name.chars().all(fits)
+}

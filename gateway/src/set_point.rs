@@ -1,0 +1,217 @@
+//! The front seat's part: from an order to what the boat is sent.
+//!
+//! With `drive = "thrust"` the heading and speed loops are here; with `drive = "speed"` they are the boat's. Thrust is in
+//! per cent, its difference positive to starboard: port = thrust + difference, starboard = thrust − difference.
+
+use crate::thrust_map::thrust_for;
+use game::angle::{compass_deg_from_rad, wrap_pi};
+use game::gateway::{Drive, Gateway, Limits, Loops};
+use game::picture::Nav;
+use game::{Order, SimTime};
+
+/// What the boat is sent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Setting {
+    /// Thrust and thrust difference, per cent.
+    Thrust {
+        /// Of both thrusters.
+        thrust_pct: f64,
+        /// To starboard.
+        difference_pct: f64,
+    },
+    /// Heading and speed, for the boat's own loops.
+    Speed {
+        /// Heading as the boat's compass counts it, degrees.
+        heading_deg: f64,
+        /// Speed, m/s.
+        speed_m_s: f64,
+    },
+}
+
+impl Setting {
+    /// Both thrusters at zero.
+    pub const ZERO: Setting = Setting::Thrust { thrust_pct: 0.0, difference_pct: 0.0 };
+
+    /// Whether it moves the boat.
+    #[must_use]
+    pub fn moves(self) -> bool {
+        match self {
+            Setting::Thrust { thrust_pct, difference_pct } => thrust_pct != 0.0 || difference_pct != 0.0,
+            Setting::Speed { speed_m_s, .. } => speed_m_s != 0.0,
+        }
+    }
+}
+
+/// The loops, and what they remember.
+#[derive(Clone, Debug)]
+pub struct SetPointMapper {
+    drive: Drive,
+    limits: Limits,
+    loops: Loops,
+    compass_to_true_rad: f64,
+    /// What the speed loop has gathered, per cent.
+    integral_pct: f64,
+    /// What was sent last, and when.
+    last: Option<(SimTime, f64, f64)>,
+}
+
+/// Longest time that the loops believe to have passed between two settings, s.
+const STEP_MAX_S: f64 = 0.25;
+
+impl SetPointMapper {
+    /// The loops of a boat whose compass is this much short of true.
+    #[must_use]
+    pub fn new(gateway: &Gateway, compass_to_true_rad: f64) -> SetPointMapper {
+        SetPointMapper {
+            drive: gateway.drive,
+            limits: gateway.limits,
+            loops: gateway.loops.clone(),
+            compass_to_true_rad,
+            integral_pct: 0.0,
+            last: None,
+        }
+    }
+
+    /// Forgets what it has gathered: the boat was stopped.
+    pub fn rest(&mut self) {
+        (self.integral_pct, self.last) = (0.0, None);
+    }
+
+    /// What the boat is sent for a sound order.
+    pub fn setting(&mut self, now: SimTime, order: Order, nav: &Nav) -> Setting {
+        let step_s = self.last.map_or(0.0, |(at, ..)| (now - at).as_s().clamp(0.0, STEP_MAX_S));
+        let wanted = match order {
+            Order::Hold => {
+                self.integral_pct = 0.0;
+                (0.0, 0.0)
+            }
+            Order::Thrust { port, starboard } => {
+                self.integral_pct = 0.0;
+                (50.0 * (port + starboard), 50.0 * (port - starboard))
+            }
+            Order::Steer { heading_rad, speed_m_s } => {
+                let speed_m_s = speed_m_s.min(self.limits.speed_max_m_s);
+                if self.drive == Drive::Speed {
+                    let heading_deg = compass_deg_from_rad(heading_rad - self.compass_to_true_rad);
+                    return Setting::Speed { heading_deg, speed_m_s };
+                }
+                self.steer(step_s, (heading_rad, speed_m_s), nav)
+            }
+        };
+        self.within_limits(now, step_s, wanted)
+    }
+
+    /// Our own loops: thrust by the map and by the error of speed, difference by the error of heading, which comes first.
+    fn steer(&mut self, step_s: f64, (heading_rad, speed_m_s): (f64, f64), nav: &Nav) -> (f64, f64) {
+        let Loops { speed_pct_per_m_s, speed_integral_s, heading_pct_per_rad, turn_pct_per_rad_s, .. } = self.loops;
+        let error_rad = wrap_pi(heading_rad - nav.psi_rad);
+        let difference = heading_pct_per_rad * error_rad - turn_pct_per_rad_s * nav.yaw_rate_rad_s;
+        let difference = difference.clamp(-self.limits.difference_max_pct, self.limits.difference_max_pct);
+        let error_m_s = speed_m_s - nav.surge_m_s;
+        let asked = thrust_for(&self.loops.thrust_map, speed_m_s) + speed_pct_per_m_s * error_m_s + self.integral_pct;
+        let room = (100.0 - difference.abs()).min(self.limits.thrust_max_pct);
+        // The integral only grows while the thrust is not at its limit, and a boat at rest on purpose has none.
+        if asked.abs() < room && speed_m_s > 0.0 {
+            self.integral_pct += speed_pct_per_m_s * error_m_s * step_s / speed_integral_s;
+        }
+        (asked.clamp(-room, room), difference)
+    }
+
+    fn within_limits(&mut self, now: SimTime, step_s: f64, (thrust, difference): (f64, f64)) -> Setting {
+        let Limits { thrust_max_pct, difference_max_pct, slew_pct_s, .. } = self.limits;
+        let (_, thrust_before, difference_before) = self.last.unwrap_or((now, 0.0, 0.0));
+        // Of a setting that is the first for a while, one step of a tenth of a second may be taken.
+        let growth = slew_pct_s * if self.last.is_some() { step_s } else { 0.1 };
+        let difference_pct =
+            slewed(difference_before, difference.clamp(-difference_max_pct, difference_max_pct), growth);
+        let room = (100.0 - difference_pct.abs()).min(thrust_max_pct);
+        let thrust_pct = slewed(thrust_before, thrust, growth).clamp(-room, room);
+        self.last = Some((now, thrust_pct, difference_pct));
+        Setting::Thrust { thrust_pct, difference_pct }
+    }
+}
+
+/// `to`, or as far towards it as `growth` allows; towards zero there is no limit.
+fn slewed(from: f64, to: f64, growth: f64) -> f64 {
+    let (least, most) = (from.min(0.0) - growth, from.max(0.0) + growth);
+    to.clamp(least, most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gateway(drive: &str) -> Gateway {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/gateways");
+        let name = if drive == "speed" { "surveyor_speed.toml" } else { "surveyor.toml" };
+        game::scenario::load_gateway(&folder.join(name)).unwrap_or_else(|problems| panic!("{problems}"))
+    }
+
+    fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
+        Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
+    }
+
+    fn at(seconds: f64) -> SimTime {
+        SimTime::from_s(seconds)
+    }
+
+    #[test]
+    fn on_course_and_at_speed_the_thrust_is_that_of_the_map() {
+        let mut seat = SetPointMapper::new(&gateway("thrust"), 0.0);
+        let nav = Nav { surge_m_s: 1.5, psi_rad: 1.0, ..Nav::default() };
+        let order = Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 };
+        let settings: Vec<Setting> = (0..20).map(|i| seat.setting(at(0.1 * f64::from(i)), order, &nav)).collect();
+        assert_eq!(settings[0], Setting::Thrust { thrust_pct: 10.0, difference_pct: 0.0 }, "100 % a second");
+        assert_eq!(settings[19], Setting::Thrust { thrust_pct: 40.0, difference_pct: 0.0 });
+    }
+
+    #[test]
+    fn the_boat_turns_to_the_near_side_and_steering_comes_before_speed() {
+        for (psi_deg, heading_deg, sign) in [(350.0, 10.0, 1.0), (10.0, 350.0, -1.0), (90.0, 200.0, 1.0)] {
+            let mut seat = SetPointMapper::new(&gateway("thrust"), 0.0);
+            let nav = Nav { psi_rad: f64::to_radians(psi_deg), ..Nav::default() };
+            let mut last = Setting::ZERO;
+            for i in 0..40 {
+                last = seat.setting(at(0.1 * f64::from(i)), steer(heading_deg, 3.0), &nav);
+                let Setting::Thrust { thrust_pct, difference_pct } = last else { panic!("{last:?}") };
+                assert!(thrust_pct.abs() + difference_pct.abs() <= 100.0 + 1e-9 && thrust_pct <= 70.0, "{last:?}");
+            }
+            let Setting::Thrust { difference_pct, .. } = last else { panic!("{last:?}") };
+            assert!(difference_pct * sign >= 18.0 - 1e-9, "{psi_deg} to {heading_deg}: {last:?}");
+        }
+    }
+
+    #[test]
+    fn growth_is_limited_and_zero_comes_at_once() {
+        let mut seat = SetPointMapper::new(&gateway("thrust"), 0.0);
+        let full = Order::Thrust { port: 1.0, starboard: 1.0 };
+        let mut before = 0.0;
+        for i in 0..12 {
+            let Setting::Thrust { thrust_pct, .. } = seat.setting(at(0.05 * f64::from(i)), full, &Nav::default())
+            else {
+                panic!("thrust")
+            };
+            assert!(thrust_pct - before <= 10.0 + 1e-9, "{before} to {thrust_pct}");
+            before = thrust_pct;
+        }
+        assert!(before > 50.0);
+        assert_eq!(seat.setting(at(0.6), Order::Hold, &Nav::default()), Setting::ZERO);
+        let astern = Order::Thrust { port: -1.0, starboard: -1.0 };
+        let Setting::Thrust { thrust_pct, .. } = seat.setting(at(0.65), astern, &Nav::default()) else {
+            panic!("thrust")
+        };
+        assert!((-5.0 - 1e-9..0.0).contains(&thrust_pct), "{thrust_pct}");
+    }
+
+    #[test]
+    fn the_boats_own_loops_get_a_heading_of_its_own_compass() {
+        let east_deg: f64 = -12.5;
+        let mut seat = SetPointMapper::new(&gateway("speed"), east_deg.to_radians());
+        let Setting::Speed { heading_deg, speed_m_s } = seat.setting(at(0.0), steer(90.0, 9.0), &Nav::default()) else {
+            panic!("speed")
+        };
+        // Magnetic north is west of true: the compass shows more.
+        assert!((heading_deg - 102.5).abs() < 1e-9, "{heading_deg}");
+        assert_eq!(speed_m_s, 3.0);
+    }
+}

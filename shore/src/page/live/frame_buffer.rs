@@ -1,0 +1,112 @@
+//! The roll of frames: the newest to be shown, and some of the past for trails.
+
+use crate::page::show::{TRAIL_S, TRAIL_STEP_S, marked};
+use axum::body::Bytes;
+use game::SimTime;
+use game::message::{Frame, Stamp};
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// Over how long frames are counted.
+const METER: Duration = Duration::from_secs(1);
+
+/// The frames of a game.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FrameBuffer {
+    /// How many have come so far: the number of the newest, counted from 1.
+    pub(super) count: u64,
+    /// The stamp of the newest.
+    pub(super) stamp: Stamp,
+    /// Whether the game is over.
+    pub(super) is_over: bool,
+    /// When the newest came.
+    pub(super) came: Option<Instant>,
+    newest: Bytes,
+    past: VecDeque<(SimTime, Bytes)>,
+    counted: Option<(Instant, u64)>,
+    rate_hz: f64,
+}
+
+impl FrameBuffer {
+    /// Takes up a frame, with its CDR; whether others before it were missed.
+    pub(super) fn take(&mut self, frame: &Frame, cdr: &[u8], now: Instant) -> bool {
+        let (at, seq) = (frame.stamp.valid_ns, frame.stamp.seq);
+        let missed = self.count > 0 && seq > self.stamp.seq.saturating_add(1);
+        if at < self.stamp.valid_ns {
+            self.past.clear();
+        }
+        if self.past.back().is_none_or(|(last, _)| (at - *last).as_s() >= TRAIL_STEP_S) {
+            self.past.push_back((at, marked(2, cdr)));
+        }
+        while self.past.front().is_some_and(|(first, _)| (at - *first).as_s() > TRAIL_S) {
+            self.past.pop_front();
+        }
+        (self.stamp, self.is_over, self.newest) = (frame.stamp, frame.over, marked(1, cdr));
+        (self.count, self.came) = (self.count + 1, Some(now));
+        self.measure(now);
+        missed
+    }
+
+    /// The newest frame, with the byte that says so.
+    pub(super) fn newest(&self) -> Bytes {
+        self.newest.clone()
+    }
+
+    /// The frames of the past before it, with the byte that says so.
+    pub(super) fn past(&self) -> VecDeque<Bytes> {
+        let before = self.past.iter().filter(|(at, _)| *at < self.stamp.valid_ns);
+        before.map(|(_, bytes)| bytes.clone()).collect()
+    }
+
+    /// Frames a second, lately.
+    pub(super) fn rate_hz(&self, now: Instant) -> f64 {
+        let is_late = self.counted.is_none_or(|(since, _)| now.saturating_duration_since(since) > 2 * METER);
+        if is_late { 0.0 } else { self.rate_hz }
+    }
+
+    fn measure(&mut self, now: Instant) {
+        let (since, count) = *self.counted.get_or_insert((now, self.count));
+        let passed = now.saturating_duration_since(since);
+        if passed >= METER {
+            self.rate_hz = (self.count - count) as f64 / passed.as_secs_f64();
+            self.counted = Some((now, self.count));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::page::clock;
+
+    fn frame(seq: u64) -> Frame {
+        let stamp = Stamp { valid_ns: SimTime(100_000_000 * seq as i64), seq, version: 3 };
+        Frame { stamp, ..Frame::default() }
+    }
+
+    #[test]
+    fn the_newest_is_shown_and_a_minute_is_kept() {
+        let start = clock::now();
+        let mut roll = FrameBuffer::default();
+        for seq in 0..2000 {
+            assert!(!roll.take(&frame(seq), &seq.to_le_bytes(), start + Duration::from_millis(100) * seq as u32));
+        }
+        assert_eq!(roll.newest()[..], [&[1], &1999_u64.to_le_bytes()[..]].concat());
+        let past = roll.past();
+        assert_eq!(past.len(), 120);
+        assert_eq!(past[119][..], [&[2], &1995_u64.to_le_bytes()[..]].concat());
+        let end = start + Duration::from_millis(199_900);
+        assert!((roll.rate_hz(end) - 10.0).abs() < 0.1);
+        assert_eq!(roll.rate_hz(end + Duration::from_secs(5)), 0.0);
+    }
+
+    #[test]
+    fn a_gap_is_noticed_and_a_new_beginning_forgets_the_past() {
+        let start = clock::now();
+        let mut roll = FrameBuffer::default();
+        assert!(!roll.take(&frame(7), &[], start), "what was before the first is not missed here");
+        assert!(!roll.take(&frame(8), &[], start) && roll.take(&frame(10), &[], start));
+        assert!(!roll.take(&frame(0), &[], start));
+        assert!(roll.past().is_empty());
+    }
+}

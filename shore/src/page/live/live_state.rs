@@ -1,0 +1,229 @@
+//! The stage: what is known of the game that pages look at.
+
+use super::event_log::EventLog;
+use super::frame_buffer::FrameBuffer;
+use super::steering::Steering;
+use crate::page::chart::Chart;
+use game::external::GatewayStatus;
+use game::message::{Frame, GameInfo};
+use game::outcome::EventOutcome;
+use game::picture::{OwnBoat, Picture};
+use game::run_state::{Phase, RunState};
+use game::scenario::Source;
+use game::topic::GameName;
+use game::water::Water;
+use game::{Scenario, SimTime, VehicleId};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Without a frame for so long, a game whose sim tells nothing of its run stands.
+const STILL: Duration = Duration::from_secs(2);
+
+/// A game that is shown, and does not change.
+pub(super) struct Play {
+    /// Its name.
+    pub(super) name: GameName,
+    /// What its sim says of it.
+    pub(super) notice: GameInfo,
+    /// How it is drawn.
+    pub(super) chart: Chart,
+}
+
+/// Something with a number that rises with every new one.
+#[derive(Clone, Debug)]
+pub(super) struct Numbered<T> {
+    pub(super) number: u64,
+    pub(super) value: T,
+}
+
+/// What a helm thinks, as pages are told it.
+#[derive(Clone, Debug)]
+pub(super) struct HelmTold {
+    pub(super) light: String,
+    /// With utilities, if somebody wants them.
+    pub(super) full: Option<String>,
+}
+
+/// By vehicle what came last of something.
+type Latest<T> = BTreeMap<VehicleId, Numbered<T>>;
+
+/// What is known.
+#[derive(Default)]
+pub(super) struct LiveState {
+    /// The game; also after it has gone.
+    pub(super) play: Option<Arc<Play>>,
+    /// Counts the games.
+    pub(super) generation: u64,
+    /// Whether the game is gone.
+    pub(super) is_gone: bool,
+    /// How its run stands, if its sim says so.
+    pub(super) run: Option<RunState>,
+    /// Rises with news of the run.
+    pub(super) run_news: u64,
+    pub(super) roll: FrameBuffer,
+    pub(super) event_log: EventLog,
+    pub(super) helms: Latest<HelmTold>,
+    pub(super) estimates: Latest<(OwnBoat, SimTime)>,
+    pub(super) statuses: Latest<GatewayStatus>,
+    pub(super) wheels: Steering,
+    /// What is to be passed on to steered boats: course, rad, and speed, m/s.
+    pub(super) steering: BTreeMap<VehicleId, (f64, f64)>,
+    /// By page whose helm it looks at, and whether with utilities.
+    pub(super) selected: BTreeMap<u64, (VehicleId, bool)>,
+    /// Numbers what comes.
+    counter: u64,
+}
+
+impl Play {
+    /// A game with its chart.
+    pub(super) fn new(name: GameName, notice: GameInfo, water: &Water) -> Play {
+        let chart = Chart::new(&notice.scenario, water);
+        Play { name, notice, chart }
+    }
+
+    /// What is played.
+    pub(super) fn scenario(&self) -> &Scenario {
+        &self.notice.scenario
+    }
+
+    /// The name of a vehicle.
+    pub(super) fn name_of(&self, vehicle: VehicleId) -> &str {
+        &self.scenario().vehicles[vehicle.index()].name
+    }
+
+    /// Whether the sim waits for minds, rather than going by the clock.
+    pub(super) fn is_lockstep(&self) -> bool {
+        self.notice.pace == "lockstep"
+    }
+
+    /// Whether there are real boats.
+    pub(super) fn has_real_boats(&self) -> bool {
+        self.scenario().vehicles.iter().any(|vehicle| vehicle.source == Source::External)
+    }
+}
+
+impl LiveState {
+    /// Another game is on. What pages had selected was of the one before.
+    pub(super) fn begin(&mut self, play: Arc<Play>) {
+        *self = LiveState {
+            play: Some(play),
+            generation: self.generation + 1,
+            run_news: self.run_news + 1,
+            event_log: EventLog::new(),
+            counter: self.counter,
+            ..LiveState::default()
+        };
+    }
+
+    /// The game that is on, for something to be done in it.
+    pub(super) fn on(&self) -> Result<Arc<Play>, String> {
+        let play = self.play.clone().filter(|_| !self.is_gone);
+        play.ok_or_else(|| "there is no game now".to_owned())
+    }
+
+    /// The game is gone.
+    pub(super) fn end(&mut self) {
+        (self.is_gone, self.run_news) = (true, self.run_news + 1);
+        self.wheels = Steering::default();
+        self.steering.clear();
+    }
+
+    /// A frame, with its CDR.
+    pub(super) fn take_frame(&mut self, frame: &Frame, cdr: &[u8], now: Instant) {
+        let Some(play) = self.play.clone() else { return };
+        if !is_of(frame, play.scenario()) {
+            return;
+        }
+        if self.roll.take(frame, cdr, now) {
+            self.event_log.miss();
+        }
+        for event in frame.logged(play.scenario()) {
+            self.event_log.add(EventOutcome::new(play.scenario(), &event));
+        }
+    }
+
+    /// How the run stands.
+    pub(super) fn take_run(&mut self, run: RunState) {
+        let gist = |run: &RunState| {
+            let recording = run.recording.as_ref().map(|recording| (recording.file.clone(), recording.failed.clone()));
+            (run.phase, run.speed, run.minds.clone(), run.gateways.clone(), recording)
+        };
+        let is_news = self.run.as_ref().is_none_or(|before| gist(before) != gist(&run));
+        self.run_news += u64::from(is_news);
+        self.run = Some(run);
+    }
+
+    /// A team's picture.
+    pub(super) fn take_picture(&mut self, picture: &Picture) {
+        let selected: Vec<VehicleId> = self.selected.values().map(|(vehicle, _)| *vehicle).collect();
+        for boat in picture.own.iter().filter(|boat| selected.contains(&boat.vehicle)) {
+            self.counter += 1;
+            let value = (*boat, picture.stamp.valid_ns);
+            self.estimates.insert(boat.vehicle, Numbered { number: self.counter, value });
+        }
+    }
+
+    /// A real boat's gateway tells of itself.
+    pub(super) fn take_status(&mut self, vehicle: VehicleId, status: GatewayStatus) {
+        self.counter += 1;
+        self.statuses.insert(vehicle, Numbered { number: self.counter, value: status });
+    }
+
+    /// What a helm thinks.
+    pub(super) fn take_helm(&mut self, vehicle: VehicleId, told: HelmTold) {
+        self.counter += 1;
+        self.helms.insert(vehicle, Numbered { number: self.counter, value: told });
+    }
+
+    /// A page wants to look at a boat's helm, with utilities or without.
+    pub(super) fn select(&mut self, page: u64, wish: Option<&(String, bool)>) -> Result<(), String> {
+        let (Some((name, functions)), Some(play)) = (wish, &self.play) else { return Ok(()) };
+        let vehicle = play.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+        self.selected.insert(page, (vehicle, *functions));
+        Ok(())
+    }
+
+    /// Whose helm somebody looks at, and whether anybody wants utilities with it.
+    pub(super) fn wanted(&self) -> BTreeMap<VehicleId, bool> {
+        let mut wanted = BTreeMap::new();
+        for (vehicle, functions) in self.selected.values() {
+            *wanted.entry(*vehicle).or_insert(false) |= functions;
+        }
+        wanted
+    }
+
+    /// Forgets what nobody looks at any more: it would be old when somebody does.
+    pub(super) fn forget_unwanted(&mut self) {
+        let wanted = self.wanted();
+        self.helms.retain(|vehicle, _| wanted.contains_key(vehicle));
+        self.estimates.retain(|vehicle, _| wanted.contains_key(vehicle));
+    }
+
+    /// What the run is about, in the protocol's word.
+    pub(super) fn phase(&self, now: Instant) -> &'static str {
+        let still = self.roll.came.is_none_or(|came| now.saturating_duration_since(came) > STILL);
+        match (&self.run, self.is_gone) {
+            (_, true) => "gone",
+            (Some(run), _) => match run.phase {
+                Phase::Waiting => "waiting",
+                Phase::Playing => "playing",
+                Phase::Paused => "paused",
+                Phase::Over => "over",
+            },
+            // An older sim says nothing of its run.
+            (None, _) if self.roll.is_over => "over",
+            (None, _) if self.roll.count == 0 => "waiting",
+            (None, _) if still => "paused",
+            (None, _) => "playing",
+        }
+    }
+}
+
+/// Whether a frame is of a time in the game, and about its boats, flags and teams.
+fn is_of(frame: &Frame, scenario: &Scenario) -> bool {
+    (SimTime::ZERO..SimTime::NEVER).contains(&frame.stamp.valid_ns)
+        && frame.vehicles.len() == scenario.vehicles.len()
+        && frame.flags.len() == scenario.field.flags.len()
+        && frame.score.len() == scenario.teams.len()
+}

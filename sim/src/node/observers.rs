@@ -1,0 +1,59 @@
+//! What observers ask a sim for, and what is heard for them only.
+
+use crate::contest::Contest;
+use crate::sea::WaveField;
+use game::external::{GatewayStatus, LinkBytes};
+use game::message::{Message, PolicyProposal, Say};
+use game::outcome::EventOutcome;
+use game::water::Water;
+use game::{Scenario, codec};
+use serde::de::DeserializeOwned;
+
+/// The waves of a game.
+#[must_use]
+pub fn water(contest: &Contest) -> Water {
+    Water { waves: contest.world().sea().waves().map(WaveField::plane_waves).unwrap_or_default() }
+}
+
+/// The waves, as JSON.
+pub(super) fn water_json(contest: &Contest) -> Vec<u8> {
+    serde_json::to_vec(&water(contest)).expect("waves are JSON")
+}
+
+/// Everything that has happened so far, as JSON.
+pub(super) fn story(contest: &Contest) -> Vec<u8> {
+    let scenario = contest.scenario();
+    let events = contest.events().iter().map(|logged| EventOutcome::new(scenario, logged));
+    serde_json::to_vec(&events.collect::<Vec<_>>()).expect("events are JSON")
+}
+
+/// A topic that is heard only to be written down.
+pub(super) struct RecordedTopic {
+    pub(super) topic: String,
+    /// For CDR; none for JSON.
+    pub(super) schema: Option<&'static str>,
+    /// Whether these bytes are what they should be: whoever reads the recording must not stumble.
+    pub(super) is_sound: fn(&[u8]) -> bool,
+}
+
+impl RecordedTopic {
+    fn cdr<M: Message + DeserializeOwned>(topic: String) -> RecordedTopic {
+        RecordedTopic { topic, schema: Some(M::SCHEMA), is_sound: |bytes| codec::decode::<M>(bytes).is_ok() }
+    }
+
+    fn status(vehicle: &str) -> RecordedTopic {
+        let is_sound = |bytes: &[u8]| serde_json::from_slice::<GatewayStatus>(bytes).is_ok();
+        RecordedTopic { topic: format!("status/{vehicle}"), schema: None, is_sound }
+    }
+}
+
+/// Words, proposals, and what gateways tell.
+pub(super) fn recorded_topics(scenario: &Scenario) -> Vec<RecordedTopic> {
+    let boats = scenario.vehicles.iter().map(|vehicle| &vehicle.name);
+    let real = || scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()].name);
+    let says = scenario.teams.iter().map(|team| RecordedTopic::cdr::<Say>(format!("say/{}", team.name)));
+    let proposals = boats.map(|name| RecordedTopic::cdr::<PolicyProposal>(format!("policy/{name}")));
+    let links = real().map(|name| RecordedTopic::cdr::<LinkBytes>(format!("link/{name}")));
+    let statuses = real().map(|name| RecordedTopic::status(name));
+    says.chain(proposals).chain(links).chain(statuses).collect()
+}
