@@ -229,10 +229,7 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
 
 /// Whether two hulls, as the rectangles round them, overlap: no side of either separates them.
 fn overlap(one: (Pose, (f64, f64)), other: (Pose, (f64, f64))) -> bool {
-    let axes = |pose: Pose| {
-        let (sin, cos) = game::math::sin_cos(pose.psi_rad);
-        [Ned { north: cos, east: sin }, Ned { north: -sin, east: cos }]
-    };
+    let axes = |pose: Pose| [pose.rotation().ahead(), pose.rotation().starboard()];
     let line = other.0.at - one.0.at;
     let half = |(pose, (length_m, beam_m)): (Pose, (f64, f64)), axis: Ned| {
         let [ahead, starboard] = axes(pose);

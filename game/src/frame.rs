@@ -1,4 +1,4 @@
-//! The two frames a boat lives in: the field's north-east-down, and its own body.
+//! The two frames a boat lives in, the field's north-east-down and its own body, with the rotation between them.
 //!
 //! Inside Squall positions are NED: `north_m` and `east_m` from the datum, headings in radians
 //! clockwise from north. Files, the terminal and Python use x east, y north and compass degrees.
@@ -33,6 +33,17 @@ pub struct Pose {
     pub psi_rad: f64,
 }
 
+/// A heading as its sine and cosine: the rotation between a boat's own frame and the field's.
+///
+/// Worked out once a tick and boat; what turns vectors then needs no sine or cosine of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation {
+    /// Sine of the heading.
+    pub sin: f64,
+    /// Cosine of the heading.
+    pub cos: f64,
+}
+
 /// A geographic position, WGS 84.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LatLon {
@@ -52,8 +63,7 @@ impl Ned {
     /// The unit vector along a compass bearing in degrees, exact at quarter turns.
     #[must_use]
     pub fn toward_deg(bearing_deg: f64) -> Ned {
-        let (sin, cos) = math::sin_cos_deg(bearing_deg);
-        Ned { north: cos, east: sin }
+        Rotation::from_heading_deg(bearing_deg).ahead()
     }
 
     /// This vector times `factor`.
@@ -123,21 +133,74 @@ impl std::ops::Sub for Ned {
     }
 }
 
+impl Rotation {
+    /// Of a boat that points north: both frames are parallel.
+    pub const NORTH: Rotation = Rotation { sin: 0.0, cos: 1.0 };
+
+    /// Of a heading, radians clockwise from north.
+    #[inline]
+    #[must_use]
+    pub fn from_heading(psi_rad: f64) -> Rotation {
+        let (sin, cos) = math::sin_cos(psi_rad);
+        Rotation { sin, cos }
+    }
+
+    /// Of a compass heading in degrees, exact at quarter turns.
+    #[must_use]
+    pub fn from_heading_deg(heading_deg: f64) -> Rotation {
+        let (sin, cos) = math::sin_cos_deg(heading_deg);
+        Rotation { sin, cos }
+    }
+
+    /// Of the heading that lies `by` further clockwise.
+    #[inline]
+    #[must_use]
+    pub fn turned(self, by: Rotation) -> Rotation {
+        Rotation { sin: self.sin * by.cos + self.cos * by.sin, cos: self.cos * by.cos - self.sin * by.sin }
+    }
+
+    /// The unit vector ahead.
+    #[inline]
+    #[must_use]
+    pub fn ahead(self) -> Ned {
+        Ned { north: self.cos, east: self.sin }
+    }
+
+    /// The unit vector to starboard.
+    #[inline]
+    #[must_use]
+    pub fn starboard(self) -> Ned {
+        Ned { north: -self.sin, east: self.cos }
+    }
+}
+
+impl Pose {
+    /// The rotation of its heading.
+    #[inline]
+    #[must_use]
+    pub fn rotation(self) -> Rotation {
+        Rotation::from_heading(self.psi_rad)
+    }
+}
+
 /// A body vector seen in the field's frame.
 #[inline]
 #[must_use]
-pub fn ned_from_body((sin_psi, cos_psi): (f64, f64), body: Body) -> Ned {
+pub fn ned_from_body(rotation: Rotation, body: Body) -> Ned {
     Ned {
-        north: cos_psi * body.ahead - sin_psi * body.starboard,
-        east: sin_psi * body.ahead + cos_psi * body.starboard,
+        north: rotation.cos * body.ahead - rotation.sin * body.starboard,
+        east: rotation.sin * body.ahead + rotation.cos * body.starboard,
     }
 }
 
 /// A vector of the field's frame seen from the boat.
 #[inline]
 #[must_use]
-pub fn body_from_ned((sin_psi, cos_psi): (f64, f64), ned: Ned) -> Body {
-    Body { ahead: cos_psi * ned.north + sin_psi * ned.east, starboard: -sin_psi * ned.north + cos_psi * ned.east }
+pub fn body_from_ned(rotation: Rotation, ned: Ned) -> Body {
+    Body {
+        ahead: rotation.cos * ned.north + rotation.sin * ned.east,
+        starboard: -rotation.sin * ned.north + rotation.cos * ned.east,
+    }
 }
 
 #[cfg(test)]
@@ -146,7 +209,7 @@ mod tests {
 
     #[test]
     fn ahead_of_a_boat_that_points_east_is_east() {
-        let turn = math::sin_cos_deg(90.0);
+        let turn = Rotation::from_heading_deg(90.0);
         let ned = ned_from_body(turn, Body { ahead: 2.0, starboard: 1.0 });
         assert_eq!(ned, Ned { north: -1.0, east: 2.0 });
         assert_eq!(body_from_ned(turn, ned), Body { ahead: 2.0, starboard: 1.0 });

@@ -2,7 +2,7 @@
 //!
 //! A mind decides from this and nothing else. It is the same on the sea and in simulation.
 
-use crate::frame::{Ned, Pose};
+use crate::frame::{Body, Ned, Pose, ned_from_body};
 use crate::id::{FlagId, TeamId, VehicleId};
 use crate::message::{EventRecord, Stamp};
 use crate::time::SimTime;
@@ -57,6 +57,12 @@ impl Nav {
     #[must_use]
     pub fn pose(&self) -> Pose {
         Pose { at: self.at(), psi_rad: self.psi_rad }
+    }
+
+    /// Velocity over the ground, m/s.
+    #[must_use]
+    pub fn velocity_m_s(&self) -> Ned {
+        ned_from_body(self.pose().rotation(), Body { ahead: self.surge_m_s, starboard: self.sway_m_s })
     }
 }
 

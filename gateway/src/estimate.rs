@@ -7,11 +7,11 @@
 use crate::geodesy::LocalFrame;
 use crate::nmea::{Attitude, Gga, M_S_PER_KN, Rmc, Sentence, TimeOfDay, Vtg};
 use crate::supervisor::NavFault;
+use game::SimTime;
 use game::angle::{rad_from_compass_deg, wrap_pi};
-use game::frame::{Body, LatLon, Ned, body_from_ned};
+use game::frame::{Body, LatLon, Ned, Rotation, body_from_ned};
 use game::gateway::{CompassFrame, NavWatch};
 use game::picture::Nav;
-use game::{SimTime, math};
 
 /// After a jump the position must be consistent for this long before it is believed again, s.
 const JUMP_MEMORY_S: f64 = 2.0;
@@ -109,7 +109,7 @@ impl Estimator {
     pub fn nav(&self, now: SimTime) -> Option<(Nav, f64)> {
         let (fix, (_, psi_rad, yaw_rate_rad_s)) = (self.known.fix?, self.known.heading?);
         let velocity = self.velocity_m_s();
-        let body: Body = body_from_ned(math::sin_cos(psi_rad), velocity);
+        let body: Body = body_from_ned(Rotation::from_heading(psi_rad), velocity);
         let nav = Nav {
             north_m: fix.place.north,
             east_m: fix.place.east,

@@ -1,9 +1,9 @@
 //! Where a boat must not be: outside of the fence, unable to stop before it, or with another boat before its bow.
 
+use game::SimTime;
 use game::field::{Field, distance_to_outline, is_within};
-use game::frame::{Ned, body_from_ned};
+use game::frame::{Ned, Rotation, body_from_ned};
 use game::gateway::{Geofence, Halt};
-use game::{SimTime, math};
 
 /// The fence round a field.
 #[derive(Clone, Debug)]
@@ -67,10 +67,10 @@ impl BowWatch {
         if self.rules.ahead_m <= 0.0 {
             return false;
         }
-        let turn = math::sin_cos(psi_rad);
+        let rotation = Rotation::from_heading(psi_rad);
         let ahead_m = (self.rules.ahead_m * 0.5 * speed_m_s).max(2.0 * self.half_length_m);
         let is_in = |other: &Ned| {
-            let seen = body_from_ned(turn, *other - at);
+            let seen = body_from_ned(rotation, *other - at);
             (-self.half_length_m..=ahead_m).contains(&seen.ahead) && seen.starboard.abs() <= 0.5 * self.rules.width_m
         };
         if others.iter().any(is_in) {

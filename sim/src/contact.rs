@@ -11,7 +11,7 @@
 use crate::hull::{HullModel, Planar};
 use game::angle::wrap_pi;
 use game::field::{Field, Obstacle, Walls};
-use game::frame::{self, Ned};
+use game::frame::{self, Ned, Rotation};
 use game::math;
 use game::near::Pair;
 use rapier2d_f64::parry::query;
@@ -68,10 +68,10 @@ pub struct Passage {
     pub from: game::Pose,
     /// Where it is at the end.
     pub to: game::Pose,
-    /// Sine and cosine of the heading at the beginning.
-    pub turn: (f64, f64),
-    /// Sine and cosine of the heading at the end.
-    pub turn_to: (f64, f64),
+    /// The rotation of the heading at the beginning.
+    pub rotation: Rotation,
+    /// The rotation of the heading at the end.
+    pub rotation_to: Rotation,
     /// What contact does to it.
     pub footing: Footing,
     /// What contact added to the velocity, in body axes.
@@ -220,7 +220,7 @@ impl ContactModel {
 
 impl Passage {
     fn start(&self) -> Pose {
-        pose(self.from.at, self.turn)
+        pose(self.from.at, self.rotation)
     }
 }
 
@@ -237,15 +237,15 @@ fn vector(ned: Ned) -> Vector {
     Vector::new(ned.north, ned.east)
 }
 
-fn pose(at: Ned, (sin, cos): (f64, f64)) -> Pose {
-    Pose::from_parts(vector(at), Rot2 { re: cos, im: sin })
+fn pose(at: Ned, rotation: Rotation) -> Pose {
+    Pose::from_parts(vector(at), Rot2 { re: rotation.cos, im: rotation.sin })
 }
 
 fn fixed_obstacle(obstacle: &Obstacle) -> Fixed {
     match obstacle {
         Obstacle::Circle { centre, radius_m } => Fixed {
             shape: SharedShape::ball(*radius_m),
-            pose: pose(*centre, (0.0, 1.0)),
+            pose: pose(*centre, Rotation::NORTH),
             bounds: Bounds::Circle(*centre, *radius_m),
         },
         Obstacle::Polygon { corners } => {
@@ -270,7 +270,7 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     let middle = from + (to - from).scaled(0.5);
     Fixed {
         shape: SharedShape::cuboid(half_thickness_m, 0.5 * from.distance(to) + WALL_M),
-        pose: pose(middle - inward.scaled(half_thickness_m), (inward.east, inward.north)),
+        pose: pose(middle - inward.scaled(half_thickness_m), Rotation { sin: inward.east, cos: inward.north }),
         bounds: Bounds::Behind(from, inward),
     }
 }
@@ -287,7 +287,7 @@ fn enter(
     let moved = passage.to.at - passage.from.at;
     let velocity = vector(moved) / dt_s;
     let spin_rad_s = wrap_pi(passage.to.psi_rad - passage.from.psi_rad) / dt_s;
-    let normal = frame::body_from_ned(passage.turn, Ned { north: touch.normal.x, east: touch.normal.y });
+    let normal = frame::body_from_ned(passage.rotation, Ned { north: touch.normal.x, east: touch.normal.y });
     let mass_kg = model.mass_along_kg(normal.ahead, normal.starboard);
     let body = match passage.footing {
         Footing::Loose => RigidBodyBuilder::dynamic(),
@@ -322,9 +322,9 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, passage: &mut P
     passage.to.at = Ned { north: at.x, east: at.y };
     passage.to.psi_rad = math::atan2(rotation.im, rotation.re);
     // Not rapier's own sine and cosine: a snapshot has only the angle.
-    passage.turn_to = math::sin_cos(passage.to.psi_rad);
+    passage.rotation_to = passage.to.rotation();
     let push = (body.linvel() - entry.velocity) * entry.mass_kg;
-    let push = frame::body_from_ned(passage.turn, Ned { north: push.x, east: push.y });
+    let push = frame::body_from_ned(passage.rotation, Ned { north: push.x, east: push.y });
     let twist = (body.angvel() - entry.spin_rad_s) * model.yaw_inertia_kg_m2();
     passage.kick = model.kick(Planar { surge: push.ahead, sway: push.starboard, yaw: twist });
 }

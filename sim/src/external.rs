@@ -5,7 +5,7 @@
 
 use crate::hull::Planar;
 use game::angle::wrap_pi;
-use game::frame::{self, Body};
+use game::frame::Rotation;
 use game::picture::{Nav, OwnBoat};
 use game::{Event, Pose, SimTime, VehicleId, math};
 use serde::Serialize;
@@ -113,8 +113,7 @@ pub(crate) fn carried_on(from: Pose, nu: Planar, span_s: f64) -> Pose {
     } else {
         math::sin_cos(half_turn_rad).0 / half_turn_rad
     };
-    let middle = math::sin_cos(from.psi_rad + half_turn_rad);
-    let velocity = frame::ned_from_body(middle, Body { ahead: nu.surge, starboard: nu.sway });
+    let velocity = nu.in_ned(Rotation::from_heading(from.psi_rad + half_turn_rad));
     Pose { at: from.at + velocity.scaled(chord * span_s), psi_rad: wrap_pi(from.psi_rad + 2.0 * half_turn_rad) }
 }
 

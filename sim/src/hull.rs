@@ -14,6 +14,7 @@
 //! soon as it reaches the mass, and in sway it does.
 
 use game::boat::Hull;
+use game::frame::{Body, Ned, Rotation, ned_from_body};
 
 /// Surge, sway and yaw: velocities (m/s, m/s, rad/s), accelerations, or forces (N, N, N m).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -36,6 +37,13 @@ impl Planar {
             sway: self.sway + step * rate.sway,
             yaw: self.yaw + step * rate.yaw,
         }
+    }
+
+    /// The velocity of surge and sway in the field's frame, for a boat with this rotation.
+    #[inline]
+    #[must_use]
+    pub fn in_ned(self, rotation: Rotation) -> Ned {
+        ned_from_body(rotation, Body { ahead: self.surge, starboard: self.sway })
     }
 }
 

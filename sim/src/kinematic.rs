@@ -16,7 +16,7 @@
 
 use crate::ramp::Ramp;
 use game::boat::{Kinematic, Pid};
-use game::{Ned, math};
+use game::{Ned, Rotation, math};
 use serde::{Deserialize, Serialize};
 
 /// Less thrust than this, per cent, is none.
@@ -256,9 +256,8 @@ fn wrap_180(angle_deg: f64) -> f64 {
 
 /// The unit vector half-way between two headings.
 fn circular_mean(a_deg: f64, b_deg: f64) -> Ned {
-    let ((sin_a, cos_a), (sin_b, cos_b)) = (math::sin_cos(a_deg.to_radians()), math::sin_cos(b_deg.to_radians()));
-    let (sin, cos) = math::sin_cos(math::atan2(sin_a + sin_b, cos_a + cos_b));
-    Ned { north: cos, east: sin }
+    let [a, b] = [a_deg, b_deg].map(|deg: f64| Rotation::from_heading(deg.to_radians()));
+    Rotation::from_heading(math::atan2(a.sin + b.sin, a.cos + b.cos)).ahead()
 }
 
 #[cfg(test)]

@@ -13,10 +13,10 @@ use crate::state::BoatState;
 use crate::thruster::ThrusterModel;
 use game::angle::wrap_pi;
 use game::boat::{self, Sensors};
-use game::frame::{self, Body, Ned};
+use game::frame::{self, Ned, Rotation};
 use game::rules::{Directive, Referee, Standing};
 use game::scenario::Source;
-use game::{Order, Pose, Scenario, SimTime, VehicleId, math};
+use game::{Order, Pose, Scenario, SimTime, VehicleId};
 use xxhash_rust::xxh3;
 
 /// A game's constants.
@@ -168,7 +168,7 @@ impl Model {
         vehicle: usize,
         boat: &mut BoatState,
         flaws: &mut FlawState,
-        (turn, heading_error_rad): ((f64, f64), f64),
+        (rotation, heading_error_rad): (Rotation, f64),
         order: (Order, f64),
         sea: &SeaNow<'_>,
     ) -> (Effort, Ned) {
@@ -181,12 +181,12 @@ impl Model {
         }
         let hull = &self.hulls[kind];
         let settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), order);
-        let felt = sea.feel(kind, hull, boat.pose, turn, boat.nu);
+        let felt = sea.feel(kind, hull, boat.pose, rotation, boat.nu);
         let still_m = thruster.ventilation().map_or(0.0, |ventilation| ventilation.depth_m);
         let water_above_m = felt.cover_m.map(|cover_m| still_m + cover_m);
         let thrust = thruster.drive([&mut boat.port, &mut boat.starboard], flaws, settings, water_above_m);
         let effort = Effort {
-            nu_r: through_water(boat.nu, turn, felt.current_m_s, -1.0),
+            nu_r: through_water(boat.nu, rotation, felt.current_m_s, -1.0),
             tau: thrust.map(|thrust| thrust.plus(1.0, felt.force)),
             water: felt.water,
             water_rate: felt.water_rate,
@@ -200,25 +200,25 @@ impl Model {
         &self,
         vehicle: usize,
         boat: &BoatState,
-        turn: (f64, f64),
+        rotation: Rotation,
         effort: &Effort,
         motion: &Motion,
         current_m_s: Ned,
     ) -> (Passage, Planar) {
         let from = boat.pose;
-        let still = self.still(vehicle, boat, turn);
+        let still = self.still(vehicle, boat, rotation);
         if boat.quarantined {
             return (still, Planar::default());
         }
         let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
-        let half_turn = turned(turn, motion.turn_half_rad);
-        let end_turn = math::sin_cos(psi_rad);
-        let start = over_ground(turn, effort.nu_r);
-        let middle = over_ground(half_turn, motion.nu_r_half);
-        let end = over_ground(end_turn, motion.nu_r);
+        let rotation_half = rotation.turned(small_rotation(motion.turn_half_rad));
+        let rotation_to = Rotation::from_heading(psi_rad);
+        let start = effort.nu_r.in_ned(rotation);
+        let middle = motion.nu_r_half.in_ned(rotation_half);
+        let end = motion.nu_r.in_ned(rotation_to);
         let mean_m_s = (start + middle.scaled(4.0) + end).scaled(1.0 / 6.0) + current_m_s;
         let to = Pose { at: from.at + mean_m_s.scaled(self.dt_s), psi_rad };
-        (Passage { to, turn_to: end_turn, ..still }, through_water(motion.nu_r, end_turn, current_m_s, 1.0))
+        (Passage { to, rotation_to, ..still }, through_water(motion.nu_r, rotation_to, current_m_s, 1.0))
     }
 
     /// A point boat's passage over a tick, and its velocity over the ground after it.
@@ -238,21 +238,21 @@ impl Model {
             Order::Hold => Command::Hold,
         };
         let motion = point.step(state, command, drift_m_s, self.dt_s);
-        let turn_to = math::sin_cos(motion.psi_rad);
+        let rotation_to = Rotation::from_heading(motion.psi_rad);
         let to = Pose { at: boat.pose.at + motion.travel_m, psi_rad: motion.psi_rad };
         let nu = Planar { surge: motion.speed_m_s, sway: 0.0, yaw: motion.turn_rad / self.dt_s };
-        let still = self.still(vehicle, boat, math::sin_cos(boat.pose.psi_rad));
-        (Passage { to, turn_to, ..still }, through_water(nu, turn_to, drift_m_s, 1.0))
+        let still = self.still(vehicle, boat, boat.pose.rotation());
+        (Passage { to, rotation_to, ..still }, through_water(nu, rotation_to, drift_m_s, 1.0))
     }
 
     /// A real boat's passage over a tick, as far as it is known, and its velocity over the ground: it goes on as it does.
-    pub(crate) fn carried_passage(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64)) -> (Passage, Planar) {
+    pub(crate) fn carried_passage(&self, vehicle: usize, boat: &BoatState, rotation: Rotation) -> (Passage, Planar) {
         let to = external::carried_on(boat.pose, boat.nu, self.dt_s);
-        let still = self.still(vehicle, boat, turn);
-        (Passage { to, turn_to: math::sin_cos(to.psi_rad), ..still }, boat.nu)
+        let still = self.still(vehicle, boat, rotation);
+        (Passage { to, rotation_to: to.rotation(), ..still }, boat.nu)
     }
 
-    fn still(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64)) -> Passage {
+    fn still(&self, vehicle: usize, boat: &BoatState, rotation: Rotation) -> Passage {
         let from = boat.pose;
         let kind = self.kinds[vehicle];
         let footing = match (self.external[vehicle], boat.quarantined) {
@@ -260,22 +260,22 @@ impl Model {
             (false, true) => Footing::Fast,
             (false, false) => Footing::Loose,
         };
-        Passage { kind, from, to: from, turn, turn_to: turn, footing, kick: Planar::default() }
+        Passage { kind, from, to: from, rotation, rotation_to: rotation, footing, kick: Planar::default() }
     }
 
     /// How a boat lies in the waves; a point boat knows none, and of a real boat it is not known.
-    pub(crate) fn attitude(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64), sea: &SeaNow<'_>) -> Attitude {
+    pub(crate) fn attitude(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Attitude {
         let kind = self.kinds[vehicle];
         match self.drives[kind] {
-            Drive::Thrusters(..) if !self.external[vehicle] => sea.attitude(kind, boat.pose, turn, boat.nu),
+            Drive::Thrusters(..) if !self.external[vehicle] => sea.attitude(kind, boat.pose, rotation, boat.nu),
             _ => Attitude::default(),
         }
     }
 
     /// What is true of a boat.
-    pub(crate) fn truth(&self, vehicle: usize, boat: &BoatState, turn: (f64, f64), sea: &SeaNow<'_>) -> Truth {
+    pub(crate) fn truth(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Truth {
         let kind = self.kinds[vehicle];
-        let attitude = self.attitude(vehicle, boat, turn, sea);
+        let attitude = self.attitude(vehicle, boat, rotation, sea);
         let thrust_share = match &self.drives[kind] {
             Drive::Thrusters(thruster, ..) => {
                 0.5 * (boat.port.newton.abs() + boat.starboard.newton.abs()) / thruster.newton_max
@@ -328,33 +328,26 @@ fn settings(
     }
 }
 
-/// The sine and cosine of a heading after a turn by `by_rad`. For the turn of half a tick, which is small, the series is
-/// exact to the last digits and takes a fraction of the time.
+/// The rotation by a turn of half a tick, which is small: the series is exact to the last digits and takes a fraction of
+/// the time.
 #[inline]
-fn turned((sin, cos): (f64, f64), by_rad: f64) -> (f64, f64) {
+fn small_rotation(by_rad: f64) -> Rotation {
     let square = by_rad * by_rad;
-    let (sin_by, cos_by) = if square < 0.01 {
-        (
-            by_rad * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0)))),
-            1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))),
-        )
-    } else {
-        math::sin_cos(by_rad)
-    };
-    (sin * cos_by + cos * sin_by, cos * cos_by - sin * sin_by)
+    if square >= 0.01 {
+        return Rotation::from_heading(by_rad);
+    }
+    Rotation {
+        sin: by_rad * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0)))),
+        cos: 1.0 - square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0 * (1.0 - square / 56.0))),
+    }
 }
 
 /// `nu` with the current, seen from the boat, added `sign` times: −1 takes a velocity over the ground to one
 /// through the water, 1 takes it back.
 #[inline]
-fn through_water(nu: Planar, turn: (f64, f64), current_m_s: Ned, sign: f64) -> Planar {
-    let current = frame::body_from_ned(turn, current_m_s);
+fn through_water(nu: Planar, rotation: Rotation, current_m_s: Ned, sign: f64) -> Planar {
+    let current = frame::body_from_ned(rotation, current_m_s);
     nu.plus(sign, Planar { surge: current.ahead, sway: current.starboard, yaw: 0.0 })
-}
-
-#[inline]
-fn over_ground(turn: (f64, f64), nu: Planar) -> Ned {
-    frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway })
 }
 
 #[cfg(test)]
@@ -365,8 +358,9 @@ mod tests {
     fn a_heading_turned_by_the_series_is_the_heading_turned() {
         for i in -400..=400 {
             let (psi_rad, by_rad) = (f64::from(i) * 0.0231, f64::from(i) * 0.0007);
-            let (want, got) = (math::sin_cos(psi_rad + by_rad), turned(math::sin_cos(psi_rad), by_rad));
-            assert!((want.0 - got.0).abs() < 2e-15 && (want.1 - got.1).abs() < 2e-15, "{i}: {want:?} {got:?}");
+            let want = Rotation::from_heading(psi_rad + by_rad);
+            let got = Rotation::from_heading(psi_rad).turned(small_rotation(by_rad));
+            assert!((want.sin - got.sin).abs() < 2e-15 && (want.cos - got.cos).abs() < 2e-15, "{i}: {want:?} {got:?}");
         }
     }
 }

@@ -5,10 +5,9 @@ use crate::sighting::Sightings;
 use crate::state::State;
 use crate::world::World;
 use game::event::{Event, Logged, TagCause};
-use game::frame;
 use game::message::{Frame, Message, SeaView, Stamp, VehicleTruth};
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat, Picture, number_of_flag};
-use game::{Body, Scenario, TeamId, VehicleId};
+use game::{Scenario, TeamId, VehicleId};
 
 fn stamp<M: Message>(state: &State, seq: u64) -> Stamp {
     Stamp { valid_ns: state.now, seq, version: M::VERSION }
@@ -141,8 +140,7 @@ pub(crate) fn own_boat(world: &World, i: usize) -> OwnBoat {
 /// The truth about a boat, as a node report tells it: perfect sharing, as Aquaticus does ashore.
 pub(crate) fn contact(state: &State, i: usize, team: TeamId) -> Contact {
     let (boat, standing) = (&state.boats[i], &state.standing.vehicles[i]);
-    let turn = game::math::sin_cos(boat.pose.psi_rad);
-    let velocity = frame::ned_from_body(turn, Body { ahead: boat.nu.surge, starboard: boat.nu.sway });
+    let velocity = boat.nu.in_ned(boat.pose.rotation());
     Contact {
         vehicle: VehicleId::at(i),
         team,

@@ -8,7 +8,7 @@ use crate::sea::{Attitude, SeaNow};
 use crate::sensor::{Reading, Truth};
 use crate::spawn::{self, SpawnError};
 use crate::state::{BoatState, RestoreError, State};
-use game::frame::{self, Ned};
+use game::frame::{self, Ned, Rotation};
 use game::near::{Near, Pair};
 use game::rules::{Notes, Referee};
 use game::scenario::{Problems, RealBoats};
@@ -47,8 +47,8 @@ pub enum NoStart {
 #[derive(Clone, Default)]
 struct Work {
     near: Near,
-    /// Sine and cosine of each heading.
-    turns: Vec<(f64, f64)>,
+    /// By vehicle: the rotation of its heading.
+    rotations: Vec<Rotation>,
     /// What moves each boat, and how it moves by that alone.
     efforts: Vec<Effort>,
     currents_m_s: Vec<Ned>,
@@ -193,14 +193,14 @@ impl World {
     #[must_use]
     pub fn truth(&self, vehicle: VehicleId) -> Truth {
         let i = vehicle.index();
-        self.model.truth(i, &self.state.boats[i], self.work.turns[i], &self.sea())
+        self.model.truth(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
     }
 
     /// How a vehicle lies in the waves.
     #[must_use]
     pub fn attitude(&self, vehicle: VehicleId) -> Attitude {
         let i = vehicle.index();
-        self.model.attitude(i, &self.state.boats[i], self.work.turns[i], &self.sea())
+        self.model.attitude(i, &self.state.boats[i], self.work.rotations[i], &self.sea())
     }
 
     /// Hands boats to rapier that are as far as `close_m` from anything. Slower, and the same bytes.
@@ -212,8 +212,8 @@ impl World {
 
     /// Makes what follows from the state follow from it.
     fn refresh(&mut self) {
-        self.work.turns.clear();
-        self.work.turns.extend(self.state.boats.iter().map(|boat| math::sin_cos(boat.pose.psi_rad)));
+        self.work.rotations.clear();
+        self.work.rotations.extend(self.state.boats.iter().map(|boat| boat.pose.rotation()));
         self.find_pairs();
     }
 
@@ -236,7 +236,7 @@ impl World {
         work.currents_m_s.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let order = obeyed(&state.standing, i, boat.pose.at, orders[i]);
-            let heading = (work.turns[i], model.heading_error_rad(i, &state.senses));
+            let heading = (work.rotations[i], model.heading_error_rad(i, &state.senses));
             let (effort, current_m_s) = model.effort(i, boat, &mut state.flaws[i], heading, order, &sea);
             work.efforts.push(effort);
             work.currents_m_s.push(current_m_s);
@@ -246,13 +246,15 @@ impl World {
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {
             let (passage, nu) = match model.point(i) {
-                _ if model.is_external(i) => model.carried_passage(i, boat, work.turns[i]),
+                _ if model.is_external(i) => model.carried_passage(i, boat, work.rotations[i]),
                 Some((place, point)) if !boat.quarantined => {
                     let order = obeyed(&state.standing, i, boat.pose.at, orders[i]);
                     let drift_m_s = sea.current_at(boat.pose.at);
                     model.point_passage(i, boat, (point, &mut state.points[place]), order, drift_m_s)
                 }
-                _ => model.passage(i, boat, work.turns[i], &work.efforts[i], &work.motions[i], work.currents_m_s[i]),
+                _ => {
+                    model.passage(i, boat, work.rotations[i], &work.efforts[i], &work.motions[i], work.currents_m_s[i])
+                }
             };
             work.passages.push(passage);
             work.velocities.push(nu);
@@ -268,10 +270,10 @@ impl World {
             nu = nu.plus(1.0, passage.kick);
             if is_sound(passage.to, nu) {
                 boat.nu_change = nu.plus(-1.0, boat.nu);
-                (boat.pose, boat.nu, work.turns[i]) = (passage.to, nu, passage.turn_to);
+                (boat.pose, boat.nu, work.rotations[i]) = (passage.to, nu, passage.rotation_to);
                 if let (Some((place, _)), true) = (model.point(i), passage.kick != Planar::default()) {
                     // Its own speed is through the water.
-                    let drift = frame::body_from_ned(passage.turn_to, sea.current_at(passage.from.at));
+                    let drift = frame::body_from_ned(passage.rotation_to, sea.current_at(passage.from.at));
                     state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {
@@ -302,7 +304,7 @@ impl World {
             }
             let out = from_centre.scaled(1.0 / distance_m);
             boat.pose.at = centre + out.scaled(radius_m);
-            let out_in_body = frame::body_from_ned(work.turns[i], out);
+            let out_in_body = frame::body_from_ned(work.rotations[i], out);
             let inward_m_s = (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
             boat.nu.surge -= inward_m_s * out_in_body.ahead;
             boat.nu.sway -= inward_m_s * out_in_body.starboard;
@@ -322,7 +324,7 @@ impl World {
         let sea = model.sea.at_time(state.now);
         for (i, boat) in state.boats.iter().enumerate() {
             let Some((place, sensors)) = &model.sensed[i] else { continue };
-            let truth = model.truth(i, boat, work.turns[i], &sea);
+            let truth = model.truth(i, boat, work.rotations[i], &sea);
             let (memory, reading) = &mut state.senses[*place];
             *reading = sensors.read(memory, &truth, state.now);
         }

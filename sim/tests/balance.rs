@@ -6,7 +6,6 @@ mod common;
 use common::{alone, put};
 use game::angle::wrap_pi;
 use game::frame::body_from_ned;
-use game::math::sin_cos;
 use game::sea::{Gusts, Wind};
 use game::{Ned, Order, Scenario, SimTime};
 use sim::World;
@@ -93,7 +92,7 @@ impl Accounts {
 
     fn through_water(&self) -> Planar {
         let boat = self.world.state().boats[0];
-        let water = body_from_ned(sin_cos(boat.pose.psi_rad), self.scenario.sea.current.mean_m_s);
+        let water = body_from_ned(boat.pose.rotation(), self.scenario.sea.current.mean_m_s);
         Planar { surge: boat.nu.surge - water.ahead, sway: boat.nu.sway - water.starboard, yaw: boat.nu.yaw }
     }
 

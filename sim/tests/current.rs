@@ -4,7 +4,7 @@ use game::field::{Plan, Walls};
 use game::frame::LatLon;
 use game::math;
 use game::sea::{Current, Eddy, RandomEddies, Shear, Tide, Wander};
-use game::{Field, Ned, SimTime};
+use game::{Field, Ned, Rotation, SimTime};
 use sim::sea::current::CurrentField;
 use sim::sea::eddy;
 use std::f64::consts::TAU;
@@ -38,7 +38,7 @@ fn water_of_which_nothing_is_said_lies_still_to_the_bit() {
     let model = model(&Current::default(), 1);
     let now = model.at_time(SimTime::from_s(77.0));
     assert_eq!(now.at(Ned::from_xy(3.0, 4.0)), Ned::default());
-    assert_eq!(now.over_hull(Ned::from_xy(3.0, 4.0), (0.6, 0.8)), (Ned::default(), 0.0));
+    assert_eq!(now.over_hull(Ned::from_xy(3.0, 4.0), Rotation { sin: 0.6, cos: 0.8 }), (Ned::default(), 0.0));
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn a_shear_grows_across_and_turns_a_hull_that_lies_across() {
     let now = model.at_time(SimTime::ZERO);
     for (heading_deg, want_rad_s) in [(0.0, -0.004), (180.0, -0.004), (90.0, 0.0), (45.0, -0.002)] {
         let place = Ned::from_xy(5.0, -40.0);
-        let (mean, rate_rad_s) = now.over_hull(place, math::sin_cos_deg(heading_deg));
+        let (mean, rate_rad_s) = now.over_hull(place, Rotation::from_heading_deg(heading_deg));
         assert!((rate_rad_s - want_rad_s).abs() < 1e-12, "heading {heading_deg}: {rate_rad_s}");
         assert!(mean.distance(now.at(place)) < 1e-15, "{mean:?}");
     }
@@ -122,9 +122,9 @@ fn an_eddy_has_its_circulation_no_divergence_and_the_vorticity_of_a_gaussian() {
     for radius_m in [1.0, 10.0, CORE_M, 60.0, 125.0, 127.0, 500.0] {
         // Clockwise along a circle around the centre.
         let step = |i: u32| {
-            let (sin, cos) = math::sin_cos(TAU * f64::from(i) / 720.0);
-            let place = centre + Ned { north: cos, east: sin }.scaled(radius_m);
-            at(&model, place, 0.0).dot(Ned { north: -sin, east: cos }) * TAU * radius_m / 720.0
+            let bearing = Rotation::from_heading(TAU * f64::from(i) / 720.0);
+            let place = centre + bearing.ahead().scaled(radius_m);
+            at(&model, place, 0.0).dot(bearing.starboard()) * TAU * radius_m / 720.0
         };
         let got: f64 = (0..720).map(step).sum();
         let want = gamma * (1.0 - math::exp(-(radius_m / CORE_M) * (radius_m / CORE_M)));
@@ -154,19 +154,18 @@ fn an_eddy_turns_a_hull_as_the_flow_at_its_ends_says() {
     let now = model.at_time(SimTime::ZERO);
     let core_rad_s = PEAK_M_S / 0.638_173 / CORE_M;
     for heading_deg in [0.0, 33.0, 90.0, 211.0] {
-        let (sin, cos) = math::sin_cos_deg(heading_deg);
-        let (mean, rate_rad_s) = now.over_hull(Ned::default(), (sin, cos));
+        let rotation = Rotation::from_heading_deg(heading_deg);
+        let (mean, rate_rad_s) = now.over_hull(Ned::default(), rotation);
         assert_eq!(mean, Ned::default());
         assert!(
             (rate_rad_s - core_rad_s).abs() < 1e-6 * core_rad_s,
             "in the middle it turns with the core: {rate_rad_s}"
         );
-        let (ahead, starboard) = (Ned { north: cos, east: sin }, Ned { north: -sin, east: cos });
         for (x, y) in [(1e-5, 0.0), (0.1, 0.0), (5.0, 3.0), (-22.0, 1.0), (30.0, -40.0), (300.0, 5.0)] {
             let place = Ned::from_xy(x, y);
-            let (felt, rate_rad_s) = now.over_hull(place, (sin, cos));
-            let half = ahead.scaled(0.5 * LENGTH_M);
-            let want = (now.at(place + half) - now.at(place - half)).dot(starboard) / LENGTH_M;
+            let (felt, rate_rad_s) = now.over_hull(place, rotation);
+            let half = rotation.ahead().scaled(0.5 * LENGTH_M);
+            let want = (now.at(place + half) - now.at(place - half)).dot(rotation.starboard()) / LENGTH_M;
             assert!((rate_rad_s - want).abs() < 1e-6 * core_rad_s, "({x}, {y}): {rate_rad_s}, not {want}");
             assert_eq!(felt, now.at(place));
         }

@@ -4,7 +4,7 @@ mod common;
 
 use common::shipped;
 use game::boat::Boat;
-use game::frame::{Body, Ned, Pose, ned_from_body};
+use game::frame::{Body, Ned, Pose, Rotation, ned_from_body};
 use game::sea::GRAVITY_M_S2;
 use game::sea::{Spreading, Waves};
 use sim::hull::Planar;
@@ -89,7 +89,7 @@ fn the_acceleration_at_the_surface_is_minus_g_times_its_gradient() {
         for (t, psi_rad) in [(0.0, 0.0), (4.0, FRAC_PI_2), (9.0, PI)] {
             let at = pose(20.0, -7.0, psi_rad);
             let got = hull.at(at, t).acceleration;
-            let got = ned_from_body(libm::sincos(psi_rad), Body { ahead: got.surge, starboard: got.sway });
+            let got = got.in_ned(at.rotation());
             let off = got + field.surface(at.at, t).slope.scaled(GRAVITY_M_S2);
             assert!(off.length() < 1e-4, "{depth_m:?}, {t} s: off by {off:?} m/s2");
         }
@@ -105,12 +105,12 @@ fn a_hull_feels_the_mean_and_the_first_moment_over_its_length_and_beam() {
     // Headings at which the tables have an entry: what is tested is the entry.
     for (psi_deg, t) in [(0.0, 1.0), (35.0, 2.0), (90.0, 5.0), (-145.0, 8.0)] {
         let psi_rad = f64::to_radians(psi_deg);
-        let turn = libm::sincos(psi_rad);
+        let rotation = Rotation::from_heading(psi_rad);
         let mut want = [Planar::default(); 2];
         for i in 0..n_x * n_y {
             let ahead = boat.length_m * ((f64::from(i % n_x) + 0.5) / f64::from(n_x) - 0.5);
             let starboard = boat.beam_m * ((f64::from(i / n_x) + 0.5) / f64::from(n_y) - 0.5);
-            let at = Ned { north: 11.0, east: 3.0 } + ned_from_body(turn, Body { ahead, starboard });
+            let at = Ned { north: 11.0, east: 3.0 } + ned_from_body(rotation, Body { ahead, starboard });
             let there = point.at(Pose { at, psi_rad }, t);
             for (sum, there) in want.iter_mut().zip([there.velocity, there.acceleration]) {
                 let lever = ahead / (boat.length_m * boat.length_m / 12.0);

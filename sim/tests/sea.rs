@@ -59,8 +59,8 @@ fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
     put(&mut world, 0, (200.0, 200.0, 70.0), (2.0, -0.5, 0.6));
     let relative = |world: &World| {
         let boat = world.state().boats[0];
-        let turn = game::math::sin_cos(boat.pose.psi_rad);
-        let water = game::frame::body_from_ned(turn, Ned { north: 0.3, east: 0.1 });
+        let rotation = boat.pose.rotation();
+        let water = game::frame::body_from_ned(rotation, Ned { north: 0.3, east: 0.1 });
         sim::hull::Planar { surge: boat.nu.surge - water.ahead, sway: boat.nu.sway - water.starboard, yaw: boat.nu.yaw }
     };
     let mut before = hull.energy_joule(relative(&world));

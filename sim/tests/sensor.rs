@@ -3,7 +3,7 @@
 mod common;
 
 use game::boat::{Compass, Gps, Imu, Sensors};
-use game::frame::{Body, Pose, body_from_ned, ned_from_body};
+use game::frame::{Body, Pose, Rotation, body_from_ned, ned_from_body};
 use game::math;
 use game::sea::GRAVITY_M_S2;
 use game::{Ned, Order, SimTime, VehicleId};
@@ -55,7 +55,7 @@ fn with_imu(imu: Imu) -> Sensors {
 /// A boat that goes 2 m/s ahead and 0.5 m/s to starboard with its bow 30° east of north.
 fn sailing(now: SimTime) -> Truth {
     let psi_rad = PI / 6.0;
-    let velocity = ned_from_body(math::sin_cos(psi_rad), Body { ahead: 2.0, starboard: 0.5 });
+    let velocity = ned_from_body(Rotation::from_heading(psi_rad), Body { ahead: 2.0, starboard: 0.5 });
     Truth {
         pose: Pose { at: velocity.scaled(now.as_s()), psi_rad },
         nu: Planar { surge: 2.0, sway: 0.5, yaw: 0.0 },
@@ -228,7 +228,7 @@ fn velocity_is_noisy_over_the_ground_and_turned_with_the_heading_that_is_read() 
     };
     let (_, reading) = record(&sensors, 1, 9, sailing)[8];
     let truth = sailing(SimTime::ZERO);
-    let want = body_from_ned(math::sin_cos(truth.pose.psi_rad - TURN_RAD), truth.velocity_m_s());
+    let want = body_from_ned(Rotation::from_heading(truth.pose.psi_rad - TURN_RAD), truth.velocity_m_s());
     assert!((reading.nav.surge_m_s - want.ahead).abs() < 1e-12);
     assert!((reading.nav.sway_m_s - want.starboard).abs() < 1e-12);
     assert!((reading.nav.sway_m_s - 0.5).abs() > 0.5, "a wrong heading makes way ahead look like leeway");

@@ -7,7 +7,7 @@ use game::field::{Plan, Walls};
 use game::frame::{Body, LatLon};
 use game::math;
 use game::sea::{GustSpectrum, Gusts, Wind};
-use game::{Field, Ned, SimTime};
+use game::{Field, Ned, Rotation, SimTime};
 use sim::hull::Planar;
 use sim::sea::gust_spectrum::{FREQUENCY_MAX_HZ, FREQUENCY_MIN_HZ, shape};
 use sim::sea::wind::WindField;
@@ -268,14 +268,14 @@ fn the_wind_pushes_a_boat_away_and_its_bow_off() {
         (315.0, (-1.0, 1.0, 1.0)),
     ] {
         let blowing = Ned::toward_deg(from_deg + 180.0).scaled(10.0);
-        let past = wind_past_boat((0.0, 1.0), blowing, Planar::default());
+        let past = wind_past_boat(Rotation::NORTH, blowing, Planar::default());
         let got = force(past.ahead, past.starboard);
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         assert_eq!((sign(got.surge), sign(got.sway), sign(got.yaw)), want, "from {from_deg}: {got:?}");
     }
     // A boat that points east, makes 3 m/s ahead and 1 m/s to starboard, in a wind from the north on its port side.
     let past = wind_past_boat(
-        math::sin_cos_deg(90.0),
+        Rotation::from_heading_deg(90.0),
         Ned { north: -4.0, east: 0.0 },
         Planar { surge: 3.0, sway: 1.0, yaw: 0.7 },
     );

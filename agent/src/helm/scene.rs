@@ -4,7 +4,7 @@ use super::chart::Chart;
 use super::talk::Ears;
 use game::picture::{Contact, OwnBoat};
 use game::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
-use game::{Body, FlagId, Ned, Picture, SimTime, VehicleId, frame, math};
+use game::{FlagId, Ned, Picture, SimTime, VehicleId};
 
 /// A contact is thought to go on as it was seen for this long, s; then it slows down in thought ...
 const REMEMBERED_S: f64 = 15.0;
@@ -301,8 +301,7 @@ impl Scene {
 
 /// Velocity over the ground, m/s.
 fn velocity_of(boat: &OwnBoat) -> Ned {
-    let nav = &boat.nav;
-    frame::ned_from_body(math::sin_cos(nav.psi_rad), Body { ahead: nav.surge_m_s, starboard: nav.sway_m_s })
+    boat.nav.velocity_m_s()
 }
 
 /// Where a contact is thought to be now, and how fast: it goes on as seen, then slows down and lies still.

@@ -6,7 +6,7 @@ use super::water;
 use game::boat::{Boat, Drive};
 use game::frame::{self, Body};
 use game::sea::Sea;
-use game::{Ned, Order, Pose, Scenario, SimTime, VehicleId, math};
+use game::{Ned, Order, Pose, Rotation, Scenario, SimTime, VehicleId};
 use sim::hull::Planar;
 use sim::kinematic::{Command as PointCommand, KinematicModel, KinematicState};
 use sim::sea::SeaModel;
@@ -181,7 +181,7 @@ impl Point {
 }
 
 fn in_body(psi_rad: f64, ned: Ned) -> Body {
-    frame::body_from_ned(math::sin_cos(psi_rad), ned)
+    frame::body_from_ned(Rotation::from_heading(psi_rad), ned)
 }
 
 fn order(command: Command) -> Order {

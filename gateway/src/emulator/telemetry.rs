@@ -6,7 +6,6 @@ use crate::nmea::{
     TimeOfDay, Vtg, Zda,
 };
 use game::angle::compass_deg_from_rad;
-use game::frame::{Body, ned_from_body};
 use game::math;
 use game::picture::{Imu, Nav};
 use game::{LatLon, SimTime};
@@ -63,8 +62,7 @@ impl Told {
     fn new(boat: &Emulator, now: SimTime, seen: SimTime, nav: &Nav) -> Told {
         let (date, began) = boat.plan.began;
         let is_lost = (now - seen).as_s() > FIX_AGE_MAX_S;
-        let body = Body { ahead: nav.surge_m_s, starboard: nav.sway_m_s };
-        let velocity = ned_from_body(math::sin_cos(nav.psi_rad), body);
+        let velocity = nav.velocity_m_s();
         let speed_m_s = velocity.length();
         Told {
             date,

@@ -2,9 +2,9 @@
 
 use crate::oracle::Oracle;
 use game::external::OperatorCommand;
-use game::frame::{Ned, ned_from_body};
+use game::frame::{Ned, Rotation};
 use game::picture::{Imu, Nav, OwnBoat};
-use game::{Body, Order, SimTime, VehicleId, math};
+use game::{Order, SimTime, VehicleId};
 use gateway::bridge::{Bridge, Event, FleetCommand, Input, NavOut, Outbox, Plan};
 use gateway::emulator::{self, Emulator, Port};
 use gateway::nmea::{Date, Operator, Sentence, TimeOfDay};
@@ -229,8 +229,7 @@ impl Pool {
         boat.speed_m_s += (speed_m_s - boat.speed_m_s) * STEP_S / 2.0;
         boat.turn_rad_s += (turn_rad_s - boat.turn_rad_s) * STEP_S / 0.5;
         boat.psi_rad = game::angle::wrap_pi(boat.psi_rad + boat.turn_rad_s * STEP_S);
-        let ahead = Body { ahead: boat.speed_m_s * STEP_S, starboard: 0.0 };
-        boat.at = boat.at + ned_from_body(math::sin_cos(boat.psi_rad), ahead);
+        boat.at = boat.at + Rotation::from_heading(boat.psi_rad).ahead().scaled(boat.speed_m_s * STEP_S);
     }
 
     /// The boat's sensors read, and it tells.

@@ -2,8 +2,8 @@
 
 use super::book::{Boat, Book, Moment};
 use game::angle::wrap_pi;
-use game::frame::{Body, body_from_ned, ned_from_body};
-use game::{Ned, Order, math};
+use game::frame::{Rotation, body_from_ned};
+use game::{Ned, Order};
 use serde::{Deserialize, Serialize};
 
 /// A boat's answer to its orders. What the game gave no occasion to tell is none.
@@ -121,7 +121,7 @@ fn hold_drift(book: &Book, boat: &Boat) -> Option<[f64; 2]> {
         let holds = moment.order == Order::Hold && (moment.is_free || moment.agent_lost);
         held_s = if holds { held_s + step_s } else { 0.0 };
         if held_s > SETTLED_S {
-            sum = sum + velocity(moment);
+            sum = sum + moment.truth.velocity_m_s();
             count += 1;
         }
     }
@@ -131,16 +131,11 @@ fn hold_drift(book: &Book, boat: &Boat) -> Option<[f64; 2]> {
 fn cross_track(boat: &Boat) -> Option<f64> {
     let across = |moment: &Moment| {
         let (heading_rad, _) = moment.steered()?;
-        Some(body_from_ned(math::sin_cos(heading_rad), velocity(moment)).starboard)
+        Some(body_from_ned(Rotation::from_heading(heading_rad), moment.truth.velocity_m_s()).starboard)
     };
     let (sum, count) =
         boat.moments.iter().filter_map(across).fold((0.0, 0_u32), |(sum, count), v| (sum + v, count + 1));
     (count as usize >= MOMENTS_MIN).then(|| sum / f64::from(count))
-}
-
-fn velocity(moment: &Moment) -> Ned {
-    let nav = &moment.truth;
-    ned_from_body(math::sin_cos(nav.psi_rad), Body { ahead: nav.surge_m_s, starboard: nav.sway_m_s })
 }
 
 #[cfg(test)]
@@ -152,8 +147,8 @@ mod tests {
 
     /// Orders that go up and down, and a boat that does the same later, with this factor on its speed.
     fn late(lag_s: f64, gain: f64) -> Book {
-        let heading_rad = |time_s: f64| 3.0 + 0.8 * math::sin_cos(TAU * time_s / 40.0).0;
-        let speed_m_s = |time_s: f64| 1.5 + 0.5 * math::sin_cos(TAU * time_s / 23.0).0;
+        let heading_rad = |time_s: f64| 3.0 + 0.8 * game::math::sin_cos(TAU * time_s / 40.0).0;
+        let speed_m_s = |time_s: f64| 1.5 + 0.5 * game::math::sin_cos(TAU * time_s / 23.0).0;
         sample::book(120.0, |time_s| {
             let psi_rad = heading_rad(time_s - lag_s) + TAU;
             let surge_m_s = gain * speed_m_s(time_s - lag_s);

@@ -118,7 +118,7 @@ mod tests {
             let time_s = f64::from(k) * 0.37;
             let attitude = ride.at(pose, Ned::default(), 0.0, time_s);
             for (place, got_m) in places.into_iter().zip(cover.at(pose, time_s)) {
-                let at = pose.at + ned_from_body(game::math::sin_cos(psi_rad), place);
+                let at = pose.at + ned_from_body(pose.rotation(), place);
                 let risen_m =
                     attitude.heave_up_m + attitude.pitch_rad * place.ahead - attitude.roll_rad * place.starboard;
                 let want_m = field.surface(at, time_s).elevation_m - risen_m;

@@ -8,7 +8,7 @@ use super::markov::{Markov, STEPS_PER_LENGTH};
 use super::tape::{Process, Tape};
 use game::SimTime;
 use game::field::Field;
-use game::frame::Ned;
+use game::frame::{Ned, Rotation};
 use game::math;
 use game::sea::{Current, Shear, Tide, Wander};
 use game::stream::Noise;
@@ -106,8 +106,8 @@ impl CurrentNow<'_> {
     /// its length differs by a thousandth.
     #[inline]
     #[must_use]
-    pub fn over_hull(&self, place: Ned, (sin_psi, cos_psi): (f64, f64)) -> (Ned, f64) {
-        let (ahead, starboard) = (Ned { north: cos_psi, east: sin_psi }, Ned { north: -sin_psi, east: cos_psi });
+    pub fn over_hull(&self, place: Ned, rotation: Rotation) -> (Ned, f64) {
+        let (ahead, starboard) = (rotation.ahead(), rotation.starboard());
         let mut felt = (self.uniform_m_s, 0.0);
         if let Some(shear) = self.shear {
             let speed_m_s = shear.per_s * (place - shear.origin).dot(shear.across);

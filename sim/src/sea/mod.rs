@@ -31,7 +31,7 @@ pub use wind::WindField;
 
 use crate::hull::{HullModel, Planar};
 use game::boat::{Drive, Windage};
-use game::frame::{self, Body, Ned, Pose};
+use game::frame::{Body, Ned, Pose, Rotation};
 use game::{Boat, Scenario, SimTime};
 
 /// Propellers are this share of the length astern of midships.
@@ -193,30 +193,30 @@ impl SeaModel {
 
 impl SeaNow<'_> {
     /// What a boat of this kind, with this hull, feels in the tick that begins now. `nu` is its velocity over the ground
-    /// along its axes, `turn` the sine and cosine of its heading.
+    /// along its axes.
     #[inline]
     #[must_use]
-    pub fn feel(&self, kind: usize, hull: &HullModel, pose: Pose, turn: (f64, f64), nu: Planar) -> Felt {
+    pub fn feel(&self, kind: usize, hull: &HullModel, pose: Pose, rotation: Rotation, nu: Planar) -> Felt {
         let boat = &self.model.kinds[kind];
-        let (current_m_s, turning_rad_s) = self.current.over_hull(pose.at, turn);
+        let (current_m_s, turning_rad_s) = self.current.over_hull(pose.at, rotation);
         let mut felt =
             Felt { current_m_s, water: Planar { yaw: turning_rad_s, ..Planar::default() }, ..Felt::default() };
         if let Some(wind) = &self.model.wind {
             let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
-            let past = windage::wind_past_boat(turn, air_m_s, nu);
+            let past = windage::wind_past_boat(rotation, air_m_s, nu);
             felt.force = windage::wind_force(&boat.windage, boat.length_m, windage::AIR_DENSITY_KG_M3, past);
         }
         if self.model.waves.is_some() {
-            self.feel_waves(boat, hull, pose, turn, nu, &mut felt);
+            self.feel_waves(boat, hull, pose, rotation, nu, &mut felt);
         }
         felt
     }
 
     /// Waves are taken half-way through the tick, where the boat will be by then.
     #[inline]
-    fn feel_waves(&self, boat: &Kind, hull: &HullModel, pose: Pose, turn: (f64, f64), nu: Planar, felt: &mut Felt) {
+    fn feel_waves(&self, boat: &Kind, hull: &HullModel, pose: Pose, rotation: Rotation, nu: Planar, felt: &mut Felt) {
         let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape]);
-        let velocity_m_s = frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway });
+        let velocity_m_s = nu.in_ned(rotation);
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
         let (waves, cover_m) = match boat.cover.map(|cover| &self.model.covers[cover].1) {
             None => (shape.waves.at(middle, self.middle_s), [0.0; 2]),
@@ -257,11 +257,11 @@ impl SeaNow<'_> {
 
     /// How a boat of this kind lies in the waves now.
     #[must_use]
-    pub fn attitude(&self, kind: usize, pose: Pose, turn: (f64, f64), nu: Planar) -> Attitude {
+    pub fn attitude(&self, kind: usize, pose: Pose, rotation: Rotation, nu: Planar) -> Attitude {
         if self.model.waves.is_none() {
             return Attitude::default();
         }
-        let velocity_m_s = frame::ned_from_body(turn, Body { ahead: nu.surge, starboard: nu.sway });
+        let velocity_m_s = nu.in_ned(rotation);
         self.model.shapes[self.model.kinds[kind].shape].ride.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
     }
 }

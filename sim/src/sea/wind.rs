@@ -12,8 +12,7 @@ use super::markov::{Markov, STEPS_PER_LENGTH};
 use super::tape::{Process, Tape};
 use game::SimTime;
 use game::field::Field;
-use game::frame::Ned;
-use game::math;
+use game::frame::{Ned, Rotation};
 use game::sea::{Gusts, Wind};
 use game::stream::{Noise, Stream};
 
@@ -53,9 +52,8 @@ impl WindField {
     /// of the boats' own windage, as a rule.
     #[must_use]
     pub fn new(wind: &Wind, reference_height_m: f64, field: &Field, seed: u64) -> WindField {
-        let (sin, cos) = math::sin_cos(wind.from_rad);
-        let downwind = Ned { north: -cos, east: -sin };
-        let across = Ned { north: sin, east: -cos };
+        let upwind = Rotation::from_heading(wind.from_rad);
+        let (downwind, across) = (upwind.ahead().scaled(-1.0), upwind.starboard().scaled(-1.0));
         let mut made = WindField {
             downwind,
             across,

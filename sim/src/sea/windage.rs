@@ -14,7 +14,7 @@
 
 use crate::hull::Planar;
 use game::boat::Windage;
-use game::frame::{Body, Ned, body_from_ned};
+use game::frame::{Body, Ned, Rotation, body_from_ned};
 
 /// Density of air at 15 °C and sea level, kg/m³.
 pub const AIR_DENSITY_KG_M3: f64 = 1.225;
@@ -22,8 +22,8 @@ pub const AIR_DENSITY_KG_M3: f64 = 1.225;
 /// The air's velocity past a boat in the boat's own axes, m/s, in a wind over the ground.
 #[inline]
 #[must_use]
-pub fn wind_past_boat(sin_cos_psi: (f64, f64), wind_m_s: Ned, nu: Planar) -> Body {
-    let wind = body_from_ned(sin_cos_psi, wind_m_s);
+pub fn wind_past_boat(rotation: Rotation, wind_m_s: Ned, nu: Planar) -> Body {
+    let wind = body_from_ned(rotation, wind_m_s);
     Body { ahead: wind.ahead - nu.surge, starboard: wind.starboard - nu.sway }
 }
 

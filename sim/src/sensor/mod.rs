@@ -12,7 +12,7 @@ pub mod imu;
 use crate::hull::Planar;
 use compass::{CompassModel, CompassState};
 use game::boat::Sensors;
-use game::frame::{Ned, Pose, body_from_ned, ned_from_body};
+use game::frame::{Ned, Pose, Rotation, body_from_ned};
 use game::math;
 use game::picture::Nav;
 use game::{SimTime, frame::Body};
@@ -47,7 +47,7 @@ impl Truth {
     /// Velocity over the ground, m/s.
     #[must_use]
     pub fn velocity_m_s(&self) -> Ned {
-        ned_from_body(math::sin_cos(self.pose.psi_rad), Body { ahead: self.nu.surge, starboard: self.nu.sway })
+        self.nu.in_ned(self.pose.rotation())
     }
 }
 
@@ -113,7 +113,7 @@ impl SensorModel {
             None => (truth.pose.at, Body { ahead: truth.nu.surge, starboard: truth.nu.sway }, now),
             Some(gps) => {
                 let fix = gps.read(&mut state.gps, truth, now);
-                (fix.position, body_from_ned(math::sin_cos(psi_rad), fix.velocity_m_s), fix.at)
+                (fix.position, body_from_ned(Rotation::from_heading(psi_rad), fix.velocity_m_s), fix.at)
             }
         };
         let yaw_rate_rad_s = if self.imu.is_some() { imu.gyro_rad_s[2] } else { truth.nu.yaw };

@@ -93,8 +93,7 @@ pub(crate) fn energy_joule(world: &World, hulls: &[HullModel]) -> f64 {
 pub(crate) fn capsule(world: &World, scenario: &Scenario, vehicle: usize) -> ((Ned, Ned), f64) {
     let kind = &scenario.boats[scenario.vehicles[vehicle].boat];
     let pose = world.state().boats[vehicle].pose;
-    let (sin, cos) = game::math::sin_cos(pose.psi_rad);
-    let half = Ned { north: cos, east: sin }.scaled(0.5 * (kind.length_m - kind.beam_m));
+    let half = pose.rotation().ahead().scaled(0.5 * (kind.length_m - kind.beam_m));
     ((pose.at - half, pose.at + half), 0.5 * kind.beam_m)
 }
 
