@@ -2,7 +2,7 @@
 
 use crate::net_args::LeafArgs;
 use crate::observer::Observer;
-use crate::rose_plot::{self, Rose};
+use crate::plot::rose::{self, Rose};
 use crate::{helm_page, screen};
 use anyhow::{Context, Result, bail};
 use game::Scenario;
@@ -58,10 +58,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         );
         let roses = roses(&report);
         if let Some(path) = &args.png {
-            rose_plot::write_png(path, &title, &roses)?;
+            rose::write_png(path, &title, &roses)?;
         }
         if let Some(path) = &args.svg {
-            rose_plot::write_svg(path, &title, &roses)?;
+            rose::write_svg(path, &title, &roses)?;
         }
     }
     observer.bus.close();

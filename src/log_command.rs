@@ -1,10 +1,11 @@
 //! `squall log`: what a recorded game tells afterwards.
 
-use crate::{log_plot, recording_file, screen};
+use crate::plot::game as plot;
+use crate::{recording_file, screen};
+use analysis::{Book, Comparison, Summary};
 use anyhow::{Context, Result};
+use recording::Recording;
 use serde::Serialize;
-use shore::log::{Book, Comparison, Summary};
-use shore::recording::Recording;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -88,7 +89,7 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     }
     if let Some(dir) = &args.plot {
         make_folder(dir)?;
-        let files = log_plot::write(dir, recording.header(), &book)?;
+        let files = plot::write(dir, recording.header(), &book)?;
         screen::remark(&format!("{files} plots in {}, each as SVG and PNG", dir.display()));
     }
     if let Some(path) = &args.alog {
@@ -112,7 +113,7 @@ fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
     }
     if let Some(dir) = &args.plot {
         make_folder(dir)?;
-        log_plot::write_comparison(dir, [a, b], books.each_ref(), &comparison)?;
+        plot::write_comparison(dir, [a, b], books.each_ref(), &comparison)?;
         screen::remark(&format!("compare.svg and compare.png in {}", dir.display()));
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use crate::screen;
 use anyhow::{Context, Result};
-use shore::recording::Recording;
+use recording::Recording;
 use std::path::Path;
 
 /// Opens it `to` do something, as an error would say: "replay".

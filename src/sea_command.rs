@@ -1,6 +1,6 @@
 //! `squall sea`: what a sea means for a boat, in numbers and as a plot.
 
-use crate::sea_plot::{self, Shown};
+use crate::plot::sea::{self, Shown};
 use crate::trial_command::usual_tick_s;
 use crate::{screen, water_args};
 use anyhow::{Context, Result};
@@ -44,7 +44,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let plot = args.plot.clone().unwrap_or_else(|| PathBuf::from(format!("{}.svg", sea.name)));
     let title = format!("{}: {}, seed {}", sea.name, boat.name, args.seed);
     let model = SeaModel::new(&water, args.seed);
-    sea_plot::write(&plot, &Shown { title, sea: &sea, model: &model, drift: &drifted })?;
+    sea::write(&plot, &Shown { title, sea: &sea, model: &model, drift: &drifted })?;
     screen::print(&format!("plot in {}\n", plot.display()));
     Ok(ExitCode::SUCCESS)
 }

@@ -3,9 +3,9 @@
 use crate::net_args::{HubArgs, unique_game_name};
 use crate::override_args::OverrideArgs;
 use crate::progress_message::{ProgressMessage, Teller};
+use crate::record_args::Tape;
 use crate::screen::{self, Screen};
 use crate::stop;
-use crate::tape::Tape;
 use anyhow::{Context, Result};
 use game::Scenario;
 use game::scenario::Overrides;

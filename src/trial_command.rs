@@ -1,7 +1,7 @@
 //! `squall trial`: one boat in open water, put through a recorded series of commands or a standard manoeuvre.
 
+use crate::plot::trial as plot;
 use crate::screen;
-use crate::trial_plot;
 use crate::water_args::{self, WaterArgs, degrees, within};
 use anyhow::{Context, Result, anyhow, bail};
 use arena::trial::{self, Afloat, Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start};
@@ -185,7 +185,7 @@ fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, afloat: &mut Afloat) ->
     let (csv, plot) = (file(&args.csv, "csv"), file(&args.plot, "svg"));
     write_track(&csv, &sailed.samples, args.with_orders)?;
     let title = format!("{}: {}", boat.name, named.name().replace('_', " "));
-    trial_plot::write(&plot, &title, &sailed.samples)?;
+    plot::write(&plot, &title, &sailed.samples)?;
     screen::print(&format!("{title}\n{}", table(&trial::measures(&plan, &sailed))));
     screen::print(&format!("track in {}, plot in {}\n", csv.display(), plot.display()));
     Ok(ExitCode::SUCCESS)
@@ -211,7 +211,7 @@ fn replay(args: &Args, path: &Path, boat: &Boat, afloat: &mut Afloat) -> Result<
     let csv = args.csv.as_deref().ok_or_else(|| anyhow!("--orders needs --csv FILE for the track"))?;
     write_track(csv, &samples, args.with_orders)?;
     if let Some(plot) = &args.plot {
-        trial_plot::write(plot, &format!("{}: {}", boat.name, path.display()), &samples)?;
+        plot::write(plot, &format!("{}: {}", boat.name, path.display()), &samples)?;
     }
     let last = &samples[samples.len() - 1];
     screen::print(&format!(

@@ -1,5 +1,3 @@
-//! What people use ashore: recordings of games, what can be learnt from them, and a page to watch games.
+//! The page on which people ashore watch games, as they are played and from recordings.
 
-pub mod log;
 pub mod page;
-pub mod recording;

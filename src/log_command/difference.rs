@@ -1,7 +1,7 @@
 //! Two recorded games beside each other, as text.
 
 use super::page::line;
-use shore::log::{Comparison, Pair, Response, SETTLED_S};
+use analysis::{Comparison, Pair, Response, SETTLED_S};
 use std::path::Path;
 
 /// The whole page.

@@ -1,8 +1,8 @@
 //! A recording, or a topic of it, as files for other programs.
 
+use analysis::{Book, alog, sheet};
 use anyhow::{Context, Result};
-use shore::log::{Book, alog, sheet};
-use shore::recording::Recording;
+use recording::Recording;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::Path;
 

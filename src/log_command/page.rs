@@ -1,6 +1,6 @@
 //! The summary of a recorded game as text.
 
-use shore::log::{Figures, Gateway, Summary, Traffic, utc};
+use analysis::{Figures, Gateway, Summary, Traffic, utc};
 use std::fmt::Write;
 
 /// The whole page.

@@ -5,8 +5,8 @@ use game::Scenario;
 use game::codec;
 use game::input::{Input, Inputs};
 use game::message::Frame;
+use recording::{FRAME, INPUTS, Recording};
 use serde_json::Value;
-use shore::recording::{FRAME, INPUTS, Recording};
 use sim::resimulation::Resimulation;
 
 /// What came of it.
@@ -140,7 +140,7 @@ mod tests {
     use super::*;
     use game::message::GameInfo;
     use game::{Order, VehicleId};
-    use shore::recording::{Ending, Header, Note, Turn, Writer};
+    use recording::{Ending, Header, Note, Turn, Writer};
     use std::io::Cursor;
 
     /// The first second of a game with pictures that nobody wrote down; `change` may leave turns out.

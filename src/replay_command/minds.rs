@@ -5,9 +5,9 @@ use game::input::{Input, Inputs};
 use game::message::{PolicyProposal, Word};
 use game::picture::Picture;
 use game::{Order, Scenario, SimTime, TeamId, VehicleId};
+use recording::{INPUTS, Recording, picture};
 use shore::page::HelmAnswer;
 use shore::page::replay::Helms;
-use shore::recording::{INPUTS, Recording, picture};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

@@ -6,7 +6,7 @@ use game::VehicleId;
 use game::external::LinkBytes;
 use game::message::{Message, PolicyProposal, Stamp};
 use game::topic::{self, GameName};
-use shore::recording::Recording;
+use recording::Recording;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 

@@ -1,13 +1,13 @@
 //! A recording as a replay needs it.
 
 use super::ReplaySource;
-use crate::recording::{Recording, RecordingError, picture};
 use game::external::GatewayStatus;
 use game::message::GameInfo;
 use game::outcome::EventOutcome;
 use game::picture::{OwnBoat, Picture};
 use game::water::Water;
 use game::{SimTime, VehicleId};
+use recording::{Recording, RecordingError, picture};
 use std::sync::Arc;
 
 /// A recording, ready to be shown.

@@ -1,6 +1,5 @@
 //! A recorded game as series: where each boat was at every decision, where it believed to be, what it was ordered.
 
-use crate::recording::{FRAME, INPUTS, Recording, RecordingError, Said};
 use game::event::Logged;
 use game::input::{Input, Inputs};
 use game::message::{Frame, VehicleTruth};
@@ -8,6 +7,7 @@ use game::outcome::EventOutcome;
 use game::picture::{Nav, Picture};
 use game::scenario::Source;
 use game::{Ned, Order, Scenario};
+use recording::{FRAME, INPUTS, Recording, RecordingError, Said};
 
 /// A game as series.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -97,7 +97,7 @@ impl Book {
     /// [`RecordingError::Damaged`] names the first message that is not what it should be.
     pub fn of(recording: &Recording) -> Result<Book, RecordingError> {
         let scenario = &recording.header().notice.scenario;
-        let pictures: Vec<String> = scenario.teams.iter().map(|team| crate::recording::picture(&team.name)).collect();
+        let pictures: Vec<String> = scenario.teams.iter().map(|team| recording::picture(&team.name)).collect();
         let mut scribe = Scribe::new(scenario, recording.frame_count());
         for said in recording.messages() {
             match said.topic {

@@ -1,8 +1,8 @@
 //! The thread that writes a recording while the game goes on, which never waits for it.
 
-use super::clock;
-use super::writer::{Note, Writer};
-use super::{Ending, Header, RecordError};
+use crate::clock;
+use crate::writer::{Note, Writer};
+use crate::{Ending, Header, RecordError};
 use game::run_state::RecordingState;
 use std::fs::File;
 use std::io::{BufWriter, Seek, Write};
@@ -186,7 +186,7 @@ fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::{INPUTS, Recording, Turn};
+    use crate::{INPUTS, Recording, Turn};
     use game::message::{Frame, GameInfo, Message, Stamp};
     use game::water::Water;
     use game::{Outcome, SimTime};

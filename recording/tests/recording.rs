@@ -6,7 +6,7 @@ use game::message::{Frame, GameInfo, Message, Orders, Stamp, VehicleTruth};
 use game::picture::Nav;
 use game::water::{PlaneWave, Water};
 use game::{Order, Outcome, Picture, SimTime, VehicleId};
-use shore::recording::{Blank, Ending, Header, Note, Recorder, Recording, RecordingError, Turn, Writer};
+use recording::{Blank, Ending, Header, Note, Recorder, Recording, RecordingError, Turn, Writer};
 use std::io::Cursor;
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 
 use super::SheetError;
 use super::row::Row;
-use crate::recording::{Recording, Said};
+use recording::{Recording, Said};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 

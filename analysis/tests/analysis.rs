@@ -1,20 +1,16 @@
 //! What a recording tells afterwards: figures, tables and logs of a small made-up game, to the byte where others read them.
 
+use analysis::{Book, Comparison, Incomparable, Summary, alog, sheet};
 use game::event::{Event, Logged};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use game::input::Input;
-use game::message::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth};
+use game::message::{Frame, GameInfo, Message, Stamp, VehicleTruth};
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
 use game::water::Water;
 use game::{FlagId, Order, Outcome, Picture, SimTime, TeamId, VehicleId};
-use proptest::prelude::*;
-use shore::log::sheet::SheetError;
-use shore::log::{Book, Comparison, Incomparable, Summary, alog, sheet};
-use shore::page::replay::{Recorded, ReplaySource};
-use shore::recording::{Ending, Header, Note, Recording, RecordingError, Turn, Writer};
+use recording::{Ending, Header, Note, Recording, Turn, Writer};
 use std::io::Cursor;
 use std::path::Path;
-use std::sync::Arc;
 
 fn header() -> Header {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
@@ -325,115 +321,4 @@ fn games_that_differ_say_in_what_and_strangers_are_refused() {
     empty.times_s.clear();
     empty.boats.iter_mut().for_each(|boat| boat.moments.clear());
     assert_eq!(compare(b.header(), &empty), Err(Incomparable::Time));
-}
-
-/// Numbers that a sim never sends.
-fn odd_number() -> impl Strategy<Value = f64> {
-    prop_oneof![any::<f64>(), Just(f64::NAN), Just(f64::INFINITY), Just(-1e300), 0.0..100.0_f64]
-}
-
-prop_compose! {
-    fn odd_nav()(a in proptest::array::uniform6(odd_number())) -> Nav {
-        Nav { north_m: a[0], east_m: a[1], psi_rad: a[2], surge_m_s: a[3], sway_m_s: a[4], yaw_rate_rad_s: a[5] }
-    }
-}
-
-fn odd_event() -> impl Strategy<Value = EventRecord> {
-    (any::<u64>(), any::<i64>(), 0..30_u8, -2..12_i32, -2..12_i32)
-        .prop_map(|(tick, at, kind, subject, object)| EventRecord { tick, at_ns: SimTime(at), kind, subject, object })
-}
-
-fn odd_input() -> impl Strategy<Value = Input> {
-    let vehicle = (0..9_u16).prop_map(VehicleId);
-    let ordered = (vehicle.clone(), odd_number()).prop_map(|(vehicle, heading_rad)| Input::Ordered {
-        vehicle,
-        order: Order::Steer { heading_rad, speed_m_s: heading_rad },
-    });
-    let reported = (vehicle.clone(), odd_nav(), any::<i64>()).prop_map(|(vehicle, nav, at)| Input::Reported {
-        vehicle,
-        nav,
-        fix_at: SimTime(at),
-        valid: true,
-    });
-    prop_oneof![ordered, reported, vehicle.prop_map(|vehicle| Input::Held { vehicle }), Just(Input::Played)]
-}
-
-prop_compose! {
-    /// A turn as no sim tells it: other numbers of boats, flags and teams, any time, any event.
-    fn odd_turn()(
-        (at, seq) in prop_oneof![(any::<i64>(), any::<u64>()), (0..5_i64, 0..5_u64)],
-        navs in proptest::collection::vec((odd_nav(), -2..9_i16), 0..6),
-        flags in proptest::collection::vec(any::<i32>(), 0..4),
-        score in proptest::collection::vec(any::<u32>(), 0..4),
-        events in proptest::collection::vec(odd_event(), 0..4),
-        inputs in proptest::collection::vec(odd_input(), 0..4),
-        seen in proptest::collection::vec((0..9_u16, odd_nav(), any::<i16>()), 0..3),
-    ) -> Turn {
-        let stamp = |version| Stamp { valid_ns: SimTime(at), seq, version };
-        let truth = |(nav, carrying): &(Nav, i16)| VehicleTruth { nav: *nav, carrying: *carrying, ..VehicleTruth::default() };
-        let flags: Vec<FlagView> = flags.iter().map(|carrier| FlagView { carrier: *carrier }).collect();
-        let own = |(vehicle, nav, carrying): &(u16, Nav, i16)| OwnBoat {
-            vehicle: VehicleId(*vehicle),
-            nav: *nav,
-            fix_ns: SimTime(at),
-            imu: Imu::default(),
-            tagged: false,
-            carrying: *carrying,
-            disabled: false,
-            outside: false,
-            tag_ready_ns: SimTime(at),
-        };
-        let own = seen.iter().map(own).collect();
-        let picture =
-            Picture { stamp: stamp(Picture::VERSION), own, flags: flags.clone(), score: score.clone(), ..Picture::default() };
-        let vehicles = navs.iter().map(truth).collect();
-        let frame = Frame { stamp: stamp(Frame::VERSION), vehicles, flags, score, events, ..Frame::default() };
-        Turn { frame, pictures: vec![picture], inputs }
-    }
-}
-
-/// Everything that can be made of a recording.
-fn look_at_all_of(recording: Recording) -> Result<(), RecordingError> {
-    let (summary, book) = Summary::of(&recording)?;
-    serde_json::to_string(&summary).expect("a summary is JSON");
-    for topic in sheet::topics(&recording) {
-        match sheet::write(&recording, &topic, &mut |_| Ok(())) {
-            Ok(()) | Err(SheetError::Recording(_) | SheetError::Json { .. } | SheetError::Strange { .. }) => {}
-            Err(e) => panic!("{topic}: {e}"),
-        }
-    }
-    assert!(alog::shoreside(recording.header(), &book).starts_with("%%"));
-    (0..book.boats.len()).for_each(|boat| drop(alog::vehicle(recording.header(), &book, boat)));
-    // Whether there is anything to compare is another matter.
-    Comparison::of([recording.header(); 2], [&book; 2], 0.0).ok();
-    let film = Recorded::new(Arc::new(recording), "odd.mcap".to_owned())?;
-    for frame in 0..film.frame_times().len() {
-        film.estimate(VehicleId(0), frame);
-        film.status(VehicleId(0), film.frame_times()[frame]);
-    }
-    Ok(())
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn whatever_a_recording_says_can_be_looked_at(turns in proptest::collection::vec(odd_turn(), 0..5)) {
-        let mut writer = Writer::begin(Cursor::new(Vec::new()), &header()).expect("it begins");
-        for turn in turns {
-            writer.note(&Note::Turn(Box::new(turn)), 1_000_000_000).expect("it is written");
-        }
-        let recording = Recording::of(writer.end(&ending()).expect("it ends").into_inner()).expect("it is a recording");
-        look_at_all_of(recording).expect("its messages are sound");
-    }
-
-    #[test]
-    fn damaged_files_never_panic(place in 0.0..1.0_f64, byte in any::<u8>()) {
-        let mut bytes = bytes_of(&header(), 4);
-        let place = (place * bytes.len() as f64) as usize;
-        bytes[place] = byte;
-        if let Ok(recording) = Recording::of(bytes) {
-            look_at_all_of(recording).ok();
-        }
-    }
 }

@@ -6,7 +6,7 @@ use game::input::Input;
 use game::message::GameInfo;
 use game::run_state::RecordingState;
 use gateway::utc;
-use shore::recording::{Blank, Ending, Header, Note, Recorder, Turn};
+use recording::{Blank, Ending, Header, Note, Recorder, Turn};
 use sim::Contest;
 use sim::node::{RecordedMessage, Recorder as NodeRecorder, Report};
 use std::path::PathBuf;

@@ -1,8 +1,8 @@
 //! A recording, opened: what it says, message by message, also where it ends abruptly.
 
-use super::text;
-use super::walk::{Walk, walk};
-use super::{CHECKSUM, Ending, FRAME, Header, RESULT, SQUALL, checksum};
+use crate::text;
+use crate::walk::{Walk, walk};
+use crate::{CHECKSUM, Ending, FRAME, Header, RESULT, SQUALL, checksum};
 use game::codec::{self, DecodeError};
 use game::message::{Frame, GameInfo, Message};
 use game::{Scenario, SimTime};

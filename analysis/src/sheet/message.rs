@@ -2,14 +2,14 @@
 
 use super::row::Row;
 use super::{SheetError, begin, time};
-use crate::log::sentence::{Line, Lines};
-use crate::recording::{Recording, Said};
+use crate::sentence::{Line, Lines};
 use game::external::{ExternalOrder, LinkBytes, NavReport};
 use game::input::{Input, InputRecord, Inputs};
 use game::message::{Frame, PolicyProposal, Say, SeaView, VehicleOrder, VehicleTruth, Word};
 use game::outcome::EventOutcome;
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
 use game::{Order, Picture, Scenario, SimTime, VehicleId};
+use recording::{Recording, Said};
 
 /// A message that makes rows.
 pub(super) trait Table {

@@ -1,14 +1,14 @@
 //! A recorded game in plots: tracks on the field, the score, every boat; and two games over each other.
 
-use crate::field_plot::{self, Chart, Spot, Symbol, Track};
+use crate::plot::field::{self, Chart, Spot, Symbol, Track};
 use crate::plot::{self, Line, Page, Panel};
+use analysis::{Boat, Book, Comparison, Moment, distances};
 use anyhow::Result;
 use game::angle::compass_deg_from_rad;
 use game::event::Event;
 use game::{Ned, Order};
 use plotters::style::RGBColor;
-use shore::log::{Boat, Book, Comparison, Moment, distances};
-use shore::recording::Header;
+use recording::Header;
 use std::path::Path;
 
 /// More boats than this have no names on the chart: they would hide it.
@@ -21,7 +21,7 @@ const TIME: &str = "simulated time in s";
 
 /// Draws a game into files in a folder, and says how many plots there are.
 pub(crate) fn write(dir: &Path, header: &Header, book: &Book) -> Result<usize> {
-    field_plot::write(&dir.join("tracks"), &chart(header, book))?;
+    field::write(&dir.join("tracks"), &chart(header, book))?;
     write_page(&dir.join("score"), &score(header, book))?;
     for boat in &book.boats {
         write_page(&dir.join(format!("boat_{}", boat.name)), &boat_page(header, book, boat))?;

@@ -12,11 +12,11 @@
 
 use super::book::{Boat, Book, Moment};
 use super::utc;
-use crate::recording::Header;
 use game::angle::compass_deg_from_rad;
 use game::outcome::EventOutcome;
 use game::picture::Nav;
 use game::{Order, Scenario, math};
+use recording::Header;
 use std::fmt::Write;
 
 /// Node reports come this often, s: as the reporter of that test-bed has it by default.

@@ -17,13 +17,13 @@ mod json;
 mod message;
 mod row;
 
-use crate::recording::{FRAME, Recording, RecordingError, Said};
 use game::external::{ExternalOrder, LinkBytes, NavReport};
 use game::input::Inputs;
 use game::message::{Frame, Message, PolicyProposal, Say};
 use game::outcome::EventOutcome;
 use game::{Picture, Scenario, SimTime};
 use message::Table;
+use recording::{FRAME, Recording, RecordingError, Said};
 use row::Row;
 use thiserror::Error;
 

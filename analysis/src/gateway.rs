@@ -1,8 +1,8 @@
 //! The gateways of a game: what went over their links, and what stopped their boats.
 
 use super::sentence::Lines;
-use crate::recording::{Recording, RecordingError};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
+use recording::{Recording, RecordingError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! What a recorded game tells afterwards: figures, tables for other programs, and how it differs from another game.
 //!
-//! Everything here is computed from a [`crate::recording::Recording`]; nothing is read or written. [`Book`] is the game as
+//! Everything here is computed from a [`recording::Recording`]; nothing is read or written. [`Book`] is the game as
 //! series, made in one pass; [`Summary`] is made of it for people, [`Comparison`] of two for those who lay a game on
 //! the water beside its simulation. [`sheet`] makes tables of single topics, [`alog`] the logs of MOOS.
 

@@ -1,7 +1,7 @@
 //! Notes of a game to the bytes of a recording.
 
-use super::text;
-use super::{CHECKSUM, DRAWN, Ending, FRAME, Header, INPUTS, RESULT, RecordError, SQUALL, checksum, picture};
+use crate::text;
+use crate::{CHECKSUM, DRAWN, Ending, FRAME, Header, INPUTS, RESULT, RecordError, SQUALL, checksum, picture};
 use game::codec;
 use game::input::{Input, Inputs};
 use game::message::{Frame, Message, Stamp};

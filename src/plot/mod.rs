@@ -1,5 +1,11 @@
 //! Plots as SVG and PNG files: panels with axes and units, each with a few lines and a legend.
 
+pub(crate) mod field;
+pub(crate) mod game;
+pub(crate) mod rose;
+pub(crate) mod sea;
+pub(crate) mod trial;
+
 use anyhow::{Context, Result, anyhow};
 use plotters::coord::Shift;
 use plotters::prelude::*;

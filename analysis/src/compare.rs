@@ -3,8 +3,8 @@
 use super::book::{Boat, Book};
 use super::response::{Response, response};
 use super::track::{Apart, apart};
-use crate::recording::Header;
 use game::outcome::EventOutcome;
+use recording::Header;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;

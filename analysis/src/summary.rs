@@ -3,8 +3,8 @@
 use super::book::Book;
 use super::figure::{Figures, figures};
 use super::gateway::{Gateway, gateways};
-use crate::recording::{Recording, RecordingError};
 use game::outcome::EventOutcome;
+use recording::{Recording, RecordingError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
