@@ -60,8 +60,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     let mut tell = |news: News<'_>| match news {
-        News::Left { ignored } if ignored.total() > 0 => {
-            screen::remark(&format!("{names}: ignored or missed: {ignored}"));
+        News::Left { refused } if refused.total() > 0 => {
+            screen::remark(&format!("{names}: refused or missed: {refused}"));
         }
         News::Looking { reason } if !args.for_parent => {
             screen::remark(&format!("{names}: looking for the game: {reason}"));

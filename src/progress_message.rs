@@ -1,4 +1,4 @@
-//! What a game tells while it runs: one JSON line each between the sim's process and `run`, the same for the screen.
+//! What a running game reports: one JSON line each from the sim's process to `run`, the same for the screen.
 
 use game::event::Logged;
 use game::outcome::EventOutcome;
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use sim::Contest;
 use sim::node::{News, Report};
 
-/// One thing told.
+/// One message.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "tell")]
 pub(crate) enum ProgressMessage {
-    /// The door is open.
+    /// Nodes can join.
     Open {
         /// The game's name on the network.
         game: String,
@@ -19,9 +19,9 @@ pub(crate) enum ProgressMessage {
     },
     /// Somebody is not there yet.
     Waiting {
-        /// The vehicles without a mind, by name.
+        /// The vehicles without an agent, by name.
         missing: Vec<String>,
-        /// The real boats that no gateway has told the place of, by name.
+        /// The real boats that no gateway has reported the position of, by name.
         gateways: Vec<String>,
     },
     /// The game begins.
@@ -82,13 +82,13 @@ impl Teller {
     pub(crate) fn news(&mut self, news: &News<'_>) -> Vec<ProgressMessage> {
         match news {
             News::Open => vec![],
-            News::Waiting { minds, gateways } => {
+            News::Waiting { agents, gateways } => {
                 let [missing, gateways] =
-                    [minds, gateways].map(|names| names.iter().map(|name| (*name).to_owned()).collect());
+                    [agents, gateways].map(|names| names.iter().map(|name| (*name).to_owned()).collect());
                 vec![ProgressMessage::Waiting { missing, gateways }]
             }
             News::Started => vec![ProgressMessage::Started],
-            News::Progress { contest, rate, refused } => self.progress(contest, *rate, refused.total()),
+            News::Progress { contest, rate, refused } => self.progress(contest, *rate, *refused),
         }
     }
 

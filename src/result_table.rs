@@ -47,7 +47,7 @@ pub(crate) fn text(report: &Report) -> String {
         line(&mut text, format_args!("{} decision ticks began late: the pace was not kept", run.overruns));
     }
     if run.refused.total() > 0 {
-        line(&mut text, format_args!("refused from agents: {}", refused(report)));
+        line(&mut text, format_args!("refused: {}", run.refused));
     }
     text
 }
@@ -60,13 +60,6 @@ fn row(text: &mut String, (name, width): (&str, usize), score: u32, counts: &Cou
             "{name:width$}{score:>6}{grabs:>7}{captures:>10}{tags:>6}{tagged:>8}{out_of_bounds:>15}{collisions:>12}"
         ),
     );
-}
-
-/// The reasons that occurred, with their counts.
-fn refused(report: &Report) -> String {
-    let all = serde_json::to_value(report.run.refused).unwrap_or_default();
-    let counted = all.as_object().into_iter().flatten().filter(|(_, count)| count.as_u64() != Some(0));
-    counted.map(|(reason, count)| format!("{count} {reason}")).collect::<Vec<_>>().join(", ")
 }
 
 fn line(text: &mut String, args: std::fmt::Arguments<'_>) {

@@ -1,8 +1,8 @@
-//! Looking for a game and being let in: what agents, gateways and observers do alike.
+//! Finding a game and joining it: what agents, gateways and observers do alike.
 
-use crate::{Bus, BusError, Net};
+use crate::{Bus, BusError, Net, clock};
 use game::VehicleId;
-use game::message::{GameInfo, JoinReply, JoinRequest};
+use game::message::{GameInfo, JoinReply, JoinRequest, Role};
 use game::topic::{self, GameName, Part};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -58,15 +58,14 @@ pub struct GameSearch<'a> {
     last: String,
 }
 
-#[expect(clippy::disallowed_methods, reason = "what is not there is looked for again, by the clock and with a limit")]
 impl<'a> GameSearch<'a> {
     /// A search that ends after this time, or when `stop` is set.
     #[must_use]
     pub fn new(wait: Duration, stop: &'a AtomicBool) -> GameSearch<'a> {
-        GameSearch { wait, stop, start: Instant::now(), last: String::new() }
+        GameSearch { wait, stop, start: clock::now(), last: String::new() }
     }
 
-    /// Tries again until it works, the time is up, or it never will; tells what is missing whenever that is news.
+    /// Tries again until it works, the time is up, or it never will; reports what is missing whenever that changes.
     ///
     /// # Errors
     /// [`NotFound`] says what was missing to the end.
@@ -85,15 +84,14 @@ impl<'a> GameSearch<'a> {
                 tell(&reason);
                 self.last.clone_from(&reason);
             }
-            if self.stop.load(Ordering::Relaxed) || self.start.elapsed() >= self.wait {
-                return Err(NotFound::InTime(self.start.elapsed(), reason));
+            let passed = clock::since(self.start);
+            if self.stop.load(Ordering::Relaxed) || passed >= self.wait {
+                return Err(NotFound::InTime(passed, reason));
             }
-            std::thread::sleep(LOOK_AGAIN);
+            clock::rest(LOOK_AGAIN);
         }
     }
-}
 
-impl GameSearch<'_> {
     /// A session at the hub that `net` leads to, and the game: this one, or the only one there is.
     ///
     /// # Errors
@@ -148,19 +146,19 @@ pub fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
     serde_json::from_slice(&bytes).map_err(not_understood)
 }
 
-/// A ticket for these vehicles, from the sim's door at `key`: [`topic::join`] for minds, [`topic::moor`] for gateways.
-/// `what` a vehicle has one of says why it is not free.
+/// Joins with these vehicles in this role: the ticket, and the vehicles' numbers.
 ///
 /// # Errors
 /// [`Missing`] if the sim does not answer, if somebody else has a vehicle, or if it says no.
-pub fn join(bus: &Bus, key: &str, vehicles: &[String], what: &str) -> Result<(u64, Vec<VehicleId>), Missing> {
-    let request = JoinRequest { version: game::VERSION.to_owned(), agent: bus.id(), vehicles: vehicles.to_vec() };
+pub fn join(bus: &Bus, game: &GameName, role: Role, vehicles: &[String]) -> Result<(u64, Vec<VehicleId>), Missing> {
+    let (version, node) = (game::VERSION.to_owned(), bus.id());
+    let request = JoinRequest { version, role, node, vehicles: vehicles.to_vec() };
     let request = serde_json::to_vec(&request).expect("a request is JSON");
-    let answer = bus.ask(key, request, ANSWER)?;
-    let bytes = answer.ok_or_else(|| Missing::Yet("the sim does not answer at the door".to_owned()))?;
+    let answer = bus.ask(&topic::join(game), request, ANSWER)?;
+    let bytes = answer.ok_or_else(|| Missing::Yet("the sim does not answer the join request".to_owned()))?;
     match serde_json::from_slice(&bytes) {
         Ok(JoinReply::Granted { ticket, vehicles }) => Ok((ticket, vehicles)),
-        Ok(JoinReply::Busy { vehicle }) => Err(Missing::Yet(format!("{vehicle} has another {what}"))),
+        Ok(JoinReply::Busy { vehicle }) => Err(Missing::Yet(format!("{vehicle} has another {role}"))),
         Ok(JoinReply::Refused { reason }) => Err(Missing::Forever(Refusal::Refused(reason))),
         Err(e) => Err(Missing::Forever(Refusal::Version(format!("the sim's answer is not understood: {e}")))),
     }

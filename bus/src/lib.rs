@@ -6,6 +6,7 @@
 //!
 //! Everything here is blocking or calls back; callbacks run on zenoh's threads and must only hand over.
 
+pub mod clock;
 mod error;
 pub mod game_search;
 mod inbox;
@@ -13,6 +14,7 @@ mod latest;
 mod local_registry;
 mod net;
 mod session;
+mod sim_liveness;
 mod watched;
 
 pub use error::BusError;
@@ -21,6 +23,7 @@ pub use latest::Latest;
 pub use local_registry::{Entry, Registration, list as local_registry, register};
 pub use net::{DEFAULT_PORT, Net, free_port};
 pub use session::{Bus, Declaration, Delivery, Publisher, Query};
+pub use sim_liveness::{Patience, SimState, SimWatch};
 pub use watched::Watched;
 
 /// A value of the environment variable `ZENOH_RUNTIME` for a process that is one node: two threads in place of zenoh's pools,

@@ -1,4 +1,4 @@
-//! A node's session: publish, subscribe, ask, answer, be alive.
+//! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
 use crate::{BusError, Net};
 use game::codec;
@@ -40,10 +40,10 @@ pub struct Bus {
 /// Sends messages on one key.
 pub struct Publisher {
     publisher: zenoh::pubsub::Publisher<'static>,
-    heard: Arc<AtomicBool>,
+    is_heard: Arc<AtomicBool>,
 }
 
-/// A question somebody asked, to be answered once.
+/// A query of another node, to be answered once.
 pub struct Query {
     query: zenoh::query::Query,
     /// What came with it.
@@ -96,11 +96,11 @@ impl Bus {
         };
         let builder = self.session.declare_publisher(key.clone()).congestion_control(congestion);
         let publisher = builder.wait().map_err(failed("publish on", &key))?;
-        let heard = Arc::new(AtomicBool::new(false));
-        let told = Arc::clone(&heard);
-        let listener = publisher.matching_listener().callback(move |now| told.store(now.matching(), Ordering::Relaxed));
+        let is_heard = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&is_heard);
+        let listener = publisher.matching_listener().callback(move |now| flag.store(now.matching(), Ordering::Relaxed));
         listener.background().wait().map_err(failed("publish on", &key))?;
-        Ok(Publisher { publisher, heard })
+        Ok(Publisher { publisher, is_heard })
     }
 
     /// Calls `take` with the bytes of everything published on `key`.
@@ -112,9 +112,7 @@ impl Bus {
         key: String,
         take: impl Fn(&[u8]) + Send + Sync + 'static,
     ) -> Result<Declaration, BusError> {
-        let callback = move |sample: zenoh::sample::Sample| take(&sample.payload().to_bytes());
-        let subscriber = self.session.declare_subscriber(key.clone()).callback(callback).wait();
-        Ok(Declaration(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
+        self.subscribe_from(Locality::Any, key, take)
     }
 
     /// As [`Bus::subscribe`], but not with what this session publishes itself.
@@ -126,13 +124,22 @@ impl Bus {
         key: String,
         take: impl Fn(&[u8]) + Send + Sync + 'static,
     ) -> Result<Declaration, BusError> {
+        self.subscribe_from(Locality::Remote, key, take)
+    }
+
+    fn subscribe_from(
+        &self,
+        origin: Locality,
+        key: String,
+        take: impl Fn(&[u8]) + Send + Sync + 'static,
+    ) -> Result<Declaration, BusError> {
         let callback = move |sample: zenoh::sample::Sample| take(&sample.payload().to_bytes());
-        let builder = self.session.declare_subscriber(key.clone()).allowed_origin(Locality::Remote);
+        let builder = self.session.declare_subscriber(key.clone()).allowed_origin(origin);
         let subscriber = builder.callback(callback).wait();
         Ok(Declaration(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
     }
 
-    /// Calls `take` with every question asked at `key`.
+    /// Calls `take` with every query at `key`.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
@@ -194,7 +201,7 @@ impl Bus {
         Ok(keys)
     }
 
-    /// Says good-bye, so that the others need not find out.
+    /// Closes the session, so that the others need not find out.
     pub fn close(&self) {
         // A session that cannot be closed is as gone as one that can.
         drop(self.session.close().wait());
@@ -212,7 +219,7 @@ impl Publisher {
     /// Whether anybody listens; a message that nobody hears need not be made.
     #[must_use]
     pub fn is_heard(&self) -> bool {
-        self.heard.load(Ordering::Relaxed)
+        self.is_heard.load(Ordering::Relaxed)
     }
 
     /// Sends a per-tick message as CDR, with its name and version in the encoding.

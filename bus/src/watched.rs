@@ -1,37 +1,33 @@
-//! A board on which callbacks write, and which a node reads, or watches until something stands on it.
+//! A value that callbacks change, and that a node reads, or waits on until something holds for it.
 
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use parking_lot::{Condvar, Mutex};
 use std::time::Duration;
 
 /// Something that one thread changes and another waits for.
+#[derive(Default)]
 pub struct Watched<T> {
     state: Mutex<T>,
-    news: Condvar,
+    changed: Condvar,
 }
 
 impl<T> Watched<T> {
-    /// A board with this on it.
+    /// Begins with this value.
     #[must_use]
     pub fn new(state: T) -> Watched<T> {
-        Watched { state: Mutex::new(state), news: Condvar::new() }
+        Watched { state: Mutex::new(state), changed: Condvar::new() }
     }
 
-    /// Reads or changes what is on it, and wakes those who watch.
+    /// Reads or changes the value, and wakes those who wait.
     pub fn visit<R>(&self, visit: impl FnOnce(&mut T) -> R) -> R {
-        let result = visit(&mut self.lock());
-        self.news.notify_all();
+        let result = visit(&mut self.state.lock());
+        self.changed.notify_all();
         result
     }
 
-    /// Waits up to `limit` until `is_there` holds, and says whether it does.
-    pub fn wait(&self, limit: Duration, mut is_there: impl FnMut(&T) -> bool) -> bool {
-        let waiting = self.news.wait_timeout_while(self.lock(), limit, |state| !is_there(state));
-        !waiting.unwrap_or_else(PoisonError::into_inner).1.timed_out()
-    }
-
-    /// What is on it is whole whatever happened to the thread that wrote it: visits only replace whole items.
-    fn lock(&self) -> MutexGuard<'_, T> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Waits up to `limit` until `holds`, and returns whether it does.
+    pub fn wait(&self, limit: Duration, mut holds: impl FnMut(&T) -> bool) -> bool {
+        let mut state = self.state.lock();
+        !self.changed.wait_while_for(&mut state, |state| !holds(state), limit).timed_out()
     }
 }
 
@@ -42,12 +38,12 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_watcher_sees_what_is_written_and_does_not_wait_forever() {
-        let board = Arc::new(Watched::new(0));
-        assert!(!board.wait(Duration::from_millis(1), |n| *n == 1));
-        let writer = Arc::clone(&board);
+    fn a_reader_sees_what_is_written_and_does_not_wait_forever() {
+        let watched = Arc::new(Watched::new(0));
+        assert!(!watched.wait(Duration::from_millis(1), |n| *n == 1));
+        let writer = Arc::clone(&watched);
         let thread = std::thread::spawn(move || writer.visit(|n| *n = 1));
-        assert!(board.wait(Duration::from_secs(60), |n| *n == 1));
+        assert!(watched.wait(Duration::from_secs(60), |n| *n == 1));
         thread.join().expect("it writes");
     }
 }

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct NavReport {
     /// Time: that of the game as the gateway last heard it. Number: counts the reports.
     pub stamp: Stamp,
-    /// The ticket that the sim gave when the gateway moored.
+    /// The ticket that the sim gave when the gateway joined.
     pub ticket: u64,
     /// Whose navigation it is.
     pub vehicle: VehicleId,

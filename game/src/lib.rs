@@ -23,6 +23,7 @@ mod normal;
 pub mod order;
 pub mod outcome;
 pub mod picture;
+pub mod refusal;
 pub mod ros;
 pub mod rules;
 pub mod run_state;

@@ -319,28 +319,49 @@ impl Message for PolicyProposal {
     }
 }
 
-/// What an agent asks of the sim before anything else.
+/// What an agent or a gateway asks of the sim before anything else.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JoinRequest {
-    /// The agent's version of Squall.
+    /// The node's version of Squall.
     pub version: String,
-    /// A name for the agent process, unique on the network.
-    pub agent: String,
-    /// The vehicles it wants to mind, by name.
+    /// What it wants to be.
+    pub role: Role,
+    /// A name for the process, unique on the network.
+    pub node: String,
+    /// The vehicles it wants, by name.
     pub vehicles: Vec<String>,
+}
+
+/// What a node that joins does for its vehicles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// Decides for them.
+    Agent,
+    /// Connects real boats.
+    Gateway,
+}
+
+impl std::fmt::Display for Role {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Role::Agent => "agent",
+            Role::Gateway => "gateway",
+        })
+    }
 }
 
 /// What the sim answers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JoinReply {
-    /// Come in.
+    /// The node has joined.
     Granted {
-        /// To be shown with every order.
+        /// To be shown with every order or report.
         ticket: u64,
         /// The vehicles, in the order asked for.
         vehicles: Vec<VehicleId>,
     },
-    /// Not now: somebody else minds the vehicle. Asking again later may help.
+    /// Not now: somebody else has the vehicle. Asking again later may help.
     Busy {
         /// The vehicle.
         vehicle: String,

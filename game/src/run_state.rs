@@ -1,4 +1,4 @@
-//! How the run of a game stands: what depends on the machine and the people, not on the game.
+//! The state of a game's run: what depends on the machine and the people, not on the game.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ pub struct RunState {
     pub speed: Option<f64>,
     /// Simulated seconds a second, lately.
     pub rate: f64,
-    /// Vehicles without a mind, while they are waited for.
+    /// Vehicles without an agent, while they are waited for.
     pub minds: Vec<String>,
     /// Real boats that were not heard of, while they are waited for.
     pub gateways: Vec<String>,
@@ -31,7 +31,7 @@ pub struct RunState {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
-    /// Minds or real boats are waited for.
+    /// Agents or real boats are waited for.
     #[default]
     Waiting,
     /// The game is on.

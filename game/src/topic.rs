@@ -139,13 +139,7 @@ pub fn water(game: &GameName) -> String {
     format!("squall/{}/water", game.0)
 }
 
-/// The quay at which gateways ask to bring their boat (query).
-#[must_use]
-pub fn moor(game: &GameName) -> String {
-    format!("squall/{}/moor", game.0)
-}
-
-/// The door at which agents ask to be let in (query).
+/// Where agents and gateways ask to join (query).
 #[must_use]
 pub fn join(game: &GameName) -> String {
     format!("squall/{}/join", game.0)

@@ -4,7 +4,7 @@ use crate::support::{LIMIT, Sim, real_attacker, result_of, run, scenarios, write
 use bus::{Bus, Declaration, Delivery, Publisher};
 use game::angle::rad_from_compass_deg;
 use game::external::{ExternalOrder, NavReport};
-use game::message::{JoinReply, JoinRequest, Message, Stamp};
+use game::message::{JoinReply, JoinRequest, Message, Role, Stamp};
 use game::picture::Nav;
 use game::topic::{self, GameName, Part};
 use game::{Order, VehicleId, codec};
@@ -29,15 +29,16 @@ struct Gateway {
     moved: Instant,
 }
 
-fn moor(bus: &Bus, name: &GameName, vehicle: &str) -> JoinReply {
+fn join(bus: &Bus, name: &GameName, vehicle: &str) -> JoinReply {
     let (version, vehicles) = (game::VERSION.to_owned(), vec![vehicle.to_owned()]);
-    let request = serde_json::to_vec(&JoinRequest { version, agent: bus.id(), vehicles }).expect("JSON");
-    let answer = bus.ask(&topic::moor(name), request, LIMIT).expect("the hub is there").expect("an answer");
+    let request = JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles };
+    let request = serde_json::to_vec(&request).expect("JSON");
+    let answer = bus.ask(&topic::join(name), request, LIMIT).expect("the hub is there").expect("an answer");
     serde_json::from_slice(&answer).expect("a reply")
 }
 
 impl Gateway {
-    fn moored(sim: &Sim, file: &Path) -> Gateway {
+    fn joined(sim: &Sim, file: &Path) -> Gateway {
         let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
         let scenario = game::scenario::load(file).unwrap_or_else(|e| panic!("{e}"));
         let orders = Arc::new(Mutex::new(Vec::new()));
@@ -48,9 +49,7 @@ impl Gateway {
             bus.show_alive(topic::alive(&name, Part::Gateway, &bus.id())).expect("the hub is there"),
         ];
         let nav = bus.publisher(topic::nav(&name, &scenario, ME), Delivery::Drop).expect("the hub is there");
-        let JoinReply::Granted { ticket, vehicles } = moor(&bus, &name, "blue_one") else {
-            panic!("no start_position")
-        };
+        let JoinReply::Granted { ticket, vehicles } = join(&bus, &name, "blue_one") else { panic!("the boat is free") };
         assert_eq!(vehicles, [ME]);
         let at = Nav { north_m: 40.0, east_m: 52.0, psi_rad: rad_from_compass_deg(90.0), ..Nav::default() };
         Gateway { bus, name, alive, nav, orders, ticket, seq: 0, at, moved: Instant::now() }
@@ -120,16 +119,16 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     let waiting = sim.wait_for(|t| t["tell"] == "waiting" && t["missing"].as_array().is_some_and(Vec::is_empty));
     assert_eq!(waiting["gateways"][0], "blue_one", "{waiting}");
 
-    let mut gateway = Gateway::moored(&sim, &file);
+    let mut gateway = Gateway::joined(&sim, &file);
     let other = sim.bus();
     let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
-    assert_eq!(moor(&other, &gateway.name, "blue_one"), busy, "somebody else brings it");
-    let JoinReply::Refused { reason } = moor(&other, &gateway.name, "red_one") else { panic!("it is simulated") };
+    assert_eq!(join(&other, &gateway.name, "blue_one"), busy, "somebody else brings it");
+    let JoinReply::Refused { reason } = join(&other, &gateway.name, "red_one") else { panic!("it is simulated") };
     assert!(reason.contains("red_one is simulated"), "{reason}");
 
-    gateway.sail_until("its mind takes it towards the flag", |gateway| gateway.at.east_m > 70.0);
+    gateway.sail_until("its agent takes it towards the flag", |gateway| gateway.at.east_m > 70.0);
     let orders = gateway.orders.lock().expect("whole").clone();
-    assert!(orders.iter().any(|order| order.given_ns > orders[0].given_ns), "its mind goes on thinking");
+    assert!(orders.iter().any(|order| order.given_ns > orders[0].given_ns), "its agent goes on deciding");
     assert!(orders.iter().all(|order| order.order.vehicle == ME && order.given_ns <= order.stamp.valid_ns));
 
     // It falls silent, and is heard of again.
@@ -138,11 +137,11 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     gateway.sail_until("what is back is driven again", |gateway| !gateway.is_held());
     sim.wait_for_event("nav_back", "blue_one");
     let before = gateway.newest().expect("an order").given_ns;
-    gateway.sail_until("its mind goes on", |gateway| gateway.newest().is_some_and(|newest| newest.given_ns > before));
+    gateway.sail_until("its agent goes on", |gateway| gateway.newest().is_some_and(|newest| newest.given_ns > before));
 
-    // Its mind dies: it holds, and from now on nobody thinks.
+    // Its agent dies: it holds, and from now on nobody decides.
     agent.kill();
-    gateway.sail_until("a boat without a mind holds", Gateway::is_held);
+    gateway.sail_until("a boat without an agent holds", Gateway::is_held);
     sim.wait_for_event("agent_lost", "blue_one");
     let (count, given_ns) = (gateway.received(), gateway.newest().expect("an order").given_ns);
     gateway.sail_until("it is told so again", |gateway| gateway.received() > count + 3);
@@ -150,7 +149,7 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
 
     // Its gateway dies: another may bring it, and the old one has no say.
     gateway.alive.remove(1);
-    gateway.wait_until("the start_position is free again", |gateway| moor(&other, &gateway.name, "blue_one") != busy);
+    gateway.wait_until("the boat is free again", |gateway| join(&other, &gateway.name, "blue_one") != busy);
     gateway.report(gateway.ticket);
     gateway.bus.close();
     sim.play_on(1.0);

@@ -96,7 +96,7 @@ fn a_seat_that_is_taken_stays_taken() {
     let output = crate::support::run(&args);
     assert!(!output.status.success());
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("blue_one has another mind"), "{said}");
+    assert!(said.contains("blue_one has another agent"), "{said}");
     sim.stop();
 }
 

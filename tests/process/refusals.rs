@@ -3,7 +3,7 @@
 use crate::support::{FOUR, Sim, long_game};
 use bus::{Bus, Delivery, Latest, Publisher};
 use game::codec;
-use game::message::{JoinReply, JoinRequest, Message, Orders, Stamp, VehicleOrder};
+use game::message::{JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
 use game::topic::{self, GameName};
 use game::{Order, Picture, TeamId, VehicleId};
 use std::path::Path;
@@ -27,7 +27,7 @@ fn join(bus: &Bus, game: &GameName, request: &JoinRequest) -> JoinReply {
 
 fn request(vehicles: &[&str]) -> JoinRequest {
     let vehicles = vehicles.iter().map(|name| (*name).to_owned()).collect();
-    JoinRequest { version: game::VERSION.to_owned(), agent: "rogue".to_owned(), vehicles }
+    JoinRequest { version: game::VERSION.to_owned(), role: Role::Agent, node: "rogue".to_owned(), vehicles }
 }
 
 impl Rogue {
@@ -83,7 +83,7 @@ fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
             VehicleOrder::new(VehicleId(3), Order::Hold),
         ]),
     );
-    // Numbers that are none.
+    // Non-finite numbers.
     let nan = Order::Steer { heading_rad: f64::NAN, speed_m_s: f64::INFINITY };
     send(&rogue.orders(vec![VehicleOrder::new(VehicleId(3), nan)]));
     let unknown = VehicleOrder { vehicle: VehicleId(3), kind: 77, first: 0.0, second: 0.0 };

@@ -1,16 +1,15 @@
 //! The table at which the minds of one process sit: pictures come in, words and orders go out.
 
 use super::helm_queries::HelmQueries;
-use super::ignored::Ignored;
 use super::policy_inbox::PolicyInbox;
-use super::sim_liveness::{Signs, SimLiveness};
 use super::talk::Talk;
-use super::{LOOK_AGAIN, NodeError, Settings, clock};
+use super::{LOOK_AGAIN, NodeError, Settings};
 use crate::{Mind, mind_by, mind_of};
-use bus::{Bus, Declaration, Delivery, Latest, Publisher, Watched};
+use bus::{Bus, Declaration, Delivery, Latest, Patience, Publisher, SimState, SimWatch};
 use game::codec::{self, DecodeError};
 use game::message::{GameInfo, Message, Orders, Stamp, VehicleOrder};
-use game::topic::{self, GameName, Part};
+use game::refusal::Refusals;
+use game::topic::{self, GameName};
 use game::{Picture, Scenario, TeamId, VehicleId};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -71,7 +70,7 @@ impl AgentLoop {
             policies: PolicyInbox::open(bus, game, scenario, &seated, limit(settings.policy_wait))?,
             window: None,
             orders: bus.publisher(topic::orders(game, &bus.id()), Delivery::Wait)?,
-            line: Line::open(bus, game, scenario, &seated)?,
+            line: Line::open(bus, game, scenario, &seated, settings.silence)?,
             seated,
             ticket: 0,
             pictures: vec![None; scenario.teams.len()],
@@ -95,19 +94,18 @@ impl AgentLoop {
         Ok(())
     }
 
-    /// Everything that was not heeded so far.
-    pub(super) fn ignored(&self) -> Ignored {
-        self.talk.ignored() + self.policies.ignored()
+    /// Everything that was refused so far, and what never came.
+    pub(super) fn refusals(&self) -> Refusals {
+        self.talk.refusals() + self.policies.refusals()
     }
 
     /// Decides until the game is over.
     pub(super) fn play(&mut self, settings: &Settings) -> Result<(), NodeError> {
-        let mut sim_liveness = SimLiveness::begin(settings.silence, clock::now());
         while !settings.stop.load(Ordering::Relaxed) {
             let mut decided = false;
             for (cell, unread) in self.line.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
                 let Some(unread) = unread else { continue };
-                sim_liveness.hears(clock::now());
+                self.line.sim.hears();
                 unread.iter().try_for_each(|bytes| self.see(cell, bytes))?;
                 if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
                     return Ok(());
@@ -117,12 +115,10 @@ impl AgentLoop {
             if let Some(window) = &mut self.window {
                 window.answer(&mut self.seated, decided);
             }
-            let (is_alive, is_replaced) = self.line.signs.visit(|signs| (signs.is_alive(), signs.is_replaced()));
-            if is_replaced {
-                return Err(NodeError::SimReplaced);
-            }
-            if let Some(silent) = sim_liveness.dead_for(is_alive, clock::now()) {
-                return Err(NodeError::SimGone(silent));
+            match self.line.sim.state() {
+                SimState::Alive => {}
+                SimState::Replaced => return Err(NodeError::SimReplaced),
+                SimState::Dead(silent) => return Err(NodeError::SimGone(silent)),
             }
         }
         Ok(())
@@ -189,19 +185,24 @@ fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Op
     picture
 }
 
-/// What comes in from the sim: the newest pictures of each team, oldest first, and whether it shows signs of life.
+/// What comes in from the sim: the newest pictures of each team, oldest first, and whether it is alive.
 struct Line {
     pictures: Arc<Latest<Vec<Vec<u8>>>>,
-    signs: Arc<Watched<Signs>>,
+    sim: SimWatch,
     /// The teams whose pictures come.
     teams: Vec<TeamId>,
     _standing: Vec<Declaration>,
 }
 
 impl Line {
-    fn open(bus: &Bus, game: &GameName, scenario: &Scenario, seated: &[Seated]) -> Result<Line, NodeError> {
+    fn open(
+        bus: &Bus,
+        game: &GameName,
+        scenario: &Scenario,
+        seated: &[Seated],
+        silence: Duration,
+    ) -> Result<Line, NodeError> {
         let pictures = Arc::new(Latest::new(scenario.teams.len()));
-        let signs = Arc::new(Watched::new(Signs::default()));
         let mut teams: Vec<TeamId> = seated.iter().map(|seat| scenario.team_of(seat.vehicle)).collect();
         teams.sort_unstable();
         teams.dedup();
@@ -218,10 +219,8 @@ impl Line {
             };
             standing.push(bus.subscribe(topic::picture(game, scenario, *team), take)?);
         }
-        let seen = Arc::clone(&signs);
-        let watch = move |sim: &str, alive: bool| seen.visit(|signs| signs.take(sim, alive));
-        standing.push(bus.watch_alive(topic::all_alive(game, Part::Sim), watch)?);
-        Ok(Line { pictures, signs, teams, _standing: standing })
+        let sim = SimWatch::open(bus, game, Patience::of_player(silence))?;
+        Ok(Line { pictures, sim, teams, _standing: standing })
     }
 }
 

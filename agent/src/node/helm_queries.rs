@@ -1,8 +1,8 @@
 //! A window into helms: questions what a boat's helm thinks, answered between decisions.
 
+use super::NodeError;
 use super::agent_loop::Seated;
-use super::{NodeError, clock};
-use bus::{Bus, Declaration, Inbox, Query, inbox};
+use bus::{Bus, Declaration, Inbox, Query, clock, inbox};
 use game::Scenario;
 use game::helm::HelmQuestion;
 use game::topic::{self, GameName};

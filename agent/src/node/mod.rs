@@ -3,19 +3,16 @@
 //! Everything but the vehicles' names comes from the sim: field, rules, strategies, seed.
 
 mod agent_loop;
-mod clock;
 mod helm_queries;
-mod ignored;
 mod policy_inbox;
-mod sim_liveness;
 mod talk;
 mod team_inbox;
-
-pub use ignored::Ignored;
 
 use agent_loop::AgentLoop;
 use bus::game_search::{self, GameSearch, NotFound, Refusal};
 use bus::{BusError, Net};
+use game::message::Role;
+use game::refusal::Refusals;
 use game::strategy::Strategy;
 use game::topic::{self, GameName, Part};
 use std::sync::Arc;
@@ -58,8 +55,8 @@ pub enum News<'a> {
     },
     /// The game is over, or left.
     Left {
-        /// What others said in it that was not heeded, and what never came.
-        ignored: Ignored,
+        /// Messages of others that were not used, and what never came.
+        refused: Refusals,
     },
 }
 
@@ -103,11 +100,11 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &bus.id()))?;
     let notice = look.until(&mut say, || game_search::game_info(&bus, &game))?;
     let mut table = AgentLoop::lay(&bus, &game, &notice, settings)?;
-    let seat = look.until(&mut say, || game_search::join(&bus, &topic::join(&game), &settings.vehicles, "mind"))?;
+    let seat = look.until(&mut say, || game_search::join(&bus, &game, Role::Agent, &settings.vehicles))?;
     table.seat(&bus, &game, &notice.scenario, seat)?;
     tell(News::Joined { game: game.as_str() });
     let played = table.play(settings);
-    tell(News::Left { ignored: table.ignored() });
+    tell(News::Left { refused: table.refusals() });
     bus.close();
     played
 }

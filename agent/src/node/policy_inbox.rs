@@ -2,11 +2,10 @@
 
 use super::NodeError;
 use super::agent_loop::Seated;
-use super::ignored::Ignored;
 use crate::Proposal;
 use bus::{Bus, Declaration, Watched};
-use game::codec::{self, DecodeError};
 use game::message::{PolicyProposal, Stamp};
+use game::refusal::{Refusal, Refusals};
 use game::strategy::Proposer;
 use game::topic::{self, GameName};
 use game::{Scenario, SimTime, VehicleId};
@@ -26,7 +25,7 @@ struct Adviser {
 #[derive(Clone, Debug, Default)]
 struct Heap {
     advisers: Vec<Adviser>,
-    ignored: Ignored,
+    refusals: Refusals,
 }
 
 /// The lines from policies to the boats whose program heeds one.
@@ -52,7 +51,7 @@ impl PolicyInbox {
             Some(Adviser { vehicle: seat.vehicle, is_awaited, newest: None })
         };
         let advisers: Vec<Adviser> = seated.iter().filter_map(adviser).collect();
-        let heap = Arc::new(Watched::new(Heap { advisers: advisers.clone(), ignored: Ignored::default() }));
+        let heap = Arc::new(Watched::new(Heap { advisers: advisers.clone(), refusals: Refusals::default() }));
         let mut standing = Vec::new();
         for (i, adviser) in advisers.iter().enumerate() {
             let inbox = Arc::clone(&heap);
@@ -69,7 +68,7 @@ impl PolicyInbox {
         }
         let advised = self.patience.is_zero() || self.heap.wait(self.patience, |heap| heap.is_for(stamp.seq));
         let advisers = self.heap.visit(|heap| {
-            heap.ignored.unadvised += u64::from(!advised);
+            heap.refusals.add(Refusal::ProposalMissing, u64::from(!advised));
             heap.advisers.clone()
         });
         for Adviser { vehicle, newest, .. } in advisers {
@@ -82,22 +81,18 @@ impl PolicyInbox {
         }
     }
 
-    pub(super) fn ignored(&self) -> Ignored {
-        self.heap.visit(|heap| heap.ignored)
+    pub(super) fn refusals(&self) -> Refusals {
+        self.heap.visit(|heap| heap.refusals)
     }
 }
 
 impl Heap {
     fn take(&mut self, i: usize, bytes: &[u8]) {
-        let proposal: PolicyProposal = match codec::decode(bytes) {
-            Ok(proposal) => proposal,
-            Err(DecodeError::Version { .. }) => return self.ignored.version += 1,
-            Err(_) => return self.ignored.garbage += 1,
-        };
+        let Some(proposal) = self.refusals.decode::<PolicyProposal>(bytes) else { return };
         if proposal.vehicle != self.advisers[i].vehicle {
-            self.ignored.not_theirs += 1;
+            self.refusals.count(Refusal::NotYours);
         } else if !is_sound(&proposal) {
-            self.ignored.bad_number += 1;
+            self.refusals.count(Refusal::BadNumber);
         } else {
             self.advisers[i].newest = Some(proposal);
         }
@@ -118,6 +113,7 @@ fn is_sound(proposal: &PolicyProposal) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use game::codec;
     use game::message::Message;
 
     fn proposal(vehicle: u16, seq: u64, speed_m_s: f64) -> PolicyProposal {
@@ -128,7 +124,7 @@ mod tests {
     #[test]
     fn the_newest_good_proposal_stands_and_others_are_counted() {
         let adviser = |v: u16| Adviser { vehicle: VehicleId(v), is_awaited: v < 2, newest: None };
-        let mut heap = Heap { advisers: vec![adviser(0), adviser(1), adviser(2)], ignored: Ignored::default() };
+        let mut heap = Heap { advisers: vec![adviser(0), adviser(1), adviser(2)], refusals: Refusals::default() };
         heap.take(0, &codec::encode(&proposal(0, 4, 1.0)));
         assert!(!heap.is_for(4), "the other is missing");
         heap.take(1, &codec::encode(&proposal(1, 4, 1.0)));
@@ -143,7 +139,7 @@ mod tests {
         other.stamp.version += 1;
         heap.take(1, &codec::encode(&other));
         assert_eq!(heap.advisers[1].newest, Some(proposal(1, 5, 2.0)));
-        let want = Ignored { not_theirs: 1, bad_number: 2, garbage: 1, version: 1, ..Ignored::default() };
-        assert_eq!(heap.ignored, want);
+        let want = [(Refusal::NotYours, 1), (Refusal::BadNumber, 2), (Refusal::Garbage, 1), (Refusal::Version, 1)];
+        assert_eq!(heap.refusals, Refusals::from(want));
     }
 }

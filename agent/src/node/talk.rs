@@ -2,10 +2,10 @@
 
 use super::NodeError;
 use super::agent_loop::Seated;
-use super::ignored::Ignored;
 use super::team_inbox::TeamInbox;
 use bus::{Bus, Declaration, Delivery, Publisher, Watched};
 use game::message::{Message, Say, Stamp, Word};
+use game::refusal::{Refusal, Refusals};
 use game::topic::{self, GameName};
 use game::{Scenario, TeamId, VehicleId};
 use std::sync::Arc;
@@ -70,7 +70,7 @@ impl Talk {
         self.words.clear();
         self.team_inbox.visit(|team_inbox| {
             let missed = team_inbox.hear(seq, &mut self.words);
-            team_inbox.ignored.unheard += if waits { missed } else { 0 };
+            team_inbox.refusals.add(Refusal::TeamMessageMissing, if waits { missed } else { 0 });
         });
         self.pass_on(seated);
     }
@@ -109,7 +109,7 @@ impl Talk {
         }
     }
 
-    pub(super) fn ignored(&self) -> Ignored {
-        self.team_inbox.visit(|team_inbox| team_inbox.ignored)
+    pub(super) fn refusals(&self) -> Refusals {
+        self.team_inbox.visit(|team_inbox| team_inbox.refusals)
     }
 }

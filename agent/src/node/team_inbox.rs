@@ -3,9 +3,8 @@
 //! No network and no clock in here. What a mate says after decision `k` is heard at decision `k + 1`, not earlier: a
 //! faster mate may have said its words of `k + 1` already, so the two that came last are kept.
 
-use super::ignored::Ignored;
-use game::codec::{self, DecodeError};
 use game::message::{Say, Word};
+use game::refusal::{Refusal, Refusals};
 use game::strategy::SHARED_MAX;
 use game::{TeamId, VehicleId};
 
@@ -33,7 +32,7 @@ struct Speaker {
 pub(super) struct TeamInbox {
     /// By vehicle.
     speakers: Vec<Speaker>,
-    pub(super) ignored: Ignored,
+    pub(super) refusals: Refusals,
 }
 
 impl TeamInbox {
@@ -43,27 +42,23 @@ impl TeamInbox {
             let is_mate = !minded.contains(&VehicleId::at(i));
             Speaker { team, is_mate, newest: None, before: None, heard: None }
         };
-        TeamInbox { speakers: teams.enumerate().map(speaker).collect(), ignored: Ignored::default() }
+        TeamInbox { speakers: teams.enumerate().map(speaker).collect(), refusals: Refusals::default() }
     }
 
     /// Takes in what came on a team's line.
     pub(super) fn take(&mut self, team: TeamId, bytes: &[u8]) {
-        let say: Say = match codec::decode(bytes) {
-            Ok(say) => say,
-            Err(DecodeError::Version { .. }) => return self.ignored.version += 1,
-            Err(_) => return self.ignored.garbage += 1,
-        };
+        let Some(say) = self.refusals.decode::<Say>(bytes) else { return };
         for word in say.words {
             let speaker = self.speakers.get_mut(word.vehicle.index());
             let Some(speaker) = speaker.filter(|speaker| speaker.is_mate && speaker.team == team) else {
-                self.ignored.not_theirs += 1;
+                self.refusals.count(Refusal::NotYours);
                 continue;
             };
             if !word.value.is_finite() {
-                self.ignored.bad_number += 1;
+                self.refusals.count(Refusal::BadNumber);
                 continue;
             }
-            self.ignored.surplus += u64::from(!speaker.note(say.stamp.seq, word));
+            self.refusals.add(Refusal::Surplus, u64::from(!speaker.note(say.stamp.seq, word)));
         }
     }
 
@@ -127,6 +122,7 @@ impl Speaker {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use game::codec;
     use game::message::{Message, Stamp};
 
     const BLUE: TeamId = TeamId(0);
@@ -198,7 +194,7 @@ mod tests {
         take(&mut bag, &say(0, &[(1, 5.0)]));
         take(&mut bag, &say(0, &[(1, 5.0)]));
         assert_eq!(heard(&mut bag, 1), [5.0]);
-        assert_eq!(bag.ignored.total(), 0);
+        assert_eq!(bag.refusals.total(), 0);
     }
 
     #[test]
@@ -206,15 +202,15 @@ mod tests {
         let mut bag = bag();
         take(&mut bag, &say(0, &[(9, 1.0), (u16::MAX, 1.0), (2, 1.0), (0, 1.0), (1, f64::NAN), (1, f64::INFINITY)]));
         bag.take(TeamId(1), &codec::encode(&say(0, &[(1, 1.0)])));
-        assert_eq!((bag.ignored.not_theirs, bag.ignored.bad_number), (5, 2));
+        assert_eq!(bag.refusals, Refusals::from([(Refusal::NotYours, 5), (Refusal::BadNumber, 2)]));
         let mut other = say(0, &[(1, 1.0)]);
         other.stamp.version += 1;
         take(&mut bag, &other);
         bag.take(BLUE, b"ahoy");
-        assert_eq!((bag.ignored.version, bag.ignored.garbage), (1, 1));
+        assert_eq!([Refusal::Version, Refusal::Garbage].map(|refusal| bag.refusals.of(refusal)), [1, 1]);
         let key = |key| Word { vehicle: VehicleId(1), key, value: 1.0 };
         take(&mut bag, &Say { words: (0..300).map(key).collect(), ..say(0, &[]) });
-        assert_eq!(bag.ignored.surplus, 300 - SHARED_MAX as u64);
+        assert_eq!(bag.refusals.of(Refusal::Surplus), 300 - SHARED_MAX as u64);
         assert_eq!(heard(&mut bag, 1).len(), SHARED_MAX);
         // A number of a decision that never comes hides what was said once, and not for long.
         take(&mut bag, &say(u64::MAX, &[(1, 1.0)]));

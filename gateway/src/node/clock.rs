@@ -1,5 +1,6 @@
 //! The gateway's clock: it never steps, and in a game that runs faster than the wall's it runs as fast as the game.
 
+use bus::clock;
 use game::SimTime;
 use std::time::{Duration, Instant};
 
@@ -10,14 +11,13 @@ pub(super) struct Clock {
     factor: f64,
 }
 
-#[expect(clippy::disallowed_methods, reason = "this is the one place where a gateway reads the clock")]
 impl Clock {
     pub(super) fn start(factor: f64) -> Clock {
-        Clock { start: Instant::now(), factor }
+        Clock { start: clock::now(), factor }
     }
 
     pub(super) fn now(&self) -> SimTime {
-        self.at(Instant::now())
+        self.at(clock::now())
     }
 
     /// The gateway's time at a moment of the wall's clock.
@@ -30,10 +30,4 @@ impl Clock {
         let wait_s = (due - self.now()).as_s() / self.factor;
         Duration::from_secs_f64(wait_s.clamp(0.0, 1.0))
     }
-}
-
-/// This moment.
-#[expect(clippy::disallowed_methods, reason = "latencies are measured by the clock")]
-pub(super) fn moment() -> Instant {
-    Instant::now()
 }

@@ -1,13 +1,14 @@
-//! The player: minds a simulated boat in a game, and lets a back seat be that mind, by the boat's own sentences.
+//! An emulated boat on the network: joins a game as the agent of a simulated boat, and lets a back seat decide for it, by the
+//! boat's own sentences.
 
-use super::{News, NodeError, clock, declination_today_rad, find_game, pace_factor};
+use super::{News, NodeError, declination_today_rad, find_game, pace_factor};
 use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
 use crate::utc;
 use bus::game_search::{self, GameSearch};
-use bus::{Delivery, Net, Publisher, Watched};
-use game::message::{Message, Orders, Stamp, VehicleOrder};
+use bus::{Delivery, Net, Patience, Publisher, SimState, SimWatch, Watched};
+use game::message::{Message, Orders, Role, Stamp, VehicleOrder};
 use game::topic::{self, GameName, Part};
 use game::{Picture, SimTime, VehicleId, codec};
 use std::sync::Arc;
@@ -36,7 +37,7 @@ pub struct EmulatorSettings {
     pub extra: Vec<Extra>,
     /// How long to look for the game.
     pub wait: Duration,
-    /// After this long without a picture the sim counts as gone.
+    /// After this long without a picture the sim counts as dead.
     pub silence: Duration,
     /// Set from outside to end.
     pub stop: Arc<AtomicBool>,
@@ -59,7 +60,7 @@ struct Incoming {
 /// Plays a boat until the game is over, or until it is told to stop.
 ///
 /// # Errors
-/// [`NodeError`] if there is no such game or boat, if it has another mind, or if the network or a link cannot work.
+/// [`NodeError`] if there is no such game or boat, if it has another agent, or if the network or a link cannot work.
 pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
     let mut look = GameSearch::new(settings.wait, &settings.stop);
     let (bus, game, notice) = find_game(&mut look, &settings.net, settings.game.as_ref(), tell)?;
@@ -95,11 +96,13 @@ pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> R
     }
     let names = [settings.vehicle.clone()];
     let mut say = |reason: &str| tell(News::Looking { reason });
-    let (ticket, _) = look.until(&mut say, || game_search::join(&bus, &topic::join(&game), &names, "mind"))?;
+    let sim = SimWatch::open(&bus, &game, Patience::of_player(settings.silence))?;
+    let (ticket, _) = look.until(&mut say, || game_search::join(&bus, &game, Role::Agent, &names))?;
     let mut player = Player {
         emulator: Emulator::new(plan),
         vehicle,
         ticket,
+        sim,
         now: SimTime::ZERO,
         links: [Some(back_seat), primary],
         orders: bus.publisher(topic::orders(&game, &bus.id()), Delivery::Wait)?,
@@ -107,7 +110,7 @@ pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> R
         operator: Operator::Secondary,
         sent: 0,
     };
-    let played = player.play(settings, &incoming, tell);
+    let played = player.play(&settings.stop, &incoming, tell);
     bus.close();
     played
 }
@@ -142,6 +145,7 @@ struct Player {
     emulator: Emulator,
     vehicle: VehicleId,
     ticket: u64,
+    sim: SimWatch,
     /// Time of the game.
     now: SimTime,
     /// To the back seat, and to the primary operator.
@@ -155,12 +159,11 @@ struct Player {
 impl Player {
     fn play(
         &mut self,
-        settings: &EmulatorSettings,
+        stop: &AtomicBool,
         incoming: &Watched<Incoming>,
         tell: &mut dyn FnMut(News<'_>),
     ) -> Result<(), NodeError> {
-        let mut heard = clock::moment();
-        while !settings.stop.load(Ordering::Relaxed) {
+        while !stop.load(Ordering::Relaxed) {
             incoming.wait(LOOK, Incoming::is_something);
             let Incoming { bytes, told, picture, .. } = incoming.visit(std::mem::take);
             for text in &told {
@@ -175,15 +178,16 @@ impl Player {
             }
             let picture = picture.and_then(|bytes| codec::decode::<Picture>(&bytes).ok());
             if let Some(picture) = picture {
-                heard = clock::moment();
+                self.sim.hears();
                 if picture.over {
                     break;
                 }
                 self.see(&picture)?;
             }
-            let silent = clock::moment().saturating_duration_since(heard);
-            if silent > settings.silence {
-                return Err(NodeError::Refused(format!("the sim is gone: no picture for {silent:.1?}")));
+            match self.sim.state() {
+                SimState::Alive => {}
+                SimState::Replaced => return Err(NodeError::SimReplaced),
+                SimState::Dead(silent) => return Err(NodeError::SimGone(silent)),
             }
         }
         Ok(())

@@ -1,12 +1,12 @@
 //! The desk of a gateway: what comes in from the boat, the sim and people goes to the core, what it says goes out.
 
-use super::clock::{self, Clock};
+use super::clock::Clock;
 use super::latency::Latency;
 use super::logbook::Logbook;
 use super::{News, NodeError};
 use crate::bridge::{Bridge, FleetCommand, Input, NavOut, Outbox};
 use crate::link::{Link, LinkEvent};
-use bus::{Inbox, Publisher, Query};
+use bus::{Inbox, Publisher, Query, clock};
 use game::codec;
 use game::external::{ExternalOrder, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply};
 use game::frame::Ned;
@@ -26,7 +26,7 @@ pub(super) enum Call {
     Operate(Query),
     EStop,
     Release,
-    Moored(u64, Vec<VehicleId>),
+    Joined(u64, Vec<VehicleId>),
     SimGone,
     Remark(String),
 }
@@ -84,7 +84,7 @@ pub(super) struct Counters {
 
 impl Counters {
     pub(super) fn new() -> Counters {
-        let now = clock::moment();
+        let now = clock::now();
         Counters {
             ticket: None,
             game_now: SimTime::ZERO,
@@ -114,8 +114,8 @@ impl GatewayLoop {
                 Some(call) => self.take(call, tell)?,
                 None => self.turn(Input::Tick, None, tell)?,
             }
-            if clock::moment() >= self.counters.status_at {
-                self.counters.status_at = clock::moment() + STATUS_EVERY;
+            if clock::now() >= self.counters.status_at {
+                self.counters.status_at = clock::now() + STATUS_EVERY;
                 let status = self.full_status();
                 self.status.send_json(serde_json::to_vec(&status).expect("a status is JSON"))?;
                 tell(News::Status(&status));
@@ -148,12 +148,12 @@ impl GatewayLoop {
             Call::Release => self.turn(Input::Fleet(FleetCommand::Release), None, tell),
             // It only wakes the desk.
             Call::EStop => Ok(()),
-            Call::Moored(ticket, vehicles) if vehicles == [self.vehicle] => {
+            Call::Joined(ticket, vehicles) if vehicles == [self.vehicle] => {
                 self.counters.ticket = Some(ticket);
-                self.remark("moored: the sim takes the boat in", tell);
+                self.remark("joined: the sim takes reports of the boat", tell);
                 self.turn(Input::Moored, None, tell)
             }
-            Call::Moored(..) => {
+            Call::Joined(..) => {
                 Err(NodeError::Refused("the sim let another boat in than the one that asked".to_owned()))
             }
             Call::SimGone => {
@@ -264,7 +264,7 @@ impl GatewayLoop {
         if let Some(nav) = &out.nav {
             self.report(nav)?;
             if let Some(read) = read {
-                self.counters.sentence_to_topic.note(read, clock::moment());
+                self.counters.sentence_to_topic.note(read, clock::now());
             }
         }
         for event in &out.events {
@@ -303,7 +303,7 @@ impl GatewayLoop {
 
     /// Says something, unless it was said just now.
     fn remark(&mut self, text: &str, tell: &mut dyn FnMut(News<'_>)) {
-        let now = clock::moment();
+        let now = clock::now();
         let (at, last) = &self.counters.remarked;
         if last == text && now.saturating_duration_since(*at) < REMARK_AGAIN {
             return;

@@ -23,7 +23,7 @@ use clock::Clock;
 use game::external::GatewayStatus;
 use game::frame::LatLon;
 use game::gateway::Gateway;
-use game::message::{Control, GameInfo};
+use game::message::{Control, GameInfo, Role};
 use game::scenario::{Source, UnknownVehicle};
 use game::topic::{self, GameName, Part};
 use game::{VehicleId, codec};
@@ -125,6 +125,12 @@ pub enum NodeError {
     /// The game and the gateway do not go together.
     #[error("{0}")]
     Refused(String),
+    /// The sim has died or fallen silent, and with it the emulated boat.
+    #[error("the sim is gone: no picture for {0:.1?}")]
+    SimGone(Duration),
+    /// Another sim serves a game of the same name, and knows nothing of us.
+    #[error("the sim is gone, and another one serves the game: join again")]
+    SimReplaced,
 }
 
 /// Calls that may wait at the desk.
@@ -160,10 +166,10 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         None => None,
     };
     let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;
-    // Not a word to a boat that another gateway has. The thread that keeps it moored asks again, and gets it again.
+    // Nothing is sent to a boat that another gateway has. The thread that keeps it joined asks again, and gets it again.
     let names = [settings.vehicle.clone()];
     let mut say = |reason: &str| tell(News::Looking { reason });
-    look.until(&mut say, || game_search::join(&bus, &topic::moor(&game), &names, "gateway"))?;
+    look.until(&mut say, || game_search::join(&bus, &game, Role::Gateway, &names))?;
     let (inbox_sender, inbox) = inbox(INBOX);
     let latest_order = LatestOrder::default();
     let e_stop = Arc::new(AtomicBool::new(false));
@@ -187,12 +193,12 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         logbook,
         counters: Counters::new(),
     };
-    let mooring = Join::begin(&bus, &game, &settings.vehicle, inbox_sender)?;
+    let join = Join::begin(&bus, &game, &settings.vehicle, inbox_sender)?;
     let worked = desk.work(&settings.stop, tell);
     let status = desk.full_status();
     // The boat first, then the network.
     drop(desk);
-    drop((mooring, standing));
+    drop((join, standing));
     tell(News::Ended(&status));
     bus.close();
     worked
@@ -212,7 +218,7 @@ fn lines(
         let Ok(order) = codec::decode(bytes) else { return };
         let mut latest_order = latest_order.lock().unwrap_or_else(PoisonError::into_inner);
         // Who has yet to look into the latest_order will find the newest.
-        if latest_order.replace((order, clock::moment())).is_none() {
+        if latest_order.replace((order, bus::clock::now())).is_none() {
             orders.put(Call::Order);
         }
     };

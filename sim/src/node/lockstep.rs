@@ -1,7 +1,8 @@
-//! Lockstep: every tick waits for every mind, but never forever.
+//! Lockstep: every tick waits for every agent, but never forever.
 
 use super::server::GameServer;
-use super::{News, NodeError, clock};
+use super::{News, NodeError};
+use bus::clock;
 use std::time::{Duration, Instant};
 
 /// After this time without an answer the pictures are sent again.
@@ -12,18 +13,18 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) 
     let mut due = clock::now();
     while !server.contest.is_over() && !server.is_stopped() {
         server.record();
-        server.ask()?;
-        server.show()?;
+        server.send_pictures()?;
+        server.send_frame()?;
         gather(server, tell)?;
         if server.pacing.is_held() {
-            server.stand_still(tell)?;
-            // Somebody may have come to the door meanwhile.
+            server.stay_paused(tell)?;
+            // Somebody may have joined meanwhile.
             gather(server, tell)?;
             due = clock::now();
         }
         server.contest.advance();
         server.pacing.played();
-        server.tell_progress(tell)?;
+        server.report_progress(tell)?;
         due = keep_speed(server, due, tell)?;
     }
     server.record();
@@ -41,7 +42,7 @@ fn keep_speed(server: &mut GameServer<'_>, due: Instant, tell: &mut dyn FnMut(Ne
     while clock::now() < due && server.pacing.speed() == Some(speed) && !server.pacing.is_held() && !server.is_stopped()
     {
         server.listen(due.saturating_duration_since(clock::now()).min(Duration::from_millis(50)));
-        server.tell_progress(tell)?;
+        server.report_progress(tell)?;
     }
     Ok(due.min(clock::now()))
 }
@@ -58,12 +59,12 @@ fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) -> Result
         if clock::since(since) >= patience {
             server.give_up(tick);
         } else if clock::since(sent) >= SEND_AGAIN {
-            server.ask()?;
-            server.tell_progress(tell)?;
+            server.send_pictures()?;
+            server.report_progress(tell)?;
             waiting = Some((since, clock::now()));
         }
     }
-    // Whoever came to the door or left meanwhile, in a game that waits for nobody.
+    // Whoever joined or left meanwhile, in a game that waits for nobody.
     server.listen(Duration::ZERO);
     Ok(())
 }

@@ -1,12 +1,12 @@
-//! The sim on the network: opens the door, paces the game, tells observers.
+//! The sim on the network: lets nodes join, paces the game, publishes it.
 //!
 //! [`serve`] plays one game from the first join to the last frame. Everything that decides is in
-//! [`Contest`] and the agents of agents; here are the sockets and the clocks.
+//! [`Contest`], [`membership`], [`agents`] and [`gateways`]; here are the sockets and the clocks.
 
 pub mod agents;
-mod clock;
 pub mod gateways;
 mod lockstep;
+pub mod membership;
 mod observers;
 mod pacing;
 mod realtime;
@@ -19,8 +19,8 @@ pub use recorder::{NoRecorder, RecordedMessage, Recorder};
 
 use crate::contest::Contest;
 use crate::world::NoStart;
-use agents::Refused;
-use bus::{BusError, Net};
+use bus::{BusError, Net, clock};
+use game::refusal::Refusals;
 use game::topic::GameName;
 use game::{Outcome, Scenario};
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ use thiserror::Error;
 /// How a game is paced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pace {
-    /// Every tick waits for every mind: as fast as the slowest, and always the same game.
+    /// Every tick waits for every agent: as fast as the slowest, and always the same game.
     Lockstep,
     /// By the clock, this many times as fast as it; nobody is waited for.
     Realtime {
@@ -50,7 +50,7 @@ pub struct Settings {
     pub net: Net,
     /// How to pace the game.
     pub pace: Pace,
-    /// How long to wait for minds, and for gateways of real boats, before starting without the missing ones.
+    /// How long to wait for agents, and for gateways of real boats, before starting without the missing ones.
     pub join_limit: Duration,
     /// In lockstep: plays no more simulated seconds a second than this, until somebody asks for another speed.
     pub speed: Option<f64>,
@@ -58,15 +58,15 @@ pub struct Settings {
     pub stop: Arc<AtomicBool>,
 }
 
-/// What a node tells the shell that runs it.
+/// What a node reports to the program that runs it.
 pub enum News<'a> {
-    /// The hub listens: agents may come.
+    /// The hub listens: nodes can join.
     Open,
-    /// The door is open; somebody is not there yet.
+    /// Somebody is not there yet.
     Waiting {
-        /// The vehicles without a mind, by name.
-        minds: Vec<&'a str>,
-        /// The real boats that no gateway has told the place of, by name.
+        /// The vehicles without an agent, by name.
+        agents: Vec<&'a str>,
+        /// The real boats that no gateway has reported the position of, by name.
         gateways: Vec<&'a str>,
     },
     /// The game begins.
@@ -77,8 +77,8 @@ pub enum News<'a> {
         contest: &'a Contest,
         /// Simulated seconds a second, lately.
         rate: f64,
-        /// What was refused so far.
-        refused: Refused,
+        /// Messages refused so far.
+        refused: u64,
     },
 }
 
@@ -99,7 +99,7 @@ pub struct Run {
     /// Wall-clock time it took, s.
     pub wall_s: f64,
     /// What was refused from agents and gateways.
-    pub refused: Refused,
+    pub refused: Refusals,
     /// Decision ticks that began late (real time only).
     pub overruns: u64,
     /// Whether it was ended before its end.
@@ -171,8 +171,8 @@ pub fn serve(
     let wall_s = clock::since(started).as_secs_f64();
     // The result stands before the agents leave: that they do is not part of the game.
     let outcome = server.contest.outcome();
-    server.say_good_bye()?;
+    server.shut_down()?;
     let overruns = server.overruns;
-    let run = Run { pace: settings.pace.to_string(), wall_s, refused: server.refused(), overruns, cut_short };
+    let run = Run { pace: settings.pace.to_string(), wall_s, refused: server.refusals(), overruns, cut_short };
     Ok(Report { outcome, run })
 }

@@ -1,4 +1,4 @@
-//! What observers ask a sim for, and what is heard for them only.
+//! What a sim answers observers, and the topics that it subscribes to only for the recorder.
 
 use crate::contest::Contest;
 use crate::sea::WaveField;
@@ -20,14 +20,14 @@ pub(super) fn water_json(contest: &Contest) -> Vec<u8> {
     serde_json::to_vec(&water(contest)).expect("waves are JSON")
 }
 
-/// Everything that has happened so far, as JSON.
-pub(super) fn story(contest: &Contest) -> Vec<u8> {
+/// The event history so far, as JSON.
+pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
     let scenario = contest.scenario();
     let events = contest.events().iter().map(|logged| EventOutcome::new(scenario, logged));
     serde_json::to_vec(&events.collect::<Vec<_>>()).expect("events are JSON")
 }
 
-/// A topic that is heard only to be written down.
+/// A topic that is subscribed to only for the recorder.
 pub(super) struct RecordedTopic {
     pub(super) topic: String,
     /// For CDR; none for JSON.
@@ -47,7 +47,7 @@ impl RecordedTopic {
     }
 }
 
-/// Words, proposals, and what gateways tell.
+/// Team messages, proposals, and what gateways publish.
 pub(super) fn recorded_topics(scenario: &Scenario) -> Vec<RecordedTopic> {
     let boats = scenario.vehicles.iter().map(|vehicle| &vehicle.name);
     let real = || scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()].name);

@@ -1,4 +1,4 @@
-//! How fast people ashore want a game to go.
+//! Paused or not, and how fast: what people ask of a running game.
 
 use game::message::Control;
 
@@ -16,7 +16,7 @@ pub(super) struct Pacing {
 }
 
 impl Pacing {
-    /// The pacing of a game that nobody has touched.
+    /// The pacing of a game as it was started.
     pub(super) fn new(speed: Option<f64>, is_lockstep: bool, is_real: bool) -> Pacing {
         Pacing { is_paused: false, steps: 0, speed, is_lockstep, is_real }
     }
@@ -41,8 +41,8 @@ impl Pacing {
         self.steps = self.steps.saturating_sub(1);
     }
 
-    /// Does what is asked of it; says whether it can.
-    pub(super) fn obey(&mut self, control: Control) -> bool {
+    /// Changes to what is asked for, and returns whether it can.
+    pub(super) fn change(&mut self, control: Control) -> bool {
         match control {
             Control::Pause => (self.is_paused, self.steps) = (true, 0),
             Control::Resume => (self.is_paused, self.steps) = (false, 0),
@@ -64,27 +64,29 @@ mod tests {
     #[test]
     fn a_paused_game_plays_the_steps_that_it_is_asked_for() {
         let mut pacing = Pacing::new(None, true, false);
-        assert!(!pacing.is_held() && !pacing.obey(Control::Step), "it is going on");
-        assert!(pacing.obey(Control::Pause) && pacing.is_held());
-        assert!(pacing.obey(Control::Step) && pacing.obey(Control::Step) && !pacing.is_held() && pacing.is_paused());
+        assert!(!pacing.is_held() && !pacing.change(Control::Step), "it is going on");
+        assert!(pacing.change(Control::Pause) && pacing.is_held());
+        assert!(
+            pacing.change(Control::Step) && pacing.change(Control::Step) && !pacing.is_held() && pacing.is_paused()
+        );
         pacing.played();
         assert!(!pacing.is_held());
         pacing.played();
         assert!(pacing.is_held());
-        assert!(pacing.obey(Control::Resume) && !pacing.is_held() && !pacing.is_paused());
+        assert!(pacing.change(Control::Resume) && !pacing.is_held() && !pacing.is_paused());
     }
 
     #[test]
     fn only_speeds_that_can_be_are_taken() {
         let mut lockstep = Pacing::new(None, true, false);
-        assert!(lockstep.obey(Control::Speed(Some(4.0))) && lockstep.speed() == Some(4.0));
+        assert!(lockstep.change(Control::Speed(Some(4.0))) && lockstep.speed() == Some(4.0));
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e4] {
-            assert!(!lockstep.obey(Control::Speed(Some(bad))), "{bad}");
+            assert!(!lockstep.change(Control::Speed(Some(bad))), "{bad}");
         }
-        assert!(lockstep.obey(Control::Speed(None)) && lockstep.speed().is_none());
+        assert!(lockstep.change(Control::Speed(None)) && lockstep.speed().is_none());
         let mut clock = Pacing::new(Some(1.0), false, false);
-        assert!(!clock.obey(Control::Speed(None)) && clock.obey(Control::Speed(Some(2.0))));
+        assert!(!clock.change(Control::Speed(None)) && clock.change(Control::Speed(Some(2.0))));
         let mut real = Pacing::new(Some(1.0), false, true);
-        assert!(!real.obey(Control::Speed(Some(2.0))) && real.speed() == Some(1.0));
+        assert!(!real.change(Control::Speed(Some(2.0))) && real.speed() == Some(1.0));
     }
 }

@@ -1,7 +1,8 @@
 //! Real time, or a factor of it: the clock paces, nobody is waited for, old orders expire.
 
 use super::server::GameServer;
-use super::{News, NodeError, clock};
+use super::{News, NodeError};
+use bus::clock;
 use game::VehicleId;
 use std::time::Duration;
 
@@ -10,8 +11,8 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) 
     let mut due = clock::now() + period(server);
     while !server.contest.is_over() && !server.is_stopped() {
         server.record();
-        server.ask()?;
-        server.show()?;
+        server.send_pictures()?;
+        server.send_frame()?;
         // Listens until the next tick is due, and at least once.
         loop {
             server.listen(due.saturating_duration_since(clock::now()));
@@ -21,7 +22,7 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) 
         }
         let period = period(server);
         if server.pacing.is_held() {
-            server.stand_still(tell)?;
+            server.stay_paused(tell)?;
             due = clock::now();
         }
         let late = clock::since(due);
@@ -34,7 +35,7 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) 
         expire(server);
         server.contest.advance();
         server.pacing.played();
-        server.tell_progress(tell)?;
+        server.report_progress(tell)?;
     }
     server.record();
     Ok(())
@@ -46,7 +47,7 @@ fn period(server: &GameServer<'_>) -> Duration {
     Duration::from_secs_f64(decision_s / server.pacing.speed().unwrap_or(1.0))
 }
 
-/// Boats whose order is too old hold; minds that are silent for longer than patience are lost.
+/// Boats whose order is too old hold; agents that are silent for longer than patience are lost.
 fn expire(server: &mut GameServer<'_>) {
     let now = server.contest.now();
     let (ttl_s, patience_s) = (server.contest.scenario().order_ttl_s, server.contest.scenario().patience_s);

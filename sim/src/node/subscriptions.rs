@@ -1,4 +1,4 @@
-//! The lines to a sim: what comes in on them goes to its inbox.
+//! What a sim subscribes to and answers: everything that comes in goes to its inbox.
 
 use super::observers::RecordedTopic;
 use bus::{Bus, BusError, Declaration, InboxSender, Query};
@@ -9,30 +9,29 @@ pub(super) enum Incoming {
     Orders(Vec<u8>),
     Nav(Vec<u8>),
     Join(Query),
-    Moor(Query),
     Scenario(Query),
     Events(Query),
     Water(Query),
-    /// To be written down only: the topic's place in the list, and the message.
+    /// For the recorder only: the topic's place in the list, and the message.
     RecordedMessage(usize, Vec<u8>),
     Gone(Part, String),
     Control(Vec<u8>),
 }
 
-/// What comes in, to the inbox; topics of `heard` only to be written down.
+/// Opens everything that comes in; `recorded` are the topics that are subscribed to only for the recorder.
 pub(super) fn open(
     bus: &Bus,
     game: &GameName,
     inbox_sender: &InboxSender<Incoming>,
-    heard: &[RecordedTopic],
+    recorded: &[RecordedTopic],
 ) -> Result<Vec<Declaration>, BusError> {
-    let on = |call: fn(Vec<u8>) -> Incoming| {
+    let on = |incoming: fn(Vec<u8>) -> Incoming| {
         let inbox_sender = inbox_sender.clone();
-        move |bytes: &[u8]| inbox_sender.put(call(bytes.to_vec()))
+        move |bytes: &[u8]| inbox_sender.put(incoming(bytes.to_vec()))
     };
-    let asked = |call: fn(Query) -> Incoming| {
+    let asked = |incoming: fn(Query) -> Incoming| {
         let inbox_sender = inbox_sender.clone();
-        move |question| inbox_sender.put(call(question))
+        move |query| inbox_sender.put(incoming(query))
     };
     let gone = inbox_sender.clone();
     let watch = move |key: &str, alive: bool| {
@@ -40,7 +39,7 @@ pub(super) fn open(
             gone.put(Incoming::Gone(part, node));
         }
     };
-    let mut standing = vec![
+    let mut declarations = vec![
         bus.subscribe(topic::all_orders(game), on(Incoming::Orders))?,
         bus.subscribe(topic::control(game), on(Incoming::Control))?,
         bus.subscribe(topic::all_nav(game), on(Incoming::Nav))?,
@@ -50,13 +49,12 @@ pub(super) fn open(
         bus.answer(topic::events(game), asked(Incoming::Events))?,
         bus.answer(topic::water(game), asked(Incoming::Water))?,
         bus.answer(topic::join(game), asked(Incoming::Join))?,
-        bus.answer(topic::moor(game), asked(Incoming::Moor))?,
         bus.show_alive(topic::alive(game, Part::Sim, &bus.id()))?,
     ];
-    for (i, RecordedTopic { topic, .. }) in heard.iter().enumerate() {
+    for (i, RecordedTopic { topic, .. }) in recorded.iter().enumerate() {
         let inbox_sender = inbox_sender.clone();
         let take = move |bytes: &[u8]| inbox_sender.put(Incoming::RecordedMessage(i, bytes.to_vec()));
-        standing.push(bus.subscribe(topic::recorded(game, topic), take)?);
+        declarations.push(bus.subscribe(topic::recorded(game, topic), take)?);
     }
-    Ok(standing)
+    Ok(declarations)
 }

@@ -5,14 +5,14 @@ use super::query_thread::QueryThread;
 use super::{Command, Place, SharedState};
 use crate::page::clock;
 use bus::game_search::{self, Missing};
-use bus::{Bus, BusError, Declaration, Delivery, Publisher, Watched};
+use bus::{Bus, BusError, Declaration, Delivery, Patience, Publisher, SimState, SimWatch, Watched};
 use game::codec;
 use game::external::GatewayStatus;
 use game::message::{Frame, Message, PolicyProposal, Stamp};
 use game::picture::Picture;
 use game::run_state::RunState;
 use game::scenario::Source;
-use game::topic::{self, GameName, Part};
+use game::topic::{self, GameName};
 use game::water::Water;
 use game::{TeamId, VehicleId};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,10 +28,8 @@ const ROUND: Duration = Duration::from_millis(50);
 const ATTEMPTS: u64 = 20;
 /// How long to wait for an answer.
 const ANSWER: Duration = Duration::from_secs(2);
-/// A sim whose sign of life is missing for so long is gone; a link that was cut and came back is not.
-const GONE: Duration = Duration::from_secs(1);
-/// How long its sign of life may take at first.
-const APPEAR: Duration = Duration::from_secs(5);
+/// How long a sim's token may take to appear, and to come back: a sim is not gone because its link was cut for a moment.
+const PATIENCE: Patience = Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1) };
 /// Estimates are looked at no more often than this, however fast the game is.
 const PICTURE_AGAIN: Duration = Duration::from_millis(50);
 
@@ -51,7 +49,7 @@ struct Visit {
     control: Publisher,
     policies: BTreeMap<VehicleId, Publisher>,
     pictures: BTreeMap<TeamId, Declaration>,
-    sims: Arc<Watched<BTreeSet<String>>>,
+    sim: SimWatch,
     _standing: Vec<Declaration>,
 }
 
@@ -123,8 +121,7 @@ impl GameWatcher {
         let asker = QueryThread::new(&self.shared, visit.bus.clone(), Arc::clone(&visit.play));
         std::thread::scope(|scope| {
             scope.spawn(|| asker.ask(&left));
-            let mut watch = SignOfLife::new(clock::now());
-            while !self.shared.is_closing() && !watch.is_gone(&visit.sims, clock::now()) {
+            while !self.shared.is_closing() && visit.sim.state_by_token() == SimState::Alive {
                 if let Ok(command) = self.commands.recv_timeout(ROUND) {
                     visit.send(command);
                 }
@@ -148,44 +145,11 @@ fn in_words(missing: Missing) -> String {
     }
 }
 
-/// Tells whether a sim is still there.
-struct SignOfLife {
-    node: Option<String>,
-    seen: Instant,
-    limit: Duration,
-}
-
-impl SignOfLife {
-    fn new(now: Instant) -> SignOfLife {
-        SignOfLife { node: None, seen: now, limit: APPEAR }
-    }
-
-    /// Whether the sim that was seen first is gone, whoever else has come.
-    fn is_gone(&mut self, sims: &Watched<BTreeSet<String>>, now: Instant) -> bool {
-        let is_here = sims.visit(|sims| match &self.node {
-            Some(node) => sims.contains(node),
-            None => {
-                self.node = sims.first().cloned();
-                self.node.is_some()
-            }
-        });
-        if is_here {
-            (self.seen, self.limit) = (now, GONE);
-        }
-        now.saturating_duration_since(self.seen) > self.limit
-    }
-}
-
 impl Visit {
     /// Puts the game on the stage and listens to it.
     fn begin(shared: &Arc<SharedState>, bus: Bus, play: Play) -> Result<Visit, BusError> {
         let play = Arc::new(play);
-        let sims = Arc::new(Watched::new(BTreeSet::new()));
-        let alive = Arc::clone(&sims);
-        let watch = move |key: &str, is_alive: bool| {
-            alive.visit(|sims| if is_alive { sims.insert(key.to_owned()) } else { sims.remove(key) });
-        };
-        let watch = bus.watch_alive(topic::all_alive(&play.name, Part::Sim), watch)?;
+        let sim = SimWatch::open(&bus, &play.name, PATIENCE)?;
         let control = bus.publisher(topic::control(&play.name), Delivery::Wait)?;
         let generation = {
             let mut stage = shared.stage();
@@ -194,14 +158,14 @@ impl Visit {
         };
         shared.news.ring();
         let ear = Ear { shared: Arc::clone(shared), generation };
-        let mut standing = vec![watch, ear.clone().frames(&bus, &play)?, ear.clone().run(&bus, &play)?];
+        let mut standing = vec![ear.clone().frames(&bus, &play)?, ear.clone().run(&bus, &play)?];
         for (i, vehicle) in play.scenario().vehicles.iter().enumerate() {
             if vehicle.source == Source::External {
                 standing.push(ear.clone().status(&bus, &play, VehicleId::at(i))?);
             }
         }
         let (policies, pictures) = (BTreeMap::new(), BTreeMap::new());
-        Ok(Visit { bus, play, control, policies, pictures, sims, _standing: standing })
+        Ok(Visit { bus, play, control, policies, pictures, sim, _standing: standing })
     }
 
     /// Passes on what a page wants. What cannot be sent now is lost with the session, which is looked at anew.
@@ -345,23 +309,5 @@ mod tests {
         };
         GameWatcher::new(shared, Box::new(place), None, to_do, Box::new(|_| ())).keep();
         assert!(finds.recv().unwrap());
-    }
-
-    #[test]
-    fn a_sim_is_gone_when_it_is_not_the_same_or_not_there_for_a_while() {
-        let start = clock::now();
-        let later = |s: f64| start + Duration::from_secs_f64(s);
-        let sims = Watched::new(BTreeSet::new());
-        let mut watch = SignOfLife::new(start);
-        assert!(!watch.is_gone(&sims, later(4.0)), "it has time to appear");
-        sims.visit(|sims| sims.insert("a".to_owned()));
-        assert!(!watch.is_gone(&sims, later(4.5)));
-        sims.visit(|sims| sims.clear());
-        assert!(!watch.is_gone(&sims, later(5.0)), "the link is cut");
-        sims.visit(|sims| sims.insert("a".to_owned()));
-        assert!(!watch.is_gone(&sims, later(9.0)), "and is back");
-        sims.visit(|sims| *sims = BTreeSet::from(["b".to_owned()]));
-        assert!(!watch.is_gone(&sims, later(9.5)) && watch.is_gone(&sims, later(10.5)), "another sim");
-        assert!(SignOfLife::new(start).is_gone(&Watched::new(BTreeSet::new()), later(6.0)));
     }
 }

@@ -1,0 +1,241 @@
+//! Whether the sim of a game is still there, for agents, gateways and pages alike.
+//!
+//! Two signs tell: the sim's liveliness token, and messages from it. A sim that dies is heard until its token goes; where
+//! the link to it is cut, it falls silent first, and its token goes when the network gives the link up.
+
+use crate::{Bus, BusError, Declaration, Watched, clock};
+use game::topic::{self, GameName, Part};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long a sim may be silent before it counts as dead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patience {
+    /// In any case.
+    pub silence: Duration,
+    /// Where it was heard until its token went: the link may only have been opened anew.
+    pub missing: Duration,
+}
+
+impl Patience {
+    /// That of whoever plays in the game: it waits this long for a silent sim, and for one without a token five seconds.
+    #[must_use]
+    pub fn of_player(silence: Duration) -> Patience {
+        Patience { silence, missing: Duration::from_secs(5) }
+    }
+}
+
+/// How it is with a sim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SimState {
+    /// It is there, or not missed for long enough.
+    Alive,
+    /// Another sim serves a game of the same name, and knows nothing of us.
+    Replaced,
+    /// Nothing was heard of it for this long.
+    Dead(Duration),
+}
+
+/// What is known of the sim: which one it is, and when it was heard and missed.
+#[derive(Clone, Debug)]
+struct SimLiveness {
+    patience: Patience,
+    heard_at: Instant,
+    /// When its token was first missed.
+    missed_at: Option<Instant>,
+    /// The sim that we go by: the first that was seen, by the key of its token.
+    ours: Option<String>,
+    /// The tokens that are there.
+    tokens: BTreeSet<String>,
+    is_replaced: bool,
+}
+
+impl SimLiveness {
+    fn new(patience: Patience, now: Instant) -> SimLiveness {
+        let (ours, tokens) = (None, BTreeSet::new());
+        SimLiveness { patience, heard_at: now, missed_at: None, ours, tokens, is_replaced: false }
+    }
+
+    /// A token has come or gone.
+    fn take_token(&mut self, key: &str, is_there: bool) {
+        if is_there {
+            let ours = self.ours.get_or_insert_with(|| key.to_owned());
+            self.is_replaced |= ours != key;
+            self.tokens.insert(key.to_owned());
+        } else {
+            self.tokens.remove(key);
+        }
+    }
+
+    /// Goes by a sim that is there now, whichever was ours before. Says whether there is one.
+    fn choose(&mut self) -> bool {
+        (self.ours, self.is_replaced) = (self.tokens.first().cloned(), false);
+        self.ours.is_some()
+    }
+
+    /// Whether the token of our sim is there; nothing if no sim was ever seen.
+    fn is_there(&self) -> Option<bool> {
+        self.ours.as_ref().map(|ours| self.tokens.contains(ours))
+    }
+
+    fn state(&mut self, now: Instant) -> SimState {
+        if self.is_replaced {
+            return SimState::Replaced;
+        }
+        self.missed_at = if self.is_there() == Some(false) { self.missed_at.or(Some(now)) } else { None };
+        let Patience { silence, missing } = self.patience;
+        let is_cut_off = |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
+        let limit = match self.missed_at {
+            Some(missed) if !is_cut_off(missed) => silence.min(missing),
+            Some(_) | None => silence,
+        };
+        let silent = now.saturating_duration_since(self.heard_at);
+        if silent > limit { SimState::Dead(silent) } else { SimState::Alive }
+    }
+}
+
+/// Watches the sim of a game.
+pub struct SimWatch {
+    liveness: Arc<Watched<SimLiveness>>,
+    _tokens: Declaration,
+}
+
+impl SimWatch {
+    /// Watches from now on, for as long as this is kept.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn open(bus: &Bus, game: &GameName, patience: Patience) -> Result<SimWatch, BusError> {
+        let liveness = Arc::new(Watched::new(SimLiveness::new(patience, clock::now())));
+        let told = Arc::clone(&liveness);
+        let take = move |key: &str, is_there: bool| told.visit(|liveness| liveness.take_token(key, is_there));
+        let tokens = bus.watch_alive(topic::all_alive(game, Part::Sim), take)?;
+        Ok(SimWatch { liveness, _tokens: tokens })
+    }
+
+    /// The sim was heard just now.
+    pub fn hears(&self) {
+        self.liveness.visit(|liveness| liveness.heard_at = clock::now());
+    }
+
+    /// How it is with the sim now.
+    #[must_use]
+    pub fn state(&self) -> SimState {
+        self.liveness.visit(|liveness| liveness.state(clock::now()))
+    }
+
+    /// How it is with the sim now, for whoever hears nothing of it but its token.
+    #[must_use]
+    pub fn state_by_token(&self) -> SimState {
+        if self.liveness.visit(|liveness| liveness.is_there()) == Some(true) {
+            self.hears();
+        }
+        self.state()
+    }
+
+    /// Waits up to `limit` for a sim, and goes by that one from then on. Says whether one is there.
+    #[must_use]
+    pub fn find(&self, limit: Duration) -> bool {
+        self.liveness.wait(limit, |liveness| !liveness.tokens.is_empty()) && self.liveness.visit(SimLiveness::choose)
+    }
+
+    /// Waits up to `limit` until our sim has lost its token or another one has come. Says whether that is so.
+    #[must_use]
+    pub fn is_lost(&self, limit: Duration) -> bool {
+        self.liveness.wait(limit, |liveness| liveness.is_replaced || liveness.is_there() != Some(true))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SILENCE: u64 = 60;
+
+    /// For each second from the beginning: whether the sim is heard, and whether its token is there. Gives the second at
+    /// which it counts as dead.
+    fn died(silence_s: u64, is_heard: impl Fn(u64) -> bool, is_there: impl Fn(u64) -> bool) -> Option<u64> {
+        let start = clock::now();
+        let mut sim = SimLiveness::new(Patience::of_player(Duration::from_secs(silence_s)), start);
+        (0..300).find(|s| {
+            let now = start + Duration::from_secs(*s);
+            if is_heard(*s) {
+                sim.heard_at = now;
+            }
+            sim.take_token("a", is_there(*s));
+            matches!(sim.state(now), SimState::Dead(_))
+        })
+    }
+
+    #[test]
+    fn a_sim_that_dies_is_missed_soon() {
+        assert_eq!(died(SILENCE, |s| s <= 20, |s| s <= 20), Some(26));
+        assert_eq!(died(SILENCE, |s| s <= 20, |s| s <= 18), Some(26), "its last pictures came late");
+        assert_eq!(died(2, |s| s <= 20, |s| s <= 20), Some(23), "who wants to know sooner does");
+    }
+
+    #[test]
+    fn a_sim_that_hangs_is_missed_after_the_silence_allowed() {
+        assert_eq!(died(SILENCE, |s| s <= 20, |_| true), Some(81));
+    }
+
+    #[test]
+    fn a_link_that_is_cut_is_waited_for() {
+        // The network gives a link up after ten seconds.
+        let is_there = |s| !(30..55).contains(&s);
+        assert_eq!(died(SILENCE, |s| s <= 20 || s >= 55, is_there), None);
+        assert_eq!(died(SILENCE, |s| s <= 20, |s| s < 30), Some(81), "but not forever");
+        assert_eq!(
+            died(SILENCE, |s| s <= 20 || (55..90).contains(&s), |s| is_there(s) && s < 90),
+            Some(95),
+            "it died then"
+        );
+    }
+
+    #[test]
+    fn a_link_that_is_opened_anew_is_no_death() {
+        assert_eq!(died(SILENCE, |s| !(21..24).contains(&s), |s| !(21..24).contains(&s)), None);
+    }
+
+    #[test]
+    fn a_sim_of_the_same_name_is_another_one() {
+        let now = clock::now();
+        let mut sim = SimLiveness::new(Patience::of_player(Duration::from_secs(SILENCE)), now);
+        assert_eq!((sim.is_there(), sim.state(now)), (None, SimState::Alive), "its token may take a moment");
+        for is_there in [true, false, true, false] {
+            sim.take_token("a", is_there);
+            assert_eq!((sim.is_there(), sim.state(now)), (Some(is_there), SimState::Alive));
+        }
+        sim.take_token("b", true);
+        assert_eq!((sim.is_there(), sim.state(now)), (Some(false), SimState::Replaced));
+        assert!(sim.choose(), "whoever can begin again goes by the new one");
+        assert_eq!((sim.is_there(), sim.state(now)), (Some(true), SimState::Alive));
+        sim.take_token("b", false);
+        assert!(!sim.choose());
+    }
+
+    #[test]
+    fn by_its_token_alone_a_sim_is_gone_when_it_is_not_the_same_or_not_there_for_a_while() {
+        let start = clock::now();
+        let patience = Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1) };
+        let mut sim = SimLiveness::new(patience, start);
+        for (at_s, token, want, what) in [
+            (4.0, None, true, "it has time to appear"),
+            (4.5, Some(true), true, "it is there"),
+            (5.0, Some(false), true, "the link is cut"),
+            (9.0, Some(true), true, "and is back"),
+            (9.5, Some(false), true, "the link is cut again"),
+            (10.5, None, false, "for too long"),
+        ] {
+            let now = start + Duration::from_secs_f64(at_s);
+            token.into_iter().for_each(|is_there| sim.take_token("a", is_there));
+            if sim.is_there() == Some(true) {
+                sim.heard_at = now;
+            }
+            assert_eq!(sim.state(now) == SimState::Alive, want, "{at_s} s: {what}");
+        }
+        let never = SimLiveness::new(patience, start).state(start + Duration::from_secs(6));
+        assert_eq!(never, SimState::Dead(Duration::from_secs(6)));
+    }
+}
