@@ -1,6 +1,6 @@
 //! Mistakes in strategies: safety that is none, and more than a helm or a team can take.
 
-use super::{Broken, assert_broken};
+use super::{BASE, assert_broken};
 
 /// Numbers with which a behaviour is no guard: whose, what the file says of it, and why it is none.
 const POWERLESS: &[(&str, &str, &str)] = &[
@@ -15,58 +15,31 @@ const POWERLESS: &[(&str, &str, &str)] = &[
     ("keep_clear", "time_on_leg_s = 0.1", "time_on_leg_s is 0.1, less than 1"),
 ];
 
-const VOID: &[Broken] = &[
-    (
-        "a goal above safety",
-        r#"base = "s.toml"
+const VOID: &str = r#"
+## a goal above safety
 [behaviour.go]
 kind = "waypoint"
 points = ["CF"]
-weight = 301
-"#,
-        &[r#"5:10: weight is 301 in mode active, expected at most 300, which op_region or avoid_collision has there"#],
-    ),
-    (
-        "safety that is worth hardly anything",
-        r#"base = "s.toml"
+weight = 301 #~ 10: weight is 301 in mode active, expected at most 300, which op_region or avoid_collision has there
+
+## safety that is worth hardly anything
 [behaviour.stay_in]
 weight = 1e-9
+[behaviour.go] #~ 12: weight is 100 in mode active, expected at most 0.000000001, which op_region or avoid_collision has there
+kind = "waypoint"
+points = ["CF"]
+
+## numbers that are none
 [behaviour.go]
 kind = "waypoint"
 points = ["CF"]
-"#,
-        &[
-            r#"4:12: weight is 100 in mode active, expected at most 0.000000001, which op_region or avoid_collision has there"#,
-        ],
-    ),
-    (
-        "a reason of another file",
-        r#"base = "unsafe.toml"
-[behaviour.go]
-kind = "waypoint"
-points = ["CF"]
-"#,
-        &[
-            r#"1:1: mode active has no avoid_collision on guard, expected a behaviour of this kind for all contacts, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-            r#"1:1: mode active has no op_region on guard, expected a behaviour of this kind, without when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"#,
-        ],
-    ),
-    (
-        "numbers that are none",
-        r#"base = "s.toml"
-[behaviour.go]
-kind = "waypoint"
-points = ["CF"]
-speed_m_s = nan
-weight = inf
-"#,
-        &[r#"5:13: speed_m_s is nan, expected 0 to 60"#, r#"6:10: weight is inf, expected 0 to 1000"#],
-    ),
-];
+speed_m_s = nan #~ 13: speed_m_s is nan, expected 0 to 60
+weight = inf #~ 10: weight is inf, expected 0 to 1000
+"#;
 
 #[test]
 fn safety_cannot_be_voided() {
-    assert_broken(VOID);
+    assert_broken(BASE, VOID);
     for (name, keys, why) in POWERLESS {
         let (kind, all) = match *name {
             "stay_in" => ("op_region", ""),
@@ -76,26 +49,17 @@ fn safety_cannot_be_voided() {
             "1:1: mode active has no {kind} on guard ({name} is none: {why}), expected a behaviour of this kind{all}, without \
              when and duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because"
         );
-        assert_broken(&[(keys, &format!("base = \"s.toml\"\n[behaviour.{name}]\n{keys}\n"), &[&want])]);
+        assert_broken(BASE, &format!("\n## {why} #~ {want}\n[behaviour.{name}]\n{keys}\n"));
     }
 }
 
 #[test]
 fn there_is_an_end_to_what_is_heard() {
     let avoid: String = (0..16).map(|i| format!("[behaviour.a{i:02}]\nkind = \"avoid_collision\"\n")).collect();
+    let functions = "1:1: mode active could ask for 273 functions at once, expected at most 256: 16 for each avoid_collision and \
+                     avoid_obstacle, 2 for each cut_range, 1 for each other behaviour";
+    assert_broken(BASE, &format!("\n## more than a helm hears #~ {functions}\n{avoid}"));
     let shared: String = (0..257).map(|i| format!("v{i} = {{ initial = 0, shared = true }}\n")).collect();
-    assert_broken(&[
-        (
-            "more than a helm hears",
-            &format!("base = \"s.toml\"\n{avoid}"),
-            &[
-                "1:1: mode active could ask for 273 functions at once, expected at most 256: 16 for each avoid_collision and avoid_obstacle, 2 for each cut_range, 1 for each other behaviour",
-            ],
-        ),
-        (
-            "more than mates hear",
-            &format!("base = \"s.toml\"\n[variables]\n{shared}"),
-            &["2:1: variables has 257 shared ones, expected at most 256"],
-        ),
-    ]);
+    let variables = "[variables] #~ 1: variables has 257 shared ones, expected at most 256";
+    assert_broken(BASE, &format!("\n## more than mates hear\n{variables}\n{shared}"));
 }

@@ -12,14 +12,54 @@ mod variable;
 
 use crate::{abridged, problems};
 
-/// A name for the case, the strategy file `x.toml`, and what must be reported for it.
-type Broken<'a> = (&'a str, &'a str, &'a [&'a str]);
+/// What a file says that is laid over a sound one.
+const BASE: &str = "base = \"s.toml\"\n";
 
-fn assert_broken(cases: &[Broken<'_>]) {
-    for (name, text, want) in cases {
-        let got = problems("strategies/x.toml", &[("strategies/x.toml", text.as_bytes())]);
-        let got: Vec<String> = got.iter().map(|line| abridged(line)).collect();
-        let got: Vec<&str> = got.iter().map(|line| line.strip_prefix("strategies/x.toml:").unwrap_or(line)).collect();
-        assert_eq!(got, *want, "{name}");
+/// The same, with variables.
+const VARIABLES: &str = r#"base = "s.toml"
+variables.alarmed = false
+variables.laps = 0
+variables.phase = { values = ["go", "return"], shared = true }
+"#;
+
+/// Checks that broken files are reported as they say themselves.
+///
+/// A case is `## `, a name, and from the next line the file `strategies/x.toml`, which begins with `head`. After a line
+/// `--- PATH` follows another file; where the case begins with one, it is the file to check. What must be reported for a
+/// line stands behind it: `#~ COLUMN: MESSAGE`, after the name `#~ LINE:COLUMN: MESSAGE`. Nothing else may be reported.
+fn assert_broken(head: &str, cases: &str) {
+    for case in cases.split("\n## ").skip(1) {
+        let (title, text) = case.split_once('\n').expect("a case has a text");
+        let mut title = title.split(" #~ ");
+        let name = title.next().unwrap_or_default();
+        let mut want: Vec<_> = title.map(|said| expected("strategies/x.toml", said)).collect();
+        let mut files = vec![("strategies/x.toml", head.to_owned())];
+        for line in text.lines().filter(|line| !line.is_empty()) {
+            if let Some(path) = line.strip_prefix("--- ") {
+                files.retain(|(_, text)| !text.is_empty());
+                files.push((path, String::new()));
+                continue;
+            }
+            let mut parts = line.split(" #~ ");
+            let (path, text) = files.last_mut().expect("a case has a file");
+            text.push_str(parts.next().unwrap_or_default());
+            text.push('\n');
+            let number = text.lines().count();
+            want.extend(parts.map(|said| expected(path, &format!("{number}:{said}"))));
+        }
+        want.sort();
+        let files: Vec<(&str, &[u8])> = files.iter().map(|(path, text)| (*path, text.as_bytes())).collect();
+        let got: Vec<String> = problems(files[0].0, &files).iter().map(|line| abridged(line)).collect();
+        let want: Vec<String> =
+            want.into_iter().map(|(path, line, column, what)| format!("{path}:{line}:{column}: {what}")).collect();
+        assert_eq!(got, want, "{name}");
     }
+}
+
+/// A problem, from `LINE:COLUMN: MESSAGE`.
+fn expected<'a>(path: &'a str, said: &str) -> (&'a str, usize, usize, String) {
+    let mut parts = said.splitn(3, ':');
+    let mut number = || parts.next().and_then(|number| number.parse().ok()).expect("a line and a column");
+    let (line, column) = (number(), number());
+    (path, line, column, parts.next().unwrap_or_default().trim_start().to_owned())
 }
