@@ -115,7 +115,6 @@ fn play_here(
     const SHOW_EVERY: Duration = Duration::from_millis(100);
     let seed = args.seed.unwrap_or(scenario.seed);
     let scenario = scenario.of_seed(seed)?;
-    let mut minds = agent::minds_of(&scenario);
     let mut teller = Teller::default();
     let start = Instant::now();
     let mut shown = (start, 0.0);
@@ -131,7 +130,7 @@ fn play_here(
         }
         !stop.load(Ordering::Relaxed)
     };
-    let outcome = arena::play_watched(&scenario, &mut minds, seed, watch)?;
+    let outcome = arena::play_watched(&scenario, agent::minds_of(&scenario), seed, watch)?;
     let run = Run {
         pace: "in process".to_owned(),
         wall_s: start.elapsed().as_secs_f64(),

@@ -1,7 +1,7 @@
 //! Squall minds: what decides for a boat. One mind a boat; it sees a [`Picture`] and gives an [`Order`].
 //!
-//! A mind cannot tell the sea from simulation: this crate never imports `sim`. Open [`Mind`] first, then [`HelmMind`],
-//! which goes by a strategy, then the behaviours, then [`ivp`], which weighs them.
+//! A mind cannot tell the sea from simulation: this crate never imports `sim`. Open [`Mind`] first, then [`MindRunner`],
+//! which runs minds, then [`HelmMind`], which follows a strategy, then the behaviours, then [`ivp`], which weighs them.
 
 mod behaviour;
 mod helm;
@@ -9,8 +9,10 @@ pub mod ivp;
 #[cfg(feature = "net")]
 pub mod node;
 pub mod roles;
+mod runner;
 
 pub use helm::HelmMind;
+pub use runner::MindRunner;
 
 use game::helm::HelmReport;
 use game::message::Word;
@@ -31,8 +33,8 @@ pub trait Mind: Send {
         false
     }
 
-    /// Whose proposals are heeded, if anybody's are, ever.
-    fn heeds(&self) -> Option<Proposer> {
+    /// Who may propose courses and speeds to it, if anybody.
+    fn proposer(&self) -> Option<Proposer> {
         None
     }
 

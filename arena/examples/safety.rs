@@ -5,7 +5,6 @@
 //! calm water. Every boat has a strategy drawn by lot over `safety.toml`: places on the field and up to 20 m beyond it,
 //! pursuits, stations, headings, at any speed. The same seeds are the same games.
 
-use arena::Talk;
 use game::outcome::Outcome;
 use game::stream::Stream;
 use game::{Event, Ned, Pose, Scenario, VehicleId};
@@ -183,13 +182,13 @@ fn behaviour(stream: &mut Stream) -> String {
 fn play(scenario: &Scenario, seed: u64) -> Tally {
     let mut contest = Contest::new(scenario, seed).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
     let scenario = contest.scenario().clone();
-    let (mut minds, mut talk) = (agent::minds_of(&scenario), Talk::default());
+    let mut runner = arena::runner_of(agent::minds_of(&scenario));
     let count = scenario.vehicles.len();
     let (mut touching, mut touched_s) = (vec![false; count * count], vec![f64::NEG_INFINITY; count]);
     let mut tally = Tally { games: 1, ..Tally::default() };
     let mut told = 0;
     while !contest.is_over() {
-        arena::decide(&mut contest, &mut minds, &mut talk);
+        arena::decide(&mut contest, &mut runner);
         contest.advance();
         let now_s = contest.now().as_s();
         let pose = |i: usize| contest.world().state().boats[i].pose;

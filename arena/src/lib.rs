@@ -6,8 +6,7 @@ pub mod identify;
 pub mod tournament;
 pub mod trial;
 
-use agent::Mind;
-use game::message::Word;
+use agent::{Mind, MindRunner};
 use game::{Outcome, Scenario, VehicleId};
 use sim::Contest;
 use sim::NoStart;
@@ -15,59 +14,52 @@ use sim::NoStart;
 /// Plays the game of `scenario` that `seed` chooses to its end. `minds` are by vehicle.
 ///
 /// # Errors
-/// [`NoStart`] where the boats do not fit into their spawn area, numbers drawn by lot do not go together, or boats are
+/// [`NoStart`] where the boats do not fit into their spawn area, randomised numbers do not go together, or boats are
 /// real ones.
 ///
 /// # Panics
 /// If there is not one mind for each vehicle.
-pub fn play(scenario: &Scenario, minds: &mut [Box<dyn Mind>], seed: u64) -> Result<Outcome, NoStart> {
+pub fn play(scenario: &Scenario, minds: Vec<Box<dyn Mind>>, seed: u64) -> Result<Outcome, NoStart> {
     play_watched(scenario, minds, seed, |_| true)
 }
 
 /// As [`play`], but shows the contest to `watch` before every decision and at the end, and stops when that says `false`.
 ///
 /// # Errors
-/// [`NoStart`] where the boats do not fit into their spawn area, numbers drawn by lot do not go together, or boats are
+/// [`NoStart`] where the boats do not fit into their spawn area, randomised numbers do not go together, or boats are
 /// real ones.
 ///
 /// # Panics
 /// If there is not one mind for each vehicle.
 pub fn play_watched(
     scenario: &Scenario,
-    minds: &mut [Box<dyn Mind>],
+    minds: Vec<Box<dyn Mind>>,
     seed: u64,
     mut watch: impl FnMut(&mut Contest) -> bool,
 ) -> Result<Outcome, NoStart> {
     assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
     scenario.has_no_real_boats()?;
     let mut contest = Contest::new(scenario, seed)?;
-    let mut talk = Talk::default();
+    let mut runner = runner_of(minds);
     while watch(&mut contest) && !contest.is_over() {
-        decide(&mut contest, minds, &mut talk);
+        decide(&mut contest, &mut runner);
         contest.advance();
     }
     Ok(contest.outcome())
 }
 
-/// What minds tell their teams between two decisions.
-#[derive(Debug, Default)]
-pub struct Talk {
-    words: Vec<Word>,
+/// What runs these minds, one for each vehicle in the scenario's order.
+#[must_use]
+pub fn runner_of(minds: Vec<Box<dyn Mind>>) -> MindRunner {
+    MindRunner::new(minds.into_iter().enumerate().map(|(i, mind)| (VehicleId::at(i), mind)))
 }
 
-/// Shows every mind its team's picture and puts its order in force. What minds say then, their mates know at the next
-/// decision.
-pub fn decide(contest: &mut Contest, minds: &mut [Box<dyn Mind>], talk: &mut Talk) {
-    contest.pictures();
-    for (i, mind) in minds.iter_mut().enumerate() {
-        let order = mind.decide(contest.picture_of(VehicleId::at(i)));
+/// Shows every mind its team's picture and gives the contest its order.
+pub fn decide(contest: &mut Contest, runner: &mut MindRunner) {
+    let stamp = contest.pictures()[0].stamp;
+    runner.decide(stamp, |vehicle| Some(contest.picture_of(vehicle)));
+    for (vehicle, order) in runner.orders() {
         // As over the network: an order with bad numbers is refused, and the boat holds.
-        contest.order(VehicleId::at(i), order.check().unwrap_or_default());
-    }
-    talk.words.clear();
-    minds.iter().for_each(|mind| mind.say(&mut talk.words));
-    if !talk.words.is_empty() {
-        // Words of the other team are nothing to a mind: it listens to its mates.
-        minds.iter_mut().for_each(|mind| mind.hear(&talk.words));
+        contest.order(vehicle, order.check().unwrap_or_default());
     }
 }

@@ -18,9 +18,8 @@ const WARM_UP: u64 = 3_000;
 fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_happens() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
     let scenario: Scenario = game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
-    let mut minds = agent::minds_of(&scenario);
+    let mut runner = arena::runner_of(agent::minds_of(&scenario));
     let mut contest = Contest::new(&scenario, 1).unwrap_or_else(|e| panic!("{e}"));
-    let mut talk = arena::Talk::default();
     let (mut free, mut busy) = (0, 0);
     while !contest.is_over() {
         let boats = &contest.world().state().boats;
@@ -28,7 +27,7 @@ fn a_decision_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_ha
         let crowded = (0..boats.len()).any(near);
         let (events, decision) = (contest.events().len(), contest.decision());
         let heap = Region::new(HEAP);
-        arena::decide(&mut contest, &mut minds, &mut talk);
+        arena::decide(&mut contest, &mut runner);
         contest.advance();
         let used = heap.change();
         // The log of events grows, now and then; it is the one thing that does.

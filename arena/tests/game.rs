@@ -15,7 +15,7 @@ fn play(game: &str, seed: u64) -> Outcome {
 
 fn play_scenario(scenario: &Scenario, seed: u64) -> Outcome {
     let scenario = Scenario { seed, ..scenario.clone() };
-    arena::play(&scenario, &mut agent::minds_of(&scenario), seed).unwrap_or_else(|e| panic!("{e}"))
+    arena::play(&scenario, agent::minds_of(&scenario), seed).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn all(outcome: &Outcome, count: impl Fn(&Counts) -> u32) -> u32 {
@@ -110,6 +110,6 @@ fn the_shipped_games_are_what_they_say_and_no_boat_is_quarantined() {
 #[test]
 fn a_game_with_real_boats_does_not_start_here() {
     let scenario = shipped("mixed_2v2.toml");
-    let refused = arena::play(&scenario, &mut agent::minds_of(&scenario), 1);
+    let refused = arena::play(&scenario, agent::minds_of(&scenario), 1);
     assert!(matches!(refused, Err(sim::NoStart::RealBoats(_))), "{refused:?}");
 }

@@ -69,7 +69,7 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
         let strategies = [("blue".to_owned(), strategy(0)), ("red".to_owned(), strategy(1))].into();
         let scenario = load_with(&tournament.game, &Overrides { strategies, ..Overrides::default() }).unwrap();
         let scenario = scenario.of_seed(of.seed).unwrap();
-        let outcome = arena::play(&scenario, &mut agent::minds_of(&scenario), of.seed).unwrap();
+        let outcome = arena::play(&scenario, agent::minds_of(&scenario), of.seed).unwrap();
         let game = result.as_ref().unwrap();
         assert_eq!(game.digest, outcome.digest, "{of:?}");
         assert_eq!(game.score, [outcome.score.teams["blue"], outcome.score.teams["red"]], "{of:?}");

@@ -165,8 +165,8 @@ mod tests {
             }
             contest.decision() < 10
         };
-        let mut minds = agent::minds_of(&scenario);
-        let outcome = arena::play_watched(&scenario, &mut minds, scenario.seed, watch).expect("it starts");
+        let outcome =
+            arena::play_watched(&scenario, agent::minds_of(&scenario), scenario.seed, watch).expect("it starts");
         let ending = Ending { outcome, run: Value::Null, dropped: 0 };
         Recording::of(writer.end(&ending).expect("memory").into_inner()).unwrap_or_else(|e| panic!("{e}"))
     }

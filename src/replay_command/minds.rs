@@ -1,8 +1,8 @@
-//! What helms thought in a recorded game: minds are shown the recorded pictures again, and think the same.
+//! Helm reports of a recorded game: minds are shown the recorded pictures again, and decide the same.
 
-use agent::{Mind, Proposal, mind_of};
+use agent::{Mind, MindRunner, mind_of};
 use game::input::{Input, Inputs};
-use game::message::{PolicyProposal, Word};
+use game::message::PolicyProposal;
 use game::picture::Picture;
 use game::{Order, Scenario, SimTime, TeamId, VehicleId};
 use recording::{INPUTS, Recording, picture};
@@ -21,14 +21,11 @@ pub(super) struct Minds {
     proposals: BTreeMap<VehicleId, Vec<(SimTime, PolicyProposal)>>,
 }
 
-/// The minds of one team, as far as they have thought.
+/// The minds of one team, as far as they have decided.
 struct Team {
-    seated: Vec<(VehicleId, Box<dyn Mind>)>,
-    words: Vec<Word>,
+    runner: MindRunner,
     /// The places of the pictures, by decision.
     pictures: BTreeMap<u64, usize>,
-    /// The decision they thought about last, and what they ordered.
-    last: Option<(u64, Vec<(VehicleId, Order)>)>,
 }
 
 impl Minds {
@@ -53,25 +50,29 @@ impl Minds {
         Minds { teams, orders, proposals: proposals.collect(), recording: Arc::clone(&recording) }
     }
 
-    /// What the vehicle's mind ordered at a decision when it thought again, if it could.
-    fn think(&mut self, vehicle: VehicleId, decision: u64) -> Option<Order> {
+    /// What the vehicle's mind orders when it decides again, if it can.
+    fn decide(&mut self, vehicle: VehicleId, decision: u64) -> Option<Order> {
         let index = self.recording.header().notice.scenario.team_of(vehicle).index();
-        if self.teams[index].last.as_ref().is_some_and(|(last, _)| *last > decision) {
-            // Minds do not think backwards.
+        if self.teams[index].runner.decided() > Some(decision) {
+            // Minds do not decide backwards.
             self.teams[index] = Team::new(&self.recording, TeamId(index as u8));
         }
-        let team = &mut self.teams[index];
-        let next = team.last.as_ref().map_or(0, |(last, _)| last + 1);
-        // A mate may be asked about the decision that the team thought about last: then nothing is ahead.
-        let ahead = team.pictures.range(next..).take_while(|(seq, _)| **seq <= decision);
-        let ahead: Vec<(u64, usize)> = ahead.map(|(seq, place)| (*seq, *place)).collect();
-        for (seq, place) in ahead {
-            let picture: Picture = self.recording.message(place).read().ok()?;
-            team.decide(&picture, &self.proposals, seq == decision);
+        let Team { runner, pictures } = &mut self.teams[index];
+        // A mate may be asked about the decision that the team made last: then nothing is ahead.
+        let next = runner.decided().map_or(0, |last| last + 1);
+        for (seq, place) in pictures.range(next..).take_while(|(seq, _)| **seq <= decision) {
+            let picture: Picture = self.recording.message(*place).read().ok()?;
+            let now = picture.stamp.valid_ns;
+            for proposals in self.proposals.values() {
+                let until = proposals.partition_point(|(at, _)| *at <= now);
+                proposals[..until].last().iter().for_each(|(_, proposal)| runner.propose(proposal, picture.stamp));
+            }
+            runner.minds_mut().for_each(|(_, mind)| mind.show(*seq == decision));
+            runner.decide(picture.stamp, |_| Some(&picture));
         }
-        let (last, orders) = team.last.as_ref()?;
-        let order = orders.iter().find(|(v, _)| *v == vehicle).map(|(_, order)| *order);
-        order.filter(|_| *last == decision)
+        let is_decided = runner.decided() == Some(decision);
+        let (_, order) = runner.orders().find(|(v, _)| is_decided && *v == vehicle)?;
+        Some(order.check().unwrap_or_default())
     }
 }
 
@@ -85,52 +86,23 @@ impl Team {
             Some((picture.stamp.seq, place))
         };
         Team {
-            seated: mates.map(|vehicle| (vehicle, mind_of(scenario, vehicle))).collect(),
-            words: Vec::new(),
+            runner: MindRunner::new(mates.map(|vehicle| (vehicle, mind_of(scenario, vehicle)))),
             pictures: recording.places(&topic).filter_map(decision).collect(),
-            last: None,
         }
-    }
-
-    /// Decides as at the table of an agent: what mates said after the decision before is heard, then proposals.
-    fn decide(
-        &mut self,
-        picture: &Picture,
-        proposals: &BTreeMap<VehicleId, Vec<(SimTime, PolicyProposal)>>,
-        shown: bool,
-    ) {
-        let now = picture.stamp.valid_ns;
-        let mut orders = Vec::new();
-        for (vehicle, mind) in &mut self.seated {
-            if !self.words.is_empty() {
-                mind.hear(&self.words);
-            }
-            let said = proposals.get(vehicle).map_or(&[][..], Vec::as_slice);
-            let until = said.partition_point(|(at, _)| *at <= now);
-            if let Some((_, PolicyProposal { stamp, course_rad, speed_m_s, .. })) = said[..until].last() {
-                let proposal = Proposal { course_rad: *course_rad, speed_m_s: *speed_m_s };
-                mind.propose(stamp.valid_ns.min(now), proposal);
-            }
-            mind.show(shown);
-            orders.push((*vehicle, mind.decide(picture).check().unwrap_or_default()));
-        }
-        self.words.clear();
-        self.seated.iter().for_each(|(_, mind)| mind.say(&mut self.words));
-        self.last = Some((picture.stamp.seq, orders));
     }
 }
 
 impl Helms for Minds {
     fn report(&mut self, vehicle: VehicleId, decision: u64, _functions: bool) -> HelmAnswer {
-        let Some(order) = self.think(vehicle, decision) else {
+        let Some(order) = self.decide(vehicle, decision) else {
             let reason = "no picture of this moment was recorded".to_owned();
             return HelmAnswer { reason: Some(reason), computed: true, ..HelmAnswer::default() };
         };
         let index = self.recording.header().notice.scenario.team_of(vehicle).index();
-        let mind = self.teams[index].seated.iter().find(|(v, _)| *v == vehicle).map(|(_, mind)| mind);
+        let mind = self.teams[index].runner.mind(vehicle);
         let recorded = self.orders.get(&decision).and_then(|orders| orders.iter().rev().find(|(v, _)| *v == vehicle));
         HelmAnswer {
-            report: mind.and_then(|mind| mind.report()),
+            report: mind.and_then(Mind::report),
             reason: None,
             computed: true,
             agrees: recorded.map(|(_, recorded)| *recorded == order),

@@ -13,7 +13,7 @@ const MAY_IMPORT: [(&str, &[&str]); 13] = [
     ("recording", &["game"]),
     ("sim", &["game", "bus", "recording"]),
     ("agent", &["game", "bus"]),
-    ("gateway", &["game", "bus", "recording"]),
+    ("gateway", &["game", "bus", "recording", "agent"]),
     ("gateway/crosscheck", &["game", "gateway"]),
     ("gateway/fuzz", &["game", "gateway"]),
     ("arena", &["game", "sim", "agent"]),

@@ -202,7 +202,7 @@ impl Mind for HelmMind {
         self.scene.ears.talks()
     }
 
-    fn heeds(&self) -> Option<Proposer> {
+    fn proposer(&self) -> Option<Proposer> {
         self.program.proposer()
     }
 

@@ -1,13 +1,13 @@
-//! The table at which the minds of one process sit: pictures come in, words and orders go out.
+//! The loop of an agent process: pictures come in, its minds decide, messages to mates and orders go out.
 
 use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
 use super::talk::Talk;
 use super::{LOOK_AGAIN, NodeError, Settings};
-use crate::{Mind, mind_by, mind_of};
+use crate::{MindRunner, mind_by, mind_of};
 use bus::{Bus, Declaration, Delivery, Latest, Patience, Publisher, SimState, SimWatch};
 use game::codec::{self, DecodeError};
-use game::message::{GameInfo, Message, Orders, Stamp, VehicleOrder};
+use game::message::GameInfo;
 use game::refusal::Refusals;
 use game::topic::{self, GameName};
 use game::{Picture, Scenario, TeamId, VehicleId};
@@ -24,15 +24,9 @@ const UNREAD_MAX: usize = 64;
 /// Events that are carried over from pictures on which nobody decided.
 const EVENTS_MAX: usize = 1024;
 
-/// A mind and its boat.
-pub(super) struct Seated {
-    pub(super) vehicle: VehicleId,
-    pub(super) mind: Box<dyn Mind>,
-}
-
 /// The minds at work.
 pub(super) struct AgentLoop {
-    seated: Vec<Seated>,
+    runner: MindRunner,
     talk: Talk,
     policies: PolicyInbox,
     /// Opened with the seat: an agent that waits for one must not answer for the one that has it.
@@ -42,8 +36,6 @@ pub(super) struct AgentLoop {
     ticket: u64,
     /// The newest picture, by team.
     pictures: Vec<Option<Picture>>,
-    /// The orders given last, to be sent again if they are asked for again.
-    last: Option<Orders>,
 }
 
 impl AgentLoop {
@@ -61,20 +53,19 @@ impl AgentLoop {
         };
         // A name that is unknown the sim will refuse.
         let known = settings.vehicles.iter().filter_map(|name| scenario.vehicle_by_name(name));
-        let seated: Vec<Seated> = known.map(|vehicle| Seated { vehicle, mind: mind(vehicle) }).collect();
+        let runner = MindRunner::new(known.map(|vehicle| (vehicle, mind(vehicle))));
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
         let is_lockstep = notice.pace == "lockstep";
         let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
         Ok(AgentLoop {
-            talk: Talk::open(bus, game, scenario, &seated, limit(WORDS_LATE))?,
-            policies: PolicyInbox::open(bus, game, scenario, &seated, limit(settings.policy_wait))?,
+            talk: Talk::open(bus, game, scenario, &runner, limit(WORDS_LATE))?,
+            policies: PolicyInbox::open(bus, game, scenario, &runner, limit(settings.policy_wait))?,
             window: None,
             orders: bus.publisher(topic::orders(game, &bus.id()), Delivery::Wait)?,
-            line: Line::open(bus, game, scenario, &seated, settings.silence)?,
-            seated,
+            line: Line::open(bus, game, scenario, &runner, settings.silence)?,
+            runner,
             ticket: 0,
             pictures: vec![None; scenario.teams.len()],
-            last: None,
         })
     }
 
@@ -86,11 +77,11 @@ impl AgentLoop {
         scenario: &Scenario,
         (ticket, vehicles): (u64, Vec<VehicleId>),
     ) -> Result<(), NodeError> {
-        if !self.seated.iter().map(|seat| seat.vehicle).eq(vehicles) {
+        if !self.runner.minds().map(|(vehicle, _)| vehicle).eq(vehicles) {
             return Err(NodeError::Refused("it let other boats in than those that asked".to_owned()));
         }
         self.ticket = ticket;
-        self.window = Some(HelmQueries::open(bus, game, scenario, &self.seated)?);
+        self.window = Some(HelmQueries::open(bus, game, scenario, &self.runner)?);
         Ok(())
     }
 
@@ -113,7 +104,7 @@ impl AgentLoop {
                 decided |= self.decide()?;
             }
             if let Some(window) = &mut self.window {
-                window.answer(&mut self.seated, decided);
+                window.answer(&mut self.runner, decided);
             }
             match self.line.sim.state() {
                 SimState::Alive => {}
@@ -132,9 +123,8 @@ impl AgentLoop {
             // Damaged on the way; the sim sends it again.
             Err(_) => return Ok(()),
         };
-        let decided = self.last.as_ref().map(|last| last.stamp.seq);
         let before = self.pictures[cell].take();
-        self.pictures[cell] = Some(with_missed_events(picture, before, decided));
+        self.pictures[cell] = Some(with_missed_events(picture, before, self.runner.decided()));
         Ok(())
     }
 
@@ -146,29 +136,20 @@ impl AgentLoop {
         if self.line.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
             return Ok(false);
         }
-        if let Some(last) = self.last.as_ref().filter(|last| last.stamp.seq == stamp.seq) {
-            self.talk.repeat()?;
-            self.orders.send(last)?;
-            return Ok(false);
+        let is_new = self.runner.decided() != Some(stamp.seq);
+        if is_new {
+            self.talk.hear(&mut self.runner, stamp.seq);
+            self.policies.give(&mut self.runner, stamp);
+            let pictures = &self.pictures;
+            self.runner.decide(stamp, |vehicle| pictures.iter().flatten().find(|p| p.own(vehicle).is_some()));
+            self.talk.take(self.runner.said(), stamp);
         }
-        self.talk.hear(&mut self.seated, stamp.seq);
-        self.policies.give(&mut self.seated, stamp);
-        let orders = self.orders_for(stamp);
         // Words before orders: the sim goes on when it has the orders, and then the words are under way.
-        self.talk.say(&mut self.seated, stamp)?;
-        self.orders.send(&orders)?;
-        self.last = Some(orders);
-        Ok(true)
-    }
-
-    fn orders_for(&mut self, stamp: Stamp) -> Orders {
-        let pictures = &self.pictures;
-        let decide = |Seated { vehicle, mind }: &mut Seated| {
-            let mine = pictures.iter().flatten().find(|picture| picture.own(*vehicle).is_some());
-            VehicleOrder::new(*vehicle, mine.map(|picture| mind.decide(picture)).unwrap_or_default())
-        };
-        let stamp = Stamp { version: Orders::VERSION, ..stamp };
-        Orders { stamp, ticket: self.ticket, orders: self.seated.iter_mut().map(decide).collect() }
+        self.talk.send()?;
+        if let Some(orders) = self.runner.answer(self.ticket) {
+            self.orders.send(&orders)?;
+        }
+        Ok(is_new)
     }
 }
 
@@ -199,11 +180,11 @@ impl Line {
         bus: &Bus,
         game: &GameName,
         scenario: &Scenario,
-        seated: &[Seated],
+        runner: &MindRunner,
         silence: Duration,
     ) -> Result<Line, NodeError> {
         let pictures = Arc::new(Latest::new(scenario.teams.len()));
-        let mut teams: Vec<TeamId> = seated.iter().map(|seat| scenario.team_of(seat.vehicle)).collect();
+        let mut teams: Vec<TeamId> = runner.minds().map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
         teams.sort_unstable();
         teams.dedup();
         let mut standing = Vec::new();
@@ -228,7 +209,7 @@ impl Line {
 mod tests {
     use super::*;
     use game::event::{Event, Logged};
-    use game::message::EventRecord;
+    use game::message::{EventRecord, Stamp};
     use game::{SimTime, VehicleId};
 
     /// A picture in which boat `seq` left the field.

@@ -1,11 +1,11 @@
 //! A window into helms: questions what a boat's helm thinks, answered between decisions.
 
 use super::NodeError;
-use super::agent_loop::Seated;
+use crate::{Mind, MindRunner};
 use bus::{Bus, Declaration, Inbox, Query, clock, inbox};
-use game::Scenario;
 use game::helm::HelmQuestion;
 use game::topic::{self, GameName};
+use game::{Scenario, VehicleId};
 use std::time::{Duration, Instant};
 
 /// Questions that may wait to be looked at.
@@ -20,8 +20,7 @@ const ANSWERS: usize = 2;
 
 /// A question about one of the boats.
 struct Asked {
-    /// Index of the seat.
-    seat: usize,
+    vehicle: VehicleId,
     wants: HelmQuestion,
     question: Query,
     at: Instant,
@@ -29,11 +28,11 @@ struct Asked {
 
 /// What people ask of the helms here.
 pub(super) struct HelmQueries {
-    inbox: Inbox<(usize, Query)>,
+    inbox: Inbox<(VehicleId, Query)>,
     /// Asked before a decision was kept.
     waiting: Vec<Asked>,
-    /// When each seat was looked at last, if it is looked at.
-    looked: Vec<Option<Instant>>,
+    /// The boats whose helms are looked at, and when each was last.
+    looked: Vec<(VehicleId, Instant)>,
     _standing: Vec<Declaration>,
 }
 
@@ -43,58 +42,75 @@ impl HelmQueries {
         bus: &Bus,
         game: &GameName,
         scenario: &Scenario,
-        seated: &[Seated],
+        runner: &MindRunner,
     ) -> Result<HelmQueries, NodeError> {
         let (inbox_sender, inbox) = inbox(INBOX);
         let mut standing = Vec::new();
-        for (i, seat) in seated.iter().enumerate() {
+        for (vehicle, _) in runner.minds() {
             let inbox_sender = inbox_sender.clone();
-            let take = move |question| inbox_sender.put((i, question));
-            standing.push(bus.answer(topic::helm(game, scenario, seat.vehicle), take)?);
+            let take = move |question| inbox_sender.put((vehicle, question));
+            standing.push(bus.answer(topic::helm(game, scenario, vehicle), take)?);
         }
-        Ok(HelmQueries { inbox, waiting: Vec::new(), looked: vec![None; seated.len()], _standing: standing })
+        Ok(HelmQueries { inbox, waiting: Vec::new(), looked: Vec::new(), _standing: standing })
     }
 
     /// Answers what was asked; `decided` says whether the minds have decided since the last time.
-    pub(super) fn answer(&mut self, seated: &mut [Seated], decided: bool) {
+    pub(super) fn answer(&mut self, runner: &mut MindRunner, decided: bool) {
         let waiting = std::mem::take(&mut self.waiting);
         for asked in waiting {
             if decided || clock::since(asked.at) >= NEXT_DECISION {
-                reply(&seated[asked.seat], asked.wants, asked.question);
+                reply(runner, asked);
             } else {
                 self.waiting.push(asked);
             }
         }
         for _ in 0..ANSWERS {
-            let Some((seat, question)) = self.inbox.take_now() else { break };
-            self.take(seated, seat, question);
+            let Some((vehicle, question)) = self.inbox.take_now() else { break };
+            self.take(runner, vehicle, question);
         }
-        for (seat, looked) in seated.iter_mut().zip(&mut self.looked) {
-            if looked.take_if(|at| clock::since(*at) > LOOKED_AT).is_some() {
-                seat.mind.show(false);
+        self.looked.retain(|(vehicle, at)| {
+            let is_looked_at = clock::since(*at) <= LOOKED_AT;
+            show(runner, *vehicle, is_looked_at);
+            is_looked_at
+        });
+    }
+
+    fn take(&mut self, runner: &mut MindRunner, vehicle: VehicleId, question: Query) {
+        // Whoever asks without words wants the short answer.
+        let wants: HelmQuestion = serde_json::from_slice(&question.payload).unwrap_or_default();
+        let asked = Asked { vehicle, wants, question, at: clock::now() };
+        match self.looked.iter_mut().find(|(looked, _)| *looked == vehicle) {
+            Some((_, at)) => *at = asked.at,
+            None => {
+                self.looked.push((vehicle, asked.at));
+                show(runner, vehicle, true);
+                return self.postpone(asked);
             }
+        }
+        if self.waiting.iter().any(|waiting| waiting.vehicle == vehicle) {
+            self.postpone(asked);
+        } else {
+            reply(runner, asked);
         }
     }
 
-    fn take(&mut self, seated: &mut [Seated], seat: usize, question: Query) {
-        // Whoever asks without words wants the short answer.
-        let wants: HelmQuestion = serde_json::from_slice(&question.payload).unwrap_or_default();
-        let at = clock::now();
-        if self.looked[seat].replace(at).is_none() {
-            seated[seat].mind.show(true);
-        } else if !self.waiting.iter().any(|asked| asked.seat == seat) {
-            return reply(&seated[seat], wants, question);
-        }
+    fn postpone(&mut self, asked: Asked) {
         if self.waiting.len() < INBOX {
-            self.waiting.push(Asked { seat, wants, question, at });
+            self.waiting.push(asked);
         }
     }
 }
 
-fn reply(seat: &Seated, wants: HelmQuestion, question: Query) {
-    let mut report = seat.mind.report();
-    if let Some(report) = report.as_mut().filter(|_| !wants.functions) {
+fn show(runner: &mut MindRunner, vehicle: VehicleId, shown: bool) {
+    if let Some(mind) = runner.mind_mut(vehicle) {
+        mind.show(shown);
+    }
+}
+
+fn reply(runner: &MindRunner, asked: Asked) {
+    let mut report = runner.mind(asked.vehicle).and_then(Mind::report);
+    if let Some(report) = report.as_mut().filter(|_| !asked.wants.functions) {
         report.functions.iter_mut().for_each(|function| function.utilities.clear());
     }
-    question.answer(serde_json::to_vec(&report).expect("a report is JSON"));
+    asked.question.answer(serde_json::to_vec(&report).expect("a report is JSON"));
 }

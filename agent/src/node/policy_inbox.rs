@@ -1,8 +1,7 @@
 //! PolicyInbox: what policies outside propose for the boats minded here.
 
 use super::NodeError;
-use super::agent_loop::Seated;
-use crate::Proposal;
+use crate::MindRunner;
 use bus::{Bus, Declaration, Watched};
 use game::message::{PolicyProposal, Stamp};
 use game::refusal::{Refusal, Refusals};
@@ -43,14 +42,13 @@ impl PolicyInbox {
         bus: &Bus,
         game: &GameName,
         scenario: &Scenario,
-        seated: &[Seated],
+        runner: &MindRunner,
         patience: Duration,
     ) -> Result<PolicyInbox, NodeError> {
-        let adviser = |seat: &Seated| {
-            let is_awaited = seat.mind.heeds()? == Proposer::Program;
-            Some(Adviser { vehicle: seat.vehicle, is_awaited, newest: None })
-        };
-        let advisers: Vec<Adviser> = seated.iter().filter_map(adviser).collect();
+        let minds = runner.minds().filter_map(|(vehicle, mind)| Some((vehicle, mind.proposer()?)));
+        let adviser =
+            |(vehicle, proposer)| Adviser { vehicle, is_awaited: proposer == Proposer::Program, newest: None };
+        let advisers: Vec<Adviser> = minds.map(adviser).collect();
         let heap = Arc::new(Watched::new(Heap { advisers: advisers.clone(), refusals: Refusals::default() }));
         let mut standing = Vec::new();
         for (i, adviser) in advisers.iter().enumerate() {
@@ -62,23 +60,16 @@ impl PolicyInbox {
     }
 
     /// Gives the newest proposals to the minds that decide on the picture with this stamp.
-    pub(super) fn give(&mut self, seated: &mut [Seated], stamp: Stamp) {
+    pub(super) fn give(&mut self, runner: &mut MindRunner, stamp: Stamp) {
         if !self.is_wanted {
             return;
         }
         let advised = self.patience.is_zero() || self.heap.wait(self.patience, |heap| heap.is_for(stamp.seq));
-        let advisers = self.heap.visit(|heap| {
+        self.heap.visit(|heap| {
             heap.refusals.add(Refusal::ProposalMissing, u64::from(!advised));
-            heap.advisers.clone()
+            let proposals = heap.advisers.iter().filter_map(|adviser| adviser.newest.as_ref());
+            proposals.for_each(|proposal| runner.propose(proposal, stamp));
         });
-        for Adviser { vehicle, newest, .. } in advisers {
-            let mind = seated.iter_mut().find(|seat| seat.vehicle == vehicle).map(|seat| &mut seat.mind);
-            if let (Some(mind), Some(proposal)) = (mind, newest) {
-                let PolicyProposal { course_rad, speed_m_s, .. } = proposal;
-                // A proposal cannot know more than the newest picture.
-                mind.propose(proposal.stamp.valid_ns.min(stamp.valid_ns), Proposal { course_rad, speed_m_s });
-            }
-        }
     }
 
     pub(super) fn refusals(&self) -> Refusals {

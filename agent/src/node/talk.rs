@@ -1,8 +1,8 @@
 //! Team talk over the network: what the minds here tell their mates elsewhere, and hear from them.
 
 use super::NodeError;
-use super::agent_loop::Seated;
 use super::team_inbox::TeamInbox;
+use crate::MindRunner;
 use bus::{Bus, Declaration, Delivery, Publisher, Watched};
 use game::message::{Message, Say, Stamp, Word};
 use game::refusal::{Refusal, Refusals};
@@ -36,15 +36,15 @@ impl Talk {
         bus: &Bus,
         game: &GameName,
         scenario: &Scenario,
-        seated: &[Seated],
+        runner: &MindRunner,
         patience: Duration,
     ) -> Result<Talk, NodeError> {
         let teams: Vec<TeamId> = (0..scenario.vehicles.len()).map(|i| scenario.team_of(VehicleId::at(i))).collect();
         let mut talking: Vec<TeamId> =
-            seated.iter().filter(|seat| seat.mind.talks()).map(|seat| scenario.team_of(seat.vehicle)).collect();
+            runner.minds().filter(|(_, mind)| mind.talks()).map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
         talking.sort_unstable();
         talking.dedup();
-        let minded: Vec<VehicleId> = seated.iter().map(|seat| seat.vehicle).collect();
+        let minded: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
         let team_inbox = Arc::new(Watched::new(TeamInbox::new(teams.iter().copied(), &minded)));
         let (mut lines, mut standing) = (Vec::new(), Vec::new());
         for team in talking {
@@ -58,7 +58,7 @@ impl Talk {
     }
 
     /// Lets the minds hear what mates elsewhere said after the decision before.
-    pub(super) fn hear(&mut self, seated: &mut [Seated], seq: u64) {
+    pub(super) fn hear(&mut self, runner: &mut MindRunner, seq: u64) {
         if self.lines.is_empty() {
             return;
         }
@@ -72,41 +72,27 @@ impl Talk {
             let missed = team_inbox.hear(seq, &mut self.words);
             team_inbox.refusals.add(Refusal::TeamMessageMissing, if waits { missed } else { 0 });
         });
-        self.pass_on(seated);
+        runner.hear(&self.words);
     }
 
-    /// Tells mates, here and elsewhere, what the minds say after deciding. It must be sent before the orders are: then
-    /// it is on its way before the next picture.
-    pub(super) fn say(&mut self, seated: &mut [Seated], stamp: Stamp) -> Result<(), NodeError> {
-        if self.lines.is_empty() {
-            return Ok(());
-        }
-        self.words.clear();
-        seated.iter().for_each(|seat| seat.mind.say(&mut self.words));
-        self.pass_on(seated);
+    /// Takes what the minds here said after deciding, to be sent to mates elsewhere.
+    pub(super) fn take(&mut self, said: &[Word], stamp: Stamp) {
         for line in &mut self.lines {
             let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&line.team);
-            let words: Vec<Word> = self.words.iter().filter(ours).copied().collect();
+            let words: Vec<Word> = said.iter().filter(ours).copied().collect();
             line.said = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
         }
-        self.repeat()
     }
 
-    /// Says again what was said last: it may have been lost with the orders that are asked for again.
-    pub(super) fn repeat(&self) -> Result<(), NodeError> {
+    /// Sends it, or sends it again: it may have been lost with the orders that are asked for again. It must be sent before
+    /// the orders are: then it is on its way before the next picture.
+    pub(super) fn send(&self) -> Result<(), NodeError> {
         for line in &self.lines {
             if let Some(said) = &line.said {
                 line.publisher.send(said)?;
             }
         }
         Ok(())
-    }
-
-    /// Words of the other team are nothing to a mind: it listens to its mates.
-    fn pass_on(&self, seated: &mut [Seated]) {
-        if !self.words.is_empty() {
-            seated.iter_mut().for_each(|seat| seat.mind.hear(&self.words));
-        }
     }
 
     pub(super) fn refusals(&self) -> Refusals {

@@ -73,8 +73,7 @@ fn work(plan: &Plan, next: &AtomicUsize, stop: &AtomicBool, sender: &SyncSender<
 
 fn game_of(scenario: &Scenario, seed: u64, stop: &AtomicBool) -> Result<Game, String> {
     let scenario = scenario.of_seed(seed).map_err(|problems| problems.to_string())?;
-    let mut minds = agent::minds_of(&scenario);
-    let outcome = play_watched(&scenario, &mut minds, seed, |_| !stop.load(Ordering::Relaxed));
+    let outcome = play_watched(&scenario, agent::minds_of(&scenario), seed, |_| !stop.load(Ordering::Relaxed));
     Ok(Game::new(&scenario, &outcome.map_err(|why| why.to_string())?))
 }
 

@@ -6,11 +6,12 @@ use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
 use crate::utc;
+use agent::{Mind, MindRunner};
 use bus::game_search::{self, GameSearch};
 use bus::{Delivery, Net, Patience, Publisher, SimState, SimWatch, Watched};
-use game::message::{Message, Orders, Role, Stamp, VehicleOrder};
+use game::message::Role;
 use game::topic::{self, GameName, Part};
-use game::{Picture, SimTime, VehicleId, codec};
+use game::{Order, Picture, SimTime, VehicleId, codec};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -98,15 +99,14 @@ pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> R
     let mut say = |reason: &str| tell(News::Looking { reason });
     let sim = SimWatch::open(&bus, &game, Patience::of_player(settings.silence))?;
     let (ticket, _) = look.until(&mut say, || game_search::join(&bus, &game, Role::Agent, &names))?;
+    let boat = EmulatedBoat { vehicle, emulator: Emulator::new(plan) };
     let mut player = Player {
-        emulator: Emulator::new(plan),
-        vehicle,
+        runner: MindRunner::new([(vehicle, Box::new(boat))]),
         ticket,
         sim,
         now: SimTime::ZERO,
         links: [Some(back_seat), primary],
         orders: bus.publisher(topic::orders(&game, &bus.id()), Delivery::Wait)?,
-        last: None,
         operator: Operator::Secondary,
         sent: 0,
     };
@@ -140,10 +140,25 @@ impl Incoming {
     }
 }
 
+/// A boat that is told by sentences what to do: to the game it is a mind like any other.
+struct EmulatedBoat {
+    vehicle: VehicleId,
+    emulator: Emulator,
+}
+
+impl Mind for EmulatedBoat {
+    fn decide(&mut self, picture: &Picture) -> Order {
+        let now = picture.stamp.valid_ns;
+        if let Some(own) = picture.own(self.vehicle) {
+            self.emulator.observe(now, own);
+        }
+        self.emulator.order(now)
+    }
+}
+
 /// The boat at work.
 struct Player {
-    emulator: Emulator,
-    vehicle: VehicleId,
+    runner: MindRunner<EmulatedBoat>,
     ticket: u64,
     sim: SimWatch,
     /// Time of the game.
@@ -151,7 +166,6 @@ struct Player {
     /// To the back seat, and to the primary operator.
     links: [Option<Link>; 2],
     orders: Publisher,
-    last: Option<Orders>,
     operator: Operator,
     sent: u64,
 }
@@ -170,10 +184,11 @@ impl Player {
                 tell(News::Remark { at_s: self.now.as_s(), text });
             }
             for (port, bytes) in &bytes {
-                self.emulator.take(self.now, *port, bytes);
+                let now = self.now;
+                self.emulator().take(now, *port, bytes);
             }
             self.tell_operator(tell);
-            if let Some(text) = self.emulator.take_remark() {
+            if let Some(text) = self.emulator().take_remark() {
                 tell(News::Remark { at_s: self.now.as_s(), text: &text });
             }
             let picture = picture.and_then(|bytes| codec::decode::<Picture>(&bytes).ok());
@@ -193,10 +208,16 @@ impl Player {
         Ok(())
     }
 
+    fn emulator(&mut self) -> &mut Emulator {
+        let (_, boat) = self.runner.minds_mut().next().expect("one boat is run here");
+        &mut boat.emulator
+    }
+
     /// Says who commands the boat, if that is another one now.
     fn tell_operator(&mut self, tell: &mut dyn FnMut(News<'_>)) {
-        if self.emulator.operator() != self.operator {
-            self.operator = self.emulator.operator();
+        let operator = self.emulator().operator();
+        if operator != self.operator {
+            self.operator = operator;
             let text = format!("{:?} commands the boat", self.operator);
             tell(News::Remark { at_s: self.now.as_s(), text: &text });
         }
@@ -204,27 +225,30 @@ impl Player {
 
     /// A picture has come: the boat does what it is told, and tells how it is.
     fn see(&mut self, picture: &Picture) -> Result<(), NodeError> {
-        if let Some(last) = self.last.as_ref().filter(|last| last.stamp.seq == picture.stamp.seq) {
-            return Ok(self.orders.send(last)?);
+        let is_new = self.runner.decided() != Some(picture.stamp.seq);
+        if is_new {
+            self.now = picture.stamp.valid_ns;
+            if self.runner.decided().is_none() {
+                let now = self.now;
+                self.emulator().set_clock(now, utc::now());
+            }
+            self.runner.decide(picture.stamp, |_| Some(picture));
         }
-        self.now = picture.stamp.valid_ns;
-        if self.last.is_none() {
-            self.emulator.set_clock(self.now, utc::now());
+        if let Some(orders) = self.runner.answer(self.ticket) {
+            self.orders.send(&orders)?;
         }
-        if let Some(own) = picture.own(self.vehicle) {
-            self.emulator.observe(self.now, own);
+        if is_new {
+            self.send_telemetry();
         }
-        let order = VehicleOrder::new(self.vehicle, self.emulator.order(self.now));
-        let stamp = Stamp { version: Orders::VERSION, ..picture.stamp };
-        let orders = Orders { stamp, ticket: self.ticket, orders: vec![order] };
-        self.orders.send(&orders)?;
-        self.last = Some(orders);
-        let mut burst = Vec::with_capacity(512);
-        self.emulator.telemetry(self.now, &mut burst);
+        Ok(())
+    }
+
+    fn send_telemetry(&mut self) {
+        let (now, mut burst) = (self.now, Vec::with_capacity(512));
+        self.emulator().telemetry(now, &mut burst);
         self.sent += 1;
         for link in self.links.iter().flatten() {
             link.send(burst.clone(), self.sent);
         }
-        Ok(())
     }
 }

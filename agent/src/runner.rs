@@ -1,0 +1,175 @@
+//! Runs minds, decision by decision: messages of mates are taken in, then policy proposals; every mind decides; what it
+//! tells its team is passed on.
+//!
+//! No network and no clock. The arena, agent processes, replays and emulated boats all run minds by this one loop, so a
+//! game is the same bytes in each of them.
+
+use crate::{Mind, Proposal};
+use game::message::{Message, Orders, PolicyProposal, Stamp, VehicleOrder, Word};
+use game::{Order, Picture, VehicleId};
+
+/// A boat, the mind that decides for it, and what that ordered last.
+struct Boat<M: ?Sized> {
+    vehicle: VehicleId,
+    order: Order,
+    mind: Box<M>,
+}
+
+/// The minds of one process.
+pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
+    boats: Vec<Boat<M>>,
+    /// The picture that was decided on last.
+    decided: Option<Stamp>,
+    /// What the minds told their teams after the last decision.
+    said: Vec<Word>,
+}
+
+impl<M: Mind + ?Sized> MindRunner<M> {
+    /// A runner of these minds, which have not decided yet.
+    #[must_use]
+    pub fn new(minds: impl IntoIterator<Item = (VehicleId, Box<M>)>) -> MindRunner<M> {
+        let boat = |(vehicle, mind)| Boat { vehicle, order: Order::Hold, mind };
+        MindRunner { boats: minds.into_iter().map(boat).collect(), decided: None, said: Vec::new() }
+    }
+
+    /// The minds and their boats, in the order in which they decide.
+    pub fn minds(&self) -> impl Iterator<Item = (VehicleId, &M)> {
+        self.boats.iter().map(|boat| (boat.vehicle, &*boat.mind))
+    }
+
+    /// The minds and their boats, in the order in which they decide.
+    pub fn minds_mut(&mut self) -> impl Iterator<Item = (VehicleId, &mut M)> {
+        self.boats.iter_mut().map(|boat| (boat.vehicle, &mut *boat.mind))
+    }
+
+    /// The mind of a boat, if it is run here.
+    #[must_use]
+    pub fn mind(&self, vehicle: VehicleId) -> Option<&M> {
+        self.boats.iter().find(|boat| boat.vehicle == vehicle).map(|boat| &*boat.mind)
+    }
+
+    /// The mind of a boat, if it is run here.
+    #[must_use]
+    pub fn mind_mut(&mut self, vehicle: VehicleId) -> Option<&mut M> {
+        self.boats.iter_mut().find(|boat| boat.vehicle == vehicle).map(|boat| &mut *boat.mind)
+    }
+
+    /// Takes in what mates in other processes said after the decision before. Minds ignore words of the other team.
+    pub fn hear(&mut self, words: &[Word]) {
+        if !words.is_empty() {
+            self.boats.iter_mut().for_each(|boat| boat.mind.hear(words));
+        }
+    }
+
+    /// Takes in what a policy proposes, before the decision on the picture with this stamp.
+    pub fn propose(&mut self, proposal: &PolicyProposal, stamp: Stamp) {
+        let PolicyProposal { vehicle, course_rad, speed_m_s, .. } = *proposal;
+        if let Some(mind) = self.mind_mut(vehicle) {
+            // A proposal cannot know more than the newest picture.
+            mind.propose(proposal.stamp.valid_ns.min(stamp.valid_ns), Proposal { course_rad, speed_m_s });
+        }
+    }
+
+    /// Lets every mind decide on its boat's picture, which has this stamp; a boat without a picture holds. What the minds
+    /// say then, their mates here know at the next decision.
+    pub fn decide<'p>(&mut self, stamp: Stamp, picture_of: impl Fn(VehicleId) -> Option<&'p Picture>) {
+        for Boat { vehicle, order, mind } in &mut self.boats {
+            *order = picture_of(*vehicle).map(|picture| mind.decide(picture)).unwrap_or_default();
+        }
+        self.decided = Some(stamp);
+        let mut said = std::mem::take(&mut self.said);
+        said.clear();
+        self.boats.iter().for_each(|boat| boat.mind.say(&mut said));
+        self.hear(&said);
+        self.said = said;
+    }
+
+    /// The number of the last decision.
+    #[must_use]
+    pub fn decided(&self) -> Option<u64> {
+        self.decided.map(|stamp| stamp.seq)
+    }
+
+    /// The orders of the last decision.
+    pub fn orders(&self) -> impl Iterator<Item = (VehicleId, Order)> {
+        self.boats.iter().map(|boat| (boat.vehicle, boat.order))
+    }
+
+    /// What the minds told their teams after the last decision.
+    #[must_use]
+    pub fn said(&self) -> &[Word] {
+        &self.said
+    }
+
+    /// The orders of the last decision as a message to the sim, which gave this ticket; the same whenever it is asked for
+    /// again. None before the first decision.
+    #[must_use]
+    pub fn answer(&self, ticket: u64) -> Option<Orders> {
+        let stamp = Stamp { version: Orders::VERSION, ..self.decided? };
+        Some(Orders { stamp, ticket, orders: self.orders().map(|(v, order)| VehicleOrder::new(v, order)).collect() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::SimTime;
+
+    /// Orders the speed that is proposed plus what it has heard, and says how often it has decided.
+    struct Adder {
+        me: VehicleId,
+        decisions: f64,
+        heard: f64,
+        proposed: Option<(SimTime, f64)>,
+    }
+
+    impl Mind for Adder {
+        fn decide(&mut self, _picture: &Picture) -> Order {
+            self.decisions += 1.0;
+            let speed_m_s = self.heard + self.proposed.map_or(0.0, |(_, speed_m_s)| speed_m_s);
+            Order::Steer { heading_rad: 0.0, speed_m_s }
+        }
+        fn say(&self, words: &mut Vec<Word>) {
+            words.push(Word { vehicle: self.me, key: 1, value: self.decisions });
+        }
+        fn hear(&mut self, words: &[Word]) {
+            self.heard += words.iter().filter(|word| word.vehicle != self.me).map(|word| word.value).sum::<f64>();
+        }
+        fn propose(&mut self, at: SimTime, proposal: Proposal) {
+            self.proposed = Some((at, proposal.speed_m_s));
+        }
+    }
+
+    fn speeds(runner: &MindRunner<Adder>) -> Vec<f64> {
+        let speed = |(_, order)| if let Order::Steer { speed_m_s, .. } = order { speed_m_s } else { -1.0 };
+        runner.orders().map(speed).collect()
+    }
+
+    #[test]
+    fn what_is_said_after_a_decision_is_known_at_the_next_one() {
+        let adder = |i| {
+            let me = VehicleId(i);
+            (me, Box::new(Adder { me, decisions: 0.0, heard: 0.0, proposed: None }))
+        };
+        let mut runner = MindRunner::new([adder(0), adder(4)]);
+        assert!(runner.answer(7).is_none() && runner.decided().is_none());
+        let picture = Picture::default();
+        let stamp = |seq| Stamp { seq, valid_ns: SimTime(10 * seq as i64), ..Stamp::default() };
+        for (seq, want) in [(0, [0.0, 0.0]), (1, [1.0, 1.0]), (2, [3.0, 3.0])] {
+            runner.decide(stamp(seq), |_| Some(&picture));
+            assert_eq!((speeds(&runner), runner.decided()), (want.to_vec(), Some(seq)));
+        }
+        runner.hear(&[Word { vehicle: VehicleId(9), key: 1, value: 100.0 }]);
+        let proposal = PolicyProposal { stamp: stamp(99), vehicle: VehicleId(4), course_rad: 0.0, speed_m_s: 0.5 };
+        runner.propose(&proposal, stamp(3));
+        runner.propose(&PolicyProposal { vehicle: VehicleId(5), ..proposal }, stamp(3));
+        runner.decide(stamp(3), |vehicle| (vehicle == VehicleId(4)).then_some(&picture));
+        assert_eq!(speeds(&runner), [-1.0, 106.5], "without a picture the boat holds");
+        let known_at = runner.mind(VehicleId(4)).and_then(|mind| mind.proposed).map(|(at, _)| at);
+        assert_eq!(known_at, Some(SimTime(30)), "no proposal is newer than the picture");
+        assert_eq!(runner.said().iter().map(|word| word.value).collect::<Vec<_>>(), [3.0, 4.0]);
+        let answer = runner.answer(7).expect("it has decided");
+        assert_eq!((answer.ticket, answer.stamp.seq, answer.orders.len()), (7, 3, 2));
+        assert_eq!(runner.answer(7), Some(answer), "asked again, it answers the same");
+    }
+}
