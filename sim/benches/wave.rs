@@ -3,7 +3,7 @@
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use game::frame::{Ned, Pose};
 use game::sea::{Spreading, Waves};
-use sim::sea::{HullWaves, Ride, WaveField};
+use sim::sea::{HullWaves, WaveField, WaveResponse};
 use std::hint::black_box;
 use std::path::Path;
 
@@ -29,7 +29,7 @@ fn one_boat(c: &mut Criterion) {
     let mut group = c.benchmark_group("wave");
     for components in [16, 64, 256] {
         let field = WaveField::new(&waves(components), None, 1);
-        let (hull, ride) = (HullWaves::new(&field, boat, 1000.0), Ride::new(&field, boat));
+        let (hull, response) = (HullWaves::new(&field, boat, 1000.0), WaveResponse::new(&field, boat));
         let velocity_m_s = Ned { north: 1.0, east: 0.5 };
         let mut i = 0;
         let mut next = || {
@@ -42,10 +42,10 @@ fn one_boat(c: &mut Criterion) {
                 hull.at(pose, time_s)
             });
         });
-        group.bench_function(BenchmarkId::new("ride", components), |b| {
+        group.bench_function(BenchmarkId::new("response", components), |b| {
             b.iter(|| {
                 let (pose, time_s) = next();
-                ride.at(pose, velocity_m_s, 0.1, time_s)
+                response.at(pose, velocity_m_s, 0.1, time_s)
             });
         });
         group.bench_function(BenchmarkId::new("surface", components), |b| {

@@ -33,8 +33,8 @@ const FRICTION: f64 = 0.2;
 /// The solid shapes of a game.
 #[derive(Clone)]
 pub struct ContactModel {
-    /// By kind of boat: a capsule as long and as wide as the hull, and half its length.
-    hulls: Vec<(SharedShape, f64)>,
+    /// By kind of boat.
+    hulls: Vec<HullShape>,
     /// Obstacles and walls.
     fixed: Vec<Fixed>,
     dt_s: f64,
@@ -43,6 +43,14 @@ pub struct ContactModel {
     close_m: f64,
 }
 
+/// A capsule as long and as wide as a hull.
+#[derive(Clone)]
+struct HullShape {
+    capsule: SharedShape,
+    half_length_m: f64,
+}
+
+/// An obstacle or a wall.
 #[derive(Clone)]
 struct Fixed {
     shape: SharedShape,
@@ -61,7 +69,7 @@ enum Bounds {
 
 /// A boat's motion over one tick, as it would be without contact; then as it is.
 #[derive(Clone, Copy, Debug)]
-pub struct Passage {
+pub struct Displacement {
     /// Kind of boat.
     pub kind: usize,
     /// Where it was at the beginning.
@@ -72,21 +80,21 @@ pub struct Passage {
     pub rotation: Rotation,
     /// The rotation of the heading at the end.
     pub rotation_to: Rotation,
-    /// What contact does to it.
-    pub footing: Footing,
-    /// What contact added to the velocity, in body axes.
-    pub kick: Planar,
+    /// How it takes part in contact.
+    pub role: ContactRole,
+    /// By how much contact changed the velocity, in body axes.
+    pub velocity_change: Planar,
 }
 
-/// What contact does to a boat.
+/// How a boat takes part in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Footing {
-    /// It is pushed about.
-    Loose,
+pub enum ContactRole {
+    /// It is pushed.
+    Dynamic,
     /// It lies still, whatever bumps into it.
-    Fast,
-    /// It goes its own way, whatever it bumps into: a real boat, which feels nothing of all this.
-    Carried,
+    Fixed,
+    /// It keeps its own motion, whatever it bumps into: a real boat, which feels nothing of a simulated contact.
+    Kinematic,
 }
 
 /// A shape near a boat, with the direction in which it would be pushed.
@@ -109,9 +117,10 @@ impl ContactModel {
     /// The shapes of these kinds of boat (length and beam, m) on this field.
     #[must_use]
     pub fn new(hulls: impl Iterator<Item = (f64, f64)>, field: &Field, dt_s: f64) -> ContactModel {
-        let capsule = |(length_m, beam_m): (f64, f64)| {
+        let hull = |(length_m, beam_m): (f64, f64)| {
             let radius = 0.5 * beam_m.min(length_m);
-            (SharedShape::capsule_x(0.5 * length_m - radius, radius), 0.5 * length_m)
+            let capsule = SharedShape::capsule_x(0.5 * length_m - radius, radius);
+            HullShape { capsule, half_length_m: 0.5 * length_m }
         };
         let mut fixed: Vec<Fixed> = field.plan.obstacles.iter().map(fixed_obstacle).collect();
         if field.plan.walls == Walls::AllRound {
@@ -121,7 +130,7 @@ impl ContactModel {
             }
         }
         let look_ahead_m = CLOSING_MAX_M_S * dt_s;
-        ContactModel { hulls: hulls.map(capsule).collect(), fixed, dt_s, look_ahead_m, close_m: look_ahead_m + SPARE_M }
+        ContactModel { hulls: hulls.map(hull).collect(), fixed, dt_s, look_ahead_m, close_m: look_ahead_m + SPARE_M }
     }
 
     /// Hands hulls nearer than `close_m` to rapier; it may be more than is needed, and must then change nothing.
@@ -133,12 +142,12 @@ impl ContactModel {
     /// The largest distance between two boats at which they may be about to touch, m.
     #[must_use]
     pub fn reach_m(&self) -> f64 {
-        2.0 * self.hulls.iter().map(|hull| hull.1).fold(0.0, f64::max) + self.close_m
+        2.0 * self.hulls.iter().map(|hull| hull.half_length_m).fold(0.0, f64::max) + self.close_m
     }
 
     /// Resolves all contacts of a tick; `near` are the pairs within [`ContactModel::reach_m`] at its beginning.
-    pub fn resolve(&self, models: &[HullModel], passages: &mut [Passage], near: &[Pair]) {
-        let mut touches = self.touches(passages, near);
+    pub fn resolve(&self, models: &[HullModel], displacements: &mut [Displacement], near: &[Pair]) {
+        let mut touches = self.touches(displacements, near);
         if touches.is_empty() {
             return;
         }
@@ -146,21 +155,23 @@ impl ContactModel {
         // must not matter.
         touches.sort_by(|a, b| a.boat.cmp(&b.boat).then(a.distance_m.total_cmp(&b.distance_m)));
         touches.dedup_by_key(|touch| touch.boat);
-        self.hand_to_rapier(models, passages, &touches);
+        self.hand_to_rapier(models, displacements, &touches);
     }
 
     /// Boats that are close to another hull or something fixed.
-    fn touches(&self, passages: &[Passage], near: &[Pair]) -> Vec<Touch> {
+    fn touches(&self, displacements: &[Displacement], near: &[Pair]) -> Vec<Touch> {
         let mut touches = Vec::new();
         for pair in near {
             let (a, b) = (usize::from(pair.a), usize::from(pair.b));
-            let (kind_a, kind_b) = (passages[a].kind, passages[b].kind);
-            let reach_m = self.hulls[kind_a].1 + self.hulls[kind_b].1 + self.close_m;
+            let (kind_a, kind_b) = (displacements[a].kind, displacements[b].kind);
+            let reach_m = self.hulls[kind_a].half_length_m + self.hulls[kind_b].half_length_m + self.close_m;
             if pair.distance_squared > reach_m * reach_m {
                 continue;
             }
-            let (shape_a, shape_b) = (&self.hulls[kind_a].0, &self.hulls[kind_b].0);
-            if let Some((distance_m, normal)) = self.close(&passages[a], shape_a, passages[b].start(), shape_b) {
+            let (shape_a, shape_b) = (&self.hulls[kind_a].capsule, &self.hulls[kind_b].capsule);
+            if let Some((distance_m, normal)) =
+                self.close(&displacements[a], shape_a, displacements[b].start(), shape_b)
+            {
                 touches.push(Touch { boat: a, distance_m, normal });
                 touches.push(Touch { boat: b, distance_m, normal });
             }
@@ -168,12 +179,12 @@ impl ContactModel {
         if self.fixed.is_empty() {
             return touches;
         }
-        for (boat, passage) in passages.iter().enumerate() {
-            let (shape, half_length_m) = &self.hulls[passage.kind];
+        for (boat, displacement) in displacements.iter().enumerate() {
+            let HullShape { capsule, half_length_m } = &self.hulls[displacement.kind];
             let beside =
-                self.fixed.iter().filter(|fixed| fixed.is_beside(passage.from.at, half_length_m + self.close_m));
+                self.fixed.iter().filter(|fixed| fixed.is_beside(displacement.from.at, half_length_m + self.close_m));
             for fixed in beside {
-                if let Some((distance_m, normal)) = self.close(passage, shape, fixed.pose, &fixed.shape) {
+                if let Some((distance_m, normal)) = self.close(displacement, capsule, fixed.pose, &fixed.shape) {
                     touches.push(Touch { boat, distance_m, normal });
                 }
             }
@@ -184,41 +195,71 @@ impl ContactModel {
     /// Distance and direction between a hull and a shape that are close.
     fn close(
         &self,
-        passage: &Passage,
+        displacement: &Displacement,
         hull: &SharedShape,
         other_pose: Pose,
         other: &SharedShape,
     ) -> Option<(f64, Vector)> {
-        let found = query::contact(&passage.start(), &**hull, &other_pose, &**other, self.close_m);
+        let found = query::contact(&displacement.start(), &**hull, &other_pose, &**other, self.close_m);
         found.ok().flatten().map(|contact| (contact.dist, contact.normal1))
     }
 
-    fn hand_to_rapier(&self, models: &[HullModel], passages: &mut [Passage], touches: &[Touch]) {
+    fn hand_to_rapier(&self, models: &[HullModel], displacements: &mut [Displacement], touches: &[Touch]) {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters.dt = self.dt_s;
         world.integration_parameters.normalized_prediction_distance = self.look_ahead_m;
         for fixed in &self.fixed {
-            let reach_m = |passage: &Passage| self.hulls[passage.kind].1 + self.close_m;
-            if touches.iter().any(|t| fixed.is_beside(passages[t.boat].from.at, reach_m(&passages[t.boat]))) {
+            let reach_m = |displacement: &Displacement| self.hulls[displacement.kind].half_length_m + self.close_m;
+            if touches.iter().any(|t| fixed.is_beside(displacements[t.boat].from.at, reach_m(&displacements[t.boat]))) {
                 let collider = ColliderBuilder::new(fixed.shape.clone()).position(fixed.pose);
                 world.insert_collider(collider.friction(FRICTION).restitution(RESTITUTION), None);
             }
         }
-        let enter = |touch: &Touch| {
-            let passage = &passages[touch.boat];
-            enter(&mut world, &self.hulls[passage.kind].0, (models, self.dt_s), touch, passage)
-        };
+        let enter = |touch: &Touch| self.enter(&mut world, models, touch, &displacements[touch.boat]);
         let entries: Vec<Entry> = touches.iter().map(enter).collect();
         world.step();
         for entry in &entries {
-            let passage = &mut passages[entry.boat];
-            leave(&world, entry, &models[passage.kind], passage);
+            let displacement = &mut displacements[entry.boat];
+            leave(&world, entry, &models[displacement.kind], displacement);
         }
+    }
+
+    /// Puts a boat into rapier's world with the mass it has in the direction of the push.
+    fn enter(
+        &self,
+        world: &mut PhysicsWorld,
+        models: &[HullModel],
+        touch: &Touch,
+        displacement: &Displacement,
+    ) -> Entry {
+        let model = &models[displacement.kind];
+        let moved = displacement.to.at - displacement.from.at;
+        let velocity = vector(moved) / self.dt_s;
+        let spin_rad_s = wrap_pi(displacement.to.psi_rad - displacement.from.psi_rad) / self.dt_s;
+        let normal = frame::body_from_ned(displacement.rotation, Ned { north: touch.normal.x, east: touch.normal.y });
+        let mass_kg = model.mass_along_kg(normal.ahead, normal.starboard);
+        let body = match displacement.role {
+            ContactRole::Dynamic => RigidBodyBuilder::dynamic(),
+            ContactRole::Fixed => RigidBodyBuilder::fixed(),
+            ContactRole::Kinematic => RigidBodyBuilder::kinematic_velocity_based(),
+        };
+        let body = body
+            .pose(displacement.start())
+            .linvel(velocity)
+            .angvel(spin_rad_s)
+            .can_sleep(false)
+            .additional_mass_properties(MassProperties::new(Vector::ZERO, mass_kg, model.yaw_inertia_kg_m2()));
+        let collider = ColliderBuilder::new(self.hulls[displacement.kind].capsule.clone())
+            .density(0.0)
+            .friction(FRICTION)
+            .restitution(RESTITUTION);
+        let (body, _) = world.insert(body, collider);
+        Entry { boat: touch.boat, body, mass_kg, velocity, spin_rad_s }
     }
 }
 
-impl Passage {
+impl Displacement {
     fn start(&self) -> Pose {
         pose(self.from.at, self.rotation)
     }
@@ -275,56 +316,27 @@ fn wall(from: Ned, to: Ned, inward: Ned) -> Fixed {
     }
 }
 
-/// Puts a boat into rapier's world with the mass it has in the direction of the push.
-fn enter(
-    world: &mut PhysicsWorld,
-    shape: &SharedShape,
-    (models, dt_s): (&[HullModel], f64),
-    touch: &Touch,
-    passage: &Passage,
-) -> Entry {
-    let model = &models[passage.kind];
-    let moved = passage.to.at - passage.from.at;
-    let velocity = vector(moved) / dt_s;
-    let spin_rad_s = wrap_pi(passage.to.psi_rad - passage.from.psi_rad) / dt_s;
-    let normal = frame::body_from_ned(passage.rotation, Ned { north: touch.normal.x, east: touch.normal.y });
-    let mass_kg = model.mass_along_kg(normal.ahead, normal.starboard);
-    let body = match passage.footing {
-        Footing::Loose => RigidBodyBuilder::dynamic(),
-        Footing::Fast => RigidBodyBuilder::fixed(),
-        Footing::Carried => RigidBodyBuilder::kinematic_velocity_based(),
-    };
-    let body = body
-        .pose(passage.start())
-        .linvel(velocity)
-        .angvel(spin_rad_s)
-        .can_sleep(false)
-        .additional_mass_properties(MassProperties::new(Vector::ZERO, mass_kg, model.yaw_inertia_kg_m2()));
-    let collider = ColliderBuilder::new(shape.clone()).density(0.0).friction(FRICTION).restitution(RESTITUTION);
-    let (body, _) = world.insert(body, collider);
-    Entry { boat: touch.boat, body, mass_kg, velocity, spin_rad_s }
-}
-
 /// Takes a boat out of rapier's world; without an active contact its own motion stands.
 ///
 /// Rapier's impulse is taken over, not its change of velocity: a push on the bow quarter moves a hull that is
 /// heavier across than along in another direction than the push, and a change of velocity along the push
 /// would give it energy.
-fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, passage: &mut Passage) {
+fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &mut Displacement) {
     let body = &world.bodies[entry.body];
     let mut colliders = body.colliders().iter();
     let touched =
         colliders.any(|c| world.narrow_phase.contact_pairs_with(*c).any(|pair| pair.has_any_active_contact()));
-    if !touched || passage.footing != Footing::Loose {
+    if !touched || displacement.role != ContactRole::Dynamic {
         return;
     }
     let (at, rotation) = (body.translation(), body.rotation());
-    passage.to.at = Ned { north: at.x, east: at.y };
-    passage.to.psi_rad = math::atan2(rotation.im, rotation.re);
+    displacement.to.at = Ned { north: at.x, east: at.y };
+    displacement.to.psi_rad = math::atan2(rotation.im, rotation.re);
     // Not rapier's own sine and cosine: a snapshot has only the angle.
-    passage.rotation_to = passage.to.rotation();
+    displacement.rotation_to = displacement.to.rotation();
     let push = (body.linvel() - entry.velocity) * entry.mass_kg;
-    let push = frame::body_from_ned(passage.rotation, Ned { north: push.x, east: push.y });
+    let push = frame::body_from_ned(displacement.rotation, Ned { north: push.x, east: push.y });
     let twist = (body.angvel() - entry.spin_rad_s) * model.yaw_inertia_kg_m2();
-    passage.kick = model.kick(Planar { surge: push.ahead, sway: push.starboard, yaw: twist });
+    displacement.velocity_change =
+        model.velocity_change(Planar { surge: push.ahead, sway: push.starboard, yaw: twist });
 }

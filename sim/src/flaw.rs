@@ -3,9 +3,9 @@
 //! The front seat knows nothing of it: it reckons with the thrusters as they are sold.
 
 use crate::battery::{BatteryModel, BatteryState};
+use crate::delay_line::DelayLine;
 use game::boat::{Flaws, Ventilation};
 use serde::{Deserialize, Serialize};
-use std::collections::VecDeque;
 
 /// The flaws of a pair of thrusters, for one tick length.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub(crate) struct FlawModel {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlawState {
     /// Settings on their way to the thrusters, the oldest first: as many as a setting takes ticks.
-    under_way: VecDeque<[f64; 2]>,
+    under_way: DelayLine<[f64; 2]>,
     /// What the thrusters live on; empty and of no effect where they have no battery.
     pub battery: BatteryState,
 }
@@ -50,7 +50,7 @@ impl FlawModel {
 
     pub(crate) fn start(&self) -> FlawState {
         FlawState {
-            under_way: VecDeque::from(vec![[0.0; 2]; self.latency_ticks]),
+            under_way: DelayLine::of([0.0; 2], self.latency_ticks),
             battery: self.battery.map(|battery| battery.start()).unwrap_or_default(),
         }
     }
@@ -75,13 +75,7 @@ impl FlawState {
     /// Sends `settings` off; gives those that arrive.
     #[inline]
     pub(crate) fn pass(&mut self, settings: [f64; 2]) -> [f64; 2] {
-        match self.under_way.pop_front() {
-            Some(arrived) => {
-                self.under_way.push_back(settings);
-                arrived
-            }
-            None => settings,
-        }
+        self.under_way.shift(settings)
     }
 }
 

@@ -95,7 +95,7 @@ impl HullModel {
     /// The change of velocity by an impulse (N s, N s, N m s).
     #[inline]
     #[must_use]
-    pub fn kick(&self, push: Planar) -> Planar {
+    pub fn velocity_change(&self, push: Planar) -> Planar {
         let (sway_sway, sway_yaw, yaw_yaw) = self.inverse;
         Planar {
             surge: self.inverse_surge * push.surge,

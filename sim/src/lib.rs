@@ -7,6 +7,7 @@ pub mod autopilot;
 pub mod battery;
 pub mod contact;
 pub mod contest;
+mod delay_line;
 pub mod external;
 pub mod flaw;
 pub mod hull;
@@ -24,6 +25,7 @@ mod sighting;
 pub mod spawn;
 pub mod state;
 pub mod thruster;
+mod two_state;
 mod view;
 pub mod world;
 

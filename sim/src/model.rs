@@ -1,12 +1,12 @@
 //! What is constant while a game is played: the boats as they are, the sea, contact, the referee.
 
 use crate::autopilot::AutopilotModel;
-use crate::contact::{ContactModel, Footing, Passage};
+use crate::contact::{ContactModel, ContactRole, Displacement};
 use crate::external;
 use crate::flaw::FlawState;
 use crate::hull::{HullModel, Planar};
 use crate::kinematic::{Command, KinematicModel, KinematicState};
-use crate::motion::{Effort, Fleet, Motion};
+use crate::motion::{Fleet, Forcing, Motion};
 use crate::sea::{Attitude, SeaModel, SeaNow};
 use crate::sensor::{Reading, SensorModel, SensorState, Truth};
 use crate::state::BoatState;
@@ -163,7 +163,7 @@ impl Model {
     /// What moves a boat in this tick, and the current it is in: its thrusters take up its order, by the heading that
     /// its compass shows, and the sea does its part.
     #[inline]
-    pub(crate) fn effort(
+    pub(crate) fn forcing(
         &self,
         vehicle: usize,
         boat: &mut BoatState,
@@ -171,40 +171,40 @@ impl Model {
         (rotation, heading_error_rad): (Rotation, f64),
         order: (Order, f64),
         sea: &SeaNow<'_>,
-    ) -> (Effort, Ned) {
+    ) -> (Forcing, Ned) {
         let kind = self.kinds[vehicle];
         let Drive::Thrusters(thruster, autopilot) = &self.drives[kind] else {
-            return (Effort::default(), Ned::default());
+            return (Forcing::default(), Ned::default());
         };
         if boat.quarantined || self.external[vehicle] {
-            return (Effort::default(), Ned::default());
+            return (Forcing::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
         let settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), order);
-        let felt = sea.feel(kind, hull, boat.pose, rotation, boat.nu);
+        let from_sea = sea.forcing(kind, hull, boat.pose, rotation, boat.nu);
         let still_m = thruster.ventilation().map_or(0.0, |ventilation| ventilation.depth_m);
-        let water_above_m = felt.cover_m.map(|cover_m| still_m + cover_m);
+        let water_above_m = from_sea.submergence_change_m.map(|change_m| still_m + change_m);
         let thrust = thruster.drive([&mut boat.port, &mut boat.starboard], flaws, settings, water_above_m);
-        let effort = Effort {
-            nu_r: through_water(boat.nu, rotation, felt.current_m_s, -1.0),
-            tau: thrust.map(|thrust| thrust.plus(1.0, felt.force)),
-            water: felt.water,
-            water_rate: felt.water_rate,
+        let forcing = Forcing {
+            nu_r: through_water(boat.nu, rotation, from_sea.current_m_s, -1.0),
+            tau: thrust.map(|thrust| thrust.plus(1.0, from_sea.force)),
+            water: from_sea.water,
+            water_rate: from_sea.water_rate,
         };
-        (effort, felt.current_m_s)
+        (forcing, from_sea.current_m_s)
     }
 
-    /// A boat's passage over a tick as if it were alone, and its velocity over the ground after it.
+    /// A boat's displacement over a tick as if it were alone, and its velocity over the ground after it.
     #[inline]
-    pub(crate) fn passage(
+    pub(crate) fn displacement(
         &self,
         vehicle: usize,
         boat: &BoatState,
         rotation: Rotation,
-        effort: &Effort,
+        forcing: &Forcing,
         motion: &Motion,
         current_m_s: Ned,
-    ) -> (Passage, Planar) {
+    ) -> (Displacement, Planar) {
         let from = boat.pose;
         let still = self.still(vehicle, boat, rotation);
         if boat.quarantined {
@@ -213,23 +213,23 @@ impl Model {
         let psi_rad = wrap_pi(from.psi_rad + motion.turn_rad);
         let rotation_half = rotation.turned(small_rotation(motion.turn_half_rad));
         let rotation_to = Rotation::from_heading(psi_rad);
-        let start = effort.nu_r.in_ned(rotation);
+        let start = forcing.nu_r.in_ned(rotation);
         let middle = motion.nu_r_half.in_ned(rotation_half);
         let end = motion.nu_r.in_ned(rotation_to);
         let mean_m_s = (start + middle.scaled(4.0) + end).scaled(1.0 / 6.0) + current_m_s;
         let to = Pose { at: from.at + mean_m_s.scaled(self.dt_s), psi_rad };
-        (Passage { to, rotation_to, ..still }, through_water(motion.nu_r, rotation_to, current_m_s, 1.0))
+        (Displacement { to, rotation_to, ..still }, through_water(motion.nu_r, rotation_to, current_m_s, 1.0))
     }
 
-    /// A point boat's passage over a tick, and its velocity over the ground after it.
-    pub(crate) fn point_passage(
+    /// A point boat's displacement over a tick, and its velocity over the ground after it.
+    pub(crate) fn point_displacement(
         &self,
         vehicle: usize,
         boat: &BoatState,
         (point, state): (&KinematicModel, &mut KinematicState),
         (order, factor): (Order, f64),
         drift_m_s: Ned,
-    ) -> (Passage, Planar) {
+    ) -> (Displacement, Planar) {
         let command = match order {
             Order::Steer { heading_rad, speed_m_s } => {
                 Command::Steer { heading_rad, speed_m_s: speed_m_s.min(factor * point.speed_max_m_s()) }
@@ -242,25 +242,30 @@ impl Model {
         let to = Pose { at: boat.pose.at + motion.travel_m, psi_rad: motion.psi_rad };
         let nu = Planar { surge: motion.speed_m_s, sway: 0.0, yaw: motion.turn_rad / self.dt_s };
         let still = self.still(vehicle, boat, boat.pose.rotation());
-        (Passage { to, rotation_to, ..still }, through_water(nu, rotation_to, drift_m_s, 1.0))
+        (Displacement { to, rotation_to, ..still }, through_water(nu, rotation_to, drift_m_s, 1.0))
     }
 
-    /// A real boat's passage over a tick, as far as it is known, and its velocity over the ground: it goes on as it does.
-    pub(crate) fn carried_passage(&self, vehicle: usize, boat: &BoatState, rotation: Rotation) -> (Passage, Planar) {
+    /// A real boat's displacement over a tick, as far as it is known, and its velocity over the ground: it goes on as it does.
+    pub(crate) fn carried_displacement(
+        &self,
+        vehicle: usize,
+        boat: &BoatState,
+        rotation: Rotation,
+    ) -> (Displacement, Planar) {
         let to = external::carried_on(boat.pose, boat.nu, self.dt_s);
         let still = self.still(vehicle, boat, rotation);
-        (Passage { to, rotation_to: to.rotation(), ..still }, boat.nu)
+        (Displacement { to, rotation_to: to.rotation(), ..still }, boat.nu)
     }
 
-    fn still(&self, vehicle: usize, boat: &BoatState, rotation: Rotation) -> Passage {
+    fn still(&self, vehicle: usize, boat: &BoatState, rotation: Rotation) -> Displacement {
         let from = boat.pose;
         let kind = self.kinds[vehicle];
-        let footing = match (self.external[vehicle], boat.quarantined) {
-            (true, _) => Footing::Carried,
-            (false, true) => Footing::Fast,
-            (false, false) => Footing::Loose,
+        let role = match (self.external[vehicle], boat.quarantined) {
+            (true, _) => ContactRole::Kinematic,
+            (false, true) => ContactRole::Fixed,
+            (false, false) => ContactRole::Dynamic,
         };
-        Passage { kind, from, to: from, rotation, rotation_to: rotation, footing, kick: Planar::default() }
+        Displacement { kind, from, to: from, rotation, rotation_to: rotation, role, velocity_change: Planar::default() }
     }
 
     /// How a boat lies in the waves; a point boat knows none, and of a real boat it is not known.

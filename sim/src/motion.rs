@@ -12,7 +12,7 @@ const LANES: usize = 4;
 
 /// What moves a boat for a tick.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Effort {
+pub struct Forcing {
     /// Velocity through the water at the beginning.
     pub nu_r: Planar,
     /// The force on the hull, apart from the hull's own, at the beginning, half-way and at the end.
@@ -58,17 +58,17 @@ impl Fleet {
     /// Where the water lies still or all moves alike, `is_uniform` saves looking at it; the numbers are the same.
     ///
     /// # Panics
-    /// If there is not one effort for each boat.
-    pub fn advance(&self, efforts: &[Effort], dt_s: f64, is_uniform: bool, motions: &mut Vec<Motion>) {
-        assert_eq!(efforts.len(), self.count, "one effort a boat");
+    /// If there is not one forcing for each boat.
+    pub fn advance(&self, forcings: &[Forcing], dt_s: f64, is_uniform: bool, motions: &mut Vec<Motion>) {
+        assert_eq!(forcings.len(), self.count, "one forcing a boat");
         motions.clear();
         motions.resize(self.count, Motion::default());
-        let places = efforts.chunks(LANES).zip(motions.chunks_mut(LANES));
-        for (row, (efforts, motions)) in self.rows.iter().zip(places) {
+        let places = forcings.chunks(LANES).zip(motions.chunks_mut(LANES));
+        for (row, (forcings, motions)) in self.rows.iter().zip(places) {
             if is_uniform {
-                row.advance::<true>(efforts, dt_s, motions);
+                row.advance::<true>(forcings, dt_s, motions);
             } else {
-                row.advance::<false>(efforts, dt_s, motions);
+                row.advance::<false>(forcings, dt_s, motions);
             }
         }
     }
@@ -210,16 +210,16 @@ impl Row {
     }
 
     #[inline(always)]
-    fn advance<const UNIFORM: bool>(&self, efforts: &[Effort], dt_s: f64, motions: &mut [Motion]) {
-        let effort = |i: usize| &efforts[i.min(efforts.len() - 1)];
-        let start = Planar4::gather(|i| effort(i).nu_r);
-        let tau = [0, 1, 2].map(|when| Planar4::gather(|i| effort(i).tau[when]));
+    fn advance<const UNIFORM: bool>(&self, forcings: &[Forcing], dt_s: f64, motions: &mut [Motion]) {
+        let forcing = |i: usize| &forcings[i.min(forcings.len() - 1)];
+        let start = Planar4::gather(|i| forcing(i).nu_r);
+        let tau = [0, 1, 2].map(|when| Planar4::gather(|i| forcing(i).tau[when]));
         let half = 0.5 * dt_s;
         let still = Planar4 { surge: f64x4::ZERO, sway: f64x4::ZERO, yaw: f64x4::ZERO };
         let water = if UNIFORM {
             [still; 3]
         } else {
-            let (middle, rate) = (Planar4::gather(|i| effort(i).water), Planar4::gather(|i| effort(i).water_rate));
+            let (middle, rate) = (Planar4::gather(|i| forcing(i).water), Planar4::gather(|i| forcing(i).water_rate));
             [middle.plus(-half, rate), middle, middle.plus(half, rate)]
         };
         let k1 = self.acceleration::<UNIFORM>(start, tau[0], water[0]);
@@ -278,13 +278,13 @@ mod tests {
         HullModel::new(&hull, 1025.0)
     }
 
-    fn adrift(nu_r: Planar) -> Effort {
-        Effort { nu_r, ..Effort::default() }
+    fn adrift(nu_r: Planar) -> Forcing {
+        Forcing { nu_r, ..Forcing::default() }
     }
 
-    fn advance(model: &HullModel, effort: &Effort, dt_s: f64) -> Planar {
+    fn advance(model: &HullModel, forcing: &Forcing, dt_s: f64) -> Planar {
         let mut motions = Vec::new();
-        Fleet::new([model]).advance(std::slice::from_ref(effort), dt_s, false, &mut motions);
+        Fleet::new([model]).advance(std::slice::from_ref(forcing), dt_s, false, &mut motions);
         motions[0].nu_r
     }
 
@@ -299,25 +299,25 @@ mod tests {
         other.mass_kg = 40.0;
         let models = [model(), HullModel::new(&other, 1000.0)];
         let kinds = [0, 1, 1, 0, 1, 0, 0];
-        let effort = |i: usize| {
+        let forcing = |i: usize| {
             let x = i as f64;
             let push = |n: f64| Planar { surge: 40.0 + n * x, sway: n, yaw: 5.0 - n * x };
             let nu_r = Planar { surge: x, sway: 0.3 - 0.2 * x, yaw: 0.4 * x - 0.5 };
             let (water, water_rate) = (push(0.01), push(0.1));
-            Effort { nu_r, tau: [0.0, 1.0, 2.0].map(push), water, water_rate }
+            Forcing { nu_r, tau: [0.0, 1.0, 2.0].map(push), water, water_rate }
         };
-        let efforts: Vec<Effort> = (0..kinds.len()).map(effort).collect();
+        let forcings: Vec<Forcing> = (0..kinds.len()).map(forcing).collect();
         let mut motions = Vec::new();
         for count in 0..=kinds.len() {
             Fleet::new(kinds[..count].iter().map(|kind| &models[*kind])).advance(
-                &efforts[..count],
+                &forcings[..count],
                 0.05,
                 false,
                 &mut motions,
             );
             assert_eq!(motions.len(), count);
             for (i, motion) in motions.iter().enumerate() {
-                assert_eq!(motion.nu_r, advance(&models[kinds[i]], &efforts[i], 0.05), "boat {i} of {count}");
+                assert_eq!(motion.nu_r, advance(&models[kinds[i]], &forcings[i], 0.05), "boat {i} of {count}");
             }
         }
     }
@@ -397,7 +397,7 @@ mod tests {
             let mut nu = Planar { surge: 1.0, sway: 0.2, yaw: 0.5 };
             let tau = [Planar { surge: 80.0, sway: 0.0, yaw: 10.0 }; 3];
             for _ in 0..(2.0 / dt_s).round() as u32 {
-                nu = advance(&model, &Effort { nu_r: nu, tau, ..Effort::default() }, dt_s);
+                nu = advance(&model, &Forcing { nu_r: nu, tau, ..Forcing::default() }, dt_s);
             }
             nu.yaw
         };

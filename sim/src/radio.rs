@@ -3,16 +3,17 @@
 //! All of it is drawn from the game's seed, by vehicle, direction and number of the decision: the same losses in one
 //! process and over a network, whatever else is sent. What the real network does comes on top.
 
+use crate::delay_line::DelayLine;
+use crate::two_state::TwoStateChain;
 use game::link::Link;
 use game::picture::OwnBoat;
 use game::stream::Noise;
 use game::{Ned, Order, Scenario, SimTime};
 use serde::Serialize;
-use std::collections::VecDeque;
 
 /// The largest number that [`Noise::exponential`] gives, 53 ln 2, rounded up.
 const MOST_JITTERS: f64 = 37.0;
-/// Even numbers that a decision takes: the link's turn, and loss and jitter of either direction.
+/// Uniform numbers that a decision takes: the link's turn, and loss and jitter of either direction.
 const DRAWS: u64 = 5;
 
 /// The links of a game. As bytes, what changes in them.
@@ -20,9 +21,9 @@ const DRAWS: u64 = 5;
 pub(crate) struct Radio {
     #[serde(skip)]
     link: Link,
-    /// Probabilities that a link turns bad and good from one decision to the next.
+    /// When a link is bad.
     #[serde(skip)]
-    turns: (f64, f64),
+    bursts: TwoStateChain,
     /// The decision that is open.
     decision: u64,
     lines: Vec<Line>,
@@ -41,7 +42,7 @@ struct Line {
 /// Messages in one direction, by rising arrival. One that is overtaken by a later one is not taken any more.
 #[derive(Serialize)]
 struct Way<T> {
-    under_way: VecDeque<Sent<T>>,
+    under_way: DelayLine<Sent<T>>,
     /// The most of them at once: one for each decision in the longest time that a message takes.
     #[serde(skip)]
     most: usize,
@@ -68,24 +69,22 @@ impl<T: Copy> Way<T> {
         let decisions = |span_s: f64| (span_s / decision.as_s()).ceil() as usize + 2;
         Way {
             // Jitter is seldom so long, and what is late is overtaken.
-            under_way: VecDeque::with_capacity(decisions(link.delay_s)),
+            under_way: DelayLine::with_room(decisions(link.delay_s)),
             most: decisions(link.delay_s + MOST_JITTERS * link.jitter_s),
         }
     }
 
     fn send(&mut self, sent: Sent<T>) {
         // What would arrive after this one is overtaken by it.
-        while self.under_way.back().is_some_and(|earlier| earlier.arrival >= sent.arrival) {
-            self.under_way.pop_back();
-        }
+        self.under_way.drop_overtaken(|earlier| earlier.arrival >= sent.arrival);
         assert!(self.under_way.len() < self.most, "one message a decision, and none takes longer than the longest");
-        self.under_way.push_back(sent);
+        self.under_way.send(sent);
     }
 
     /// The newest message that has arrived by `now`, if any has; `each` is told of all of them by their decisions.
     fn receive(&mut self, now: SimTime, mut each: impl FnMut(u64)) -> Option<T> {
         let mut newest = None;
-        while let Some(sent) = self.under_way.pop_front_if(|sent| sent.arrival <= now) {
+        while let Some(sent) = self.under_way.receive(|sent| sent.arrival <= now) {
             each(sent.decision);
             newest = Some(sent.message);
         }
@@ -108,16 +107,14 @@ impl Radio {
             orders: Way::new(&link, decision),
             reports: Way::new(&link, decision),
         };
-        Radio { lines: noises.map(line).collect(), turns: turns(&link, decision), decision: 0, link }
+        Radio { lines: noises.map(line).collect(), bursts: bursts(&link, decision), decision: 0, link }
     }
 
     /// The next decision opens: each link turns good or bad, or stays.
     pub(crate) fn open_next(&mut self) {
         self.decision += 1;
-        let (to_bad, to_good) = self.turns;
         for line in &mut self.lines {
-            let even = line.noise.unit(DRAWS * self.decision);
-            line.is_bad = even < if line.is_bad { 1.0 - to_good } else { to_bad };
+            line.is_bad = self.bursts.next(line.is_bad, line.noise.unit(DRAWS * self.decision));
         }
     }
 
@@ -153,7 +150,7 @@ impl Radio {
 
     /// The decision of the oldest report that is under way, or the one that is open.
     pub(crate) fn oldest_report(&self) -> u64 {
-        let oldest = |line: &Line| line.reports.under_way.front().map(|sent| sent.decision);
+        let oldest = |line: &Line| line.reports.under_way.first().map(|sent| sent.decision);
         self.lines.iter().filter_map(oldest).min().unwrap_or(self.decision)
     }
 
@@ -171,14 +168,13 @@ impl Radio {
     }
 }
 
-/// Probabilities that a link turns bad and good in a decision: the two-state Markov chain in continuous time.
-fn turns(link: &Link, decision: SimTime) -> (f64, f64) {
-    if link.loss.good_time_s <= 0.0 {
-        return (0.0, 1.0);
+/// When a link is bad, from one decision to the next.
+fn bursts(link: &Link, decision: SimTime) -> TwoStateChain {
+    let loss = &link.loss;
+    if loss.good_time_s <= 0.0 {
+        return TwoStateChain::OFF;
     }
-    let (to_bad, to_good) = (1.0 / link.loss.good_time_s, 1.0 / link.loss.bad_time_s);
-    let either = -libm::expm1(-(to_bad + to_good) * decision.as_s()) / (to_bad + to_good);
-    (to_bad * either, to_good * either)
+    TwoStateChain::new(1.0 / loss.good_time_s, 1.0 / loss.bad_time_s, decision)
 }
 
 #[cfg(test)]

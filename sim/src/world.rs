@@ -1,9 +1,9 @@
 //! The world: boats, water, contact and the referee, one tick at a time.
 
-use crate::contact::Passage;
+use crate::contact::Displacement;
 use crate::hull::Planar;
 use crate::model::Model;
-use crate::motion::{Effort, Motion};
+use crate::motion::{Forcing, Motion};
 use crate::sea::{Attitude, SeaNow};
 use crate::sensor::{Reading, Truth};
 use crate::spawn::{self, SpawnError};
@@ -50,11 +50,11 @@ struct Work {
     /// By vehicle: the rotation of its heading.
     rotations: Vec<Rotation>,
     /// What moves each boat, and how it moves by that alone.
-    efforts: Vec<Effort>,
+    forcings: Vec<Forcing>,
     currents_m_s: Vec<Ned>,
     motions: Vec<Motion>,
     /// Motion over the tick, by vehicle.
-    passages: Vec<Passage>,
+    displacements: Vec<Displacement>,
     /// Velocity over the ground at the end of the tick without contact, by vehicle.
     velocities: Vec<Planar>,
     pairs: Vec<Pair>,
@@ -98,7 +98,7 @@ impl World {
         self.work.events.clear();
         self.model.sea.prepare(self.state.now);
         self.drive(orders);
-        self.model.contact.resolve(&self.model.hulls, &mut self.work.passages, &self.work.pairs);
+        self.model.contact.resolve(&self.model.hulls, &mut self.work.displacements, &self.work.pairs);
         self.settle();
         self.state.tick += 1;
         self.state.now = self.state.now + self.model.tick;
@@ -232,31 +232,36 @@ impl World {
             if *halted { (Order::Hold, 1.0) } else { model.obeyed(standing, i, at, order) }
         };
         let sea = model.sea.at_time(state.now);
-        work.efforts.clear();
+        work.forcings.clear();
         work.currents_m_s.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let order = obeyed(&state.standing, i, boat.pose.at, orders[i]);
             let heading = (work.rotations[i], model.heading_error_rad(i, &state.senses));
-            let (effort, current_m_s) = model.effort(i, boat, &mut state.flaws[i], heading, order, &sea);
-            work.efforts.push(effort);
+            let (forcing, current_m_s) = model.forcing(i, boat, &mut state.flaws[i], heading, order, &sea);
+            work.forcings.push(forcing);
             work.currents_m_s.push(current_m_s);
         }
-        model.fleet.advance(&work.efforts, model.dt_s, model.sea.is_uniform(), &mut work.motions);
-        work.passages.clear();
+        model.fleet.advance(&work.forcings, model.dt_s, model.sea.is_uniform(), &mut work.motions);
+        work.displacements.clear();
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {
-            let (passage, nu) = match model.point(i) {
-                _ if model.is_external(i) => model.carried_passage(i, boat, work.rotations[i]),
+            let (displacement, nu) = match model.point(i) {
+                _ if model.is_external(i) => model.carried_displacement(i, boat, work.rotations[i]),
                 Some((place, point)) if !boat.quarantined => {
                     let order = obeyed(&state.standing, i, boat.pose.at, orders[i]);
                     let drift_m_s = sea.current_at(boat.pose.at);
-                    model.point_passage(i, boat, (point, &mut state.points[place]), order, drift_m_s)
+                    model.point_displacement(i, boat, (point, &mut state.points[place]), order, drift_m_s)
                 }
-                _ => {
-                    model.passage(i, boat, work.rotations[i], &work.efforts[i], &work.motions[i], work.currents_m_s[i])
-                }
+                _ => model.displacement(
+                    i,
+                    boat,
+                    work.rotations[i],
+                    &work.forcings[i],
+                    &work.motions[i],
+                    work.currents_m_s[i],
+                ),
             };
-            work.passages.push(passage);
+            work.displacements.push(displacement);
             work.velocities.push(nu);
         }
     }
@@ -266,14 +271,14 @@ impl World {
         let World { model, state, work, .. } = self;
         let sea = model.sea.at_time(state.now);
         for (i, boat) in state.boats.iter_mut().enumerate() {
-            let (passage, mut nu) = (&work.passages[i], work.velocities[i]);
-            nu = nu.plus(1.0, passage.kick);
-            if is_sound(passage.to, nu) {
+            let (displacement, mut nu) = (&work.displacements[i], work.velocities[i]);
+            nu = nu.plus(1.0, displacement.velocity_change);
+            if is_sound(displacement.to, nu) {
                 boat.nu_change = nu.plus(-1.0, boat.nu);
-                (boat.pose, boat.nu, work.rotations[i]) = (passage.to, nu, passage.rotation_to);
-                if let (Some((place, _)), true) = (model.point(i), passage.kick != Planar::default()) {
+                (boat.pose, boat.nu, work.rotations[i]) = (displacement.to, nu, displacement.rotation_to);
+                if let (Some((place, _)), true) = (model.point(i), displacement.velocity_change != Planar::default()) {
                     // Its own speed is through the water.
-                    let drift = frame::body_from_ned(passage.rotation_to, sea.current_at(passage.from.at));
+                    let drift = frame::body_from_ned(displacement.rotation_to, sea.current_at(displacement.from.at));
                     state.points[place].divert(boat.pose.psi_rad, boat.nu.surge - drift.ahead);
                 }
             } else if !boat.quarantined {

@@ -22,7 +22,7 @@ fn waves() -> Waves {
 }
 
 /// Where the Otter is after 20 s on this sea under imposed thrust, by the length of the tick.
-fn passage(tick_s: f64, change: impl Fn(&mut Sea)) -> Pose {
+fn pose_after(tick_s: f64, change: impl Fn(&mut Sea)) -> Pose {
     let mut scenario = alone("otter", "calm_salt");
     change(&mut scenario.sea);
     scenario.tick = SimTime::from_s(tick_s);
@@ -36,9 +36,9 @@ fn passage(tick_s: f64, change: impl Fn(&mut Sea)) -> Pose {
 
 /// By how much the error falls as the tick is halved, from 100 ms to 12.5 ms: of the position and of the heading.
 fn gains(change: impl Fn(&mut Sea)) -> Vec<[f64; 2]> {
-    let truth = passage(0.001_25, &change);
+    let truth = pose_after(0.001_25, &change);
     let errors = [0.1, 0.05, 0.025, 0.0125].map(|tick_s| {
-        let pose = passage(tick_s, &change);
+        let pose = pose_after(tick_s, &change);
         [pose.at.distance(truth.at), game::angle::wrap_pi(pose.psi_rad - truth.psi_rad).abs()]
     });
     let gain = |pair: &[[f64; 2]]| [pair[0][0] / pair[1][0], pair[0][1] / pair[1][1]];

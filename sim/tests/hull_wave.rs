@@ -9,7 +9,7 @@ use game::sea::GRAVITY_M_S2;
 use game::sea::{Spreading, Waves};
 use sim::hull::Planar;
 use sim::sea::wave::wavenumber_rad_m;
-use sim::sea::{Attitude, Component, HullWaves, Ride, WaveField, WaveSample};
+use sim::sea::{Attitude, Component, HullWaves, WaveField, WaveResponse, WaveSample};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const DENSITY_KG_M3: f64 = 1000.0;
@@ -284,9 +284,9 @@ fn on_a_long_swell_a_boat_floats_with_the_surface() {
         [(0.0, 0.0, None), (6.0, 90.0, None), (12.0, 180.0, Some(20.0)), (18.0, -90.0, Some(5.0)), (3.0, 45.0, None)]
     {
         let field = regular(1000.0, 0.0, depth_m);
-        let ride = Ride::new(&field, &surveyor());
+        let response = WaveResponse::new(&field, &surveyor());
         let psi_rad = f64::to_radians(psi_deg);
-        let got = ride.at(pose(100.0, 0.0, psi_rad), Ned::default(), 0.0, t);
+        let got = response.at(pose(100.0, 0.0, psi_rad), Ned::default(), 0.0, t);
         let surface = field.surface(Ned { north: 100.0, east: 0.0 }, t);
         let bow_up = surface.slope.north * libm::cos(psi_rad);
         // The surface rises to the north; with the bow east, that is the port side, and starboard is down.
@@ -303,11 +303,11 @@ fn a_wave_at_the_natural_frequency_rolls_the_boat_by_the_springs_amplification()
     let k = wavenumber_rad_m(7.4, f64::INFINITY);
     let field = regular(TAU / k, FRAC_PI_2, None);
     let hull = boat(0.2, 0.01, 1e-6);
-    let ride = Ride::new(&field, &hull);
+    let response = WaveResponse::new(&field, &hull);
     let at = pose(0.0, 0.0, 0.0);
     let period_s = TAU / 7.4;
     for t in [0.1, 0.3, 0.6] {
-        let roll_rad = ride.at(at, Ned::default(), 0.0, t).roll_rad;
+        let roll_rad = response.at(at, Ned::default(), 0.0, t).roll_rad;
         let slope_then = field.surface(at.at, t - 0.25 * period_s).slope.east;
         assert!((roll_rad + 2.5 * slope_then).abs() < 1e-3 * 2.5 * 0.2 * k, "{t} s: {roll_rad} {slope_then}");
     }
@@ -316,11 +316,11 @@ fn a_wave_at_the_natural_frequency_rolls_the_boat_by_the_springs_amplification()
 #[test]
 fn the_rates_of_the_attitude_are_its_changes_along_a_turning_track() {
     let field = sea(0.5, 2.5, Spreading::CosineSquared);
-    let ride = Ride::new(&field, &surveyor());
+    let response = WaveResponse::new(&field, &surveyor());
     let (velocity, turn_rad_s) = (Ned { north: 1.4, east: -0.9 }, 0.4);
     let along = |t: f64| {
         let here = pose(10.0 + velocity.north * t, 4.0 + velocity.east * t, 1.0 + turn_rad_s * t);
-        ride.at(here, velocity, turn_rad_s, 500.0 + t)
+        response.at(here, velocity, turn_rad_s, 500.0 + t)
     };
     let now = along(0.0);
     let want = common::derivative(along, |a: &Attitude| [a.heave_up_m, a.roll_rad, a.pitch_rad]);
@@ -331,7 +331,7 @@ fn the_rates_of_the_attitude_are_its_changes_along_a_turning_track() {
     // On a straight track the acceleration is that of the heave, exactly.
     let straight = |t: f64| {
         let here = pose(10.0 + velocity.north * t, 4.0 + velocity.east * t, 1.0);
-        ride.at(here, velocity, 0.0, 500.0 + t)
+        response.at(here, velocity, 0.0, 500.0 + t)
     };
     let [want] = common::derivative(straight, |a: &Attitude| [a.heave_up_m_s]);
     let got = straight(0.0).heave_up_m_s2;
@@ -342,7 +342,7 @@ fn the_rates_of_the_attitude_are_its_changes_along_a_turning_track() {
 fn a_sample_is_the_same_bits_everywhere() {
     let field = sea(0.5, 3.0, Spreading::Cosine2s { s: 8.0 });
     let sample = HullWaves::new(&field, &surveyor(), DENSITY_KG_M3).at(pose(12.5, -40.25, 0.6), 1234.55);
-    let attitude = Ride::new(&field, &surveyor()).at(pose(12.5, -40.25, 0.6), Ned::default(), 0.0, 1234.55);
+    let attitude = WaveResponse::new(&field, &surveyor()).at(pose(12.5, -40.25, 0.6), Ned::default(), 0.0, 1234.55);
     let got = [
         sample.velocity.surge,
         sample.velocity.yaw,

@@ -469,7 +469,7 @@ fn sensors_go_on_from_a_snapshot_to_the_bit() {
             assert_eq!(back, state, "tick {i}");
             assert!(bytes.len() < 500, "only fixes under way are kept: {} bytes", bytes.len());
             // A state from bytes sails on beside the one that never was bytes.
-            let (mut one, mut other) = (state, back);
+            let (mut one, mut other) = (state.clone(), back);
             for j in i..i + 30 {
                 let readings = [&mut one, &mut other].map(|state| model.read(state, &sailing(TICK * j), TICK * j));
                 assert_eq!(readings[0], readings[1], "tick {j}");

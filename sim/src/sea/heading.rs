@@ -1,4 +1,4 @@
-//! What depends on the heading, looked up: numbers at every five degrees, straight in between.
+//! A table over the heading: entries every five degrees, linear in between.
 
 use std::f64::consts::TAU;
 use wide::f32x4;
@@ -17,17 +17,17 @@ fn place(heading_rad: f64) -> (usize, f64) {
 
 /// A number (four side by side) from one bin to the next.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(super) struct Segment {
     from: f32x4,
     /// What it gains up to the next bin.
     gain: f32x4,
 }
 
-impl Line {
-    /// The number after `part` (0 to 1) of the way.
+impl Segment {
+    /// The number at `fraction` (0 to 1) of the way.
     #[inline(always)]
-    pub(super) fn after(&self, part: f32x4) -> f32x4 {
-        self.from + self.gain * part
+    pub(super) fn at_fraction(&self, fraction: f32x4) -> f32x4 {
+        self.from + self.gain * fraction
     }
 
     /// Its derivative by the heading, 1/rad.
@@ -41,7 +41,7 @@ impl Line {
 #[derive(Clone, Debug)]
 pub(super) struct HeadingTable<const N: usize> {
     rows: usize,
-    lines: Vec<[Line; N]>,
+    lines: Vec<[Segment; N]>,
 }
 
 impl<const N: usize> HeadingTable<N> {
@@ -51,16 +51,16 @@ impl<const N: usize> HeadingTable<N> {
         let at: Vec<[f32x4; N]> = (0..BINS * rows).map(|i| numbers(i % rows, (i / rows) as f64 * bin_rad)).collect();
         let line = |i: usize| {
             let (from, to) = (&at[i], &at[(i + rows) % at.len()]);
-            std::array::from_fn(|n| Line { from: from[n], gain: to[n] - from[n] })
+            std::array::from_fn(|n| Segment { from: from[n], gain: to[n] - from[n] })
         };
         HeadingTable { rows, lines: (0..at.len()).map(line).collect() }
     }
 
     /// The rows for a heading, and how far it lies from their bin to the next.
     #[inline(always)]
-    pub(super) fn at(&self, heading_rad: f64) -> (&[[Line; N]], f32x4) {
-        let (bin, part) = place(heading_rad);
-        (&self.lines[bin * self.rows..(bin + 1) * self.rows], f32x4::splat(part as f32))
+    pub(super) fn at(&self, heading_rad: f64) -> (&[[Segment; N]], f32x4) {
+        let (bin, fraction) = place(heading_rad);
+        (&self.lines[bin * self.rows..(bin + 1) * self.rows], f32x4::splat(fraction as f32))
     }
 }
 
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_heading_finds_the_bin_below_it_whichever_way_round_it_is_written() {
-        for (heading_deg, bin, part) in [
+        for (heading_deg, bin, fraction) in [
             (0.0, 0, 0.0),
             (7.5, 1, 0.5),
             (-2.5, 71, 0.5),
@@ -78,8 +78,11 @@ mod tests {
             (357.5, 71, 0.5),
             (720.0 + 91.0, 18, 0.2),
         ] {
-            let (got_bin, got_part) = place(f64::to_radians(heading_deg));
-            assert!(got_bin == bin && (got_part - part).abs() < 1e-9, "{heading_deg}: {got_bin} {got_part}");
+            let (got_bin, got_fraction) = place(f64::to_radians(heading_deg));
+            assert!(
+                got_bin == bin && (got_fraction - fraction).abs() < 1e-9,
+                "{heading_deg}: {got_bin} {got_fraction}"
+            );
         }
         for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
             assert!(place(odd).0 < BINS, "{odd}");

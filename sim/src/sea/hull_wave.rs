@@ -7,9 +7,9 @@
 //!
 //! Second order: the drift force, which varies with the groups of waves (Newman 1974).
 
-use super::cover::{Cover, Tally};
 use super::heading::HeadingTable;
 use super::sine::sum;
+use super::submergence::{PropellerSums, Submergence};
 use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes, side_by_side};
 use crate::hull::Planar;
 use game::boat::Boat;
@@ -68,7 +68,7 @@ impl HullWaves {
         };
         let velocity = HeadingTable::new(chunks.len(), |row, heading_rad| {
             let speeds = lanes(chunks[row], |w| orbital_velocity(w, boat, heading_rad));
-            let single = |part: fn(&Planar) -> f64| f32x4::new(speeds.each_ref().map(|v| part(v) as f32));
+            let single = |fraction: fn(&Planar) -> f64| f32x4::new(speeds.each_ref().map(|v| fraction(v) as f32));
             [single(|v| v.surge), single(|v| v.sway), single(|v| v.yaw)]
         });
         let reflected_m2: f64 = field.waves.iter().map(|w| w.reflected_m(boat.draught_m)).map(|c| c * c).sum();
@@ -84,35 +84,45 @@ impl HullWaves {
     #[must_use]
     pub fn at(&self, pose: Pose, time_s: f64) -> WaveSample {
         let mut sums = Sums::default();
-        let (lines, part) = self.velocity.at(pose.psi_rad);
+        let (lines, fraction) = self.velocity.at(pose.psi_rad);
         for (row, lines) in self.rows.iter().zip(lines) {
             let (sin, cos) = row.phases.sin_cos(pose.at, time_s);
-            sums.add(row, [lines[0].after(part), lines[1].after(part), lines[2].after(part)], sin, cos);
+            sums.add(
+                row,
+                [lines[0].at_fraction(fraction), lines[1].at_fraction(fraction), lines[2].at_fraction(fraction)],
+                sin,
+                cos,
+            );
         }
         self.sample(&sums, pose.psi_rad)
     }
 
     /// The waves at a boat, and how much higher than in calm the water stands over its propellers, m: [`HullWaves::at`]
-    /// and [`Cover::at`] in one go.
+    /// and [`Submergence::at`] in one go.
     #[must_use]
-    pub fn at_with(&self, cover: &Cover, pose: Pose, time_s: f64) -> (WaveSample, [f64; 2]) {
-        let (mut sums, mut tally) = (Sums::default(), Tally::default());
-        let (lines, part) = self.velocity.at(pose.psi_rad);
-        let (over, _) = cover.lines(pose.psi_rad);
-        for ((row, lines), over) in self.rows.iter().zip(lines).zip(over) {
+    pub fn at_with(&self, submergence: &Submergence, pose: Pose, time_s: f64) -> (WaveSample, [f64; 2]) {
+        let (mut sums, mut depths) = (Sums::default(), PropellerSums::default());
+        let (lines, fraction) = self.velocity.at(pose.psi_rad);
+        let (depth_lines, _) = submergence.lines(pose.psi_rad);
+        for ((row, lines), depth_lines) in self.rows.iter().zip(lines).zip(depth_lines) {
             let (sin, cos) = row.phases.sin_cos(pose.at, time_s);
-            sums.add(row, [lines[0].after(part), lines[1].after(part), lines[2].after(part)], sin, cos);
-            tally.add(over, part, sin, cos);
+            sums.add(
+                row,
+                [lines[0].at_fraction(fraction), lines[1].at_fraction(fraction), lines[2].at_fraction(fraction)],
+                sin,
+                cos,
+            );
+            depths.add(depth_lines, fraction, sin, cos);
         }
-        (self.sample(&sums, pose.psi_rad), tally.cover_m())
+        (self.sample(&sums, pose.psi_rad), depths.submergence_change_m())
     }
 
     #[inline(always)]
     fn sample(&self, sums: &Sums, heading_rad: f64) -> WaveSample {
         let (in_phase, off_phase) = (sum(sums.reflected_cos), sum(sums.reflected_sin));
         let groups_m2 = in_phase * in_phase + off_phase * off_phase;
-        let (drift, part) = self.drift.at(heading_rad);
-        let [surge, sway, ..] = drift[0][0].after(part).to_array().map(|mean| f64::from(mean) * groups_m2);
+        let (drift, fraction) = self.drift.at(heading_rad);
+        let [surge, sway, ..] = drift[0][0].at_fraction(fraction).to_array().map(|mean| f64::from(mean) * groups_m2);
         WaveSample {
             velocity: Planar { surge: sum(sums.surge), sway: sum(sums.sway), yaw: sum(sums.yaw) },
             acceleration: Planar { surge: sum(sums.surge_rate), sway: sum(sums.sway_rate), yaw: -sum(sums.yaw_fall) },

@@ -1,32 +1,32 @@
-//! What a boat feels of the sea: waves, wind and current, at its place and time.
+//! The sea: the forces and water velocities that waves, wind and current exert on a boat at its place and time.
 //!
-//! Open [`SeaNow::feel`] first: the one door through which the sea acts on boats. Everything here is a function of the
+//! Open [`SeaNow::forcing`] first: the only place where the sea acts on boats. Everything here is a function of the
 //! scenario, the seed and the time; the sea remembers nothing, so a world that goes back in time finds the same sea.
 
 pub mod band;
-mod cover;
 pub mod current;
 pub mod eddy;
 pub mod gust_spectrum;
 mod heading;
 mod hull_wave;
 mod markov;
-mod ride;
 mod sine;
 pub mod spectrum;
+mod submergence;
 mod summary;
 mod tape;
 pub mod wave;
+mod wave_response;
 pub mod wind;
 pub mod windage;
 
 pub use band::Band;
-pub use cover::Cover;
 pub use current::{CurrentField, CurrentNow};
 pub use hull_wave::{HullWaves, WaveSample};
-pub use ride::{Attitude, Ride};
+pub use submergence::Submergence;
 pub use summary::{Summary, WaveSummary, WindSummary};
 pub use wave::{Component, Surface, WaveField};
+pub use wave_response::{Attitude, WaveResponse};
 pub use wind::WindField;
 
 use crate::hull::{HullModel, Planar};
@@ -45,8 +45,8 @@ pub struct SeaModel {
     current: CurrentField,
     /// Hulls of different size; kinds of boat that differ in other things share one.
     shapes: Vec<Shape>,
-    /// The water over propellers, by size of hull and place of the propellers.
-    covers: Vec<([f64; 4], Cover)>,
+    /// Propeller submergence, by size of hull and place of the propellers.
+    submergences: Vec<([f64; 4], Submergence)>,
     kinds: Vec<Kind>,
     /// Half a tick, and as seconds.
     half_tick: SimTime,
@@ -60,8 +60,8 @@ struct Shape {
     beam_m: f64,
     draught_m: f64,
     waves: HullWaves,
-    ride: Ride,
-    /// The part of Stokes drift that is not found by going along with the water.
+    response: WaveResponse,
+    /// The part of Stokes drift that a drifting hull does not already get from the orbital motion.
     rise_drift_m_s: Ned,
 }
 
@@ -73,8 +73,8 @@ struct Kind {
     windage: Windage,
     /// The mean wind at the height of its windage, m/s.
     wind_mean_m_s: f64,
-    /// Index into the covers, where that matters.
-    cover: Option<usize>,
+    /// Index into the submergences, where propellers ventilate.
+    submergence: Option<usize>,
 }
 
 /// The sea at one moment.
@@ -87,19 +87,19 @@ pub struct SeaNow<'a> {
     middle_s: f64,
 }
 
-/// What a boat feels of the sea over a tick.
+/// How the sea acts on a boat over a tick.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Felt {
-    /// The velocity of the water over the ground, without its to and fro, m/s.
+pub struct SeaForcing {
+    /// The velocity of the water over the ground without the orbital motion of waves, m/s.
     pub current_m_s: Ned,
-    /// The water's to and fro and its turning, half-way through the tick, along the boat.
+    /// The orbital velocity of the waves and the water's rotation, half-way through the tick, in the boat's axes.
     pub water: Planar,
     /// The rate at which that changes.
     pub water_rate: Planar,
-    /// Wind, wave and drift forces along the boat.
+    /// Wind, wave and drift forces in the boat's axes.
     pub force: Planar,
-    /// How much higher than in calm the water stands over its propellers, where that matters, m.
-    pub cover_m: [f64; 2],
+    /// By how much its propellers are deeper than in calm water, where they ventilate, m.
+    pub submergence_change_m: [f64; 2],
 }
 
 impl SeaModel {
@@ -115,7 +115,7 @@ impl SeaModel {
         let mut model = SeaModel {
             current: CurrentField::new(&sea.current, &scenario.field, seed),
             shapes: vec![],
-            covers: vec![],
+            submergences: vec![],
             kinds: vec![],
             half_tick: SimTime(scenario.tick.0 / 2),
             half_s: 0.5 * scenario.tick.as_s(),
@@ -124,7 +124,7 @@ impl SeaModel {
         };
         for boat in &scenario.boats {
             let kind = Kind {
-                cover: model.cover_of(boat),
+                submergence: model.submergence_of(boat),
                 length_m: boat.length_m,
                 shape: model.shape_of(boat, sea.water_density_kg_m3),
                 windage: boat.windage.clone(),
@@ -135,17 +135,17 @@ impl SeaModel {
         model
     }
 
-    /// The index of the water over the boat's propellers, made if it is the first of it, if they can suck air.
-    fn cover_of(&mut self, boat: &Boat) -> Option<usize> {
+    /// The index of the boat's propeller submergence, made if it is the first of it, if the propellers can ventilate.
+    fn submergence_of(&mut self, boat: &Boat) -> Option<usize> {
         let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
         thruster.flaws.ventilation?;
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
-        let known = self.covers.iter().position(|(other, _)| *other == size);
+        let known = self.submergences.iter().position(|(other, _)| *other == size);
         Some(known.unwrap_or_else(|| {
             let ahead = -PROPELLER_ASTERN * boat.length_m;
             let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
-            self.covers.push((size, Cover::new(field, boat, places)));
-            self.covers.len() - 1
+            self.submergences.push((size, Submergence::new(field, boat, places)));
+            self.submergences.len() - 1
         }))
     }
 
@@ -160,7 +160,7 @@ impl SeaModel {
                 beam_m: boat.beam_m,
                 draught_m: boat.draught_m,
                 waves: HullWaves::new(field, boat, water_density_kg_m3),
-                ride: Ride::new(field, boat),
+                response: WaveResponse::new(field, boat),
                 rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
             });
             self.shapes.len() - 1
@@ -192,43 +192,54 @@ impl SeaModel {
 }
 
 impl SeaNow<'_> {
-    /// What a boat of this kind, with this hull, feels in the tick that begins now. `nu` is its velocity over the ground
+    /// How the sea acts on a boat of this kind, with this hull, in the tick that begins now. `nu` is its velocity over the ground
     /// along its axes.
     #[inline]
     #[must_use]
-    pub fn feel(&self, kind: usize, hull: &HullModel, pose: Pose, rotation: Rotation, nu: Planar) -> Felt {
+    pub fn forcing(&self, kind: usize, hull: &HullModel, pose: Pose, rotation: Rotation, nu: Planar) -> SeaForcing {
         let boat = &self.model.kinds[kind];
         let (current_m_s, turning_rad_s) = self.current.over_hull(pose.at, rotation);
-        let mut felt =
-            Felt { current_m_s, water: Planar { yaw: turning_rad_s, ..Planar::default() }, ..Felt::default() };
+        let mut forcing = SeaForcing {
+            current_m_s,
+            water: Planar { yaw: turning_rad_s, ..Planar::default() },
+            ..SeaForcing::default()
+        };
         if let Some(wind) = &self.model.wind {
             let air_m_s = wind.at(pose.at, boat.wind_mean_m_s, self.now);
             let past = windage::wind_past_boat(rotation, air_m_s, nu);
-            felt.force = windage::wind_force(&boat.windage, boat.length_m, windage::AIR_DENSITY_KG_M3, past);
+            forcing.force = windage::wind_force(&boat.windage, boat.length_m, windage::AIR_DENSITY_KG_M3, past);
         }
         if self.model.waves.is_some() {
-            self.feel_waves(boat, hull, pose, rotation, nu, &mut felt);
+            self.add_waves(boat, hull, pose, rotation, nu, &mut forcing);
         }
-        felt
+        forcing
     }
 
     /// Waves are taken half-way through the tick, where the boat will be by then.
     #[inline]
-    fn feel_waves(&self, boat: &Kind, hull: &HullModel, pose: Pose, rotation: Rotation, nu: Planar, felt: &mut Felt) {
+    fn add_waves(
+        &self,
+        boat: &Kind,
+        hull: &HullModel,
+        pose: Pose,
+        rotation: Rotation,
+        nu: Planar,
+        forcing: &mut SeaForcing,
+    ) {
         let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape]);
         let velocity_m_s = nu.in_ned(rotation);
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
-        let (waves, cover_m) = match boat.cover.map(|cover| &self.model.covers[cover].1) {
+        let (waves, submergence_change_m) = match boat.submergence.map(|index| &self.model.submergences[index].1) {
             None => (shape.waves.at(middle, self.middle_s), [0.0; 2]),
-            Some(cover) => shape.waves.at_with(cover, middle, self.middle_s),
+            Some(submergence) => shape.waves.at_with(submergence, middle, self.middle_s),
         };
-        felt.cover_m = cover_m;
-        felt.current_m_s = felt.current_m_s + shape.rise_drift_m_s;
-        felt.water = felt.water.plus(1.0, waves.velocity);
-        felt.water_rate = waves.acceleration;
+        forcing.submergence_change_m = submergence_change_m;
+        forcing.current_m_s = forcing.current_m_s + shape.rise_drift_m_s;
+        forcing.water = forcing.water.plus(1.0, waves.velocity);
+        forcing.water_rate = waves.acceleration;
         // Long waves push the water that the hull displaces, and that it would carry along, as they push water
         // (Froude-Krylov and diffraction; Newman 1977, ch. 6).
-        felt.force = felt.force.plus(1.0, hull.force_of(waves.acceleration)).plus(1.0, waves.drift_newton);
+        forcing.force = forcing.force.plus(1.0, hull.force_of(waves.acceleration)).plus(1.0, waves.drift_newton);
     }
 
     /// The waves, if there are any.
@@ -255,13 +266,13 @@ impl SeaNow<'_> {
         self.model.wind.as_ref().map_or_else(Ned::default, |wind| wind.at(at, wind.mean_m_s(10.0), self.now))
     }
 
-    /// How a boat of this kind lies in the waves now.
+    /// The attitude of a boat of this kind in the waves now.
     #[must_use]
     pub fn attitude(&self, kind: usize, pose: Pose, rotation: Rotation, nu: Planar) -> Attitude {
         if self.model.waves.is_none() {
             return Attitude::default();
         }
         let velocity_m_s = nu.in_ned(rotation);
-        self.model.shapes[self.model.kinds[kind].shape].ride.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
+        self.model.shapes[self.model.kinds[kind].shape].response.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! A fix is taken every period and comes out after the latency. Its position errs by a wandering bias (Gauss-Markov), by
 //! white noise and by the last jump; its velocity, which a receiver has from the Doppler shift, by white noise alone.
-//! Drop-outs and freezes come and go as a Markov chain in continuous time, sampled at the fixes: with a rate of
-//! beginning λ and one of ending μ = 1 / mean duration, one that is off is on a period p later with probability
-//! λ / (λ + μ) (1 − e^−(λ+μ)p). So durations are exponential, and the share of time is λ / (λ + μ) exactly.
+//! Drop-outs and freezes come and go as a [`TwoStateChain`], sampled at the fixes.
 
 use super::{Truth, gauss_markov_step, whole_ticks};
+use crate::delay_line::DelayLine;
+use crate::two_state::TwoStateChain;
 use game::SimTime;
 use game::boat::Gps;
 use game::frame::Ned;
@@ -18,8 +18,8 @@ use serde::{Deserialize, Serialize};
 pub const UNDER_WAY_MAX: usize = 18;
 /// Pairs of normal numbers that a fix takes: bias, position, velocity, jump.
 const PAIRS: u64 = 4;
-/// Even numbers that a fix takes: drop-out, freeze, jump.
-const EVENS: u64 = 3;
+/// Uniform numbers that a fix takes: drop-out, freeze, jump.
+const UNIFORMS: u64 = 3;
 
 /// One fix.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -36,33 +36,27 @@ pub struct Fix {
 #[derive(Clone, Debug)]
 pub struct GpsModel {
     normals: Noise,
-    evens: Noise,
+    uniforms: Noise,
     period: SimTime,
     latency: SimTime,
     bias_m: f64,
     bias_step: (f64, f64),
     noise_m: f64,
     velocity_noise_m_s: f64,
-    dropout: Spell,
-    freeze: Spell,
+    dropout: TwoStateChain,
+    freeze: TwoStateChain,
     /// Probability of a jump at a fix.
     jump_chance: f64,
     jump_m: f64,
 }
 
-/// Something that comes and goes: the probabilities that it begins and ends from one fix to the next.
-#[derive(Clone, Copy, Debug)]
-struct Spell {
-    begins: f64,
-    ends: f64,
-}
-
 /// Everything that changes about a receiver. The default is the state before the game.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GpsState {
     /// The fix that came out last.
     latest: Fix,
-    under_way: UnderWay,
+    /// Fixes that have been taken and have not come out.
+    under_way: DelayLine<Fix>,
     /// m, by axis.
     bias: Ned,
     /// m, by axis.
@@ -72,63 +66,9 @@ pub struct GpsState {
     frozen: Option<Fix>,
 }
 
-/// Fixes that have been taken and have not come out, first the oldest. As bytes, only those.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(into = "Vec<Fix>", try_from = "Vec<Fix>")]
-struct UnderWay {
-    fixes: [Fix; UNDER_WAY_MAX],
-    count: usize,
-}
-
-impl UnderWay {
-    fn push(&mut self, fix: Fix) {
-        assert!(self.count < UNDER_WAY_MAX, "a latency is at most {UNDER_WAY_MAX} periods");
-        self.fixes[self.count] = fix;
-        self.count += 1;
-    }
-
-    fn pop_if(&mut self, out: impl Fn(&Fix) -> bool) -> Option<Fix> {
-        let first = self.fixes[0];
-        if self.count == 0 || !out(&first) {
-            return None;
-        }
-        self.fixes[..self.count].rotate_left(1);
-        self.count -= 1;
-        // What is unused is alike in states that are alike.
-        self.fixes[self.count] = Fix::default();
-        Some(first)
-    }
-}
-
-impl From<UnderWay> for Vec<Fix> {
-    fn from(under_way: UnderWay) -> Vec<Fix> {
-        under_way.fixes[..under_way.count].to_vec()
-    }
-}
-
-impl TryFrom<Vec<Fix>> for UnderWay {
-    type Error = &'static str;
-    fn try_from(fixes: Vec<Fix>) -> Result<UnderWay, &'static str> {
-        let mut under_way = UnderWay { count: fixes.len(), ..UnderWay::default() };
-        under_way.fixes.get_mut(..fixes.len()).ok_or("more fixes under way than can be")?.copy_from_slice(&fixes);
-        Ok(under_way)
-    }
-}
-
-impl Spell {
-    fn new((per_s, mean_s): (f64, f64), period: SimTime) -> Spell {
-        if per_s <= 0.0 || mean_s <= 0.0 {
-            return Spell { begins: 0.0, ends: 1.0 };
-        }
-        let end_per_s = 1.0 / mean_s;
-        let either = -libm::expm1(-(per_s + end_per_s) * period.as_s()) / (per_s + end_per_s);
-        Spell { begins: per_s * either, ends: end_per_s * either }
-    }
-
-    /// Whether it is on at the next fix, by an even number.
-    fn next(self, on: bool, even: f64) -> bool {
-        even < if on { 1.0 - self.ends } else { self.begins }
-    }
+/// What begins so often (1/s) and lasts so long on average (s).
+fn chain(per_s: f64, mean_s: f64, period: SimTime) -> TwoStateChain {
+    if per_s <= 0.0 || mean_s <= 0.0 { TwoStateChain::OFF } else { TwoStateChain::new(per_s, 1.0 / mean_s, period) }
 }
 
 impl GpsModel {
@@ -143,15 +83,15 @@ impl GpsModel {
         assert!(latency <= period * UNDER_WAY_MAX as i64, "a latency is at most {UNDER_WAY_MAX} periods");
         GpsModel {
             normals: Noise::new(seed, &format!("gps/{vehicle}")),
-            evens: Noise::new(seed, &format!("gps/{vehicle}/events")),
+            uniforms: Noise::new(seed, &format!("gps/{vehicle}/events")),
             period,
             latency,
             bias_m: gps.bias_m,
             bias_step: gauss_markov_step(period, gps.bias_time_s),
             noise_m: gps.noise_m,
             velocity_noise_m_s: gps.velocity_noise_m_s,
-            dropout: Spell::new(gps.dropout, period),
-            freeze: Spell::new(gps.freeze, period),
+            dropout: chain(gps.dropout.0, gps.dropout.1, period),
+            freeze: chain(gps.freeze.0, gps.freeze.1, period),
             jump_chance: -libm::expm1(-gps.jump.0 * period.as_s()),
             jump_m: gps.jump.1,
         }
@@ -161,7 +101,7 @@ impl GpsModel {
     /// there at once, and nothing is amiss at first.
     pub fn read(&self, state: &mut GpsState, truth: &Truth, now: SimTime) -> Fix {
         // What is out makes room for the new fix.
-        while let Some(fix) = state.under_way.pop_if(|fix| fix.at + self.latency <= now) {
+        while let Some(fix) = state.under_way.receive(|fix| fix.at + self.latency <= now) {
             state.latest = fix;
         }
         if now.0 % self.period.0 == 0 {
@@ -170,7 +110,8 @@ impl GpsModel {
             if number == 0 || (self.latency == SimTime::ZERO && !state.dropped) {
                 state.latest = fix;
             } else if !state.dropped {
-                state.under_way.push(fix);
+                assert!(state.under_way.len() < UNDER_WAY_MAX, "a latency is at most {UNDER_WAY_MAX} periods");
+                state.under_way.send(fix);
             }
         }
         state.latest
@@ -181,12 +122,12 @@ impl GpsModel {
             let (north, east) = self.normals.normal_pair(PAIRS * number + which);
             Ned { north, east }.scaled(sigma)
         };
-        let even = |which: u64| self.evens.unit(EVENS * number + which);
+        let uniform = |which: u64| self.uniforms.unit(UNIFORMS * number + which);
         let (kept, fresh) = if number == 0 { (0.0, 1.0) } else { self.bias_step };
         state.bias = state.bias.scaled(kept) + normal(0, self.bias_m * fresh);
         if number > 0 {
-            state.dropped = self.dropout.next(state.dropped, even(0));
-            if even(2) < self.jump_chance {
+            state.dropped = self.dropout.next(state.dropped, uniform(0));
+            if uniform(2) < self.jump_chance {
                 state.jump = normal(3, self.jump_m);
             }
         }
@@ -195,7 +136,7 @@ impl GpsModel {
             position: truth.pose.at + state.bias + state.jump + normal(1, self.noise_m),
             velocity_m_s: truth.velocity_m_s() + normal(2, self.velocity_noise_m_s),
         };
-        let freezes = number > 0 && self.freeze.next(state.frozen.is_some(), even(1));
+        let freezes = number > 0 && self.freeze.next(state.frozen.is_some(), uniform(1));
         state.frozen = freezes.then(|| state.frozen.unwrap_or(measured));
         // A frozen receiver still stamps its fixes anew: who reads them cannot tell by their age.
         state.frozen.map_or(measured, |frozen| Fix { at: now, ..frozen })

@@ -72,7 +72,7 @@ pub struct SensorModel {
 }
 
 /// Everything that changes about a boat's sensors. The default is the state before the game.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SensorState {
     gps: GpsState,
     compass: CompassState,

@@ -1,86 +1,86 @@
-//! How much water stands over a boat's propellers: the waves there, less what the hull has risen on them.
+//! Propeller submergence in waves: the elevation of the surface there, less the rise of the hull.
 
-use super::heading::{HeadingTable, Line};
+use super::heading::{HeadingTable, Segment};
 use super::hull_wave::Patch;
-use super::ride::{HEAVE, PITCH, ROLL, response, still};
 use super::sine::sum;
 use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes};
+use super::wave_response::{HEAVE, PITCH, ROLL, quasi_static, transfer};
 use game::boat::Boat;
 use game::frame::{Body, Pose};
 use wide::f32x4;
 
-/// The water over the two propellers of a kind of boat in a field of waves.
+/// How the submergence of the two propellers of a kind of boat changes in a field of waves.
 #[derive(Clone, Debug)]
-pub struct Cover {
+pub struct Submergence {
     phases: Vec<Phases>,
     /// Port per cosine and per sine of the phase amidships, then starboard, m.
-    over: HeadingTable<4>,
+    change: HeadingTable<4>,
 }
 
-impl Cover {
-    /// The water over propellers at `places` of a boat like this.
+impl Submergence {
+    /// That of propellers at `places` of a boat like this.
     #[must_use]
-    pub fn new(field: &WaveField, boat: &Boat, places: [Body; 2]) -> Cover {
+    pub fn new(field: &WaveField, boat: &Boat, places: [Body; 2]) -> Submergence {
         let chunks: Vec<&[PlaneWave]> = field.waves.chunks(LANES).collect();
-        let over = HeadingTable::new(chunks.len(), |row, heading_rad| {
+        let change = HeadingTable::new(chunks.len(), |row, heading_rad| {
             let parts = lanes(chunks[row], |w| {
-                let [port, starboard] = places.map(|place| over(w, boat, heading_rad, place));
+                let [port, starboard] = places.map(|place| change_of(w, boat, heading_rad, place));
                 [port.0, port.1, starboard.0, starboard.1]
             });
             std::array::from_fn(|part| f32x4::new(parts.map(|parts| parts[part] as f32)))
         });
-        Cover { phases: chunks.iter().map(|waves| Phases::new(waves)).collect(), over }
+        Submergence { phases: chunks.iter().map(|waves| Phases::new(waves)).collect(), change }
     }
 
-    /// How much higher than in calm the water stands over each propeller, m.
+    /// By how much each propeller is deeper than in calm water, m.
     #[must_use]
     pub fn at(&self, pose: Pose, time_s: f64) -> [f64; 2] {
-        let mut tally = Tally::default();
-        let (lines, part) = self.lines(pose.psi_rad);
+        let mut sums = PropellerSums::default();
+        let (lines, fraction) = self.lines(pose.psi_rad);
         for (phases, lines) in self.phases.iter().zip(lines) {
             let (sin, cos) = phases.sin_cos(pose.at, time_s);
-            tally.add(lines, part, sin, cos);
+            sums.add(lines, fraction, sin, cos);
         }
-        tally.cover_m()
+        sums.submergence_change_m()
     }
 
     /// The numbers for a heading, for who has the phases at hand.
     #[inline(always)]
-    pub(super) fn lines(&self, heading_rad: f64) -> (&[[Line; 4]], f32x4) {
-        self.over.at(heading_rad)
+    pub(super) fn lines(&self, heading_rad: f64) -> (&[[Segment; 4]], f32x4) {
+        self.change.at(heading_rad)
     }
 }
 
-/// The water over both propellers, summed over the components four at a time.
+/// The submergence of both propellers, summed over the components four at a time.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Tally {
+pub(super) struct PropellerSums {
     port: f32x4,
     starboard: f32x4,
 }
 
-impl Tally {
+impl PropellerSums {
     #[inline(always)]
-    pub(super) fn add(&mut self, lines: &[Line; 4], part: f32x4, sin: f32x4, cos: f32x4) {
-        self.port += lines[0].after(part) * cos + lines[1].after(part) * sin;
-        self.starboard += lines[2].after(part) * cos + lines[3].after(part) * sin;
+    pub(super) fn add(&mut self, lines: &[Segment; 4], fraction: f32x4, sin: f32x4, cos: f32x4) {
+        self.port += lines[0].at_fraction(fraction) * cos + lines[1].at_fraction(fraction) * sin;
+        self.starboard += lines[2].at_fraction(fraction) * cos + lines[3].at_fraction(fraction) * sin;
     }
 
     #[inline(always)]
-    pub(super) fn cover_m(&self) -> [f64; 2] {
+    pub(super) fn submergence_change_m(&self) -> [f64; 2] {
         [sum(self.port), sum(self.starboard)]
     }
 }
 
-/// What a wave adds to the water over a place, per cosine and per sine of its phase amidships.
-fn over(wave: &PlaneWave, boat: &Boat, heading_rad: f64, place: Body) -> (f64, f64) {
+/// What a wave adds to the submergence of a place, per cosine and per sine of its phase amidships.
+fn change_of(wave: &PlaneWave, boat: &Boat, heading_rad: f64, place: Body) -> (f64, f64) {
     let patch = Patch::new(wave, boat, heading_rad);
     let further_rad = wave.wavenumber_rad_m * (patch.ahead * place.ahead + patch.starboard * place.starboard);
     let (sin, cos) = libm::sincos(further_rad);
     let a = wave.component.amplitude_m;
-    let [heave, roll, pitch] = still(wave, boat, heading_rad);
-    let answer = |(natural_rad_s, damping)| response(natural_rad_s, damping, wave.component.omega_rad_s);
-    let ((heave_real, heave_behind), (roll_real, roll_behind)) = (answer(HEAVE), answer(ROLL));
-    let (pitch_real, pitch_behind) = answer(PITCH);
+    let [heave, roll, pitch] = quasi_static(wave, boat, heading_rad);
+    let transfer_of = |(natural_rad_s, damping)| transfer(natural_rad_s, damping, wave.component.omega_rad_s);
+    let ((heave_real, heave_behind), (roll_real, roll_behind)) = (transfer_of(HEAVE), transfer_of(ROLL));
+    let (pitch_real, pitch_behind) = transfer_of(PITCH);
     let (bow_up, starboard_down) = (pitch * place.ahead, roll * place.starboard);
     (
         a * cos - heave * heave_real - bow_up * pitch_behind + starboard_down * roll_behind,
@@ -90,7 +90,7 @@ fn over(wave: &PlaneWave, boat: &Boat, heading_rad: f64, place: Body) -> (f64, f
 
 #[cfg(test)]
 mod tests {
-    use super::super::Ride;
+    use super::super::WaveResponse;
     use super::*;
     use game::frame::{Ned, ned_from_body};
     use game::sea::{Spreading, Waves};
@@ -110,14 +110,14 @@ mod tests {
         };
         let field = WaveField::new(&waves, None, 3);
         let places = [-0.33, 0.33].map(|starboard| Body { ahead: -0.7, starboard });
-        let (cover, ride) = (Cover::new(&field, &boat, places), Ride::new(&field, &boat));
+        let (submergence, response) = (Submergence::new(&field, &boat, places), WaveResponse::new(&field, &boat));
         for k in 0..200 {
             // Headings of the table, so that nothing is interpolated.
             let psi_rad = f64::from(k % 72) * std::f64::consts::TAU / 72.0;
             let pose = Pose { at: Ned { north: f64::from(k) * 3.1, east: f64::from(k) * -1.7 }, psi_rad };
             let time_s = f64::from(k) * 0.37;
-            let attitude = ride.at(pose, Ned::default(), 0.0, time_s);
-            for (place, got_m) in places.into_iter().zip(cover.at(pose, time_s)) {
+            let attitude = response.at(pose, Ned::default(), 0.0, time_s);
+            for (place, got_m) in places.into_iter().zip(submergence.at(pose, time_s)) {
                 let at = pose.at + ned_from_body(pose.rotation(), place);
                 let risen_m =
                     attitude.heave_up_m + attitude.pitch_rad * place.ahead - attitude.roll_rad * place.starboard;

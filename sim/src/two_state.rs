@@ -1,0 +1,29 @@
+//! A two-state Markov chain in continuous time, sampled at equal intervals: receiver outages, bursts of radio loss.
+//!
+//! With a rate of turning on λ and one of turning off μ, one that is off is on a period p later with probability
+//! λ / (λ + μ) (1 − e^−(λ+μ)p). So durations are exponential, and the share of time that it is on is λ / (λ + μ) exactly.
+
+use game::SimTime;
+
+/// The probabilities of a change from one sample to the next.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TwoStateChain {
+    turns_on: f64,
+    turns_off: f64,
+}
+
+impl TwoStateChain {
+    /// One that is never on.
+    pub(crate) const OFF: TwoStateChain = TwoStateChain { turns_on: 0.0, turns_off: 1.0 };
+
+    /// The chain of these rates, 1/s, sampled every `period`.
+    pub(crate) fn new(on_per_s: f64, off_per_s: f64, period: SimTime) -> TwoStateChain {
+        let either = -libm::expm1(-(on_per_s + off_per_s) * period.as_s()) / (on_per_s + off_per_s);
+        TwoStateChain { turns_on: on_per_s * either, turns_off: off_per_s * either }
+    }
+
+    /// Whether it is on at the next sample, by a uniform number between 0 and 1.
+    pub(crate) fn next(self, on: bool, uniform: f64) -> bool {
+        uniform < if on { 1.0 - self.turns_off } else { self.turns_on }
+    }
+}
