@@ -3,6 +3,7 @@
 //! Everything is SI, in the boat's own frame with its origin midships (CO): x ahead, y to starboard,
 //! yaw clockwise. The equation that these numbers enter stands in `sim::hull`.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A kind of boat.
@@ -101,15 +102,19 @@ pub struct Kinematic {
 }
 
 /// Gains of pMarinePID.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Pid {
     /// Proportional.
+    #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
     pub p: f64,
     /// Integral.
+    #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
     pub i: f64,
     /// Derivative.
+    #[schemars(range(min = -1000, max = 1000), extend("default" = 0))]
     pub d: f64,
     /// Limit of the integral.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub i_limit: f64,
 }
 
@@ -286,11 +291,11 @@ pub struct Battery {
     pub sag: f64,
 }
 
-/// Propellers that suck air.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// Propellers near the surface, which suck air as waves bare them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ventilation {
-    /// How deep the thrusters are below still water, m. Thrust falls from where the water above one is half as deep,
-    /// to nothing where there is none.
+    /// How deep the propellers are in still water, m.
+    #[schemars(range(min = 0.01, max = 10))]
     pub depth_m: f64,
 }
 
@@ -316,14 +321,18 @@ pub enum ThrustCurve {
 }
 
 /// The front seat: how the boat follows a heading and a speed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Autopilot {
-    /// The highest speed the front seat accepts, m/s.
+    /// Highest speed that the front seat accepts, m/s.
+    #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: f64,
     /// Natural frequency of the heading loop, rad/s.
+    #[schemars(range(min = 0.01, max = 10), extend("default" = 1))]
     pub heading_bandwidth_rad_s: f64,
     /// Damping ratio of the heading loop.
+    #[schemars(range(min = 0.1, max = 5), extend("default" = 1))]
     pub heading_damping: f64,
     /// Time constant of the speed loop, s.
+    #[schemars(range(min = 0.1, max = 60), extend("default" = 2))]
     pub speed_time_s: f64,
 }

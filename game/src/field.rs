@@ -11,6 +11,7 @@
 
 use crate::frame::{LatLon, Ned};
 use crate::id::{FlagId, TeamId};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What a field file states, checked; [`Field::new`] derives the rest.
@@ -38,13 +39,16 @@ pub struct Plan {
     pub walls: Walls,
 }
 
-/// Whether the field has walls.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// Whether the edges of the field are walls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Walls {
     /// Open water all round.
     #[default]
+    #[serde(alias = "None")]
     None,
-    /// A wall on every edge.
+    /// A wall on every edge, which boats bump into.
+    #[serde(alias = "AllRound")]
     AllRound,
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Everything is SI but for what the boat's own sentences count in: thrust is in per cent of full ahead.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A gateway file, checked.
@@ -24,7 +25,7 @@ pub struct Gateway {
     /// What navigation must be like.
     pub nav: NavWatch,
     /// Where the boat must not be, nor be unable to stop before.
-    pub fence: Geofence,
+    pub geofence: Geofence,
     /// When another real boat is too near.
     pub halt: Halt,
     /// When the battery is low, and what then.
@@ -37,17 +38,19 @@ pub struct Gateway {
     pub upload_gap_s: f64,
 }
 
-/// Whose heading and speed loops steer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// Whose loops steer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Drive {
-    /// Ours: the boat is sent thrust and thrust difference (mode T).
+    /// Ours: the boat is sent thrust and thrust difference, PSEAC mode T.
     Thrust,
-    /// The boat's: it is sent heading and speed (mode G).
+    /// The boat's: it is sent heading and speed, PSEAC mode G.
     Speed,
 }
 
-/// What a boat's headings count from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// What headings count from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum CompassFrame {
     /// Magnetic north.
     Magnetic,
@@ -55,71 +58,91 @@ pub enum CompassFrame {
     True,
 }
 
-/// How much may be asked of a boat.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// How much may be asked of the boat.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Limits {
     /// Highest speed, m/s.
+    #[schemars(range(min = 0.1, max = 20), extend("default" = 3))]
     pub speed_max_m_s: f64,
-    /// Largest thrust either way, per cent.
+    /// Largest thrust, per cent.
+    #[schemars(range(min = 1, max = 100), extend("default" = 70))]
     pub thrust_max_pct: f64,
     /// Largest thrust difference, per cent.
+    #[schemars(range(min = 1, max = 100), extend("default" = 50))]
     pub difference_max_pct: f64,
     /// Fastest growth of either, per cent a second. To zero they go at once.
+    #[schemars(range(min = 1, max = 10000), extend("default" = 100))]
     pub slew_pct_s: f64,
 }
 
-/// What navigation must be like.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// What navigation must be like; what is not makes the boat stop.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NavWatch {
     /// Oldest fix and heading, s.
+    #[schemars(range(min = 0.1, max = 10), extend("default" = 1.5))]
     pub age_max_s: f64,
-    /// Lowest fix quality of GGA: 1 GPS, 2 differential, 4 and 5 RTK.
+    /// Lowest fix quality of GGA (1 GPS, 2 differential, 4 and 5 RTK).
+    #[schemars(range(min = 1, max = 8), extend("default" = 1))]
     pub quality_min: u8,
     /// Largest horizontal dilution of precision, where it is told.
+    #[schemars(range(min = 0.5, max = 50), extend("default" = 5))]
     pub hdop_max: f64,
     /// A fix farther from the one before than the boat can sail in between, and this, is a jump, m.
+    #[schemars(range(min = 0.5, max = 100), extend("default" = 5))]
     pub jump_m: f64,
     /// A position that stays the same to the last digit for this long under thrust is frozen, s.
+    #[schemars(range(min = 0.5, max = 60), extend("default" = 3))]
     pub frozen_s: f64,
 }
 
-/// Where a boat must not be.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// The geofence round the field: a boat outside, or unable to stop inside, is stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Geofence {
-    /// The fence lies this far outside of the field, m.
+    /// How far outside of the field it lies, m.
+    #[schemars(range(min = 0, max = 10000), extend("default" = 30))]
     pub margin_m: f64,
-    /// How hard the boat slows down with thrust at zero, m/s²: v² / (2 a) is its way to rest.
+    /// How hard the boat slows down with thrust at zero, m/s².
+    #[schemars(range(min = 0.01, max = 10), extend("default" = 0.25))]
     pub deceleration_m_s2: f64,
-    /// Time until the boat begins to slow down, s.
+    /// Time until it begins to slow down, s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 1))]
     pub reaction_s: f64,
     /// It must be so for this long, s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0.5))]
     pub debounce_s: f64,
 }
 
-/// When another real boat is too near: within a box about the bow that grows with speed, in which the boat would be.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A box about the bow, as long as the boat is fast, in which no other real boat may be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Halt {
-    /// Length of the box at 2 m/s, from midships, m; 0 is no such watch.
+    /// Its length at 2 m/s, from midships, m (no such watch at 0).
+    #[schemars(range(min = 0, max = 100), extend("default" = 7))]
     pub ahead_m: f64,
     /// Its width, m.
+    #[schemars(range(min = 0.5, max = 100), extend("default" = 3))]
     pub width_m: f64,
     /// It must be empty for this long before the boat goes on, s.
+    #[schemars(range(min = 0, max = 60), extend("default" = 1))]
     pub clear_s: f64,
 }
 
-/// When the battery is low.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// The battery.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BatteryWatch {
-    /// Lowest voltage, V; 0 is no such watch.
+    /// Lowest voltage, V (no such watch at 0).
+    #[schemars(range(min = 0, max = 1000), extend("default" = 22))]
     pub volts_min: f64,
     /// It must be lower for this long, s.
+    #[schemars(range(min = 0, max = 600), extend("default" = 5))]
     pub debounce_s: f64,
     /// What then.
+    #[schemars(extend("default" = "standby"))]
     pub action: LowBattery,
 }
 
 /// What a boat with a low battery does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum LowBattery {
     /// It stops.
     Standby,
@@ -129,14 +152,17 @@ pub enum LowBattery {
     GoToErp,
 }
 
-/// How we know that a boat listens to us.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// How we know that the boat listens to us.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ControlWatch {
     /// For boats that never say who is in control: take it that we are.
+    #[schemars(extend("default" = false))]
     pub assumed: bool,
     /// How old the boat's word on it may grow, s.
+    #[schemars(range(min = 0.1, max = 30), extend("default" = 2))]
     pub age_max_s: f64,
-    /// A command that the boat has not shown after this time is not obeyed, s.
+    /// A command that the boat does not show after this time is not obeyed, s.
+    #[schemars(range(min = 0.2, max = 30), extend("default" = 1.5))]
     pub echo_s: f64,
 }
 

@@ -4,6 +4,7 @@
 //! These belong to the game and are seeded like everything in it. Faults of the real network are another matter.
 
 use crate::frame::Ned;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The radio link between the minds ashore and each boat: reports come in over it, orders go out.
@@ -22,15 +23,19 @@ pub struct Link {
 }
 
 /// Losses in bursts, after Gilbert and Elliott: the link is good or bad, and loses messages in either state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Loss {
     /// Share lost while the link is good.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0))]
     pub good: f64,
     /// Share lost while it is bad.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
     pub bad: f64,
-    /// How long it stays good on average, s; 0 is always.
+    /// How long it stays good on average, s (always at 0).
+    #[schemars(range(min = 0, max = 86400), extend("default" = 0))]
     pub good_time_s: f64,
     /// How long it stays bad on average, s.
+    #[schemars(range(min = 0.01, max = 86400), extend("default" = 2))]
     pub bad_time_s: f64,
 }
 

@@ -6,6 +6,9 @@
 use crate::frame::Ned;
 use serde::{Deserialize, Serialize};
 
+/// The exponent of the wind's mean profile over open water.
+pub const PROFILE_EXPONENT: f64 = 0.12;
+
 /// Standard gravity, m/s².
 pub const GRAVITY_M_S2: f64 = 9.806_65;
 

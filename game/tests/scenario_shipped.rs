@@ -6,6 +6,7 @@ use game::field::Walls;
 use game::id::{TeamId, VehicleId};
 use game::scenario::{self, Checked, Kind, StartPosition};
 use game::{Ned, Scenario};
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 fn shipped(path: &str) -> PathBuf {
@@ -107,7 +108,7 @@ fn a_scenario_survives_json_exactly() {
 }
 
 #[test]
-fn boats_without_a_berth_lie_in_line_and_mirror_each_other() {
+fn boats_without_a_start_position_lie_in_line_and_mirror_each_other() {
     let game = self::game("pav01_vs_pav01");
     let poses: Vec<_> = game
         .vehicles
@@ -185,30 +186,25 @@ fn the_schemas_beside_the_files_are_those_of_the_types() {
     }
 }
 
-/// Every number that a schema describes with its range: its path in the file, and the range in words.
-fn ranges(schema: &serde_json::Value, at: &serde_json::Value, path: &str, found: &mut Vec<(String, String)>) {
+/// Every number that a schema gives a range: its path in the file, its type, and the range.
+fn ranges(schema: &Value, at: &Value, path: &str, found: &mut Vec<(String, bool, [Value; 2])>) {
     for (key, about) in at["properties"].as_object().into_iter().flatten() {
         let path = format!("{path}{key}");
-        if let Some(name) = about["allOf"][0]["$ref"].as_str() {
+        let name = about["allOf"][0]["$ref"].as_str().or(about["$ref"].as_str());
+        if let Some(name) = name {
             let inner = &schema["definitions"][name.rsplit('/').next().unwrap()];
             ranges(schema, inner, &format!("{path}."), found);
         }
-        let is_number =
-            [&about["type"], &about["anyOf"][0]["type"]].into_iter().any(|kind| kind == "number" || kind == "integer");
-        if let (true, Some((_, said))) = (is_number, about["description"].as_str().unwrap().rsplit_once(": ")) {
-            let words: Vec<&str> = said
-                .split(|c: char| c.is_whitespace() || c == ';' || c == ',')
-                .map(|word| word.trim_end_matches('.'))
-                .collect();
-            if words.get(1) == Some(&"to") {
-                found.push((path, format!("{} to {}", words[0], words[2])));
+        for about in [about, &about["anyOf"][0]] {
+            if let (Some(low), Some(high)) = (about.get("minimum"), about.get("maximum")) {
+                found.push((path.clone(), about["type"] == "integer", [low.clone(), high.clone()]));
             }
         }
     }
 }
 
 #[test]
-fn the_ranges_that_schemas_describe_are_those_that_are_checked() {
+fn a_number_beyond_the_range_of_its_schema_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let bases = [
         "games/pav01_vs_pav01",
@@ -218,21 +214,17 @@ fn the_ranges_that_schemas_describe_are_those_that_are_checked() {
         "seas/calm_salt",
         "strategies/easy_attacker",
         "tournaments/paper_2023",
+        "gateways/surveyor",
     ];
     for (kind, base) in Kind::ALL.into_iter().zip(bases) {
         let schema = scenario::schema(kind);
         let mut found = vec![];
         ranges(&schema, &schema, "", &mut found);
-        assert!(!found.is_empty(), "{kind}");
-        for (path, range) in found {
+        assert!(!found.is_empty() || kind == Kind::Strategy, "{kind}");
+        for (path, is_whole, [low, high]) in found {
             let base = shipped(&format!("{base}.toml")).canonicalize().unwrap();
-            let (low, high) = range.split_once(" to ").unwrap();
-            let beyond = |bound: &str, by: f64| bound.parse::<f64>().unwrap() + by;
-            let last = path.rsplit('.').next().unwrap();
-            let whole =
-                ["seed", "win_score", "grab", "capture", "tag", "components", "count", "courses", "speeds", "games"];
-            let is_whole = whole.contains(&last);
-            for value in [beyond(low, -1.0), beyond(high, 1.0)] {
+            let number = |bound: &Value| bound.as_f64().unwrap();
+            for value in [number(&low) - 1.0, number(&high) + 1.0] {
                 let value = match (is_whole, value > 1e18) {
                     (true, true) => continue, // A file cannot say so large a whole number.
                     (true, false) => format!("{value:.0}"),
@@ -242,7 +234,8 @@ fn the_ranges_that_schemas_describe_are_those_that_are_checked() {
                 std::fs::create_dir_all(file.parent().unwrap()).unwrap();
                 std::fs::write(&file, format!("base = {:?}\n{path} = {value}\n", base.display().to_string())).unwrap();
                 let problems = scenario::check_file(&file).unwrap_err().to_string();
-                assert!(problems.contains(&format!("expected {range}")), "{kind} {path} = {value}: {problems}");
+                let expected = format!("expected {} to {}", number(&low), number(&high));
+                assert!(is_whole || problems.contains(&expected), "{kind} {path} = {value}: {problems}");
             }
         }
     }

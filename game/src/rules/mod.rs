@@ -22,6 +22,7 @@ pub use standing::{FlagStanding, Standing, VehicleStanding};
 
 use crate::link::Sharing;
 use crate::time::SimTime;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Everything about the game that is a matter of agreement.
@@ -74,59 +75,78 @@ pub struct Rules {
 }
 
 /// What is worth what.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Points {
     /// For a grab.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 1))]
     pub grab: u32,
     /// For a capture.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 2))]
     pub capture: u32,
-    /// For tagging an opponent (not for the boundary's tags).
+    /// For tagging an opponent, not for the boundary's tags.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub tag: u32,
 }
 
 /// Where a carrier must come to capture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum CaptureAt {
     /// Its own flag's home.
+    #[serde(alias = "OwnFlag")]
     OwnFlag,
     /// Its own side: the scrimmage line is enough.
+    #[serde(alias = "OwnSide")]
     OwnSide,
     /// Either corner of its own end.
+    #[serde(alias = "OwnCorners")]
     OwnCorners,
 }
 
 /// Where a tagged boat must come to play again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum UntagAt {
     /// Its own flag's home.
+    #[serde(alias = "OwnFlag")]
     OwnFlag,
     /// Either corner of its own end.
+    #[serde(alias = "OwnCorners")]
     OwnCorners,
 }
 
 /// What frees a tagged boat at its home.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum UntagOn {
     /// Coming in: a boat that was tagged inside must leave and come back.
+    #[serde(alias = "Entering")]
     Entering,
     /// Being there.
+    #[serde(alias = "Inside")]
     Inside,
 }
 
 /// Which of several intruders in reach is tagged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum TagChoice {
     /// The nearest.
+    #[serde(alias = "Nearest")]
     Nearest,
-    /// The first in the scenario's list.
+    /// The first in the game's list.
+    #[serde(alias = "First")]
     First,
 }
 
 /// What a tagged boat does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum TaggedBoat {
     /// Its mind must drive it home.
+    #[serde(alias = "DrivesItself")]
     DrivesItself,
     /// It is driven straight home, whatever its mind says.
+    #[serde(alias = "IsDriven")]
     IsDriven,
 }

@@ -3,7 +3,7 @@
 use super::draw::{Drawing, Drawn};
 use super::overrides::Overrides;
 use super::problem::{Problem, Problems};
-use super::raw::{At, Pair};
+use super::raw::At;
 use super::source::Sources;
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
@@ -151,29 +151,20 @@ impl Diagnostics {
         default
     }
 
-    /// Both numbers of the pair given for `key`, if they are `allowed`.
-    pub(super) fn pair(
-        &mut self,
-        key: &str,
-        given: Option<&At<Pair>>,
-        allowed: RangeInclusive<f64>,
-    ) -> Option<(f64, f64)> {
-        let given = given?;
-        let [a, b] = given.value.0.map(|value| At { value, at: given.at });
-        let a = self.number(key, Some(&a), allowed.clone());
-        let b = self.number(key, Some(&b), allowed);
-        a.zip(b)
-    }
-
     /// Whether `name` is fit to be one: `a` to `z`, `0` to `9` and `_`, at most 40 of them.
     pub(super) fn is_name(&mut self, at: usize, key: &str, name: &str) -> bool {
         let is_fit = is_name(name);
         if !is_fit {
-            self.note(at, format!("{key} is {name:?}, expected 1 to 40 of a-z, 0-9 and _"));
+            self.note(at, format!("{key} is {name:?}, expected {NAME_EXPECTED}"));
         }
         is_fit
     }
 }
+
+/// What a name is, in a schema.
+pub(super) const NAME_PATTERN: &str = "^[a-z0-9_]{1,40}$";
+/// The same in words.
+pub(super) const NAME_EXPECTED: &str = "1 to 40 of a-z, 0-9 and _";
 
 /// Whether a vehicle, a team or a rival can be called this.
 pub(super) fn is_name(name: &str) -> bool {

@@ -1,5 +1,7 @@
 //! The parser's complaints in the words of these files: which key, what was found, what is allowed.
 
+pub(super) use super::guess::nearest;
+
 /// Rewords a complaint about the entry `key`.
 pub(super) fn explain(complaint: &str, key: &str) -> String {
     if let Some(rest) = complaint.strip_prefix("unknown field `") {
@@ -50,28 +52,6 @@ fn wanted_in_words(wanted: &str) -> &str {
         _ if wanted.starts_with("struct ") => "a table",
         _ => wanted,
     }
-}
-
-/// The one of `choices` that `name` was probably meant to be: at most two letters away.
-pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
-    let far = name.len().min(5) / 2;
-    choices.iter().map(|choice| (distance(name, choice), *choice)).filter(|(d, _)| *d <= far).min().map(|(_, c)| c)
-}
-
-/// How many letters must be put in, left out or changed to make `b` of `a` (Levenshtein).
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, to) in b.iter().enumerate() {
-            let changed = diagonal + usize::from(from != *to);
-            diagonal = row[j + 1];
-            row[j + 1] = changed.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]

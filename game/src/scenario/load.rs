@@ -5,7 +5,7 @@ use super::draw::{Drawing, Drawn, Recipe};
 use super::kind::Kind;
 use super::overrides::Overrides;
 use super::problem::Problems;
-use super::read::{self, Document, Typed};
+use super::read::{self, Declared, Document};
 use super::{Scenario, Tournament, check};
 use crate::boat::Boat;
 use crate::field::Field;
@@ -166,7 +166,9 @@ pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
 /// # Errors
 /// Everything that is wrong in any of them and their bases.
 pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
-    one(path, check::strategy, 1).map(|(strategy, _)| strategy)
+    let mut diagnostics = Diagnostics::new(Drawing::Seed(1));
+    let strategy = check::strategy_file(&mut diagnostics, path, None, "");
+    diagnostics.close(strategy)
 }
 
 /// Reads and checks the tournament file at `path` and every file it names.
@@ -221,7 +223,7 @@ pub fn check_file(path: &Path) -> Result<Checked, Problems> {
 }
 
 /// A file of one kind, and what was drawn for it.
-fn one<R: Typed, T>(
+fn one<R: Declared, T>(
     path: &Path,
     check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
     seed: u64,
@@ -243,5 +245,5 @@ fn one<R: Typed, T>(
 /// The top-level keys of a file and its bases; what is wrong with them is found again by the check.
 fn top_keys(path: &Path) -> BTreeSet<String> {
     let Some(chain) = read::chain(&mut Diagnostics::new(Drawing::Least), path, None) else { return BTreeSet::new() };
-    read::merged(&chain).get_ref().keys().map(|key| key.get_ref().to_string()).collect()
+    read::tree(&chain, &[]).entries().map(|(key, _)| key.clone()).collect()
 }

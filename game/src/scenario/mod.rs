@@ -8,6 +8,7 @@ mod check;
 mod diagnostics;
 mod draw;
 mod explain;
+mod guess;
 mod kind;
 mod load;
 mod overrides;
@@ -16,11 +17,15 @@ mod raw;
 mod read;
 mod real_boats;
 mod reference;
+mod schema;
 mod source;
+mod strategy_read;
 mod tournament;
+mod tree;
+mod validate;
 
 pub use draw::{Drawn, Recipe};
-pub use kind::{Kind, schema};
+pub use kind::Kind;
 pub use load::{
     Checked, check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_gateway, load_sea, load_strategy,
     load_tournament, load_with,
@@ -29,6 +34,7 @@ pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
 pub use real_boats::RealBoats;
 pub use reference::reference;
+pub use schema::schema;
 pub use tournament::{Entrant, Tournament};
 
 use crate::boat::Boat;
@@ -40,6 +46,7 @@ use crate::rules::Rules;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
 use crate::time::SimTime;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -187,12 +194,15 @@ pub struct Vehicle {
 }
 
 /// Where a vehicle's motion comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// From the boat and the sea of the scenario.
+    /// The program moves it through the scenario's sea.
     #[default]
+    #[serde(alias = "Simulated")]
     Simulated,
-    /// From a real boat: its gateway reports where it is.
+    /// It is a real boat: its gateway reports where it is. Such games are played in real time.
+    #[serde(alias = "External")]
     External,
 }
 

@@ -1,95 +1,102 @@
-//! From a path to what the file says: text, bases, merging, and every complaint about its form.
+//! From a path to what the file says: text, bases, merging, and what its schema makes of it.
 
 use super::diagnostics::Diagnostics;
-use super::draw::{self, Drawable};
-use super::explain::explain;
-use super::raw::At;
+use super::kind::Kind;
+use super::schema::declared;
 use super::source::tidied;
+use super::tree::Node;
+use super::validate::validated;
 use serde::de::DeserializeOwned;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
-/// A file as typed, laid over its bases.
+/// A kind of file as typed, declared in `raw`.
+pub(super) trait Declared: DeserializeOwned {
+    /// Which kind it is.
+    const KIND: Kind;
+    /// Keys that count only in the file itself, not in its bases.
+    const OWN: &'static [&'static str] = &[];
+}
+
+/// A file, laid over its bases and read by its schema.
 #[derive(Debug)]
 pub(super) struct Document<T> {
     /// Its stem.
     pub(super) name: String,
-    /// Where it begins in the virtual text.
-    pub(super) start: usize,
-    /// What it says.
+    /// What it says; see `validate` for what stands in the place of mistakes.
     pub(super) raw: T,
+    /// How much was wrong before this file was read.
+    faults: usize,
+    tree: Node,
+    wrong: Vec<String>,
+}
+
+impl<T> Document<T> {
+    /// Where the value at `path` stands, for example at `team.1.name`, or else the innermost table that lacks it.
+    pub(super) fn at(&self, path: &str) -> usize {
+        self.tree.find(path).0.at
+    }
+
+    /// Whether the file or a base of it says something there.
+    pub(super) fn has(&self, path: &str) -> bool {
+        self.tree.find(path).1
+    }
+
+    /// Whether what stands there, or is left out there, is as the schema wants it: in it, and around it.
+    pub(super) fn is_sound(&self, path: &str) -> bool {
+        let is_below = |long: &str, short: &str| {
+            long.strip_prefix(short).is_some_and(|rest| rest.is_empty() || short.is_empty() || rest.starts_with('.'))
+        };
+        !self.wrong.iter().any(|wrong| is_below(wrong, path) || is_below(path, wrong))
+    }
+
+    /// Whether nothing was wrong in it, or in anything that was checked since it was read.
+    pub(super) fn is_faultless(&self, diagnostics: &Diagnostics) -> bool {
+        diagnostics.faults() == self.faults
+    }
 }
 
 /// The files are for people to write; one larger than this is something else.
 const LARGEST_BYTES: u64 = 4 << 20;
 /// Bases of bases of bases.
 const LONGEST_CHAIN: usize = 16;
-/// More complaints than this about the form of one file help nobody.
-const MOST_COMPLAINTS: usize = 100;
 /// Of a dotted key.
 const MOST_PARTS: usize = 100;
-
-type Table<'i> = Spanned<DeTable<'i>>;
 
 /// A file and its bases, the file first: where each begins, and its text.
 pub(super) type Chain = Vec<(usize, Arc<str>)>;
 
-/// A kind of file as typed.
-pub(super) trait Typed: DeserializeOwned + Default {
-    /// Where distributions may stand in place of numbers.
-    const DRAWABLE: Drawable;
-    /// Whose the numbers are, where nobody says.
-    const OWNER: &'static str;
-    /// A key whose value serde cannot read alone; [`Typed::put_apart`] gets it.
-    const APART: Option<&'static str> = None;
-
-    /// Keys that count only in the file itself, not in its bases.
-    const OWN: &'static [&'static str] = &[];
-
-    /// Reads the value of [`Typed::APART`].
-    fn put_apart(&mut self, _: &mut Diagnostics, _: Spanned<DeValue<'_>>) {}
-}
-
 /// Reads the file at `path` with its bases. Problems with finding it stand at `asked_at`, the reference.
-pub(super) fn document<T: Typed>(
+pub(super) fn document<T: Declared>(
     diagnostics: &mut Diagnostics,
     path: &Path,
     asked_at: Option<usize>,
 ) -> Option<Document<T>> {
-    document_of(diagnostics, path, asked_at, T::OWNER)
+    document_of(diagnostics, path, asked_at, T::KIND.name())
 }
 
 /// The same, for an owner who draws numbers of its own.
-pub(super) fn document_of<T: Typed>(
+pub(super) fn document_of<T: Declared>(
     diagnostics: &mut Diagnostics,
     path: &Path,
     asked_at: Option<usize>,
     owner: &str,
 ) -> Option<Document<T>> {
+    let faults = diagnostics.faults();
     let chain = chain(diagnostics, path, asked_at)?;
     let start = chain[0].0;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     diagnostics.is_name(start, "the file's name", &name);
-    let typed = merged(&chain);
-    let numbers = draw::numbers(diagnostics, typed.get_ref(), T::DRAWABLE, owner);
-    let mut table: Table<'_> = typed;
-    let own = start..start + chain[0].1.len();
-    for key in T::OWN {
-        let of_base = table.get_ref().get(*key).is_some_and(|value| !own.contains(&value.span().start));
-        if of_base {
-            table.get_mut().remove(*key);
+    let tree = tree(&chain, T::OWN);
+    let (value, wrong) = validated(diagnostics, &tree, declared(T::KIND), owner);
+    match serde_json::from_value(value) {
+        Ok(raw) => Some(Document { name, raw, faults, tree, wrong }),
+        Err(error) => {
+            diagnostics.note(start, format!("the file does not fit its own schema: {error}"));
+            None
         }
     }
-    draw::put(table.get_mut(), T::DRAWABLE, &numbers);
-    let apart = T::APART.and_then(|key| table.get_mut().remove(key));
-    let mut raw: T = deserialised(diagnostics, start, table);
-    if let Some(value) = apart {
-        raw.put_apart(diagnostics, value);
-    }
-    Some(Document { name, start, raw })
 }
 
 /// Reads a file and its bases, and notes what is wrong with their syntax.
@@ -102,7 +109,7 @@ pub(super) fn chain(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option
             && (paths.contains(&path) || paths.len() == LONGEST_CHAIN)
         {
             let through = paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(" on ");
-            let why = if paths.contains(&path) { "goes round in a circle" } else { "is too deep" };
+            let why = if paths.contains(&path) { "refers back to itself" } else { "is too deep" };
             diagnostics.note(at, format!("base {why} ({through} on {}), expected an end", path.display()));
             return None;
         }
@@ -111,9 +118,9 @@ pub(super) fn chain(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option
         chain.push((start, text));
         paths.push(path);
         match base {
-            Some(base) => {
-                path = diagnostics.sources.resolve(base.at, &base.value);
-                asked_at = Some(base.at);
+            Some((base, at)) => {
+                path = diagnostics.sources.resolve(at, &base);
+                asked_at = Some(at);
             }
             None => return Some(chain),
         }
@@ -164,7 +171,7 @@ fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
 }
 
 /// Notes what is wrong with the syntax, and returns the base the file names.
-fn syntax_of(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Option<At<String>> {
+fn syntax_of(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Option<(String, usize)> {
     if let Some(at) = too_deep(text) {
         diagnostics.note_syntax(
             start + at,
@@ -179,11 +186,11 @@ fn syntax_of(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Option<
     }
     let base = table.get_ref().get("base")?;
     let at = start + base.span().start;
-    Some(At { value: base.get_ref().as_str()?.to_owned(), at })
+    Some((base.get_ref().as_str()?.to_owned(), at))
 }
 
 /// Where a dotted key has more parts than can be meant: the parser recurses once a part.
-fn too_deep(text: &str) -> Option<usize> {
+pub(super) fn too_deep(text: &str) -> Option<usize> {
     let (mut dots, mut before, mut in_comment) = (0, '\n', false);
     for (at, c) in text.char_indices() {
         in_comment = c != '\n' && (in_comment || c == '#' && before.is_whitespace());
@@ -200,108 +207,16 @@ fn too_deep(text: &str) -> Option<usize> {
     None
 }
 
-/// The file laid over its bases, with spans in the virtual text.
-pub(super) fn merged(chain: &Chain) -> Table<'_> {
-    let mut tables = chain.iter().map(|(start, text)| {
+/// The file laid over its bases; the keys `own` of bases do not count.
+pub(super) fn tree(chain: &Chain, own: &[&str]) -> Node {
+    let mut trees = chain.iter().map(|(start, text)| {
         let usable = if too_deep(text).is_some() { "" } else { text };
-        let (table, _) = DeTable::parse_recoverable(usable);
-        let span = moved(table.span(), *start);
-        Spanned::new(span, moved_table(table.into_inner(), *start))
+        Node::root(DeTable::parse_recoverable(usable).0.into_inner(), *start)
     });
-    let mut over = tables.next().unwrap_or_else(|| Spanned::new(0..0, DeTable::new()));
-    for base in tables {
-        lay_over(over.get_mut(), base.into_inner());
+    let mut over = trees.next().unwrap_or_else(|| Node::empty(0));
+    for mut base in trees {
+        base.remove(own);
+        over.lay_over(base);
     }
     over
-}
-
-fn moved(span: Range<usize>, by: usize) -> Range<usize> {
-    span.start + by..span.end + by
-}
-
-fn moved_table(table: DeTable<'_>, by: usize) -> DeTable<'_> {
-    table
-        .into_iter()
-        .map(|(key, value)| {
-            let span = moved(key.span(), by);
-            (Spanned::new(span, key.into_inner()), moved_value(value, by))
-        })
-        .collect()
-}
-
-fn moved_value(value: Spanned<DeValue<'_>>, by: usize) -> Spanned<DeValue<'_>> {
-    let span = moved(value.span(), by);
-    let inner = match value.into_inner() {
-        DeValue::Table(table) => DeValue::Table(moved_table(table, by)),
-        DeValue::Array(array) => DeValue::Array(array.into_iter().map(|value| moved_value(value, by)).collect()),
-        plain => plain,
-    };
-    Spanned::new(span, inner)
-}
-
-/// Tables merge; anything else in `over` replaces what `base` says.
-fn lay_over<'i>(over: &mut DeTable<'i>, base: DeTable<'i>) {
-    for (key, value) in base {
-        match (over.get_mut(key.get_ref().as_ref()), value) {
-            (None, value) => {
-                over.insert(key, value);
-            }
-            (Some(mine), value) => {
-                if let (DeValue::Table(mine), DeValue::Table(base)) = (mine.get_mut(), value.into_inner()) {
-                    lay_over(mine, base);
-                }
-            }
-        }
-    }
-}
-
-/// Reads the table into `T`; an entry that does not fit is noted, taken out, and the rest tried again.
-pub(super) fn deserialised<T: DeserializeOwned + Default>(
-    diagnostics: &mut Diagnostics,
-    start: usize,
-    mut table: Table<'_>,
-) -> T {
-    for _ in 0..MOST_COMPLAINTS {
-        let error = match T::deserialize(toml::de::Deserializer::from(table.clone())) {
-            Ok(raw) => return raw,
-            Err(error) => error,
-        };
-        let at = error.span().map_or(table.span().start, |span| span.start);
-        let Some(key) = take_out(table.get_mut(), at) else {
-            diagnostics.note(at, explain(error.message(), "the file"));
-            break;
-        };
-        diagnostics.mark_unfit(start, &key);
-        diagnostics.mark_unfit(at, &key);
-        let message = explain(error.message(), &key);
-        // A table head with broken syntax leaves its keys to the table before.
-        if error.message().starts_with("unknown field") {
-            diagnostics.note_if_intact(at, message);
-        } else {
-            diagnostics.note(at, message);
-        }
-    }
-    T::default()
-}
-
-/// Takes the innermost entry that stands at `at` out of the table; returns its key.
-fn take_out(table: &mut DeTable<'_>, at: usize) -> Option<String> {
-    for (_, value) in table.iter_mut() {
-        if let Some(key) = take_out_within(value.get_mut(), at) {
-            return Some(key);
-        }
-    }
-    let stands_at = |span: Range<usize>| span.contains(&at) || span.start == at;
-    let (key, _) = table.iter().find(|(key, value)| stands_at(key.span()) || stands_at(value.span()))?;
-    let key = key.get_ref().to_string();
-    table.remove(key.as_str());
-    Some(key)
-}
-
-fn take_out_within(value: &mut DeValue<'_>, at: usize) -> Option<String> {
-    match value {
-        DeValue::Table(inner) => take_out(inner, at),
-        DeValue::Array(array) => array.iter_mut().find_map(|value| take_out_within(value.get_mut(), at)),
-        _ => None,
-    }
 }

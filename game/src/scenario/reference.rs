@@ -1,7 +1,8 @@
 //! The reference page of strategy files: every key and every name, made from the types that read them.
 
-use super::kind::{Kind, schema};
+use super::kind::Kind;
 use super::raw::{COMMON_KEYS, RawEllipse, RawHelm, RawMode, RawRule, RawStrategy, Stated, keys_of, kinds};
+use super::schema::schema;
 use crate::strategy::{Boat, Fact, Mark, Measure, What, Who};
 use serde_json::Value;
 use std::fmt::Write;

@@ -53,7 +53,7 @@ const BOATS: &[Case] = &[
         "cross-flow without draught",
         "boats/x.toml",
         &[("boats/x.toml", "base = \"b.toml\"\nhull.crossflow_coefficient = 0.8\n")],
-        &["boats/x.toml:1:1: hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient"],
+        &["boats/x.toml:2:1: hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient"],
     ),
 ];
 

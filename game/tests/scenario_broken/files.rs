@@ -11,13 +11,13 @@ const FILES: &[Case] = &[
             "length_m = \"long\"\nbeam_m = -1\nwings = 2\n[hull]\nmass_kg = nan\nmunk_factor = 2\n[thruster]\narm_m = 0.4\n",
         )],
         &[
-            "boats/x.toml:1:1: autopilot.speed_max_m_s is missing, expected 0.1 to 60",
-            "boats/x.toml:1:1: thruster.propeller is missing, expected it or table_pct_newton",
+            "boats/x.toml:1:1: autopilot is missing, expected it, or kinematic in place of thruster and autopilot",
             "boats/x.toml:1:12: length_m is the string \"long\", expected a number",
             "boats/x.toml:2:10: beam_m is -1, expected 0.05 to 50",
-            "boats/x.toml:3:1: wings is unknown, expected one of base, length_m, beam_m, draught_m, hull, windage, thruster, autopilot, kinematic, gps, compass, imu",
+            "boats/x.toml:3:1: wings is unknown, expected one of autopilot, base, beam_m, compass, draught_m, gps, hull, imu, kinematic, length_m, thruster, windage",
             "boats/x.toml:5:11: mass_kg is nan, expected 0.1 to 1000000",
             "boats/x.toml:6:15: munk_factor is 2, expected 0 to 1",
+            "boats/x.toml:7:1: thruster.propeller is missing, expected it or table_pct_newton",
         ],
     ),
     (
@@ -43,7 +43,8 @@ const FILES: &[Case] = &[
         ],
         &[
             "boats/b.toml:1:12: string values must be quoted, expected literal string",
-            "fields/f.toml:1:1: datum is missing, expected { lat_deg = …, lon_deg = … }",
+            "fields/f.toml:1:1: datum.lat_deg is missing, expected -90 to 90",
+            "fields/f.toml:1:1: datum.lon_deg is missing, expected -180 to 180",
             "fields/f.toml:2:11: depth_m is 1, expected 10 to 20000",
             "games/x.toml:2:8: seed is -1, expected 0 to 9223372036854775807",
             "strategies/p.toml:1:10: strategies/none.toml cannot be read (No such file or directory (os error 2)), expected a file",
@@ -74,13 +75,13 @@ const FILES: &[Case] = &[
         "a base that is itself",
         "seas/x.toml",
         &[("seas/x.toml", "base = \"../seas/x.toml\"\n")],
-        &["seas/x.toml:1:8: base goes round in a circle (seas/x.toml on seas/x.toml), expected an end"],
+        &["seas/x.toml:1:8: base refers back to itself (seas/x.toml on seas/x.toml), expected an end"],
     ),
     (
-        "bases in a circle",
+        "bases that refer to each other",
         "seas/x.toml",
         &[("seas/x.toml", "base = \"y.toml\"\n"), ("seas/y.toml", "# On.\nbase = \"x.toml\"\n")],
-        &["seas/y.toml:2:8: base goes round in a circle (seas/x.toml on seas/y.toml on seas/x.toml), expected an end"],
+        &["seas/y.toml:2:8: base refers back to itself (seas/x.toml on seas/y.toml on seas/x.toml), expected an end"],
     ),
     (
         "a base that is no path",

@@ -25,7 +25,7 @@ const GAMES: &[Case] = &[
             "games/x.toml",
             "base = \"g.toml\"\nteam = [{ name = \"blue\", strategy = \"../strategies/p.toml\" }]\nvehicle = [{ name = \"a\", team = \"blue\" }]\n",
         )],
-        &["games/x.toml:1:1: team has 1 entries, expected exactly two [[team]] for now"],
+        &["games/x.toml:2:8: team has 1 entries, expected exactly two [[team]] for now"],
     ),
     (
         "three teams",
@@ -97,7 +97,7 @@ const GAMES: &[Case] = &[
             "games/x.toml",
             "base = \"g.toml\"\nvehicle = []\nfleet = [{ team = \"red\", count = 2, source = \"external\" }]\n",
         )],
-        &["games/x.toml:3:37: source is unknown, expected one of team, count, name, boat, strategy, spawn"],
+        &["games/x.toml:3:37: source is unknown, expected one of boat, count, name, spawn, strategy, team"],
     ),
     (
         "a fleet without a number in its name",
@@ -112,7 +112,7 @@ fn games_are_checked() {
     assert_reported(GAMES);
 }
 
-const BERTHS: &[Case] = &[
+const START_POSITIONS: &[Case] = &[
     (
         "an unknown point",
         "games/x.toml",
@@ -143,7 +143,7 @@ const BERTHS: &[Case] = &[
         "a place of three numbers",
         "games/x.toml",
         &[("games/x.toml", "base = \"g.toml\"\nvehicle = [{ name = \"a\", team = \"red\", at = [10, 8, 1] }]\n")],
-        &["games/x.toml:2:45: at is of length 3, expected [x, y] or the name of a point such as \"CH\""],
+        &["games/x.toml:2:45: at has 3 entries, expected a pair of numbers [a, b]"],
     ),
     (
         "two boats in one place",
@@ -191,7 +191,10 @@ const BERTHS: &[Case] = &[
             "games/x.toml",
             "base = \"g.toml\"\nvehicle = [{ name = \"a\", team = \"red\", spawn = { along_m = [9, 3], across_m = [0, 90] } }]\n",
         )],
-        &["games/x.toml:2:60: along_m is [9, 3], expected the smaller one first"],
+        &[
+            "games/x.toml:2:60: along_m is [9, 3], expected the smaller one first",
+            "games/x.toml:2:79: across_m is 90, expected 0 to 80",
+        ],
     ),
     (
         "a rectangle too small",
@@ -205,6 +208,6 @@ const BERTHS: &[Case] = &[
 ];
 
 #[test]
-fn berths_are_checked() {
-    assert_reported(BERTHS);
+fn start_positions_are_checked() {
+    assert_reported(START_POSITIONS);
 }

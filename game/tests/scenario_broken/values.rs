@@ -97,7 +97,8 @@ const VALUES: &[Case] = &[
         "fields/x.toml",
         &[("fields/x.toml", "# Nothing.\n")],
         &[
-            "fields/x.toml:1:1: datum is missing, expected { lat_deg = …, lon_deg = … }",
+            "fields/x.toml:1:1: datum.lat_deg is missing, expected -90 to 90",
+            "fields/x.toml:1:1: datum.lon_deg is missing, expected -180 to 180",
             "fields/x.toml:1:1: depth_m is missing, expected 10 to 20000",
             "fields/x.toml:1:1: width_m is missing, expected 10 to 20000",
         ],
@@ -132,7 +133,7 @@ const SHAPES: &[Case] = &[
         "two corners",
         "fields/x.toml",
         &[("fields/x.toml", "base = \"f.toml\"\n[[obstacle]]\npolygon = [[50, 50], [60, 50]]\n")],
-        &["fields/x.toml:3:11: polygon has 2 corners, expected 3 to 1000"],
+        &["fields/x.toml:3:11: polygon has 2 entries, expected 3 to 1000"],
     ),
     (
         "a bow tie",
@@ -144,7 +145,7 @@ const SHAPES: &[Case] = &[
         "a corner of three numbers",
         "fields/x.toml",
         &[("fields/x.toml", "base = \"f.toml\"\ncorner = [1, 2, 3]\n")],
-        &["fields/x.toml:2:10: corner is of length 3, expected a pair of numbers [a, b]"],
+        &["fields/x.toml:2:10: corner has 3 entries, expected a pair of numbers [a, b]"],
     ),
     (
         "an obstacle far away",
@@ -164,7 +165,7 @@ const SHAPES: &[Case] = &[
         &[("fields/x.toml", "base = \"f.toml\"\n[[obstacle]]\n[[obstacle]]\ncircle = { radius_m = 1 }\n")],
         &[
             "fields/x.toml:2:1: obstacle says neither or both, expected either circle or polygon",
-            "fields/x.toml:4:10: circle.centre is missing, expected [x, y]",
+            "fields/x.toml:4:10: circle.centre is missing, expected a pair of numbers [a, b]",
         ],
     ),
     (

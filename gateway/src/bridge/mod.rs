@@ -101,7 +101,7 @@ impl Bridge {
     /// A bridge at the beginning: no link, safed.
     #[must_use]
     pub fn new(plan: Plan) -> Bridge {
-        let Gateway { nav, compass, limits, control, fence, halt, battery, .. } = plan.gateway.clone();
+        let Gateway { nav, compass, limits, control, geofence, halt, battery, .. } = plan.gateway.clone();
         let frame = LocalFrame::new(plan.field.plan.datum);
         let estimator = Estimator::new(frame, nav, (compass, plan.declination_rad), limits.speed_max_m_s);
         Bridge {
@@ -109,7 +109,7 @@ impl Bridge {
             seat: SetPointMapper::new(&plan.gateway, estimator.compass_to_true_rad()),
             estimator,
             control: ControlLog::new(control),
-            fence: GeofenceWatch::new(&plan.field, fence),
+            fence: GeofenceWatch::new(&plan.field, geofence),
             bow: BowWatch::new(halt, plan.length_m),
             supervisor: Supervisor::new(plan.arms_itself, battery.action),
             plan,

@@ -1,6 +1,7 @@
-//! From files as typed to what the program believes: one function a kind of file.
+//! From files as typed to what the program believes: units, and rules that combine several values.
 //!
-//! Every check notes all it finds in the [`Diagnostics`] and returns `None` if anything was wrong.
+//! What a single value may be says its declaration in `raw`, and has been checked when a check gets it. Every check
+//! notes all it finds in the [`Diagnostics`] and returns `None` if anything was wrong.
 
 mod boat;
 mod field;
@@ -19,18 +20,8 @@ pub(super) use game::game;
 pub(super) use gateway::gateway;
 pub(super) use rules::rules;
 pub(super) use sea::sea;
-pub(super) use strategy::strategy;
+pub(super) use strategy::strategy_file;
 pub(super) use tournament::tournament;
 
+#[cfg(doc)]
 use super::diagnostics::Diagnostics;
-use super::raw::At;
-
-/// Notes that `key` must name a file and does not.
-fn missing_path(diagnostics: &mut Diagnostics, owner: usize, key: &str) {
-    diagnostics.note_missing(owner, key, "the path of a file");
-}
-
-/// A copy of `given` for another type of value at the same place.
-fn same_place<T, U>(given: &At<T>, value: U) -> At<U> {
-    At { value, at: given.at }
-}

@@ -1,8 +1,7 @@
-//! Where boats start: by hand, by name, in the team's line, or somewhere in a rectangle.
+//! Where boats start: at a position, at a named point, in the team's line, or somewhere in a rectangle.
 
-use super::field::{COORDINATE_M, is_inside};
+use super::field::is_inside;
 use super::game::Entry;
-use super::same_place;
 use super::strategy::is_point;
 use crate::angle::rad_from_compass_deg;
 use crate::boat::Boat;
@@ -12,63 +11,71 @@ use crate::id::TeamId;
 use crate::near::Near;
 use crate::scenario::StartPosition;
 use crate::scenario::diagnostics::Diagnostics;
-use crate::scenario::raw::{At, Pair, RawSpawn, RawVehicle, Whereabouts};
+use crate::scenario::raw;
+use crate::scenario::read::Document;
 
 /// What a default rectangle leaves free at either side, m.
 const MARGIN_M: f64 = 2.0;
-/// The default distance between boats drawn into a rectangle, m.
-const GAP_M: f64 = 5.0;
 /// Boats drawn one by one jam when their gaps cover about 0.69 of the rectangle as squares; half is easy.
 const FULLEST: f64 = 0.5;
 
-/// The start_position of a vehicle that states one by hand, by name or by lot; `None` for the team's line.
+/// The start position that the vehicle at `path` states; `None` is the team's line.
 pub(super) fn stated(
     diagnostics: &mut Diagnostics,
-    raw: &RawVehicle,
-    heading_deg: Option<f64>,
+    document: &Document<raw::Game>,
+    path: &str,
+    raw: &raw::Vehicle,
     team: TeamId,
     field: &Field,
 ) -> Option<StartPosition> {
+    let place = |key: &str| document.at(&format!("{path}.{key}"));
     if let Some(spawn) = &raw.spawn {
-        if let Some(at) = &raw.at {
-            diagnostics.note(at.at, "vehicle has at and spawn, expected one of them");
+        if raw.at.is_some() {
+            diagnostics.note(place("at"), "vehicle has at and spawn, expected one of them");
         }
-        if let Some(heading) = &raw.heading_deg {
-            diagnostics.note(heading.at, "heading_deg is given with spawn, expected with at only");
+        if raw.heading_deg.is_some() {
+            diagnostics.note(place("heading_deg"), "heading_deg is given with spawn, expected with at only");
         }
-        return somewhere(diagnostics, spawn, 1, field);
+        return somewhere(diagnostics, document, &format!("{path}.spawn"), spawn, 1, field);
     }
-    let given = raw.at.as_ref()?;
-    let at = match &given.value {
-        Whereabouts::Position(position) => {
-            let (x, y) = diagnostics.pair("at", Some(&same_place(given, Pair(*position))), COORDINATE_M)?;
-            Ned::from_xy(x, y)
-        }
-        Whereabouts::Point(name) => {
-            is_point(diagnostics, given.at, "at", name).then_some(())?;
+    let at = match raw.at.as_ref()? {
+        raw::Position::At([x, y]) => Ned::from_xy(*x, *y),
+        raw::Position::Point(name) => {
+            is_point(diagnostics, place("at"), "at", name).then_some(())?;
             field.point(team, name)?
         }
     };
-    is_inside(diagnostics, field, given.at, at);
-    let heading_deg = heading_deg.unwrap_or(field.facing_deg(team));
+    is_inside(diagnostics, field, place("at"), at);
+    let heading_deg = raw.heading_deg.unwrap_or(field.facing_deg(team));
     Some(StartPosition::At(Pose { at, psi_rad: rad_from_compass_deg(heading_deg) }))
 }
 
-/// The rectangle that `spawn` states, if `count` boats fit into it.
+/// The rectangle that the `spawn` at `path` states, if `count` boats fit into it.
 pub(super) fn somewhere(
     diagnostics: &mut Diagnostics,
-    spawn: &At<RawSpawn>,
+    document: &Document<raw::Game>,
+    path: &str,
+    raw: &raw::Spawn,
     count: usize,
     field: &Field,
 ) -> Option<StartPosition> {
-    let (width_m, depth_m) = (field.plan.width_m, field.plan.depth_m);
-    let raw = &spawn.value;
-    let along_m = bounds(diagnostics, "along_m", raw.along_m.as_ref(), width_m, width_m / 2.0)?;
-    let across_m = bounds(diagnostics, "across_m", raw.across_m.as_ref(), depth_m, depth_m)?;
-    let gap_m = match &raw.gap_m {
-        Some(gap) => diagnostics.number("gap_m", Some(gap), 0.0..=1000.0)?,
-        None => GAP_M,
+    let (width_m, depth_m, gap_m) = (field.plan.width_m, field.plan.depth_m, raw.gap_m);
+    let mut bounds = |key: &str, given: Option<[f64; 2]>, whole_m: f64, usual_m: f64| {
+        let Some([from_m, to_m]) = given else { return Some((MARGIN_M, usual_m - MARGIN_M)) };
+        let place = document.at(&format!("{path}.{key}"));
+        if let Some(beyond_m) = [from_m, to_m].into_iter().find(|bound_m| *bound_m > whole_m) {
+            diagnostics.note(place, format!("{key} is {beyond_m}, expected 0 to {whole_m}"));
+            return None;
+        }
+        if from_m >= to_m {
+            diagnostics.note(place, format!("{key} is [{from_m}, {to_m}], expected the smaller one first"));
+            return None;
+        }
+        Some((from_m, to_m))
     };
+    let along_m = bounds("along_m", raw.along_m, width_m, width_m / 2.0);
+    let across_m = bounds("across_m", raw.across_m, depth_m, depth_m);
+    let (along_m, across_m) = (along_m?, across_m?);
     let area_m2 = (along_m.1 - along_m.0) * (across_m.1 - across_m.0);
     let wanted_m2 = count as f64 * gap_m * gap_m;
     if count > 1 && wanted_m2 > FULLEST * area_m2 {
@@ -76,29 +83,13 @@ pub(super) fn somewhere(
             "spawn has {area_m2:.0} m² for {count} boats with gap_m {gap_m}, expected at least {:.0} m²",
             wanted_m2 / FULLEST
         );
-        diagnostics.note(spawn.at, message);
+        diagnostics.note(document.at(path), message);
         return None;
     }
     Some(StartPosition::Somewhere { along_m, across_m, gap_m })
 }
 
-fn bounds(
-    diagnostics: &mut Diagnostics,
-    key: &str,
-    given: Option<&At<Pair>>,
-    whole_m: f64,
-    usual_m: f64,
-) -> Option<(f64, f64)> {
-    let Some(given) = given else { return Some((MARGIN_M, usual_m - MARGIN_M)) };
-    let (from_m, to_m) = diagnostics.pair(key, Some(given), 0.0..=whole_m)?;
-    if from_m >= to_m {
-        diagnostics.note(given.at, format!("{key} is [{from_m}, {to_m}], expected the smaller one first"));
-        return None;
-    }
-    Some((from_m, to_m))
-}
-
-/// The start_positions of all entries, in their order; those that state none lie in their team's line: midway
+/// The start positions of all entries, in their order; those that state none lie in their team's line: midway
 /// between own flag and scrimmage line, evenly across, from port to starboard, bows to the opponent.
 pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
     let plan = &field.plan;
@@ -106,7 +97,7 @@ pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
     let in_line = |team: TeamId| entries.iter().filter(|e| e.team == team && e.start_position.is_none()).count();
     let in_line: Vec<usize> = (0..2).map(|team| in_line(TeamId(team))).collect();
     let mut placed = [0_usize; 2];
-    let mut berth_of = |entry: &Entry| {
+    let mut start_position_of = |entry: &Entry| {
         if let Some(start_position) = &entry.start_position {
             return start_position.clone();
         }
@@ -120,7 +111,7 @@ pub(super) fn all(entries: &[Entry], field: &Field) -> Vec<StartPosition> {
         let heading_deg = entry.heading_deg.unwrap_or(field.facing_deg(entry.team));
         StartPosition::At(Pose { at, psi_rad: rad_from_compass_deg(heading_deg) })
     };
-    entries.iter().map(&mut berth_of).collect()
+    entries.iter().map(&mut start_position_of).collect()
 }
 
 /// Notes boats that would start on top of one another, or on an obstacle.

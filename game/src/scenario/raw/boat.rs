@@ -1,195 +1,212 @@
 //! A boat file as typed.
 
-use super::{At, Pair, RawCompass, RawGps, RawImu, RawKinematic};
+use super::{Compass, Gps, Imu, Kinematic};
+use crate::boat::{Autopilot, Ventilation};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A kind of boat: hull, thrusters and front seat, in surge, sway and yaw. The origin is midships; x
-/// ahead, y to starboard, yaw clockwise. Any number may be drawn by lot for every game.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(title = "Squall boat")]
-pub(in crate::scenario) struct RawBoat {
-    /// Another boat file that this one is laid over, relative to this file.
-    #[expect(dead_code, reason = "followed before the files are merged; named here for the schema")]
-    pub(in crate::scenario) base: Option<At<String>>,
-    /// Length over all, m: 0.1 to 100. Required.
-    pub(in crate::scenario) length_m: Option<At<f64>>,
-    /// Beam over all, m: 0.05 to 50. Required.
-    pub(in crate::scenario) beam_m: Option<At<f64>>,
-    /// Draught, m: 0.01 to 20. Default the hull's crossflow_draught_m, or L / 12.
-    pub(in crate::scenario) draught_m: Option<At<f64>>,
-    /// Inertia and resistance. Required.
-    pub(in crate::scenario) hull: Option<RawHull>,
+/// ahead, y to starboard, yaw clockwise. Any number may be drawn for every game.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[schemars(extend("x-drawn" = true))]
+pub(crate) struct Boat {
+    /// Length over all, m.
+    #[schemars(range(min = 0.1, max = 100))]
+    pub(crate) length_m: f64,
+    /// Beam over all, m.
+    #[schemars(range(min = 0.05, max = 50))]
+    pub(crate) beam_m: f64,
+    /// Draught, m. Default the hull's crossflow_draught_m, or L / 12.
+    #[schemars(range(min = 0.01, max = 20))]
+    pub(crate) draught_m: Option<f64>,
+    /// Inertia and resistance.
+    pub(crate) hull: Hull,
     /// What the wind gets hold of.
-    pub(in crate::scenario) windage: Option<RawWindage>,
+    pub(crate) windage: Windage,
     /// The two thrusters. Required, unless the boat is kinematic.
-    pub(in crate::scenario) thruster: Option<RawThruster>,
+    pub(crate) thruster: Option<Thruster>,
     /// The front seat's heading and speed loops. Required, unless the boat is kinematic.
-    pub(in crate::scenario) autopilot: Option<RawAutopilot>,
+    pub(crate) autopilot: Option<Autopilot>,
     /// Instead of thruster and autopilot: the point boat of MOOS, for parity. Waves and wind do nothing to it.
-    pub(in crate::scenario) kinematic: Option<At<RawKinematic>>,
+    pub(crate) kinematic: Option<Kinematic>,
     /// Satellite navigation. Default perfect.
-    pub(in crate::scenario) gps: Option<At<RawGps>>,
+    pub(crate) gps: Option<Gps>,
     /// Magnetic compass. Default perfect.
-    pub(in crate::scenario) compass: Option<At<RawCompass>>,
+    pub(crate) compass: Option<Compass>,
     /// Gyro and accelerometers. Default perfect.
-    pub(in crate::scenario) imu: Option<At<RawImu>>,
+    pub(crate) imu: Option<Imu>,
 }
 
 /// Inertia and resistance of a hull. What is left out is estimated from length L, beam, mass m and thrust.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Hull")]
-pub(in crate::scenario) struct RawHull {
-    /// Mass with payload, kg: 0.1 to 1000000. Required.
-    pub(in crate::scenario) mass_kg: Option<At<f64>>,
-    /// Moment of inertia about midships, kg m²: 0.0001 to 1000000000. Default m (L/4)² + m x_g².
-    pub(in crate::scenario) yaw_inertia_kg_m2: Option<At<f64>>,
-    /// Centre of gravity ahead of midships, m: -50 to 50, and within the hull. Default 0.
-    pub(in crate::scenario) x_g_m: Option<At<f64>>,
-    /// Added mass in surge A11, kg: 0 to 1000000. Default 2.7 ρ (m/ρ)^(5/3) / L² with ρ = 1000 (Söding).
-    pub(in crate::scenario) added_surge_kg: Option<At<f64>>,
-    /// Added mass in sway A22, kg: 0 to 10000000. Default m.
-    pub(in crate::scenario) added_sway_kg: Option<At<f64>>,
-    /// Added moment of inertia in yaw A66, kg m²: 0 to 1000000000. Default the moment of inertia.
-    pub(in crate::scenario) added_yaw_kg_m2: Option<At<f64>>,
-    /// Added coupling of sway and yaw A26, kg m: -1000000 to 1000000. Default 0.
-    pub(in crate::scenario) added_sway_yaw_kg_m: Option<At<f64>>,
-    /// Linear resistance in surge -X_u, kg/s: 0 to 1000000. Default what makes both thrusters full ahead
-    /// give the autopilot's speed_max_m_s, with the quadratic part as given (0 if that alone is more).
-    pub(in crate::scenario) surge_linear_kg_s: Option<At<f64>>,
-    /// Quadratic resistance in surge -X_|u|u, kg/m: 0 to 1000000. Default 0.
-    pub(in crate::scenario) surge_quadratic_kg_m: Option<At<f64>>,
-    /// Linear resistance in sway -Y_v, kg/s: 0 to 10000000. Default (m + A22) / 1 s.
-    pub(in crate::scenario) sway_linear_kg_s: Option<At<f64>>,
-    /// Lift-like resistance in sway -Y_|u|v, kg/m: 0 to 1000000. Default 0.
-    pub(in crate::scenario) sway_lift_kg_m: Option<At<f64>>,
-    /// Linear resistance in yaw -N_r, kg m²/s: 0 to 1000000000. Default (inertia + A66) / 1 s.
-    pub(in crate::scenario) yaw_linear_kg_m2_s: Option<At<f64>>,
-    /// Quadratic resistance in yaw -N_|r|r, kg m²: 0 to 1000000000. Default 0.
-    pub(in crate::scenario) yaw_quadratic_kg_m2: Option<At<f64>>,
-    /// Resistance in yaw that grows with speed -N_|u|r, kg m: 0 to 10000000. Default 0.
-    pub(in crate::scenario) yaw_lift_kg_m: Option<At<f64>>,
-    /// Cross-flow drag coefficient of the immersed side (Hoerner): 0 to 3. Default 0, no cross-flow.
-    pub(in crate::scenario) crossflow_coefficient: Option<At<f64>>,
-    /// Draught that meets the cross-flow, m: 0 to 20. Required with a coefficient, else 0.
-    pub(in crate::scenario) crossflow_draught_m: Option<At<f64>>,
-    /// Length that meets the cross-flow, m: 0 to 200. Default L.
-    pub(in crate::scenario) crossflow_length_m: Option<At<f64>>,
-    /// Share of the Munk moment (A22 - A11) u v that acts: 0 to 1, where 1 is the bare hull in ideal
-    /// flow. Default 0.5.
-    pub(in crate::scenario) munk_factor: Option<At<f64>>,
+#[derive(Debug, Deserialize, JsonSchema)]
+pub(crate) struct Hull {
+    /// Mass with payload, kg.
+    #[schemars(range(min = 0.1, max = 1000000))]
+    pub(crate) mass_kg: f64,
+    /// Moment of inertia about midships, kg m². Default m (L/4)² + m x_g².
+    #[schemars(range(min = 0.0001, max = 1000000000))]
+    pub(crate) yaw_inertia_kg_m2: Option<f64>,
+    /// Centre of gravity ahead of midships, m, within the hull.
+    #[schemars(range(min = -50, max = 50), extend("default" = 0))]
+    pub(crate) x_g_m: f64,
+    /// Added mass in surge A11, kg. Default 2.7 ρ (m/ρ)^(5/3) / L² with ρ = 1000 (Söding).
+    #[schemars(range(min = 0, max = 1000000))]
+    pub(crate) added_surge_kg: Option<f64>,
+    /// Added mass in sway A22, kg. Default m.
+    #[schemars(range(min = 0, max = 10000000))]
+    pub(crate) added_sway_kg: Option<f64>,
+    /// Added moment of inertia in yaw A66, kg m². Default the moment of inertia.
+    #[schemars(range(min = 0, max = 1000000000))]
+    pub(crate) added_yaw_kg_m2: Option<f64>,
+    /// Added coupling of sway and yaw A26, kg m.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub(crate) added_sway_yaw_kg_m: f64,
+    /// Linear resistance in surge -X_u, kg/s. Default what makes both thrusters full ahead give the autopilot's
+    /// speed_max_m_s, with the quadratic part as given (0 if that alone is more).
+    #[schemars(range(min = 0, max = 1000000))]
+    pub(crate) surge_linear_kg_s: Option<f64>,
+    /// Quadratic resistance in surge -X_|u|u, kg/m.
+    #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
+    pub(crate) surge_quadratic_kg_m: f64,
+    /// Linear resistance in sway -Y_v, kg/s. Default (m + A22) / 1 s.
+    #[schemars(range(min = 0, max = 10000000))]
+    pub(crate) sway_linear_kg_s: Option<f64>,
+    /// Lift-like resistance in sway -Y_|u|v, kg/m.
+    #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
+    pub(crate) sway_lift_kg_m: f64,
+    /// Linear resistance in yaw -N_r, kg m²/s. Default (inertia + A66) / 1 s.
+    #[schemars(range(min = 0, max = 1000000000))]
+    pub(crate) yaw_linear_kg_m2_s: Option<f64>,
+    /// Quadratic resistance in yaw -N_|r|r, kg m².
+    #[schemars(range(min = 0, max = 1000000000), extend("default" = 0))]
+    pub(crate) yaw_quadratic_kg_m2: f64,
+    /// Resistance in yaw that grows with speed -N_|u|r, kg m.
+    #[schemars(range(min = 0, max = 10000000), extend("default" = 0))]
+    pub(crate) yaw_lift_kg_m: f64,
+    /// Cross-flow drag coefficient of the immersed side (Hoerner); 0 is no cross-flow.
+    #[schemars(range(min = 0, max = 3), extend("default" = 0))]
+    pub(crate) crossflow_coefficient: f64,
+    /// Draught that meets the cross-flow, m. Required with a coefficient, else 0.
+    #[schemars(range(min = 0, max = 20))]
+    pub(crate) crossflow_draught_m: Option<f64>,
+    /// Length that meets the cross-flow, m. Default L.
+    #[schemars(range(min = 0, max = 200))]
+    pub(crate) crossflow_length_m: Option<f64>,
+    /// Share of the Munk moment (A22 - A11) u v that acts, where 1 is the bare hull in ideal flow.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
+    pub(crate) munk_factor: f64,
 }
 
 /// Two fixed thrusters, one each side: `propeller` or `table_pct_newton` says what they push.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Thruster")]
-pub(in crate::scenario) struct RawThruster {
-    /// Distance of each thruster from the centre line, m: 0.01 to 25. Required.
-    pub(in crate::scenario) arm_m: Option<At<f64>>,
+#[derive(Debug, Deserialize, JsonSchema)]
+pub(crate) struct Thruster {
+    /// Distance of each thruster from the centre line, m.
+    #[schemars(range(min = 0.01, max = 25))]
+    pub(crate) arm_m: f64,
     /// A propeller with thrust k n |n|.
-    pub(in crate::scenario) propeller: Option<At<RawPropeller>>,
+    pub(crate) propeller: Option<Propeller>,
     /// Setting in per cent and thrust of one thruster in newton, from -100 to 100, both rising, with [0, 0].
-    pub(in crate::scenario) table_pct_newton: Option<At<Vec<At<Pair>>>>,
-    /// Time constant with which a setting is taken up, s: 0 to 60. Default 0.2.
-    pub(in crate::scenario) lag_s: Option<At<f64>>,
-    /// Fastest change of the commanded setting, shares of full ahead a second: 0.001 to 1000. Default 10.
-    pub(in crate::scenario) slew_per_s: Option<At<f64>>,
-    /// Commands smaller than this share of full ahead give nothing: 0 to 0.9. Default 0.
-    pub(in crate::scenario) deadband: Option<At<f64>>,
-    /// Largest setting that is taken up, as a share of full ahead or astern: 0.05 to 1. Default 1.
-    pub(in crate::scenario) saturation: Option<At<f64>>,
-    /// Factor on the port thruster's thrust: 0 to 2. Default 1. The front seat does not know it.
-    pub(in crate::scenario) port_gain: Option<At<f64>>,
-    /// Factor on the starboard thruster's thrust: 0 to 2. Default 1. The front seat does not know it.
-    pub(in crate::scenario) starboard_gain: Option<At<f64>>,
-    /// Factor on thrust astern: 0 to 1. Default 1. The front seat does not know it.
-    pub(in crate::scenario) reverse_efficiency: Option<At<f64>>,
-    /// Moment at full thrust that nobody asked for, N m clockwise: -1000000 to 1000000. Default 0.
-    pub(in crate::scenario) bias_newton_m: Option<At<f64>>,
-    /// How long a command is on its way to the thrusters, s: 0 to 5. Default 0.
-    pub(in crate::scenario) latency_s: Option<At<f64>>,
-    /// Without a new order for this long the thrusters stop, s: 0.1 to 3600. Default never.
-    pub(in crate::scenario) watchdog_s: Option<At<f64>>,
+    pub(crate) table_pct_newton: Option<Vec<SettingAndThrust>>,
+    /// Time constant with which a setting is taken up, s.
+    #[schemars(range(min = 0, max = 60), extend("default" = 0.2))]
+    pub(crate) lag_s: f64,
+    /// Fastest change of the commanded setting, shares of full ahead a second.
+    #[schemars(range(min = 0.001, max = 1000), extend("default" = 10))]
+    pub(crate) slew_per_s: f64,
+    /// Commands smaller than this share of full ahead give nothing.
+    #[schemars(range(min = 0, max = 0.9), extend("default" = 0))]
+    pub(crate) deadband: f64,
+    /// Largest setting that is taken up, as a share of full ahead or astern.
+    #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
+    pub(crate) saturation: f64,
+    /// Factor on the port thruster's thrust. The front seat does not know it.
+    #[schemars(range(min = 0, max = 2), extend("default" = 1))]
+    pub(crate) port_gain: f64,
+    /// Factor on the starboard thruster's thrust. The front seat does not know it.
+    #[schemars(range(min = 0, max = 2), extend("default" = 1))]
+    pub(crate) starboard_gain: f64,
+    /// Factor on thrust astern. The front seat does not know it.
+    #[schemars(range(min = 0, max = 1), extend("default" = 1))]
+    pub(crate) reverse_efficiency: f64,
+    /// Moment at full thrust that nobody asked for, N m clockwise.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
+    pub(crate) bias_newton_m: f64,
+    /// How long a command is on its way to the thrusters, s.
+    #[schemars(range(min = 0, max = 5), extend("default" = 0))]
+    pub(crate) latency_s: f64,
+    /// Without a new order for this long the thrusters stop, s. Default never.
+    #[schemars(range(min = 0.1, max = 3600))]
+    pub(crate) watchdog_s: Option<f64>,
     /// A battery that sags. Default one that does not.
-    pub(in crate::scenario) battery: Option<At<RawBattery>>,
+    pub(crate) battery: Option<Battery>,
     /// Propellers that suck air in waves. Default they do not.
-    pub(in crate::scenario) ventilation: Option<At<RawVentilation>>,
+    pub(crate) ventilation: Option<Ventilation>,
 }
+
+/// A setting in per cent, and the thrust in newton that it gives.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[schemars(inline)]
+pub(crate) struct SettingAndThrust(
+    #[schemars(range(min = -100, max = 100))] pub(crate) f64,
+    #[schemars(range(min = -1000000, max = 1000000))] pub(crate) f64,
+);
 
 /// A propeller: thrust k n |n| newton at n rad/s.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Propeller")]
-pub(in crate::scenario) struct RawPropeller {
-    /// k turning ahead, N s²/rad²: 0.00000001 to 1000. Required.
-    pub(in crate::scenario) k_ahead: Option<At<f64>>,
-    /// k turning astern, N s²/rad²: 0.00000001 to 1000. Default k_ahead.
-    pub(in crate::scenario) k_astern: Option<At<f64>>,
-    /// Shaft speed at full ahead, rad/s: 0.1 to 10000. Required.
-    pub(in crate::scenario) n_max_rad_s: Option<At<f64>>,
-    /// Shaft speed at full astern, rad/s, a positive number: 0.1 to 10000. Default n_max_rad_s.
-    pub(in crate::scenario) n_min_rad_s: Option<At<f64>>,
-}
-
-/// The front seat: how the boat follows a heading and a speed.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Autopilot")]
-pub(in crate::scenario) struct RawAutopilot {
-    /// Highest speed that the front seat accepts, m/s: 0.1 to 60. Required.
-    pub(in crate::scenario) speed_max_m_s: Option<At<f64>>,
-    /// Natural frequency of the heading loop, rad/s: 0.01 to 10. Default 1.
-    pub(in crate::scenario) heading_bandwidth_rad_s: Option<At<f64>>,
-    /// Damping ratio of the heading loop: 0.1 to 5. Default 1.
-    pub(in crate::scenario) heading_damping: Option<At<f64>>,
-    /// Time constant of the speed loop, s: 0.1 to 60. Default 2.
-    pub(in crate::scenario) speed_time_s: Option<At<f64>>,
+#[derive(Debug, Deserialize, JsonSchema)]
+pub(crate) struct Propeller {
+    /// k turning ahead, N s²/rad².
+    #[schemars(range(min = 0.00000001, max = 1000))]
+    pub(crate) k_ahead: f64,
+    /// k turning astern, N s²/rad². Default k_ahead.
+    #[schemars(range(min = 0.00000001, max = 1000))]
+    pub(crate) k_astern: Option<f64>,
+    /// Shaft speed at full ahead, rad/s.
+    #[schemars(range(min = 0.1, max = 10000))]
+    pub(crate) n_max_rad_s: f64,
+    /// Shaft speed at full astern, rad/s, a positive number. Default n_max_rad_s.
+    #[schemars(range(min = 0.1, max = 10000))]
+    pub(crate) n_min_rad_s: Option<f64>,
 }
 
 /// A battery whose voltage, and with it the thrust, falls with its charge.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Battery")]
-pub(in crate::scenario) struct RawBattery {
-    /// Energy when full, W h: 1 to 1000000. Required.
-    pub(in crate::scenario) capacity_wh: Option<At<f64>>,
-    /// Charge at the start of a game: 0 to 1. Default 1.
-    pub(in crate::scenario) charge: Option<At<f64>>,
-    /// Power that both thrusters draw at full ahead, W: 0 to 1000000. Required.
-    pub(in crate::scenario) full_power_w: Option<At<f64>>,
-    /// Power that everything else draws, W: 0 to 100000. Default 0.
-    pub(in crate::scenario) hotel_power_w: Option<At<f64>>,
-    /// Share of the thrust that is lost when it is empty: 0 to 0.9. Default 0.15.
-    pub(in crate::scenario) sag: Option<At<f64>>,
-}
-
-/// Propellers near the surface, which suck air as waves bare them.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Ventilation")]
-pub(in crate::scenario) struct RawVentilation {
-    /// How deep the propellers are in still water, m: 0.01 to 10. Required.
-    pub(in crate::scenario) depth_m: Option<At<f64>>,
+#[derive(Debug, Deserialize, JsonSchema)]
+pub(crate) struct Battery {
+    /// Energy when full, W h.
+    #[schemars(range(min = 1, max = 1000000))]
+    pub(crate) capacity_wh: f64,
+    /// Charge at the start of a game.
+    #[schemars(range(min = 0, max = 1), extend("default" = 1))]
+    pub(crate) charge: f64,
+    /// Power that both thrusters draw at full ahead, W.
+    #[schemars(range(min = 0, max = 1000000))]
+    pub(crate) full_power_w: f64,
+    /// Power that everything else draws, W.
+    #[schemars(range(min = 0, max = 100000), extend("default" = 0))]
+    pub(crate) hotel_power_w: f64,
+    /// Share of the thrust that is lost when it is empty.
+    #[schemars(range(min = 0, max = 0.9), extend("default" = 0.15))]
+    pub(crate) sag: f64,
 }
 
 /// What the wind gets hold of: projected areas and coefficients (Fossen 2021, ch. 10).
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Windage")]
-pub(in crate::scenario) struct RawWindage {
-    /// Area from ahead, m²: 0 to 1000. Default 0.36 beam².
-    pub(in crate::scenario) frontal_area_m2: Option<At<f64>>,
-    /// Area from the side, m²: 0 to 5000. Default 0.16 L².
-    pub(in crate::scenario) lateral_area_m2: Option<At<f64>>,
-    /// Height at which the wind is taken, m: 0.05 to 100. Default 0.25 L.
-    pub(in crate::scenario) height_m: Option<At<f64>>,
-    /// C_x: 0 to 2. Default 0.6.
-    pub(in crate::scenario) surge_coefficient: Option<At<f64>>,
-    /// C_y: 0 to 2. Default 0.85.
-    pub(in crate::scenario) sway_coefficient: Option<At<f64>>,
-    /// C_n: -0.5 to 0.5. Default 0.1.
-    pub(in crate::scenario) yaw_coefficient: Option<At<f64>>,
+#[derive(Debug, Deserialize, JsonSchema)]
+pub(crate) struct Windage {
+    /// Area from ahead, m². Default 0.36 beam².
+    #[schemars(range(min = 0, max = 1000))]
+    pub(crate) frontal_area_m2: Option<f64>,
+    /// Area from the side, m². Default 0.16 L².
+    #[schemars(range(min = 0, max = 5000))]
+    pub(crate) lateral_area_m2: Option<f64>,
+    /// Height at which the wind is taken, m. Default 0.25 L.
+    #[schemars(range(min = 0.05, max = 100))]
+    pub(crate) height_m: Option<f64>,
+    /// C_x.
+    #[schemars(range(min = 0, max = 2), extend("default" = 0.6))]
+    pub(crate) surge_coefficient: f64,
+    /// C_y.
+    #[schemars(range(min = 0, max = 2), extend("default" = 0.85))]
+    pub(crate) sway_coefficient: f64,
+    /// C_n.
+    #[schemars(range(min = -0.5, max = 0.5), extend("default" = 0.1))]
+    pub(crate) yaw_coefficient: f64,
 }

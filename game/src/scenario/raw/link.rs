@@ -1,58 +1,50 @@
 //! Radio links and contact reports as typed.
 
-use super::{At, Pair};
+use crate::link::Loss;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// The radio link between the minds ashore and each boat. Any number may be drawn by lot for every game.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Link")]
-pub(in crate::scenario) struct RawLink {
-    /// Shortest time a message takes, s: 0 to 10. Default 0.02.
-    pub(in crate::scenario) delay_s: Option<At<f64>>,
-    /// Mean of what it takes longer, s: 0 to 10. Default 0.
-    pub(in crate::scenario) jitter_s: Option<At<f64>>,
+/// The radio link between the minds ashore and each boat. Any number may be drawn for every game.
+#[derive(Debug, Deserialize, JsonSchema)]
+pub(crate) struct Link {
+    /// Shortest time a message takes, s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0.02))]
+    pub(crate) delay_s: f64,
+    /// Mean of what it takes longer, s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0))]
+    pub(crate) jitter_s: f64,
     /// Losses. Default none.
-    pub(in crate::scenario) loss: Option<At<RawLoss>>,
-    /// How far it reaches, m: 1 to 1000000. Default everywhere.
-    pub(in crate::scenario) range_m: Option<At<f64>>,
+    pub(crate) loss: Option<Loss>,
+    /// How far it reaches, m. Default everywhere.
+    #[schemars(range(min = 1, max = 1000000))]
+    pub(crate) range_m: Option<f64>,
     /// Where the station ashore stands, [x, y] in m from the datum. Default the middle of the field.
-    pub(in crate::scenario) station: Option<At<Pair>>,
-}
-
-/// Losses in bursts (Gilbert and Elliott).
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Loss")]
-pub(in crate::scenario) struct RawLoss {
-    /// Share lost while the link is good: 0 to 1. Default 0.
-    pub(in crate::scenario) good: Option<At<f64>>,
-    /// Share lost while it is bad: 0 to 1. Default 0.5.
-    pub(in crate::scenario) bad: Option<At<f64>>,
-    /// How long it stays good on average, s: 0 (always) to 86400. Default 0.
-    pub(in crate::scenario) good_time_s: Option<At<f64>>,
-    /// How long it stays bad on average, s: 0.01 to 86400. Default 2.
-    pub(in crate::scenario) bad_time_s: Option<At<f64>>,
+    #[schemars(inner(range(min = -1000000, max = 1000000)))]
+    pub(crate) station: Option<[f64; 2]>,
 }
 
 /// What a team is shown of other boats.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Sharing")]
-pub(in crate::scenario) struct RawSharing {
-    /// A boat is seen by whoever is nearer than this, m: 1 to 1000000. Default from everywhere.
-    pub(in crate::scenario) range_m: Option<At<f64>>,
-    /// Full angle of view about the bow, degrees: 1 to 360. Default 360.
-    pub(in crate::scenario) view_deg: Option<At<f64>>,
-    /// How old a report is when it comes, s: 0 to 10. Default 0.
-    pub(in crate::scenario) delay_s: Option<At<f64>>,
-    /// Standard deviation of its position, each axis, m: 0 to 100. Default 0.
-    pub(in crate::scenario) noise_m: Option<At<f64>>,
-    /// Standard deviation of its velocity, each axis, m/s: 0 to 10. Default 0.
-    pub(in crate::scenario) velocity_noise_m_s: Option<At<f64>>,
-    /// Share of reports that is lost: 0 to 1. Default 0.
-    pub(in crate::scenario) loss: Option<At<f64>>,
-    /// A contact is forgotten when its last report is older than this, s: 0 to 86400. Default 10.
-    pub(in crate::scenario) memory_s: Option<At<f64>>,
+#[derive(Debug, Deserialize, JsonSchema)]
+pub(crate) struct Sharing {
+    /// A boat is seen by whoever is nearer than this, m. Default from everywhere.
+    #[schemars(range(min = 1, max = 1000000))]
+    pub(crate) range_m: Option<f64>,
+    /// Full angle of view about the bow, degrees.
+    #[schemars(range(min = 1, max = 360), extend("default" = 360))]
+    pub(crate) view_deg: f64,
+    /// How old a report is when it comes, s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0))]
+    pub(crate) delay_s: f64,
+    /// Standard deviation of its position, each axis, m.
+    #[schemars(range(min = 0, max = 100), extend("default" = 0))]
+    pub(crate) noise_m: f64,
+    /// Standard deviation of its velocity, each axis, m/s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0))]
+    pub(crate) velocity_noise_m_s: f64,
+    /// Share of reports that is lost.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0))]
+    pub(crate) loss: f64,
+    /// A contact is forgotten when its last report is older than this, s.
+    #[schemars(range(min = 0, max = 86400), extend("default" = 10))]
+    pub(crate) memory_s: f64,
 }

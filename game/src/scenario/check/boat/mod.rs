@@ -8,7 +8,7 @@ pub(super) use kinematic::thrust_map;
 
 use crate::boat::{Boat, Drive, Hull, Sensors, ThrustCurve, Windage};
 use crate::scenario::diagnostics::Diagnostics;
-use crate::scenario::raw::{At, RawBoat, RawHull};
+use crate::scenario::raw;
 use crate::scenario::read::Document;
 
 /// The physics takes explicit steps of the game's tick: motions that die out faster than this many times
@@ -20,165 +20,123 @@ const USUAL_TICK_S: f64 = 0.05;
 const RHO_KG_M3: f64 = 1000.0;
 
 /// Checks a boat.
-pub(in crate::scenario) fn boat(diagnostics: &mut Diagnostics, document: &Document<RawBoat>) -> Option<Boat> {
-    let faults = diagnostics.faults();
-    let (raw, start) = (&document.raw, document.start);
-    let hull = raw.hull.clone().unwrap_or_default();
-    let mut boat = Boat {
-        name: document.name.clone(),
-        length_m: diagnostics.required(start, "length_m", raw.length_m.as_ref(), 0.1..=100.0),
-        beam_m: diagnostics.required(start, "beam_m", raw.beam_m.as_ref(), 0.05..=50.0),
-        draught_m: diagnostics.number("draught_m", raw.draught_m.as_ref(), 0.01..=20.0).unwrap_or(0.0),
-        hull: given_hull(diagnostics, start, &hull),
-        windage: windage(diagnostics, raw),
-        drive: drive(diagnostics, document),
-        sensors: Sensors {
-            gps: raw.gps.as_ref().map(|given| sensor::gps(diagnostics, given)),
-            compass: raw.compass.as_ref().map(|given| sensor::compass(diagnostics, &given.value)),
-            imu: raw.imu.as_ref().map(|given| sensor::imu(diagnostics, &given.value)),
-        },
+pub(in crate::scenario) fn boat(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
+    let raw = &document.raw;
+    let hull = &raw.hull;
+    if hull.crossflow_coefficient > 0.0 && !document.has("hull.crossflow_draught_m") {
+        let message = "hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient";
+        diagnostics.note_if_intact(document.at("hull"), message);
+    }
+    let sensors = Sensors {
+        gps: raw.gps.as_ref().map(|gps| sensor::gps(diagnostics, document, gps)),
+        compass: raw.compass.as_ref().map(sensor::compass),
+        imu: raw.imu.as_ref().map(sensor::imu),
     };
-    if diagnostics.faults() != faults {
+    let drive = drive(diagnostics, document);
+    if !document.is_faultless(diagnostics) {
         return None;
     }
-    estimate(&mut boat, &hull);
-    check_inertia(diagnostics, start, &boat, &hull);
-    let (motion, rate_per_s) = fastest_decay(&boat);
-    let allowed_per_s = FASTEST_PER_TICK / USUAL_TICK_S;
-    if rate_per_s > allowed_per_s {
-        let message = format!(
-            "hull: {motion} dies out at {rate_per_s:.1} 1/s, expected at most {allowed_per_s} 1/s \
-             ({FASTEST_PER_TICK} a tick of {USUAL_TICK_S} s); its resistance is too large for its inertia"
-        );
-        let culprit = match motion {
-            "surge" => &hull.surge_linear_kg_s,
-            "sway" => &hull.sway_linear_kg_s,
-            _ => &hull.yaw_linear_kg_m2_s,
-        };
-        diagnostics.note(culprit.or(hull.mass_kg).map_or(start, |given| given.at), message);
-    }
-    (diagnostics.faults() == faults).then_some(boat)
+    let drive = drive?;
+    let boat = Boat {
+        name: document.name.clone(),
+        length_m: raw.length_m,
+        beam_m: raw.beam_m,
+        draught_m: raw.draught_m.unwrap_or_else(|| match hull.crossflow_draught_m {
+            Some(draught_m) if draught_m > 0.0 => draught_m,
+            _ => raw.length_m / 12.0,
+        }),
+        hull: estimated(raw, &drive),
+        windage: Windage {
+            frontal_area_m2: raw.windage.frontal_area_m2.unwrap_or(0.36 * raw.beam_m * raw.beam_m),
+            lateral_area_m2: raw.windage.lateral_area_m2.unwrap_or(0.16 * raw.length_m * raw.length_m),
+            height_m: raw.windage.height_m.unwrap_or(0.25 * raw.length_m),
+            surge_coefficient: raw.windage.surge_coefficient,
+            sway_coefficient: raw.windage.sway_coefficient,
+            yaw_coefficient: raw.windage.yaw_coefficient,
+        },
+        drive,
+        sensors,
+    };
+    check_inertia(diagnostics, document, &boat);
+    check_decay(diagnostics, document, &boat);
+    document.is_faultless(diagnostics).then_some(boat)
 }
 
-fn drive(diagnostics: &mut Diagnostics, document: &Document<RawBoat>) -> Drive {
-    let (raw, start) = (&document.raw, document.start);
-    let Some(given) = &raw.kinematic else {
-        return Drive::Thrusters {
-            thruster: thruster::thruster(diagnostics, start, &raw.thruster.clone().unwrap_or_default()),
-            autopilot: thruster::autopilot(diagnostics, start, &raw.autopilot.clone().unwrap_or_default()),
-        };
-    };
-    if raw.thruster.is_some() || raw.autopilot.is_some() {
-        diagnostics.note(given.at, "kinematic beside thruster or autopilot, expected the one or the other");
+fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Drive> {
+    let raw = &document.raw;
+    if let Some(kinematic) = &raw.kinematic {
+        if document.has("thruster") || document.has("autopilot") {
+            let message = "kinematic beside thruster or autopilot, expected the one or the other";
+            diagnostics.note(document.at("kinematic"), message);
+        }
+        return Some(Drive::Kinematic(kinematic::kinematic(diagnostics, document, kinematic)));
     }
-    Drive::Kinematic(kinematic::kinematic(diagnostics, given))
+    for key in ["thruster", "autopilot"] {
+        if !document.has(key) && !document.has("kinematic") {
+            let message = format!("{key} is missing, expected it, or kinematic in place of thruster and autopilot");
+            diagnostics.note_if_intact(document.at(""), message);
+        }
+    }
+    let thruster = thruster::thruster(diagnostics, document, raw.thruster.as_ref()?)?;
+    Some(Drive::Thrusters { thruster, autopilot: raw.autopilot.clone()? })
 }
 
-/// The windage as given, with 0 for areas and heights that are not.
-fn windage(diagnostics: &mut Diagnostics, boat: &RawBoat) -> Windage {
-    let raw = boat.windage.clone().unwrap_or_default();
-    let mut number = |key: &str, given: &Option<At<f64>>, low: f64, high: f64, default: f64| {
-        diagnostics.number(key, given.as_ref(), low..=high).unwrap_or(default)
+/// The hull, with what the file leaves out estimated by the recipes that the keys' descriptions state.
+fn estimated(boat: &raw::Boat, drive: &Drive) -> Hull {
+    let (thrust_max_newton, speed_max_m_s) = match drive {
+        Drive::Thrusters { thruster, autopilot } => (2.0 * full_ahead_newton(&thruster.curve), autopilot.speed_max_m_s),
+        Drive::Kinematic(kinematic) => (0.0, kinematic.speed_max_m_s),
     };
-    let size = |given: &Option<At<f64>>| given.as_ref().map_or(0.0, |given| given.value);
-    let (length_m, beam_m) = (size(&boat.length_m), size(&boat.beam_m));
-    Windage {
-        frontal_area_m2: number("frontal_area_m2", &raw.frontal_area_m2, 0.0, 1000.0, 0.36 * beam_m * beam_m),
-        lateral_area_m2: number("lateral_area_m2", &raw.lateral_area_m2, 0.0, 5000.0, 0.16 * length_m * length_m),
-        height_m: number("height_m", &raw.height_m, 0.05, 100.0, 0.25 * length_m),
-        surge_coefficient: number("surge_coefficient", &raw.surge_coefficient, 0.0, 2.0, 0.6),
-        sway_coefficient: number("sway_coefficient", &raw.sway_coefficient, 0.0, 2.0, 0.85),
-        yaw_coefficient: number("yaw_coefficient", &raw.yaw_coefficient, -0.5, 0.5, 0.1),
-    }
-}
-
-/// The hull as given, with 0 for what is not.
-fn given_hull(diagnostics: &mut Diagnostics, start: usize, raw: &RawHull) -> Hull {
-    let crossflow = diagnostics.number("crossflow_coefficient", raw.crossflow_coefficient.as_ref(), 0.0..=3.0);
-    if crossflow.is_some_and(|coefficient| coefficient > 0.0) && raw.crossflow_draught_m.is_none() {
-        diagnostics.note_missing(start, "hull.crossflow_draught_m", "0 to 20 with a crossflow_coefficient");
-    }
-    let mass_kg = diagnostics.required(start, "hull.mass_kg", raw.mass_kg.as_ref(), 0.1..=1e6);
-    let mut or_zero = |key: &str, given: &Option<At<f64>>, low: f64, high: f64| {
-        diagnostics.number(key, given.as_ref(), low..=high).unwrap_or(0.0)
-    };
-    Hull {
-        mass_kg,
-        yaw_inertia_kg_m2: or_zero("yaw_inertia_kg_m2", &raw.yaw_inertia_kg_m2, 1e-4, 1e9),
-        x_g_m: or_zero("x_g_m", &raw.x_g_m, -50.0, 50.0),
-        added_surge_kg: or_zero("added_surge_kg", &raw.added_surge_kg, 0.0, 1e6),
-        added_sway_kg: or_zero("added_sway_kg", &raw.added_sway_kg, 0.0, 1e7),
-        added_yaw_kg_m2: or_zero("added_yaw_kg_m2", &raw.added_yaw_kg_m2, 0.0, 1e9),
-        added_sway_yaw_kg_m: or_zero("added_sway_yaw_kg_m", &raw.added_sway_yaw_kg_m, -1e6, 1e6),
-        surge_linear_kg_s: or_zero("surge_linear_kg_s", &raw.surge_linear_kg_s, 0.0, 1e6),
-        surge_quadratic_kg_m: or_zero("surge_quadratic_kg_m", &raw.surge_quadratic_kg_m, 0.0, 1e6),
-        sway_linear_kg_s: or_zero("sway_linear_kg_s", &raw.sway_linear_kg_s, 0.0, 1e7),
-        sway_lift_kg_m: or_zero("sway_lift_kg_m", &raw.sway_lift_kg_m, 0.0, 1e6),
-        yaw_linear_kg_m2_s: or_zero("yaw_linear_kg_m2_s", &raw.yaw_linear_kg_m2_s, 0.0, 1e9),
-        yaw_quadratic_kg_m2: or_zero("yaw_quadratic_kg_m2", &raw.yaw_quadratic_kg_m2, 0.0, 1e9),
-        yaw_lift_kg_m: or_zero("yaw_lift_kg_m", &raw.yaw_lift_kg_m, 0.0, 1e7),
-        crossflow_coefficient: crossflow.unwrap_or(0.0),
-        crossflow_draught_m: or_zero("crossflow_draught_m", &raw.crossflow_draught_m, 0.0, 20.0),
-        crossflow_length_m: or_zero("crossflow_length_m", &raw.crossflow_length_m, 0.0, 200.0),
-        munk_factor: diagnostics.number("munk_factor", raw.munk_factor.as_ref(), 0.0..=1.0).unwrap_or(0.5),
-    }
-}
-
-/// Fills in what the file leaves out, by the recipes that the file's own documentation states.
-fn estimate(boat: &mut Boat, raw: &RawHull) {
-    let thrust_max_newton = match &boat.drive {
-        Drive::Thrusters { thruster, .. } => 2.0 * full_ahead_newton(&thruster.curve),
-        Drive::Kinematic(_) => 0.0,
-    };
-    let speed_max_m_s = boat.speed_max_m_s();
-    let length_m = boat.length_m;
-    let hull = &mut boat.hull;
-    let mass_kg = hull.mass_kg;
-    if raw.yaw_inertia_kg_m2.is_none() {
-        // A radius of gyration of a quarter of the length, moved from the centre of gravity to midships.
-        hull.yaw_inertia_kg_m2 = mass_kg * (length_m * length_m / 16.0 + hull.x_g_m * hull.x_g_m);
-    }
-    if raw.added_surge_kg.is_none() {
-        // Söding (1982), as in MSS addedMassSurge.m: 2.7 ρ ∇^(5/3) / L².
+    let (raw, length_m) = (&boat.hull, boat.length_m);
+    let mass_kg = raw.mass_kg;
+    // A radius of gyration of a quarter of the length, moved from the centre of gravity to midships.
+    let inertia_kg_m2 = || mass_kg * (length_m * length_m / 16.0 + raw.x_g_m * raw.x_g_m);
+    let yaw_inertia_kg_m2 = raw.yaw_inertia_kg_m2.unwrap_or_else(inertia_kg_m2);
+    // Söding (1982), as in MSS addedMassSurge.m: 2.7 ρ ∇^(5/3) / L².
+    let added_surge_kg = || {
         let displaced_m3 = mass_kg / RHO_KG_M3;
         let cube_root = libm::cbrt(displaced_m3);
-        hull.added_surge_kg = 2.7 * RHO_KG_M3 * displaced_m3 * cube_root * cube_root / (length_m * length_m);
-    }
-    if raw.added_sway_kg.is_none() {
-        hull.added_sway_kg = mass_kg;
-    }
-    if raw.added_yaw_kg_m2.is_none() {
-        hull.added_yaw_kg_m2 = hull.yaw_inertia_kg_m2;
-    }
-    if raw.surge_linear_kg_s.is_none() {
-        let quadratic_kg_s = hull.surge_quadratic_kg_m * speed_max_m_s;
-        hull.surge_linear_kg_s = (thrust_max_newton / speed_max_m_s - quadratic_kg_s).max(0.0);
-    }
-    if raw.sway_linear_kg_s.is_none() {
-        hull.sway_linear_kg_s = mass_kg + hull.added_sway_kg;
-    }
-    if raw.yaw_linear_kg_m2_s.is_none() {
-        hull.yaw_linear_kg_m2_s = hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2;
-    }
-    if raw.crossflow_length_m.is_none() {
-        hull.crossflow_length_m = length_m;
-    }
-    if boat.draught_m == 0.0 {
-        boat.draught_m = if hull.crossflow_draught_m > 0.0 { hull.crossflow_draught_m } else { length_m / 12.0 };
+        2.7 * RHO_KG_M3 * displaced_m3 * cube_root * cube_root / (length_m * length_m)
+    };
+    let surge_linear_kg_s = || {
+        let quadratic_kg_s = raw.surge_quadratic_kg_m * speed_max_m_s;
+        (thrust_max_newton / speed_max_m_s - quadratic_kg_s).max(0.0)
+    };
+    let added_sway_kg = raw.added_sway_kg.unwrap_or(mass_kg);
+    let added_yaw_kg_m2 = raw.added_yaw_kg_m2.unwrap_or(yaw_inertia_kg_m2);
+    Hull {
+        mass_kg,
+        yaw_inertia_kg_m2,
+        x_g_m: raw.x_g_m,
+        added_surge_kg: raw.added_surge_kg.unwrap_or_else(added_surge_kg),
+        added_sway_kg,
+        added_yaw_kg_m2,
+        added_sway_yaw_kg_m: raw.added_sway_yaw_kg_m,
+        surge_linear_kg_s: raw.surge_linear_kg_s.unwrap_or_else(surge_linear_kg_s),
+        surge_quadratic_kg_m: raw.surge_quadratic_kg_m,
+        sway_linear_kg_s: raw.sway_linear_kg_s.unwrap_or(mass_kg + added_sway_kg),
+        sway_lift_kg_m: raw.sway_lift_kg_m,
+        yaw_linear_kg_m2_s: raw.yaw_linear_kg_m2_s.unwrap_or(yaw_inertia_kg_m2 + added_yaw_kg_m2),
+        yaw_quadratic_kg_m2: raw.yaw_quadratic_kg_m2,
+        yaw_lift_kg_m: raw.yaw_lift_kg_m,
+        crossflow_coefficient: raw.crossflow_coefficient,
+        crossflow_draught_m: raw.crossflow_draught_m.unwrap_or(0.0),
+        crossflow_length_m: raw.crossflow_length_m.unwrap_or(length_m),
+        munk_factor: raw.munk_factor,
     }
 }
 
 /// A mass matrix with a direction that has no inertia would accelerate without bound.
-fn check_inertia(diagnostics: &mut Diagnostics, start: usize, boat: &Boat, raw: &RawHull) {
+fn check_inertia(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
     let hull = &boat.hull;
-    let place = |given: &Option<At<f64>>| given.as_ref().map_or(start, |given| given.at);
     let (m, x_g, i_z) = (hull.mass_kg, hull.x_g_m, hull.yaw_inertia_kg_m2);
     if x_g.abs() > boat.length_m / 2.0 {
         let half_m = boat.length_m / 2.0;
-        diagnostics.note(place(&raw.x_g_m), format!("x_g_m is {x_g}, expected -{half_m} to {half_m}, within the hull"));
+        let message = format!("x_g_m is {x_g}, expected -{half_m} to {half_m}, within the hull");
+        diagnostics.note(document.at("hull.x_g_m"), message);
     } else if i_z <= m * x_g * x_g {
         let message = format!("yaw_inertia_kg_m2 is {i_z}, expected more than m x_g² = {}", m * x_g * x_g);
-        diagnostics.note(place(&raw.yaw_inertia_kg_m2), message);
+        diagnostics.note(document.at("hull.yaw_inertia_kg_m2"), message);
     }
     let coupling = m * x_g + hull.added_sway_yaw_kg_m;
     if (m + hull.added_sway_kg) * (i_z + hull.added_yaw_kg_m2) <= coupling * coupling {
@@ -187,7 +145,25 @@ fn check_inertia(diagnostics: &mut Diagnostics, start: usize, boat: &Boat, raw: 
              (m + A22)(I + A66) more than (m x_g + A26)²",
             hull.added_sway_yaw_kg_m
         );
-        diagnostics.note(place(&raw.added_sway_yaw_kg_m), message);
+        diagnostics.note(document.at("hull.added_sway_yaw_kg_m"), message);
+    }
+}
+
+/// The usual tick must be short enough for the boat.
+fn check_decay(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, boat: &Boat) {
+    let (motion, rate_per_s) = fastest_decay(boat);
+    let allowed_per_s = FASTEST_PER_TICK / USUAL_TICK_S;
+    if rate_per_s > allowed_per_s {
+        let message = format!(
+            "hull: {motion} dies out at {rate_per_s:.1} 1/s, expected at most {allowed_per_s} 1/s \
+             ({FASTEST_PER_TICK} a tick of {USUAL_TICK_S} s); its resistance is too large for its inertia"
+        );
+        let culprit = match motion {
+            "surge" => "hull.surge_linear_kg_s",
+            "sway" => "hull.sway_linear_kg_s",
+            _ => "hull.yaw_linear_kg_m2_s",
+        };
+        diagnostics.note(document.at(if document.has(culprit) { culprit } else { "hull.mass_kg" }), message);
     }
 }
 

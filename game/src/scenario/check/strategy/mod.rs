@@ -15,12 +15,23 @@ use crate::field::Field;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
 use crate::scenario::raw::{At, RawStrategy};
-use crate::scenario::read::{self, Document};
+use crate::scenario::strategy_read::{self as read, Document};
 use crate::strategy::{Assignment, Program, Strategy};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The most roles of a strategy.
 const MOST_ROLES: usize = 1000;
+
+/// Reads and checks the strategy file at a path, which is referred to from a place; it has no numbers that are drawn.
+pub(in crate::scenario) fn strategy_file(
+    diagnostics: &mut Diagnostics,
+    path: &Path,
+    asked_at: Option<usize>,
+    _: &str,
+) -> Option<Strategy> {
+    let document = read::document(diagnostics, path, asked_at)?;
+    strategy(diagnostics, &document)
+}
 
 /// Checks a strategy.
 pub(in crate::scenario) fn strategy(

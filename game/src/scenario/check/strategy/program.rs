@@ -8,7 +8,7 @@ use super::{reach, safety};
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
 use crate::scenario::raw::{At, RawRule, RawStrategy};
-use crate::scenario::read::Document;
+use crate::scenario::strategy_read::Document;
 use crate::strategy::{Behaviour, FUNCTIONS_MAX, HEEDED_MAX, Helm, Program, Rule, Task, Trigger, Variable, What, Who};
 
 /// The most that a decision may be worse than the best and stand: more would outweigh safety.

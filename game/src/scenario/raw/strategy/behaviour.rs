@@ -8,7 +8,7 @@ use super::{
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::explain::nearest;
 use crate::scenario::raw::At;
-use crate::scenario::read::deserialised;
+use crate::scenario::strategy_read::deserialised;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Deserializer};

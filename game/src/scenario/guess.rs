@@ -1,0 +1,13 @@
+//! What somebody meant who wrote a name that nobody knows.
+
+/// The one of `choices` that `name` was probably meant to be: at most two letters away.
+pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
+    let far = name.len().min(5) / 2;
+    let distances = choices.iter().map(|choice| (strsim::levenshtein(name, choice), *choice));
+    distances.filter(|(distance, _)| *distance <= far).min().map(|(_, choice)| choice)
+}
+
+/// The same as the end of a message: ` (did you mean seed?)`, or nothing.
+pub(super) fn did_you_mean(name: &str, choices: &[&str]) -> String {
+    nearest(name, choices).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default()
+}

@@ -1,0 +1,126 @@
+//! A scenario file as typed: a tree of values, each with the place where it stands.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A value, and where it stands in the virtual text of all files.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    /// Where it begins.
+    pub(super) at: usize,
+    /// Where its key begins; of an element of a list, where it begins itself.
+    pub(super) key_at: usize,
+    /// What it is.
+    pub(super) value: Value,
+}
+
+/// What TOML knows.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    Table(Table),
+    List(Vec<Node>),
+    Text(String),
+    Whole(i64),
+    Number(f64),
+    Truth(bool),
+    Date(String),
+}
+
+/// Keys and values.
+pub(super) type Table = BTreeMap<String, Node>;
+
+impl PartialEq for Node {
+    fn eq(&self, other: &Node) -> bool {
+        self.value == other.value
+    }
+}
+
+impl Node {
+    /// The root of a file that begins at `start` in the virtual text.
+    pub(super) fn root(table: DeTable<'_>, start: usize) -> Node {
+        Node { at: start, key_at: start, value: Value::Table(table_from(table, start)) }
+    }
+
+    /// An empty table.
+    pub(super) fn empty(at: usize) -> Node {
+        Node { at, key_at: at, value: Value::Table(Table::new()) }
+    }
+
+    /// The entries of a table; nothing else has any.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (&String, &Node)> {
+        let table = if let Value::Table(table) = &self.value { Some(table) } else { None };
+        table.into_iter().flatten()
+    }
+
+    /// The number that it is.
+    pub(super) fn as_number(&self) -> Option<f64> {
+        match self.value {
+            Value::Whole(whole) => Some(whole as f64),
+            Value::Number(number) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// What stands at `path`, for example `team.1.name`, or else the innermost table or list on the way to it; and
+    /// whether it is there.
+    pub(super) fn find(&self, path: &str) -> (&Node, bool) {
+        let mut node = self;
+        for part in path.split('.').filter(|part| !part.is_empty()) {
+            let next = match &node.value {
+                Value::Table(table) => table.get(part),
+                Value::List(list) => part.parse().ok().and_then(|index: usize| list.get(index)),
+                _ => None,
+            };
+            match next {
+                Some(next) => node = next,
+                None => return (node, false),
+            }
+        }
+        (node, true)
+    }
+
+    /// Takes keys out of a table.
+    pub(super) fn remove(&mut self, keys: &[&str]) {
+        if let Value::Table(table) = &mut self.value {
+            table.retain(|key, _| !keys.contains(&key.as_str()));
+        }
+    }
+
+    /// Lays this over `base`: tables merge, anything else here replaces what the base says.
+    pub(super) fn lay_over(&mut self, base: Node) {
+        let (Value::Table(over), Value::Table(base)) = (&mut self.value, base.value) else { return };
+        for (key, value) in base {
+            match over.get_mut(&key) {
+                Some(mine) => mine.lay_over(value),
+                None => drop(over.insert(key, value)),
+            }
+        }
+    }
+}
+
+fn table_from(table: DeTable<'_>, start: usize) -> Table {
+    let entry = |(key, value): (Spanned<_>, Spanned<DeValue<'_>>)| {
+        let Range { start: key_at, .. } = key.span();
+        let key: std::borrow::Cow<'_, str> = key.into_inner();
+        (key.into_owned(), node_from(value, start, Some(start + key_at)))
+    };
+    table.into_iter().map(entry).collect()
+}
+
+fn node_from(value: Spanned<DeValue<'_>>, start: usize, key_at: Option<usize>) -> Node {
+    let at = start + value.span().start;
+    let value = match value.into_inner() {
+        DeValue::Table(table) => Value::Table(table_from(table, start)),
+        DeValue::Array(array) => Value::List(array.into_iter().map(|value| node_from(value, start, None)).collect()),
+        DeValue::String(text) => Value::Text(text.into_owned()),
+        // Whole numbers that are too large for 64 bits are refused as the numbers they are.
+        DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix())
+            .map_or_else(|_| Value::Number(whole.as_str().parse().unwrap_or(f64::NAN)), Value::Whole),
+        DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(truth) => Value::Truth(truth),
+        DeValue::Datetime(date) => Value::Date(date.to_string()),
+    };
+    Node { at, key_at: key_at.unwrap_or(at), value }
+}

@@ -1,0 +1,403 @@
+//! Reads a tree by the schema of its kind: every mistake is noted, distributions are drawn, defaults are filled in.
+//!
+//! What comes out always fits the schema. A value that is wrong or missing has been noted, and is replaced by its
+//! default, or else by the least that the schema allows, or by an empty text, so that the checks that follow can go on
+//! and find more; `Document::is_sound` tells them what was really there.
+
+use super::diagnostics::{Diagnostics, NAME_EXPECTED, NAME_PATTERN, is_name};
+use super::draw::{Owner, distribution_kind, draw};
+use super::guess::did_you_mean;
+use super::schema::{DRAWN, resolved};
+use super::tree::{Node, Table, Value};
+use serde_json::{Map, Value as Json};
+
+/// Reads `tree`, whose numbers are drawn for `owner`, by the schema `root`; also returns the paths of what is wrong.
+pub(super) fn validated<'a>(
+    diagnostics: &'a mut Diagnostics,
+    tree: &'a Node,
+    root: &'a Json,
+    owner: &'a str,
+) -> (Json, Vec<String>) {
+    let owner = root.get(DRAWN).map(|_| Owner { name: owner, path_from: 0 });
+    let mut validator = Validator { diagnostics, root, path: String::new(), owner, wrong: vec![] };
+    let value = validator.value(tree, root);
+    (value.unwrap_or_else(|| validator.stand_in(root)), validator.wrong)
+}
+
+struct Validator<'a> {
+    diagnostics: &'a mut Diagnostics,
+    root: &'a Json,
+    /// From the root of the file to the value at hand, as in `team.1.name`.
+    path: String,
+    /// Who draws the numbers at hand; nobody where they may not be drawn.
+    owner: Option<Owner<'a>>,
+    /// The paths of what was wrong or missing.
+    wrong: Vec<String>,
+}
+
+impl<'a> Validator<'a> {
+    /// The value of `node`, if it fits the schema.
+    fn value(&mut self, node: &'a Node, schema: &'a Json) -> Option<Json> {
+        let schema = resolved(schema, self.root);
+        if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
+            return match branches.iter().find(|branch| self.fits(node, branch)) {
+                Some(branch) => self.value(node, branch),
+                None => self.wrong_type(node, schema),
+            };
+        }
+        match &node.value {
+            Value::Table(table) if distribution_kind(table).is_some() && is_number(schema) => {
+                self.distribution(node, table, schema)
+            }
+            _ if !self.fits(node, schema) => self.wrong_type(node, schema),
+            Value::Table(table) if schema.get("oneOf").is_some() => self.tagged(node, table, schema),
+            Value::Table(table) => Some(self.table(node, table, schema)),
+            Value::List(items) => self.list(node, items, schema),
+            Value::Text(text) => self.text(node, text, schema),
+            Value::Truth(truth) => Some((*truth).into()),
+            Value::Whole(_) | Value::Number(_) => self.number(node, schema),
+            Value::Date(_) => None,
+        }
+    }
+
+    /// Runs `read` one step further down.
+    fn below<T>(&mut self, part: &str, read: impl FnOnce(&mut Self) -> T) -> T {
+        let length = self.path.len();
+        if length > 0 {
+            self.path.push('.');
+        }
+        self.path.push_str(part);
+        let value = read(self);
+        self.path.truncate(length);
+        value
+    }
+
+    fn number(&mut self, node: &Node, schema: &Json) -> Option<Json> {
+        let number = node.as_number()?;
+        let bound = |key: &str, none: f64| schema.get(key).and_then(Json::as_f64).unwrap_or(none);
+        if !number.is_finite() || !(bound("minimum", f64::MIN)..=bound("maximum", f64::MAX)).contains(&number) {
+            let found = if number.is_nan() { "nan".to_owned() } else { number.to_string() };
+            return self.wrong(node, &found, &allowed(schema, self.root));
+        }
+        Some(if let Value::Whole(whole) = node.value { whole.into() } else { number.into() })
+    }
+
+    /// A distribution in place of a number.
+    fn distribution(&mut self, node: &Node, table: &Table, schema: &Json) -> Option<Json> {
+        let Some(owner) = &self.owner else { return self.wrong_type(node, schema) };
+        match draw(self.diagnostics, node, table, owner, &self.path) {
+            Some(value) => {
+                let drawn = Node { value, ..*node };
+                if self.fits(&drawn, schema) { self.number(&drawn, schema) } else { self.wrong_type(&drawn, schema) }
+            }
+            None => {
+                self.wrong.push(self.path.clone());
+                None
+            }
+        }
+    }
+
+    fn text(&mut self, node: &Node, text: &str, schema: &Json) -> Option<Json> {
+        let choices = choices(schema);
+        let is_allowed = match schema.get("pattern") {
+            // There is no other pattern, and so no need for regular expressions.
+            Some(pattern) => pattern == NAME_PATTERN && is_name(text),
+            None if choices.is_empty() => schema.get("minLength").is_none() || !text.is_empty(),
+            None => choices.contains(&text),
+        };
+        if is_allowed {
+            return Some(text.into());
+        }
+        let expected = format!("{}{}", allowed(schema, self.root), did_you_mean(text, &choices));
+        self.wrong(node, &format!("{text:?}"), &expected)
+    }
+
+    fn list(&mut self, node: &Node, items: &'a [Node], schema: &'a Json) -> Option<Json> {
+        let about = &schema["items"];
+        if !counts(schema).contains(&items.len()) {
+            // Where tables are too many, the first of those is at fault.
+            let surplus = items.get(*counts(schema).end()).filter(|item| matches!(item.value, Value::Table(_)));
+            let message =
+                format!("{} has {} entries, expected {}", self.key(), items.len(), allowed(schema, self.root));
+            self.note(surplus.unwrap_or(node).at, message);
+            if is_number(about) || about.is_array() {
+                return None;
+            }
+        }
+        let mut values = vec![];
+        for (i, item) in items.iter().enumerate() {
+            // A tuple has a schema for each place.
+            let about = about.get(i).unwrap_or(about);
+            let value = self.below(&i.to_string(), |below| below.value(item, about));
+            values.push(value.unwrap_or_else(|| self.stand_in(about)));
+        }
+        Some(values.into())
+    }
+
+    /// A table of one of several kinds, which one of its keys tells.
+    fn tagged(&mut self, node: &'a Node, table: &'a Table, schema: &'a Json) -> Option<Json> {
+        let kinds = schema["oneOf"].as_array()?;
+        let tag_of = |kind: &'a Json| {
+            let properties = resolved(kind, self.root)["properties"].as_object();
+            properties
+                .into_iter()
+                .flatten()
+                .find_map(|(key, about)| Some((key.as_str(), about.get("const")?.as_str()?)))
+        };
+        let (key, _) = kinds.iter().find_map(tag_of)?;
+        let names: Vec<&str> = kinds.iter().filter_map(tag_of).map(|(_, name)| name).collect();
+        let expected = one_of(&names);
+        let Some(given) = table.get(key) else {
+            return self.below(key, |below| below.missing(node, &expected));
+        };
+        let Value::Text(text) = &given.value else {
+            return self.below(key, |below| below.wrong(given, &found(given), &expected));
+        };
+        match kinds.iter().find(|kind| tag_of(kind).is_some_and(|(_, name)| name == text)) {
+            Some(kind) => Some(self.table(node, table, resolved(kind, self.root))),
+            None => {
+                let expected = format!("{expected}{}", did_you_mean(text, &names));
+                self.below(key, |below| below.wrong(given, &format!("{text:?}"), &expected))
+            }
+        }
+    }
+
+    fn table(&mut self, node: &'a Node, table: &'a Table, schema: &'a Json) -> Json {
+        let mut values = Map::new();
+        let others = schema.get("additionalProperties").filter(|others| others.is_object());
+        for (key, value) in table {
+            match schema["properties"].get(key).or(others) {
+                Some(about) => {
+                    let value = self.below(key, |below| below.property(key, value, about));
+                    values.extend(value.map(|value| (key.clone(), value)));
+                }
+                None => self.unknown(key, value, schema),
+            }
+        }
+        for (key, about) in schema["properties"].as_object().into_iter().flatten() {
+            if !table.contains_key(key) {
+                let value = self.below(key, |below| below.absent(node, about, is_required(schema, key)));
+                values.extend(value.map(|value| (key.clone(), value)));
+            }
+            if !values.contains_key(key) && is_required(schema, key) {
+                values.insert(key.clone(), self.stand_in(about));
+            }
+        }
+        values.into()
+    }
+
+    /// The value of a key that is there.
+    fn property(&mut self, key: &'a str, node: &'a Node, about: &'a Json) -> Option<Json> {
+        let outer = self.owner;
+        if about.get(DRAWN).is_some() {
+            // What all share, such as the link of a game, draws for itself.
+            self.owner = Some(Owner { name: key, path_from: self.path.len() + 1 });
+        }
+        let value = self.value(node, about).or_else(|| about.get("default").cloned());
+        self.owner = outer;
+        value
+    }
+
+    /// The value of a key that the table `owner` lacks.
+    fn absent(&mut self, owner: &'a Node, about: &'a Json, is_required: bool) -> Option<Json> {
+        if let Some(default) = about.get("default") {
+            return Some(default.clone());
+        }
+        let schema = resolved(about, self.root);
+        if !is_required {
+            return None;
+        }
+        if schema.get("properties").is_some() {
+            return Some(self.table(owner, const { &Table::new() }, schema));
+        }
+        let is_list_of_tables = schema["type"] == "array" && resolved(&schema["items"], self.root)["type"] == "object";
+        if is_list_of_tables || counts(schema).contains(&0) && !takes(schema, "string") && schema["type"] == "array" {
+            return self.list(owner, &[], schema);
+        }
+        self.missing(owner, &allowed(schema, self.root))
+    }
+
+    fn unknown(&mut self, key: &str, node: &Node, schema: &Json) {
+        let properties = schema["properties"].as_object();
+        let known: Vec<&str> = properties.into_iter().flatten().map(|(key, _)| key.as_str()).collect();
+        let message = format!("{key} is unknown, expected {}{}", one_of(&known), did_you_mean(key, &known));
+        // A table head with broken syntax leaves its keys to the table before.
+        self.diagnostics.note_if_intact(node.key_at, message);
+    }
+
+    fn missing(&mut self, owner: &Node, expected: &str) -> Option<Json> {
+        let parts: Vec<&str> = self.path.split('.').filter(|part| part.parse::<usize>().is_err()).collect();
+        let key = parts[parts.len().saturating_sub(2)..].join(".");
+        self.diagnostics.note_if_intact(owner.at, format!("{key} is missing, expected {expected}"));
+        self.wrong.push(self.path.clone());
+        None
+    }
+
+    fn wrong_type(&mut self, node: &Node, schema: &Json) -> Option<Json> {
+        self.wrong(node, &found(node), &kind_of(schema, self.root))
+    }
+
+    fn wrong(&mut self, node: &Node, found: &str, expected: &str) -> Option<Json> {
+        let message = format!("{} is {found}, expected {expected}", self.key());
+        self.note(node.at, message);
+        None
+    }
+
+    fn note(&mut self, at: usize, message: String) {
+        self.diagnostics.note(at, message);
+        self.wrong.push(self.path.clone());
+    }
+
+    /// The key of the value at hand, or of the list that it is in.
+    fn key(&self) -> &str {
+        self.path.rsplit('.').find(|part| part.parse::<usize>().is_err()).unwrap_or("the file")
+    }
+
+    /// Whether a value is of the type that the schema wants.
+    fn fits(&self, node: &Node, schema: &Json) -> bool {
+        let schema = resolved(schema, self.root);
+        let any_of = |key: &str| {
+            let branches = schema.get(key).and_then(Json::as_array);
+            branches.is_some_and(|branches| branches.iter().any(|branch| self.fits(node, branch)))
+        };
+        any_of("anyOf")
+            || any_of("oneOf")
+            || match &node.value {
+                Value::Table(_) => takes(schema, "object"),
+                Value::List(_) => takes(schema, "array"),
+                Value::Text(_) => takes(schema, "string"),
+                Value::Truth(_) => takes(schema, "boolean"),
+                Value::Whole(_) => is_number(schema),
+                // One that is too large for 64 bits is a whole number too, out of any range.
+                Value::Number(number) => takes(schema, "number") || takes(schema, "integer") && number.abs() > 9e18,
+                Value::Date(_) => false,
+            }
+    }
+
+    /// A value that the schema allows, in place of one that is wrong.
+    fn stand_in(&self, schema: &Json) -> Json {
+        if let Some(default) = schema.get("default") {
+            return default.clone();
+        }
+        let schema = resolved(schema, self.root);
+        if let Some(choice) = choices(schema).first() {
+            return (*choice).into();
+        }
+        match schema["anyOf"].get(0).or_else(|| schema["oneOf"].get(0)) {
+            Some(branch) => self.stand_in(branch),
+            None if takes(schema, "object") => {
+                let properties = schema["properties"].as_object().into_iter().flatten();
+                let needed =
+                    properties.filter(|(key, about)| is_required(schema, key) || about.get("default").is_some());
+                Json::Object(needed.map(|(key, about)| (key.clone(), self.stand_in(about))).collect())
+            }
+            None if takes(schema, "array") => {
+                let items = (0..*counts(schema).start()).map(|i| schema["items"].get(i).unwrap_or(&schema["items"]));
+                items.map(|item| self.stand_in(item)).collect()
+            }
+            None if takes(schema, "string") => "".into(),
+            None if takes(schema, "boolean") => false.into(),
+            None => schema.get("minimum").cloned().unwrap_or_else(|| 0.into()),
+        }
+    }
+}
+
+fn is_required(schema: &Json, key: &str) -> bool {
+    schema["required"].as_array().is_some_and(|required| required.iter().any(|known| known == key))
+}
+
+/// Whether the schema allows values of this type.
+fn takes(schema: &Json, kind: &str) -> bool {
+    match &schema["type"] {
+        Json::Array(kinds) => kinds.iter().any(|known| known == kind),
+        known => known == kind,
+    }
+}
+
+fn is_number(schema: &Json) -> bool {
+    takes(schema, "number") || takes(schema, "integer")
+}
+
+/// How many entries a list may have.
+fn counts(schema: &Json) -> std::ops::RangeInclusive<usize> {
+    let bound = |key: &str| schema.get(key).and_then(Json::as_u64).map(|bound| bound as usize);
+    bound("minItems").unwrap_or(0)..=bound("maxItems").unwrap_or(usize::MAX)
+}
+
+/// The texts that the schema offers, if it does.
+fn choices(schema: &Json) -> Vec<&str> {
+    let one_of = schema["oneOf"].as_array().into_iter().flatten().filter_map(|choice| choice.get("const"));
+    let all = schema["enum"].as_array().into_iter().flatten().chain(schema.get("const")).chain(one_of);
+    all.filter_map(Json::as_str).collect()
+}
+
+fn one_of(names: &[&str]) -> String {
+    format!("{}{}", if names.len() > 1 { "one of " } else { "" }, names.join(", "))
+}
+
+/// What a value is, in words.
+fn found(node: &Node) -> String {
+    match &node.value {
+        Value::Table(_) => "a table".to_owned(),
+        Value::List(_) => "a list".to_owned(),
+        Value::Text(text) => format!("the string {text:?}"),
+        Value::Whole(whole) => whole.to_string(),
+        Value::Number(number) => format!("{number:?}").replace("NaN", "nan"),
+        Value::Truth(truth) => truth.to_string(),
+        Value::Date(date) => date.clone(),
+    }
+}
+
+/// What the schema allows, in words.
+fn allowed(schema: &Json, root: &Json) -> String {
+    let (from, to) = match &schema["type"] {
+        Json::String(kind) if kind == "array" => ("minItems", "maxItems"),
+        _ => ("minimum", "maximum"),
+    };
+    match (schema.get(from), schema.get(to)) {
+        _ if schema.get("x-expected").is_some() => kind_of(schema, root),
+        (Some(_), Some(to)) if from == "minItems" && to == 2 => "a pair of numbers [a, b]".to_owned(),
+        (Some(from), Some(to)) if from == to => format!("exactly {from}"),
+        (Some(from), Some(to)) => format!("{} to {}", bound(from), bound(to)),
+        (Some(from), None) => format!("at least {}", bound(from)),
+        (None, Some(to)) => format!("at most {}", bound(to)),
+        (None, None) => kind_of(schema, root),
+    }
+}
+
+/// A bound as people write it: 1000000 rather than 1000000.0.
+fn bound(value: &Json) -> String {
+    value.as_i64().map_or_else(|| value.as_f64().unwrap_or(f64::NAN).to_string(), |whole| whole.to_string())
+}
+
+/// What type the schema wants, in words.
+fn kind_of(schema: &Json, root: &Json) -> String {
+    let schema = resolved(schema, root);
+    if let Some(expected) = schema.get("x-expected").and_then(Json::as_str) {
+        return expected.to_owned();
+    }
+    if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
+        return branches.iter().map(|branch| kind_of(branch, root)).collect::<Vec<_>>().join(" or ");
+    }
+    let choices = choices(schema);
+    if !choices.is_empty() {
+        return one_of(&choices);
+    }
+    if schema.get("pattern").is_some() {
+        return NAME_EXPECTED.to_owned();
+    }
+    let word = |kind: &str| match kind {
+        "number" if schema.get("minimum").is_none() => "a finite number",
+        "number" => "a number",
+        "integer" => "a whole number",
+        "boolean" => "true or false",
+        "array" => "a list",
+        "object" => "a table",
+        _ => "a string",
+    };
+    let kinds = match &schema["type"] {
+        Json::Array(kinds) => kinds.iter().filter_map(Json::as_str).map(word).collect(),
+        kind => vec![word(kind.as_str().unwrap_or("object"))],
+    };
+    kinds.join(" or ")
+}
