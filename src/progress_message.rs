@@ -1,6 +1,6 @@
 //! What a running game reports: one JSON line each from the sim's process to `run`, the same for the screen.
 
-use game::event::Logged;
+use game::event::{EventCursor, Logged};
 use game::outcome::EventOutcome;
 use serde::{Deserialize, Serialize};
 use sim::Contest;
@@ -52,7 +52,7 @@ pub(crate) struct Progress {
 /// Turns what happens into tellings, each event once.
 #[derive(Default)]
 pub(crate) struct Teller {
-    told: usize,
+    told: EventCursor,
 }
 
 impl Teller {
@@ -72,10 +72,8 @@ impl Teller {
     }
 
     fn events(&mut self, contest: &Contest) -> Vec<ProgressMessage> {
-        let news = &contest.events()[self.told..];
-        self.told = contest.events().len();
         let name = |logged: &Logged| ProgressMessage::Event(EventOutcome::new(contest.scenario(), logged));
-        news.iter().map(name).collect()
+        self.told.read(contest.events()).iter().map(name).collect()
     }
 
     /// What a sim node's news come to. Where it is open, only its shell knows.
@@ -94,8 +92,7 @@ impl Teller {
 
     /// The end of a game: the events not told yet, then the report.
     pub(crate) fn done(&mut self, report: Report) -> Vec<ProgressMessage> {
-        let rest = report.outcome.events[self.told.min(report.outcome.events.len())..].to_vec();
-        self.told = report.outcome.events.len();
+        let rest = self.told.read(&report.outcome.events).to_vec();
         let mut tellings: Vec<ProgressMessage> = rest.into_iter().map(ProgressMessage::Event).collect();
         tellings.push(ProgressMessage::Done(Box::new(report)));
         tellings

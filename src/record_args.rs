@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result};
 use game::Scenario;
+use game::event::EventCursor;
 use game::input::Input;
 use game::message::GameInfo;
 use game::run_state::RecordingState;
@@ -51,8 +52,8 @@ pub(crate) struct Tape {
     game: String,
     pace: String,
     recorder: Stage,
-    /// Events that are told already.
-    told: usize,
+    /// How far events are written down.
+    written: EventCursor,
     /// Whether pictures are heard, encoded as they are, since they go over the network.
     hears_pictures: bool,
 }
@@ -62,7 +63,14 @@ impl Tape {
     pub(crate) fn on_network(path: PathBuf, game: &str, pace: &str) -> Result<Tape> {
         let blank = Blank::create(&path).with_context(|| format!("cannot record into {}", path.display()))?;
         let (game, pace) = (game.to_owned(), pace.to_owned());
-        Ok(Tape { path, game, pace, recorder: Stage::Blank(blank), told: 0, hears_pictures: true })
+        Ok(Tape {
+            path,
+            game,
+            pace,
+            recorder: Stage::Blank(blank),
+            written: EventCursor::default(),
+            hears_pictures: true,
+        })
     }
 
     /// Of a game in this process, into a new file.
@@ -120,8 +128,7 @@ impl NodeRecorder for Tape {
         let Stage::Begun(recorder) = &self.recorder else { return };
         let shows = !self.hears_pictures && inputs.contains(&Input::Pictured);
         let pictures = if shows { contest.last_pictures().to_vec() } else { vec![] };
-        let turn = Turn { frame: contest.frame_since(self.told), pictures, inputs };
-        self.told = contest.events().len();
+        let turn = Turn { frame: contest.frame(&mut self.written), pictures, inputs };
         recorder.note(Note::Turn(Box::new(turn)));
     }
 

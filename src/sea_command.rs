@@ -36,14 +36,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let (boat, _, drawn) = boat.context("no boat to tell the sea for (--boat names another)")?;
     water_args::tell_drawn(args.seed, &drawn);
     let tick = SimTime::from_s(usual_tick_s(&boat));
-    let water = trial::open_water(&boat, &sea, tick, args.seed);
-    let summary = Summary::new(&sea, &boat, &water.field, args.seed);
+    let field = trial::open_field();
+    let summary = Summary::new(&sea, &boat, &field, args.seed);
     let drifted = drifted(&boat, &sea, tick, args.seed)?;
     screen::print(&told(&sea, &boat, &summary, &drifted));
 
     let plot = args.plot.clone().unwrap_or_else(|| PathBuf::from(format!("{}.svg", sea.name)));
     let title = format!("{}: {}, seed {}", sea.name, boat.name, args.seed);
-    let model = SeaModel::new(&water, args.seed);
+    let model = SeaModel::new(&sea, std::slice::from_ref(&boat), &field, tick, args.seed);
     sea::write(&plot, &Shown { title, sea: &sea, model: &model, drift: &drifted })?;
     screen::print(&format!("plot in {}\n", plot.display()));
     Ok(ExitCode::SUCCESS)
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 /// The track of the boat, released at rest at the datum, pointing north: that of `squall trial --manoeuvre drift`.
 fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sample>> {
-    let mut afloat = Afloat::new(boat, sea, tick, seed, &Start::default())?;
+    let mut afloat = Afloat::new(boat, sea, tick, seed, &Start::default());
     let plan = Plan {
         manoeuvre: Manoeuvre::Drift,
         course_rad: 0.0,

@@ -158,7 +158,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     water_args::tell_drawn(args.water.seed, &drawn);
     let start = args.start.start(&boat)?;
     let tick = SimTime::from_s(args.tick_s.unwrap_or(usual_tick_s(&boat)));
-    let mut afloat = Afloat::new(&boat, &args.water.sea()?, tick, args.water.seed, &start)?;
+    let mut afloat = Afloat::new(&boat, &args.water.sea()?, tick, args.water.seed, &start);
     match (&args.orders, args.manoeuvre) {
         (Some(path), _) => replay(args, path, &boat, &mut afloat),
         (None, Some(named)) => manoeuvre(args, named, &boat, &mut afloat),

@@ -62,6 +62,7 @@ fn odd_input() -> impl Strategy<Value = Input> {
     let ordered = (vehicle.clone(), odd_number()).prop_map(|(vehicle, heading_rad)| Input::Ordered {
         vehicle,
         order: Order::Steer { heading_rad, speed_m_s: heading_rad },
+        given_at: SimTime::ZERO,
     });
     let reported = (vehicle.clone(), odd_nav(), any::<i64>()).prop_map(|(vehicle, nav, at)| Input::Reported {
         vehicle,

@@ -6,7 +6,7 @@ use game::message::{Frame, VehicleTruth};
 use game::outcome::EventOutcome;
 use game::picture::{Nav, Picture};
 use game::scenario::Source;
-use game::{Ned, Order, Scenario};
+use game::{Ned, Order, Scenario, SimTime};
 use recording::{FRAME, INPUTS, Recording, RecordingError, Said};
 
 /// A game as series.
@@ -148,8 +148,8 @@ struct Scribe<'a> {
     book: Book,
     /// The numbers of the frames so far.
     seqs: Vec<u64>,
-    /// In force, by vehicle.
-    orders: Vec<Order>,
+    /// In force, by vehicle, with the time of the picture that each answers.
+    orders: Vec<(Order, SimTime)>,
 }
 
 impl<'a> Scribe<'a> {
@@ -165,14 +165,14 @@ impl<'a> Scribe<'a> {
             teams: scenario.teams.iter().map(|team| team.name.clone()).collect(),
             ..Book::default()
         };
-        Scribe { scenario, book, seqs: vec![], orders: vec![Order::Hold; scenario.vehicles.len()] }
+        Scribe { scenario, book, seqs: vec![], orders: vec![(Order::Hold, SimTime::ZERO); scenario.vehicles.len()] }
     }
 
     fn frame(&mut self, said: &Said<'_>) -> Result<(), RecordingError> {
         let frame: Frame = said.read()?;
         self.seqs.push(frame.stamp.seq);
         self.book.times_s.push(frame.stamp.valid_ns.as_s());
-        for (i, (boat, order)) in self.book.boats.iter_mut().zip(&self.orders).enumerate() {
+        for (i, (boat, (order, _))) in self.book.boats.iter_mut().zip(&self.orders).enumerate() {
             let truth = frame.vehicles.get(i).copied().unwrap_or_default();
             boat.moments.push(moment(&truth, *order, frame.stopped));
         }
@@ -196,17 +196,25 @@ impl<'a> Scribe<'a> {
 
     fn inputs(&mut self, said: &Said<'_>) -> Result<(), RecordingError> {
         let inputs: Inputs = said.read()?;
-        for input in inputs.inputs.iter().filter_map(|record| record.input()) {
-            let (vehicle, order) = match input {
-                Input::Ordered { vehicle, order } => (vehicle, order),
-                Input::Held { vehicle } | Input::AgentLost { vehicle } => (vehicle, Order::Hold),
-                _ => continue,
-            };
-            if let Some(in_force) = self.orders.get_mut(vehicle.index()) {
-                *in_force = order;
+        for input in inputs.of(self.scenario).flatten() {
+            match input {
+                Input::Ordered { vehicle, order, given_at } => self.orders[vehicle.index()] = (order, given_at),
+                Input::Held { vehicle } | Input::AgentLost { vehicle } => self.orders[vehicle.index()].0 = Order::Hold,
+                Input::Played => self.expire_orders(),
+                _ => {}
             }
         }
         Ok(())
+    }
+
+    /// Orders expire by the age of the picture that they answer, when a decision is played.
+    fn expire_orders(&mut self) {
+        let Some(now_s) = self.book.times_s.last() else { return };
+        for (order, given_at) in &mut self.orders {
+            if now_s - given_at.as_s() > self.scenario.order_ttl_s {
+                *order = Order::Hold;
+            }
+        }
     }
 }
 

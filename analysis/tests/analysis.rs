@@ -82,7 +82,8 @@ fn turn(seq: u64) -> Turn {
     let stamp = at(before, Picture::VERSION);
     let picture = Picture { stamp, own: vec![own], contacts: vec![contact], flags, score, ..Picture::default() };
     let order = Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 };
-    let inputs = vec![Input::Pictured, Input::Ordered { vehicle: VehicleId(0), order }, Input::Played];
+    let inputs =
+        vec![Input::Pictured, Input::Ordered { vehicle: VehicleId(0), order, given_at: SimTime::ZERO }, Input::Played];
     Turn { frame, pictures: vec![picture], inputs }
 }
 

@@ -5,6 +5,7 @@
 //! calm water. Every boat has a strategy drawn by lot over `safety.toml`: places on the field and up to 20 m beyond it,
 //! pursuits, stations, headings, at any speed. The same seeds are the same games.
 
+use game::event::EventCursor;
 use game::outcome::Outcome;
 use game::stream::Stream;
 use game::{Event, Ned, Pose, Scenario, VehicleId};
@@ -186,7 +187,7 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
     let count = scenario.vehicles.len();
     let (mut touching, mut touched_s) = (vec![false; count * count], vec![f64::NEG_INFINITY; count]);
     let mut tally = Tally { games: 1, ..Tally::default() };
-    let mut told = 0;
+    let mut told = EventCursor::default();
     while !contest.is_over() {
         arena::decide(&mut contest, &mut runner);
         contest.advance();
@@ -204,7 +205,7 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
                 }
             }
         }
-        for logged in &contest.events()[told..] {
+        for logged in told.read(contest.events()) {
             if let Event::LeftField { vehicle } = logged.event {
                 let i = vehicle.index();
                 tally.left += 1;
@@ -216,7 +217,6 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
                 }
             }
         }
-        told = contest.events().len();
     }
     let outcome: Outcome = contest.outcome();
     tally.collided = outcome.events.iter().filter(|event| event.event == "collided").count() as u64;

@@ -60,6 +60,6 @@ pub fn decide(contest: &mut Contest, runner: &mut MindRunner) {
     runner.decide(stamp, |vehicle| Some(contest.picture_of(vehicle)));
     for (vehicle, order) in runner.orders() {
         // As over the network: an order with bad numbers is refused, and the boat holds.
-        contest.order(vehicle, order.check().unwrap_or_default());
+        contest.order(vehicle, order, stamp.valid_ns).unwrap_or_default();
     }
 }

@@ -47,7 +47,7 @@ fn orders_csv(stream: &mut Stream) -> String {
 fn log_csv(boat: &Boat, orders_csv: &str, stream: &mut Stream) -> String {
     let sheet = Sheet::read("orders.csv", orders_csv.as_bytes()).expect("it is CSV");
     let orders = Orders::of_sheet(&sheet, &Engine::new(boat)).expect("it understands them");
-    let mut afloat = Afloat::new(boat, &trial::still_sea(), TICK, 1, &Start::default()).expect("there is room");
+    let mut afloat = Afloat::new(boat, &trial::still_sea(), TICK, 1, &Start::default());
     let mut samples = trial::replay(&mut afloat, &orders, orders.end()).expect("it sails");
     for sample in &mut samples {
         let [x, y, heading, surge, sway, yaw] = NOISE.map(|sigma| sigma * stream.normal());
@@ -107,7 +107,7 @@ fn without_noise_they_come_back_to_four_places() {
     let orders = orders_csv(&mut Stream::new(9, "test"));
     let sheet = Sheet::read("orders.csv", orders.as_bytes()).expect("it is CSV");
     let series = Orders::of_sheet(&sheet, &Engine::new(&truth)).expect("it understands them");
-    let mut afloat = Afloat::new(&truth, &trial::still_sea(), TICK, 1, &Start::default()).expect("there is room");
+    let mut afloat = Afloat::new(&truth, &trial::still_sea(), TICK, 1, &Start::default());
     let samples = trial::replay(&mut afloat, &series, series.end()).expect("it sails");
     let mut text = vec![];
     trial::write_csv(&samples, true, &mut text).expect("a vector takes everything");

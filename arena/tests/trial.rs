@@ -27,8 +27,8 @@ fn a_trial_sails_as_a_game_does() {
         let boat =
             scenario::load_boat(&scenarios().join(format!("boats/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"));
         let tick = SimTime::from_s(tick_s);
-        let mut world = World::new(&game_of(&boat, &sea, tick), 1).expect("there is room");
-        let mut afloat = Afloat::new(&boat, &sea, tick, 1, &Start::default()).expect("there is room");
+        let mut world = World::of_game(&game_of(&boat, &sea, tick), 1).expect("there is room");
+        let mut afloat = Afloat::new(&boat, &sea, tick, 1, &Start::default());
         let start = world.state().boats[0].pose.at;
         for second in 0..20 {
             let (heading_rad, speed_m_s) = (0.1 * f64::from(second), 1.5);
@@ -50,8 +50,7 @@ fn a_trial_sails_as_a_game_does() {
 #[test]
 fn a_trial_does_not_end_at_the_edge_of_the_field() {
     let boat = scenario::load_boat(&scenarios().join("boats/surveyor_m1_8.toml")).unwrap_or_else(|e| panic!("{e}"));
-    let mut afloat =
-        Afloat::new(&boat, &trial::still_sea(), SimTime::from_s(0.05), 1, &Start::default()).expect("room");
+    let mut afloat = Afloat::new(&boat, &trial::still_sea(), SimTime::from_s(0.05), 1, &Start::default());
     for _ in 0..20_000 {
         afloat.step(Command::Steer { heading_rad: 0.0, speed_m_s: 2.0 });
     }

@@ -65,7 +65,7 @@ pub fn decode<M: Message + DeserializeOwned>(bytes: &[u8]) -> Result<M, DecodeEr
         .ok_or_else(|| DecodeError::Encapsulation { found: bytes.iter().take(4).copied().collect() })?;
     let layout = |reason: String| DecodeError::Layout { schema, reason };
     let (stamp, _) = cdr_encoding::from_bytes::<Stamp, LittleEndian>(body).map_err(|e| layout(e.to_string()))?;
-    if stamp.version != M::VERSION {
+    if !(M::OLDEST..=M::VERSION).contains(&stamp.version) {
         return Err(DecodeError::Version { schema, found: stamp.version, expected: M::VERSION });
     }
     let (message, used) = cdr_encoding::from_bytes::<M, LittleEndian>(body).map_err(|e| layout(e.to_string()))?;

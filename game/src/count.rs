@@ -19,7 +19,8 @@ pub struct Counts {
     pub out_of_bounds: u32,
     /// Collisions the boat was in. A team's count adds up its boats', so one between team-mates is two.
     pub collisions: u32,
-    /// Times the boat's mind was lost.
+    /// Times the boat's agent was lost. Older recordings have it under its former name.
+    #[serde(alias = "minds_lost")]
     pub agents_lost: u32,
 }
 

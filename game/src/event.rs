@@ -16,6 +16,19 @@ pub struct Logged {
     pub event: Event,
 }
 
+/// How far somebody has read a log of events that grows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EventCursor(usize);
+
+impl EventCursor {
+    /// The events that were added to the log since it was read last.
+    pub fn read<'a, E>(&mut self, log: &'a [E]) -> &'a [E] {
+        let new = log.get(self.0..).unwrap_or_default();
+        self.0 = log.len();
+        new
+    }
+}
+
 /// Why a boat was tagged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TagCause {
@@ -93,14 +106,14 @@ pub enum Event {
         /// Who.
         vehicle: VehicleId,
     },
-    /// A boat's mind fell silent: the boat holds from now on.
+    /// A boat's agent is lost: the boat holds from now on.
     AgentLost {
-        /// Whose mind.
+        /// Whose agent.
         vehicle: VehicleId,
     },
-    /// A boat's mind is back.
+    /// A boat's agent is back.
     AgentBack {
-        /// Whose mind.
+        /// Whose agent.
         vehicle: VehicleId,
     },
     /// A boat's numbers went bad: it lies still where it last was and plays no more.

@@ -255,6 +255,12 @@ impl Field {
         (from_corner.dot(self.along), from_corner.dot(self.across))
     }
 
+    /// The middle of the field.
+    #[must_use]
+    pub fn middle(&self) -> Ned {
+        (self.corners[0] + self.corners[2]).scaled(0.5)
+    }
+
     /// Whether `at` is on the field; the boundary itself is out.
     #[inline]
     #[must_use]

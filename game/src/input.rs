@@ -1,7 +1,7 @@
-//! What a game is given as it goes on. With it a game can be played again without its minds.
+//! What a contest is given as it goes on. From it a game can be played again without its agents.
 
 use crate::id::VehicleId;
-use crate::message::{Message, Stamp, VehicleOrder};
+use crate::message::{Message, Stamp};
 use crate::order::Order;
 use crate::picture::Nav;
 use crate::scenario::Scenario;
@@ -19,23 +19,25 @@ pub enum Input {
         vehicle: VehicleId,
         /// Which.
         order: Order,
+        /// The time of the picture that it answers; [`SimTime::NEVER`] where that was not written down.
+        given_at: SimTime,
     },
     /// A vehicle was made to hold.
     Held {
         /// Which.
         vehicle: VehicleId,
     },
-    /// A vehicle's mind was lost.
+    /// A vehicle's agent was lost.
     AgentLost {
         /// Whose.
         vehicle: VehicleId,
     },
-    /// A vehicle has a mind again.
+    /// A vehicle's agent is back.
     AgentBack {
         /// Which.
         vehicle: VehicleId,
     },
-    /// A gateway told where its boat was.
+    /// A gateway reported where its boat was.
     Reported {
         /// Which boat.
         vehicle: VehicleId,
@@ -55,17 +57,14 @@ pub enum Input {
 }
 
 impl Input {
-    /// Whether it can be given to this game: it has the vehicle, and times are some.
+    /// Whether it can be given to this game: the game has the vehicle, and times are within reason.
     #[must_use]
     pub fn is_of(self, scenario: &Scenario) -> bool {
         let has = |vehicle: VehicleId| vehicle.index() < scenario.vehicles.len();
         match self {
-            Input::Ordered { vehicle, .. }
-            | Input::Held { vehicle }
-            | Input::AgentLost { vehicle }
-            | Input::AgentBack { vehicle } => has(vehicle),
-            Input::Reported { vehicle, fix_at, .. } => {
-                has(vehicle) && (SimTime(-SimTime::NEVER.0)..SimTime::NEVER).contains(&fix_at)
+            Input::Held { vehicle } | Input::AgentLost { vehicle } | Input::AgentBack { vehicle } => has(vehicle),
+            Input::Ordered { vehicle, given_at: at, .. } | Input::Reported { vehicle, fix_at: at, .. } => {
+                has(vehicle) && (SimTime(-SimTime::NEVER.0)..=SimTime::NEVER).contains(&at)
             }
             Input::Pictured | Input::EStopped(_) | Input::Halted(_) | Input::Played => true,
         }
@@ -81,6 +80,22 @@ pub struct Inputs {
     pub inputs: Vec<InputRecord>,
 }
 
+impl Inputs {
+    /// The version that did not hold yet which picture an order answers.
+    const WITHOUT_GIVEN_AT: u8 = 1;
+
+    /// Each input, if it is known and of this game.
+    pub fn of(&self, scenario: &Scenario) -> impl Iterator<Item = Option<Input>> {
+        let is_old = self.stamp.version <= Inputs::WITHOUT_GIVEN_AT;
+        self.inputs.iter().map(move |record| match record.input().filter(|input| input.is_of(scenario))? {
+            Input::Ordered { vehicle, order, .. } if is_old => {
+                Some(Input::Ordered { vehicle, order, given_at: SimTime::NEVER })
+            }
+            input => Some(input),
+        })
+    }
+}
+
 /// An input as numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct InputRecord {
@@ -88,7 +103,7 @@ pub struct InputRecord {
     pub kind: u8,
     /// Whose, or -1.
     pub vehicle: i32,
-    /// For a report: when the boat was there, ns.
+    /// For a report: when the boat was there; for an order: the time of the picture that it answers, ns.
     pub at_ns: SimTime,
     /// What belongs to it.
     pub numbers: Vec<f64>,
@@ -103,10 +118,13 @@ impl From<Input> for InputRecord {
             numbers: numbers.to_vec(),
         };
         match input {
-            Input::Ordered { vehicle, order } => {
-                let VehicleOrder { kind, first, second, .. } = VehicleOrder::new(vehicle, order);
-                let numbers = if kind == 0 { vec![] } else { vec![first, second] };
-                record(kind, Some(vehicle), &numbers)
+            Input::Ordered { vehicle, order, given_at } => {
+                let record = match order {
+                    Order::Hold => record(0, Some(vehicle), &[]),
+                    Order::Steer { heading_rad, speed_m_s } => record(1, Some(vehicle), &[heading_rad, speed_m_s]),
+                    Order::Thrust { port, starboard } => record(2, Some(vehicle), &[port, starboard]),
+                };
+                InputRecord { at_ns: given_at, ..record }
             }
             Input::Pictured => record(3, None, &[]),
             Input::Held { vehicle } => record(4, Some(vehicle), &[]),
@@ -128,16 +146,11 @@ impl InputRecord {
     #[must_use]
     pub fn input(&self) -> Option<Input> {
         let vehicle = u16::try_from(self.vehicle).ok().map(VehicleId);
+        let ordered = |order| Some(Input::Ordered { vehicle: vehicle?, order, given_at: self.at_ns });
         Some(match (self.kind, self.numbers.as_slice()) {
-            (kind @ 0..=2, numbers) => {
-                let (first, second) = match (kind, numbers) {
-                    (0, []) => (0.0, 0.0),
-                    (1 | 2, [first, second]) => (*first, *second),
-                    _ => return None,
-                };
-                let order = VehicleOrder { vehicle: vehicle?, kind, first, second }.order()?;
-                Input::Ordered { vehicle: vehicle?, order }
-            }
+            (0, []) => ordered(Order::Hold)?,
+            (1, &[heading_rad, speed_m_s]) => ordered(Order::Steer { heading_rad, speed_m_s })?,
+            (2, &[port, starboard]) => ordered(Order::Thrust { port, starboard })?,
             (3, []) => Input::Pictured,
             (4, []) => Input::Held { vehicle: vehicle? },
             (5, []) => Input::AgentLost { vehicle: vehicle? },
@@ -158,7 +171,8 @@ impl InputRecord {
 
 impl Message for Inputs {
     const SCHEMA: &'static str = "squall_msgs/msg/Inputs";
-    const VERSION: u8 = 1;
+    const VERSION: u8 = 2;
+    const OLDEST: u8 = Inputs::WITHOUT_GIVEN_AT;
     const DEFINITION: &'static str = include_str!("../msg/Inputs.msg");
     fn stamp(&self) -> &Stamp {
         &self.stamp
@@ -175,9 +189,9 @@ mod tests {
         let nav = Nav { north_m: 1.0, east_m: 2.0, psi_rad: 3.0, surge_m_s: 4.0, sway_m_s: 5.0, yaw_rate_rad_s: 6.0 };
         for input in [
             Input::Pictured,
-            Input::Ordered { vehicle, order: Order::Hold },
-            Input::Ordered { vehicle, order: Order::Steer { heading_rad: 0.5, speed_m_s: 2.0 } },
-            Input::Ordered { vehicle, order: Order::Thrust { port: -1.0, starboard: 0.25 } },
+            Input::Ordered { vehicle, order: Order::Hold, given_at: SimTime::ZERO },
+            Input::Ordered { vehicle, order: Order::Steer { heading_rad: 0.5, speed_m_s: 2.0 }, given_at: SimTime(7) },
+            Input::Ordered { vehicle, order: Order::Thrust { port: -1.0, starboard: 0.25 }, given_at: SimTime(7) },
             Input::Held { vehicle },
             Input::AgentLost { vehicle },
             Input::AgentBack { vehicle },

@@ -162,8 +162,6 @@ impl Outcome {
         let scenario = played.scenario;
         let mut tally = Tally::new(scenario.vehicles.len());
         played.events.iter().for_each(|logged| tally.add(logged.event));
-        let points = scenario.rules.points;
-        let made = |c: &Counts| points.grab * c.grabs + points.capture * c.captures + points.tag * c.tags;
         let team_counts = |team: usize| tally.team(TeamId(team as u8), |i| scenario.vehicles[i].team);
         let team_names = || scenario.teams.iter().map(|team| team.name.clone());
         let boats = || scenario.vehicles.iter().map(|vehicle| vehicle.name.clone()).zip(&tally.vehicles);
@@ -184,7 +182,7 @@ impl Outcome {
             boats: scenario.vehicles.iter().map(team_of).collect(),
             score: Standings {
                 teams: team_names().zip(played.score.iter().copied()).collect(),
-                boats: boats().map(|(name, counts)| (name, made(counts))).collect(),
+                boats: boats().map(|(name, counts)| (name, scenario.rules.points.of(counts))).collect(),
             },
             counts: Standings {
                 teams: team_names().enumerate().map(|(i, name)| (name, team_counts(i))).collect(),

@@ -45,7 +45,7 @@ fn turn(seq: u64, north_m: f64) -> Turn {
     let Some(before) = seq.checked_sub(1) else { return Turn { frame, ..Turn::default() } };
     let picture = |team| Picture { stamp: at(before, Picture::VERSION), team, ..Picture::default() };
     let order = Order::Steer { heading_rad: north_m, speed_m_s: 1.0 / 3.0 };
-    let inputs = vec![Input::Pictured, Input::Ordered { vehicle: VehicleId(1), order }];
+    let inputs = vec![Input::Pictured, Input::Ordered { vehicle: VehicleId(1), order, given_at: SimTime(7) }];
     Turn { frame, pictures: vec![picture(0), picture(1)], inputs }
 }
 

@@ -3,8 +3,7 @@
 //! This is where emulated boats float, while the game that they play in takes them for real ones. The sea, the boats and
 //! their sensors are those of the game; there are no tags, no flags that matter, no limits of sharing and no radio.
 
-use crate::spawn;
-use crate::world::NoStart;
+use crate::spawn::{self, NoStart};
 use game::SimTime;
 use game::link::Sharing;
 use game::rules::{Rules, TaggedBoat};
@@ -87,7 +86,8 @@ mod tests {
         for contest in [&mut alone, &mut all] {
             let blue = contest.scenario().vehicle_by_name("blue_one").expect("it plays");
             for _ in 0..100 {
-                contest.order(blue, Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 });
+                let east = Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 };
+                contest.order(blue, east, contest.now()).expect("sound numbers");
                 contest.advance();
             }
         }

@@ -8,15 +8,15 @@ use game::angle::wrap_pi;
 use game::frame::Rotation;
 use game::picture::{Nav, OwnBoat};
 use game::{Event, Pose, SimTime, VehicleId, math};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// So long after its last fix a boat is taken to go on as it did. From then on it is taken to lie where that has brought
+/// So long after its last fix a boat is dead reckoned: it is taken to go on as it did. From then on it is taken to lie where that has brought
 /// it. The error of going on grows with the square of the time: a boat that slows down by 1 m/s² is half a metre off
-/// after one second, and two after another. A boat that nobody hears of is likely to slow down, for it does not hear
+/// after one second, and two after another. A boat that reports nothing is likely to slow down, for it hears nothing
 /// either, and its own watchdog stops its thrusters. And one that is only imagined must not sail on to a flag.
-pub const CARRY_ON: SimTime = SimTime(1_000_000_000);
-/// A boat whose last fix is older than this is lost. It is more than [`CARRY_ON`], so that a fix a second with the usual
+pub const DEAD_RECKONING_MAX: SimTime = SimTime(1_000_000_000);
+/// A boat whose last fix is older than this is lost. It is more than [`DEAD_RECKONING_MAX`], so that a fix a second with the usual
 /// delays is enough, and little more, since its mind knows less and less of where it is.
 pub const NAV_TTL: SimTime = SimTime(1_500_000_000);
 
@@ -38,64 +38,57 @@ pub enum BadReport {
     BadNumber,
 }
 
-/// What is known of a real boat. As bytes, what changes.
-#[derive(Clone, Debug, Serialize)]
+/// What is known of a real boat.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Track {
-    #[serde(skip)]
-    pub(crate) vehicle: VehicleId,
     fix: Option<Fix>,
-    /// Whether it was told that it is lost.
-    told_lost: bool,
+    /// Whether the last event about it said that it is lost.
+    reported_lost: bool,
 }
 
 /// Where a boat was at some time.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Fix {
     nav: Nav,
     at: SimTime,
 }
 
 impl Track {
-    /// A boat that has not been heard of.
-    pub(crate) fn new(vehicle: VehicleId) -> Track {
-        Track { vehicle, fix: None, told_lost: false }
-    }
-
     /// Takes in where the boat was at some time.
-    pub(crate) fn take(&mut self, nav: Nav, at: SimTime) {
+    pub(crate) fn update(&mut self, nav: Nav, at: SimTime) {
         self.fix = Some(Fix { nav, at });
     }
 
-    /// Whether it has ever been heard of.
-    pub(crate) fn is_heard(&self) -> bool {
+    /// Whether it has ever been reported.
+    pub(crate) fn has_fix(&self) -> bool {
         self.fix.is_some()
     }
 
-    /// Whether it has not been heard of for too long, or never.
+    /// Whether its last fix is too old, or there never was one.
     pub(crate) fn is_lost(&self, now: SimTime) -> bool {
         self.fix.is_none_or(|fix| now > fix.at + NAV_TTL)
     }
 
     /// Where it is taken to be, and how it moves over the ground, since its last fix.
-    pub(crate) fn under_way(&self, now: SimTime) -> Option<(Pose, Planar)> {
+    pub(crate) fn estimate(&self, now: SimTime) -> Option<(Pose, Planar)> {
         let Fix { nav, at } = self.fix?;
         let since = now - at;
         let nu = Planar { surge: nav.surge_m_s, sway: nav.sway_m_s, yaw: nav.yaw_rate_rad_s };
         // A fix may have been taken after the tick that the world stands at; then it goes back a little.
-        let span = since.clamp(SimTime::ZERO - CARRY_ON, CARRY_ON);
-        let pose = carried_on(nav.pose(), nu, span.as_s());
-        Some((pose, if since < CARRY_ON { nu } else { Planar::default() }))
+        let span = since.clamp(SimTime::ZERO - DEAD_RECKONING_MAX, DEAD_RECKONING_MAX);
+        let pose = dead_reckoned(nav.pose(), nu, span.as_s());
+        Some((pose, if since < DEAD_RECKONING_MAX { nu } else { Planar::default() }))
     }
 
-    /// What to tell of it: that it is lost, or that it is back, once each.
-    pub(crate) fn news(&mut self, now: SimTime) -> Option<Event> {
-        let (vehicle, is_lost) = (self.vehicle, self.is_lost(now));
-        let was_lost = std::mem::replace(&mut self.told_lost, is_lost);
+    /// The event that it is lost, or that it is back, once each.
+    pub(crate) fn event(&mut self, vehicle: VehicleId, now: SimTime) -> Option<Event> {
+        let is_lost = self.is_lost(now);
+        let was_lost = std::mem::replace(&mut self.reported_lost, is_lost);
         (is_lost != was_lost).then_some(if is_lost { Event::NavLost { vehicle } } else { Event::NavBack { vehicle } })
     }
 
-    /// Puts what the boat itself says in the place of what is made of it: its navigation, and when that was.
-    pub(crate) fn tell(&self, own: &mut OwnBoat) {
+    /// Puts the boat's own fix in the place of the estimate that the world holds.
+    pub(crate) fn put_fix(&self, own: &mut OwnBoat) {
         match self.fix {
             Some(Fix { nav, at }) => (own.nav, own.fix_ns) = (nav, at),
             None => own.fix_ns = SimTime::LONG_AGO,
@@ -105,7 +98,7 @@ impl Track {
 
 /// Where a boat comes to that goes on for so long with the velocity over the ground and the yaw rate that it has, both
 /// constant in its own axes: along an arc.
-pub(crate) fn carried_on(from: Pose, nu: Planar, span_s: f64) -> Pose {
+pub(crate) fn dead_reckoned(from: Pose, nu: Planar, span_s: f64) -> Pose {
     let half_turn_rad = 0.5 * nu.yaw * span_s;
     // The chord of the arc points half-way between both headings, and is shorter than the arc by sin(x) / x.
     let chord = if half_turn_rad.abs() < 1e-4 {
@@ -138,35 +131,35 @@ mod tests {
         let from = Pose { at: Ned { north: 3.0, east: -4.0 }, psi_rad: 0.7 };
         let nu = Planar { surge: 2.0, sway: -0.5, yaw: 0.4 };
         let once_round_s = std::f64::consts::TAU / nu.yaw;
-        let back = carried_on(from, nu, once_round_s);
+        let back = dead_reckoned(from, nu, once_round_s);
         assert!(back.at.distance(from.at) < 1e-9 && (back.psi_rad - from.psi_rad).abs() < 1e-9, "{back:?}");
         // In many steps it comes to the same place as in one, and backwards to where it was.
         for yaw in [0.4, 0.0, 1e-6, -3.0] {
             let nu = Planar { yaw, ..nu };
-            let stepped = (0..20).fold(from, |pose, _| carried_on(pose, nu, 0.05));
-            let at_once = carried_on(from, nu, 1.0);
+            let stepped = (0..20).fold(from, |pose, _| dead_reckoned(pose, nu, 0.05));
+            let at_once = dead_reckoned(from, nu, 1.0);
             assert!(stepped.at.distance(at_once.at) < 1e-9, "{stepped:?} {at_once:?}");
             assert!(wrap_pi(stepped.psi_rad - at_once.psi_rad).abs() < 1e-9);
-            assert!(carried_on(at_once, nu, -1.0).at.distance(from.at) < 1e-9);
+            assert!(dead_reckoned(at_once, nu, -1.0).at.distance(from.at) < 1e-9);
         }
     }
 
     #[test]
     fn a_boat_goes_on_for_a_second_and_is_lost_after_a_second_and_a_half() {
-        let mut track = Track::new(VehicleId(3));
-        assert!(track.is_lost(SimTime::ZERO) && track.under_way(SimTime::ZERO).is_none());
-        assert_eq!(track.news(SimTime::ZERO), Some(Event::NavLost { vehicle: VehicleId(3) }));
-        assert_eq!(track.news(SimTime::ZERO), None);
-        track.take(Nav { surge_m_s: 2.0, ..Nav::default() }, SimTime::from_s(10.0));
+        let (mut track, vehicle) = (Track::default(), VehicleId(3));
+        assert!(track.is_lost(SimTime::ZERO) && track.estimate(SimTime::ZERO).is_none());
+        assert_eq!(track.event(vehicle, SimTime::ZERO), Some(Event::NavLost { vehicle }));
+        assert_eq!(track.event(vehicle, SimTime::ZERO), None);
+        track.update(Nav { surge_m_s: 2.0, ..Nav::default() }, SimTime::from_s(10.0));
         for (now_s, want_m, want_m_s, is_lost) in
             [(9.95, -0.1, 2.0, false), (10.5, 1.0, 2.0, false), (11.0, 2.0, 0.0, false), (20.0, 2.0, 0.0, true)]
         {
             let now = SimTime::from_s(now_s);
-            let (pose, nu) = track.under_way(now).expect("it was heard of");
+            let (pose, nu) = track.estimate(now).expect("there is a fix");
             assert!((pose.at.north - want_m).abs() < 1e-12, "{now_s}: {pose:?}");
             assert_eq!((nu.surge, track.is_lost(now)), (want_m_s, is_lost), "{now_s}");
         }
-        assert_eq!(track.news(SimTime::from_s(11.0)), Some(Event::NavBack { vehicle: VehicleId(3) }));
+        assert_eq!(track.event(vehicle, SimTime::from_s(11.0)), Some(Event::NavBack { vehicle }));
         assert!(!track.is_lost(SimTime::from_s(11.5)) && track.is_lost(SimTime(11_500_000_001)));
     }
 

@@ -1,6 +1,6 @@
-//! The Squall world: boats in water, contact, and the referee.
+//! The Squall simulation: boats in water, and the game that they play.
 //!
-//! Open [`World::step`] first. [`Contest`] plays a whole game with it; `node` puts one on the network.
+//! Open [`World::step`] first: it is physics alone. [`Contest`] plays a whole game with it; `node` puts one on the network.
 
 pub mod afloat;
 pub mod autopilot;
@@ -30,7 +30,8 @@ mod view;
 pub mod world;
 
 pub use afloat::{NotAfloat, afloat};
-pub use contest::Contest;
+pub use contest::{Contest, RestoreError};
 pub use external::BadReport;
-pub use state::{BoatState, RestoreError, State};
-pub use world::{NoStart, World};
+pub use spawn::NoStart;
+pub use state::{BoatState, State};
+pub use world::{VehiclePlan, World, WorldPlan};

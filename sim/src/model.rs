@@ -1,4 +1,4 @@
-//! What is constant while a game is played: the boats as they are, the sea, contact, the referee.
+//! What is constant in a world: the boats as they are, the sea, and what they bump into.
 
 use crate::autopilot::AutopilotModel;
 use crate::contact::{ContactModel, ContactRole, Displacement};
@@ -11,21 +11,17 @@ use crate::sea::{Attitude, SeaModel, SeaNow};
 use crate::sensor::{Reading, SensorModel, SensorState, Truth};
 use crate::state::BoatState;
 use crate::thruster::ThrusterModel;
+use crate::world::WorldPlan;
 use game::angle::wrap_pi;
 use game::boat::{self, Sensors};
 use game::frame::{self, Ned, Rotation};
-use game::rules::{Directive, Referee, Standing};
-use game::scenario::Source;
-use game::{Order, Pose, Scenario, SimTime, VehicleId};
-use xxhash_rust::xxh3;
+use game::{Order, Pose, SimTime};
 
-/// A game's constants.
+/// A world's constants.
 #[derive(Clone)]
 pub(crate) struct Model {
     pub(crate) tick: SimTime,
     pub(crate) dt_s: f64,
-    /// Ticks between two decisions: sensors are read when minds decide.
-    pub(crate) ticks_per_decision: u64,
     /// By kind of boat.
     pub(crate) hulls: Vec<HullModel>,
     drives: Vec<Drive>,
@@ -41,9 +37,8 @@ pub(crate) struct Model {
     pub(crate) fleet: Fleet,
     pub(crate) sea: SeaModel,
     pub(crate) contact: ContactModel,
-    pub(crate) referee: Referee,
-    /// Marks snapshots.
-    pub(crate) scenario_mark: u64,
+    /// Pairs of boats within this are looked for, m.
+    pub(crate) pairs_within_m: f64,
 }
 
 /// What drives a kind of boat.
@@ -66,43 +61,33 @@ impl Drive {
 }
 
 impl Model {
-    /// The model of this scenario, whose numbers are drawn, in the game that `seed` chooses.
-    pub(crate) fn new(scenario: &Scenario, seed: u64) -> Model {
-        let dt_s = scenario.tick.as_s();
-        let density = scenario.sea.water_density_kg_m3;
-        let hulls: Vec<HullModel> = scenario.boats.iter().map(|boat| HullModel::new(&boat.hull, density)).collect();
-        let shapes = scenario.boats.iter().map(|boat| (boat.length_m, boat.beam_m));
+    pub(crate) fn new(plan: &WorldPlan<'_>) -> Model {
+        let dt_s = plan.tick.as_s();
+        let density = plan.sea.water_density_kg_m3;
+        let hulls: Vec<HullModel> = plan.kinds.iter().map(|boat| HullModel::new(&boat.hull, density)).collect();
+        let shapes = plan.kinds.iter().map(|boat| (boat.length_m, boat.beam_m));
         let drives: Vec<Drive> =
-            scenario.boats.iter().zip(&hulls).map(|(boat, hull)| Drive::new(boat, hull, dt_s)).collect();
-        let kinds: Vec<usize> = scenario.vehicles.iter().map(|vehicle| vehicle.boat).collect();
-        let external: Vec<bool> = scenario.vehicles.iter().map(|vehicle| vehicle.source == Source::External).collect();
-        let points = kinds.iter().zip(&external).map(|(kind, real)| !real && matches!(drives[*kind], Drive::Point(_)));
-        let sensors = scenario.vehicles.iter().map(|vehicle| &scenario.boats[vehicle.boat].sensors);
-        let is_sensed = sensors.clone().zip(&external).map(|(sensors, real)| !real && *sensors != Sensors::default());
-        let places = numbered(is_sensed);
-        let sensed = places.into_iter().zip(sensors).zip(&scenario.vehicles).map(|((place, sensors), vehicle)| {
-            place.map(|place| (place, SensorModel::new(sensors, scenario.decision(), seed, &vehicle.name)))
+            plan.kinds.iter().zip(&hulls).map(|(boat, hull)| Drive::new(boat, hull, dt_s)).collect();
+        let points = plan.vehicles.iter().map(|v| !v.is_external && matches!(drives[v.kind], Drive::Point(_)));
+        let sensors = |kind: usize| &plan.kinds[kind].sensors;
+        let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
+        let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
+            let model = || SensorModel::new(sensors(vehicle.kind), plan.sensor_period, plan.seed, vehicle.name);
+            place.map(|place| (place, model()))
         });
-        let encoded = postcard::to_stdvec(scenario).expect("a checked scenario always encodes");
         Model {
-            tick: scenario.tick,
+            tick: plan.tick,
             dt_s,
-            ticks_per_decision: u64::from(scenario.ticks_per_decision),
             points: numbered(points),
-            external,
+            external: plan.vehicles.iter().map(|vehicle| vehicle.is_external).collect(),
             sensed: sensed.collect(),
-            fleet: Fleet::new(kinds.iter().map(|kind| &hulls[*kind])),
-            sea: SeaModel::new(scenario, seed),
-            contact: ContactModel::new(shapes, &scenario.field, dt_s),
-            referee: Referee::new(
-                scenario.rules.clone(),
-                scenario.field.clone(),
-                scenario.vehicles.iter().map(|vehicle| vehicle.team).collect(),
-            ),
-            scenario_mark: xxh3::xxh3_64(&encoded),
+            fleet: Fleet::new(plan.vehicles.iter().map(|vehicle| &hulls[vehicle.kind])),
+            sea: SeaModel::new(plan.sea, plan.kinds, plan.field, plan.tick, plan.seed),
+            contact: ContactModel::new(shapes, plan.field, dt_s),
+            pairs_within_m: plan.pairs_within_m,
+            kinds: plan.vehicles.iter().map(|vehicle| vehicle.kind).collect(),
             hulls,
             drives,
-            kinds,
         }
     }
 
@@ -148,19 +133,7 @@ impl Model {
         }
     }
 
-    /// What a boat does: its order as far as the rules let it, and the share of its top speed it may use.
-    #[inline(always)]
-    pub(crate) fn obeyed(&self, standing: &Standing, vehicle: usize, at: Ned, order: Order) -> (Order, f64) {
-        match self.referee.directive(standing, VehicleId::at(vehicle), at) {
-            Directive::Free { speed_factor } => (order.check().unwrap_or_default(), speed_factor),
-            Directive::DrivenHome { to: home, speed_factor } => {
-                (Order::Steer { heading_rad: at.bearing_rad(home), speed_m_s: f64::INFINITY }, speed_factor)
-            }
-            Directive::Hold => (Order::Hold, 1.0),
-        }
-    }
-
-    /// What moves a boat in this tick, and the current it is in: its thrusters take up its order, by the heading that
+    /// What moves a boat in this tick, and the current it is in: its thrusters take up its command, by the heading that
     /// its compass shows, and the sea does its part.
     #[inline]
     pub(crate) fn forcing(
@@ -169,7 +142,7 @@ impl Model {
         boat: &mut BoatState,
         flaws: &mut FlawState,
         (rotation, heading_error_rad): (Rotation, f64),
-        order: (Order, f64),
+        command: Order,
         sea: &SeaNow<'_>,
     ) -> (Forcing, Ned) {
         let kind = self.kinds[vehicle];
@@ -180,7 +153,7 @@ impl Model {
             return (Forcing::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
-        let settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), order);
+        let settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), command);
         let from_sea = sea.forcing(kind, hull, boat.pose, rotation, boat.nu);
         let still_m = thruster.ventilation().map_or(0.0, |ventilation| ventilation.depth_m);
         let water_above_m = from_sea.submergence_change_m.map(|change_m| still_m + change_m);
@@ -227,14 +200,12 @@ impl Model {
         vehicle: usize,
         boat: &BoatState,
         (point, state): (&KinematicModel, &mut KinematicState),
-        (order, factor): (Order, f64),
+        command: Order,
         drift_m_s: Ned,
     ) -> (Displacement, Planar) {
-        let command = match order {
-            Order::Steer { heading_rad, speed_m_s } => {
-                Command::Steer { heading_rad, speed_m_s: speed_m_s.min(factor * point.speed_max_m_s()) }
-            }
-            Order::Thrust { port, starboard } => Command::of_shares(factor * port, factor * starboard),
+        let command = match command {
+            Order::Steer { heading_rad, speed_m_s } => Command::Steer { heading_rad, speed_m_s },
+            Order::Thrust { port, starboard } => Command::of_shares(port, starboard),
             Order::Hold => Command::Hold,
         };
         let motion = point.step(state, command, drift_m_s, self.dt_s);
@@ -246,13 +217,13 @@ impl Model {
     }
 
     /// A real boat's displacement over a tick, as far as it is known, and its velocity over the ground: it goes on as it does.
-    pub(crate) fn carried_displacement(
+    pub(crate) fn dead_reckoned_displacement(
         &self,
         vehicle: usize,
         boat: &BoatState,
         rotation: Rotation,
     ) -> (Displacement, Planar) {
-        let to = external::carried_on(boat.pose, boat.nu, self.dt_s);
+        let to = external::dead_reckoned(boat.pose, boat.nu, self.dt_s);
         let still = self.still(vehicle, boat, rotation);
         (Displacement { to, rotation_to: to.rotation(), ..still }, boat.nu)
     }
@@ -312,24 +283,21 @@ fn numbered(counts: impl Iterator<Item = bool>) -> Vec<Option<usize>> {
     counts.map(place).collect()
 }
 
-/// The settings of the thrusters, port and starboard, that an order asks for.
+/// The settings of the thrusters, port and starboard, that a command asks for.
 #[inline]
 fn settings(
     boat: &mut BoatState,
     heading_error_rad: f64,
     (hull, thruster, autopilot): (&HullModel, &ThrusterModel, &AutopilotModel),
-    order: (Order, f64),
+    command: Order,
 ) -> [f64; 2] {
-    match order {
-        (Order::Steer { heading_rad, speed_m_s }, factor) => {
-            let speed_m_s = speed_m_s.min(factor * autopilot.speed_max_m_s);
+    match command {
+        Order::Steer { heading_rad, speed_m_s } => {
             let at = (boat.pose.psi_rad + heading_error_rad, boat.nu);
             autopilot.steer((hull, thruster), at, (heading_rad, speed_m_s), &mut boat.speed_integral_newton)
         }
-        (Order::Thrust { port, starboard }, factor) => {
-            [thruster.setting_of_share(factor * port), thruster.setting_of_share(factor * starboard)]
-        }
-        (Order::Hold, _) => [0.0, 0.0],
+        Order::Thrust { port, starboard } => [thruster.setting_of_share(port), thruster.setting_of_share(starboard)],
+        Order::Hold => [0.0, 0.0],
     }
 }
 

@@ -9,47 +9,55 @@ use game::link::Link;
 use game::picture::OwnBoat;
 use game::stream::Noise;
 use game::{Ned, Order, Scenario, SimTime};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The largest number that [`Noise::exponential`] gives, 53 ln 2, rounded up.
 const MOST_JITTERS: f64 = 37.0;
 /// Uniform numbers that a decision takes: the link's turn, and loss and jitter of either direction.
 const DRAWS: u64 = 5;
 
-/// The links of a game. As bytes, what changes in them.
-#[derive(Serialize)]
+/// The links of a game.
 pub(crate) struct Radio {
-    #[serde(skip)]
+    model: RadioModel,
+    state: RadioState,
+}
+
+/// What is constant about them.
+struct RadioModel {
     link: Link,
     /// When a link is bad.
-    #[serde(skip)]
     bursts: TwoStateChain,
+    /// By vehicle.
+    noises: Vec<Noise>,
+    /// The most messages under way in one direction: one for each decision in the longest time that one takes.
+    most: usize,
+}
+
+/// What changes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RadioState {
     /// The decision that is open.
     decision: u64,
+    /// By vehicle.
     lines: Vec<Line>,
 }
 
 /// The link of one boat.
-#[derive(Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Line {
-    #[serde(skip)]
-    noise: Noise,
     is_bad: bool,
     orders: Way<Order>,
     reports: Way<OwnBoat>,
 }
 
 /// Messages in one direction, by rising arrival. One that is overtaken by a later one is not taken any more.
-#[derive(Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Way<T> {
     under_way: DelayLine<Sent<T>>,
-    /// The most of them at once: one for each decision in the longest time that a message takes.
-    #[serde(skip)]
-    most: usize,
 }
 
 /// A message under way.
-#[derive(Clone, Copy, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Sent<T> {
     /// The decision at which it was sent.
     decision: u64,
@@ -65,19 +73,10 @@ enum Direction {
 }
 
 impl<T: Copy> Way<T> {
-    fn new(link: &Link, decision: SimTime) -> Way<T> {
-        let decisions = |span_s: f64| (span_s / decision.as_s()).ceil() as usize + 2;
-        Way {
-            // Jitter is seldom so long, and what is late is overtaken.
-            under_way: DelayLine::with_room(decisions(link.delay_s)),
-            most: decisions(link.delay_s + MOST_JITTERS * link.jitter_s),
-        }
-    }
-
-    fn send(&mut self, sent: Sent<T>) {
+    fn send(&mut self, sent: Sent<T>, most: usize) {
         // What would arrive after this one is overtaken by it.
         self.under_way.drop_overtaken(|earlier| earlier.arrival >= sent.arrival);
-        assert!(self.under_way.len() < self.most, "one message a decision, and none takes longer than the longest");
+        assert!(self.under_way.len() < most, "one message a decision, and none takes longer than the longest");
         self.under_way.send(sent);
     }
 
@@ -101,70 +100,87 @@ impl Radio {
     }
 
     fn over(link: Link, decision: SimTime, noises: impl Iterator<Item = Noise>) -> Radio {
-        let line = |noise| Line {
-            noise,
+        let decisions = |span_s: f64| (span_s / decision.as_s()).ceil() as usize + 2;
+        // Jitter is seldom so long, and what is late is overtaken.
+        let usual = decisions(link.delay_s);
+        let line = |_: &Noise| Line {
             is_bad: false,
-            orders: Way::new(&link, decision),
-            reports: Way::new(&link, decision),
+            orders: Way { under_way: DelayLine::with_room(usual) },
+            reports: Way { under_way: DelayLine::with_room(usual) },
         };
-        Radio { lines: noises.map(line).collect(), bursts: bursts(&link, decision), decision: 0, link }
+        let noises: Vec<Noise> = noises.collect();
+        let state = RadioState { decision: 0, lines: noises.iter().map(line).collect() };
+        let most = decisions(link.delay_s + MOST_JITTERS * link.jitter_s);
+        Radio { model: RadioModel { bursts: bursts(&link, decision), noises, most, link }, state }
+    }
+
+    /// What changes, for reading.
+    pub(crate) fn state(&self) -> &RadioState {
+        &self.state
+    }
+
+    /// Goes on from another state of these links.
+    pub(crate) fn set_state(&mut self, state: RadioState) {
+        self.state = state;
     }
 
     /// The next decision opens: each link turns good or bad, or stays.
     pub(crate) fn open_next(&mut self) {
-        self.decision += 1;
-        for line in &mut self.lines {
-            line.is_bad = self.bursts.next(line.is_bad, line.noise.unit(DRAWS * self.decision));
+        let Radio { model, state } = self;
+        state.decision += 1;
+        for (line, noise) in state.lines.iter_mut().zip(&model.noises) {
+            line.is_bad = model.bursts.next(line.is_bad, noise.unit(DRAWS * state.decision));
         }
     }
 
     /// An order goes out to a boat, which is at `at`. Of one decision's orders the last one counts.
     pub(crate) fn send_order(&mut self, vehicle: usize, order: Order, at: Ned, now: SimTime) {
         if let Some(sent) = self.sent(vehicle, Direction::Out, order, at, now) {
-            self.lines[vehicle].orders.send(sent);
+            self.state.lines[vehicle].orders.send(sent, self.model.most);
         }
     }
 
     /// The order that arrives at a boat by `now`, if a new one does.
     pub(crate) fn order(&mut self, vehicle: usize, now: SimTime) -> Option<Order> {
-        self.lines[vehicle].orders.receive(now, |_| {})
+        self.state.lines[vehicle].orders.receive(now, |_| {})
     }
 
     /// Orders under way to a boat do not arrive any more.
-    pub(crate) fn forget_orders(&mut self, vehicle: usize) {
-        self.lines[vehicle].orders.under_way.clear();
+    pub(crate) fn recall_orders(&mut self, vehicle: usize) {
+        self.state.lines[vehicle].orders.under_way.clear();
     }
 
     /// A boat reports from `at`, once a decision.
     pub(crate) fn send_report(&mut self, vehicle: usize, report: OwnBoat, at: Ned, now: SimTime) {
         if let Some(sent) = self.sent(vehicle, Direction::In, report, at, now) {
-            self.lines[vehicle].reports.send(sent);
+            self.state.lines[vehicle].reports.send(sent, self.model.most);
         }
     }
 
     /// The newest report of a boat that has come in by `now`, if any has; `each` is told of all of them by the decisions
     /// at which they were sent.
     pub(crate) fn report(&mut self, vehicle: usize, now: SimTime, each: impl FnMut(u64)) -> Option<OwnBoat> {
-        self.lines[vehicle].reports.receive(now, each)
+        self.state.lines[vehicle].reports.receive(now, each)
     }
 
     /// The decision of the oldest report that is under way, or the one that is open.
     pub(crate) fn oldest_report(&self) -> u64 {
         let oldest = |line: &Line| line.reports.under_way.first().map(|sent| sent.decision);
-        self.lines.iter().filter_map(oldest).min().unwrap_or(self.decision)
+        self.state.lines.iter().filter_map(oldest).min().unwrap_or(self.state.decision)
     }
 
     /// A message of the open decision, unless it is lost.
     fn sent<T>(&self, vehicle: usize, way: Direction, message: T, at: Ned, now: SimTime) -> Option<Sent<T>> {
-        let (link, line) = (&self.link, &self.lines[vehicle]);
-        let draw = DRAWS * self.decision + way as u64;
-        let share = if line.is_bad { link.loss.bad } else { link.loss.good };
+        let (link, noise) = (&self.model.link, &self.model.noises[vehicle]);
+        let decision = self.state.decision;
+        let draw = DRAWS * decision + way as u64;
+        let share = if self.state.lines[vehicle].is_bad { link.loss.bad } else { link.loss.good };
         let is_out_of_range = link.range_m.is_some_and(|range_m| at.distance(link.station) > range_m);
-        if is_out_of_range || line.noise.unit(draw) < share {
+        if is_out_of_range || noise.unit(draw) < share {
             return None;
         }
-        let arrival = now + SimTime::from_s(link.delay_s + link.jitter_s * line.noise.exponential(draw + 1));
-        Some(Sent { decision: self.decision, arrival, message })
+        let arrival = now + SimTime::from_s(link.delay_s + link.jitter_s * noise.exponential(draw + 1));
+        Some(Sent { decision, arrival, message })
     }
 }
 
@@ -253,7 +269,7 @@ mod tests {
             for (lost, way) in lost.iter_mut().zip([Direction::Out, Direction::In]) {
                 *lost += f64::from(u8::from(radio.sent(0, way, (), Ned::default(), TENTH * k).is_none()));
             }
-            let is_bad = radio.lines[0].is_bad;
+            let is_bad = radio.state.lines[0].is_bad;
             bad += f64::from(u8::from(is_bad));
             turns += f64::from(u8::from(is_bad && !was_bad));
             was_bad = is_bad;
@@ -270,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn an_order_that_is_overtaken_is_not_obeyed() {
+    fn an_order_that_is_overtaken_never_arrives() {
         let mut radio = radio(Link { delay_s: 0.0, jitter_s: 0.5, ..link() });
         let (mut last, mut overtaken) = (-1.0, 0);
         for k in 0..2_000_i64 {

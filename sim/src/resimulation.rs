@@ -1,7 +1,8 @@
 //! A game played again from what it was once given.
 
 use crate::contest::Contest;
-use crate::world::NoStart;
+use crate::spawn::NoStart;
+use game::event::EventCursor;
 use game::input::Input;
 use game::message::Frame;
 use game::{Outcome, Scenario};
@@ -9,7 +10,7 @@ use game::{Outcome, Scenario};
 /// A game that is played again.
 pub struct Resimulation {
     contest: Contest,
-    told: usize,
+    shown: EventCursor,
 }
 
 impl Resimulation {
@@ -18,15 +19,13 @@ impl Resimulation {
     /// # Errors
     /// [`NoStart`] as when it was played.
     pub fn new(scenario: &Scenario) -> Result<Resimulation, NoStart> {
-        Ok(Resimulation { contest: Contest::new(scenario, scenario.seed)?, told: 0 })
+        Ok(Resimulation { contest: Contest::new(scenario, scenario.seed)?, shown: EventCursor::default() })
     }
 
     /// Gives it what it was given, and shows what comes of it: the truth, with the events since it was last shown.
     pub fn frame_after(&mut self, inputs: impl IntoIterator<Item = Input>) -> Frame {
         inputs.into_iter().for_each(|input| self.contest.give(input));
-        let frame = self.contest.frame_since(self.told);
-        self.told = self.contest.events().len();
-        frame
+        self.contest.frame(&mut self.shown)
     }
 
     /// How it stands.

@@ -10,31 +10,32 @@ use game::link::Sharing;
 use game::picture::Contact;
 use game::stream::Noise;
 use game::{Scenario, SimTime};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// Sightings of a game, by all teams. As bytes, what changes in them.
-#[derive(Serialize)]
+/// Sightings of a game, by all teams.
 pub(crate) struct Sightings {
-    #[serde(skip)]
     sharing: Sharing,
     /// Decisions between a sighting and its report.
-    #[serde(skip)]
     late: u64,
+    /// By vehicle.
+    noises: Vec<Noise>,
+    state: SightingState,
+    /// Memory that is used again.
+    spare: Vec<Vec<Contact>>,
+}
+
+/// What changes in them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct SightingState {
     /// The truth at the decisions whose sightings may still be reported, the oldest first.
     past: VecDeque<Truths>,
-    /// Used again.
-    #[serde(skip)]
-    spare: Vec<Vec<Contact>>,
     /// By team and vehicle: the last report.
     known: Vec<Vec<Option<Contact>>>,
-    /// By vehicle.
-    #[serde(skip)]
-    noises: Vec<Noise>,
 }
 
 /// The truth about every boat at one decision.
-#[derive(Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Truths {
     decision: u64,
     boats: Vec<Contact>,
@@ -51,29 +52,41 @@ impl Sightings {
         let noise = |name: &str| Noise::new(scenario.seed, &format!("contact/{name}"));
         Some(Sightings {
             late: (sharing.delay_s / decision_s).round() as u64,
-            past: VecDeque::new(),
+            state: SightingState {
+                past: VecDeque::new(),
+                known: vec![vec![None; scenario.vehicles.len()]; scenario.teams.len()],
+            },
             spare: vec![],
-            known: vec![vec![None; scenario.vehicles.len()]; scenario.teams.len()],
             noises: scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name)).collect(),
             sharing,
         })
     }
 
+    /// What changes, for reading.
+    pub(crate) fn state(&self) -> &SightingState {
+        &self.state
+    }
+
+    /// Goes on from another state of these sightings.
+    pub(crate) fn set_state(&mut self, state: SightingState) {
+        self.state = state;
+    }
+
     /// Looks round at one decision: the truth about every boat. Reports of decisions before `oldest` are not to come.
     pub(crate) fn look(&mut self, decision: u64, oldest: u64, boats: impl Iterator<Item = Contact>) {
         let oldest = oldest.saturating_sub(self.late);
-        while let Some(past) = self.past.pop_front_if(|past| past.decision < oldest) {
+        while let Some(past) = self.state.past.pop_front_if(|past| past.decision < oldest) {
             self.spare.push(past.boats);
         }
         let mut now = self.spare.pop().unwrap_or_default();
         now.clear();
         now.extend(boats);
-        self.past.push_back(Truths { decision, boats: now });
+        self.state.past.push_back(Truths { decision, boats: now });
     }
 
     /// The report that `seer` sent at `decision` has come in: its team is shown what it had seen.
     pub(crate) fn take(&mut self, seer: usize, decision: u64) {
-        let Sightings { sharing, late, past, known, noises, .. } = self;
+        let Sightings { sharing, late, noises, state: SightingState { past, known }, .. } = self;
         let seen_at = decision.checked_sub(*late);
         let Some(place) = seen_at.and_then(|at| past.binary_search_by_key(&at, |past| past.decision).ok()) else {
             return;
@@ -95,7 +108,7 @@ impl Sightings {
     /// What a team knows of a vehicle by `now`.
     pub(crate) fn of(&self, team: usize, vehicle: usize, now: SimTime) -> Option<Contact> {
         let remembered = |contact: &Contact| now.as_s() - contact.seen_ns.as_s() <= self.sharing.memory_s;
-        self.known[team][vehicle].filter(remembered)
+        self.state.known[team][vehicle].filter(remembered)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use game::angle::wrap_pi;
 use game::frame::{Ned, Pose};
-use game::scenario::{Scenario, StartPosition};
+use game::scenario::{Problems, RealBoats, Scenario, StartPosition};
 use game::stream::Stream;
 use game::{Field, TeamId};
 use thiserror::Error;
@@ -16,6 +16,20 @@ const TRIES: u32 = 10_000;
 pub struct SpawnError {
     /// Which vehicle found none.
     pub vehicle: String,
+}
+
+/// Why a game cannot start.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum NoStart {
+    /// The boats do not fit into their spawn area.
+    #[error(transparent)]
+    SpawnError(#[from] SpawnError),
+    /// The numbers drawn for this seed are each allowed, but not together.
+    #[error("what was drawn for this seed does not go together\n{0}")]
+    Draw(#[from] Problems),
+    /// The game has real boats, and is to be played without a clock.
+    #[error(transparent)]
+    RealBoats(#[from] RealBoats),
 }
 
 /// Where every vehicle starts. Boats placed by hand come first, then the others in order.

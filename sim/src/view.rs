@@ -2,41 +2,62 @@
 
 use crate::sensor::imu::ImuReading;
 use crate::sighting::Sightings;
-use crate::state::State;
 use crate::world::World;
 use game::event::{Event, Logged, TagCause};
 use game::message::{Frame, Message, SeaView, Stamp, VehicleTruth};
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat, Picture, number_of_flag};
+use game::rules::Standing;
 use game::{Scenario, TeamId, VehicleId};
 
-fn stamp<M: Message>(state: &State, seq: u64) -> Stamp {
-    Stamp { valid_ns: state.now, seq, version: M::VERSION }
+/// Everything that there is to see at one decision.
+#[derive(Clone, Copy)]
+pub(crate) struct Scene<'a> {
+    pub(crate) scenario: &'a Scenario,
+    pub(crate) world: &'a World,
+    pub(crate) standing: &'a Standing,
+    pub(crate) decision: u64,
 }
 
-fn nav(state: &State, i: usize) -> Nav {
-    let boat = &state.boats[i];
-    Nav {
-        north_m: boat.pose.at.north,
-        east_m: boat.pose.at.east,
-        psi_rad: boat.pose.psi_rad,
-        surge_m_s: boat.nu.surge,
-        sway_m_s: boat.nu.sway,
-        yaw_rate_rad_s: boat.nu.yaw,
+impl Scene<'_> {
+    fn stamp<M: Message>(&self) -> Stamp {
+        Stamp { valid_ns: self.world.state().now, seq: self.decision, version: M::VERSION }
     }
-}
 
-fn flags(state: &State) -> impl Iterator<Item = FlagView> {
-    state.standing.flags.iter().map(|flag| FlagView { carrier: flag.carrier.map_or(-1, |v| i32::from(v.0)) })
-}
+    fn nav(&self, i: usize) -> Nav {
+        let boat = &self.world.state().boats[i];
+        Nav {
+            north_m: boat.pose.at.north,
+            east_m: boat.pose.at.east,
+            psi_rad: boat.pose.psi_rad,
+            surge_m_s: boat.nu.surge,
+            sway_m_s: boat.nu.sway,
+            yaw_rate_rad_s: boat.nu.yaw,
+        }
+    }
 
-/// The truth about everything that the world knows of, with these events.
-pub(crate) fn frame(world: &World, seq: u64, events: &[Logged]) -> Frame {
-    let state = world.state();
-    let truth = |i: usize| {
-        let (boat, standing) = (&state.boats[i], &state.standing.vehicles[i]);
-        let attitude = world.attitude(VehicleId::at(i));
+    fn flags(&self) -> impl Iterator<Item = FlagView> {
+        self.standing.flags.iter().map(|flag| FlagView { carrier: flag.carrier.map_or(-1, |v| i32::from(v.0)) })
+    }
+
+    /// The truth about everything that world and referee know of, with these events.
+    pub(crate) fn frame(&self, events: &[Logged]) -> Frame {
+        Frame {
+            stamp: self.stamp::<Frame>(),
+            vehicles: (0..self.scenario.vehicles.len()).map(|i| self.truth(i)).collect(),
+            sea: self.sea(),
+            flags: self.flags().collect(),
+            score: self.standing.score.clone(),
+            events: events.iter().map(|logged| (*logged).into()).collect(),
+            over: self.standing.over,
+            ..Frame::default()
+        }
+    }
+
+    fn truth(&self, i: usize) -> VehicleTruth {
+        let (boat, standing) = (&self.world.state().boats[i], &self.standing.vehicles[i]);
+        let attitude = self.world.attitude(VehicleId::at(i));
         VehicleTruth {
-            nav: nav(state, i),
+            nav: self.nav(i),
             heave_m: attitude.heave_up_m,
             roll_rad: attitude.roll_rad,
             pitch_rad: attitude.pitch_rad,
@@ -49,109 +70,97 @@ pub(crate) fn frame(world: &World, seq: u64, events: &[Logged]) -> Frame {
             quarantined: boat.quarantined,
             ..VehicleTruth::default()
         }
-    };
-    Frame {
-        stamp: stamp::<Frame>(state, seq),
-        vehicles: (0..state.boats.len()).map(truth).collect(),
-        sea: sea(world),
-        flags: flags(state).collect(),
-        score: state.standing.score.clone(),
-        events: events.iter().map(|logged| (*logged).into()).collect(),
-        over: state.standing.over,
-        ..Frame::default()
     }
-}
 
-fn sea(world: &World) -> SeaView {
-    let corners = &world.referee().field().corners;
-    let middle = (corners[0] + corners[2]).scaled(0.5);
-    let sea = world.sea();
-    let (wind, current) = (sea.wind_at(middle), sea.current_at(middle));
-    SeaView {
-        wind_north_m_s: wind.north,
-        wind_east_m_s: wind.east,
-        current_north_m_s: current.north,
-        current_east_m_s: current.east,
-        elevation_m: sea.elevation_m(middle),
-    }
-}
-
-/// Brings a team's picture up to date in place. `own` is what is known of its boats, by vehicle.
-pub(crate) fn picture(
-    scenario: &Scenario,
-    world: &World,
-    (seq, events): (u64, &[Logged]),
-    (own, sightings): (&[OwnBoat], Option<&Sightings>),
-    picture: &mut Picture,
-) {
-    let state = world.state();
-    let team = TeamId(picture.team);
-    picture.stamp = stamp::<Picture>(state, seq);
-    picture.own.clear();
-    picture.contacts.clear();
-    for (i, vehicle) in scenario.vehicles.iter().enumerate() {
-        if vehicle.team == team {
-            picture.own.push(own[i]);
-        } else {
-            let known = sightings.map_or_else(
-                || Some(contact(state, i, vehicle.team)),
-                |sightings| sightings.of(team.index(), i, state.now),
-            );
-            picture.contacts.extend(known);
+    fn sea(&self) -> SeaView {
+        let (middle, sea) = (self.scenario.field.middle(), self.world.sea());
+        let (wind, current) = (sea.wind_at(middle), sea.current_at(middle));
+        SeaView {
+            wind_north_m_s: wind.north,
+            wind_east_m_s: wind.east,
+            current_north_m_s: current.north,
+            current_east_m_s: current.east,
+            elevation_m: sea.elevation_m(middle),
         }
     }
-    picture.flags.clear();
-    picture.flags.extend(flags(state));
-    picture.score.clone_from(&state.standing.score);
-    picture.events.clear();
-    let concerns = events.iter().filter(|logged| concerns(scenario, team, logged.event));
-    picture.events.extend(concerns.map(|logged| game::message::EventRecord::from(*logged)));
-    picture.over = state.standing.over;
-}
 
-/// What a boat reports of itself.
-pub(crate) fn own_boat(world: &World, i: usize) -> OwnBoat {
-    let state = world.state();
-    let standing = &state.standing.vehicles[i];
-    let (nav, fix_ns, imu) = match world.reading(VehicleId::at(i)) {
-        Some(reading) => (reading.nav, reading.fix_at, reading.imu),
-        None => (nav(state, i), state.now, ImuReading::of(&world.truth(VehicleId::at(i)))),
-    };
-    OwnBoat {
-        vehicle: VehicleId::at(i),
-        nav,
-        fix_ns,
-        imu: Imu {
-            roll_rate_rad_s: imu.gyro_rad_s[0],
-            pitch_rate_rad_s: imu.gyro_rad_s[1],
-            yaw_rate_rad_s: imu.gyro_rad_s[2],
-            ahead_m_s2: imu.accelerometer_m_s2[0],
-            starboard_m_s2: imu.accelerometer_m_s2[1],
-            down_m_s2: imu.accelerometer_m_s2[2],
-        },
-        tagged: standing.tagged,
-        carrying: number_of_flag(standing.carrying),
-        disabled: standing.disabled,
-        outside: standing.outside,
-        tag_ready_ns: standing.tag_ready,
+    /// Brings a team's picture up to date in place. `own` is what is known of its boats, by vehicle; `events` what happened
+    /// since the picture before.
+    pub(crate) fn picture(
+        &self,
+        own: &[OwnBoat],
+        sightings: Option<&Sightings>,
+        events: &[Logged],
+        picture: &mut Picture,
+    ) {
+        let team = TeamId(picture.team);
+        picture.stamp = self.stamp::<Picture>();
+        picture.own.clear();
+        picture.contacts.clear();
+        for (i, vehicle) in self.scenario.vehicles.iter().enumerate() {
+            if vehicle.team == team {
+                picture.own.push(own[i]);
+            } else {
+                let known = sightings.map_or_else(
+                    || Some(self.contact(i)),
+                    |sightings| sightings.of(team.index(), i, self.world.state().now),
+                );
+                picture.contacts.extend(known);
+            }
+        }
+        picture.flags.clear();
+        picture.flags.extend(self.flags());
+        picture.score.clone_from(&self.standing.score);
+        picture.events.clear();
+        let concerns = events.iter().filter(|logged| concerns(self.scenario, team, logged.event));
+        picture.events.extend(concerns.map(|logged| game::message::EventRecord::from(*logged)));
+        picture.over = self.standing.over;
     }
-}
 
-/// The truth about a boat, as a node report tells it: perfect sharing, as Aquaticus does ashore.
-pub(crate) fn contact(state: &State, i: usize, team: TeamId) -> Contact {
-    let (boat, standing) = (&state.boats[i], &state.standing.vehicles[i]);
-    let velocity = boat.nu.in_ned(boat.pose.rotation());
-    Contact {
-        vehicle: VehicleId::at(i),
-        team,
-        seen_ns: state.now,
-        north_m: boat.pose.at.north,
-        east_m: boat.pose.at.east,
-        psi_rad: boat.pose.psi_rad,
-        velocity_north_m_s: velocity.north,
-        velocity_east_m_s: velocity.east,
-        tagged: standing.tagged,
-        carrying: number_of_flag(standing.carrying),
+    /// What a boat reports of itself.
+    pub(crate) fn own_boat(&self, i: usize) -> OwnBoat {
+        let (vehicle, standing) = (VehicleId::at(i), &self.standing.vehicles[i]);
+        let (nav, fix_ns, imu) = match self.world.reading(vehicle) {
+            Some(reading) => (reading.nav, reading.fix_at, reading.imu),
+            None => (self.nav(i), self.world.state().now, ImuReading::of(&self.world.truth(vehicle))),
+        };
+        OwnBoat {
+            vehicle,
+            nav,
+            fix_ns,
+            imu: Imu {
+                roll_rate_rad_s: imu.gyro_rad_s[0],
+                pitch_rate_rad_s: imu.gyro_rad_s[1],
+                yaw_rate_rad_s: imu.gyro_rad_s[2],
+                ahead_m_s2: imu.accelerometer_m_s2[0],
+                starboard_m_s2: imu.accelerometer_m_s2[1],
+                down_m_s2: imu.accelerometer_m_s2[2],
+            },
+            tagged: standing.tagged,
+            carrying: number_of_flag(standing.carrying),
+            disabled: standing.disabled,
+            outside: standing.outside,
+            tag_ready_ns: standing.tag_ready,
+        }
+    }
+
+    /// The truth about a boat, as a node report gives it: perfect sharing, as Aquaticus does ashore.
+    pub(crate) fn contact(&self, i: usize) -> Contact {
+        let (state, standing) = (self.world.state(), &self.standing.vehicles[i]);
+        let boat = &state.boats[i];
+        let velocity = boat.nu.in_ned(boat.pose.rotation());
+        Contact {
+            vehicle: VehicleId::at(i),
+            team: self.scenario.vehicles[i].team,
+            seen_ns: state.now,
+            north_m: boat.pose.at.north,
+            east_m: boat.pose.at.east,
+            psi_rad: boat.pose.psi_rad,
+            velocity_north_m_s: velocity.north,
+            velocity_east_m_s: velocity.east,
+            tagged: standing.tagged,
+            carrying: number_of_flag(standing.carrying),
+        }
     }
 }
 

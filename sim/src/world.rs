@@ -1,4 +1,4 @@
-//! The world: boats, water, contact and the referee, one tick at a time.
+//! The world: boats in water and what they bump into, one tick at a time. It knows no game.
 
 use crate::contact::Displacement;
 use crate::hull::Planar;
@@ -6,41 +6,57 @@ use crate::model::Model;
 use crate::motion::{Forcing, Motion};
 use crate::sea::{Attitude, SeaNow};
 use crate::sensor::{Reading, Truth};
-use crate::spawn::{self, SpawnError};
-use crate::state::{BoatState, RestoreError, State};
+use crate::spawn::{self, NoStart};
+use crate::state::{BoatState, State};
 use game::frame::{self, Ned, Rotation};
 use game::near::{Near, Pair};
-use game::rules::{Notes, Referee};
-use game::scenario::{Problems, RealBoats};
-use game::stream::Stream;
-use game::{Event, Order, Pose, Scenario, SimTime, VehicleId, math};
-use thiserror::Error;
+use game::scenario::Source;
+use game::sea::Sea;
+use game::{Boat, Field, Order, Pose, Scenario, SimTime, VehicleId, math};
 
 /// No boat is faster than this over the ground, m/s; one that is has bad numbers.
 const ABSURD_M_S: f64 = 1_000.0;
 
-/// A game's world.
+/// Boats in water.
 #[derive(Clone)]
 pub struct World {
     model: Model,
     state: State,
     work: Work,
-    /// Whether all boats hold, whatever they are told: an E-stop, which is no part of the game.
-    halted: bool,
 }
 
-/// Why a game cannot start.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum NoStart {
-    /// The boats do not fit into their spawn area.
-    #[error(transparent)]
-    SpawnError(#[from] SpawnError),
-    /// The numbers drawn for this seed are each allowed, but not together.
-    #[error("what was drawn for this seed does not go together\n{0}")]
-    Draw(#[from] Problems),
-    /// The game has real boats, and is to be played without a clock.
-    #[error(transparent)]
-    RealBoats(#[from] RealBoats),
+/// What a world is made of.
+#[derive(Clone, Debug)]
+pub struct WorldPlan<'a> {
+    /// The length of a tick.
+    pub tick: SimTime,
+    /// Wind, waves and current.
+    pub sea: &'a Sea,
+    /// Where walls and obstacles are, and over what eddies are laid.
+    pub field: &'a Field,
+    /// The kinds of boat.
+    pub kinds: &'a [Boat],
+    /// By vehicle.
+    pub vehicles: Vec<VehiclePlan<'a>>,
+    /// The time between two readings of the sensors.
+    pub sensor_period: SimTime,
+    /// [`World::pairs`] lists all boats that are nearer to each other than this, m, and more.
+    pub pairs_within_m: f64,
+    /// Chooses the randomness of the sea and of the sensors.
+    pub seed: u64,
+}
+
+/// One vehicle of a [`WorldPlan`].
+#[derive(Clone, Debug)]
+pub struct VehiclePlan<'a> {
+    /// The name that its sensors' randomness is drawn for.
+    pub name: &'a str,
+    /// Index of its kind.
+    pub kind: usize,
+    /// Where it starts.
+    pub start: Pose,
+    /// Whether it is a real boat: nothing here moves it.
+    pub is_external: bool,
 }
 
 /// Memory that is used again every tick; all of it follows from the state.
@@ -58,61 +74,111 @@ struct Work {
     /// Velocity over the ground at the end of the tick without contact, by vehicle.
     velocities: Vec<Planar>,
     pairs: Vec<Pair>,
-    notes: Notes,
-    events: Vec<Event>,
+    quarantined: Vec<VehicleId>,
 }
 
 impl World {
-    /// The world of this scenario at the start of the game that `seed` chooses.
-    ///
-    /// # Errors
-    /// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
-    pub fn new(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
-        let scenario = scenario.of_seed(seed)?;
-        let model = Model::new(&scenario, seed);
-        let boats =
-            spawn::start_positions(&scenario, seed)?.into_iter().map(|pose| BoatState { pose, ..BoatState::default() });
+    /// The world of this plan at its start.
+    #[must_use]
+    pub fn new(plan: &WorldPlan<'_>) -> World {
+        let model = Model::new(plan);
+        let boats = plan.vehicles.iter().map(|vehicle| BoatState { pose: vehicle.start, ..BoatState::default() });
         let mut state = State {
             tick: 0,
             now: SimTime::ZERO,
             boats: boats.collect(),
             flaws: model.flaws_at_start(),
             points: vec![],
-            senses: vec![],
-            standing: model.referee.start(&mut Stream::new(seed, "power_play")),
+            senses: model.senses_at_start(),
         };
         state.points = model.points_at_start(&state.boats);
-        state.senses = model.senses_at_start();
-        let mut world = World { model, state, work: Work::default(), halted: false };
+        let mut world = World { model, state, work: Work::default() };
         world.refresh();
-        world.sense();
-        Ok(world)
+        world.read_sensors();
+        world
     }
 
-    /// Moves the world on by one tick. `orders` are by vehicle; what happened comes back.
+    /// The boats, the sea and the field of the game that `seed` chooses, at its start.
+    ///
+    /// # Errors
+    /// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
+    pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
+        let scenario = scenario.of_seed(seed)?;
+        let starts = spawn::start_positions(&scenario, seed)?;
+        let vehicles = scenario.vehicles.iter().zip(starts).map(|(vehicle, start)| VehiclePlan {
+            name: &vehicle.name,
+            kind: vehicle.boat,
+            start,
+            is_external: vehicle.source == Source::External,
+        });
+        Ok(World::new(&WorldPlan {
+            tick: scenario.tick,
+            sea: &scenario.sea,
+            field: &scenario.field,
+            kinds: &scenario.boats,
+            vehicles: vehicles.collect(),
+            sensor_period: scenario.decision(),
+            pairs_within_m: scenario.rules.reach_m(),
+            seed,
+        }))
+    }
+
+    /// Moves the world on by one tick. `commands` are what the boats do in it, by vehicle, with sound numbers. The boats
+    /// whose own numbers went bad come back: they lie still from now on.
     ///
     /// # Panics
-    /// If there is not one order for each vehicle.
-    pub fn step(&mut self, orders: &[Order]) -> &[Event] {
-        assert_eq!(orders.len(), self.state.boats.len(), "one order a vehicle");
-        self.work.events.clear();
+    /// If there is not one command for each vehicle.
+    pub fn step(&mut self, commands: &[Order]) -> &[VehicleId] {
+        assert_eq!(commands.len(), self.state.boats.len(), "one command a vehicle");
+        self.work.quarantined.clear();
         self.model.sea.prepare(self.state.now);
-        self.drive(orders);
+        self.drive(commands);
         self.model.contact.resolve(&self.model.hulls, &mut self.work.displacements, &self.work.pairs);
         self.settle();
         self.state.tick += 1;
         self.state.now = self.state.now + self.model.tick;
         self.find_pairs();
-        self.judge();
-        self.keep_out();
-        self.sense();
-        &self.work.events
+        &self.work.quarantined
     }
 
-    /// What the last step brought.
-    #[must_use]
-    pub fn events(&self) -> &[Event] {
-        &self.work.events
+    /// Sensors are read: for whoever is to decide now.
+    pub fn read_sensors(&mut self) {
+        let World { model, state, work } = self;
+        if state.senses.is_empty() {
+            return;
+        }
+        let sea = model.sea.at_time(state.now);
+        for (i, boat) in state.boats.iter().enumerate() {
+            let Some((place, sensors)) = &model.sensed[i] else { continue };
+            let truth = model.truth(i, boat, work.rotations[i], &sea);
+            let (memory, reading) = &mut state.senses[*place];
+            *reading = sensors.read(memory, &truth, state.now);
+        }
+    }
+
+    /// Sets boats back onto the circle (centre, radius in m) that they must stay out of, if there is one for a vehicle at
+    /// its place; they lose their way inward. A real boat is where it is.
+    pub fn set_back(&mut self, circle: impl Fn(VehicleId, Ned) -> Option<(Ned, f64)>) {
+        let World { model, state, work } = self;
+        let mut moved = false;
+        for (i, boat) in state.boats.iter_mut().enumerate().filter(|(i, _)| !model.is_external(*i)) {
+            let Some((centre, radius_m)) = circle(VehicleId::at(i), boat.pose.at) else { continue };
+            let from_centre = boat.pose.at - centre;
+            let distance_m = from_centre.length();
+            if distance_m >= radius_m || distance_m == 0.0 {
+                continue;
+            }
+            let out = from_centre.scaled(1.0 / distance_m);
+            boat.pose.at = centre + out.scaled(radius_m);
+            let out_in_body = frame::body_from_ned(work.rotations[i], out);
+            let inward_m_s = (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
+            boat.nu.surge -= inward_m_s * out_in_body.ahead;
+            boat.nu.sway -= inward_m_s * out_in_body.starboard;
+            moved = true;
+        }
+        if moved {
+            self.find_pairs();
+        }
     }
 
     /// What changes, for reading.
@@ -121,27 +187,14 @@ impl World {
         &self.state
     }
 
-    /// The referee.
-    #[must_use]
-    pub fn referee(&self) -> &Referee {
-        &self.model.referee
-    }
-
-    /// The state as bytes; [`World::restore`] takes them back. They hold the world alone: no orders in force, no messages
-    /// under way, no sightings, no events of the last step.
-    #[must_use]
-    pub fn snapshot(&self) -> Vec<u8> {
-        self.state.snapshot(self.model.scenario_mark)
-    }
-
-    /// Goes back (or on) to the state in a snapshot of the same scenario.
+    /// Goes on from another state of this world.
     ///
-    /// # Errors
-    /// [`RestoreError`] says what is wrong with the bytes; the world stays as it was.
-    pub fn restore(&mut self, snapshot: &[u8]) -> Result<(), RestoreError> {
-        self.state = State::from_snapshot(snapshot, self.model.scenario_mark)?;
+    /// # Panics
+    /// If it has not as many boats.
+    pub fn set_state(&mut self, state: State) {
+        assert_eq!(state.boats.len(), self.state.boats.len(), "a state of this world");
+        self.state = state;
         self.refresh();
-        Ok(())
     }
 
     /// Puts a boat there, moving over the ground like this (body axes), its thrusters as they are: somebody outside says so.
@@ -154,26 +207,11 @@ impl World {
         self.refresh();
     }
 
-    /// Makes all boats hold, driven home or not, until they no longer must.
-    pub fn halt(&mut self, halted: bool) {
-        self.halted = halted;
-    }
-
-    /// 128 bits that differ when any bit of the state differs: of what [`World::snapshot`] holds.
+    /// Boats that are near each other, in the order of [`game::near::Near`]: all that may touch, and all within
+    /// [`WorldPlan::pairs_within_m`].
     #[must_use]
-    pub fn digest(&self) -> u128 {
-        self.state.digest()
-    }
-
-    /// What a vehicle is to do by the rules, given an order, and the share of its top speed that it may use; being
-    /// driven home is a course at any speed.
-    #[must_use]
-    pub fn obeyed(&self, vehicle: VehicleId, order: Order) -> (Order, f64) {
-        let i = vehicle.index();
-        if self.halted {
-            return (Order::Hold, 1.0);
-        }
-        self.model.obeyed(&self.state.standing, i, self.state.boats[i].pose.at, order)
+    pub fn pairs(&self) -> &[Pair] {
+        &self.work.pairs
     }
 
     /// The sea now.
@@ -218,7 +256,7 @@ impl World {
     }
 
     fn find_pairs(&mut self) {
-        let reach_m = self.model.contact.reach_m().max(self.model.referee.reach_m());
+        let reach_m = self.model.contact.reach_m().max(self.model.pairs_within_m);
         let boats = &self.state.boats;
         let pairs = self.work.near.pairs(|i| boats[i].pose.at, boats.len(), reach_m);
         self.work.pairs.clear();
@@ -226,18 +264,14 @@ impl World {
     }
 
     /// Every boat's motion over the tick as if it were alone.
-    fn drive(&mut self, orders: &[Order]) {
-        let World { model, state, work, halted } = self;
-        let obeyed = |standing: &_, i: usize, at, order| {
-            if *halted { (Order::Hold, 1.0) } else { model.obeyed(standing, i, at, order) }
-        };
+    fn drive(&mut self, commands: &[Order]) {
+        let World { model, state, work } = self;
         let sea = model.sea.at_time(state.now);
         work.forcings.clear();
         work.currents_m_s.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
-            let order = obeyed(&state.standing, i, boat.pose.at, orders[i]);
             let heading = (work.rotations[i], model.heading_error_rad(i, &state.senses));
-            let (forcing, current_m_s) = model.forcing(i, boat, &mut state.flaws[i], heading, order, &sea);
+            let (forcing, current_m_s) = model.forcing(i, boat, &mut state.flaws[i], heading, commands[i], &sea);
             work.forcings.push(forcing);
             work.currents_m_s.push(current_m_s);
         }
@@ -246,11 +280,10 @@ impl World {
         work.velocities.clear();
         for (i, boat) in state.boats.iter().enumerate() {
             let (displacement, nu) = match model.point(i) {
-                _ if model.is_external(i) => model.carried_displacement(i, boat, work.rotations[i]),
+                _ if model.is_external(i) => model.dead_reckoned_displacement(i, boat, work.rotations[i]),
                 Some((place, point)) if !boat.quarantined => {
-                    let order = obeyed(&state.standing, i, boat.pose.at, orders[i]);
                     let drift_m_s = sea.current_at(boat.pose.at);
-                    model.point_displacement(i, boat, (point, &mut state.points[place]), order, drift_m_s)
+                    model.point_displacement(i, boat, (point, &mut state.points[place]), commands[i], drift_m_s)
                 }
                 _ => model.displacement(
                     i,
@@ -268,7 +301,7 @@ impl World {
 
     /// The boats take up the motion, with what contact changed in it. Bad numbers are contained here.
     fn settle(&mut self) {
-        let World { model, state, work, .. } = self;
+        let World { model, state, work } = self;
         let sea = model.sea.at_time(state.now);
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let (displacement, mut nu) = (&work.displacements[i], work.velocities[i]);
@@ -283,63 +316,9 @@ impl World {
                 }
             } else if !boat.quarantined {
                 *boat = BoatState { pose: boat.pose, quarantined: true, ..BoatState::default() };
-                work.events.push(Event::Quarantined { vehicle: VehicleId::at(i) });
-                model.referee.retire(&mut state.standing, VehicleId::at(i), &mut work.events);
+                work.quarantined.push(VehicleId::at(i));
             }
         }
-    }
-
-    /// Boats that came too near their own flag, as the referee has seen, are set back onto the circle and lose their
-    /// way inward.
-    fn keep_out(&mut self) {
-        if self.model.referee.rules().flag_keepout_m <= 0.0 {
-            return;
-        }
-        let World { model, state, work, .. } = self;
-        let mut moved = false;
-        for i in 0..state.boats.len() {
-            let keepout = model.referee.keepout(&state.standing, VehicleId::at(i), state.boats[i].pose.at);
-            // A real boat is where it is.
-            let Some((centre, radius_m)) = keepout.filter(|_| !model.is_external(i)) else { continue };
-            let boat = &mut state.boats[i];
-            let from_centre = boat.pose.at - centre;
-            let distance_m = from_centre.length();
-            if distance_m >= radius_m || distance_m == 0.0 {
-                continue;
-            }
-            let out = from_centre.scaled(1.0 / distance_m);
-            boat.pose.at = centre + out.scaled(radius_m);
-            let out_in_body = frame::body_from_ned(work.rotations[i], out);
-            let inward_m_s = (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
-            boat.nu.surge -= inward_m_s * out_in_body.ahead;
-            boat.nu.sway -= inward_m_s * out_in_body.starboard;
-            moved = true;
-        }
-        if moved {
-            self.find_pairs();
-        }
-    }
-
-    /// Sensors read, if minds decide now.
-    fn sense(&mut self) {
-        let World { model, state, work, .. } = self;
-        if state.senses.is_empty() || !state.tick.is_multiple_of(model.ticks_per_decision) {
-            return;
-        }
-        let sea = model.sea.at_time(state.now);
-        for (i, boat) in state.boats.iter().enumerate() {
-            let Some((place, sensors)) = &model.sensed[i] else { continue };
-            let truth = model.truth(i, boat, work.rotations[i], &sea);
-            let (memory, reading) = &mut state.senses[*place];
-            *reading = sensors.read(memory, &truth, state.now);
-        }
-    }
-
-    fn judge(&mut self) {
-        let World { model, state, work, .. } = self;
-        let boats = &state.boats;
-        let at = |i: usize| boats[i].pose.at;
-        model.referee.advance(&mut state.standing, &mut work.notes, &at, &work.pairs, state.now, &mut work.events);
     }
 }
 

@@ -5,8 +5,8 @@
 
 mod common;
 
-use common::shipped;
-use game::{Event, Order};
+use common::{came_together, shipped};
+use game::{Ned, Order};
 use sim::World;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -18,9 +18,7 @@ static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 const WARM_UP: u32 = 1_300;
 
 /// Everybody goes for the middle, then off again, for half a minute each.
-fn orders(world: &World, orders: &mut [Order]) {
-    let field = world.referee().field();
-    let middle = (field.corners[0] + field.corners[2]).scaled(0.5);
+fn orders(world: &World, middle: Ned, orders: &mut [Order]) {
     let away_rad = if (world.state().tick / 600).is_multiple_of(2) { 0.0 } else { std::f64::consts::PI };
     for (order, boat) in orders.iter_mut().zip(&world.state().boats) {
         *order = Order::Steer { heading_rad: boat.pose.at.bearing_rad(middle) + away_rad, speed_m_s: 2.0 };
@@ -38,16 +36,17 @@ fn crowded(world: &World, reach_m: f64) -> bool {
 fn a_step_leaves_nothing_on_the_heap_and_takes_nothing_unless_hulls_are_close() {
     for game in ["pav01_vs_pav01.toml", "pav01_4v4.toml", "pav01_afloat.toml"] {
         let scenario = shipped(game);
-        let mut world = World::new(&scenario, 1).unwrap();
+        let mut world = World::of_game(&scenario, 1).unwrap();
         let mut plan = vec![Order::Hold; scenario.vehicles.len()];
-        let (mut free, mut busy, mut collisions) = (0, 0, 0);
+        let (mut free, mut busy, mut collisions, mut touching) = (0, 0, 0, Vec::new());
         for tick in 0..6_000 {
-            orders(&world, &mut plan);
+            orders(&world, scenario.field.middle(), &mut plan);
             // Two Surveyors bow to bow, and what they may close in a tick.
             let crowded = crowded(&world, 1.83 + 0.5);
             let heap = Region::new(HEAP);
-            collisions += world.step(&plan).iter().filter(|event| matches!(event, Event::Collided { .. })).count();
+            world.step(&plan);
             let used = heap.change();
+            collisions += came_together(&world, &scenario, &mut touching);
             if tick < WARM_UP {
                 continue;
             }

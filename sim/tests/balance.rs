@@ -28,7 +28,7 @@ fn beam_drift_m_s(scenario: &Scenario, wind_m_s: f64) -> f64 {
 fn left_to_the_wind(kind: &str, wind_m_s: f64, heading_deg: f64, minutes: u32) -> (f64, Planar) {
     let mut scenario = alone(kind, "calm");
     scenario.sea.wind = Some(blowing(wind_m_s));
-    let mut world = World::new(&scenario, 1).unwrap();
+    let mut world = World::of_game(&scenario, 1).unwrap();
     put(&mut world, 0, (400.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
     for _ in 0..minutes * 1_200 {
         world.step(&[Order::Hold; 2]);
@@ -82,7 +82,7 @@ impl Accounts {
         let mut scenario = alone(kind, "calm_salt");
         scenario.sea.current.mean_m_s = current_m_s;
         scenario.tick = SimTime::from_s(tick_s);
-        let world = World::new(&scenario, 1).unwrap();
+        let world = World::of_game(&scenario, 1).unwrap();
         Accounts { scenario, world, order }
     }
 

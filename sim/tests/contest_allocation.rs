@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::shipped;
+use common::{order, shipped};
 use game::link::{Link, Loss, Sharing};
 use game::{Order, VehicleId};
 use sim::Contest;
@@ -33,7 +33,7 @@ fn a_decision_over_the_air_takes_nothing_from_the_heap_unless_hulls_are_close_or
         memory_s: 5.0,
     };
     let mut contest = Contest::new(&scenario, 1).unwrap();
-    let middle = (scenario.field.corners[0] + scenario.field.corners[2]).scaled(0.5);
+    let middle = scenario.field.middle();
     let (mut free, mut busy, mut contacts) = (0, 0, 0);
     while !contest.is_over() && contest.decision() < 6_000 {
         let boats = &contest.world().state().boats;
@@ -46,7 +46,7 @@ fn a_decision_over_the_air_takes_nothing_from_the_heap_unless_hulls_are_close_or
             let round_rad = decision as f64 * 0.01 + i as f64;
             let at = contest.world().state().boats[i].pose.at;
             let heading_rad = if at.distance(middle) > 30.0 { at.bearing_rad(middle) } else { round_rad };
-            contest.order(VehicleId::at(i), Order::Steer { heading_rad, speed_m_s: 1.5 });
+            order(&mut contest, VehicleId::at(i), Order::Steer { heading_rad, speed_m_s: 1.5 });
         }
         contest.advance();
         let used = heap.change();

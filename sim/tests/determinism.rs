@@ -2,38 +2,70 @@
 
 mod common;
 
-use common::{alone, put, set, shipped};
+use common::{alone, digest, order, put, shipped};
+use game::event::{EventCursor, Logged};
+use game::link::{Link, Loss, Sharing};
+use game::order::BadOrder;
 use game::scenario::StartPosition;
-use game::{Event, Order, Scenario, VehicleId};
-use sim::{RestoreError, World};
+use game::{Event, Order, Pose, Scenario, VehicleId};
+use sim::{Contest, RestoreError, World};
 
-/// Orders that make for a lively game, from nothing but the tick and the vehicle.
-fn orders(world: &World) -> Vec<Order> {
-    let field = world.referee().field();
-    let middle = (field.corners[0] + field.corners[2]).scaled(0.5);
-    let phase = world.state().tick / 300;
-    let order = |(i, boat): (usize, &sim::BoatState)| match (i as u64 + phase) % 5 {
-        0 => Order::Thrust { port: 0.9, starboard: 0.4 },
-        1 => Order::Hold,
-        2 => Order::Steer { heading_rad: i as f64 * 0.7 - 3.0, speed_m_s: 2.0 },
-        _ => Order::Steer { heading_rad: boat.pose.at.bearing_rad(middle), speed_m_s: 3.0 },
-    };
-    world.state().boats.iter().enumerate().map(order).collect()
+/// Gives orders that make for a lively game, from nothing but the time and the vehicle, and plays a decision.
+fn play(contest: &mut Contest) {
+    contest.pictures();
+    let middle = contest.scenario().field.middle();
+    let phase = contest.world().state().tick / 300;
+    for i in 0..contest.scenario().vehicles.len() {
+        let at = contest.world().state().boats[i].pose.at;
+        let given = match (i as u64 + phase) % 5 {
+            0 => Order::Thrust { port: 0.9, starboard: 0.4 },
+            1 => Order::Hold,
+            2 => Order::Steer { heading_rad: i as f64 * 0.7 - 3.0, speed_m_s: 2.0 },
+            _ => Order::Steer { heading_rad: at.bearing_rad(middle), speed_m_s: 3.0 },
+        };
+        order(contest, VehicleId::at(i), given);
+    }
+    contest.advance();
 }
 
-/// Sails on; how many times boats came together.
-fn sail(world: &mut World, ticks: u32) -> usize {
-    let collided = |event: &&Event| matches!(event, Event::Collided { .. });
-    (0..ticks).map(|_| world.step(&orders(world)).iter().filter(collided).count()).sum()
+/// Plays on; how many times boats came together.
+fn sail(contest: &mut Contest, decisions: u32) -> usize {
+    let mut cursor = EventCursor::default();
+    cursor.read(contest.events());
+    (0..decisions).for_each(|_| play(contest));
+    let collided = |logged: &&Logged| matches!(logged.event, Event::Collided { .. });
+    cursor.read(contest.events()).iter().filter(collided).count()
+}
+
+fn started(scenario: &Scenario, seed: u64) -> Contest {
+    Contest::new(scenario, seed).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Waves, wind, sensors and flawed thrusters, over radio links, with limits of what boats see of each other.
+fn hampered() -> Scenario {
+    let mut scenario = shipped("pav01_afloat.toml");
+    let loss = Loss { good: 0.1, bad: 0.8, good_time_s: 5.0, bad_time_s: 2.0 };
+    let station = scenario.field.corners[0];
+    scenario.link = Some(Link { delay_s: 0.35, jitter_s: 0.2, loss, range_m: Some(500.0), station });
+    scenario.rules.sharing = Sharing {
+        range_m: Some(60.0),
+        view_rad: Some(4.0),
+        delay_s: 0.3,
+        noise_m: 1.0,
+        velocity_noise_m_s: 0.1,
+        loss: 0.1,
+        memory_s: 5.0,
+    };
+    scenario
 }
 
 #[test]
 fn the_same_seed_makes_the_same_bytes_and_another_seed_other_ones() {
     let scenario = shipped("swarm_20v20.toml");
     let run = |seed: u64| {
-        let mut world = World::new(&scenario, seed).unwrap();
-        assert!(sail(&mut world, 1_500) > 0, "seed {seed}: nobody met anybody");
-        (world.snapshot(), world.digest())
+        let mut contest = started(&scenario, seed);
+        assert!(sail(&mut contest, 750) > 0, "seed {seed}: nobody met anybody");
+        (contest.snapshot(), contest.digest())
     };
     let (first, again, other) = (run(1), run(1), run(2));
     assert!(first == again, "one seed, two games");
@@ -42,44 +74,51 @@ fn the_same_seed_makes_the_same_bytes_and_another_seed_other_ones() {
 
 #[test]
 fn a_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
-    for game in ["swarm_20v20.toml", "harbour_2v2.toml"] {
-        let scenario = shipped(game);
-        let mut world = World::new(&scenario, 3).unwrap();
+    let games = [shipped("swarm_20v20.toml"), shipped("harbour_2v2.toml"), hampered()];
+    for (scenario, meet) in games.iter().zip([true, true, false]) {
+        let name = &scenario.name;
+        let mut contest = started(scenario, 3);
         let mut collisions = 0;
         for leg in 0..30 {
-            let bytes = world.snapshot();
-            let mut other = World::new(&scenario, 3).unwrap();
-            sail(&mut other, leg + 50);
-            other.restore(&bytes).unwrap();
-            assert!(other.snapshot() == bytes, "{game}, leg {leg}: not what was put in");
-            for vehicle in (0..world.state().boats.len()).map(VehicleId::at) {
-                assert_eq!(other.truth(vehicle), world.truth(vehicle), "{game}, leg {leg}");
+            // Every other time in the middle of a decision, after the pictures.
+            if leg % 2 == 1 {
+                contest.pictures();
             }
-            collisions += sail(&mut world, 97);
-            sail(&mut other, 97);
-            assert!(world.snapshot() == other.snapshot(), "{game}, leg {leg}: they differ");
+            let bytes = contest.snapshot();
+            let mut other = started(scenario, 3);
+            sail(&mut other, leg + 25);
+            other.restore(&bytes).unwrap();
+            assert!(other.snapshot() == bytes, "{name}, leg {leg}: not what was put in");
+            assert_eq!(other.last_pictures(), contest.last_pictures(), "{name}, leg {leg}");
+            for vehicle in (0..scenario.vehicles.len()).map(VehicleId::at) {
+                assert_eq!(other.world().truth(vehicle), contest.world().truth(vehicle), "{name}, leg {leg}");
+            }
+            collisions += sail(&mut contest, 49);
+            sail(&mut other, 49);
+            assert_eq!(other.pictures(), contest.pictures(), "{name}, leg {leg}");
+            assert!(contest.snapshot() == other.snapshot(), "{name}, leg {leg}: they differ");
+            assert_eq!(contest.outcome(), other.outcome(), "{name}, leg {leg}");
         }
-        assert!(collisions > 0, "{game}: nobody met anybody");
+        assert!(!meet || collisions > 0, "{name}: nobody met anybody");
     }
 }
 
 #[test]
 fn a_game_goes_on_from_a_snapshot_taken_while_hulls_touch() {
-    let mut world = World::new(&alone("surveyor_m1_8", "calm"), 1).unwrap();
+    let mut world = World::of_game(&alone("surveyor_m1_8", "calm"), 1).unwrap();
     put(&mut world, 0, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
     put(&mut world, 1, (103.0, 100.3, 250.0), (2.0, 0.0, 0.0));
     let ahead = [Order::Thrust { port: 1.0, starboard: 0.9 }; 2];
     for tick in 0..100 {
-        let mut other = world.clone();
-        other.restore(&world.snapshot()).unwrap();
-        (0..10).for_each(|_| {
-            other.step(&ahead);
-        });
-        let mut on = world.clone();
-        (0..10).for_each(|_| {
-            on.step(&ahead);
-        });
-        assert!(on.snapshot() == other.snapshot(), "from tick {tick} on");
+        let (mut on, mut other) = (world.clone(), world.clone());
+        let bytes = postcard::to_stdvec(world.state()).unwrap();
+        other.set_state(postcard::from_bytes(&bytes).unwrap());
+        for world in [&mut on, &mut other] {
+            for _ in 0..10 {
+                world.step(&ahead);
+            }
+        }
+        assert!(digest(&on) == digest(&other), "from tick {tick} on");
         world.step(&ahead);
     }
 }
@@ -87,13 +126,13 @@ fn a_game_goes_on_from_a_snapshot_taken_while_hulls_touch() {
 #[test]
 fn bytes_that_are_no_snapshot_of_this_game_change_nothing() {
     let scenario = shipped("pav01_vs_pav01.toml");
-    let mut world = World::new(&scenario, 1).unwrap();
-    sail(&mut world, 50);
-    let good = world.snapshot();
+    let mut contest = started(&scenario, 1);
+    sail(&mut contest, 25);
+    let good = contest.snapshot();
     let mut refuse = |bytes: &[u8], want: &[RestoreError], what: &str| {
-        let error = world.restore(bytes).expect_err(what);
+        let error = contest.restore(bytes).expect_err(what);
         assert!(want.contains(&error), "{what}: {error}");
-        assert!(world.snapshot() == good, "{what}: the world has changed");
+        assert!(contest.snapshot() == good, "{what}: the contest has changed");
     };
     use RestoreError::{Damaged, NotASnapshot, OtherScenario};
     for cut in 0..good.len() {
@@ -110,65 +149,78 @@ fn bytes_that_are_no_snapshot_of_this_game_change_nothing() {
         refuse(&bytes, &[want], &format!("byte {at} changed"));
     }
     refuse(&[good.clone(), vec![0]].concat(), &[Damaged], "a byte too many");
-    refuse(&World::new(&scenario, 2).unwrap().snapshot(), &[OtherScenario], "of another seed");
+    refuse(&started(&scenario, 2).snapshot(), &[OtherScenario], "of another seed");
     let other = Scenario { order_ttl_s: 7.0, ..scenario };
-    refuse(&World::new(&other, 1).unwrap().snapshot(), &[OtherScenario], "of another scenario");
+    refuse(&started(&other, 1).snapshot(), &[OtherScenario], "of another scenario");
 }
 
 #[test]
-fn an_order_with_bad_numbers_is_an_order_to_hold() {
+fn an_order_with_bad_numbers_is_refused_and_the_boat_holds() {
     let bad = [
-        Order::Steer { heading_rad: f64::NAN, speed_m_s: 1.0 },
-        Order::Steer { heading_rad: 0.0, speed_m_s: f64::INFINITY },
-        Order::Steer { heading_rad: 0.0, speed_m_s: -1.0 },
-        Order::Thrust { port: f64::NAN, starboard: 0.0 },
-        Order::Thrust { port: 0.0, starboard: 1.5 },
+        (Order::Steer { heading_rad: f64::NAN, speed_m_s: 1.0 }, BadOrder::NotFinite),
+        (Order::Steer { heading_rad: 0.0, speed_m_s: f64::INFINITY }, BadOrder::NotFinite),
+        (Order::Steer { heading_rad: 0.0, speed_m_s: -1.0 }, BadOrder::OutOfRange),
+        (Order::Thrust { port: f64::NAN, starboard: 0.0 }, BadOrder::NotFinite),
+        (Order::Thrust { port: 0.0, starboard: 1.5 }, BadOrder::OutOfRange),
     ];
-    for order in bad {
-        let mut world = World::new(&alone("heron", "calm"), 1).unwrap();
-        put(&mut world, 0, (100.0, 100.0, 10.0), (1.0, 0.1, 0.1));
-        let mut holding = world.clone();
-        for _ in 0..50 {
-            world.step(&[order, Order::Hold]);
-            holding.step(&[Order::Hold; 2]);
-        }
-        assert!(world.snapshot() == holding.snapshot(), "{order:?}");
+    for (bad, why) in bad {
+        let play = |given: Order, want: Result<(), BadOrder>| {
+            let mut contest = started(&alone("heron", "calm"), 1);
+            contest.keep_inputs();
+            common::set_in(&mut contest, |state| {
+                state.boats[0].nu = sim::hull::Planar { surge: 1.0, sway: 0.1, yaw: 0.1 };
+            });
+            for _ in 0..25 {
+                assert_eq!(contest.order(VehicleId(0), given, contest.now()), want, "{given:?}");
+                contest.advance();
+            }
+            (contest.snapshot(), contest.take_inputs())
+        };
+        assert!(play(bad, Err(why)) == play(Order::Hold, Ok(())), "{bad:?}");
     }
 }
 
 #[test]
 fn a_boat_whose_numbers_go_bad_is_taken_out_and_the_others_sail_on() {
-    let scenario = shipped("pav01_vs_pav01.toml");
-    let mut world = World::new(&scenario, 1).unwrap();
-    let flag = scenario.field.flags[1].home;
-    put(&mut world, 1, (flag.east, flag.north, 90.0), (0.0, 0.0, 0.0));
-    let ahead = vec![Order::Thrust { port: 0.5, starboard: 0.5 }; 4];
-    let grabbed = world.step(&ahead).iter().any(|event| matches!(event, Event::Grabbed { .. }));
-    assert!(grabbed, "it carries a flag");
-    let mut healthy = world.clone();
+    let mut scenario = shipped("pav01_vs_pav01.toml");
+    let (victim, flag) = (VehicleId(1), game::FlagId(1));
+    let pose = Pose { at: scenario.field.flags[1].home, psi_rad: 0.0 };
+    scenario.vehicles[1].start_position = StartPosition::At(pose);
+    let mut contest = started(&scenario, 1);
+    let sail = |contest: &mut Contest| {
+        for vehicle in (0..4).map(VehicleId::at) {
+            order(contest, vehicle, Order::Thrust { port: 0.5, starboard: 0.5 });
+        }
+        contest.advance();
+    };
+    sail(&mut contest);
+    let mut healthy = started(&scenario, 1);
+    healthy.restore(&contest.snapshot()).unwrap();
 
-    set(&mut world, |state| state.boats[1].nu.yaw = 1e200);
-    let victim = VehicleId(1);
-    let mut events = Vec::new();
-    for _ in 0..200 {
-        events.extend_from_slice(world.step(&ahead));
-        healthy.step(&ahead);
+    common::set_in(&mut contest, |state| state.boats[1].nu.yaw = 1e200);
+    for _ in 0..100 {
+        sail(&mut contest);
+        sail(&mut healthy);
     }
-    let flag = game::FlagId(1);
-    let want = [Event::Quarantined { vehicle: victim }, Event::FlagReturned { vehicle: victim, flag }];
-    let of_victim: Vec<Event> = events.into_iter().filter(|event| event.vehicle() == Some(victim)).collect();
-    assert_eq!(of_victim, want);
-    let boat = world.state().boats[1];
+    let of_victim = contest.events().iter().map(|logged| logged.event).filter(|event| event.vehicle() == Some(victim));
+    let want = [
+        Event::Grabbed { vehicle: victim, flag },
+        Event::Quarantined { vehicle: victim },
+        Event::FlagReturned { vehicle: victim, flag },
+    ];
+    assert_eq!(of_victim.collect::<Vec<_>>(), want);
+    let boat = contest.world().state().boats[1];
     assert!(boat.quarantined && boat.nu == sim::hull::Planar::default() && boat.pose.at.is_finite(), "{boat:?}");
     for i in [0, 2, 3] {
-        assert_eq!(world.state().boats[i], healthy.state().boats[i], "boat {i} sails on as if nothing had happened");
+        let [one, other] = [&contest, &healthy].map(|contest| contest.world().state().boats[i]);
+        assert_eq!(one, other, "boat {i} sails on as if nothing had happened");
     }
 }
 
 #[test]
 fn a_quarantined_boat_is_something_to_bump_into() {
     let scenario = alone("surveyor_m1_8", "calm");
-    let mut world = World::new(&scenario, 1).unwrap();
+    let mut world = World::of_game(&scenario, 1).unwrap();
     put(&mut world, 0, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
     put(&mut world, 1, (106.0, 100.0, 0.0), (f64::INFINITY, 0.0, 0.0));
     for _ in 0..200 {
@@ -184,7 +236,7 @@ fn boats_start_inside_of_their_areas_and_apart() {
     let scenario = shipped("swarm_20v20.toml");
     let mut seen = Vec::new();
     for seed in 1..=20 {
-        let world = World::new(&scenario, seed).unwrap();
+        let world = World::of_game(&scenario, seed).unwrap();
         let boats = &world.state().boats;
         for (i, (boat, vehicle)) in boats.iter().zip(&scenario.vehicles).enumerate() {
             let StartPosition::Somewhere { along_m, across_m, gap_m } = vehicle.start_position else {
@@ -199,7 +251,7 @@ fn boats_start_inside_of_their_areas_and_apart() {
             let apart = boats[..i].iter().all(|other| other.pose.at.distance(boat.pose.at) >= gap_m);
             assert!(apart, "seed {seed}: {} starts too near another boat", vehicle.name);
         }
-        seen.push(world.snapshot());
+        seen.push(digest(&world));
     }
     seen.sort();
     seen.dedup();
@@ -214,7 +266,7 @@ fn a_full_area_says_which_boat_has_no_berth() {
             *gap_m = 30.0;
         }
     }
-    let error = World::new(&scenario, 1).err().expect("no room for twenty boats 30 m apart");
+    let error = World::of_game(&scenario, 1).err().expect("no room for twenty boats 30 m apart");
     let sim::NoStart::SpawnError(error) = error else { panic!("{error}") };
     assert!(scenario.vehicles.iter().any(|vehicle| vehicle.name == error.vehicle), "{error}");
     assert!(error.to_string().contains(&error.vehicle) && error.to_string().contains("gap_m"), "{error}");

@@ -2,9 +2,9 @@
 
 mod common;
 
-use common::{gap_m, written};
+use common::{gap_m, order, written};
 use game::angle::{rad_from_compass_deg, wrap_pi};
-use game::event::TagCause;
+use game::event::{EventCursor, TagCause};
 use game::external::ExternalOrder;
 use game::message::Message;
 use game::picture::Nav;
@@ -19,7 +19,7 @@ const OTHER: VehicleId = VehicleId(1);
 /// Blue one, a real boat at (50, 40), and red one where it is said; its flag is at (140, 40), blue's at (20, 40).
 fn game(red_at: &str, more: &str) -> Scenario {
     written(&format!(
-        "base = \"../games/pav01_vs_pav01.toml\"\n{more}\n\
+        "base = \"../games/pav01_vs_pav01.toml\"\norder_ttl_s = 60\n{more}\n\
          [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nsource = \"external\"\n\
          [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\n{red_at}\n"
     ))
@@ -60,40 +60,40 @@ fn a_real_boat_that_is_reported_at_the_flag_grabs_it() {
     let mut contest = afloat(&game("at = [150, 5]", ""));
     sail(&mut contest, 50.0, 135.0, 3.0);
     assert!(events(&contest).contains(&Event::Grabbed { vehicle: REAL, flag: FlagId(1) }), "{:?}", events(&contest));
-    assert_eq!(contest.frame().vehicles[0].carrying, 1);
+    assert_eq!(contest.frame(&mut EventCursor::default()).vehicles[0].carrying, 1);
     assert!(!events(&contest).contains(&Event::NavLost { vehicle: REAL }));
 }
 
 #[test]
-fn a_real_boat_is_tagged_and_what_it_obeys_is_what_the_rules_make_of_its_orders() {
+fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its_orders() {
     let steer = Order::Steer { heading_rad: 1.0, speed_m_s: 9.0 };
     let thrust = Order::Thrust { port: 1.0, starboard: -0.5 };
     let slow = |tagged_boat| {
         let mut scenario = game("", "");
         (scenario.rules.tagged_boat, scenario.rules.tagged_speed_factor) = (tagged_boat, 0.5);
         let mut contest = afloat(&scenario);
-        contest.order(REAL, steer);
+        order(&mut contest, REAL, steer);
         report(&mut contest, nav(50.0, 40.0, 90.0, 0.0));
-        assert_eq!(contest.obeyed(REAL), Order::Steer { heading_rad: 1.0, speed_m_s: 3.0 }, "its top speed");
+        assert_eq!(contest.effective_command(REAL), Order::Steer { heading_rad: 1.0, speed_m_s: 3.0 }, "its top speed");
         sail(&mut contest, 60.0, 103.0, 3.0);
         let tagged = Event::Tagged { vehicle: REAL, cause: TagCause::Opponent(OTHER) };
         assert!(events(&contest).contains(&tagged), "{:?}", events(&contest));
         contest
     };
     let mut contest = slow(TaggedBoat::DrivesItself);
-    assert_eq!(contest.obeyed(REAL), Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 });
-    contest.order(REAL, thrust);
-    assert_eq!(contest.obeyed(REAL), Order::Thrust { port: 0.5, starboard: -0.25 });
+    assert_eq!(contest.effective_command(REAL), Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 });
+    order(&mut contest, REAL, thrust);
+    assert_eq!(contest.effective_command(REAL), Order::Thrust { port: 0.5, starboard: -0.25 });
 
     let mut contest = slow(TaggedBoat::IsDriven);
-    let Order::Steer { heading_rad, speed_m_s } = contest.obeyed(REAL) else { panic!("it is driven home") };
+    let Order::Steer { heading_rad, speed_m_s } = contest.effective_command(REAL) else { panic!("it is driven home") };
     assert!(wrap_pi(heading_rad - rad_from_compass_deg(270.0)).abs() < 1e-9 && speed_m_s == 1.5);
     // What goes to the boat is sound.
-    let sent = game::message::VehicleOrder::new(REAL, contest.obeyed(REAL));
+    let sent = game::message::VehicleOrder::new(REAL, contest.effective_command(REAL));
     assert!(sent.order().expect("a known kind").check().is_ok() && ExternalOrder::VERSION == 1);
-    // NoRecorder drives a boat that nobody minds.
+    // Nobody drives a boat without an agent.
     contest.lose_agent(REAL);
-    assert_eq!(contest.obeyed(REAL), Order::Hold);
+    assert_eq!(contest.effective_command(REAL), Order::Hold);
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn a_simulated_boat_that_bumps_into_a_real_one_is_stopped_and_the_real_one_is_no
     let mut least_m = f64::INFINITY;
     for _ in 0..300 {
         report(&mut contest, nav(50.0, 40.0, 0.0, 0.0));
-        contest.order(OTHER, Order::Thrust { port: 1.0, starboard: 1.0 });
+        order(&mut contest, OTHER, Order::Thrust { port: 1.0, starboard: 1.0 });
         contest.advance();
         least_m = least_m.min(gap_m(contest.world(), &scenario, 0, 1));
     }
@@ -133,8 +133,8 @@ fn a_real_boat_pushes_a_simulated_one_out_of_its_way() {
 fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     let mut contest = afloat(&game("", "link = { delay_s = 5 }"));
     advance(&mut contest, 3);
-    assert_eq!(events(&contest), [Event::NavLost { vehicle: REAL }], "it was never heard of");
-    assert!(!contest.is_heard(REAL) && contest.is_heard(OTHER));
+    assert_eq!(events(&contest), [Event::NavLost { vehicle: REAL }], "it was never reported");
+    assert!(!contest.has_position(REAL) && contest.has_position(OTHER));
     let start_position = contest.world().state().boats[0].pose;
     let unknown = *contest.pictures()[0].own(REAL).expect("its own boat");
     assert_eq!(
@@ -150,7 +150,7 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     let fix_at = contest.now() - SimTime::from_s(0.1);
     contest.report(REAL, fix, fix_at, true).expect("a sound report");
     // No radio of ours comes between it and its mind.
-    contest.order(REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
+    order(&mut contest, REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
     for decisions in 0..30 {
         let since_s = (contest.now() - fix_at).as_s();
         let (turn, boat) = (game::math::sin_cos(r * since_s.min(1.0)), contest.world().state().boats[0]);
@@ -162,7 +162,7 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
         let seen = contest.pictures()[1].contacts[0];
         assert!(Ned { north: seen.north_m, east: seen.east_m }.distance(want) < 1e-9, "others see where it is by now");
         let is_lost = since_s > 1.5;
-        assert_eq!(contest.obeyed(REAL) == Order::Hold, is_lost, "after {since_s} s, {decisions} decisions");
+        assert_eq!(contest.effective_command(REAL) == Order::Hold, is_lost, "after {since_s} s, {decisions} decisions");
         contest.advance();
     }
     assert_eq!(contest.world().state().boats[0].nu, sim::hull::Planar::default(), "it lies where it was");
@@ -172,7 +172,7 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     report(&mut contest, fix);
     contest.advance();
     assert_eq!(events(&contest), [lost, back, lost, back]);
-    assert_eq!(contest.obeyed(REAL), Order::Thrust { port: 1.0, starboard: 1.0 });
+    assert_eq!(contest.effective_command(REAL), Order::Thrust { port: 1.0, starboard: 1.0 });
 }
 
 #[test]
@@ -202,13 +202,13 @@ fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
     let mut scenario = game("at = [62, 40]", "sea = \"../seas/gale.toml\"");
     scenario.rules.flag_keepout_m = 8.0;
     let mut contest = afloat(&scenario);
-    contest.order(REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
+    order(&mut contest, REAL, Order::Thrust { port: 1.0, starboard: 1.0 });
     // In the keep-out circle of its own flag.
     for _ in 0..50 {
         report(&mut contest, nav(22.0, 40.0, 30.0, 0.0));
         contest.advance();
     }
-    let truth = contest.frame().vehicles[0];
+    let truth = contest.frame(&mut EventCursor::default()).vehicles[0];
     assert_eq!((truth.nav.east_m, truth.nav.north_m), (22.0, 40.0), "nobody sets it back, and no wind drives it");
     let unknown = [truth.heave_m, truth.roll_rad, truth.pitch_rad, truth.port_newton, truth.starboard_newton];
     assert_eq!(unknown, [0.0; 5]);
@@ -220,7 +220,7 @@ fn the_same_reports_make_the_same_game() {
     let play = |speed_m_s: f64| {
         let mut contest = afloat(&game("at = [100, 40]", "sea = \"../seas/gale.toml\""));
         sail(&mut contest, 50.0, 110.0, speed_m_s);
-        (contest.digest(), contest.world().snapshot())
+        (contest.digest(), contest.snapshot())
     };
     assert_eq!(play(2.0), play(2.0));
     assert_ne!(play(2.0).0, play(2.5).0);

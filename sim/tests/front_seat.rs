@@ -13,7 +13,7 @@ const BOATS: [(&str, f64); 6] =
 
 fn afloat(boat: &str) -> (Scenario, World) {
     let scenario = alone(boat, "calm_salt");
-    let mut world = World::new(&scenario, 1).expect("an empty sea has room");
+    let mut world = World::of_game(&scenario, 1).expect("an empty sea has room");
     put(&mut world, 0, (100.0, 100.0, 0.0), (0.0, 0.0, 0.0));
     put(&mut world, 1, (700.0, 300.0, 0.0), (0.0, 0.0, 0.0));
     (scenario, world)

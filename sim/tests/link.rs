@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::alone;
+use common::{alone, order};
 use game::boat::Drive;
 use game::link::{Link, Loss};
 use game::scenario::StartPosition;
@@ -27,6 +27,8 @@ fn over(link: Link) -> Scenario {
     scenario.vehicles[BLUE.index()].start_position =
         StartPosition::At(Pose { at: Ned::from_xy(150.0, 200.0), psi_rad });
     scenario.link = Some(link);
+    // What becomes of an order that is never followed by another is no matter of the link.
+    scenario.order_ttl_s = 3_600.0;
     scenario
 }
 
@@ -43,7 +45,7 @@ fn labelled(decision: u64) -> Order {
 fn play(contest: &mut Contest) {
     contest.pictures();
     for vehicle in [BLUE, RED] {
-        contest.order(vehicle, labelled(contest.decision()));
+        order(contest, vehicle, labelled(contest.decision()));
     }
     contest.advance();
 }
@@ -55,7 +57,7 @@ fn an_order_is_in_force_once_the_delay_has_passed() {
         play(&mut contest);
         // The last tick of decision k begins at (k + 1/2) tenths of a second, just when order k - 2 arrives.
         let want = k.checked_sub(2).map_or(Order::Hold, labelled);
-        assert_eq!(contest.orders()[0], want, "decision {k}");
+        assert_eq!(contest.order_in_force(BLUE), want, "decision {k}");
     }
 }
 
@@ -68,7 +70,7 @@ fn every_order_of_the_longest_delay_and_a_short_decision_arrives() {
         let (now, reported) = (contest.now(), contest.pictures()[0].own[0].fix_ns);
         assert_eq!(reported, SimTime((now - SimTime::from_s(10.0)).0.max(0)), "decision {k}");
         play(&mut contest);
-        assert_eq!(contest.orders()[0], k.checked_sub(500).map_or(Order::Hold, labelled), "decision {k}");
+        assert_eq!(contest.order_in_force(BLUE), k.checked_sub(500).map_or(Order::Hold, labelled), "decision {k}");
     }
 }
 
@@ -78,7 +80,7 @@ fn the_longest_jitter_does_not_fill_the_queues() {
     (scenario.tick, scenario.ticks_per_decision) = (SimTime(10_000_000), 1);
     let mut contest = started(&scenario);
     (0..10_000).for_each(|_| play(&mut contest));
-    assert_ne!(contest.orders()[0], Order::Hold);
+    assert_ne!(contest.order_in_force(BLUE), Order::Hold);
 }
 
 #[test]
@@ -96,9 +98,9 @@ fn orders_sent_beyond_the_range_do_not_arrive() {
         } else {
             outside += 1;
         }
-        contest.order(BLUE, order);
+        common::order(&mut contest, BLUE, order);
         contest.advance();
-        assert_eq!(contest.orders()[0], want, "decision {k}");
+        assert_eq!(contest.order_in_force(BLUE), want, "decision {k}");
     }
     assert!(inside > 100 && outside > 100, "{inside} {outside}");
 }
@@ -111,7 +113,7 @@ fn the_stated_share_of_orders_is_lost() {
     let mut lost = 0.0;
     for k in 0..ORDERS {
         play(&mut contest);
-        lost += f64::from(u8::from(contest.orders()[0] != labelled(k)));
+        lost += f64::from(u8::from(contest.order_in_force(BLUE) != labelled(k)));
     }
     // Five standard errors.
     let share = lost / ORDERS as f64;
@@ -128,10 +130,10 @@ fn a_mind_that_is_silent_or_talks_much_changes_the_fate_of_no_other_message() {
         let mut told = vec![];
         for k in 0..1_500 {
             let reported = [0, 1].map(|team| contest.pictures()[team].own[0].fix_ns);
-            (0..says(k)).for_each(|_| contest.order(BLUE, labelled(k)));
-            contest.order(RED, labelled(k));
+            (0..says(k)).for_each(|_| order(&mut contest, BLUE, labelled(k)));
+            order(&mut contest, RED, labelled(k));
             contest.advance();
-            told.push((contest.orders().to_vec(), reported));
+            told.push(([BLUE, RED].map(|vehicle| contest.order_in_force(vehicle)), reported));
         }
         told
     };
@@ -159,24 +161,24 @@ fn holding_stops_what_is_under_way() {
         ("lose", |contest| contest.lose_agent(BLUE)),
         ("regain", |contest| {
             contest.lose_agent(BLUE);
-            // NoRecorder's order: its mind is lost.
-            contest.order(BLUE, labelled(77));
+            // Nobody's order: its agent is lost.
+            order(contest, BLUE, labelled(77));
             contest.regain_agent(BLUE);
         }),
     ];
     for (name, stop) in ways {
         let mut contest = started(&over(Link { delay_s: 1.0, ..link() }));
         (0..30).for_each(|_| play(&mut contest));
-        assert_ne!(contest.orders()[0], Order::Hold);
+        assert_ne!(contest.order_in_force(BLUE), Order::Hold);
         stop(&mut contest);
         for _ in 0..20 {
             contest.advance();
-            assert_eq!(contest.orders()[0], Order::Hold, "{name}");
+            assert_eq!(contest.order_in_force(BLUE), Order::Hold, "{name}");
         }
-        assert_eq!(contest.orders()[1], labelled(29), "{name}: red's go on");
+        assert_eq!(contest.order_in_force(RED), labelled(29), "{name}: red's go on");
         contest.regain_agent(BLUE);
         (0..20).for_each(|_| play(&mut contest));
-        assert_ne!(contest.orders()[0], Order::Hold, "{name}: the next order counts again");
+        assert_ne!(contest.order_in_force(BLUE), Order::Hold, "{name}: the next order counts again");
     }
 }
 
@@ -189,20 +191,20 @@ fn a_watchdog_stops_the_thrusters_when_the_link_is_silent_and_the_next_order_sta
         thruster.flaws.watchdog_s = Some(1.0);
     }
     let mut contest = started(&scenario);
-    let order = |k: u32| Order::Thrust { port: 0.3 + 1e-6 * f64::from(k), starboard: 0.3 };
+    let thrust = |k: u32| Order::Thrust { port: 0.3 + 1e-6 * f64::from(k), starboard: 0.3 };
     let (mut last, mut running, mut stopped, mut started_again) = (0, 0, 0, 0);
     let (mut before_newton, mut least_newton) = (0.0, f64::INFINITY);
     for k in 0..1_000_u32 {
-        contest.order(BLUE, order(k));
+        order(&mut contest, BLUE, thrust(k));
         contest.advance();
-        let got = contest.orders()[0];
-        if got == order(k) {
+        let got = contest.order_in_force(BLUE);
+        if got == thrust(k) {
             started_again += u32::from(k - last > 10);
             last = k;
         }
         // The decision's last tick begins half a decision after its order came, or should have.
         let is_silent = k - last >= 10;
-        assert_eq!(got, if is_silent { Order::Hold } else { order(last) }, "decision {k}, heard at {last}");
+        assert_eq!(got, if is_silent { Order::Hold } else { thrust(last) }, "decision {k}, heard at {last}");
         running = if got == Order::Hold { 0 } else { running + 1 };
         let newton = contest.world().state().boats[0].port.newton;
         if k - last >= 15 {
@@ -224,9 +226,9 @@ fn a_digest_tells_games_apart_that_differ_in_what_is_under_way() {
     let digest = |order: Order| {
         let mut contest = started(&scenario);
         contest.pictures();
-        contest.order(BLUE, order);
+        common::order(&mut contest, BLUE, order);
         contest.advance();
-        (contest.world().digest(), contest.digest())
+        (contest.world().state().clone(), contest.digest())
     };
     let (first, second) = (digest(labelled(1)), digest(labelled(2)));
     assert_eq!(first.0, second.0, "the world does not know yet");

@@ -37,7 +37,7 @@ fn thrust(n_rad_s: [f64; 2]) -> Order {
 
 /// What the boat did, at the times of the reference: position from the start, psi, u, v, r.
 fn sail(rows: &[Row], sea: &str, mut order_at: impl FnMut(f64, f64, &Row) -> Order) -> Vec<(Ned, f64, [f64; 3])> {
-    let mut world = World::new(&common::alone("otter", sea), 1).expect("an empty sea has room");
+    let mut world = World::of_game(&common::alone("otter", sea), 1).expect("an empty sea has room");
     let start = world.state().boats[0].pose.at;
     let mut track = Vec::new();
     for row in rows {
@@ -76,7 +76,7 @@ fn it_accelerates_to_the_speed_of_the_closed_form() {
 
 /// Its velocity at every tick of this many seconds under these shaft speeds, from rest, and the world in the end.
 fn from_rest(n_rad_s: [f64; 2], seconds: u32) -> (Vec<[f64; 3]>, World) {
-    let mut world = World::new(&common::alone("otter", "calm_salt"), 1).expect("an empty sea has room");
+    let mut world = World::of_game(&common::alone("otter", "calm_salt"), 1).expect("an empty sea has room");
     let step = |_| {
         world.step(&[thrust(n_rad_s), Order::Hold]);
         let nu = world.state().boats[0].nu;
@@ -166,7 +166,7 @@ fn it_drifts_with_the_current_and_turns_as_it_is_caught() {
     let rows = reference(include_str!("otter/current_drift_0p5_b30.csv"));
     let mut scenario = common::alone("otter", "calm_salt");
     scenario.sea.current.mean_m_s = Ned { north: 0.5 * 0.75_f64.sqrt(), east: 0.25 };
-    let mut world = World::new(&scenario, 1).unwrap();
+    let mut world = World::of_game(&scenario, 1).unwrap();
     let start = world.state().boats[0].pose.at;
     for row in &rows {
         let boat = world.state().boats[0];

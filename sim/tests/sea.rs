@@ -3,12 +3,12 @@
 
 mod common;
 
-use common::{alone, put, scenarios};
+use common::{alone, order, put, scenarios};
 use game::scenario::Overrides;
 use game::sea::{GRAVITY_M_S2, Sea, Spreading, Waves};
-use game::{Ned, Order, Scenario};
-use sim::World;
+use game::{Ned, Order, Scenario, VehicleId};
 use sim::sea::WaveField;
+use sim::{Contest, World};
 use std::f64::consts::TAU;
 
 const DRIFTING: [Order; 2] = [Order::Hold; 2];
@@ -41,7 +41,7 @@ fn run(world: &mut World, orders: &[Order], seconds: f64) {
 #[test]
 fn without_thrust_a_boat_ends_up_going_with_the_current_whatever_its_heading() {
     for heading_deg in [0.0, 37.0, 90.0, 200.0] {
-        let mut world = World::new(&on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.4 }), 1).unwrap();
+        let mut world = World::of_game(&on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.4 }), 1).unwrap();
         put(&mut world, 0, (300.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
         run(&mut world, &DRIFTING, 240.0);
         let before = world.state().boats[0].pose.at;
@@ -55,7 +55,7 @@ fn without_thrust_a_boat_ends_up_going_with_the_current_whatever_its_heading() {
 fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
     let scenario = on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.1 });
     let hull = &common::hulls(&scenario)[0];
-    let mut world = World::new(&scenario, 1).unwrap();
+    let mut world = World::of_game(&scenario, 1).unwrap();
     put(&mut world, 0, (200.0, 200.0, 70.0), (2.0, -0.5, 0.6));
     let relative = |world: &World| {
         let boat = world.state().boats[0];
@@ -76,7 +76,7 @@ fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
 /// without drift force.
 fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
     let scenario = on(|sea| sea.waves = Some(Waves { drift_factor: 0.0, ..waves(hs_m, 2.5) }));
-    let mut world = World::new(&scenario, seed).unwrap();
+    let mut world = World::of_game(&scenario, seed).unwrap();
     put(&mut world, 0, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
     run(&mut world, &DRIFTING, 60.0);
     let start = world.state().boats[0].pose.at;
@@ -114,7 +114,7 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
             let (components, spreading) = (1, Spreading::None);
             sea.waves = Some(Waves { components, spreading, from_rad, drift_factor: 0.0, ..waves(0.1, 2.5) });
         });
-        let mut world = World::new(&scenario, 1).unwrap();
+        let mut world = World::of_game(&scenario, 1).unwrap();
         let wave = *world.sea().waves().unwrap().components().next().unwrap();
         put(&mut world, 0, (300.0, 50.0, 0.0), (speed_m_s, 0.0, 0.0));
         let orders = [Order::Steer { heading_rad: 0.0, speed_m_s }, Order::Hold];
@@ -146,20 +146,23 @@ fn a_rough_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
             &Overrides { sea: Some(scenarios().join("seas").join(file)), ..Overrides::default() },
         )
         .unwrap_or_else(|e| panic!("{e}"));
-        let mut world = World::new(&scenario, 5).unwrap();
-        let orders = [Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 }; 4];
-        for leg in 0..10_u64 {
-            let bytes = world.snapshot();
-            let mut other = World::new(&scenario, 5).unwrap();
-            for _ in 0..10 * leg {
-                other.step(&orders);
+        let mut contest = Contest::new(&scenario, 5).unwrap();
+        let sail = |contest: &mut Contest, decisions: u32| {
+            for _ in 0..decisions {
+                for vehicle in (0..4).map(VehicleId::at) {
+                    order(contest, vehicle, Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 });
+                }
+                contest.advance();
             }
+        };
+        for leg in 0..10 {
+            let bytes = contest.snapshot();
+            let mut other = Contest::new(&scenario, 5).unwrap();
+            sail(&mut other, 5 * leg);
             other.restore(&bytes).unwrap();
-            for _ in 0..137 {
-                world.step(&orders);
-                other.step(&orders);
-            }
-            assert!(world.snapshot() == other.snapshot(), "{file}, leg {leg}");
+            sail(&mut contest, 69);
+            sail(&mut other, 69);
+            assert!(contest.snapshot() == other.snapshot(), "{file}, leg {leg}");
         }
     }
 }
@@ -174,7 +177,7 @@ fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
         let game = scenarios().join("games/pav01_afloat.toml");
         let scenario = game::scenario::load_with(&game, &Overrides { sea: Some(file.clone()), ..Overrides::default() })
             .unwrap_or_else(|e| panic!("{e}"));
-        let mut world = World::new(&scenario, 1).unwrap();
+        let mut world = World::of_game(&scenario, 1).unwrap();
         for _ in 0..12_000 {
             world.step(&[Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 }; 4]);
         }
@@ -192,7 +195,7 @@ fn a_free_boat_in_a_long_swell_goes_with_stokes_drift() {
         let scenario = on(|sea| sea.waves = Some(swell.clone()));
         let field = WaveField::new(&swell, None, 4);
         let want = field.stokes_drift_m_s(scenario.boats[0].draught_m);
-        let mut world = World::new(&scenario, 4).unwrap();
+        let mut world = World::of_game(&scenario, 4).unwrap();
         put(&mut world, 0, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
         let start = world.state().boats[0].pose.at;
         let minutes = 40;
@@ -210,7 +213,7 @@ fn point_boats_collide_in_a_current_as_they_do_in_still_water() {
     let after = |mean_m_s: Ned| {
         let mut scenario = alone("heron_kinematic", "calm");
         scenario.sea.current.mean_m_s = mean_m_s;
-        let mut world = World::new(&scenario, 1).unwrap();
+        let mut world = World::of_game(&scenario, 1).unwrap();
         // Blue runs into red's side.
         put(&mut world, 0, (300.0, 200.0, 90.0), (0.0, 0.0, 0.0));
         put(&mut world, 1, (308.0, 200.2, 0.0), (0.0, 0.0, 0.0));

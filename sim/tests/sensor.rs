@@ -485,10 +485,11 @@ fn the_front_seat_steers_by_the_heading_that_the_compass_shows() {
     let mut scenario = common::alone("surveyor_m1_8", "calm");
     let off = Compass { deviation_rad: [0.2, 0.0, 0.0, 0.0, 0.0], ..exact_compass() };
     scenario.boats[0].sensors = with_compass(off);
-    let mut world = World::new(&scenario, 1).unwrap();
+    let mut world = World::of_game(&scenario, 1).unwrap();
     let orders = [Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 }, Order::Hold];
     for _ in 0..20 * 60 {
         world.step(&orders);
+        world.read_sensors();
     }
     // A compass that points 0.2 rad too far east reads as much too little.
     let (psi_rad, reading) =

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::alone;
+use common::{alone, order};
 use game::angle::rad_from_compass_deg;
 use game::link::{Link, Loss, Sharing};
 use game::picture::Contact;
@@ -93,7 +93,7 @@ fn a_report_tells_the_truth_of_as_long_ago_as_stated() {
         past.push((contest.now(), place(&contest, RED)));
         let want = (k >= late).then(|| past[k - late]);
         assert_eq!(shown(&mut contest).map(|contact| (contact.seen_ns, at(&contact))), want, "at decision {k}");
-        contest.order(RED, Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 });
+        order(&mut contest, RED, Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 });
         contest.advance();
     }
     assert!(past[0].1.distance(past[199].1) > 20.0, "red stayed where it was");
@@ -161,7 +161,7 @@ fn a_contact_is_remembered_as_long_as_stated() {
         remembered += u32::from(is_known && !is_near);
         forgotten += u32::from(!is_known);
         assert_eq!(shown(&mut contest).map(|contact| contact.seen_ns), is_known.then_some(last_seen), "at {k}");
-        contest.order(RED, Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 2.0 });
+        order(&mut contest, RED, Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 2.0 });
         contest.advance();
     }
     assert_eq!(remembered, 40, "4.05 s are 40 decisions");

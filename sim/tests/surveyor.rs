@@ -11,7 +11,7 @@ use sim::{BoatState, World};
 const AT_REST: (f64, f64, f64) = (0.0, 0.0, 0.0);
 
 fn afloat(nu: (f64, f64, f64)) -> World {
-    let mut world = World::new(&alone("surveyor_m1_8", "calm"), 1).expect("an empty sea has room");
+    let mut world = World::of_game(&alone("surveyor_m1_8", "calm"), 1).expect("an empty sea has room");
     put(&mut world, 0, (100.0, 100.0, 0.0), nu);
     put(&mut world, 1, (700.0, 300.0, 0.0), (0.0, 0.0, 0.0));
     world

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{alone, put};
+use common::{alone, digest, put};
 use game::field::Plan;
 use game::math::sin_cos;
 use game::sea::{Eddy, Gusts, RandomEddies, Sea, Shear, Spreading, Tide, Wander, Waves, Wind};
@@ -73,7 +73,7 @@ fn everything(sea: &mut Sea) {
 /// Where a boat is after each tick, its heading and its velocity, from north 200 and east 300 on a heading of 20°, in a
 /// world turned by `by_rad`; turned back.
 fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> Vec<[f64; 6]> {
-    let mut world = World::new(scenario, 3).unwrap();
+    let mut world = World::of_game(scenario, 3).unwrap();
     let start = turned(Ned { north: 200.0, east: 300.0 }, by_rad);
     let (x, y) = (start.east, start.north);
     put(&mut world, 0, (x, y, 20.0 + by_rad.to_degrees()), (1.0, 0.2, 0.1));
@@ -127,7 +127,7 @@ fn it_does_not_matter_which_side_is_port() {
             sea.waves = has_waves.then(|| Waves { from_rad: side * 0.7, spreading: Spreading::None, ..waves(0.3) });
         });
         scenario.field.plan.obstacles.clear();
-        let mut world = World::new(&scenario, 1).unwrap();
+        let mut world = World::of_game(&scenario, 1).unwrap();
         put(&mut world, 0, (0.0, 200.0, side * 20.0), (1.0, side * 0.2, side * 0.1));
         let (port, starboard) = if side > 0.0 { (0.9, 0.3) } else { (0.3, 0.9) };
         let step = |_| {
@@ -155,8 +155,8 @@ fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
     // Of imposed thrust. The front seat steers by what it is told of the ground, and a current changes that.
     let current = Ned { north: 0.35, east: -0.2 };
     let orders = [Order::Thrust { port: 0.8, starboard: 0.5 }, Order::Hold];
-    let mut still = World::new(&on(|_| ()), 1).unwrap();
-    let mut carried = World::new(&on(|sea| sea.current.mean_m_s = current), 1).unwrap();
+    let mut still = World::of_game(&on(|_| ()), 1).unwrap();
+    let mut carried = World::of_game(&on(|sea| sea.current.mean_m_s = current), 1).unwrap();
     // The same velocity through the water: over the ground it is that and the current, seen from the boat at 0°.
     put(&mut carried, 0, (200.0, 200.0, 0.0), (1.0 + current.north, current.east, 0.1));
     put(&mut still, 0, (200.0, 200.0, 0.0), (1.0, 0.0, 0.1));
@@ -201,12 +201,12 @@ const NOTHINGS: [Change; 9] = [
 
 /// The digests of a game's state, tick by tick, on the sea so changed.
 fn digests(change: impl FnOnce(&mut Sea)) -> Vec<u128> {
-    let mut world = World::new(&on(change), 1).unwrap();
+    let mut world = World::of_game(&on(change), 1).unwrap();
     put(&mut world, 0, (200.0, 200.0, 40.0), (1.0, 0.2, -0.1));
     let orders = [Order::Steer { heading_rad: 2.0, speed_m_s: 2.0 }, Order::Thrust { port: 0.7, starboard: 0.2 }];
     let step = |_| {
         world.step(&orders);
-        world.state().digest()
+        digest(&world)
     };
     (0..1_000).map(step).collect()
 }

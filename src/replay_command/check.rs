@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 use game::Scenario;
 use game::codec;
-use game::input::{Input, Inputs};
+use game::input::Inputs;
 use game::message::Frame;
 use recording::{FRAME, INPUTS, Recording};
 use serde_json::Value;
@@ -76,7 +76,10 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
         if given.stamp.seq != seq {
             bail!("decisions {seq} to {} are missing in this recording", given.stamp.seq.saturating_sub(1));
         }
-        let again = resimulation.frame_after(read(given, scenario)?);
+        let Some(understood) = given.of(scenario).collect::<Option<Vec<_>>>() else {
+            bail!("an input at {:.1} s is not understood", given.stamp.valid_ns.as_s());
+        };
+        let again = resimulation.frame_after(understood);
         inputs.clear();
         if codec::encode(&again) != said.bytes {
             let recorded: Frame = said.read()?;
@@ -99,14 +102,6 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
         verdict.digests = Some([ending.outcome.digest.clone(), outcome.digest]);
     }
     Ok(verdict)
-}
-
-fn read(inputs: &Inputs, scenario: &Scenario) -> Result<Vec<Input>> {
-    let known = inputs.inputs.iter().map(|record| record.input().filter(|input| input.is_of(scenario)));
-    match known.collect::<Option<Vec<Input>>>() {
-        Some(inputs) => Ok(inputs),
-        None => bail!("an input at {:.1} s is not understood", inputs.stamp.valid_ns.as_s()),
-    }
 }
 
 /// What differs first between two frames: its name, and both values.
@@ -138,8 +133,10 @@ fn differing(path: &str, a: &Value, b: &Value) -> Option<[String; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use game::event::EventCursor;
+    use game::input::Input;
     use game::message::GameInfo;
-    use game::{Order, VehicleId};
+    use game::{Order, SimTime, VehicleId};
     use recording::{Ending, Header, Note, Turn, Writer};
     use std::io::Cursor;
 
@@ -155,11 +152,10 @@ mod tests {
             water: game::water::Water::default(),
         };
         let mut writer = Writer::begin(Cursor::new(Vec::new()), &header).expect("memory");
-        let mut told = 0;
+        let mut written = EventCursor::default();
         let watch = |contest: &mut sim::Contest| {
             contest.keep_inputs();
-            let turn = Turn { frame: contest.frame_since(told), pictures: vec![], inputs: contest.take_inputs() };
-            told = contest.events().len();
+            let turn = Turn { frame: contest.frame(&mut written), pictures: vec![], inputs: contest.take_inputs() };
             if let Some(turn) = change(turn) {
                 writer.note(&Note::Turn(Box::new(turn)), 0).expect("memory");
             }
@@ -195,7 +191,8 @@ mod tests {
     #[test]
     fn another_order_is_found_at_the_tick_after_it() {
         let order = Order::Thrust { port: 1.0, starboard: -1.0 };
-        let verdict = check(&with(Input::Ordered { vehicle: VehicleId(0), order })).unwrap_or_else(|e| panic!("{e}"));
+        let input = Input::Ordered { vehicle: VehicleId(0), order, given_at: SimTime::from_s(0.4) };
+        let verdict = check(&with(input)).unwrap_or_else(|e| panic!("{e}"));
         assert!(!verdict.is_same());
         let name = &recorded(Some).header().notice.scenario.vehicles[0].name.clone();
         assert!(

@@ -37,7 +37,7 @@ impl Minds {
         let inputs = recording.on(INPUTS).filter_map(|said| said.read::<Inputs>().ok());
         for Inputs { stamp, inputs } in inputs {
             let ordered = inputs.iter().filter_map(|record| match record.input() {
-                Some(Input::Ordered { vehicle, order }) => Some((vehicle, order)),
+                Some(Input::Ordered { vehicle, order, .. }) => Some((vehicle, order)),
                 _ => None,
             });
             orders.insert(stamp.seq.saturating_sub(1), ordered.collect());

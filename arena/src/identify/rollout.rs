@@ -33,7 +33,7 @@ pub(super) fn rollout(
     segments: &[usize],
     starts: &[Point],
 ) -> Option<Vec<Point>> {
-    let mut afloat = Afloat::new(boat, &setting.sea, setting.tick, setting.seed, &Start::default()).ok()?;
+    let mut afloat = Afloat::new(boat, &setting.sea, setting.tick, setting.seed, &Start::default());
     let mut points = vec![[f64::NAN; 6]; segments[0]];
     for (segment, start) in segments.windows(2).zip(starts) {
         // The thrusters take up what they were told before; where the boat goes meanwhile does not matter.

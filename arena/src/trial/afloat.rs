@@ -2,15 +2,15 @@
 
 use super::command::Command;
 use super::sample::Sample;
-use super::water;
+use super::water::open_field;
 use game::boat::{Boat, Drive};
 use game::frame::{self, Body};
 use game::sea::Sea;
-use game::{Ned, Order, Pose, Rotation, Scenario, SimTime, VehicleId};
+use game::{Ned, Order, Pose, Rotation, SimTime, VehicleId};
 use sim::hull::Planar;
 use sim::kinematic::{Command as PointCommand, KinematicModel, KinematicState};
 use sim::sea::SeaModel;
-use sim::{NoStart, World};
+use sim::{VehiclePlan, World, WorldPlan};
 
 /// How a boat begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,24 +51,33 @@ struct Point {
 }
 
 impl Afloat {
-    /// A boat at its start. `seed` chooses the sea's randomness.
-    ///
-    /// # Errors
-    /// [`NoStart`] where numbers of the boat or the sea were drawn that do not go together.
-    pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> Result<Afloat, NoStart> {
-        let scenario = water::open_water(boat, sea, tick, seed);
+    /// A boat at its start. `seed` chooses the randomness of the sea and of its sensors.
+    #[must_use]
+    pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> Afloat {
+        let (field, kinds) = (open_field(), std::slice::from_ref(boat));
         let craft = match &boat.drive {
             Drive::Thrusters { .. } => {
-                let mut world = World::new(&scenario, seed)?;
+                let vehicle = VehiclePlan { name: "boat", kind: 0, start: Pose::default(), is_external: false };
+                let mut world = World::new(&WorldPlan {
+                    tick,
+                    sea,
+                    field: &field,
+                    kinds,
+                    vehicles: vec![vehicle],
+                    sensor_period: tick,
+                    pairs_within_m: 0.0,
+                    seed,
+                });
                 let pose = Pose { at: Ned::default(), psi_rad: start.psi_rad };
                 world.set_under_way(VehicleId(0), pose, start.nu);
                 Craft::Thrusters(Box::new(world))
             }
             Drive::Kinematic(kinematic) => {
-                Craft::Kinematic(Box::new(Point::new(KinematicModel::new(kinematic), &scenario, start)))
+                let sea = SeaModel::new(sea, kinds, &field, tick, seed);
+                Craft::Kinematic(Box::new(Point::new(KinematicModel::new(kinematic), sea, start)))
             }
         };
-        Ok(Afloat { craft, tick, origin: Ned::default() })
+        Afloat { craft, tick, origin: Ned::default() }
     }
 
     /// The length of a tick.
@@ -110,6 +119,7 @@ impl Afloat {
         match &mut self.craft {
             Craft::Thrusters(world) => {
                 world.step(&[order(command)]);
+                world.read_sensors();
             }
             Craft::Kinematic(point) => point.step(command, self.tick),
         }
@@ -153,8 +163,7 @@ impl Afloat {
 }
 
 impl Point {
-    fn new(model: KinematicModel, scenario: &Scenario, start: &Start) -> Point {
-        let sea = SeaModel::new(scenario, scenario.seed);
+    fn new(model: KinematicModel, sea: SeaModel, start: &Start) -> Point {
         let carried = in_body(start.psi_rad, sea.at_time(SimTime::ZERO).current_at(Ned::default()));
         // Speed is through the water; drifting sideways is what a boat without mass cannot do.
         let speed_m_s = (start.nu.surge - carried.ahead).clamp(0.0, model.speed_max_m_s());

@@ -68,10 +68,10 @@ mod tests {
             let gusts = Gusts::None;
             let wind = Wind { speed_10m_m_s: wind_m_s, from_rad, profile_exponent: 0.12, gusts };
             let sea = game::sea::Sea { wind: Some(wind), ..still_sea() };
-            let field = crate::trial::open_water(&boat, &sea, tick, 1).field;
-            let want_m_s = Summary::new(&sea, &boat, &field, 1).wind.expect("there is wind").drift_m_s;
+            let want_m_s =
+                Summary::new(&sea, &boat, &crate::trial::open_field(), 1).wind.expect("there is wind").drift_m_s;
 
-            let mut afloat = Afloat::new(&boat, &sea, tick, 1, &Start::default()).expect("it floats");
+            let mut afloat = Afloat::new(&boat, &sea, tick, 1, &Start::default());
             let per_row = ticks_per_row(tick).expect("it divides");
             let samples: Vec<Sample> = (0..3000_i64)
                 .map(|row| {

@@ -22,4 +22,4 @@ pub use orders::{LONGEST_S, Orders};
 pub use replay::{ROW, Unsound, replay, ticks_per_row};
 pub use sample::{COLUMNS, Sample, decimal, write_csv};
 pub use sheet::{Mistake, Sheet};
-pub use water::{open_water, set_mean_current, still_sea};
+pub use water::{open_field, set_mean_current, still_sea};

@@ -20,6 +20,7 @@ pub use directive::Directive;
 pub use referee::{Notes, Referee};
 pub use standing::{FlagStanding, Standing, VehicleStanding};
 
+use crate::count::Counts;
 use crate::link::Sharing;
 use crate::time::SimTime;
 use schemars::JsonSchema;
@@ -74,6 +75,14 @@ pub struct Rules {
     pub power_play: SimTime,
 }
 
+impl Rules {
+    /// How near two boats must be to matter to each other by the rules, m: the reach of `near` in [`Referee::advance`].
+    #[must_use]
+    pub fn reach_m(&self) -> f64 {
+        self.tag_radius_m.max(self.collision_distance_m)
+    }
+}
+
 /// What is worth what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Points {
@@ -86,6 +95,14 @@ pub struct Points {
     /// For tagging an opponent, not for the boundary's tags.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub tag: u32,
+}
+
+impl Points {
+    /// What these are worth.
+    #[must_use]
+    pub fn of(&self, counts: &Counts) -> u32 {
+        self.grab * counts.grabs + self.capture * counts.captures + self.tag * counts.tags
+    }
 }
 
 /// Where a carrier must come to capture.

@@ -58,16 +58,9 @@ impl Referee {
         standing
     }
 
-    /// How near two boats must be to matter to each other by the rules, m: the reach of `near` in
-    /// [`Referee::advance`].
-    #[must_use]
-    pub fn reach_m(&self) -> f64 {
-        self.rules.tag_radius_m.max(self.rules.collision_distance_m)
-    }
-
     /// Looks at all boats at the moment `now`, later than the last one, and appends what happened.
     ///
-    /// `at` gives midships by vehicle, `near` all pairs within [`Referee::reach_m`] or more, in the order
+    /// `at` gives midships by vehicle, `near` all pairs within [`Rules::reach_m`] or more, in the order
     /// of [`crate::near::Near`].
     ///
     /// The order of the list below is the order of resolution. Every phase is judged from how things

@@ -187,7 +187,8 @@ pub struct Vehicle {
     pub boat: usize,
     /// Index into [`Scenario::strategies`].
     pub strategy: usize,
-    /// Where it starts.
+    /// Where it starts. Older recordings have it under its former name.
+    #[serde(alias = "berth")]
     pub start_position: StartPosition,
     /// Where its motion comes from.
     pub source: Source,

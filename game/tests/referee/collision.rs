@@ -39,7 +39,7 @@ fn boats_out_of_play_are_solid() {
 fn the_reach_covers_tags_and_collisions() {
     for (tag_radius_m, collision_distance_m, want_m) in [(10.0, 4.0, 10.0), (1.0, 4.0, 4.0)] {
         let scene = Scene::new(Rules { tag_radius_m, collision_distance_m, ..aquaticus_2023() }, 1);
-        assert_eq!(scene.referee.reach_m(), want_m);
+        assert_eq!(scene.referee.rules().reach_m(), want_m);
     }
 }
 

@@ -85,7 +85,7 @@ impl Scene {
     pub(crate) fn look(&mut self) -> Vec<Event> {
         self.now = self.now + TICK;
         let at = |i: usize| self.fleet[i];
-        let near = self.near.pairs(at, self.fleet.len(), self.referee.reach_m());
+        let near = self.near.pairs(at, self.fleet.len(), self.referee.rules().reach_m());
         let mut events = vec![];
         self.referee.advance(&mut self.standing, &mut self.notes, &at, near, self.now, &mut events);
         events

@@ -103,7 +103,7 @@ fn play(walk: &Walk, mut each: impl FnMut(&Referee, &Standing, &Standing, &[Ned]
     let (mut notes, mut near, mut now) = (Notes::default(), Near::default(), SimTime::ZERO);
     for fleet in walk.fleets() {
         let (before, mut events) = (standing.clone(), vec![]);
-        let pairs = near.pairs(|i| fleet[i], fleet.len(), referee.reach_m());
+        let pairs = near.pairs(|i| fleet[i], fleet.len(), referee.rules().reach_m());
         referee.advance(&mut standing, &mut notes, &|i| fleet[i], pairs, now, &mut events);
         each(&referee, &before, &standing, &fleet, &events);
         now = now + TICK;
@@ -213,7 +213,7 @@ proptest! {
         play(&walk, |referee, before, after, fleet, events| {
             let other = reflected.get_or_insert_with(|| mirror.standing(before));
             let fleet = mirror.fleet(fleet);
-            let pairs = near.pairs(|i| fleet[i], fleet.len(), referee.reach_m());
+            let pairs = near.pairs(|i| fleet[i], fleet.len(), referee.rules().reach_m());
             let mut got = vec![];
             referee.advance(other, &mut notes, &|i| fleet[i], pairs, after.now, &mut got);
             let want = sorted(events.iter().map(|event| mirror.event(*event)));
@@ -227,7 +227,7 @@ proptest! {
         let mut other: Option<Standing> = None;
         play(&walk, |referee, before, after, fleet, events| {
             let other = other.get_or_insert_with(|| before.clone());
-            let pairs = generous(fleet, referee.reach_m());
+            let pairs = generous(fleet, referee.rules().reach_m());
             let mut got = vec![];
             referee.advance(other, &mut Notes::default(), &|i| fleet[i], &pairs, after.now, &mut got);
             assert_eq!(got, events);

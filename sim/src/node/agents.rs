@@ -2,7 +2,6 @@
 
 use super::membership::Membership;
 use game::message::Orders;
-use game::order::BadOrder;
 use game::refusal::{Refusal, Refusals};
 use game::{Order, VehicleId};
 
@@ -52,7 +51,7 @@ pub fn accept(
     accepted
 }
 
-/// One order for each vehicle of the agent; the safe one where there is no good one.
+/// One order for each vehicle of the agent; the safe one where there is none that is understood.
 fn orders_for(own: &[VehicleId], message: &Orders, refusals: &mut Refusals) -> Vec<(VehicleId, Order)> {
     let mut orders = Vec::with_capacity(own.len());
     for item in &message.orders {
@@ -60,8 +59,8 @@ fn orders_for(own: &[VehicleId], message: &Orders, refusals: &mut Refusals) -> V
             refusals.count(Refusal::NotYours);
             continue;
         }
-        let order = item.order().ok_or(BadOrder::OutOfRange).and_then(Order::check);
-        refusals.add(Refusal::BadNumber, u64::from(order.is_err()));
+        let order = item.order();
+        refusals.add(Refusal::BadNumber, u64::from(order.is_none()));
         orders.push((item.vehicle, order.unwrap_or_default()));
     }
     for vehicle in own {

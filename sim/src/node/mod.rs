@@ -18,7 +18,7 @@ pub use observers::water;
 pub use recorder::{NoRecorder, RecordedMessage, Recorder};
 
 use crate::contest::Contest;
-use crate::world::NoStart;
+use crate::spawn::NoStart;
 use bus::{BusError, Net, clock};
 use game::refusal::Refusals;
 use game::topic::GameName;

@@ -1,9 +1,8 @@
-//! Real time, or a factor of it: the clock paces, nobody is waited for, old orders expire.
+//! Real time, or a factor of it: the clock paces, nobody is waited for.
 
 use super::server::GameServer;
 use super::{News, NodeError};
 use bus::clock;
-use game::VehicleId;
 use std::time::Duration;
 
 /// Plays until the game is over or stopped, and counts the decision ticks that began late.
@@ -32,7 +31,7 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) 
             due = clock::now();
         }
         due += period;
-        expire(server);
+        lose_silent(server);
         server.contest.advance();
         server.pacing.played();
         server.report_progress(tell)?;
@@ -47,14 +46,8 @@ fn period(server: &GameServer<'_>) -> Duration {
     Duration::from_secs_f64(decision_s / server.pacing.speed().unwrap_or(1.0))
 }
 
-/// Boats whose order is too old hold; agents that are silent for longer than patience are lost.
-fn expire(server: &mut GameServer<'_>) {
-    let now = server.contest.now();
-    let (ttl_s, patience_s) = (server.contest.scenario().order_ttl_s, server.contest.scenario().patience_s);
-    for i in 0..server.ordered_at.len() {
-        if (now - server.ordered_at[i]).as_s() > ttl_s {
-            server.contest.hold(VehicleId::at(i));
-        }
-    }
+/// Agents that are silent for longer than patience are lost.
+fn lose_silent(server: &mut GameServer<'_>) {
+    let patience_s = server.contest.scenario().patience_s;
     server.lose_silent(Duration::from_secs_f64(patience_s));
 }

@@ -11,6 +11,7 @@ use super::{News, NodeError, Pace, Settings};
 use crate::contest::Contest;
 use bus::{Bus, Declaration, Delivery, Inbox, Publisher, Query, clock, inbox};
 use game::codec;
+use game::event::EventCursor;
 use game::external::{ExternalOrder, NavReport};
 use game::message::{Control, GameInfo, JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
 use game::refusal::{Refusal, Refusals};
@@ -47,6 +48,8 @@ pub(super) struct GameServer<'w> {
     /// The decision whose pictures were sent last.
     asked: Option<u64>,
     frames: Publisher,
+    /// How far observers were shown the events.
+    shown: EventCursor,
     run: Publisher,
     /// Whether somebody asked for something since the state of the run was sent.
     is_news: bool,
@@ -61,8 +64,6 @@ pub(super) struct GameServer<'w> {
     game_info: Vec<u8>,
     stop: Arc<AtomicBool>,
     refusals: Refusals,
-    /// When the orders in force were given, by vehicle: time of the picture they answer.
-    pub(super) ordered_at: Vec<SimTime>,
     /// When each vehicle's agent was last heard.
     heard: Vec<Instant>,
     last_news: (Instant, SimTime),
@@ -110,6 +111,7 @@ impl<'w> GameServer<'w> {
             asked: None,
             external_orders,
             frames: bus.publisher(topic::frame(game), Delivery::Drop)?,
+            shown: EventCursor::default(),
             run: bus.publisher(topic::run(game), Delivery::Drop)?,
             is_news: false,
             run_recorded: clock::now(),
@@ -121,7 +123,6 @@ impl<'w> GameServer<'w> {
             game_info: serde_json::to_vec(&game_info).expect("a scenario is JSON"),
             stop: Arc::clone(&settings.stop),
             refusals: Refusals::default(),
-            ordered_at: vec![SimTime::ZERO; scenario.vehicles.len()],
             heard: vec![clock::now(); scenario.vehicles.len()],
             last_news: (clock::now(), SimTime::ZERO),
             opened: None,
@@ -169,7 +170,7 @@ impl<'w> GameServer<'w> {
     fn silent_boats(&self) -> impl Iterator<Item = VehicleId> {
         let is_vacant = |vehicle: VehicleId| self.gateways.vacant().any(|vacant| vacant == vehicle);
         let externals = self.contest.scenario().externals();
-        externals.filter(move |vehicle| is_vacant(*vehicle) || !self.contest.is_heard(*vehicle))
+        externals.filter(move |vehicle| is_vacant(*vehicle) || !self.contest.has_position(*vehicle))
     }
 
     fn name_of(&self, vehicle: VehicleId) -> &str {
@@ -186,7 +187,7 @@ impl<'w> GameServer<'w> {
         if !self.frames.is_heard() {
             return Ok(());
         }
-        let frame = self.contest.frame();
+        let frame = self.contest.frame(&mut self.shown);
         Ok(self.frames.send(&frame)?)
     }
 
@@ -205,14 +206,12 @@ impl<'w> GameServer<'w> {
         (0..self.external_orders.len()).try_for_each(|i| self.pass_on(self.external_orders[i].0))
     }
 
-    /// Sends a real boat the order in force for it; holding, where that is older than it may grow. For simulated boats
-    /// there is nothing to send.
+    /// Sends a real boat what it is to do; holding, where the game stands still. For simulated boats there is nothing to
+    /// send.
     fn pass_on(&mut self, vehicle: VehicleId) -> Result<(), NodeError> {
         let Some(boat) = self.external_orders.iter().position(|(boat, _)| *boat == vehicle) else { return Ok(()) };
-        let age_s = (self.contest.now() - self.ordered_at[vehicle.index()]).as_s();
-        let is_old = age_s > self.contest.scenario().order_ttl_s;
-        let holds = is_old || self.pacing.is_held();
-        self.send_order(boat, if holds { Order::Hold } else { self.contest.obeyed(vehicle) })
+        let is_held = self.pacing.is_held();
+        self.send_order(boat, if is_held { Order::Hold } else { self.contest.effective_command(vehicle) })
     }
 
     fn send_order(&mut self, boat: usize, order: Order) -> Result<(), NodeError> {
@@ -223,7 +222,7 @@ impl<'w> GameServer<'w> {
         }
         let (valid_ns, seq) = (self.contest.now(), self.contest.decision());
         let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
-        let given_ns = self.ordered_at[vehicle.index()];
+        let given_ns = self.contest.given_at(vehicle);
         let order = ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) };
         publisher.send(&order)?;
         if self.is_recorded {
@@ -352,7 +351,7 @@ impl<'w> GameServer<'w> {
         for (picture, publisher) in self.contest.pictures().to_vec().into_iter().zip(&self.pictures) {
             publisher.send(&game::Picture { over: true, ..picture })?;
         }
-        let frame = game::message::Frame { over: true, ..self.contest.frame() };
+        let frame = game::message::Frame { over: true, ..self.contest.frame(&mut self.shown) };
         self.frames.send(&frame)?;
         // Real boats hold from now on, also where the game is cut short.
         (0..self.external_orders.len()).try_for_each(|boat| self.send_order(boat, Order::Hold))?;
@@ -372,12 +371,9 @@ impl<'w> GameServer<'w> {
         let open = (self.contest.decision(), self.timing);
         let Accepted { orders, back } = agents::accept(&mut self.agents, &message, open, &mut self.refusals);
         back.into_iter().for_each(|vehicle| self.contest.regain_agent(vehicle));
-        let Stamp { valid_ns, .. } = message.stamp;
-        // An order cannot be fresher than the newest picture.
-        let given = valid_ns.min(self.contest.now());
         for (vehicle, order) in orders {
-            self.contest.order(vehicle, order);
-            self.ordered_at[vehicle.index()] = given;
+            let taken = self.contest.order(vehicle, order, message.stamp.valid_ns);
+            self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
             self.heard[vehicle.index()] = clock::now();
             self.pass_on_now(vehicle);
         }

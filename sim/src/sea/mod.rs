@@ -32,7 +32,8 @@ pub use wind::WindField;
 use crate::hull::{HullModel, Planar};
 use game::boat::{Drive, Windage};
 use game::frame::{Body, Ned, Pose, Rotation};
-use game::{Boat, Scenario, SimTime};
+use game::sea::Sea;
+use game::{Boat, Field, SimTime};
 
 /// Propellers are this share of the length astern of midships.
 const PROPELLER_ASTERN: f64 = 0.4;
@@ -103,26 +104,25 @@ pub struct SeaForcing {
 }
 
 impl SeaModel {
-    /// The sea of this scenario in the game that `seed` chooses.
+    /// This sea over this field, for these kinds of boat and ticks of this length, with the randomness that `seed` chooses.
     #[must_use]
-    pub fn new(scenario: &Scenario, seed: u64) -> SeaModel {
-        let sea = &scenario.sea;
+    pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seed: u64) -> SeaModel {
         let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seed));
-        let highest = scenario.boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
+        let highest = boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
         // Wind of no speed is no wind, whatever the boat makes by its own way.
         let wind = sea.wind.as_ref().filter(|wind| wind.speed_10m_m_s > 0.0);
-        let wind = wind.map(|wind| WindField::new(wind, highest, &scenario.field, seed));
+        let wind = wind.map(|wind| WindField::new(wind, highest, field, seed));
         let mut model = SeaModel {
-            current: CurrentField::new(&sea.current, &scenario.field, seed),
+            current: CurrentField::new(&sea.current, field, seed),
             shapes: vec![],
             submergences: vec![],
             kinds: vec![],
-            half_tick: SimTime(scenario.tick.0 / 2),
-            half_s: 0.5 * scenario.tick.as_s(),
+            half_tick: SimTime(tick.0 / 2),
+            half_s: 0.5 * tick.as_s(),
             waves,
             wind,
         };
-        for boat in &scenario.boats {
+        for boat in boats {
             let kind = Kind {
                 submergence: model.submergence_of(boat),
                 length_m: boat.length_m,

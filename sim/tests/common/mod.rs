@@ -2,9 +2,9 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use game::field::Obstacle;
-use game::{Ned, Pose, Scenario};
+use game::{Ned, Order, Pose, Scenario, VehicleId};
 use sim::hull::{HullModel, Planar};
-use sim::{State, World};
+use sim::{Contest, State, World};
 use std::path::{Path, PathBuf};
 
 /// The shipped scenarios.
@@ -64,9 +64,39 @@ pub(crate) fn among(boat: &str, obstacles: Vec<Obstacle>) -> Scenario {
 pub(crate) fn set(world: &mut World, change: impl FnOnce(&mut State)) {
     let mut state = world.state().clone();
     change(&mut state);
-    // Bytes 5 to 13 of a snapshot mark its scenario.
-    let mark: [u8; 8] = world.snapshot()[5..13].try_into().expect("a snapshot has a head");
-    world.restore(&state.snapshot(u64::from_le_bytes(mark))).expect("it has its own mark");
+    world.set_state(state);
+}
+
+/// Changes the state of a contest's world from outside.
+pub(crate) fn set_in(contest: &mut Contest, change: impl FnOnce(&mut State)) {
+    // Name and version, mark of the scenario, checksum; then the world comes first.
+    let snapshot = contest.snapshot();
+    let (head, body) = (&snapshot[..13], &snapshot[21..]);
+    let (mut state, rest) = postcard::take_from_bytes::<State>(body).expect("a snapshot begins with the world");
+    change(&mut state);
+    let body = [&postcard::to_stdvec(&state).expect("plain numbers"), rest].concat();
+    let checksum = xxhash_rust::xxh3::xxh3_64(&body).to_le_bytes();
+    contest.restore(&[head, &checksum, &body].concat()).expect("it has its own mark");
+}
+
+/// 128 bits over a world's state.
+pub(crate) fn digest(world: &World) -> u128 {
+    xxhash_rust::xxh3::xxh3_128(&postcard::to_stdvec(world.state()).expect("plain numbers"))
+}
+
+/// How many pairs of boats have come within the rules' collision distance since `touching` was noted.
+pub(crate) fn came_together(world: &World, scenario: &Scenario, touching: &mut Vec<(u16, u16)>) -> usize {
+    let distance_m = scenario.rules.collision_distance_m;
+    let near = world.pairs().iter().filter(|pair| pair.distance_squared < distance_m * distance_m);
+    let now: Vec<(u16, u16)> = near.map(|pair| (pair.a, pair.b)).collect();
+    let new = now.iter().filter(|pair| !touching.contains(pair)).count();
+    *touching = now;
+    new
+}
+
+/// Orders a vehicle, in answer to the open picture.
+pub(crate) fn order(contest: &mut Contest, vehicle: VehicleId, order: Order) {
+    contest.order(vehicle, order, contest.now()).expect("sound numbers");
 }
 
 /// Puts a boat somewhere (x east, y north), pointing somewhere, with a velocity.

@@ -1,0 +1,399 @@
+//! A game being played: the world, the referee, the orders in force, and everything that has happened.
+//!
+//! One decision goes: [`Contest::pictures`] to the agents, [`Contest::order`] from them, [`Contest::advance`]. The
+//! network node and the in-process arena do just that and nothing else, so a game is the same bytes in both. The world
+//! is physics alone: what a boat does in a tick is worked out in [`Contest::effective_command`].
+
+mod order;
+mod snapshot;
+mod state;
+
+pub use snapshot::RestoreError;
+
+use crate::external::{self, BadReport, Track};
+use crate::hull::Planar;
+use crate::radio::Radio;
+use crate::sighting::Sightings;
+use crate::spawn::NoStart;
+use crate::view::Scene;
+use crate::world::World;
+use game::boat::Drive;
+use game::event::{EventCursor, Logged};
+use game::input::Input;
+use game::message::Frame;
+use game::outcome::{Outcome, Played};
+use game::picture::Nav;
+use game::rules::{Notes, Referee};
+use game::scenario::Source;
+use game::stream::Stream;
+use game::{Event, Order, Picture, Scenario, SimTime, VehicleId};
+use state::{ContestState, OrderInForce};
+
+/// A game being played.
+pub struct Contest {
+    scenario: Scenario,
+    referee: Referee,
+    /// After how long without an order each vehicle's thrusters stop.
+    watchdogs: Vec<Option<SimTime>>,
+    world: World,
+    radio: Option<Radio>,
+    sightings: Option<Sightings>,
+    state: ContestState,
+    work: Work,
+    /// Marks snapshots.
+    scenario_mark: u64,
+    /// What was given since somebody last asked, where somebody wants to know.
+    given: Option<Vec<Input>>,
+}
+
+/// Memory that is used again every tick, and holds nothing from one to the next.
+#[derive(Default)]
+struct Work {
+    commands: Vec<Order>,
+    notes: Notes,
+    events: Vec<Event>,
+}
+
+impl Contest {
+    /// The game of `scenario` that `seed` chooses, at its start.
+    ///
+    /// # Errors
+    /// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
+    pub fn new(scenario: &Scenario, seed: u64) -> Result<Contest, NoStart> {
+        let scenario = scenario.of_seed(seed)?;
+        let world = World::of_game(&scenario, seed)?;
+        let team_of = scenario.vehicles.iter().map(|vehicle| vehicle.team).collect();
+        let referee = Referee::new(scenario.rules.clone(), scenario.field.clone(), team_of);
+        let standing = referee.start(&mut Stream::new(seed, "power_play"));
+        let count = scenario.vehicles.len();
+        let scene = Scene { scenario: &scenario, world: &world, standing: &standing, decision: 0 };
+        let known = (0..count).map(|i| scene.own_boat(i)).collect();
+        let pictures = (0..scenario.teams.len()).map(|team| Picture { team: team as u8, ..Picture::default() });
+        let is_external = |source| source == Source::External;
+        let state = ContestState {
+            decision: 0,
+            standing,
+            orders: vec![OrderInForce::default(); count],
+            agent_lost: vec![false; count],
+            e_stopped: false,
+            halted: false,
+            tracks: scenario.vehicles.iter().map(|v| is_external(v.source).then(Track::default)).collect(),
+            known,
+            events: Vec::new(),
+            pictured: EventCursor::default(),
+            pictured_for: None,
+            pictures: pictures.collect(),
+        };
+        Ok(Contest {
+            radio: Radio::new(&scenario),
+            sightings: Sightings::new(&scenario),
+            watchdogs: (0..count).map(|i| watchdog(&scenario, VehicleId::at(i))).collect(),
+            referee,
+            world,
+            state,
+            work: Work::default(),
+            scenario_mark: snapshot::mark(&scenario),
+            given: None,
+            scenario,
+        })
+    }
+
+    /// What is played, with the seed of this game.
+    #[must_use]
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// The world.
+    #[must_use]
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The decision tick that is open.
+    #[must_use]
+    pub fn decision(&self) -> u64 {
+        self.state.decision
+    }
+
+    /// Simulated time.
+    #[must_use]
+    pub fn now(&self) -> SimTime {
+        self.world.state().now
+    }
+
+    /// Whether the game is over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.state.standing.over
+    }
+
+    /// Points, by team.
+    #[must_use]
+    pub fn score(&self) -> &[u32] {
+        &self.state.standing.score
+    }
+
+    /// Everything that has happened so far.
+    #[must_use]
+    pub fn events(&self) -> &[Logged] {
+        &self.state.events
+    }
+
+    /// What each team knows at the open decision, by team: the same whenever it is asked. Each event is in the pictures of
+    /// one decision.
+    pub fn pictures(&mut self) -> &[Picture] {
+        if self.state.pictured_for != Some(self.state.decision) {
+            self.state.pictured_for = Some(self.state.decision);
+            self.note(Input::Pictured);
+            self.gather();
+            let Contest { scenario, world, sightings, state, .. } = self;
+            let ContestState { standing, decision, known, events, pictured, pictures, .. } = state;
+            let scene = Scene { scenario, world, standing, decision: *decision };
+            let new = pictured.read(events);
+            for picture in pictures {
+                scene.picture(known, sightings.as_ref(), new, picture);
+            }
+        }
+        &self.state.pictures
+    }
+
+    /// The pictures as [`Contest::pictures`] last made them.
+    #[must_use]
+    pub fn last_pictures(&self) -> &[Picture] {
+        &self.state.pictures
+    }
+
+    /// The picture of a vehicle's team, as [`Contest::pictures`] last made it.
+    #[must_use]
+    pub fn picture_of(&self, vehicle: VehicleId) -> &Picture {
+        &self.state.pictures[self.scenario.team_of(vehicle).index()]
+    }
+
+    /// The truth, with the events since `cursor`.
+    pub fn frame(&self, cursor: &mut EventCursor) -> Frame {
+        let ContestState { standing, decision, events, .. } = &self.state;
+        let scene = Scene { scenario: &self.scenario, world: &self.world, standing, decision: *decision };
+        let mut frame = scene.frame(cursor.read(events));
+        for (i, truth) in frame.vehicles.iter_mut().enumerate() {
+            truth.agent_lost = self.state.agent_lost[i];
+            truth.nav_lost = self.state.tracks[i].as_ref().is_some_and(|track| track.is_lost(self.now()));
+        }
+        frame.stopped = self.state.e_stopped || self.state.halted;
+        frame
+    }
+
+    /// From now on, keeps what it is given, for [`Contest::take_inputs`].
+    pub fn keep_inputs(&mut self) {
+        self.given.get_or_insert_default();
+    }
+
+    /// Everything that was given since this was asked last, in order.
+    pub fn take_inputs(&mut self) -> Vec<Input> {
+        self.given.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    fn note(&mut self, input: Input) {
+        if let Some(given) = &mut self.given {
+            given.push(input);
+        }
+    }
+
+    /// Gives what was once given, as it is recorded. What was refused then is refused again.
+    pub fn give(&mut self, input: Input) {
+        match input {
+            Input::Pictured => drop(self.pictures()),
+            Input::Ordered { vehicle, order, given_at } => drop(self.order(vehicle, order, given_at)),
+            Input::Held { vehicle } => self.hold(vehicle),
+            Input::AgentLost { vehicle } => self.lose_agent(vehicle),
+            Input::AgentBack { vehicle } => self.regain_agent(vehicle),
+            Input::Reported { vehicle, nav, fix_at, valid } => drop(self.report(vehicle, nav, fix_at, valid)),
+            Input::EStopped(stopped) => self.e_stop(stopped),
+            Input::Halted(halted) => self.halt(halted),
+            Input::Played => self.advance(),
+        }
+    }
+
+    /// Takes in where a real boat was at `fix_at`: at most a decision ahead of the game, since reports come while one is
+    /// open. What its gateway calls not `valid` changes nothing.
+    ///
+    /// # Errors
+    /// [`BadReport`] for numbers that no boat has, and for a simulated boat; nothing changes then.
+    pub fn report(&mut self, vehicle: VehicleId, nav: Nav, fix_at: SimTime, valid: bool) -> Result<(), BadReport> {
+        let now = self.now();
+        let track = self.state.tracks[vehicle.index()].as_mut().ok_or(BadReport::Simulated)?;
+        let nav = external::sound(nav)?;
+        if valid {
+            track.update(nav, fix_at.min(now + self.scenario.decision()));
+            let estimate = track.estimate(now);
+            estimate.into_iter().for_each(|(pose, nu)| self.world.set_under_way(vehicle, pose, nu));
+        }
+        self.note(Input::Reported { vehicle, nav, fix_at, valid });
+        Ok(())
+    }
+
+    /// Whether it is known where a boat is, or once was: a real one by a report, a simulated one always.
+    #[must_use]
+    pub fn has_position(&self, vehicle: VehicleId) -> bool {
+        self.state.tracks[vehicle.index()].as_ref().is_none_or(Track::has_fix)
+    }
+
+    /// Real boats without a fix for too long lie still, and are lost.
+    fn watch_real_boats(&mut self) {
+        let now = self.now();
+        for i in 0..self.state.tracks.len() {
+            let (vehicle, Some(track)) = (VehicleId::at(i), &mut self.state.tracks[i]) else { continue };
+            let (estimate, event) = (track.estimate(now), track.event(vehicle, now));
+            if let Some((pose, nu)) = estimate.filter(|(_, nu)| *nu == Planar::default())
+                && self.world.state().boats[i].nu != nu
+            {
+                self.world.set_under_way(vehicle, pose, nu);
+            }
+            event.into_iter().for_each(|event| self.log(event));
+        }
+    }
+
+    /// Boats look round and report.
+    fn gather(&mut self) {
+        let Contest { scenario, world, radio, sightings, state, .. } = self;
+        let ContestState { standing, decision, known, tracks, .. } = state;
+        let (decision, now) = (*decision, world.state().now);
+        let scene = Scene { scenario, world, standing, decision };
+        if let Some(sightings) = sightings {
+            let oldest = radio.as_ref().map_or(decision, Radio::oldest_report);
+            sightings.look(decision, oldest, (0..tracks.len()).map(|i| scene.contact(i)));
+        }
+        for (i, (known, track)) in known.iter_mut().zip(tracks).enumerate() {
+            let mut report = scene.own_boat(i);
+            let mut take = |sent: u64| {
+                if let Some(sightings) = sightings {
+                    sightings.take(i, sent);
+                }
+            };
+            match (radio.as_mut(), track) {
+                (Some(radio), None) => {
+                    radio.send_report(i, report, world.state().boats[i].pose.at, now);
+                    if let Some(newest) = radio.report(i, now, take) {
+                        *known = newest;
+                    }
+                }
+                (_, track) => {
+                    if let Some(track) = track {
+                        track.put_fix(&mut report);
+                    }
+                    take(decision);
+                    *known = report;
+                }
+            }
+        }
+    }
+
+    /// A vehicle's agent is lost: it holds as by [`Contest::hold`], and that is an event. Does nothing if it is lost
+    /// already.
+    pub fn lose_agent(&mut self, vehicle: VehicleId) {
+        if !std::mem::replace(&mut self.state.agent_lost[vehicle.index()], true) {
+            self.note(Input::AgentLost { vehicle });
+            self.hold_now(vehicle.index());
+            self.log(Event::AgentLost { vehicle });
+        }
+    }
+
+    /// A vehicle's agent is there again: what was sent before does not arrive. Does nothing if it was not lost.
+    pub fn regain_agent(&mut self, vehicle: VehicleId) {
+        if std::mem::replace(&mut self.state.agent_lost[vehicle.index()], false) {
+            self.note(Input::AgentBack { vehicle });
+            self.recall_orders(vehicle.index());
+            self.log(Event::AgentBack { vehicle });
+        }
+    }
+
+    /// Makes all boats hold, or lets them go on: an event, if that is another state than before.
+    pub fn e_stop(&mut self, stopped: bool) {
+        if std::mem::replace(&mut self.state.e_stopped, stopped) != stopped {
+            self.note(Input::EStopped(stopped));
+            self.log(if stopped { Event::EStopped } else { Event::Released });
+        }
+    }
+
+    /// Makes all boats hold for now, or lets them go on where nobody has stopped them: an event, if that is another state
+    /// than before.
+    pub fn halt(&mut self, halted: bool) {
+        if std::mem::replace(&mut self.state.halted, halted) != halted {
+            self.note(Input::Halted(halted));
+            self.log(if halted { Event::Halted } else { Event::WentOn });
+        }
+    }
+
+    /// Plays until the next decision, or the end of the game.
+    pub fn advance(&mut self) {
+        self.expire_orders();
+        for _ in 0..self.scenario.ticks_per_decision {
+            if self.is_over() {
+                break;
+            }
+            self.deliver_orders();
+            self.watch_real_boats();
+            self.step();
+        }
+        self.state.decision += 1;
+        self.note(Input::Played);
+        if let Some(radio) = &mut self.radio {
+            radio.open_next();
+        }
+        self.assert_sound();
+    }
+
+    /// One tick: boats move, the referee looks and has boats set back, sensors are read where a decision is next.
+    fn step(&mut self) {
+        let mut commands = std::mem::take(&mut self.work.commands);
+        commands.clear();
+        commands.extend((0..self.state.orders.len()).map(|i| self.effective_command(VehicleId::at(i))));
+        let Contest { scenario, referee, world, state, work: Work { notes, events, .. }, .. } = self;
+        let standing = &mut state.standing;
+        events.clear();
+        for vehicle in world.step(&commands) {
+            events.push(Event::Quarantined { vehicle: *vehicle });
+            referee.retire(standing, *vehicle, events);
+        }
+        let (boats, now) = (&world.state().boats, world.state().now);
+        referee.advance(standing, notes, &|i| boats[i].pose.at, world.pairs(), now, events);
+        world.set_back(|vehicle, at| referee.keepout(standing, vehicle, at));
+        let tick = world.state().tick;
+        if tick.is_multiple_of(u64::from(scenario.ticks_per_decision)) {
+            world.read_sensors();
+        }
+        state.events.extend(events.iter().map(|event| Logged { tick, at: now, event: *event }));
+        self.work.commands = commands;
+    }
+
+    /// How the game stands or ended.
+    ///
+    /// # Panics
+    /// If the score is not what the events add up to.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        self.assert_score();
+        Outcome::new(&Played {
+            scenario: &self.scenario,
+            digest: self.digest(),
+            ticks: self.world.state().tick,
+            score: self.score(),
+            events: &self.state.events,
+        })
+    }
+
+    fn log(&mut self, event: Event) {
+        let state = self.world.state();
+        self.state.events.push(Logged { tick: state.tick, at: state.now, event });
+    }
+}
+
+/// After how long without a new order a vehicle's thrusters stop.
+fn watchdog(scenario: &Scenario, vehicle: VehicleId) -> Option<SimTime> {
+    match &scenario.boat_of(vehicle).drive {
+        // A real boat has one of its own.
+        _ if scenario.vehicles[vehicle.index()].source == Source::External => None,
+        Drive::Thrusters { thruster, .. } => thruster.flaws.watchdog_s.map(SimTime::from_s),
+        Drive::Kinematic(_) => None,
+    }
+}

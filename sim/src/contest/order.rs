@@ -1,0 +1,125 @@
+//! Orders: taken, delivered, expired; and what the rules make of the one in force.
+
+use super::Contest;
+use super::state::OrderInForce;
+use game::input::Input;
+use game::order::BadOrder;
+use game::rules::Directive;
+use game::{Order, SimTime, VehicleId};
+
+impl Contest {
+    /// Sends an order to a vehicle: it is in force from when it arrives until the next one does, or until it expires. To a
+    /// real boat it goes over a real link, and none of ours. `given_at` is the time of the picture that it answers; it
+    /// cannot be later than now.
+    ///
+    /// # Errors
+    /// [`BadOrder`] for numbers that no boat can follow: the vehicle is ordered to hold.
+    pub fn order(&mut self, vehicle: VehicleId, order: Order, given_at: SimTime) -> Result<(), BadOrder> {
+        let checked = order.check();
+        let (order, i, now) = (checked.unwrap_or_default(), vehicle.index(), self.now());
+        let given_at = given_at.min(now);
+        self.note(Input::Ordered { vehicle, order, given_at });
+        let in_force = &mut self.state.orders[i];
+        in_force.given_at = given_at;
+        match &mut self.radio {
+            Some(radio) if self.state.tracks[i].is_none() => {
+                radio.send_order(i, order, self.world.state().boats[i].pose.at, now);
+            }
+            _ => (in_force.order, in_force.arrived_at) = (order, now),
+        }
+        checked.map(drop)
+    }
+
+    /// The order in force for a vehicle: the last one that has arrived and has not expired.
+    #[must_use]
+    pub fn order_in_force(&self, vehicle: VehicleId) -> Order {
+        self.state.orders[vehicle.index()].order
+    }
+
+    /// The time of the picture that the newest order for a vehicle answers.
+    #[must_use]
+    pub fn given_at(&self, vehicle: VehicleId) -> SimTime {
+        self.state.orders[vehicle.index()].given_at
+    }
+
+    /// What a vehicle does: its order in force, after what the rules and people ashore make of it. Driven home it is a
+    /// course at the speed that the rules allow, and a limit of speed also scales thrust. A real boat holds while it is
+    /// lost, while its agent is, once its order has expired, and when the game is over: whatever the rules want of it,
+    /// somebody must be looking.
+    #[must_use]
+    pub fn effective_command(&self, vehicle: VehicleId) -> Order {
+        let i = vehicle.index();
+        if self.state.e_stopped || self.state.halted || self.real_boat_holds(i) {
+            return Order::Hold;
+        }
+        let at = self.world.state().boats[i].pose.at;
+        let speed_max_m_s = self.scenario.boat_of(vehicle).speed_max_m_s();
+        match self.referee.directive(&self.state.standing, vehicle, at) {
+            Directive::Hold => Order::Hold,
+            Directive::DrivenHome { to, speed_factor } => {
+                Order::Steer { heading_rad: at.bearing_rad(to), speed_m_s: speed_factor * speed_max_m_s }
+            }
+            Directive::Free { speed_factor } => match self.state.orders[i].order {
+                Order::Hold => Order::Hold,
+                Order::Steer { heading_rad, speed_m_s } => {
+                    Order::Steer { heading_rad, speed_m_s: speed_m_s.min(speed_factor * speed_max_m_s) }
+                }
+                Order::Thrust { port, starboard } => {
+                    Order::Thrust { port: speed_factor * port, starboard: speed_factor * starboard }
+                }
+            },
+        }
+    }
+
+    fn real_boat_holds(&self, i: usize) -> bool {
+        let Some(track) = &self.state.tracks[i] else { return false };
+        track.is_lost(self.now()) || self.state.agent_lost[i] || self.is_over() || self.is_expired(i)
+    }
+
+    /// Makes a vehicle hold at once, whatever it was ordered: nothing of it goes over the air, and orders under way do not
+    /// arrive any more.
+    pub fn hold(&mut self, vehicle: VehicleId) {
+        self.note(Input::Held { vehicle });
+        self.hold_now(vehicle.index());
+    }
+
+    pub(super) fn hold_now(&mut self, i: usize) {
+        self.state.orders[i].order = Order::Hold;
+        self.recall_orders(i);
+    }
+
+    /// Orders under way to a vehicle do not arrive any more.
+    pub(super) fn recall_orders(&mut self, i: usize) {
+        if let Some(radio) = &mut self.radio {
+            radio.recall_orders(i);
+        }
+    }
+
+    /// Orders expire: a vehicle whose newest one answers a picture that is older than the scenario's time to live holds.
+    pub(super) fn expire_orders(&mut self) {
+        for i in 0..self.state.orders.len() {
+            if self.is_expired(i) {
+                self.hold_now(i);
+            }
+        }
+    }
+
+    fn is_expired(&self, i: usize) -> bool {
+        (self.now() - self.state.orders[i].given_at).as_s() > self.scenario.order_ttl_s
+    }
+
+    /// Orders arrive; the thrusters of boats that none has reached for too long stop by their own watchdogs.
+    pub(super) fn deliver_orders(&mut self) {
+        let now = self.now();
+        for (i, in_force) in self.state.orders.iter_mut().enumerate() {
+            if let Some(order) = self.radio.as_mut().and_then(|radio| radio.order(i, now))
+                && !self.state.agent_lost[i]
+            {
+                *in_force = OrderInForce { order, arrived_at: now, ..*in_force };
+            }
+            if self.watchdogs[i].is_some_and(|limit| now > in_force.arrived_at + limit) {
+                in_force.order = Order::Hold;
+            }
+        }
+    }
+}
