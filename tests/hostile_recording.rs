@@ -29,8 +29,8 @@ fn bytes_of(turns: Vec<Turn>) -> Vec<u8> {
     let heard = |topic: &str, schema, bytes| Note::Heard { topic: topic.to_owned(), schema, bytes, at: SimTime(1) };
     let stamp = Stamp { version: LinkBytes::VERSION, ..Stamp::default() };
     let link = LinkBytes { stamp, vehicle: VehicleId(0), outward: false, data: b"$GPRMC,1*00\r\n$PSE".to_vec() };
-    let trips = vec![FailsafeReport { at_s: 1.0, cause: "link down".to_owned() }];
-    let status = GatewayStatus { trips, ..GatewayStatus::default() };
+    let failsafes = vec![FailsafeReport { at_s: 1.0, cause: "link down".to_owned() }];
+    let status = GatewayStatus { failsafes, ..GatewayStatus::default() };
     let notes = turns.into_iter().map(|turn| Note::Turn(Box::new(turn))).chain([
         heard("link/blue_one", Some(LinkBytes::SCHEMA), game::codec::encode(&link)),
         heard("status/blue_one", None, serde_json::to_vec(&status).expect("JSON")),

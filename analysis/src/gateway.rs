@@ -14,7 +14,7 @@ pub struct Gateway {
     /// The supervisor's state, as it was told last.
     pub state: Option<String>,
     /// What made it stop, oldest first.
-    pub trips: Vec<FailsafeReport>,
+    pub failsafes: Vec<FailsafeReport>,
     /// What came from the boat.
     pub from_boat: Traffic,
     /// What went to the boat.
@@ -66,13 +66,13 @@ fn traffic(recording: &Recording, topic: &str, gateway: &mut Gateway) -> Result<
     Ok(())
 }
 
-/// Each status tells the trips so far, and a gateway that was started anew begins again: every trip is taken once.
+/// Each status tells the failsafes so far, and a gateway that was started anew begins again: every failsafe is taken once.
 fn told(recording: &Recording, topic: &str, gateway: &mut Gateway) {
     for said in recording.on(topic) {
         let Ok(status) = serde_json::from_slice::<GatewayStatus>(said.bytes) else { continue };
-        for trip in status.trips {
-            if !gateway.trips.contains(&trip) {
-                gateway.trips.push(trip);
+        for failsafe in status.failsafes {
+            if !gateway.failsafes.contains(&failsafe) {
+                gateway.failsafes.push(failsafe);
             }
         }
         gateway.state = Some(status.state);

@@ -94,10 +94,10 @@ fn link(outward: bool, data: &[u8]) -> Note {
     Note::Heard { topic: "link/blue_one".to_owned(), schema: Some(LinkBytes::SCHEMA), bytes, at: SimTime(250_000_000) }
 }
 
-fn status(trips: &[&str]) -> Note {
-    let trip = |cause: &&str| FailsafeReport { at_s: 1.0, cause: (*cause).to_owned() };
-    let trips = trips.iter().map(trip).collect();
-    let status = GatewayStatus { state: "armed".to_owned(), trips, ..GatewayStatus::default() };
+fn status(failsafes: &[&str]) -> Note {
+    let failsafe = |cause: &&str| FailsafeReport { at_s: 1.0, cause: (*cause).to_owned() };
+    let failsafes = failsafes.iter().map(failsafe).collect();
+    let status = GatewayStatus { state: "armed".to_owned(), failsafes, ..GatewayStatus::default() };
     let bytes = serde_json::to_vec(&status).expect("JSON");
     Note::Heard { topic: "status/blue_one".to_owned(), schema: None, bytes, at: SimTime(200_000_000) }
 }
@@ -146,14 +146,14 @@ fn a_summary_has_the_figures_of_the_game() {
 }
 
 #[test]
-fn a_gateway_is_told_by_its_bytes_and_trips() {
+fn a_gateway_is_known_by_its_bytes_and_failsafes() {
     let (summary, _) = Summary::of(&recording()).expect("it is whole");
     let [gateway] = summary.gateways.as_slice() else { panic!("{:?}", summary.gateways) };
     assert_eq!((gateway.boat.as_str(), gateway.state.as_deref()), ("blue_one", Some("armed")));
     assert_eq!((gateway.from_boat.bytes, gateway.to_boat.bytes), (26, 15));
     let kinds: Vec<(&str, u64)> = gateway.from_boat.sentences.iter().map(|(kind, n)| (kind.as_str(), *n)).collect();
     assert_eq!(kinds, [("GPRMC", 1), ("PSEAA", 1)]);
-    let causes: Vec<&str> = gateway.trips.iter().map(|trip| trip.cause.as_str()).collect();
+    let causes: Vec<&str> = gateway.failsafes.iter().map(|failsafe| failsafe.cause.as_str()).collect();
     assert_eq!(causes, ["link down", "no orders"]);
 }
 
@@ -203,7 +203,7 @@ fn every_topic_is_a_table() {
     assert!(picture[1].starts_with("0,0,own,blue_one,0,13,4,"), "{}", picture[1]);
     assert!(picture[2].starts_with("0,0,contact,red_one,0.05,1,2,0.5,,,,0.25,0,true,"), "{}", picture[2]);
     let status = table(&recording, "status/blue_one");
-    assert!(status[0].contains(",trips.1.cause,") && status[3].contains(",no orders,"), "{status:?}");
+    assert!(status[0].contains(",failsafes.1.cause,") && status[3].contains(",no orders,"), "{status:?}");
 }
 
 #[test]

@@ -1,9 +1,9 @@
-//! What the sim and the gateway of a real boat tell each other.
+//! The messages between the sim, the gateway of a real boat, and its operators.
 //!
 //! A vehicle whose scenario says `source = "external"` has no physics: its gateway reports where it is
-//! ([`NavReport`]), and the sim, which knows whose orders count and what the referee lets the boat do, passes on what it
-//! is to do ([`ExternalOrder`]). What people ask of a gateway ([`OperatorCommand`]) and what it tells of itself
-//! ([`GatewayStatus`]) is JSON.
+//! ([`NavReport`]), and the sim, which knows whose orders count and what the referee lets the boat do, sends the effective
+//! command ([`ExternalOrder`]). Commands of operators ([`OperatorCommand`]) and the status of a gateway
+//! ([`GatewayStatus`]) are JSON.
 
 use crate::id::VehicleId;
 use crate::message::{Message, Stamp, VehicleOrder};
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// Where a real boat is, from its gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NavReport {
-    /// Time: that of the game as the gateway last heard it. Number: counts the reports.
+    /// Time: that of the game as the gateway last received it. Number: counts the reports.
     pub stamp: Stamp,
     /// The ticket that the sim gave when the gateway joined.
     pub ticket: u64,
@@ -33,7 +33,7 @@ pub struct NavReport {
 pub struct ExternalOrder {
     /// Time and decision of the game.
     pub stamp: Stamp,
-    /// The time of the picture that the mind answered with this: it grows as long as somebody thinks.
+    /// The time of the picture that the agent answered with this: it grows as long as the agent decides.
     pub given_ns: SimTime,
     /// The order, as far as the referee lets the boat follow it.
     pub order: VehicleOrder,
@@ -60,7 +60,7 @@ impl Message for ExternalOrder {
 /// Bytes between a gateway and its boat.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinkBytes {
-    /// Time: that of the game as the gateway last heard it. Number: counts these messages.
+    /// Time: that of the game as the gateway last received it. Number: counts these messages.
     pub stamp: Stamp,
     /// The boat.
     pub vehicle: VehicleId,
@@ -79,11 +79,11 @@ impl Message for LinkBytes {
     }
 }
 
-/// What a person asks of a gateway.
+/// An operator's command to a gateway.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OperatorCommand {
-    /// How are you?
+    /// Return the status.
     Status,
     /// Follow orders from now on, if everything that this needs is there.
     Arm,
@@ -93,11 +93,11 @@ pub enum OperatorCommand {
     EStop,
     /// The E-stop is over; the boat stays safed.
     Release,
-    /// Hold the position by the boat's own means.
+    /// Hold the position by the boat's own controller.
     StationKeep,
-    /// Go to the emergency recovery point by the boat's own means.
+    /// Go to the emergency recovery point by the boat's own controller.
     GoToErp,
-    /// Take up a mission and sail it by the boat's own means.
+    /// Upload a mission and sail it by the boat's own controller.
     Mission(Mission),
 }
 
@@ -112,16 +112,16 @@ pub struct Mission {
     pub waypoints: Vec<[f64; 2]>,
 }
 
-/// What a gateway answers a person.
+/// A gateway's reply to an operator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OperatorReply {
-    /// Why it does not do what was asked.
+    /// Why the command was refused.
     pub refused: Option<String>,
-    /// How it is now.
+    /// The status now.
     pub status: GatewayStatus,
 }
 
-/// How a gateway and its boat are.
+/// The status of a gateway and its boat.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GatewayStatus {
     /// The boat.
@@ -132,13 +132,14 @@ pub struct GatewayStatus {
     pub link: String,
     /// The supervisor's state.
     pub state: String,
-    /// What keeps it from being armed, in words.
+    /// What is missing for arming, in words.
     pub missing: Vec<String>,
-    /// What made it stop, newest last.
-    pub trips: Vec<FailsafeReport>,
-    /// Control mode that the boat says it is in: the Surveyor's letter.
+    /// The failsafes so far, newest last. Recordings of earlier versions call them trips.
+    #[serde(alias = "trips")]
+    pub failsafes: Vec<FailsafeReport>,
+    /// The control mode that the boat reports: the Surveyor's letter.
     pub mode: Option<char>,
-    /// Who the boat says is in control.
+    /// Who the boat reports is in control.
     pub operator: Option<String>,
     /// Navigation, if there is any.
     pub nav: Option<Nav>,
@@ -155,11 +156,11 @@ pub struct GatewayStatus {
     pub latency_us: [Option<[f64; 2]>; 2],
 }
 
-/// One time that a boat was stopped.
+/// A failsafe: the boat was stopped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FailsafeReport {
     /// Time since the gateway began, s.
     pub at_s: f64,
-    /// Why, in words.
+    /// The cause, in words.
     pub cause: String,
 }

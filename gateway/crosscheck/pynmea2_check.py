@@ -44,7 +44,7 @@ def date_text(date):
 
 
 def proprietary(msg):
-    """What a PSEAx says: pynmea2 has the letter and the fields, and no names."""
+    """The values of a PSEAx: pynmea2 has the letter and the fields, and no names."""
     kind, *fields = msg.data
     names = {
         "C": "mode heading thrust difference words",
@@ -103,7 +103,7 @@ def values_of(msg):
 
 
 def compare(ours, theirs, wire):
-    """Fails unless both say the same; `ours` are texts."""
+    """Fails unless both have the same values; `ours` are texts."""
     assert ours.keys() == theirs.keys(), (sorted(ours), sorted(theirs), wire)
     for name, text in ours.items():
         value = theirs[name]
@@ -123,9 +123,9 @@ def pairs(text):
     return dict(pair.split("=", 1) for pair in text.split("\t"))
 
 
-def listen(peer, wires):
+def read_back(peer, wires):
     answers = subprocess.run(
-        [peer, "listen"], input="".join(wire + "\n" for wire in wires), capture_output=True, text=True, check=True
+        [peer, "read"], input="".join(wire + "\n" for wire in wires), capture_output=True, text=True, check=True
     ).stdout.splitlines()
     assert len(answers) == len(wires), (len(answers), len(wires))
     return answers
@@ -154,12 +154,12 @@ def foreign(dice):
 
 
 def main(peer):
-    spoken = subprocess.run([peer, "speak"], capture_output=True, text=True, check=True).stdout.splitlines()
+    written = subprocess.run([peer, "write"], capture_output=True, text=True, check=True).stdout.splitlines()
     kinds, rendered = {}, []
-    for line in spoken:
-        wire, said = line.split("\t", 1)
+    for line in written:
+        wire, text = line.split("\t", 1)
         msg = pynmea2.parse(wire, check=True)
-        compare(pairs(said), values_of(msg), wire)
+        compare(pairs(text), values_of(msg), wire)
         assert str(msg) == wire, (str(msg), wire)
         rendered.append((str(msg), values_of(msg)))
         kind = wire[1:6] if wire.startswith("$P") else wire[3:6]
@@ -171,7 +171,7 @@ def main(peer):
     dice = random.Random(seed)
     for _ in range(200):
         rendered.extend((str(msg), values_of(pynmea2.parse(str(msg), check=True))) for msg in foreign(dice))
-    for (wire, values), answer in zip(rendered, listen(peer, [wire for wire, _ in rendered])):
+    for (wire, values), answer in zip(rendered, read_back(peer, [wire for wire, _ in rendered])):
         assert "=" in answer, f"{wire}: {answer}"
         compare(pairs(answer), values, wire)
     print(f"we read what pynmea2 renders: {len(rendered)} sentences (seed {seed})")

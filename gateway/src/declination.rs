@@ -21,8 +21,8 @@ pub enum DeclinationError {
     /// The model does not hold then.
     #[error("the magnetic model does not know {}-{:02}-{:02}, expected a date from 2025 to 2029", .0.year, .0.month, .0.day)]
     Date(Date),
-    /// Not a place on earth.
-    #[error("{}, {} is no place on earth, expected latitude -90 to 90 and longitude -180 to 180", .0.lat_deg, .0.lon_deg)]
+    /// The position is not on the globe.
+    #[error("{}, {} is not on the globe, expected latitude -90 to 90 and longitude -180 to 180", .0.lat_deg, .0.lon_deg)]
     Position(LatLon),
 }
 
@@ -112,10 +112,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_place_on_earth_has_none() {
+    fn a_position_off_the_globe_is_refused() {
         for (lat_deg, lon_deg) in [(90.1, 0.0), (0.0, 180.1), (f64::NAN, 0.0), (0.0, f64::INFINITY)] {
             let error = declination_deg(at(lat_deg, lon_deg), on(2026, 1, 1)).unwrap_err();
-            assert!(error.to_string().contains("is no place on earth"), "{error}");
+            assert!(error.to_string().contains("is not on the globe"), "{error}");
         }
         for pole_deg in [-90.0, 90.0] {
             assert!(declination_deg(at(pole_deg, 0.0), on(2026, 1, 1)).unwrap().is_finite());

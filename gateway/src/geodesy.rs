@@ -25,13 +25,13 @@ impl LocalFrame {
         LocalFrame { datum, earth: Geodesic::wgs84() }
     }
 
-    /// Where (0, 0) is.
+    /// The position of (0, 0).
     #[must_use]
     pub fn datum(&self) -> LatLon {
         self.datum
     }
 
-    /// Metres from the datum; not a number for what is no position.
+    /// Metres from the datum; non-finite for a position off the globe.
     #[must_use]
     pub fn ned(&self, at: LatLon) -> Ned {
         let (LatLon { lat_deg, lon_deg }, datum) = (at, self.datum);
@@ -77,7 +77,7 @@ mod tests {
         Ned { north, east: -sin_lon * x + cos_lon * y }
     }
 
-    /// `CMOOSGeodesy::LatLong2LocalGrid`, as boats with a MOOS backseat compute their place.
+    /// `CMOOSGeodesy::LatLong2LocalGrid`, as boats with a MOOS back seat compute their position.
     fn moos(datum: LatLon, at: LatLon) -> Ned {
         let (a, b) = (6_378_137.0_f64, 6_356_752.0_f64);
         let (sin_lat, cos_lat) = math::sin_cos_deg(at.lat_deg);
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_195_m_north_east_is_where_enu_has_it_and_not_where_moos_has_it() {
+    fn a_point_195_m_north_east_agrees_with_enu_and_not_with_moos() {
         let at = LatLon { lat_deg: 42.3597, lon_deg: -71.0858 };
         let got = LocalFrame::new(PAVILION).ned(at);
         let published = Ned { north: 140.407, east: 135.766 };
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn the_datum_is_zero_and_what_is_nowhere_is_no_number() {
+    fn the_datum_is_zero_and_an_invalid_position_is_non_finite() {
         let frame = LocalFrame::new(PAVILION);
         assert_eq!(frame.ned(PAVILION).length(), 0.0);
         let back = frame.lat_lon(Ned::default());

@@ -1,11 +1,12 @@
-//! Where a boat must not be: outside of the fence, unable to stop before it, or with another boat before its bow.
+//! The geofence round the field, and the box about the bow in which no other boat may be.
 
 use game::SimTime;
 use game::field::{Field, distance_to_outline, is_within};
 use game::frame::{Ned, Rotation, body_from_ned};
 use game::gateway::{Geofence, Halt};
+use game::picture::Nav;
 
-/// The fence round a field.
+/// The geofence round a field.
 #[derive(Clone, Debug)]
 pub struct GeofenceWatch {
     corners: [Ned; 4],
@@ -15,17 +16,17 @@ pub struct GeofenceWatch {
 }
 
 impl GeofenceWatch {
-    /// The fence of this field.
+    /// The geofence of this field.
     #[must_use]
     pub fn new(field: &Field, rules: Geofence) -> GeofenceWatch {
         GeofenceWatch { corners: field.corners, rules, since: None }
     }
 
-    /// Whether a boat here with this velocity over the ground is inside and can stop inside. That it is not must be so for
-    /// a moment before it counts.
+    /// Whether a boat here with this velocity over the ground is inside and can stop inside. A breach counts after the
+    /// debounce time.
     pub fn is_inside(&mut self, now: SimTime, at: Ned, velocity_m_s: Ned) -> bool {
-        let way = self.way_to_rest(velocity_m_s);
-        if self.holds(at) && self.holds(at + way) {
+        let way = self.stopping_way(velocity_m_s);
+        if self.contains(at) && self.contains(at + way) {
             self.since = None;
             return true;
         }
@@ -33,15 +34,15 @@ impl GeofenceWatch {
         (now - since).as_s() < self.rules.debounce_s
     }
 
-    /// Where the boat comes to rest, from where it is: reaction time at its speed, then v² / (2 a).
-    fn way_to_rest(&self, velocity_m_s: Ned) -> Ned {
+    /// The way to rest: reaction time at its speed, then v² / (2 a).
+    fn stopping_way(&self, velocity_m_s: Ned) -> Ned {
         let speed_m_s = velocity_m_s.length();
         velocity_m_s.scaled(self.rules.reaction_s + speed_m_s / (2.0 * self.rules.deceleration_m_s2))
     }
 
-    /// Whether the fence holds this place: the field does, or it is near enough.
+    /// Whether a position is inside the geofence: in the field, or within the margin.
     #[must_use]
-    pub fn holds(&self, at: Ned) -> bool {
+    pub fn contains(&self, at: Ned) -> bool {
         is_within(&self.corners, at) || distance_to_outline(&self.corners, at) <= self.rules.margin_m
     }
 }
@@ -51,7 +52,7 @@ impl GeofenceWatch {
 pub struct BowWatch {
     rules: Halt,
     half_length_m: f64,
-    /// When somebody was last in it.
+    /// When a boat was last in it.
     blocked_at: SimTime,
 }
 
@@ -62,15 +63,15 @@ impl BowWatch {
         BowWatch { rules, half_length_m: 0.5 * length_m, blocked_at: SimTime::LONG_AGO }
     }
 
-    /// Whether another boat is in the box, or was a moment ago.
-    pub fn is_blocked(&mut self, now: SimTime, at: Ned, (psi_rad, speed_m_s): (f64, f64), others: &[Ned]) -> bool {
+    /// Whether another boat is in the box, or was within the last `clear_s`.
+    pub fn is_blocked(&mut self, now: SimTime, nav: &Nav, others: &[Ned]) -> bool {
         if self.rules.ahead_m <= 0.0 {
             return false;
         }
-        let rotation = Rotation::from_heading(psi_rad);
-        let ahead_m = (self.rules.ahead_m * 0.5 * speed_m_s).max(2.0 * self.half_length_m);
+        let rotation = Rotation::from_heading(nav.psi_rad);
+        let ahead_m = (self.rules.ahead_m * 0.5 * nav.surge_m_s).max(2.0 * self.half_length_m);
         let is_in = |other: &Ned| {
-            let seen = body_from_ned(rotation, *other - at);
+            let seen = body_from_ned(rotation, *other - nav.at());
             (-self.half_length_m..=ahead_m).contains(&seen.ahead) && seen.starboard.abs() <= 0.5 * self.rules.width_m
         };
         if others.iter().any(is_in) {
@@ -108,16 +109,16 @@ mod tests {
             (190.1, 40.0, -3.0, false),
             (80.0, -30.1, 0.0, false),
         ] {
-            let mut fence = GeofenceWatch::new(&field(), RULES);
+            let mut geofence = GeofenceWatch::new(&field(), RULES);
             let velocity = Ned { north: 0.0, east: east_m_s };
-            fence.is_inside(at(0.0), Ned::from_xy(x, y), velocity);
-            assert_eq!(fence.is_inside(at(0.5), Ned::from_xy(x, y), velocity), inside, "{x}, {y} at {east_m_s}");
+            geofence.is_inside(at(0.0), Ned::from_xy(x, y), velocity);
+            assert_eq!(geofence.is_inside(at(0.5), Ned::from_xy(x, y), velocity), inside, "{x}, {y} at {east_m_s}");
         }
     }
 
     #[test]
     fn one_fix_outside_is_not_enough() {
-        let mut fence = GeofenceWatch::new(&field(), RULES);
+        let mut geofence = GeofenceWatch::new(&field(), RULES);
         let (inside, outside) = (Ned::from_xy(80.0, 40.0), Ned::from_xy(80.0, 400.0));
         for (seconds, place, want) in [
             (0.0, outside, true),
@@ -126,7 +127,7 @@ mod tests {
             (0.6, outside, true),
             (1.2, outside, false),
         ] {
-            assert_eq!(fence.is_inside(at(seconds), place, Ned::default()), want, "{seconds}");
+            assert_eq!(geofence.is_inside(at(seconds), place, Ned::default()), want, "{seconds}");
         }
     }
 
@@ -144,12 +145,18 @@ mod tests {
         ] {
             let mut bow = BowWatch::new(rules, 1.8);
             let other = [Ned::from_xy(10.0 + x_ahead, 20.0 + y_port)];
-            let got = bow.is_blocked(at(0.0), Ned::from_xy(10.0, 20.0), (90_f64.to_radians(), speed_m_s), &other);
-            assert_eq!(got, blocked, "{x_ahead} ahead, {y_port} to port at {speed_m_s} m/s");
-            assert_eq!(bow.is_blocked(at(0.9), Ned::default(), (0.0, 2.0), &[]), blocked, "not clear for long enough");
-            assert!(!bow.is_blocked(at(1.1), Ned::default(), (0.0, 2.0), &[]));
+            let psi_rad = 90_f64.to_radians();
+            let nav = Nav { north_m: 20.0, east_m: 10.0, psi_rad, surge_m_s: speed_m_s, ..Nav::default() };
+            assert_eq!(
+                bow.is_blocked(at(0.0), &nav, &other),
+                blocked,
+                "{x_ahead} ahead, {y_port} to port at {speed_m_s} m/s"
+            );
+            assert_eq!(bow.is_blocked(at(0.9), &nav, &[]), blocked, "not clear for long enough");
+            assert!(!bow.is_blocked(at(1.1), &nav, &[]));
         }
         let none = Halt { ahead_m: 0.0, ..rules };
-        assert!(!BowWatch::new(none, 1.8).is_blocked(at(0.0), Ned::default(), (0.0, 2.0), &[Ned::default()]));
+        let nav = Nav { surge_m_s: 2.0, ..Nav::default() };
+        assert!(!BowWatch::new(none, 1.8).is_blocked(at(0.0), &nav, &[Ned::default()]));
     }
 }

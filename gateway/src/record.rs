@@ -11,7 +11,7 @@
 //! topics. The metadata `gateway` holds the version and the plan. Nothing is compressed or held back in chunks, so that a
 //! file that ends abruptly is good up to there.
 
-use crate::bridge::{Event, Input, Outbox, Plan};
+use crate::bridge::{Event, Input, Output, Plan};
 use game::SimTime;
 use mcap::records::{MessageHeader, Metadata};
 use std::collections::BTreeMap;
@@ -78,7 +78,7 @@ impl<W: Write + Seek> Recorder<W> {
     ///
     /// # Errors
     /// [`RecordError`] if the file does not take it.
-    pub fn turn(&mut self, moment: Moment, input: &Input, out: &Outbox) -> Result<(), RecordError> {
+    pub fn turn(&mut self, moment: Moment, input: &Input, out: &Output) -> Result<(), RecordError> {
         let [link_in, link_out, inputs, events] = self.channels;
         match input {
             Input::Bytes(bytes) => self.write(link_in, moment, bytes)?,

@@ -1,6 +1,6 @@
 //! A recording, played through the codec and the supervisor again.
 
-use crate::bridge::{Bridge, Event, Input, Outbox, Plan};
+use crate::bridge::{Bridge, Event, Input, Output, Plan};
 use crate::record::{EVENT, INPUT, LINK_IN, LINK_OUT, METADATA};
 use game::SimTime;
 use game::external::GatewayStatus;
@@ -82,7 +82,7 @@ pub fn replay(file: &[u8]) -> Result<Replay, ReplayError> {
     let (mut bytes_in, mut bytes_out) = (0, 0);
     let (mut events, mut difference) = (Vec::new(), None);
     for (i, turn) in turns.iter().enumerate() {
-        let mut out = Outbox::default();
+        let mut out = Output::default();
         bridge.take(turn.at, &turn.input, &mut out);
         if let Input::Bytes(bytes) = &turn.input {
             bytes_in += bytes.len() as u64;
@@ -109,7 +109,7 @@ pub fn replay(file: &[u8]) -> Result<Replay, ReplayError> {
     })
 }
 
-fn differing(turn: &Turn, out: &Outbox) -> Option<Difference> {
+fn differing(turn: &Turn, out: &Output) -> Option<Difference> {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace("\r\n", " ").trim_end().to_owned();
     let said = |events: &[Event]| format!("{events:?}");
     let pairs = [(text(&turn.out), text(&out.bytes)), (said(&turn.events), said(&out.events))];

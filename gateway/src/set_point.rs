@@ -1,4 +1,4 @@
-//! The front seat's part: from an order to what the boat is sent.
+//! The set-point mapper: from an order to the set-point that the boat is sent.
 //!
 //! With `drive = "thrust"` the heading and speed loops are here; with `drive = "speed"` they are the boat's. Thrust is in
 //! per cent, its difference positive to starboard: port = thrust + difference, starboard = thrust − difference.
@@ -9,9 +9,9 @@ use game::gateway::{Drive, Gateway, Limits, Loops};
 use game::picture::Nav;
 use game::{Order, SimTime};
 
-/// What the boat is sent.
+/// A set-point for the boat's controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Setting {
+pub enum SetPoint {
     /// Thrust and thrust difference, per cent.
     Thrust {
         /// Of both thrusters.
@@ -28,38 +28,29 @@ pub enum Setting {
     },
 }
 
-impl Setting {
+impl SetPoint {
     /// Both thrusters at zero.
-    pub const ZERO: Setting = Setting::Thrust { thrust_pct: 0.0, difference_pct: 0.0 };
-
-    /// Whether it moves the boat.
-    #[must_use]
-    pub fn moves(self) -> bool {
-        match self {
-            Setting::Thrust { thrust_pct, difference_pct } => thrust_pct != 0.0 || difference_pct != 0.0,
-            Setting::Speed { speed_m_s, .. } => speed_m_s != 0.0,
-        }
-    }
+    pub const ZERO: SetPoint = SetPoint::Thrust { thrust_pct: 0.0, difference_pct: 0.0 };
 }
 
-/// The loops, and what they remember.
+/// The loops with their state.
 #[derive(Clone, Debug)]
 pub struct SetPointMapper {
     drive: Drive,
     limits: Limits,
     loops: Loops,
     compass_to_true_rad: f64,
-    /// What the speed loop has gathered, per cent.
+    /// The integral of the speed loop, per cent.
     integral_pct: f64,
     /// What was sent last, and when.
     last: Option<(SimTime, f64, f64)>,
 }
 
-/// Longest time that the loops believe to have passed between two settings, s.
+/// Longest time step of the loops, s.
 const STEP_MAX_S: f64 = 0.25;
 
 impl SetPointMapper {
-    /// The loops of a boat whose compass is this much short of true.
+    /// The loops of a boat; a true heading is its compass heading plus `compass_to_true_rad`.
     #[must_use]
     pub fn new(gateway: &Gateway, compass_to_true_rad: f64) -> SetPointMapper {
         SetPointMapper {
@@ -72,15 +63,15 @@ impl SetPointMapper {
         }
     }
 
-    /// Forgets what it has gathered: the boat was stopped.
-    pub fn rest(&mut self) {
+    /// Resets the loops: the boat was stopped.
+    pub fn reset(&mut self) {
         (self.integral_pct, self.last) = (0.0, None);
     }
 
-    /// What the boat is sent for a sound order.
-    pub fn setting(&mut self, now: SimTime, order: Order, nav: &Nav) -> Setting {
+    /// The set-point for a sound order.
+    pub fn map(&mut self, now: SimTime, order: Order, nav: &Nav) -> SetPoint {
         let step_s = self.last.map_or(0.0, |(at, ..)| (now - at).as_s().clamp(0.0, STEP_MAX_S));
-        let wanted = match order {
+        let (thrust, difference) = match order {
             Order::Hold => {
                 self.integral_pct = 0.0;
                 (0.0, 0.0)
@@ -93,16 +84,16 @@ impl SetPointMapper {
                 let speed_m_s = speed_m_s.min(self.limits.speed_max_m_s);
                 if self.drive == Drive::Speed {
                     let heading_deg = compass_deg_from_rad(heading_rad - self.compass_to_true_rad);
-                    return Setting::Speed { heading_deg, speed_m_s };
+                    return SetPoint::Speed { heading_deg, speed_m_s };
                 }
-                self.steer(step_s, (heading_rad, speed_m_s), nav)
+                self.steer(step_s, heading_rad, speed_m_s, nav)
             }
         };
-        self.within_limits(now, step_s, wanted)
+        self.within_limits(now, step_s, thrust, difference)
     }
 
-    /// Our own loops: thrust by the map and by the error of speed, difference by the error of heading, which comes first.
-    fn steer(&mut self, step_s: f64, (heading_rad, speed_m_s): (f64, f64), nav: &Nav) -> (f64, f64) {
+    /// Our own loops: thrust by the map and by the speed error, difference by the heading error, which comes first.
+    fn steer(&mut self, step_s: f64, heading_rad: f64, speed_m_s: f64, nav: &Nav) -> (f64, f64) {
         let Loops { speed_pct_per_m_s, speed_integral_s, heading_pct_per_rad, turn_pct_per_rad_s, .. } = self.loops;
         let error_rad = wrap_pi(heading_rad - nav.psi_rad);
         let difference = heading_pct_per_rad * error_rad - turn_pct_per_rad_s * nav.yaw_rate_rad_s;
@@ -110,24 +101,24 @@ impl SetPointMapper {
         let error_m_s = speed_m_s - nav.surge_m_s;
         let asked = thrust_for(&self.loops.thrust_map, speed_m_s) + speed_pct_per_m_s * error_m_s + self.integral_pct;
         let room = (100.0 - difference.abs()).min(self.limits.thrust_max_pct);
-        // The integral only grows while the thrust is not at its limit, and a boat at rest on purpose has none.
+        // Anti-windup: the integral only grows while the thrust is not at its limit, and not at rest.
         if asked.abs() < room && speed_m_s > 0.0 {
             self.integral_pct += speed_pct_per_m_s * error_m_s * step_s / speed_integral_s;
         }
         (asked.clamp(-room, room), difference)
     }
 
-    fn within_limits(&mut self, now: SimTime, step_s: f64, (thrust, difference): (f64, f64)) -> Setting {
+    fn within_limits(&mut self, now: SimTime, step_s: f64, thrust: f64, difference: f64) -> SetPoint {
         let Limits { thrust_max_pct, difference_max_pct, slew_pct_s, .. } = self.limits;
         let (_, thrust_before, difference_before) = self.last.unwrap_or((now, 0.0, 0.0));
-        // Of a setting that is the first for a while, one step of a tenth of a second may be taken.
+        // The first set-point may grow as much as in a tenth of a second.
         let growth = slew_pct_s * if self.last.is_some() { step_s } else { 0.1 };
         let difference_pct =
             slewed(difference_before, difference.clamp(-difference_max_pct, difference_max_pct), growth);
         let room = (100.0 - difference_pct.abs()).min(thrust_max_pct);
         let thrust_pct = slewed(thrust_before, thrust, growth).clamp(-room, room);
         self.last = Some((now, thrust_pct, difference_pct));
-        Setting::Thrust { thrust_pct, difference_pct }
+        SetPoint::Thrust { thrust_pct, difference_pct }
     }
 }
 
@@ -157,47 +148,46 @@ mod tests {
 
     #[test]
     fn on_course_and_at_speed_the_thrust_is_that_of_the_map() {
-        let mut seat = SetPointMapper::new(&gateway("thrust"), 0.0);
+        let mut mapper = SetPointMapper::new(&gateway("thrust"), 0.0);
         let nav = Nav { surge_m_s: 1.5, psi_rad: 1.0, ..Nav::default() };
         let order = Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 };
-        let settings: Vec<Setting> = (0..20).map(|i| seat.setting(at(0.1 * f64::from(i)), order, &nav)).collect();
-        assert_eq!(settings[0], Setting::Thrust { thrust_pct: 10.0, difference_pct: 0.0 }, "100 % a second");
-        assert_eq!(settings[19], Setting::Thrust { thrust_pct: 40.0, difference_pct: 0.0 });
+        let settings: Vec<SetPoint> = (0..20).map(|i| mapper.map(at(0.1 * f64::from(i)), order, &nav)).collect();
+        assert_eq!(settings[0], SetPoint::Thrust { thrust_pct: 10.0, difference_pct: 0.0 }, "100 % a second");
+        assert_eq!(settings[19], SetPoint::Thrust { thrust_pct: 40.0, difference_pct: 0.0 });
     }
 
     #[test]
     fn the_boat_turns_to_the_near_side_and_steering_comes_before_speed() {
         for (psi_deg, heading_deg, sign) in [(350.0, 10.0, 1.0), (10.0, 350.0, -1.0), (90.0, 200.0, 1.0)] {
-            let mut seat = SetPointMapper::new(&gateway("thrust"), 0.0);
+            let mut mapper = SetPointMapper::new(&gateway("thrust"), 0.0);
             let nav = Nav { psi_rad: f64::to_radians(psi_deg), ..Nav::default() };
-            let mut last = Setting::ZERO;
+            let mut last = SetPoint::ZERO;
             for i in 0..40 {
-                last = seat.setting(at(0.1 * f64::from(i)), steer(heading_deg, 3.0), &nav);
-                let Setting::Thrust { thrust_pct, difference_pct } = last else { panic!("{last:?}") };
+                last = mapper.map(at(0.1 * f64::from(i)), steer(heading_deg, 3.0), &nav);
+                let SetPoint::Thrust { thrust_pct, difference_pct } = last else { panic!("{last:?}") };
                 assert!(thrust_pct.abs() + difference_pct.abs() <= 100.0 + 1e-9 && thrust_pct <= 70.0, "{last:?}");
             }
-            let Setting::Thrust { difference_pct, .. } = last else { panic!("{last:?}") };
+            let SetPoint::Thrust { difference_pct, .. } = last else { panic!("{last:?}") };
             assert!(difference_pct * sign >= 18.0 - 1e-9, "{psi_deg} to {heading_deg}: {last:?}");
         }
     }
 
     #[test]
     fn growth_is_limited_and_zero_comes_at_once() {
-        let mut seat = SetPointMapper::new(&gateway("thrust"), 0.0);
+        let mut mapper = SetPointMapper::new(&gateway("thrust"), 0.0);
         let full = Order::Thrust { port: 1.0, starboard: 1.0 };
         let mut before = 0.0;
         for i in 0..12 {
-            let Setting::Thrust { thrust_pct, .. } = seat.setting(at(0.05 * f64::from(i)), full, &Nav::default())
-            else {
+            let SetPoint::Thrust { thrust_pct, .. } = mapper.map(at(0.05 * f64::from(i)), full, &Nav::default()) else {
                 panic!("thrust")
             };
             assert!(thrust_pct - before <= 10.0 + 1e-9, "{before} to {thrust_pct}");
             before = thrust_pct;
         }
         assert!(before > 50.0);
-        assert_eq!(seat.setting(at(0.6), Order::Hold, &Nav::default()), Setting::ZERO);
+        assert_eq!(mapper.map(at(0.6), Order::Hold, &Nav::default()), SetPoint::ZERO);
         let astern = Order::Thrust { port: -1.0, starboard: -1.0 };
-        let Setting::Thrust { thrust_pct, .. } = seat.setting(at(0.65), astern, &Nav::default()) else {
+        let SetPoint::Thrust { thrust_pct, .. } = mapper.map(at(0.65), astern, &Nav::default()) else {
             panic!("thrust")
         };
         assert!((-5.0 - 1e-9..0.0).contains(&thrust_pct), "{thrust_pct}");
@@ -206,8 +196,8 @@ mod tests {
     #[test]
     fn the_boats_own_loops_get_a_heading_of_its_own_compass() {
         let east_deg: f64 = -12.5;
-        let mut seat = SetPointMapper::new(&gateway("speed"), east_deg.to_radians());
-        let Setting::Speed { heading_deg, speed_m_s } = seat.setting(at(0.0), steer(90.0, 9.0), &Nav::default()) else {
+        let mut mapper = SetPointMapper::new(&gateway("speed"), east_deg.to_radians());
+        let SetPoint::Speed { heading_deg, speed_m_s } = mapper.map(at(0.0), steer(90.0, 9.0), &Nav::default()) else {
             panic!("speed")
         };
         // Magnetic north is west of true: the compass shows more.

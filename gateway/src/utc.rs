@@ -1,15 +1,15 @@
-//! The host's clock: for stamps on recordings, names of files, and the day whose declination it is. Nothing is decided by it.
+//! UTC by the host's clock: for time stamps of recordings, file names, and the date of the declination. No decision depends on it.
 
 use crate::nmea::{Date, TimeOfDay};
 use time::UtcDateTime;
 
-/// Now, ns since 1970; 0 for a host that believes to be before.
+/// Now, ns since 1970; 0 if the host's clock is before.
 #[must_use]
 pub fn now_ns() -> u64 {
     u64::try_from(UtcDateTime::now().unix_timestamp_nanos()).unwrap_or(0)
 }
 
-/// Today, and the time of day.
+/// The date and time of day.
 #[must_use]
 pub fn now() -> (Date, TimeOfDay) {
     let now = UtcDateTime::now();

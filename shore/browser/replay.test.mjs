@@ -53,7 +53,7 @@ test('a recording shows at every moment what the events say', async (t) => {
   const sight = await Sight.open(t, browser, await replay.url());
   assert.equal(await sight.get(() => squall.mode), 'replay');
   const { points, teams, field } = await sight.get(() => squall.hello.chart);
-  assert.deepEqual(await sight.get(() => squall.events.filter((each) => each.event !== 'tripped').map(({ text, ...event }) => event)), result.events);
+  assert.deepEqual(await sight.get(() => squall.events.filter((each) => each.event !== 'failsafe').map(({ text, ...event }) => event)), result.events);
   const names = teams.map((team) => team.name);
   const check = async (why) => {
     const shown = await sight.get(() => ({ t_s: squall.t_s, score: squall.score, flags: squall.flags, boats: squall.frame.boats }));

@@ -150,8 +150,8 @@ export class Details {
     if (Number.isFinite(status.nav_age_s)) pairs.push(['Last fix', `${number(status.nav_age_s, 1, 's')} ago`]);
     if (Number.isFinite(status.battery_v)) pairs.push(['Battery', number(status.battery_v, 1, 'V')]);
     if (status.missing?.length > 0) pairs.push(['Missing', status.missing.join('; ')]);
-    const trip = status.trips?.at(-1);
-    if (trip) pairs.push([`Trips: ${status.trips.length}`, `last: ${trip.cause ?? trip}`]);
+    const failsafe = status.failsafes?.at(-1);
+    if (failsafe) pairs.push([`Failsafes: ${status.failsafes.length}`, `last: ${failsafe.cause ?? failsafe}`]);
     this.tellPairs(this.gateway, pairs);
   }
 

@@ -11,11 +11,11 @@ const KINDS = {
   tags: ['tagged', 'tagged_by_boundary', 'untagged'],
   collisions: ['collided', 'entered_keepout'],
   trouble: ['collided', 'disabled', 'agent_lost', 'agent_back', 'quarantined', 'nav_lost', 'nav_back', 'e_stopped', 'released', 'halted',
-    'went_on', 'tripped', 'left_field'],
+    'went_on', 'failsafe', 'left_field'],
 };
 
 /** Events that are said more loudly. */
-const LOUD = ['captured', 'grabbed', 'ended', 'e_stopped', 'agent_lost', 'quarantined', 'nav_lost', 'tripped', 'collided'];
+const LOUD = ['captured', 'grabbed', 'ended', 'e_stopped', 'agent_lost', 'quarantined', 'nav_lost', 'failsafe', 'collided'];
 
 export class Log {
   /** `go(event)` is called for the event that somebody presses. */

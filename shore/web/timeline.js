@@ -9,7 +9,7 @@ export const KINDS = [
   ['Captures', 'c', ['captured'], 'diamond'],
   ['Tags', 't', ['tagged', 'tagged_by_boundary'], 'dot'],
   ['Collisions', 'b', ['collided'], 'cross'],
-  ['Trips', 'i', ['tripped'], 'square'],
+  ['Failsafes', 'i', ['failsafe'], 'square'],
 ];
 
 const ANY = 'any';

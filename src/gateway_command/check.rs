@@ -1,4 +1,4 @@
-//! `squall gateway check`: what a boat says, before anybody arms anything.
+//! `squall gateway check`: the sensor check of a boat before arming.
 
 use crate::screen;
 use crate::sim_command::seconds;
@@ -6,7 +6,7 @@ use crate::stop;
 use anyhow::{Result, anyhow, bail};
 use game::SimTime;
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
-use gateway::survey::Survey;
+use gateway::sensor_check::SensorCheck;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
@@ -28,17 +28,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let address = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("--link: {e}"))?;
     let stop = stop::on_ctrl_c()?;
     let (sender, events) = sync_channel(4096);
-    // Who looks on drops what it cannot take.
+    // A full queue drops events: this only listens.
     let take = move |event| drop(sender.try_send(event));
     let _link = Link::open(&address, LinkSettings { silence: None, ..LinkSettings::default() }, take)?;
     let start = Instant::now();
     let at = |moment: Instant| SimTime::from_s(moment.saturating_duration_since(start).as_secs_f64());
-    let (mut survey, mut reason) = (Survey::new(), String::from("nothing came"));
+    let (mut check, mut reason) = (SensorCheck::new(), String::from("nothing came"));
     while start.elapsed().as_secs_f64() < args.for_s && !stop.load(Ordering::Relaxed) {
         match events.recv_timeout(Duration::from_millis(100)) {
-            Ok(LinkEvent::Bytes { at: moment, bytes, .. }) => survey.take(at(moment), &bytes),
+            Ok(LinkEvent::Bytes { at: moment, bytes, .. }) => check.take(at(moment), &bytes),
             Ok(LinkEvent::Up { name, .. }) => {
-                screen::remark(&format!("connected to {name}; listening for {} s, without a word", args.for_s));
+                screen::remark(&format!("connected to {name}; listening for {} s, sending nothing", args.for_s));
             }
             Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
                 if why != reason {
@@ -50,29 +50,28 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             Err(RecvTimeoutError::Disconnected) => break,
         }
     }
-    if survey.heard().is_empty() {
-        let counts = survey.counts();
+    if check.received().is_empty() {
+        let counts = check.counts();
         bail!("no sentence from {address} in {} s: {reason} ({} bytes of garbage)", args.for_s, counts.garbage);
     }
-    let host = (at(Instant::now()), gateway::utc::now().1);
-    screen::print(&report(&survey, host));
-    Ok(if survey.missing().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    screen::print(&report(&check, at(Instant::now()), gateway::utc::now().1));
+    Ok(if check.missing().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-fn report(survey: &Survey, host: (SimTime, gateway::nmea::TimeOfDay)) -> String {
+fn report(check: &SensorCheck, now: SimTime, host: gateway::nmea::TimeOfDay) -> String {
     let mut lines = vec![format!("{:<10} {:>7} {:>8}  last", "sentence", "count", "1/s")];
-    for (name, heard) in survey.heard() {
-        let rate = heard.rate_hz().map_or("-".to_owned(), |rate| format!("{rate:.2}"));
-        let note = if heard.unreadable > 0 { "  (not read)" } else { "" };
-        lines.push(format!("{name:<10} {:>7} {rate:>8}  {}{note}", heard.count, heard.last));
+    for (name, received) in check.received() {
+        let rate = received.rate_hz().map_or("-".to_owned(), |rate| format!("{rate:.2}"));
+        let note = if received.unreadable > 0 { "  (not read)" } else { "" };
+        lines.push(format!("{name:<10} {:>7} {rate:>8}  {}{note}", received.count, received.last));
     }
-    let counts = survey.counts();
+    let counts = check.counts();
     lines.push(format!(
         "\nbad checksums {}, overlong {}, broken {}, bytes of garbage {}",
         counts.bad_checksum, counts.overlong, counts.broken, counts.garbage
     ));
-    lines.extend(survey.findings(host));
-    let missing = survey.missing();
+    lines.extend(check.findings(now, host));
+    let missing = check.missing();
     if missing.is_empty() {
         lines.push("\nnothing is missing".to_owned());
     } else {

@@ -9,29 +9,29 @@ use anyhow::{Context, Result, anyhow};
 use clap::ValueEnum;
 use gateway::emulator::Extra;
 use gateway::link::LinkAddress;
-use gateway::node::{EmulatorSettings, News};
+use gateway::node::{EmulatorSettings, NodeEvent};
 use std::process::ExitCode;
 use std::time::Duration;
 
 /// Which boat, and where.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The vehicle in the game, by name: the back seat becomes its mind
+    /// The vehicle in the game, by name: the back seat becomes its agent
     #[arg(long, value_name = "NAME")]
     vehicle: String,
     /// Where the back seat connects: tcp://HOST:PORT, udp://HOST:PORT, pty, pty:///LINK, serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL")]
     listen: String,
-    /// Where the primary operator connects, who takes control by any command and gives it back with OP2_ON in its words
+    /// Where the primary operator connects, who takes control by any command and gives it back with OP2_ON in the text field
     #[arg(long, value_name = "URL")]
     primary: Option<String>,
     /// Magnetic north, degrees east of true [default: by the World Magnetic Model, for the field and today]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     declination_deg: Option<f64>,
-    /// After this long without a command the boat goes to standby, s, or none: of the real one nothing is known
+    /// After this long without a command the boat goes to standby, s, or none: the real one's is not known
     #[arg(long, value_name = "S", default_value = "none", value_parser = watchdog)]
     watchdog_s: Watchdog,
-    /// Settings that are no whole numbers leave the ones before in force, as in one known stand-in
+    /// A set-point that is not a whole number leaves the one before in force, as in one known stand-in
     #[arg(long)]
     integers: bool,
     /// Sentences beyond a Surveyor's: gpsd has time, speed and course only from rmc
@@ -40,12 +40,12 @@ pub(crate) struct Args {
     /// How long to look for the game, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
-    /// After this long without a picture the sim counts as gone, s
+    /// After this long without a picture the sim counts as lost, s
     #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds)]
     silence_s: f64,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Says nothing that is well, and stops when standard input ends
+    /// Prints errors only, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -105,15 +105,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         stop,
     };
     let mut log = Log::new(args.for_parent);
-    let mut tell = |news: News<'_>| match news {
-        News::Looking { reason } if !args.for_parent => {
+    let mut notify = |event: NodeEvent<'_>| match event {
+        NodeEvent::Looking { reason } if !args.for_parent => {
             screen::remark(&format!("{}: looking for the game: {reason}", args.vehicle));
         }
-        // Whoever started us may want to know where a free port was.
-        News::Listening { what, reach } => screen::print(&format!("{what} at {reach}\n")),
-        News::Remark { at_s, text } => log.line(at_s, text),
-        News::Looking { .. } | News::Event { .. } | News::Status(_) | News::Ended(_) => {}
+        // The parent process may have asked for any free port.
+        NodeEvent::Listening { what, reach } => screen::print(&format!("{what} at {reach}\n")),
+        NodeEvent::Remark { at_s, text } => log.line(at_s, text),
+        NodeEvent::Looking { .. } | NodeEvent::Event { .. } | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
     };
-    gateway::node::emulate(&settings, &mut tell).with_context(|| format!("the emulator of {}", args.vehicle))?;
+    gateway::node::emulate(&settings, &mut notify).with_context(|| format!("the emulator of {}", args.vehicle))?;
     Ok(ExitCode::SUCCESS)
 }

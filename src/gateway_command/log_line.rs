@@ -1,11 +1,11 @@
-//! What a gateway tells, line by line: events to the terminal, the status as one line that is written over.
+//! The log of a gateway on the terminal: events line by line, the status as one line that is overwritten.
 
 use crate::screen;
 use game::external::GatewayStatus;
 use gateway::bridge::Event;
 use std::io::IsTerminal;
 
-/// Shows what a gateway tells.
+/// Prints a gateway's log.
 pub(super) struct Log {
     live: bool,
     quiet: bool,
@@ -13,7 +13,7 @@ pub(super) struct Log {
 }
 
 impl Log {
-    /// A log; a quiet one keeps what is well to itself.
+    /// A log; a quiet one prints errors only.
     pub(super) fn new(quiet: bool) -> Log {
         Log { live: std::io::stdout().is_terminal(), quiet, status: String::new() }
     }
@@ -32,7 +32,7 @@ impl Log {
         screen::print(&format!("{clear}{at_s:>8.1} s  {text}\n{status}"));
     }
 
-    /// A line that the next one is written over; on paper it is left out.
+    /// A line that the next one overwrites; only on a terminal.
     pub(super) fn status(&mut self, status: &GatewayStatus) {
         if self.live && !self.quiet {
             self.status = brief(status);
@@ -68,7 +68,7 @@ fn brief(status: &GatewayStatus) -> String {
     text.chars().take(150).collect()
 }
 
-/// Everything there is to say of a gateway.
+/// The full status of a gateway.
 pub(super) fn full(status: &GatewayStatus) -> String {
     let or_none = |text: Option<String>| text.unwrap_or_else(|| "unknown".to_owned());
     let nav = status.nav.map(|nav| {
@@ -93,7 +93,9 @@ pub(super) fn full(status: &GatewayStatus) -> String {
     if !status.missing.is_empty() {
         lines.push(format!("  missing     {}", status.missing.join("; ")));
     }
-    lines.extend(status.trips.iter().map(|trip| format!("  stopped     {:>8.1} s  {}", trip.at_s, trip.cause)));
+    lines.extend(
+        status.failsafes.iter().map(|failsafe| format!("  failsafe    {:>8.1} s  {}", failsafe.at_s, failsafe.cause)),
+    );
     let named = ["sentence in, topic out", "order in, sentence out"];
     for (name, latency) in named.iter().zip(status.latency_us) {
         if let Some([median, p99]) = latency {

@@ -1,4 +1,4 @@
-//! `squall gateway`: real boats in games, simulated boats for real back seats, and a look at what goes between.
+//! `squall gateway`: real boats in games, emulated boats for real back seats, and tools for the link between.
 
 mod check;
 mod emulate;
@@ -20,13 +20,13 @@ pub(crate) struct Args {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Brings a real boat into a game: agents drive it without knowing.
+    /// Connects a real boat with a game: agents drive it as any other.
     Surveyor(surveyor::Args),
-    /// Lets a real back seat drive a simulated boat by the real one's sentences.
+    /// Emulates a boat for a real back seat, with the real one's sentences.
     Emulate(emulate::Args),
-    /// Listens to a boat, without a word, and says what it tells and what is missing.
+    /// Checks a boat's sentences before arming, without sending anything, and lists what is missing.
     Check(check::Args),
-    /// Asks something of a boat's gateway: arm, disarm, estop, release, ...
+    /// Sends an operator command to a boat's gateway: arm, disarm, estop, release, ...
     Tell(tell::Args),
     /// Plays a recording of a gateway through its codec and supervisor again.
     Replay(replay::Args),

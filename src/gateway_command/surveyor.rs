@@ -7,7 +7,7 @@ use crate::sim_command::seconds;
 use crate::stop;
 use anyhow::{Context, Result, anyhow};
 use gateway::link::LinkAddress;
-use gateway::node::{News, Settings};
+use gateway::node::{NodeEvent, Settings};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -21,10 +21,10 @@ pub(crate) struct Args {
     /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL")]
     link: String,
-    /// How it is driven and stopped: a gateway file [default: a Surveyor, carefully]
+    /// How it is driven and stopped: a gateway file [default: a Surveyor with careful limits]
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// Arms by itself, once, as soon as everything is there; after whatever stops it then, it has to be told
+    /// Arms by itself, once, as soon as it is ready; after a failsafe it has to be armed by command
     #[arg(long)]
     arm: bool,
     /// Records to this file [default: runs/gateway-NAME-UTC.mcap]
@@ -33,7 +33,7 @@ pub(crate) struct Args {
     /// Records nothing
     #[arg(long)]
     no_record: bool,
-    /// The boat is an emulated one, and its time goes as fast as the game's
+    /// The boat is an emulated one, whose time runs as fast as the game's
     #[arg(long)]
     at_game_pace: bool,
     /// After this long without a byte the boat counts as gone, s
@@ -44,7 +44,7 @@ pub(crate) struct Args {
     wait_s: f64,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Says nothing that is well, and stops when standard input ends
+    /// Prints errors only, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -79,17 +79,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     let mut log = Log::new(args.for_parent);
-    let mut tell = |news: News<'_>| match news {
-        News::Looking { reason } if !args.for_parent => {
+    let mut notify = |event: NodeEvent<'_>| match event {
+        NodeEvent::Looking { reason } if !args.for_parent => {
             screen::remark(&format!("{}: looking for the game: {reason}", args.vehicle));
         }
-        News::Looking { .. } | News::Listening { .. } => {}
-        News::Event { at_s, event } => log.event(at_s, event),
-        News::Remark { at_s, text } => log.line(at_s, text),
-        News::Status(status) => log.status(status),
-        News::Ended(status) => screen::print(&format!("\n{}", full(status))),
+        NodeEvent::Looking { .. } | NodeEvent::Listening { .. } => {}
+        NodeEvent::Event { at_s, event } => log.event(at_s, event),
+        NodeEvent::Remark { at_s, text } => log.line(at_s, text),
+        NodeEvent::Status(status) => log.status(status),
+        NodeEvent::Ended(status) => screen::print(&format!("\n{}", full(status))),
     };
-    gateway::node::serve(&settings, &mut tell).with_context(|| format!("the gateway of {}", args.vehicle))?;
+    gateway::node::serve(&settings, &mut notify).with_context(|| format!("the gateway of {}", args.vehicle))?;
     Ok(ExitCode::SUCCESS)
 }
 

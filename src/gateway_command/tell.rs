@@ -1,4 +1,4 @@
-//! `squall gateway tell`: what a person asks of a boat's gateway.
+//! `squall gateway tell`: an operator command to a boat's gateway.
 
 use super::log_line::full;
 use crate::net_args::LeafArgs;
@@ -25,17 +25,17 @@ const ALL: &str = "all";
 pub(crate) struct Args {
     /// The vehicle, by name; all of them with "all", for estop, release and status
     vehicle: String,
-    /// What to tell it
-    command: Word,
-    /// For mission: a .sea file, its lines as the boat gets them (PSEAR, then OIWPL; index 0 is the recovery point)
+    /// The command
+    command: CommandArg,
+    /// For mission: a .sea file, its lines as the boat receives them (PSEAR, then OIWPL; index 0 is the recovery point)
     file: Option<PathBuf>,
     #[command(flatten)]
     leaf: LeafArgs,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Word {
-    /// How it is
+enum CommandArg {
+    /// Print its status
     Status,
     /// Follow orders, if everything that this needs is there
     Arm,
@@ -45,34 +45,34 @@ enum Word {
     Estop,
     /// The E-stop is over; the boat stays safed
     Release,
-    /// Keep the station by the boat's own means
+    /// Keep the station by the boat's own controller
     StationKeep,
-    /// Go to the emergency recovery point by the boat's own means
+    /// Go to the emergency recovery point by the boat's own controller
     GoToErp,
-    /// Take up a mission and sail it by the boat's own means
+    /// Upload a mission and sail it by the boat's own controller
     Mission,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let command = command_of(args)?;
     let observer = Observer::come(&args.leaf)?;
-    let told = if args.vehicle == ALL { tell_all(&observer, args.command) } else { tell(&observer, args, &command) };
+    let result = if args.vehicle == ALL { tell_all(&observer, args.command) } else { tell(&observer, args, &command) };
     observer.bus.close();
-    told
+    result
 }
 
 fn command_of(args: &Args) -> Result<OperatorCommand> {
     Ok(match (args.command, &args.file) {
-        (Word::Mission, None) => bail!("mission needs a .sea file"),
-        (Word::Mission, Some(path)) => OperatorCommand::Mission(mission(path)?),
+        (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
+        (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission(path)?),
         (_, Some(path)) => bail!("{} is given, and only mission takes a file", path.display()),
-        (Word::Status, None) => OperatorCommand::Status,
-        (Word::Arm, None) => OperatorCommand::Arm,
-        (Word::Disarm, None) => OperatorCommand::Disarm,
-        (Word::Estop, None) => OperatorCommand::EStop,
-        (Word::Release, None) => OperatorCommand::Release,
-        (Word::StationKeep, None) => OperatorCommand::StationKeep,
-        (Word::GoToErp, None) => OperatorCommand::GoToErp,
+        (CommandArg::Status, None) => OperatorCommand::Status,
+        (CommandArg::Arm, None) => OperatorCommand::Arm,
+        (CommandArg::Disarm, None) => OperatorCommand::Disarm,
+        (CommandArg::Estop, None) => OperatorCommand::EStop,
+        (CommandArg::Release, None) => OperatorCommand::Release,
+        (CommandArg::StationKeep, None) => OperatorCommand::StationKeep,
+        (CommandArg::GoToErp, None) => OperatorCommand::GoToErp,
     })
 }
 
@@ -93,12 +93,12 @@ fn ask(observer: &Observer, vehicle: &str, command: &OperatorCommand) -> Result<
     serde_json::from_slice(&bytes).context("the gateway is of another version of Squall")
 }
 
-/// What goes to everybody at once, the sim too; then how every real boat is.
-fn tell_all(observer: &Observer, word: Word) -> Result<ExitCode> {
-    let control = match word {
-        Word::Status => None,
-        Word::Estop => Some(Control::EStop),
-        Word::Release => Some(Control::Release),
+/// Sends a command to all boats and the sim at once; then prints the status of every real boat.
+fn tell_all(observer: &Observer, command: CommandArg) -> Result<ExitCode> {
+    let control = match command {
+        CommandArg::Status => None,
+        CommandArg::Estop => Some(Control::EStop),
+        CommandArg::Release => Some(Control::Release),
         _ => bail!("only estop, release and status go to all; tell each boat by its name"),
     };
     if let Some(control) = control {

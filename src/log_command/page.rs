@@ -87,13 +87,13 @@ fn boats(boats: &[Figures]) -> String {
 
 fn gateway_text(gateway: &Gateway) -> String {
     let state = gateway.state.as_deref().unwrap_or("unknown");
-    let trips = match gateway.trips.len() {
-        1 => "1 trip".to_owned(),
-        count => format!("{count} trips"),
+    let failsafes = match gateway.failsafes.len() {
+        1 => "1 failsafe".to_owned(),
+        count => format!("{count} failsafes"),
     };
-    let mut text = format!("\ngateway of {}: {state} in the end, {trips}\n", gateway.boat);
-    for trip in &gateway.trips {
-        line(&mut text, format_args!("{:>7.1} s of the gateway  {}", trip.at_s, trip.cause));
+    let mut text = format!("\ngateway of {}: {state} in the end, {failsafes}\n", gateway.boat);
+    for failsafe in &gateway.failsafes {
+        line(&mut text, format_args!("{:>7.1} s of the gateway  {}", failsafe.at_s, failsafe.cause));
     }
     for (way, traffic) in [("from the boat", &gateway.from_boat), ("to the boat", &gateway.to_boat)] {
         let Traffic { bytes, sentences } = traffic;

@@ -16,7 +16,7 @@ const ME: VehicleId = VehicleId(0);
 /// Simulated seconds a second.
 const FACTOR: f64 = 4.0;
 
-/// A gateway with a boat that does at once what it is told.
+/// A gateway with a boat that follows commands at once.
 struct Gateway {
     bus: Bus,
     name: GameName,
@@ -67,7 +67,7 @@ impl Gateway {
         self.newest().is_some_and(|newest| newest.order.order() == Some(Order::Hold))
     }
 
-    /// Does what it was told last, and reports.
+    /// Follows the last order, and reports.
     fn sail(&mut self) {
         let passed_s = self.moved.elapsed().as_secs_f64() * FACTOR;
         self.moved = Instant::now();
@@ -131,9 +131,9 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     assert!(orders.iter().any(|order| order.given_ns > orders[0].given_ns), "its agent goes on deciding");
     assert!(orders.iter().all(|order| order.order.vehicle == ME && order.given_ns <= order.stamp.valid_ns));
 
-    // It falls silent, and is heard of again.
+    // It stops reporting, and reports again.
     sim.wait_for_event("nav_lost", "blue_one");
-    gateway.wait_until("what is lost is told to hold", Gateway::is_held);
+    gateway.wait_until("a lost boat is sent a hold", Gateway::is_held);
     gateway.sail_until("what is back is driven again", |gateway| !gateway.is_held());
     sim.wait_for_event("nav_back", "blue_one");
     let before = gateway.newest().expect("an order").given_ns;
@@ -144,10 +144,10 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     gateway.sail_until("a boat without an agent holds", Gateway::is_held);
     sim.wait_for_event("agent_lost", "blue_one");
     let (count, given_ns) = (gateway.received(), gateway.newest().expect("an order").given_ns);
-    gateway.sail_until("it is told so again", |gateway| gateway.received() > count + 3);
+    gateway.sail_until("it is sent the hold again", |gateway| gateway.received() > count + 3);
     assert!(gateway.newest().is_some_and(|newest| newest.given_ns == given_ns) && gateway.is_held());
 
-    // Its gateway dies: another may bring it, and the old one has no say.
+    // Its gateway dies: another may join, and the old one's reports are refused.
     gateway.alive.remove(1);
     gateway.wait_until("the boat is free again", |gateway| join(&other, &gateway.name, "blue_one") != busy);
     gateway.report(gateway.ticket);
@@ -159,7 +159,7 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
 }
 
 #[test]
-fn real_boats_are_not_played_where_nothing_keeps_time_and_it_is_said_what_to_do() {
+fn real_boats_are_refused_without_real_time_and_the_error_names_what_to_do() {
     let dir = tempfile::tempdir().expect("a temporary directory");
     let mixed = "scenarios/games/mixed_2v2.toml";
     let root = scenarios();
@@ -173,10 +173,10 @@ fn real_boats_are_not_played_where_nothing_keeps_time_and_it_is_said_what_to_do(
         &["tournament", &tournament, "--games", "2"],
     ] {
         let output = run(args);
-        let said = String::from_utf8_lossy(&output.stderr);
+        let printed = String::from_utf8_lossy(&output.stderr);
         assert!(!output.status.success(), "{args:?}");
         for part in ["blue_one, red_one", "--pace realtime", "--rehearse"] {
-            assert!(said.contains(part), "{args:?}: {said}");
+            assert!(printed.contains(part), "{args:?}: {printed}");
         }
     }
 }

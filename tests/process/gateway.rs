@@ -1,6 +1,6 @@
 //! The hardware loop with real processes and real sockets: whatever dies or is cut, the boat comes to rest in time.
 //!
-//! Water with one boat, its emulator, a proxy that can be cut, the gateway, the game and its minds. The boat is watched
+//! Water with one boat, its emulator, a proxy that can be cut, the gateway, the game and its agents. The boat is watched
 //! in the water itself, by the truth about its thrusters.
 
 use crate::support::{LIMIT, Process, Sim, real_attacker, result_of, squall};
@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 /// What is allowed on a busy machine beyond the time that is stated.
 const SLACK: Duration = Duration::from_millis(1500);
 
-/// A thruster that is told to stop takes a fifth of its range a second, with a lag of 0.25 s: from 70 % it pushes less than
+/// A thruster that is commanded to stop takes a fifth of its range a second, with a lag of 0.25 s: from 70 % it pushes less than
 /// this after 3.5 + 1.1 s.
 const STILL_NEWTON: f64 = 0.5;
 const LAG: Duration = Duration::from_millis(4600);
@@ -95,12 +95,12 @@ struct Loop {
     primary: Option<String>,
     water: Sim,
     frame: Arc<Mutex<Frame>>,
-    _eyes: (Bus, Declaration),
+    _observer: (Bus, Declaration),
     _dir: tempfile::TempDir,
 }
 
 impl Loop {
-    /// A boat under way by its mind's orders.
+    /// A boat under way by its agent's orders.
     fn under_way(watchdog: &str) -> Loop {
         let dir = tempfile::tempdir().expect("a temporary directory");
         let file = real_attacker(dir.path());
@@ -110,8 +110,8 @@ impl Loop {
         let proxy = Proxy::start(back_seat);
         let gateway = start_gateway(&sim, proxy.port, &["--arm"]);
         let agents = sim.agent(&["blue_one", "red_one"]);
-        let (frame, eyes) = watch(&water);
-        let all = Loop { sim, agents, gateway, emulator, proxy, primary, water, frame, _eyes: eyes, _dir: dir };
+        let (frame, observer) = watch(&water);
+        let all = Loop { sim, agents, gateway, emulator, proxy, primary, water, frame, _observer: observer, _dir: dir };
         all.wait(LIMIT, "the boat sails", |boat| boat.0 > 0.6);
         all
     }
@@ -184,7 +184,7 @@ fn start_emulator(water: &Sim, watchdog: &str) -> (Process, String, Option<Strin
     let mut process = Process::start(command);
     let mut lines = BufReader::new(process.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
     let mut reach = |what: &str| {
-        let line = lines.find(|line| line.starts_with(what)).expect("it says where it listens");
+        let line = lines.find(|line| line.starts_with(what)).expect("it prints where it listens");
         line.rsplit("tcp://").next().expect("an address").to_owned()
     };
     let (back_seat, primary) = (reach("back seat at "), reach("primary operator at "));
@@ -212,7 +212,7 @@ fn watch(water: &Sim) -> (Arc<Mutex<Frame>>, (Bus, Declaration)) {
 }
 
 #[test]
-fn a_killed_mind_stops_the_boat_and_only_a_person_sets_it_going_again() {
+fn a_killed_agent_stops_the_boat_and_only_an_operator_arms_it_again() {
     let mut all = Loop::under_way("none");
     all.agents.kill();
     all.stops_within(Duration::from_secs(1));
@@ -240,7 +240,7 @@ fn a_killed_gateway_leaves_the_boat_to_its_watchdog_and_the_next_one_begins_with
     let mut all = Loop::under_way("none");
     all.gateway.kill();
     std::thread::sleep(Duration::from_secs(4));
-    assert!(!all.boat().1, "it does for ever what it was told last");
+    assert!(!all.boat().1, "it follows the last command for ever");
     all.gateway = start_gateway(&all.sim, all.proxy.port, &[]);
     all.stops_within(Duration::from_secs(3));
     all.wait_for_state("safed");
@@ -259,7 +259,7 @@ fn a_gateway_that_is_asked_to_end_stops_the_boat_first() {
 
 #[test]
 fn a_link_that_is_cut_half_open_or_comes_and_goes_leaves_the_boat_at_rest() {
-    // Cut: tripped at once; the first word on the next connection is standby.
+    // Cut: failsafe at once; the first command on the next connection is standby.
     let all = Loop::under_way("none");
     all.proxy.cut();
     all.stops_within(Duration::from_millis(300));
@@ -287,7 +287,7 @@ fn a_link_that_is_cut_half_open_or_comes_and_goes_leaves_the_boat_at_rest() {
 }
 
 #[test]
-fn whoever_has_the_boat_ashore_and_an_e_stop_are_heard_through_all_of_it() {
+fn the_primary_operator_and_an_e_stop_stop_the_boat_through_the_whole_loop() {
     let all = Loop::under_way("none");
     let mut operator = TcpStream::connect(all.primary.as_deref().expect("it listens")).expect("it accepts");
     operator.write_all(b"$PSEAC,L,0,0,0,*14\r\n").expect("a command");
@@ -296,9 +296,9 @@ fn whoever_has_the_boat_ashore_and_an_e_stop_are_heard_through_all_of_it() {
     assert!(all.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("secondary control")));
     operator.write_all(b"$PSEAC,L,0,0,0,OP2_ON*67\r\n").expect("a command");
     all.arm();
-    let told = squall(&["gateway", "tell", "all", "estop", "--connect", &all.sim.endpoint, "--game", &all.sim.game]);
-    let mut told = told;
-    let output = told.output().expect("the program starts");
+    let mut estop =
+        squall(&["gateway", "tell", "all", "estop", "--connect", &all.sim.endpoint, "--game", &all.sim.game]);
+    let output = estop.output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     all.stops_within(Duration::from_millis(300));
     all.wait_for_state("e-stopped");
@@ -336,7 +336,7 @@ fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
     for name in ["blue_one", "red_one"] {
         let file = dir.path().join(format!("{name}.mcap")).display().to_string();
         let output = squall(&["gateway", "replay", &file]).output().expect("the program starts");
-        let said = String::from_utf8_lossy(&output.stdout);
-        assert!(output.status.success() && said.contains("the recording, byte for byte"), "{said}");
+        let printed = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success() && printed.contains("the recording, byte for byte"), "{printed}");
     }
 }

@@ -1,7 +1,7 @@
-//! Our codec as a peer of `pynmea2_check.py`: `peer speak` writes sentences of every kind with what they say,
-//! `peer listen` tells what it reads in the lines of its input.
+//! Our codec as a peer of `pynmea2_check.py`: `peer write` writes sentences of every kind with their values,
+//! `peer read` prints the values that it reads in the lines of its input.
 //!
-//! What a sentence says is a line of `name=value`, tab-separated; a value that is not there is empty.
+//! The values of a sentence are a line of `name=value`, tab-separated; a missing value is empty.
 
 use game::LatLon;
 use gateway::nmea::{
@@ -10,18 +10,18 @@ use gateway::nmea::{
 };
 use std::io::{BufRead, Write};
 
-/// Sentences of each kind that `speak` writes.
+/// Sentences of each kind that `write` writes.
 const ROUNDS: u32 = 200;
 
 fn main() {
     match std::env::args().nth(1).as_deref() {
-        Some("speak") => speak(),
-        Some("listen") => listen(),
-        _ => eprintln!("usage: peer speak | peer listen"),
+        Some("write") => write(),
+        Some("read") => read(),
+        _ => eprintln!("usage: peer write | peer read"),
     }
 }
 
-fn speak() {
+fn write() {
     let mut dice = Dice(0x5EA);
     let mut out = std::io::stdout().lock();
     for _ in 0..ROUNDS {
@@ -29,25 +29,25 @@ fn speak() {
             let mut wire = Vec::new();
             sentence.write(&mut wire);
             let wire = String::from_utf8(wire).expect("a sentence is ASCII");
-            writeln!(out, "{}\t{}", wire.trim_end(), said(&sentence)).expect("somebody listens");
+            writeln!(out, "{}\t{}", wire.trim_end(), values(&sentence)).expect("standard output is open");
         }
     }
 }
 
-fn listen() {
+fn read() {
     let mut framer = Framer::new();
     for line in std::io::stdin().lock().lines() {
         let line = line.expect("lines of text come in") + "\r\n";
         let mut answer = "not a sentence".to_owned();
         framer.push(line.as_bytes(), &mut |body| {
-            answer = Sentence::parse(body).map_or_else(|error| error.to_string(), |sentence| said(&sentence));
+            answer = Sentence::parse(body).map_or_else(|error| error.to_string(), |sentence| values(&sentence));
         });
         println!("{answer}");
     }
 }
 
-/// What a sentence says.
-fn said(sentence: &Sentence) -> String {
+/// The values of a sentence.
+fn values(sentence: &Sentence) -> String {
     let pairs: Vec<(&str, String)> = match sentence {
         Sentence::Command(c) => vec![
             ("mode", c.mode.letter().to_string()),
@@ -93,12 +93,12 @@ fn said(sentence: &Sentence) -> String {
         Sentence::Waypoint(w) => {
             vec![("lat", w.at.lat_deg.to_string()), ("lon", w.at.lon_deg.to_string()), ("index", w.index.to_string())]
         }
-        other => said_by_the_standard(other),
+        other => standard_values(other),
     };
     pairs.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join("\t")
 }
 
-fn said_by_the_standard(sentence: &Sentence) -> Vec<(&'static str, String)> {
+fn standard_values(sentence: &Sentence) -> Vec<(&'static str, String)> {
     let lat = |at: Option<LatLon>| ("lat", number(at.map(|at| at.lat_deg)));
     let lon = |at: Option<LatLon>| ("lon", number(at.map(|at| at.lon_deg)));
     let time = |time: Option<TimeOfDay>| ("time", number(time.map(|time| f64::from(time.0))));

@@ -48,7 +48,7 @@ fn same_date(ours: Option<Date>, theirs: Option<chrono::NaiveDate>) {
     assert_eq!(ours, theirs);
 }
 
-/// Checks that both say the same.
+/// Checks that both have the same values.
 fn agree(ours: &Sentence, theirs: &ParseResult) {
     match (ours, theirs) {
         (Sentence::Gga(a), ParseResult::GGA(b)) => {

@@ -16,8 +16,8 @@ impl Dice {
     }
 }
 
-/// Bytes that mean something to the codec.
-const SPICE: &[u8] = b"$*,\r\n.-+ 0123456789AFLTCGRNSEWVMK!\x00\x7f\x80\xff";
+/// Bytes with a meaning to the codec.
+const SIGNIFICANT: &[u8] = b"$*,\r\n.-+ 0123456789AFLTCGRNSEWVMK!\x00\x7f\x80\xff";
 
 #[expect(clippy::disallowed_methods, reason = "how long it runs is all that the clock decides")]
 fn main() {
@@ -63,7 +63,7 @@ fn changed(seeds: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
         let end = (at + dice.roll(12)).min(bytes.len());
         match dice.roll(6) {
             0 if !bytes.is_empty() => bytes[at] = dice.roll(256) as u8,
-            1 => bytes.insert(at, SPICE[dice.roll(SPICE.len())]),
+            1 => bytes.insert(at, SIGNIFICANT[dice.roll(SIGNIFICANT.len())]),
             2 => drop(bytes.drain(at..end)),
             3 => {
                 let copy = bytes[at..end].to_vec();
@@ -71,7 +71,7 @@ fn changed(seeds: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
                 bytes.splice(to..to, copy.repeat(1 + dice.roll(30)));
             }
             4 => bytes.truncate(end),
-            _ if !bytes.is_empty() => bytes[at] = SPICE[dice.roll(SPICE.len())],
+            _ if !bytes.is_empty() => bytes[at] = SIGNIFICANT[dice.roll(SIGNIFICANT.len())],
             _ => bytes.push(b'$'),
         }
     }

@@ -1,72 +1,80 @@
-//! Who commands the boat, and whether it does what it was sent: by its own words, PSEAD.
+//! Who commands the boat, and whether it follows its commands: by its own report, PSEAD.
 
 use crate::nmea::{ControlState, Mode, Operator};
 use crate::supervisor::Control;
 use game::SimTime;
 use game::gateway::ControlWatch;
 
-/// What the boat last said, and what it should say.
+/// The boat's last control state.
+#[derive(Clone, Copy, Debug)]
+struct Report {
+    at: SimTime,
+    mode: Mode,
+    operator: Option<Operator>,
+}
+
+/// What the boat last reported, and what it should report.
 #[derive(Clone, Debug)]
 pub(super) struct ControlLog {
     watch: ControlWatch,
-    said: Option<(SimTime, Mode, Option<Operator>)>,
-    /// The mode it was last sent.
+    reported: Option<Report>,
+    /// The mode that the boat was last sent.
     sent: Option<Mode>,
-    /// Since when it has shown another one.
-    astray_since: Option<SimTime>,
+    /// Since when it has reported another one.
+    mismatch_since: Option<SimTime>,
 }
 
 impl ControlLog {
     pub(super) fn new(watch: ControlWatch) -> ControlLog {
-        ControlLog { watch, said: None, sent: None, astray_since: None }
+        ControlLog { watch, reported: None, sent: None, mismatch_since: None }
     }
 
-    /// The boat may be another one now.
+    /// Forgets everything: the boat may be another one now.
     pub(super) fn forget(&mut self) {
         *self = ControlLog::new(self.watch);
     }
 
     pub(super) fn take(&mut self, now: SimTime, state: &ControlState) {
-        self.said = Some((now, state.mode, state.operator));
-        let astray = self.sent.is_some_and(|sent| sent != state.mode);
-        self.astray_since = astray.then(|| self.astray_since.unwrap_or(now));
+        self.reported = Some(Report { at: now, mode: state.mode, operator: state.operator });
+        let mismatch = self.sent.is_some_and(|sent| sent != state.mode);
+        self.mismatch_since = mismatch.then(|| self.mismatch_since.unwrap_or(now));
     }
 
     /// The boat was sent this mode.
     pub(super) fn note_sent(&mut self, now: SimTime, mode: Mode) {
         if self.sent != Some(mode) {
             self.sent = Some(mode);
-            let shows = self.said.is_some_and(|(_, said, _)| said == mode);
-            self.astray_since = (!shows).then_some(now);
+            let matches = self.mode() == Some(mode);
+            self.mismatch_since = (!matches).then_some(now);
         }
     }
 
-    /// The mode that the boat shows.
+    /// The mode that the boat reports.
     pub(super) fn mode(&self) -> Option<Mode> {
-        self.said.map(|(_, mode, _)| mode)
+        self.reported.map(|report| report.mode)
     }
 
-    /// Who the boat says commands it.
+    /// Who the boat reports commands it.
     pub(super) fn operator(&self) -> Option<Operator> {
-        self.said.and_then(|(.., operator)| operator)
+        self.reported.and_then(|report| report.operator)
     }
 
-    /// The mode that the boat shows in place of the one it was sent, for longer than it may.
-    pub(super) fn astray(&self, now: SimTime) -> Option<Mode> {
-        let since = self.astray_since?;
-        let (said_at, mode, _) = self.said?;
-        // What it said before it could know is no disobedience.
-        ((now - since).as_s() > self.watch.echo_s && said_at > since).then_some(mode)
+    /// The mode that the boat has reported in place of the one it was sent for longer than `echo_s`.
+    pub(super) fn mode_mismatch(&self, now: SimTime) -> Option<Mode> {
+        let since = self.mismatch_since?;
+        let report = self.reported?;
+        // A report from before the command says nothing about it.
+        ((now - since).as_s() > self.watch.echo_s && report.at > since).then_some(report.mode)
     }
 
-    /// What it comes to.
+    /// Who commands the boat now.
     pub(super) fn control(&self, now: SimTime) -> Control {
         let silent = if self.watch.assumed { Control::Granted } else { Control::Unknown };
-        let Some((said_at, _, operator)) = self.said else { return silent };
-        if (now - said_at).as_s() > self.watch.age_max_s {
+        let Some(report) = self.reported else { return silent };
+        if (now - report.at).as_s() > self.watch.age_max_s {
             return Control::Unknown;
         }
-        match (operator, self.astray(now)) {
+        match (report.operator, self.mode_mismatch(now)) {
             (Some(Operator::Secondary), None) => Control::Granted,
             (Some(Operator::Secondary), Some(mode)) => Control::Disobeys(mode.letter()),
             (Some(other), _) => Control::Other(other.number()),

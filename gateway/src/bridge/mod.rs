@@ -1,21 +1,21 @@
-//! The gateway's core: sentences, orders and wishes in; sentences, navigation and events out.
+//! The gateway's core: sentences, orders and operator commands in; sentences, navigation and events out.
 //!
-//! No socket and no clock in here: [`Bridge::take`] is told what came and when, and puts into an [`Outbox`] what follows.
+//! No socket and no clock in here: [`Bridge::take`] gets an [`Input`] with its time, and fills an [`Output`].
 //! The same inputs at the same times give the same outputs, byte for byte: that is how a recording is replayed.
 
+mod command_encoder;
 mod control;
-mod exchange;
+mod interface;
 mod status;
 mod upload;
-mod voice;
 
-use crate::estimate::Estimator;
 use crate::geodesy::LocalFrame;
 use crate::geofence::{BowWatch, GeofenceWatch};
+use crate::nav_estimate::NavEstimator;
 use crate::nmea::{Command, Framer, Mode, ParseError, Sentence, TimeOfDay};
-use crate::set_point::{SetPointMapper, Setting};
-use crate::supervisor::{Action, Conditions, Control, Reach, Refusal, State, Step, Supervisor, Task, Wish};
-pub use exchange::{Event, FleetCommand, Input, NavOut, Outbox, Plan};
+use crate::set_point::{SetPoint, SetPointMapper};
+use crate::supervisor::{Action, Conditions, Control, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task};
+pub use interface::{Event, FleetCommand, Input, NavOut, Output, Plan};
 
 use control::ControlLog;
 use game::external::{FailsafeReport, Mission, OperatorCommand};
@@ -27,31 +27,31 @@ use upload::{Next, Upload};
 
 /// Two new orders are sent at least this far apart.
 const GAP_MIN_S: f64 = 0.045;
-/// Where the other boats are counts for this long.
+/// Positions of other boats are used for this long.
 const OTHERS_AGE_MAX_S: f64 = 2.0;
 /// From this thrust on a boat's position must change, per cent.
-const PUSH_PCT: f64 = 20.0;
-/// A boat that is told a task and does not show it is told again after this time.
+const THRUST_MIN_PCT: f64 = 20.0;
+/// A task that the boat does not report is sent again after this time.
 const TASK_AGAIN_S: f64 = 1.0;
-/// How often navigation that cannot be relied on is told.
-const LOST_NAV_EVERY_S: f64 = 0.25;
-/// A step of the receiver's time of day against our clock that is worth a word, s.
+/// How often invalid navigation is reported.
+const INVALID_NAV_EVERY_S: f64 = 0.25;
+/// A step of the receiver's time of day against our clock that is worth a warning, s.
 const CLOCK_STEP_S: f64 = 2.0;
-/// Trips and names of unknown sentences that are remembered.
-const TRIPS_MAX: usize = 32;
+/// How many failsafes and names of unknown sentences are kept.
+const FAILSAFES_MAX: usize = 32;
 const UNKNOWN_MAX: usize = 64;
 
-/// An order, when it came, and the time of the picture that it answers.
+/// The newest order, when it came, and the time of the picture that it answers.
 #[derive(Clone, Copy, Debug)]
-struct Standing {
+struct CurrentOrder {
     order: Order,
     given: SimTime,
     came: SimTime,
 }
 
-/// How often what happened.
+/// How often each thing happened.
 #[derive(Clone, Debug, Default)]
-struct Tally {
+struct Counters {
     unknown: BTreeMap<String, u64>,
     unreadable: u64,
     orders: u64,
@@ -64,16 +64,16 @@ struct Tally {
 pub struct Bridge {
     plan: Plan,
     framer: Framer,
-    estimator: Estimator,
+    estimator: NavEstimator,
     control: ControlLog,
-    fence: GeofenceWatch,
+    geofence: GeofenceWatch,
     bow: BowWatch,
-    seat: SetPointMapper,
+    set_points: SetPointMapper,
     supervisor: Supervisor,
     link_up: bool,
-    order: Option<Standing>,
+    order: Option<CurrentOrder>,
     /// Whether the order has not been sent yet.
-    order_is_news: bool,
+    order_is_new: bool,
     /// When an order was last sent for the first time.
     order_sent: SimTime,
     others: (SimTime, Vec<Ned>),
@@ -83,39 +83,39 @@ pub struct Bridge {
     /// The receiver's time of day, and when it came.
     clock: Option<(SimTime, TimeOfDay)>,
     upload: Option<Upload>,
-    /// What was sent last, and when.
+    /// The command that was sent last, and when.
     last_sent: Option<(SimTime, Command)>,
     /// Whether the boat may be moving by what it was sent.
     under_way: bool,
-    /// What was true at the last step.
-    seen: Conditions,
-    nav_is_news: bool,
-    /// When navigation was told last, and whether as valid.
-    nav_told: (SimTime, bool),
+    /// The conditions of the last step.
+    conditions: Conditions,
+    nav_is_new: bool,
+    /// When navigation was reported last, and whether as valid.
+    nav_reported: (SimTime, bool),
     standby_ignored: bool,
-    trips: Vec<FailsafeReport>,
-    tally: Tally,
+    failsafes: Vec<FailsafeReport>,
+    counters: Counters,
 }
 
 impl Bridge {
-    /// A bridge at the beginning: no link, safed.
+    /// A bridge without a link, safed.
     #[must_use]
     pub fn new(plan: Plan) -> Bridge {
-        let Gateway { nav, compass, limits, control, geofence, halt, battery, .. } = plan.gateway.clone();
+        let Gateway { nav, limits, control, geofence, halt, battery, .. } = plan.gateway.clone();
         let frame = LocalFrame::new(plan.field.plan.datum);
-        let estimator = Estimator::new(frame, nav, (compass, plan.declination_rad), limits.speed_max_m_s);
+        let compass_to_true_rad = plan.compass_to_true_rad();
         Bridge {
             framer: Framer::new(),
-            seat: SetPointMapper::new(&plan.gateway, estimator.compass_to_true_rad()),
-            estimator,
+            set_points: SetPointMapper::new(&plan.gateway, compass_to_true_rad),
+            estimator: NavEstimator::new(frame, nav, compass_to_true_rad, limits.speed_max_m_s),
             control: ControlLog::new(control),
-            fence: GeofenceWatch::new(&plan.field, geofence),
+            geofence: GeofenceWatch::new(&plan.field, geofence),
             bow: BowWatch::new(halt, plan.length_m),
             supervisor: Supervisor::new(plan.arms_itself, battery.action),
             plan,
             link_up: false,
             order: None,
-            order_is_news: false,
+            order_is_new: false,
             order_sent: SimTime::LONG_AGO,
             others: (SimTime::LONG_AGO, vec![]),
             volts: None,
@@ -125,84 +125,84 @@ impl Bridge {
             upload: None,
             last_sent: None,
             under_way: false,
-            seen: Conditions::NOTHING,
-            nav_is_news: false,
-            nav_told: (SimTime::LONG_AGO, false),
+            conditions: Conditions::UNKNOWN,
+            nav_is_new: false,
+            nav_reported: (SimTime::LONG_AGO, false),
             standby_ignored: false,
-            trips: Vec::new(),
-            tally: Tally::default(),
+            failsafes: Vec::new(),
+            counters: Counters::default(),
         }
     }
 
-    /// Where the supervisor stands.
+    /// The supervisor's state.
     #[must_use]
     pub fn state(&self) -> State {
         self.supervisor.state()
     }
 
-    /// Takes in what came, and does what is due.
-    pub fn take(&mut self, now: SimTime, input: &Input, out: &mut Outbox) {
-        let mut wish = None;
+    /// Takes an input, and does what is due.
+    pub fn take(&mut self, now: SimTime, input: &Input, out: &mut Output) {
+        let mut request = None;
         match input {
-            Input::LinkUp => self.greet(),
+            Input::LinkUp => self.take_link_up(),
             Input::LinkDown => self.link_up = false,
             Input::Bytes(bytes) => self.read(now, bytes, out),
-            Input::Moored => self.order = None,
+            Input::Joined => self.order = None,
             Input::Order(order, given) => self.take_order(now, *order, *given),
-            Input::BadOrder => self.tally.bad_orders += 1,
+            Input::BadOrder => self.counters.bad_orders += 1,
             Input::Others(places) => self.others = (now, places.clone()),
-            Input::Operator(OperatorCommand::Mission(mission)) => wish = self.take_mission(now, mission, out),
-            Input::Operator(command) => wish = wish_of(command),
-            Input::Fleet(FleetCommand::EStop) => wish = Some(Wish::EStop(Reach::Fleet)),
-            Input::Fleet(FleetCommand::Release) => wish = Some(Wish::Release(Reach::Fleet)),
+            Input::Operator(OperatorCommand::Mission(mission)) => request = self.take_mission(now, mission, out),
+            Input::Operator(command) => request = request_from(command),
+            Input::Fleet(FleetCommand::EStop) => request = Some(OperatorRequest::EStop(Scope::Fleet)),
+            Input::Fleet(FleetCommand::Release) => request = Some(OperatorRequest::Release(Scope::Fleet)),
             Input::Tick => {}
         }
-        if wish.is_some() && !matches!(input, Input::Operator(OperatorCommand::Mission(_))) {
-            self.break_off_upload(out);
+        if request.is_some() && !matches!(input, Input::Operator(OperatorCommand::Mission(_))) {
+            self.cancel_upload(out);
         }
-        self.advance(now, wish, out);
-        self.tell_nav(now, out);
+        self.advance(now, request, out);
+        self.report_nav(now, out);
     }
 
-    /// When it wants to be called again at the latest.
+    /// When it has to be called again at the latest.
     #[must_use]
     pub fn due(&self, now: SimTime) -> SimTime {
         let period = self.period();
         let coming = |at: SimTime| if at > now { at } else { now + period };
         let regular = self.last_sent.as_ref().map_or(now + period, |(at, _)| coming(*at + period));
-        let news =
-            if self.order_is_news { coming(self.order_sent + SimTime::from_s(GAP_MIN_S)) } else { SimTime::NEVER };
+        let new_order =
+            if self.order_is_new { coming(self.order_sent + SimTime::from_s(GAP_MIN_S)) } else { SimTime::NEVER };
         let upload = self.upload.as_ref().map_or(SimTime::NEVER, |upload| coming(upload.due()));
-        regular.min(news).min(upload)
+        regular.min(new_order).min(upload)
     }
 
     fn period(&self) -> SimTime {
         SimTime::from_s(1.0 / self.plan.gateway.rate_hz)
     }
 
-    /// Whether the boat should hear something now.
+    /// Whether a command is due now.
     fn is_due(&self, now: SimTime) -> bool {
-        let fresh = self.order_is_news && self.supervisor.state() == State::Armed;
-        // A new order does not wait for what was only said again.
+        let fresh = self.order_is_new && self.supervisor.state() == State::Armed;
+        // A new order does not wait for the period of repetitions.
         let regular = self.last_sent.as_ref().is_none_or(|(at, _)| now >= *at + self.period());
         regular || (fresh && now >= self.order_sent + SimTime::from_s(GAP_MIN_S))
     }
 
-    /// What to send before everything ends: thrust zero, then standby.
+    /// The shutdown message, sent before the link closes: thrust zero, then standby.
     #[must_use]
-    pub fn last_words(&self) -> Vec<u8> {
-        let mut words = Vec::new();
+    pub fn shutdown_message(&self) -> Vec<u8> {
+        let mut commands = Vec::new();
         if self.upload.is_some() {
-            words.push(voice::end_of_download());
+            commands.push(command_encoder::end_of_download());
         }
-        words.extend([voice::of_setting(Setting::ZERO), voice::standby()]);
-        voice::bytes_of(&words)
+        commands.extend([command_encoder::of_set_point(SetPoint::ZERO), command_encoder::standby()]);
+        command_encoder::bytes_of(&commands)
     }
 
-    /// A link that is new: nothing is known of the boat at its end, and its first word is standby.
-    fn greet(&mut self) {
+    /// A new link: nothing is known of the boat at its end, and it is sent standby first.
+    fn take_link_up(&mut self) {
         self.link_up = true;
-        // What came of a sentence before the cut must not be completed by what comes after it.
+        // A sentence that was cut off must not be completed by bytes of the new link.
         self.framer.push(b"\r\n", &mut |_| {});
         self.estimator.forget();
         self.control.forget();
@@ -212,23 +212,23 @@ impl Bridge {
         self.under_way = true;
     }
 
-    fn read(&mut self, now: SimTime, bytes: &[u8], out: &mut Outbox) {
+    fn read(&mut self, now: SimTime, bytes: &[u8], out: &mut Output) {
         let mut framer = std::mem::take(&mut self.framer);
         framer.push(bytes, &mut |body| match Sentence::parse(body) {
-            Ok(sentence) => self.heed(now, &sentence, out),
+            Ok(sentence) => self.apply(now, &sentence, out),
             Err(ParseError::Unknown { address }) => {
-                let room = self.tally.unknown.len() < UNKNOWN_MAX;
+                let room = self.counters.unknown.len() < UNKNOWN_MAX;
                 let name =
-                    if room || self.tally.unknown.contains_key(&address) { address } else { "others".to_owned() };
-                *self.tally.unknown.entry(name).or_default() += 1;
+                    if room || self.counters.unknown.contains_key(&address) { address } else { "others".to_owned() };
+                *self.counters.unknown.entry(name).or_default() += 1;
             }
-            Err(_) => self.tally.unreadable += 1,
+            Err(_) => self.counters.unreadable += 1,
         });
         self.framer = framer;
     }
 
-    fn heed(&mut self, now: SimTime, sentence: &Sentence, out: &mut Outbox) {
-        self.nav_is_news |= self.estimator.take(now, sentence);
+    fn apply(&mut self, now: SimTime, sentence: &Sentence, out: &mut Output) {
+        self.nav_is_new |= self.estimator.take(now, sentence);
         match sentence {
             Sentence::ControlState(state) => self.control.take(now, state),
             Sentence::Battery(battery) => {
@@ -249,8 +249,8 @@ impl Bridge {
         }
     }
 
-    /// Says so when the receiver's time of day goes another way than our clock.
-    fn watch_clock(&mut self, now: SimTime, time: Option<TimeOfDay>, out: &mut Outbox) {
+    /// Warns when the receiver's time of day steps against our clock.
+    fn watch_clock(&mut self, now: SimTime, time: Option<TimeOfDay>, out: &mut Output) {
         let Some(time) = time else { return };
         if let Some((at, before)) = self.clock.replace((now, time)) {
             let step_s = time.since_s(before.later(now - at));
@@ -262,37 +262,37 @@ impl Bridge {
 
     fn take_order(&mut self, now: SimTime, order: Order, given: SimTime) {
         let Ok(order) = order.check() else {
-            self.tally.bad_orders += 1;
+            self.counters.bad_orders += 1;
             return;
         };
-        // Before the first picture nobody can have thought.
-        let newer = given > self.order.map_or(SimTime::ZERO, |standing| standing.given);
+        // No order can answer a picture before the first.
+        let newer = given > self.order.map_or(SimTime::ZERO, |current| current.given);
         if newer {
-            self.tally.orders += 1;
-            self.order_is_news = true;
-            self.order = Some(Standing { order, given, came: now });
+            self.counters.orders += 1;
+            self.order_is_new = true;
+            self.order = Some(CurrentOrder { order, given, came: now });
         } else if order == Order::Hold {
-            // The sim takes an order back when its mind is lost. That makes nothing fresh.
-            self.order = self.order.map(|standing| Standing { order, ..standing });
-            self.order_is_news = true;
-        } else if self.order.is_some_and(|standing| given < standing.given) {
-            self.tally.old_orders += 1;
+            // The sim replaces the order when the agent is lost. That does not make the order fresh.
+            self.order = self.order.map(|current| CurrentOrder { order, ..current });
+            self.order_is_new = true;
+        } else if self.order.is_some_and(|current| given < current.given) {
+            self.counters.old_orders += 1;
         }
     }
 
-    /// Begins to send a mission, or says why not.
-    fn take_mission(&mut self, now: SimTime, mission: &Mission, out: &mut Outbox) -> Option<Wish> {
-        let unfit = self.conditions(now).unfit();
+    /// Begins the upload of a mission, or refuses it.
+    fn take_mission(&mut self, now: SimTime, mission: &Mission, out: &mut Output) -> Option<OperatorRequest> {
+        let unfit = self.conditions_at(now).unfit();
         let begun = match self.supervisor.state() {
             State::EStopped => Err(self.e_stop_in_force()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
-            _ if !self.is_within_fence(mission) => Err("a place of it is outside of the fence".to_owned()),
+            _ if !self.is_within_geofence(mission) => Err("a place of it is outside of the geofence".to_owned()),
             _ => Upload::new(mission, self.plan.gateway.upload_gap_s, now),
         };
         match begun {
             Ok(upload) => {
                 self.upload = Some(upload);
-                Some(Wish::Disarm)
+                Some(OperatorRequest::Disarm)
             }
             Err(reason) => {
                 out.refused = Some(reason);
@@ -301,22 +301,25 @@ impl Bridge {
         }
     }
 
-    fn is_within_fence(&self, mission: &Mission) -> bool {
+    fn is_within_geofence(&self, mission: &Mission) -> bool {
         let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
-        // What is no place at all the upload refuses, in words.
+        // The upload refuses invalid positions with a better reason.
         let spots = places.filter(|[lat_deg, lon_deg]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0);
-        spots.map(|[lat_deg, lon_deg]| self.estimator.place(*lat_deg, *lon_deg)).all(|place| self.fence.holds(place))
+        spots
+            .map(|[lat_deg, lon_deg]| self.estimator.place(*lat_deg, *lon_deg))
+            .all(|place| self.geofence.contains(place))
     }
 
     fn e_stop_in_force(&self) -> String {
         format!("an E-stop of {} is in force: release it first", self.supervisor.stopped_by())
     }
 
-    /// One step of the supervisor, and what it has to say to the boat.
-    fn advance(&mut self, now: SimTime, wish: Option<Wish>, out: &mut Outbox) {
-        let conditions = self.conditions(now);
-        let Step { action, refusal, before } = self.supervisor.step(&conditions, wish);
-        let still_stopped = matches!(wish, Some(Wish::Release(_))) && self.supervisor.state() == State::EStopped;
+    /// One step of the supervisor, and the command that follows.
+    fn advance(&mut self, now: SimTime, request: Option<OperatorRequest>, out: &mut Output) {
+        let conditions = self.conditions_at(now);
+        let Step { action, refusal, before } = self.supervisor.step(&conditions, request);
+        let still_stopped =
+            matches!(request, Some(OperatorRequest::Release(_))) && self.supervisor.state() == State::EStopped;
         match refusal {
             Some(Refusal::EStopped) => out.refused = Some(self.e_stop_in_force()),
             Some(refusal) => out.refused = Some(refusal.to_string()),
@@ -326,139 +329,140 @@ impl Bridge {
         if let Some(before) = before {
             self.note_change(now, before, out);
         }
-        let changed = std::mem::replace(&mut self.seen, conditions).blocked != conditions.blocked;
+        let changed = std::mem::replace(&mut self.conditions, conditions).blocked != conditions.blocked;
         if self.supervisor.state() == State::Armed && changed {
             out.events.push(Event::Blocked(conditions.blocked));
         }
-        let urgent = before.is_some() || wish.is_some() || self.last_sent.is_none() || changed;
+        let urgent = before.is_some() || request.is_some() || self.last_sent.is_none() || changed;
         if !self.link_up {
             self.upload = None;
         } else if self.upload.is_some() && action == Action::Standby && !(urgent && self.under_way) {
-            self.go_on_with_upload(now, out);
+            self.continue_upload(now, out);
         } else if urgent || self.is_due(now) {
-            self.speak(now, action, out);
+            self.send_action(now, action, out);
         }
         self.watch_standby(now, action, out);
     }
 
-    fn note_change(&mut self, now: SimTime, before: State, out: &mut Outbox) {
+    fn note_change(&mut self, now: SimTime, before: State, out: &mut Output) {
         let state = self.supervisor.state();
         out.events.push(Event::State { from: before.to_string(), to: state.to_string() });
         if let State::Failsafe(cause) = state {
-            self.trips.push(FailsafeReport { at_s: now.as_s(), cause: cause.to_string() });
-            let surplus = self.trips.len().saturating_sub(TRIPS_MAX);
-            self.trips.drain(..surplus);
+            self.failsafes.push(FailsafeReport { at_s: now.as_s(), cause: cause.to_string() });
+            let surplus = self.failsafes.len().saturating_sub(FAILSAFES_MAX);
+            self.failsafes.drain(..surplus);
         }
         if state != State::Armed {
-            self.seat.rest();
+            self.set_points.reset();
         }
     }
 
-    /// A mission that is on its way is not sent on.
-    fn break_off_upload(&mut self, out: &mut Outbox) {
+    /// Cancels the upload of a mission.
+    fn cancel_upload(&mut self, out: &mut Output) {
         if self.upload.take().is_some() && self.link_up {
-            out.bytes.extend(voice::bytes_of(&[voice::end_of_download()]));
+            out.bytes.extend(command_encoder::bytes_of(&[command_encoder::end_of_download()]));
         }
     }
 
-    /// Sends the boat what the action comes to.
-    fn speak(&mut self, now: SimTime, action: Action, out: &mut Outbox) {
+    /// Sends the command of an action.
+    fn send_action(&mut self, now: SimTime, action: Action, out: &mut Output) {
         let command = match action {
-            Action::Standby => voice::standby(),
-            Action::Zero => voice::of_setting(Setting::ZERO),
+            Action::Standby => command_encoder::standby(),
+            Action::Zero => command_encoder::of_set_point(SetPoint::ZERO),
             Action::Task(task) => {
-                // Telling it again would begin it anew.
-                let shows = self.control.mode() == Some(voice::of_task(task).mode);
-                let told = self.last_sent.as_ref().is_some_and(|(at, last)| {
-                    last.mode == voice::of_task(task).mode && (shows || (now - *at).as_s() < TASK_AGAIN_S)
+                // Sent again, it would begin anew.
+                let is_reported = self.control.mode() == Some(command_encoder::of_task(task).mode);
+                let is_sent = self.last_sent.as_ref().is_some_and(|(at, last)| {
+                    last.mode == command_encoder::of_task(task).mode
+                        && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
                 });
-                if told {
+                if is_sent {
                     return;
                 }
-                voice::of_task(task)
+                command_encoder::of_task(task)
             }
             Action::Follow => match self.follow(now) {
-                Some(setting) => voice::of_setting(setting),
+                Some(set_point) => command_encoder::of_set_point(set_point),
                 None => return,
             },
         };
-        // Whatever comes after our own settings, thrust goes to zero first.
-        let is_ours = matches!(action, Action::Follow | Action::Zero);
-        if !is_ours && std::mem::replace(&mut self.under_way, false) {
-            out.bytes.extend(voice::bytes_of(&[voice::of_setting(Setting::ZERO)]));
+        // Thrust goes to zero before any command that is not our own set-point.
+        let is_set_point = matches!(action, Action::Follow | Action::Zero);
+        if !is_set_point && std::mem::replace(&mut self.under_way, false) {
+            out.bytes.extend(command_encoder::bytes_of(&[command_encoder::of_set_point(SetPoint::ZERO)]));
         }
         self.under_way |= action == Action::Follow;
-        out.bytes.extend(voice::bytes_of(std::slice::from_ref(&command)));
-        out.carries_order = action == Action::Follow && self.order_is_news;
+        out.bytes.extend(command_encoder::bytes_of(std::slice::from_ref(&command)));
+        out.carries_order = action == Action::Follow && self.order_is_new;
         if out.carries_order {
-            (self.order_is_news, self.order_sent) = (false, now);
+            (self.order_is_new, self.order_sent) = (false, now);
         }
         self.control.note_sent(now, command.mode);
-        self.tally.sent += 1;
+        self.counters.sent += 1;
         self.last_sent = Some((now, command));
     }
 
-    /// What the standing order comes to.
-    fn follow(&mut self, now: SimTime) -> Option<Setting> {
+    /// The set-point of the current order.
+    fn follow(&mut self, now: SimTime) -> Option<SetPoint> {
         let (nav, _) = self.estimator.nav(now)?;
-        let setting = self.seat.setting(now, self.order?.order, &nav);
-        let pushes = match setting {
-            Setting::Thrust { thrust_pct, .. } => thrust_pct.abs() >= PUSH_PCT,
-            Setting::Speed { speed_m_s, .. } => speed_m_s > 0.5,
+        let set_point = self.set_points.map(now, self.order?.order, &nav);
+        let has_thrust = match set_point {
+            SetPoint::Thrust { thrust_pct, .. } => thrust_pct.abs() >= THRUST_MIN_PCT,
+            SetPoint::Speed { speed_m_s, .. } => speed_m_s > 0.5,
         };
-        if pushes {
-            self.estimator.note_push(now);
+        if has_thrust {
+            self.estimator.note_thrust(now);
         }
-        Some(setting)
+        Some(set_point)
     }
 
-    fn go_on_with_upload(&mut self, now: SimTime, out: &mut Outbox) {
+    fn continue_upload(&mut self, now: SimTime, out: &mut Output) {
         let next = self.upload.as_mut().map(|upload| upload.next(now));
         match next {
             Some(Next::Line(line)) => {
                 line.write(&mut out.bytes);
-                self.tally.sent += 1;
-                self.last_sent = Some((now, voice::end_of_download()));
+                self.counters.sent += 1;
+                self.last_sent = Some((now, command_encoder::end_of_download()));
             }
             Some(Next::Done) => {
                 self.upload = None;
-                self.advance(now, Some(Wish::Delegate(Task::Mission)), out);
+                self.advance(now, Some(OperatorRequest::Delegate(Task::Mission)), out);
             }
             Some(Next::Wait) | None => {}
         }
     }
 
-    /// Says so, once, when a boat shows that it drives on though it is told standby.
-    fn watch_standby(&mut self, now: SimTime, action: Action, out: &mut Outbox) {
+    /// Warns once when a boat that is sent standby reports that it is driven.
+    fn watch_standby(&mut self, now: SimTime, action: Action, out: &mut Output) {
         let driven = |mode: &Mode| matches!(mode, Mode::Thruster | Mode::Speed | Mode::Heading);
-        // With somebody else's hands on it, that is as it should be.
+        // Under another operator's control that is right.
         let ours = matches!(self.control.control(now), Control::Granted | Control::Disobeys(_));
-        let ignored = action == Action::Standby && ours && self.control.astray(now).as_ref().is_some_and(driven);
+        let ignored = action == Action::Standby && ours && self.control.mode_mismatch(now).as_ref().is_some_and(driven);
         if ignored && !self.standby_ignored {
-            out.events.push(Event::Warning("the boat is told standby and shows that it is driven".to_owned()));
+            out.events.push(Event::Warning("the boat is sent standby and reports that it is driven".to_owned()));
         }
         self.standby_ignored = ignored;
     }
 
-    fn tell_nav(&mut self, now: SimTime, out: &mut Outbox) {
+    fn report_nav(&mut self, now: SimTime, out: &mut Output) {
         let Some((nav, age_s)) = self.estimator.nav(now) else { return };
-        let news = std::mem::take(&mut self.nav_is_news);
+        let is_new = std::mem::take(&mut self.nav_is_new);
         let valid = self.link_up && self.estimator.fault(now).is_none();
-        let (told_at, told_valid) = self.nav_told;
-        let overdue = !valid && (now - told_at).as_s() >= LOST_NAV_EVERY_S;
-        if (news && valid) || valid != told_valid || overdue {
-            self.nav_told = (now, valid);
+        let (reported_at, reported_valid) = self.nav_reported;
+        let overdue = !valid && (now - reported_at).as_s() >= INVALID_NAV_EVERY_S;
+        if (is_new && valid) || valid != reported_valid || overdue {
+            self.nav_reported = (now, valid);
             out.nav = Some(NavOut { nav, valid, age_s });
         }
     }
 
-    fn conditions(&mut self, now: SimTime) -> Conditions {
+    fn conditions_at(&mut self, now: SimTime) -> Conditions {
         let nav_fault = self.estimator.fault(now);
         let nav = self.estimator.nav(now).map(|(nav, _)| nav);
-        let inside = nav.is_some_and(|nav| self.fence.is_inside(now, nav.at(), self.estimator.velocity_m_s()));
-        let (seen_at, others) = &self.others;
-        let known: &[Ned] = if (now - *seen_at).as_s() <= OTHERS_AGE_MAX_S { others } else { &[] };
-        let blocked = nav.is_some_and(|nav| self.bow.is_blocked(now, nav.at(), (nav.psi_rad, nav.surge_m_s), known));
+        let inside = nav.is_some_and(|nav| self.geofence.is_inside(now, nav.at(), self.estimator.velocity_m_s()));
+        let (others_at, others) = &self.others;
+        let known: &[Ned] = if (now - *others_at).as_s() <= OTHERS_AGE_MAX_S { others } else { &[] };
+        let blocked = nav.is_some_and(|nav| self.bow.is_blocked(now, &nav, known));
         let battery = &self.plan.gateway.battery;
         let low_s = self.low_since.map_or(0.0, |since| (now - since).as_s());
         let ttl_s = self.plan.gateway.order_ttl_s;
@@ -469,19 +473,19 @@ impl Bridge {
             inside,
             battery_low: self.low_since.is_some() && low_s >= battery.debounce_s,
             blocked,
-            order_fresh: self.order.is_some_and(|standing| (now - standing.came).as_s() <= ttl_s),
+            order_fresh: self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s),
         }
     }
 }
 
-fn wish_of(command: &OperatorCommand) -> Option<Wish> {
+fn request_from(command: &OperatorCommand) -> Option<OperatorRequest> {
     match command {
-        OperatorCommand::Arm => Some(Wish::Arm),
-        OperatorCommand::Disarm => Some(Wish::Disarm),
-        OperatorCommand::EStop => Some(Wish::EStop(Reach::Boat)),
-        OperatorCommand::Release => Some(Wish::Release(Reach::Boat)),
-        OperatorCommand::StationKeep => Some(Wish::Delegate(Task::StationKeep)),
-        OperatorCommand::GoToErp => Some(Wish::Delegate(Task::GoToErp)),
+        OperatorCommand::Arm => Some(OperatorRequest::Arm),
+        OperatorCommand::Disarm => Some(OperatorRequest::Disarm),
+        OperatorCommand::EStop => Some(OperatorRequest::EStop(Scope::Boat)),
+        OperatorCommand::Release => Some(OperatorRequest::Release(Scope::Boat)),
+        OperatorCommand::StationKeep => Some(OperatorRequest::Delegate(Task::StationKeep)),
+        OperatorCommand::GoToErp => Some(OperatorRequest::Delegate(Task::GoToErp)),
         OperatorCommand::Status | OperatorCommand::Mission(_) => None,
     }
 }

@@ -1,25 +1,26 @@
-//! How a gateway is, in numbers and words.
+//! The status of a gateway, in numbers and words.
 
-use super::{Bridge, voice};
+use super::{Bridge, command_encoder};
 use crate::nmea::Operator;
 use crate::supervisor::State;
 use game::SimTime;
 use game::external::GatewayStatus;
 
 impl Bridge {
-    /// How it is now, with what was missing at the last step. It changes nothing, so that how often somebody asks makes no
-    /// difference to a replay. What only the shell knows (the link's name, latencies) is left to it.
+    /// The status now, with what was missing at the last step. It changes nothing, so that how often it is queried makes
+    /// no difference to a replay. What only the shell knows (the link's name, latencies) is left to the shell.
     #[must_use]
     pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self.estimator.nav(now);
-        let last_sent = self.last_sent.as_ref().map(|(_, command)| voice::bytes_of(std::slice::from_ref(command)));
+        let last_sent =
+            self.last_sent.as_ref().map(|(_, command)| command_encoder::bytes_of(std::slice::from_ref(command)));
         GatewayStatus {
             vehicle: self.plan.vehicle.clone(),
             at_s: now.as_s(),
             link: if self.link_up { "up" } else { "down" }.to_owned(),
             state: self.state_in_words(),
-            missing: self.seen.missing().iter().map(ToString::to_string).collect(),
-            trips: self.trips.clone(),
+            missing: self.conditions.missing().iter().map(ToString::to_string).collect(),
+            failsafes: self.failsafes.clone(),
             mode: self.control.mode().map(|mode| mode.letter()),
             operator: self.control.operator().map(name_of),
             nav: known.map(|(nav, _)| nav),
@@ -34,7 +35,7 @@ impl Bridge {
     fn state_in_words(&self) -> String {
         match self.supervisor.state() {
             State::EStopped => format!("e-stopped (by an E-stop of {})", self.supervisor.stopped_by()),
-            state if self.upload.is_some() => format!("{state}, sending a mission"),
+            state if self.upload.is_some() => format!("{state}, uploading a mission"),
             state => state.to_string(),
         }
     }
@@ -42,20 +43,20 @@ impl Bridge {
     /// What was counted, by name.
     fn counts(&self) -> Vec<(String, u64)> {
         let framed = self.framer.counts();
-        let tally = &self.tally;
+        let counters = &self.counters;
         let known = [
             ("sentences in", framed.sentences),
             ("bad checksums", framed.bad_checksum),
             ("overlong", framed.overlong),
             ("broken", framed.broken),
             ("bytes of garbage", framed.garbage),
-            ("unreadable", tally.unreadable),
-            ("orders", tally.orders),
-            ("bad orders", tally.bad_orders),
-            ("old orders", tally.old_orders),
-            ("commands out", tally.sent),
+            ("unreadable", counters.unreadable),
+            ("orders", counters.orders),
+            ("bad orders", counters.bad_orders),
+            ("old orders", counters.old_orders),
+            ("commands out", counters.sent),
         ];
-        let unknown = tally.unknown.iter().map(|(name, count)| (format!("unknown {name}"), *count));
+        let unknown = counters.unknown.iter().map(|(name, count)| (format!("unknown {name}"), *count));
         known.into_iter().map(|(name, count)| (name.to_owned(), count)).chain(unknown).collect()
     }
 }

@@ -1,6 +1,6 @@
-//! A mission on its way into the boat: lines one after the other, with pauses.
+//! The upload of a mission: lines one after the other, with pauses.
 
-use super::voice;
+use super::command_encoder;
 use crate::nmea::{MissionSettings, Sentence, Waypoint};
 use game::SimTime;
 use game::external::Mission;
@@ -44,7 +44,7 @@ impl Upload {
         }
         let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
         let mut lines = VecDeque::from([
-            Sentence::Command(voice::start_of_download(mission.waypoints.len() + 2)),
+            Sentence::Command(command_encoder::start_of_download(mission.waypoints.len() + 2)),
             Sentence::MissionSettings(MissionSettings { throttle_pct: mission.throttle_pct }),
         ]);
         for (index, [lat_deg, lon_deg]) in places.enumerate() {
@@ -54,7 +54,7 @@ impl Upload {
             let at = LatLon { lat_deg: *lat_deg, lon_deg: *lon_deg };
             lines.push_back(Sentence::Waypoint(Waypoint { at, index: index as u16 }));
         }
-        lines.push_back(Sentence::Command(voice::end_of_download()));
+        lines.push_back(Sentence::Command(command_encoder::end_of_download()));
         Ok(Upload { lines, gap: SimTime::from_s(gap_s), due: now })
     }
 
@@ -66,7 +66,7 @@ impl Upload {
         self.lines.pop_front().map_or(Next::Done, |line| Next::Line(Box::new(line)))
     }
 
-    /// When it wants to go on.
+    /// When the next line is due.
     pub(super) fn due(&self) -> SimTime {
         self.due
     }

@@ -1,41 +1,41 @@
-//! A simulated boat that speaks as the real one: commands in, telemetry out, with no socket and no clock.
+//! An emulated Surveyor: commands in, telemetry out, with no socket and no clock.
 //!
-//! It is as strict and as forgiving as a Surveyor is known to be: it talks even while it lies in standby, takes commands
-//! only from whoever has control, reads four to six fields, and by default has no watchdog of its own: what it was told
-//! last it does for ever.
+//! It is as strict and as tolerant as a Surveyor is known to be: it sends telemetry in standby too, follows commands
+//! only from the operator in control, reads four to six fields, and by default has no watchdog: it follows the last
+//! command for ever.
 
-mod helm;
+mod autopilot;
 mod telemetry;
 
 pub use telemetry::Extra;
 
 use crate::geodesy::LocalFrame;
-use crate::nmea::{Command, Counts, Date, Framer, M_S_PER_KN, Mode, Operator, Sentence, TimeOfDay};
+use crate::nmea::{Command, Date, Framer, M_S_PER_KN, Mode, Operator, Sentence, TimeOfDay};
+use autopilot::Autopilot;
 use game::frame::LatLon;
 use game::picture::OwnBoat;
 use game::{Order, SimTime};
-use helm::Helm;
 
-/// What a boat is emulated by.
+/// What an emulated boat is made of; constant but for its clock.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The origin of the field.
     pub datum: LatLon,
-    /// Magnetic north, east of true, rad.
+    /// Declination, east positive, rad.
     pub declination_rad: f64,
     /// Without a command for this long the boat goes to standby, s; `None` is never.
     pub watchdog_s: Option<f64>,
-    /// Whether a setting that is no whole number leaves the one before in force, as in one known stand-in.
+    /// Whether a set-point that is not a whole number leaves the one before in force, as in one known stand-in.
     pub integers: bool,
     /// Sentences beyond those that a Surveyor sends.
     pub extra: Vec<Extra>,
     /// Whether VTG has its mode field: new boats leave it out.
     pub vtg_mode: bool,
-    /// Day and time when the clock of whoever plays it shows zero.
+    /// Date and time of day at time zero.
     pub began: (Date, TimeOfDay),
 }
 
-/// What the battery shows until it is told otherwise, V.
+/// The battery voltage at the beginning, V.
 const FULL_V: f64 = 24.8;
 
 /// From whom bytes come.
@@ -47,7 +47,7 @@ pub enum Port {
     Secondary,
 }
 
-/// A boat's front seat, played.
+/// The front seat of an emulated boat.
 pub struct Emulator {
     plan: Plan,
     frame: LocalFrame,
@@ -55,20 +55,20 @@ pub struct Emulator {
     secondary: Framer,
     /// Who commands it.
     operator: Operator,
-    /// The last command that it took, and when.
+    /// The last command that it followed, and when.
     command: Command,
     commanded_at: SimTime,
     /// In force in mode T: thrust and difference, per cent.
     thrust_pct: f64,
     difference_pct: f64,
-    helm: Helm,
+    autopilot: Autopilot,
     own: Option<OwnBoat>,
     /// When the fix that `own` has was first seen, and which it is.
     fix: Option<(SimTime, SimTime)>,
     volts: f64,
     remark: Option<String>,
-    /// Commands that were taken, and those that were not for want of control.
-    taken: u64,
+    /// Commands that were followed, and those that were ignored since another operator was in control.
+    followed: u64,
     ignored: u64,
 }
 
@@ -82,16 +82,16 @@ impl Emulator {
             primary: Framer::new(),
             secondary: Framer::new(),
             operator: Operator::Secondary,
-            command: standby(),
+            command: Command::default(),
             commanded_at: SimTime::ZERO,
             thrust_pct: 0.0,
             difference_pct: 0.0,
-            helm: Helm::default(),
+            autopilot: Autopilot::default(),
             own: None,
             fix: None,
             volts: FULL_V,
             remark: None,
-            taken: 0,
+            followed: 0,
             ignored: 0,
         }
     }
@@ -100,7 +100,7 @@ impl Emulator {
     pub fn give_control(&mut self, now: SimTime, operator: Operator) {
         if self.operator != operator {
             self.operator = operator;
-            self.obey(now, standby());
+            self.follow_command(now, Command::default());
         }
     }
 
@@ -108,9 +108,9 @@ impl Emulator {
     pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
         let mut framer = std::mem::take(self.framer(port));
         framer.push(bytes, &mut |body| {
-            // What it does not know a boat does not mind.
+            // Unknown sentences are ignored.
             if let Ok(sentence) = Sentence::parse(body) {
-                self.heed(now, port, sentence);
+                self.apply(now, port, sentence);
             }
         });
         *self.framer(port) = framer;
@@ -123,22 +123,22 @@ impl Emulator {
         }
     }
 
-    /// Sets the receiver's clock: it is now so late, UTC.
+    /// Sets the receiver's clock, UTC.
     pub fn set_clock(&mut self, now: SimTime, (date, time): (Date, TimeOfDay)) {
         self.plan.began = (date, time.later(SimTime::ZERO - now));
     }
 
-    /// Something to tell whoever plays the boat, once.
+    /// A log message, once.
     pub fn take_remark(&mut self) -> Option<String> {
         self.remark.take()
     }
 
-    /// What the battery shows from now on, V.
+    /// Sets the battery voltage, V.
     pub fn set_volts(&mut self, volts: f64) {
         self.volts = volts;
     }
 
-    /// What its sensors tell.
+    /// Takes what its sensors measure.
     pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
         if self.fix.is_none_or(|(_, fix)| fix != own.fix_ns) {
             self.fix = Some((now, own.fix_ns));
@@ -146,24 +146,26 @@ impl Emulator {
         self.own = Some(*own);
     }
 
-    /// What the boat does now.
+    /// The boat's order to its thrusters now.
     pub fn order(&mut self, now: SimTime) -> Order {
         let watchdog = self.plan.watchdog_s.map(SimTime::from_s);
         let silent = watchdog.is_some_and(|limit| now - self.commanded_at > limit);
         if silent && self.command.mode != Mode::Standby {
-            self.command = standby();
+            self.command = Command::default();
         }
         let Some(own) = &self.own else { return Order::Hold };
         let heading = |command: &Command| command.heading_deg.map(|deg| deg.to_radians() + self.plan.declination_rad);
         match self.command.mode {
-            Mode::Thruster => helm::thrust(self.thrust_pct, self.difference_pct),
-            Mode::Heading => helm::steer(heading(&self.command), self.command.thrust.map(helm::speed_of_thrust)),
-            Mode::Speed => {
-                helm::steer(heading(&self.command), self.command.thrust.map(|speed_kn| speed_kn * M_S_PER_KN))
+            Mode::Thruster => autopilot::thrust(self.thrust_pct, self.difference_pct),
+            Mode::Heading => {
+                autopilot::steer(heading(&self.command), self.command.thrust.map(autopilot::speed_of_thrust))
             }
-            Mode::StationKeep => self.helm.keep(own.nav.pose()),
-            Mode::GoToErp => self.helm.go_to_erp(own.nav.pose()),
-            Mode::Waypoint => self.helm.sail(own.nav.pose()),
+            Mode::Speed => {
+                autopilot::steer(heading(&self.command), self.command.thrust.map(|speed_kn| speed_kn * M_S_PER_KN))
+            }
+            Mode::StationKeep => self.autopilot.keep(own.nav.pose()),
+            Mode::GoToErp => self.autopilot.go_to_erp(own.nav.pose()),
+            Mode::Waypoint => self.autopilot.sail(own.nav.pose()),
             _ => Order::Hold,
         }
     }
@@ -173,7 +175,7 @@ impl Emulator {
         telemetry::burst(self, now, out);
     }
 
-    /// What it was commanded last.
+    /// The last command.
     #[must_use]
     pub fn command(&self) -> &Command {
         &self.command
@@ -185,21 +187,15 @@ impl Emulator {
         self.operator
     }
 
-    /// Commands taken, and ignored for want of control.
+    /// Commands followed, and commands ignored since another operator was in control.
     #[must_use]
-    pub fn tally(&self) -> (u64, u64) {
-        (self.taken, self.ignored)
+    pub fn counters(&self) -> (u64, u64) {
+        (self.followed, self.ignored)
     }
 
-    /// What came in on the back seat's port.
-    #[must_use]
-    pub fn counts(&self) -> Counts {
-        self.secondary.counts()
-    }
-
-    fn heed(&mut self, now: SimTime, port: Port, sentence: Sentence) {
+    fn apply(&mut self, now: SimTime, port: Port, sentence: Sentence) {
         if port == Port::Primary {
-            self.heed_primary(now, &sentence);
+            self.take_primary(now, &sentence);
         }
         let in_control = match port {
             Port::Primary => self.operator == Operator::Primary,
@@ -208,26 +204,26 @@ impl Emulator {
         match sentence {
             Sentence::Command(_) if !in_control => self.ignored += 1,
             Sentence::Command(command) => {
-                self.taken += 1;
-                self.obey(now, command);
+                self.followed += 1;
+                self.follow_command(now, command);
             }
-            Sentence::MissionSettings(settings) if in_control => self.helm.take_throttle(settings.throttle_pct),
+            Sentence::MissionSettings(settings) if in_control => self.autopilot.take_throttle(settings.throttle_pct),
             Sentence::Waypoint(waypoint) if in_control => {
-                self.helm.take_waypoint(waypoint.index, self.frame.ned(waypoint.at));
+                self.autopilot.take_waypoint(waypoint.index, self.frame.ned(waypoint.at));
             }
             _ => {}
         }
     }
 
     /// The primary operator takes control by any command; with `OP2_ON` in it the secondary gets it, with `OP2_OFF` not
-    /// any more. The words are ours: how the real operator's console says it is not public.
-    fn heed_primary(&mut self, now: SimTime, sentence: &Sentence) {
+    /// any more. These words are ours: what the real console sends is not public.
+    fn take_primary(&mut self, now: SimTime, sentence: &Sentence) {
         let Sentence::Command(command) = sentence else { return };
         let operator = if command.words == "OP2_ON" { Operator::Secondary } else { Operator::Primary };
         self.give_control(now, operator);
     }
 
-    fn obey(&mut self, now: SimTime, command: Command) {
+    fn follow_command(&mut self, now: SimTime, command: Command) {
         self.commanded_at = now;
         match command.mode {
             Mode::Thruster => {
@@ -239,23 +235,19 @@ impl Emulator {
             Mode::FileDownload => {
                 let lines = command.heading_deg.unwrap_or(0.0);
                 if lines > 0.0 {
-                    self.helm.begin_download(lines);
+                    self.autopilot.begin_download(lines);
                 } else {
-                    self.remark = self.helm.end_download();
+                    self.remark = self.autopilot.end_download();
                 }
             }
             mode => {
                 (self.thrust_pct, self.difference_pct) = (0.0, 0.0);
                 // A command of the same mode goes on with what is under way.
                 if let (true, Some(own)) = (mode != self.command.mode, &self.own) {
-                    self.helm.begin(own.nav.at());
+                    self.autopilot.begin(own.nav.at());
                 }
             }
         }
         self.command = command;
     }
-}
-
-fn standby() -> Command {
-    Command { mode: Mode::Standby, heading_deg: None, thrust: None, difference: None, words: String::new() }
 }

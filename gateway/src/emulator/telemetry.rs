@@ -1,4 +1,4 @@
-//! What a Surveyor tells, in one burst: fix, course, attitude, battery, who commands it, and that nothing is wrong.
+//! A Surveyor's telemetry, in one burst: fix, course, attitude, battery, control state, error code.
 
 use super::Emulator;
 use crate::nmea::{
@@ -10,9 +10,9 @@ use game::math;
 use game::picture::{Imu, Nav};
 use game::{LatLon, SimTime};
 
-/// A fix older than this the receiver no longer calls one, s.
+/// A receiver reports no fix when its last is older than this, s.
 const FIX_AGE_MAX_S: f64 = 1.0;
-/// Below this speed a receiver knows no course, m/s.
+/// Below this speed a receiver reports no course, m/s.
 const COURSE_FROM_M_S: f64 = 0.1;
 const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
@@ -32,11 +32,11 @@ pub enum Extra {
 /// All of it, now.
 pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
     if let (Some(own), Some((seen, _))) = (&boat.own, boat.fix) {
-        let told = Told::new(boat, now, seen, &own.nav);
-        Sentence::Gga(told.gga()).write(out);
-        Sentence::Vtg(told.vtg(boat)).write(out);
+        let report = FixReport::new(boat, now, seen, &own.nav);
+        Sentence::Gga(report.gga()).write(out);
+        Sentence::Vtg(report.vtg(boat)).write(out);
         for extra in &boat.plan.extra {
-            told.extra(boat, *extra).write(out);
+            report.extra(boat, *extra).write(out);
         }
         Sentence::Attitude(attitude(boat, &own.nav, &own.imu)).write(out);
     }
@@ -45,8 +45,8 @@ pub(super) fn burst(boat: &Emulator, now: SimTime, out: &mut Vec<u8>) {
     Sentence::BoatError(BoatError { code: "N".to_owned() }).write(out);
 }
 
-/// A fix as it is told.
-struct Told {
+/// A fix as it is reported.
+struct FixReport {
     date: Date,
     now: TimeOfDay,
     time: TimeOfDay,
@@ -58,13 +58,13 @@ struct Told {
     speed_m_s: f64,
 }
 
-impl Told {
-    fn new(boat: &Emulator, now: SimTime, seen: SimTime, nav: &Nav) -> Told {
+impl FixReport {
+    fn new(boat: &Emulator, now: SimTime, seen: SimTime, nav: &Nav) -> FixReport {
         let (date, began) = boat.plan.began;
         let is_lost = (now - seen).as_s() > FIX_AGE_MAX_S;
         let velocity = nav.velocity_m_s();
         let speed_m_s = velocity.length();
-        Told {
+        FixReport {
             date,
             now: began.later(now),
             time: began.later(seen),
@@ -132,12 +132,12 @@ fn attitude(boat: &Emulator, nav: &Nav, imu: &Imu) -> Attitude {
         pitch_deg: Some(0.0),
         roll_deg: Some(0.0),
         heading_deg: Some(compass_deg_from_rad(nav.psi_rad - boat.plan.declination_rad)),
-        heave_m: None,
         box_c: Some(31.0),
         accel_ahead_g: g(imu.ahead_m_s2),
         accel_starboard_g: g(imu.starboard_m_s2),
         accel_down_g: g(imu.down_m_s2),
         yaw_rate_deg_s: Some(nav.yaw_rate_rad_s.to_degrees()),
+        ..Attitude::default()
     }
 }
 
@@ -148,21 +148,17 @@ fn battery(volts: f64, now: SimTime) -> Battery {
         amps: Some(1.3),
         celsius: Some(22.3),
         charge_used: Some(0.0),
-        reset_time: String::new(),
-        reset_date: String::new(),
         port_volts: Some(volts),
-        starboard_volts: None,
         system_amps: Some(1.3),
         port_amps: Some(0.0),
         starboard_amps: Some(0.0),
-        port_bilge_amps: None,
-        starboard_bilge_amps: None,
         hours: Some((now.as_s() / 3600.0).floor()),
+        ..Battery::default()
     }
 }
 
 fn control_state(boat: &Emulator) -> ControlState {
-    // Where it steers no heading, it shows the one it has.
+    // Where it steers no heading, it reports the one it has.
     let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
     let has = || boat.own.as_ref().map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad));
     ControlState {

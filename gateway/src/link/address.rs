@@ -1,4 +1,4 @@
-//! Where the other side of a link is, as people type it.
+//! The address of a link, as people type it: `tcp://HOST:PORT` and so on.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -7,7 +7,7 @@ use thiserror::Error;
 /// The speeds a serial line may have, baud.
 pub const BAUDS: [u32; 6] = [4800, 9600, 19_200, 38_400, 57_600, 115_200];
 
-/// The speed of a serial line of which nobody said otherwise, NMEA 0183's fast one.
+/// The default speed of a serial line: NMEA 0183-HS.
 const BAUD: u32 = 38_400;
 
 const BAUDS_ALLOWED: &str = "4800, 9600, 19200, 38400, 57600, 115200";
@@ -15,7 +15,7 @@ const TO_CONNECT: &str = "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE
 const TO_LISTEN: &str =
     "tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/DEVICE?baud=38400, pty, pty:///path/of/symlink";
 
-/// Where the other side is, as people type it.
+/// The address of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkAddress {
     /// A TCP port to connect to.
@@ -39,7 +39,7 @@ pub enum LinkAddress {
         /// Its port.
         port: u16,
     },
-    /// A UDP port of our own, that answers whoever spoke to it.
+    /// A UDP port of our own, that answers whoever sent to it.
     UdpServer {
         /// Where to listen; `0.0.0.0` for everywhere.
         host: String,
@@ -60,7 +60,7 @@ pub enum LinkAddress {
     },
 }
 
-/// An address that is none.
+/// A link address that is not understood.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("link address {text:?}: {found}, allowed: {allowed}")]
 pub struct LinkAddressError {
@@ -75,7 +75,7 @@ pub struct LinkAddressError {
 /// What is wrong with it, and what would be right.
 type Fault = (String, &'static str);
 
-/// Who waits for whom.
+/// Which side of a link an address is for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Side {
     Connects,
@@ -86,7 +86,7 @@ impl LinkAddress {
     /// For the side that connects: `tcp://HOST:PORT`, `udp://HOST:PORT`, `serial:///dev/ttyUSB0?baud=38400`.
     ///
     /// # Errors
-    /// [`LinkAddressError`] says what was found and what is allowed.
+    /// [`LinkAddressError`] tells what was found and what is allowed.
     pub fn to_connect(text: &str) -> Result<LinkAddress, LinkAddressError> {
         parse(text, Side::Connects).map_err(|fault| error(text, fault))
     }
@@ -94,7 +94,7 @@ impl LinkAddress {
     /// For the side that waits: as [`LinkAddress::to_connect`], or `pty`, or `pty:///path/of/symlink`.
     ///
     /// # Errors
-    /// [`LinkAddressError`] says what was found and what is allowed.
+    /// [`LinkAddressError`] tells what was found and what is allowed.
     pub fn to_listen(text: &str) -> Result<LinkAddress, LinkAddressError> {
         parse(text, Side::Listens).map_err(|fault| error(text, fault))
     }
@@ -158,7 +158,7 @@ fn host_and_port(text: &str, side: Side) -> Result<(String, u16), Fault> {
         return Err((format!("the host is {host:?}"), "an IPv6 address in brackets, as in [::1]:8003"));
     }
     let name = inside.unwrap_or(host);
-    // What is in no name and in no number would reach the resolver, which says less about it.
+    // Other characters would reach the resolver, whose error is less clear.
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_.:%".contains(c);
     if name.is_empty() || !name.chars().all(plain) {
         let hosts = "a name, an IPv4 address, or an IPv6 address in brackets; 0.0.0.0 listens everywhere";

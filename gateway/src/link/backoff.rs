@@ -1,9 +1,9 @@
-//! How long a link waits before it tries again.
+//! The back-off of a link: how long it waits before it connects again.
 
 use std::time::Duration;
 
 /// Bytes must have come for this long before a connection counts as a good one. A peer that accepts and
-/// closes at once, or says one line and dies, keeps the waits growing.
+/// closes at once, or sends one line and dies, keeps the waits growing.
 pub(super) const STEADY: Duration = Duration::from_secs(1);
 
 /// A zero in the settings would be a busy loop.
@@ -17,7 +17,7 @@ pub(super) struct Backoff {
 }
 
 impl Backoff {
-    pub(super) fn new((first, longest): (Duration, Duration)) -> Backoff {
+    pub(super) fn new(first: Duration, longest: Duration) -> Backoff {
         let first = first.max(SHORTEST);
         Backoff { first, longest: longest.max(first), next: first }
     }
@@ -35,8 +35,8 @@ impl Backoff {
     }
 
     /// After a connection on which bytes came for this long.
-    pub(super) fn judge(&mut self, heard_for: Duration) {
-        if heard_for >= STEADY {
+    pub(super) fn note_connection(&mut self, received_for: Duration) {
+        if received_for >= STEADY {
             self.reset();
         }
     }
@@ -59,18 +59,18 @@ mod tests {
             (ms(300), ms(100), vec![300, 300]),
             (ms(0), ms(0), vec![10, 10]),
         ] {
-            let mut backoff = Backoff::new((first, longest));
+            let mut backoff = Backoff::new(first, longest);
             assert_eq!(waits_ms(&mut backoff, want.len()), want, "{first:?} to {longest:?}");
         }
     }
 
     #[test]
-    fn only_a_connection_that_was_heard_for_some_time_resets_them() {
-        let mut backoff = Backoff::new((Duration::from_millis(100), Duration::from_secs(5)));
+    fn only_a_connection_that_received_for_some_time_resets_them() {
+        let mut backoff = Backoff::new(Duration::from_millis(100), Duration::from_secs(5));
         waits_ms(&mut backoff, 2);
-        backoff.judge(STEADY / 2);
+        backoff.note_connection(STEADY / 2);
         assert_eq!(waits_ms(&mut backoff, 1), [400]);
-        backoff.judge(STEADY);
+        backoff.note_connection(STEADY);
         assert_eq!(waits_ms(&mut backoff, 2), [100, 200]);
     }
 }

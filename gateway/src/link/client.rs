@@ -1,9 +1,9 @@
-//! The side that connects, and does so again and again.
+//! The side that connects, and reconnects whenever the connection is lost.
 
 use super::backoff::Backoff;
-use super::clock;
-use super::peer::Seat;
-use super::port::{Port, TICK};
+use super::clock::{self, TICK};
+use super::connection::Connection;
+use super::port::Port;
 use super::threads::{Threads, Woken};
 use super::{LinkAddress, LinkEvent};
 use serial2::SerialPort;
@@ -17,34 +17,34 @@ use std::time::Duration;
 /// The longest attempt to connect.
 const CONNECT: Duration = Duration::from_secs(2);
 
-/// How often an attempt is looked at.
-const GLANCE: Duration = Duration::from_millis(5);
+/// How often an attempt is polled.
+const POLL: Duration = Duration::from_millis(5);
 
-/// What TCP may hold of ours unacknowledged before the connection is dead, and how long.
+/// How many bytes TCP may hold unacknowledged before the connection counts as dead, and for how long.
 const SEND_BUFFER: usize = 4096;
 const UNACKNOWLEDGED: Duration = Duration::from_secs(2);
 
 /// Connects, serves, waits, until the link is closed.
-pub(super) fn keep(crew: &Arc<Threads>, address: &LinkAddress) {
-    let mut backoff = Backoff::new(crew.settings.retry);
-    let mut seen = crew.reconnects();
+pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
+    let mut backoff = Backoff::new(threads.settings.retry_first, threads.settings.retry_max);
+    let mut seen = threads.reconnects();
     loop {
-        let seat = connect(crew, address).and_then(|(port, name)| Seat::take(crew, port, name));
-        let mut wait = match seat {
-            Ok(seat) => {
-                backoff.judge(seat.serve().heard_for);
+        let connection = connect(threads, address).and_then(|(port, name)| Connection::open(threads, port, name));
+        let mut wait = match connection {
+            Ok(connection) => {
+                backoff.note_connection(connection.serve().received_for);
                 backoff.wait()
             }
-            Err(_) if crew.is_stopped() => return,
+            Err(_) if threads.is_stopped() => return,
             Err(e) => {
-                let again = backoff.wait();
-                crew.tell(LinkEvent::Failed { reason: format!("{address}: {e}"), again });
-                again
+                let retry_in = backoff.wait();
+                threads.emit(LinkEvent::Failed { reason: format!("{address}: {e}"), retry_in });
+                retry_in
             }
         };
         loop {
-            match crew.pause(wait, &mut seen) {
-                Woken::Rested => break,
+            match threads.pause(wait, &mut seen) {
+                Woken::Elapsed => break,
                 Woken::Stopped => return,
                 Woken::Asked => {
                     backoff.reset();
@@ -55,19 +55,19 @@ pub(super) fn keep(crew: &Arc<Threads>, address: &LinkAddress) {
     }
 }
 
-fn connect(crew: &Threads, address: &LinkAddress) -> io::Result<(Port, String)> {
+fn connect(threads: &Threads, address: &LinkAddress) -> io::Result<(Port, String)> {
     match address {
-        LinkAddress::TcpClient { host, port } => connect_tcp(crew, host, *port),
+        LinkAddress::TcpClient { host, port } => connect_tcp(threads, host, *port),
         LinkAddress::UdpClient { host, port } => connect_udp(host, *port),
         LinkAddress::Serial { path, baud } => open_serial(path, *baud),
         _ => Err(io::Error::new(ErrorKind::Unsupported, "nothing to connect to")),
     }
 }
 
-fn connect_tcp(crew: &Threads, host: &str, port: u16) -> io::Result<(Port, String)> {
+fn connect_tcp(threads: &Threads, host: &str, port: u16) -> io::Result<(Port, String)> {
     let mut last = io::Error::new(ErrorKind::NotFound, "the host has no address");
     for address in (host, port).to_socket_addrs()? {
-        match dial(crew, address) {
+        match connect_to(threads, address) {
             Ok(stream) => return Ok((Port::Tcp(stream), address.to_string())),
             Err(e) => last = e,
         }
@@ -75,8 +75,8 @@ fn connect_tcp(crew: &Threads, host: &str, port: u16) -> io::Result<(Port, Strin
     Err(last)
 }
 
-/// Connects in steps: `connect_timeout` would not let go when the link is closed meanwhile.
-fn dial(crew: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
+/// Connects without blocking: `connect_timeout` could not be interrupted when the link is closed meanwhile.
+fn connect_to(threads: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
     let socket = Socket::new(Domain::for_address(address), Type::STREAM, Some(Protocol::TCP))?;
     socket.set_nonblocking(true)?;
     let start = clock::now();
@@ -91,14 +91,14 @@ fn dial(crew: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
         if clock::since(start) >= CONNECT {
             return Err(io::Error::new(ErrorKind::TimedOut, format!("no answer for {CONNECT:?}")));
         }
-        if crew.rest(GLANCE) == Woken::Stopped {
+        if threads.sleep(POLL) == Woken::Stopped {
             return Err(ErrorKind::Interrupted.into());
         }
     }
     if let Some(e) = socket.take_error()? {
         return Err(e);
     }
-    // Nobody listens at one of the ports that are given to clients, and ours was given that very one.
+    // Nobody listens on a port of the ephemeral range, and our own socket was given that very port.
     if socket.local_addr()?.as_socket() == Some(address) {
         return Err(ErrorKind::ConnectionRefused.into());
     }
@@ -106,7 +106,7 @@ fn dial(crew: &Threads, address: SocketAddr) -> io::Result<TcpStream> {
     tune(socket)
 }
 
-/// Makes a TCP connection fit for commands: at once or never.
+/// Sets the options of a TCP connection that carries commands: no delay, and early detection of a dead peer.
 pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
     socket.set_tcp_nodelay(true)?;
     socket.set_tcp_keepalive(
@@ -137,7 +137,7 @@ fn open_serial(path: &Path, baud: u32) -> io::Result<(Port, String)> {
     let mut line = SerialPort::open(path, baud)?;
     line.set_read_timeout(TICK)?;
     line.set_write_timeout(TICK)?;
-    // What came before anybody listened is old.
+    // What came before the line was opened is old.
     line.discard_input_buffer()?;
     Ok((Port::Serial { line, baud }, path.display().to_string()))
 }

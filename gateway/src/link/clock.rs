@@ -1,4 +1,4 @@
-//! The wall clock of a link. Only patience and time stamps look at it.
+//! The monotonic clock of a link: for timeouts and time stamps only.
 
 use std::time::{Duration, Instant};
 
@@ -12,3 +12,6 @@ pub(super) fn now() -> Instant {
 pub(super) fn since(start: Instant) -> Duration {
     now().saturating_duration_since(start)
 }
+
+/// The longest wait in a system call. Threads check between calls whether they are to end.
+pub(super) const TICK: Duration = Duration::from_millis(25);

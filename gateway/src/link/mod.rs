@@ -1,25 +1,27 @@
-//! Byte links to boats and to back seats, each of which keeps itself up.
+//! Byte links to boats and to back seats; each reconnects by itself.
 //!
 //! A link is a few threads of its own: one that connects or accepts, and for every peer one that reads and
-//! one that writes. They tell what happens through one callback and take what is to be written through
-//! outboxes of depth one, so that a slow peer gets the newest command late rather than old ones in order.
-//! Read `peer` first, then `client`, then `port`.
+//! one that writes. They report events through one callback and take write requests from outboxes of depth
+//! one, so that a slow peer gets the newest command late rather than old ones in order.
+//! Read `connection` first, then `client`, then `port`.
 
 mod address;
 mod backoff;
 mod client;
 mod clock;
+mod connection;
 mod outbox;
 mod peer;
 mod port;
 mod pty;
+mod pty_server;
 mod tcp_server;
 mod threads;
 mod udp_server;
 
 pub use address::{BAUDS, LinkAddress, LinkAddressError};
 
-use outbox::Rank;
+use outbox::Priority;
 use std::io;
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -31,27 +33,32 @@ use threads::Threads;
 /// The most peers that a link serves at once.
 const PEERS_MAX: usize = 8;
 
-/// How long a link that is dropped waits for its threads.
-const GOODBYE: Duration = Duration::from_millis(190);
+/// How long dropping a link waits for its threads.
+const CLOSE_MAX: Duration = Duration::from_millis(190);
 
-/// How patient a link is.
+/// The timeouts of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkSettings {
-    /// No bytes for this long: the peer counts as gone, as one does that lost power. None: never, for the
-    /// side that listens. A pseudo-terminal's peers may be silent, a UDP server's for 10 s at most.
+    /// After this long without bytes a peer counts as gone, as one that lost power. `None` is never, for the
+    /// side that listens. A pseudo-terminal's peers may be silent; a UDP server's for 10 s at most.
     pub silence: Option<Duration>,
-    /// The waits between attempts: the first, which then doubles, and the longest.
-    pub retry: (Duration, Duration),
+    /// The wait before the second attempt; it doubles with each.
+    pub retry_first: Duration,
+    /// The longest wait between attempts.
+    pub retry_max: Duration,
 }
 
 impl Default for LinkSettings {
     fn default() -> LinkSettings {
-        let retry = (Duration::from_millis(100), Duration::from_secs(5));
-        LinkSettings { silence: Some(Duration::from_secs(3)), retry }
+        LinkSettings {
+            silence: Some(Duration::from_secs(3)),
+            retry_first: Duration::from_millis(100),
+            retry_max: Duration::from_secs(5),
+        }
     }
 }
 
-/// What happens on a link.
+/// An event of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkEvent {
     /// A peer is there. Peers are numbered from 0 and never again the same within a link's life.
@@ -61,13 +68,13 @@ pub enum LinkEvent {
         /// Where it is: an address, or a device.
         name: String,
     },
-    /// A peer said something.
+    /// A peer sent something.
     Bytes {
         /// Its number.
         peer: u32,
         /// When the read returned.
         at: Instant,
-        /// What it said, whole lines or not, at most 64 KiB.
+        /// What it sent, whole lines or not, at most 64 KiB.
         bytes: Vec<u8>,
     },
     /// A peer is gone.
@@ -77,15 +84,15 @@ pub enum LinkEvent {
         /// What happened.
         reason: String,
     },
-    /// The other side could not be reached.
+    /// The peer could not be reached.
     Failed {
         /// What happened.
         reason: String,
         /// When it is tried again.
-        again: Duration,
+        retry_in: Duration,
     },
-    /// Everything handed over under this tag has been written, to all peers that were up then. Not said if
-    /// there was none, or if one of them missed it.
+    /// Everything sent under this tag has been written, to all peers that were up then. Not emitted if there was
+    /// none, or if one of them missed it.
     Written {
         /// The tag.
         tag: u64,
@@ -94,7 +101,7 @@ pub enum LinkEvent {
     },
 }
 
-/// What will never work, so that a link does not even begin.
+/// Why a link cannot be opened at all.
 #[derive(Debug, Error)]
 pub enum LinkError {
     /// The port cannot be listened on.
@@ -141,30 +148,29 @@ pub enum LinkError {
     },
 }
 
-/// A link that keeps itself up, in threads of its own. Dropped, it closes everything within 200 ms: what
-/// was written still arrives, what was only handed over is lost. For last words there is
+/// A link that reconnects by itself, in threads of its own. Dropped, it closes everything within 200 ms: what
+/// was written still arrives, what was only queued is lost. A shutdown message is sent with
 /// [`Link::send_and_wait`].
 pub struct Link {
-    crew: Arc<Threads>,
+    threads: Arc<Threads>,
     reach: String,
 }
 
 impl Link {
-    /// Begins. `take` is told what happens, in several threads; while it waits, its link does.
+    /// Opens a link. `on_event` is called in several threads; while it waits, its link does.
     ///
     /// # Errors
     /// [`LinkError`] only for what will never work. A peer that is not there is [`LinkEvent::Failed`].
     pub fn open(
         address: &LinkAddress,
         settings: LinkSettings,
-        take: impl Fn(LinkEvent) + Send + Sync + 'static,
+        on_event: impl Fn(LinkEvent) + Send + Sync + 'static,
     ) -> Result<Link, LinkError> {
-        let crew = Threads::new(settings, take);
-        let hand = Arc::clone(&crew);
-        let (reach, work) = plan(hand, address)?;
+        let threads = Threads::new(settings, on_event);
+        let (reach, work) = prepare(Arc::clone(&threads), address)?;
         let failed = |source| LinkError::Thread { address: address.to_string(), source };
-        drop(crew.hire("link", work).map_err(failed)?);
-        Ok(Link { crew, reach })
+        drop(threads.spawn("link", work).map_err(failed)?);
+        Ok(Link { threads, reach })
     }
 
     /// The address that others can connect to, as in `tcp://127.0.0.1:8003`: with port 0 the real port, for
@@ -174,61 +180,62 @@ impl Link {
         self.reach.clone()
     }
 
-    /// Hands bytes over to be written to all peers that are up; never blocks. What was handed over before
-    /// and has not been begun is displaced, at each peer by itself.
+    /// Queues bytes for all peers that are up; never blocks. What was queued before and has not been begun is
+    /// displaced, at each peer separately.
     pub fn send(&self, bytes: Vec<u8>, tag: u64) {
-        drop(self.crew.hand_over(bytes, Some(tag), Rank::Usual));
+        drop(self.threads.enqueue(bytes, Some(tag), Priority::Normal));
     }
 
     /// How many were displaced so far, summed over the peers.
     #[must_use]
     pub fn displaced(&self) -> u64 {
-        self.crew.displaced()
+        self.threads.displaced()
     }
 
-    /// Last words: displaces what is queued, writes these bytes to all peers, and waits for that up to
-    /// `limit`. Whether there was somebody, and the system took them for everybody; what had not begun by
+    /// Sends a shutdown message: displaces what is queued, writes these bytes to all peers, and waits for that up to
+    /// `limit`. Returns whether there was a peer, and the system took the bytes for all of them; what had not begun by
     /// then stays queued. They are not displaced by what other threads send meanwhile. Works while panicking.
     pub fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool {
-        self.crew.hand_over(bytes.to_vec(), None, Rank::LastWords).wait(limit)
+        self.threads.enqueue(bytes.to_vec(), None, Priority::Shutdown).wait(limit)
     }
 
     /// Breaks the connections now; a client connects again after the first wait.
     pub fn reconnect(&self) {
-        self.crew.reconnect();
+        self.threads.reconnect();
     }
 }
 
 impl Drop for Link {
     fn drop(&mut self) {
-        self.crew.stop(GOODBYE);
+        self.threads.stop(CLOSE_MAX);
     }
 }
 
-/// Where others reach the link, and what keeps it up.
-type Plan = (String, Box<dyn FnOnce() + Send>);
+/// What a link's first thread does.
+type Work = Box<dyn FnOnce() + Send>;
 
-fn plan(crew: Arc<Threads>, address: &LinkAddress) -> Result<Plan, LinkError> {
+/// The address at which others reach the link, and what its first thread does.
+fn prepare(threads: Arc<Threads>, address: &LinkAddress) -> Result<(String, Work), LinkError> {
     Ok(match address {
         LinkAddress::TcpServer { host, port } => {
             let (listener, at) = tcp_server::bind(host, *port)?;
-            (reached("tcp", at), Box::new(move || tcp_server::keep(&crew, &listener)))
+            (reached("tcp", at), Box::new(move || tcp_server::run(&threads, &listener)))
         }
         LinkAddress::UdpServer { host, port } => {
             let (socket, at) = udp_server::bind(host, *port)?;
             let socket = Arc::new(socket);
-            (reached("udp", at), Box::new(move || udp_server::keep(&crew, &socket)))
+            (reached("udp", at), Box::new(move || udp_server::run(&threads, &socket)))
         }
         LinkAddress::Pty { link } => {
             let pty = Arc::new(pty::Pty::open(link.as_deref())?);
-            (pty.path().display().to_string(), Box::new(move || pty::keep(&crew, &pty)))
+            (pty.path().display().to_string(), Box::new(move || pty_server::run(&threads, &pty)))
         }
         LinkAddress::Serial { path, baud } if !BAUDS.contains(baud) => {
             return Err(LinkError::Baud { path: path.clone(), baud: *baud });
         }
         LinkAddress::TcpClient { .. } | LinkAddress::UdpClient { .. } | LinkAddress::Serial { .. } => {
             let address = address.clone();
-            (address.to_string(), Box::new(move || client::keep(&crew, &address)))
+            (address.to_string(), Box::new(move || client::run(&threads, &address)))
         }
     })
 }

@@ -1,30 +1,31 @@
-//! What waits to be written to one peer: never more than the newest.
+//! The outbox of one peer: a queue of depth one, in which the newest write request displaces the one before.
 
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use parking_lot::{Condvar, Mutex};
+use std::sync::Arc;
 use std::time::Duration;
 
-/// What may push aside what.
+/// What may displace what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Rank {
-    /// Makes room for the next.
-    Usual,
-    /// Nothing usual displaces it: a stop must not lose a race against a set point.
-    LastWords,
+pub(super) enum Priority {
+    /// Displaced by the next.
+    Normal,
+    /// Not displaced by normal requests: a stop must not lose a race against a set-point.
+    Shutdown,
 }
 
-/// Bytes for one peer. Dropped before it was taken, it is lost, and its completion knows.
+/// Bytes to write to one peer. Dropped before it was taken, it is lost, and its completion knows.
 pub(super) struct WriteRequest {
     bytes: Arc<Vec<u8>>,
     completion: Arc<Completion>,
-    rank: Rank,
+    priority: Priority,
     taken: bool,
 }
 
-/// Who of all peers has taken the same bytes.
+/// Whether all peers have taken the same bytes.
 pub(super) struct Completion {
     tag: Option<u64>,
     count: Mutex<Count>,
-    settled: Condvar,
+    changed: Condvar,
 }
 
 struct Count {
@@ -35,7 +36,7 @@ struct Count {
 /// A queue of depth one.
 pub(super) struct Outbox {
     state: Mutex<State>,
-    news: Condvar,
+    changed: Condvar,
 }
 
 #[derive(Default)]
@@ -44,48 +45,41 @@ struct State {
     shut: bool,
 }
 
-/// A count or a queue is whole whatever happened to the thread that changed it last; and last words are
-/// said while a thread panics.
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 impl Completion {
     /// For bytes that go to so many peers.
     pub(super) fn new(tag: Option<u64>, peers: usize) -> Arc<Completion> {
-        // What nobody is there to take is lost.
+        // Without a peer the bytes are lost.
         let count = Mutex::new(Count { open: peers, lost: peers == 0 });
-        Arc::new(Completion { tag, count, settled: Condvar::new() })
+        Arc::new(Completion { tag, count, changed: Condvar::new() })
     }
 
     /// Waits up to `limit`; whether every peer took the bytes.
     pub(super) fn wait(&self, limit: Duration) -> bool {
-        let guard = lock(&self.count);
-        let open = |count: &mut Count| count.open > 0;
-        let (count, _) = self.settled.wait_timeout_while(guard, limit, open).unwrap_or_else(PoisonError::into_inner);
+        let mut count = self.count.lock();
+        self.changed.wait_while_for(&mut count, |count| count.open > 0, limit);
         count.open == 0 && !count.lost
     }
 
     /// One peer less; whether it was the last, and none lost the bytes.
     fn settle(&self, lost: bool) -> bool {
-        let mut count = lock(&self.count);
+        let mut count = self.count.lock();
         count.open -= 1;
         count.lost |= lost;
-        self.settled.notify_all();
+        self.changed.notify_all();
         count.open == 0 && !count.lost
     }
 }
 
 impl WriteRequest {
-    pub(super) fn new(bytes: &Arc<Vec<u8>>, completion: &Arc<Completion>, rank: Rank) -> WriteRequest {
-        WriteRequest { bytes: Arc::clone(bytes), completion: Arc::clone(completion), rank, taken: false }
+    pub(super) fn new(bytes: &Arc<Vec<u8>>, completion: &Arc<Completion>, priority: Priority) -> WriteRequest {
+        WriteRequest { bytes: Arc::clone(bytes), completion: Arc::clone(completion), priority, taken: false }
     }
 
     pub(super) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Notes that the peer took it; gives the tag once all did.
+    /// Notes that the peer took it; returns the tag once all did.
     pub(super) fn take(mut self) -> Option<u64> {
         self.taken = true;
         if self.completion.settle(false) { self.completion.tag } else { None }
@@ -102,36 +96,37 @@ impl Drop for WriteRequest {
 
 impl Outbox {
     pub(super) fn new() -> Outbox {
-        Outbox { state: Mutex::default(), news: Condvar::new() }
+        Outbox { state: Mutex::default(), changed: Condvar::new() }
     }
 
-    /// Queues a request; whether one had to go for it (the queued one, or this if last words are queued).
+    /// Queues a request; whether one was displaced (the queued one, or this one by a shutdown message).
     pub(super) fn put(&self, request: WriteRequest) -> bool {
-        let mut state = lock(&self.state);
+        let mut state = self.state.lock();
         if state.shut {
             return false;
         }
-        if request.rank == Rank::Usual && state.queued.as_ref().is_some_and(|queued| queued.rank == Rank::LastWords) {
+        if request.priority == Priority::Normal
+            && state.queued.as_ref().is_some_and(|queued| queued.priority == Priority::Shutdown)
+        {
             return true;
         }
         let displaced = state.queued.replace(request).is_some();
-        self.news.notify_one();
+        self.changed.notify_one();
         displaced
     }
 
-    /// Waits for a request; none comes any more once it is shut.
+    /// Waits for a request; none comes after the outbox was shut.
     pub(super) fn next(&self) -> Option<WriteRequest> {
-        let guard = lock(&self.state);
-        let idle = |state: &mut State| state.queued.is_none() && !state.shut;
-        let mut state = self.news.wait_while(guard, idle).unwrap_or_else(PoisonError::into_inner);
+        let mut state = self.state.lock();
+        self.changed.wait_while(&mut state, |state| state.queued.is_none() && !state.shut);
         state.queued.take()
     }
 
-    /// Loses what is queued and takes nothing more.
+    /// Drops what is queued and accepts nothing more.
     pub(super) fn shut(&self) {
-        let mut state = lock(&self.state);
+        let mut state = self.state.lock();
         state.shut = true;
         state.queued = None;
-        self.news.notify_all();
+        self.changed.notify_all();
     }
 }

@@ -1,4 +1,4 @@
-//! One connection as the operating system gives it: bytes in, bytes out, each wait a short one.
+//! A port as the operating system gives it: bytes in, bytes out, no call waits long.
 
 use super::clock;
 use super::pty::Pty;
@@ -9,16 +9,13 @@ use std::net::{Shutdown, SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The longest wait in a system call. What must end a thread is looked at in between.
-pub(super) const TICK: Duration = Duration::from_millis(25);
-
 /// A peer that takes nothing for this long is gone.
 pub(super) const STALL: Duration = Duration::from_secs(2);
 
-/// How long a good-bye waits for the other side's.
+/// How long a graceful close waits for the peer's.
 const LINGER: Duration = Duration::from_millis(80);
 
-/// A connection. Reads and writes may happen at once, in two threads.
+/// A socket, a serial line or a pseudo-terminal. Reads and writes may happen at once, in two threads.
 pub(super) enum Port {
     Tcp(TcpStream),
     /// Connected.
@@ -33,7 +30,7 @@ pub(super) enum Port {
 }
 
 /// What a read brought.
-pub(super) enum Heard {
+pub(super) enum Received {
     Bytes(usize),
     Nothing,
     End,
@@ -49,7 +46,7 @@ pub(super) enum Wrote {
 
 impl Port {
     /// Waits for bytes, a tick at most.
-    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Heard> {
+    pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Received> {
         let read = match self {
             Port::Tcp(stream) => (&mut &*stream).read(buffer),
             Port::Udp(socket) => socket.recv(buffer),
@@ -59,22 +56,22 @@ impl Port {
         };
         match read {
             // An empty datagram is one.
-            Ok(0) if matches!(self, Port::Udp(_)) => Ok(Heard::Nothing),
-            Ok(0) => Ok(Heard::End),
-            Ok(count) => Ok(Heard::Bytes(count)),
-            Err(e) if is_pause(&e) => Ok(Heard::Nothing),
+            Ok(0) if matches!(self, Port::Udp(_)) => Ok(Received::Nothing),
+            Ok(0) => Ok(Received::End),
+            Ok(count) => Ok(Received::Bytes(count)),
+            Err(e) if is_pause(&e) => Ok(Received::Nothing),
             Err(e) => Err(e),
         }
     }
 
-    /// Writes all of it, in one call if the system takes it so; gives up when told to, or after a stall.
+    /// Writes all bytes, in one call if the system accepts that; gives up when told to, or after a stall.
     pub(super) fn write(&self, bytes: &[u8], is_given_up: impl Fn() -> bool) -> io::Result<Wrote> {
         if let Port::Pty(pty) = self {
             pty.begin()?;
         }
         let flushes = self.flushes();
         let mut rest = bytes;
-        let mut moved_at = clock::now();
+        let mut progress_at = clock::now();
         while !rest.is_empty() {
             if is_given_up() {
                 return Err(io::Error::other("given up"));
@@ -83,12 +80,12 @@ impl Port {
                 Ok(0) => return Err(ErrorKind::WriteZero.into()),
                 Ok(count) => {
                     rest = &rest[count..];
-                    moved_at = clock::now();
+                    progress_at = clock::now();
                 }
                 Err(e) if !is_pause(&e) => return Err(e),
-                // Its beginning was thrown away: the rest would be a torn sentence.
+                // Its beginning was discarded: the rest would be a torn sentence.
                 Err(_) if self.flushes() != flushes => return Ok(Wrote::Dropped),
-                Err(_) if clock::since(moved_at) >= STALL => {
+                Err(_) if clock::since(progress_at) >= STALL => {
                     return Err(io::Error::new(ErrorKind::TimedOut, format!("nothing taken for {STALL:?}")));
                 }
                 Err(_) => {}
@@ -107,21 +104,21 @@ impl Port {
         }
     }
 
-    /// Throws away what nobody reads, where that is ours to do.
-    pub(super) fn freshen(&self) -> io::Result<()> {
-        if let Port::Pty(pty) = self { pty.freshen() } else { Ok(()) }
+    /// Discards what nobody reads, where that is ours to do.
+    pub(super) fn flush_if_stale(&self) -> io::Result<()> {
+        if let Port::Pty(pty) = self { pty.flush_if_stale() } else { Ok(()) }
     }
 
     fn flushes(&self) -> u64 {
         if let Port::Pty(pty) = self { pty.flushes() } else { 0 }
     }
 
-    /// Whether silence says anything about the other side. Who opens a terminal may only want to read.
+    /// Whether silence means that the peer is gone. Who opens a terminal may only want to read.
     pub(super) fn can_fall_silent(&self) -> bool {
         !matches!(self, Port::Pty(_))
     }
 
-    /// Says good-bye: what was written still arrives.
+    /// Closes gracefully: what was written still arrives.
     pub(super) fn finish(&self) {
         let Port::Tcp(stream) = self else { return };
         // Closing a socket with unread bytes makes the system send a reset, which may overtake what was
@@ -132,14 +129,14 @@ impl Port {
         let start = clock::now();
         let mut waste = [0; 4096];
         while clock::since(start) < LINGER {
-            if matches!(self.read(&mut waste), Ok(Heard::End) | Err(_)) {
+            if matches!(self.read(&mut waste), Ok(Received::End) | Err(_)) {
                 return;
             }
         }
     }
 
-    /// Cuts the line: what the system still holds would be stale when it arrived. A line that is gone
-    /// already cannot be cut, and need not be.
+    /// Resets the connection: what the system still holds would be stale when it arrived. A connection that is gone
+    /// already need not be reset.
     pub(super) fn reset(&self) {
         match self {
             Port::Tcp(stream) => drop(SockRef::from(stream).set_linger(Some(Duration::ZERO))),
@@ -148,7 +145,7 @@ impl Port {
         }
     }
 
-    /// How long so many bytes are on their way to the other side, where that is long. The driver of a serial
+    /// How long so many bytes take to the peer, where that is long. The driver of a serial
     /// line takes 4 KiB at once, which are 8 s of old commands at 4800 baud.
     pub(super) fn transit(&self, count: usize) -> Duration {
         // Eight bits, a start and a stop bit.

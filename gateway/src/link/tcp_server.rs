@@ -1,8 +1,9 @@
 //! A TCP port of our own, for some peers at once.
 
 use super::client::tune;
-use super::peer::Seat;
-use super::port::{Port, TICK};
+use super::clock::TICK;
+use super::connection::Connection;
+use super::port::Port;
 use super::threads::{Threads, Woken};
 use super::{LinkError, PEERS_MAX};
 use socket2::SockRef;
@@ -22,25 +23,25 @@ pub(super) fn bind(host: &str, port: u16) -> Result<(TcpListener, SocketAddr), L
     bound().map_err(|e| LinkError::Listen { kind: "TCP", host: host.to_owned(), port, reason: e.to_string() })
 }
 
-/// Takes whoever comes, until the link is closed.
-pub(super) fn keep(crew: &Arc<Threads>, listener: &TcpListener) {
-    while !crew.is_stopped() {
+/// Accepts connections, until the link is closed.
+pub(super) fn run(threads: &Arc<Threads>, listener: &TcpListener) {
+    while !threads.is_stopped() {
         match listener.accept() {
-            Ok((stream, from)) => welcome(crew, stream, from),
+            Ok((stream, from)) => serve_peer(threads, stream, from),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
             // Too many open files, for example: it may pass.
-            Err(_) if crew.rest(TICK) == Woken::Stopped => return,
+            Err(_) if threads.sleep(TICK) == Woken::Stopped => return,
             Err(_) => {}
         }
     }
 }
 
-fn welcome(crew: &Arc<Threads>, stream: TcpStream, from: SocketAddr) {
-    if crew.count() >= PEERS_MAX {
+fn serve_peer(threads: &Arc<Threads>, stream: TcpStream, from: SocketAddr) {
+    if threads.count() >= PEERS_MAX {
         return;
     }
-    // Whoever cannot be served, since it is gone already or threads are out, finds the connection closed.
+    // A peer that is gone already, or for which there is no thread, finds the connection closed.
     let Ok(stream) = tune(stream.into()) else { return };
-    let Ok(seat) = Seat::take(crew, Port::Tcp(stream), from.to_string()) else { return };
-    drop(crew.hire("link reader", move || drop(seat.serve())));
+    let Ok(connection) = Connection::open(threads, Port::Tcp(stream), from.to_string()) else { return };
+    drop(threads.spawn("link reader", move || drop(connection.serve())));
 }

@@ -1,111 +1,112 @@
-//! The threads of one link, with the peers they serve.
+//! The threads of one link, and the peers they serve.
 
-use super::outbox::{Completion, Rank, WriteRequest, lock};
+use super::outbox::{Completion, Priority, WriteRequest};
 use super::peer::{End, Peer};
 use super::{LinkEvent, LinkSettings};
+use parking_lot::{Condvar, Mutex, MutexGuard};
 use std::io;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 /// What all threads of a link share.
 pub(super) struct Threads {
     pub(super) settings: LinkSettings,
-    take: Box<dyn Fn(LinkEvent) + Send + Sync>,
-    /// Those that are up. Never held while anything waits.
+    on_event: Box<dyn Fn(LinkEvent) + Send + Sync>,
+    /// Peers that are up. Never locked while anything waits.
     peers: Mutex<Vec<Arc<Peer>>>,
     numbers: AtomicU32,
     displaced: AtomicU64,
-    watch: Mutex<Watch>,
+    state: Mutex<State>,
     changed: Condvar,
 }
 
 #[derive(Default)]
-struct Watch {
+struct State {
     stopped: bool,
     reconnects: u64,
-    hands: usize,
+    running: usize,
 }
 
-/// Why a pause ended.
+/// Why a wait ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Woken {
-    /// It was long enough.
-    Rested,
+    /// Its time is over.
+    Elapsed,
     /// Somebody asked for a reconnect.
     Asked,
     /// The link is closed.
     Stopped,
 }
 
-/// A thread at work, until dropped.
-struct Shift(Arc<Threads>);
+/// Counts a running thread, until dropped.
+struct RunningThread(Arc<Threads>);
 
-impl Drop for Shift {
+impl Drop for RunningThread {
     fn drop(&mut self) {
-        lock(&self.0.watch).hands -= 1;
+        self.0.state.lock().running -= 1;
         self.0.changed.notify_all();
     }
 }
 
 impl Threads {
-    pub(super) fn new(settings: LinkSettings, take: impl Fn(LinkEvent) + Send + Sync + 'static) -> Arc<Threads> {
+    pub(super) fn new(settings: LinkSettings, on_event: impl Fn(LinkEvent) + Send + Sync + 'static) -> Arc<Threads> {
         Arc::new(Threads {
             settings,
-            take: Box::new(take),
+            on_event: Box::new(on_event),
             peers: Mutex::default(),
             numbers: AtomicU32::new(0),
             displaced: AtomicU64::new(0),
-            watch: Mutex::default(),
+            state: Mutex::default(),
             changed: Condvar::new(),
         })
     }
 
     /// Starts a thread.
-    pub(super) fn hire(
+    pub(super) fn spawn(
         self: &Arc<Threads>,
         name: &str,
         work: impl FnOnce() + Send + 'static,
     ) -> io::Result<JoinHandle<()>> {
-        lock(&self.watch).hands += 1;
-        let shift = Shift(Arc::clone(self));
+        self.state.lock().running += 1;
+        let running = RunningThread(Arc::clone(self));
         thread::Builder::new().name(name.to_owned()).spawn(move || {
-            let _shift = shift;
+            let _running = running;
             work();
         })
     }
 
-    /// Tells what happened. Never with a lock held: who listens may do as they like.
-    pub(super) fn tell(&self, event: LinkEvent) {
-        (self.take)(event);
+    /// Calls back with an event. Never with a lock held: the callback may call anything.
+    pub(super) fn emit(&self, event: LinkEvent) {
+        (self.on_event)(event);
     }
 
-    /// A number that no peer has had.
+    /// A number that no peer of this link has had.
     pub(super) fn number(&self) -> u32 {
         self.numbers.fetch_add(1, Ordering::Relaxed)
     }
 
     pub(super) fn add(&self, peer: &Arc<Peer>) {
-        lock(&self.peers).push(Arc::clone(peer));
+        self.peers.lock().push(Arc::clone(peer));
     }
 
     pub(super) fn remove(&self, peer: &Peer) {
-        lock(&self.peers).retain(|other| other.number != peer.number);
+        self.peers.lock().retain(|other| other.number != peer.number);
     }
 
     pub(super) fn count(&self) -> usize {
-        lock(&self.peers).len()
+        self.peers.lock().len()
     }
 
     /// Queues bytes for all peers.
-    pub(super) fn hand_over(&self, bytes: Vec<u8>, tag: Option<u64>, rank: Rank) -> Arc<Completion> {
+    pub(super) fn enqueue(&self, bytes: Vec<u8>, tag: Option<u64>, priority: Priority) -> Arc<Completion> {
         let bytes = Arc::new(bytes);
         // Held to the end, so that all peers see the same order.
-        let peers = lock(&self.peers);
+        let peers = self.peers.lock();
         let completion = Completion::new(tag, peers.len());
         let displaced =
-            peers.iter().filter(|peer| peer.outbox.put(WriteRequest::new(&bytes, &completion, rank))).count();
+            peers.iter().filter(|peer| peer.outbox.put(WriteRequest::new(&bytes, &completion, priority))).count();
         self.note_displaced(displaced as u64);
         completion
     }
@@ -120,51 +121,52 @@ impl Threads {
 
     /// Breaks all connections.
     pub(super) fn reconnect(&self) {
-        lock(&self.watch).reconnects += 1;
+        self.state.lock().reconnects += 1;
         self.changed.notify_all();
         self.end_all(&End::Asked);
     }
 
     /// Ends all threads; waits for them up to `limit`.
     pub(super) fn stop(&self, limit: Duration) {
-        lock(&self.watch).stopped = true;
+        self.state.lock().stopped = true;
         self.changed.notify_all();
         self.end_all(&End::Stopped);
-        // Whoever is not back by then hangs in what it tells, and ends after that.
-        drop(self.wait(limit, |watch| watch.hands > 0));
+        // A thread that still runs hangs in its callback, and ends after that.
+        drop(self.wait(limit, |state| state.running > 0));
     }
 
     pub(super) fn is_stopped(&self) -> bool {
-        lock(&self.watch).stopped
+        self.state.lock().stopped
     }
 
     /// How often a reconnect was asked for.
     pub(super) fn reconnects(&self) -> u64 {
-        lock(&self.watch).reconnects
+        self.state.lock().reconnects
     }
 
     /// Waits this long, unless the link is closed.
-    pub(super) fn rest(&self, limit: Duration) -> Woken {
-        if self.wait(limit, |watch| !watch.stopped).stopped { Woken::Stopped } else { Woken::Rested }
+    pub(super) fn sleep(&self, limit: Duration) -> Woken {
+        if self.wait(limit, |state| !state.stopped).stopped { Woken::Stopped } else { Woken::Elapsed }
     }
 
-    /// As [`Threads::rest`], unless a reconnect is asked for, or was since `seen`, which is then brought up to date.
+    /// As [`Threads::sleep`], unless a reconnect is asked for, or was since `seen`, which is then brought up to date.
     pub(super) fn pause(&self, limit: Duration, seen: &mut u64) -> Woken {
-        let watch = self.wait(limit, |watch| !watch.stopped && watch.reconnects == *seen);
-        if watch.stopped {
+        let state = self.wait(limit, |state| !state.stopped && state.reconnects == *seen);
+        if state.stopped {
             return Woken::Stopped;
         }
-        let before = std::mem::replace(seen, watch.reconnects);
-        if before == *seen { Woken::Rested } else { Woken::Asked }
+        let before = std::mem::replace(seen, state.reconnects);
+        if before == *seen { Woken::Elapsed } else { Woken::Asked }
     }
 
-    fn wait(&self, limit: Duration, nothing_new: impl Fn(&Watch) -> bool) -> MutexGuard<'_, Watch> {
-        let waited = self.changed.wait_timeout_while(lock(&self.watch), limit, |watch| nothing_new(watch));
-        waited.unwrap_or_else(PoisonError::into_inner).0
+    fn wait(&self, limit: Duration, nothing_new: impl Fn(&State) -> bool) -> MutexGuard<'_, State> {
+        let mut state = self.state.lock();
+        self.changed.wait_while_for(&mut state, |state| nothing_new(state), limit);
+        state
     }
 
     fn end_all(&self, end: &End) {
-        for peer in lock(&self.peers).iter() {
+        for peer in self.peers.lock().iter() {
             peer.end(end.clone());
         }
     }

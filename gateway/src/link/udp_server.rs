@@ -1,21 +1,23 @@
-//! A UDP port of our own, whose peers are those who spoke to it lately.
+//! A UDP port of our own, whose peers are those who sent to it lately.
 
-use super::peer::{CHUNK, End, Seat};
-use super::port::{Port, TICK};
+use super::clock::{self, TICK};
+use super::connection::{CHUNK, Connection};
+use super::peer::End;
+use super::port::Port;
 use super::threads::{Threads, Woken};
-use super::{LinkError, LinkEvent, PEERS_MAX, clock};
+use super::{LinkError, LinkEvent, PEERS_MAX};
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A peer that says nothing for this long is forgotten, or sooner if the settings say so.
-const FORGOTTEN: Duration = Duration::from_secs(10);
+/// A peer that sends nothing for this long is forgotten, or sooner if the settings say so.
+const IDLE_MAX: Duration = Duration::from_secs(10);
 
-struct Guest {
+struct UdpPeer {
     from: SocketAddr,
-    seat: Seat,
-    heard_at: Instant,
+    connection: Connection,
+    received_at: Instant,
 }
 
 /// Takes the port.
@@ -30,53 +32,54 @@ pub(super) fn bind(host: &str, port: u16) -> Result<(UdpSocket, SocketAddr), Lin
     bound().map_err(|e| LinkError::Listen { kind: "UDP", host: host.to_owned(), port, reason: e.to_string() })
 }
 
-/// Listens to whoever speaks, until the link is closed.
-pub(super) fn keep(crew: &Arc<Threads>, socket: &Arc<UdpSocket>) {
-    let patience = crew.settings.silence.map_or(FORGOTTEN, |silence| silence.min(FORGOTTEN));
-    let mut guests: Vec<Guest> = Vec::new();
+/// Receives from all peers, until the link is closed.
+pub(super) fn run(threads: &Arc<Threads>, socket: &Arc<UdpSocket>) {
+    let silence_max = threads.settings.silence.map_or(IDLE_MAX, |silence| silence.min(IDLE_MAX));
+    let mut peers: Vec<UdpPeer> = Vec::new();
     let mut buffer = vec![0; CHUNK];
-    while !crew.is_stopped() {
+    while !threads.is_stopped() {
         match socket.recv_from(&mut buffer) {
-            Ok((count, from)) => hear(crew, socket, &mut guests, from, &buffer[..count]),
+            Ok((count, from)) => receive(threads, socket, &mut peers, from, &buffer[..count]),
             Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
-            Err(_) if crew.rest(TICK) == Woken::Stopped => break,
+            Err(_) if threads.sleep(TICK) == Woken::Stopped => break,
             Err(_) => {}
         }
-        while let Some((at, end)) = leaver(&guests, patience) {
-            guests.swap_remove(at).seat.leave(&end);
+        while let Some((at, end)) = first_to_close(&peers, silence_max) {
+            peers.swap_remove(at).connection.close(&end);
         }
     }
-    for guest in guests {
-        guest.seat.leave(&End::Stopped);
+    for peer in peers {
+        peer.connection.close(&End::Stopped);
     }
 }
 
-fn hear(crew: &Arc<Threads>, socket: &Arc<UdpSocket>, guests: &mut Vec<Guest>, from: SocketAddr, bytes: &[u8]) {
+fn receive(threads: &Arc<Threads>, socket: &Arc<UdpSocket>, peers: &mut Vec<UdpPeer>, from: SocketAddr, bytes: &[u8]) {
     let at = clock::now();
-    let known = guests.iter_mut().find(|guest| guest.from == from);
-    let peer = if let Some(guest) = known {
-        guest.heard_at = at;
-        guest.seat.peer.number
-    } else if guests.len() < PEERS_MAX {
+    let known = peers.iter_mut().find(|peer| peer.from == from);
+    let peer = if let Some(peer) = known {
+        peer.received_at = at;
+        peer.connection.peer.number
+    } else if peers.len() < PEERS_MAX {
         let port = Port::UdpTo(Arc::clone(socket), from);
-        // Out of threads: it may speak again later.
-        let Ok(seat) = Seat::take(crew, port, from.to_string()) else { return };
-        let peer = seat.peer.number;
-        guests.push(Guest { from, seat, heard_at: at });
+        // Out of threads: it may send again later.
+        let Ok(connection) = Connection::open(threads, port, from.to_string()) else { return };
+        let peer = connection.peer.number;
+        peers.push(UdpPeer { from, connection, received_at: at });
         peer
     } else {
         return;
     };
     if !bytes.is_empty() {
-        crew.tell(LinkEvent::Bytes { peer, at, bytes: bytes.to_vec() });
+        threads.emit(LinkEvent::Bytes { peer, at, bytes: bytes.to_vec() });
     }
 }
 
-/// The first guest whose time is over, and why.
-fn leaver(guests: &[Guest], patience: Duration) -> Option<(usize, End)> {
-    let end = |guest: &Guest| {
-        let silent = || (clock::since(guest.heard_at) >= patience).then(|| format!("no bytes for {patience:?}"));
-        guest.seat.peer.is_to_end().or_else(|| silent().map(End::Lost))
+/// The first peer whose connection is to end, and why.
+fn first_to_close(peers: &[UdpPeer], silence_max: Duration) -> Option<(usize, End)> {
+    let end = |peer: &UdpPeer| {
+        let silent =
+            || (clock::since(peer.received_at) >= silence_max).then(|| format!("no bytes for {silence_max:?}"));
+        peer.connection.peer.is_to_end().or_else(|| silent().map(End::Lost))
     };
-    guests.iter().enumerate().find_map(|(at, guest)| Some((at, end(guest)?)))
+    peers.iter().enumerate().find_map(|(at, peer)| Some((at, end(peer)?)))
 }

@@ -1,69 +1,45 @@
 //! NMEA 0183 as a Surveyor and its neighbours speak it: bytes to sentences and back, with no port and no clock.
 //!
-//! [`Framer`] cuts a stream into sentences, [`Sentence::parse`] reads one, [`Sentence::write`] makes one. What is
-//! read is tolerant where real boats differ (fields too many, zeros before numbers, odd talkers) and strict where
-//! a wrong guess would move a boat. What is written is what the strictest known reader accepts, and never has a
-//! number on the wire that is none.
+//! [`Framer`] cuts a stream into sentences, [`Sentence::parse`] reads one, [`Sentence::write`] writes one; both use the
+//! table of fields that each kind has in `surveyor` or `standard`. Reading is tolerant where real boats differ (too many
+//! fields, zeros before numbers, odd talkers) and strict where a wrong guess would move a boat. What is written is what
+//! the strictest known reader accepts, and never has a non-finite number in it.
 
-mod attitude;
-mod battery;
-mod boat_error;
-mod clock;
-mod command;
-mod control_state;
-mod field;
+mod date_time;
 mod framer;
-mod gga;
-mod gll;
-mod hdg;
-mod hdt;
-mod line;
-mod mission_settings;
+mod layout;
 mod mode;
-mod mwv;
+mod number;
+mod operator;
 mod position;
-mod rmc;
+mod reader;
+mod standard;
+mod surveyor;
 mod talker;
-mod vhw;
-mod vtg;
-mod waypoint;
-mod zda;
+mod wind;
+mod writer;
 
-pub use attitude::Attitude;
-pub use battery::Battery;
-pub use boat_error::BoatError;
-pub use clock::{Date, TimeOfDay};
-pub use command::Command;
-pub use control_state::{ControlState, Operator};
+pub use date_time::{Date, TimeOfDay};
 pub use framer::{ACCEPTED_MAX, Counts, Framer};
-pub use gga::Gga;
-pub use gll::Gll;
-pub use hdg::Hdg;
-pub use hdt::Hdt;
-pub use mission_settings::MissionSettings;
 pub use mode::Mode;
-pub use mwv::{Mwv, SpeedUnit, WindReference};
-pub use rmc::Rmc;
+pub use operator::Operator;
+pub use standard::{Gga, Gll, Hdg, Hdt, Mwv, Rmc, Vhw, Vtg, Zda};
+pub use surveyor::{Attitude, Battery, BoatError, Command, ControlState, MissionSettings, Waypoint};
 pub use talker::Talker;
-pub use vhw::Vhw;
-pub use vtg::Vtg;
-pub use waypoint::Waypoint;
-pub use zda::Zda;
+pub use wind::{M_S_PER_KN, SpeedUnit, WindReference};
 
-use field::Fields;
-use line::Line;
+use layout::Layout;
+use reader::Reader;
 use thiserror::Error;
+use writer::Writer;
 
 /// The longest sentence written, bytes with `$` and CR LF (NMEA 0183 v3.01, 5.3).
 pub const EMITTED_MAX: usize = 82;
 
-/// A knot, m/s.
-pub const M_S_PER_KN: f64 = 1852.0 / 3600.0;
-
 /// A sentence, read or to be written.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sentence {
-    /// `PSEAC`: what the boat is told to do.
+    /// `PSEAC`: a command to the boat.
     Command(Command),
     /// `PSEAA`: how the boat lies, and its compass.
     Attitude(Attitude),
@@ -106,7 +82,7 @@ pub enum ParseError {
         /// What stands before the first comma.
         address: String,
     },
-    /// A field is not what the sentence's layout says.
+    /// A field does not fit the sentence's layout.
     #[error("{address} field {field} is {found:?}, expected {expected}")]
     Field {
         /// What stands before the first comma.
@@ -137,59 +113,76 @@ impl Sentence {
     /// [`ParseError::Unknown`] for a sentence that this codec does not read, the others for one that it should
     /// have been able to.
     pub fn parse(body: &str) -> Result<Sentence, ParseError> {
-        let fields = Fields::of(body);
-        let address = fields.address();
-        Ok(match address {
-            "PSEAC" => Sentence::Command(Command::read(&fields)?),
-            "PSEAA" => Sentence::Attitude(Attitude::read(&fields)?),
-            "PSEAB" => Sentence::Battery(Battery::read(&fields)?),
-            "PSEAD" => Sentence::ControlState(ControlState::read(&fields)?),
-            "PSEAG" => Sentence::BoatError(BoatError::read(&fields)?),
-            "PSEAR" => Sentence::MissionSettings(MissionSettings::read(&fields)?),
-            "OIWPL" => Sentence::Waypoint(Waypoint::read(&fields)?),
-            _ => return Sentence::read_standard(&fields),
-        })
-    }
-
-    /// A sentence of the standard: two characters of talker, three of kind.
-    fn read_standard(fields: &Fields) -> Result<Sentence, ParseError> {
-        let unknown = || ParseError::Unknown { address: fields.address().to_owned() };
-        let (talker, kind) = Talker::split(fields.address()).ok_or_else(unknown)?;
-        Ok(match kind {
-            "GGA" => Sentence::Gga(Gga::read(talker, fields)?),
-            "RMC" => Sentence::Rmc(Rmc::read(talker, fields)?),
-            "VTG" => Sentence::Vtg(Vtg::read(talker, fields)?),
-            "HDT" => Sentence::Hdt(Hdt::read(talker, fields)?),
-            "HDG" => Sentence::Hdg(Hdg::read(talker, fields)?),
-            "ZDA" => Sentence::Zda(Zda::read(talker, fields)?),
-            "GLL" => Sentence::Gll(Gll::read(talker, fields)?),
-            "MWV" => Sentence::Mwv(Mwv::read(talker, fields)?),
-            "VHW" => Sentence::Vhw(Vhw::read(talker, fields)?),
-            _ => return Err(unknown()),
-        })
+        let reader = Reader::of(body);
+        let address = reader.address();
+        let blank = Sentence::blank(address).or_else(|| Sentence::blank_standard(address));
+        let mut sentence = blank.ok_or_else(|| ParseError::Unknown { address: address.to_owned() })?;
+        reader.read(sentence.layout())?;
+        Ok(sentence)
     }
 
     /// Appends `$body*HH\r\n`, at most [`EMITTED_MAX`] bytes.
     ///
-    /// What is no finite number becomes an empty field, as does what would make the sentence too long.
+    /// A non-finite number becomes an empty field, as does what would make the sentence too long.
     pub fn write(&self, out: &mut Vec<u8>) {
+        let mut rounded = match self.clone() {
+            Sentence::Command(command) => Sentence::Command(command.rounded()),
+            Sentence::ControlState(state) => Sentence::ControlState(state.rounded()),
+            Sentence::MissionSettings(settings) => Sentence::MissionSettings(settings.rounded()),
+            other => other,
+        };
+        Writer::write(rounded.layout(), out);
+    }
+
+    /// A sentence of a Surveyor's own without content.
+    fn blank(address: &str) -> Option<Sentence> {
+        Some(match address {
+            "PSEAC" => Sentence::Command(Command::default()),
+            "PSEAA" => Sentence::Attitude(Attitude::default()),
+            "PSEAB" => Sentence::Battery(Battery::default()),
+            "PSEAD" => Sentence::ControlState(ControlState::default()),
+            "PSEAG" => Sentence::BoatError(BoatError::default()),
+            "PSEAR" => Sentence::MissionSettings(MissionSettings::default()),
+            "OIWPL" => Sentence::Waypoint(Waypoint::default()),
+            _ => return None,
+        })
+    }
+
+    /// A sentence of the standard without content: two characters of talker, three of kind.
+    fn blank_standard(address: &str) -> Option<Sentence> {
+        let (talker, kind) = Talker::split(address)?;
+        Some(match kind {
+            "GGA" => Sentence::Gga(Gga { talker, ..Gga::default() }),
+            "RMC" => Sentence::Rmc(Rmc { talker, ..Rmc::default() }),
+            "VTG" => Sentence::Vtg(Vtg { talker, ..Vtg::default() }),
+            "HDT" => Sentence::Hdt(Hdt { talker, ..Hdt::default() }),
+            "HDG" => Sentence::Hdg(Hdg { talker, ..Hdg::default() }),
+            "ZDA" => Sentence::Zda(Zda { talker, ..Zda::default() }),
+            "GLL" => Sentence::Gll(Gll { talker, ..Gll::default() }),
+            "MWV" => Sentence::Mwv(Mwv { talker, ..Mwv::default() }),
+            "VHW" => Sentence::Vhw(Vhw { talker, ..Vhw::default() }),
+            _ => return None,
+        })
+    }
+
+    fn layout(&mut self) -> Layout<'_> {
         match self {
-            Sentence::Command(command) => command.write(Line::new(out, "PSEAC")),
-            Sentence::Attitude(attitude) => attitude.write(Line::new(out, "PSEAA")),
-            Sentence::Battery(battery) => battery.write(Line::new(out, "PSEAB")),
-            Sentence::ControlState(state) => state.write(Line::new(out, "PSEAD")),
-            Sentence::BoatError(error) => error.write(Line::new(out, "PSEAG")),
-            Sentence::MissionSettings(settings) => settings.write(Line::new(out, "PSEAR")),
-            Sentence::Waypoint(waypoint) => waypoint.write(Line::new(out, "OIWPL")),
-            Sentence::Gga(gga) => gga.write(gga.talker.line(out, "GGA")),
-            Sentence::Rmc(rmc) => rmc.write(rmc.talker.line(out, "RMC")),
-            Sentence::Vtg(vtg) => vtg.write(vtg.talker.line(out, "VTG")),
-            Sentence::Hdt(hdt) => hdt.write(hdt.talker.line(out, "HDT")),
-            Sentence::Hdg(hdg) => hdg.write(hdg.talker.line(out, "HDG")),
-            Sentence::Zda(zda) => zda.write(zda.talker.line(out, "ZDA")),
-            Sentence::Gll(gll) => gll.write(gll.talker.line(out, "GLL")),
-            Sentence::Mwv(mwv) => mwv.write(mwv.talker.line(out, "MWV")),
-            Sentence::Vhw(vhw) => vhw.write(vhw.talker.line(out, "VHW")),
+            Sentence::Command(command) => command.layout(),
+            Sentence::Attitude(attitude) => attitude.layout(),
+            Sentence::Battery(battery) => battery.layout(),
+            Sentence::ControlState(state) => state.layout(),
+            Sentence::BoatError(error) => error.layout(),
+            Sentence::MissionSettings(settings) => settings.layout(),
+            Sentence::Waypoint(waypoint) => waypoint.layout(),
+            Sentence::Gga(gga) => gga.layout(),
+            Sentence::Rmc(rmc) => rmc.layout(),
+            Sentence::Vtg(vtg) => vtg.layout(),
+            Sentence::Hdt(hdt) => hdt.layout(),
+            Sentence::Hdg(hdg) => hdg.layout(),
+            Sentence::Zda(zda) => zda.layout(),
+            Sentence::Gll(gll) => gll.layout(),
+            Sentence::Mwv(mwv) => mwv.layout(),
+            Sentence::Vhw(vhw) => vhw.layout(),
         }
     }
 }

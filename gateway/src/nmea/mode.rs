@@ -2,12 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a boat's own controller is told to do, or says that it does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// The control mode that a boat's own controller is sent, or reports.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     /// `L`: thrusters idle.
+    #[default]
     Standby,
-    /// `T`: thrust and difference as told.
+    /// `T`: thrust and difference as commanded.
     Thruster,
     /// `C`: hold a compass heading at a thrust.
     Heading,

@@ -1,19 +1,18 @@
 //! A position as sentences carry it: degrees and minutes run together, then a letter.
 
-use super::field::{Fields, number};
-use super::{Line, ParseError};
-use game::LatLon;
+use super::number::number;
 
 /// One of the two coordinates.
-struct Axis {
+pub(super) struct Axis {
     degree_digits: usize,
     degrees_max: u32,
     letters: [char; 2],
-    expected: &'static str,
-    expected_letter: &'static str,
+    /// What is expected in its first and in its second field.
+    pub(super) expected: &'static str,
+    pub(super) expected_letter: &'static str,
 }
 
-const LATITUDE: Axis = Axis {
+pub(super) const LATITUDE: Axis = Axis {
     degree_digits: 2,
     degrees_max: 90,
     letters: ['N', 'S'],
@@ -21,7 +20,7 @@ const LATITUDE: Axis = Axis {
     expected_letter: "N or S",
 };
 
-const LONGITUDE: Axis = Axis {
+pub(super) const LONGITUDE: Axis = Axis {
     degree_digits: 3,
     degrees_max: 180,
     letters: ['E', 'W'],
@@ -29,42 +28,16 @@ const LONGITUDE: Axis = Axis {
     expected_letter: "E or W",
 };
 
-impl Fields<'_> {
-    /// The position in the four fields from `at`, if any: half of one is an error.
-    pub(super) fn position(&self, at: usize) -> Result<Option<LatLon>, ParseError> {
-        if self.text(at).is_empty() && self.text(at + 2).is_empty() {
-            return Ok(None);
-        }
-        let lat_deg = self.coordinate(at, &LATITUDE)?;
-        let lon_deg = self.coordinate(at + 2, &LONGITUDE)?;
-        Ok(Some(LatLon { lat_deg, lon_deg }))
-    }
-
-    fn coordinate(&self, at: usize, axis: &Axis) -> Result<f64, ParseError> {
-        let size_deg = axis.degrees(self.text(at)).ok_or_else(|| self.wrong(at, axis.expected))?;
-        match axis.letters.iter().position(|letter| self.text(at + 1).chars().eq([*letter])) {
-            Some(0) => Ok(size_deg),
-            Some(_) => Ok(-size_deg),
-            None => Err(self.wrong(at + 1, axis.expected_letter)),
-        }
-    }
-}
-
-impl Line<'_> {
-    /// A position in four fields, empty for what is no position.
-    pub(super) fn position(&mut self, at: Option<LatLon>, decimals: u32) {
-        let texts =
-            at.and_then(|at| Some((LATITUDE.printed(at.lat_deg, decimals)?, LONGITUDE.printed(at.lon_deg, decimals)?)));
-        let (lat, lon) = texts.unwrap_or_else(|| (",".to_owned(), ",".to_owned()));
-        self.fixed(&lat);
-        self.fixed(&lon);
-    }
-}
-
 impl Axis {
+    /// The sign of a letter: north and east are positive.
+    pub(super) fn sign(&self, letter: &str) -> Option<f64> {
+        let place = self.letters.iter().position(|known| letter.chars().eq([*known]))?;
+        Some([1.0, -1.0][place])
+    }
+
     /// Degrees from `ddmm.mmmm`. All digits before the point must be there: without its zeros a position could be
     /// another position.
-    fn degrees(&self, text: &str) -> Option<f64> {
+    pub(super) fn degrees(&self, text: &str) -> Option<f64> {
         let whole = text.split('.').next().unwrap_or_default();
         if whole.len() != self.degree_digits + 2 || !whole.bytes().all(|byte| byte.is_ascii_digit()) {
             return None;
@@ -77,7 +50,7 @@ impl Axis {
     }
 
     /// `ddmm.mmmm,N` with so many decimals of minutes. It is whole steps that are split, so minutes carry.
-    fn printed(&self, angle_deg: f64, decimals: u32) -> Option<String> {
+    pub(super) fn printed(&self, angle_deg: f64, decimals: u32) -> Option<String> {
         if !angle_deg.is_finite() || angle_deg.abs() > f64::from(self.degrees_max) {
             return None;
         }

@@ -1,8 +1,6 @@
-//! The talker: the two characters that say which kind of device sends a standard sentence.
+//! The talker of a standard sentence.
 
-use super::Line;
-
-/// Two characters of A to Z and 0 to 9.
+/// The talker: two characters of A to Z and 0 to 9 that say which kind of device sends a sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Talker([u8; 2]);
 
@@ -39,9 +37,10 @@ impl Talker {
         let (talker, kind) = address.split_at_checked(2)?;
         Some((Talker::new(talker.as_bytes().try_into().ok()?)?, kind))
     }
+}
 
-    pub(super) fn line<'a>(self, out: &'a mut Vec<u8>, kind: &str) -> Line<'a> {
-        let [first, second] = self.0.map(char::from);
-        Line::new(out, &format!("{first}{second}{kind}"))
+impl Default for Talker {
+    fn default() -> Talker {
+        Talker::GP
     }
 }

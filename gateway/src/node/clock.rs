@@ -1,4 +1,4 @@
-//! The gateway's clock: it never steps, and in a game that runs faster than the wall's it runs as fast as the game.
+//! The gateway's monotonic clock; in a game that runs faster than real time it runs as fast as the game.
 
 use bus::clock;
 use game::SimTime;
@@ -20,12 +20,12 @@ impl Clock {
         self.at(clock::now())
     }
 
-    /// The gateway's time at a moment of the wall's clock.
+    /// The gateway's time at a moment of real time.
     pub(super) fn at(&self, moment: Instant) -> SimTime {
         SimTime::from_s(moment.saturating_duration_since(self.start).as_secs_f64() * self.factor)
     }
 
-    /// How long it is, by the wall's clock, until the gateway's shows `due`.
+    /// How long it is in real time until the gateway's time `due`.
     pub(super) fn until(&self, due: SimTime) -> Duration {
         let wait_s = (due - self.now()).as_s() / self.factor;
         Duration::from_secs_f64(wait_s.clamp(0.0, 1.0))

@@ -1,7 +1,6 @@
-//! An emulated boat on the network: joins a game as the agent of a simulated boat, and lets a back seat decide for it, by the
-//! boat's own sentences.
+//! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives by the boat's own sentences.
 
-use super::{News, NodeError, declination_today_rad, find_game, pace_factor};
+use super::{NodeError, NodeEvent, declination_today_rad, find_game, pace_factor};
 use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
@@ -16,11 +15,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// What an emulated boat needs to know.
+/// The settings of an emulated boat.
 pub struct EmulatorSettings {
     /// The game; without a name, the only one there is.
     pub game: Option<GameName>,
-    /// Where the sim is.
+    /// How the sim is reached.
     pub net: Net,
     /// The boat's name in the game.
     pub vehicle: String,
@@ -28,11 +27,11 @@ pub struct EmulatorSettings {
     pub listen: LinkAddress,
     /// Where the primary operator connects, if anywhere.
     pub primary: Option<LinkAddress>,
-    /// Magnetic north, east of true, rad; by the World Magnetic Model if it is not said.
+    /// Declination, east positive, rad; `None` is by the World Magnetic Model.
     pub declination_rad: Option<f64>,
     /// After this long without a command the boat goes to standby, s; `None` is never.
     pub watchdog_s: Option<f64>,
-    /// Whether settings that are no whole numbers leave the ones before in force.
+    /// Whether a set-point that is not a whole number leaves the one before in force.
     pub integers: bool,
     /// Sentences beyond a Surveyor's.
     pub extra: Vec<Extra>,
@@ -44,31 +43,31 @@ pub struct EmulatorSettings {
     pub stop: Arc<AtomicBool>,
 }
 
-/// How often somebody who hears nothing looks whether it is to end.
-const LOOK: Duration = Duration::from_millis(100);
+/// How often the loop checks whether it is to end.
+const POLL: Duration = Duration::from_millis(100);
 /// Bytes of commands that may wait: more than a back seat sends in a minute.
 const UNREAD_MAX: usize = 256 * 1024;
 
-/// What came from the links and the sim since the last look.
+/// What came from the links and the sim since the last poll.
 #[derive(Default)]
 struct Incoming {
     bytes: Vec<(Port, Vec<u8>)>,
     unread: usize,
-    told: Vec<String>,
+    remarks: Vec<String>,
     picture: Option<Vec<u8>>,
 }
 
-/// Plays a boat until the game is over, or until it is told to stop.
+/// Emulates a boat until the game is over, or until it is told to stop.
 ///
 /// # Errors
 /// [`NodeError`] if there is no such game or boat, if it has another agent, or if the network or a link cannot work.
-pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-    let mut look = GameSearch::new(settings.wait, &settings.stop);
-    let (bus, game, notice) = find_game(&mut look, &settings.net, settings.game.as_ref(), tell)?;
-    let vehicle = notice.scenario.vehicle_named(&settings.vehicle)?;
-    // A back seat lives by the clock.
-    pace_factor(&notice.pace, true)?;
-    let scenario = &notice.scenario;
+pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    let mut search = GameSearch::new(settings.wait, &settings.stop);
+    let (bus, game, info) = find_game(&mut search, &settings.net, settings.game.as_ref(), notify)?;
+    let vehicle = info.scenario.vehicle_named(&settings.vehicle)?;
+    // A back seat runs in real time.
+    pace_factor(&info.pace, true)?;
+    let scenario = &info.scenario;
     let datum = scenario.field.plan.datum;
     let declination_rad = match settings.declination_rad {
         Some(rad) => rad,
@@ -86,21 +85,21 @@ pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> R
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &bus.id()))?;
     let pictures = Arc::clone(&incoming);
-    let _standing = bus.subscribe(topic::picture(&game, scenario, scenario.team_of(vehicle)), move |bytes| {
+    let _subscription = bus.subscribe(topic::picture(&game, scenario, scenario.team_of(vehicle)), move |bytes| {
         pictures.visit(|incoming| incoming.picture = Some(bytes.to_vec()));
     })?;
     let back_seat = open(&settings.listen, Port::Secondary, &incoming)?;
-    tell(News::Listening { what: "back seat", reach: &back_seat.reach() });
+    notify(NodeEvent::Listening { what: "back seat", reach: &back_seat.reach() });
     let primary = settings.primary.as_ref().map(|address| open(address, Port::Primary, &incoming)).transpose()?;
     if let Some(primary) = &primary {
-        tell(News::Listening { what: "primary operator", reach: &primary.reach() });
+        notify(NodeEvent::Listening { what: "primary operator", reach: &primary.reach() });
     }
     let names = [settings.vehicle.clone()];
-    let mut say = |reason: &str| tell(News::Looking { reason });
+    let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
     let sim = SimWatch::open(&bus, &game, Patience::of_player(settings.silence))?;
-    let (ticket, _) = look.until(&mut say, || game_search::join(&bus, &game, Role::Agent, &names))?;
+    let (ticket, _) = search.until(&mut say, || game_search::join(&bus, &game, Role::Agent, &names))?;
     let boat = EmulatedBoat { vehicle, emulator: Emulator::new(plan) };
-    let mut player = Player {
+    let mut node = EmulatorNode {
         runner: MindRunner::new([(vehicle, Box::new(boat))]),
         ticket,
         sim,
@@ -110,16 +109,16 @@ pub fn emulate(settings: &EmulatorSettings, tell: &mut dyn FnMut(News<'_>)) -> R
         operator: Operator::Secondary,
         sent: 0,
     };
-    let played = player.play(&settings.stop, &incoming, tell);
+    let result = node.run(&settings.stop, &incoming, notify);
     bus.close();
-    played
+    result
 }
 
-/// A port of the boat.
+/// Opens a port of the boat.
 fn open(address: &LinkAddress, port: Port, incoming: &Arc<Watched<Incoming>>) -> Result<Link, NodeError> {
-    let board = Arc::clone(incoming);
+    let shared = Arc::clone(incoming);
     let settings = LinkSettings { silence: None, ..LinkSettings::default() };
-    Ok(Link::open(address, settings, move |event| board.visit(|incoming| incoming.take(port, event)))?)
+    Ok(Link::open(address, settings, move |event| shared.visit(|incoming| incoming.take(port, event)))?)
 }
 
 impl Incoming {
@@ -130,17 +129,17 @@ impl Incoming {
                 self.bytes.push((port, bytes));
             }
             LinkEvent::Bytes { .. } | LinkEvent::Written { .. } => {}
-            LinkEvent::Up { name, .. } => self.told.push(format!("{name} is connected")),
-            LinkEvent::Down { reason, .. } | LinkEvent::Failed { reason, .. } => self.told.push(reason),
+            LinkEvent::Up { name, .. } => self.remarks.push(format!("{name} is connected")),
+            LinkEvent::Down { reason, .. } | LinkEvent::Failed { reason, .. } => self.remarks.push(reason),
         }
     }
 
     fn is_something(&self) -> bool {
-        !self.bytes.is_empty() || !self.told.is_empty() || self.picture.is_some()
+        !self.bytes.is_empty() || !self.remarks.is_empty() || self.picture.is_some()
     }
 }
 
-/// A boat that is told by sentences what to do: to the game it is a mind like any other.
+/// The emulated boat as a mind: its order is what the back seat commands.
 struct EmulatedBoat {
     vehicle: VehicleId,
     emulator: Emulator,
@@ -156,8 +155,8 @@ impl Mind for EmulatedBoat {
     }
 }
 
-/// The boat at work.
-struct Player {
+/// The boat in the game.
+struct EmulatorNode {
     runner: MindRunner<EmulatedBoat>,
     ticket: u64,
     sim: SimWatch,
@@ -170,26 +169,26 @@ struct Player {
     sent: u64,
 }
 
-impl Player {
-    fn play(
+impl EmulatorNode {
+    fn run(
         &mut self,
         stop: &AtomicBool,
         incoming: &Watched<Incoming>,
-        tell: &mut dyn FnMut(News<'_>),
+        notify: &mut dyn FnMut(NodeEvent<'_>),
     ) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
-            incoming.wait(LOOK, Incoming::is_something);
-            let Incoming { bytes, told, picture, .. } = incoming.visit(std::mem::take);
-            for text in &told {
-                tell(News::Remark { at_s: self.now.as_s(), text });
+            incoming.wait(POLL, Incoming::is_something);
+            let Incoming { bytes, remarks, picture, .. } = incoming.visit(std::mem::take);
+            for text in &remarks {
+                notify(NodeEvent::Remark { at_s: self.now.as_s(), text });
             }
             for (port, bytes) in &bytes {
                 let now = self.now;
                 self.emulator().take(now, *port, bytes);
             }
-            self.tell_operator(tell);
+            self.report_operator(notify);
             if let Some(text) = self.emulator().take_remark() {
-                tell(News::Remark { at_s: self.now.as_s(), text: &text });
+                notify(NodeEvent::Remark { at_s: self.now.as_s(), text: &text });
             }
             let picture = picture.and_then(|bytes| codec::decode::<Picture>(&bytes).ok());
             if let Some(picture) = picture {
@@ -197,7 +196,7 @@ impl Player {
                 if picture.over {
                     break;
                 }
-                self.see(&picture)?;
+                self.answer(&picture)?;
             }
             match self.sim.state() {
                 SimState::Alive => {}
@@ -213,18 +212,18 @@ impl Player {
         &mut boat.emulator
     }
 
-    /// Says who commands the boat, if that is another one now.
-    fn tell_operator(&mut self, tell: &mut dyn FnMut(News<'_>)) {
+    /// Reports who commands the boat, if that changed.
+    fn report_operator(&mut self, notify: &mut dyn FnMut(NodeEvent<'_>)) {
         let operator = self.emulator().operator();
         if operator != self.operator {
             self.operator = operator;
             let text = format!("{:?} commands the boat", self.operator);
-            tell(News::Remark { at_s: self.now.as_s(), text: &text });
+            notify(NodeEvent::Remark { at_s: self.now.as_s(), text: &text });
         }
     }
 
-    /// A picture has come: the boat does what it is told, and tells how it is.
-    fn see(&mut self, picture: &Picture) -> Result<(), NodeError> {
+    /// Answers a picture with the boat's order, and sends telemetry.
+    fn answer(&mut self, picture: &Picture) -> Result<(), NodeError> {
         let is_new = self.runner.decided() != Some(picture.stamp.seq);
         if is_new {
             self.now = picture.stamp.valid_ns;

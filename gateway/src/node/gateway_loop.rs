@@ -1,26 +1,27 @@
-//! The desk of a gateway: what comes in from the boat, the sim and people goes to the core, what it says goes out.
+//! The gateway loop: inputs from the boat, the sim and operators go to the core, its outputs go out.
 
 use super::clock::Clock;
 use super::latency::Latency;
 use super::logbook::Logbook;
-use super::{News, NodeError};
-use crate::bridge::{Bridge, FleetCommand, Input, NavOut, Outbox};
+use super::{NodeError, NodeEvent};
+use crate::bridge::{Bridge, FleetCommand, Input, NavOut, Output};
 use crate::link::{Link, LinkEvent};
-use bus::{Inbox, Publisher, Query, clock};
+use bus::{Inbox, InboxSender, Publisher, Query, clock};
 use game::codec;
 use game::external::{ExternalOrder, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply};
 use game::frame::Ned;
 use game::message::{Frame, Message, Stamp};
 use game::{Order, SimTime, VehicleId};
+use parking_lot::Mutex;
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What comes in.
+/// What wakes the loop.
 pub(super) enum Call {
     Link(LinkEvent),
-    /// An order lies in the latest_order.
+    /// There is a new order in `latest_order`.
     Order,
     Frame(Vec<u8>),
     Operate(Query),
@@ -31,31 +32,38 @@ pub(super) enum Call {
     Remark(String),
 }
 
-/// The newest order, and when it came. However many come, only the newest waits.
+/// The latest order, and when it came. However many come, only the latest waits.
 pub(super) type LatestOrder = Arc<Mutex<Option<(ExternalOrder, Instant)>>>;
 
-/// How often the status is told, and shown.
+/// Where the callbacks of subscriptions put their input for the loop.
+pub(super) struct LoopInputs {
+    pub(super) calls: InboxSender<Call>,
+    pub(super) latest_order: LatestOrder,
+    pub(super) e_stop: Arc<AtomicBool>,
+}
+
+/// How often the status is published, and shown.
 const STATUS_EVERY: Duration = Duration::from_millis(500);
-/// How long last words may take.
-const LAST_WORDS: Duration = Duration::from_millis(500);
-/// Sentences with orders whose writing is waited for.
+/// How long the shutdown message may take.
+const SHUTDOWN_MAX: Duration = Duration::from_millis(500);
+/// The most sentences with orders whose completion is awaited.
 const WRITING_MAX: usize = 64;
-/// A remark that is made again within this time is not repeated.
+/// A message that comes again within this time is not repeated.
 const REMARK_AGAIN: Duration = Duration::from_secs(10);
 
-/// What the desk works with.
+/// The loop of a gateway, with everything it drives.
 pub(super) struct GatewayLoop {
     pub(super) bridge: Bridge,
     pub(super) link: Link,
     pub(super) clock: Clock,
     pub(super) inbox: Inbox<Call>,
     pub(super) latest_order: LatestOrder,
-    /// Set as soon as an E-stop for all boats comes in: it must not wait, nor be dropped, behind anything else.
+    /// Set as soon as an E-stop for all boats comes in: it must not wait behind anything else, nor be dropped.
     pub(super) e_stop: Arc<AtomicBool>,
     pub(super) nav: Publisher,
     pub(super) status: Publisher,
     /// Every byte of the link, for recorders.
-    pub(super) wire: Publisher,
+    pub(super) link_bytes: Publisher,
     pub(super) vehicle: VehicleId,
     /// The other real boats.
     pub(super) others: Vec<VehicleId>,
@@ -63,13 +71,13 @@ pub(super) struct GatewayLoop {
     pub(super) counters: Counters,
 }
 
-/// What the desk keeps track of.
+/// What the loop keeps track of.
 pub(super) struct Counters {
     ticket: Option<u64>,
-    /// Time of the game, as heard last.
+    /// Time of the game, as last received.
     game_now: SimTime,
     reports: u64,
-    wired: u64,
+    published_bytes: u64,
     link: String,
     tag: u64,
     /// Sentences with orders on their way: tag, and when the order came.
@@ -89,7 +97,7 @@ impl Counters {
             ticket: None,
             game_now: SimTime::ZERO,
             reports: 0,
-            wired: 0,
+            published_bytes: 0,
             link: "not connected yet".to_owned(),
             tag: 0,
             writing: VecDeque::new(),
@@ -103,28 +111,28 @@ impl Counters {
 }
 
 impl GatewayLoop {
-    /// Works until it is told to stop.
-    pub(super) fn work(&mut self, stop: &AtomicBool, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+    /// Runs until it is told to stop.
+    pub(super) fn run(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
             if self.e_stop.swap(false, Ordering::Relaxed) {
-                self.turn(Input::Fleet(FleetCommand::EStop), None, tell)?;
+                self.step(Input::Fleet(FleetCommand::EStop), None, notify)?;
             }
             let due = self.bridge.due(self.clock.now());
             match self.inbox.take(self.clock.until(due)) {
-                Some(call) => self.take(call, tell)?,
-                None => self.turn(Input::Tick, None, tell)?,
+                Some(call) => self.take(call, notify)?,
+                None => self.step(Input::Tick, None, notify)?,
             }
             if clock::now() >= self.counters.status_at {
                 self.counters.status_at = clock::now() + STATUS_EVERY;
                 let status = self.full_status();
                 self.status.send_json(serde_json::to_vec(&status).expect("a status is JSON"))?;
-                tell(News::Status(&status));
+                notify(NodeEvent::Status(&status));
             }
         }
         Ok(())
     }
 
-    /// How everything is.
+    /// The status of core and shell.
     pub(super) fn full_status(&self) -> GatewayStatus {
         let mut status = self.bridge.status(self.clock.now());
         if status.link != "up" {
@@ -139,50 +147,50 @@ impl GatewayLoop {
         status
     }
 
-    fn take(&mut self, call: Call, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+    fn take(&mut self, call: Call, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
         match call {
-            Call::Link(event) => self.take_link(event, tell),
-            Call::Order => self.take_order(tell),
-            Call::Frame(bytes) => self.take_frame(&bytes, tell),
-            Call::Operate(question) => self.operate(question, tell),
-            Call::Release => self.turn(Input::Fleet(FleetCommand::Release), None, tell),
-            // It only wakes the desk.
+            Call::Link(event) => self.take_link(event, notify),
+            Call::Order => self.take_order(notify),
+            Call::Frame(bytes) => self.take_frame(&bytes, notify),
+            Call::Operate(query) => self.operate(query, notify),
+            Call::Release => self.step(Input::Fleet(FleetCommand::Release), None, notify),
+            // It only wakes the loop.
             Call::EStop => Ok(()),
             Call::Joined(ticket, vehicles) if vehicles == [self.vehicle] => {
                 self.counters.ticket = Some(ticket);
-                self.remark("joined: the sim takes reports of the boat", tell);
-                self.turn(Input::Moored, None, tell)
+                self.remark("joined: the sim takes reports of the boat", notify);
+                self.step(Input::Joined, None, notify)
             }
             Call::Joined(..) => {
                 Err(NodeError::Refused("the sim let another boat in than the one that asked".to_owned()))
             }
             Call::SimGone => {
                 self.counters.ticket = None;
-                self.remark("the sim is gone: waiting for the next", tell);
+                self.remark("the sim is gone: waiting for the next", notify);
                 Ok(())
             }
             Call::Remark(text) => {
-                self.remark(&text, tell);
+                self.remark(&text, notify);
                 Ok(())
             }
         }
     }
 
-    fn take_link(&mut self, event: LinkEvent, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+    fn take_link(&mut self, event: LinkEvent, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
         match event {
             LinkEvent::Up { name, .. } => {
-                self.remark(&format!("connected to {name}"), tell);
-                self.turn(Input::LinkUp, None, tell)
+                self.remark(&format!("connected to {name}"), notify);
+                self.step(Input::LinkUp, None, notify)
             }
-            LinkEvent::Bytes { at, bytes, .. } => self.turn(Input::Bytes(bytes), Some(at), tell),
+            LinkEvent::Bytes { at, bytes, .. } => self.step(Input::Bytes(bytes), Some(at), notify),
             LinkEvent::Down { reason, .. } => {
                 self.counters.link.clone_from(&reason);
-                self.remark(&format!("the link is down: {reason}"), tell);
-                self.turn(Input::LinkDown, None, tell)
+                self.remark(&format!("the link is down: {reason}"), notify);
+                self.step(Input::LinkDown, None, notify)
             }
-            LinkEvent::Failed { reason, again } => {
+            LinkEvent::Failed { reason, retry_in } => {
                 self.counters.link = reason.clone();
-                self.remark(&format!("{reason}: trying again in {:.1} s", again.as_secs_f64()), tell);
+                self.remark(&format!("{reason}: trying again in {:.1} s", retry_in.as_secs_f64()), notify);
                 Ok(())
             }
             LinkEvent::Written { tag, at } => {
@@ -196,62 +204,67 @@ impl GatewayLoop {
         }
     }
 
-    fn take_order(&mut self, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-        let taken = self.latest_order.lock().unwrap_or_else(PoisonError::into_inner).take();
+    fn take_order(&mut self, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+        let taken = self.latest_order.lock().take();
         let Some((message, came)) = taken else { return Ok(()) };
         self.counters.game_now = message.stamp.valid_ns;
         if message.order.vehicle != self.vehicle {
-            return self.turn(Input::BadOrder, None, tell);
+            return self.step(Input::BadOrder, None, notify);
         }
         let sound = message.order.order().and_then(|order: Order| order.check().ok());
         match sound {
             Some(order) => {
                 self.counters.order_came = Some(came);
-                self.turn(Input::Order(order, message.given_ns), None, tell)
+                self.step(Input::Order(order, message.given_ns), None, notify)
             }
-            None => self.turn(Input::BadOrder, None, tell),
+            None => self.step(Input::BadOrder, None, notify),
         }
     }
 
-    fn take_frame(&mut self, bytes: &[u8], tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+    fn take_frame(&mut self, bytes: &[u8], notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
         let Ok(frame) = codec::decode::<Frame>(bytes) else { return Ok(()) };
         let place = |vehicle: &VehicleId| frame.vehicles.get(vehicle.index()).map(|truth| truth.nav.at());
         let others: Vec<Ned> = self.others.iter().filter_map(place).collect();
-        self.turn(Input::Others(others), None, tell)
+        self.step(Input::Others(others), None, notify)
     }
 
-    fn operate(&mut self, question: Query, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-        let refused = match serde_json::from_slice::<OperatorCommand>(&question.payload) {
+    fn operate(&mut self, query: Query, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+        let refused = match serde_json::from_slice::<OperatorCommand>(&query.payload) {
             Ok(OperatorCommand::Status) => None,
             Ok(command) => {
-                self.remark(&format!("somebody asks: {command:?}"), tell);
-                self.turn_of(Input::Operator(command), None, tell)?
+                self.remark(&format!("operator command: {command:?}"), notify);
+                self.step_core(Input::Operator(command), None, notify)?
             }
-            Err(e) => Some(format!("the question is not understood: {e}")),
+            Err(e) => Some(format!("the command is not understood: {e}")),
         };
         if let Some(reason) = &refused {
-            self.remark(&format!("refused: {reason}"), tell);
+            self.remark(&format!("refused: {reason}"), notify);
         }
         let reply = OperatorReply { refused, status: self.full_status() };
-        question.answer(serde_json::to_vec(&reply).expect("a reply is JSON"));
+        query.answer(serde_json::to_vec(&reply).expect("a reply is JSON"));
         Ok(())
     }
 
-    fn turn(&mut self, input: Input, read: Option<Instant>, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-        self.turn_of(input, read, tell).map(drop)
-    }
-
-    /// One turn of the core; gives why a wish was refused. `read` is when bytes came off the link.
-    fn turn_of(
+    fn step(
         &mut self,
         input: Input,
         read: Option<Instant>,
-        tell: &mut dyn FnMut(News<'_>),
+        notify: &mut dyn FnMut(NodeEvent<'_>),
+    ) -> Result<(), NodeError> {
+        self.step_core(input, read, notify).map(drop)
+    }
+
+    /// One step of the core; returns why a request was refused. `read` is when the bytes were read from the link.
+    fn step_core(
+        &mut self,
+        input: Input,
+        read: Option<Instant>,
+        notify: &mut dyn FnMut(NodeEvent<'_>),
     ) -> Result<Option<String>, NodeError> {
         let now = self.clock.now();
-        let mut out = Outbox::default();
+        let mut out = Output::default();
         self.bridge.take(now, &input, &mut out);
-        // The boat comes first.
+        // The boat first.
         if !out.bytes.is_empty() {
             self.counters.tag += 1;
             if let (true, Some(came)) = (out.carries_order, self.counters.order_came.take()) {
@@ -268,13 +281,13 @@ impl GatewayLoop {
             }
         }
         for event in &out.events {
-            tell(News::Event { at_s: now.as_s(), event });
+            notify(NodeEvent::Event { at_s: now.as_s(), event });
         }
-        if self.wire.is_heard() {
+        if self.link_bytes.is_heard() {
             if let Input::Bytes(bytes) = &input {
-                self.tell_wire(false, bytes)?;
+                self.publish_bytes(false, bytes)?;
             }
-            self.tell_wire(true, &out.bytes)?;
+            self.publish_bytes(true, &out.bytes)?;
         }
         if let Some(logbook) = &self.logbook {
             logbook.turn(now, input, &out);
@@ -282,14 +295,15 @@ impl GatewayLoop {
         Ok(out.refused)
     }
 
-    /// Tells what went over the link, if anything.
-    fn tell_wire(&mut self, outward: bool, data: &[u8]) -> Result<(), NodeError> {
+    /// Publishes bytes that went over the link, if any.
+    fn publish_bytes(&mut self, outward: bool, data: &[u8]) -> Result<(), NodeError> {
         if data.is_empty() {
             return Ok(());
         }
-        let stamp = Stamp { valid_ns: self.counters.game_now, seq: self.counters.wired, version: LinkBytes::VERSION };
-        self.counters.wired += 1;
-        Ok(self.wire.send(&LinkBytes { stamp, vehicle: self.vehicle, outward, data: data.to_vec() })?)
+        let stamp =
+            Stamp { valid_ns: self.counters.game_now, seq: self.counters.published_bytes, version: LinkBytes::VERSION };
+        self.counters.published_bytes += 1;
+        Ok(self.link_bytes.send(&LinkBytes { stamp, vehicle: self.vehicle, outward, data: data.to_vec() })?)
     }
 
     fn report(&mut self, out: &NavOut) -> Result<(), NodeError> {
@@ -301,8 +315,8 @@ impl GatewayLoop {
         Ok(self.nav.send(&report)?)
     }
 
-    /// Says something, unless it was said just now.
-    fn remark(&mut self, text: &str, tell: &mut dyn FnMut(News<'_>)) {
+    /// Logs a message, unless it was logged just now.
+    fn remark(&mut self, text: &str, notify: &mut dyn FnMut(NodeEvent<'_>)) {
         let now = clock::now();
         let (at, last) = &self.counters.remarked;
         if last == text && now.saturating_duration_since(*at) < REMARK_AGAIN {
@@ -312,14 +326,15 @@ impl GatewayLoop {
         if let Some(logbook) = &self.logbook {
             logbook.remark(self.clock.now(), text);
         }
-        tell(News::Remark { at_s: self.clock.now().as_s(), text });
+        notify(NodeEvent::Remark { at_s: self.clock.now().as_s(), text });
     }
 }
 
 impl Drop for GatewayLoop {
-    /// However a gateway ends, but by the plug: the boat is told to stop, three times, before the link goes.
+    /// However a gateway ends, except by a kill or a power cut: the boat is sent the shutdown message, three times, before
+    /// the link closes.
     fn drop(&mut self) {
-        let words = self.bridge.last_words().repeat(3);
-        self.link.send_and_wait(&words, LAST_WORDS);
+        let message = self.bridge.shutdown_message().repeat(3);
+        self.link.send_and_wait(&message, SHUTDOWN_MAX);
     }
 }

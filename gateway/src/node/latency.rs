@@ -1,12 +1,12 @@
-//! How long things take on their way through the gateway.
+//! Latencies through the gateway.
 
 use hdrhistogram::Histogram;
 use std::time::{Duration, Instant};
 
-/// Longest that is told apart, µs.
+/// Longest latency that is recorded, µs.
 const LONGEST_US: u64 = 60_000_000;
 
-/// Latencies of one way, µs.
+/// The latencies of one path, µs.
 pub(super) struct Latency {
     histogram: Histogram<u64>,
 }

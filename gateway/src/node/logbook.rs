@@ -1,6 +1,6 @@
 //! The recording of a gateway while it runs: in a thread of its own, so that a slow disk holds up nothing.
 
-use crate::bridge::{Event, Input, Outbox, Plan};
+use crate::bridge::{Event, Input, Output, Plan};
 use crate::record::{Moment, RecordError, Recorder};
 use crate::utc;
 use game::SimTime;
@@ -16,7 +16,7 @@ use std::thread::JoinHandle;
 const QUEUE: usize = 8192;
 
 enum Entry {
-    Turn(Moment, Input, Outbox),
+    Turn(Moment, Input, Output),
     Remark(Moment, Event),
 }
 
@@ -39,7 +39,7 @@ impl Logbook {
         Ok(Logbook { queue: Some(queue), writer: Some(writer), lost })
     }
 
-    pub(super) fn turn(&self, at: SimTime, input: Input, out: &Outbox) {
+    pub(super) fn turn(&self, at: SimTime, input: Input, out: &Output) {
         self.put(Entry::Turn(Moment { at, utc_ns: utc::now_ns() }, input, out.clone()));
     }
 

@@ -1,7 +1,7 @@
-//! A gateway on the network: brings a real boat into a game, and plays a boat for real back seats.
+//! The network shell: connects a real boat with a game, and emulates a boat for real back seats.
 //!
-//! [`serve`] is the way to a real boat, [`emulate`] the way from a simulated one. Everything that decides is in
-//! [`crate::bridge`] and [`crate::emulator`]; here are the sockets, the clocks and the threads.
+//! [`serve`] is for a real boat, [`emulate`] for a simulated one. All decisions are made in [`crate::bridge`] and
+//! [`crate::emulator`]; here are the sockets, the clocks and the threads.
 
 mod clock;
 mod emulator;
@@ -27,24 +27,24 @@ use game::message::{Control, GameInfo, Role};
 use game::scenario::{Source, UnknownVehicle};
 use game::topic::{self, GameName, Part};
 use game::{VehicleId, codec};
-use gateway_loop::{Call, Counters, GatewayLoop, LatestOrder};
+use gateway_loop::{Call, Counters, GatewayLoop, LatestOrder, LoopInputs};
 use join::Join;
 use logbook::Logbook;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, PoisonError};
 use std::time::Duration;
 use thiserror::Error;
 
-/// What a gateway to a real boat needs to know.
+/// The settings of a gateway to a real boat.
 pub struct Settings {
     /// The game; without a name, the only one there is.
     pub game: Option<GameName>,
-    /// Where the sim is.
+    /// How the sim is reached.
     pub net: Net,
     /// The boat's name in the game.
     pub vehicle: String,
-    /// Where the boat is.
+    /// The address of the boat.
     pub link: LinkAddress,
     /// After this long without a byte the boat counts as gone.
     pub silence: Duration,
@@ -54,7 +54,7 @@ pub struct Settings {
     pub arms_itself: bool,
     /// Whether its clock runs as fast as the game's: for emulated boats.
     pub at_game_pace: bool,
-    /// Where to record.
+    /// The file of the recording, if any.
     pub record: Option<PathBuf>,
     /// How long to look for the game.
     pub wait: Duration,
@@ -62,11 +62,11 @@ pub struct Settings {
     pub stop: Arc<AtomicBool>,
 }
 
-/// What a gateway tells the shell that runs it.
-pub enum News<'a> {
-    /// What is missing before it can begin.
+/// What a node reports to the program that runs it.
+pub enum NodeEvent<'a> {
+    /// It cannot begin yet.
     Looking {
-        /// In words.
+        /// Why.
         reason: &'a str,
     },
     /// Something happened.
@@ -76,16 +76,16 @@ pub enum News<'a> {
         /// What.
         event: &'a Event,
     },
-    /// The shell saw something.
+    /// A log message of the shell.
     Remark {
         /// Time since it began, s.
         at_s: f64,
         /// What.
         text: &'a str,
     },
-    /// How it is: twice a second.
+    /// The status, twice a second.
     Status(&'a GatewayStatus),
-    /// It has ended; how it was.
+    /// It has ended, with this status.
     Ended(&'a GatewayStatus),
     /// Others can connect here.
     Listening {
@@ -102,10 +102,10 @@ pub enum NodeError {
     /// The network failed.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// There is no game, or it says no.
+    /// There is no game, or it refuses.
     #[error(transparent)]
     NotFound(#[from] NotFound),
-    /// The link can never work.
+    /// The link cannot be opened.
     #[error(transparent)]
     Link(#[from] LinkError),
     /// The recording cannot be written.
@@ -117,7 +117,7 @@ pub enum NodeError {
         source: RecordError,
     },
     /// The declination is not known.
-    #[error("{0}; declination_deg in the gateway's file says it otherwise")]
+    #[error("{0}; set declination_deg in the gateway's file")]
     Declination(#[from] DeclinationError),
     /// The game has no such boat.
     #[error(transparent)]
@@ -133,20 +133,20 @@ pub enum NodeError {
     SimReplaced,
 }
 
-/// Calls that may wait at the desk.
+/// The most calls that wait for the gateway loop.
 const INBOX: usize = 4096;
 
-/// Brings a real boat into a game until it is told to stop. However it ends, the boat is told standby.
+/// Connects a real boat with a game until it is told to stop. However it ends, the boat is sent standby.
 ///
 /// # Errors
 /// [`NodeError`] if there is no such game or boat, or if the network, the link or the recording cannot work. A boat or a
 /// sim that goes away is none: the gateway waits for it.
-pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-    let mut look = GameSearch::new(settings.wait, &settings.stop);
-    let (bus, game, notice) = find_game(&mut look, &settings.net, settings.game.as_ref(), tell)?;
-    let vehicle = external_vehicle(&notice, &settings.vehicle)?;
-    let factor = pace_factor(&notice.pace, settings.at_game_pace)?;
-    let field = notice.scenario.field.clone();
+pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    let mut search = GameSearch::new(settings.wait, &settings.stop);
+    let (bus, game, info) = find_game(&mut search, &settings.net, settings.game.as_ref(), notify)?;
+    let vehicle = external_vehicle(&info, &settings.vehicle)?;
+    let factor = pace_factor(&info.pace, settings.at_game_pace)?;
+    let field = info.scenario.field.clone();
     let declination_rad = match settings.gateway.declination_rad {
         Some(rad) => rad,
         None => declination_today_rad(field.plan.datum)?,
@@ -155,7 +155,7 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
         vehicle: settings.vehicle.clone(),
         gateway: settings.gateway.clone(),
         field,
-        length_m: notice.scenario.boat_of(vehicle).length_m,
+        length_m: info.scenario.boat_of(vehicle).length_m,
         declination_rad,
         arms_itself: settings.arms_itself,
     };
@@ -168,66 +168,64 @@ pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), 
     let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;
     // Nothing is sent to a boat that another gateway has. The thread that keeps it joined asks again, and gets it again.
     let names = [settings.vehicle.clone()];
-    let mut say = |reason: &str| tell(News::Looking { reason });
-    look.until(&mut say, || game_search::join(&bus, &game, Role::Gateway, &names))?;
-    let (inbox_sender, inbox) = inbox(INBOX);
-    let latest_order = LatestOrder::default();
-    let e_stop = Arc::new(AtomicBool::new(false));
-    let standing = lines(&bus, &game, &notice, vehicle, (&latest_order, &e_stop, &inbox_sender))?;
-    let calls = inbox_sender.clone();
+    let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
+    search.until(&mut say, || game_search::join(&bus, &game, Role::Gateway, &names))?;
+    let (calls, inbox) = inbox(INBOX);
+    let inputs = LoopInputs { calls: calls.clone(), latest_order: LatestOrder::default(), e_stop: Arc::default() };
+    let subscriptions = subscribe(&bus, &game, &info, vehicle, &inputs)?;
     let link_settings = LinkSettings { silence: Some(settings.silence), ..LinkSettings::default() };
     let link = Link::open(&settings.link, link_settings, move |event: LinkEvent| calls.put(Call::Link(event)))?;
-    let others = notice.scenario.vehicles.iter().enumerate().filter(|(_, other)| other.source == Source::External);
-    let mut desk = GatewayLoop {
+    let others = info.scenario.vehicles.iter().enumerate().filter(|(_, other)| other.source == Source::External);
+    let mut gateway_loop = GatewayLoop {
         bridge: Bridge::new(plan),
         link,
         clock: Clock::start(factor),
         inbox,
-        latest_order,
-        e_stop,
-        nav: bus.publisher(topic::nav(&game, &notice.scenario, vehicle), Delivery::Drop)?,
+        latest_order: inputs.latest_order,
+        e_stop: inputs.e_stop,
+        nav: bus.publisher(topic::nav(&game, &info.scenario, vehicle), Delivery::Drop)?,
         status: bus.publisher(topic::status(&game, &settings.vehicle), Delivery::Drop)?,
-        wire: bus.publisher(topic::link(&game, &settings.vehicle), Delivery::Drop)?,
+        link_bytes: bus.publisher(topic::link(&game, &settings.vehicle), Delivery::Drop)?,
         vehicle,
         others: others.map(|(i, _)| VehicleId::at(i)).filter(|other| *other != vehicle).collect(),
         logbook,
         counters: Counters::new(),
     };
-    let join = Join::begin(&bus, &game, &settings.vehicle, inbox_sender)?;
-    let worked = desk.work(&settings.stop, tell);
-    let status = desk.full_status();
-    // The boat first, then the network.
-    drop(desk);
-    drop((join, standing));
-    tell(News::Ended(&status));
+    let join = Join::begin(&bus, &game, &settings.vehicle, inputs.calls)?;
+    let result = gateway_loop.run(&settings.stop, notify);
+    let status = gateway_loop.full_status();
+    // The boat is stopped before the network closes.
+    drop(gateway_loop);
+    drop((join, subscriptions));
+    notify(NodeEvent::Ended(&status));
     bus.close();
-    worked
+    result
 }
 
-/// What comes from the sim and from people, into the latest_order and to the desk.
-fn lines(
+/// Subscribes to what comes from the sim and from operators: orders into `latest_order`, the rest into the loop's inbox.
+fn subscribe(
     bus: &Bus,
     game: &GameName,
-    notice: &GameInfo,
+    info: &GameInfo,
     vehicle: VehicleId,
-    (latest_order, e_stop, inbox_sender): (&LatestOrder, &Arc<AtomicBool>, &bus::InboxSender<Call>),
+    inputs: &LoopInputs,
 ) -> Result<Vec<Declaration>, BusError> {
-    let scenario = &notice.scenario;
-    let (latest_order, orders) = (Arc::clone(latest_order), inbox_sender.clone());
+    let scenario = &info.scenario;
+    let (latest_order, orders) = (Arc::clone(&inputs.latest_order), inputs.calls.clone());
     let take_order = move |bytes: &[u8]| {
         let Ok(order) = codec::decode(bytes) else { return };
-        let mut latest_order = latest_order.lock().unwrap_or_else(PoisonError::into_inner);
-        // Who has yet to look into the latest_order will find the newest.
+        let mut latest_order = latest_order.lock();
+        // A call that still waits will find the newest.
         if latest_order.replace((order, bus::clock::now())).is_none() {
             orders.put(Call::Order);
         }
     };
-    let (questions, controls, frames) = (inbox_sender.clone(), inbox_sender.clone(), inbox_sender.clone());
-    let e_stop = Arc::clone(e_stop);
+    let (queries, controls, frames) = (inputs.calls.clone(), inputs.calls.clone(), inputs.calls.clone());
+    let e_stop = Arc::clone(&inputs.e_stop);
     let name = &scenario.vehicles[vehicle.index()].name;
-    let mut standing = vec![
+    let mut subscriptions = vec![
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
-        bus.answer(topic::operate(game, name), move |question| questions.put(Call::Operate(question)))?,
+        bus.answer(topic::operate(game, name), move |query| queries.put(Call::Operate(query)))?,
         bus.subscribe(topic::control(game), move |bytes| match serde_json::from_slice(bytes) {
             Ok(Control::EStop) => {
                 e_stop.store(true, Ordering::Relaxed);
@@ -238,36 +236,36 @@ fn lines(
             Ok(_) | Err(_) => {}
         })?,
     ];
-    // The truth is made only where somebody asks for it.
+    // Frames are published only where somebody subscribes.
     let real = scenario.vehicles.iter().filter(|vehicle| vehicle.source == Source::External).count();
     if real > 1 {
-        standing.push(bus.subscribe(topic::frame(game), move |bytes| frames.put(Call::Frame(bytes.to_vec())))?);
+        subscriptions.push(bus.subscribe(topic::frame(game), move |bytes| frames.put(Call::Frame(bytes.to_vec())))?);
     }
-    Ok(standing)
+    Ok(subscriptions)
 }
 
-/// The game, and what it is.
+/// Finds the game and its description.
 fn find_game(
-    look: &mut GameSearch<'_>,
+    search: &mut GameSearch<'_>,
     net: &Net,
     game: Option<&GameName>,
-    tell: &mut dyn FnMut(News<'_>),
+    notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(Bus, GameName, GameInfo), NodeError> {
-    let mut say = |reason: &str| tell(News::Looking { reason });
-    let (bus, game) = look.game(&mut say, net, game)?;
-    let notice = look.until(&mut say, || game_search::game_info(&bus, &game))?;
-    Ok((bus, game, notice))
+    let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
+    let (bus, game) = search.game(&mut say, net, game)?;
+    let info = search.until(&mut say, || game_search::game_info(&bus, &game))?;
+    Ok((bus, game, info))
 }
 
-fn external_vehicle(notice: &GameInfo, name: &str) -> Result<VehicleId, NodeError> {
-    let vehicle = notice.scenario.vehicle_named(name)?;
-    if notice.scenario.vehicles[vehicle.index()].source == Source::External {
+fn external_vehicle(info: &GameInfo, name: &str) -> Result<VehicleId, NodeError> {
+    let vehicle = info.scenario.vehicle_named(name)?;
+    if info.scenario.vehicles[vehicle.index()].source == Source::External {
         return Ok(vehicle);
     }
     Err(NodeError::Refused(format!("{name} is simulated in this game: a real boat needs source = \"external\"")))
 }
 
-/// How many seconds of the game go by in one of the wall's.
+/// How many seconds of the game pass in a second of real time.
 fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeError> {
     match (pace, at_game_pace) {
         ("realtime", _) => Ok(1.0),
@@ -276,12 +274,12 @@ fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeError> {
             .and_then(|factor| factor.parse().ok())
             .ok_or_else(|| NodeError::Refused(format!("the game's pace is {pace}, expected realtime or a factor"))),
         (pace, false) => Err(NodeError::Refused(format!(
-            "the game's pace is {pace}, expected realtime: a real boat knows no other (--at-game-pace is for emulated ones)"
+            "the game's pace is {pace}, expected realtime: a real boat sails in real time (--at-game-pace is for emulated ones)"
         ))),
     }
 }
 
-/// Magnetic north here and today, east of true, rad.
+/// The declination here and today, east positive, rad.
 fn declination_today_rad(at: LatLon) -> Result<f64, NodeError> {
     Ok(declination_deg(at, utc::now().0)?.to_radians())
 }

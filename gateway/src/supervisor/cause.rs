@@ -1,24 +1,24 @@
-//! Why a boat was stopped, and what is missing before it may go: in words for people.
+//! The cause of a failsafe, and what is missing for arming, with their texts for operators.
 
 use super::{Control, Refusal, State, Task};
 use std::fmt;
 
-/// Why a boat was stopped.
+/// The cause of a failsafe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
     /// No order came for longer than its time to live.
     OrderStale,
     /// Navigation cannot be relied on.
     Nav(NavFault),
-    /// It was outside of the fence, or could not have stopped inside.
+    /// The boat was outside of the geofence, or could not have stopped inside.
     Geofence,
     /// The battery was low.
     BatteryLow,
-    /// Somebody else took it over: PSEAD's number of the operator.
+    /// Another operator took it over: PSEAD's number.
     TakenOver(u8),
-    /// It no longer said who commands it.
+    /// It no longer reported who commands it.
     ControlUnknown,
-    /// It did not take up the mode that it was sent: this is the one it showed.
+    /// It did not take up the mode that it was sent: this is the one it reported.
     Disobeyed(char),
     /// The link broke.
     LinkLost,
@@ -39,7 +39,7 @@ pub enum NavFault {
     Quality(u8),
     /// The dilution of precision is this large.
     Dilution(f64),
-    /// The position is 0° N, 0° E: what receivers say that know nothing.
+    /// The position is 0° N, 0° E: what receivers send that know nothing.
     ZeroZero,
     /// The position jumped this far, m.
     Jump(f64),
@@ -47,16 +47,16 @@ pub enum NavFault {
     Frozen(f64),
 }
 
-/// What keeps a boat from being armed.
+/// What is missing for arming.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Missing {
     /// The link is down.
     Link,
-    /// The boat does not say that it listens to us.
+    /// The boat does not report that we command it.
     Control(Control),
     /// Navigation is not sound.
     Nav(NavFault),
-    /// It is outside of the fence.
+    /// It is outside of the geofence.
     Inside,
     /// The battery is low.
     Battery,
@@ -80,11 +80,13 @@ impl fmt::Display for Cause {
         match self {
             Cause::OrderStale => f.write_str("no fresh order"),
             Cause::Nav(fault) => write!(f, "navigation: {fault}"),
-            Cause::Geofence => f.write_str("outside of the fence, or unable to stop inside"),
+            Cause::Geofence => f.write_str("outside of the geofence, or unable to stop inside"),
             Cause::BatteryLow => f.write_str("the battery is low"),
             Cause::TakenOver(by) => write!(f, "{} has taken over", operator(*by)),
-            Cause::ControlUnknown => f.write_str("the boat no longer says who commands it"),
-            Cause::Disobeyed(mode) => write!(f, "the boat does not do what it is sent: it is in mode {mode}"),
+            Cause::ControlUnknown => f.write_str("the boat no longer reports who commands it"),
+            Cause::Disobeyed(mode) => {
+                write!(f, "the boat does not follow the commands it is sent: it is in mode {mode}")
+            }
             Cause::LinkLost => f.write_str("the link is lost"),
         }
     }
@@ -110,10 +112,10 @@ impl fmt::Display for Missing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Missing::Link => f.write_str("the link to the boat"),
-            Missing::Control(Control::Other(by)) => write!(f, "secondary control: {} has the boat", operator(*by)),
-            Missing::Control(_) => f.write_str("secondary control: the boat does not say that it listens to us"),
+            Missing::Control(Control::Other(by)) => write!(f, "secondary control: {} commands the boat", operator(*by)),
+            Missing::Control(_) => f.write_str("secondary control: the boat does not report that we command it"),
             Missing::Nav(fault) => write!(f, "navigation: {fault}"),
-            Missing::Inside => f.write_str("a place inside of the fence, and room to stop"),
+            Missing::Inside => f.write_str("a position inside of the geofence, and room to stop"),
             Missing::Battery => f.write_str("a charged battery"),
             Missing::Order => f.write_str("a fresh order"),
         }
@@ -125,10 +127,10 @@ impl fmt::Display for State {
         match self {
             State::Safed => f.write_str("safed"),
             State::Armed => f.write_str("armed"),
-            State::Failsafe(cause) => write!(f, "tripped: {cause}"),
-            State::Delegated(Task::StationKeep) => f.write_str("the boat keeps its station"),
-            State::Delegated(Task::GoToErp) => f.write_str("the boat goes to its emergency recovery point"),
-            State::Delegated(Task::Mission) => f.write_str("the boat sails its mission"),
+            State::Failsafe(cause) => write!(f, "failsafe: {cause}"),
+            State::Delegated(Task::StationKeep) => f.write_str("delegated: station keeping"),
+            State::Delegated(Task::GoToErp) => f.write_str("delegated: to the emergency recovery point"),
+            State::Delegated(Task::Mission) => f.write_str("delegated: mission"),
             State::EStopped => f.write_str("e-stopped"),
         }
     }

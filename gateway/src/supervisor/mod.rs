@@ -3,7 +3,7 @@
 //! ```text
 //!                    arm [ready]                       any condition fails
 //!        ┌────────┐ ────────────▶ ┌─────────┐ ───────────────────────────▶ ┌───────────────┐
-//!   ●──▶ │ Safed  │               │  Armed  │                              │ Failsafe(why)  │
+//!   ●──▶ │ Safed  │               │  Armed  │                              │ Failsafe(why) │
 //!        └────────┘ ◀──────────── └─────────┘ ◀─────────────────────────── └───────────────┘
 //!          ▲ ▲  │      disarm          │                arm [ready]           │         ▲
 //!          │ │  │                      │ delegate [fit]                       │ disarm  │ a condition of
@@ -18,10 +18,10 @@
 //!     └──────────┘
 //! ```
 //!
-//! *Ready* is: link up, control granted, navigation sound, inside the fence, battery not low, order fresh. *Fit* is the
+//! *Ready* is: link up, control granted, navigation sound, inside the geofence, battery not low, order fresh. *Fit* is the
 //! same without an order. Only in `Armed` does anything that moves the boat come from us, and only while it is ready in
-//! this very step and nobody is in the way. There is no clock in here: what is fresh, sound or granted now is told by
-//! [`Conditions`], so that every state can be tried with every input.
+//! this very step and no other boat is in the way. There is no clock in here: [`Conditions`] say what is fresh, sound or
+//! granted now, so that a test can try every state with every input.
 
 mod cause;
 
@@ -34,23 +34,23 @@ use game::gateway::LowBattery;
 pub struct Conditions {
     /// Whether bytes can reach the boat.
     pub link: bool,
-    /// What the boat says about who commands it.
+    /// Who commands the boat, by its own report.
     pub control: Control,
     /// What is wrong with navigation.
     pub nav: Option<NavFault>,
-    /// Whether the boat is inside the fence and can stop there.
+    /// Whether the boat is inside the geofence and can stop there.
     pub inside: bool,
     /// Whether the battery is low.
     pub battery_low: bool,
     /// Whether another real boat is in the way.
     pub blocked: bool,
-    /// Whether there is a sound order that is young enough.
+    /// Whether there is a sound order that is not older than its time to live.
     pub order_fresh: bool,
 }
 
 impl Conditions {
-    /// What is true before anything has come.
-    pub const NOTHING: Conditions = Conditions {
+    /// Before anything was received.
+    pub const UNKNOWN: Conditions = Conditions {
         link: false,
         control: Control::Unknown,
         nav: Some(NavFault::NoFix),
@@ -61,70 +61,70 @@ impl Conditions {
     };
 }
 
-/// What the boat says about who commands it.
+/// Who commands the boat, by its own report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
-    /// It listens to us.
+    /// We do.
     Granted,
-    /// It has not said so lately.
+    /// It has not reported so lately.
     Unknown,
-    /// Somebody else has it: PSEAD's number of the operator.
+    /// Another operator: PSEAD's number.
     Other(u8),
-    /// It listens to us and shows another mode than the one it was sent.
+    /// We do, and it reports another mode than the one it was sent.
     Disobeys(char),
 }
 
-/// What somebody wants.
+/// What an operator requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wish {
+pub enum OperatorRequest {
     /// Follow orders.
     Arm,
     /// Stop following them.
     Disarm,
     /// Stop, and stay stopped: this boat, or the whole fleet.
-    EStop(Reach),
+    EStop(Scope),
     /// The E-stop is over.
-    Release(Reach),
-    /// The boat sails by its own means.
+    Release(Scope),
+    /// The boat's own controller takes over with a task.
     Delegate(Task),
 }
 
-/// Whom an E-stop is for. One is released without the other.
+/// What an E-stop is for. One is released without the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reach {
+pub enum Scope {
     /// This boat.
     Boat,
     /// All boats.
     Fleet,
 }
 
-/// What a boat does by its own means.
+/// What the boat's own controller does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Task {
     /// Keeps its station.
     StationKeep,
     /// Goes to its emergency recovery point.
     GoToErp,
-    /// Sails the mission that it has taken up.
+    /// Sails the mission that was uploaded.
     Mission,
 }
 
-/// Where the machine stands.
+/// The state of the supervisor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum State {
     /// Standby, waiting to be armed.
     Safed,
     /// Following orders.
     Armed,
-    /// Standby since something went wrong.
+    /// Standby after a failsafe, until it is armed anew.
     Failsafe(Cause),
-    /// The boat sails by its own means.
+    /// The boat's own controller takes over with a task.
     Delegated(Task),
     /// Standby until the E-stop is released.
     EStopped,
 }
 
-/// What the boat is told now.
+/// What the boat is sent now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Standby; after thrust, thrust zero before it.
@@ -133,11 +133,11 @@ pub enum Action {
     Zero,
     /// What the order says.
     Follow,
-    /// To sail by its own means.
+    /// A task for its own controller.
     Task(Task),
 }
 
-/// Why a wish is not granted.
+/// Why a request is refused.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Refusal {
     /// These things are missing.
@@ -146,14 +146,14 @@ pub enum Refusal {
     EStopped,
 }
 
-/// What a step brought.
+/// The result of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// What the boat is told.
+    /// What the boat is sent.
     pub action: Action,
-    /// Why the wish was not granted.
+    /// Why the request was refused.
     pub refusal: Option<Refusal>,
-    /// The state before, if it is another now.
+    /// The state before, if it changed.
     pub before: Option<State>,
 }
 
@@ -169,20 +169,20 @@ pub struct Supervisor {
 }
 
 impl Supervisor {
-    /// A machine that is safed. With `arms_itself` it arms when it is ready for the first time, unless anybody wishes
-    /// anything before; after whatever stops it then, it has to be told.
+    /// A safed supervisor. With `arms_itself` it arms when it is ready for the first time, unless an operator requests
+    /// anything before; after whatever stops it then, it has to be armed by request.
     #[must_use]
     pub fn new(arms_itself: bool, low_battery: LowBattery) -> Supervisor {
         Supervisor { state: State::Safed, stops: [false; 2], arms_itself, low_battery }
     }
 
-    /// Where it stands.
+    /// The state.
     #[must_use]
     pub fn state(&self) -> State {
         self.state
     }
 
-    /// Whose E-stops are in force, in words.
+    /// Which E-stops are in force, in words.
     #[must_use]
     pub fn stopped_by(&self) -> &'static str {
         match self.stops {
@@ -193,28 +193,28 @@ impl Supervisor {
         }
     }
 
-    /// Goes on by one step.
-    pub fn step(&mut self, now: &Conditions, wish: Option<Wish>) -> Step {
+    /// Makes one step.
+    pub fn step(&mut self, now: &Conditions, request: Option<OperatorRequest>) -> Step {
         let before = self.state;
-        let refusal = wish.and_then(|wish| self.heed(now, wish));
+        let refusal = request.and_then(|request| self.take_request(now, request));
         if self.arms_itself && self.state == State::Safed && now.missing().is_empty() {
             self.state = State::Armed;
         }
-        self.watch(now);
-        // An arming is used up by the first time it leads anywhere.
-        self.arms_itself &= self.state == State::Safed && wish.is_none();
+        self.check_failsafes(now);
+        // Arming by itself is used up by the first change of state.
+        self.arms_itself &= self.state == State::Safed && request.is_none();
         let changed = (self.state != before).then_some(before);
         Step { action: self.action(now), refusal, before: changed }
     }
 
-    fn heed(&mut self, now: &Conditions, wish: Wish) -> Option<Refusal> {
-        match wish {
-            Wish::EStop(reach) => self.stops[reach as usize] = true,
-            Wish::Release(reach) => self.stops[reach as usize] = false,
-            Wish::Arm | Wish::Delegate(_) if self.is_stopped() => return Some(Refusal::EStopped),
-            Wish::Arm => return self.enter(State::Armed, now.missing()),
-            Wish::Delegate(task) => return self.enter(State::Delegated(task), now.unfit()),
-            Wish::Disarm => self.state = State::Safed,
+    fn take_request(&mut self, now: &Conditions, request: OperatorRequest) -> Option<Refusal> {
+        match request {
+            OperatorRequest::EStop(scope) => self.stops[scope as usize] = true,
+            OperatorRequest::Release(scope) => self.stops[scope as usize] = false,
+            OperatorRequest::Arm | OperatorRequest::Delegate(_) if self.is_stopped() => return Some(Refusal::EStopped),
+            OperatorRequest::Arm => return self.enter(State::Armed, now.missing()),
+            OperatorRequest::Delegate(task) => return self.enter(State::Delegated(task), now.unfit()),
+            OperatorRequest::Disarm => self.state = State::Safed,
         }
         None
     }
@@ -231,18 +231,18 @@ impl Supervisor {
         self.stops.contains(&true)
     }
 
-    /// Leaves states that the conditions do not bear.
-    fn watch(&mut self, now: &Conditions) {
+    /// Leaves states that the conditions do not allow.
+    fn check_failsafes(&mut self, now: &Conditions) {
         self.state = match self.state {
             _ if self.is_stopped() => State::EStopped,
             State::EStopped => State::Safed,
-            State::Armed => match now.trip() {
-                // A boat that is sound but for its battery may have somewhere to go by itself.
+            State::Armed => match now.failsafe() {
+                // With a low battery alone the boat's own controller may still take over.
                 Some(Cause::BatteryLow) => self.on_low_battery(),
                 Some(cause) => State::Failsafe(cause),
                 None => State::Armed,
             },
-            State::Delegated(task) => match now.trip_of_fitness() {
+            State::Delegated(task) => match now.fitness_failsafe() {
                 Some(Cause::BatteryLow) if self.low_battery_task() == Some(task) => self.state,
                 Some(Cause::BatteryLow) => self.on_low_battery(),
                 Some(cause) => State::Failsafe(cause),
@@ -275,14 +275,14 @@ impl Supervisor {
 }
 
 impl Conditions {
-    /// Why an armed boat must be stopped, the gravest first.
+    /// The failsafe of an armed boat, the gravest first.
     #[must_use]
-    pub fn trip(&self) -> Option<Cause> {
-        self.trip_of_fitness().or((!self.order_fresh).then_some(Cause::OrderStale))
+    pub fn failsafe(&self) -> Option<Cause> {
+        self.fitness_failsafe().or((!self.order_fresh).then_some(Cause::OrderStale))
     }
 
-    /// The same without the order.
-    fn trip_of_fitness(&self) -> Option<Cause> {
+    /// The same for a delegated boat, which needs no order.
+    fn fitness_failsafe(&self) -> Option<Cause> {
         let control = match self.control {
             Control::Granted => None,
             Control::Unknown => Some(Cause::ControlUnknown),
@@ -297,7 +297,7 @@ impl Conditions {
             .or(self.battery_low.then_some(Cause::BatteryLow))
     }
 
-    /// Everything that keeps a boat from being armed.
+    /// Everything that is missing for arming.
     #[must_use]
     pub fn missing(&self) -> Vec<Missing> {
         let mut missing = self.unfit();
@@ -305,23 +305,23 @@ impl Conditions {
         missing
     }
 
-    /// Everything that keeps a boat from sailing by its own means.
+    /// Everything that is missing for delegating to the boat's own controller.
     #[must_use]
     pub fn unfit(&self) -> Vec<Missing> {
         let control = match self.control {
-            // What it shows while it is not commanded says nothing.
+            // The mode of a boat that is not commanded means nothing.
             Control::Granted | Control::Disobeys(_) => None,
             Control::Unknown | Control::Other(_) => Some(Missing::Control(self.control)),
         };
         let nav = self.nav.map(Missing::Nav);
-        let fence = (!self.inside && self.nav.is_none()).then_some(Missing::Inside);
+        let geofence = (!self.inside && self.nav.is_none()).then_some(Missing::Inside);
         let battery = self.battery_low.then_some(Missing::Battery);
         (!self.link)
             .then_some(Missing::Link)
             .into_iter()
             .chain(control)
             .chain(nav)
-            .chain(fence)
+            .chain(geofence)
             .chain(battery)
             .collect()
     }

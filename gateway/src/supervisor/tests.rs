@@ -1,4 +1,4 @@
-//! Every state the machine can reach, with every input: nothing leads to thrust that should not.
+//! Every state the supervisor can reach, with every input: nothing leads to thrust that should not.
 
 use super::*;
 
@@ -34,25 +34,31 @@ fn all_conditions() -> Vec<Conditions> {
     all
 }
 
-fn all_wishes() -> Vec<Option<Wish>> {
-    let tasks = [Task::StationKeep, Task::GoToErp, Task::Mission].map(Wish::Delegate);
-    let reaches = [Reach::Boat, Reach::Fleet];
-    let stops = reaches.into_iter().flat_map(|reach| [Wish::EStop(reach), Wish::Release(reach)]);
-    [Wish::Arm, Wish::Disarm].into_iter().chain(tasks).chain(stops).map(Some).chain([None]).collect()
+fn all_requests() -> Vec<Option<OperatorRequest>> {
+    let tasks = [Task::StationKeep, Task::GoToErp, Task::Mission].map(OperatorRequest::Delegate);
+    let scopes = [Scope::Boat, Scope::Fleet];
+    let stops = scopes.into_iter().flat_map(|scope| [OperatorRequest::EStop(scope), OperatorRequest::Release(scope)]);
+    [OperatorRequest::Arm, OperatorRequest::Disarm]
+        .into_iter()
+        .chain(tasks)
+        .chain(stops)
+        .map(Some)
+        .chain([None])
+        .collect()
 }
 
-/// Calls `check` with every step from every machine that can be reached: before, inputs, after, what it brought.
-fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<Wish>, &Supervisor, &Step)) -> usize {
-    let (conditions, wishes) = (all_conditions(), all_wishes());
+/// Calls `check` with every step from every supervisor that can be reached: before, inputs, after, result.
+fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorRequest>, &Supervisor, &Step)) -> usize {
+    let (conditions, requests) = (all_conditions(), all_requests());
     let starts = BATTERIES.into_iter().flat_map(|battery| [true, false].map(|by_itself| (by_itself, battery)));
     let mut known: Vec<Supervisor> = starts.map(|(by_itself, battery)| Supervisor::new(by_itself, battery)).collect();
     let mut next = 0;
     while next < known.len() {
         let before = known[next].clone();
-        for (now, wish) in conditions.iter().flat_map(|now| wishes.iter().map(move |wish| (now, *wish))) {
+        for (now, request) in conditions.iter().flat_map(|now| requests.iter().map(move |request| (now, *request))) {
             let mut after = before.clone();
-            let step = after.step(now, wish);
-            check(&before, now, wish, &after, &step);
+            let step = after.step(now, request);
+            check(&before, now, request, &after, &step);
             if !known.contains(&after) {
                 known.push(after);
             }
@@ -62,16 +68,16 @@ fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<Wish>, &Superv
     known.len()
 }
 
-/// Whether the boat may be told to move by its own means now; `at_low_battery` is whether this task is meant for one.
+/// Whether the boat's own controller may take over now; `at_low_battery` is whether this task is meant for a low battery.
 fn is_fit(now: &Conditions, at_low_battery: bool) -> bool {
-    let listens = matches!(now.control, Control::Granted | Control::Disobeys(_));
-    now.link && listens && now.nav.is_none() && now.inside && (!now.battery_low || at_low_battery)
+    let granted = matches!(now.control, Control::Granted | Control::Disobeys(_));
+    now.link && granted && now.nav.is_none() && now.inside && (!now.battery_low || at_low_battery)
 }
 
 #[test]
 fn no_path_leads_to_thrust_without_link_control_navigation_and_a_fresh_order() {
-    let reached = explore(|before, now, wish, after, step| {
-        let case = format!("{before:?}, {now:?}, {wish:?} -> {step:?}");
+    let reached = explore(|before, now, request, after, step| {
+        let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         if step.action == Action::Follow {
             assert_eq!(*now, GOOD, "{case}");
             assert_eq!((after.state, after.stops), (State::Armed, [false; 2]), "{case}");
@@ -82,7 +88,7 @@ fn no_path_leads_to_thrust_without_link_control_navigation_and_a_fresh_order() {
             "{case}"
         );
     });
-    assert!(reached > 40, "only {reached} machines were reached");
+    assert!(reached > 40, "only {reached} supervisors were reached");
 }
 
 fn is_held(after: &Supervisor, now: &Conditions, step: &Step) -> bool {
@@ -91,52 +97,53 @@ fn is_held(after: &Supervisor, now: &Conditions, step: &Step) -> bool {
 
 #[test]
 fn only_an_explicit_command_arms_and_only_once_by_itself() {
-    explore(|before, now, wish, after, step| {
+    explore(|before, now, request, after, step| {
         if after.state == State::Armed && before.state != State::Armed {
             let by_itself = before.arms_itself && before.state == State::Safed && !before.is_stopped();
-            assert!(wish == Some(Wish::Arm) || by_itself, "{before:?}, {now:?}, {wish:?} -> {step:?}");
+            assert!(request == Some(OperatorRequest::Arm) || by_itself, "{before:?}, {now:?}, {request:?} -> {step:?}");
         }
         let used_up =
-            before.state != State::Safed || !before.arms_itself || wish.is_some() || after.state != State::Safed;
-        assert_eq!(after.arms_itself, !used_up, "{before:?}, {now:?}, {wish:?}");
+            before.state != State::Safed || !before.arms_itself || request.is_some() || after.state != State::Safed;
+        assert_eq!(after.arms_itself, !used_up, "{before:?}, {now:?}, {request:?}");
     });
 }
 
 #[test]
-fn a_boat_sails_by_itself_only_when_asked_or_when_its_battery_is_low() {
-    explore(|before, now, wish, after, step| {
+fn a_boat_is_delegated_only_by_request_or_when_its_battery_is_low() {
+    explore(|before, now, request, after, step| {
         let State::Delegated(task) = after.state else {
             assert!(!matches!(step.action, Action::Task(_)));
             return;
         };
-        let case = format!("{before:?}, {now:?}, {wish:?} -> {step:?}");
+        let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         assert_eq!(step.action, Action::Task(task), "{case}");
         let for_low = after.low_battery_task() == Some(task) && now.battery_low;
         assert!(is_fit(now, for_low), "{case}");
-        let driven = matches!(before.state, State::Armed | State::Delegated(_)) || wish == Some(Wish::Arm);
-        let asked = wish == Some(Wish::Delegate(task)) || before.state == State::Delegated(task);
-        assert!(asked || (driven || matches!(wish, Some(Wish::Delegate(_)))) && for_low, "{case}");
+        let driven =
+            matches!(before.state, State::Armed | State::Delegated(_)) || request == Some(OperatorRequest::Arm);
+        let asked = request == Some(OperatorRequest::Delegate(task)) || before.state == State::Delegated(task);
+        assert!(asked || (driven || matches!(request, Some(OperatorRequest::Delegate(_)))) && for_low, "{case}");
     });
 }
 
 #[test]
 fn an_e_stop_beats_everything_until_each_is_released_and_leaves_the_boat_safed() {
-    explore(|before, now, wish, after, step| {
-        let case = format!("{before:?}, {now:?}, {wish:?} -> {step:?}");
+    explore(|before, now, request, after, step| {
+        let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         let stopped = after.is_stopped();
         assert_eq!(stopped, after.state == State::EStopped, "{case}");
         if stopped {
             assert_eq!(step.action, Action::Standby, "{case}");
         }
         if before.state == State::EStopped && !stopped {
-            assert!(matches!(wish, Some(Wish::Release(_))) && after.state == State::Safed, "{case}");
+            assert!(matches!(request, Some(OperatorRequest::Release(_))) && after.state == State::Safed, "{case}");
         }
-        for reach in [Reach::Boat, Reach::Fleet] {
-            let now_on = after.stops[reach as usize];
-            let want = match wish {
-                Some(Wish::EStop(whom)) if whom == reach => true,
-                Some(Wish::Release(whom)) if whom == reach => false,
-                _ => before.stops[reach as usize],
+        for scope in [Scope::Boat, Scope::Fleet] {
+            let now_on = after.stops[scope as usize];
+            let want = match request {
+                Some(OperatorRequest::EStop(whom)) if whom == scope => true,
+                Some(OperatorRequest::Release(whom)) if whom == scope => false,
+                _ => before.stops[scope as usize],
             };
             assert_eq!(now_on, want, "{case}");
         }
@@ -144,9 +151,9 @@ fn an_e_stop_beats_everything_until_each_is_released_and_leaves_the_boat_safed()
 }
 
 #[test]
-fn whatever_stops_a_boat_is_told_and_true_and_brings_standby() {
-    explore(|before, now, wish, after, step| {
-        let case = format!("{before:?}, {now:?}, {wish:?} -> {step:?}");
+fn every_failsafe_is_reported_with_its_true_cause_and_brings_standby() {
+    explore(|before, now, request, after, step| {
+        let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         assert_eq!(step.before, (before.state != after.state).then_some(before.state), "{case}");
         if let State::Failsafe(cause) = after.state
             && before.state != after.state
@@ -171,10 +178,10 @@ fn whatever_stops_a_boat_is_told_and_true_and_brings_standby() {
 }
 
 #[test]
-fn a_refused_wish_says_what_is_missing_and_changes_nothing_else() {
-    explore(|before, now, wish, after, step| {
+fn a_refused_request_names_what_is_missing_and_changes_nothing_else() {
+    explore(|before, now, request, after, step| {
         let Some(refusal) = &step.refusal else { return };
-        let case = format!("{before:?}, {now:?}, {wish:?} -> {step:?}");
+        let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         match refusal {
             Refusal::EStopped => assert!(before.is_stopped() && after.is_stopped(), "{case}"),
             Refusal::NotReady(missing) => assert!(!missing.is_empty() && *now != GOOD, "{case}"),
@@ -183,7 +190,7 @@ fn a_refused_wish_says_what_is_missing_and_changes_nothing_else() {
         quiet.arms_itself = false;
         asked.arms_itself = false;
         quiet.step(now, None);
-        asked.step(now, wish);
+        asked.step(now, request);
         assert_eq!(quiet, asked, "{case}");
     });
 }
@@ -191,20 +198,20 @@ fn a_refused_wish_says_what_is_missing_and_changes_nothing_else() {
 #[test]
 fn from_every_state_the_boat_can_be_armed_again() {
     explore(|before, _, _, _, _| {
-        let mut machine = before.clone();
-        machine.step(&GOOD, Some(Wish::Release(Reach::Boat)));
-        machine.step(&GOOD, Some(Wish::Release(Reach::Fleet)));
-        let step = machine.step(&GOOD, Some(Wish::Arm));
+        let mut supervisor = before.clone();
+        supervisor.step(&GOOD, Some(OperatorRequest::Release(Scope::Boat)));
+        supervisor.step(&GOOD, Some(OperatorRequest::Release(Scope::Fleet)));
+        let step = supervisor.step(&GOOD, Some(OperatorRequest::Arm));
         assert_eq!((step.action, step.refusal), (Action::Follow, None), "{before:?}");
     });
 }
 
 #[test]
-fn the_gravest_cause_is_the_one_that_is_told() {
-    let mut machine = Supervisor::new(false, LowBattery::Standby);
-    machine.step(&GOOD, Some(Wish::Arm));
+fn the_gravest_cause_is_the_one_that_is_reported() {
+    let mut supervisor = Supervisor::new(false, LowBattery::Standby);
+    supervisor.step(&GOOD, Some(OperatorRequest::Arm));
     let bad = Conditions { link: false, control: Control::Other(1), order_fresh: false, ..GOOD };
-    machine.step(&bad, None);
-    assert_eq!(machine.state(), State::Failsafe(Cause::LinkLost));
+    supervisor.step(&bad, None);
+    assert_eq!(supervisor.state(), State::Failsafe(Cause::LinkLost));
     assert_eq!(Cause::TakenOver(5).to_string(), "the remote control has taken over");
 }

@@ -79,10 +79,10 @@ fn what_is_no_address_is_refused_with_what_was_found_and_what_is_allowed() {
         ("serial:///dev/ttyUSB0?parity=even", "\"parity=even\" follows", "baud=38400"),
     ] {
         for parse in both {
-            let said = parse(text).unwrap_err().to_string();
-            assert!(said.contains(&format!("{text:?}")), "{text}: {said}");
-            assert!(said.contains(found), "{text} should name {found}: {said}");
-            assert!(said.contains(allowed), "{text} should allow {allowed}: {said}");
+            let error = parse(text).unwrap_err().to_string();
+            assert!(error.contains(&format!("{text:?}")), "{text}: {error}");
+            assert!(error.contains(found), "{text} should name {found}: {error}");
+            assert!(error.contains(allowed), "{text} should allow {allowed}: {error}");
         }
     }
 }
@@ -96,9 +96,9 @@ fn some_are_right_for_one_side_only() {
         ("pty:///tmp/boat", "a pty can only be listened on"),
     ] {
         assert!(LinkAddress::to_listen(text).is_ok(), "{text}");
-        let said = LinkAddress::to_connect(text).unwrap_err().to_string();
-        assert!(said.contains(found), "{text} should say {found}: {said}");
+        let error = LinkAddress::to_connect(text).unwrap_err().to_string();
+        assert!(error.contains(found), "{text} should say {found}: {error}");
     }
-    let said = LinkAddress::to_listen("pty://tmp").unwrap_err().to_string();
-    assert!(said.contains("the path is \"tmp\""), "{said}");
+    let error = LinkAddress::to_listen("pty://tmp").unwrap_err().to_string();
+    assert!(error.contains("the path is \"tmp\""), "{error}");
 }

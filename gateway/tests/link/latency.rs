@@ -1,7 +1,7 @@
 //! How long a command takes from `send` to the boat's socket. Run by hand, alone, and in release:
 //! `cargo test --release -p squall-gateway --test link latency -- --ignored --nocapture`.
 
-use crate::ears::{LIMIT, connect, patient};
+use crate::event_log::{LIMIT, connect, patient};
 use gateway::link::LinkEvent;
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -15,10 +15,10 @@ const COMMANDS: u64 = 5000;
 #[expect(clippy::print_stdout, reason = "a measurement is for people")]
 fn a_command_reaches_the_system_and_the_boat_soon() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let (link, ears) = connect(&format!("tcp://{}", listener.local_addr().unwrap()), patient());
+    let (link, log) = connect(&format!("tcp://{}", listener.local_addr().unwrap()), patient());
     let (mut boat, _) = listener.accept().unwrap();
     boat.set_read_timeout(Some(LIMIT)).unwrap();
-    ears.up(0);
+    log.up(0);
     let mut sent_at = Vec::new();
     let mut to_boat = Vec::new();
     for tag in 0..COMMANDS {
@@ -30,8 +30,8 @@ fn a_command_reaches_the_system_and_the_boat_soon() {
         // Asleep in between, as at 10 Hz.
         std::thread::sleep(Duration::from_micros(500));
     }
-    ears.written(COMMANDS - 1);
-    let written: BTreeMap<u64, Instant> = ears.all().into_iter().filter_map(|(_, event)| written(&event)).collect();
+    log.written(COMMANDS - 1);
+    let written: BTreeMap<u64, Instant> = log.all().into_iter().filter_map(|(_, event)| written(&event)).collect();
     let to_system = written.iter().map(|(tag, at)| *at - sent_at[*tag as usize]).collect();
     println!("send to written: {}", quantiles(to_system));
     println!("send to the boat's read: {}", quantiles(to_boat));

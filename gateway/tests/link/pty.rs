@@ -1,6 +1,6 @@
 //! A link that is a pseudo-terminal.
 
-use crate::ears::{LIMIT, listen, patient};
+use crate::event_log::{LIMIT, listen, patient};
 use gateway::link::{Link, LinkAddress, LinkError};
 use serial2::{KeepSettings, SerialPort};
 use std::fs;
@@ -27,22 +27,22 @@ fn line(number: u64) -> Vec<u8> {
 
 #[test]
 fn bytes_go_both_ways_unchanged() {
-    let (link, ears) = listen("pty");
-    ears.up(0);
+    let (link, log) = listen("pty");
+    log.up(0);
     let reader = attach(link.reach());
     // Neither line ends nor control characters mean anything here.
     let all: Vec<u8> = (0..=255).collect();
     link.send(all.clone(), 1);
     assert_eq!(read(&reader, 256), all);
-    ears.written(1);
+    log.written(1);
     reader.write_all(&all).unwrap();
-    ears.heard(&all);
+    log.received(&all);
 }
 
 #[test]
 fn who_comes_late_gets_what_is_new() {
-    let (link, ears) = listen("pty");
-    let (_, start) = ears.up(0);
+    let (link, log) = listen("pty");
+    let (_, start) = log.up(0);
     let mut sent_at = Vec::new();
     while start.elapsed() < Duration::from_millis(1500) {
         let number = sent_at.len() as u64;
@@ -60,12 +60,12 @@ fn who_comes_late_gets_what_is_new() {
 
 #[test]
 fn what_nobody_reads_does_not_stay() {
-    let (link, ears) = listen("pty");
-    ears.up(0);
+    let (link, log) = listen("pty");
+    log.up(0);
     // Attached, and asleep.
     let reader = attach(link.reach());
     link.send(b"stale".to_vec(), 0);
-    ears.written(0);
+    log.written(0);
     let unread = || rustix::io::ioctl_fionread(&reader).unwrap();
     wait_for("some that is unread", || unread() > 0);
     wait_for("nothing that is unread", || unread() == 0);
@@ -75,8 +75,8 @@ fn what_nobody_reads_does_not_stay() {
 
 #[test]
 fn nobody_on_it_blocks_nothing() {
-    let (link, ears) = listen("pty");
-    let (_, start) = ears.up(0);
+    let (link, log) = listen("pty");
+    let (_, start) = log.up(0);
     let mut tag = 0;
     while start.elapsed() < Duration::from_millis(1500) {
         let sent_at = Instant::now();
@@ -94,7 +94,7 @@ fn nobody_on_it_blocks_nothing() {
         let count = reader.read(&mut some).unwrap();
         got.extend_from_slice(&some[..count]);
     }
-    assert_eq!(ears.all().iter().filter_map(crate::ears::up).count(), 1, "nothing is lost for it");
+    assert_eq!(log.all().iter().filter_map(crate::event_log::up).count(), 1, "nothing is lost for it");
     let start = Instant::now();
     drop(link);
     assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
@@ -102,8 +102,8 @@ fn nobody_on_it_blocks_nothing() {
 
 #[test]
 fn a_reader_that_keeps_up_gets_everything() {
-    let (link, ears) = listen("pty");
-    ears.up(0);
+    let (link, log) = listen("pty");
+    log.up(0);
     let reader = attach(link.reach());
     for number in 0..200 {
         link.send(line(number), number);
@@ -118,8 +118,8 @@ fn a_symlink_leads_to_it_over_an_old_one_and_goes_with_it() {
     let folder = tempfile::tempdir().unwrap();
     let boat = folder.path().join("boat");
     symlink("/dev/pts/none", &boat).unwrap();
-    let (link, ears) = listen(&format!("pty://{}", boat.display()));
-    ears.up(0);
+    let (link, log) = listen(&format!("pty://{}", boat.display()));
+    log.up(0);
     assert_eq!(fs::read_link(&boat).unwrap(), Path::new(&link.reach()));
     let reader = attach(&boat);
     link.send(b"ahoy".to_vec(), 0);

@@ -1,6 +1,6 @@
 //! A link to a serial line, with a pseudo-terminal for the boat's end.
 
-use crate::ears::{connect, listen, open, patient, wait};
+use crate::event_log::{connect, listen, open, patient, wait};
 use gateway::link::{Link, LinkAddress, LinkError, LinkEvent};
 use serial2::SerialPort;
 use std::ffi::OsStr;
@@ -12,20 +12,20 @@ fn bytes_go_both_ways_and_a_hang_up_is_survived() {
     let folder = tempfile::tempdir().unwrap();
     let device = folder.path().join("ttyBOAT");
     let pty = format!("pty://{}", device.display());
-    let (boat, boat_ears) = listen(&pty);
-    let (link, ears) = connect(&format!("serial://{}?baud=4800", device.display()), patient());
-    ears.up(0);
+    let (boat, boat_log) = listen(&pty);
+    let (link, log) = connect(&format!("serial://{}?baud=4800", device.display()), patient());
+    log.up(0);
     let all: Vec<u8> = (0..=255).collect();
     link.send(all.clone(), 3);
-    boat_ears.heard(&all);
-    ears.written(3);
+    boat_log.received(&all);
+    log.written(3);
     boat.send(all.clone(), 0);
-    ears.heard(&all);
+    log.received(&all);
 
     drop(boat);
-    ears.down(0);
+    log.down(0);
     // The symlink went with the terminal.
-    let reason = ears.until("failure", |events| {
+    let reason = log.until("failure", |events| {
         events.iter().find_map(|(_, event)| match event {
             LinkEvent::Failed { reason, .. } => Some(reason.clone()),
             _ => None,
@@ -33,19 +33,19 @@ fn bytes_go_both_ways_and_a_hang_up_is_survived() {
     });
     assert!(reason.contains("ttyBOAT") && reason.contains("No such file"), "{reason}");
 
-    let (_boat, boat_ears) = listen(&pty);
-    assert_eq!(ears.up(1).0, 1);
+    let (_boat, boat_log) = listen(&pty);
+    assert_eq!(log.up(1).0, 1);
     link.send(b"again".to_vec(), 4);
-    boat_ears.heard(b"again");
+    boat_log.received(b"again");
 }
 
 #[test]
 fn a_terminal_can_be_opened_by_its_own_path() {
-    let (boat, boat_ears) = listen("pty");
-    let (link, ears) = connect(&format!("serial://{}", boat.reach()), patient());
-    ears.up(0);
+    let (boat, boat_log) = listen("pty");
+    let (link, log) = connect(&format!("serial://{}", boat.reach()), patient());
+    log.up(0);
     link.send(b"x".to_vec(), 0);
-    boat_ears.heard(b"x");
+    boat_log.received(b"x");
     let start = Instant::now();
     drop(link);
     assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
@@ -56,8 +56,8 @@ fn what_is_no_serial_line_is_tried_again() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("letter");
     std::fs::write(&file, "dear").unwrap();
-    let (_link, ears) = connect(&format!("serial://{}", file.display()), patient());
-    ears.until("second failure", |events| events.iter().filter_map(wait).nth(1));
+    let (_link, log) = connect(&format!("serial://{}", file.display()), patient());
+    log.until("second failure", |events| events.iter().filter_map(wait).nth(1));
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "dear");
 }
 
@@ -68,24 +68,24 @@ fn a_speed_that_no_line_has_is_refused() {
     assert!(matches!(refused, LinkError::Baud { baud: 1234, .. }), "{refused}");
     assert!(refused.to_string().contains("allowed: [4800, 9600"), "{refused}");
     // The same with a speed that they do have begins, though no such device is there.
-    let (_link, ears) = open(&LinkAddress::Serial { path: "/dev/none".into(), baud: 9600 }, patient());
-    ears.until("failure", |events| events.iter().find_map(wait));
+    let (_link, log) = open(&LinkAddress::Serial { path: "/dev/none".into(), baud: 9600 }, patient());
+    log.until("failure", |events| events.iter().find_map(wait));
 }
 
 #[test]
 fn a_slow_line_gets_the_newest_rather_than_all_in_order() {
-    let (boat, boat_ears) = listen("pty");
-    let (link, ears) = connect(&format!("serial://{}?baud=4800", boat.reach()), patient());
-    ears.up(0);
+    let (boat, boat_log) = listen("pty");
+    let (link, log) = connect(&format!("serial://{}?baud=4800", boat.reach()), patient());
+    log.up(0);
     // Each is 100 ms on the line, and the first is on it.
     link.send(vec![0; 48], 0);
-    ears.written(0);
+    log.written(0);
     for tag in 1..50 {
         link.send(vec![tag; 48], tag.into());
     }
-    ears.written(49);
+    log.written(49);
     let wanted: Vec<u8> = [[0; 48], [49; 48]].concat();
-    boat_ears.heard(&wanted);
+    boat_log.received(&wanted);
     assert_eq!(link.displaced(), 48);
 }
 
@@ -94,12 +94,12 @@ fn a_line_that_takes_nothing_for_two_seconds_is_opened_anew() {
     let (silent, _slave) = SerialPort::pair().unwrap();
     let name = rustix::pty::ptsname(&silent, Vec::new()).unwrap();
     let path = std::path::Path::new(OsStr::from_bytes(name.as_bytes()));
-    let (link, ears) = connect(&format!("serial://{}?baud=115200", path.display()), patient());
-    ears.up(0);
+    let (link, log) = connect(&format!("serial://{}?baud=115200", path.display()), patient());
+    log.up(0);
     let start = Instant::now();
     link.send(vec![b'x'; 1 << 20], 0);
-    let (reason, down) = ears.down(0);
+    let (reason, down) = log.down(0);
     assert!(reason.contains("nothing taken for 2s"), "{reason}");
     assert!(down - start > Duration::from_secs(2) && down - start < Duration::from_secs(4), "{:?}", down - start);
-    ears.up(1);
+    log.up(1);
 }

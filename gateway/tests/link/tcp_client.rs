@@ -1,6 +1,6 @@
 //! A link that connects by TCP.
 
-use crate::ears::{Ears, LIMIT, connect, patient, up, wait};
+use crate::event_log::{EventLog, LIMIT, connect, patient, retrying, up, wait};
 use gateway::link::{Link, LinkSettings};
 use socket2::SockRef;
 use std::io::{Read, Write};
@@ -23,17 +23,17 @@ fn accept(listener: &TcpListener) -> TcpStream {
     stream
 }
 
-fn joined(settings: LinkSettings) -> (Link, Arc<Ears>, TcpStream, TcpListener) {
+fn joined(settings: LinkSettings) -> (Link, Arc<EventLog>, TcpStream, TcpListener) {
     let (listener, address) = listener();
-    let (link, ears) = connect(&address, settings);
+    let (link, log) = connect(&address, settings);
     let stream = accept(&listener);
-    assert_eq!(ears.up(0).0, 0);
-    (link, ears, stream, listener)
+    assert_eq!(log.up(0).0, 0);
+    (link, log, stream, listener)
 }
 
 #[test]
 fn single_bytes_go_out_and_come_back() {
-    let (link, ears, mut boat, _listener) = joined(patient());
+    let (link, log, mut boat, _listener) = joined(patient());
     let mut sent = Vec::new();
     for byte in 0..=255 {
         link.send(vec![byte], u64::from(byte));
@@ -41,33 +41,32 @@ fn single_bytes_go_out_and_come_back() {
         boat.read_exact(&mut echo).unwrap();
         boat.write_all(&echo).unwrap();
         sent.push(byte);
-        ears.heard(&sent);
-        ears.written(u64::from(byte));
+        log.received(&sent);
+        log.written(u64::from(byte));
     }
     assert_eq!(link.displaced(), 0);
 }
 
 #[test]
 fn sixty_four_kib_in_one_write_arrive_whole() {
-    let (link, ears, mut boat, _listener) = joined(patient());
+    let (link, log, mut boat, _listener) = joined(patient());
     let bulk: Vec<u8> = (0..65536_u32).map(|i| (i % 251) as u8).collect();
     link.send(bulk.clone(), 7);
     let mut got = vec![0; bulk.len()];
     boat.read_exact(&mut got).unwrap();
     assert!(got == bulk, "what arrived is not what was sent");
-    ears.written(7);
+    log.written(7);
     boat.write_all(&bulk).unwrap();
-    ears.heard(&bulk);
+    log.received(&bulk);
 }
 
 #[test]
 fn a_server_that_is_gone_is_tried_with_growing_waits_and_found_when_it_returns() {
-    let retry = (Duration::from_millis(10), Duration::from_millis(80));
-    let (link, ears, boat, listener) = joined(LinkSettings { silence: None, retry });
+    let (link, log, boat, listener) = joined(retrying(Duration::from_millis(10), Duration::from_millis(80)));
     let address = listener.local_addr().unwrap();
     drop((boat, listener));
-    ears.down(0);
-    let waits = ears.until("five failures", |events| {
+    log.down(0);
+    let waits = log.until("five failures", |events| {
         let waits: Vec<u128> = events.iter().filter_map(wait).map(|wait| wait.as_millis()).collect();
         (waits.len() >= 5).then_some(waits)
     });
@@ -76,7 +75,7 @@ fn a_server_that_is_gone_is_tried_with_growing_waits_and_found_when_it_returns()
 
     let listener = TcpListener::bind(address).unwrap();
     let mut boat = accept(&listener);
-    assert_eq!(ears.up(1).0, 1);
+    assert_eq!(log.up(1).0, 1);
     link.send(b"back".to_vec(), 1);
     let mut got = [0; 4];
     boat.read_exact(&mut got).unwrap();
@@ -87,9 +86,9 @@ fn a_server_that_is_gone_is_tried_with_growing_waits_and_found_when_it_returns()
 fn nobody_there_is_no_error() {
     let (listener, address) = listener();
     drop(listener);
-    let (link, ears) = connect(&address, patient());
-    let wait = ears.until("failure", |events| events.iter().find_map(wait));
-    assert_eq!(wait, patient().retry.0);
+    let (link, log) = connect(&address, patient());
+    let wait = log.until("failure", |events| events.iter().find_map(wait));
+    assert_eq!(wait, patient().retry_first);
     link.send(b"to nobody".to_vec(), 1);
     assert_eq!(link.displaced(), 0);
     assert_eq!(link.reach(), address);
@@ -99,13 +98,12 @@ fn nobody_there_is_no_error() {
 fn a_peer_that_accepts_and_closes_at_once_is_not_stormed() {
     let (listener, address) = listener();
     let slam = thread::spawn(move || (0..6).for_each(|_| drop(accept(&listener))));
-    let retry = (Duration::from_millis(100), Duration::from_secs(5));
-    let (_link, ears) = connect(&address, LinkSettings { silence: None, retry });
+    let (_link, log) = connect(&address, retrying(Duration::from_millis(100), Duration::from_secs(5)));
     // After 0, 100, 300, 700, 1500, 3100 ms.
-    let (_, sixth) = ears.up(5);
-    let first = ears.up(0).1;
+    let (_, sixth) = log.up(5);
+    let first = log.up(0).1;
     assert!(sixth - first >= Duration::from_millis(3000), "six attempts in {:?}", sixth - first);
-    let in_a_second = ears.all().iter().filter_map(up).filter(|(_, at)| *at - first < Duration::from_secs(1)).count();
+    let in_a_second = log.all().iter().filter_map(up).filter(|(_, at)| *at - first < Duration::from_secs(1)).count();
     assert!((3..=4).contains(&in_a_second), "{in_a_second} attempts in a second");
     slam.join().unwrap();
 }
@@ -114,28 +112,26 @@ fn a_peer_that_accepts_and_closes_at_once_is_not_stormed() {
 fn a_peer_that_says_one_line_and_closes_is_not_stormed_either() {
     let (listener, address) = listener();
     let slam = thread::spawn(move || (0..4).for_each(|_| accept(&listener).write_all(b"$full*00\r\n").unwrap()));
-    let retry = (Duration::from_millis(50), Duration::from_secs(5));
-    let (_link, ears) = connect(&address, LinkSettings { silence: None, retry });
-    let took = ears.up(3).1 - ears.up(0).1;
+    let (_link, log) = connect(&address, retrying(Duration::from_millis(50), Duration::from_secs(5)));
+    let took = log.up(3).1 - log.up(0).1;
     assert!(took >= Duration::from_millis(50 + 100 + 200), "four attempts in {took:?}");
     slam.join().unwrap();
 }
 
 #[test]
 fn a_link_that_was_good_for_some_time_is_tried_again_quickly() {
-    let retry = (Duration::from_millis(20), Duration::from_secs(60));
     let (listener, address) = listener();
-    let (_link, ears) = connect(&address, LinkSettings { silence: None, retry });
+    let (_link, log) = connect(&address, retrying(Duration::from_millis(20), Duration::from_secs(60)));
     (0..5).for_each(|_| drop(accept(&listener)));
     // The next wait would be 640 ms.
     let mut boat = accept(&listener);
-    let (_, start) = ears.up(5);
-    let told = || boat.write_all(b"here\n").unwrap();
-    chatter(start + Duration::from_millis(1200), &listener, told);
+    let (_, start) = log.up(5);
+    let send = || boat.write_all(b"here\n").unwrap();
+    chatter(start + Duration::from_millis(1200), &listener, send);
     drop(boat);
-    let (_, gone) = ears.down(5);
+    let (_, gone) = log.down(5);
     drop(accept(&listener));
-    let wait = ears.up(6).1 - gone;
+    let wait = log.up(6).1 - gone;
     assert!(wait < Duration::from_millis(300), "{wait:?}");
 }
 
@@ -152,16 +148,16 @@ fn chatter(end: Instant, listener: &TcpListener, mut talk: impl FnMut()) {
 #[test]
 fn a_peer_that_falls_silent_counts_as_gone() {
     let silence = Duration::from_millis(300);
-    let (_link, ears, mut boat, listener) = joined(LinkSettings { silence: Some(silence), ..patient() });
-    let (_, up) = ears.up(0);
+    let (_link, log, mut boat, listener) = joined(LinkSettings { silence: Some(silence), ..patient() });
+    let (_, up) = log.up(0);
     chatter(up + 2 * silence, &listener, || boat.write_all(b"here\n").unwrap());
-    let (reason, down) = ears.down(0);
+    let (reason, down) = log.down(0);
     assert!(reason.contains("no bytes for 300ms"), "{reason}");
-    assert!(down - up >= 3 * silence - Duration::from_millis(60), "chatter was not heard: {:?}", down - up);
+    assert!(down - up >= 3 * silence - Duration::from_millis(60), "chatter was not received: {:?}", down - up);
     assert!(down - up < 3 * silence + Duration::from_millis(500), "{:?}", down - up);
     // And it is tried again, though this peer still holds the old connection.
     let _second = accept(&listener);
-    assert_eq!(ears.up(1).0, 1);
+    assert_eq!(log.up(1).0, 1);
 }
 
 #[test]
@@ -170,9 +166,9 @@ fn a_peer_that_does_not_read_gets_the_newest_late_instead_of_all_in_order() {
     const SIZE: usize = 1024;
     let (listener, address) = listener();
     SockRef::from(&listener).set_recv_buffer_size(4096).unwrap();
-    let (link, ears) = connect(&address, patient());
+    let (link, log) = connect(&address, patient());
     let mut boat = accept(&listener);
-    ears.up(0);
+    log.up(0);
     let mut slowest = Duration::ZERO;
     for tag in 0..SENT {
         let start = Instant::now();
@@ -191,34 +187,34 @@ fn a_peer_that_does_not_read_gets_the_newest_late_instead_of_all_in_order() {
     assert!(got.is_sorted(), "{got:?}");
     assert_eq!(got.len() as u64 + link.displaced(), SENT, "each is written whole or not at all");
     assert!(got.len() < 200, "{} KiB were held for it", got.len());
-    ears.written(SENT - 1);
-    let tags = ears.all().len();
+    log.written(SENT - 1);
+    let tags = log.all().len();
     assert!(tags <= got.len() + 1, "{tags} events for {} writes", got.len());
 }
 
 #[test]
 fn a_peer_that_takes_nothing_for_two_seconds_is_dropped_with_what_it_did_not_take() {
-    let (link, ears, mut boat, _listener) = joined(patient());
+    let (link, log, mut boat, _listener) = joined(patient());
     let start = Instant::now();
     link.send(vec![b'x'; 16 << 20], 0);
-    let (reason, down) = ears.down(0);
+    let (reason, down) = log.down(0);
     assert!(down - start >= Duration::from_millis(1900), "{:?}: {reason}", down - start);
     assert!(down - start < Duration::from_millis(4500), "{:?}: {reason}", down - start);
     // A reset, not an end: what was in flight is void.
     let mut waste = Vec::new();
-    assert!(boat.read_to_end(&mut waste).is_err(), "{} bytes and a good-bye", waste.len());
-    assert!(!ears.all().iter().any(|(_, event)| matches!(event, gateway::link::LinkEvent::Written { .. })));
+    assert!(boat.read_to_end(&mut waste).is_err(), "{} bytes and a graceful close", waste.len());
+    assert!(!log.all().iter().any(|(_, event)| matches!(event, gateway::link::LinkEvent::Written { .. })));
 }
 
 #[test]
 fn a_reconnect_breaks_the_connection_and_makes_a_new_one() {
-    let (link, ears, mut boat, listener) = joined(patient());
+    let (link, log, mut boat, listener) = joined(patient());
     link.reconnect();
-    let (reason, _) = ears.down(0);
+    let (reason, _) = log.down(0);
     assert_eq!(reason, "a reconnect was asked for");
     assert_eq!(boat.read(&mut [0]).unwrap(), 0, "the old connection is closed");
     let mut boat = accept(&listener);
-    assert_eq!(ears.up(1).0, 1);
+    assert_eq!(log.up(1).0, 1);
     link.send(b"new".to_vec(), 0);
     let mut got = [0; 3];
     boat.read_exact(&mut got).unwrap();
@@ -229,23 +225,23 @@ fn a_reconnect_breaks_the_connection_and_makes_a_new_one() {
 fn a_reconnect_shortens_a_long_wait_to_the_first() {
     let (listener, address) = listener();
     let first = Duration::from_millis(50);
-    let (link, ears) = connect(&address, LinkSettings { silence: None, retry: (first, Duration::from_secs(60)) });
+    let (link, log) = connect(&address, retrying(first, Duration::from_secs(60)));
     (0..5).for_each(|_| drop(accept(&listener)));
     // 800 ms would follow.
-    ears.down(4);
+    log.down(4);
     let asked = Instant::now();
     link.reconnect();
     let _boat = accept(&listener);
-    let wait = ears.up(5).1 - asked;
+    let wait = log.up(5).1 - asked;
     assert!(wait >= first && wait < Duration::from_millis(500), "{wait:?}");
 }
 
 #[test]
-fn a_dropped_link_says_good_bye_within_200_ms() {
-    let (link, ears, mut boat, listener) = joined(patient());
+fn a_dropped_link_closes_gracefully_within_200_ms() {
+    let (link, log, mut boat, listener) = joined(patient());
     link.send(b"last".to_vec(), 0);
-    ears.written(0);
-    // Bytes that nobody took would turn the good-bye into a reset.
+    log.written(0);
+    // Bytes that nobody took would turn the close into a reset.
     boat.write_all(&[0; 1000]).unwrap();
     let start = Instant::now();
     drop(link);
@@ -254,20 +250,20 @@ fn a_dropped_link_says_good_bye_within_200_ms() {
     let mut got = Vec::new();
     boat.read_to_end(&mut got).unwrap();
     assert_eq!(got, b"last");
-    assert_eq!(ears.down(0).0, "closed here");
+    assert_eq!(log.down(0).0, "closed here");
     SockRef::from(&listener).set_read_timeout(Some(Duration::from_millis(200))).unwrap();
     assert!(listener.accept().is_err(), "a dropped link connected again");
 }
 
 #[test]
-fn a_boat_that_keeps_talking_hears_the_good_bye_whole() {
+fn a_boat_that_keeps_sending_receives_everything_before_the_close() {
     let (link, _ears, mut boat, _listener) = joined(patient());
     assert!(link.send_and_wait(b"last", LIMIT));
     let closer = thread::spawn(move || drop(link));
     let mut got = Vec::new();
     boat.read_to_end(&mut got).unwrap();
     assert_eq!(got, b"last");
-    // A boat takes a moment to notice. NoRecorder slams the door in its face meanwhile: a reset could make it
+    // A boat takes a moment to notice. It must not be reset meanwhile: a reset could make it
     // forget what it has not read yet.
     for _ in 0..10 {
         boat.write_all(b"$GPGGA").expect("the link listens on for a moment");
@@ -285,11 +281,11 @@ fn a_link_that_cannot_reach_anybody_is_dropped_as_quickly() {
     listener.listen(0).unwrap();
     let address = listener.local_addr().unwrap().as_socket().unwrap();
     let _first = TcpStream::connect(address).unwrap();
-    let (link, ears) = connect(&format!("tcp://{address}"), patient());
+    let (link, log) = connect(&format!("tcp://{address}"), patient());
     let start = Instant::now();
     drop(link);
     assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
-    assert!(ears.all().is_empty(), "{:?}", ears.all());
+    assert!(log.all().is_empty(), "{:?}", log.all());
 }
 
 #[test]
@@ -300,8 +296,8 @@ fn a_peer_that_never_answers_is_given_up_after_two_seconds() {
     let address = listener.local_addr().unwrap().as_socket().unwrap();
     let _first = TcpStream::connect(address).unwrap();
     let start = Instant::now();
-    let (_link, ears) = connect(&format!("tcp://{address}"), patient());
-    ears.until("failure", |events| events.iter().find_map(wait));
+    let (_link, log) = connect(&format!("tcp://{address}"), patient());
+    log.until("failure", |events| events.iter().find_map(wait));
     let took = start.elapsed();
     assert!(took > Duration::from_millis(1900) && took < Duration::from_millis(2500), "{took:?}");
 }

@@ -1,6 +1,6 @@
 //! A link that listens on a TCP port.
 
-use crate::ears::{LIMIT, listen, open, patient};
+use crate::event_log::{LIMIT, listen, open, patient};
 use gateway::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -22,25 +22,25 @@ fn read(stream: &mut TcpStream, count: usize) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_sent_reaches_all_and_what_each_says_is_told_apart() {
-    let (link, ears) = listen(ANY);
+fn what_is_sent_reaches_all_and_peers_are_told_apart() {
+    let (link, log) = listen(ANY);
     let mut back_seats: Vec<TcpStream> = (0..8).map(|_| join(&link)).collect();
-    ears.up(7);
+    log.up(7);
     link.send(b"$GPGGA".to_vec(), 5);
     for back_seat in &mut back_seats {
         assert_eq!(read(back_seat, 6), b"$GPGGA");
     }
-    ears.written(5);
+    log.written(5);
     for (peer, back_seat) in back_seats.iter_mut().enumerate() {
         back_seat.write_all(&[peer as u8]).unwrap();
-        ears.until("its byte", |events| {
+        log.until("its byte", |events| {
             events
                 .iter()
                 .find(|(_, event)| matches!(event, LinkEvent::Bytes { bytes, .. } if *bytes == [peer as u8]))?;
             Some(())
         });
     }
-    let numbers = ears.all().into_iter().filter_map(|(_, event)| match event {
+    let numbers = log.all().into_iter().filter_map(|(_, event)| match event {
         LinkEvent::Bytes { peer, bytes, .. } => Some((peer, bytes)),
         _ => None,
     });
@@ -50,29 +50,29 @@ fn what_is_sent_reaches_all_and_what_each_says_is_told_apart() {
 
 #[test]
 fn a_ninth_is_closed_at_once_and_finds_room_when_one_goes() {
-    let (link, ears) = listen(ANY);
+    let (link, log) = listen(ANY);
     let mut back_seats: Vec<TcpStream> = (0..8).map(|_| join(&link)).collect();
-    ears.up(7);
+    log.up(7);
     let mut ninth = join(&link);
     assert_eq!(ninth.read(&mut [0]).unwrap_or(0), 0);
     drop(back_seats.pop());
-    ears.down(0);
+    log.down(0);
     let mut ninth = join(&link);
-    assert_eq!(ears.up(8).0, 8, "a number is never used again");
+    assert_eq!(log.up(8).0, 8, "a number is never used again");
     link.send(b"ahoy".to_vec(), 0);
     assert_eq!(read(&mut ninth, 4), b"ahoy");
 }
 
 #[test]
 fn a_peer_that_does_not_read_holds_up_nobody_and_is_dropped() {
-    let (link, ears) = listen(ANY);
+    let (link, log) = listen(ANY);
     let (mut quick, _slow) = (join(&link), join(&link));
-    ears.up(1);
+    log.up(1);
     let start = Instant::now();
     let mut slowest = Duration::ZERO;
     let mut tag = 0;
     // 64 KiB each, so that the buffers of the slow one are full after some.
-    while ears.all().iter().all(|(_, event)| !matches!(event, LinkEvent::Down { .. })) {
+    while log.all().iter().all(|(_, event)| !matches!(event, LinkEvent::Down { .. })) {
         assert!(start.elapsed() < LIMIT, "the slow one is never dropped");
         let sent_at = Instant::now();
         link.send(vec![b'x'; 65536], tag);
@@ -82,51 +82,51 @@ fn a_peer_that_does_not_read_holds_up_nobody_and_is_dropped() {
     }
     assert!(slowest < Duration::from_millis(500), "{slowest:?}");
     assert!(link.displaced() > 0);
-    let (_, down) = ears.down(0);
+    let (_, down) = log.down(0);
     assert!(down - start > Duration::from_millis(1900) && down - start < Duration::from_millis(5000));
     link.send(b"on".to_vec(), tag);
     assert_eq!(read(&mut quick, 2), b"on");
-    ears.written(tag);
+    log.written(tag);
 }
 
 #[test]
 fn a_silent_peer_stays_unless_the_settings_say_otherwise() {
     let address = LinkAddress::to_listen(ANY).unwrap();
-    let (link, ears) = open(&address, LinkSettings { silence: Some(Duration::from_millis(200)), ..patient() });
-    let (patient_link, patient_ears) = listen(ANY);
+    let (link, log) = open(&address, LinkSettings { silence: Some(Duration::from_millis(200)), ..patient() });
+    let (patient_link, patient_log) = listen(ANY);
     let (_one, _other) = (join(&link), join(&patient_link));
-    let (reason, _) = ears.down(0);
+    let (reason, _) = log.down(0);
     assert!(reason.contains("no bytes for 200ms"), "{reason}");
-    patient_ears.up(0);
-    assert_eq!(patient_ears.all().len(), 1);
+    patient_log.up(0);
+    assert_eq!(patient_log.all().len(), 1);
 }
 
 #[test]
 fn a_dropped_link_frees_its_port_within_200_ms() {
-    let (link, ears) = listen(ANY);
+    let (link, log) = listen(ANY);
     let mut back_seat = join(&link);
-    ears.up(0);
+    log.up(0);
     let address = link.reach();
     let start = Instant::now();
     drop(link);
     let took = start.elapsed();
     assert!(took < Duration::from_millis(200), "{took:?}");
     assert_eq!(back_seat.read(&mut [0]).unwrap(), 0);
-    let (again, ears) = listen(&address);
+    let (again, log) = listen(&address);
     let _back_seat = join(&again);
-    ears.up(0);
+    log.up(0);
 }
 
 #[test]
 fn a_reconnect_lets_all_go_and_takes_them_again() {
-    let (link, ears) = listen(ANY);
+    let (link, log) = listen(ANY);
     let mut old = join(&link);
-    ears.up(0);
+    log.up(0);
     link.reconnect();
     assert_eq!(old.read(&mut [0]).unwrap(), 0);
-    ears.down(0);
+    log.down(0);
     let _new = join(&link);
-    ears.up(1);
+    log.up(1);
 }
 
 #[test]

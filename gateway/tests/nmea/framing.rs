@@ -1,4 +1,4 @@
-//! The framer against noise: nothing lost, nothing made up, nothing that grows.
+//! The framer under noise: no sentence lost, none invented, bounded memory.
 
 use crate::bodies;
 use gateway::nmea::{ACCEPTED_MAX, Counts, Framer, checksum};

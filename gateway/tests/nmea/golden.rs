@@ -54,12 +54,12 @@ fn of_the_boat() -> Vec<(&'static str, Sentence)> {
         pitch_deg: Some(-2.2),
         roll_deg: Some(0.7),
         heading_deg: Some(222.6),
-        heave_m: None,
         box_c: Some(47.8),
         accel_ahead_g: Some(-0.04),
         accel_starboard_g: Some(-0.01),
         accel_down_g: Some(-1.0),
         yaw_rate_deg_s: Some(-0.01),
+        ..Attitude::default()
     };
     let battery = Battery {
         volts: Some(24.8),

@@ -1,8 +1,8 @@
 //! The NMEA codec against bytes from real boats, against noise, and against itself.
 
+mod edge_cases;
 mod framing;
 mod golden;
-mod oddity;
 mod round_trip;
 
 use gateway::nmea::{Framer, Sentence};

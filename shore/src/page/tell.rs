@@ -106,7 +106,7 @@ impl<'a> EventTell<'a> {
     /// The event as a page shows it.
     pub(super) fn new(event: &'a EventOutcome) -> EventTell<'a> {
         let text = match (event.event.as_str(), &event.vehicle) {
-            ("tripped", Some(vehicle)) => format!("{vehicle} is STOPPED by its gateway"),
+            ("failsafe", Some(vehicle)) => format!("{vehicle} is STOPPED by its gateway"),
             _ => event.sentence(),
         };
         EventTell { event, text }
@@ -165,8 +165,8 @@ mod tests {
             other: Some("b".into()),
             team: None,
         };
-        let (tagged, tripped) = (event("tagged"), event("tripped"));
-        let tell = Tell::Events { reset: true, events: vec![EventTell::new(&tagged), EventTell::new(&tripped)] };
+        let (tagged, failsafe) = (event("tagged"), event("failsafe"));
+        let tell = Tell::Events { reset: true, events: vec![EventTell::new(&tagged), EventTell::new(&failsafe)] };
         let want = json!({"tick": 7, "at_s": 0.35, "event": "tagged", "vehicle": "a", "other": "b",
             "text": "a is tagged by b"});
         assert_eq!(value(&tell)["kind"], "events");

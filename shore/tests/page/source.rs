@@ -95,7 +95,7 @@ impl MadeUp {
             water: Water::default(),
             times: frames.iter().map(|frame| frame.stamp.valid_ns).collect(),
             frames: frames.iter().map(game::codec::encode).collect(),
-            events: vec![event(20, "untagged"), event(60, "tripped")],
+            events: vec![event(20, "untagged"), event(60, "failsafe")],
         }
     }
 }

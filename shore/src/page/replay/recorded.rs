@@ -41,30 +41,30 @@ impl Recorded {
             recorded.times.push(frame.stamp.valid_ns);
             recorded.events.extend(frame.logged(scenario).map(|logged| EventOutcome::new(scenario, &logged)));
         }
-        recorded.add_trips();
+        recorded.add_failsafes();
         Ok(recorded)
     }
 
-    /// Gateways' trips among the events, where they were first told of.
-    fn add_trips(&mut self) {
+    /// Gateways' failsafes among the events, where they were first told of.
+    fn add_failsafes(&mut self) {
         let scenario = &self.recording.header().notice.scenario;
         for (vehicle, told) in scenario.vehicles.iter().zip(&self.statuses) {
             let mut known = 0;
             for (at, place) in told {
                 let Some(status) = self.status_at(*place) else { continue };
                 // A gateway that began anew counts from nothing.
-                known = known.min(status.trips.len());
-                for trip in &status.trips[known..] {
+                known = known.min(status.failsafes.len());
+                for failsafe in &status.failsafes[known..] {
                     self.events.push(EventOutcome {
                         tick: u64::try_from(at.0 / scenario.tick.0.max(1)).unwrap_or(0),
                         at_s: at.as_s(),
-                        event: "tripped".to_owned(),
+                        event: "failsafe".to_owned(),
                         vehicle: Some(vehicle.name.clone()),
-                        other: Some(trip.cause.clone()),
+                        other: Some(failsafe.cause.clone()),
                         team: None,
                     });
                 }
-                known = status.trips.len();
+                known = status.failsafes.len();
             }
         }
         self.events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));

@@ -24,7 +24,7 @@ pub trait ReplaySource: Send + Sync {
     fn frame_times(&self) -> &[SimTime];
     /// A frame, as CDR.
     fn frame_bytes(&self, frame: usize) -> &[u8];
-    /// All that happened, gateways' trips included.
+    /// All that happened, gateways' failsafes included.
     fn events(&self) -> &[EventOutcome];
     /// Where a boat's own sensors put it at a frame.
     fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat>;

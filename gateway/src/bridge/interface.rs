@@ -1,0 +1,118 @@
+//! The interface of a bridge: its inputs and outputs.
+
+use game::external::OperatorCommand;
+use game::frame::Ned;
+use game::gateway::{CompassFrame, Gateway};
+use game::picture::Nav;
+use game::{Field, Order, SimTime};
+use serde::{Deserialize, Serialize};
+
+/// What a bridge is made for; constant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// The boat's name.
+    pub vehicle: String,
+    /// How it is driven and stopped.
+    pub gateway: Gateway,
+    /// Where it plays.
+    pub field: Field,
+    /// Its length, m.
+    pub length_m: f64,
+    /// Declination, east positive, rad.
+    pub declination_rad: f64,
+    /// Whether it arms by itself, once, as soon as it is ready.
+    pub arms_itself: bool,
+}
+
+impl Plan {
+    /// What must be added to a heading of the boat's compass to make it true, rad.
+    #[must_use]
+    pub fn compass_to_true_rad(&self) -> f64 {
+        match self.gateway.compass {
+            CompassFrame::Magnetic => self.declination_rad,
+            CompassFrame::True => 0.0,
+        }
+    }
+}
+
+/// An input.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Input {
+    /// The link is up.
+    LinkUp,
+    /// The link is down.
+    LinkDown,
+    /// Bytes from the boat.
+    #[serde(skip)]
+    Bytes(Vec<u8>),
+    /// The sim has let the boat join: earlier orders do not count.
+    Joined,
+    /// An order, and the time of the picture that it answers.
+    Order(Order, SimTime),
+    /// An order that could not be read.
+    BadOrder,
+    /// Positions of the other real boats.
+    Others(Vec<Ned>),
+    /// An operator's command for this boat.
+    Operator(OperatorCommand),
+    /// An operator's command for all boats.
+    Fleet(FleetCommand),
+    /// Time passes.
+    Tick,
+}
+
+/// A command to all boats at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FleetCommand {
+    /// Stop, and stay stopped.
+    EStop,
+    /// The stop is over.
+    Release,
+}
+
+/// What an input results in.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Output {
+    /// Bytes to the boat, to be written at once.
+    pub bytes: Vec<u8>,
+    /// Navigation, if there is news of it.
+    pub nav: Option<NavOut>,
+    /// What happened.
+    pub events: Vec<Event>,
+    /// Why an operator's request is refused.
+    pub refused: Option<String>,
+    /// Whether the bytes carry an order that had not been sent yet.
+    pub carries_order: bool,
+}
+
+/// Navigation on its way to the sim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NavOut {
+    /// Where the boat is.
+    pub nav: Nav,
+    /// Whether it can be relied on.
+    pub valid: bool,
+    /// How old the fix is, s.
+    pub age_s: f64,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Event {
+    /// The supervisor went from one state to another.
+    State {
+        /// Before.
+        from: String,
+        /// Now.
+        to: String,
+    },
+    /// Another boat is in the way, or is no longer.
+    Blocked(bool),
+    /// Something that a person should know.
+    Warning(String),
+    /// A log message of the shell.
+    Remark(String),
+}

@@ -1,0 +1,147 @@
+//! The emulated boat's own controller: set-points, station keeping, missions.
+
+use crate::thrust_map::speed_for;
+use game::angle::wrap_pi;
+use game::frame::{Ned, Pose};
+use game::gateway::SURVEYOR_THRUST_MAP;
+use game::{Order, math};
+use std::collections::BTreeMap;
+
+/// A position is reached, or kept, within this distance, m.
+const NEAR_M: f64 = 3.0;
+/// How fast a boat goes back to its station at most, m/s.
+const KEEP_M_S: f64 = 1.0;
+/// How fast it approaches a position, m/s per m of distance.
+const APPROACH_PER_S: f64 = 0.2;
+/// Throttle of a mission that names none, per cent.
+const THROTTLE_PCT: f64 = 40.0;
+
+/// The state of the controller.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Autopilot {
+    /// By index; 0 is the emergency recovery point.
+    places: BTreeMap<u16, Ned>,
+    throttle_pct: Option<f64>,
+    /// The mission that is being uploaded, if any.
+    upload: Option<Upload>,
+    station: Option<Ned>,
+    /// The waypoint that is next.
+    next: u16,
+}
+
+/// A mission that is being uploaded.
+#[derive(Clone, Debug, Default)]
+struct Upload {
+    /// How many lines were announced, and received.
+    announced: f64,
+    lines: u32,
+    throttle_pct: Option<f64>,
+    places: BTreeMap<u16, Ned>,
+}
+
+/// The order for thrust and difference in per cent.
+pub(super) fn thrust(thrust_pct: f64, difference_pct: f64) -> Order {
+    let share = |pct: f64| (0.01 * pct).clamp(-1.0, 1.0);
+    Order::Thrust { port: share(thrust_pct + difference_pct), starboard: share(thrust_pct - difference_pct) }
+}
+
+/// The order for a heading and a speed; none of them may be missing.
+pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
+    match (heading_rad, speed_m_s) {
+        (Some(heading_rad), Some(speed_m_s)) => {
+            Order::Steer { heading_rad: wrap_pi(heading_rad), speed_m_s: speed_m_s.clamp(0.0, 100.0) }
+        }
+        _ => Order::Hold,
+    }
+}
+
+/// The speed ahead that a thrust gives, m/s.
+pub(super) fn speed_of_thrust(thrust_pct: f64) -> f64 {
+    speed_for(&SURVEYOR_THRUST_MAP, thrust_pct.clamp(0.0, 100.0))
+}
+
+impl Autopilot {
+    /// A new task begins here.
+    pub(super) fn begin(&mut self, at: Ned) {
+        self.station = Some(at);
+        self.next = 1;
+    }
+
+    /// An upload begins: the mission before is deleted.
+    pub(super) fn begin_download(&mut self, announced: f64) {
+        self.places.clear();
+        self.throttle_pct = None;
+        self.upload = Some(Upload { announced, ..Upload::default() });
+    }
+
+    /// The upload ends; returns a message. With a line missing there is no mission.
+    pub(super) fn end_download(&mut self) -> Option<String> {
+        let upload = self.upload.take()?;
+        if f64::from(upload.lines) != upload.announced {
+            return Some(format!(
+                "mission refused: {} lines were announced, {} could be read",
+                upload.announced, upload.lines
+            ));
+        }
+        (self.places, self.throttle_pct) = (upload.places, upload.throttle_pct);
+        Some(format!("a mission of {} places is accepted", self.places.len()))
+    }
+
+    pub(super) fn take_throttle(&mut self, throttle_pct: f64) {
+        if let Some(upload) = &mut self.upload {
+            upload.lines += 1;
+            upload.throttle_pct = Some(throttle_pct);
+        }
+    }
+
+    /// A waypoint outside of an upload is ignored.
+    pub(super) fn take_waypoint(&mut self, index: u16, at: Ned) {
+        if let Some(upload) = &mut self.upload {
+            upload.lines += 1;
+            upload.places.insert(index, at);
+        }
+    }
+
+    /// Keeps the station.
+    pub(super) fn keep(&mut self, pose: Pose) -> Order {
+        let station = *self.station.get_or_insert(pose.at);
+        go(pose, station, KEEP_M_S).unwrap_or(Order::Hold)
+    }
+
+    /// Goes to the recovery point, and stays there; without one it stays where it is.
+    pub(super) fn go_to_erp(&mut self, pose: Pose) -> Order {
+        match self.places.get(&0) {
+            Some(erp) => go(pose, *erp, self.speed_m_s()).unwrap_or(Order::Hold),
+            None => self.keep(pose),
+        }
+    }
+
+    /// Sails the mission, and stays at its end.
+    pub(super) fn sail(&mut self, pose: Pose) -> Order {
+        while let Some(place) = self.places.get(&self.next.max(1)).copied() {
+            if let Some(order) = go(pose, place, self.speed_m_s()) {
+                return order;
+            }
+            self.next = self.next.max(1) + 1;
+            self.station = Some(place);
+        }
+        self.keep(pose)
+    }
+
+    fn speed_m_s(&self) -> f64 {
+        speed_of_thrust(self.throttle_pct.unwrap_or(THROTTLE_PCT))
+    }
+}
+
+/// The order to go to a position, unless it is reached: slow while the boat points elsewhere, and near it, to avoid circling.
+fn go(pose: Pose, place: Ned, speed_m_s: f64) -> Option<Order> {
+    let distance_m = pose.at.distance(place);
+    if distance_m <= NEAR_M {
+        return None;
+    }
+    let heading_rad = pose.at.bearing_rad(place);
+    let (_, ahead) = math::sin_cos(wrap_pi(heading_rad - pose.psi_rad));
+    let share = ahead.max(0.0) * ahead.max(0.0);
+    let limit_m_s = (APPROACH_PER_S * distance_m).min(speed_m_s);
+    Some(Order::Steer { heading_rad, speed_m_s: limit_m_s * share })
+}

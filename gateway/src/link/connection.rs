@@ -1,0 +1,131 @@
+//! One connection to a peer, from up to down: a thread that reads, and one that writes.
+
+use super::LinkEvent;
+use super::clock::{self, TICK};
+use super::peer::{End, Peer};
+use super::port::{Port, Received, Wrote};
+use super::threads::Threads;
+use std::io;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// The most bytes that one event carries; a datagram fits.
+pub(super) const CHUNK: usize = 64 * 1024;
+
+/// A connection to a peer that is up. Dropped, it ends; [`Connection::close`] also emits [`LinkEvent::Down`].
+pub(super) struct Connection {
+    threads: Arc<Threads>,
+    pub(super) peer: Arc<Peer>,
+    writer: Option<JoinHandle<()>>,
+}
+
+/// How a connection went.
+pub(super) struct Served {
+    pub(super) end: End,
+    /// Time from up to the last bytes received.
+    pub(super) received_for: Duration,
+}
+
+impl Connection {
+    /// Opens a connection over a port.
+    pub(super) fn open(threads: &Arc<Threads>, port: Port, name: String) -> io::Result<Connection> {
+        let peer = Arc::new(Peer::new(threads.number(), port));
+        let mut connection = Connection { threads: Arc::clone(threads), peer, writer: None };
+        // Added first, then announced: who answers `Up` with bytes wants them to reach this peer. The writer comes
+        // last, so that no `Written` comes before `Up`.
+        threads.add(&connection.peer);
+        threads.emit(LinkEvent::Up { peer: connection.peer.number, name });
+        let (shared, peer) = (Arc::clone(threads), Arc::clone(&connection.peer));
+        match threads.spawn("link writer", move || write_on(&peer, &shared)) {
+            Ok(writer) => connection.writer = Some(writer),
+            Err(e) => {
+                connection.close(&End::Lost(format!("no thread for it: {e}")));
+                return Err(e);
+            }
+        }
+        Ok(connection)
+    }
+
+    /// Reads until the connection ends.
+    pub(super) fn serve(self) -> Served {
+        let up_at = clock::now();
+        let mut received_at = up_at;
+        let end = self.read_on(&mut received_at);
+        self.close(&end);
+        Served { end, received_for: received_at.saturating_duration_since(up_at) }
+    }
+
+    fn read_on(&self, received_at: &mut Instant) -> End {
+        let mut buffer = vec![0; CHUNK];
+        let silence = self.threads.settings.silence.filter(|_| self.peer.port.can_fall_silent());
+        loop {
+            if let Some(end) = self.peer.is_to_end() {
+                return end;
+            }
+            // A peer that came up while the others were being ended was not ended with them.
+            if self.threads.is_stopped() {
+                return End::Stopped;
+            }
+            match self.peer.port.read(&mut buffer) {
+                Ok(Received::Bytes(count)) => {
+                    *received_at = clock::now();
+                    let bytes = buffer[..count].to_vec();
+                    self.threads.emit(LinkEvent::Bytes { peer: self.peer.number, at: *received_at, bytes });
+                }
+                Ok(Received::Nothing) => {}
+                Ok(Received::End) => return End::Lost("closed by the other side".to_owned()),
+                Err(e) => return End::Lost(format!("cannot read: {e}")),
+            }
+            if let Some(limit) = silence.filter(|limit| clock::since(*received_at) >= *limit) {
+                return End::Lost(format!("no bytes for {limit:?}"));
+            }
+            if let Err(e) = self.peer.port.flush_if_stale() {
+                return End::Lost(format!("cannot flush: {e}"));
+            }
+        }
+    }
+
+    /// Ends the connection and emits `Down`.
+    pub(super) fn close(mut self, end: &End) {
+        self.threads.remove(&self.peer);
+        self.peer.end(end.clone());
+        match end {
+            End::Lost(_) => self.peer.port.reset(),
+            End::Asked | End::Stopped => self.peer.port.finish(),
+        }
+        if let Some(writer) = self.writer.take() {
+            // A writer that panicked is as done as one that did not.
+            drop(writer.join());
+        }
+        self.threads.emit(LinkEvent::Down { peer: self.peer.number, reason: end.to_string() });
+    }
+}
+
+impl Drop for Connection {
+    fn drop(&mut self) {
+        self.threads.remove(&self.peer);
+        self.peer.end(End::Stopped);
+    }
+}
+
+/// Writes what is queued, until the end.
+fn write_on(peer: &Peer, threads: &Threads) {
+    while let Some(request) = peer.outbox.next() {
+        let (begun_at, transit) = (clock::now(), peer.port.transit(request.bytes().len()));
+        match peer.port.write(request.bytes(), || peer.is_over()) {
+            Ok(Wrote::All) => {
+                let at = clock::now();
+                if let Some(tag) = request.take() {
+                    threads.emit(LinkEvent::Written { tag, at });
+                }
+            }
+            Ok(Wrote::Dropped) => threads.note_displaced(1),
+            Err(e) => peer.end(End::Lost(format!("cannot write: {e}"))),
+        }
+        // What is queued meanwhile can still be displaced here; in the driver it could not.
+        while clock::since(begun_at) < transit && !peer.is_over() {
+            threads.sleep(transit.saturating_sub(clock::since(begun_at)).min(TICK));
+        }
+    }
+}

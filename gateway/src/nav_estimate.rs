@@ -1,0 +1,243 @@
+//! The navigation estimate of a real boat, from its sentences, with their faults.
+//!
+//! Position and velocity over the ground are those of the last good fix, heading and rate of turn those of the last
+//! attitude. Bad data is reported as a [`NavFault`], never covered up: a repeated or doubtful fix does not make the
+//! last one younger.
+
+use crate::geodesy::LocalFrame;
+use crate::nmea::{Attitude, Gga, M_S_PER_KN, Rmc, Sentence, TimeOfDay, Vtg};
+use crate::supervisor::NavFault;
+use game::SimTime;
+use game::angle::{rad_from_compass_deg, wrap_pi};
+use game::frame::{Body, LatLon, Ned, Rotation, body_from_ned};
+use game::gateway::NavWatch;
+use game::picture::Nav;
+
+/// After a jump the position must be consistent for this long before it is believed again, s.
+const JUMP_MEMORY_S: f64 = 2.0;
+/// A reported velocity is used for this long; then it is computed from the change of position, s.
+const VELOCITY_AGE_MAX_S: f64 = 1.5;
+/// The boat counts as under thrust for this long after the last command with thrust, s.
+const THRUST_MEMORY_S: f64 = 0.5;
+
+/// A fix that was good.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Fix {
+    at: SimTime,
+    raw: LatLon,
+    place: Ned,
+}
+
+/// A true heading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Heading {
+    at: SimTime,
+    psi_rad: f64,
+    yaw_rate_rad_s: f64,
+}
+
+/// Estimates a boat's motion from its sentences.
+#[derive(Clone, Debug)]
+pub struct NavEstimator {
+    frame: LocalFrame,
+    watch: NavWatch,
+    /// Magnetic (or whatever the boat's compass shows) to true, rad.
+    compass_to_true_rad: f64,
+    speed_max_m_s: f64,
+    known: Known,
+}
+
+/// What changes.
+#[derive(Clone, Debug, Default)]
+struct Known {
+    fix: Option<Fix>,
+    /// Velocity over the ground, and when it was reported; `None` if it was computed from positions.
+    velocity: Option<(Option<SimTime>, Ned)>,
+    /// Heading (true) and rate of turn.
+    heading: Option<Heading>,
+    /// What was wrong with the receiver's last fix, if anything.
+    doubt: Option<NavFault>,
+    jumped: Option<(SimTime, f64)>,
+    time_of_fix: Option<TimeOfDay>,
+    /// Since when the position is the same to the last digit under thrust.
+    still_since: Option<SimTime>,
+    /// When the boat was last sent a command with thrust.
+    thrust_at: Option<SimTime>,
+}
+
+impl NavEstimator {
+    /// Without any data yet.
+    #[must_use]
+    pub fn new(frame: LocalFrame, watch: NavWatch, compass_to_true_rad: f64, speed_max_m_s: f64) -> NavEstimator {
+        NavEstimator { frame, watch, compass_to_true_rad, speed_max_m_s, known: Known::default() }
+    }
+
+    /// Where a position lies on the field.
+    #[must_use]
+    pub fn place(&self, lat_deg: f64, lon_deg: f64) -> Ned {
+        self.frame.ned(LatLon { lat_deg, lon_deg })
+    }
+
+    /// Forgets everything: the next data may be of another boat, or of the same one elsewhere.
+    pub fn forget(&mut self) {
+        self.known = Known::default();
+    }
+
+    /// Takes a sentence; returns whether it changed the estimate.
+    pub fn take(&mut self, now: SimTime, sentence: &Sentence) -> bool {
+        match sentence {
+            Sentence::Gga(gga) => self.take_gga(now, gga),
+            Sentence::Rmc(rmc) => self.take_rmc(now, rmc),
+            Sentence::Vtg(vtg) => self.take_vtg(now, vtg),
+            Sentence::Attitude(attitude) => self.take_attitude(now, attitude),
+            Sentence::Hdt(hdt) => self.take_heading(now, hdt.heading_deg.map(rad_from_compass_deg), None),
+            _ => false,
+        }
+    }
+
+    /// The boat was sent a command with thrust just now.
+    pub fn note_thrust(&mut self, now: SimTime) {
+        self.known.thrust_at = Some(now);
+    }
+
+    /// The boat's motion, and the age of its fix, s; nothing before the first fix and heading.
+    #[must_use]
+    pub fn nav(&self, now: SimTime) -> Option<(Nav, f64)> {
+        let (fix, Heading { psi_rad, yaw_rate_rad_s, .. }) = (self.known.fix?, self.known.heading?);
+        let velocity = self.velocity_m_s();
+        let body: Body = body_from_ned(Rotation::from_heading(psi_rad), velocity);
+        let nav = Nav {
+            north_m: fix.place.north,
+            east_m: fix.place.east,
+            psi_rad,
+            surge_m_s: body.ahead,
+            sway_m_s: body.starboard,
+            yaw_rate_rad_s,
+        };
+        Some((nav, (now - fix.at).as_s()))
+    }
+
+    /// Velocity over the ground, m/s.
+    #[must_use]
+    pub fn velocity_m_s(&self) -> Ned {
+        self.known.velocity.map_or_else(Ned::default, |(_, velocity)| velocity)
+    }
+
+    /// What is wrong with navigation now.
+    #[must_use]
+    pub fn fault(&self, now: SimTime) -> Option<NavFault> {
+        let Some(fix) = &self.known.fix else { return Some(self.known.doubt.unwrap_or(NavFault::NoFix)) };
+        let Some(heading) = self.known.heading else { return Some(NavFault::NoHeading) };
+        let fix_age_s = (now - fix.at).as_s();
+        let heading_age_s = (now - heading.at).as_s();
+        let jump = self.known.jumped.filter(|(at, _)| (now - *at).as_s() < JUMP_MEMORY_S);
+        let still_s = self.known.still_since.map_or(0.0, |since| (now - since).as_s());
+        self.known
+            .doubt
+            .or(jump.map(|(_, by_m)| NavFault::Jump(by_m)))
+            .or((fix_age_s > self.watch.age_max_s).then_some(NavFault::FixStale(fix_age_s)))
+            .or((heading_age_s > self.watch.age_max_s).then_some(NavFault::HeadingStale(heading_age_s)))
+            .or((still_s > self.watch.frozen_s).then_some(NavFault::Frozen(still_s)))
+    }
+
+    fn take_gga(&mut self, now: SimTime, gga: &Gga) -> bool {
+        if self.is_repeated(gga.time, gga.at) {
+            return false;
+        }
+        self.known.time_of_fix = gga.time;
+        let bad_hdop = gga.hdop.filter(|hdop| *hdop > self.watch.hdop_max);
+        let doubt = match gga.at {
+            _ if gga.quality < self.watch.quality_min => Some(NavFault::Quality(gga.quality)),
+            None => Some(NavFault::Quality(0)),
+            _ => bad_hdop.map(NavFault::Dilution),
+        };
+        self.take_position(now, gga.at, doubt)
+    }
+
+    fn take_rmc(&mut self, now: SimTime, rmc: &Rmc) -> bool {
+        let is_new = self.take_course(now, rmc.course_deg, rmc.speed_kn);
+        // A boat that also sends GGA has sent this fix already, with its quality.
+        if self.is_repeated(rmc.time, rmc.at) {
+            return is_new;
+        }
+        self.known.time_of_fix = rmc.time;
+        let doubt = (!rmc.valid || rmc.at.is_none()).then_some(NavFault::Quality(0));
+        self.take_position(now, rmc.at, doubt) | is_new
+    }
+
+    /// A repeated fix is not a new one. Receivers that stamp whole seconds may take several in one.
+    fn is_repeated(&self, time: Option<TimeOfDay>, at: Option<LatLon>) -> bool {
+        let same_place = self.known.fix.map(|fix| fix.raw) == at || self.known.fix.is_none();
+        time.is_some() && time == self.known.time_of_fix && same_place
+    }
+
+    fn take_position(&mut self, now: SimTime, at: Option<LatLon>, doubt: Option<NavFault>) -> bool {
+        let at = match (doubt, at) {
+            (None, Some(at)) if at.lat_deg == 0.0 && at.lon_deg == 0.0 => {
+                self.known.doubt = Some(NavFault::ZeroZero);
+                return false;
+            }
+            (None, Some(at)) => at,
+            (doubt, _) => {
+                self.known.doubt = doubt;
+                return false;
+            }
+        };
+        self.known.doubt = None;
+        let place = self.frame.ned(at);
+        if let Some(before) = self.known.fix {
+            let since_s = (now - before.at).as_s();
+            let moved = place - before.place;
+            if moved.length() > self.speed_max_m_s * since_s + self.watch.jump_m {
+                self.known.jumped = Some((now, moved.length()));
+                self.known.velocity = None;
+            } else if !self.is_velocity_reported(now) && since_s > 0.05 {
+                self.known.velocity = Some((None, moved.scaled(1.0 / since_s)));
+            }
+            let pushed = self.known.thrust_at.is_some_and(|at| (now - at).as_s() < THRUST_MEMORY_S);
+            self.known.still_since = (before.raw == at && pushed).then(|| self.known.still_since.unwrap_or(before.at));
+        }
+        self.known.fix = Some(Fix { at: now, raw: at, place });
+        true
+    }
+
+    fn is_velocity_reported(&self, now: SimTime) -> bool {
+        let reported = self.known.velocity.and_then(|(reported, _)| reported);
+        reported.is_some_and(|at| (now - at).as_s() <= VELOCITY_AGE_MAX_S)
+    }
+
+    fn take_vtg(&mut self, now: SimTime, vtg: &Vtg) -> bool {
+        let speed_kn = vtg.speed_kn.or(vtg.speed_km_h.map(|km_h| km_h / 1.852));
+        self.take_course(now, vtg.course_true_deg, speed_kn)
+    }
+
+    fn take_course(&mut self, now: SimTime, course_deg: Option<f64>, speed_kn: Option<f64>) -> bool {
+        let velocity = match (course_deg, speed_kn) {
+            // Receivers leave the course of a boat at rest blank; it is not north.
+            (None, Some(speed_kn)) if speed_kn < 0.5 => Ned::default(),
+            (Some(course_deg), Some(speed_kn)) => Ned::toward_deg(course_deg).scaled(speed_kn * M_S_PER_KN),
+            _ => return false,
+        };
+        self.known.velocity = Some((Some(now), velocity));
+        true
+    }
+
+    fn take_attitude(&mut self, now: SimTime, attitude: &Attitude) -> bool {
+        let heading = attitude
+            .heading_deg
+            .map(|heading_deg| wrap_pi(rad_from_compass_deg(heading_deg) + self.compass_to_true_rad));
+        self.take_heading(now, heading, attitude.yaw_rate_deg_s.map(f64::to_radians))
+    }
+
+    fn take_heading(&mut self, now: SimTime, psi_rad: Option<f64>, turn_rad_s: Option<f64>) -> bool {
+        let Some(psi_rad) = psi_rad else { return false };
+        let turned_rad_s = || {
+            let Some(before) = self.known.heading else { return 0.0 };
+            let since_s = (now - before.at).as_s();
+            if since_s > 0.02 { wrap_pi(psi_rad - before.psi_rad) / since_s } else { before.yaw_rate_rad_s }
+        };
+        let yaw_rate_rad_s = turn_rad_s.unwrap_or_else(turned_rad_s);
+        self.known.heading = Some(Heading { at: now, psi_rad, yaw_rate_rad_s });
+        true
+    }
+}

@@ -1,0 +1,48 @@
+//! The operator that commands a boat.
+
+use serde::{Deserialize, Serialize};
+
+/// Who commands a boat, by the number on the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Operator {
+    /// 1: the operator's station on shore.
+    Primary,
+    /// 2: the back seat, which is us.
+    Secondary,
+    /// 3: the operator's station by its second link.
+    PrimaryBackup,
+    /// 5: the remote control in somebody's hands.
+    Rc,
+    /// 6: the boat's own obstacle avoidance.
+    ObstacleAvoidance,
+    /// Any other number.
+    Other(u8),
+}
+
+impl Operator {
+    /// The number on the wire.
+    #[must_use]
+    pub fn number(self) -> u8 {
+        match self {
+            Operator::Primary => 1,
+            Operator::Secondary => 2,
+            Operator::PrimaryBackup => 3,
+            Operator::Rc => 5,
+            Operator::ObstacleAvoidance => 6,
+            Operator::Other(number) => number,
+        }
+    }
+
+    /// The operator of a number.
+    #[must_use]
+    pub fn from_number(number: u8) -> Operator {
+        match number {
+            1 => Operator::Primary,
+            2 => Operator::Secondary,
+            3 => Operator::PrimaryBackup,
+            5 => Operator::Rc,
+            6 => Operator::ObstacleAvoidance,
+            other => Operator::Other(other),
+        }
+    }
+}

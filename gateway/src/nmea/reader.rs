@@ -1,0 +1,208 @@
+//! Reads the fields of a sentence by its layout, with errors that say which one is wrong.
+
+use super::ParseError;
+use super::date_time::{Date, TimeOfDay};
+use super::layout::{Field, Layout};
+use super::mode::Mode;
+use super::number::number;
+use super::operator::Operator;
+use super::position::{Axis, LATITUDE, LONGITUDE};
+use super::wind::{KNOT_KM_H, SpeedUnit, WindReference};
+use game::LatLon;
+use std::str::FromStr;
+
+/// A sentence's address, and its data fields counted from 1 as manuals do.
+pub(super) struct Reader<'a> {
+    address: &'a str,
+    data: Vec<&'a str>,
+    /// The field that was taken last.
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn of(body: &'a str) -> Reader<'a> {
+        let mut parts = body.split(',');
+        let address = parts.next().unwrap_or_default();
+        Reader { address, data: parts.collect(), at: 0 }
+    }
+
+    pub(super) fn address(&self) -> &'a str {
+        self.address
+    }
+
+    /// Reads all fields of a layout.
+    pub(super) fn read(mut self, layout: Layout<'_>) -> Result<(), ParseError> {
+        let (found, expected) = (self.data.len(), layout.fields_min);
+        if found < expected {
+            return Err(ParseError::TooFew { address: self.address.to_owned(), found, expected });
+        }
+        layout.fields.into_iter().try_for_each(|field| self.read_field(field))
+    }
+
+    fn read_field(&mut self, field: Field<'_>) -> Result<(), ParseError> {
+        match field {
+            Field::Address(_) | Field::Standard(..) => {}
+            Field::Constant(_) => self.at += 1,
+            Field::Unit(letter) => self.unit(letter)?,
+            Field::Optional(is_there, _) => {
+                *is_there = self.data.len() > self.at;
+                self.next();
+            }
+            Field::Number(number, _) | Field::ReadOnly(number) => *number = self.number()?,
+            Field::Required(number, _, expected) => *number = self.number()?.ok_or_else(|| self.wrong(expected))?,
+            Field::East(number) => *number = self.east()?,
+            Field::Whole(number, _) => *number = self.whole()?,
+            Field::Quality(quality) => *quality = self.whole()?.unwrap_or_default(),
+            Field::Index(index) => *index = self.whole()?.ok_or_else(|| self.wrong("the waypoint's number"))?,
+            Field::Text(text) => *text = self.next().to_owned(),
+            Field::Letter(letter) => *letter = self.next().chars().next(),
+            Field::Mode(mode) => *mode = self.mode()?,
+            Field::Operator(operator) => *operator = self.whole()?.map(Operator::from_number),
+            Field::Valid(valid) => *valid = self.valid()?,
+            Field::Time(time) => *time = self.parsed(TimeOfDay::parse, "a time hhmmss.ss or nothing")?,
+            Field::Date(date) => *date = self.parsed(Date::parse, "a date ddmmyy or nothing")?,
+            Field::DayMonthYear(date) => *date = self.day_month_year()?,
+            Field::Position(at, _) => *at = self.position()?,
+            Field::Place(at, _) => {
+                let latitude = self.at + 1;
+                *at = self.position()?.ok_or_else(|| self.wrong_at(latitude, "a latitude"))?;
+            }
+            Field::WindReference(reference) => *reference = self.wind_reference()?,
+            Field::WindSpeed(speed_m_s, unit) => self.wind_speed(speed_m_s, unit)?,
+            Field::KnotsAndKmH(speed_kn) => *speed_kn = self.knots_or_km_h()?,
+        }
+        Ok(())
+    }
+
+    /// The text of the next field without the spaces around it; nothing where the sentence is shorter.
+    fn next(&mut self) -> &'a str {
+        self.at += 1;
+        self.text(self.at)
+    }
+
+    /// The text of the field that comes `ahead` fields later, which is not taken.
+    fn peek(&self, ahead: usize) -> &'a str {
+        self.text(self.at + ahead)
+    }
+
+    fn text(&self, at: usize) -> &'a str {
+        self.data.get(at - 1).map_or("", |text| text.trim_matches(' '))
+    }
+
+    /// What `parse` makes of the next field; an empty field is nothing.
+    fn parsed<T>(&mut self, parse: fn(&str) -> Option<T>, expected: &'static str) -> Result<Option<T>, ParseError> {
+        match self.next() {
+            "" => Ok(None),
+            text => parse(text).map(Some).ok_or_else(|| self.wrong(expected)),
+        }
+    }
+
+    /// The number in the next field, if any.
+    fn number(&mut self) -> Result<Option<f64>, ParseError> {
+        self.parsed(number, "a number or nothing")
+    }
+
+    /// The whole number in the next field, if any.
+    fn whole<T: FromStr>(&mut self) -> Result<Option<T>, ParseError> {
+        let whole = |text: &str| text.parse().ok().filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
+        self.parsed(whole, "a small whole number or nothing")
+    }
+
+    fn mode(&mut self) -> Result<Mode, ParseError> {
+        let mut letters = self.next().chars();
+        let mode = letters.next().and_then(Mode::from_letter).filter(|_| letters.next().is_none());
+        mode.ok_or_else(|| self.wrong("the letter of a control mode"))
+    }
+
+    /// The position in the next four fields, if any: half of one is an error.
+    fn position(&mut self) -> Result<Option<LatLon>, ParseError> {
+        if self.peek(1).is_empty() && self.peek(3).is_empty() {
+            self.at += 4;
+            return Ok(None);
+        }
+        let lat_deg = self.coordinate(&LATITUDE)?;
+        let lon_deg = self.coordinate(&LONGITUDE)?;
+        Ok(Some(LatLon { lat_deg, lon_deg }))
+    }
+
+    fn coordinate(&mut self, axis: &Axis) -> Result<f64, ParseError> {
+        let size_deg = axis.degrees(self.next()).ok_or_else(|| self.wrong(axis.expected))?;
+        let sign = axis.sign(self.next()).ok_or_else(|| self.wrong(axis.expected_letter))?;
+        Ok(sign * size_deg)
+    }
+
+    /// The date in the next three fields.
+    fn day_month_year(&mut self) -> Result<Option<Date>, ParseError> {
+        let first = self.at + 1;
+        let date = match (self.whole()?, self.whole()?, self.whole()?) {
+            (None, None, None) => return Ok(None),
+            (Some(day), Some(month), Some(year)) => Date { year, month, day },
+            _ => return Err(self.wrong_at(first, "a day, month and year, or none of them")),
+        };
+        if date.is_valid() { Ok(Some(date)) } else { Err(self.wrong_at(first, "a date of the calendar")) }
+    }
+
+    /// `A` (data valid) or `D` (with differential corrections); `V` and nothing are not valid.
+    fn valid(&mut self) -> Result<bool, ParseError> {
+        match self.next() {
+            "A" | "D" => Ok(true),
+            "V" | "" => Ok(false),
+            _ => Err(self.wrong("A, D, V or nothing")),
+        }
+    }
+
+    /// Refuses text other than the unit `letter`: the layout is not the expected one.
+    fn unit(&mut self, letter: &'static str) -> Result<(), ParseError> {
+        let text = self.next();
+        if text.is_empty() || text == letter { Ok(()) } else { Err(self.wrong(letter)) }
+    }
+
+    fn east(&mut self) -> Result<Option<f64>, ParseError> {
+        match (self.number()?, self.next()) {
+            (None, "" | "E" | "W") => Ok(None),
+            (Some(size), "E") => Ok(Some(size)),
+            (Some(size), "W") => Ok(Some(-size)),
+            (Some(size), "") if size == 0.0 => Ok(Some(size)),
+            _ => Err(self.wrong("E or W")),
+        }
+    }
+
+    fn wind_reference(&mut self) -> Result<WindReference, ParseError> {
+        match self.next() {
+            "R" => Ok(WindReference::Relative),
+            "T" => Ok(WindReference::Theoretical),
+            _ => Err(self.wrong("R or T")),
+        }
+    }
+
+    fn wind_speed(&mut self, speed_m_s: &mut Option<f64>, unit: &mut SpeedUnit) -> Result<(), ParseError> {
+        let (speed, letter) = (self.number()?, self.next());
+        *unit = match (SpeedUnit::from_letter(letter), speed) {
+            (Some(unit), _) => unit,
+            // Without a speed nothing is lost with its unit.
+            (None, None) if letter.is_empty() => SpeedUnit::MetresPerSecond,
+            _ => return Err(self.wrong("K, M, N or S")),
+        };
+        *speed_m_s = speed.map(|speed| speed * unit.m_s());
+        Ok(())
+    }
+
+    fn knots_or_km_h(&mut self) -> Result<Option<f64>, ParseError> {
+        let speed_kn = self.number()?;
+        self.unit("N")?;
+        let speed_km_h = self.number()?;
+        self.unit("K")?;
+        Ok(speed_kn.or(speed_km_h.map(|speed_km_h| speed_km_h / KNOT_KM_H)))
+    }
+
+    /// The error that the field that was taken last is not what was `expected`.
+    fn wrong(&self, expected: &'static str) -> ParseError {
+        self.wrong_at(self.at, expected)
+    }
+
+    /// The same of another field.
+    fn wrong_at(&self, field: usize, expected: &'static str) -> ParseError {
+        let found = self.data.get(field - 1).copied().unwrap_or_default().to_owned();
+        ParseError::Field { address: self.address.to_owned(), field, found, expected }
+    }
+}

@@ -1,0 +1,280 @@
+//! Sentences of the NMEA 0183 standard: fixes, headings, wind.
+
+use super::date_time::{Date, TimeOfDay};
+use super::layout::{COMPASS, Field, HUNDREDTHS, Layout, TENTHS};
+use super::talker::Talker;
+use super::wind::{SpeedUnit, WindReference};
+use game::LatLon;
+
+/// `GGA`, a fix: when, where, how good.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gga {
+    /// Who sends it.
+    pub talker: Talker,
+    /// Time of the fix.
+    pub time: Option<TimeOfDay>,
+    /// Position of the antenna.
+    pub at: Option<LatLon>,
+    /// How the fix was made: 0 not at all, 1 GPS, 2 differential, 4 RTK, 5 float. An empty field is 0.
+    pub quality: u8,
+    /// Satellites used.
+    pub satellites: Option<u8>,
+    /// Horizontal dilution of precision.
+    pub hdop: Option<f64>,
+    /// Height of the antenna above the geoid, m.
+    pub altitude_m: Option<f64>,
+    /// Height of the geoid above the ellipsoid, m.
+    pub geoid_m: Option<f64>,
+}
+
+impl Gga {
+    /// 14 fields. The last, the reference station, must be empty: the driver of the fleet counts fields after it has
+    /// dropped one empty one from the end, and with a station has no position at all.
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let fields = vec![
+            Field::Standard(self.talker, "GGA"),
+            Field::Time(&mut self.time),
+            Field::Position(&mut self.at, 5),
+            Field::Quality(&mut self.quality),
+            Field::Whole(&mut self.satellites, 2),
+            Field::Number(&mut self.hdop, HUNDREDTHS),
+            Field::Number(&mut self.altitude_m, TENTHS),
+            Field::Unit("M"),
+            Field::Number(&mut self.geoid_m, TENTHS),
+            Field::Unit("M"),
+            Field::Constant(""),
+            Field::Constant(""),
+        ];
+        Layout { fields_min: 6, fields }
+    }
+}
+
+/// `RMC`, a fix with course, speed and date: the least that a chart plotter wants.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rmc {
+    /// Who sends it.
+    pub talker: Talker,
+    /// Time of the fix.
+    pub time: Option<TimeOfDay>,
+    /// Whether the receiver vouches for it.
+    pub valid: bool,
+    /// Position of the antenna.
+    pub at: Option<LatLon>,
+    /// Speed over ground, knots.
+    pub speed_kn: Option<f64>,
+    /// Course over ground, degrees true; none at rest.
+    pub course_deg: Option<f64>,
+    /// Date of the fix.
+    pub date: Option<Date>,
+}
+
+impl Rmc {
+    /// 12 fields: no magnetic variation, and a mode of autonomous or not valid.
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let mode = fix_mode(self.valid);
+        let fields = vec![
+            Field::Standard(self.talker, "RMC"),
+            Field::Time(&mut self.time),
+            Field::Valid(&mut self.valid),
+            Field::Position(&mut self.at, 5),
+            Field::Number(&mut self.speed_kn, HUNDREDTHS),
+            Field::Number(&mut self.course_deg, COMPASS),
+            Field::Date(&mut self.date),
+            Field::Constant(""),
+            Field::Constant(""),
+            Field::Constant(mode),
+        ];
+        Layout { fields_min: 9, fields }
+    }
+}
+
+/// How a fix was made: autonomous, or not valid.
+fn fix_mode(valid: bool) -> &'static str {
+    if valid { "A" } else { "N" }
+}
+
+/// `VTG`, course and speed over ground.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Vtg {
+    /// Who sends it.
+    pub talker: Talker,
+    /// Course over ground, degrees true; none at rest, which is not north.
+    pub course_true_deg: Option<f64>,
+    /// Course over ground, degrees magnetic.
+    pub course_magnetic_deg: Option<f64>,
+    /// Speed over ground, knots.
+    pub speed_kn: Option<f64>,
+    /// Speed over ground, km/h.
+    pub speed_km_h: Option<f64>,
+    /// Whether a ninth field tells how the fix was made: boats of 2024 have none.
+    pub with_mode: bool,
+}
+
+impl Vtg {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let mode = fix_mode(self.speed_kn.or(self.speed_km_h).is_some());
+        let fields = vec![
+            Field::Standard(self.talker, "VTG"),
+            Field::Number(&mut self.course_true_deg, COMPASS),
+            Field::Unit("T"),
+            Field::Number(&mut self.course_magnetic_deg, COMPASS),
+            Field::Unit("M"),
+            Field::Number(&mut self.speed_kn, HUNDREDTHS),
+            Field::Unit("N"),
+            Field::Number(&mut self.speed_km_h, HUNDREDTHS),
+            Field::Unit("K"),
+            Field::Optional(&mut self.with_mode, mode),
+        ];
+        Layout { fields_min: 8, fields }
+    }
+}
+
+/// `HDT`, the true heading.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Hdt {
+    /// Who sends it.
+    pub talker: Talker,
+    /// Heading, degrees true.
+    pub heading_deg: Option<f64>,
+}
+
+impl Hdt {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let heading = Field::Number(&mut self.heading_deg, COMPASS);
+        Layout { fields_min: 1, fields: vec![Field::Standard(self.talker, "HDT"), heading, Field::Unit("T")] }
+    }
+}
+
+/// `HDG`, the magnetic heading with what makes it true.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Hdg {
+    /// Who sends it.
+    pub talker: Talker,
+    /// Heading by the sensor, degrees.
+    pub heading_deg: Option<f64>,
+    /// What the boat's own iron adds, degrees, east positive.
+    pub deviation_deg: Option<f64>,
+    /// What the earth's field adds (declination), degrees, east positive.
+    pub variation_deg: Option<f64>,
+}
+
+impl Hdg {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let fields = vec![
+            Field::Standard(self.talker, "HDG"),
+            Field::Number(&mut self.heading_deg, COMPASS),
+            Field::East(&mut self.deviation_deg),
+            Field::East(&mut self.variation_deg),
+        ];
+        Layout { fields_min: 1, fields }
+    }
+}
+
+/// `ZDA`, time and date.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Zda {
+    /// Who sends it.
+    pub talker: Talker,
+    /// Time, UTC.
+    pub time: Option<TimeOfDay>,
+    /// Date, UTC.
+    pub date: Option<Date>,
+}
+
+impl Zda {
+    /// With the local zone as UTC.
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let fields = vec![
+            Field::Standard(self.talker, "ZDA"),
+            Field::Time(&mut self.time),
+            Field::DayMonthYear(&mut self.date),
+            Field::Constant("00"),
+            Field::Constant("00"),
+        ];
+        Layout { fields_min: 4, fields }
+    }
+}
+
+/// `GLL`, a position and its time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gll {
+    /// Who sends it.
+    pub talker: Talker,
+    /// Position of the antenna.
+    pub at: Option<LatLon>,
+    /// Time of the fix.
+    pub time: Option<TimeOfDay>,
+    /// Whether the receiver vouches for it. Old ones have no such field, and it is not taken for granted.
+    pub valid: bool,
+}
+
+impl Gll {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let mode = fix_mode(self.valid);
+        let fields = vec![
+            Field::Standard(self.talker, "GLL"),
+            Field::Position(&mut self.at, 5),
+            Field::Time(&mut self.time),
+            Field::Valid(&mut self.valid),
+            Field::Constant(mode),
+        ];
+        Layout { fields_min: 4, fields }
+    }
+}
+
+/// `MWV`, wind: where it comes from, seen from the bow, and how strong it is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mwv {
+    /// Who sends it.
+    pub talker: Talker,
+    /// Where the wind comes from, degrees clockwise from the bow.
+    pub angle_deg: Option<f64>,
+    /// Which wind.
+    pub reference: WindReference,
+    /// How strong it is, m/s, whatever the unit on the wire.
+    pub speed_m_s: Option<f64>,
+    /// The unit on the wire.
+    pub unit: SpeedUnit,
+    /// Whether the sensor vouches for it.
+    pub valid: bool,
+}
+
+impl Mwv {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let fields = vec![
+            Field::Standard(self.talker, "MWV"),
+            Field::Number(&mut self.angle_deg, COMPASS),
+            Field::WindReference(&mut self.reference),
+            Field::WindSpeed(&mut self.speed_m_s, &mut self.unit),
+            Field::Valid(&mut self.valid),
+        ];
+        Layout { fields_min: 5, fields }
+    }
+}
+
+/// `VHW`, the log: heading, and speed through the water.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Vhw {
+    /// Who sends it.
+    pub talker: Talker,
+    /// Heading, degrees true.
+    pub heading_true_deg: Option<f64>,
+    /// Heading, degrees magnetic.
+    pub heading_magnetic_deg: Option<f64>,
+    /// Speed through the water, knots.
+    pub speed_kn: Option<f64>,
+}
+
+impl Vhw {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let fields = vec![
+            Field::Standard(self.talker, "VHW"),
+            Field::Number(&mut self.heading_true_deg, COMPASS),
+            Field::Unit("T"),
+            Field::Number(&mut self.heading_magnetic_deg, COMPASS),
+            Field::Unit("M"),
+            Field::KnotsAndKmH(&mut self.speed_kn),
+        ];
+        Layout { fields_min: 6, fields }
+    }
+}

@@ -1,0 +1,298 @@
+//! Sentences of a Surveyor's own: commands, what it reports of itself, missions.
+
+use super::layout::{BRIEF_THOUSANDTHS, Field, HUNDREDTHS, Layout, TENTHS, WHOLE};
+use super::mode::Mode;
+use super::operator::Operator;
+use game::LatLon;
+
+/// `PSEAC`, the command: what a back seat tells the boat to do. What a field means depends on the mode, and any but the
+/// mode may be empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Command {
+    /// What to do.
+    pub mode: Mode,
+    /// Compass heading, degrees; in [`Mode::FileDownload`] the number of lines to come.
+    pub heading_deg: Option<f64>,
+    /// Thrust in percent of the most, ahead positive; in [`Mode::Speed`] the speed in knots.
+    pub thrust: Option<f64>,
+    /// Half of port thrust less starboard thrust, percent: positive turns to starboard.
+    pub difference: Option<f64>,
+    /// A switch such as `THR_ON`, else empty.
+    pub words: String,
+}
+
+impl Command {
+    /// Read with four fields and more: of real drivers some send four, some six. In [`Mode::Thruster`] the heading is a
+    /// whole number too: there are boats that read nothing else, and keep the value they had.
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        // No lines to come, and what has no meaning in a download, are three zeros.
+        let zeros = |number: &Option<f64>| WHOLE.wide(if *number == Some(0.0) { 3 } else { 0 });
+        let (heading, thrust, difference) = match self.mode {
+            Mode::FileDownload => (zeros(&self.heading_deg), zeros(&self.thrust), zeros(&self.difference)),
+            Mode::Thruster => (WHOLE.compass(), WHOLE, WHOLE),
+            Mode::Speed => (TENTHS.compass().brief(), BRIEF_THOUSANDTHS, WHOLE),
+            _ => (TENTHS.compass().brief(), WHOLE, WHOLE),
+        };
+        let fields = vec![
+            Field::Address("PSEAC"),
+            Field::Mode(&mut self.mode),
+            Field::Number(&mut self.heading_deg, heading),
+            Field::Number(&mut self.thrust, thrust),
+            Field::Number(&mut self.difference, difference),
+            Field::Text(&mut self.words),
+        ];
+        Layout { fields_min: 4, fields }
+    }
+
+    /// As it is written: percents are whole numbers.
+    pub(super) fn rounded(mut self) -> Command {
+        round_percents(self.mode, &mut self.thrust, &mut self.difference);
+        if self.mode == Mode::FileDownload {
+            for number in [&mut self.heading_deg, &mut self.thrust, &mut self.difference] {
+                *number = Some(number.filter(|number| number.is_finite()).unwrap_or_default().round());
+            }
+        }
+        self
+    }
+}
+
+/// Rounds thrust and difference to whole percents, halves away from zero; a speed in knots stays as it is.
+///
+/// A thruster gets their sum, so where rounding takes that past 100 the boat turns a little less.
+fn round_percents(mode: Mode, thrust: &mut Option<f64>, difference: &mut Option<f64>) {
+    let sum = |thrust: Option<f64>, difference: Option<f64>| Some(thrust?.abs() + difference?.abs());
+    let (whole_thrust, whole_difference) = (thrust.map(f64::round), difference.map(f64::round));
+    let by_rounding = sum(*thrust, *difference).is_some_and(|sum| sum < 100.5)
+        && sum(whole_thrust, whole_difference).is_some_and(|sum| sum > 100.0);
+    *difference = whole_difference.map(|whole| if by_rounding { whole - whole.signum() } else { whole });
+    if mode != Mode::Speed {
+        *thrust = whole_thrust;
+    }
+}
+
+/// `PSEAA`, the attitude: how the boat lies in the water, and its compass.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Attitude {
+    /// Pitch, degrees. Which way is positive is not published.
+    pub pitch_deg: Option<f64>,
+    /// Roll, degrees.
+    pub roll_deg: Option<f64>,
+    /// Heading by the compass: magnetic, degrees.
+    pub heading_deg: Option<f64>,
+    /// Heave, m. Read, but never written: boats leave it blank, and readers are used to that.
+    pub heave_m: Option<f64>,
+    /// Temperature of the electronics box, degrees Celsius.
+    pub box_c: Option<f64>,
+    /// Acceleration ahead, in units of gravity.
+    pub accel_ahead_g: Option<f64>,
+    /// Acceleration to starboard.
+    pub accel_starboard_g: Option<f64>,
+    /// Acceleration down: -1 at rest.
+    pub accel_down_g: Option<f64>,
+    /// Rate of turn, degrees a second.
+    pub yaw_rate_deg_s: Option<f64>,
+}
+
+impl Attitude {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let fields = vec![
+            Field::Address("PSEAA"),
+            Field::Number(&mut self.pitch_deg, TENTHS),
+            Field::Number(&mut self.roll_deg, TENTHS),
+            Field::Number(&mut self.heading_deg, TENTHS.compass()),
+            Field::ReadOnly(&mut self.heave_m),
+            Field::Number(&mut self.box_c, TENTHS),
+            Field::Number(&mut self.accel_ahead_g, HUNDREDTHS),
+            Field::Number(&mut self.accel_starboard_g, HUNDREDTHS),
+            Field::Number(&mut self.accel_down_g, HUNDREDTHS),
+            Field::Number(&mut self.yaw_rate_deg_s, HUNDREDTHS),
+        ];
+        Layout { fields_min: 3, fields }
+    }
+}
+
+/// `PSEAB`, the battery: volts, charge, and who draws how much. In which unit the boat counts charge is not published.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Battery {
+    /// Voltage, V.
+    pub volts: Option<f64>,
+    /// Charge that is left.
+    pub charge: Option<f64>,
+    /// Current, A.
+    pub amps: Option<f64>,
+    /// Temperature, degrees Celsius.
+    pub celsius: Option<f64>,
+    /// Charge used since the counter was reset.
+    pub charge_used: Option<f64>,
+    /// When the counter was reset: the time of day as sent, often empty.
+    pub reset_time: String,
+    /// When the counter was reset: the date `ddmmyy` as sent, often empty.
+    pub reset_date: String,
+    /// Voltage of the port battery.
+    pub port_volts: Option<f64>,
+    /// Voltage of the starboard battery.
+    pub starboard_volts: Option<f64>,
+    /// Current of the electronics, A.
+    pub system_amps: Option<f64>,
+    /// Current of the port thruster, A.
+    pub port_amps: Option<f64>,
+    /// Current of the starboard thruster, A.
+    pub starboard_amps: Option<f64>,
+    /// Current of the port bilge pump, A.
+    pub port_bilge_amps: Option<f64>,
+    /// Current of the starboard bilge pump, A.
+    pub starboard_bilge_amps: Option<f64>,
+    /// The hour meter.
+    pub hours: Option<f64>,
+}
+
+impl Battery {
+    /// 15 fields: real drivers refuse any other number of them. The two fuel gauges after the 15th are ignored.
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let fields = vec![
+            Field::Address("PSEAB"),
+            Field::Number(&mut self.volts, TENTHS),
+            Field::Number(&mut self.charge, WHOLE),
+            Field::Number(&mut self.amps, TENTHS),
+            Field::Number(&mut self.celsius, TENTHS),
+            Field::Number(&mut self.charge_used, WHOLE),
+            Field::Text(&mut self.reset_time),
+            Field::Text(&mut self.reset_date),
+            Field::Number(&mut self.port_volts, TENTHS),
+            Field::Number(&mut self.starboard_volts, TENTHS),
+            Field::Number(&mut self.system_amps, TENTHS),
+            Field::Number(&mut self.port_amps, TENTHS),
+            Field::Number(&mut self.starboard_amps, TENTHS),
+            Field::Number(&mut self.port_bilge_amps, TENTHS),
+            Field::Number(&mut self.starboard_bilge_amps, TENTHS),
+            Field::Number(&mut self.hours, WHOLE),
+        ];
+        Layout { fields_min: 1, fields }
+    }
+}
+
+/// `PSEAD`, the control state: which command the boat follows, and whose.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ControlState {
+    /// What the boat does.
+    pub mode: Mode,
+    /// The heading it was commanded, degrees magnetic.
+    pub heading_deg: Option<f64>,
+    /// The thrust it was commanded, percent; in [`Mode::Speed`] the speed in knots.
+    pub thrust: Option<f64>,
+    /// The thrust difference it was commanded, percent.
+    pub difference: Option<f64>,
+    /// The switch it was sent last, else empty.
+    pub words: String,
+    /// How the command came through: a letter of T, F, R and N.
+    pub transmission: Option<char>,
+    /// The operator this report was sent to.
+    pub sent_to: Option<u8>,
+    /// Who is in control.
+    pub operator: Option<Operator>,
+}
+
+impl ControlState {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let thrust = if self.mode == Mode::Speed { BRIEF_THOUSANDTHS } else { WHOLE };
+        let fields = vec![
+            Field::Address("PSEAD"),
+            Field::Mode(&mut self.mode),
+            Field::Number(&mut self.heading_deg, TENTHS.compass()),
+            Field::Number(&mut self.thrust, thrust),
+            Field::Number(&mut self.difference, WHOLE),
+            Field::Text(&mut self.words),
+            Field::Letter(&mut self.transmission),
+            Field::Whole(&mut self.sent_to, 0),
+            Field::Operator(&mut self.operator),
+        ];
+        Layout { fields_min: 1, fields }
+    }
+
+    /// As it is written: percents are whole numbers.
+    pub(super) fn rounded(mut self) -> ControlState {
+        round_percents(self.mode, &mut self.thrust, &mut self.difference);
+        self
+    }
+}
+
+/// `PSEAG`, the boat's error code. `N` means that nothing is wrong; what other codes mean is not published.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BoatError {
+    /// The code as sent.
+    pub code: String,
+}
+
+impl BoatError {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        Layout { fields_min: 1, fields: vec![Field::Address("PSEAG"), Field::Text(&mut self.code)] }
+    }
+}
+
+/// `PSEAR`, the settings of a mission: how much throttle its waypoints are sailed with. The other fields are constant in
+/// every sample known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MissionSettings {
+    /// Throttle, percent.
+    pub throttle_pct: f64,
+}
+
+impl MissionSettings {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let fields = vec![
+            Field::Address("PSEAR"),
+            Field::Constant("0"),
+            Field::Constant("000"),
+            Field::Required(&mut self.throttle_pct, WHOLE, "a throttle in percent"),
+            Field::Constant("0"),
+            Field::Constant("000"),
+        ];
+        Layout { fields_min: 3, fields }
+    }
+
+    /// As it is written: a whole percent.
+    pub(super) fn rounded(self) -> MissionSettings {
+        MissionSettings { throttle_pct: self.throttle_pct.round() }
+    }
+}
+
+/// `OIWPL`, a waypoint of a mission that is being uploaded. Four decimals of minutes place it to 0.1 m.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Waypoint {
+    /// Where.
+    pub at: LatLon,
+    /// Its number; 0 is the emergency recovery point.
+    pub index: u16,
+}
+
+impl Waypoint {
+    pub(super) fn layout(&mut self) -> Layout<'_> {
+        let place = Field::Place(&mut self.at, 4);
+        Layout { fields_min: 5, fields: vec![Field::Address("OIWPL"), place, Field::Index(&mut self.index)] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_never_asks_a_thruster_for_more_than_all() {
+        for (thrust, difference, want) in [
+            (40.0, 14.16667, (40.0, 14.0)),
+            (49.5, 50.5, (50.0, 50.0)),
+            (49.5, -50.5, (50.0, -50.0)),
+            (-99.5, 0.5, (-100.0, 0.0)),
+            (99.5, -0.5, (100.0, 0.0)),
+            (0.5, 99.5, (1.0, 99.0)),
+            (20.5, -10.5, (21.0, -11.0)),
+            // What was too much before stays for others to refuse.
+            (80.0, 40.0, (80.0, 40.0)),
+            (101.0, 0.0, (101.0, 0.0)),
+        ] {
+            let (mut got_thrust, mut got_difference) = (Some(thrust), Some(difference));
+            round_percents(Mode::Thruster, &mut got_thrust, &mut got_difference);
+            assert_eq!((got_thrust, got_difference), (Some(want.0), Some(want.1)), "{thrust}, {difference}");
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Writes a sentence by its layout: its fields one by one, then the checksum and the line's end.
+
+use super::date_time::{Date, TimeOfDay};
+use super::layout::{Field, Format, HUNDREDTHS, Layout, TENTHS};
+use super::position::{LATITUDE, LONGITUDE};
+use super::wind::KNOT_KM_H;
+use super::{EMITTED_MAX, checksum};
+use game::LatLon;
+use std::ops::Range;
+
+/// `$`, `*`, two digits, CR and LF.
+const FRAME: usize = 6;
+
+/// A sentence that is being written.
+///
+/// Numbers and free texts are spare: should the line come out longer than [`EMITTED_MAX`], its longest spare
+/// fields are left empty. Everyone understands an empty field, and a cut one would be another number.
+pub(super) struct Writer {
+    body: String,
+    spare: Vec<Range<usize>>,
+}
+
+impl Writer {
+    /// Appends the sentence of this layout to `out`.
+    pub(super) fn write(layout: Layout<'_>, out: &mut Vec<u8>) {
+        let mut line = Writer { body: String::with_capacity(EMITTED_MAX), spare: Vec::new() };
+        layout.fields.into_iter().for_each(|field| line.field(field));
+        while line.body.len() + FRAME > EMITTED_MAX {
+            line.empty_the_longest();
+        }
+        let sum = checksum(line.body.as_bytes());
+        out.extend_from_slice(format!("${}*{sum:02X}\r\n", line.body).as_bytes());
+    }
+
+    fn field(&mut self, field: Field<'_>) {
+        match field {
+            Field::Address(address) => self.body.push_str(address),
+            Field::Standard(talker, kind) => {
+                self.body.extend(talker.characters().map(char::from));
+                self.body.push_str(kind);
+            }
+            Field::Constant(text) | Field::Unit(text) => self.fixed(text),
+            Field::Optional(is_there, text) => {
+                if *is_there {
+                    self.fixed(text);
+                }
+            }
+            Field::Number(number, format) => self.number(*number, format),
+            Field::Required(number, format, _) => self.number(Some(*number), format),
+            Field::ReadOnly(_) => self.fixed(""),
+            Field::East(number) => {
+                let number = number.filter(|number| number.is_finite());
+                self.number(number.map(f64::abs), TENTHS);
+                self.spare(number.map_or("", |number| if number < 0.0 { "W" } else { "E" }));
+            }
+            Field::Whole(number, width) => self.spare(&number.map_or_else(String::new, |n| format!("{n:0width$}"))),
+            Field::Quality(quality) => self.fixed(&quality.to_string()),
+            Field::Index(index) => self.fixed(&index.to_string()),
+            Field::Text(text) => self.text(text),
+            Field::Letter(letter) => self.text(&letter.map_or_else(String::new, String::from)),
+            Field::Mode(mode) => self.fixed(&String::from(mode.letter())),
+            Field::Operator(operator) => self.spare(&operator.map_or_else(String::new, |o| o.number().to_string())),
+            Field::Valid(valid) => self.fixed(if *valid { "A" } else { "V" }),
+            Field::Time(time) => self.fixed(&time.and_then(TimeOfDay::text).unwrap_or_default()),
+            Field::Date(date) => self.fixed(&date.and_then(Date::text).unwrap_or_default()),
+            Field::DayMonthYear(date) => self.day_month_year(*date),
+            Field::Position(at, decimals) => self.position(*at, decimals),
+            Field::Place(at, decimals) => self.position(Some(*at), decimals),
+            Field::WindReference(reference) => self.fixed(reference.letter()),
+            Field::WindSpeed(speed_m_s, unit) => {
+                self.number(speed_m_s.map(|speed_m_s| speed_m_s / unit.m_s()), TENTHS);
+                self.fixed(unit.letter());
+            }
+            Field::KnotsAndKmH(speed_kn) => {
+                self.number(*speed_kn, HUNDREDTHS);
+                self.fixed("N");
+                self.number(speed_kn.map(|speed_kn| speed_kn * KNOT_KM_H), HUNDREDTHS);
+                self.fixed("K");
+            }
+        }
+    }
+
+    /// A position in four fields, empty for a missing position and one that is not on the globe.
+    fn position(&mut self, at: Option<LatLon>, decimals: u32) {
+        let texts =
+            at.and_then(|at| Some((LATITUDE.printed(at.lat_deg, decimals)?, LONGITUDE.printed(at.lon_deg, decimals)?)));
+        let (lat, lon) = texts.unwrap_or_else(|| (",".to_owned(), ",".to_owned()));
+        self.fixed(&lat);
+        self.fixed(&lon);
+    }
+
+    /// A date in three fields.
+    fn day_month_year(&mut self, date: Option<Date>) {
+        match date.filter(|date| date.is_valid() && date.year < 10_000) {
+            Some(Date { year, month, day }) => self.fixed(&format!("{day:02},{month:02},{year:04}")),
+            None => self.fixed(",,"),
+        }
+    }
+
+    /// A field that is never left out; the caller knows that it is short.
+    fn fixed(&mut self, text: &str) {
+        self.body.push(',');
+        self.body.push_str(text);
+    }
+
+    fn number(&mut self, number: Option<f64>, format: Format) {
+        self.spare(&format.text(number));
+    }
+
+    /// A text of somebody else's: empty if anything in it means something to the framing.
+    fn text(&mut self, text: &str) {
+        let plain = |byte: u8| matches!(byte, b' '..=b'~') && !matches!(byte, b',' | b'*' | b'$');
+        self.spare(if text.bytes().all(plain) { text } else { "" });
+    }
+
+    fn spare(&mut self, text: &str) {
+        self.body.push(',');
+        let start = self.body.len();
+        self.body.push_str(text);
+        if !text.is_empty() {
+            self.spare.push(start..self.body.len());
+        }
+    }
+
+    /// Empties the longest spare field, the last of equals.
+    fn empty_the_longest(&mut self) {
+        let longest = self.spare.iter().enumerate().max_by_key(|(_, range)| range.len()).map(|(i, _)| i);
+        let gone = self.spare.remove(longest.expect("the fixed fields of every sentence fit"));
+        self.body.replace_range(gone.clone(), "");
+        for later in self.spare.iter_mut().filter(|range| range.start > gone.start) {
+            *later = later.start - gone.len()..later.end - gone.len();
+        }
+    }
+}

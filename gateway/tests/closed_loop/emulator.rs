@@ -1,0 +1,187 @@
+//! The emulated boat alone, with the bytes of real back seats: as strict and as tolerant as the real one.
+
+use crate::rig::{Rig, plan};
+use game::Order;
+use game::SimTime;
+use gateway::emulator::{self, Emulator, Extra, Port};
+use gateway::nmea::{Date, Operator, Sentence, TimeOfDay};
+
+fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
+    let mut plan = emulator::Plan {
+        datum: plan("surveyor.toml", false).field.plan.datum,
+        declination_rad: 0.0,
+        watchdog_s: None,
+        integers: false,
+        extra: vec![],
+        vtg_mode: false,
+        began: (Date { year: 2026, month: 11, day: 20 }, TimeOfDay(54_302_000)),
+    };
+    change(&mut plan);
+    Emulator::new(plan)
+}
+
+fn with_checksum(body: &str) -> Vec<u8> {
+    format!("${body}*{:02X}\r\n", body.bytes().fold(0, |a, b| a ^ b)).into_bytes()
+}
+
+fn send(boat: &mut Emulator, body: &str) -> (char, Order) {
+    boat.take(SimTime::ZERO, Port::Secondary, &with_checksum(body));
+    // It has to know where it is to do anything.
+    let own = game::picture::OwnBoat {
+        vehicle: game::VehicleId(0),
+        nav: game::picture::Nav::default(),
+        fix_ns: SimTime::ZERO,
+        imu: game::picture::Imu::default(),
+        tagged: false,
+        carrying: -1,
+        disabled: false,
+        outside: false,
+        tag_ready_ns: SimTime::ZERO,
+    };
+    boat.observe(SimTime::ZERO, &own);
+    (boat.command().mode.letter(), boat.order(SimTime::ZERO))
+}
+
+fn thrust(port: f64, starboard: f64) -> Order {
+    Order::Thrust { port, starboard }
+}
+
+#[test]
+fn commands_of_real_back_seats_are_followed() {
+    let mut boat = boat(|_| ());
+    for (body, mode, order) in [
+        ("PSEAC,L,0,0,0,", 'L', Order::Hold),
+        ("PSEAC,T,0,20,-10,", 'T', thrust(0.1, 0.3)),
+        ("PSEAC,T,90,40,14.16667,,", 'T', thrust(0.541_666_7, 0.258_333_3)),
+        ("PSEAC,T,,20,-10,THR_ON", 'T', thrust(0.1, 0.3)),
+        ("PSEAC,T,0,100,100,", 'T', thrust(1.0, 0.0)),
+        ("PSEAC,T,0,-300,0,", 'T', thrust(-1.0, -1.0)),
+        ("PSEAC,L,0,0,,,", 'L', Order::Hold),
+        ("PSEAC,G,90,1.943844,,,", 'G', Order::Steer { heading_rad: 90_f64.to_radians(), speed_m_s: 1.0 }),
+        ("PSEAC,C,270,40,,", 'C', Order::Steer { heading_rad: -90_f64.to_radians(), speed_m_s: 1.5 }),
+        ("PSEAC,R,,,,", 'R', Order::Hold),
+        ("PSEAC,D,0,0,0,", 'D', Order::Hold),
+    ] {
+        let (got_mode, got) = send(&mut boat, body);
+        assert_eq!(got_mode, mode, "{body}");
+        let numbers = |order: Order| match order {
+            Order::Hold => (0, 0.0, 0.0),
+            Order::Steer { heading_rad, speed_m_s } => (1, heading_rad, speed_m_s),
+            Order::Thrust { port, starboard } => (2, port, starboard),
+        };
+        let (got, want) = (numbers(got), numbers(order));
+        assert!(got.0 == want.0 && (got.1 - want.1).abs() < 1e-6 && (got.2 - want.2).abs() < 1e-6, "{body}: {got:?}");
+    }
+}
+
+#[test]
+fn invalid_commands_change_nothing() {
+    let mut boat = boat(|_| ());
+    send(&mut boat, "PSEAC,T,0,20,0,");
+    for bytes in [
+        &b"$PSEAC,T,0,90,0,*00\r\n"[..],
+        b"$PSEAC,X,0,90,0,*27\r\n",
+        b"$PGRMCE*0E\r\n$PSRF100,1*0E\r\n\x8e\xff\x00",
+        b"PSEAC,T,0,90,0,\r\n",
+    ] {
+        boat.take(SimTime::ZERO, Port::Secondary, bytes);
+        assert_eq!(boat.order(SimTime::ZERO), thrust(0.2, 0.2), "{bytes:?}");
+    }
+}
+
+#[test]
+fn with_whole_numbers_only_a_fraction_leaves_the_set_point_before() {
+    let mut boat = boat(|plan| plan.integers = true);
+    assert_eq!(send(&mut boat, "PSEAC,T,0,20,-10,").1, thrust(0.1, 0.3));
+    assert_eq!(send(&mut boat, "PSEAC,T,90,40,14.16667,,").1, thrust(0.3, 0.5));
+}
+
+#[test]
+fn without_a_watchdog_it_goes_on_for_ever_and_with_one_it_does_not() {
+    for (watchdog_s, order) in [(None, thrust(0.2, 0.2)), (Some(2.0), Order::Hold)] {
+        let mut boat = boat(|plan| plan.watchdog_s = watchdog_s);
+        send(&mut boat, "PSEAC,T,0,20,0,");
+        assert_eq!(boat.order(SimTime::from_s(1.9)), thrust(0.2, 0.2));
+        assert_eq!(boat.order(SimTime::from_s(3600.0)), order);
+    }
+}
+
+#[test]
+fn only_the_operator_in_control_is_followed() {
+    let mut boat = boat(|_| ());
+    send(&mut boat, "PSEAC,T,0,20,0,");
+    boat.take(SimTime::ZERO, Port::Primary, &with_checksum("PSEAC,C,90,20,0,"));
+    assert_eq!((boat.operator(), boat.command().mode.letter()), (Operator::Primary, 'C'));
+    assert_eq!(send(&mut boat, "PSEAC,T,0,50,0,").0, 'C', "the back seat is not in control");
+    assert_eq!(boat.counters(), (2, 1));
+    boat.take(SimTime::ZERO, Port::Primary, &with_checksum("PSEAC,L,0,0,0,OP2_ON"));
+    assert_eq!((boat.operator(), boat.command().mode.letter()), (Operator::Secondary, 'L'));
+    assert_eq!(send(&mut boat, "PSEAC,T,0,50,0,").0, 'T');
+}
+
+#[test]
+fn telemetry_is_what_the_strictest_known_reader_takes_even_in_standby() {
+    let mut rig = Rig::new("surveyor.toml", None);
+    rig.run(1.0);
+    assert_eq!(rig.mode(), 'L');
+    let mut burst = vec![];
+    rig.emulator.telemetry(rig.now, &mut burst);
+    let text = String::from_utf8(burst).expect("text");
+    let fields = |name: &str| {
+        let line = text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no {name} in {text}"));
+        let (body, sum) = line[1..].split_once('*').expect("a checksum");
+        assert_eq!(sum, format!("{:02X}", body.bytes().fold(0, |a, b| a ^ b)), "{line}");
+        assert!((10..=80).contains(&line.len()) && line.as_bytes()[6] == b',', "{line}");
+        body.split(',').skip(1).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let gga = fields("$GPGGA");
+    assert_eq!((gga.len(), gga[5].as_str(), gga[13].as_str()), (14, "2", ""), "the last field is empty: {gga:?}");
+    assert_eq!(fields("$GPVTG").len(), 8, "new boats leave the mode out");
+    let attitude = fields("$PSEAA");
+    assert_eq!((attitude.len(), attitude[3].as_str()), (9, ""), "no heave: {attitude:?}");
+    assert_eq!((fields("$PSEAB").len(), fields("$PSEAD").len()), (15, 8));
+    assert_eq!(fields("$PSEAD")[7], "2");
+    assert_eq!(fields("$PSEAG"), ["N"]);
+    assert_eq!(text.lines().count(), 6);
+}
+
+#[test]
+fn a_receiver_without_a_new_fix_reports_quality_0() {
+    let mut rig = Rig::new("surveyor.toml", None);
+    rig.run(1.0);
+    rig.frozen = true;
+    rig.run(0.5);
+    let quality = |rig: &Rig| {
+        let mut burst = vec![];
+        rig.emulator.telemetry(rig.now, &mut burst);
+        String::from_utf8(burst).expect("text").lines().next().expect("GGA").split(',').nth(6).map(str::to_owned)
+    };
+    assert_eq!(quality(&rig).as_deref(), Some("2"));
+    rig.run(1.0);
+    assert_eq!(quality(&rig).as_deref(), Some("0"));
+}
+
+#[test]
+fn extra_sentences_agree_with_the_others() {
+    let mut boat = boat(|plan| {
+        plan.declination_rad = (-12.5_f64).to_radians();
+        plan.extra = vec![Extra::Rmc, Extra::Hdt, Extra::Hdg, Extra::Zda];
+    });
+    send(&mut boat, "PSEAC,L,0,0,0,");
+    let mut burst = vec![];
+    boat.telemetry(SimTime::from_s(1.0), &mut burst);
+    let text = String::from_utf8(burst).expect("text");
+    let sentences: Vec<Sentence> = text
+        .lines()
+        .map(|line| Sentence::parse(line[1..].split('*').next().expect("a body")).unwrap_or_else(|e| panic!("{e}")))
+        .collect();
+    let find = |pick: fn(&Sentence) -> Option<f64>| sentences.iter().find_map(pick).expect("it is sent");
+    let hdt = find(|s| if let Sentence::Hdt(hdt) = s { hdt.heading_deg } else { None });
+    let hdg = find(|s| if let Sentence::Hdg(hdg) = s { hdg.heading_deg } else { None });
+    let compass = find(|s| if let Sentence::Attitude(attitude) = s { attitude.heading_deg } else { None });
+    assert!(hdt.abs() < 0.05 && (hdg - 12.5).abs() < 0.05 && (compass - 12.5).abs() < 0.05, "{hdt} {hdg} {compass}");
+    assert!(
+        text.contains("$GPRMC,") && text.contains(",201126,") && text.contains("$GPZDA,150503.00,20,11,2026"),
+        "{text}"
+    );
+}

@@ -1,0 +1,99 @@
+//! The test oracle: checks every sentence that is sent against the safety rules, independent of the implementation.
+
+use game::SimTime;
+
+/// The state as seen from outside of the gateway.
+#[derive(Debug)]
+pub(crate) struct Oracle {
+    pub(crate) ttl_s: f64,
+    pub(crate) nav_age_max_s: f64,
+    pub(crate) control_age_max_s: f64,
+    /// When an order came that was sound and newer than all before.
+    pub(crate) ordered: SimTime,
+    /// When the last sound fix came through, a heading, and the boat's report that we command it.
+    pub(crate) fixed: SimTime,
+    pub(crate) headed: SimTime,
+    pub(crate) granted: SimTime,
+    pub(crate) other_operator: bool,
+    pub(crate) stopped: bool,
+    pub(crate) armed: bool,
+    pub(crate) link_up: bool,
+    /// Sentences that drive, and all.
+    pub(crate) driving: u64,
+    pub(crate) all: u64,
+    pub(crate) last: String,
+}
+
+impl Oracle {
+    pub(crate) fn new() -> Oracle {
+        let never = SimTime::LONG_AGO;
+        Oracle {
+            ttl_s: 1.0,
+            nav_age_max_s: 1.5,
+            control_age_max_s: 2.0,
+            ordered: never,
+            fixed: never,
+            headed: never,
+            granted: never,
+            other_operator: false,
+            stopped: false,
+            armed: false,
+            link_up: false,
+            driving: 0,
+            all: 0,
+            last: String::new(),
+        }
+    }
+
+    /// Checks bytes from the gateway to the boat.
+    pub(crate) fn judge(&mut self, now: SimTime, bytes: &[u8]) {
+        let text = std::str::from_utf8(bytes).expect("what is sent is text");
+        for line in text.split_inclusive("\r\n") {
+            assert!(line.len() <= 82 && line.starts_with('$') && line.ends_with("\r\n"), "{line:?}");
+            self.judge_line(now, line);
+        }
+    }
+
+    fn judge_line(&mut self, now: SimTime, line: &str) {
+        self.all += 1;
+        assert!(self.link_up, "at {now}: {line:?} into a link that is down");
+        self.last = line.to_owned();
+        let fields: Vec<&str> = line.split(['$', ',', '*']).collect();
+        if fields[1] != "PSEAC" {
+            return;
+        }
+        let number = |i: usize| fields[i].parse::<f64>().unwrap_or(0.0);
+        let drives = match fields[2] {
+            "T" => number(4) != 0.0 || number(5) != 0.0,
+            "G" | "C" => number(4) != 0.0,
+            "L" | "F" => false,
+            "R" | "H" | "W" => {
+                self.is_fit(now, line);
+                return;
+            }
+            other => panic!("at {now}: mode {other} is never sent"),
+        };
+        if !drives {
+            return;
+        }
+        self.driving += 1;
+        self.is_fit(now, line);
+        let age_s = (now - self.ordered).as_s();
+        assert!(age_s <= self.ttl_s + 1e-6, "at {now}: {line:?} by an order {age_s} s old");
+        assert!(self.armed, "at {now}: {line:?} from a gateway that nobody armed");
+        assert!(number(4).abs() + number(5).abs() <= 100.0, "{line:?}");
+    }
+
+    fn is_fit(&self, now: SimTime, line: &str) {
+        for (what, since, most_s) in [
+            ("fix", self.fixed, self.nav_age_max_s),
+            ("heading", self.headed, self.nav_age_max_s),
+            ("control state", self.granted, self.control_age_max_s),
+        ] {
+            let age_s = (now - since).as_s();
+            assert!(age_s <= most_s + 1e-6, "at {now}: {line:?} with a {what} {age_s} s old");
+        }
+        assert!(!self.other_operator, "at {now}: {line:?} while somebody else has the boat");
+        assert!(!self.stopped, "at {now}: {line:?} under an E-stop");
+    }
+}
