@@ -4,7 +4,7 @@ use crate::plot::sea::{self, Shown};
 use crate::trial_command::usual_tick_s;
 use crate::{screen, water_args};
 use anyhow::{Context, Result};
-use arena::trial::{self, Afloat, Drift, Manoeuvre, Plan, Sample, Start};
+use arena::trial::{self, Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 use game::angle::compass_deg_from_rad;
 use game::boat::Drive;
 use game::sea::Sea;
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 /// The track of the boat, released at rest at the datum, pointing north: that of `squall trial --manoeuvre drift`.
 fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sample>> {
-    let mut afloat = Afloat::new(boat, sea, tick, seed, &Start::default());
+    let mut trial_boat = TrialBoat::new(boat, sea, tick, seed, &Start::default());
     let plan = Plan {
         manoeuvre: Manoeuvre::Drift,
         course_rad: 0.0,
@@ -62,7 +62,7 @@ fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sampl
         differential: 0.0,
         duration_s: None,
     };
-    Ok(trial::sail(boat, &mut afloat, &plan)?.samples)
+    Ok(trial::sail(boat, &mut trial_boat, &plan)?.samples)
 }
 
 /// The summary as text.

@@ -4,7 +4,7 @@ use crate::plot::trial as plot;
 use crate::screen;
 use crate::water_args::{self, WaterArgs, degrees, within};
 use anyhow::{Context, Result, anyhow, bail};
-use arena::trial::{self, Afloat, Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start};
+use arena::trial::{self, Engine, Manoeuvre, Orders, Plan, Sample, Sheet, Start, TrialBoat};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use game::boat::{Boat, Drive};
 use game::{SimTime, angle};
@@ -158,15 +158,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     water_args::tell_drawn(args.water.seed, &drawn);
     let start = args.start.start(&boat)?;
     let tick = SimTime::from_s(args.tick_s.unwrap_or(usual_tick_s(&boat)));
-    let mut afloat = Afloat::new(&boat, &args.water.sea()?, tick, args.water.seed, &start);
+    let mut trial_boat = TrialBoat::new(&boat, &args.water.sea()?, tick, args.water.seed, &start);
     match (&args.orders, args.manoeuvre) {
-        (Some(path), _) => replay(args, path, &boat, &mut afloat),
-        (None, Some(named)) => manoeuvre(args, named, &boat, &mut afloat),
+        (Some(path), _) => replay(args, path, &boat, &mut trial_boat),
+        (None, Some(named)) => manoeuvre(args, named, &boat, &mut trial_boat),
         (None, None) => bail!("neither --orders nor --manoeuvre"),
     }
 }
 
-fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, afloat: &mut Afloat) -> Result<ExitCode> {
+fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, trial_boat: &mut TrialBoat) -> Result<ExitCode> {
     let how = &args.manoeuvring;
     let plan = Plan {
         manoeuvre: named,
@@ -178,7 +178,7 @@ fn manoeuvre(args: &Args, named: Manoeuvre, boat: &Boat, afloat: &mut Afloat) ->
         differential: how.differential_pct.unwrap_or(how.angle_deg) / 100.0,
         duration_s: args.duration_s,
     };
-    let sailed = trial::sail(boat, afloat, &plan)?;
+    let sailed = trial::sail(boat, trial_boat, &plan)?;
     let file = |given: &Option<PathBuf>, ending: &str| {
         given.clone().unwrap_or_else(|| PathBuf::from(format!("{}_{}.{ending}", boat.name, named.name())))
     };
@@ -201,13 +201,13 @@ fn table(measures: &[trial::Measure]) -> String {
     measures.iter().map(line).collect()
 }
 
-fn replay(args: &Args, path: &Path, boat: &Boat, afloat: &mut Afloat) -> Result<ExitCode> {
+fn replay(args: &Args, path: &Path, boat: &Boat, trial_boat: &mut TrialBoat) -> Result<ExitCode> {
     let orders = Orders::of_sheet(&read_sheet(path)?, &Engine::new(boat))?;
     let duration = args.duration_s.map_or(orders.end(), SimTime::from_s);
     if duration < trial::ROW {
         bail!("{}: the series ends where it begins; say with --duration-s how long its command holds", path.display());
     }
-    let samples = trial::replay(afloat, &orders, duration)?;
+    let samples = trial::replay(trial_boat, &orders, duration)?;
     let csv = args.csv.as_deref().ok_or_else(|| anyhow!("--orders needs --csv FILE for the track"))?;
     write_track(csv, &samples, args.with_orders)?;
     if let Some(plot) = &args.plot {

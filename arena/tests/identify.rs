@@ -1,7 +1,7 @@
 //! Known parameters come back from noisy data, and a log that does not say them is noticed.
 
 use arena::identify::{self, Fit, Log, NoFit, Setting};
-use arena::trial::{self, Afloat, Engine, Orders, Sheet, Start};
+use arena::trial::{self, Engine, Orders, Sheet, Start, TrialBoat};
 use game::boat::{Boat, Drive};
 use game::stream::Stream;
 use game::{SimTime, scenario};
@@ -47,8 +47,8 @@ fn orders_csv(stream: &mut Stream) -> String {
 fn log_csv(boat: &Boat, orders_csv: &str, stream: &mut Stream) -> String {
     let sheet = Sheet::read("orders.csv", orders_csv.as_bytes()).expect("it is CSV");
     let orders = Orders::of_sheet(&sheet, &Engine::new(boat)).expect("it understands them");
-    let mut afloat = Afloat::new(boat, &trial::still_sea(), TICK, 1, &Start::default());
-    let mut samples = trial::replay(&mut afloat, &orders, orders.end()).expect("it sails");
+    let mut trial_boat = TrialBoat::new(boat, &trial::still_sea(), TICK, 1, &Start::default());
+    let mut samples = trial::replay(&mut trial_boat, &orders, orders.end()).expect("it sails");
     for sample in &mut samples {
         let [x, y, heading, surge, sway, yaw] = NOISE.map(|sigma| sigma * stream.normal());
         (sample.at.east, sample.at.north) = (sample.at.east + x, sample.at.north + y);
@@ -107,8 +107,8 @@ fn without_noise_they_come_back_to_four_places() {
     let orders = orders_csv(&mut Stream::new(9, "test"));
     let sheet = Sheet::read("orders.csv", orders.as_bytes()).expect("it is CSV");
     let series = Orders::of_sheet(&sheet, &Engine::new(&truth)).expect("it understands them");
-    let mut afloat = Afloat::new(&truth, &trial::still_sea(), TICK, 1, &Start::default());
-    let samples = trial::replay(&mut afloat, &series, series.end()).expect("it sails");
+    let mut trial_boat = TrialBoat::new(&truth, &trial::still_sea(), TICK, 1, &Start::default());
+    let samples = trial::replay(&mut trial_boat, &series, series.end()).expect("it sails");
     let mut text = vec![];
     trial::write_csv(&samples, true, &mut text).expect("a vector takes everything");
     let fit = fitted(&wrong(&truth), &String::from_utf8_lossy(&text), &[]).unwrap_or_else(|e| panic!("{e}"));

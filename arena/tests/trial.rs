@@ -1,6 +1,6 @@
 //! A boat in a trial is the boat of a game: same law, same sea.
 
-use arena::trial::{self, Afloat, Command, Start};
+use arena::trial::{self, Command, Start, TrialBoat};
 use game::{Ned, Order, Pose, Scenario, SimTime, scenario};
 use sim::World;
 use std::path::Path;
@@ -28,15 +28,15 @@ fn a_trial_sails_as_a_game_does() {
             scenario::load_boat(&scenarios().join(format!("boats/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"));
         let tick = SimTime::from_s(tick_s);
         let mut world = World::of_game(&game_of(&boat, &sea, tick), 1).expect("there is room");
-        let mut afloat = Afloat::new(&boat, &sea, tick, 1, &Start::default());
+        let mut trial_boat = TrialBoat::new(&boat, &sea, tick, 1, &Start::default());
         let start = world.state().boats[0].pose.at;
         for second in 0..20 {
             let (heading_rad, speed_m_s) = (0.1 * f64::from(second), 1.5);
             for _ in 0..(1.0 / tick_s).round() as u32 {
                 world.step(&[Order::Steer { heading_rad, speed_m_s }, Order::Hold]);
-                afloat.step(Command::Steer { heading_rad, speed_m_s });
+                trial_boat.step(Command::Steer { heading_rad, speed_m_s });
             }
-            let (game, trial) = (world.state().boats[0], afloat.sample(0.0, Command::Hold));
+            let (game, trial) = (world.state().boats[0], trial_boat.sample(0.0, Command::Hold));
             let apart_m = (game.pose.at - start).distance(trial.at);
             assert!(apart_m < 1e-9, "{name} after {second} s: {apart_m} m apart");
             assert!((game.pose.psi_rad - trial.psi_rad).abs() < 1e-9, "{name} after {second} s");
@@ -50,10 +50,10 @@ fn a_trial_sails_as_a_game_does() {
 #[test]
 fn a_trial_does_not_end_at_the_edge_of_the_field() {
     let boat = scenario::load_boat(&scenarios().join("boats/surveyor_m1_8.toml")).unwrap_or_else(|e| panic!("{e}"));
-    let mut afloat = Afloat::new(&boat, &trial::still_sea(), SimTime::from_s(0.05), 1, &Start::default());
+    let mut trial_boat = TrialBoat::new(&boat, &trial::still_sea(), SimTime::from_s(0.05), 1, &Start::default());
     for _ in 0..20_000 {
-        afloat.step(Command::Steer { heading_rad: 0.0, speed_m_s: 2.0 });
+        trial_boat.step(Command::Steer { heading_rad: 0.0, speed_m_s: 2.0 });
     }
-    let end = afloat.sample(1000.0, Command::Hold);
+    let end = trial_boat.sample(1000.0, Command::Hold);
     assert!(end.at.north > 1980.0 && (end.nu.surge - 2.0).abs() < 0.01, "{end:?}");
 }

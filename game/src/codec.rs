@@ -3,7 +3,7 @@
 //! This is what ROS 2 and its tools read. Every message begins with a [`Stamp`], and the version in
 //! it is looked at before anything else, so that a newer peer is a clear error and not nonsense.
 
-use crate::message::{Message, Stamp};
+use crate::stamp::{Message, Stamp};
 use byteorder::LittleEndian;
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -189,3 +189,86 @@ impl Event {
             && team.is_none_or(|team| team.index() < scenario.teams.len())
     }
 }
+
+/// An event as two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EventRecord {
+    /// Physics tick.
+    pub tick: u64,
+    /// Simulated time, ns.
+    pub at_ns: SimTime,
+    /// What happened: the constants of `EventRecord.msg`.
+    pub kind: u8,
+    /// The vehicle it happened to (the winning team, for `ENDED`), or -1.
+    pub subject: i32,
+    /// The flag, the tagger or the other vehicle, or -1.
+    pub object: i32,
+}
+
+impl From<Logged> for EventRecord {
+    fn from(logged: Logged) -> EventRecord {
+        let v = |vehicle: VehicleId| i32::from(vehicle.0);
+        let f = |flag: FlagId| i32::from(flag.0);
+        let (kind, subject, object) = match logged.event {
+            Event::Grabbed { vehicle, flag } => (0, v(vehicle), f(flag)),
+            Event::Captured { vehicle, flag } => (1, v(vehicle), f(flag)),
+            Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => (2, v(vehicle), v(by)),
+            Event::Tagged { vehicle, cause: TagCause::Boundary } => (3, v(vehicle), -1),
+            Event::Untagged { vehicle } => (4, v(vehicle), -1),
+            Event::FlagReturned { vehicle, flag } => (5, v(vehicle), f(flag)),
+            Event::LeftField { vehicle } => (6, v(vehicle), -1),
+            Event::ReturnedToField { vehicle } => (7, v(vehicle), -1),
+            Event::Collided { first, second } => (8, v(first), v(second)),
+            Event::EnteredKeepout { vehicle } => (9, v(vehicle), -1),
+            Event::Disabled { vehicle } => (10, v(vehicle), -1),
+            Event::Enabled { vehicle } => (11, v(vehicle), -1),
+            Event::AgentLost { vehicle } => (12, v(vehicle), -1),
+            Event::AgentBack { vehicle } => (13, v(vehicle), -1),
+            Event::Quarantined { vehicle } => (14, v(vehicle), -1),
+            Event::NavLost { vehicle } => (16, v(vehicle), -1),
+            Event::NavBack { vehicle } => (17, v(vehicle), -1),
+            Event::EStopped => (18, -1, -1),
+            Event::Released => (19, -1, -1),
+            Event::Halted => (20, -1, -1),
+            Event::WentOn => (21, -1, -1),
+            Event::Ended { winner } => (15, winner.map_or(-1, |team| i32::from(team.0)), -1),
+        };
+        EventRecord { tick: logged.tick, at_ns: logged.at, kind, subject, object }
+    }
+}
+
+impl EventRecord {
+    /// The event, if kind and numbers are ones we know.
+    #[must_use]
+    pub fn logged(&self) -> Option<Logged> {
+        let vehicle = u16::try_from(self.subject).ok().map(VehicleId);
+        let other = u16::try_from(self.object).ok().map(VehicleId);
+        let flag = u8::try_from(self.object).ok().map(FlagId);
+        let event = match self.kind {
+            0 => Event::Grabbed { vehicle: vehicle?, flag: flag? },
+            1 => Event::Captured { vehicle: vehicle?, flag: flag? },
+            2 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Opponent(other?) },
+            3 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Boundary },
+            4 => Event::Untagged { vehicle: vehicle? },
+            5 => Event::FlagReturned { vehicle: vehicle?, flag: flag? },
+            6 => Event::LeftField { vehicle: vehicle? },
+            7 => Event::ReturnedToField { vehicle: vehicle? },
+            8 => Event::Collided { first: vehicle?, second: other? },
+            9 => Event::EnteredKeepout { vehicle: vehicle? },
+            10 => Event::Disabled { vehicle: vehicle? },
+            11 => Event::Enabled { vehicle: vehicle? },
+            12 => Event::AgentLost { vehicle: vehicle? },
+            13 => Event::AgentBack { vehicle: vehicle? },
+            14 => Event::Quarantined { vehicle: vehicle? },
+            15 => Event::Ended { winner: u8::try_from(self.subject).ok().map(TeamId) },
+            16 => Event::NavLost { vehicle: vehicle? },
+            17 => Event::NavBack { vehicle: vehicle? },
+            18 => Event::EStopped,
+            19 => Event::Released,
+            20 => Event::Halted,
+            21 => Event::WentOn,
+            _ => return None,
+        };
+        Some(Logged { tick: self.tick, at: self.at_ns, event })
+    }
+}

@@ -50,7 +50,7 @@ impl Message for NavReport {
 
 impl Message for ExternalOrder {
     const SCHEMA: &'static str = "squall_msgs/msg/ExternalOrder";
-    const VERSION: u8 = 1;
+    const VERSION: u8 = 2;
     const DEFINITION: &'static str = include_str!("../msg/ExternalOrder.msg");
     fn stamp(&self) -> &Stamp {
         &self.stamp

@@ -4,39 +4,16 @@
 //! tools which know the `.msg` files read our bytes without us. `-1` stands for "none".
 //! The low-rate control plane ([`JoinRequest`], [`JoinReply`], [`Control`]) is JSON.
 
-use crate::event::{Event, Logged, TagCause};
-use crate::id::{FlagId, TeamId, VehicleId};
+pub use crate::event::EventRecord;
+pub use crate::stamp::{Message, Stamp};
+
+use crate::event::Logged;
+use crate::id::VehicleId;
 use crate::order::Order;
-use crate::picture::{FlagView, Nav, Picture};
+use crate::picture::{FlagView, Nav};
 use crate::scenario::Scenario;
-use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
-
-/// A per-tick message: named and versioned.
-pub trait Message {
-    /// The ROS 2 name of the message, as `Encoding` carries it.
-    const SCHEMA: &'static str;
-    /// The version of its layout.
-    const VERSION: u8;
-    /// The oldest version that is still read: its layout is the same, but not what all of it means.
-    const OLDEST: u8 = Self::VERSION;
-    /// The `.msg` definition.
-    const DEFINITION: &'static str;
-    /// When it holds, and which one it is.
-    fn stamp(&self) -> &Stamp;
-}
-
-/// How every message begins.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Stamp {
-    /// Simulated time at which the content holds, ns.
-    pub valid_ns: SimTime,
-    /// Decision tick, counted from 0.
-    pub seq: u64,
-    /// Version of the message's layout.
-    pub version: u8,
-}
 
 /// The truth about everything, for observers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -53,7 +30,7 @@ pub struct Frame {
     pub score: Vec<u32>,
     /// What happened since the frame before.
     pub events: Vec<EventRecord>,
-    /// Whether somebody ashore has stopped all boats, or makes them hold.
+    /// Whether people ashore have stopped all boats, or make them hold.
     pub stopped: bool,
     /// Whether the game is over.
     pub over: bool,
@@ -97,27 +74,12 @@ pub struct VehicleTruth {
     pub disabled: bool,
     /// Whether it is outside of the field.
     pub outside: bool,
-    /// Whether its mind is lost.
+    /// Whether its agent is lost.
     pub agent_lost: bool,
     /// Whether its numbers went bad.
     pub quarantined: bool,
-    /// Whether it is a real one that was not heard of for too long.
+    /// Whether it is a real one whose last report is too old.
     pub nav_lost: bool,
-}
-
-/// An event as two numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct EventRecord {
-    /// Physics tick.
-    pub tick: u64,
-    /// Simulated time, ns.
-    pub at_ns: SimTime,
-    /// What happened: the constants of `EventRecord.msg`.
-    pub kind: u8,
-    /// The vehicle it happened to (the winning team, for `ENDED`), or -1.
-    pub subject: i32,
-    /// The flag, the tagger or the other vehicle, or -1.
-    pub object: i32,
 }
 
 /// The orders of one agent process, for all boats it minds.
@@ -131,29 +93,33 @@ pub struct Orders {
     pub orders: Vec<VehicleOrder>,
 }
 
-/// One order for one boat.
+/// One order for one boat. Numbers that its kind does not have are zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleOrder {
     /// The boat.
     pub vehicle: VehicleId,
     /// 0 hold, 1 steer, 2 thrust.
     pub kind: u8,
-    /// Heading in rad (steer) or port thrust in -1 to 1 (thrust).
-    pub first: f64,
-    /// Speed in m/s (steer) or starboard thrust in -1 to 1 (thrust).
-    pub second: f64,
+    /// To steer: the heading, rad clockwise from north.
+    pub heading_rad: f64,
+    /// To steer: the speed ahead, m/s.
+    pub speed_m_s: f64,
+    /// Thrust of the port thruster, -1 to 1.
+    pub port: f64,
+    /// Thrust of the starboard thruster, -1 to 1.
+    pub starboard: f64,
 }
 
 impl VehicleOrder {
     /// The order for `vehicle` in wire form.
     #[must_use]
     pub fn new(vehicle: VehicleId, order: Order) -> VehicleOrder {
-        let (kind, first, second) = match order {
-            Order::Hold => (0, 0.0, 0.0),
-            Order::Steer { heading_rad, speed_m_s } => (1, heading_rad, speed_m_s),
-            Order::Thrust { port, starboard } => (2, port, starboard),
-        };
-        VehicleOrder { vehicle, kind, first, second }
+        let hold = VehicleOrder { vehicle, kind: 0, heading_rad: 0.0, speed_m_s: 0.0, port: 0.0, starboard: 0.0 };
+        match order {
+            Order::Hold => hold,
+            Order::Steer { heading_rad, speed_m_s } => VehicleOrder { kind: 1, heading_rad, speed_m_s, ..hold },
+            Order::Thrust { port, starboard } => VehicleOrder { kind: 2, port, starboard, ..hold },
+        }
     }
 
     /// The order, if its kind is one we know.
@@ -161,78 +127,10 @@ impl VehicleOrder {
     pub fn order(&self) -> Option<Order> {
         match self.kind {
             0 => Some(Order::Hold),
-            1 => Some(Order::Steer { heading_rad: self.first, speed_m_s: self.second }),
-            2 => Some(Order::Thrust { port: self.first, starboard: self.second }),
+            1 => Some(Order::Steer { heading_rad: self.heading_rad, speed_m_s: self.speed_m_s }),
+            2 => Some(Order::Thrust { port: self.port, starboard: self.starboard }),
             _ => None,
         }
-    }
-}
-
-impl From<Logged> for EventRecord {
-    fn from(logged: Logged) -> EventRecord {
-        let v = |vehicle: VehicleId| i32::from(vehicle.0);
-        let f = |flag: FlagId| i32::from(flag.0);
-        let (kind, subject, object) = match logged.event {
-            Event::Grabbed { vehicle, flag } => (0, v(vehicle), f(flag)),
-            Event::Captured { vehicle, flag } => (1, v(vehicle), f(flag)),
-            Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => (2, v(vehicle), v(by)),
-            Event::Tagged { vehicle, cause: TagCause::Boundary } => (3, v(vehicle), -1),
-            Event::Untagged { vehicle } => (4, v(vehicle), -1),
-            Event::FlagReturned { vehicle, flag } => (5, v(vehicle), f(flag)),
-            Event::LeftField { vehicle } => (6, v(vehicle), -1),
-            Event::ReturnedToField { vehicle } => (7, v(vehicle), -1),
-            Event::Collided { first, second } => (8, v(first), v(second)),
-            Event::EnteredKeepout { vehicle } => (9, v(vehicle), -1),
-            Event::Disabled { vehicle } => (10, v(vehicle), -1),
-            Event::Enabled { vehicle } => (11, v(vehicle), -1),
-            Event::AgentLost { vehicle } => (12, v(vehicle), -1),
-            Event::AgentBack { vehicle } => (13, v(vehicle), -1),
-            Event::Quarantined { vehicle } => (14, v(vehicle), -1),
-            Event::NavLost { vehicle } => (16, v(vehicle), -1),
-            Event::NavBack { vehicle } => (17, v(vehicle), -1),
-            Event::EStopped => (18, -1, -1),
-            Event::Released => (19, -1, -1),
-            Event::Halted => (20, -1, -1),
-            Event::WentOn => (21, -1, -1),
-            Event::Ended { winner } => (15, winner.map_or(-1, |team| i32::from(team.0)), -1),
-        };
-        EventRecord { tick: logged.tick, at_ns: logged.at, kind, subject, object }
-    }
-}
-
-impl EventRecord {
-    /// The event, if kind and numbers are ones we know.
-    #[must_use]
-    pub fn logged(&self) -> Option<Logged> {
-        let vehicle = u16::try_from(self.subject).ok().map(VehicleId);
-        let other = u16::try_from(self.object).ok().map(VehicleId);
-        let flag = u8::try_from(self.object).ok().map(FlagId);
-        let event = match self.kind {
-            0 => Event::Grabbed { vehicle: vehicle?, flag: flag? },
-            1 => Event::Captured { vehicle: vehicle?, flag: flag? },
-            2 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Opponent(other?) },
-            3 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Boundary },
-            4 => Event::Untagged { vehicle: vehicle? },
-            5 => Event::FlagReturned { vehicle: vehicle?, flag: flag? },
-            6 => Event::LeftField { vehicle: vehicle? },
-            7 => Event::ReturnedToField { vehicle: vehicle? },
-            8 => Event::Collided { first: vehicle?, second: other? },
-            9 => Event::EnteredKeepout { vehicle: vehicle? },
-            10 => Event::Disabled { vehicle: vehicle? },
-            11 => Event::Enabled { vehicle: vehicle? },
-            12 => Event::AgentLost { vehicle: vehicle? },
-            13 => Event::AgentBack { vehicle: vehicle? },
-            14 => Event::Quarantined { vehicle: vehicle? },
-            15 => Event::Ended { winner: u8::try_from(self.subject).ok().map(TeamId) },
-            16 => Event::NavLost { vehicle: vehicle? },
-            17 => Event::NavBack { vehicle: vehicle? },
-            18 => Event::EStopped,
-            19 => Event::Released,
-            20 => Event::Halted,
-            21 => Event::WentOn,
-            _ => return None,
-        };
-        Some(Logged { tick: self.tick, at: self.at_ns, event })
     }
 }
 
@@ -252,18 +150,9 @@ impl Message for Frame {
     }
 }
 
-impl Message for Picture {
-    const SCHEMA: &'static str = "squall_msgs/msg/Picture";
-    const VERSION: u8 = 2;
-    const DEFINITION: &'static str = include_str!("../msg/Picture.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
-}
-
 impl Message for Orders {
     const SCHEMA: &'static str = "squall_msgs/msg/Orders";
-    const VERSION: u8 = 1;
+    const VERSION: u8 = 2;
     const DEFINITION: &'static str = include_str!("../msg/Orders.msg");
     fn stamp(&self) -> &Stamp {
         &self.stamp

@@ -1,10 +1,11 @@
 //! What a team may know: its own boats, what it sees of the others, the flags, the score.
 //!
-//! A mind decides from this and nothing else. It is the same on the sea and in simulation.
+//! An agent decides from this and nothing else. It is the same on the sea and in simulation.
 
+use crate::event::EventRecord;
 use crate::frame::{Body, Ned, Pose, ned_from_body};
 use crate::id::{FlagId, TeamId, VehicleId};
-use crate::message::{EventRecord, Stamp};
+use crate::stamp::{Message, Stamp};
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
@@ -136,6 +137,15 @@ pub struct Contact {
 pub struct FlagView {
     /// The vehicle that carries it, or -1: it is at its home.
     pub carrier: i32,
+}
+
+impl Message for Picture {
+    const SCHEMA: &'static str = "squall_msgs/msg/Picture";
+    const VERSION: u8 = 2;
+    const DEFINITION: &'static str = include_str!("../msg/Picture.msg");
+    fn stamp(&self) -> &Stamp {
+        &self.stamp
+    }
 }
 
 impl Picture {

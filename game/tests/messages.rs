@@ -110,12 +110,11 @@ fn the_bytes_are_cdr_as_other_programs_read_it() {
     let mut want = vec![0, 1, 0, 0];
     want.extend(1_250_000_000_i64.to_le_bytes());
     want.extend(12_u64.to_le_bytes());
-    want.extend([1, 0, 0, 0, 0, 0, 0, 0]);
+    want.extend([2, 0, 0, 0, 0, 0, 0, 0]);
     want.extend((u64::MAX - 5).to_le_bytes());
     want.extend(1_u32.to_le_bytes());
     want.extend([3, 0, 1, 0]);
-    want.extend(0.5_f64.to_le_bytes());
-    want.extend(2.0_f64.to_le_bytes());
+    [0.5_f64, 2.0, 0.0, 0.0].iter().for_each(|number| want.extend(number.to_le_bytes()));
     let steer = Order::Steer { heading_rad: 0.5, speed_m_s: 2.0 };
     assert_eq!(encode(&Orders { orders: vec![VehicleOrder::new(VehicleId(3), steer)], ..orders() }), want);
 }
@@ -147,6 +146,15 @@ fn say() -> Say {
 fn proposal() -> PolicyProposal {
     let stamp = stamp::<PolicyProposal>();
     PolicyProposal { stamp, vehicle: VehicleId(3), course_rad: -0.1, speed_m_s: 0.1 + 0.2 }
+}
+
+#[test]
+fn inputs_are_read_as_they_were_written_before_orders_had_a_time_and_no_older() {
+    let inputs = |version| Inputs { stamp: Stamp { version, ..stamp::<Inputs>() }, inputs: vec![] };
+    for (version, is_read) in [(0, false), (1, true), (2, true), (3, false)] {
+        let read = decode::<Inputs>(&encode(&inputs(version)));
+        assert_eq!(read.is_ok_and(|read| read == inputs(version)), is_read, "version {version}");
+    }
 }
 
 /// A message comes back as it was; cut short, lengthened or of another version it is refused.

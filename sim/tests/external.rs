@@ -90,7 +90,7 @@ fn a_real_boat_is_tagged_and_its_effective_command_is_what_the_rules_make_of_its
     assert!(wrap_pi(heading_rad - rad_from_compass_deg(270.0)).abs() < 1e-9 && speed_m_s == 1.5);
     // What goes to the boat is sound.
     let sent = game::message::VehicleOrder::new(REAL, contest.effective_command(REAL));
-    assert!(sent.order().expect("a known kind").check().is_ok() && ExternalOrder::VERSION == 1);
+    assert!(sent.order().expect("a known kind").check().is_ok() && ExternalOrder::VERSION == 2);
     // Nobody drives a boat without an agent.
     contest.lose_agent(REAL);
     assert_eq!(contest.effective_command(REAL), Order::Hold);

@@ -86,7 +86,7 @@ fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
     // Non-finite numbers.
     let nan = Order::Steer { heading_rad: f64::NAN, speed_m_s: f64::INFINITY };
     send(&rogue.orders(vec![VehicleOrder::new(VehicleId(3), nan)]));
-    let unknown = VehicleOrder { vehicle: VehicleId(3), kind: 77, first: 0.0, second: 0.0 };
+    let unknown = VehicleOrder { kind: 77, ..VehicleOrder::new(VehicleId(3), Order::Hold) };
     send(&rogue.orders(vec![unknown]));
     // Honest for a while, then nothing more: the others play on after the sim's patience.
     for _ in 0..20 {

@@ -3,6 +3,7 @@
 use super::chart::Chart;
 use super::talk::Ears;
 use game::picture::{Contact, OwnBoat};
+use game::rules::Ability;
 use game::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
 use game::{FlagId, Ned, Picture, SimTime, VehicleId};
 
@@ -241,10 +242,7 @@ impl Values for Scene {
             Fact::OwnSide => truth(self.chart.is_own_side(self.at)),
             Fact::Outside => truth(self.own.outside),
             Fact::Disabled => truth(self.own.disabled),
-            Fact::CanTag => {
-                let able = !self.own.tagged && !self.own.disabled && !self.own.outside;
-                truth(able && self.now >= self.own.tag_ready_ns)
-            }
+            Fact::CanTag => truth(Ability::from(&self.own).may_tag(self.now)),
             Fact::FlagTaken => truth(self.chart.own_flags.iter().any(|(flag, _)| self.carried(*flag).is_some())),
             Fact::EnemyFlagTaken => truth(self.chart.targets.iter().any(|(flag, _)| self.carried(*flag).is_some())),
             Fact::MateHasFlag => {

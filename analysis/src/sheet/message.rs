@@ -5,7 +5,7 @@ use super::{SheetError, begin, time};
 use crate::sentence::{Line, Lines};
 use game::external::{ExternalOrder, LinkBytes, NavReport};
 use game::input::{Input, InputRecord, Inputs};
-use game::message::{Frame, PolicyProposal, Say, SeaView, VehicleOrder, VehicleTruth, Word};
+use game::message::{Frame, PolicyProposal, Say, SeaView, VehicleTruth, Word};
 use game::outcome::EventOutcome;
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
 use game::{Order, Picture, Scenario, SimTime, VehicleId};
@@ -304,11 +304,13 @@ fn order_word(order: Order) -> &'static str {
 }
 
 fn put_order(row: &mut Row<'_>, order: Option<Order>) {
-    let VehicleOrder { kind, first, second, .. } = VehicleOrder::new(VehicleId(0), order.unwrap_or_default());
-    for (column, name) in ["heading_rad", "speed_m_s", "port", "starboard"].into_iter().enumerate() {
-        let value = if column % 2 == 0 { first } else { second };
-        let is_its = usize::from(kind) == 1 + column / 2;
-        row.put(name, if is_its { value.to_string() } else { String::new() });
+    let numbers = match order {
+        Some(Order::Steer { heading_rad, speed_m_s }) => [Some(heading_rad), Some(speed_m_s), None, None],
+        Some(Order::Thrust { port, starboard }) => [None, None, Some(port), Some(starboard)],
+        Some(Order::Hold) | None => [None; 4],
+    };
+    for (name, number) in ["heading_rad", "speed_m_s", "port", "starboard"].into_iter().zip(numbers) {
+        row.put(name, number.map_or(String::new(), |number| number.to_string()));
     }
 }
 

@@ -1,7 +1,7 @@
 //! The model sailed along a log: what it says at each of the log's rows.
 
 use super::log::{HEADING, Log, SURGE, SWAY, YAW_RATE};
-use crate::trial::{Afloat, Command, Start};
+use crate::trial::{Command, Start, TrialBoat};
 use game::angle::wrap_pi;
 use game::boat::Boat;
 use game::sea::Sea;
@@ -33,25 +33,25 @@ pub(super) fn rollout(
     segments: &[usize],
     starts: &[Point],
 ) -> Option<Vec<Point>> {
-    let mut afloat = Afloat::new(boat, &setting.sea, setting.tick, setting.seed, &Start::default());
+    let mut trial_boat = TrialBoat::new(boat, &setting.sea, setting.tick, setting.seed, &Start::default());
     let mut points = vec![[f64::NAN; 6]; segments[0]];
     for (segment, start) in segments.windows(2).zip(starts) {
         // The thrusters take up what they were told before; where the boat goes meanwhile does not matter.
-        while afloat.now() + SimTime(setting.tick.0 / 2) < log.times[segment[0]] {
-            afloat.step(log.orders.at(afloat.now()));
+        while trial_boat.now() + SimTime(setting.tick.0 / 2) < log.times[segment[0]] {
+            trial_boat.step(log.orders.at(trial_boat.now()));
         }
         let pose = Pose { at: Ned::from_xy(start[0], start[1]), psi_rad: wrap_pi(start[HEADING]) };
-        afloat.relocate(pose, Planar { surge: start[SURGE], sway: start[SWAY], yaw: start[YAW_RATE] });
-        let mut before = (afloat.now(), *start);
+        trial_boat.relocate(pose, Planar { surge: start[SURGE], sway: start[SWAY], yaw: start[YAW_RATE] });
+        let mut before = (trial_boat.now(), *start);
         let mut now = before;
         for row in segment[0]..segment[1] {
             while now.0 < log.times[row] {
                 before = now;
-                afloat.step(log.orders.at(afloat.now()));
-                if !afloat.is_sound() {
+                trial_boat.step(log.orders.at(trial_boat.now()));
+                if !trial_boat.is_sound() {
                     return None;
                 }
-                now = (afloat.now(), point(&afloat, before.1[HEADING]));
+                now = (trial_boat.now(), point(&trial_boat, before.1[HEADING]));
             }
             points.push(between(before, now, log.times[row]));
         }
@@ -60,8 +60,8 @@ pub(super) fn rollout(
 }
 
 /// Where the boat is and how it moves; its heading within half a turn of the one before.
-fn point(afloat: &Afloat, heading_before: f64) -> Point {
-    let sample = afloat.sample(0.0, Command::Hold);
+fn point(trial_boat: &TrialBoat, heading_before: f64) -> Point {
+    let sample = trial_boat.sample(0.0, Command::Hold);
     let heading = heading_before + wrap_pi(sample.psi_rad - heading_before);
     [sample.at.east, sample.at.north, heading, sample.nu.surge, sample.nu.sway, sample.nu.yaw]
 }

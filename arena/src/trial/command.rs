@@ -111,7 +111,7 @@ impl Engine {
         }
     }
 
-    /// The mean throttle that settings of `Afloat::settings` are, as a share of full.
+    /// The mean throttle that settings of `TrialBoat::settings` are, as a share of full.
     pub(crate) fn throttle(&self, settings: [f64; 2]) -> f64 {
         match self {
             Engine::Thrusters(model, _) => {

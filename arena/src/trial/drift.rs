@@ -49,7 +49,7 @@ const STAYS_M_S: f64 = 1e-8;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::{Afloat, Command, ROW, Start, still_sea, ticks_per_row};
+    use crate::trial::{Command, ROW, Start, TrialBoat, still_sea, ticks_per_row};
     use game::SimTime;
     use game::sea::{Gusts, Wind};
     use sim::sea::Summary;
@@ -71,12 +71,12 @@ mod tests {
             let want_m_s =
                 Summary::new(&sea, &boat, &crate::trial::open_field(), 1).wind.expect("there is wind").drift_m_s;
 
-            let mut afloat = Afloat::new(&boat, &sea, tick, 1, &Start::default());
+            let mut trial_boat = TrialBoat::new(&boat, &sea, tick, 1, &Start::default());
             let per_row = ticks_per_row(tick).expect("it divides");
             let samples: Vec<Sample> = (0..3000_i64)
                 .map(|row| {
-                    (0..per_row).for_each(|_| afloat.step(Command::Hold));
-                    afloat.sample((ROW * row).as_s(), Command::Hold)
+                    (0..per_row).for_each(|_| trial_boat.step(Command::Hold));
+                    trial_boat.sample((ROW * row).as_s(), Command::Hold)
                 })
                 .collect();
             let drift = Drift::of(&samples).expect("it was sailed");

@@ -3,10 +3,10 @@
 //! Definitions follow IMO resolution MSC.137(76) and its explanatory notes MSC/Circ.1053, for boats that steer by two
 //! thrusters where those speak of a rudder: see [`Manoeuvre`].
 
-use super::afloat::Afloat;
 use super::command::{Command, Engine};
 use super::replay::{ROW, Unsound, ticks_per_row};
 use super::sample::Sample;
+use super::trial_boat::TrialBoat;
 use game::SimTime;
 use game::angle::wrap_pi;
 use game::boat::{Boat, Drive};
@@ -128,31 +128,31 @@ impl Helm {
     }
 }
 
-/// Sails `plan` with a boat that has just been set afloat; `afloat` is at its start, pointing along the course.
+/// Sails `plan` with a boat that has just been put into the water; `trial_boat` is at its start, pointing along the course.
 ///
 /// # Errors
 /// [`Unsound`] where the boat's numbers go bad.
 ///
 /// # Panics
 /// If the tick does not fit into [`ROW`].
-pub fn sail(boat: &Boat, afloat: &mut Afloat, plan: &Plan) -> Result<Sailed, Unsound> {
-    let per_row = ticks_per_row(afloat.tick()).expect("the tick was checked");
+pub fn sail(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan) -> Result<Sailed, Unsound> {
+    let per_row = ticks_per_row(trial_boat.tick()).expect("the tick was checked");
     let is_kinematic = matches!(boat.drive, Drive::Kinematic(_));
     let mut helm = Helm { is_kinematic, throttle: 1.0 };
     let mut approach_m_s = 0.0;
     if matches!(plan.manoeuvre, Manoeuvre::TurningCircle | Manoeuvre::Zigzag | Manoeuvre::CrashStop) {
-        (approach_m_s, helm.throttle) = approach(boat, afloat, plan, per_row)?;
+        (approach_m_s, helm.throttle) = approach(boat, trial_boat, plan, per_row)?;
     }
-    afloat.set_origin();
-    let start = afloat.now();
+    trial_boat.set_origin();
+    let start = trial_boat.now();
     let mut sailed = Sailed { samples: vec![], approach_m_s, switches: vec![] };
     let mut side = plan.side;
     let mut off_course_rad = 0.0;
-    let (mut turned_rad, mut psi_rad) = (0.0, afloat.pose().psi_rad);
+    let (mut turned_rad, mut psi_rad) = (0.0, trial_boat.pose().psi_rad);
     loop {
         let t_s = (ROW * sailed.samples.len() as i64).as_s();
         let mut told = command(plan, helm, side);
-        let sample = afloat.sample(t_s, told);
+        let sample = trial_boat.sample(t_s, told);
         turned_rad += wrap_pi(sample.psi_rad - psi_rad);
         psi_rad = sample.psi_rad;
         sailed.samples.push(sample);
@@ -162,23 +162,23 @@ pub fn sail(boat: &Boat, afloat: &mut Afloat, plan: &Plan) -> Result<Sailed, Uns
         for _ in 0..per_row {
             if plan.manoeuvre == Manoeuvre::Zigzag {
                 // Turned on, not wrapped: a boat that spins has not come back.
-                off_course_rad += wrap_pi(afloat.pose().psi_rad - plan.course_rad - off_course_rad);
+                off_course_rad += wrap_pi(trial_boat.pose().psi_rad - plan.course_rad - off_course_rad);
                 if side * off_course_rad > plan.switch_rad {
                     side = -side;
                     told = command(plan, helm, side);
-                    sailed.switches.push((afloat.now() - start).as_s());
+                    sailed.switches.push((trial_boat.now() - start).as_s());
                 }
             }
-            afloat.step(told);
+            trial_boat.step(told);
         }
-        if !afloat.is_sound() {
+        if !trial_boat.is_sound() {
             return Err(Unsound { t_s });
         }
     }
 }
 
 /// The straight approach: the speed at its end, m/s, and the throttle as a share of full.
-fn approach(boat: &Boat, afloat: &mut Afloat, plan: &Plan, per_row: u32) -> Result<(f64, f64), Unsound> {
+fn approach(boat: &Boat, trial_boat: &mut TrialBoat, plan: &Plan, per_row: u32) -> Result<(f64, f64), Unsound> {
     let speed_m_s = plan.approach_m_s.unwrap_or_else(|| boat.speed_max_m_s());
     let course = Command::Steer { heading_rad: plan.course_rad, speed_m_s };
     let engine = Engine::new(boat);
@@ -186,13 +186,13 @@ fn approach(boat: &Boat, afloat: &mut Afloat, plan: &Plan, per_row: u32) -> Resu
     let last_rows = (MEAN_S / ROW.as_s()).round() as i64;
     let (mut speed_sum, mut throttle_sum, mut count) = (0.0, 0.0, 0.0_f64);
     for row in 1..=rows {
-        (0..per_row).for_each(|_| afloat.step(course));
-        if !afloat.is_sound() {
+        (0..per_row).for_each(|_| trial_boat.step(course));
+        if !trial_boat.is_sound() {
             return Err(Unsound { t_s: (ROW * row).as_s() - plan.approach_s });
         }
         if row > rows - last_rows {
-            speed_sum += afloat.sample(0.0, course).speed_m_s();
-            throttle_sum += engine.throttle(afloat.settings());
+            speed_sum += trial_boat.sample(0.0, course).speed_m_s();
+            throttle_sum += engine.throttle(trial_boat.settings());
             count += 1.0;
         }
     }

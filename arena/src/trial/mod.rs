@@ -2,7 +2,6 @@
 //!
 //! Open [`replay`] first. Files, units and plots are the shell's; here is what happens to the boat.
 
-mod afloat;
 mod command;
 mod drift;
 mod manoeuvre;
@@ -11,9 +10,9 @@ mod orders;
 mod replay;
 mod sample;
 mod sheet;
+mod trial_boat;
 mod water;
 
-pub use afloat::{Afloat, Start};
 pub use command::{Command, Engine, Pair};
 pub use drift::Drift;
 pub use manoeuvre::{Manoeuvre, Plan, Sailed, sail, turned_rad};
@@ -22,4 +21,5 @@ pub use orders::{LONGEST_S, Orders};
 pub use replay::{ROW, Unsound, replay, ticks_per_row};
 pub use sample::{COLUMNS, Sample, decimal, write_csv};
 pub use sheet::{Mistake, Sheet};
+pub use trial_boat::{Start, TrialBoat};
 pub use water::{open_field, set_mean_current, still_sea};

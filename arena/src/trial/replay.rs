@@ -1,8 +1,8 @@
 //! Commands replayed: an open-loop series in, a boat's track out.
 
-use super::afloat::Afloat;
 use super::orders::Orders;
 use super::sample::Sample;
+use super::trial_boat::TrialBoat;
 use game::SimTime;
 use thiserror::Error;
 
@@ -37,20 +37,20 @@ pub fn ticks_per_row(tick: SimTime) -> Result<u32, String> {
 ///
 /// # Panics
 /// If the tick does not fit into [`ROW`]; see [`ticks_per_row`].
-pub fn replay(afloat: &mut Afloat, orders: &Orders, duration: SimTime) -> Result<Vec<Sample>, Unsound> {
-    let per_row = ticks_per_row(afloat.tick()).expect("the tick was checked");
-    let (start, rows) = (afloat.now(), duration.0 / ROW.0);
+pub fn replay(trial_boat: &mut TrialBoat, orders: &Orders, duration: SimTime) -> Result<Vec<Sample>, Unsound> {
+    let per_row = ticks_per_row(trial_boat.tick()).expect("the tick was checked");
+    let (start, rows) = (trial_boat.now(), duration.0 / ROW.0);
     let mut samples = Vec::with_capacity(rows as usize + 1);
-    samples.push(afloat.sample(0.0, orders.at(SimTime::ZERO)));
+    samples.push(trial_boat.sample(0.0, orders.at(SimTime::ZERO)));
     for row in 1..=rows {
         for _ in 0..per_row {
-            afloat.step(orders.at(afloat.now() - start));
+            trial_boat.step(orders.at(trial_boat.now() - start));
         }
         let t_s = (ROW * row).as_s();
-        if !afloat.is_sound() {
+        if !trial_boat.is_sound() {
             return Err(Unsound { t_s });
         }
-        samples.push(afloat.sample(t_s, orders.at(ROW * row)));
+        samples.push(trial_boat.sample(t_s, orders.at(ROW * row)));
     }
     Ok(samples)
 }

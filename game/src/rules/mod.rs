@@ -3,6 +3,7 @@
 //! [`Rules`] are data, from `scenarios/rules/*.toml`. The [`Referee`] sees where boats are and what time
 //! it is, never physics: the same referee judges a simulation, a replay and real water.
 
+mod ability;
 mod boundary;
 mod claim;
 mod collision;
@@ -16,6 +17,7 @@ mod referee;
 mod standing;
 mod tag;
 
+pub use ability::Ability;
 pub use directive::Directive;
 pub use referee::{Notes, Referee};
 pub use standing::{FlagStanding, Standing, VehicleStanding};

@@ -1,5 +1,6 @@
 //! How the game stands: who is tagged, who carries what, the score.
 
+use super::Ability;
 use crate::id::{FlagId, TeamId, VehicleId};
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
@@ -92,6 +93,6 @@ impl VehicleStanding {
     #[inline]
     #[must_use]
     pub fn acts(&self) -> bool {
-        self.in_play && !self.disabled && !self.tagged && !self.outside
+        self.in_play && Ability::from(self).acts()
     }
 }

@@ -1,7 +1,7 @@
 //! Tags: a boat on its own side stops the intruders it can reach.
 
 use super::claim::{Claim, settle};
-use super::{Notes, Referee, Standing};
+use super::{Ability, Notes, Referee, Standing};
 use crate::event::{Event, TagCause};
 use crate::frame::Ned;
 use crate::id::VehicleId;
@@ -53,7 +53,7 @@ impl Referee {
     fn may_tag(&self, standing: &Standing, tagger: usize, target: usize, at: &impl Fn(usize) -> Ned) -> bool {
         let (by, on) = (&standing.vehicles[tagger], &standing.vehicles[target]);
         let (own, other) = (self.team_of[tagger], self.team_of[target]);
-        let able = own != other && by.acts() && standing.now >= by.tag_ready;
+        let able = own != other && by.in_play && Ability::from(by).may_tag(standing.now);
         able && on.in_play
             && !on.tagged
             && !on.outside

@@ -25,7 +25,7 @@ pub struct Start {
 
 /// One boat in open water.
 #[derive(Clone)]
-pub struct Afloat {
+pub struct TrialBoat {
     craft: Craft,
     tick: SimTime,
     /// Where it is counted from.
@@ -50,10 +50,10 @@ struct Point {
     nu: Planar,
 }
 
-impl Afloat {
+impl TrialBoat {
     /// A boat at its start. `seed` chooses the randomness of the sea and of its sensors.
     #[must_use]
-    pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> Afloat {
+    pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> TrialBoat {
         let (field, kinds) = (open_field(), std::slice::from_ref(boat));
         let craft = match &boat.drive {
             Drive::Thrusters { .. } => {
@@ -77,7 +77,7 @@ impl Afloat {
                 Craft::Kinematic(Box::new(Point::new(KinematicModel::new(kinematic), sea, start)))
             }
         };
-        Afloat { craft, tick, origin: Ned::default() }
+        TrialBoat { craft, tick, origin: Ned::default() }
     }
 
     /// The length of a tick.

@@ -1,0 +1,45 @@
+//! Who may do things to others, and who may tag: the same for the referee and for whoever reckons with it.
+
+use super::VehicleStanding;
+use crate::picture::OwnBoat;
+use crate::time::SimTime;
+
+/// What decides whether a boat may act.
+#[derive(Clone, Copy, Debug)]
+pub struct Ability {
+    tagged: bool,
+    disabled: bool,
+    outside: bool,
+    tag_ready: SimTime,
+}
+
+impl Ability {
+    /// Whether it may do things to others: tag, grab, capture.
+    #[inline]
+    #[must_use]
+    pub fn acts(self) -> bool {
+        !(self.tagged || self.disabled || self.outside)
+    }
+
+    /// Whether it may tag an opponent that it can reach.
+    #[inline]
+    #[must_use]
+    pub fn may_tag(self, now: SimTime) -> bool {
+        self.acts() && now >= self.tag_ready
+    }
+}
+
+impl From<&VehicleStanding> for Ability {
+    #[inline]
+    fn from(boat: &VehicleStanding) -> Ability {
+        let VehicleStanding { tagged, disabled, outside, tag_ready, .. } = *boat;
+        Ability { tagged, disabled, outside, tag_ready }
+    }
+}
+
+impl From<&OwnBoat> for Ability {
+    fn from(boat: &OwnBoat) -> Ability {
+        let OwnBoat { tagged, disabled, outside, tag_ready_ns: tag_ready, .. } = *boat;
+        Ability { tagged, disabled, outside, tag_ready }
+    }
+}
