@@ -93,7 +93,7 @@ fn depth(program: &Program, mode: usize) -> usize {
 /// When a mode is chosen among the parts of its parent.
 fn condition(program: &Program, mode: usize) -> String {
     match &program.modes[mode].when {
-        Some(when) => format!("when {}", program.condition_in_words(when)),
+        Some(when) => format!("when {}", program.condition_text(when)),
         None => "otherwise".to_owned(),
     }
 }
@@ -105,12 +105,12 @@ fn row(program: &Program, behaviour: &Behaviour) -> [String; 4] {
         notes.push("safety".to_owned());
     }
     if let Some(when) = &behaviour.when {
-        notes.push(format!("when {}", program.condition_in_words(when)));
+        notes.push(format!("when {}", program.condition_text(when)));
     }
     if let Some(duration_s) = &behaviour.duration_s {
-        notes.push(format!("for {} s", program.number_in_words(&duration_s.expression)));
+        notes.push(format!("for {} s", program.number_text(&duration_s.expression)));
     }
-    let weight = program.number_in_words(&behaviour.weight.expression);
+    let weight = program.number_text(&behaviour.weight.expression);
     [behaviour.name.clone(), behaviour.task.kind().to_owned(), weight, notes.join(", ")]
 }
 

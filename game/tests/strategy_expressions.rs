@@ -151,14 +151,14 @@ fn expressions_are_evaluated_as_cel_does() {
 fn expressions_in_words_mean_the_same() {
     for (text, want) in CONDITIONS {
         let program = with_condition(text).unwrap();
-        let words = program.condition_in_words(condition(&program));
+        let words = program.condition_text(condition(&program));
         let again = with_condition(&words).unwrap_or_else(|problems| panic!("{text}: {words}: {problems}"));
         assert_eq!(condition(&again).is_true(&Known), want, "{text}: {words}");
-        assert_eq!(again.condition_in_words(condition(&again)), words, "{text}");
+        assert_eq!(again.condition_text(condition(&again)), words, "{text}");
     }
     for (text, want) in NUMBERS {
         let program = with_number(text).unwrap();
-        let words = program.number_in_words(number(&program));
+        let words = program.number_text(number(&program));
         let again = with_number(&words).unwrap_or_else(|problems| panic!("{text}: {words}: {problems}"));
         assert_eq!(number(&again).value(&Known), want, "{text}: {words}");
     }
@@ -170,7 +170,7 @@ fn expressions_in_words_mean_the_same() {
         "tagged ? has_flag : own_side ? alarmed : false",
     ] {
         let program = with_condition(text).unwrap();
-        assert_eq!(program.condition_in_words(condition(&program)), text);
+        assert_eq!(program.condition_text(condition(&program)), text);
     }
 }
 

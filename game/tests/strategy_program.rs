@@ -4,7 +4,7 @@
 
 use game::scenario::{self, Kind, Problems};
 use game::strategy::{
-    Assignment, Boat, Contacts, Moment, Place, Program, Shape, Strategy, Task, Trigger, Turn, What, Who,
+    Assignment, Boat, Contacts, Ellipse, Moment, Place, Program, Shape, Strategy, Task, Trigger, Turn, What, Who,
 };
 use game::{Ned, strategy};
 use serde_json::Value;
@@ -94,27 +94,27 @@ fn a_program_says_what_its_file_says() {
     assert_eq!(paths, ["tagged", "defending", "defending:intercepting", "defending:loitering", "attacking"]);
     assert_eq!(program.leaves().collect::<Vec<_>>(), [0, 2, 3, 4]);
     let set: Vec<(u16, String)> =
-        program.modes[1].enter.iter().map(|(v, value)| (*v, program.value_in_words(*v, value))).collect();
+        program.modes[1].enter.iter().map(|(v, value)| (*v, program.value_text(*v, value))).collect();
     assert_eq!(set, [(0, "laps + 1".to_owned()), (1, "'go'".to_owned())]);
     assert_eq!(program.rules[0].on, Some(Trigger { who: Who::Enemy, what: What::Grabs }));
     assert_eq!(program.rules[0].when, None);
 
     let go = behaviour(&program, "go");
     assert_eq!(go.modes, [false, true, true, true, false]);
-    assert_eq!(program.condition_in_words(go.when.as_ref().unwrap()), "laps > 1");
-    assert_eq!(program.number_in_words(&go.weight.expression), "50 + laps");
+    assert_eq!(program.condition_text(go.when.as_ref().unwrap()), "laps > 1");
+    assert_eq!(program.number_text(&go.weight.expression), "50 + laps");
     assert_eq!((go.weight.range, go.weight.constant(), go.perpetual), ((0.0, 300.0), None, true));
     assert_eq!(go.posts.iter().map(|post| post.at).collect::<Vec<_>>(), [Moment::Reach, Moment::Complete]);
     let Task::Waypoint(waypoint) = &go.task else { panic!("{go:?}") };
     let corner = Place::At(Ned::from_xy(3.0, 4.0));
-    let own_flag = Place::of_name("own_flag").unwrap();
+    let own_flag = Place::by_name("own_flag").unwrap();
     assert_eq!(waypoint.points, [Place::Point("CF".into()), own_flag, corner, Place::Boat(Boat::Opponent)]);
 
     let round = behaviour(&program, "round");
     assert_eq!(round.modes, [false, false, false, true, false]);
     let Task::Loiter(loiter) = &round.task else { panic!("{round:?}") };
     assert_eq!(loiter.turn, Turn::Clockwise);
-    assert!(matches!(loiter.shape, Shape::Ellipse { along_m: 15.0, across_m: 50.0, corners: 24, .. }));
+    assert!(matches!(loiter.shape, Shape::Ellipse(Ellipse { along_m: 15.0, across_m: 50.0, corners: 24, .. })));
 
     // What the base says stays, but for what the file says instead.
     let keep_clear = behaviour(&program, "keep_clear");
@@ -240,38 +240,33 @@ fn required(kind: &str) -> &'static str {
 }
 
 #[test]
-fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_described() {
+fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
     let schema = scenario::schema(Kind::Strategy);
     let (mut kinds, mut ranges, mut defaults) = (0, 0, 0);
-    for (definition, about) in schema["definitions"].as_object().unwrap() {
-        let Some(kind) = definition.strip_prefix("behaviour_") else { continue };
+    for about in schema["definitions"].as_object().unwrap().values() {
+        let Some(kind) = about["properties"]["kind"]["const"].as_str() else { continue };
         kinds += 1;
         let file = |keys: &str| format!("base = \"safe.toml\"\n[behaviour.it]\nkind = \"{kind}\"\n{keys}");
         let sound = program(&file(required(kind)));
         let sound = serde_json::to_value(behaviour(&sound, "it")).unwrap();
         let task = sound["task"].as_object().unwrap().values().next().unwrap();
         for (key, about) in about["properties"].as_object().unwrap() {
-            if about["type"] != serde_json::json!(["number", "string"]) {
+            if about["title"] != "a number or an expression" {
                 continue;
             }
-            let said = about["description"].as_str().unwrap();
-            let (head, tail) = said.split_once(". Default ").or_else(|| said.split_once(". Required")).unwrap();
-            let range = head.rsplit_once(": ").unwrap().1;
-            let (low, high) = range.split_once(" to ").unwrap();
-            for (bound, by) in [(low, -1.0), (high, 1.0)] {
-                let value = bound.parse::<f64>().unwrap() + by;
+            let (low, high) = (about["minimum"].as_f64().unwrap(), about["maximum"].as_f64().unwrap());
+            for value in [low - 1.0, high + 1.0] {
                 // Given as an expression, it is held to the same range.
                 for value in [format!("{value:?}"), format!("\"{value:?} * 1\"")] {
                     let problems = strategy_of(&file(&format!("{key} = {value}\n")), &[]).unwrap_err().to_string();
                     assert!(problems.contains(&format!("{key} is")), "{kind} {key}: {problems}");
-                    assert!(problems.contains(&format!("expected {range}")), "{kind} {key}: {problems}");
+                    assert!(problems.contains(&format!("expected {low} to {high}")), "{kind} {key}: {problems}");
                     ranges += 1;
                 }
             }
-            let number: String = tail.chars().take_while(|c| c.is_ascii_digit() || "-.".contains(*c)).collect();
-            let Ok(want) = number.trim_end_matches('.').parse::<f64>() else { continue };
-            if let Value::Object(given) = &task[key] {
+            if let (Some(want), Value::Object(given)) = (about["default"].as_f64(), &task[key]) {
                 assert_eq!(given["expression"]["Constant"], want, "{kind} {key}");
+                assert_eq!(given["range"], serde_json::json!([low, high]), "{kind} {key}");
                 defaults += 1;
             }
         }

@@ -4,7 +4,7 @@ use super::waypoint::Approach;
 use super::{Conduct, drive};
 use crate::helm::{Bid, Scene};
 use game::field::{distance_to_outline, sides};
-use game::strategy::{Loiter, Shape, Turn};
+use game::strategy::{Ellipse, Loiter, Shape, Turn};
 use game::{Ned, math};
 use std::f64::consts::TAU;
 
@@ -93,7 +93,7 @@ fn corners_of(shape: &Shape, scene: &Scene, corners: &mut Vec<Ned>) {
                 corners.clear();
             }
         }
-        Shape::Ellipse { centre, along_m, across_m, corners: count } => {
+        Shape::Ellipse(Ellipse { centre, along_m, across_m, corners: count }) => {
             let Some(centre) = scene.spot(centre) else { return };
             let field = &scene.chart.field;
             corners.extend((0..*count).map(|i| {

@@ -19,7 +19,7 @@ mod waypoint;
 
 use crate::helm::{Bid, Other, Scene};
 use crate::ivp::{Lag, Objective, Peak, Peaks};
-use game::strategy::{Contacts, HEEDED_MAX, Task};
+use game::strategy::{Contacts, NEAREST_MAX, Task};
 use game::{Ned, angle, math};
 use std::f64::consts::PI;
 
@@ -122,17 +122,17 @@ fn nearness(distance_m: f64, inner_m: f64, outer_m: f64) -> f64 {
 /// The nearest of a few, without a list on the heap: no behaviour heeds more.
 struct Nearest {
     /// Distance, m, and index; the nearest first, of equally near ones the first.
-    entries: [(f64, usize); HEEDED_MAX],
+    entries: [(f64, usize); NEAREST_MAX],
     count: usize,
 }
 
 impl Nearest {
     fn of(those: impl Iterator<Item = (f64, usize)>) -> Nearest {
-        let mut nearest = Nearest { entries: [(f64::INFINITY, 0); HEEDED_MAX], count: 0 };
+        let mut nearest = Nearest { entries: [(f64::INFINITY, 0); NEAREST_MAX], count: 0 };
         for entry in those {
             let place = nearest.entries[..nearest.count].partition_point(|known| known.0 <= entry.0);
-            if place < HEEDED_MAX {
-                nearest.count = (nearest.count + 1).min(HEEDED_MAX);
+            if place < NEAREST_MAX {
+                nearest.count = (nearest.count + 1).min(NEAREST_MAX);
                 nearest.entries[place..nearest.count].rotate_right(1);
                 nearest.entries[place] = entry;
             }
@@ -165,14 +165,14 @@ const TAG_FORESIGHT_S: f64 = 5.0;
 
 #[cfg(test)]
 mod tests {
-    use super::{HEEDED_MAX, Nearest, nearness};
+    use super::{NEAREST_MAX, Nearest, nearness};
 
     #[test]
     fn the_nearest_of_many_are_heeded_in_order() {
         let many: Vec<(f64, usize)> = (0..100).map(|i| (f64::from((i * 37) % 50), i as usize)).collect();
         let mut sorted = many.clone();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        sorted.truncate(HEEDED_MAX);
+        sorted.truncate(NEAREST_MAX);
         assert!(Nearest::of(many.into_iter()).iter().eq(sorted));
         assert_eq!(Nearest::of([(2.0, 0), (1.0, 1)].into_iter()).iter().collect::<Vec<_>>(), [(1.0, 1), (2.0, 0)]);
     }

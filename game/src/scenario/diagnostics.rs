@@ -3,10 +3,7 @@
 use super::draw::{Drawing, Drawn};
 use super::overrides::Overrides;
 use super::problem::{Problem, Problems};
-use super::raw::At;
 use super::source::Sources;
-use std::collections::BTreeSet;
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 /// What was read, and what is wrong with it.
@@ -23,8 +20,6 @@ pub(super) struct Diagnostics {
     pub(super) overrides: Overrides,
     problems: Vec<Problem>,
     faults: usize,
-    /// Keys that did not fit their type, by file: they are not missing as well.
-    unfit: BTreeSet<(usize, String)>,
 }
 
 impl Diagnostics {
@@ -38,7 +33,6 @@ impl Diagnostics {
             overrides: Overrides::default(),
             problems: vec![],
             faults: 0,
-            unfit: BTreeSet::new(),
         }
     }
 
@@ -58,19 +52,9 @@ impl Diagnostics {
         }
     }
 
-    /// Notes that `key` is missing from the table at `at`, unless it was there and did not fit.
+    /// Notes that `key` is missing from the table at `at`.
     pub(super) fn note_missing(&mut self, at: usize, key: &str, expected: &str) {
-        let file = self.sources.index_at(at);
-        if key.split('.').any(|part| self.unfit.contains(&(file, part.to_owned()))) {
-            self.faults += 1;
-        } else {
-            self.note_if_intact(at, format!("{key} is missing, expected {expected}"));
-        }
-    }
-
-    /// Remembers that `key`, in the file at `at`, did not fit.
-    pub(super) fn mark_unfit(&mut self, at: usize, key: &str) {
-        self.unfit.insert((self.sources.index_at(at), key.to_owned()));
+        self.note_if_intact(at, format!("{key} is missing, expected {expected}"));
     }
 
     /// Notes that the syntax at `at` is wrong.
@@ -107,48 +91,6 @@ impl Diagnostics {
                 Err(Problems(std::mem::take(&mut self.problems)))
             }
         }
-    }
-
-    /// The number given for `key`, if there is one and it is `allowed`.
-    pub(super) fn number(&mut self, key: &str, given: Option<&At<f64>>, allowed: RangeInclusive<f64>) -> Option<f64> {
-        let given = given?;
-        if allowed.contains(&given.value) {
-            return Some(given.value);
-        }
-        let key = key.rsplit('.').next().unwrap_or(key);
-        let found = if given.value.is_nan() { "nan".into() } else { given.value.to_string() };
-        self.note(given.at, format!("{key} is {found}, expected {} to {}", allowed.start(), allowed.end()));
-        None
-    }
-
-    /// The number given for `key`, which must be there; the smallest allowed one stands in if it is not.
-    pub(super) fn required(
-        &mut self,
-        owner: usize,
-        key: &str,
-        given: Option<&At<f64>>,
-        allowed: RangeInclusive<f64>,
-    ) -> f64 {
-        if given.is_none() {
-            self.note_missing(owner, key, &format!("{} to {}", allowed.start(), allowed.end()));
-        }
-        self.number(key, given, allowed.clone()).unwrap_or(*allowed.start())
-    }
-
-    /// The whole number given for `key`, or `default`.
-    pub(super) fn whole(
-        &mut self,
-        key: &str,
-        given: Option<&At<i64>>,
-        allowed: RangeInclusive<i64>,
-        default: i64,
-    ) -> i64 {
-        let Some(given) = given else { return default };
-        if allowed.contains(&given.value) {
-            return given.value;
-        }
-        self.note(given.at, format!("{key} is {}, expected {} to {}", given.value, allowed.start(), allowed.end()));
-        default
     }
 
     /// Whether `name` is fit to be one: `a` to `z`, `0` to `9` and `_`, at most 40 of them.

@@ -7,7 +7,6 @@
 mod check;
 mod diagnostics;
 mod draw;
-mod explain;
 mod guess;
 mod kind;
 mod load;
@@ -19,7 +18,6 @@ mod real_boats;
 mod reference;
 mod schema;
 mod source;
-mod strategy_read;
 mod tournament;
 mod tree;
 mod validate;

@@ -1,9 +1,8 @@
 //! The reference page of strategy files: every key and every name, made from the types that read them.
 
 use super::kind::Kind;
-use super::raw::{COMMON_KEYS, RawEllipse, RawHelm, RawMode, RawRule, RawStrategy, Stated, keys_of, kinds};
-use super::schema::schema;
-use crate::strategy::{Boat, Fact, Mark, Measure, What, Who};
+use super::schema::{declared, may_be_empty, resolved};
+use crate::strategy::{Boat, Fact, Mark, Measure, Named, What, Who};
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -50,42 +49,40 @@ numbers are doubles: `5 / 2` is 2.5, and `5` and `5.0` are the same. Division by
 /// The page, in Markdown.
 #[must_use]
 pub fn reference() -> String {
-    let schema = schema(Kind::Strategy);
+    let root = declared(Kind::Strategy);
     let mut page = OPENING.to_owned();
-    table(&mut page, &schema, "## The file", "", &schema, &keys_of::<RawStrategy>());
-    for (name, keys, heading) in [
-        ("Helm", keys_of::<RawHelm>(), "## `helm`"),
-        ("Variable", keys_of::<Stated>(), "## A variable as a table"),
-        ("Mode", keys_of::<RawMode>(), "## `[[mode]]`"),
-        ("Rule", keys_of::<RawRule>(), "## `[[rule]]`"),
+    table(&mut page, "## The file", root, |_| true);
+    for (name, heading) in [
+        ("Helm", "## `helm`"),
+        ("Variable", "## A variable as a table"),
+        ("Mode", "## `[[mode]]`"),
+        ("Rule", "## `[[rule]]`"),
     ] {
-        table(&mut page, &schema, heading, "", &schema["definitions"][name], &keys);
+        table(&mut page, heading, &root["definitions"][name], |_| true);
     }
-    events(&mut page);
-    page.push('\n');
-    page.push_str(EXPRESSIONS);
+    let quoted = |names: &[&str]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let (who, what) = (quoted(&Who::names()), quoted(&What::names()));
+    let _ = write!(page, "\n`on` is one of {who}, then one of {what}: `\"enemy grabs\"`.\n\n{EXPRESSIONS}");
     names(&mut page);
-    behaviours(&mut page, &schema);
-    choices(&mut page, &schema);
+    behaviours(&mut page, root);
+    choices(&mut page, root);
     page
 }
 
 /// The keys that have a few words to choose from, and what each means.
-fn choices(page: &mut String, schema: &Value) {
+fn choices(page: &mut String, root: &Value) {
     page.push_str("\n## Choices\n\n| key | choice | meaning |\n|---|---|---|\n");
-    for (key, name) in [("assignment", "Assignment"), ("turn", "Turn"), ("contacts", "Contacts"), ("grade", "Grade")] {
-        for choice in schema["definitions"][name]["oneOf"].as_array().into_iter().flatten() {
-            let (word, meaning) = (choice["const"].as_str(), choice["description"].as_str());
-            let (word, meaning) = (word.unwrap_or_default(), meaning.unwrap_or_default());
-            let _ = writeln!(page, "| `{key}` | `{word:?}` | {meaning} |");
+    for (key, name) in [
+        ("assignment", "Assignment"),
+        ("turn", "Turn"),
+        ("contacts", "Contacts"),
+        ("grade", "Grade"),
+        ("by", "Proposer"),
+    ] {
+        for choice in root["definitions"][name]["oneOf"].as_array().into_iter().flatten() {
+            let _ = writeln!(page, "| `{key}` | `{}` | {} |", choice["const"], description(choice));
         }
     }
-}
-
-fn events(page: &mut String) {
-    let quoted = |names: &[&str]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-    let (who, what) = (quoted(&Who::ALL.map(Who::name)), quoted(&What::ALL.map(What::name)));
-    let _ = write!(page, "\n`on` is one of {who}, then one of {what}: `\"enemy grabs\"`.\n");
 }
 
 fn names(page: &mut String) {
@@ -112,99 +109,83 @@ fn names(page: &mut String) {
     }
 }
 
-fn behaviours(page: &mut String, schema: &Value) {
-    let definitions = &schema["definitions"];
-    let mut common = vec!["kind".to_owned()];
-    common.extend(COMMON_KEYS.map(str::to_owned));
-    // The keys of all are those of each.
-    let any = &definitions["behaviour_timer"];
-    table(page, schema, "## `[behaviour.NAME]`", "What every kind has.", any, &common);
-    for kind in kinds() {
-        let about = &definitions[format!("behaviour_{}", kind.name)];
-        let says = about["description"].as_str().unwrap_or_default();
-        table(page, schema, &format!("### `{}`", kind.name), says, about, &(kind.keys)());
-        if kind.name == "loiter" {
-            let ellipse = keys_of::<RawEllipse>();
-            table(page, schema, "#### `ellipse`", "", &definitions["Ellipse"], &ellipse);
+fn behaviours(page: &mut String, root: &Value) {
+    // A full stop has the keys of all kinds and none of its own.
+    let common = &root["definitions"]["FullStop"];
+    table(page, "## `[behaviour.NAME]`\n\nWhat every kind has.", common, |_| true);
+    for kind in root["properties"]["behaviour"]["additionalProperties"]["oneOf"].as_array().into_iter().flatten() {
+        let about = resolved(kind, root);
+        let name = about["properties"]["kind"]["const"].as_str().unwrap_or_default();
+        let heading = format!("### `{name}`\n\n{}", description(about));
+        table(page, &heading, about, |key| common["properties"].get(key).is_none());
+        if name == "loiter" {
+            table(page, "#### `ellipse`", &root["definitions"]["Ellipse"], |_| true);
         }
     }
 }
 
-/// A heading, what it says below, and a table of keys.
-fn table(page: &mut String, schema: &Value, heading: &str, says: &str, about: &Value, keys: &[String]) {
+/// A heading and a table of the keys that are `wanted`, first those that are required.
+fn table(page: &mut String, heading: &str, about: &Value, wanted: impl Fn(&str) -> bool) {
     let _ = write!(page, "\n{heading}\n");
-    if !says.is_empty() {
-        let _ = write!(page, "\n{says}\n");
-    }
-    if keys.is_empty() {
+    let required: Vec<&str> = about["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    let keys = about["properties"].as_object().into_iter().flatten().filter(|(key, _)| wanted(key));
+    let root = declared(Kind::Strategy);
+    let is_required = |key: &str, about| required.contains(&key) && !may_be_empty(about, root);
+    let (first, rest): (Vec<_>, Vec<_>) = keys.partition(|(key, about)| is_required(key, about));
+    if first.is_empty() && rest.is_empty() {
         return;
     }
     page.push_str("\n| key | type | range | default | meaning |\n|---|---|---|---|---|\n");
-    for key in keys {
-        let about = &about["properties"][key];
-        let description = about["description"].as_str().unwrap_or_default().replace('\n', " ");
-        let (range, default, meaning) = parts(&description);
+    for (key, about) in first.into_iter().chain(rest) {
+        let default = match about.get("default") {
+            None if is_required(key, about) => "*required*".to_owned(),
+            None | Some(Value::Object(_) | Value::Array(_)) => String::new(),
+            Some(default) => default.to_string(),
+        };
         let kind = match key.as_str() {
             "kind" => "text: one of those below".to_owned(),
             "when" => "expression".to_owned(),
-            _ => type_of(schema, about),
+            _ => type_of(about),
         };
-        let _ = writeln!(page, "| `{key}` | {kind} | {range} | {default} | {meaning} |");
+        let _ = writeln!(page, "| `{key}` | {kind} | {} | {default} | {} |", range(about), description(about));
     }
 }
 
-/// Range, default and meaning out of a description: `Speed, m/s: 0 to 60. Default 5.`
-fn parts(description: &str) -> (String, String, String) {
-    let split = |word: &str| description.split_once(&format!(" {word}"));
-    let (meaning, default) = match (split("Default "), split("Required")) {
-        (Some((meaning, default)), _) => (meaning, default.trim_end_matches('.').to_owned()),
-        (None, Some((meaning, rest))) => (meaning, format!("*required{}*", rest.trim_end_matches('.'))),
-        (None, None) => (description, String::new()),
-    };
-    let meaning = meaning.trim_end_matches('.');
-    let starts_with_number = |range: &str| range.trim_start_matches('-').starts_with(|c: char| c.is_ascii_digit());
-    match meaning.rsplit_once(": ") {
-        Some((head, range)) if starts_with_number(range) && range.contains(" to ") => {
-            let (range, rest) = range.split_once(". ").unwrap_or((range, ""));
-            let rest = if rest.is_empty() { String::new() } else { format!(". {rest}") };
-            (range.trim_end_matches(" of them").to_owned(), default, format!("{head}{rest}."))
-        }
-        _ => (String::new(), default, format!("{meaning}.")),
+fn description(about: &Value) -> String {
+    about["description"].as_str().unwrap_or_default().replace('\n', " ")
+}
+
+/// From the least to the most that a number may be, or a list long.
+fn range(about: &Value) -> String {
+    let bound = |keys: [&str; 2]| keys.into_iter().find_map(|key| about[key].as_f64());
+    match (bound(["minimum", "minItems"]), bound(["maximum", "maxItems"])) {
+        (Some(least), Some(most)) => format!("{least} to {most}"),
+        (Some(least), None) => format!("at least {least}"),
+        (None, Some(most)) => format!("at most {most}"),
+        (None, None) => String::new(),
     }
 }
 
 /// The type that a schema describes, in words.
-fn type_of(schema: &Value, about: &Value) -> String {
-    let about = match about["allOf"][0]["$ref"].as_str() {
-        Some(name) => &schema["definitions"][name.rsplit('/').next().unwrap_or_default()],
-        None => about,
-    };
-    if let Some(choices) = about["oneOf"].as_array().or(about["enum"].as_array()) {
-        let name = |choice: &Value| choice["const"].as_str().or(choice.as_str()).unwrap_or_default().to_owned();
-        let names: Vec<String> = choices.iter().map(|choice| format!("`{:?}`", name(choice))).collect();
-        return if names.len() > 4 { "text: a boat".to_owned() } else { names.join(", ") };
+fn type_of(about: &Value) -> String {
+    let about = resolved(about, declared(Kind::Strategy));
+    match about["title"].as_str() {
+        Some("a number or an expression") => return "number or expression".to_owned(),
+        Some(title @ ("boat" | "place")) => return title.to_owned(),
+        _ => {}
+    }
+    if let Some(choices) = about["oneOf"].as_array() {
+        return choices.iter().map(|choice| format!("`{}`", choice["const"])).collect::<Vec<_>>().join(", ");
     }
     if about.get("anyOf").is_some() {
-        return "place".to_owned();
+        return "number, truth or text".to_owned();
     }
-    match &about["type"] {
-        Value::Array(types) if types.len() > 2 => "number, truth or text".to_owned(),
-        Value::Array(_) => "number or expression".to_owned(),
-        Value::String(name) => match name.as_str() {
-            "integer" => "whole number".to_owned(),
-            "boolean" => "truth".to_owned(),
-            "string" => "text".to_owned(),
-            "object" => "table".to_owned(),
-            "array" => list_of(schema, &about["items"]),
-            name => name.to_owned(),
-        },
-        _ => "text".to_owned(),
-    }
-}
-
-fn list_of(schema: &Value, items: &Value) -> String {
-    match items.get("$ref") {
-        Some(_) => "list of tables".to_owned(),
-        None => format!("list of {}s", type_of(schema, items)),
+    match about["type"].as_str().unwrap_or_default() {
+        "integer" => "whole number".to_owned(),
+        "boolean" => "truth".to_owned(),
+        "string" => "text".to_owned(),
+        "object" => "table".to_owned(),
+        "array" => format!("list of {}s", type_of(&about["items"])),
+        name => name.to_owned(),
     }
 }

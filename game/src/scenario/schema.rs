@@ -34,7 +34,7 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
         Kind::Rules => generated::<raw::Rules>(kind),
         Kind::Boat => generated::<raw::Boat>(kind),
         Kind::Sea => generated::<raw::Sea>(kind),
-        Kind::Strategy => generated::<raw::RawStrategy>(kind),
+        Kind::Strategy => generated::<raw::Strategy>(kind),
         Kind::Tournament => generated::<raw::Tournament>(kind),
         Kind::Gateway => generated::<raw::Gateway>(kind),
     })
@@ -49,6 +49,7 @@ pub fn schema(kind: Kind) -> Value {
     let mut uses = BTreeMap::new();
     collect_uses(declared, &declared["definitions"], Use::default(), &mut uses);
     let mut schema = declared.clone();
+    relax(&mut schema, declared);
     for (name, definition) in schema["definitions"].as_object_mut().into_iter().flatten() {
         let of = uses.get(name.as_str()).copied().unwrap_or_default();
         if !of.is_item {
@@ -56,7 +57,8 @@ pub fn schema(kind: Kind) -> Value {
         }
         publish(definition, of.is_drawn);
     }
-    if let Some(required) = schema.as_object_mut().and_then(|schema| schema.remove("required")) {
+    let required = schema.as_object_mut().and_then(|schema| schema.remove("required"));
+    if let Some(required) = required.filter(|required| *required != json!([])) {
         schema["if"] = json!({ "not": { "required": ["base"] } });
         schema["then"] = json!({ "required": required });
     }
@@ -71,6 +73,34 @@ pub fn schema(kind: Kind) -> Value {
         schema["definitions"] = definitions;
     }
     schema
+}
+
+/// Stops asking for what may be left out, since it is then an empty list or a table of defaults.
+fn relax(value: &mut Value, root: &Value) {
+    match value {
+        Value::Object(object) => {
+            let properties = object.get("properties").cloned().unwrap_or_default();
+            if let Some(Value::Array(required)) = object.get_mut("required") {
+                required.retain(|key| !may_be_empty(&properties[key.as_str().unwrap_or_default()], root));
+            }
+            object.values_mut().for_each(|value| relax(value, root));
+        }
+        Value::Array(items) => items.iter_mut().for_each(|item| relax(item, root)),
+        _ => {}
+    }
+}
+
+/// Whether a list may have no entries, or a table no keys.
+pub(super) fn may_be_empty(schema: &Value, root: &Value) -> bool {
+    let schema = resolved(schema, root);
+    let is_optional = |key: &Value| may_be_empty(&schema["properties"][key.as_str().unwrap_or_default()], root);
+    match schema["type"].as_str() {
+        Some("array") => schema["minItems"].as_u64().unwrap_or(0) == 0,
+        Some("object") => {
+            schema.get("oneOf").is_none() && schema["required"].as_array().into_iter().flatten().all(is_optional)
+        }
+        _ => false,
+    }
 }
 
 /// The mark of tables whose numbers may be distributions.
@@ -118,6 +148,11 @@ fn publish(value: &mut Value, is_drawn: bool) {
             object.retain(|key, _| !key.starts_with("x-"));
             if object.contains_key("properties") {
                 object.insert("additionalProperties".into(), false.into());
+            }
+            // A file that is laid over a base need not say again which of several tables this is.
+            if object.get("oneOf").is_some_and(|kinds| kinds[0].get("$ref").is_some()) {
+                let kinds = object.remove("oneOf").unwrap_or_default();
+                object.insert("anyOf".into(), kinds);
             }
             object.values_mut().for_each(|value| publish(value, is_drawn));
             let is_number = |kind: &Value| kind == "number" || kind == "integer";

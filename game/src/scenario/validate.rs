@@ -147,19 +147,27 @@ impl<'a> Validator<'a> {
         let (key, _) = kinds.iter().find_map(tag_of)?;
         let names: Vec<&str> = kinds.iter().filter_map(tag_of).map(|(_, name)| name).collect();
         let expected = one_of(&names);
-        let Some(given) = table.get(key) else {
-            return self.below(key, |below| below.missing(node, &expected));
-        };
-        let Value::Text(text) = &given.value else {
-            return self.below(key, |below| below.wrong(given, &found(given), &expected));
-        };
-        match kinds.iter().find(|kind| tag_of(kind).is_some_and(|(_, name)| name == text)) {
-            Some(kind) => Some(self.table(node, table, resolved(kind, self.root))),
-            None => {
-                let expected = format!("{expected}{}", did_you_mean(text, &names));
-                self.below(key, |below| below.wrong(given, &format!("{text:?}"), &expected))
+        let given = table.get(key);
+        let text =
+            given.and_then(|given| if let Value::Text(text) = &given.value { Some(text.as_str()) } else { None });
+        if let Some(kind) = kinds.iter().find(|kind| text.is_some() && tag_of(kind).map(|(_, name)| name) == text) {
+            return Some(self.table(node, table, resolved(kind, self.root)));
+        }
+        // Without its kind, at least the keys that every kind has are looked at.
+        for (key, value) in table.iter().filter(|(other, _)| *other != key) {
+            let mut abouts = kinds.iter().map(|kind| resolved(kind, self.root)["properties"].get(key));
+            if let Some(about) = abouts.clone().next().flatten().filter(|_| abouts.all(|about| about.is_some())) {
+                self.below(key, |below| below.property(key, value, about));
             }
         }
+        self.below(key, |below| match (given, text) {
+            (None, _) => below.missing(node, &expected),
+            (Some(given), None) => below.wrong(given, &found(given), &expected),
+            (Some(given), Some(text)) => {
+                let expected = format!("{expected}{}", did_you_mean(text, &names));
+                below.wrong(given, &format!("{text:?}"), &expected)
+            }
+        })
     }
 
     fn table(&mut self, node: &'a Node, table: &'a Table, schema: &'a Json) -> Json {
@@ -395,6 +403,9 @@ fn kind_of(schema: &Json, root: &Json) -> String {
         "object" => "a table",
         _ => "a string",
     };
+    if let Some(title) = schema["title"].as_str().filter(|_| schema["type"].is_array()) {
+        return title.to_owned();
+    }
     let kinds = match &schema["type"] {
         Json::Array(kinds) => kinds.iter().filter_map(Json::as_str).map(word).collect(),
         kind => vec![word(kind.as_str().unwrap_or("object"))],

@@ -4,8 +4,9 @@
 //! known to fit. Everything is an `f64`: false and true are 0 and 1, a text is its place among the texts that its
 //! variable may have.
 
-use super::{Fact, Place};
+use super::{Fact, Measure, Place};
 use serde::{Deserialize, Serialize};
+use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
 /// An expression whose types fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,49 +32,50 @@ pub enum Expression {
 }
 
 /// How two values are joined.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 pub enum Join {
     /// Both are true; the second is not looked at if the first is false.
+    #[strum(serialize = "&&")]
     And,
     /// One at least is true; the second is not looked at if the first is true.
+    #[strum(serialize = "||")]
     Or,
     /// The same.
+    #[strum(serialize = "==")]
     Equal,
     /// Not the same.
+    #[strum(serialize = "!=")]
     Unequal,
     /// The first is smaller.
+    #[strum(serialize = "<")]
     Less,
     /// The first is smaller or the same.
+    #[strum(serialize = "<=")]
     AtMost,
     /// The first is greater.
+    #[strum(serialize = ">")]
     More,
     /// The first is greater or the same.
+    #[strum(serialize = ">=")]
     AtLeast,
     /// Sum.
+    #[strum(serialize = "+")]
     Plus,
     /// Difference.
+    #[strum(serialize = "-")]
     Minus,
     /// Product.
+    #[strum(serialize = "*")]
     Times,
     /// Quotient; by 0 it is 0.
+    #[strum(serialize = "/")]
     Over,
     /// The smaller one.
+    #[strum(serialize = "min")]
     Least,
     /// The greater one.
+    #[strum(serialize = "max")]
     Greatest,
-}
-
-/// What can be asked about a place or a boat.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Measure {
-    /// How far it is, m.
-    Distance,
-    /// How fast the distance shrinks, m/s.
-    Closing,
-    /// Whether there is such a thing now.
-    Known,
-    /// Whether it is on the own team's side of the field.
-    OnOwnSide,
 }
 
 /// What expressions are evaluated against.
@@ -166,6 +168,24 @@ impl Expression {
 }
 
 impl Join {
+    /// Whether what is joined is true or false.
+    #[must_use]
+    pub fn is_truth(self) -> bool {
+        !matches!(self, Join::Plus | Join::Minus | Join::Times | Join::Over | Join::Least | Join::Greatest)
+    }
+
+    /// The comparison that says the same with its sides swapped.
+    #[must_use]
+    pub fn swapped(self) -> Join {
+        match self {
+            Join::Less => Join::More,
+            Join::AtMost => Join::AtLeast,
+            Join::More => Join::Less,
+            Join::AtLeast => Join::AtMost,
+            other => other,
+        }
+    }
+
     fn value(self, left: &Expression, right: &Expression, values: &impl Values) -> f64 {
         match self {
             Join::And => return truth(left.is_true(values) && right.is_true(values)),

@@ -6,22 +6,27 @@
 mod behaviour;
 mod expression;
 mod fact;
+mod parameter;
 mod place;
-mod words;
+mod print;
+mod task;
 
-pub use behaviour::{
-    Attractor, AvoidCollision, AvoidObstacle, Behaviour, ConstantHeading, ConstantSpeed, Contacts, CutRange, FullStop,
-    Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, Moment, OpRegion, Parameter, Policy, Post, Proposer, Shape,
-    Shield, StationKeep, Task, Timer, Trail, Turn, Waypoint,
-};
-pub use expression::{Expression, Join, Measure, Values};
-pub use fact::{Fact, Kind};
+pub use behaviour::{Behaviour, Moment, Post};
+pub use expression::{Expression, Join, Values};
+pub use fact::{Fact, Kind, Measure};
+pub use parameter::Parameter;
 pub use place::{Boat, Mark, Place};
+pub use task::{
+    Attractor, AvoidCollision, AvoidObstacle, ConstantHeading, ConstantSpeed, Contacts, CutRange, Ellipse, FullStop,
+    Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion, Policy, Proposer, Shape, Shield, StationKeep, Task,
+    Timer, Trail, Turn, Waypoint,
+};
 
 use serde::{Deserialize, Serialize};
+use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
-/// The most contacts or obstacles that one behaviour heeds at a time: the nearest.
-pub const HEEDED_MAX: usize = 16;
+/// The most contacts or obstacles that one behaviour responds to at a time: the nearest.
+pub const NEAREST_MAX: usize = 16;
 /// The most functions that the behaviours of a mode may ask for together, each contact or obstacle counted.
 pub const FUNCTIONS_MAX: usize = 256;
 /// The most shared variables of a program.
@@ -72,15 +77,19 @@ pub struct Program {
 }
 
 /// How decisions are made.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Helm {
     /// How many courses are weighed against each other.
+    #[schemars(range(min = 8, max = 3600), extend("default" = 360))]
     pub courses: usize,
     /// How many speeds, from 0 to the highest.
+    #[schemars(range(min = 2, max = 1000), extend("default" = 36))]
     pub speeds: usize,
-    /// The highest speed, m/s; none is the boat's own.
+    /// The highest speed, m/s, but never more than the boat's own. Default the boat's own.
+    #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: Option<f64>,
-    /// The last decision stands while it is worth this share less than the best at most, 0 to 1.
+    /// The last decision stands while it is worth this share less than the best at most: more would outweigh safety.
+    #[schemars(range(min = 0, max = 0.1), extend("default" = 0))]
     pub hysteresis: f64,
 }
 
@@ -131,7 +140,8 @@ pub struct Trigger {
 }
 
 /// To whom something happens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[strum(serialize_all = "snake_case")]
 pub enum Who {
     /// The own boat.
     I,
@@ -142,7 +152,8 @@ pub enum Who {
 }
 
 /// What happens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[strum(serialize_all = "snake_case")]
 #[expect(missing_docs, reason = "each says it itself")]
 pub enum What {
     Grabs,
@@ -211,48 +222,32 @@ impl Program {
     }
 }
 
-impl What {
-    /// Everything that can happen.
-    pub const ALL: [What; 9] = [
-        What::Grabs,
-        What::Captures,
-        What::LosesFlag,
-        What::IsTagged,
-        What::IsUntagged,
-        What::Tags,
-        What::LeavesField,
-        What::ReturnsToField,
-        What::Collides,
-    ];
+/// What strategy files call by a name: the variant's, in snake case. Its doc comment is what people read about it.
+pub trait Named: Copy + Into<&'static str> + VariantArray + EnumMessage {
+    /// All of them, in the order in which they are explained.
+    fn all() -> &'static [Self] {
+        Self::VARIANTS
+    }
 
     /// Its name in files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            What::Grabs => "grabs",
-            What::Captures => "captures",
-            What::LosesFlag => "loses_flag",
-            What::IsTagged => "is_tagged",
-            What::IsUntagged => "is_untagged",
-            What::Tags => "tags",
-            What::LeavesField => "leaves_field",
-            What::ReturnsToField => "returns_to_field",
-            What::Collides => "collides",
-        }
+    fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// What it is.
+    fn meaning(self) -> &'static str {
+        self.get_documentation().unwrap_or_default()
+    }
+
+    /// The one called so.
+    fn by_name(name: &str) -> Option<Self> {
+        Self::all().iter().copied().find(|variant| variant.name() == name)
+    }
+
+    /// All names, in the same order.
+    fn names() -> Vec<&'static str> {
+        Self::all().iter().map(|variant| variant.name()).collect()
     }
 }
 
-impl Who {
-    /// Everybody.
-    pub const ALL: [Who; 3] = [Who::I, Who::Mate, Who::Enemy];
-
-    /// Its name in files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Who::I => "i",
-            Who::Mate => "mate",
-            Who::Enemy => "enemy",
-        }
-    }
-}
+impl<T: Copy + Into<&'static str> + VariantArray + EnumMessage> Named for T {}

@@ -1,7 +1,13 @@
 //! Places and boats as strategies name them: fixed ones, and those that move with the game.
 
+use super::Named;
+use crate::field::Field;
 use crate::frame::Ned;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::borrow::Cow;
+use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
 /// A place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,106 +23,100 @@ pub enum Place {
 }
 
 /// A place that follows the game, but is no boat.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the table below says what each one is, for the reference page as well")]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage,
+)]
+#[strum(serialize_all = "snake_case")]
 pub enum Mark {
+    /// The home of the own team's flag.
     OwnFlag,
+    /// The home of the enemy's flag; of several the nearest that is there.
     EnemyFlag,
+    /// Where the rules want a flag brought; of several the nearest.
     CapturePlace,
+    /// Where a tagged boat must come to play again; while it must leave that place first, the enemy's flag.
     UntagPlace,
 }
 
 /// A boat, by what it is just now.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "the table below says what each one is, for the reference page as well")]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage,
+)]
+#[strum(serialize_all = "snake_case")]
 pub enum Boat {
+    /// The nearest enemy that is not tagged.
     NearestEnemy,
+    /// Of the enemies on the own side that are not tagged, the nearest to the own boat.
     NearestIntruder,
+    /// Of the enemies that are not tagged, wherever they are, the nearest to the own flag.
     NearestAttacker,
+    /// The enemy that carries a flag of the own team; of several the nearest.
     FlagCarrier,
+    /// The enemy assigned to this boat: the one of the same rank, counted round where there are fewer enemies.
     Opponent,
+    /// The nearest other boat of the own team.
     NearestMate,
+    /// The other boat of the own team that carries a flag; of several the nearest.
     MateCarrier,
 }
 
-/// The marks: name in files, what it is.
-const MARKS: [(Mark, &str, &str); 4] = [
-    (Mark::OwnFlag, "own_flag", "The home of the own team's flag."),
-    (Mark::EnemyFlag, "enemy_flag", "The home of the enemy's flag; of several the nearest that is there."),
-    (Mark::CapturePlace, "capture_place", "Where the rules want a flag brought; of several the nearest."),
-    (
-        Mark::UntagPlace,
-        "untag_place",
-        "Where a tagged boat must come to play again; while it must leave that place first, the enemy's flag.",
-    ),
-];
-
-/// The boats: name in files, what it is.
-const BOATS: [(Boat, &str, &str); 7] = [
-    (Boat::NearestEnemy, "nearest_enemy", "The nearest enemy that is not tagged."),
-    (
-        Boat::NearestIntruder,
-        "nearest_intruder",
-        "Of the enemies on the own side that are not tagged, the nearest to the own boat.",
-    ),
-    (
-        Boat::NearestAttacker,
-        "nearest_attacker",
-        "Of the enemies that are not tagged, wherever they are, the nearest to the own flag.",
-    ),
-    (Boat::FlagCarrier, "flag_carrier", "The enemy that carries a flag of the own team; of several the nearest."),
-    (
-        Boat::Opponent,
-        "opponent",
-        "The enemy assigned to this boat: the one of the same rank, counted round where there are fewer enemies.",
-    ),
-    (Boat::NearestMate, "nearest_mate", "The nearest other boat of the own team."),
-    (Boat::MateCarrier, "mate_carrier", "The other boat of the own team that carries a flag; of several the nearest."),
-];
-
-impl Mark {
-    /// All marks, in the order in which they are explained.
-    pub fn all() -> impl Iterator<Item = Mark> {
-        MARKS.iter().map(|row| row.0)
-    }
-
-    /// Its name in files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        MARKS.iter().find(|row| row.0 == self).expect("the table has every mark").1
-    }
-
-    /// What it is.
-    #[must_use]
-    pub fn meaning(self) -> &'static str {
-        MARKS.iter().find(|row| row.0 == self).expect("the table has every mark").2
-    }
-}
-
-impl Boat {
-    /// All boats, in the order in which they are explained.
-    pub fn all() -> impl Iterator<Item = Boat> {
-        BOATS.iter().map(|row| row.0)
-    }
-
-    /// Its name in files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        BOATS.iter().find(|row| row.0 == self).expect("the table has every boat").1
-    }
-
-    /// What it is.
-    #[must_use]
-    pub fn meaning(self) -> &'static str {
-        BOATS.iter().find(|row| row.0 == self).expect("the table has every boat").2
-    }
-}
-
 impl Place {
-    /// The mark or boat called `name`; the named points of a field are not among them.
+    /// The mark, boat or named point called `name`.
     #[must_use]
-    pub fn of_name(name: &str) -> Option<Place> {
-        let mark = Mark::all().find(|mark| mark.name() == name).map(Place::Mark);
-        mark.or_else(|| Boat::all().find(|boat| boat.name() == name).map(Place::Boat))
+    pub fn by_name(name: &str) -> Option<Place> {
+        let point = || Field::point_names().into_iter().find(|point| point == name).map(Place::Point);
+        Mark::by_name(name).map(Place::Mark).or_else(|| Boat::by_name(name).map(Place::Boat)).or_else(point)
+    }
+
+    /// Every name that a place may have.
+    #[must_use]
+    pub fn names() -> Vec<String> {
+        let fixed = [Mark::names(), Boat::names()].concat().into_iter().map(str::to_owned);
+        fixed.chain(Field::point_names()).collect()
+    }
+
+    /// The same in words, cut short.
+    #[must_use]
+    pub fn names_in_short() -> String {
+        let (marks, boats) = (Mark::names().join(", "), Boat::names().join(", "));
+        format!("{marks}, a boat ({boats}) or a named point such as CH")
+    }
+}
+
+impl JsonSchema for Place {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "place".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        // Farther from the datum than this nobody sails, m.
+        let number = json!({ "type": "number", "minimum": -1e6, "maximum": 1e6 });
+        let position = json!({
+            "description": "[x east, y north] in metres from the datum.",
+            "type": "array", "items": number, "minItems": 2, "maxItems": 2
+        });
+        let named = json!({
+            "description": "A mark, a boat, or a named point of the own team.",
+            "type": "string", "enum": Place::names(), "x-expected": format!("[x, y], {}", Place::names_in_short())
+        });
+        json_schema!({
+            "title": "place",
+            "anyOf": [position, named],
+            "x-expected": "[x, y], or the name of a place or a boat"
+        })
+    }
+}
+
+impl JsonSchema for Boat {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        "boat".into()
+    }
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "title": "boat", "type": "string", "enum": Boat::names() })
     }
 }

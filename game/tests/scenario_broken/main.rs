@@ -74,13 +74,12 @@ fn problems(asked: &str, files: &[(&str, &[u8])]) -> Vec<String> {
 type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static [&'static str]);
 
 /// Long lists of what is allowed: how they begin and end, and what stands for them here.
-const LISTS: [(&str, &str, &str); 11] = [
+const LISTS: [(&str, &str, &str); 10] = [
     ("PPB PPF", "SSBX", "{points}"),
     ("base, boundary", "win_score", "{keys of rules}"),
     ("added_surge_kg,", "yaw_quadratic_kg_m2", "{keys of hulls}"),
-    ("base, about,", "behaviour, rule", "{keys of strategies}"),
+    ("about, assignment, base", "variables", "{keys of strategies}"),
     ("waypoint, loiter,", "policy", "{kinds}"),
-    ("in, when, weight,", "on_complete", "{keys of all}"),
     ("nearest_enemy, nearest", "mate_carrier", "{boats}"),
     ("own_flag, enemy_flag,", "such as CH", "{places}"),
     ("i, mate, enemy, then", "collides", "{events}"),

@@ -2,7 +2,6 @@
 
 use super::field::is_inside;
 use super::game::Entry;
-use super::strategy::is_point;
 use crate::angle::rad_from_compass_deg;
 use crate::boat::Boat;
 use crate::field::Field;
@@ -11,6 +10,7 @@ use crate::id::TeamId;
 use crate::near::Near;
 use crate::scenario::StartPosition;
 use crate::scenario::diagnostics::Diagnostics;
+use crate::scenario::guess::did_you_mean;
 use crate::scenario::raw;
 use crate::scenario::read::Document;
 
@@ -147,4 +147,16 @@ pub(super) fn check_clear(
             diagnostics.note(b.place, message);
         }
     }
+}
+
+/// Whether `name` is one of the field's named points; notes it if not.
+fn is_point(diagnostics: &mut Diagnostics, at: usize, key: &str, name: &str) -> bool {
+    let names = Field::point_names();
+    let is_known = names.iter().any(|known| known == name);
+    if !is_known {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let (points, guess) = (names.join(" "), did_you_mean(name, &names));
+        diagnostics.note(at, format!("{key} is {name:?}, expected a named point, one of {points}{guess}"));
+    }
+    is_known
 }

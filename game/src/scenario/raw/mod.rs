@@ -26,25 +26,14 @@ pub(super) use link::{Link, Sharing};
 pub(super) use rules::Rules;
 pub(super) use sea::{Current, Eddy, Gusts, Sea, Spectrum, Spreading, Waves, Wind};
 pub(super) use sensor::{Compass, Fault, Gps, Imu};
-pub(super) use strategy::{
-    Amount, COMMON_KEYS, Given, RawAttractor, RawAvoidCollision, RawAvoidObstacle, RawBehaviour, RawBehaviours,
-    RawCommon, RawConstantHeading, RawConstantSpeed, RawCutRange, RawEllipse, RawHelm, RawIntercept, RawLoiter,
-    RawMaxSpeed, RawMemoryTurnLimit, RawMode, RawOpRegion, RawPolicy, RawRule, RawSet, RawShield, RawStationKeep,
-    RawStrategy, RawTask, RawTrail, RawVariable, RawWaypoint, Stated, keys_of, kinds,
-};
+pub(super) use strategy::{Common, Rule, Strategy, Value, Values, Variable, VariableTable};
 pub(super) use tournament::{Entry, Tournament};
 
 use super::Kind;
-use super::diagnostics::{Diagnostics, NAME_PATTERN};
+use super::diagnostics::NAME_PATTERN;
 use super::read::Declared;
-use super::strategy_read::Typed;
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::de::{SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer};
-use std::borrow::Cow;
-use std::fmt;
-use toml::Spanned;
-use toml::de::DeValue;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 /// The path of another file, relative to the one it stands in. Empty where it was wrong or missing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -93,86 +82,4 @@ impl Declared for Tournament {
 
 impl Declared for Gateway {
     const KIND: Kind = Kind::Gateway;
-}
-
-// What follows is for strategy files, as long as they are read by `strategy_read`.
-
-/// A value and where it stands in the virtual text of all files.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct At<T> {
-    pub(super) value: T,
-    pub(super) at: usize,
-}
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for At<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<At<T>, D::Error> {
-        let spanned = Spanned::<T>::deserialize(deserializer)?;
-        Ok(At { at: spanned.span().start, value: spanned.into_inner() })
-    }
-}
-
-/// In a schema the place does not show.
-impl<T: JsonSchema> JsonSchema for At<T> {
-    fn inline_schema() -> bool {
-        T::inline_schema()
-    }
-    fn schema_name() -> Cow<'static, str> {
-        T::schema_name()
-    }
-    fn schema_id() -> Cow<'static, str> {
-        T::schema_id()
-    }
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        T::json_schema(generator)
-    }
-}
-
-impl Typed for RawStrategy {
-    const APART: Option<&'static str> = Some("behaviour");
-    const OWN: &'static [&'static str] = &["unsafe_i_know", "unsafe_because"];
-
-    fn put_apart(&mut self, diagnostics: &mut Diagnostics, value: Spanned<DeValue<'_>>) {
-        self.behaviour = RawBehaviours::of(diagnostics, value);
-    }
-}
-
-/// A position, or the name of one.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(untagged, inline)]
-pub(super) enum Whereabouts {
-    /// [x east, y north] in metres from the datum.
-    Position([f64; 2]),
-    /// A named point of the own team.
-    Point(String),
-}
-
-impl<'de> Deserialize<'de> for Whereabouts {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Whereabouts, D::Error> {
-        deserializer.deserialize_any(WhereaboutsVisitor)
-    }
-}
-
-struct WhereaboutsVisitor;
-
-impl<'de> Visitor<'de> for WhereaboutsVisitor {
-    type Value = Whereabouts;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("[x, y] or the name of a point such as \"CH\"")
-    }
-
-    fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<Whereabouts, E> {
-        Ok(Whereabouts::Point(name.to_owned()))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Whereabouts, A::Error> {
-        let mut numbers = [0.0; 2];
-        for (i, number) in numbers.iter_mut().enumerate() {
-            *number = seq.next_element()?.ok_or_else(|| serde::de::Error::invalid_length(i, &self))?;
-        }
-        match seq.next_element::<f64>()? {
-            None => Ok(Whereabouts::Position(numbers)),
-            Some(_) => Err(serde::de::Error::invalid_length(3, &self)),
-        }
-    }
 }

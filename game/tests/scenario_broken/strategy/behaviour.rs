@@ -4,7 +4,7 @@ use super::{BASE, VARIABLES, assert_broken};
 
 const CASES: &str = r#"
 ## no kind
-[behaviour.go] #~ 12: behaviour.go.kind is missing, expected one of {kinds}
+[behaviour.go] #~ 1: go.kind is missing, expected one of {kinds}
 speed_m_s = 3
 
 ## a mistyped kind
@@ -24,62 +24,62 @@ behaviour.keep_clear.kind = "avoid_colision" #~ 29: kind is "avoid_colision", ex
 [behaviour.go]
 kind = "cut_range"
 contact = "opponent"
-speed_m_s = 3 #~ 1: speed_m_s is unknown, expected one of kind, contact, patience, time_on_leg_s, giveup_m, {keys of all}
+speed_m_s = 3 #~ 1: speed_m_s is unknown, expected one of contact, duration_s, giveup_m, in, kind, on_active, on_complete, on_idle, on_inactive, on_reach, on_run, patience, perpetual, time_on_leg_s, weight, when
 
 ## a mistyped key
 [behaviour.go]
 kind = "waypoint"
 points = ["enemy_flag"]
-speed_ms = 3 #~ 1: speed_ms is unknown, expected one of kind, points, reverse, repeat, speed_m_s, capture_radius_m, slip_radius_m, lead_m, course_share, {keys of all} (did you mean speed_m_s?)
+speed_ms = 3 #~ 1: speed_ms is unknown, expected one of capture_radius_m, course_share, duration_s, in, kind, lead_m, on_active, on_complete, on_idle, on_inactive, on_reach, on_run, perpetual, points, repeat, reverse, slip_radius_m, speed_m_s, weight, when (did you mean speed_m_s?)
 
 ## a key that means nothing without others
 [behaviour.wait]
 kind = "timer"
 duration_s = 3
-speed_m_s = 3 #~ 1: speed_m_s is unknown, expected one of kind, {keys of all}
+speed_m_s = 3 #~ 1: speed_m_s is unknown, expected one of duration_s, in, kind, on_active, on_complete, on_idle, on_inactive, on_reach, on_run, perpetual, weight, when
 
 ## nothing that is required
-[behaviour.a] #~ 12: behaviour.a.points is missing, expected a list of places
+[behaviour.a] #~ 1: a.points is missing, expected 1 to 1000 places
 kind = "waypoint"
-[behaviour.b] #~ 12: behaviour.b.contact is missing, expected one of {boats}
+[behaviour.b] #~ 1: b.contact is missing, expected one of {boats}
 kind = "cut_range"
-[behaviour.c] #~ 12: behaviour.c.duration_s is missing, expected 0 to 86400
+[behaviour.c] #~ 1: c.duration_s is missing, expected 0 to 86400
 kind = "timer"
-[behaviour.d] #~ 12: behaviour.d.guarded is missing, expected [x, y], or the name of a place or a boat
+[behaviour.d] #~ 1: d.guarded is missing, expected [x, y], or the name of a place or a boat
 kind = "shield"
-[behaviour.e] #~ 12: behaviour.e.heading_deg is missing, expected -360 to 360
+[behaviour.e] #~ 1: e.heading_deg is missing, expected -360 to 360
 kind = "constant_heading"
-[behaviour.f] #~ 12: behaviour.f.to is missing, expected [x, y], or the name of a place or a boat
+[behaviour.f] #~ 1: f.to is missing, expected [x, y], or the name of a place or a boat
 kind = "attractor"
-[behaviour.g] #~ 12: behaviour.g.ellipse is missing, expected it or polygon
+[behaviour.g] #~ 1: g.ellipse is missing, expected it or polygon
 kind = "loiter"
-[behaviour.h] #~ 12: behaviour.h.speed_m_s is missing, expected 0 to 60
+[behaviour.h] #~ 1: h.speed_m_s is missing, expected 0 to 60
 kind = "max_speed"
 
 ## no points
 [behaviour.go]
 kind = "waypoint"
-points = [] #~ 10: points has 0 entries, expected 1 to 1000
+points = [] #~ 10: points has 0 entries, expected 1 to 1000 places
 
 ## a point that is none
 [behaviour.go]
 kind = "waypoint"
-points = ["CCH", "own_flg", [nan, 0]] #~ 11: points is "CCH", expected [x, y], {places} (did you mean CC?) #~ 18: points is "own_flg", expected [x, y], {places} (did you mean own_flag?) #~ 29: points is [nan, 0], expected both within 1000000 of 0
+points = ["CCH", "own_flg", [nan, 0]] #~ 11: points is "CCH", expected [x, y], {places} (did you mean CC?) #~ 18: points is "own_flg", expected [x, y], {places} (did you mean own_flag?) #~ 30: points is nan, expected -1000000 to 1000000
 
 ## a point of three numbers
 [behaviour.go]
 kind = "waypoint"
-points = ["CH", [1, 2, 3]] #~ 17: points is of length 3, expected [x, y] or the name of a point such as "CH"
+points = ["CH", [1, 2, 3]] #~ 17: points has 3 entries, expected a pair of numbers [a, b]
 
 ## a point that is a number
 [behaviour.go]
 kind = "waypoint"
-points = [3] #~ 11: points is 3, expected [x, y] or the name of a point such as "CH"
+points = [3] #~ 11: points is 3, expected [x, y], or the name of a place or a boat
 
 ## points that are no list
 [behaviour.go]
 kind = "waypoint"
-points = "CF" #~ 10: points is the string "CF", expected a list
+points = "CF" #~ 10: points is the string "CF", expected 1 to 1000 places
 
 ## a boat that is none
 [behaviour.go]
@@ -95,17 +95,17 @@ contact = "own_flag" #~ 11: contact is "own_flag", expected one of {boats}
 [behaviour.go]
 kind = "loiter"
 polygon = ["CF", "CH", "PH"]
-ellipse = {} #~ 11: ellipse is given with polygon, expected one of them
+ellipse = {} #~ 11: ellipse is given with polygon, expected one of them #~ 11: ellipse.across_m is missing, expected 1 to 10000 #~ 11: ellipse.along_m is missing, expected 1 to 10000 #~ 11: ellipse.centre is missing, expected [x, y], or the name of a place or a boat
 
 ## a polygon of two corners
 [behaviour.go]
 kind = "loiter"
-polygon = ["CF", "CH"] #~ 11: polygon has 2 entries, expected 3 to 1000
+polygon = ["CF", "CH"] #~ 11: polygon has 2 entries, expected 3 to 1000 places
 
 ## half an ellipse
 [behaviour.go]
 kind = "loiter"
-ellipse = { along_m = 0, corners = 2, width_m = 3 } #~ 11: behaviour.go.ellipse.centre is missing, expected [x, y], or the name of a place or a boat #~ 11: ellipse.across_m is missing, expected 1 to 10000 #~ 23: along_m is 0, expected 1 to 10000 #~ 36: corners is 2, expected 3 to 1000 #~ 39: width_m is unknown, expected one of centre, along_m, across_m, corners
+ellipse = { along_m = 0, corners = 2, width_m = 3 } #~ 11: ellipse.centre is missing, expected [x, y], or the name of a place or a boat #~ 11: ellipse.across_m is missing, expected 1 to 10000 #~ 23: along_m is 0, expected 1 to 10000 #~ 36: corners is 2, expected 3 to 1000 #~ 39: width_m is unknown, expected one of across_m, along_m, centre, corners
 turn = "left" #~ 8: turn is "left", expected one of clockwise, counterclockwise, best (did you mean best?)
 
 ## numbers out of range

@@ -25,7 +25,7 @@ weight = 301 #~ 10: weight is 301 in mode active, expected at most 300, which op
 ## safety that is worth hardly anything
 [behaviour.stay_in]
 weight = 1e-9
-[behaviour.go] #~ 12: weight is 100 in mode active, expected at most 0.000000001, which op_region or avoid_collision has there
+[behaviour.go] #~ 1: weight is 100 in mode active, expected at most 0.000000001, which op_region or avoid_collision has there
 kind = "waypoint"
 points = ["CF"]
 

@@ -28,6 +28,7 @@ variables.phase = { values = ["go", "return"], shared = true }
 /// `--- PATH` follows another file; where the case begins with one, it is the file to check. What must be reported for a
 /// line stands behind it: `#~ COLUMN: MESSAGE`, after the name `#~ LINE:COLUMN: MESSAGE`. Nothing else may be reported.
 fn assert_broken(head: &str, cases: &str) {
+    let mut failures = vec![];
     for case in cases.split("\n## ").skip(1) {
         let (title, text) = case.split_once('\n').expect("a case has a text");
         let mut title = title.split(" #~ ");
@@ -52,8 +53,9 @@ fn assert_broken(head: &str, cases: &str) {
         let got: Vec<String> = problems(files[0].0, &files).iter().map(|line| abridged(line)).collect();
         let want: Vec<String> =
             want.into_iter().map(|(path, line, column, what)| format!("{path}:{line}:{column}: {what}")).collect();
-        assert_eq!(got, want, "{name}");
+        failures.extend((got != want).then(|| format!("{name}\n   is: {got:#?}\n want: {want:#?}")));
     }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 /// A problem, from `LINE:COLUMN: MESSAGE`.

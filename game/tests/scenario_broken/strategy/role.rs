@@ -10,7 +10,7 @@ roles = [] #~ 9: roles has 0 entries, expected 1 to 1000
 roles = ["s.toml", "easy_defender"] #~ 20: strategies/easy_defender cannot be read (No such file or directory (os error 2)), expected a file
 
 ## a number for a role
-roles = ["s.toml", 3] #~ 20: roles is 3, expected a string
+roles = ["s.toml", 3] #~ 20: roles is 3, expected the path of a file
 
 ## an unknown way to deal
 roles = ["s.toml"]
@@ -35,9 +35,9 @@ a = 1
 when = "tagged"
 set = { a = 2 }
 --- strategies/s.toml
-[behaviour.stay_in] #~ 12: behaviour.stay_in is given with roles, expected in the files that roles names
+[behaviour.stay_in] #~ 1: behaviour.stay_in is given with roles, expected in the files that roles names
 kind = "op_region"
-[behaviour.keep_clear] #~ 12: behaviour.keep_clear is given with roles, expected in the files that roles names
+[behaviour.keep_clear] #~ 1: behaviour.keep_clear is given with roles, expected in the files that roles names
 kind = "avoid_collision"
 
 ## a way to deal nothing
@@ -78,7 +78,7 @@ kind = "full_stop"
 kind = "op_region"
 [behaviour.keep_clear]
 kind = "avoid_collision"
-outer_m = 20 #~ 1: outer_m is unknown, expected one of kind, {keys of all}
+outer_m = 20 #~ 1: outer_m is unknown, expected one of duration_s, in, kind, on_active, on_complete, on_idle, on_inactive, on_reach, on_run, perpetual, weight, when
 "#;
 
 #[test]

@@ -30,12 +30,12 @@ other = { values = ["go"], initial = 3 } #~ 38: initial is 3, expected one of go
 a = { values = [] } #~ 16: values has 0 entries, expected 1 to 100
 b = { values = ["x", "x"] } #~ 22: values has "x" again, expected different ones
 c = { values = ["Go now"] } #~ 17: values is "Go now", expected 1 to 40 of a-z, 0-9 and _
-d = { values = [1] } #~ 17: values is 1, expected a string
+d = { values = [1] } #~ 17: values is 1, expected 1 to 40 of a-z, 0-9 and _
 
 ## a number that is none
 [variables]
 a = nan #~ 5: a is nan, expected a finite number
-b = { initial = inf } #~ 17: b is inf, expected a finite number
+b = { initial = inf } #~ 17: initial is inf, expected a finite number
 
 ## a list
 [variables]
@@ -43,7 +43,7 @@ a = [1, 2] #~ 5: a is a list, expected a number, true, false, or a table { value
 
 ## an unknown key of a variable
 [variables]
-a = { initial = 3, share = true } #~ 20: share is unknown, expected one of values, initial, shared (did you mean shared?)
+a = { initial = 3, share = true } #~ 20: share is unknown, expected one of initial, shared, values (did you mean shared?)
 
 ## a rule without anything
 [[rule]] #~ 1: rule.on is missing, expected it, or when, or both #~ 1: rule.set is missing, expected values for variables
@@ -56,9 +56,9 @@ set = { laps = 1 } #~ 16: laps is unknown, expected a name from [variables], whi
 
 const WITH_VARIABLES: &str = r#"
 ## a rule that sets nothing
-[[rule]] #~ 1: rule.set is missing, expected values for variables
+[[rule]]
 when = "tagged"
-set = {}
+set = {} #~ 7: set is empty, expected values for variables
 
 ## an event that is none
 [[rule]]

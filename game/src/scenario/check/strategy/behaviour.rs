@@ -1,98 +1,153 @@
-//! Behaviours, checked: what all of them have in common.
+//! Behaviours, checked: what their types declare is known to hold; names and expressions become what they stand for.
 
-use super::expression::{Wanted, expression};
-use super::task::{Keys, task};
+use super::scope::Scope;
 use super::variable::set;
-use crate::scenario::diagnostics::Diagnostics;
-use crate::scenario::explain::nearest;
-use crate::scenario::raw::{At, RawBehaviour, RawCommon, RawStrategy, RawTask};
-use crate::strategy::{Behaviour, Mode, Moment, Post, Variable};
+use crate::frame::Ned;
+use crate::scenario::Kind;
+use crate::scenario::guess::did_you_mean;
+use crate::scenario::raw::Common;
+use crate::scenario::schema::{declared, resolved};
+use crate::strategy::{Behaviour, Boat, Mode, Moment, Named, Parameter, Place, Post, Task};
+use serde_json::{Map, Value as Json, json};
 
 /// The most behaviours of a program.
 const MOST: usize = 1000;
 
+/// Numbers of which the first may not be greater than the second.
+const IN_ORDER: [(&str, &str); 3] =
+    [("inner_m", "outer_m"), ("cpa_min_m", "cpa_max_m"), ("inner_radius_m", "outer_radius_m")];
+
 /// Checks the behaviours. Where modes make no tree, nobody asks which of them are meant.
-pub(super) fn behaviours(
-    diagnostics: &mut Diagnostics,
-    variables: &[Variable],
-    modes: Option<&[(usize, Mode)]>,
-    raw: &RawStrategy,
-    start: usize,
-) -> Vec<Behaviour> {
-    let given = raw.behaviour.0.as_slice();
-    if given.is_empty() {
-        diagnostics.note_missing(start, "roles", "it, or at least one [behaviour.NAME]");
+pub(super) fn behaviours(scope: &mut Scope<'_>, modes: Option<&[Mode]>) -> Vec<Behaviour> {
+    let given = &scope.document.raw.behaviour;
+    if given.is_empty() && scope.document.is_sound("behaviour") {
+        scope.note_missing("roles", "it, or at least one [behaviour.NAME]");
     }
     if given.len() > MOST {
-        diagnostics.note(given[MOST].at, format!("behaviour has {} entries, expected at most {MOST}", given.len()));
+        scope.note("behaviour", &format!("has {} entries, expected at most {MOST}", given.len()));
     }
-    given.iter().take(MOST).filter_map(|given| one(diagnostics, variables, modes, given)).collect()
+    given.iter().take(MOST).filter_map(|(name, given)| one(scope, modes, name, &given.0)).collect()
 }
 
-fn one(
-    diagnostics: &mut Diagnostics,
-    variables: &[Variable],
-    modes: Option<&[(usize, Mode)]>,
-    given: &At<RawBehaviour>,
-) -> Option<Behaviour> {
-    let RawBehaviour { name, common, task: raw_task } = &given.value;
-    let modes = modes.map(|modes| in_modes(diagnostics, modes, common)).unwrap_or_default();
-    let when = common.when.as_ref().and_then(|when| expression(diagnostics, variables, "when", when, Wanted::Truth));
-    let posts = posts(diagnostics, variables, common);
-    let mut keys = Keys { diagnostics, variables, owner: given.at, name };
-    let default = match raw_task {
-        Some(RawTask::OpRegion(_) | RawTask::AvoidCollision(_) | RawTask::AvoidObstacle(_)) => 300.0,
-        _ => 100.0,
+fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> Option<Behaviour> {
+    let path = format!("behaviour.{name}");
+    scope.diagnostics.is_name(scope.document.at(&path), "behaviour", name);
+    let common: Common = serde_json::from_value(given.clone()).ok()?;
+    let modes = modes.map(|modes| in_modes(scope, &path, modes, common.r#in.as_deref())).unwrap_or_default();
+    let when = scope.condition(&format!("{path}.when"), common.when.as_ref());
+    let posts = posts(scope, &path, &common);
+    let mut kinds = declared(Kind::Strategy)["definitions"].as_object()?.iter();
+    let (variant, about) = kinds.find(|(_, about)| about["properties"]["kind"]["const"] == given["kind"])?;
+    let mut keys = checked_table(scope, &path, given.as_object()?, about);
+    check_order(scope, &path, &keys);
+    if variant == "Loiter" {
+        let shape = shape(scope, &path, &mut keys)?;
+        keys.insert("shape".to_owned(), shape);
+    }
+    let weight = parameter(&keys, "weight")?;
+    let duration_s = parameter(&keys, "duration_s");
+    let task: Task = serde_json::from_value(json!({ variant: keys })).ok()?;
+    Some(Behaviour { name: name.to_owned(), modes, when, weight, duration_s, perpetual: common.perpetual, posts, task })
+}
+
+/// The keys of a table with their values as the checked types have them; those that are wrong are noted and left out.
+fn checked_table(scope: &mut Scope<'_>, path: &str, given: &Map<String, Json>, about: &Json) -> Map<String, Json> {
+    let mut table = Map::new();
+    for (key, value) in given {
+        let value = checked(scope, &format!("{path}.{key}"), value, &about["properties"][key]);
+        table.extend(value.map(|value| (key.clone(), value)));
+    }
+    table
+}
+
+/// The value at `path` as the checked types have it; `about` is the schema of the typed one.
+fn checked(scope: &mut Scope<'_>, path: &str, given: &Json, about: &Json) -> Option<Json> {
+    let about = resolved(about, declared(Kind::Strategy));
+    let value = match (about["title"].as_str(), given) {
+        (Some("a number or an expression"), _) => serde_json::to_value(scope.parameter(path, given, about)?),
+        (Some("boat"), Json::String(name)) => serde_json::to_value(Boat::by_name(name)?),
+        (Some("place"), Json::String(name)) => serde_json::to_value(Place::by_name(name)?),
+        (Some("place"), _) => serde_json::to_value(Place::At(Ned::from_xy(given[0].as_f64()?, given[1].as_f64()?))),
+        (_, Json::Array(items)) => {
+            let items = items.iter().enumerate();
+            let items = items.map(|(i, item)| checked(scope, &format!("{path}.{i}"), item, &about["items"]));
+            Ok(items.collect::<Option<Json>>()?)
+        }
+        (_, Json::Object(table)) => Ok(checked_table(scope, path, table, about).into()),
+        _ => Ok(given.clone()),
     };
-    let weight = keys.number("weight", common.weight.as_ref(), (0.0, 1000.0), default);
-    let duration = (0.0, 86400.0);
-    let duration_s = match (&common.duration_s, raw_task) {
-        (None, Some(RawTask::Timer(_))) => Some(keys.required("duration_s", None, duration)),
-        (None, _) => None,
-        (Some(given), _) => Some(keys.number("duration_s", Some(given), duration, 0.0)),
-    };
-    let task = task(&mut keys, raw_task.as_ref()?)?;
-    let perpetual = common.perpetual.as_ref().is_some_and(|perpetual| perpetual.value);
-    Some(Behaviour { name: name.clone(), modes, when, weight, duration_s, perpetual, posts, task })
+    value.ok()
+}
+
+/// The parameter of this key, if it is given and right.
+fn parameter(keys: &Map<String, Json>, key: &str) -> Option<Parameter> {
+    serde_json::from_value(keys.get(key)?.clone()).ok()
+}
+
+/// Notes numbers that are greater than those they may not exceed, where both are known beforehand.
+fn check_order(scope: &mut Scope<'_>, path: &str, keys: &Map<String, Json>) {
+    let constant = |key: &str| parameter(keys, key)?.constant();
+    for (low, high) in IN_ORDER {
+        let (Some(least), Some(most)) = (constant(low), constant(high)) else { continue };
+        let given = [low, high].into_iter().find(|key| scope.document.has(&format!("{path}.{key}")));
+        if let Some(given) = given.filter(|_| least > most) {
+            let at = scope.document.at(&format!("{path}.{given}"));
+            scope.diagnostics.note(at, format!("{low} is {least}, expected at most {high}, which is {most}"));
+        }
+    }
+}
+
+/// The shape that a loiter goes round, by whichever of its keys is given.
+fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Json> {
+    let (polygon, ellipse) = (format!("{path}.polygon"), format!("{path}.ellipse"));
+    match (scope.document.has(&polygon), scope.document.has(&ellipse)) {
+        (true, false) => keys.remove("polygon").map(|corners| json!({ "Corners": corners })),
+        (false, true) => keys.remove("ellipse").map(|ellipse| json!({ "Ellipse": ellipse })),
+        (true, true) => {
+            scope.note(&ellipse, "is given with polygon, expected one of them");
+            None
+        }
+        (false, false) => {
+            scope.note_missing(&ellipse, "it or polygon");
+            None
+        }
+    }
 }
 
 /// The modes in which a behaviour may run, by mode.
-fn in_modes(diagnostics: &mut Diagnostics, modes: &[(usize, Mode)], common: &RawCommon) -> Vec<bool> {
-    let Some(given) = &common.r#in else { return vec![true; modes.len()] };
-    if given.value.is_empty() {
-        diagnostics.note(given.at, "in has 0 entries, expected at least one mode");
-    }
+fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&[String]>) -> Vec<bool> {
+    let Some(given) = given else { return vec![true; modes.len()] };
     let mut allowed = vec![false; modes.len()];
-    for name in &given.value {
-        match modes.iter().position(|(_, mode)| mode.name == name.value) {
+    for (i, name) in given.iter().enumerate().filter(|(_, name)| !name.is_empty()) {
+        match modes.iter().position(|mode| mode.name == *name) {
             Some(mode) => allowed[mode] = true,
             None => {
-                let names: Vec<&str> = modes.iter().map(|(_, mode)| mode.name.as_str()).collect();
-                let guess = nearest(&name.value, &names).map(|guess| format!(" (did you mean {guess}?)"));
-                let (names, guess) = (names.join(", "), guess.unwrap_or_default());
-                diagnostics.note(name.at, format!("in has {:?}, expected one of the modes {names}{guess}", name.value));
+                let names: Vec<&str> = modes.iter().map(|mode| mode.name.as_str()).collect();
+                let guess = did_you_mean(name, &names);
+                let message = format!("has {name:?}, expected one of the modes {}{guess}", names.join(", "));
+                scope.note(&format!("{path}.in.{i}"), &message);
             }
         }
     }
     // Parents stand before their parts.
-    for (i, (_, mode)) in modes.iter().enumerate() {
+    for (i, mode) in modes.iter().enumerate() {
         allowed[i] |= mode.parent.is_some_and(|parent| allowed[parent]);
     }
     allowed
 }
 
-fn posts(diagnostics: &mut Diagnostics, variables: &[Variable], common: &RawCommon) -> Vec<Post> {
+fn posts(scope: &mut Scope<'_>, path: &str, common: &Common) -> Vec<Post> {
     let moments = [
-        (Moment::Run, &common.on_run),
-        (Moment::Idle, &common.on_idle),
-        (Moment::Active, &common.on_active),
-        (Moment::Inactive, &common.on_inactive),
-        (Moment::Reach, &common.on_reach),
-        (Moment::Complete, &common.on_complete),
+        (Moment::Run, "on_run", &common.on_run),
+        (Moment::Idle, "on_idle", &common.on_idle),
+        (Moment::Active, "on_active", &common.on_active),
+        (Moment::Inactive, "on_inactive", &common.on_inactive),
+        (Moment::Reach, "on_reach", &common.on_reach),
+        (Moment::Complete, "on_complete", &common.on_complete),
     ];
     let mut posts = vec![];
-    for (at, given) in moments {
-        let set = set(diagnostics, variables, given.as_ref());
+    for (at, key, given) in moments {
+        let set = set(scope, &format!("{path}.{key}"), given);
         posts.extend(set.into_iter().map(|(variable, value)| Post { at, variable, value }));
     }
     posts

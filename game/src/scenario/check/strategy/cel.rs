@@ -1,7 +1,6 @@
 //! Expressions as text: parsed as CEL, with the place of every part in the file.
 
 use crate::scenario::diagnostics::Diagnostics;
-use crate::scenario::raw::At;
 use cel::common::ast::{IdedExpr, SourceInfo};
 use cel::parser::PrattParser;
 use std::sync::Arc;
@@ -27,15 +26,14 @@ impl Parsed {
     }
 }
 
-/// Parses the expression given for `key`; what is wrong with its syntax is noted.
-pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, given: &At<String>) -> Option<Parsed> {
-    let text = given.value.as_str();
+/// Parses the expression given for `key`, which stands at `at`; what is wrong with its syntax is noted.
+pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, at: usize, text: &str) -> Option<Parsed> {
     let length = text.chars().count();
     if length > LONGEST {
-        diagnostics.note(given.at, format!("{key} is {length} characters long, expected at most {LONGEST}"));
+        diagnostics.note(at, format!("{key} is {length} characters long, expected at most {LONGEST}"));
         return None;
     }
-    let offsets = offsets(diagnostics.sources.text_from(given.at), given.at, text);
+    let offsets = offsets(diagnostics.sources.text_from(at), at, text);
     let parser = || PrattParser::new().max_recursion_depth(DEEPEST as u16);
     match parser().parse(text) {
         Ok(root) => {
@@ -47,7 +45,7 @@ pub(super) fn parse(diagnostics: &mut Diagnostics, key: &str, given: &At<String>
         Err(errors) => {
             let error = errors.errors.first()?;
             let start = byte_at(text, error.pos);
-            let at = offsets.get(start).or(offsets.last()).copied().unwrap_or(given.at);
+            let at = offsets.get(start).or(offsets.last()).copied().unwrap_or(at);
             let complaint = complaint(&error.msg, text.get(start..).unwrap_or_default());
             diagnostics.note(at, format!("{key} {complaint}"));
             None

@@ -1,37 +1,14 @@
 //! Expressions, checked: names become what they stand for, and types must fit.
 
-use super::cel::{self, DEEPEST, Parsed};
-use crate::field::Field;
-use crate::scenario::diagnostics::Diagnostics;
-use crate::scenario::explain::nearest;
-use crate::scenario::raw::At;
-use crate::strategy::{Boat, Expression, Fact, Join, Kind, Mark, Measure, Place, Variable};
+use super::cel::{DEEPEST, Parsed};
+use super::scope::Scope;
+use crate::scenario::guess::did_you_mean;
+use crate::strategy::{Expression, Fact, Join, Kind, Measure, Named, Place};
 use ::cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, operators};
 
 /// Words that CEL keeps for itself.
-pub(super) const RESERVED: [&str; 21] = [
-    "as",
-    "break",
-    "const",
-    "continue",
-    "else",
-    "false",
-    "for",
-    "function",
-    "if",
-    "import",
-    "in",
-    "let",
-    "loop",
-    "package",
-    "namespace",
-    "null",
-    "return",
-    "true",
-    "var",
-    "void",
-    "while",
-];
+const RESERVED: &str = "as break const continue else false for function if import in let loop package namespace null return true \
+                        var void while";
 /// What stands for a call and is no measure.
 pub(super) const CALLS: [&str; 3] = ["min", "max", "mates"];
 
@@ -53,6 +30,10 @@ enum Type {
 }
 
 impl Type {
+    fn of(is_truth: bool) -> Type {
+        if is_truth { Type::Truth } else { Type::Number }
+    }
+
     fn in_words(&self) -> String {
         match self {
             Type::Truth => "true or false".to_owned(),
@@ -63,32 +44,29 @@ impl Type {
     }
 }
 
-/// The expression given for `key`, which must be of type `wanted`; what is wrong with it is noted.
-pub(super) fn expression(
-    diagnostics: &mut Diagnostics,
-    variables: &[Variable],
-    key: &str,
-    given: &At<String>,
-    wanted: Wanted,
-) -> Option<Expression> {
-    let parsed = cel::parse(diagnostics, key, given)?;
-    let mut reader = Reader { diagnostics, variables, key, parsed: &parsed, among_mates: false };
-    reader.of_type(&parsed.root, wanted, 0)
-}
-
-struct Reader<'a> {
-    diagnostics: &'a mut Diagnostics,
-    variables: &'a [Variable],
+/// Reads an expression that was parsed.
+pub(super) struct Reader<'a, 'b> {
+    scope: &'a mut Scope<'b>,
     key: &'a str,
     parsed: &'a Parsed,
     /// Within `mates(...)`, where only shared variables are known.
     among_mates: bool,
 }
 
-impl Reader<'_> {
+impl<'a, 'b> Reader<'a, 'b> {
+    /// For the expression that is given for `key`.
+    pub(super) fn new(scope: &'a mut Scope<'b>, key: &'a str, parsed: &'a Parsed) -> Reader<'a, 'b> {
+        Reader { scope, key, parsed, among_mates: false }
+    }
+
+    /// The expression, which must be of type `wanted`; what is wrong with it is noted.
+    pub(super) fn expression(&mut self, wanted: Wanted) -> Option<Expression> {
+        self.of_type(&self.parsed.root, wanted, 0)
+    }
+
     fn note(&mut self, part: &IdedExpr, message: &str) {
         let message = format!("{} {message}", self.key);
-        self.diagnostics.note(self.parsed.place(part), message);
+        self.scope.diagnostics.note(self.parsed.place(part), message);
     }
 
     fn of_type(&mut self, part: &IdedExpr, wanted: Wanted, depth: usize) -> Option<Expression> {
@@ -146,11 +124,11 @@ impl Reader<'_> {
     }
 
     fn name(&mut self, part: &IdedExpr, name: &str) -> Option<(Expression, Type)> {
-        if let Some(index) = self.variables.iter().position(|variable| variable.name == name) {
-            let variable = &self.variables[index];
+        let variables = self.scope.variables;
+        if let Some(index) = variables.iter().position(|variable| variable.name == name) {
+            let variable = &variables[index];
             if self.among_mates && !variable.shared {
-                self.note(part, &format!("asks mates for {name}, which is not shared, expected a shared variable"));
-                return None;
+                return self.refused_to_mates(part, name, "not shared");
             }
             let kind = match &variable.kind {
                 Kind::Truth => Type::Truth,
@@ -159,88 +137,82 @@ impl Reader<'_> {
             };
             return Some((Expression::Variable(index as u16), kind));
         }
-        if let Some(fact) = Fact::all().find(|fact| fact.name() == name) {
+        if let Some(fact) = Fact::by_name(name) {
             if self.among_mates {
-                self.note(part, &format!("asks mates for {name}, which is a fact, expected a shared variable"));
-                return None;
+                return self.refused_to_mates(part, name, "a fact");
             }
-            let kind = if fact.is_truth() { Type::Truth } else { Type::Number };
-            return Some((Expression::Fact(fact), kind));
+            return Some((Expression::Fact(fact), Type::of(fact.is_truth())));
         }
-        if place_of(name).is_some() {
-            let message = format!("has the place {name} here, expected it in a measure, as in distance({name})");
-            self.note(part, &message);
+        if Place::by_name(name).is_some() {
+            self.note(part, &format!("has the place {name} here, expected it in a measure, as in distance({name})"));
             return None;
         }
-        let mut known: Vec<&str> = self.variables.iter().map(|variable| variable.name.as_str()).collect();
-        known.extend(Fact::all().map(|fact| fact.name()));
-        let guess = nearest(name, &known).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default();
+        let mut known: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
+        let listed = if known.is_empty() { String::new() } else { format!(" ({})", known.join(", ")) };
+        known.extend(Fact::names());
         let message = format!(
-            "has {name:?} here, which is unknown, expected a variable{}, a fact such as tagged or time_s, or a call \
-             such as distance(own_flag){guess}",
-            in_brackets(self.variables)
+            "has {name:?} here, which is unknown, expected a variable{listed}, a fact such as tagged or time_s, or a call \
+             such as distance(own_flag){}",
+            did_you_mean(name, &known)
         );
         self.note(part, &message);
         None
     }
 
+    fn refused_to_mates<T>(&mut self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
+        self.note(part, &format!("asks mates for {name}, which is {what}, expected a shared variable"));
+        None
+    }
+
     fn call(&mut self, part: &IdedExpr, call: &CallExpr, depth: usize) -> Option<(Expression, Type)> {
-        let truth = |expression| (expression, Type::Truth);
-        let number = |expression| (expression, Type::Number);
-        match (call.func_name.as_str(), call.args.as_slice()) {
-            (operators::LOGICAL_AND, [a, b]) => self.both(Join::And, a, b, Wanted::Truth, depth).map(truth),
-            (operators::LOGICAL_OR, [a, b]) => self.both(Join::Or, a, b, Wanted::Truth, depth).map(truth),
-            (operators::LESS, [a, b]) => self.both(Join::Less, a, b, Wanted::Number, depth).map(truth),
-            (operators::LESS_EQUALS, [a, b]) => self.both(Join::AtMost, a, b, Wanted::Number, depth).map(truth),
-            (operators::GREATER, [a, b]) => self.both(Join::More, a, b, Wanted::Number, depth).map(truth),
-            (operators::GREATER_EQUALS, [a, b]) => self.both(Join::AtLeast, a, b, Wanted::Number, depth).map(truth),
-            (operators::ADD, [a, b]) => self.both(Join::Plus, a, b, Wanted::Number, depth).map(number),
-            (operators::SUBSTRACT, [a, b]) => self.both(Join::Minus, a, b, Wanted::Number, depth).map(number),
-            (operators::MULTIPLY, [a, b]) => self.both(Join::Times, a, b, Wanted::Number, depth).map(number),
-            (operators::DIVIDE, [a, b]) => self.both(Join::Over, a, b, Wanted::Number, depth).map(number),
-            ("min", [a, b]) => self.both(Join::Least, a, b, Wanted::Number, depth).map(number),
-            ("max", [a, b]) => self.both(Join::Greatest, a, b, Wanted::Number, depth).map(number),
-            (operators::EQUALS, [a, b]) => self.equality(part, Join::Equal, a, b, depth).map(truth),
-            (operators::NOT_EQUALS, [a, b]) => self.equality(part, Join::Unequal, a, b, depth).map(truth),
-            (operators::LOGICAL_NOT, [a]) => {
-                self.of_type(a, Wanted::Truth, depth).map(|inner| truth(Expression::Not(Box::new(inner))))
+        // CEL calls an infix operator by its sign between underscores.
+        let name = call.func_name.as_str();
+        let sign = name.trim_matches('_');
+        let join = Join::by_name(sign).filter(|_| CALLS.contains(&sign) == (sign == name));
+        match (join, name, call.args.as_slice()) {
+            (Some(join @ (Join::Equal | Join::Unequal)), _, [a, b]) => self.equality(part, join, a, b, depth),
+            (Some(join), _, [a, b]) => {
+                let wanted = if matches!(join, Join::And | Join::Or) { Wanted::Truth } else { Wanted::Number };
+                let (a, b) = (self.of_type(a, wanted, depth), self.of_type(b, wanted, depth));
+                Some((Expression::Join(join, Box::new((a?, b?))), Type::of(join.is_truth())))
             }
-            (operators::NEGATE, [a]) => {
-                self.of_type(a, Wanted::Number, depth).map(|inner| number(Expression::Minus(Box::new(inner))))
+            (_, operators::LOGICAL_NOT, [a]) => {
+                self.of_type(a, Wanted::Truth, depth).map(|inner| (Expression::Not(Box::new(inner)), Type::Truth))
             }
-            (operators::CONDITIONAL, [condition, then, otherwise]) => self.choice(condition, then, otherwise, depth),
-            (operators::MODULO, _) => self.refused(part, "%"),
-            (operators::IN, _) => self.refused(part, "in"),
-            (operators::INDEX, _) => self.refused(part, "an index [...]"),
-            ("mates", [condition]) => self.mates(part, condition, depth).map(number),
-            (name, arguments) => self.function(part, name, arguments),
+            (_, operators::NEGATE, [a]) => {
+                self.of_type(a, Wanted::Number, depth).map(|inner| (Expression::Minus(Box::new(inner)), Type::Number))
+            }
+            (_, operators::CONDITIONAL, [condition, then, otherwise]) => self.choice(condition, then, otherwise, depth),
+            (_, operators::MODULO, _) => self.refused(part, "%"),
+            (_, operators::IN, _) => self.refused(part, "in"),
+            (_, operators::INDEX, _) => self.refused(part, "an index [...]"),
+            (_, "mates", [condition]) => self.mates(part, condition, depth).map(|mates| (mates, Type::Number)),
+            (_, name, arguments) => self.function(part, name, arguments),
         }
     }
 
     /// A measure, or what is none.
     fn function(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<(Expression, Type)> {
-        if let Some(measure) = Measure::all().find(|measure| measure.name() == name) {
+        if let Some(measure) = Measure::by_name(name) {
             let [place] = arguments else {
                 let message = format!("gives {} things to {name}(), expected one place or boat", arguments.len());
                 self.note(part, &message);
                 return None;
             };
-            let kind = if measure.is_truth() { Type::Truth } else { Type::Number };
             if self.among_mates {
-                self.note(part, &format!("asks mates for {name}(), which is a measure, expected a shared variable"));
-                return None;
+                return self.refused_to_mates(part, &format!("{name}()"), "a measure");
             }
-            return self.place(place, name).map(|place| (Expression::Measure(measure, place), kind));
+            let place = self.place(place, name)?;
+            return Some((Expression::Measure(measure, place), Type::of(measure.is_truth())));
         }
         if CALLS.contains(&name) {
             let wanted = if name == "mates" { "one condition, or none as in mates > 0" } else { "two numbers" };
             self.note(part, &format!("gives {} things to {name}(), expected {wanted}", arguments.len()));
             return None;
         }
-        let known: Vec<&str> = CALLS.into_iter().chain(Measure::all().map(Measure::name)).collect();
-        let guess = nearest(name, &known).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default();
-        let known: Vec<String> = known.iter().map(|name| format!("{name}()")).collect();
-        self.note(part, &format!("calls {name}(), expected one of {}{guess}", known.join(", ")));
+        let known = [&CALLS[..], &Measure::names()].concat();
+        let message = format!("calls {name}(), expected one of {}(){}", known.join("(), "), did_you_mean(name, &known));
+        self.note(part, &message);
         None
     }
 
@@ -253,10 +225,12 @@ impl Reader<'_> {
                 return None;
             }
         };
-        let place = place_of(name);
+        let place = Place::by_name(name);
         if place.is_none() {
-            let message = format!("asks for the {measure} of {name:?}, {}", places_allowed(name));
-            self.note(part, &message);
+            let known = Place::names();
+            let guess = did_you_mean(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
+            let expected = Place::names_in_short();
+            self.note(part, &format!("asks for the {measure} of {name:?}, expected {expected}{guess}"));
         }
         place
     }
@@ -272,12 +246,6 @@ impl Reader<'_> {
         condition.map(|condition| Expression::Mates(Box::new(condition)))
     }
 
-    fn both(&mut self, join: Join, a: &IdedExpr, b: &IdedExpr, wanted: Wanted, depth: usize) -> Option<Expression> {
-        let a = self.of_type(a, wanted, depth);
-        let b = self.of_type(b, wanted, depth);
-        Some(Expression::Join(join, Box::new((a?, b?))))
-    }
-
     fn equality(
         &mut self,
         part: &IdedExpr,
@@ -285,10 +253,10 @@ impl Reader<'_> {
         a: &IdedExpr,
         b: &IdedExpr,
         depth: usize,
-    ) -> Option<Expression> {
+    ) -> Option<(Expression, Type)> {
         let (left, right) = (self.any(a, depth), self.any(b, depth));
         let ((left, left_type), (right, right_type)) = (left?, right?);
-        let joined = |left, right| Some(Expression::Join(join, Box::new((left, right))));
+        let joined = |left, right| Some((Expression::Join(join, Box::new((left, right))), Type::Truth));
         match (&left_type, &right_type) {
             (Type::Truth, Type::Truth) | (Type::Number, Type::Number) => joined(left, right),
             (Type::Text(values), Type::Quote(text)) => joined(left, self.text(a, b, values, text)?),
@@ -351,30 +319,13 @@ impl Reader<'_> {
     }
 }
 
-/// The mark, boat or named point called `name`.
-pub(super) fn place_of(name: &str) -> Option<Place> {
-    let is_point = || Field::point_names().iter().any(|point| point == name);
-    Place::of_name(name).or_else(|| is_point().then(|| Place::Point(name.to_owned())))
-}
-
-/// What a place may be called, and what may have been meant by `name`.
-pub(super) fn places_allowed(name: &str) -> String {
-    let points = Field::point_names();
-    let marks: Vec<&str> = Mark::all().map(Mark::name).collect();
-    let boats: Vec<&str> = Boat::all().map(Boat::name).collect();
-    let known: Vec<&str> = marks.iter().chain(&boats).copied().chain(points.iter().map(String::as_str)).collect();
-    let guess = nearest(name, &known).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default();
-    format!("expected {}, a boat ({}) or a named point such as CH{guess}", marks.join(", "), boats.join(", "))
+/// Whether CEL keeps `name` for itself.
+pub(super) fn is_reserved(name: &str) -> bool {
+    RESERVED.split(' ').any(|word| word == name)
 }
 
 /// Which texts are allowed, and which may have been meant by `text`.
 pub(super) fn values_allowed(values: &[String], text: &str) -> String {
     let values: Vec<&str> = values.iter().map(String::as_str).collect();
-    let guess = nearest(text, &values).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default();
-    format!("expected one of {}{guess}", values.join(", "))
-}
-
-fn in_brackets(variables: &[Variable]) -> String {
-    let names: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
-    if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) }
+    format!("expected one of {}{}", values.join(", "), did_you_mean(text, &values))
 }

@@ -1,76 +1,63 @@
 //! Safety is not optional: every mode has what keeps a boat on the field and off other boats, or the file says why not.
 
-use crate::scenario::diagnostics::Diagnostics;
-use crate::scenario::raw::{At, RawStrategy};
+use super::scope::Scope;
 use crate::strategy::{Behaviour, Contacts, Program, Task};
 
-/// Why the file wants to do without, if it does.
-pub(super) fn because(diagnostics: &mut Diagnostics, raw: &RawStrategy) -> Option<At<String>> {
-    let knows = raw.unsafe_i_know.as_ref().filter(|knows| knows.value);
-    match (knows, &raw.unsafe_because) {
-        (None, None) => None,
-        (None, Some(because)) => {
-            diagnostics
-                .note(because.at, "unsafe_because is given without unsafe_i_know = true, expected both or neither");
-            None
+/// Checks that there is a reason where the file wants to do without, and none elsewhere.
+pub(super) fn check_reason(scope: &mut Scope<'_>) {
+    let raw = &scope.document.raw;
+    match (raw.unsafe_i_know, &raw.unsafe_because) {
+        (false, Some(_)) => {
+            scope.note("unsafe_because", "is given without unsafe_i_know = true, expected both or neither");
         }
-        (Some(knows), None) => {
-            diagnostics.note_missing(knows.at, "unsafe_because", "the reason");
-            None
+        (true, None) => {
+            let at = scope.document.at("unsafe_i_know");
+            if scope.document.is_sound("unsafe_because") {
+                scope.diagnostics.note_missing(at, "unsafe_because", "the reason");
+            }
         }
-        (Some(_), Some(because)) if because.value.trim().is_empty() => {
-            diagnostics.note(because.at, "unsafe_because is empty, expected the reason");
-            None
+        (true, Some(because)) if because.trim().is_empty() => {
+            scope.note("unsafe_because", "is empty, expected the reason");
         }
-        (Some(_), Some(because)) => Some(because.clone()),
+        _ => {}
     }
 }
 
 /// Notes every mode that lacks something, or the reason that nothing needs. Whoever keeps the boat safe is outweighed by no
 /// other behaviour: numbers that would are noted, expressions are held below.
-pub(super) fn check(
-    diagnostics: &mut Diagnostics,
-    program: &mut Program,
-    (places, raw): (&[usize], &RawStrategy),
-    because: Option<&At<String>>,
-) {
-    let mut lacking = vec![];
+pub(super) fn check(scope: &mut Scope<'_>, program: &mut Program) {
+    let is_unsafe = program.unsafe_because.is_some();
+    let mut is_lacking = false;
     for leaf in program.leaves() {
-        for kind in ["op_region", "avoid_collision"] {
+        for (kind, all) in [("op_region", ""), ("avoid_collision", " for all contacts")] {
             let of_kind = || program.behaviours.iter().filter(|b| b.task.kind() == kind && b.modes[leaf]);
-            if !of_kind().any(Behaviour::is_guard) {
-                lacking.push((leaf, kind, of_kind().find_map(|b| Some((b.name.clone(), b.no_guard_since()?)))));
+            if of_kind().any(Behaviour::is_guard) {
+                continue;
+            }
+            is_lacking = true;
+            let other = of_kind().find_map(|b| Some(format!(" ({} is none: {})", b.name, b.no_guard_since()?)));
+            let message = format!(
+                "has no {kind} on guard{}, expected a behaviour of this kind{all}, without when and duration_s, with a \
+                 weight that is a number above 0; or unsafe_i_know = true and unsafe_because",
+                other.unwrap_or_default()
+            );
+            if !is_unsafe {
+                scope.note_mode(program, leaf, &message);
             }
         }
     }
-    match because {
-        Some(because) if lacking.is_empty() => {
-            diagnostics.note(
-                because.at,
-                "unsafe_because is not needed: every mode has op_region and avoid_collision, expected none",
-            );
+    match (is_unsafe, is_lacking) {
+        (true, false) => {
+            let message = "is not needed: every mode has op_region and avoid_collision, expected none";
+            scope.note("unsafe_because", message);
         }
-        Some(_) => {}
-        None => {
-            for (leaf, kind, other) in &lacking {
-                let all = if *kind == "avoid_collision" { " for all contacts" } else { "" };
-                let other = other.as_ref().map(|(name, why)| format!(" ({name} is none: {why})")).unwrap_or_default();
-                let message = format!(
-                    "mode {} has no {kind} on guard{other}, expected a behaviour of this kind{all}, without when and \
-                     duration_s, with a weight that is a number above 0; or unsafe_i_know = true and unsafe_because",
-                    program.path(*leaf)
-                );
-                diagnostics.note(places[*leaf], message);
-            }
-            if lacking.is_empty() {
-                hold_below_guards(diagnostics, program, raw);
-            }
-        }
+        (false, false) => hold_below_guards(scope, program),
+        _ => {}
     }
 }
 
 /// Sees to it that no behaviour outweighs what keeps the boat safe in a mode in which both run.
-fn hold_below_guards(diagnostics: &mut Diagnostics, program: &mut Program, raw: &RawStrategy) {
+fn hold_below_guards(scope: &mut Scope<'_>, program: &mut Program) {
     for leaf in program.leaves().collect::<Vec<_>>() {
         let weight = |kind: &str| {
             let guards = program.behaviours.iter().filter(|b| b.task.kind() == kind && b.modes[leaf] && b.is_guard());
@@ -78,24 +65,16 @@ fn hold_below_guards(diagnostics: &mut Diagnostics, program: &mut Program, raw: 
         };
         let most = weight("op_region").min(weight("avoid_collision"));
         let path = program.path(leaf);
-        for behaviour in &mut program.behaviours {
-            let is_safety =
-                matches!(behaviour.task, Task::OpRegion(_) | Task::AvoidCollision(_) | Task::AvoidObstacle(_));
-            if is_safety || !behaviour.modes[leaf] {
-                continue;
-            }
-            let Some(weight) = behaviour.weight.constant() else {
-                behaviour.weight.range.1 = behaviour.weight.range.1.min(most);
-                continue;
-            };
-            if weight > most {
-                let given = raw.behaviour.0.iter().find(|given| given.value.name == behaviour.name);
-                let at =
-                    given.map_or(0, |given| given.value.common.weight.as_ref().map_or(given.at, |weight| weight.at));
-                let message = format!(
-                    "weight is {weight} in mode {path}, expected at most {most}, which op_region or avoid_collision has there"
-                );
-                diagnostics.note(at, message);
+        for behaviour in program.behaviours.iter_mut().filter(|b| b.modes[leaf] && !b.task.is_safety()) {
+            match behaviour.weight.constant() {
+                Some(weight) if weight > most => {
+                    let message = format!(
+                        "is {weight} in mode {path}, expected at most {most}, which op_region or avoid_collision has there"
+                    );
+                    scope.note(&format!("behaviour.{}.weight", behaviour.name), &message);
+                }
+                Some(_) => {}
+                None => behaviour.weight.range.1 = behaviour.weight.range.1.min(most),
             }
         }
     }

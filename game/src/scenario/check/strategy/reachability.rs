@@ -1,7 +1,7 @@
 //! Modes that can never be: decided over everything that their conditions can tell apart.
 
-use super::claim::{Claim, Claims, given_to};
-use crate::scenario::diagnostics::Diagnostics;
+use super::formula::{Formula, Formulas, given_to};
+use super::scope::Scope;
 use crate::strategy::{Expression, Program};
 use std::collections::BTreeSet;
 
@@ -11,18 +11,18 @@ const MOST_CASES: usize = 200_000;
 const MOST_STEPS: usize = 50_000_000;
 
 /// Notes every mode whose conditions can never choose it. Parts of such a mode have had their say with it.
-pub(super) fn check(diagnostics: &mut Diagnostics, program: &Program, places: &[usize]) {
-    let claims = Claims::of(program);
-    let mut search = Search { claims: &claims, held: vec![None; claims.terms()], cases: 0, steps: 0 };
+pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
+    let formulas = Formulas::of(program);
+    let mut search = Search { formulas: &formulas, values: vec![None; formulas.values.len()], cases: 0, steps: 0 };
     let mut never = vec![false; program.modes.len()];
     for (i, mode) in program.modes.iter().enumerate() {
         never[i] = mode.parent.is_some_and(|parent| never[parent]);
-        if never[i] || search.is_possible(&wanted(program, &claims, i, true)) {
+        if never[i] || search.is_possible(&wanted(program, &formulas, i, true)) {
             continue;
         }
         never[i] = true;
         let before: Vec<&str> = before(program, i).map(|other| program.modes[other].name.as_str()).collect();
-        let alone = wanted(program, &claims, i, false);
+        let alone = wanted(program, &formulas, i, false);
         let why = if !alone.is_empty() && !search.is_possible(&alone) {
             format!("its when never holds{}", only_ever(program, i))
         } else if before.is_empty() {
@@ -30,7 +30,7 @@ pub(super) fn check(diagnostics: &mut Diagnostics, program: &Program, places: &[
         } else {
             format!("whenever it could be, one before it is: {}", before.join(", "))
         };
-        diagnostics.note(places[i], format!("mode {} can never be ({why}), expected one that can", program.path(i)));
+        scope.note_mode(program, i, &format!("can never be ({why}), expected one that can"));
     }
 }
 
@@ -42,7 +42,7 @@ fn only_ever(program: &Program, mode: usize) -> String {
     let mut words = String::new();
     for index in asked {
         let Some(values) = given_to(program, index) else { continue };
-        let word = |value: &f64| program.value_in_words(index, &Expression::Constant(*value));
+        let word = |value: &f64| program.value_text(index, &Expression::Constant(*value));
         let values: Vec<String> = values.iter().map(word).collect();
         let name = &program.variables[usize::from(index)].name;
         words.push_str(&format!("; {name} is only ever {}", values.join(" or ")));
@@ -60,57 +60,58 @@ fn before(program: &Program, mode: usize) -> impl Iterator<Item = usize> {
 }
 
 /// What must hold, and what must not, for a mode to be; alone, only its own condition.
-fn wanted<'a>(program: &Program, claims: &'a Claims, mode: usize, in_place: bool) -> Vec<(&'a Claim, bool)> {
-    let mut wanted: Vec<(&Claim, bool)> = claims.of_mode(mode).map(|claim| (claim, true)).into_iter().collect();
+fn wanted<'a>(program: &Program, formulas: &'a Formulas, mode: usize, in_place: bool) -> Vec<(&'a Formula, bool)> {
+    let condition = |mode: usize| formulas.of_modes[mode].as_ref();
+    let mut wanted: Vec<(&Formula, bool)> = condition(mode).map(|when| (when, true)).into_iter().collect();
     let mut at = Some(mode).filter(|_| in_place);
     while let Some(mode) = at {
-        wanted.extend(before(program, mode).filter_map(|other| claims.of_mode(other)).map(|claim| (claim, false)));
+        wanted.extend(before(program, mode).filter_map(condition).map(|when| (when, false)));
         at = program.modes[mode].parent;
-        wanted.extend(at.and_then(|parent| claims.of_mode(parent)).map(|claim| (claim, true)));
+        wanted.extend(at.and_then(condition).map(|when| (when, true)));
     }
-    wanted.extend(claims.laws().map(|law| (law, true)));
+    wanted.extend(formulas.laws.iter().map(|law| (law, true)));
     wanted
 }
 
 /// A search through the cases that conditions can tell apart.
 struct Search<'a> {
-    claims: &'a Claims,
-    /// For each term, the value that is looked at.
-    held: Vec<Option<f64>>,
+    formulas: &'a Formulas,
+    /// For each term, the value that is tried.
+    values: Vec<Option<f64>>,
     cases: usize,
     steps: usize,
 }
 
 impl Search<'_> {
     /// Whether there is a case in which all that is wanted holds; `true` as well where there are too many.
-    fn is_possible(&mut self, wanted: &[(&Claim, bool)]) -> bool {
+    fn is_possible(&mut self, wanted: &[(&Formula, bool)]) -> bool {
         self.cases = 0;
-        self.held.fill(None);
+        self.values.fill(None);
         self.is_possible_from(wanted)
     }
 
-    fn is_possible_from(&mut self, wanted: &[(&Claim, bool)]) -> bool {
+    fn is_possible_from(&mut self, wanted: &[(&Formula, bool)]) -> bool {
         self.cases += 1;
         if self.cases > MOST_CASES || self.steps > MOST_STEPS {
             return true;
         }
         let mut open = None;
-        for (claim, must) in wanted {
-            match claim.holds(&self.held, &mut self.steps) {
+        for (formula, must) in wanted {
+            match formula.holds(&self.values, &mut self.steps) {
                 Some(holds) if holds != *must => return false,
                 Some(_) => {}
-                None => open = open.or(Some(*claim)),
+                None => open = open.or(Some(*formula)),
             }
         }
         let Some(open) = open else { return true };
-        let term = open.open_term(&self.held).expect("a claim that is open has an open term");
-        for value in self.claims.values(term) {
-            self.held[term] = Some(*value);
+        let term = open.open_term(&self.values).expect("a formula that is open has an open term");
+        for value in &self.formulas.values[term] {
+            self.values[term] = Some(*value);
             if self.is_possible_from(wanted) {
                 return true;
             }
         }
-        self.held[term] = None;
+        self.values[term] = None;
         false
     }
 }

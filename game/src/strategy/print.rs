@@ -1,0 +1,134 @@
+//! Expressions printed in CEL, as they would be typed into a file.
+
+use super::{Expression, Join, Kind, Named, Place, Program};
+
+/// How tightly the parts of an expression bind, loosest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Precedence {
+    Choice,
+    Or,
+    And,
+    Relation,
+    Sum,
+    Product,
+    Sign,
+    Atom,
+}
+
+impl Program {
+    /// What kind of value an expression of this program has.
+    #[must_use]
+    pub fn kind_of(&self, expression: &Expression) -> Kind {
+        let truth = |is_truth: bool| if is_truth { Kind::Truth } else { Kind::Number };
+        match expression {
+            Expression::Constant(_) | Expression::Mates(_) | Expression::Minus(_) => Kind::Number,
+            Expression::Variable(index) => self.variables[usize::from(*index)].kind.clone(),
+            Expression::Fact(fact) => truth(fact.is_truth()),
+            Expression::Measure(measure, _) => truth(measure.is_truth()),
+            Expression::Not(_) => Kind::Truth,
+            Expression::Join(join, _) => truth(join.is_truth()),
+            Expression::Choose(parts) => match self.kind_of(&parts.1) {
+                Kind::Number => self.kind_of(&parts.2),
+                kind => kind,
+            },
+        }
+    }
+
+    /// A condition of this program, as it would be typed.
+    #[must_use]
+    pub fn condition_text(&self, expression: &Expression) -> String {
+        self.text(expression, &Kind::Truth, Precedence::Choice)
+    }
+
+    /// A number of this program, as it would be typed.
+    #[must_use]
+    pub fn number_text(&self, expression: &Expression) -> String {
+        self.text(expression, &Kind::Number, Precedence::Choice)
+    }
+
+    /// A value for a variable of this program, as it would be typed.
+    #[must_use]
+    pub fn value_text(&self, variable: u16, expression: &Expression) -> String {
+        self.text(expression, &self.variables[usize::from(variable)].kind, Precedence::Choice)
+    }
+
+    /// An expression where a value of `kind` stands and everything looser than `around` needs brackets.
+    fn text(&self, expression: &Expression, kind: &Kind, around: Precedence) -> String {
+        let (text, binds) = match expression {
+            Expression::Constant(value) => constant(*value, kind),
+            Expression::Variable(index) => (self.variables[usize::from(*index)].name.clone(), Precedence::Atom),
+            Expression::Fact(fact) => (fact.name().to_owned(), Precedence::Atom),
+            Expression::Measure(measure, place) => (format!("{}({})", measure.name(), place.text()), Precedence::Atom),
+            Expression::Mates(condition) => (format!("mates({})", self.condition_text(condition)), Precedence::Atom),
+            Expression::Not(inner) => {
+                (format!("!{}", self.text(inner, &Kind::Truth, Precedence::Sign)), Precedence::Sign)
+            }
+            // Two signs in a row cancel each other, and a sign before a digit belongs to it.
+            Expression::Minus(inner) => (format!("-({})", self.number_text(inner)), Precedence::Sign),
+            Expression::Join(join, sides) => self.joined(*join, &sides.0, &sides.1),
+            Expression::Choose(parts) => {
+                let condition = self.text(&parts.0, &Kind::Truth, Precedence::Or);
+                let then = self.text(&parts.1, kind, Precedence::Or);
+                let otherwise = self.text(&parts.2, kind, Precedence::Choice);
+                (format!("{condition} ? {then} : {otherwise}"), Precedence::Choice)
+            }
+        };
+        if binds < around { format!("({text})") } else { text }
+    }
+
+    fn joined(&self, join: Join, left: &Expression, right: &Expression) -> (String, Precedence) {
+        let sign = join.name();
+        let binds = match join {
+            Join::Least | Join::Greatest => {
+                let text = format!("{sign}({}, {})", self.number_text(left), self.number_text(right));
+                return (text, Precedence::Atom);
+            }
+            Join::Or => Precedence::Or,
+            Join::And => Precedence::And,
+            Join::Plus | Join::Minus => Precedence::Sum,
+            Join::Times | Join::Over => Precedence::Product,
+            _ => Precedence::Relation,
+        };
+        let kind = match join {
+            Join::And | Join::Or => Kind::Truth,
+            // Of two sides one may be a constant, which alone does not say what it is.
+            Join::Equal | Join::Unequal => match (self.kind_of(left), self.kind_of(right)) {
+                (Kind::Number, kind) | (kind, _) => kind,
+            },
+            _ => Kind::Number,
+        };
+        // Chains of these are the same with and without brackets; of others the left side comes first.
+        let (at_left, at_right) = match join {
+            Join::And | Join::Or => (binds, binds),
+            _ if binds == Precedence::Relation => (Precedence::Sum, Precedence::Sum),
+            Join::Plus | Join::Minus => (binds, Precedence::Product),
+            _ => (binds, Precedence::Sign),
+        };
+        (format!("{} {sign} {}", self.text(left, &kind, at_left), self.text(right, &kind, at_right)), binds)
+    }
+}
+
+fn constant(value: f64, kind: &Kind) -> (String, Precedence) {
+    match kind {
+        Kind::Truth => ((if value == 0.0 { "false" } else { "true" }).to_owned(), Precedence::Atom),
+        Kind::Text(values) => {
+            let text = values.get(value as usize).map_or("", String::as_str);
+            (format!("'{text}'"), Precedence::Atom)
+        }
+        Kind::Number if value < 0.0 => (value.to_string(), Precedence::Sign),
+        Kind::Number => (value.to_string(), Precedence::Atom),
+    }
+}
+
+impl Place {
+    /// The place as it would be typed.
+    #[must_use]
+    pub fn text(&self) -> String {
+        match self {
+            Place::At(at) => format!("[{}, {}]", at.east, at.north),
+            Place::Point(name) => name.clone(),
+            Place::Mark(mark) => mark.name().to_owned(),
+            Place::Boat(boat) => boat.name().to_owned(),
+        }
+    }
+}
