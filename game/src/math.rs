@@ -39,9 +39,52 @@ pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
+/// The value at `x` of the line through `points`, which rise in x, exact at each of them; beyond its ends it is level.
+///
+/// # Panics
+/// If there is no point.
+#[must_use]
+pub fn interpolate(points: impl IntoIterator<Item = (f64, f64)>, x: f64) -> f64 {
+    let mut points = points.into_iter();
+    let mut before = points.next().expect("a line has a point");
+    for after in points {
+        if x < after.0 {
+            let part = (after.1 - before.1) * (x - before.0) / (after.0 - before.0);
+            return if x > before.0 { before.1 + part } else { before.1 };
+        }
+        before = after;
+    }
+    before.1
+}
+
 /// The length of the vector (`x`, `y`).
 #[inline]
 #[must_use]
 pub fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_goes_through_its_points_and_is_level_beyond_them() {
+        let line = [(-100.0, -2.0), (0.0, 0.0), (40.0, 1.0), (80.0, 3.0), (100.0, 3.0)];
+        for (x, want) in [
+            (-101.0, -2.0),
+            (-100.0, -2.0),
+            (-50.0, -1.0),
+            (0.0, 0.0),
+            (10.0, 0.25),
+            (40.0, 1.0),
+            (60.0, 2.0),
+            (90.0, 3.0),
+            (101.0, 3.0),
+        ] {
+            assert_eq!(interpolate(line, x), want, "{x}");
+        }
+        assert_eq!(interpolate([(1.0, 5.0)], 7.0), 5.0);
+        assert_eq!(interpolate(line.map(|(x, y)| (y, x)), 3.0), 100.0, "of two points at one place the last counts");
+    }
 }

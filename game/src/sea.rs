@@ -146,8 +146,9 @@ pub struct Current {
     pub shear: Option<Shear>,
     /// Eddies at stated places.
     pub eddies: Vec<Eddy>,
-    /// Eddies drawn by lot over the field.
-    pub eddies_by_lot: Option<RandomEddies>,
+    /// Eddies at random places of the field.
+    #[serde(alias = "eddies_by_lot")]
+    pub random_eddies: Option<RandomEddies>,
 }
 
 /// A first-order Gauss-Markov process that is added to the mean speed.

@@ -1,30 +1,15 @@
 //! Thrust and the speed that it gives: a map of pairs, read either way.
 
-/// The value at `x` of a curve through points of rising x: straight between them, its ends beyond them.
-fn value_at(points: impl Iterator<Item = (f64, f64)>, x: f64) -> f64 {
-    let mut before: Option<(f64, f64)> = None;
-    for (at, value) in points {
-        if at >= x {
-            return match before {
-                Some((at_before, value_before)) if at > at_before => {
-                    value_before + (value - value_before) * (x - at_before) / (at - at_before)
-                }
-                _ => value,
-            };
-        }
-        before = Some((at, value));
-    }
-    before.map_or(0.0, |(_, value)| value)
-}
+use game::math::interpolate;
 
 /// The thrust, per cent, that gives a speed, m/s.
 pub(crate) fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
-    value_at(map.iter().map(|(thrust, speed)| (*speed, *thrust)), speed_m_s)
+    interpolate(map.iter().map(|(thrust, speed)| (*speed, *thrust)), speed_m_s)
 }
 
 /// The speed, m/s, that a thrust, per cent, gives.
 pub(crate) fn speed_for(map: &[(f64, f64)], thrust_pct: f64) -> f64 {
-    value_at(map.iter().copied(), thrust_pct)
+    interpolate(map.iter().copied(), thrust_pct)
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@
 //! That the speed kept is the mean of old and new halves the limits of acceleration: a configured 0.15 m/s² is 0.075.
 //! The loops act once a step, not once a second: behaviour depends on `dt`, and the reference numbers are for 0.1 s.
 
-use crate::ramp::Ramp;
+use crate::piecewise_linear::PiecewiseLinear;
 use game::boat::{Kinematic, Pid};
 use game::{Ned, Rotation, math};
 use serde::{Deserialize, Serialize};
@@ -29,7 +29,7 @@ const FULL: f64 = 100.0;
 pub struct KinematicModel {
     boat: Kinematic,
     /// Speed, m/s, over thrust, per cent.
-    speed_of_thrust: Ramp,
+    speed_of_thrust: PiecewiseLinear,
     /// Largest rudder that the heading loop sets, per cent.
     rudder_max: f64,
     rotate_deg_s: f64,
@@ -150,7 +150,7 @@ impl KinematicModel {
     #[must_use]
     pub fn new(boat: &Kinematic) -> KinematicModel {
         KinematicModel {
-            speed_of_thrust: Ramp::new(&boat.thrust_map),
+            speed_of_thrust: PiecewiseLinear::new(&boat.thrust_map),
             rudder_max: boat.rudder_max.min(FULL),
             rotate_deg_s: boat.rotate_rad_s.to_degrees(),
             boat: boat.clone(),
@@ -167,12 +167,7 @@ impl KinematicModel {
     /// beyond its ends count as its ends.
     #[must_use]
     pub fn thrust_for_speed(&self, speed_m_s: f64) -> f64 {
-        let map = &self.boat.thrust_map;
-        let piece = map.windows(2).find(|ends| (ends[0].1..ends[1].1).contains(&speed_m_s));
-        piece.map_or_else(
-            || if speed_m_s < map[0].1 { map[0].0 } else { map[map.len() - 1].0 },
-            |ends| ends[0].0 + (ends[1].0 - ends[0].0) * (speed_m_s - ends[0].1) / (ends[1].1 - ends[0].1),
-        )
+        math::interpolate(self.boat.thrust_map.iter().map(|(thrust, speed_m_s)| (*speed_m_s, *thrust)), speed_m_s)
     }
 
     /// Moves a boat on by `dt_s`. `drift_m_s` carries it along: the current.

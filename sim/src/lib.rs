@@ -16,8 +16,8 @@ mod model;
 pub mod motion;
 #[cfg(feature = "net")]
 pub mod node;
+mod piecewise_linear;
 mod radio;
-mod ramp;
 pub mod resimulation;
 pub mod sea;
 pub mod sensor;

@@ -2,7 +2,7 @@
 
 use crate::flaw::{FlawModel, FlawState};
 use crate::hull::Planar;
-use crate::ramp::Ramp;
+use crate::piecewise_linear::PiecewiseLinear;
 use game::boat::{ThrustCurve, Thruster, Ventilation};
 use game::math;
 use serde::{Deserialize, Serialize};
@@ -41,8 +41,8 @@ enum Curve {
         k_astern: f64,
     },
     Table {
-        newton: Ramp,
-        setting: Ramp,
+        newton: PiecewiseLinear,
+        setting: PiecewiseLinear,
     },
 }
 
@@ -67,7 +67,8 @@ impl ThrusterModel {
             }
             ThrustCurve::Table { points } => {
                 let turned: Vec<(f64, f64)> = points.iter().map(|p| (p.1, p.0)).collect();
-                let curve = Curve::Table { newton: Ramp::new(points), setting: Ramp::new(&turned) };
+                let curve =
+                    Curve::Table { newton: PiecewiseLinear::new(points), setting: PiecewiseLinear::new(&turned) };
                 (curve, points[points.len() - 1].0, -points[0].0)
             }
         };

@@ -1,7 +1,8 @@
 //! The current against closed forms: tide, shear, eddies, and a wander that stays in its bounds.
 
-use game::field::{Plan, Walls};
-use game::frame::LatLon;
+mod common;
+
+use common::mean_of;
 use game::math;
 use game::sea::{Current, Eddy, RandomEddies, Shear, Tide, Wander};
 use game::{Field, Ned, Rotation, SimTime};
@@ -10,18 +11,7 @@ use sim::sea::eddy;
 use std::f64::consts::TAU;
 
 fn field() -> Field {
-    Field::new(Plan {
-        name: "test".into(),
-        datum: LatLon::default(),
-        corner: Ned::from_xy(30.0, -20.0),
-        along_deg: 20.0,
-        width_m: 160.0,
-        depth_m: 80.0,
-        flag_inset_m: 20.0,
-        extra_flags: vec![],
-        obstacles: vec![],
-        walls: Walls::None,
-    })
+    common::empty_field(Ned::from_xy(30.0, -20.0), 20.0)
 }
 
 fn model(current: &Current, seed: u64) -> CurrentField {
@@ -163,28 +153,28 @@ fn an_eddy_turns_a_hull_as_the_flow_at_its_ends_says() {
         );
         for (x, y) in [(1e-5, 0.0), (0.1, 0.0), (5.0, 3.0), (-22.0, 1.0), (30.0, -40.0), (300.0, 5.0)] {
             let place = Ned::from_xy(x, y);
-            let (felt, rate_rad_s) = now.over_hull(place, rotation);
+            let (velocity, rate_rad_s) = now.over_hull(place, rotation);
             let half = rotation.ahead().scaled(0.5 * LENGTH_M);
             let want = (now.at(place + half) - now.at(place - half)).dot(rotation.starboard()) / LENGTH_M;
             assert!((rate_rad_s - want).abs() < 1e-6 * core_rad_s, "({x}, {y}): {rate_rad_s}, not {want}");
-            assert_eq!(felt, now.at(place));
+            assert_eq!(velocity, now.at(place));
         }
     }
 }
 
 #[test]
-fn eddies_by_lot_lie_on_the_field_in_their_bounds_and_add_up() {
-    let lot = RandomEddies { count: 200, radius_m: (10.0, 40.0), peak_m_s: (0.1, 0.3) };
-    let drawn = eddy::draw(&lot, &field(), 4);
+fn random_eddies_lie_on_the_field_in_their_bounds_and_add_up() {
+    let random = RandomEddies { count: 200, radius_m: (10.0, 40.0), peak_m_s: (0.1, 0.3) };
+    let drawn = eddy::draw(&random, &field(), 4);
     assert_eq!(drawn.len(), 200);
     assert!(drawn.iter().all(|eddy| field().contains(eddy.centre)));
     assert!(drawn.iter().all(|eddy| (10.0..40.0).contains(&eddy.radius_m)));
     assert!(drawn.iter().all(|eddy| (0.1..0.3).contains(&eddy.peak_m_s.abs())));
     let clockwise = drawn.iter().filter(|eddy| eddy.peak_m_s > 0.0).count();
     assert!((60..140).contains(&clockwise), "{clockwise} of 200 turn clockwise");
-    assert_eq!(drawn, eddy::draw(&lot, &field(), 4));
-    assert_ne!(drawn, eddy::draw(&lot, &field(), 5));
-    let summed = Current { eddies_by_lot: Some(lot), ..eddy_at(Ned::default()) };
+    assert_eq!(drawn, eddy::draw(&random, &field(), 4));
+    assert_ne!(drawn, eddy::draw(&random, &field(), 5));
+    let summed = Current { random_eddies: Some(random), ..eddy_at(Ned::default()) };
     let alone = |eddy: &Eddy| Current { eddies: vec![*eddy], ..Current::default() };
     let place = Ned::from_xy(50.0, 30.0);
     let want = drawn.iter().fold(at(&model(&eddy_at(Ned::default()), 4), place, 0.0), |sum, eddy| {
@@ -205,9 +195,9 @@ fn wander_record(current: &Current, count: i64, step_s: f64) -> Vec<f64> {
     let sample = |i: i64| {
         let now = SimTime::from_s(i as f64 * step_s);
         model.prepare(now);
-        let felt = model.at_time(now).at(Ned::from_xy(i as f64, 0.0));
-        assert!((felt - toward.scaled(felt.dot(toward))).length() < 1e-15, "it wanders in its direction");
-        felt.dot(toward)
+        let velocity = model.at_time(now).at(Ned::from_xy(i as f64, 0.0));
+        assert!((velocity - toward.scaled(velocity.dot(toward))).length() < 1e-15, "it wanders in its direction");
+        velocity.dot(toward)
     };
     (0..count).map(sample).collect()
 }
@@ -221,9 +211,9 @@ fn a_wander_has_the_variance_and_the_memory_stated() {
     let x: Vec<f64> = speed.iter().map(|speed| (speed - 0.2) / SIGMA_M_S).collect();
     let within = 5.0 * (2.0 / (COUNT as f64 * STEP_S / 120.0)).sqrt();
     assert!(within < 0.03);
-    assert!((x.iter().sum::<f64>() / COUNT as f64).abs() < within);
+    assert!(mean_of(COUNT, |i| x[i]).abs() < within);
     for lag in [0, 3, 10, 17, 34] {
-        let got = (0..COUNT - lag).map(|i| x[i] * x[i + lag]).sum::<f64>() / (COUNT - lag) as f64;
+        let got = mean_of(COUNT - lag, |i| x[i] * x[i + lag]);
         let want = math::exp(-(lag as f64) * STEP_S / 120.0);
         assert!((got - want).abs() < within, "lag {lag}: {got}, not {want} within {within}");
     }

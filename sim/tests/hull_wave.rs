@@ -2,11 +2,10 @@
 
 mod common;
 
-use common::shipped;
+use common::{mean_of, square, waves};
 use game::boat::Boat;
 use game::frame::{Body, Ned, Pose, Rotation, ned_from_body};
-use game::sea::GRAVITY_M_S2;
-use game::sea::{Spreading, Waves};
+use game::sea::{GRAVITY_M_S2, Spreading, Waves};
 use sim::hull::Planar;
 use sim::sea::wave::wavenumber_rad_m;
 use sim::sea::{Attitude, Component, HullWaves, WaveField, WaveResponse, WaveSample};
@@ -15,7 +14,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const DENSITY_KG_M3: f64 = 1000.0;
 
 fn boat(length_m: f64, beam_m: f64, draught_m: f64) -> Boat {
-    Boat { length_m, beam_m, draught_m, ..shipped("pav01_vs_pav01.toml").boats[0].clone() }
+    Boat { length_m, beam_m, draught_m, ..common::boat("surveyor_m1_8") }
 }
 
 fn surveyor() -> Boat {
@@ -28,8 +27,7 @@ fn cork() -> Boat {
 }
 
 fn sea(hs_m: f64, tp_s: f64, spreading: Spreading) -> WaveField {
-    let waves = Waves { hs_m, tp_s, gamma: 3.3, from_rad: 0.7, spreading, components: 64, drift_factor: 1.0 };
-    WaveField::new(&waves, None, 5)
+    WaveField::new(&Waves { spreading, ..waves(hs_m, tp_s, 0.7) }, None, 5)
 }
 
 fn regular(length_m: f64, toward_rad: f64, depth_m: Option<f64>) -> WaveField {
@@ -42,15 +40,10 @@ fn pose(north: f64, east: f64, psi_rad: f64) -> Pose {
     Pose { at: Ned { north, east }, psi_rad }
 }
 
-fn square(x: f64) -> f64 {
-    x * x
-}
-
 /// Mean square of a part of the velocity over places and times, with the boat on this heading.
 fn mean_square(hull: &HullWaves, psi_rad: f64, part: impl Fn(Planar) -> f64) -> f64 {
-    let samples = 20_000;
-    let at = |i: i32| hull.at(pose(f64::from(i % 100) * 7.3, 0.0, psi_rad), 0.37 * f64::from(i)).velocity;
-    (0..samples).map(|i| square(part(at(i)))).sum::<f64>() / f64::from(samples)
+    let at = |i: usize| hull.at(pose((i % 100) as f64 * 7.3, 0.0, psi_rad), 0.37 * i as f64).velocity;
+    mean_of(20_000, |i| square(part(at(i))))
 }
 
 #[test]
@@ -74,15 +67,7 @@ fn a_cork_moves_as_the_water_at_the_surface() {
 
 #[test]
 fn the_acceleration_at_the_surface_is_minus_g_times_its_gradient() {
-    let waves = Waves {
-        hs_m: 0.5,
-        tp_s: 3.0,
-        gamma: 2.0,
-        from_rad: 2.0,
-        spreading: Spreading::CosineSquared,
-        components: 64,
-        drift_factor: 1.0,
-    };
+    let waves = Waves { gamma: 2.0, ..waves(0.5, 3.0, 2.0) };
     for depth_m in [None, Some(1.5)] {
         let field = WaveField::new(&waves, depth_m, 1);
         let hull = HullWaves::new(&field, &cork(), DENSITY_KG_M3);
@@ -236,8 +221,8 @@ fn the_drift_force_comes_in_groups_about_the_closed_mean() {
         let samples = 40_000;
         let at = |i: i32| hull.at(pose(f64::from(i % 40) * 13.7, f64::from(i % 7) * 31.0, psi_rad), 0.5 * f64::from(i));
         let force: Vec<f64> = (0..samples).map(|i| at(i).drift_newton.sway).collect();
-        let mean = force.iter().sum::<f64>() / f64::from(samples);
-        let deviation = (force.iter().map(|f| square(f - mean)).sum::<f64>() / f64::from(samples)).sqrt();
+        let mean = mean_of(force.len(), |i| force[i]);
+        let deviation = mean_of(force.len(), |i| square(force[i] - mean)).sqrt();
         let want = field.mean_drift_newton(&boat, DENSITY_KG_M3, psi_rad).sway;
         assert!((mean / want - 1.0).abs() < 0.03, "{spreading:?}: {mean} N, not {want} N");
         // The squared envelope of a Gaussian process is exponentially distributed.

@@ -1,9 +1,7 @@
 //! The point boat against reference trajectories and numbers of its published law.
 
-#[path = "kinematic/boat.rs"]
-mod boat;
+mod common;
 
-use boat::{heron_kinematic, large_usv_kinematic, surveyor_kinematic};
 use game::Ned;
 use game::boat::Kinematic;
 use sim::kinematic::{Command, KinematicModel, KinematicState};
@@ -11,6 +9,13 @@ use sim::kinematic::{Command, KinematicModel, KinematicState};
 const DT_S: f64 = 0.1;
 /// How long a boat runs up before a manoeuvre.
 const RUN_UP_S: f64 = 60.0;
+
+/// The shipped point boat of this name: Pyquaticus' (main, 2025-11).
+fn shipped(name: &str) -> Kinematic {
+    let boat = common::boat(&format!("{name}_kinematic"));
+    let game::boat::Drive::Kinematic(kinematic) = boat.drive else { panic!("{name} is a point boat") };
+    kinematic
+}
 
 /// A boat afloat.
 struct Afloat {
@@ -92,32 +97,31 @@ fn follow(name: &str, mut afloat: Afloat, text: &str) {
 
 #[test]
 fn it_accelerates_as_the_reference_does() {
-    follow("heron", Afloat::new(&heron_kinematic()), include_str!("kinematic/heron_accel_max.csv"));
-    follow("surveyor", Afloat::new(&surveyor_kinematic()), include_str!("kinematic/surveyor_accel_max.csv"));
+    follow("heron", Afloat::new(&shipped("heron")), include_str!("kinematic/heron_accel_max.csv"));
+    follow("surveyor", Afloat::new(&shipped("surveyor")), include_str!("kinematic/surveyor_accel_max.csv"));
 }
 
 #[test]
 fn it_turns_as_the_reference_does() {
-    let heron = Afloat::under_way(&heron_kinematic(), 2.0);
+    let heron = Afloat::under_way(&shipped("heron"), 2.0);
     follow("heron", heron, include_str!("kinematic/heron_turn90_max.csv"));
-    let surveyor = Afloat::under_way(&surveyor_kinematic(), 3.0);
+    let surveyor = Afloat::under_way(&shipped("surveyor"), 3.0);
     follow("surveyor", surveyor, include_str!("kinematic/surveyor_turn90_max.csv"));
 }
 
 #[test]
 fn it_takes_thrust_and_rudder_from_outside_as_the_reference_does() {
     for run_up in [north(3.0), Command::Impose { thrust: 100.0, rudder: 0.0 }] {
-        let mut surveyor = Afloat::new(&surveyor_kinematic());
+        let mut surveyor = Afloat::new(&shipped("surveyor"));
         surveyor.sail(RUN_UP_S, |_| run_up);
         surveyor.at = Ned::default();
         follow("surveyor", surveyor, include_str!("kinematic/surveyor_tr_thrust100_rudder50.csv"));
     }
 }
 
-/// A boat and what Pyquaticus measures of it: each manoeuvre's numbers, and the place to which they are printed.
+/// What Pyquaticus measures of a boat: each manoeuvre's numbers, and the place to which they are printed.
 struct Reference {
     name: &'static str,
-    boat: Kinematic,
     /// Time to 63.2, 90 and 99 % of the highest speed (NaN: never), s; speed reached, m/s; distance in 60 s, m.
     accelerate: [(f64, f64); 5],
     /// To half speed: time to 90 % of it, s; peak, m/s.
@@ -140,7 +144,6 @@ fn references() -> [Reference; 3] {
     [
         Reference {
             name: "heron",
-            boat: heron_kinematic(),
             accelerate: [(4.6, 0.1), (12.2, 0.1), (25.7, 0.1), (2.0, 0.1), (110.2, 0.1)],
             half: [(9.0, 0.1), (1.00, 0.01)],
             turn_90: [(1.1, 0.1), (6.2, 0.1), (5.9, 0.1), (1.68, 0.01)],
@@ -151,7 +154,6 @@ fn references() -> [Reference; 3] {
         },
         Reference {
             name: "surveyor",
-            boat: surveyor_kinematic(),
             accelerate: [(25.3, 0.1), (36.0, 0.1), (39.6, 0.1), (3.0, 0.1), (120.1, 0.1)],
             half: [(18.1, 0.1), (2.09, 0.01)],
             turn_90: [(4.6, 0.1), (26.1, 0.1), (25.3, 0.1), (2.28, 0.01)],
@@ -162,7 +164,6 @@ fn references() -> [Reference; 3] {
         },
         Reference {
             name: "large_usv",
-            boat: large_usv_kinematic(),
             accelerate: [(30.4, 0.1), NEVER, NEVER, (10.5, 0.1), (410.0, 1.0)],
             half: [(21.6, 0.1), (6.0, 0.1)],
             turn_90: [(2.8, 0.1), (16.4, 0.1), (15.9, 0.1), (9.5, 0.1)],
@@ -194,13 +195,14 @@ fn slowest(rows: &[Row]) -> f64 {
 #[test]
 fn its_accelerations_have_the_reference_numbers() {
     for reference in references() {
-        let top_m_s = reference.boat.speed_max_m_s;
-        let rows = Afloat::new(&reference.boat).sail(60.0, |_| north(top_m_s));
+        let boat = shipped(reference.name);
+        let top_m_s = boat.speed_max_m_s;
+        let rows = Afloat::new(&boat).sail(60.0, |_| north(top_m_s));
         let [t63, t90, t99] =
             [0.632, 0.9, 0.99].map(|share| first(&rows, |row| row.state.speed_m_s >= share * top_m_s));
         let got = [t63, t90, t99, rows[599].state.speed_m_s, rows[599].at.north];
         compare(&reference, "to full speed", got, reference.accelerate);
-        let rows = Afloat::new(&reference.boat).sail(60.0, |_| north(0.5 * top_m_s));
+        let rows = Afloat::new(&boat).sail(60.0, |_| north(0.5 * top_m_s));
         let got = [first(&rows, |row| row.state.speed_m_s >= 0.45 * top_m_s), fastest(&rows)];
         compare(&reference, "to half speed", got, reference.half);
     }
@@ -209,14 +211,15 @@ fn its_accelerations_have_the_reference_numbers() {
 #[test]
 fn its_turns_have_the_reference_numbers() {
     for reference in references() {
-        let (top_m_s, half_m_s) = (reference.boat.speed_max_m_s, 0.5 * reference.boat.speed_max_m_s);
+        let boat = shipped(reference.name);
+        let (top_m_s, half_m_s) = (boat.speed_max_m_s, 0.5 * boat.speed_max_m_s);
         let past = |rows: &[Row], angle_deg: f64| first(rows, |row| row.state.heading_deg.abs() >= angle_deg);
-        let rows = Afloat::under_way(&reference.boat, top_m_s).sail(90.0, |_| steer(90.0, top_m_s));
+        let rows = Afloat::under_way(&boat, top_m_s).sail(90.0, |_| steer(90.0, top_m_s));
         let off = rows.iter().rev().find(|row| (row.state.heading_deg - 90.0).abs() > 2.0);
         let settled_s = off.map_or(f64::NAN, |row| row.t_s);
         let got = [past(&rows, 45.0), past(&rows, 88.2), settled_s, slowest(&rows)];
         compare(&reference, "90 degrees", got, reference.turn_90);
-        let rows = Afloat::under_way(&reference.boat, top_m_s).sail(90.0, |_| steer(180.0, top_m_s));
+        let rows = Afloat::under_way(&boat, top_m_s).sail(90.0, |_| steer(180.0, top_m_s));
         let aside_m = rows.iter().fold(0.0, |most: f64, row| most.max(row.at.east.abs()));
         compare(
             &reference,
@@ -224,7 +227,7 @@ fn its_turns_have_the_reference_numbers() {
             [past(&rows, 90.0), past(&rows, 135.0), past(&rows, 175.0), aside_m],
             reference.turn_180,
         );
-        let rows = Afloat::under_way(&reference.boat, half_m_s).sail(90.0, |_| steer(90.0, half_m_s));
+        let rows = Afloat::under_way(&boat, half_m_s).sail(90.0, |_| steer(90.0, half_m_s));
         compare(&reference, "90 degrees, half", [past(&rows, 45.0), past(&rows, 88.2)], reference.turn_90_half);
     }
 }
@@ -232,8 +235,9 @@ fn its_turns_have_the_reference_numbers() {
 #[test]
 fn its_stops_have_the_reference_numbers() {
     for reference in references() {
+        let boat = shipped(reference.name);
         let stop = |share: f64| {
-            let mut afloat = Afloat::under_way(&reference.boat, share * reference.boat.speed_max_m_s);
+            let mut afloat = Afloat::under_way(&boat, share * boat.speed_max_m_s);
             let speed_m_s = afloat.state.speed_m_s;
             let rows = afloat.sail(120.0, |_| Command::Hold);
             (first(&rows, |row| row.state.speed_m_s <= 0.05 * speed_m_s), rows[1199].at.north)
@@ -246,8 +250,9 @@ fn its_stops_have_the_reference_numbers() {
 #[test]
 fn its_tightest_turn_has_the_reference_numbers() {
     for reference in references() {
-        let top_m_s = reference.boat.speed_max_m_s;
-        let mut afloat = Afloat::under_way(&reference.boat, top_m_s);
+        let boat = shipped(reference.name);
+        let top_m_s = boat.speed_max_m_s;
+        let mut afloat = Afloat::under_way(&boat, top_m_s);
         afloat.sail(200.0, |state| steer(state.heading_deg + 90.0, top_m_s));
         let (rate_deg_s, speed_m_s) = (afloat.rate_deg_s, afloat.state.speed_m_s);
         let got = [rate_deg_s, speed_m_s, speed_m_s / rate_deg_s.to_radians()];

@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::mean_of;
 use game::boat::{Compass, Gps, Imu, Sensors};
 use game::frame::{Body, Pose, Rotation, body_from_ned, ned_from_body};
 use game::math;
@@ -72,10 +73,6 @@ fn record(sensors: &Sensors, seed: u64, ticks: i64, truth: impl Fn(SimTime) -> T
 
 fn at_rest(_now: SimTime) -> Truth {
     Truth::default()
-}
-
-fn mean_of(count: usize, f: impl Fn(usize) -> f64) -> f64 {
-    (0..count).map(f).sum::<f64>() / count as f64
 }
 
 /// Everything at fault at once.

@@ -30,9 +30,7 @@ fn share(newton: f64) -> f64 {
     let scenario = alone("surveyor_m1_8", "calm");
     let Drive::Thrusters { thruster, .. } = &scenario.boats[0].drive else { panic!("it has thrusters") };
     let ThrustCurve::Table { points } = &thruster.curve else { panic!("it has a table") };
-    let after = points.iter().position(|point| point.1 >= newton).expect("the thruster can do this");
-    let (a, b) = (points[after - 1], points[after]);
-    a.0 + (b.0 - a.0) / (b.1 - a.1) * (newton - a.1)
+    game::math::interpolate(points.iter().map(|(share, newton)| (*newton, *share)), newton)
 }
 
 fn speed(nu: Planar) -> f64 {

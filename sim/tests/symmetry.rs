@@ -114,7 +114,7 @@ fn it_does_not_matter_where_north_is() {
 fn it_does_not_matter_which_side_is_port() {
     // Mirrored in the line north-south through the datum: east, heading, sway and yaw change sign. Without waves to the
     // last bit; with them to single precision, since a heading and its mirror image lie between different entries of the
-    // table. Waves of one direction: where they spread, the directions are drawn by lot, and not the mirrored ones.
+    // table. Waves of one direction: where they spread, the directions are drawn, and not the mirrored ones.
     let sail = |side: f64, has_waves: bool| {
         let mut scenario = on(|sea| {
             sea.current.mean_m_s = Ned { north: 0.2, east: side * 0.3 };
@@ -194,8 +194,8 @@ const NOTHINGS: [Change; 9] = [
     ("an eddy of no strength", |sea| {
         sea.current.eddies = vec![Eddy { centre: Ned { north: 210.0, east: 190.0 }, radius_m: 20.0, peak_m_s: 0.0 }];
     }),
-    ("eddies by lot of no strength", |sea| {
-        sea.current.eddies_by_lot = Some(RandomEddies { count: 5, radius_m: (10.0, 40.0), peak_m_s: (0.0, 0.0) });
+    ("random eddies of no strength", |sea| {
+        sea.current.random_eddies = Some(RandomEddies { count: 5, radius_m: (10.0, 40.0), peak_m_s: (0.0, 0.0) });
     }),
 ];
 

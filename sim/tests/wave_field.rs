@@ -2,9 +2,9 @@
 
 mod common;
 
+use common::square;
 use game::frame::Ned;
-use game::sea::GRAVITY_M_S2;
-use game::sea::{Spreading, Waves};
+use game::sea::{GRAVITY_M_S2, Spreading, Waves};
 use game::stream::Stream;
 use sim::sea::spectrum::{BAND, jonswap_m2_s};
 use sim::sea::wave::wavenumber_rad_m;
@@ -14,19 +14,7 @@ use std::f64::consts::{PI, TAU};
 const HALF_HOUR_S: f64 = 1800.0;
 
 fn sea(components: u32) -> Waves {
-    Waves {
-        hs_m: 0.5,
-        tp_s: 3.0,
-        gamma: 3.3,
-        from_rad: 0.7,
-        spreading: Spreading::CosineSquared,
-        components,
-        drift_factor: 1.0,
-    }
-}
-
-fn square(x: f64) -> f64 {
-    x * x
+    Waves { components, ..common::waves(0.5, 3.0, 0.7) }
 }
 
 fn power(x: f64, n: usize) -> f64 {

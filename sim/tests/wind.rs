@@ -2,9 +2,9 @@
 
 mod common;
 
+use common::mean_of;
 use game::boat::Windage;
-use game::field::{Plan, Walls};
-use game::frame::{Body, LatLon};
+use game::frame::Body;
 use game::math;
 use game::sea::{GustSpectrum, Gusts, Wind};
 use game::{Field, Ned, Rotation, SimTime};
@@ -21,18 +21,7 @@ const ACROSS_RATIO: f64 = 0.75;
 const LENGTH_M: f64 = 40.0;
 
 fn field() -> Field {
-    Field::new(Plan {
-        name: "test".into(),
-        datum: LatLon::default(),
-        corner: Ned::default(),
-        along_deg: 90.0,
-        width_m: 160.0,
-        depth_m: 80.0,
-        flag_inset_m: 20.0,
-        extra_flags: vec![],
-        obstacles: vec![],
-        walls: Walls::None,
-    })
+    common::empty_field(Ned::default(), 90.0)
 }
 
 fn wind(from_deg: f64, gusts: Gusts) -> Wind {
@@ -57,22 +46,18 @@ fn record(gusts: Gusts, seed: u64, count: i64, step_s: f64) -> Vec<(f64, f64)> {
         if step_s < 1.0 {
             field.prepare(now);
         }
-        let felt = field.at(Ned::from_xy(33.0, 44.0), mean_m_s, now);
-        ((felt.east / mean_m_s - 1.0) / INTENSITY, -felt.north / mean_m_s / INTENSITY)
+        let air_m_s = field.at(Ned::from_xy(33.0, 44.0), mean_m_s, now);
+        ((air_m_s.east / mean_m_s - 1.0) / INTENSITY, -air_m_s.north / mean_m_s / INTENSITY)
     };
     (0..count).map(sample).collect()
-}
-
-fn mean_of(count: usize, f: impl Fn(usize) -> f64) -> f64 {
-    (0..count).map(f).sum::<f64>() / count as f64
 }
 
 #[test]
 fn the_wind_blows_from_where_it_is_said_to_come_and_falls_towards_the_water() {
     for (from_deg, x, y) in [(0.0, 0.0, -1.0), (90.0, -1.0, 0.0), (180.0, 0.0, 1.0), (270.0, 1.0, 0.0)] {
         let field = WindField::new(&wind(from_deg, Gusts::None), HEIGHT_M, &field(), 1);
-        let felt = field.at(Ned::default(), field.mean_m_s(10.0), SimTime::ZERO);
-        assert!(felt.distance(Ned::from_xy(x, y).scaled(SPEED_10M_M_S)) < 1e-12, "from {from_deg}: {felt:?}");
+        let air_m_s = field.at(Ned::default(), field.mean_m_s(10.0), SimTime::ZERO);
+        assert!(air_m_s.distance(Ned::from_xy(x, y).scaled(SPEED_10M_M_S)) < 1e-12, "from {from_deg}: {air_m_s:?}");
     }
     let field = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), 1);
     assert!((field.mean_m_s(HEIGHT_M) / SPEED_10M_M_S - 0.80).abs() < 0.005, "{}", field.mean_m_s(HEIGHT_M));
@@ -180,16 +165,16 @@ fn a_gust_comes_to_a_boat_downwind_as_it_was() {
             for i in 0..200_u32 {
                 let now = SimTime::from_s(f64::from(i) * 0.73);
                 field.prepare(now);
-                let felt = field.at(upwind, mean_m_s, now);
+                let air_m_s = field.at(upwind, mean_m_s, now);
                 let way_m = 1.0 + f64::from(i) * 0.3;
                 let later = SimTime::from_s(now.as_s() + way_m / mean_m_s);
                 let downwind_later = field.at(upwind + downwind.scaled(way_m), mean_m_s, later);
                 // A nanosecond of rounding is worth 1e-8 m of way.
-                assert!(felt.distance(downwind_later) < WITHIN_M_S + 1e-7, "{i}: {felt:?}, {downwind_later:?}");
-                assert!(felt.distance(field.at(upwind + abreast.scaled(30.0), mean_m_s, now)) < WITHIN_M_S);
+                assert!(air_m_s.distance(downwind_later) < WITHIN_M_S + 1e-7, "{i}: {air_m_s:?}, {downwind_later:?}");
+                assert!(air_m_s.distance(field.at(upwind + abreast.scaled(30.0), mean_m_s, now)) < WITHIN_M_S);
                 let ratio = field.at(upwind, 2.0 * mean_m_s, now);
-                assert!(ratio.distance(felt.scaled(2.0)) < WITHIN_M_S, "in proportion to the mean");
-                differ += u32::from(felt.distance(field.at(upwind + downwind.scaled(way_m), mean_m_s, now)) > 0.1);
+                assert!(ratio.distance(air_m_s.scaled(2.0)) < WITHIN_M_S, "in proportion to the mean");
+                differ += u32::from(air_m_s.distance(field.at(upwind + downwind.scaled(way_m), mean_m_s, now)) > 0.1);
             }
             assert!(differ > 100, "gusts vary along the wind: {differ} of 200");
         }
@@ -230,8 +215,8 @@ fn no_wind_is_no_gusts_either() {
         let still = Wind { speed_10m_m_s: 0.0, ..wind(40.0, gusts) };
         let field = WindField::new(&still, HEIGHT_M, &field(), 1);
         for i in 0..100 {
-            let felt = field.at(Ned::from_xy(3.0, 4.0), field.mean_m_s(HEIGHT_M), SimTime::from_s(f64::from(i)));
-            assert_eq!(felt, Ned::default());
+            let air_m_s = field.at(Ned::from_xy(3.0, 4.0), field.mean_m_s(HEIGHT_M), SimTime::from_s(f64::from(i)));
+            assert_eq!(air_m_s, Ned::default());
         }
     }
 }

@@ -5,8 +5,8 @@ use game::frame::LatLon;
 use game::sea::{Current, Sea};
 use game::{Field, Ned};
 
-/// Extent of the field each way, m. It ends nothing: a boat sails on beyond it, and so does the sea. Only eddies that
-/// are drawn by lot are laid over it.
+/// Extent of the field each way, m. It ends nothing: a boat sails on beyond it, and so does the sea. Only random
+/// eddies are laid over it.
 const FIELD_M: f64 = 1000.0;
 /// Density of sea water, kg/m³.
 const SEA_WATER_KG_M3: f64 = 1025.0;

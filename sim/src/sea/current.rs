@@ -37,7 +37,7 @@ impl CurrentField {
     /// The current over `field`.
     #[must_use]
     pub fn new(current: &Current, field: &Field, seed: u64) -> CurrentField {
-        let drawn = current.eddies_by_lot.map(|lot| eddy::draw(&lot, field, seed)).unwrap_or_default();
+        let drawn = current.random_eddies.map(|random| eddy::draw(&random, field, seed)).unwrap_or_default();
         let tape = || Tape::new(Process::Markov(Markov::new(Noise::new(seed, "current"))), 0.0);
         CurrentField {
             mean_m_s: current.mean_m_s,
@@ -108,16 +108,16 @@ impl CurrentNow<'_> {
     #[must_use]
     pub fn over_hull(&self, place: Ned, rotation: Rotation) -> (Ned, f64) {
         let (ahead, starboard) = (rotation.ahead(), rotation.starboard());
-        let mut felt = (self.uniform_m_s, 0.0);
+        let (mut mean_m_s, mut turn_rad_s) = (self.uniform_m_s, 0.0);
         if let Some(shear) = self.shear {
             let speed_m_s = shear.per_s * (place - shear.origin).dot(shear.across);
-            felt.0 = felt.0 + shear.toward.scaled(speed_m_s);
-            felt.1 += shear.per_s * shear.across.dot(ahead) * shear.toward.dot(starboard);
+            mean_m_s = mean_m_s + shear.toward.scaled(speed_m_s);
+            turn_rad_s += shear.per_s * shear.across.dot(ahead) * shear.toward.dot(starboard);
         }
         for vortex in self.eddies {
             let (velocity_m_s, rate_rad_s) = vortex.over(place, ahead);
-            felt = (felt.0 + velocity_m_s, felt.1 + rate_rad_s);
+            (mean_m_s, turn_rad_s) = (mean_m_s + velocity_m_s, turn_rad_s + rate_rad_s);
         }
-        felt
+        (mean_m_s, turn_rad_s)
     }
 }

@@ -69,17 +69,17 @@ impl Vortex {
     }
 }
 
-/// Eddies drawn from the stream `eddies` of this seed: evenly over the field, turning either way.
+/// Eddies drawn from the stream `eddies` of this seed: uniformly over the field, turning either way.
 #[must_use]
-pub fn draw(lot: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
+pub fn draw(random: &RandomEddies, field: &Field, seed: u64) -> Vec<Eddy> {
     let mut stream = Stream::new(seed, "eddies");
     let draw_one = |_| {
         let along_m = stream.between(0.0, field.plan.width_m);
         let across_m = stream.between(0.0, field.plan.depth_m);
-        let radius_m = stream.between(lot.radius_m.0, lot.radius_m.1);
-        let peak_m_s = stream.between(lot.peak_m_s.0, lot.peak_m_s.1);
+        let radius_m = stream.between(random.radius_m.0, random.radius_m.1);
+        let peak_m_s = stream.between(random.peak_m_s.0, random.peak_m_s.1);
         let sense = if stream.bits() & 1 == 0 { 1.0 } else { -1.0 };
         Eddy { centre: field.at(along_m, across_m), radius_m, peak_m_s: sense * peak_m_s }
     };
-    (0..lot.count).map(draw_one).collect()
+    (0..random.count).map(draw_one).collect()
 }

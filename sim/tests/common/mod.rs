@@ -1,8 +1,9 @@
 //! Scenarios for tests, written as a user would write them.
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use game::field::Obstacle;
-use game::{Ned, Order, Pose, Scenario, VehicleId};
+use game::field::{Obstacle, Plan, Walls};
+use game::sea::{Spreading, Waves};
+use game::{Boat, Field, LatLon, Ned, Order, Pose, Scenario, VehicleId};
 use sim::hull::{HullModel, Planar};
 use sim::{Contest, State, World};
 use std::path::{Path, PathBuf};
@@ -157,6 +158,42 @@ pub(crate) fn root((mut low, mut high): (f64, f64), f: impl Fn(f64) -> f64) -> f
         if f(middle) < 0.0 { low = middle } else { high = middle }
     }
     0.5 * (low + high)
+}
+
+/// A shipped kind of boat.
+pub(crate) fn boat(name: &str) -> Boat {
+    game::scenario::load_boat(&scenarios().join(format!("boats/{name}.toml"))).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// An empty field of 160 m by 80 m from this corner.
+pub(crate) fn empty_field(corner: Ned, along_deg: f64) -> Field {
+    Field::new(Plan {
+        name: "test".into(),
+        datum: LatLon::default(),
+        corner,
+        along_deg,
+        width_m: 160.0,
+        depth_m: 80.0,
+        flag_inset_m: 20.0,
+        extra_flags: vec![],
+        obstacles: vec![],
+        walls: Walls::None,
+    })
+}
+
+/// A short-crested sea of 64 components from this bearing.
+pub(crate) fn waves(hs_m: f64, tp_s: f64, from_rad: f64) -> Waves {
+    let spreading = Spreading::CosineSquared;
+    Waves { hs_m, tp_s, gamma: 3.3, from_rad, spreading, components: 64, drift_factor: 1.0 }
+}
+
+pub(crate) fn square(x: f64) -> f64 {
+    x * x
+}
+
+/// The mean of `f` over 0 to `count`.
+pub(crate) fn mean_of(count: usize, f: impl Fn(usize) -> f64) -> f64 {
+    (0..count).map(f).sum::<f64>() / count as f64
 }
 
 /// The amplitudes of the harmonics of a series, by the discrete Fourier transform with Hann's window: that of harmonic

@@ -37,7 +37,7 @@ pub(super) fn current(diagnostics: &mut Diagnostics, document: &Document<raw::Se
             origin: Ned::from_xy(raw.origin[0], raw.origin[1]),
         }),
         eddies: raw.eddy.iter().map(eddy).collect(),
-        eddies_by_lot: raw.eddies.as_ref().map(|raw| RandomEddies {
+        random_eddies: raw.eddies.as_ref().map(|raw| RandomEddies {
             count: raw.count,
             radius_m: rising("current.eddies.radius_m", raw.radius_m),
             peak_m_s: rising("current.eddies.peak_m_s", raw.peak_m_s),

@@ -1,11 +1,11 @@
-//! A piecewise linear function, made for being asked often.
+//! A piecewise linear function with an index, so that a look-up needs no search.
 
 /// Most cells of the index.
 const CELLS_MAX: usize = 256;
 
 /// The lines through measured points; constant beyond the ends.
 #[derive(Clone, Debug)]
-pub(crate) struct Ramp {
+pub(crate) struct PiecewiseLinear {
     pieces: Vec<Piece>,
     /// The piece in which each of equally wide cells begins, so that a look-up needs no search.
     index: Vec<u16>,
@@ -22,12 +22,12 @@ struct Piece {
     end: f64,
 }
 
-impl Ramp {
+impl PiecewiseLinear {
     /// The lines through `points`, whose first numbers rise strictly.
     ///
     /// # Panics
     /// If there are fewer than two points.
-    pub(crate) fn new(points: &[(f64, f64)]) -> Ramp {
+    pub(crate) fn new(points: &[(f64, f64)]) -> PiecewiseLinear {
         assert!(points.len() >= 2, "a line has two ends");
         let piece = |ends: &[(f64, f64)]| {
             let (a, b) = (ends[0], ends[1]);
@@ -40,7 +40,7 @@ impl Ramp {
         let cells = ((width / narrowest).ceil() as usize).clamp(1, CELLS_MAX);
         let piece_at = |x: f64| pieces[..pieces.len() - 1].iter().take_while(|piece| piece.end <= x).count();
         let index = (0..cells).map(|cell| piece_at(first.0 + width * cell as f64 / cells as f64) as u16).collect();
-        Ramp { pieces, index, per_x: cells as f64 / width, first, last }
+        PiecewiseLinear { pieces, index, per_x: cells as f64 / width, first, last }
     }
 
     /// The value at `x`.
@@ -68,27 +68,18 @@ impl Ramp {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use game::math::interpolate;
     use proptest::prelude::*;
-
-    /// The textbook way.
-    fn searched(points: &[(f64, f64)], x: f64) -> f64 {
-        let Some(after) = points.iter().position(|p| p.0 > x) else { return points[points.len() - 1].1 };
-        if after == 0 {
-            return points[0].1;
-        }
-        let (a, b) = (points[after - 1], points[after]);
-        a.1 + (b.1 - a.1) / (b.0 - a.0) * (x - a.0)
-    }
 
     #[test]
     fn it_goes_through_its_points_and_ends_level() {
         let points = [(-1.0, -30.0), (0.0, 0.0), (0.3, 7.0), (1.0, 60.0)];
-        let ramp = Ramp::new(&points);
+        let line = PiecewiseLinear::new(&points);
         for (x, y) in points {
-            assert_eq!(ramp.at(x), y);
+            assert_eq!(line.at(x), y);
         }
-        assert_eq!((ramp.at(-9.0), ramp.at(9.0)), (-30.0, 60.0));
-        assert_eq!(ramp.at(0.5), 7.0 + 53.0 / (1.0 - 0.3) * (0.5 - 0.3));
+        assert_eq!((line.at(-9.0), line.at(9.0)), (-30.0, 60.0));
+        assert_eq!(line.at(0.5), 7.0 + 53.0 / (1.0 - 0.3) * (0.5 - 0.3));
     }
 
     proptest! {
@@ -105,11 +96,11 @@ mod tests {
                 x += if i == tiny { 1e-7 } else { step };
                 points.push((x, y));
             }
-            let ramp = Ramp::new(&points);
+            let line = PiecewiseLinear::new(&points);
             let (lo, hi) = (points[0].0, points[points.len() - 1].0);
             let borders = points.iter().map(|p| p.0);
             for x in share.into_iter().map(|share| lo + share * (hi - lo)).chain(borders) {
-                prop_assert!((ramp.at(x) - searched(&points, x)).abs() < 1e-12, "at {}", x);
+                prop_assert!((line.at(x) - interpolate(points.iter().copied(), x)).abs() < 1e-12, "at {}", x);
             }
         }
     }
