@@ -108,29 +108,6 @@ pub enum Gusts {
         /// Length scale, m: the time constant is this over the mean speed at the boat.
         length_m: f64,
     },
-    /// As a sum of waves along the wind with this spectrum, and another across it.
-    Spectral {
-        /// Which.
-        spectrum: GustSpectrum,
-        /// Standard deviation along the wind over the mean speed.
-        intensity: f64,
-        /// Standard deviation across the wind over that along it.
-        across_ratio: f64,
-        /// How many components each.
-        components: u32,
-    },
-}
-
-/// The shape of a gust spectrum; its size follows from the intensity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GustSpectrum {
-    /// Davenport (1961): 4 x² / (1 + x²)^(4/3), x = 1200 f / U10.
-    Davenport,
-    /// Harris (1971): 4 χ / (2 + χ²)^(5/6), χ = 1800 f / U10.
-    Harris,
-    /// Frøya, of the Norwegian Petroleum Directorate, for wind over the sea.
-    Froya,
 }
 
 /// The water's own motion: the sum of what is stated.

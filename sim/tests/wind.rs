@@ -6,10 +6,9 @@ use common::mean_of;
 use game::boat::Windage;
 use game::frame::Body;
 use game::math;
-use game::sea::{GustSpectrum, Gusts, Wind};
+use game::sea::{Gusts, Wind};
 use game::{Field, Ned, Rotation, SimTime};
 use sim::hull::Planar;
-use sim::sea::gust_spectrum::{FREQUENCY_MAX_HZ, FREQUENCY_MIN_HZ, shape};
 use sim::sea::wind::WindField;
 use sim::sea::windage::{AIR_DENSITY_KG_M3, wind_force, wind_past_boat};
 use std::f64::consts::TAU;
@@ -30,10 +29,6 @@ fn wind(from_deg: f64, gusts: Gusts) -> Wind {
 
 fn ornstein_uhlenbeck() -> Gusts {
     Gusts::OrnsteinUhlenbeck { intensity: INTENSITY, across_ratio: ACROSS_RATIO, length_m: LENGTH_M }
-}
-
-fn spectral(spectrum: GustSpectrum) -> Gusts {
-    Gusts::Spectral { spectrum, intensity: INTENSITY, across_ratio: ACROSS_RATIO, components: 32 }
 }
 
 /// Wind from the west at one place, every `step_s`: (east over the mean − 1, south over the mean), both over the
@@ -120,104 +115,61 @@ fn the_spectrum_of_ornstein_uhlenbeck_gusts_bends_at_the_length_scale() {
 }
 
 #[test]
-fn spectral_gusts_have_the_variance_stated_and_the_memory_of_their_spectrum() {
-    const STEP_S: f64 = 4.0;
-    const COUNT: i64 = 30_000;
-    for spectrum in [GustSpectrum::Davenport, GustSpectrum::Harris, GustSpectrum::Froya] {
-        let x = record(spectral(spectrum), 3, COUNT, STEP_S);
-        // The transform of the spectrum, between the slowest and the fastest gust, by the midpoint rule.
-        let log_range = libm::log(FREQUENCY_MAX_HZ / FREQUENCY_MIN_HZ);
-        let correlation = |lag_s: f64| {
-            let (mut all, mut sum) = (0.0, 0.0);
-            for i in 0..20_000 {
-                let frequency_hz = FREQUENCY_MIN_HZ * math::exp(log_range * (f64::from(i) + 0.5) / 20_000.0);
-                let part = shape(spectrum, frequency_hz, SPEED_10M_M_S, HEIGHT_M);
-                all += part;
-                sum += part * math::sin_cos(TAU * frequency_hz * lag_s).1;
-            }
-            sum / all
-        };
-        let variance = mean_of(x.len(), |i| x[i].0 * x[i].0);
-        let across = mean_of(x.len(), |i| x[i].1 * x[i].1) / (ACROSS_RATIO * ACROSS_RATIO);
-        assert!((variance - 1.0).abs() < 0.01, "{spectrum:?}: variance along {variance}");
-        assert!((across - 1.0).abs() < 0.01, "{spectrum:?}: variance across {across}");
-        // The frequencies of the waves are drawn, so one game's memory differs from the next: the mean over games.
-        let games: Vec<_> = (0..40).map(|seed| record(spectral(spectrum), seed, 2_000, STEP_S)).collect();
-        for lag in [1, 3, 5, 15] {
-            let of_game = |x: &Vec<(f64, f64)>| mean_of(x.len() - lag, |i| x[i].0 * x[i + lag].0);
-            let got = games.iter().map(of_game).sum::<f64>() / games.len() as f64;
-            let want = correlation(lag as f64 * STEP_S);
-            assert!((got - want).abs() < 0.04, "{spectrum:?}, lag {lag}: {got}, not {want}");
-        }
-    }
-}
-
-#[test]
 fn a_gust_comes_to_a_boat_downwind_as_it_was() {
     const WITHIN_M_S: f64 = 1e-9;
-    for gusts in [ornstein_uhlenbeck(), spectral(GustSpectrum::Davenport)] {
-        for from_deg in [0.0, 77.0, 200.0] {
-            let mut field = WindField::new(&wind(from_deg, gusts.clone()), HEIGHT_M, &field(), 7);
-            let mean_m_s = field.mean_m_s(HEIGHT_M);
-            let upwind = Ned::from_xy(80.0, 40.0);
-            let (downwind, abreast) = (Ned::toward_deg(from_deg + 180.0), Ned::toward_deg(from_deg + 90.0));
-            let mut differ = 0;
-            for i in 0..200_u32 {
-                let now = SimTime::from_s(f64::from(i) * 0.73);
-                field.prepare(now);
-                let air_m_s = field.at(upwind, mean_m_s, now);
-                let way_m = 1.0 + f64::from(i) * 0.3;
-                let later = SimTime::from_s(now.as_s() + way_m / mean_m_s);
-                let downwind_later = field.at(upwind + downwind.scaled(way_m), mean_m_s, later);
-                // A nanosecond of rounding is worth 1e-8 m of way.
-                assert!(air_m_s.distance(downwind_later) < WITHIN_M_S + 1e-7, "{i}: {air_m_s:?}, {downwind_later:?}");
-                assert!(air_m_s.distance(field.at(upwind + abreast.scaled(30.0), mean_m_s, now)) < WITHIN_M_S);
-                let ratio = field.at(upwind, 2.0 * mean_m_s, now);
-                assert!(ratio.distance(air_m_s.scaled(2.0)) < WITHIN_M_S, "in proportion to the mean");
-                differ += u32::from(air_m_s.distance(field.at(upwind + downwind.scaled(way_m), mean_m_s, now)) > 0.1);
-            }
-            assert!(differ > 100, "gusts vary along the wind: {differ} of 200");
+    for from_deg in [0.0, 77.0, 200.0] {
+        let mut field = WindField::new(&wind(from_deg, ornstein_uhlenbeck()), HEIGHT_M, &field(), 7);
+        let mean_m_s = field.mean_m_s(HEIGHT_M);
+        let upwind = Ned::from_xy(80.0, 40.0);
+        let (downwind, abreast) = (Ned::toward_deg(from_deg + 180.0), Ned::toward_deg(from_deg + 90.0));
+        let mut differ = 0;
+        for i in 0..200_u32 {
+            let now = SimTime::from_s(f64::from(i) * 0.73);
+            field.prepare(now);
+            let air_m_s = field.at(upwind, mean_m_s, now);
+            let way_m = 1.0 + f64::from(i) * 0.3;
+            let later = SimTime::from_s(now.as_s() + way_m / mean_m_s);
+            let downwind_later = field.at(upwind + downwind.scaled(way_m), mean_m_s, later);
+            // A nanosecond of rounding is worth 1e-8 m of way.
+            assert!(air_m_s.distance(downwind_later) < WITHIN_M_S + 1e-7, "{i}: {air_m_s:?}, {downwind_later:?}");
+            assert!(air_m_s.distance(field.at(upwind + abreast.scaled(30.0), mean_m_s, now)) < WITHIN_M_S);
+            let ratio = field.at(upwind, 2.0 * mean_m_s, now);
+            assert!(ratio.distance(air_m_s.scaled(2.0)) < WITHIN_M_S, "in proportion to the mean");
+            differ += u32::from(air_m_s.distance(field.at(upwind + downwind.scaled(way_m), mean_m_s, now)) > 0.1);
         }
+        assert!(differ > 100, "gusts vary along the wind: {differ} of 200");
     }
 }
 
 #[test]
 fn the_wind_is_a_function_of_seed_place_and_time_alone() {
     let places = [Ned::from_xy(5.0, 5.0), Ned::from_xy(150.0, 70.0), Ned::from_xy(-400.0, 900.0)];
-    for gusts in [ornstein_uhlenbeck(), spectral(GustSpectrum::Froya)] {
-        let fresh = |seed| WindField::new(&wind(30.0, gusts.clone()), HEIGHT_M, &field(), seed);
-        let mut sailed = fresh(9);
-        let tick = SimTime::from_s(0.05);
-        // Sail on for ten minutes, go back to tick 700, then on again; each time as a world that starts there.
-        for tick_count in (0..12_000).chain(700..900).chain([5, 1_000_000]) {
-            let now = tick * tick_count;
-            sailed.prepare(now);
-            if tick_count % 97 == 0 || tick_count < 10 {
-                let mut restored = fresh(9);
-                restored.prepare(now);
-                for place in places {
-                    assert_eq!(sailed.at(place, 8.0, now), restored.at(place, 8.0, now), "tick {tick_count}");
-                    assert_eq!(
-                        sailed.at(place, 8.0, now),
-                        fresh(9).at(place, 8.0, now),
-                        "tick {tick_count}, unprepared"
-                    );
-                }
+    let fresh = |seed| WindField::new(&wind(30.0, ornstein_uhlenbeck()), HEIGHT_M, &field(), seed);
+    let mut sailed = fresh(9);
+    let tick = SimTime::from_s(0.05);
+    // Sail on for ten minutes, go back to tick 700, then on again; each time as a world that starts there.
+    for tick_count in (0..12_000).chain(700..900).chain([5, 1_000_000]) {
+        let now = tick * tick_count;
+        sailed.prepare(now);
+        if tick_count % 97 == 0 || tick_count < 10 {
+            let mut restored = fresh(9);
+            restored.prepare(now);
+            for place in places {
+                assert_eq!(sailed.at(place, 8.0, now), restored.at(place, 8.0, now), "tick {tick_count}");
+                assert_eq!(sailed.at(place, 8.0, now), fresh(9).at(place, 8.0, now), "tick {tick_count}, unprepared");
             }
         }
-        assert_ne!(fresh(9).at(places[0], 8.0, tick), fresh(10).at(places[0], 8.0, tick), "another seed");
     }
+    assert_ne!(fresh(9).at(places[0], 8.0, tick), fresh(10).at(places[0], 8.0, tick), "another seed");
 }
 
 #[test]
 fn no_wind_is_no_gusts_either() {
-    for gusts in [ornstein_uhlenbeck(), spectral(GustSpectrum::Harris)] {
-        let still = Wind { speed_10m_m_s: 0.0, ..wind(40.0, gusts) };
-        let field = WindField::new(&still, HEIGHT_M, &field(), 1);
-        for i in 0..100 {
-            let air_m_s = field.at(Ned::from_xy(3.0, 4.0), field.mean_m_s(HEIGHT_M), SimTime::from_s(f64::from(i)));
-            assert_eq!(air_m_s, Ned::default());
-        }
+    let still = Wind { speed_10m_m_s: 0.0, ..wind(40.0, ornstein_uhlenbeck()) };
+    let field = WindField::new(&still, HEIGHT_M, &field(), 1);
+    for i in 0..100 {
+        let air_m_s = field.at(Ned::from_xy(3.0, 4.0), field.mean_m_s(HEIGHT_M), SimTime::from_s(f64::from(i)));
+        assert_eq!(air_m_s, Ned::default());
     }
 }
 

@@ -3,9 +3,9 @@
 //! What is the same everywhere (mean, wander, tide) is worked out once a tick by [`CurrentField::at_time`]; what is not
 //! (shear, eddies) by boat.
 
+use super::cached_process::CachedProcess;
 use super::eddy::{self, Vortex};
-use super::markov::{Markov, STEPS_PER_LENGTH};
-use super::tape::{Process, Tape};
+use super::gauss_markov::{GaussMarkov, STEPS_PER_LENGTH};
 use game::SimTime;
 use game::field::Field;
 use game::frame::{Ned, Rotation};
@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug)]
 pub struct CurrentField {
     mean_m_s: Ned,
-    wander: Option<(Wander, Tape)>,
+    wander: Option<(Wander, CachedProcess)>,
     tide: Option<Tide>,
     shear: Option<Shear>,
     eddies: Vec<Vortex>,
@@ -38,10 +38,10 @@ impl CurrentField {
     #[must_use]
     pub fn new(current: &Current, field: &Field, seed: u64) -> CurrentField {
         let drawn = current.random_eddies.map(|random| eddy::draw(&random, field, seed)).unwrap_or_default();
-        let tape = || Tape::new(Process::Markov(Markov::new(Noise::new(seed, "current"))), 0.0);
+        let process = || CachedProcess::new(GaussMarkov::new(Noise::new(seed, "current")), 0.0);
         CurrentField {
             mean_m_s: current.mean_m_s,
-            wander: current.wander.map(|wander| (wander, tape())),
+            wander: current.wander.map(|wander| (wander, process())),
             tide: current.tide,
             shear: current.shear,
             eddies: current.eddies.iter().chain(&drawn).map(Vortex::new).collect(),
@@ -50,9 +50,9 @@ impl CurrentField {
 
     /// Has at hand what [`CurrentField::at_time`] needs at `now`. Only for speed: without it, that gives the same bits.
     pub fn prepare(&mut self, now: SimTime) {
-        if let Some((wander, tape)) = &mut self.wander {
+        if let Some((wander, process)) = &mut self.wander {
             let place = wander_place(wander, now);
-            tape.hold(place, place);
+            process.hold(place, place);
         }
     }
 
@@ -68,9 +68,9 @@ impl CurrentField {
     #[must_use]
     pub fn at_time(&self, now: SimTime) -> CurrentNow<'_> {
         let mut uniform_m_s = self.mean_m_s;
-        if let Some((wander, tape)) = &self.wander {
+        if let Some((wander, process)) = &self.wander {
             let mean_m_s = self.mean_m_s.dot(wander.toward);
-            let wandering_m_s = mean_m_s + wander.sigma_m_s * tape.at(wander_place(wander, now)).0;
+            let wandering_m_s = mean_m_s + wander.sigma_m_s * process.at(wander_place(wander, now)).0;
             let speed_m_s = wandering_m_s.max(wander.speed_m_s.0).min(wander.speed_m_s.1);
             uniform_m_s = uniform_m_s + wander.toward.scaled(speed_m_s - mean_m_s);
         }
@@ -83,7 +83,7 @@ impl CurrentField {
     }
 }
 
-/// Where on its tape the wander stands at `now`.
+/// The place of the wander's process at `now`.
 fn wander_place(wander: &Wander, now: SimTime) -> f64 {
     now.as_s() / wander.time_s * STEPS_PER_LENGTH
 }

@@ -4,17 +4,16 @@
 //! scenario, the seed and the time; the sea remembers nothing, so a world that goes back in time finds the same sea.
 
 pub mod band;
+mod cached_process;
 pub mod current;
 pub mod eddy;
-pub mod gust_spectrum;
+mod gauss_markov;
 mod heading;
 mod hull_wave;
-mod markov;
 mod sine;
 pub mod spectrum;
 mod submergence;
 mod summary;
-mod tape;
 pub mod wave;
 mod wave_response;
 pub mod wind;

@@ -98,7 +98,7 @@ fn wind_summary(wind: &Wind, boat: &Boat, hull: &HullModel) -> WindSummary {
     let mean_m_s = mean_at(boat.windage.height_m);
     let intensity = match wind.gusts {
         Gusts::None => 0.0,
-        Gusts::OrnsteinUhlenbeck { intensity, .. } | Gusts::Spectral { intensity, .. } => intensity,
+        Gusts::OrnsteinUhlenbeck { intensity, .. } => intensity,
     };
     let force = |past: Body| wind_force(&boat.windage, boat.length_m, AIR_DENSITY_KG_M3, past);
     let abeam = |past_m_s: f64| force(Body { ahead: 0.0, starboard: past_m_s }).sway;

@@ -1,24 +1,23 @@
 //! The wind at a place and a time: a mean that falls towards the water, and gusts that travel with it.
 //!
-//! Gusts are one pattern, frozen, that the mean wind carries over the field (Taylor 1938): what a boat feels, a boat
-//! d metres downwind of it feels d / U later. So the pattern is a function of U t − d alone, with d counted downwind
+//! Gusts are one pattern, frozen, that the mean wind carries over the field (Taylor 1938): what passes a boat passes
+//! one d metres downwind of it d / U later. So the pattern is a function of U t − d alone, with d counted downwind
 //! from the datum and U the mean wind at the reference height. Boats at other heights meet the same pattern, in
-//! proportion to the mean wind at theirs. It does not vary along crests: boats abreast feel the same.
+//! proportion to the mean wind at theirs. It does not vary along crests: boats abreast meet the same.
 //!
 //! U is taken as 1 m/s where it is less: a pattern that stands still would be no gust.
 
-use super::gust_spectrum::{FREQUENCY_MAX_HZ, STEPS_PER_WAVE, Waves, shape};
-use super::markov::{Markov, STEPS_PER_LENGTH};
-use super::tape::{Process, Tape};
+use super::cached_process::CachedProcess;
+use super::gauss_markov::{GaussMarkov, STEPS_PER_LENGTH};
 use game::SimTime;
 use game::field::Field;
 use game::frame::{Ned, Rotation};
 use game::sea::{Gusts, Wind};
-use game::stream::{Noise, Stream};
+use game::stream::Noise;
 
 /// Slowest speed at which gusts travel, m/s.
 pub const CARRY_MIN_M_S: f64 = 1.0;
-/// How far around the field gusts are kept at hand, m. Boats further away are served too, more slowly.
+/// How far around the field gusts are cached, m. Boats further away are served too, more slowly.
 const MARGIN_M: f64 = 50.0;
 
 /// The wind over a field.
@@ -36,7 +35,7 @@ pub struct WindField {
 /// Gusts as a pattern along the wind.
 #[derive(Clone, Debug)]
 struct Frozen {
-    tape: Tape,
+    process: CachedProcess,
     /// Standard deviation along the wind and across it, over the mean speed.
     intensity: (f64, f64),
     /// Grid points by metre downwind.
@@ -70,19 +69,15 @@ impl WindField {
         made.gusts = match wind.gusts {
             Gusts::None => None,
             Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m } => {
-                let process = Process::Markov(Markov::new(Noise::new(seed, "gust")));
                 let steps_per_m = STEPS_PER_LENGTH / length_m;
-                Some(Frozen::new(process, (intensity, intensity * across_ratio), steps_per_m, carry_m_s, reach_m))
-            }
-            Gusts::Spectral { spectrum, intensity, across_ratio, components } => {
-                let speed_10m_m_s = wind.speed_10m_m_s.max(CARRY_MIN_M_S);
-                let shape = |frequency_hz| shape(spectrum, frequency_hz, speed_10m_m_s, reference_height_m);
-                let mut stream = Stream::new(seed, "gust");
-                let along = Waves::draw(&shape, components, &mut stream);
-                let across = Waves::draw(&shape, components, &mut stream);
-                let steps_per_m = STEPS_PER_WAVE * FREQUENCY_MAX_HZ / carry_m_s;
-                let process = Process::Waves(along, across);
-                Some(Frozen::new(process, (intensity, intensity * across_ratio), steps_per_m, carry_m_s, reach_m))
+                let process = GaussMarkov::new(Noise::new(seed, "gust"));
+                Some(Frozen {
+                    process: CachedProcess::new(process, (reach_m.1 - reach_m.0) * steps_per_m),
+                    intensity: (intensity, intensity * across_ratio),
+                    steps_per_m,
+                    steps_per_s: steps_per_m * carry_m_s,
+                    reach_m,
+                })
             }
         };
         made
@@ -98,7 +93,7 @@ impl WindField {
     pub fn prepare(&mut self, now: SimTime) {
         if let Some(gusts) = &mut self.gusts {
             let (near_m, far_m) = gusts.reach_m;
-            gusts.tape.hold(gusts.place(far_m, now), gusts.place(near_m, now));
+            gusts.process.hold(gusts.place(far_m, now), gusts.place(near_m, now));
         }
     }
 
@@ -108,19 +103,14 @@ impl WindField {
     #[must_use]
     pub fn at(&self, place: Ned, mean_m_s: f64, now: SimTime) -> Ned {
         let Some(gusts) = &self.gusts else { return self.downwind.scaled(mean_m_s) };
-        let (along, across) = gusts.tape.at(gusts.place(place.dot(self.downwind), now));
+        let (along, across) = gusts.process.at(gusts.place(place.dot(self.downwind), now));
         self.downwind.scaled(mean_m_s * (1.0 + gusts.intensity.0 * along))
             + self.across.scaled(mean_m_s * (gusts.intensity.1 * across))
     }
 }
 
 impl Frozen {
-    fn new(process: Process, intensity: (f64, f64), steps_per_m: f64, carry_m_s: f64, reach_m: (f64, f64)) -> Frozen {
-        let tape = Tape::new(process, (reach_m.1 - reach_m.0) * steps_per_m);
-        Frozen { tape, intensity, steps_per_m, steps_per_s: steps_per_m * carry_m_s, reach_m }
-    }
-
-    /// Where on the tape stands what is felt `downwind_m` from the datum.
+    /// The place of the process that blows `downwind_m` from the datum.
     #[inline]
     fn place(&self, downwind_m: f64, now: SimTime) -> f64 {
         self.steps_per_s * now.as_s() - self.steps_per_m * downwind_m

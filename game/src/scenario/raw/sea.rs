@@ -1,6 +1,6 @@
 //! A sea file as typed.
 
-use crate::sea::{GustSpectrum, PROFILE_EXPONENT};
+use crate::sea::PROFILE_EXPONENT;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -109,9 +109,6 @@ pub(crate) struct Wind {
     /// Length scale of "ornstein_uhlenbeck", m.
     #[schemars(range(min = 1, max = 1000), extend("default" = 45))]
     pub(crate) length_m: f64,
-    /// How many components the spectral kinds have.
-    #[schemars(range(min = 1, max = 1024), extend("default" = 64))]
-    pub(crate) components: u32,
 }
 
 /// How the wind gusts.
@@ -122,24 +119,6 @@ pub(crate) enum Gusts {
     None,
     /// As an Ornstein-Uhlenbeck process.
     OrnsteinUhlenbeck,
-    /// By Davenport's spectrum (1961).
-    Davenport,
-    /// By Harris' spectrum (1971).
-    Harris,
-    /// By the Frøya spectrum, for wind over the sea.
-    Froya,
-}
-
-impl Gusts {
-    /// The spectrum it means, if it means one.
-    pub(crate) fn spectrum(self) -> Option<GustSpectrum> {
-        match self {
-            Gusts::None | Gusts::OrnsteinUhlenbeck => None,
-            Gusts::Davenport => Some(GustSpectrum::Davenport),
-            Gusts::Harris => Some(GustSpectrum::Harris),
-            Gusts::Froya => Some(GustSpectrum::Froya),
-        }
-    }
 }
 
 /// The water's own motion: the sum of all that is stated.

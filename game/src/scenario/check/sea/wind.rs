@@ -5,11 +5,10 @@ use crate::sea::{Gusts, Wind};
 
 /// The wind of a sea.
 pub(super) fn wind(raw: &raw::Wind) -> Wind {
-    let raw::Wind { intensity, across_ratio, length_m, components, .. } = *raw;
-    let gusts = match (raw.gusts, raw.gusts.spectrum()) {
-        (raw::Gusts::None, _) => Gusts::None,
-        (_, None) => Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m },
-        (_, Some(spectrum)) => Gusts::Spectral { spectrum, intensity, across_ratio, components },
+    let raw::Wind { intensity, across_ratio, length_m, .. } = *raw;
+    let gusts = match raw.gusts {
+        raw::Gusts::None => Gusts::None,
+        raw::Gusts::OrnsteinUhlenbeck => Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m },
     };
     Wind {
         speed_10m_m_s: raw.speed_m_s,

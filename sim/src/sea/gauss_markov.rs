@@ -1,4 +1,4 @@
-//! A number that wanders: the stationary Gauss-Markov process, looked up anywhere on its grid.
+//! The stationary Gauss-Markov process, looked up anywhere on its grid.
 //!
 //! Also known as the Ornstein-Uhlenbeck process: mean 0, variance 1, correlation e^(−lag). Its usual recursion needs all
 //! of its past; here a point is found from the noise alone. Every 32 correlation lengths stands an independent point
@@ -26,9 +26,9 @@ const COUNT_OF_POINT_ZERO: i64 = 1 << 40;
 /// Two independent processes on one grid.
 pub(super) type Pair = (f64, f64);
 
-/// The process: constant.
+/// The process.
 #[derive(Clone, Debug)]
-pub(super) struct Markov {
+pub(super) struct GaussMarkov {
     noise: Noise,
     /// By level: the factor on the sum of the neighbours, and the standard deviation about it.
     halving: [(f64, f64); LEVELS],
@@ -53,14 +53,14 @@ impl Trail {
     }
 }
 
-impl Markov {
-    pub(super) fn new(noise: Noise) -> Markov {
+impl GaussMarkov {
+    pub(super) fn new(noise: Noise) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
             let rho = libm::exp(-apart);
             (rho / (1.0 + rho * rho), (-libm::expm1(-2.0 * apart) / (1.0 + rho * rho)).sqrt())
         });
-        Markov { noise, halving }
+        GaussMarkov { noise, halving }
     }
 
     /// The correlation of neighbours on the grid.
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn a_point_is_the_same_however_one_comes_to_it() {
-        let process = Markov::new(Noise::new(3, "test"));
+        let process = GaussMarkov::new(Noise::new(3, "test"));
         let mut trail = Trail::default();
         let in_order: Vec<Pair> = (-2100..2100).map(|index| process.at(index, &mut trail)).collect();
         let stride = 1777; // coprime to 4200: every point once, in a wild order
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn it_has_the_moments_of_its_process_within_blocks_and_across_their_ends() {
         const POINTS: i64 = 4_000_000;
-        let process = Markov::new(Noise::new(5, "test"));
+        let process = GaussMarkov::new(Noise::new(5, "test"));
         let mut trail = Trail::default();
         let x: Vec<Pair> = (0..POINTS).map(|index| process.at(index, &mut trail)).collect();
         // Five standard errors; 125 000 correlation lengths count as so many independent draws over two.

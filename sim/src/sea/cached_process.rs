@@ -1,0 +1,106 @@
+//! A Gauss-Markov process with a cache: a window of its grid points, read at any place between them.
+//!
+//! The process itself is a function of the grid point. Where it is read outside of the window its points are worked out
+//! again: slower, the same bits.
+
+use super::gauss_markov::{GaussMarkov, Pair, Trail};
+
+/// Most points in the cache.
+const HELD_MAX: i64 = 1 << 16;
+
+/// A process and its cache.
+#[derive(Clone, Debug)]
+pub(super) struct CachedProcess {
+    process: GaussMarkov,
+    /// The correlation of neighbours.
+    correlation: f64,
+    trail: Trail,
+    /// Point i stands at i modulo the length, which is a power of two.
+    ring: Vec<Pair>,
+    /// The points in the cache: from the first to before the last.
+    held: (i64, i64),
+}
+
+impl CachedProcess {
+    /// A cache of at least `points`, as far as that is sensible.
+    pub(super) fn new(process: GaussMarkov, points: f64) -> CachedProcess {
+        let correlation = GaussMarkov::neighbour_correlation();
+        let length = (points.ceil() as i64).saturating_add(3).clamp(1, HELD_MAX) as u64;
+        let ring = vec![(0.0, 0.0); length.next_power_of_two() as usize];
+        CachedProcess { process, correlation, trail: Trail::default(), ring, held: (0, 0) }
+    }
+
+    /// Puts the points between two places into the cache.
+    pub(super) fn hold(&mut self, from: f64, to: f64) {
+        let first = from.floor() as i64;
+        let end = (to.floor() as i64 + 2).min(first + self.ring.len() as i64);
+        let known = if (self.held.0..=self.held.1).contains(&first) { self.held.1 } else { first };
+        for index in known..end {
+            let slot = self.slot(index);
+            self.ring[slot] = self.process.at(index, &mut self.trail);
+        }
+        self.held = (first, end.max(known));
+    }
+
+    /// The pair of processes at a place, each with a mean of 0 and a variance of 1.
+    ///
+    /// On the line between two points the variance would be less: (1−w)² + w² + 2 w (1−w) ρ. The root of that makes up
+    /// for it.
+    #[inline]
+    pub(super) fn at(&self, place: f64) -> Pair {
+        let floor = place.floor();
+        let (index, weight) = (floor as i64, place - floor);
+        let (low, high) = (self.point(index), self.point(index + 1));
+        let product = 2.0 * weight * (1.0 - weight);
+        let deviation = (1.0 - product * (1.0 - self.correlation)).sqrt();
+        let between = |low: f64, high: f64| (low + weight * (high - low)) / deviation;
+        (between(low.0, high.0), between(low.1, high.1))
+    }
+
+    #[inline]
+    fn point(&self, index: i64) -> Pair {
+        if self.held.0 <= index && index < self.held.1 {
+            self.ring[self.slot(index)]
+        } else {
+            self.process.at(index, &mut Trail::default())
+        }
+    }
+
+    #[inline]
+    fn slot(&self, index: i64) -> usize {
+        index as usize & (self.ring.len() - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::stream::Noise;
+
+    fn process() -> GaussMarkov {
+        GaussMarkov::new(Noise::new(1, "test"))
+    }
+
+    #[test]
+    fn the_cache_changes_no_bit() {
+        let bare = CachedProcess::new(process(), 0.0);
+        let mut cached = CachedProcess::new(process(), 40.0);
+        // Ahead by little, by much, back, beyond the ring, and below zero.
+        for from in [0.0, 0.4, 1.7, 30.2, 31.0, 200.5, 5.5, 6.5, -70.2, -1030.0, 1e6] {
+            cached.hold(from, from + 40.0);
+            for place in [from - 90.0, from - 0.1, from, from + 0.3, from + 17.5, from + 40.0, from + 99.9] {
+                assert_eq!(cached.at(place), bare.at(place), "holding {from}, at {place}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_ring_is_filled_no_further_than_it_is_long() {
+        let bare = CachedProcess::new(process(), 0.0);
+        let mut cached = CachedProcess::new(process(), 10.0);
+        cached.hold(0.0, 1000.0);
+        for place in [0.5, 9.5, 15.5, 16.5, 500.5] {
+            assert_eq!(cached.at(place), bare.at(place));
+        }
+    }
+}
