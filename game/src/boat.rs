@@ -144,12 +144,30 @@ pub struct Gps {
     pub period_s: f64,
     /// Age of a fix when it comes out, s.
     pub latency_s: f64,
-    /// Drop-outs: how often they begin, 1/s, and how long they last on average, s. No fixes come out meanwhile.
-    pub dropout: (f64, f64),
-    /// Freezes, likewise: fixes come out with the position and velocity that they had at the beginning.
-    pub freeze: (f64, f64),
-    /// Jumps, likewise: how often, 1/s, and the standard deviation of the offset, m; one lasts until the next.
-    pub jump: (f64, f64),
+    /// Drop-outs: no fixes come out meanwhile.
+    pub dropout: Outage,
+    /// Freezes: fixes come out with the position and velocity that they had at the beginning.
+    pub freeze: Outage,
+    /// Jumps of the position.
+    pub jump: Jump,
+}
+
+/// A fault that comes and goes. The default never does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Outage {
+    /// How often it begins, 1/s.
+    pub rate_per_s: f64,
+    /// How long it lasts on average, s.
+    pub mean_s: f64,
+}
+
+/// Offsets, each of which lasts until the next. The default has none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Jump {
+    /// How often one comes, 1/s.
+    pub rate_per_s: f64,
+    /// Standard deviation of the offset, each axis, m.
+    pub sigma_m: f64,
 }
 
 /// A magnetic compass. Its deviation is A + B sin ψ + C cos ψ + D sin 2ψ + E cos 2ψ.

@@ -1,4 +1,4 @@
-//! A battery: it empties as the thrusters draw on it, and thrust falls with it.
+//! A battery: the state of charge under the thrusters' load, and the thrust lost as it falls.
 //!
 //! A propeller that stands in the water takes a torque of k_q n |n| and gives a thrust of k_t n |n|, so the power 2 pi n Q
 //! goes with |n|³, that is with |T|^1.5 (Fossen 2021, ch. 9, at advance number 0). Two thrusters at the

@@ -1,4 +1,4 @@
-//! Hulls that touch: each other, obstacles and walls.
+//! Contact of hulls with each other, with obstacles and with walls.
 //!
 //! We integrate surge, sway and yaw ourselves, since a rigid-body engine knows one mass for all
 //! directions and a hull with added mass has three. Where hulls may touch, rapier is handed the tick's
@@ -334,9 +334,9 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &
     displacement.to.psi_rad = math::atan2(rotation.im, rotation.re);
     // Not rapier's own sine and cosine: a snapshot has only the angle.
     displacement.rotation_to = displacement.to.rotation();
-    let push = (body.linvel() - entry.velocity) * entry.mass_kg;
-    let push = frame::body_from_ned(displacement.rotation, Ned { north: push.x, east: push.y });
+    let impulse = (body.linvel() - entry.velocity) * entry.mass_kg;
+    let impulse = frame::body_from_ned(displacement.rotation, Ned { north: impulse.x, east: impulse.y });
     let twist = (body.angvel() - entry.spin_rad_s) * model.yaw_inertia_kg_m2();
     displacement.velocity_change =
-        model.velocity_change(Planar { surge: push.ahead, sway: push.starboard, yaw: twist });
+        model.velocity_change(Planar { surge: impulse.ahead, sway: impulse.starboard, yaw: twist });
 }

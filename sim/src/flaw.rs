@@ -1,6 +1,6 @@
-//! What keeps a boat's thrusters from doing what they are told: late commands, weak propellers, air, a flat battery.
+//! Thruster faults: command latency, gain and saturation, ventilation, a sagging battery.
 //!
-//! The front seat knows nothing of it: it reckons with the thrusters as they are sold.
+//! The front seat knows nothing of them: it reckons with the thrusters as they are sold.
 
 use crate::battery::{BatteryModel, BatteryState};
 use crate::delay_line::DelayLine;

@@ -63,9 +63,11 @@ pub struct HullModel {
     ///
     /// Used in surge and in the Munk moment alike, so that these terms do no work whatever the factor.
     pub(crate) munk_sway: f64,
+    /// The inverse of `M`: surge, then the sway-yaw block.
     pub(crate) inverse_surge: f64,
-    /// The sway-yaw block of the inverse: sway-sway, sway-yaw, yaw-yaw.
-    pub(crate) inverse: (f64, f64, f64),
+    pub(crate) inverse_sway: f64,
+    pub(crate) inverse_cross: f64,
+    pub(crate) inverse_yaw: f64,
     /// ½ ρ C_d T of the cross-flow, kg/m².
     pub(crate) crossflow: f64,
 }
@@ -86,7 +88,9 @@ impl HullModel {
             m_cross,
             munk_sway: hull.added_surge_kg + hull.munk_factor * (hull.added_sway_kg - hull.added_surge_kg),
             inverse_surge: 1.0 / m_surge,
-            inverse: (m_yaw / determinant, -m_cross / determinant, m_sway / determinant),
+            inverse_sway: m_yaw / determinant,
+            inverse_cross: -m_cross / determinant,
+            inverse_yaw: m_sway / determinant,
             crossflow: 0.5 * water_density_kg_m3 * hull.crossflow_coefficient * hull.crossflow_draught_m,
             hull: hull.clone(),
         }
@@ -95,12 +99,11 @@ impl HullModel {
     /// The change of velocity by an impulse (N s, N s, N m s).
     #[inline]
     #[must_use]
-    pub fn velocity_change(&self, push: Planar) -> Planar {
-        let (sway_sway, sway_yaw, yaw_yaw) = self.inverse;
+    pub fn velocity_change(&self, impulse: Planar) -> Planar {
         Planar {
-            surge: self.inverse_surge * push.surge,
-            sway: sway_sway * push.sway + sway_yaw * push.yaw,
-            yaw: sway_yaw * push.sway + yaw_yaw * push.yaw,
+            surge: self.inverse_surge * impulse.surge,
+            sway: self.inverse_sway * impulse.sway + self.inverse_cross * impulse.yaw,
+            yaw: self.inverse_cross * impulse.sway + self.inverse_yaw * impulse.yaw,
         }
     }
 

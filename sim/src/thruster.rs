@@ -1,4 +1,4 @@
-//! A thruster: takes a setting up with dead-band, slew limit and lag, and turns it into thrust.
+//! A thruster: dead-band, slew limit and first-order lag of its setting, and the thrust curve.
 
 use crate::flaw::{FlawModel, FlawState};
 use crate::hull::Planar;

@@ -101,7 +101,7 @@ impl World {
     /// The boats, the sea and the field of the game that `seed` chooses, at its start.
     ///
     /// # Errors
-    /// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
+    /// [`NoStart`] where the boats do not fit into their spawn area, or randomised numbers do not go together.
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
         let scenario = scenario.of_seed(seed)?;
         let starts = spawn::start_positions(&scenario, seed)?;

@@ -3,7 +3,7 @@
 mod common;
 
 use common::mean_of;
-use game::boat::{Compass, Gps, Imu, Sensors};
+use game::boat::{Compass, Gps, Imu, Jump, Outage, Sensors};
 use game::frame::{Body, Pose, Rotation, body_from_ned, ned_from_body};
 use game::math;
 use game::sea::GRAVITY_M_S2;
@@ -25,9 +25,9 @@ fn exact_gps() -> Gps {
         velocity_noise_m_s: 0.0,
         period_s: 0.2,
         latency_s: 0.0,
-        dropout: (0.0, 0.0),
-        freeze: (0.0, 0.0),
-        jump: (0.0, 0.0),
+        dropout: Outage::default(),
+        freeze: Outage::default(),
+        jump: Jump::default(),
     }
 }
 
@@ -83,9 +83,9 @@ fn faulty() -> Sensors {
             noise_m: 0.1,
             velocity_noise_m_s: 0.07,
             latency_s: 0.55,
-            dropout: (0.05, 3.0),
-            freeze: (0.05, 4.0),
-            jump: (0.1, 6.0),
+            dropout: Outage { rate_per_s: 0.05, mean_s: 3.0 },
+            freeze: Outage { rate_per_s: 0.05, mean_s: 4.0 },
+            jump: Jump { rate_per_s: 0.1, sigma_m: 6.0 },
             ..exact_gps()
         }),
         compass: Some(Compass { noise_rad: 0.02, thrust_error_rad: 0.05, ..exact_compass() }),
@@ -240,7 +240,12 @@ fn velocity_is_noisy_over_the_ground_and_turned_with_the_heading_that_is_read() 
 fn drop_outs_take_their_share_and_last_as_stated_and_the_last_fix_is_kept() {
     const RATE_PER_S: f64 = 0.1;
     const MEAN_S: f64 = 3.0;
-    let read = record(&with_gps(Gps { dropout: (RATE_PER_S, MEAN_S), ..exact_gps() }), 3, 4_000_000, sailing);
+    let read = record(
+        &with_gps(Gps { dropout: Outage { rate_per_s: RATE_PER_S, mean_s: MEAN_S }, ..exact_gps() }),
+        3,
+        4_000_000,
+        sailing,
+    );
     let fixes: Vec<&(SimTime, Reading)> = read.iter().step_by(4).collect();
     let dropped: Vec<bool> = fixes.iter().map(|(now, reading)| reading.fix_at != *now).collect();
     let share = mean_of(dropped.len(), |i| f64::from(u8::from(dropped[i])));
@@ -261,7 +266,8 @@ fn drop_outs_take_their_share_and_last_as_stated_and_the_last_fix_is_kept() {
 
 #[test]
 fn a_frozen_receiver_repeats_itself_with_new_times() {
-    let read = record(&with_gps(Gps { freeze: (0.1, 3.0), ..exact_gps() }), 4, 400_000, sailing);
+    let read =
+        record(&with_gps(Gps { freeze: Outage { rate_per_s: 0.1, mean_s: 3.0 }, ..exact_gps() }), 4, 400_000, sailing);
     let fixes: Vec<&(SimTime, Reading)> = read.iter().step_by(4).collect();
     let mut frozen = 0;
     for pair in fixes.windows(2) {
@@ -280,7 +286,8 @@ fn a_frozen_receiver_repeats_itself_with_new_times() {
 
 #[test]
 fn a_jump_lasts_until_the_next() {
-    let read = record(&with_gps(Gps { jump: (0.05, 4.0), ..exact_gps() }), 5, 1_000_000, at_rest);
+    let read =
+        record(&with_gps(Gps { jump: Jump { rate_per_s: 0.05, sigma_m: 4.0 }, ..exact_gps() }), 5, 1_000_000, at_rest);
     let fixes: Vec<Ned> = read.iter().step_by(4).map(|(_, reading)| reading.nav.at()).collect();
     assert_eq!(fixes[0], Ned::default());
     let offsets: Vec<Ned> = fixes.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| pair[1]).collect();

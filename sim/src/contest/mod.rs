@@ -58,7 +58,7 @@ impl Contest {
     /// The game of `scenario` that `seed` chooses, at its start.
     ///
     /// # Errors
-    /// [`NoStart`] where the boats do not fit into their spawn area, or numbers drawn by lot do not go together.
+    /// [`NoStart`] where the boats do not fit into their spawn area, or randomised numbers do not go together.
     pub fn new(scenario: &Scenario, seed: u64) -> Result<Contest, NoStart> {
         let scenario = scenario.of_seed(seed)?;
         let world = World::of_game(&scenario, seed)?;

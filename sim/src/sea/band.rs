@@ -1,4 +1,4 @@
-//! What the components of a wave field hold, by band of frequency: to be laid beside the spectrum that was asked for.
+//! The variance of a wave field by frequency band, for comparison with the spectrum that was asked for.
 
 use super::WaveField;
 use super::spectrum::BAND;

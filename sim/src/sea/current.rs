@@ -1,4 +1,4 @@
-//! The water's own motion at a place and a time: what a scenario states, summed.
+//! The current at a place and a time: mean, wander, tide, shear and eddies, summed.
 //!
 //! What is the same everywhere (mean, wander, tide) is worked out once a tick by [`CurrentField::at_time`]; what is not
 //! (shear, eddies) by boat.

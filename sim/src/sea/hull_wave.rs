@@ -1,4 +1,4 @@
-//! What the waves do to one kind of hull in the horizontal plane.
+//! Wave forces and orbital velocities on one kind of hull in the horizontal plane.
 //!
 //! First order: the water's orbital motion, averaged over the hull, which filters out the waves that are shorter than it
 //! is. The average velocity is for the drag, and the average acceleration for the force (mass + added mass) · acceleration:
@@ -27,7 +27,7 @@ pub struct WaveSample {
     pub drift_newton: Planar,
 }
 
-/// The waves of a field as one kind of boat feels them.
+/// The waves of a field, averaged over one kind of hull.
 ///
 /// A component's direction from the bow enters through the heading only, so everything that takes more than a product
 /// is looked up by heading. The drift force is that of Newman's approximation,

@@ -1,4 +1,4 @@
-//! How the energy of a sea is shared out: over frequencies (JONSWAP), and over directions around the mean one.
+//! The wave spectrum (JONSWAP) and the directional spreading, and the components that stand for them.
 //!
 //! JONSWAP (Hasselmann et al. 1973) in terms of Hs and Tp, with the normalisation of Goda and DNV-RP-C205:
 //!

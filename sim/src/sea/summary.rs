@@ -1,4 +1,4 @@
-//! What a sea means for a kind of boat: the few numbers by which people judge it.
+//! A summary of a sea for a kind of boat: wave height and length, orbital velocity, forces, drift.
 
 use super::hull_wave::orbital_velocity;
 use super::windage::{AIR_DENSITY_KG_M3, wind_force};

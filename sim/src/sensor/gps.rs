@@ -4,11 +4,11 @@
 //! white noise and by the last jump; its velocity, which a receiver has from the Doppler shift, by white noise alone.
 //! Drop-outs and freezes come and go as a [`TwoStateChain`], sampled at the fixes.
 
-use super::{Truth, gauss_markov_step, whole_ticks};
+use super::{GaussMarkovStep, Truth, whole_ticks};
 use crate::delay_line::DelayLine;
 use crate::two_state::TwoStateChain;
 use game::SimTime;
-use game::boat::Gps;
+use game::boat::{Gps, Outage};
 use game::frame::Ned;
 use game::stream::Noise;
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,7 @@ pub struct GpsModel {
     period: SimTime,
     latency: SimTime,
     bias_m: f64,
-    bias_step: (f64, f64),
+    bias_step: GaussMarkovStep,
     noise_m: f64,
     velocity_noise_m_s: f64,
     dropout: TwoStateChain,
@@ -66,9 +66,11 @@ pub struct GpsState {
     frozen: Option<Fix>,
 }
 
-/// What begins so often (1/s) and lasts so long on average (s).
-fn chain(per_s: f64, mean_s: f64, period: SimTime) -> TwoStateChain {
-    if per_s <= 0.0 || mean_s <= 0.0 { TwoStateChain::OFF } else { TwoStateChain::new(per_s, 1.0 / mean_s, period) }
+fn chain(outage: Outage, period: SimTime) -> TwoStateChain {
+    if outage.rate_per_s <= 0.0 || outage.mean_s <= 0.0 {
+        return TwoStateChain::OFF;
+    }
+    TwoStateChain::new(outage.rate_per_s, 1.0 / outage.mean_s, period)
 }
 
 impl GpsModel {
@@ -87,13 +89,13 @@ impl GpsModel {
             period,
             latency,
             bias_m: gps.bias_m,
-            bias_step: gauss_markov_step(period, gps.bias_time_s),
+            bias_step: GaussMarkovStep::new(period, gps.bias_time_s),
             noise_m: gps.noise_m,
             velocity_noise_m_s: gps.velocity_noise_m_s,
-            dropout: chain(gps.dropout.0, gps.dropout.1, period),
-            freeze: chain(gps.freeze.0, gps.freeze.1, period),
-            jump_chance: -libm::expm1(-gps.jump.0 * period.as_s()),
-            jump_m: gps.jump.1,
+            dropout: chain(gps.dropout, period),
+            freeze: chain(gps.freeze, period),
+            jump_chance: -libm::expm1(-gps.jump.rate_per_s * period.as_s()),
+            jump_m: gps.jump.sigma_m,
         }
     }
 
@@ -123,7 +125,7 @@ impl GpsModel {
             Ned { north, east }.scaled(sigma)
         };
         let uniform = |which: u64| self.uniforms.unit(UNIFORMS * number + which);
-        let (kept, fresh) = if number == 0 { (0.0, 1.0) } else { self.bias_step };
+        let GaussMarkovStep { kept, fresh } = if number == 0 { GaussMarkovStep::FIRST } else { self.bias_step };
         state.bias = state.bias.scaled(kept) + normal(0, self.bias_m * fresh);
         if number > 0 {
             state.dropped = self.dropout.next(state.dropped, uniform(0));

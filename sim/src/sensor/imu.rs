@@ -9,7 +9,7 @@
 //!
 //! and to each a white noise and a wandering bias (Gauss-Markov). The accelerometers sit midships.
 
-use super::{Truth, gauss_markov_step};
+use super::{GaussMarkovStep, Truth};
 use game::SimTime;
 use game::boat::Imu;
 use game::math;
@@ -35,7 +35,7 @@ pub struct ImuModel {
     imu: Imu,
     noise: Noise,
     tick: SimTime,
-    bias_step: (f64, f64),
+    bias_step: GaussMarkovStep,
 }
 
 /// Everything that changes about them.
@@ -77,13 +77,13 @@ impl ImuModel {
     #[must_use]
     pub fn new(imu: &Imu, tick: SimTime, seed: u64, vehicle: &str) -> ImuModel {
         let noise = Noise::new(seed, &format!("imu/{vehicle}"));
-        ImuModel { imu: imu.clone(), noise, tick, bias_step: gauss_markov_step(tick, imu.bias_time_s) }
+        ImuModel { imu: imu.clone(), noise, tick, bias_step: GaussMarkovStep::new(tick, imu.bias_time_s) }
     }
 
     /// What they say at `now`.
     pub fn read(&self, state: &mut ImuState, truth: &Truth, now: SimTime) -> ImuReading {
         let number = (now.0 / self.tick.0) as u64;
-        let (kept, fresh) = if number == 0 { (0.0, 1.0) } else { self.bias_step };
+        let GaussMarkovStep { kept, fresh } = if number == 0 { GaussMarkovStep::FIRST } else { self.bias_step };
         let imu = &self.imu;
         let mut reading = ImuReading::of(truth);
         for axis in 0..3 {

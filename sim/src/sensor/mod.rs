@@ -1,4 +1,4 @@
-//! What a boat knows of itself, as its sensors tell it.
+//! A boat's sensors: satellite navigation, compass, gyro and accelerometers.
 //!
 //! Open [`SensorModel::read`] first. A sensor that a boat's file leaves out is perfect: its part of the truth comes out
 //! bit for bit. What a sensor remembers is in its state, which is plain numbers and goes into the world's snapshot; what
@@ -20,7 +20,7 @@ use gps::{GpsModel, GpsState};
 use imu::{ImuModel, ImuReading, ImuState};
 use serde::{Deserialize, Serialize};
 
-/// What is true of a boat at one tick, as far as sensors feel it.
+/// The true state of a boat at one tick, as far as sensors measure it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Truth {
     /// Position and heading.
@@ -135,9 +135,22 @@ fn whole_ticks(period_s: f64, tick: SimTime) -> SimTime {
     tick * ticks.max(1)
 }
 
-/// The step of a Gauss-Markov process: its correlation over a span, and the standard deviation of what is new, for a
-/// process of variance 1.
-fn gauss_markov_step(span: SimTime, time_s: f64) -> (f64, f64) {
-    let spans = span.as_s() / time_s;
-    (math::exp(-spans), (-libm::expm1(-2.0 * spans)).sqrt())
+/// One step of a Gauss-Markov process of variance 1.
+#[derive(Clone, Copy, Debug)]
+struct GaussMarkovStep {
+    /// The correlation over the step.
+    kept: f64,
+    /// The standard deviation of what is new.
+    fresh: f64,
+}
+
+impl GaussMarkovStep {
+    /// The first step of all, which remembers nothing.
+    const FIRST: GaussMarkovStep = GaussMarkovStep { kept: 0.0, fresh: 1.0 };
+
+    /// A step of `span` for a process with this correlation time.
+    fn new(span: SimTime, time_s: f64) -> GaussMarkovStep {
+        let spans = span.as_s() / time_s;
+        GaussMarkovStep { kept: math::exp(-spans), fresh: (-libm::expm1(-2.0 * spans)).sqrt() }
+    }
 }

@@ -1,6 +1,6 @@
 //! Sensors.
 
-use crate::boat::{Compass, Gps, Imu};
+use crate::boat::{Compass, Gps, Imu, Jump, Outage};
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
 use crate::scenario::read::Document;
@@ -16,8 +16,7 @@ pub(super) fn gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>,
         let message = format!("latency_s is {latency_s}, expected at most {most_s}: {MOST_PERIODS_LATE} periods");
         diagnostics.note(document.at(path), message);
     }
-    // How often, 1/s, and for how long, s.
-    let fault = |raw: &raw::Fault| (raw.per_hour / 3600.0, raw.mean_s);
+    let outage = |raw: &raw::Fault| Outage { rate_per_s: raw.per_hour / 3600.0, mean_s: raw.mean_s };
     Gps {
         bias_m: raw.bias_m,
         bias_time_s: raw.bias_time_s,
@@ -25,9 +24,12 @@ pub(super) fn gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>,
         velocity_noise_m_s: raw.velocity_noise_m_s,
         period_s: raw.period_s,
         latency_s,
-        dropout: raw.dropout.as_ref().map_or((0.0, 0.0), fault),
-        freeze: raw.freeze.as_ref().map_or((0.0, 0.0), fault),
-        jump: raw.jump.as_ref().map_or((0.0, 0.0), |jump| (jump.per_hour / 3600.0, jump.sigma_m)),
+        dropout: raw.dropout.as_ref().map(outage).unwrap_or_default(),
+        freeze: raw.freeze.as_ref().map(outage).unwrap_or_default(),
+        jump: raw
+            .jump
+            .as_ref()
+            .map_or_else(Jump::default, |jump| Jump { rate_per_s: jump.per_hour / 3600.0, sigma_m: jump.sigma_m }),
     }
 }
 
