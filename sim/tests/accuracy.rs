@@ -3,23 +3,11 @@
 
 mod common;
 
-use common::{alone, put, scenarios};
-use game::sea::{Gusts, Sea, Spreading, Waves, Wind};
+use common::{alone, put, scenarios, waves};
+use game::sea::{Gusts, Sea, Wind};
 use game::{Ned, Order, Pose, SimTime};
 use sim::World;
 use sim::hull::{HullModel, Planar};
-
-fn waves() -> Waves {
-    Waves {
-        hs_m: 0.3,
-        tp_s: 2.5,
-        gamma: 3.3,
-        from_rad: 0.5,
-        spreading: Spreading::CosineSquared,
-        components: 64,
-        drift_factor: 1.0,
-    }
-}
 
 /// Where the Otter is after 20 s on this sea under imposed thrust, by the length of the tick.
 fn pose_after(tick_s: f64, change: impl Fn(&mut Sea)) -> Pose {
@@ -54,7 +42,7 @@ fn in_calm_the_error_falls_with_the_fourth_power_of_the_tick() {
 #[test]
 fn in_waves_it_falls_with_the_square_and_in_wind_in_proportion() {
     // Waves are taken half-way through the tick, wind at its beginning; each holds for the tick.
-    let in_waves = gains(|sea| sea.waves = Some(waves()));
+    let in_waves = gains(|sea| sea.waves = Some(waves(0.3, 2.5, 0.5)));
     assert!(in_waves.iter().flatten().all(|gain| *gain > 3.5), "{in_waves:?}");
     assert!(in_waves[2].iter().all(|gain| *gain < 4.5), "the longest ticks have more than that: {in_waves:?}");
     let in_wind = gains(|sea| {

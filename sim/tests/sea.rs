@@ -3,10 +3,10 @@
 
 mod common;
 
-use common::{alone, order, put, scenarios};
+use common::{alone, order, put, scenarios, surveyor_on};
 use game::scenario::Overrides;
-use game::sea::{GRAVITY_M_S2, Sea, Spreading, Waves};
-use game::{Ned, Order, Scenario, VehicleId};
+use game::sea::{GRAVITY_M_S2, Spreading, Waves};
+use game::{Ned, Order, VehicleId};
 use sim::sea::WaveField;
 use sim::{Contest, World};
 use std::f64::consts::TAU;
@@ -14,22 +14,7 @@ use std::f64::consts::TAU;
 const DRIFTING: [Order; 2] = [Order::Hold; 2];
 
 fn waves(hs_m: f64, tp_s: f64) -> Waves {
-    Waves {
-        hs_m,
-        tp_s,
-        gamma: 3.3,
-        from_rad: 0.0,
-        spreading: Spreading::CosineSquared,
-        components: 64,
-        drift_factor: 1.0,
-    }
-}
-
-/// The Surveyor on this water, two of them far apart.
-fn on(change: impl FnOnce(&mut Sea)) -> Scenario {
-    let mut scenario = alone("surveyor_m1_8", "calm");
-    change(&mut scenario.sea);
-    scenario
+    common::waves(hs_m, tp_s, 0.0)
 }
 
 fn run(world: &mut World, orders: &[Order], seconds: f64) {
@@ -41,7 +26,8 @@ fn run(world: &mut World, orders: &[Order], seconds: f64) {
 #[test]
 fn without_thrust_a_boat_ends_up_going_with_the_current_whatever_its_heading() {
     for heading_deg in [0.0, 37.0, 90.0, 200.0] {
-        let mut world = World::of_game(&on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.4 }), 1).unwrap();
+        let mut world =
+            World::of_game(&surveyor_on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.4 }), 1).unwrap();
         put(&mut world, 0, (300.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
         run(&mut world, &DRIFTING, 240.0);
         let before = world.state().boats[0].pose.at;
@@ -53,7 +39,7 @@ fn without_thrust_a_boat_ends_up_going_with_the_current_whatever_its_heading() {
 
 #[test]
 fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
-    let scenario = on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.1 });
+    let scenario = surveyor_on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.1 });
     let hull = &common::hulls(&scenario)[0];
     let mut world = World::of_game(&scenario, 1).unwrap();
     put(&mut world, 0, (200.0, 200.0, 70.0), (2.0, -0.5, 0.6));
@@ -75,7 +61,7 @@ fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
 /// A drifter's mean velocity over ten minutes and the root mean square of its velocity, m/s, in waves of this height
 /// without drift force.
 fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
-    let scenario = on(|sea| sea.waves = Some(Waves { drift_factor: 0.0, ..waves(hs_m, 2.5) }));
+    let scenario = surveyor_on(|sea| sea.waves = Some(Waves { drift_factor: 0.0, ..waves(hs_m, 2.5) }));
     let mut world = World::of_game(&scenario, seed).unwrap();
     put(&mut world, 0, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
     run(&mut world, &DRIFTING, 60.0);
@@ -110,7 +96,7 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
     let resolution = TAU / (samples as f64 * dt_s);
     for (from_deg, speed_m_s) in [(0.0, 0.8), (0.0, 1.5), (90.0, 1.5), (180.0, 0.8), (180.0, 1.5)] {
         let from_rad = f64::to_radians(from_deg);
-        let scenario = on(|sea| {
+        let scenario = surveyor_on(|sea| {
             let (components, spreading) = (1, Spreading::None);
             sea.waves = Some(Waves { components, spreading, from_rad, drift_factor: 0.0, ..waves(0.1, 2.5) });
         });
@@ -192,7 +178,7 @@ fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
 fn a_free_boat_in_a_long_swell_goes_with_stokes_drift() {
     for (hs_m, tp_s) in [(0.5, 5.0), (1.0, 6.0)] {
         let swell = Waves { drift_factor: 0.0, spreading: Spreading::None, ..waves(hs_m, tp_s) };
-        let scenario = on(|sea| sea.waves = Some(swell.clone()));
+        let scenario = surveyor_on(|sea| sea.waves = Some(swell.clone()));
         let field = WaveField::new(&swell, None, 4);
         let want = field.stokes_drift_m_s(scenario.boats[0].draught_m);
         let mut world = World::of_game(&scenario, 4).unwrap();

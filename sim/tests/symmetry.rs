@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{alone, digest, put};
+use common::{digest, put, surveyor_on};
 use game::field::Plan;
 use game::math::sin_cos;
 use game::sea::{Eddy, Gusts, RandomEddies, Sea, Shear, Spreading, Tide, Wander, Waves, Wind};
@@ -11,27 +11,12 @@ use game::{Field, Ned, Order, Pose, Scenario};
 use sim::World;
 
 fn waves(hs_m: f64) -> Waves {
-    Waves {
-        hs_m,
-        tp_s: 2.5,
-        gamma: 3.3,
-        from_rad: 0.4,
-        spreading: Spreading::CosineSquared,
-        components: 64,
-        drift_factor: 1.0,
-    }
+    common::waves(hs_m, 2.5, 0.4)
 }
 
 fn wind(speed_10m_m_s: f64) -> Wind {
     let gusts = Gusts::OrnsteinUhlenbeck { intensity: 0.15, across_ratio: 0.75, length_m: 40.0 };
     Wind { speed_10m_m_s, from_rad: -0.9, profile_exponent: 0.12, gusts }
-}
-
-/// The Surveyor on this water.
-fn on(change: impl FnOnce(&mut Sea)) -> Scenario {
-    let mut scenario = alone("surveyor_m1_8", "calm");
-    change(&mut scenario.sea);
-    scenario
 }
 
 fn turned(v: Ned, by_rad: f64) -> Ned {
@@ -91,7 +76,7 @@ fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> V
 fn it_does_not_matter_where_north_is() {
     // The table of headings has an entry every 5°. Turned by a multiple of that, a boat finds the same numbers, to single
     // precision; by anything else, it finds others between the entries, which are off by a part of a per cent.
-    let scenario = on(everything);
+    let scenario = surveyor_on(everything);
     let steer = |by_rad: f64| Order::Steer { heading_rad: game::angle::wrap_pi(0.6 + by_rad), speed_m_s: 1.5 };
     let thrust = |_| Order::Thrust { port: 0.6, starboard: 0.55 };
     let mut farthest_m = 0.0_f64;
@@ -116,7 +101,7 @@ fn it_does_not_matter_which_side_is_port() {
     // last bit; with them to single precision, since a heading and its mirror image lie between different entries of the
     // table. Waves of one direction: where they spread, the directions are drawn, and not the mirrored ones.
     let sail = |side: f64, has_waves: bool| {
-        let mut scenario = on(|sea| {
+        let mut scenario = surveyor_on(|sea| {
             sea.current.mean_m_s = Ned { north: 0.2, east: side * 0.3 };
             sea.current.tide =
                 Some(Tide { flood_m_s: Ned { north: -0.1, east: side * 0.1 }, period_s: 60.0, phase: 0.1 });
@@ -155,8 +140,8 @@ fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
     // Of imposed thrust. The front seat steers by what it is told of the ground, and a current changes that.
     let current = Ned { north: 0.35, east: -0.2 };
     let orders = [Order::Thrust { port: 0.8, starboard: 0.5 }, Order::Hold];
-    let mut still = World::of_game(&on(|_| ()), 1).unwrap();
-    let mut carried = World::of_game(&on(|sea| sea.current.mean_m_s = current), 1).unwrap();
+    let mut still = World::of_game(&surveyor_on(|_| ()), 1).unwrap();
+    let mut carried = World::of_game(&surveyor_on(|sea| sea.current.mean_m_s = current), 1).unwrap();
     // The same velocity through the water: over the ground it is that and the current, seen from the boat at 0°.
     put(&mut carried, 0, (200.0, 200.0, 0.0), (1.0 + current.north, current.east, 0.1));
     put(&mut still, 0, (200.0, 200.0, 0.0), (1.0, 0.0, 0.1));
@@ -201,7 +186,7 @@ const NOTHINGS: [Change; 9] = [
 
 /// The digests of a game's state, tick by tick, on the sea so changed.
 fn digests(change: impl FnOnce(&mut Sea)) -> Vec<u128> {
-    let mut world = World::of_game(&on(change), 1).unwrap();
+    let mut world = World::of_game(&surveyor_on(change), 1).unwrap();
     put(&mut world, 0, (200.0, 200.0, 40.0), (1.0, 0.2, -0.1));
     let orders = [Order::Steer { heading_rad: 2.0, speed_m_s: 2.0 }, Order::Thrust { port: 0.7, starboard: 0.2 }];
     let step = |_| {

@@ -49,19 +49,12 @@ impl WaveField {
 mod tests {
     use super::super::spectrum::density_m2_hz;
     use super::super::wave::Component;
+    use super::super::waves_from;
     use super::*;
-    use game::sea::{Spreading, Waves};
+    use game::sea::Waves;
 
     fn waves(gamma: f64, components: u32) -> Waves {
-        Waves {
-            hs_m: 0.5,
-            tp_s: 3.0,
-            gamma,
-            from_rad: 1.0,
-            spreading: Spreading::CosineSquared,
-            components,
-            drift_factor: 1.0,
-        }
+        Waves { gamma, ..waves_from(1.0, 0.5, 3.0, components) }
     }
 
     #[test]

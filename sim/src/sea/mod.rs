@@ -275,3 +275,10 @@ impl SeaNow<'_> {
         self.model.shapes[self.model.kinds[kind].shape].response.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
     }
 }
+
+/// A short-crested sea for tests.
+#[cfg(test)]
+fn waves_from(from_rad: f64, hs_m: f64, tp_s: f64, components: u32) -> game::sea::Waves {
+    let spreading = game::sea::Spreading::CosineSquared;
+    game::sea::Waves { hs_m, tp_s, gamma: 3.3, from_rad, spreading, components, drift_factor: 1.0 }
+}

@@ -90,25 +90,15 @@ fn change_of(wave: &PlaneWave, boat: &Boat, heading_rad: f64, place: Body) -> (f
 
 #[cfg(test)]
 mod tests {
-    use super::super::WaveResponse;
+    use super::super::{WaveResponse, waves_from};
     use super::*;
     use game::frame::{Ned, ned_from_body};
-    use game::sea::{Spreading, Waves};
 
     #[test]
     fn it_is_the_surface_less_the_hull_at_that_place() {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/surveyor_m1_8.toml");
         let boat = game::scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
-        let waves = Waves {
-            hs_m: 0.3,
-            tp_s: 2.5,
-            gamma: 3.3,
-            from_rad: 0.7,
-            spreading: Spreading::CosineSquared,
-            components: 64,
-            drift_factor: 1.0,
-        };
-        let field = WaveField::new(&waves, None, 3);
+        let field = WaveField::new(&waves_from(0.7, 0.3, 2.5, 64), None, 3);
         let places = [-0.33, 0.33].map(|starboard| Body { ahead: -0.7, starboard });
         let (submergence, response) = (Submergence::new(&field, &boat, places), WaveResponse::new(&field, &boat));
         for k in 0..200 {

@@ -126,8 +126,8 @@ fn equilibrium(most: f64, excess: impl Fn(f64) -> f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::waves_from;
     use super::*;
-    use game::sea::{Spreading, Waves};
 
     #[test]
     fn the_surveyor_drifts_as_its_published_balance_says() {
@@ -144,15 +144,7 @@ mod tests {
         }
         // Facts of a sea of 0.5 m and 3 s: 14 m long, 0.32 m/s and 0.27 m/s on the hull, 0.066 m/s at the surface,
         // 10.7 and 5.3 N, over a slightly narrower band of frequencies.
-        sea.waves = Some(Waves {
-            hs_m: 0.5,
-            tp_s: 3.0,
-            gamma: 3.3,
-            from_rad: 1.0,
-            spreading: Spreading::CosineSquared,
-            components: 512,
-            drift_factor: 1.0,
-        });
+        sea.waves = Some(waves_from(1.0, 0.5, 3.0, 512));
         let waves = Summary::new(&sea, &boat, &game.field, 1).waves.unwrap_or_else(|| panic!("there are waves"));
         assert!((waves.hs_m - 0.5).abs() < 1e-9 && (waves.wavelength_m - 14.05).abs() < 0.1, "{waves:?}");
         assert!((waves.orbital_rms_m_s - 0.32).abs() < 0.03, "{waves:?}");

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use game::field::{Obstacle, Plan, Walls};
-use game::sea::{Spreading, Waves};
+use game::sea::{Sea, Spreading, Waves};
 use game::{Boat, Field, LatLon, Ned, Order, Pose, Scenario, VehicleId};
 use sim::hull::{HullModel, Planar};
 use sim::{Contest, State, World};
@@ -158,6 +158,13 @@ pub(crate) fn root((mut low, mut high): (f64, f64), f: impl Fn(f64) -> f64) -> f
         if f(middle) < 0.0 { low = middle } else { high = middle }
     }
     0.5 * (low + high)
+}
+
+/// The Surveyor on this water, two of them far apart.
+pub(crate) fn surveyor_on(change: impl FnOnce(&mut Sea)) -> Scenario {
+    let mut scenario = alone("surveyor_m1_8", "calm");
+    change(&mut scenario.sea);
+    scenario
 }
 
 /// A shipped kind of boat.
