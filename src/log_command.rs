@@ -2,9 +2,10 @@
 
 use crate::plot::game as plot;
 use crate::{recording_file, screen};
-use analysis::{Book, Comparison, Summary};
+use analysis::{Comparison, GameSeries, Summary};
 use anyhow::{Context, Result};
-use recording::Recording;
+use game::Scenario;
+use recording::{Bag, Kind, Recording};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -64,21 +65,27 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn open(file: &Path) -> Result<Recording> {
-    recording_file::open(file, "look at")
-}
-
 fn look_at(args: &Args, file: &Path) -> Result<()> {
-    let recording = open(file)?;
-    if let Some(topic) = &args.csv {
-        export::csv(&recording, topic, args.out.as_deref())
-            .with_context(|| format!("cannot make a table of {}", file.display()))?;
-    }
+    let bag = recording_file::open_any(file, "look at")?;
+    let is_gateway = bag.kind() == Kind::Gateway;
     let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none();
+    if let (Some(topic), true) = (&args.csv, is_gateway) {
+        return csv(args, file, (&bag, None), topic);
+    }
+    if is_gateway {
+        let asks_for_more = args.events || args.json.is_some() || !wants_page;
+        anyhow::ensure!(!asks_for_more, "{} is of a gateway, not of a game: only --csv is known of it", file.display());
+        screen::print(&page::gateway(&bag).with_context(|| format!("cannot read {}", file.display()))?);
+        return Ok(());
+    }
+    let recording = Recording::of_bag(bag).with_context(|| format!("cannot look at {}", file.display()))?;
+    if let Some(topic) = &args.csv {
+        csv(args, file, (recording.bag(), Some(recording.scenario())), topic)?;
+    }
     if !(wants_page || args.events || args.json.is_some() || args.plot.is_some() || args.alog.is_some()) {
         return Ok(());
     }
-    let (summary, book) = Summary::of(&recording).with_context(|| format!("cannot read {}", file.display()))?;
+    let (summary, series) = Summary::of(&recording).with_context(|| format!("cannot read {}", file.display()))?;
     if args.events {
         screen::print(&page::events(&summary));
     } else if wants_page {
@@ -89,23 +96,29 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     }
     if let Some(dir) = &args.plot {
         make_folder(dir)?;
-        let files = plot::write(dir, recording.header(), &book)?;
+        let files = plot::write(dir, recording.header(), &series)?;
         screen::remark(&format!("{files} plots in {}, each as SVG and PNG", dir.display()));
     }
     if let Some(path) = &args.alog {
-        let files = export::alog(&recording, &book, path)?;
+        let files = export::alog(&recording, &series, path)?;
         screen::remark(&format!("{files} MOOS log{} in {}", if files == 1 { "" } else { "s" }, path.display()));
     }
     Ok(())
 }
 
+fn csv(args: &Args, file: &Path, source: (&Bag, Option<&Scenario>), topic: &str) -> Result<()> {
+    export::csv(source, topic, args.out.as_deref())
+        .with_context(|| format!("cannot make a table of {}", file.display()))
+}
+
 fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
     let [a, b] = files else { anyhow::bail!("--compare takes two recordings") };
-    let recordings = [open(a)?, open(b)?];
-    let book = |i: usize| Book::of(&recordings[i]).with_context(|| format!("cannot read {}", files[i].display()));
-    let books = [book(0)?, book(1)?];
+    let recordings = [recording_file::open(a, "look at")?, recording_file::open(b, "look at")?];
+    let series =
+        |i: usize| GameSeries::of(&recordings[i]).with_context(|| format!("cannot read {}", files[i].display()));
+    let series = [series(0)?, series(1)?];
     let headers = recordings.each_ref().map(Recording::header);
-    let comparison = Comparison::of(headers, books.each_ref(), args.tolerance_s)
+    let comparison = Comparison::of(headers, series.each_ref(), args.tolerance_s)
         .with_context(|| format!("cannot compare {} with {}", a.display(), b.display()))?;
     screen::print(&difference::text([a, b], &comparison));
     if let Some(path) = &args.json {
@@ -113,7 +126,7 @@ fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
     }
     if let Some(dir) = &args.plot {
         make_folder(dir)?;
-        plot::write_comparison(dir, [a, b], books.each_ref(), &comparison)?;
+        plot::write_comparison(dir, [a, b], series.each_ref(), &comparison)?;
         screen::remark(&format!("compare.svg and compare.png in {}", dir.display()));
     }
     Ok(())

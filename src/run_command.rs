@@ -6,17 +6,19 @@ use crate::net_args::unique_game_name;
 use crate::override_args::{self, OverrideArgs};
 use crate::page_args::PageArgs;
 use crate::progress_message::{ProgressMessage, Teller};
-use crate::record_args::{RecordArgs, Tape};
+use crate::record_args::{self, RecordArgs};
 use crate::screen::{self, Screen};
 use crate::sim_command::{load, seconds, speed, write_json};
 use crate::stop;
 use anyhow::{Context, Result, anyhow, bail};
 use game::Scenario;
+use game::event::EventCursor;
 use sim::Contest;
-use sim::node::{Pace, Recorder, Report, Run};
+use sim::node::{GameRecorder, Pace, Report, Run};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
@@ -118,9 +120,17 @@ fn play_here(
     let mut teller = Teller::default();
     let start = Instant::now();
     let mut shown = (start, 0.0);
-    let mut tape = file.map(|path| Tape::in_process(path.to_owned(), &scenario.name)).transpose()?;
+    let record = |path: &Path| {
+        GameRecorder::in_process(path.to_owned(), &scenario.name, env!("SQUALL_COMMIT"))
+            .with_context(|| format!("cannot record into {}", path.display()))
+    };
+    let mut recorder = file.map(record).transpose()?;
+    let mut written = EventCursor::default();
     let watch = |contest: &mut Contest| {
-        tape.iter_mut().for_each(|tape| tape.turn(contest));
+        if let Some(recorder) = &mut recorder {
+            let frame = Arc::new(contest.frame(&mut written));
+            recorder.decision(contest, frame);
+        }
         // The clock is slower than a decision: look at it now and then.
         if contest.decision().is_multiple_of(64) && shown.0.elapsed() >= SHOW_EVERY {
             let now_s = contest.now().as_s();
@@ -138,8 +148,8 @@ fn play_here(
         ..Run::default()
     };
     let report = Report { outcome, run };
-    if let Some(trouble) = tape.map(|tape| tape.end(&report)).transpose()?.flatten() {
-        screen::remark(&trouble);
+    if let Some(problem) = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report))) {
+        screen::remark(&problem);
     }
     teller.done(report.clone()).iter().for_each(|telling| screen.show(telling));
     Ok(report)

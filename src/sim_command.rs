@@ -3,14 +3,14 @@
 use crate::net_args::{HubArgs, unique_game_name};
 use crate::override_args::OverrideArgs;
 use crate::progress_message::{ProgressMessage, Teller};
-use crate::record_args::Tape;
+use crate::record_args;
 use crate::screen::{self, Screen};
 use crate::stop;
 use anyhow::{Context, Result};
 use game::Scenario;
 use game::scenario::Overrides;
 use game::topic::GameName;
-use sim::node::{News, NoRecorder, Pace, Recorder, Report, Settings};
+use sim::node::{GameRecorder, News, Pace, Report, Settings};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -102,8 +102,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let entry = bus::Entry { game: game.as_str().to_owned(), endpoint, pid: std::process::id() };
     let mut registration = None;
-    let tape = args.record.clone().map(|path| Tape::on_network(path, game.as_str(), &args.pace.to_string()));
-    let mut tape = tape.transpose()?;
+    let record = |path: &PathBuf| {
+        GameRecorder::on_network(path.clone(), game.as_str(), &args.pace.to_string(), env!("SQUALL_COMMIT"))
+            .with_context(|| format!("cannot record into {}", path.display()))
+    };
+    let mut recorder = args.record.as_ref().map(record).transpose()?;
     let settings = Settings {
         game,
         net,
@@ -113,9 +116,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         stop: stop.clone(),
     };
     let mut teller = Teller::default();
-    let mut nobody = NoRecorder;
-    let recorder: &mut dyn Recorder = if let Some(tape) = &mut tape { tape } else { &mut nobody };
-    let report = sim::node::serve(&scenario, seed, &settings, recorder, &mut |news| {
+    let report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), &mut |news| {
         if let News::Open = news {
             // Without a local_registry others must be told where the game is; nothing else is lost.
             registration = bus::register(&entry).ok();
@@ -124,8 +125,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         teller.news(&news).iter().for_each(&mut show);
     })?;
     drop(registration);
-    if let Some(trouble) = tape.map(|tape| tape.end(&report)).transpose()?.flatten() {
-        screen::remark(&trouble);
+    if let Some(problem) = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report))) {
+        screen::remark(&problem);
     }
     if let Some(path) = &args.json {
         write_json(path, &report)?;

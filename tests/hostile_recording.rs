@@ -1,44 +1,44 @@
 //! Whatever a recording says, and whatever damage it took, everything that looks at it answers or refuses.
 
-use analysis::sheet::SheetError;
-use analysis::{Comparison, Summary, alog, sheet};
+use analysis::table::TableError;
+use analysis::{Comparison, Summary, alog, table};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use game::input::Input;
 use game::message::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth};
 use game::picture::{FlagView, Imu, Nav, OwnBoat};
 use game::water::Water;
-use game::{Order, Outcome, Picture, SimTime, VehicleId};
+use game::{Order, Picture, SimTime, VehicleId};
 use proptest::prelude::*;
-use recording::{Ending, Header, Note, Recording, RecordingError, Turn, Writer};
+use recording::{Decision, Ending, Entry, Header, Recording, RecordingError, Writer};
 use shore::page::replay::{Recorded, ReplaySource};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A recording of these turns, then a line over a link and the status of its gateway.
-fn bytes_of(turns: Vec<Turn>) -> Vec<u8> {
+/// A recording of these decisions, then a line over a link and the status of its gateway.
+fn bytes_of(decisions: Vec<Decision>) -> Vec<u8> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/pav01_vs_pav01.toml");
     let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
     let header = Header {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        notice: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        info: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
         water: Water { waves: vec![] },
     };
-    let heard = |topic: &str, schema, bytes| Note::Heard { topic: topic.to_owned(), schema, bytes, at: SimTime(1) };
+    let message =
+        |topic: &str, schema, bytes| Entry::Message { topic: topic.to_owned(), schema, bytes, at: SimTime(1) };
     let stamp = Stamp { version: LinkBytes::VERSION, ..Stamp::default() };
     let link = LinkBytes { stamp, vehicle: VehicleId(0), outward: false, data: b"$GPRMC,1*00\r\n$PSE".to_vec() };
     let failsafes = vec![FailsafeReport { at_s: 1.0, cause: "link down".to_owned() }];
     let status = GatewayStatus { failsafes, ..GatewayStatus::default() };
-    let notes = turns.into_iter().map(|turn| Note::Turn(Box::new(turn))).chain([
-        heard("link/blue_one", Some(LinkBytes::SCHEMA), game::codec::encode(&link)),
-        heard("status/blue_one", None, serde_json::to_vec(&status).expect("JSON")),
+    let entries = decisions.into_iter().map(|decision| Entry::Decision(Box::new(decision))).chain([
+        message("link/blue_one", Some(LinkBytes::SCHEMA), game::codec::encode(&link)),
+        message("status/blue_one", None, serde_json::to_vec(&status).expect("JSON")),
     ]);
-    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header).expect("it begins");
-    notes.for_each(|note| writer.note(&note, 1_000_000_000).expect("it is written"));
-    let ending = Ending { outcome: Outcome::default(), run: serde_json::Value::Null, dropped: 0 };
-    writer.end(&ending).expect("it ends").into_inner()
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");
+    entries.for_each(|entry| writer.write(&entry, 1_000_000_000).expect("it is written"));
+    writer.end(Ending::default().facts()).expect("it ends").into_inner()
 }
 
 /// Numbers that a sim never sends.
@@ -74,8 +74,8 @@ fn odd_input() -> impl Strategy<Value = Input> {
 }
 
 prop_compose! {
-    /// A turn as no sim tells it: other numbers of boats, flags and teams, any time, any event.
-    fn odd_turn()(
+    /// A decision as no sim tells it: other numbers of boats, flags and teams, any time, any event.
+    fn odd_decision()(
         (at, seq) in prop_oneof![(any::<i64>(), any::<u64>()), (0..5_i64, 0..5_u64)],
         navs in proptest::collection::vec((odd_nav(), -2..9_i16), 0..6),
         flags in proptest::collection::vec(any::<i32>(), 0..4),
@@ -83,7 +83,7 @@ prop_compose! {
         events in proptest::collection::vec(odd_event(), 0..4),
         inputs in proptest::collection::vec(odd_input(), 0..4),
         seen in proptest::collection::vec((0..9_u16, odd_nav(), any::<i16>()), 0..3),
-    ) -> Turn {
+    ) -> Decision {
         let stamp = |version| Stamp { valid_ns: SimTime(at), seq, version };
         let truth = |(nav, carrying): &(Nav, i16)| VehicleTruth { nav: *nav, carrying: *carrying, ..VehicleTruth::default() };
         let flags: Vec<FlagView> = flags.iter().map(|carrier| FlagView { carrier: *carrier }).collect();
@@ -102,29 +102,29 @@ prop_compose! {
         let picture =
             Picture { stamp: stamp(Picture::VERSION), own, flags: flags.clone(), score: score.clone(), ..Picture::default() };
         let vehicles = navs.iter().map(truth).collect();
-        let frame = Frame { stamp: stamp(Frame::VERSION), vehicles, flags, score, events, ..Frame::default() };
-        Turn { frame, pictures: vec![picture], inputs }
+        let frame = Frame { stamp: stamp(Frame::VERSION), vehicles, flags, score, events, ..Frame::default() }.into();
+        Decision { frame, pictures: vec![picture], inputs }
     }
 }
 
 /// Everything that can be made of a recording.
 fn look_at_all_of(recording: Recording) -> Result<(), RecordingError> {
-    let (summary, book) = Summary::of(&recording)?;
+    let (summary, series) = Summary::of(&recording)?;
     serde_json::to_string(&summary).expect("a summary is JSON");
-    for topic in sheet::topics(&recording) {
-        match sheet::write(&recording, &topic, &mut |_| Ok(())) {
-            Ok(()) | Err(SheetError::Recording(_) | SheetError::Json { .. } | SheetError::Strange { .. }) => {}
+    for topic in table::topics(recording.bag()) {
+        match table::write(recording.bag(), Some(recording.scenario()), &topic, &mut |_| Ok(())) {
+            Ok(()) | Err(TableError::Recording(_) | TableError::Strange { .. }) => {}
             Err(e) => panic!("{topic}: {e}"),
         }
     }
-    assert!(alog::shoreside(recording.header(), &book).starts_with("%%"));
-    (0..book.boats.len()).for_each(|boat| drop(alog::vehicle(recording.header(), &book, boat)));
+    assert!(alog::shoreside(recording.header(), &series).starts_with("%%"));
+    (0..series.boats.len()).for_each(|boat| drop(alog::vehicle(recording.header(), &series, boat)));
     // Whether there is anything to compare is another matter.
-    Comparison::of([recording.header(); 2], [&book; 2], 0.0).ok();
-    let film = Recorded::new(Arc::new(recording), "odd.mcap".to_owned())?;
-    for frame in 0..film.frame_times().len() {
-        film.estimate(VehicleId(0), frame);
-        film.status(VehicleId(0), film.frame_times()[frame]);
+    Comparison::of([recording.header(); 2], [&series; 2], 0.0).ok();
+    let recorded = Recorded::new(Arc::new(recording), "odd.mcap".to_owned())?;
+    for frame in 0..recorded.frame_times().len() {
+        recorded.estimate(VehicleId(0), frame);
+        recorded.status(VehicleId(0), recorded.frame_times()[frame]);
     }
     Ok(())
 }
@@ -133,18 +133,18 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn whatever_a_recording_says_can_be_looked_at(turns in proptest::collection::vec(odd_turn(), 0..5)) {
-        let recording = Recording::of(bytes_of(turns)).expect("it is a recording");
+    fn whatever_a_recording_says_can_be_looked_at(decisions in proptest::collection::vec(odd_decision(), 0..5)) {
+        let recording = Recording::of(bytes_of(decisions)).expect("it is a recording");
         look_at_all_of(recording).expect("its messages are sound");
     }
 
     #[test]
     fn damaged_files_never_panic(
-        turns in proptest::collection::vec(odd_turn(), 0..5),
+        decisions in proptest::collection::vec(odd_decision(), 0..5),
         place in 0.0..1.0_f64,
         byte in any::<u8>(),
     ) {
-        let mut bytes = bytes_of(turns);
+        let mut bytes = bytes_of(decisions);
         let place = (place * bytes.len() as f64) as usize;
         bytes[place] = byte;
         if let Ok(recording) = Recording::of(bytes) {

@@ -8,15 +8,15 @@
 //! | file | variables |
 //! |---|---|
 //! | shoreside | `NODE_REPORT` of every boat (the truth), `AQUATICUS_GAME_ALL`, `<TEAM>_SCORES`, `<TEAM>_FLAG_GRABBED`, `HAS_FLAG_<BOAT>`, `TAGGED_<BOAT>`, `ONFIELD_<BOAT>`, `FLAG_RESET`, `SQUALL_EVENT` |
-//! | a vehicle | `NAV_X`, `NAV_Y`, `NAV_HEADING`, `NAV_SPEED` (what it believed), the same as `NAV_GT_…` (the truth), `DESIRED_HEADING`, `DESIRED_SPEED`, `DESIRED_THRUST_L` and `_R`, `HAS_FLAG`, `TAGGED`, `NODE_REPORT_LOCAL` |
+//! | a vehicle | `NAV_X`, `NAV_Y`, `NAV_HEADING`, `NAV_SPEED` (what it estimated), the same as `NAV_GT_…` (the truth), `DESIRED_HEADING`, `DESIRED_SPEED`, `DESIRED_THRUST_L` and `_R`, `HAS_FLAG`, `TAGGED`, `NODE_REPORT_LOCAL` |
 
-use super::book::{Boat, Book, Moment};
-use super::utc;
+use crate::series::{BoatSeries, GameSeries, Sample};
 use game::angle::compass_deg_from_rad;
 use game::outcome::EventOutcome;
 use game::picture::Nav;
 use game::{Order, Scenario, math};
 use recording::Header;
+use recording::utc;
 use std::fmt::Write;
 
 /// Node reports come this often, s: as the reporter of that test-bed has it by default.
@@ -32,20 +32,20 @@ struct Log {
 
 /// The files of a game: the shoreside first, then the vehicles in their order.
 #[must_use]
-pub fn names(book: &Book) -> Vec<String> {
+pub fn names(series: &GameSeries) -> Vec<String> {
     let shoreside = "shoreside".to_owned();
-    std::iter::once(shoreside).chain(book.boats.iter().map(|boat| boat.name.clone())).collect()
+    std::iter::once(shoreside).chain(series.boats.iter().map(|boat| boat.name.clone())).collect()
 }
 
 /// The log of the shoreside.
 #[must_use]
-pub fn shoreside(header: &Header, book: &Book) -> String {
-    let scenario = &header.notice.scenario;
+pub fn shoreside(header: &Header, series: &GameSeries) -> String {
+    let scenario = &header.info.scenario;
     let mut log = Log::new(header, "shoreside");
-    let mut events = book.named_events(scenario).into_iter().peekable();
-    let mut points: Vec<Option<u32>> = vec![None; book.teams.len()];
+    let mut events = series.named_events(scenario).into_iter().peekable();
+    let mut points: Vec<Option<u32>> = vec![None; series.teams.len()];
     let mut reported = Every::new(REPORT_S);
-    for (i, time_s) in book.times_s.iter().copied().enumerate() {
+    for (i, time_s) in series.times_s.iter().copied().enumerate() {
         if i == 0 {
             log.row(time_s, "AQUATICUS_GAME_ALL", "play");
         }
@@ -53,15 +53,15 @@ pub fn shoreside(header: &Header, book: &Book) -> String {
         while let Some(event) = events.next_if(|event| event.at_s <= time_s) {
             happened(&mut log, scenario, &event);
         }
-        for ((team, now), before) in book.teams.iter().zip(&book.score[i]).zip(&mut points) {
+        for ((team, now), before) in series.teams.iter().zip(&series.score[i]).zip(&mut points) {
             if before.replace(*now) != Some(*now) {
                 log.row(time_s, &format!("{}_SCORES", team.to_uppercase()), &now.to_string());
             }
         }
         if reported.is_due(time_s) {
-            for (place, boat) in book.boats.iter().enumerate() {
-                let moment = &boat.moments[i];
-                let report = log.node_report(time_s, (book, scenario), (place, moment, &moment.truth));
+            for (place, boat) in series.boats.iter().enumerate() {
+                let sample = &boat.samples[i];
+                let report = log.node_report(time_s, (series, scenario), (place, sample, &sample.truth));
                 log.row(time_s, "NODE_REPORT", &report);
             }
         }
@@ -71,29 +71,29 @@ pub fn shoreside(header: &Header, book: &Book) -> String {
 
 /// The log of the vehicle with this place among all; none if there are fewer.
 #[must_use]
-pub fn vehicle(header: &Header, book: &Book, place: usize) -> Option<String> {
-    let boat = book.boats.get(place)?;
+pub fn vehicle(header: &Header, series: &GameSeries, place: usize) -> Option<String> {
+    let boat = series.boats.get(place)?;
     let mut log = Log::new(header, &boat.name);
     let mut reported = Every::new(REPORT_S);
-    let mut before: Option<&Moment> = None;
-    for (time_s, moment) in book.times_s.iter().copied().zip(&boat.moments) {
-        let believed = moment.believed.unwrap_or(moment.truth);
-        log.nav(time_s, "NAV_", &believed);
-        log.nav(time_s, "NAV_GT_", &moment.truth);
-        log.desired(time_s, moment.order);
+    let mut before: Option<&Sample> = None;
+    for (time_s, sample) in series.times_s.iter().copied().zip(&boat.samples) {
+        let estimated = sample.estimated.unwrap_or(sample.truth);
+        log.nav(time_s, "NAV_", &estimated);
+        log.nav(time_s, "NAV_GT_", &sample.truth);
+        log.desired(time_s, sample.order);
         for (name, is, was) in [
-            ("HAS_FLAG", moment.carrying, before.map(|before| before.carrying)),
-            ("TAGGED", moment.tagged, before.map(|before| before.tagged)),
+            ("HAS_FLAG", sample.carrying, before.map(|before| before.carrying)),
+            ("TAGGED", sample.tagged, before.map(|before| before.tagged)),
         ] {
             if was != Some(is) {
                 log.row(time_s, name, if is { "true" } else { "false" });
             }
         }
         if reported.is_due(time_s) {
-            let report = log.node_report(time_s, (book, &header.notice.scenario), (place, moment, &believed));
+            let report = log.node_report(time_s, (series, &header.info.scenario), (place, sample, &estimated));
             log.row(time_s, "NODE_REPORT_LOCAL", &report);
         }
-        before = Some(moment);
+        before = Some(sample);
     }
     Some(log.text)
 }
@@ -147,11 +147,11 @@ impl Log {
     fn node_report(
         &self,
         at_s: f64,
-        (book, scenario): (&Book, &Scenario),
-        (place, moment, nav): (usize, &Moment, &Nav),
+        (series, scenario): (&GameSeries, &Scenario),
+        (place, sample, nav): (usize, &Sample, &Nav),
     ) -> String {
-        let boat: &Boat = &book.boats[place];
-        let group = book.teams.get(boat.team).map_or("", String::as_str);
+        let boat: &BoatSeries = &series.boats[place];
+        let group = series.teams.get(boat.team).map_or("", String::as_str);
         let length_m = scenario.boat_of(game::VehicleId::at(place)).length_m;
         format!(
             "NAME={},TYPE=kayak,TIME={:.2},X={},Y={},SPD={},HDG={},DEPTH=0,LENGTH={length_m},MODE={},GROUP={group}",
@@ -161,7 +161,7 @@ impl Log {
             decimal(nav.north_m, 2),
             decimal(speed_m_s(nav), 2),
             decimal(compass_deg_from_rad(nav.psi_rad), 2),
-            mode(moment),
+            mode(sample),
         )
     }
 }
@@ -198,14 +198,14 @@ fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) {
 }
 
 /// What a boat is about; a viewer shows it beside the boat.
-fn mode(moment: &Moment) -> &'static str {
-    match moment {
-        Moment { nav_lost: true, .. } => "LOST",
-        Moment { agent_lost: true, .. } => "MINDLESS",
-        Moment { tagged: true, .. } => "TAGGED",
-        Moment { outside: true, .. } => "OUTSIDE",
-        Moment { carrying: true, .. } => "CARRYING",
-        Moment { is_free: false, .. } => "STOPPED",
+fn mode(sample: &Sample) -> &'static str {
+    match sample {
+        Sample { nav_lost: true, .. } => "LOST",
+        Sample { agent_lost: true, .. } => "MINDLESS",
+        Sample { tagged: true, .. } => "TAGGED",
+        Sample { outside: true, .. } => "OUTSIDE",
+        Sample { carrying: true, .. } => "CARRYING",
+        Sample { is_free: false, .. } => "STOPPED",
         _ => "PLAYING",
     }
 }
@@ -220,7 +220,7 @@ fn decimal(number: f64, places: usize) -> String {
     if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
 }
 
-/// Says at which moments something comes that does not come at all.
+/// Says at which samples something comes that does not come at all.
 struct Every {
     step_s: f64,
     next_s: f64,

@@ -1,8 +1,8 @@
 //! Two games beside each other: the same boats on the water and in simulation, or the same game played twice.
 
-use super::book::{Boat, Book};
-use super::response::{Response, response};
-use super::track::{Apart, apart};
+use crate::response::{Response, response};
+use crate::series::{BoatSeries, GameSeries};
+use crate::track::{TrackDifference, apart};
 use game::outcome::EventOutcome;
 use recording::Header;
 use serde::{Deserialize, Serialize};
@@ -34,7 +34,7 @@ pub struct Pair {
     /// Its team in A.
     pub team: String,
     /// How far apart its tracks are.
-    pub apart: Apart,
+    pub apart: TrackDifference,
     /// How it answered its orders in each.
     pub response: [Response; 2],
 }
@@ -89,10 +89,10 @@ impl Comparison {
     /// [`Incomparable`] says why nothing can be said.
     pub fn of(
         [head_a, head_b]: [&Header; 2],
-        [a, b]: [&Book; 2],
+        [a, b]: [&GameSeries; 2],
         tolerance_s: f64,
     ) -> Result<Comparison, Incomparable> {
-        let [scenario_a, scenario_b] = [head_a, head_b].map(|header| &header.notice.scenario);
+        let [scenario_a, scenario_b] = [head_a, head_b].map(|header| &header.info.scenario);
         let [plan_a, plan_b] = [scenario_a, scenario_b].map(|scenario| &scenario.field.plan);
         let off_deg = f64::max(
             (plan_a.datum.lat_deg - plan_b.datum.lat_deg).abs(),
@@ -101,11 +101,12 @@ impl Comparison {
         if off_deg > DATUM_DEG {
             return Err(Incomparable::Datum { a: plan_a.name.clone(), b: plan_b.name.clone() });
         }
-        let both: Vec<(&Boat, &Boat)> = a.boats.iter().filter_map(|boat| Some((boat, b.boat(&boat.name)?))).collect();
+        let both: Vec<(&BoatSeries, &BoatSeries)> =
+            a.boats.iter().filter_map(|boat| Some((boat, b.boat(&boat.name)?))).collect();
         if both.is_empty() {
             return Err(Incomparable::Boats { a: names(&a.boats), b: names(&b.boats) });
         }
-        let pair = |(in_a, in_b): &(&Boat, &Boat)| {
+        let pair = |(in_a, in_b): &(&BoatSeries, &BoatSeries)| {
             Some(Pair {
                 boat: in_a.name.clone(),
                 team: a.teams.get(in_a.team).cloned().unwrap_or_default(),
@@ -114,7 +115,7 @@ impl Comparison {
             })
         };
         let boats = both.iter().map(pair).collect::<Option<Vec<Pair>>>().ok_or(Incomparable::Time)?;
-        let end_s = [a, b].map(|book| book.times_s.last().copied().unwrap_or(0.0));
+        let end_s = [a, b].map(|series| series.times_s.last().copied().unwrap_or(0.0));
         let until_s = end_s[0].min(end_s[1]);
         Ok(Comparison {
             durations_s: [a.span_s(), b.span_s()],
@@ -127,13 +128,13 @@ impl Comparison {
     }
 }
 
-fn names(boats: &[Boat]) -> String {
+fn names(boats: &[BoatSeries]) -> String {
     boats.iter().map(|boat| boat.name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
 /// What else differs, so that nobody takes it for the boats' doing.
-fn notes(heads: [&Header; 2], [a, b]: [&Book; 2]) -> Vec<String> {
-    let [one, other] = heads.map(|header| &header.notice.scenario);
+fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
+    let [one, other] = heads.map(|header| &header.info.scenario);
     let mut notes = vec![];
     let mut differ = |what: &str, in_a: &str, in_b: &str| {
         if in_a != in_b {
@@ -153,7 +154,7 @@ fn notes(heads: [&Header; 2], [a, b]: [&Book; 2]) -> Vec<String> {
         differ(&boat.name, &of(one, i), &of(other, j));
         differ(&boat.name, kind(boat.is_real), kind(b.boats[j].is_real));
     }
-    let alone = |of: &Book, without: &Book| -> Vec<String> {
+    let alone = |of: &GameSeries, without: &GameSeries| -> Vec<String> {
         of.boats.iter().filter(|boat| without.boat(&boat.name).is_none()).map(|boat| boat.name.clone()).collect()
     };
     for (name, alone) in [("A", alone(a, b)), ("B", alone(b, a))] {
@@ -170,11 +171,11 @@ fn notes(heads: [&Header; 2], [a, b]: [&Book; 2]) -> Vec<String> {
     notes
 }
 
-fn score(a: &Book, b: &Book) -> BTreeMap<String, [Option<u32>; 2]> {
+fn score(a: &GameSeries, b: &GameSeries) -> BTreeMap<String, [Option<u32>; 2]> {
     let mut score: BTreeMap<String, [Option<u32>; 2]> = BTreeMap::new();
-    for (i, book) in [a, b].into_iter().enumerate() {
-        let last = book.score.last().map_or(&[][..], Vec::as_slice);
-        for (team, points) in book.teams.iter().zip(last) {
+    for (i, series) in [a, b].into_iter().enumerate() {
+        let last = series.score.last().map_or(&[][..], Vec::as_slice);
+        for (team, points) in series.teams.iter().zip(last) {
             score.entry(team.clone()).or_default()[i] = Some(*points);
         }
     }

@@ -1,17 +1,18 @@
-//! The gateways of a game: what went over their links, and what stopped their boats.
+//! Gateways: what went over their links, and what stopped their boats.
 
-use super::sentence::Lines;
+use crate::link_line::Lines;
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
-use recording::{Recording, RecordingError};
+use recording::{Bag, Recording, RecordingError};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// A gateway's game.
+/// What a recording tells of a gateway.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Gateway {
     /// The boat.
     pub boat: String,
-    /// The supervisor's state, as it was told last.
+    /// The supervisor's last known state.
     pub state: Option<String>,
     /// What made it stop, oldest first.
     pub failsafes: Vec<FailsafeReport>,
@@ -30,30 +31,49 @@ pub struct Traffic {
     pub sentences: BTreeMap<String, u64>,
 }
 
-/// The gateways of a recording, by the boat's place among the vehicles.
+/// The gateways of a game, in the order of their boats.
 ///
 /// # Errors
 /// [`RecordingError::Damaged`] names the first message that is not what it should be.
-pub(super) fn gateways(recording: &Recording) -> Result<Vec<Gateway>, RecordingError> {
-    let topics = recording.topics();
-    let mut gateways = vec![];
-    for vehicle in &recording.header().notice.scenario.vehicles {
-        let [link, status] = ["link", "status"].map(|what| format!("{what}/{}", vehicle.name));
-        if topics.contains_key(link.as_str()) || topics.contains_key(status.as_str()) {
-            let mut gateway = Gateway { boat: vehicle.name.clone(), ..Gateway::default() };
-            traffic(recording, &link, &mut gateway)?;
-            told(recording, &status, &mut gateway);
-            gateways.push(gateway);
-        }
-    }
-    Ok(gateways)
+pub(crate) fn gateways(recording: &Recording) -> Result<Vec<Gateway>, RecordingError> {
+    let topics = recording.bag().topics();
+    let is_known = |name: &str| ["link", "status"].iter().any(|what| topics.contains_key(&*format!("{what}/{name}")));
+    let boats = recording.scenario().vehicles.iter().map(|vehicle| vehicle.name.as_str());
+    boats.filter(|name| is_known(name)).map(|name| gateway_of(recording.bag(), name)).collect()
 }
 
-fn traffic(recording: &Recording, topic: &str, gateway: &mut Gateway) -> Result<(), RecordingError> {
+/// What a recording tells of a boat's gateway: a game's, or the gateway's own.
+///
+/// # Errors
+/// [`RecordingError::Damaged`] names the first message that is not what it should be.
+pub fn gateway_of(bag: &Bag, boat: &str) -> Result<Gateway, RecordingError> {
+    let mut gateway = Gateway { boat: boat.to_owned(), ..Gateway::default() };
+    traffic(bag, &mut gateway)?;
+    // Each status holds the failsafes so far, and a gateway that was started anew begins again: every one is taken once.
+    for message in bag.on(&format!("status/{boat}")) {
+        let Ok(status) = message.read_json::<GatewayStatus>() else { continue };
+        for failsafe in status.failsafes {
+            if !gateway.failsafes.contains(&failsafe) {
+                gateway.failsafes.push(failsafe);
+            }
+        }
+        gateway.state = Some(status.state);
+    }
+    // The gateway's own recording holds the changes of its state.
+    for message in bag.on("event") {
+        let event: Value = message.read_json()?;
+        if let Some(state) = event["event"]["state"]["to"].as_str() {
+            gateway.state = Some(state.to_owned());
+        }
+    }
+    Ok(gateway)
+}
+
+fn traffic(bag: &Bag, gateway: &mut Gateway) -> Result<(), RecordingError> {
     let mut lines = Lines::default();
     let mut found = vec![];
-    for said in recording.on(topic) {
-        let bytes: LinkBytes = said.read()?;
+    for message in bag.on(&format!("link/{}", gateway.boat)) {
+        let bytes: LinkBytes = message.read()?;
         let way = if bytes.outward { &mut gateway.to_boat } else { &mut gateway.from_boat };
         way.bytes += bytes.data.len() as u64;
         found.extend(lines.take(&bytes));
@@ -64,17 +84,4 @@ fn traffic(recording: &Recording, topic: &str, gateway: &mut Gateway) -> Result<
         *way.sentences.entry(line.kind().to_owned()).or_insert(0) += 1;
     }
     Ok(())
-}
-
-/// Each status tells the failsafes so far, and a gateway that was started anew begins again: every failsafe is taken once.
-fn told(recording: &Recording, topic: &str, gateway: &mut Gateway) {
-    for said in recording.on(topic) {
-        let Ok(status) = serde_json::from_slice::<GatewayStatus>(said.bytes) else { continue };
-        for failsafe in status.failsafes {
-            if !gateway.failsafes.contains(&failsafe) {
-                gateway.failsafes.push(failsafe);
-            }
-        }
-        gateway.state = Some(status.state);
-    }
 }

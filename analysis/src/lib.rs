@@ -1,28 +1,28 @@
-//! What a recorded game tells afterwards: figures, tables for other programs, and how it differs from another game.
+//! What a recorded game tells afterwards: statistics, tables for other programs, and how it differs from another game.
 //!
-//! Everything here is computed from a [`recording::Recording`]; nothing is read or written. [`Book`] is the game as
-//! series, made in one pass; [`Summary`] is made of it for people, [`Comparison`] of two for those who lay a game on
-//! the water beside its simulation. [`sheet`] makes tables of single topics, [`alog`] the logs of MOOS.
+//! Everything here is computed from a [`recording::Recording`]; nothing is read or written. [`GameSeries`] is the game as
+//! time series, made in one pass; [`Summary`] is made of it for people, [`Comparison`] of two for those who compare a game
+//! on the water with its simulation. [`table`] makes tables of single topics, [`alog`] the logs of MOOS. Of a gateway's own
+//! recording [`gateway_of`] tells what went over its link.
 
 pub mod alog;
-mod book;
 mod compare;
-mod figure;
 mod gateway;
-mod response;
+mod link_line;
 #[cfg(test)]
-mod sample;
-mod sentence;
-pub mod sheet;
+mod made_up;
+mod response;
+mod series;
+mod statistics;
 mod summary;
+pub mod table;
 mod track;
-pub mod utc;
 
-pub use book::{Boat, Book, Moment};
 pub use compare::{Comparison, EventDifference, Incomparable, Pair};
-pub use figure::{Figures, NavigationError, SteeringError};
-pub use gateway::{Gateway, Traffic};
+pub use gateway::{Gateway, Traffic, gateway_of};
+pub use link_line::{Line, Lines};
 pub use response::{Response, SETTLED_S};
-pub use sentence::{Line, Lines};
-pub use summary::{Summary, Topic};
-pub use track::{Apart, distances};
+pub use series::{BoatSeries, GameSeries, Sample};
+pub use statistics::{BoatStatistics, NavigationError, SteeringError};
+pub use summary::{Summary, Topic, topics};
+pub use track::{TrackDifference, distances};

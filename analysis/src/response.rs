@@ -1,6 +1,6 @@
 //! How a boat answers to its orders: how late, how much, and where it goes by itself.
 
-use super::book::{Boat, Book, Moment};
+use crate::series::{BoatSeries, GameSeries, Sample};
 use game::angle::wrap_pi;
 use game::frame::{Rotation, body_from_ned};
 use game::{Ned, Order};
@@ -34,24 +34,24 @@ const VARIES_M_S: f64 = 0.05;
 const VARIES_RAD: f64 = 0.05;
 /// Speeds that go together less than this tell no delay either: there would be a best one all the same.
 const CORRELATED: f64 = 0.5;
-/// Fewer moments than this tell nothing.
-const MOMENTS_MIN: usize = 100;
+/// Fewer samples than this tell nothing.
+const SAMPLES_MIN: usize = 100;
 
 /// An order and what came of it some time later.
-type Told = (f64, f64);
+type OrderAndAnswer = (f64, f64);
 
 /// How a boat answers.
 #[must_use]
-pub(super) fn response(book: &Book, boat: &Boat) -> Response {
-    let step_s = if book.times_s.len() > 1 { book.span_s() / (book.times_s.len() - 1) as f64 } else { 1.0 };
-    let run_ends = run_ends(&boat.moments);
+pub(crate) fn response(series: &GameSeries, boat: &BoatSeries) -> Response {
+    let step_s = if series.times_s.len() > 1 { series.span_s() / (series.times_s.len() - 1) as f64 } else { 1.0 };
+    let run_ends = run_ends(&boat.samples);
     let lags = || 0..=(LAG_MAX_S / step_s.max(1e-3)).round() as usize;
     let pairs = |lag: usize| {
-        let steered = boat.moments.iter().zip(&run_ends).enumerate().filter(move |(i, (_, end))| i + lag < **end);
-        steered.filter_map(move |(i, (moment, _))| Some((moment.steered()?, boat.moments[i + lag].truth)))
+        let steered = boat.samples.iter().zip(&run_ends).enumerate().filter(move |(i, (_, end))| i + lag < **end);
+        steered.filter_map(move |(i, (sample, _))| Some((sample.steered()?, boat.samples[i + lag].truth)))
     };
-    let headings = |lag| -> Vec<Told> { pairs(lag).map(|(order, truth)| (order.0, truth.psi_rad)).collect() };
-    let speeds = |lag| -> Vec<Told> { pairs(lag).map(|(order, truth)| (order.1, truth.surge_m_s)).collect() };
+    let headings = |lag| -> Vec<OrderAndAnswer> { pairs(lag).map(|(order, truth)| (order.0, truth.psi_rad)).collect() };
+    let speeds = |lag| -> Vec<OrderAndAnswer> { pairs(lag).map(|(order, truth)| (order.1, truth.surge_m_s)).collect() };
     let heading =
         lags().filter_map(|lag| Some((lag, heading_rms_rad(&headings(lag))?))).min_by(|a, b| a.1.total_cmp(&b.1));
     let speed = lags().filter_map(|lag| Some((lag, correlation(&speeds(lag))?))).max_by(|a, b| a.1.total_cmp(&b.1));
@@ -62,37 +62,37 @@ pub(super) fn response(book: &Book, boat: &Boat) -> Response {
         speed_lag_s: speed.map(|(lag, _)| lag as f64 * step_s),
         speed_gain: fit.map(|(gain, _)| gain),
         speed_rms_m_s: fit.map(|(_, rms_m_s)| rms_m_s),
-        hold_drift_m_s: hold_drift(book, boat),
+        hold_drift_m_s: hold_drift(series, boat),
         cross_track_m_s: cross_track(boat),
     }
 }
 
-/// For each moment where the stretch ends in which the boat was steered without a break; 0 where it was not.
-fn run_ends(moments: &[Moment]) -> Vec<usize> {
-    let mut ends = vec![0; moments.len()];
-    let mut end = moments.len();
-    for (i, moment) in moments.iter().enumerate().rev() {
-        if moment.steered().is_some() { ends[i] = end } else { end = i }
+/// For each sample where the stretch ends in which the boat was steered without a break; 0 where it was not.
+fn run_ends(samples: &[Sample]) -> Vec<usize> {
+    let mut ends = vec![0; samples.len()];
+    let mut end = samples.len();
+    for (i, sample) in samples.iter().enumerate().rev() {
+        if sample.steered().is_some() { ends[i] = end } else { end = i }
     }
     ends
 }
 
 /// The root mean square of what is between heading and order, where the order varies.
-fn heading_rms_rad(told: &[Told]) -> Option<f64> {
-    let first = told.first()?.0;
-    let turned: Vec<Told> = told.iter().map(|(order, _)| (wrap_pi(order - first), 0.0)).collect();
+fn heading_rms_rad(pairs: &[OrderAndAnswer]) -> Option<f64> {
+    let first = pairs.first()?.0;
+    let turned: Vec<OrderAndAnswer> = pairs.iter().map(|(order, _)| (wrap_pi(order - first), 0.0)).collect();
     varies(&turned, VARIES_RAD)?;
-    super::figure::rms(told.iter().map(|(order, psi_rad)| wrap_pi(psi_rad - order)))
+    crate::statistics::rms(pairs.iter().map(|(order, psi_rad)| wrap_pi(psi_rad - order)))
 }
 
 /// How much two series go together: Pearson's coefficient.
-fn correlation(told: &[Told]) -> Option<f64> {
-    varies(told, VARIES_M_S)?;
-    let count = told.len() as f64;
+fn correlation(pairs: &[OrderAndAnswer]) -> Option<f64> {
+    varies(pairs, VARIES_M_S)?;
+    let count = pairs.len() as f64;
     let (mean_x, mean_y) =
-        (told.iter().map(|t| t.0).sum::<f64>() / count, told.iter().map(|t| t.1).sum::<f64>() / count);
+        (pairs.iter().map(|t| t.0).sum::<f64>() / count, pairs.iter().map(|t| t.1).sum::<f64>() / count);
     let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);
-    for (x, y) in told {
+    for (x, y) in pairs {
         let (x, y) = (x - mean_x, y - mean_y);
         (xx, yy, xy) = (xx + x * x, yy + y * y, xy + x * y);
     }
@@ -101,68 +101,68 @@ fn correlation(told: &[Told]) -> Option<f64> {
 }
 
 /// Whether there are enough orders, and they vary.
-fn varies(told: &[Told], least: f64) -> Option<()> {
-    let count = told.len() as f64;
-    let mean = told.iter().map(|t| t.0).sum::<f64>() / count;
-    let variance = told.iter().map(|t| (t.0 - mean) * (t.0 - mean)).sum::<f64>() / count;
-    (told.len() >= MOMENTS_MIN && variance > least * least).then_some(())
+fn varies(pairs: &[OrderAndAnswer], least: f64) -> Option<()> {
+    let count = pairs.len() as f64;
+    let mean = pairs.iter().map(|t| t.0).sum::<f64>() / count;
+    let variance = pairs.iter().map(|t| (t.0 - mean) * (t.0 - mean)).sum::<f64>() / count;
+    (pairs.len() >= SAMPLES_MIN && variance > least * least).then_some(())
 }
 
 /// The factor from order to what came of it, and what is left, root mean square.
-fn proportion(told: &[Told]) -> (f64, f64) {
-    let (xx, xy) = told.iter().fold((0.0, 0.0), |(xx, xy), (x, y)| (xx + x * x, xy + x * y));
+fn proportion(pairs: &[OrderAndAnswer]) -> (f64, f64) {
+    let (xx, xy) = pairs.iter().fold((0.0, 0.0), |(xx, xy), (x, y)| (xx + x * x, xy + x * y));
     let gain = if xx > 0.0 { xy / xx } else { 0.0 };
-    (gain, super::figure::rms(told.iter().map(|(x, y)| y - x)).unwrap_or(0.0))
+    (gain, crate::statistics::rms(pairs.iter().map(|(x, y)| y - x)).unwrap_or(0.0))
 }
 
-fn hold_drift(book: &Book, boat: &Boat) -> Option<[f64; 2]> {
+fn hold_drift(series: &GameSeries, boat: &BoatSeries) -> Option<[f64; 2]> {
     let (mut held_s, mut sum, mut count) = (0.0, Ned::default(), 0_u32);
-    for (moment, step_s) in boat.moments.iter().zip(book.steps_s()) {
-        let holds = moment.order == Order::Hold && (moment.is_free || moment.agent_lost);
+    for (sample, step_s) in boat.samples.iter().zip(series.steps_s()) {
+        let holds = sample.order == Order::Hold && (sample.is_free || sample.agent_lost);
         held_s = if holds { held_s + step_s } else { 0.0 };
         if held_s > SETTLED_S {
-            sum = sum + moment.truth.velocity_m_s();
+            sum = sum + sample.truth.velocity_m_s();
             count += 1;
         }
     }
     (count > 0).then(|| [sum.north / f64::from(count), sum.east / f64::from(count)])
 }
 
-fn cross_track(boat: &Boat) -> Option<f64> {
-    let across = |moment: &Moment| {
-        let (heading_rad, _) = moment.steered()?;
-        Some(body_from_ned(Rotation::from_heading(heading_rad), moment.truth.velocity_m_s()).starboard)
+fn cross_track(boat: &BoatSeries) -> Option<f64> {
+    let across = |sample: &Sample| {
+        let (heading_rad, _) = sample.steered()?;
+        Some(body_from_ned(Rotation::from_heading(heading_rad), sample.truth.velocity_m_s()).starboard)
     };
     let (sum, count) =
-        boat.moments.iter().filter_map(across).fold((0.0, 0_u32), |(sum, count), v| (sum + v, count + 1));
-    (count as usize >= MOMENTS_MIN).then(|| sum / f64::from(count))
+        boat.samples.iter().filter_map(across).fold((0.0, 0_u32), |(sum, count), v| (sum + v, count + 1));
+    (count as usize >= SAMPLES_MIN).then(|| sum / f64::from(count))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample;
     use super::*;
+    use crate::made_up;
     use game::picture::Nav;
     use std::f64::consts::TAU;
 
     /// Orders that go up and down, and a boat that does the same later, with this factor on its speed.
-    fn late(lag_s: f64, gain: f64) -> Book {
+    fn late(lag_s: f64, gain: f64) -> GameSeries {
         let heading_rad = |time_s: f64| 3.0 + 0.8 * game::math::sin_cos(TAU * time_s / 40.0).0;
         let speed_m_s = |time_s: f64| 1.5 + 0.5 * game::math::sin_cos(TAU * time_s / 23.0).0;
-        sample::book(120.0, |time_s| {
+        made_up::game(120.0, |time_s| {
             let psi_rad = heading_rad(time_s - lag_s) + TAU;
             let surge_m_s = gain * speed_m_s(time_s - lag_s);
             let order = Order::Steer { heading_rad: wrap_pi(heading_rad(time_s)), speed_m_s: speed_m_s(time_s) };
             let truth = Nav { psi_rad, surge_m_s, sway_m_s: 0.0, ..Nav::default() };
-            Moment { truth, order, is_free: true, ..Moment::default() }
+            Sample { truth, order, is_free: true, ..Sample::default() }
         })
     }
 
     #[test]
     fn a_late_copy_has_that_lag_and_that_gain() {
         for (lag_s, gain) in [(0.0, 1.0), (1.5, 1.0), (4.0, 0.8)] {
-            let book = late(lag_s, gain);
-            let got = response(&book, &book.boats[0]);
+            let series = late(lag_s, gain);
+            let got = response(&series, &series.boats[0]);
             let near = |got: Option<f64>, want: f64| got.is_some_and(|got| (got - want).abs() < 1e-6);
             assert!(near(got.heading_lag_s, lag_s) && near(got.heading_rms_deg, 0.0), "{lag_s} {gain}: {got:?}");
             assert!(near(got.speed_lag_s, lag_s) && near(got.speed_gain, gain), "{lag_s} {gain}: {got:?}");
@@ -171,38 +171,38 @@ mod tests {
 
     #[test]
     fn a_break_in_steering_is_not_steered_over() {
-        let mut book = late(3.0, 1.0);
+        let mut series = late(3.0, 1.0);
         // While it is not free it points anywhere.
-        for moment in &mut book.boats[0].moments[500..600] {
-            moment.is_free = false;
-            moment.truth.psi_rad = 0.0;
-            moment.truth.surge_m_s = -9.0;
+        for sample in &mut series.boats[0].samples[500..600] {
+            sample.is_free = false;
+            sample.truth.psi_rad = 0.0;
+            sample.truth.surge_m_s = -9.0;
         }
-        let got = response(&book, &book.boats[0]);
+        let got = response(&series, &series.boats[0]);
         assert!(got.heading_lag_s.is_some_and(|lag_s| (lag_s - 3.0).abs() < 1e-6), "{got:?}");
         assert!(got.heading_rms_deg.is_some_and(|rms_deg| rms_deg < 1e-6), "{got:?}");
     }
 
     #[test]
     fn drift_is_told_once_a_boat_has_settled() {
-        let book = sample::book(60.0, |time_s| {
+        let series = made_up::game(60.0, |time_s| {
             let surge_m_s = if time_s <= SETTLED_S { 3.0 } else { 0.0 };
             // Heading east, starboard is south.
             let truth = Nav { psi_rad: TAU / 4.0, surge_m_s, sway_m_s: 0.2, ..Nav::default() };
-            Moment { truth, is_free: true, ..Moment::default() }
+            Sample { truth, is_free: true, ..Sample::default() }
         });
-        let [north_m_s, east_m_s] = response(&book, &book.boats[0]).hold_drift_m_s.expect("it held");
+        let [north_m_s, east_m_s] = response(&series, &series.boats[0]).hold_drift_m_s.expect("it held");
         assert!((north_m_s + 0.2).abs() < 1e-9 && east_m_s.abs() < 1e-9, "{north_m_s} {east_m_s}");
     }
 
     #[test]
     fn a_boat_that_is_set_to_starboard_says_so() {
-        let book = sample::book(60.0, |_| {
+        let series = made_up::game(60.0, |_| {
             let order = Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 };
             let truth = Nav { psi_rad: 1.0, surge_m_s: 2.0, sway_m_s: 0.3, ..Nav::default() };
-            Moment { truth, order, is_free: true, ..Moment::default() }
+            Sample { truth, order, is_free: true, ..Sample::default() }
         });
-        let got = response(&book, &book.boats[0]);
+        let got = response(&series, &series.boats[0]);
         assert!(got.cross_track_m_s.is_some_and(|across_m_s| (across_m_s - 0.3).abs() < 1e-9), "{got:?}");
         assert_eq!((got.heading_lag_s, got.speed_lag_s), (None, None), "an order that never varies tells no delay");
     }

@@ -1,10 +1,10 @@
 //! A recorded game on one page.
 
-use super::book::Book;
-use super::figure::{Figures, figures};
-use super::gateway::{Gateway, gateways};
+use crate::gateway::{Gateway, gateways};
+use crate::series::GameSeries;
+use crate::statistics::{BoatStatistics, statistics};
 use game::outcome::EventOutcome;
-use recording::{Recording, RecordingError};
+use recording::{Bag, Recording, RecordingError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -44,7 +44,7 @@ pub struct Summary {
     /// Everything that happened, in order.
     pub events: Vec<EventOutcome>,
     /// By boat.
-    pub boats: Vec<Figures>,
+    pub boats: Vec<BoatStatistics>,
     /// By real boat.
     pub gateways: Vec<Gateway>,
     /// What is in the file, by topic.
@@ -63,50 +63,52 @@ pub struct Topic {
 }
 
 impl Summary {
-    /// The summary of a recording, and the book that it was made of.
+    /// The summary of a recording, and the series that it was made of.
     ///
     /// # Errors
     /// [`RecordingError::Damaged`] names the first message that is not what it should be.
-    pub fn of(recording: &Recording) -> Result<(Summary, Book), RecordingError> {
-        let book = Book::of(recording)?;
+    pub fn of(recording: &Recording) -> Result<(Summary, GameSeries), RecordingError> {
+        let series = GameSeries::of(recording)?;
         let header = recording.header();
-        let scenario = &header.notice.scenario;
+        let scenario = recording.scenario();
         let ending = recording.ending();
-        let last = book.score.last().cloned().unwrap_or_default();
-        let utc_ns = || recording.messages().map(|said| said.utc_ns);
+        let last = series.score.last().cloned().unwrap_or_default();
+        let utc_ns = || recording.bag().messages().map(|message| message.utc_ns);
         let wall_ns = utc_ns().max().unwrap_or(0).saturating_sub(utc_ns().min().unwrap_or(0));
         let summary = Summary {
             game: header.game.clone(),
             scenario: scenario.name.clone(),
             seed: scenario.seed,
-            version: header.notice.version.clone(),
+            version: header.info.version.clone(),
             commit: header.commit.clone(),
-            pace: header.notice.pace.clone(),
+            pace: header.info.pace.clone(),
             began_utc_ns: header.began_utc_ns,
-            duration_s: book.span_s(),
+            duration_s: series.span_s(),
             wall_s: wall_ns as f64 * 1e-9,
             is_cut: recording.is_cut(),
             dropped: ending.map(|ending| ending.dropped),
-            bytes: recording.size() as u64,
-            score: book.teams.iter().cloned().zip(last).collect(),
+            bytes: recording.bag().size() as u64,
+            score: series.teams.iter().cloned().zip(last).collect(),
             winner: ending.and_then(|ending| ending.outcome.winner.clone()),
             digest: ending.map(|ending| ending.outcome.digest.clone()),
-            events: book.named_events(scenario),
-            boats: figures(&book),
+            events: series.named_events(scenario),
+            boats: statistics(&series),
             gateways: gateways(recording)?,
-            topics: topics(recording),
+            topics: topics(recording.bag()),
         };
-        Ok((summary, book))
+        Ok((summary, series))
     }
 }
 
-fn topics(recording: &Recording) -> BTreeMap<String, Topic> {
+/// The topics of a recording, by name.
+#[must_use]
+pub fn topics(bag: &Bag) -> BTreeMap<String, Topic> {
     let mut topics: BTreeMap<&str, (Topic, [i64; 2])> = BTreeMap::new();
-    for said in recording.messages() {
-        let (topic, [first, last]) = topics.entry(said.topic).or_insert((Topic::default(), [i64::MAX, i64::MIN]));
+    for message in bag.messages() {
+        let (topic, [first, last]) = topics.entry(message.topic).or_insert((Topic::default(), [i64::MAX, i64::MIN]));
         topic.count += 1;
-        topic.bytes += said.bytes.len() as u64;
-        (*first, *last) = ((*first).min(said.at.0), (*last).max(said.at.0));
+        topic.bytes += message.bytes.len() as u64;
+        (*first, *last) = ((*first).min(message.at.0), (*last).max(message.at.0));
     }
     let rated = |(name, (topic, [first, last])): (&str, (Topic, [i64; 2]))| {
         let span_s = (last - first) as f64 * 1e-9;

@@ -1,12 +1,12 @@
-//! How far two tracks are apart, moment by moment and as shapes.
+//! How far two tracks are apart, sample by sample and as shapes.
 
-use super::book::{Boat, Book};
+use crate::series::{BoatSeries, GameSeries};
 use game::Ned;
 use serde::{Deserialize, Serialize};
 
 /// How far apart a boat was in two games.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Apart {
+pub struct TrackDifference {
     /// Mean of the distance between the places at the same time, m.
     pub mean_m: f64,
     /// Its root mean square, m.
@@ -23,9 +23,12 @@ pub struct Apart {
 /// Points of each track that shapes are told from at most: time and memory go with their product and their sum.
 const SHAPE_POINTS: usize = 2000;
 
-/// How far a boat of one game was from that of another, while both games were on; none where they have no moment in common.
+/// How far a boat of one game was from that of another, while both games were on; none where they have no sample in common.
 #[must_use]
-pub(super) fn apart((a, in_a): (&Book, &Boat), (b, in_b): (&Book, &Boat)) -> Option<Apart> {
+pub(crate) fn apart(
+    (a, in_a): (&GameSeries, &BoatSeries),
+    (b, in_b): (&GameSeries, &BoatSeries),
+) -> Option<TrackDifference> {
     let (begin_s, end_s) = common_s(a, b)?;
     let is_common = |time_s: &f64| (begin_s..=end_s).contains(time_s);
     let [track_a, track_b]: [Vec<Ned>; 2] = [in_a.track().collect(), in_b.track().collect()];
@@ -36,9 +39,9 @@ pub(super) fn apart((a, in_a): (&Book, &Boat), (b, in_b): (&Book, &Boat)) -> Opt
             times_s.iter().zip(track).filter(|(time_s, _)| is_common(time_s)).map(|(_, at)| *at).collect();
         thinned(&all)
     };
-    Some(Apart {
+    Some(TrackDifference {
         mean_m: distances_m.iter().sum::<f64>() / distances_m.len() as f64,
-        rms_m: super::figure::rms(distances_m.iter().copied())?,
+        rms_m: crate::statistics::rms(distances_m.iter().copied())?,
         max_m: distances_m.iter().copied().fold(0.0, f64::max),
         final_m,
         frechet_m: frechet_m(&during(&a.times_s, &track_a), &during(&b.times_s, &track_b)),
@@ -46,28 +49,28 @@ pub(super) fn apart((a, in_a): (&Book, &Boat), (b, in_b): (&Book, &Boat)) -> Opt
 }
 
 /// From when until when both games were on, s.
-fn common_s(a: &Book, b: &Book) -> Option<(f64, f64)> {
+fn common_s(a: &GameSeries, b: &GameSeries) -> Option<(f64, f64)> {
     let end_s = a.times_s.last()?.min(*b.times_s.last()?);
     Some((a.times_s.first()?.max(*b.times_s.first()?), end_s))
 }
 
 /// How far a boat of one game was from that of another, while both games were on: the time, s, and the distance, m, at the
-/// moments of the first.
+/// samples of the first.
 #[must_use]
-pub fn distances((a, in_a): (&Book, &Boat), (b, in_b): (&Book, &Boat)) -> Vec<(f64, f64)> {
+pub fn distances((a, in_a): (&GameSeries, &BoatSeries), (b, in_b): (&GameSeries, &BoatSeries)) -> Vec<(f64, f64)> {
     let Some((begin_s, end_s)) = common_s(a, b) else { return vec![] };
     let other: Vec<Ned> = in_b.track().collect();
     let common = a.times_s.iter().zip(in_a.track()).filter(|(time_s, _)| (begin_s..=end_s).contains(*time_s));
     common.map(|(time_s, at)| (*time_s, at.distance(place_at(&b.times_s, &other, *time_s)))).collect()
 }
 
-/// Where a track is at a time, straight between two moments.
+/// Where a track is at a time, straight between two samples.
 fn place_at(times_s: &[f64], track: &[Ned], time_s: f64) -> Ned {
     let after = times_s.partition_point(|t| *t < time_s).min(track.len() - 1);
     let before = after.saturating_sub(1);
     let step_s = times_s[after] - times_s[before];
     let share = if step_s > 0.0 { ((time_s - times_s[before]) / step_s).clamp(0.0, 1.0) } else { 1.0 };
-    // As a weighted sum it gives each moment's own place exactly.
+    // As a weighted sum it gives each sample's own place exactly.
     track[before].scaled(1.0 - share) + track[after].scaled(share)
 }
 
@@ -99,8 +102,8 @@ fn frechet_m(a: &[Ned], b: &[Ned]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample;
     use super::*;
+    use crate::made_up;
     use std::f64::consts::TAU;
 
     fn line(points: &[(f64, f64)]) -> Vec<Ned> {
@@ -128,12 +131,12 @@ mod tests {
 
     #[test]
     fn a_boat_that_is_late_is_apart_in_time_and_not_in_shape() {
-        let a = sample::circle(20.0, 100.0);
+        let a = made_up::circle(20.0, 100.0);
         let mut b = a.clone();
         // 5 s late, it waits at the start.
-        let moments = b.boats[0].moments.clone();
-        for (i, moment) in b.boats[0].moments.iter_mut().enumerate() {
-            *moment = moments[i.saturating_sub(50)];
+        let samples = b.boats[0].samples.clone();
+        for (i, sample) in b.boats[0].samples.iter_mut().enumerate() {
+            *sample = samples[i.saturating_sub(50)];
         }
         let apart = apart((&a, &a.boats[0]), (&b, &b.boats[0])).expect("they were on together");
         let chord_m = 2.0 * 20.0 * game::math::sin_cos(TAU * 5.0 / 100.0 / 2.0).0;
@@ -143,14 +146,14 @@ mod tests {
 
     #[test]
     fn a_track_lies_on_itself_however_it_is_sampled() {
-        let a = sample::circle(20.0, 50.0);
+        let a = made_up::circle(20.0, 50.0);
         let same = apart((&a, &a.boats[0]), (&a, &a.boats[0])).expect("a track");
-        let zero = Apart { mean_m: 0.0, rms_m: 0.0, max_m: 0.0, final_m: 0.0, frechet_m: 0.0 };
+        let zero = TrackDifference { mean_m: 0.0, rms_m: 0.0, max_m: 0.0, final_m: 0.0, frechet_m: 0.0 };
         assert_eq!(same, zero);
         let mut coarse = a.clone();
         let even = |i: &usize| i.is_multiple_of(2);
         coarse.times_s = (0..a.times_s.len()).filter(even).map(|i| a.times_s[i]).collect();
-        coarse.boats[0].moments = (0..a.times_s.len()).filter(even).map(|i| a.boats[0].moments[i]).collect();
+        coarse.boats[0].samples = (0..a.times_s.len()).filter(even).map(|i| a.boats[0].samples[i]).collect();
         let apart = apart((&a, &a.boats[0]), (&coarse, &coarse.boats[0])).expect("a track");
         assert!(apart.max_m < 1e-3, "{apart:?}");
     }

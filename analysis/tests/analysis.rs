@@ -1,6 +1,6 @@
-//! What a recording tells afterwards: figures, tables and logs of a small made-up game, to the byte where others read them.
+//! What a recording tells afterwards: statistics, tables and logs of a small made-up game, to the byte where others read them.
 
-use analysis::{Book, Comparison, Incomparable, Summary, alog, sheet};
+use analysis::{Comparison, GameSeries, Incomparable, Summary, alog, table};
 use game::event::{Event, Logged};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use game::input::Input;
@@ -8,7 +8,7 @@ use game::message::{Frame, GameInfo, Message, Stamp, VehicleTruth};
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
 use game::water::Water;
 use game::{FlagId, Order, Outcome, Picture, SimTime, TeamId, VehicleId};
-use recording::{Ending, Header, Note, Recording, Turn, Writer};
+use recording::{Decision, Ending, Entry, Header, Recording, Writer};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -19,28 +19,19 @@ fn header() -> Header {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        notice: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        info: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
         water: Water { waves: vec![] },
     }
 }
 
 fn ending() -> Ending {
-    let outcome = Outcome {
-        scenario: "pav01".to_owned(),
-        seed: 1,
-        version: "0".to_owned(),
-        digest: "ab".to_owned(),
-        duration_s: 1.0,
-        ticks: 20,
-        winner: Some("blue".to_owned()),
-        ..Outcome::default()
-    };
+    let outcome = Outcome { digest: "ab".to_owned(), winner: Some("blue".to_owned()), ..Outcome::default() };
     Ending { outcome, run: serde_json::json!({"pace": "lockstep"}), dropped: 3 }
 }
 
 /// The decision `seq`: the first boat goes north at 2 m/s, and believes to be 3 m north and 4 m east of where it is. At
 /// the third frame it has a flag.
-fn turn(seq: u64) -> Turn {
+fn decision(seq: u64) -> Decision {
     let at = |seq: u64, version| Stamp { valid_ns: SimTime(seq as i64 * 100_000_000), seq, version };
     let nav = |seq: u64| Nav { north_m: 10.0 + 0.2 * seq as f64, surge_m_s: 2.0, ..Nav::default() };
     let has_flag = seq >= 2;
@@ -53,8 +44,9 @@ fn turn(seq: u64) -> Turn {
     let flags = vec![FlagView { carrier: -1 }, FlagView { carrier: if has_flag { 0 } else { -1 } }];
     let score = vec![u32::from(has_flag), 0];
     let stamp = at(seq, Frame::VERSION);
-    let frame = Frame { stamp, vehicles, score: score.clone(), flags: flags.clone(), events, ..Frame::default() };
-    let Some(before) = seq.checked_sub(1) else { return Turn { frame, ..Turn::default() } };
+    let frame =
+        Frame { stamp, vehicles, score: score.clone(), flags: flags.clone(), events, ..Frame::default() }.into();
+    let Some(before) = seq.checked_sub(1) else { return Decision { frame, ..Decision::default() } };
     let believed = Nav { north_m: nav(before).north_m + 3.0, east_m: 4.0, ..nav(before) };
     let own = OwnBoat {
         vehicle: VehicleId(0),
@@ -84,35 +76,40 @@ fn turn(seq: u64) -> Turn {
     let order = Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 };
     let inputs =
         vec![Input::Pictured, Input::Ordered { vehicle: VehicleId(0), order, given_at: SimTime::ZERO }, Input::Played];
-    Turn { frame, pictures: vec![picture], inputs }
+    Decision { frame, pictures: vec![picture], inputs }
 }
 
-fn link(outward: bool, data: &[u8]) -> Note {
+fn link(outward: bool, data: &[u8]) -> Entry {
     let stamp = Stamp { version: LinkBytes::VERSION, ..Stamp::default() };
     let bytes = LinkBytes { stamp, vehicle: VehicleId(0), outward, data: data.to_vec() };
     let bytes = game::codec::encode(&bytes);
-    Note::Heard { topic: "link/blue_one".to_owned(), schema: Some(LinkBytes::SCHEMA), bytes, at: SimTime(250_000_000) }
+    Entry::Message {
+        topic: "link/blue_one".to_owned(),
+        schema: Some(LinkBytes::SCHEMA),
+        bytes,
+        at: SimTime(250_000_000),
+    }
 }
 
-fn status(failsafes: &[&str]) -> Note {
+fn status(failsafes: &[&str]) -> Entry {
     let failsafe = |cause: &&str| FailsafeReport { at_s: 1.0, cause: (*cause).to_owned() };
     let failsafes = failsafes.iter().map(failsafe).collect();
     let status = GatewayStatus { state: "armed".to_owned(), failsafes, ..GatewayStatus::default() };
     let bytes = serde_json::to_vec(&status).expect("JSON");
-    Note::Heard { topic: "status/blue_one".to_owned(), schema: None, bytes, at: SimTime(200_000_000) }
+    Entry::Message { topic: "status/blue_one".to_owned(), schema: None, bytes, at: SimTime(200_000_000) }
 }
 
-fn bytes_of(header: &Header, turns: u64) -> Vec<u8> {
-    let mut writer = Writer::begin(Cursor::new(Vec::new()), header).expect("it begins");
-    let mut note = |note: &Note, utc_ns| writer.note(note, utc_ns).expect("it is written");
-    (0..turns).for_each(|seq| note(&Note::Turn(Box::new(turn(seq))), 1_000_000_000 * (1 + seq)));
+fn bytes_of(header: &Header, decisions: u64) -> Vec<u8> {
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");
+    let mut note = |note: &Entry, utc_ns| writer.write(note, utc_ns).expect("it is written");
+    (0..decisions).for_each(|seq| note(&Entry::Decision(Box::new(decision(seq))), 1_000_000_000 * (1 + seq)));
     note(&link(false, b"$GPRMC,1*00\r\n$PSE"), 1_000_000_000);
     note(&link(true, b"$PSEAC,T,0*0D\r\n"), 1_000_000_000);
     note(&link(false, b"AA,2*11\r\n"), 1_000_000_000);
     note(&status(&[]), 1_000_000_000);
     note(&status(&["link down"]), 1_000_000_000);
     note(&status(&["link down", "no orders"]), 1_000_000_000);
-    writer.end(&ending()).expect("it ends").into_inner()
+    writer.end(ending().facts()).expect("it ends").into_inner()
 }
 
 fn recording() -> Recording {
@@ -121,7 +118,7 @@ fn recording() -> Recording {
 
 #[test]
 fn a_summary_has_the_figures_of_the_game() {
-    let (summary, book) = Summary::of(&recording()).expect("it is whole");
+    let (summary, series) = Summary::of(&recording()).expect("it is whole");
     assert_eq!((summary.game.as_str(), summary.seed, summary.commit.as_str()), ("pav01-1", 1, "c0ffee"));
     assert!((summary.duration_s - 0.3).abs() < 1e-9 && (summary.wall_s - 3.0).abs() < 1e-9);
     assert_eq!((summary.is_cut, summary.dropped, summary.winner.as_deref()), (false, Some(3), Some("blue")));
@@ -141,8 +138,8 @@ fn a_summary_has_the_figures_of_the_game() {
     assert_eq!(rates, want);
     assert!(summary.topics["frame"].rate_hz.is_some_and(|rate_hz| (rate_hz - 10.0).abs() < 1e-9));
     assert_eq!(summary.topics["link/blue_one"].rate_hz, None);
-    assert_eq!(book.boats[0].moments[3].order, Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 });
-    assert_eq!(book.boats[0].moments[0].order, Order::Hold);
+    assert_eq!(series.boats[0].samples[3].order, Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 });
+    assert_eq!(series.boats[0].samples[0].order, Order::Hold);
 }
 
 #[test]
@@ -158,13 +155,14 @@ fn a_gateway_is_known_by_its_bytes_and_failsafes() {
 }
 
 /// The table of a topic, rows as lines.
-fn table(recording: &Recording, topic: &str) -> Vec<String> {
+fn rows_of(recording: &Recording, topic: &str) -> Vec<String> {
     let mut lines = vec![];
     let mut sink = |cells: &[String]| {
         lines.push(cells.join(","));
         Ok(())
     };
-    sheet::write(recording, topic, &mut sink).unwrap_or_else(|e| panic!("{topic}: {e}"));
+    table::write(recording.bag(), Some(recording.scenario()), topic, &mut sink)
+        .unwrap_or_else(|e| panic!("{topic}: {e}"));
     lines
 }
 
@@ -174,7 +172,7 @@ fn every_topic_is_a_table() {
     for (topic, rows) in
         [("frame", 4), ("inputs", 9), ("picture/blue", 6), ("link/blue_one", 3), ("status/blue_one", 3), ("events", 1)]
     {
-        let lines = table(&recording, topic);
+        let lines = rows_of(&recording, topic);
         assert_eq!(lines.len(), rows + 1, "{topic}");
         let columns = lines[0].split(',').count();
         assert!(
@@ -182,14 +180,14 @@ fn every_topic_is_a_table() {
             "{lines:?}"
         );
     }
-    let frame = table(&recording, "frame");
+    let frame = rows_of(&recording, "frame");
     assert!(frame[0].starts_with("t_s,seq,blue_one.north_m,blue_one.east_m,blue_one.psi_rad,"), "{}", frame[0]);
     assert!(frame[0].ends_with(",flag.blue.carrier,flag.red.carrier,score.blue,score.red,events,stopped,over"));
     assert!(frame[3].starts_with("0.2,2,10.4,0,0,2,") && frame[3].contains("blue_one grabs the red flag"));
     assert!(frame[3].contains(",,blue_one,1,0,"), "{}", frame[3]);
-    assert_eq!(table(&recording, "events")[1], "0.15,3,grabbed,blue_one,,red,blue_one grabs the red flag");
+    assert_eq!(rows_of(&recording, "events")[1], "0.15,3,grabbed,blue_one,,red,blue_one grabs the red flag");
     assert_eq!(
-        table(&recording, "link/blue_one"),
+        rows_of(&recording, "link/blue_one"),
         [
             "t_s,direction,text",
             "0.25,from_boat,$GPRMC,1*00",
@@ -197,26 +195,27 @@ fn every_topic_is_a_table() {
             "0.25,from_boat,$PSEAA,2*11"
         ]
     );
-    let inputs = table(&recording, "inputs");
+    let inputs = rows_of(&recording, "inputs");
     assert!(inputs[2].starts_with("0.1,1,steer,blue_one,0,2.5,,"), "{}", inputs[2]);
-    let picture = table(&recording, "picture/blue");
+    let picture = rows_of(&recording, "picture/blue");
     assert!(picture[1].starts_with("0,0,own,blue_one,0,13,4,"), "{}", picture[1]);
     assert!(picture[2].starts_with("0,0,contact,red_one,0.05,1,2,0.5,,,,0.25,0,true,"), "{}", picture[2]);
-    let status = table(&recording, "status/blue_one");
+    let status = rows_of(&recording, "status/blue_one");
     assert!(status[0].contains(",failsafes.1.cause,") && status[3].contains(",no orders,"), "{status:?}");
 }
 
 #[test]
 fn an_unknown_topic_is_refused_with_those_there_are() {
-    let refused = sheet::write(&recording(), "picture/green", &mut |_| Ok(())).expect_err("there is none").to_string();
+    let refused =
+        table::write(recording().bag(), None, "picture/green", &mut |_| Ok(())).expect_err("there is none").to_string();
     assert!(refused.contains("no topic \"picture/green\"") && refused.contains("events, frame, inputs, link/blue_one"));
 }
 
 #[test]
 fn the_log_of_a_vehicle_is_what_moos_tools_read() {
     let recording = recording();
-    let book = Book::of(&recording).expect("it is whole");
-    let log = alog::vehicle(recording.header(), &book, 0).expect("a boat");
+    let series = GameSeries::of(&recording).expect("it is whole");
+    let log = alog::vehicle(recording.header(), &series, 0).expect("a boat");
     let begin = "\
 %%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%%
 %% LOG FILE:       blue_one.alog
@@ -238,16 +237,16 @@ fn the_log_of_a_vehicle_is_what_moos_tools_read() {
     assert!(log.starts_with(begin), "{log}");
     assert!(log.contains("\n0.10000         DESIRED_HEADING      squall          0.0000\n"), "{log}");
     assert!(log.contains("\n0.20000         HAS_FLAG             squall          true\n"), "{log}");
-    assert_eq!(alog::vehicle(recording.header(), &book, 4), None);
-    assert_eq!(alog::names(&book), ["shoreside", "blue_one", "blue_two", "red_one", "red_two"]);
+    assert_eq!(alog::vehicle(recording.header(), &series, 4), None);
+    assert_eq!(alog::names(&series), ["shoreside", "blue_one", "blue_two", "red_one", "red_two"]);
 }
 
 #[test]
 fn the_log_of_the_shoreside_has_reports_and_what_happened() {
     let recording = recording();
-    let book = Book::of(&recording).expect("it is whole");
-    let log = alog::shoreside(recording.header(), &book);
-    let length_m = recording.header().notice.scenario.boat_of(VehicleId(0)).length_m;
+    let series = GameSeries::of(&recording).expect("it is whole");
+    let log = alog::shoreside(recording.header(), &series);
+    let length_m = recording.scenario().boat_of(VehicleId(0)).length_m;
     let report = format!(
         "NAME=blue_one,TYPE=kayak,TIME=1700000000.00,X=0.00,Y=10.00,SPD=2.00,HDG=0.00,DEPTH=0,LENGTH={length_m},MODE=PLAYING,GROUP=blue"
     );
@@ -270,24 +269,26 @@ fn the_log_of_the_shoreside_has_reports_and_what_happened() {
 
 #[test]
 fn an_order_ends_with_the_mind_that_gave_it() {
-    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header()).expect("it begins");
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header().opening()).expect("it begins");
     for seq in 0..3 {
-        let mut turn = turn(seq);
+        let mut decision = decision(seq);
         if seq == 2 {
-            turn.inputs = vec![Input::AgentLost { vehicle: VehicleId(0) }, Input::Played];
+            decision.inputs = vec![Input::AgentLost { vehicle: VehicleId(0) }, Input::Played];
         }
-        writer.note(&Note::Turn(Box::new(turn)), 1).expect("it is written");
+        writer.write(&Entry::Decision(Box::new(decision)), 1).expect("it is written");
     }
-    let book = Book::of(&Recording::of(writer.end(&ending()).expect("it ends").into_inner()).expect("a recording"));
-    let orders: Vec<Order> = book.expect("it is whole").boats[0].moments.iter().map(|moment| moment.order).collect();
+    let series = GameSeries::of(
+        &Recording::of(writer.end(ending().facts()).expect("it ends").into_inner()).expect("a recording"),
+    );
+    let orders: Vec<Order> = series.expect("it is whole").boats[0].samples.iter().map(|moment| moment.order).collect();
     assert_eq!(orders, [Order::Hold, Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 }, Order::Hold]);
 }
 
 #[test]
 fn a_game_differs_in_nothing_from_itself() {
     let recording = recording();
-    let book = Book::of(&recording).expect("it is whole");
-    let same = Comparison::of([recording.header(); 2], [&book; 2], 0.0).unwrap_or_else(|e| panic!("{e}"));
+    let series = GameSeries::of(&recording).expect("it is whole");
+    let same = Comparison::of([recording.header(); 2], [&series; 2], 0.0).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((same.boats.len(), same.notes.len()), (4, 0));
     for pair in &same.boats {
         let apart = pair.apart;
@@ -302,24 +303,24 @@ fn a_game_differs_in_nothing_from_itself() {
 fn games_that_differ_say_in_what_and_strangers_are_refused() {
     let a = recording();
     let mut other = header();
-    other.notice.scenario.seed = 7;
-    other.notice.scenario.vehicles[3].name = "red_three".to_owned();
+    other.info.scenario.seed = 7;
+    other.info.scenario.vehicles[3].name = "red_three".to_owned();
     let b = Recording::of(bytes_of(&other, 3)).unwrap_or_else(|e| panic!("{e}"));
-    let books = [&a, &b].map(|recording| Book::of(recording).expect("it is whole"));
-    let compare = |header: &Header, b: &Book| Comparison::of([a.header(), header], [&books[0], b], 1.0);
-    let found = compare(b.header(), &books[1]).unwrap_or_else(|e| panic!("{e}"));
+    let series = [&a, &b].map(|recording| GameSeries::of(recording).expect("it is whole"));
+    let compare = |header: &Header, b: &GameSeries| Comparison::of([a.header(), header], [&series[0], b], 1.0);
+    let found = compare(b.header(), &series[1]).unwrap_or_else(|e| panic!("{e}"));
     let notes = found.notes.join("\n");
     for part in ["seed: 1 in A, 7 in B", "only in A: red_two", "only in B: red_three", "A lasts 0.3 s, B 0.2 s"] {
         assert!(notes.contains(part), "{part} is not in {notes}");
     }
     assert!(found.boats.len() == 3 && (found.common_s - 0.2).abs() < 1e-9);
     let mut far = header();
-    far.notice.scenario.field.plan.datum.lat_deg += 0.1;
-    assert!(matches!(compare(&far, &books[1]), Err(Incomparable::Datum { .. })));
-    let strangers = Book { boats: vec![], ..books[1].clone() };
+    far.info.scenario.field.plan.datum.lat_deg += 0.1;
+    assert!(matches!(compare(&far, &series[1]), Err(Incomparable::Datum { .. })));
+    let strangers = GameSeries { boats: vec![], ..series[1].clone() };
     assert!(matches!(compare(b.header(), &strangers), Err(Incomparable::Boats { .. })));
-    let mut empty = books[1].clone();
+    let mut empty = series[1].clone();
     empty.times_s.clear();
-    empty.boats.iter_mut().for_each(|boat| boat.moments.clear());
+    empty.boats.iter_mut().for_each(|boat| boat.samples.clear());
     assert_eq!(compare(b.header(), &empty), Err(Incomparable::Time));
 }

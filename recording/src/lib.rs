@@ -1,94 +1,96 @@
-//! Recordings of games: MCAP files that other tools read as well.
+//! Recordings of games and of gateways: MCAP files that tools of ROS 2 read as bags.
 //!
-//! | topic | what | as |
+//! | topic of a game | what | as |
 //! |---|---|---|
 //! | `frame` | the truth, at every decision | message |
 //! | `picture/<team>` | what a team's minds were shown | message |
 //! | `inputs` | before each frame, all that the game was given since the last: it can be played again from this | message |
 //! | `nav/<boat>`, `external/<boat>`, `link/<boat>` | of real boats: where they are, what they are to do, every byte of the link | message |
-//! | `say/<team>`, `policy/<boat>` | what minds and policies said | message |
-//! | `status/<boat>` | how gateways are | JSON |
-//! | `control`, `run` | what people asked for, and how the run stood | JSON |
+//! | `say/<team>`, `policy/<boat>` | what minds and policies sent | message |
+//! | `status/<boat>` | the state of gateways | JSON |
+//! | `control`, `run` | what operators requested, and the state of the run | JSON |
 //!
-//! All of it is CDR, as the profile `ros2` demands: a message of ours, or JSON as the text of a `std_msgs/msg/String`.
-//! `log_time` is simulated time, counted from the moment at which the game began; `publish_time` is UTC when it was
-//! recorded. Both in ns since 1970. `sequence` counts within a topic. Schemas are ROS 2 message definitions, complete.
-//! Chunks are not compressed and are written whole, so that a file that ends abruptly is good up to there.
+//! | topic of a gateway | what | as |
+//! |---|---|---|
+//! | `link/<boat>` | every byte of the link, both ways | message |
+//! | `input`, `event` | everything else that the gateway was given, and what happened | JSON |
 //!
-//! Metadata: `squall` (version, commit, game, pace, seed, scenario, waves), `drawn` (numbers drawn by lot for this game),
-//! and, unless the file ends abruptly, `result` (digest, outcome, run, how much was dropped).
+//! All of it is CDR, as the profile `ros2` demands: a message of ours, or a JSON object as the text of a
+//! `std_msgs/msg/String`. `log_time` is the time of the game or of the gateway's clock, counted from the UTC at which the
+//! recording began; `publish_time` is UTC when the message was recorded. Both in ns since 1970. `sequence` counts within a
+//! topic. Schemas are ROS 2 message definitions, complete. Chunks are not compressed and are written whole, so that a file
+//! that ends abruptly is good up to there.
+//!
+//! The first metadata is the header, with a checksum of its own: `squall` of a game (version, commit, game, pace, seed,
+//! scenario, waves), `gateway` of a gateway (version, commit, boat, plan). A game also has `drawn` (the values of randomised
+//! parameters) and, unless the file ends abruptly, `result` (digest, outcome, run, how many messages were dropped).
 
-mod clock;
-mod reader;
+mod bag;
+mod game_recording;
+mod json_string;
 mod recorder;
-mod text;
-mod walk;
+mod records;
+pub mod utc;
 mod writer;
 
-pub use reader::{Recording, RecordingError, Said};
-pub use recorder::{Blank, Recorder};
-pub use writer::{Note, Turn, Writer};
+pub use bag::{Bag, RecordedMessage, RecordingError};
+pub use game_recording::{Ending, FRAME, Header, INPUTS, Recording, picture};
+pub use recorder::{NewFile, Recorder};
+pub use writer::{Decision, Entry, Opening, Writer};
 
-use game::Outcome;
-use game::message::GameInfo;
-use game::water::Water;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt::{Display, Formatter};
 use thiserror::Error;
 
-/// The names of the metadata.
-const SQUALL: &str = "squall";
-const DRAWN: &str = "drawn";
+/// What a metadata record of a file holds.
+pub type Facts = BTreeMap<String, String>;
+
+/// The metadata at the end.
 const RESULT: &str = "result";
 
-/// In the first of them, the checksum of the others.
+/// What a recording is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A game.
+    Game,
+    /// The gateway of a real boat.
+    Gateway,
+}
+
+impl Kind {
+    const ALL: [Kind; 2] = [Kind::Game, Kind::Gateway];
+
+    /// The name of the metadata that is the header.
+    const fn header(self) -> &'static str {
+        match self {
+            Kind::Game => "squall",
+            Kind::Gateway => "gateway",
+        }
+    }
+}
+
+impl Display for Kind {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Kind::Game => "game",
+            Kind::Gateway => "gateway",
+        })
+    }
+}
+
+/// The facts of every header: the version, when the recording began (UTC, ns since 1970), and a checksum of all facts.
+const VERSION: &str = "version";
+const BEGAN: &str = "began_utc_ns";
 const CHECKSUM: &str = "checksum";
 
 /// The CRC-32 of these facts but for the checksum itself. MCAP has one for each chunk, and one of the whole at its end;
 /// whether a header can be believed must be known of a file without an end, too.
-fn checksum(facts: &BTreeMap<String, String>) -> String {
+fn checksum(facts: &Facts) -> String {
     let mut hasher = crc32fast::Hasher::new();
     for (key, value) in facts.iter().filter(|(key, _)| *key != CHECKSUM) {
         [key, "\0", value, "\0"].iter().for_each(|text| hasher.update(text.as_bytes()));
     }
     hasher.finalize().to_string()
-}
-
-/// The topic of the truth.
-pub const FRAME: &str = "frame";
-/// The topic of what the game was given.
-pub const INPUTS: &str = "inputs";
-
-/// The topic of a team's pictures.
-#[must_use]
-pub fn picture(team: &str) -> String {
-    format!("picture/{team}")
-}
-
-/// What a recording says of its game before anything happens.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Header {
-    /// The commit that the program was built from.
-    pub commit: String,
-    /// The game's name.
-    pub game: String,
-    /// When it began: UTC, ns since 1970.
-    pub began_utc_ns: u64,
-    /// Version, pace, and the scenario with the seed and all numbers drawn.
-    pub notice: GameInfo,
-    /// The waves.
-    pub water: Water,
-}
-
-/// What a recording says in the end.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ending {
-    /// How the game ended.
-    pub outcome: Outcome,
-    /// How it was run.
-    pub run: serde_json::Value,
-    /// Messages that are missing, since the disk was too slow for them.
-    pub dropped: u64,
 }
 
 /// Why something cannot be recorded.
@@ -100,7 +102,4 @@ pub enum RecordError {
     /// There is no such file, or it must not be written.
     #[error("the recording cannot be written: {0}")]
     File(#[from] std::io::Error),
-    /// It is not JSON.
-    #[error("the recording cannot hold this: {0}")]
-    Json(#[from] serde_json::Error),
 }

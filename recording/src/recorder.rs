@@ -1,70 +1,69 @@
 //! The thread that writes a recording while the game goes on, which never waits for it.
 
-use crate::clock;
-use crate::writer::{Note, Writer};
-use crate::{Ending, Header, RecordError};
+use crate::writer::{Entry, Opening, Writer};
+use crate::{Facts, RecordError, utc};
 use game::run_state::RecordingState;
 use std::fs::File;
 use std::io::{BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// What was recorded is handed to the system this often.
 const FLUSH: Duration = Duration::from_millis(250);
-/// So long the writer leaves notes to gather: to be woken for each would cost the game more than the writing does.
+/// So long the thread lets entries gather: to be woken for each would cost the game more than the writing does.
 const GATHER: Duration = Duration::from_millis(20);
-/// Memory that notes may take up that wait for the disk, bytes.
+/// Memory that entries may take up that wait for the disk, bytes.
 const WAITING_BYTES: usize = 128 << 20;
 /// How many they may be.
 const WAITING: usize = 1 << 14;
 
-/// Records a game on a thread of its own.
+/// Writes a recording on a thread of its own. Dropped, it completes the file without a result.
 pub struct Recorder {
     path: PathBuf,
-    notes: SyncSender<Job>,
     /// How much may wait for the disk, bytes.
     waiting_max: usize,
     shared: Arc<Shared>,
-    thread: JoinHandle<()>,
+    /// Until it ends: the way to the thread, and the thread.
+    running: Option<(SyncSender<Job>, JoinHandle<()>)>,
 }
 
 enum Job {
-    Note(Note, u64),
-    End(Box<Ending>),
+    Write(Entry, u64),
+    End(Facts),
 }
 
 #[derive(Default)]
 struct Shared {
     bytes: AtomicU64,
     dropped: AtomicU64,
-    /// Bytes that notes take up that wait.
+    /// Bytes that entries take up that wait.
     waiting: AtomicUsize,
-    failed: Mutex<Option<String>>,
+    failed: OnceLock<String>,
 }
 
 /// A new file that a recording is to go into. If none does, it is removed again.
 #[derive(Debug)]
-pub struct Blank {
+pub struct NewFile {
     path: PathBuf,
     /// None once it is used.
     file: Option<File>,
 }
 
-impl Blank {
+impl NewFile {
     /// Makes the file; an old one of this name is not touched.
     ///
     /// # Errors
     /// [`RecordError`] if it cannot be made.
-    pub fn create(path: &Path) -> Result<Blank, RecordError> {
-        Ok(Blank { path: path.to_owned(), file: Some(File::create_new(path)?) })
+    pub fn create(path: &Path) -> Result<NewFile, RecordError> {
+        Ok(NewFile { path: path.to_owned(), file: Some(File::create_new(path)?) })
     }
 }
 
-impl Drop for Blank {
+impl Drop for NewFile {
     fn drop(&mut self) {
         if self.file.is_some() {
             // Then it stays; it is empty.
@@ -80,32 +79,34 @@ impl Recorder {
     /// [`RecordError`] if the file does not take the beginning.
     ///
     /// # Panics
-    /// Never: a blank is used once.
-    pub fn begin(mut blank: Blank, header: &Header) -> Result<Recorder, RecordError> {
-        let file = blank.file.take().expect("a blank is used once");
-        Recorder::over(BufWriter::with_capacity(1 << 16, file), blank.path.clone(), header, WAITING_BYTES)
+    /// Never: a new file is used once.
+    pub fn begin(mut file: NewFile, opening: &Opening) -> Result<Recorder, RecordError> {
+        let open = file.file.take().expect("a new file is used once");
+        Recorder::over(BufWriter::with_capacity(1 << 16, open), file.path.clone(), opening, WAITING_BYTES)
     }
 
     fn over<W: Write + Seek + Send + 'static>(
         file: W,
         path: PathBuf,
-        header: &Header,
+        opening: &Opening,
         waiting_max: usize,
     ) -> Result<Recorder, RecordError> {
-        let writer = Writer::begin(file, header)?;
-        let (notes, jobs) = sync_channel(WAITING);
+        let writer = Writer::begin(file, opening)?;
+        let (sender, jobs) = sync_channel(WAITING);
         let shared = Arc::new(Shared::default());
         let (theirs, size_of) = (Arc::clone(&shared), path.clone());
         let thread = std::thread::Builder::new().name("recorder".to_owned());
         let thread = thread.spawn(move || write(writer, &jobs, &theirs, &size_of))?;
-        Ok(Recorder { path, notes, waiting_max, shared, thread })
+        Ok(Recorder { path, waiting_max, shared, running: Some((sender, thread)) })
     }
 
     /// Records something; drops it, and counts that, where the disk does not keep up.
-    pub fn note(&self, note: Note) {
-        let size = note.size();
+    pub fn record(&self, entry: Entry) {
+        let size = entry.size();
         let waiting = self.shared.waiting.fetch_add(size, Ordering::Relaxed);
-        if waiting + size > self.waiting_max || self.notes.try_send(Job::Note(note, clock::utc_ns())).is_err() {
+        let job = Job::Write(entry, utc::now_ns());
+        let is_full = waiting + size > self.waiting_max;
+        if is_full || self.running.as_ref().is_none_or(|(sender, _)| sender.try_send(job).is_err()) {
             self.shared.waiting.fetch_sub(size, Ordering::Relaxed);
             self.shared.dropped.fetch_add(1, Ordering::Relaxed);
         }
@@ -118,79 +119,96 @@ impl Recorder {
             file: self.path.display().to_string(),
             bytes: self.shared.bytes.load(Ordering::Relaxed),
             dropped: self.shared.dropped.load(Ordering::Relaxed),
-            failed: self.shared.failed.lock().unwrap_or_else(PoisonError::into_inner).clone(),
+            failed: self.shared.failed.get().cloned(),
         }
     }
 
-    /// Ends it well, once everything is written, and says how it stands then.
-    pub fn end(self, ending: Ending) -> RecordingState {
-        let dropped = self.shared.dropped.load(Ordering::Relaxed);
-        // A thread that is gone has said why.
-        drop(self.notes.send(Job::End(Box::new(Ending { dropped, ..ending }))));
-        let mut state = self.state();
-        if self.thread.join().is_err() {
-            state.failed = Some("its thread broke down".to_owned());
+    /// Completes the file with this result, to which how much was dropped is added, and says how it stands then.
+    pub fn end(mut self, mut result: Facts) -> RecordingState {
+        result.insert("dropped".to_owned(), self.shared.dropped.load(Ordering::Relaxed).to_string());
+        if let Some((sender, _)) = &self.running {
+            // A thread that is gone has said why.
+            drop(sender.send(Job::End(result)));
         }
-        let bytes = self.shared.bytes.load(Ordering::Relaxed);
-        let failed = self.shared.failed.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        RecordingState { bytes, failed: state.failed.or(failed), ..state }
+        self.join();
+        self.state()
+    }
+
+    fn join(&mut self) {
+        if let Some((sender, thread)) = self.running.take() {
+            drop(sender);
+            if thread.join().is_err() {
+                self.shared.failed.get_or_init(|| "its thread broke down".to_owned());
+            }
+        }
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        self.join();
     }
 }
 
 /// Writes what comes until the end. What cannot be written is dropped, and why is told.
 fn write<W: Write + Seek>(mut writer: Writer<W>, jobs: &Receiver<Job>, shared: &Shared, path: &Path) {
-    let mut flushed = clock::now();
-    let tell_size = || {
+    let mut flushed = now();
+    let update_size = || {
         let size = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
         shared.bytes.store(size, Ordering::Relaxed);
     };
-    let failed = |error: &RecordError| {
-        let mut failed = shared.failed.lock().unwrap_or_else(PoisonError::into_inner);
-        failed.get_or_insert_with(|| error.to_string());
-    };
-    let mut is_broken = false;
-    loop {
+    let failed = |error: &RecordError| drop(shared.failed.set(error.to_string()));
+    let is_broken = || shared.failed.get().is_some();
+    let result = loop {
         let written = match jobs.try_recv() {
-            Ok(Job::Note(note, utc_ns)) => {
-                let written = if is_broken { Ok(()) } else { writer.note(&note, utc_ns) };
-                shared.dropped.fetch_add(u64::from(is_broken), Ordering::Relaxed);
-                shared.waiting.fetch_sub(note.size(), Ordering::Relaxed);
+            Ok(Job::Write(entry, utc_ns)) => {
+                let written = if is_broken() { Ok(()) } else { writer.write(&entry, utc_ns) };
+                shared.dropped.fetch_add(u64::from(is_broken()), Ordering::Relaxed);
+                shared.waiting.fetch_sub(entry.size(), Ordering::Relaxed);
                 written
             }
-            Ok(Job::End(ending)) => {
-                if let (false, Err(error)) = (is_broken, writer.end(&ending)) {
-                    failed(&error);
-                }
-                return tell_size();
-            }
+            Ok(Job::End(result)) => break result,
             Err(TryRecvError::Empty) => {
-                clock::rest(GATHER);
+                rest();
                 Ok(())
             }
-            Err(TryRecvError::Disconnected) => return drop(writer.flush()),
+            Err(TryRecvError::Disconnected) => break Facts::new(),
         };
-        let now = clock::now();
-        let flush = now.duration_since(flushed) >= FLUSH;
-        let written = if flush && !is_broken { written.and_then(|()| writer.flush()) } else { written };
-        if flush {
-            flushed = now;
-            tell_size();
+        let is_due = now().duration_since(flushed) >= FLUSH;
+        let written = if is_due && !is_broken() { written.and_then(|()| writer.flush()) } else { written };
+        if is_due {
+            flushed = now();
+            update_size();
         }
         if let Err(error) = written {
             failed(&error);
-            is_broken = true;
         }
+    };
+    if let (false, Err(error)) = (is_broken(), writer.end(result)) {
+        failed(&error);
     }
+    update_size();
+}
+
+/// Lets entries gather. Whoever records need not wake anybody.
+#[expect(clippy::disallowed_methods, reason = "entries are written in batches, by the clock")]
+fn rest() {
+    std::thread::sleep(GATHER);
+}
+
+#[expect(clippy::disallowed_methods, reason = "what is recorded is handed to the disk by the clock")]
+fn now() -> Instant {
+    Instant::now()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{INPUTS, Recording, Turn};
-    use game::message::{Frame, GameInfo, Message, Stamp};
-    use game::water::Water;
-    use game::{Outcome, SimTime};
+    use crate::{Bag, Decision, FRAME, INPUTS, Kind};
+    use game::SimTime;
+    use game::message::{Frame, Message, Stamp};
     use std::io::{Cursor, SeekFrom};
+    use std::sync::Mutex;
 
     /// A disk that takes nothing while somebody else has it.
     #[derive(Clone, Default)]
@@ -211,30 +229,26 @@ mod tests {
         }
     }
 
-    fn header() -> Header {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/attack_1v1.toml");
-        let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
-        let notice = GameInfo { version: game::VERSION.to_owned(), pace: String::new(), scenario };
-        Header { commit: String::new(), game: String::new(), began_utc_ns: 0, notice, water: Water::default() }
-    }
-
     #[test]
     fn a_disk_that_does_not_keep_up_costs_the_newest_and_the_game_does_not_wait() {
         let disk = Disk::default();
-        let recorder = Recorder::over(disk.clone(), PathBuf::new(), &header(), 100_000).expect("it begins");
+        let opening = Opening { kind: Kind::Game, began_utc_ns: 0, facts: Facts::new(), more: vec![], teams: vec![] };
+        let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening, 100_000).expect("it begins");
         let stuck = disk.0.lock().expect("nobody panics");
-        let mut noted = 0;
+        let mut recorded = 0;
         while recorder.state().dropped < 3 {
-            let stamp = Stamp { valid_ns: SimTime(noted), seq: noted as u64, version: Frame::VERSION };
-            let frame = Frame { stamp, ..Frame::default() };
-            recorder.note(Note::Turn(Box::new(Turn { frame, ..Turn::default() })));
-            noted += 1;
+            let stamp = Stamp { valid_ns: SimTime(recorded), seq: recorded as u64, version: Frame::VERSION };
+            let frame = Frame { stamp, ..Frame::default() }.into();
+            recorder.record(Entry::Decision(Box::new(Decision { frame, ..Decision::default() })));
+            recorded += 1;
         }
         drop(stuck);
-        let state = recorder.end(Ending { outcome: Outcome::default(), run: serde_json::Value::Null, dropped: 0 });
+        let state = recorder.end(Facts::new());
         assert_eq!((state.dropped, state.failed), (3, None));
-        let recording = Recording::of(disk.0.lock().expect("nobody panics").get_ref().clone()).expect("a recording");
-        assert_eq!(recording.ending().map(|ending| ending.dropped), Some(3));
-        assert_eq!((recording.frame_count() + 3, recording.on(INPUTS).count() + 3), (noted as usize, noted as usize));
+        let bag = Bag::of(disk.0.lock().expect("nobody panics").get_ref().clone()).expect("a recording");
+        assert_eq!(bag.result().map(|result| result["dropped"].as_str()), Some("3"));
+        for topic in [FRAME, INPUTS] {
+            assert_eq!(bag.on(topic).count() + 3, recorded as usize, "{topic}");
+        }
     }
 }

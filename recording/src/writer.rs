@@ -1,7 +1,8 @@
-//! Notes of a game to the bytes of a recording.
+//! Entries to the bytes of a recording.
 
-use crate::text;
-use crate::{CHECKSUM, DRAWN, Ending, FRAME, Header, INPUTS, RESULT, RecordError, SQUALL, checksum, picture};
+use crate::{
+    BEGAN, CHECKSUM, FRAME, Facts, INPUTS, Kind, RESULT, RecordError, VERSION, checksum, json_string, picture,
+};
 use game::codec;
 use game::input::{Input, Inputs};
 use game::message::{Frame, Message, Stamp};
@@ -11,50 +12,66 @@ use mcap::records::{MessageHeader, Metadata};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
+use std::sync::Arc;
 
 /// The size at which a chunk is closed, bytes.
 const CHUNK: u64 = 1 << 20;
 
+/// How a recording begins: what is known before anything happens.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Opening {
+    /// What it is of.
+    pub kind: Kind,
+    /// When it begins: UTC, ns since 1970.
+    pub began_utc_ns: u64,
+    /// The header; version, beginning and checksum are added.
+    pub facts: Facts,
+    /// Metadata that follows the header, by name.
+    pub more: Vec<(&'static str, Facts)>,
+    /// The teams that there are pictures of, by number.
+    pub teams: Vec<String>,
+}
+
 /// Something to be recorded.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Note {
+pub enum Entry {
     /// A decision of the game.
-    Turn(Box<Turn>),
-    /// Something that went over the network.
-    Heard {
+    Decision(Box<Decision>),
+    /// A message, in bytes.
+    Message {
         /// The topic, without the game's name.
         topic: String,
         /// The schema, for CDR; none for JSON.
         schema: Option<&'static str>,
         /// The message.
         bytes: Vec<u8>,
-        /// Simulated time at which it came.
+        /// When: time of the game, or of the gateway's clock.
         at: SimTime,
     },
 }
 
-impl Note {
+impl Entry {
     /// About how much memory it takes up, bytes.
-    pub(super) fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         match self {
-            Note::Turn(turn) => {
-                let Turn { frame, pictures, inputs } = turn.as_ref();
+            Entry::Decision(decision) => {
+                let Decision { frame, pictures, inputs } = decision.as_ref();
                 let boats = pictures.iter().map(|picture| size_of_val(&*picture.own) + size_of_val(&*picture.contacts));
-                size_of::<Turn>() + size_of_val(&*frame.vehicles) + size_of_val(&**inputs) + boats.sum::<usize>()
+                size_of::<Decision>() + size_of_val(&*frame.vehicles) + size_of_val(&**inputs) + boats.sum::<usize>()
             }
-            Note::Heard { topic, bytes, .. } => size_of::<Note>() + topic.len() + bytes.len(),
+            Entry::Message { topic, bytes, .. } => size_of::<Entry>() + topic.len() + bytes.len(),
         }
     }
 }
 
 /// A decision of the game, and what led to it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Turn {
-    /// The truth, with the events since the turn before.
-    pub frame: Frame,
-    /// What was shown since the turn before.
+pub struct Decision {
+    /// The truth, with the events since the decision before.
+    pub frame: Arc<Frame>,
+    /// The pictures that were shown since then, where they are not recorded as messages.
     pub pictures: Vec<Picture>,
-    /// What was given since the turn before, in order.
+    /// What the game was given since then, in order.
     pub inputs: Vec<Input>,
 }
 
@@ -62,7 +79,8 @@ pub struct Turn {
 pub struct Writer<W: Write + Seek> {
     mcap: mcap::Writer<W>,
     began_utc_ns: u64,
-    teams: Vec<String>,
+    /// The topics of pictures, by team.
+    pictures: Vec<String>,
     /// Number and count of messages, by topic.
     channels: BTreeMap<String, (u16, u32)>,
     /// Whether something has been written since the last flush.
@@ -74,43 +92,35 @@ impl<W: Write + Seek> Writer<W> {
     ///
     /// # Errors
     /// [`RecordError`] if the file does not take it.
-    pub fn begin(file: W, header: &Header) -> Result<Writer<W>, RecordError> {
+    pub fn begin(file: W, opening: &Opening) -> Result<Writer<W>, RecordError> {
         let options = mcap::WriteOptions::new().profile("ros2").library(format!("squall {}", game::VERSION));
         // A chunk is written when it is whole: what is on the disk is then never in need of mending.
         let options = options.compression(None).chunk_size(Some(CHUNK)).disable_seeking(true);
         let mut mcap = options.create(file)?;
-        let scenario = &header.notice.scenario;
-        let facts = [
-            ("version", header.notice.version.clone()),
-            ("commit", header.commit.clone()),
-            ("game", header.game.clone()),
-            ("pace", header.notice.pace.clone()),
-            ("seed", scenario.seed.to_string()),
-            ("began_utc_ns", header.began_utc_ns.to_string()),
-            ("scenario", serde_json::to_string(scenario)?),
-            ("water", serde_json::to_string(&header.water)?),
-        ];
-        let mut facts: BTreeMap<String, String> = facts.map(|(key, value)| (key.to_owned(), value)).into();
-        facts.insert(CHECKSUM.to_owned(), checksum(&facts));
-        mcap.write_metadata(&Metadata { name: SQUALL.to_owned(), metadata: facts })?;
-        let drawn = scenario.drawn.iter().map(|drawn| (drawn.parameter.as_str(), drawn.value.to_string()));
-        write_metadata(&mut mcap, DRAWN, drawn)?;
+        let Opening { kind, began_utc_ns, facts, more, teams } = opening.clone();
+        let mut header = facts;
+        header.entry(VERSION.to_owned()).or_insert_with(|| game::VERSION.to_owned());
+        header.insert(BEGAN.to_owned(), began_utc_ns.to_string());
+        header.insert(CHECKSUM.to_owned(), checksum(&header));
+        for (name, facts) in std::iter::once((kind.header(), header)).chain(more) {
+            mcap.write_metadata(&Metadata { name: name.to_owned(), metadata: facts })?;
+        }
         mcap.flush()?;
-        let teams = scenario.teams.iter().map(|team| picture(&team.name)).collect();
-        Ok(Writer { mcap, began_utc_ns: header.began_utc_ns, teams, channels: BTreeMap::new(), is_dirty: false })
+        let pictures = teams.iter().map(|team| picture(team)).collect();
+        Ok(Writer { mcap, began_utc_ns, pictures, channels: BTreeMap::new(), is_dirty: false })
     }
 
-    /// Records something, at this moment (UTC, ns).
+    /// Records something, at this time (UTC, ns).
     ///
     /// # Errors
     /// [`RecordError`] if the file does not take it.
-    pub fn note(&mut self, note: &Note, utc_ns: u64) -> Result<(), RecordError> {
+    pub fn write(&mut self, entry: &Entry, utc_ns: u64) -> Result<(), RecordError> {
         self.is_dirty = true;
-        match note {
-            Note::Turn(turn) => self.turn(turn, utc_ns),
-            Note::Heard { topic, schema: Some(schema), bytes, at } => self.put(topic, schema, *at, utc_ns, bytes),
-            Note::Heard { topic, schema: None, bytes, at } => {
-                self.put(topic, text::SCHEMA, *at, utc_ns, &text::wrap(bytes))
+        match entry {
+            Entry::Decision(decision) => self.decision(decision, utc_ns),
+            Entry::Message { topic, schema: Some(schema), bytes, at } => self.put(topic, schema, *at, utc_ns, bytes),
+            Entry::Message { topic, schema: None, bytes, at } => {
+                self.put(topic, json_string::SCHEMA, *at, utc_ns, &json_string::wrap(bytes))
             }
         }
     }
@@ -126,31 +136,27 @@ impl<W: Write + Seek> Writer<W> {
         Ok(())
     }
 
-    /// Ends the recording well.
+    /// Completes the file, with a result where there is one.
     ///
     /// # Errors
     /// [`RecordError`] if the file does not take it.
-    pub fn end(mut self, ending: &Ending) -> Result<W, RecordError> {
-        let facts = [
-            ("digest", ending.outcome.digest.clone()),
-            ("outcome", serde_json::to_string(&ending.outcome)?),
-            ("run", ending.run.to_string()),
-            ("dropped", ending.dropped.to_string()),
-        ];
-        write_metadata(&mut self.mcap, RESULT, facts)?;
+    pub fn end(mut self, result: Facts) -> Result<W, RecordError> {
+        if !result.is_empty() {
+            self.mcap.write_metadata(&Metadata { name: RESULT.to_owned(), metadata: result })?;
+        }
         self.mcap.finish()?;
         Ok(self.mcap.into_inner())
     }
 
-    fn turn(&mut self, turn: &Turn, utc_ns: u64) -> Result<(), RecordError> {
-        for picture in &turn.pictures {
-            let topic = self.teams.get(usize::from(picture.team)).cloned().unwrap_or_default();
+    fn decision(&mut self, decision: &Decision, utc_ns: u64) -> Result<(), RecordError> {
+        for picture in &decision.pictures {
+            let topic = self.pictures.get(usize::from(picture.team)).cloned().unwrap_or_default();
             self.put_message(&topic, picture, utc_ns)?;
         }
-        let stamp = Stamp { version: Inputs::VERSION, ..turn.frame.stamp };
-        let inputs = turn.inputs.iter().map(|input| (*input).into()).collect();
+        let stamp = Stamp { version: Inputs::VERSION, ..decision.frame.stamp };
+        let inputs = decision.inputs.iter().map(|input| (*input).into()).collect();
         self.put_message(INPUTS, &Inputs { stamp, inputs }, utc_ns)?;
-        self.put_message(FRAME, &turn.frame, utc_ns)
+        self.put_message(FRAME, &*decision.frame, utc_ns)
     }
 
     fn put_message<M: Message + Serialize>(
@@ -183,21 +189,12 @@ impl<W: Write + Seek> Writer<W> {
     /// A channel for this topic.
     fn open(&mut self, topic: &str, schema: &str) -> Result<u16, RecordError> {
         let definition = match schema {
-            text::SCHEMA => text::DEFINITION.to_owned(),
+            json_string::SCHEMA => json_string::DEFINITION.to_owned(),
             ours => ros::full_definition(ours).unwrap_or_default(),
         };
         let schema_id = self.mcap.add_schema(schema, "ros2msg", definition.as_bytes())?;
-        // NoRecorder offered any: the profile wants to be told.
+        // The profile asks for the qualities of service that were offered: there were none.
         let qos = BTreeMap::from([("offered_qos_profiles".to_owned(), "[]".to_owned())]);
         Ok(self.mcap.add_channel(schema_id, topic, "cdr", &qos)?)
     }
-}
-
-fn write_metadata<'a, W: Write + Seek>(
-    mcap: &mut mcap::Writer<W>,
-    name: &str,
-    facts: impl IntoIterator<Item = (&'a str, String)>,
-) -> Result<(), RecordError> {
-    let metadata = facts.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-    Ok(mcap.write_metadata(&Metadata { name: name.to_owned(), metadata })?)
 }

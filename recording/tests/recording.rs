@@ -6,7 +6,7 @@ use game::message::{Frame, GameInfo, Message, Orders, Stamp, VehicleTruth};
 use game::picture::Nav;
 use game::water::{PlaneWave, Water};
 use game::{Order, Outcome, Picture, SimTime, VehicleId};
-use recording::{Blank, Ending, Header, Note, Recorder, Recording, RecordingError, Turn, Writer};
+use recording::{Decision, Ending, Entry, Header, NewFile, Recorder, Recording, RecordingError, Writer};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -18,55 +18,49 @@ fn header() -> Header {
         commit: "c0ffee".to_owned(),
         game: "pav01-1".to_owned(),
         began_utc_ns: 1_700_000_000_000_000_000,
-        notice: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
+        info: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
         water: Water { waves: vec![wave] },
     }
 }
 
 fn ending() -> Ending {
-    let outcome = Outcome {
-        scenario: "pav01".to_owned(),
-        seed: 1,
-        version: "0".to_owned(),
-        digest: "ab".to_owned(),
-        duration_s: 1.0,
-        ticks: 20,
-        ..Outcome::default()
-    };
+    let outcome = Outcome { seed: 1, digest: "ab".to_owned(), duration_s: 1.0, ticks: 20, ..Outcome::default() };
     Ending { outcome, run: serde_json::json!({"pace": "lockstep"}), dropped: 0 }
 }
 
 /// The decision `seq`, at which the first boat is at `north_m`.
-fn turn(seq: u64, north_m: f64) -> Turn {
+fn decision(seq: u64, north_m: f64) -> Decision {
     let at = |seq: u64, version| Stamp { valid_ns: SimTime(seq as i64 * 100_000_000), seq, version };
     let nav = Nav { north_m, ..Nav::default() };
     let vehicles = vec![VehicleTruth { nav, ..VehicleTruth::default() }; 4];
-    let frame = Frame { stamp: at(seq, Frame::VERSION), vehicles, score: vec![0, 0], ..Frame::default() };
-    let Some(before) = seq.checked_sub(1) else { return Turn { frame, ..Turn::default() } };
+    let frame = Frame { stamp: at(seq, Frame::VERSION), vehicles, score: vec![0, 0], ..Frame::default() }.into();
+    let Some(before) = seq.checked_sub(1) else { return Decision { frame, ..Decision::default() } };
     let picture = |team| Picture { stamp: at(before, Picture::VERSION), team, ..Picture::default() };
     let order = Order::Steer { heading_rad: north_m, speed_m_s: 1.0 / 3.0 };
     let inputs = vec![Input::Pictured, Input::Ordered { vehicle: VehicleId(1), order, given_at: SimTime(7) }];
-    Turn { frame, pictures: vec![picture(0), picture(1)], inputs }
+    Decision { frame, pictures: vec![picture(0), picture(1)], inputs }
 }
 
-fn status() -> Note {
+fn status() -> Entry {
     let bytes = serde_json::to_vec(&HelmQuestion { functions: true }).expect("JSON");
-    Note::Heard { topic: "status/blue_one".to_owned(), schema: None, bytes, at: SimTime(50_000_000) }
+    Entry::Message { topic: "status/blue_one".to_owned(), schema: None, bytes, at: SimTime(50_000_000) }
 }
 
-/// A recording of a few turns; `north_m` are where the first boat was.
+/// A recording of a few decisions; `north_m` are where the first boat was.
 fn recorded(north_m: &[f64]) -> Vec<u8> {
-    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header()).expect("it begins");
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header().opening()).expect("it begins");
     for (seq, north_m) in north_m.iter().enumerate() {
-        writer.note(&Note::Turn(Box::new(turn(seq as u64, *north_m))), 7 + seq as u64).expect("it is written");
+        writer
+            .write(&Entry::Decision(Box::new(decision(seq as u64, *north_m))), 7 + seq as u64)
+            .expect("it is written");
         if seq == 1 {
-            writer.note(&status(), 8).expect("it is written");
+            writer.write(&status(), 8).expect("it is written");
         }
         if seq % 3 == 2 {
             writer.flush().expect("it is flushed");
         }
     }
-    writer.end(&ending()).expect("it ends").into_inner()
+    writer.end(ending().facts()).expect("it ends").into_inner()
 }
 
 #[test]
@@ -76,23 +70,23 @@ fn what_is_recorded_is_read_again() {
     assert_eq!(recording.ending(), Some(&ending()));
     assert!(!recording.is_cut());
     let frames: Vec<Frame> = recording.frames().collect::<Result<_, _>>().unwrap_or_else(|e| panic!("{e}"));
-    let want: Vec<Frame> = (0..4).map(|seq| turn(seq, seq as f64 + 1.0).frame).collect();
+    let want: Vec<Frame> = (0..4).map(|seq| Frame::clone(&decision(seq, seq as f64 + 1.0).frame)).collect();
     assert_eq!(frames, want);
-    let said = recording.frame(2);
-    assert_eq!((said.topic, said.number, said.at, said.utc_ns), ("frame", 2, SimTime(200_000_000), 9));
-    assert_eq!(said.schema, Some("squall_msgs/msg/Frame"));
-    let inputs: Vec<Inputs> = recording.on("inputs").map(|said| said.read().expect("inputs")).collect();
+    let message = recording.frame(2);
+    assert_eq!((message.topic, message.number, message.at, message.utc_ns), ("frame", 2, SimTime(200_000_000), 9));
+    assert_eq!(message.schema, Some("squall_msgs/msg/Frame"));
+    let inputs: Vec<Inputs> = recording.bag().on("inputs").map(|message| message.read().expect("inputs")).collect();
     let given = |inputs: &Inputs| inputs.inputs.iter().map(|record| record.input().expect("known")).collect::<Vec<_>>();
     assert_eq!(inputs.iter().map(|inputs| inputs.stamp.seq).collect::<Vec<_>>(), [0, 1, 2, 3]);
-    assert_eq!(given(&inputs[2]), turn(2, 3.0).inputs);
-    let topics: Vec<(&str, usize)> = recording.topics().into_iter().collect();
+    assert_eq!(given(&inputs[2]), decision(2, 3.0).inputs);
+    let topics: Vec<(&str, usize)> = recording.bag().topics().into_iter().collect();
     let want = [("frame", 4), ("inputs", 4), ("picture/blue", 3), ("picture/red", 3), ("status/blue_one", 1)];
     assert_eq!(topics, want);
-    let Note::Heard { bytes, .. } = status() else { panic!("it was heard") };
-    let said = recording.on("status/blue_one").next().expect("it is there");
-    assert_eq!((said.bytes, said.schema), (bytes.as_slice(), None));
-    assert!(matches!(said.read::<Orders>(), Err(RecordingError::Damaged { .. })));
-    assert_eq!(recording.on("whales").count(), 0);
+    let Entry::Message { bytes, .. } = status() else { panic!("it is a message") };
+    let message = recording.bag().on("status/blue_one").next().expect("it is there");
+    assert_eq!((message.bytes, message.schema), (bytes.as_slice(), None));
+    assert!(matches!(message.read::<Orders>(), Err(RecordingError::Damaged { .. })));
+    assert_eq!(recording.bag().on("whales").count(), 0);
 }
 
 #[test]
@@ -112,9 +106,13 @@ fn the_file_is_one_that_the_library_reads() {
     assert_eq!(count, 15);
 }
 
-/// What was said, message by message.
+/// What was message, message by message.
 fn all_of(recording: &Recording) -> Vec<(String, u32, Vec<u8>)> {
-    recording.messages().map(|said| (said.topic.to_owned(), said.number, said.bytes.to_vec())).collect()
+    recording
+        .bag()
+        .messages()
+        .map(|message| (message.topic.to_owned(), message.number, message.bytes.to_vec()))
+        .collect()
 }
 
 #[test]
@@ -151,13 +149,14 @@ fn other_files_are_refused_with_the_reason() {
     assert!(reason(b"ahoy").contains("does not begin as MCAP"), "{}", reason(b"ahoy"));
     let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).expect("it begins");
     writer.finish().expect("it ends");
-    let said = reason(writer.into_inner().get_ref());
-    assert!(said.contains("there is no metadata \"squall\""), "{said}");
+    let message = reason(writer.into_inner().get_ref());
+    assert!(message.contains("there is neither metadata \"squall\" nor \"gateway\""), "{message}");
     let mut header = header();
-    header.notice.version = "0.0.1".to_owned();
-    let other = Writer::begin(Cursor::new(Vec::new()), &header).and_then(|writer| writer.end(&ending()));
-    let said = reason(other.expect("a file").get_ref());
-    assert!(said.contains("recorded by Squall 0.0.1, this is"), "{said}");
+    header.info.version = "0.0.1".to_owned();
+    let other =
+        Writer::begin(Cursor::new(Vec::new()), &header.opening()).and_then(|writer| writer.end(ending().facts()));
+    let message = reason(other.expect("a file").get_ref());
+    assert!(message.contains("recorded by Squall 0.0.1, this is"), "{message}");
     let missing = Recording::open(Path::new("/nowhere/at.mcap")).expect_err("there is none").to_string();
     assert!(missing.contains("/nowhere/at.mcap"), "{missing}");
 }
@@ -167,12 +166,12 @@ fn other_files_are_refused_with_the_reason() {
 fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
     let dir = tempfile::tempdir().expect("a directory");
     let path = dir.path().join("game.mcap");
-    let blank = || Blank::create(&path);
+    let blank = || NewFile::create(&path);
     drop(blank().unwrap_or_else(|e| panic!("{e}")));
     assert!(!path.exists(), "of a game that never began there is no recording");
-    let recorder = Recorder::begin(blank().unwrap_or_else(|e| panic!("{e}")), &header());
+    let recorder = Recorder::begin(blank().unwrap_or_else(|e| panic!("{e}")), &header().opening());
     let recorder = recorder.unwrap_or_else(|e| panic!("{e}"));
-    (0..50).for_each(|seq| recorder.note(Note::Turn(Box::new(turn(seq, seq as f64)))));
+    (0..50).for_each(|seq| recorder.record(Entry::Decision(Box::new(decision(seq, seq as f64)))));
     let mut frames = 0;
     for _ in 0..3000 {
         frames = Recording::open(&path).unwrap_or_else(|e| panic!("{e}")).frame_count();
@@ -183,7 +182,7 @@ fn a_recorder_writes_beside_the_game_and_can_be_read_meanwhile() {
     }
     assert_eq!(frames, 50, "what was recorded is on the disk though nobody ended it");
     assert!(blank().is_err(), "nothing is overwritten");
-    let state = recorder.end(ending());
+    let state = recorder.end(ending().facts());
     assert_eq!((state.dropped, state.failed), (0, None));
     assert_eq!(state.bytes, std::fs::metadata(&path).expect("it is there").len());
     let recording = Recording::open(&path).unwrap_or_else(|e| panic!("{e}"));
@@ -224,19 +223,19 @@ fn first_schema(bytes: &[u8]) -> usize {
 fn a_byte_that_is_another_is_noticed_and_its_chunk_named() {
     let whole = recorded(&[1.0]);
     let opened = Recording::of(whole.clone()).unwrap_or_else(|e| panic!("{e}"));
-    assert!(opened.damage().is_empty(), "nothing is");
+    assert!(opened.bag().damage().is_empty(), "nothing is");
     let (all, schema) = (all_of(&opened), first_schema(&whole));
     for place in schema - 60..whole.len() {
         let mut bytes = whole.clone();
         bytes[place] ^= 0x10;
         let Ok(recording) = Recording::of(bytes) else { continue };
-        let is_noticed = recording.is_cut() || !recording.damage().is_empty();
+        let is_noticed = recording.is_cut() || !recording.bag().damage().is_empty();
         assert!(is_noticed || all_of(&recording) == all, "byte {place} is another, and nobody says so");
     }
     let mut bytes = whole;
     bytes[schema] ^= 0x10;
     let damaged = Recording::of(bytes).unwrap_or_else(|e| panic!("{e}"));
-    let [range] = damaged.damage() else { panic!("{:?}", damaged.damage()) };
+    let [range] = damaged.bag().damage() else { panic!("{:?}", damaged.bag().damage()) };
     assert!((schema - 60..schema).contains(&range.start) && range.end > schema, "{range:?} of the schema at {schema}");
 }
 
@@ -255,12 +254,12 @@ fn a_damaged_header_is_refused_also_in_a_file_that_is_cut() {
 fn a_header_that_refers_to_nothing_is_refused() {
     let refused = |change: fn(&mut game::Scenario)| {
         let mut header = header();
-        change(&mut header.notice.scenario);
-        let writer = Writer::begin(Cursor::new(Vec::new()), &header).expect("it begins");
-        let bytes = writer.end(&ending()).expect("it ends").into_inner();
+        change(&mut header.info.scenario);
+        let writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");
+        let bytes = writer.end(ending().facts()).expect("it ends").into_inner();
         Recording::of(bytes).expect_err("it is refused").to_string()
     };
-    for (said, part) in [
+    for (message, part) in [
         (refused(|scenario| scenario.vehicles[0].boat = 7), "the boat of blue_one is 7, expected less than 1"),
         (refused(|scenario| scenario.vehicles[0].strategy = 9), "the strategy of blue_one is 9"),
         (
@@ -270,6 +269,6 @@ fn a_header_that_refers_to_nothing_is_refused() {
         (refused(|scenario| scenario.field.flags[1].team = game::TeamId(5)), "the team of flag 1 is 5"),
         (refused(|scenario| scenario.vehicles[1].name = "../x".to_owned()), "\"../x\" is no name"),
     ] {
-        assert!(said.contains("its scenario is not understood") && said.contains(part), "{said}");
+        assert!(message.contains("its scenario is not understood") && message.contains(part), "{message}");
     }
 }

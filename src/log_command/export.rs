@@ -1,54 +1,58 @@
 //! A recording, or a topic of it, as files for other programs.
 
-use analysis::{Book, alog, sheet};
+use analysis::{GameSeries, alog, table};
 use anyhow::{Context, Result};
-use recording::Recording;
+use game::Scenario;
+use recording::{Bag, Recording};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::Path;
 
+/// A recording, and the scenario of its game.
+type Source<'a> = (&'a Bag, Option<&'a Scenario>);
+
 /// Writes a topic as CSV, into a file or to whoever reads.
-pub(super) fn csv(recording: &Recording, topic: &str, file: Option<&Path>) -> Result<()> {
+pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Result<()> {
     let Some(path) = file else {
-        let done = rows(recording, topic, &mut csv::Writer::from_writer(BufWriter::new(std::io::stdout().lock())));
+        let done = rows(source, topic, &mut csv::Writer::from_writer(BufWriter::new(std::io::stdout().lock())));
         return match done {
             // Who has read enough goes away: that is nothing to complain about.
-            Err(sheet::SheetError::Sink(e)) if e.kind() == ErrorKind::BrokenPipe => Ok(()),
+            Err(table::TableError::Sink(e)) if e.kind() == ErrorKind::BrokenPipe => Ok(()),
             other => Ok(other?),
         };
     };
     let trying = || format!("cannot write {}", path.display());
     // An unknown topic leaves no empty file behind.
-    sheet::check(recording, topic)?;
+    table::check(source.0, topic)?;
     let file = std::fs::File::create(path).with_context(trying)?;
-    match rows(recording, topic, &mut csv::Writer::from_writer(BufWriter::new(file))) {
-        Err(sheet::SheetError::Sink(e)) => Err(e).with_context(trying),
+    match rows(source, topic, &mut csv::Writer::from_writer(BufWriter::new(file))) {
+        Err(table::TableError::Sink(e)) => Err(e).with_context(trying),
         other => Ok(other?),
     }
 }
 
-fn rows<W: Write>(recording: &Recording, topic: &str, csv: &mut csv::Writer<W>) -> Result<(), sheet::SheetError> {
+fn rows<W: Write>(source: Source<'_>, topic: &str, csv: &mut csv::Writer<W>) -> Result<(), table::TableError> {
     let io = |e: csv::Error| match e.into_kind() {
         csv::ErrorKind::Io(e) => e,
         other => std::io::Error::other(format!("{other:?}")),
     };
-    sheet::write(recording, topic, &mut |cells| csv.write_record(cells).map_err(io))?;
+    table::write(source.0, source.1, topic, &mut |cells| csv.write_record(cells).map_err(io))?;
     Ok(csv.flush()?)
 }
 
 /// Writes MOOS logs: into a folder those of the shoreside and of all boats, into a file that of the shoreside. Says how
 /// many.
-pub(super) fn alog(recording: &Recording, book: &Book, path: &Path) -> Result<usize> {
+pub(super) fn alog(recording: &Recording, series: &GameSeries, path: &Path) -> Result<usize> {
     let header = recording.header();
     if path.extension().is_some_and(|ending| ending == "alog") && !path.is_dir() {
-        save(path, &alog::shoreside(header, book))?;
+        save(path, &alog::shoreside(header, series))?;
         return Ok(1);
     }
     super::make_folder(path)?;
-    let names = alog::names(book);
+    let names = alog::names(series);
     for (i, name) in names.iter().enumerate() {
         let text = match i.checked_sub(1) {
-            Some(place) => alog::vehicle(header, book, place).unwrap_or_default(),
-            None => alog::shoreside(header, book),
+            Some(place) => alog::vehicle(header, series, place).unwrap_or_default(),
+            None => alog::shoreside(header, series),
         };
         save(&path.join(format!("{name}.alog")), &text)?;
     }

@@ -1,6 +1,8 @@
 //! The summary of a recorded game as text.
 
-use analysis::{Figures, Gateway, Summary, Traffic, utc};
+use analysis::{BoatStatistics, Gateway, Summary, Topic, Traffic};
+use recording::{Bag, RecordingError, utc};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The whole page.
@@ -13,7 +15,23 @@ pub(super) fn text(summary: &Summary) -> String {
     for gateway in &summary.gateways {
         text += &gateway_text(gateway);
     }
-    text + &topics(summary)
+    text + &topics(&summary.topics)
+}
+
+/// The page of a gateway's own recording.
+pub(super) fn gateway(bag: &Bag) -> Result<String, RecordingError> {
+    let [boat, version, commit] = ["vehicle", "version", "commit"].map(|key| bag.fact(key));
+    let mut text = format!("the gateway of {boat}\n");
+    line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(bag.began_utc_ns())));
+    let duration_s = bag.messages().map(|message| message.at).max().unwrap_or_default().as_s();
+    line(&mut text, format_args!("{duration_s:.1} s, {:.1} MB", bag.size() as f64 * 1e-6));
+    if bag.is_cut() {
+        line(&mut text, format_args!("the file ends before the gateway did: what follows holds up to there"));
+    }
+    text += &gateway_text(&analysis::gateway_of(bag, boat)?);
+    text += &topics(&analysis::topics(bag));
+    line(&mut text, format_args!("\nsquall gateway replay plays it through the codec and the supervisor again"));
+    Ok(text)
 }
 
 /// What happened, one a line.
@@ -48,7 +66,7 @@ fn head(summary: &Summary) -> String {
 }
 
 /// Three tables, so that each fits a terminal: how it moved, for how long it was what, how well it knew and did.
-fn boats(boats: &[Figures]) -> String {
+fn boats(boats: &[BoatStatistics]) -> String {
     let width = boats.iter().map(|boat| boat.boat.len()).max().unwrap_or(0).max(8) + 2;
     let mut text = format!("\n{:width$}{:>10}{:>8}{:>7}", "", "distance", "speed", "max");
     line(&mut text, format_args!("{:>7}{:>10}{:>6}{:>8}{:>12}", "grabs", "captures", "tags", "tagged", "collisions"));
@@ -59,7 +77,7 @@ fn boats(boats: &[Figures]) -> String {
         let did = format!("{:>7}{:>10}{:>6}{:>8}{:>12}", c.grabs, c.captures, c.tags, c.tagged, c.collisions);
         line(&mut text, format_args!("{:width$}{moved}{did}", boat.boat));
     }
-    let heads = ["carrying", "tagged", "outside", "no mind", "lost"].map(|head| format!("{head:>9}")).concat();
+    let heads = ["carrying", "tagged", "outside", "no agent", "lost"].map(|head| format!("{head:>9}")).concat();
     line(&mut text, format_args!("\n{:width$}{heads}{:>22}{:>22}", "", "navigation error", "off its orders"));
     let (navigation, orders) =
         (format!("{:>12}{:>10}", "rms m", "95 % m"), format!("{:>12}{:>10}", "rms deg", "rms m/s"));
@@ -103,11 +121,11 @@ fn gateway_text(gateway: &Gateway) -> String {
     text
 }
 
-fn topics(summary: &Summary) -> String {
-    let width = summary.topics.keys().map(String::len).max().unwrap_or(0).max(5) + 2;
+fn topics(topics: &BTreeMap<String, Topic>) -> String {
+    let width = topics.keys().map(String::len).max().unwrap_or(0).max(5) + 2;
     let mut text = String::new();
     line(&mut text, format_args!("\n{:width$}{:>10}{:>10}{:>10}", "topic", "messages", "a second", "kB"));
-    for (name, topic) in &summary.topics {
+    for (name, topic) in topics {
         let rate = topic.rate_hz.map_or("-".to_owned(), |rate_hz| format!("{rate_hz:.1}"));
         let kilobytes = topic.bytes as f64 * 1e-3;
         line(&mut text, format_args!("{name:width$}{:>10}{rate:>10}{kilobytes:>10.0}", topic.count));

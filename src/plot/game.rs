@@ -2,7 +2,7 @@
 
 use crate::plot::field::{self, Chart, Spot, Symbol, Track};
 use crate::plot::{self, Line, Page, Panel};
-use analysis::{Boat, Book, Comparison, Moment, distances};
+use analysis::{BoatSeries, Comparison, GameSeries, Sample, distances};
 use anyhow::Result;
 use game::angle::compass_deg_from_rad;
 use game::event::Event;
@@ -20,20 +20,20 @@ const ORDERED: RGBColor = RGBColor(90, 90, 90);
 const TIME: &str = "simulated time in s";
 
 /// Draws a game into files in a folder, and says how many plots there are.
-pub(crate) fn write(dir: &Path, header: &Header, book: &Book) -> Result<usize> {
-    field::write(&dir.join("tracks"), &chart(header, book))?;
-    write_page(&dir.join("score"), &score(header, book))?;
-    for boat in &book.boats {
-        write_page(&dir.join(format!("boat_{}", boat.name)), &boat_page(header, book, boat))?;
+pub(crate) fn write(dir: &Path, header: &Header, series: &GameSeries) -> Result<usize> {
+    field::write(&dir.join("tracks"), &chart(header, series))?;
+    write_page(&dir.join("score"), &score(header, series))?;
+    for boat in &series.boats {
+        write_page(&dir.join(format!("boat_{}", boat.name)), &boat_page(header, series, boat))?;
     }
-    Ok(2 + book.boats.len())
+    Ok(2 + series.boats.len())
 }
 
 /// Draws two games over each other into a file in a folder.
 pub(crate) fn write_comparison(
     dir: &Path,
     [name_a, name_b]: [&Path; 2],
-    [a, b]: [&Book; 2],
+    [a, b]: [&GameSeries; 2],
     comparison: &Comparison,
 ) -> Result<()> {
     let mut panels = vec![];
@@ -60,7 +60,7 @@ fn stem(path: &Path) -> String {
 }
 
 fn title(header: &Header, what: &str) -> String {
-    let scenario = &header.notice.scenario;
+    let scenario = &header.info.scenario;
     format!("{}, seed {}: {what}", scenario.name, scenario.seed)
 }
 
@@ -70,55 +70,57 @@ fn colour(team: usize) -> RGBColor {
 }
 
 /// The colours of a team's boats: from its own to half of it in white.
-fn shades(book: &Book) -> Vec<RGBColor> {
-    let shade = |(i, boat): (usize, &Boat)| {
-        let mates = |boats: &[Boat]| boats.iter().filter(|other| other.team == boat.team).count();
-        let (place, all) = (mates(&book.boats[..i]), mates(&book.boats));
+fn shades(series: &GameSeries) -> Vec<RGBColor> {
+    let shade = |(i, boat): (usize, &BoatSeries)| {
+        let mates = |boats: &[BoatSeries]| boats.iter().filter(|other| other.team == boat.team).count();
+        let (place, all) = (mates(&series.boats[..i]), mates(&series.boats));
         let white = if all > 1 { 0.5 * place as f64 / (all - 1) as f64 } else { 0.0 };
         let mix = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
         let RGBColor(red, green, blue) = colour(boat.team);
         RGBColor(mix(red), mix(green), mix(blue))
     };
-    book.boats.iter().enumerate().map(shade).collect()
+    series.boats.iter().enumerate().map(shade).collect()
 }
 
-fn chart<'a>(header: &'a Header, book: &Book) -> Chart<'a> {
-    let named = book.boats.len() <= NAMES_MAX;
-    let track = |(boat, colour): (&Boat, RGBColor)| Track {
+fn chart<'a>(header: &'a Header, series: &GameSeries) -> Chart<'a> {
+    let named = series.boats.len() <= NAMES_MAX;
+    let track = |(boat, colour): (&BoatSeries, RGBColor)| Track {
         name: if named { boat.name.clone() } else { String::new() },
         colour,
         places: boat.track().collect(),
     };
-    let start = |boat: &Boat| Some(Spot { symbol: Symbol::Start, at: boat.track().next()?, colour: colour(boat.team) });
-    let mut spots: Vec<Spot> = book.boats.iter().filter_map(start).collect();
-    for logged in &book.events {
+    let start =
+        |boat: &BoatSeries| Some(Spot { symbol: Symbol::Start, at: boat.track().next()?, colour: colour(boat.team) });
+    let mut spots: Vec<Spot> = series.boats.iter().filter_map(start).collect();
+    for logged in &series.events {
         let symbol = match logged.event {
             Event::Grabbed { .. } => Symbol::Grab,
             Event::Captured { .. } => Symbol::Capture,
             Event::Tagged { .. } => Symbol::Tag,
             _ => continue,
         };
-        let boat = logged.event.vehicle().and_then(|vehicle| book.boats.get(vehicle.index()));
-        let place = |boat: &Boat| boat.moments.get(book.moment_at(logged.at.as_s())).map(|moment| moment.truth.at());
+        let boat = logged.event.vehicle().and_then(|vehicle| series.boats.get(vehicle.index()));
+        let place =
+            |boat: &BoatSeries| boat.samples.get(series.sample_at(logged.at.as_s())).map(|sample| sample.truth.at());
         if let Some((boat, at)) = boat.and_then(|boat| Some((boat, place(boat)?))) {
             spots.push(Spot { symbol, at, colour: colour(boat.team) });
         }
     }
     Chart {
         title: title(header, "tracks"),
-        field: &header.notice.scenario.field,
-        teams: book.teams.iter().enumerate().map(|(i, name)| (name.clone(), colour(i))).collect(),
-        tracks: book.boats.iter().zip(shades(book)).map(track).collect(),
+        field: &header.info.scenario.field,
+        teams: series.teams.iter().enumerate().map(|(i, name)| (name.clone(), colour(i))).collect(),
+        tracks: series.boats.iter().zip(shades(series)).map(track).collect(),
         spots,
     }
 }
 
 /// The score as steps.
-fn score(header: &Header, book: &Book) -> Page {
+fn score(header: &Header, series: &GameSeries) -> Page {
     let steps = |team: usize| {
-        let points = book.score.iter().map(|score| score.get(team).copied().unwrap_or(0));
+        let points = series.score.iter().map(|score| score.get(team).copied().unwrap_or(0));
         let mut line: Vec<(f64, f64)> = vec![];
-        for (time_s, points) in book.times_s.iter().zip(points.map(f64::from)) {
+        for (time_s, points) in series.times_s.iter().zip(points.map(f64::from)) {
             let before = line.last().map_or(points, |last| last.1);
             if before != points {
                 line.push((*time_s, before));
@@ -128,36 +130,36 @@ fn score(header: &Header, book: &Book) -> Page {
         line
     };
     let line = |(team, name): (usize, &String)| Line { colour: Some(colour(team)), ..Line::of(name, steps(team)) };
-    let lines = book.teams.iter().enumerate().map(line).collect();
+    let lines = series.teams.iter().enumerate().map(line).collect();
     let panels = vec![Panel::of("Score", [TIME, "points"], lines, "nothing was recorded")];
     Page { title: title(header, "score"), columns: 1, panel: WIDE, panels }
 }
 
 /// Speed, heading and navigation of a boat.
-fn boat_page(header: &Header, book: &Book, boat: &Boat) -> Page {
-    let series = |of: &dyn Fn(&Moment) -> Option<f64>| -> Vec<(f64, f64)> {
-        let moments = book.times_s.iter().zip(&boat.moments);
-        moments.map(|(time_s, moment)| (*time_s, of(moment).unwrap_or(f64::NAN))).collect()
+fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page {
+    let series = |of: &dyn Fn(&Sample) -> Option<f64>| -> Vec<(f64, f64)> {
+        let samples = series.times_s.iter().zip(&boat.samples);
+        samples.map(|(time_s, sample)| (*time_s, of(sample).unwrap_or(f64::NAN))).collect()
     };
     let ordered = |points| Line { colour: Some(ORDERED), ..Line::of("ordered", points) };
     let sailed = |points| Line { colour: Some(colour(boat.team)), ..Line::of("sailed", points) };
-    let speed = |moment: &Moment| match moment.order {
+    let speed = |sample: &Sample| match sample.order {
         Order::Steer { speed_m_s, .. } => Some(speed_m_s),
         Order::Hold => Some(0.0),
         Order::Thrust { .. } => None,
     };
-    let heading = |moment: &Moment| match moment.order {
+    let heading = |sample: &Sample| match sample.order {
         Order::Steer { heading_rad, .. } => Some(compass_deg_from_rad(heading_rad)),
         Order::Hold | Order::Thrust { .. } => None,
     };
-    let speeds = vec![ordered(series(&speed)), sailed(series(&|moment| Some(moment.truth.surge_m_s)))];
+    let speeds = vec![ordered(series(&speed)), sailed(series(&|sample| Some(sample.truth.surge_m_s)))];
     let headings = vec![
         ordered(unwound(series(&heading))),
-        sailed(unwound(series(&|moment| Some(compass_deg_from_rad(moment.truth.psi_rad))))),
+        sailed(unwound(series(&|sample| Some(compass_deg_from_rad(sample.truth.psi_rad))))),
     ];
-    let error = Line { colour: Some(colour(boat.team)), ..Line::of("", series(&Moment::nav_error_m)) };
+    let error = Line { colour: Some(colour(boat.team)), ..Line::of("", series(&Sample::nav_error_m)) };
     let is_known = error.points.iter().any(|(_, error_m)| error_m.is_finite());
-    let absent = "no picture showed where this boat believed to be";
+    let absent = "no picture showed the estimated position of this boat";
     let panels = vec![
         Panel::of("Speed ahead, over the ground", [TIME, "m/s"], speeds, ""),
         Panel::of("Heading", [TIME, "degrees"], headings, ""),
@@ -178,6 +180,6 @@ fn unwound(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     line
 }
 
-fn track(boat: &Boat) -> Vec<(f64, f64)> {
+fn track(boat: &BoatSeries) -> Vec<(f64, f64)> {
     boat.track().map(|Ned { north, east }| (east, north)).collect()
 }

@@ -60,14 +60,14 @@ impl Verdict {
 
 /// Plays the game again.
 pub(super) fn check(recording: &Recording) -> Result<Verdict> {
-    let scenario = &recording.header().notice.scenario;
+    let scenario = recording.scenario();
     let mut resimulation = Resimulation::new(scenario)?;
     let mut inputs = Vec::new();
     let mut verdict = Verdict { frames: 0, end_s: 0.0, is_cut: recording.is_cut(), difference: None, digests: None };
     let ticks = u64::from(scenario.ticks_per_decision);
-    for said in recording.messages().filter(|said| [FRAME, INPUTS].contains(&said.topic)) {
-        if said.topic == INPUTS {
-            inputs.push(said.read::<Inputs>()?);
+    for message in recording.bag().messages().filter(|message| [FRAME, INPUTS].contains(&message.topic)) {
+        if message.topic == INPUTS {
+            inputs.push(message.read::<Inputs>()?);
             continue;
         }
         // A decision that the disk was too slow for is missing with all that it was given.
@@ -81,15 +81,15 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
         };
         let again = resimulation.frame_after(understood);
         inputs.clear();
-        if codec::encode(&again) != said.bytes {
-            let recorded: Frame = said.read()?;
+        if codec::encode(&again) != message.bytes {
+            let recorded: Frame = message.read()?;
             let [what, then, now] = first_difference(&recorded, &again, scenario)?;
             let (tick, at_s) = (recorded.stamp.seq * ticks, recorded.stamp.valid_ns.as_s());
             verdict.difference = Some(Difference { tick, at_s, what, recorded: then, again: now });
             return Ok(verdict);
         }
         verdict.frames += 1;
-        verdict.end_s = said.at.as_s();
+        verdict.end_s = message.at.as_s();
     }
     if verdict.frames == 0 {
         bail!("there are no frames in it");
@@ -137,43 +137,45 @@ mod tests {
     use game::input::Input;
     use game::message::GameInfo;
     use game::{Order, SimTime, VehicleId};
-    use recording::{Ending, Header, Note, Turn, Writer};
+    use recording::{Decision, Ending, Entry, Header, Writer};
     use std::io::Cursor;
 
-    /// The first second of a game with pictures that nobody wrote down; `change` may leave turns out.
-    fn recorded(change: impl Fn(Turn) -> Option<Turn>) -> Recording {
+    /// The first second of a game with pictures that nobody wrote down; `change` may leave decisions out.
+    fn recorded(change: impl Fn(Decision) -> Option<Decision>) -> Recording {
         let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/attack_1v1.toml");
         let scenario = game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let header = Header {
             commit: String::new(),
             game: "made_up".to_owned(),
             began_utc_ns: 0,
-            notice: GameInfo { version: game::VERSION.to_owned(), pace: String::new(), scenario: scenario.clone() },
+            info: GameInfo { version: game::VERSION.to_owned(), pace: String::new(), scenario: scenario.clone() },
             water: game::water::Water::default(),
         };
-        let mut writer = Writer::begin(Cursor::new(Vec::new()), &header).expect("memory");
+        let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("memory");
         let mut written = EventCursor::default();
         let watch = |contest: &mut sim::Contest| {
             contest.keep_inputs();
-            let turn = Turn { frame: contest.frame(&mut written), pictures: vec![], inputs: contest.take_inputs() };
-            if let Some(turn) = change(turn) {
-                writer.note(&Note::Turn(Box::new(turn)), 0).expect("memory");
+            let frame = contest.frame(&mut written).into();
+            let decision = Decision { frame, pictures: vec![], inputs: contest.take_inputs() };
+            if let Some(decision) = change(decision) {
+                writer.write(&Entry::Decision(Box::new(decision)), 0).expect("memory");
             }
             contest.decision() < 10
         };
         let outcome =
             arena::play_watched(&scenario, agent::minds_of(&scenario), scenario.seed, watch).expect("it starts");
-        let ending = Ending { outcome, run: Value::Null, dropped: 0 };
-        Recording::of(writer.end(&ending).expect("memory").into_inner()).unwrap_or_else(|e| panic!("{e}"))
+        let ending = Ending { outcome, ..Ending::default() };
+        let file = writer.end(ending.facts()).expect("memory").into_inner();
+        Recording::of(file).unwrap_or_else(|e| panic!("{e}"))
     }
 
     /// The game with another input at the end of its fifth decision.
     fn with(input: Input) -> Recording {
-        recorded(|mut turn| {
-            if turn.frame.stamp.seq == 5 {
-                turn.inputs.insert(turn.inputs.len() - 1, input);
+        recorded(|mut decision| {
+            if decision.frame.stamp.seq == 5 {
+                decision.inputs.insert(decision.inputs.len() - 1, input);
             }
-            Some(turn)
+            Some(decision)
         })
     }
 
@@ -194,7 +196,7 @@ mod tests {
         let input = Input::Ordered { vehicle: VehicleId(0), order, given_at: SimTime::from_s(0.4) };
         let verdict = check(&with(input)).unwrap_or_else(|e| panic!("{e}"));
         assert!(!verdict.is_same());
-        let name = &recorded(Some).header().notice.scenario.vehicles[0].name.clone();
+        let name = recorded(Some).scenario().vehicles[0].name.clone();
         assert!(
             verdict.text().starts_with(&format!("DIFFERENT from tick 10 on (0.5 s): {name} ")),
             "{}",
@@ -206,9 +208,9 @@ mod tests {
     fn what_cannot_be_played_again_is_refused_with_the_reason() {
         let nobody = Input::Held { vehicle: VehicleId(200) };
         assert_eq!(refused(&with(nobody)), "an input at 0.5 s is not understood");
-        let gap = recorded(|turn| Some(turn).filter(|turn| ![5, 6].contains(&turn.frame.stamp.seq)));
+        let gap = recorded(|decision| Some(decision).filter(|decision| ![5, 6].contains(&decision.frame.stamp.seq)));
         assert_eq!(refused(&gap), "decisions 5 to 6 are missing in this recording");
-        let end = recorded(|turn| Some(turn).filter(|turn| turn.frame.stamp.seq != 10));
+        let end = recorded(|decision| Some(decision).filter(|decision| decision.frame.stamp.seq != 10));
         assert_eq!(refused(&end), "the game went on to tick 20, the recording to 18");
         assert_eq!(refused(&recorded(|_| None)), "there are no frames in it");
     }

@@ -30,11 +30,11 @@ struct Team {
 
 impl Minds {
     pub(super) fn new(recording: Arc<Recording>) -> Minds {
-        let scenario = &recording.header().notice.scenario;
+        let scenario = recording.scenario();
         let teams = (0..scenario.teams.len()).map(|team| Team::new(&recording, TeamId(team as u8))).collect();
         let mut orders = BTreeMap::new();
         // Inputs stand with the frame that came of them, one decision later.
-        let inputs = recording.on(INPUTS).filter_map(|said| said.read::<Inputs>().ok());
+        let inputs = recording.bag().on(INPUTS).filter_map(|message| message.read::<Inputs>().ok());
         for Inputs { stamp, inputs } in inputs {
             let ordered = inputs.iter().filter_map(|record| match record.input() {
                 Some(Input::Ordered { vehicle, order, .. }) => Some((vehicle, order)),
@@ -44,15 +44,16 @@ impl Minds {
         }
         let proposals = (0..scenario.vehicles.len()).map(VehicleId::at).filter_map(|vehicle| {
             let topic = format!("policy/{}", scenario.vehicles[vehicle.index()].name);
-            let said: Vec<_> = recording.on(&topic).filter_map(|said| Some((said.at, said.read().ok()?))).collect();
-            (!said.is_empty()).then_some((vehicle, said))
+            let messages = recording.bag().on(&topic);
+            let proposals: Vec<_> = messages.filter_map(|message| Some((message.at, message.read().ok()?))).collect();
+            (!proposals.is_empty()).then_some((vehicle, proposals))
         });
         Minds { teams, orders, proposals: proposals.collect(), recording: Arc::clone(&recording) }
     }
 
     /// What the vehicle's mind orders when it decides again, if it can.
     fn decide(&mut self, vehicle: VehicleId, decision: u64) -> Option<Order> {
-        let index = self.recording.header().notice.scenario.team_of(vehicle).index();
+        let index = self.recording.scenario().team_of(vehicle).index();
         if self.teams[index].runner.decided() > Some(decision) {
             // Minds do not decide backwards.
             self.teams[index] = Team::new(&self.recording, TeamId(index as u8));
@@ -61,7 +62,7 @@ impl Minds {
         // A mate may be asked about the decision that the team made last: then nothing is ahead.
         let next = runner.decided().map_or(0, |last| last + 1);
         for (seq, place) in pictures.range(next..).take_while(|(seq, _)| **seq <= decision) {
-            let picture: Picture = self.recording.message(*place).read().ok()?;
+            let picture: Picture = self.recording.bag().message(*place).read().ok()?;
             let now = picture.stamp.valid_ns;
             for proposals in self.proposals.values() {
                 let until = proposals.partition_point(|(at, _)| *at <= now);
@@ -78,16 +79,16 @@ impl Minds {
 
 impl Team {
     fn new(recording: &Recording, team: TeamId) -> Team {
-        let scenario: &Scenario = &recording.header().notice.scenario;
+        let scenario: &Scenario = recording.scenario();
         let mates = (0..scenario.vehicles.len()).map(VehicleId::at).filter(|v| scenario.team_of(*v) == team);
         let topic = picture(&scenario.teams[team.index()].name);
         let decision = |place: usize| {
-            let picture: Picture = recording.message(place).read().ok()?;
+            let picture: Picture = recording.bag().message(place).read().ok()?;
             Some((picture.stamp.seq, place))
         };
         Team {
             runner: MindRunner::new(mates.map(|vehicle| (vehicle, mind_of(scenario, vehicle)))),
-            pictures: recording.places(&topic).filter_map(decision).collect(),
+            pictures: recording.bag().places(&topic).filter_map(decision).collect(),
         }
     }
 }
@@ -98,7 +99,7 @@ impl Helms for Minds {
             let reason = "no picture of this moment was recorded".to_owned();
             return HelmAnswer { reason: Some(reason), computed: true, ..HelmAnswer::default() };
         };
-        let index = self.recording.header().notice.scenario.team_of(vehicle).index();
+        let index = self.recording.scenario().team_of(vehicle).index();
         let mind = self.teams[index].runner.mind(vehicle);
         let recorded = self.orders.get(&decision).and_then(|orders| orders.iter().rev().find(|(v, _)| *v == vehicle));
         HelmAnswer {

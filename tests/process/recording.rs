@@ -95,10 +95,10 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     let done = sim.stop();
     assert_eq!(done["run"]["refused"]["garbage"], 1);
     let recording = opened(&path);
-    let proposals: Vec<_> = recording.on("policy/blue_one").map(|said| said.read::<PolicyProposal>()).collect();
+    let proposals: Vec<_> = recording.bag().on("policy/blue_one").map(|said| said.read::<PolicyProposal>()).collect();
     assert!(matches!(proposals.as_slice(), [Ok(said)] if *said == proposal), "{proposals:?}");
     let json = |topic: &str| {
-        let last = recording.on(topic).last().unwrap_or_else(|| panic!("nothing on {topic}"));
+        let last = recording.bag().on(topic).last().unwrap_or_else(|| panic!("nothing on {topic}"));
         serde_json::from_slice::<serde_json::Value>(last.bytes).expect("JSON")
     };
     assert_eq!(json("control"), serde_json::json!({"control": "halt"}));
@@ -149,13 +149,13 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
     result_of(&[&[game.as_str(), "--record", &runs_text][..], &options].concat());
     let path = only_recording(&runs);
     let recording = opened(&path);
-    let topics = recording.topics();
+    let topics = recording.bag().topics();
     for topic in ["nav/blue_one", "external/blue_one", "status/blue_one", "link/blue_one", "link/red_one", "run"] {
         assert!(topics.contains_key(topic), "{topic} is not in {topics:?}");
     }
     // What the gateway itself recorded, as far as the game went.
     let bytes = |outward: bool| -> Vec<u8> {
-        let said = recording.on("link/blue_one").map(|said| said.read::<LinkBytes>().expect("bytes"));
+        let said = recording.bag().on("link/blue_one").map(|said| said.read::<LinkBytes>().expect("bytes"));
         said.filter(|link| link.outward == outward).flat_map(|link| link.data).collect()
     };
     let own = std::fs::read(gateways.join("blue_one.mcap")).expect("it is there");

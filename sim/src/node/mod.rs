@@ -14,8 +14,7 @@ mod recorder;
 mod server;
 mod subscriptions;
 
-pub use observers::water;
-pub use recorder::{NoRecorder, RecordedMessage, Recorder};
+pub use recorder::GameRecorder;
 
 use crate::contest::Contest;
 use crate::spawn::NoStart;
@@ -142,7 +141,7 @@ impl std::str::FromStr for Pace {
     }
 }
 
-/// Serves the game of `scenario` that `seed` chooses, and plays it to its end. `recorder` is shown everything.
+/// Serves the game of `scenario` that `seed` chooses, and plays it to its end. `recorder` records it.
 ///
 /// # Errors
 /// [`NodeError`] if the boats do not fit on the field or the network fails, or for real boats in lockstep: nothing makes
@@ -151,7 +150,7 @@ pub fn serve(
     scenario: &Scenario,
     seed: u64,
     settings: &Settings,
-    recorder: &mut dyn Recorder,
+    recorder: Option<&mut GameRecorder>,
     tell: &mut dyn FnMut(News<'_>),
 ) -> Result<Report, NodeError> {
     if settings.pace == Pace::Lockstep {

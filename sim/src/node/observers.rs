@@ -10,8 +10,7 @@ use game::{Scenario, codec};
 use serde::de::DeserializeOwned;
 
 /// The waves of a game.
-#[must_use]
-pub fn water(contest: &Contest) -> Water {
+pub(super) fn water(contest: &Contest) -> Water {
     Water { waves: contest.world().sea().waves().map(WaveField::plane_waves).unwrap_or_default() }
 }
 

@@ -1,40 +1,111 @@
-//! Who is shown everything that happens at a node, and writes it down if it likes.
+//! Records a game as it is played, from its first decision on: over the network or in this process.
 
+use super::{Report, observers};
 use crate::contest::Contest;
-use game::SimTime;
+use game::input::Input;
+use game::message::{Frame, GameInfo};
 use game::run_state::RecordingState;
+use recording::{Decision, Ending, Entry, Header, NewFile, RecordError, Recorder, utc};
+use std::path::PathBuf;
+use std::sync::Arc;
 
-/// Somebody who is shown everything. NoRecorder waits for it: it must be quick.
-pub trait Recorder {
-    /// A decision: the contest before it, with what was given since the one before ([`Contest::take_inputs`]). The pictures
-    /// that were shown are heard.
-    fn turn(&mut self, contest: &mut Contest);
-    /// Something that went over the network.
-    fn heard(&mut self, heard: RecordedMessage);
-    /// How what it writes stands, if it writes.
-    fn state(&self) -> Option<RecordingState>;
+/// How far a recording is.
+enum Stage {
+    /// Before the first decision there is only the file.
+    Waiting(NewFile),
+    Recording(Recorder),
+    /// Why there is none.
+    Failed(String),
 }
 
-/// Something that went over the network.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RecordedMessage {
-    /// The topic, without the game's name.
-    pub topic: String,
-    /// The schema, for CDR; none for JSON.
-    pub schema: Option<&'static str>,
-    /// The message.
-    pub bytes: Vec<u8>,
-    /// Simulated time at which it came.
-    pub at: SimTime,
+/// The recording of a game. Nobody waits for it.
+pub struct GameRecorder {
+    path: PathBuf,
+    game: String,
+    pace: String,
+    commit: String,
+    stage: Stage,
+    /// Whether pictures come as messages, encoded as they go over the network.
+    pictures_are_sent: bool,
 }
 
-/// A recorder that does not look.
-pub struct NoRecorder;
+impl GameRecorder {
+    /// Of a game of this name at this pace on the network, into a new file, by a program of this commit.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the file cannot be made.
+    pub fn on_network(path: PathBuf, game: &str, pace: &str, commit: &str) -> Result<GameRecorder, RecordError> {
+        let stage = Stage::Waiting(NewFile::create(&path)?);
+        let [game, pace, commit] = [game, pace, commit].map(str::to_owned);
+        Ok(GameRecorder { path, game, pace, commit, stage, pictures_are_sent: true })
+    }
 
-impl Recorder for NoRecorder {
-    fn turn(&mut self, _: &mut Contest) {}
-    fn heard(&mut self, _: RecordedMessage) {}
-    fn state(&self) -> Option<RecordingState> {
-        None
+    /// Of a game in this process, into a new file.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the file cannot be made.
+    pub fn in_process(path: PathBuf, game: &str, commit: &str) -> Result<GameRecorder, RecordError> {
+        let recorder = GameRecorder::on_network(path, game, "in process", commit)?;
+        Ok(GameRecorder { pictures_are_sent: false, ..recorder })
+    }
+
+    /// Records a decision: its frame, and what the contest was given since the one before.
+    pub fn decision(&mut self, contest: &mut Contest, frame: Arc<Frame>) {
+        contest.keep_inputs();
+        self.begin(contest);
+        let inputs = contest.take_inputs();
+        let Stage::Recording(recorder) = &self.stage else { return };
+        let shows = !self.pictures_are_sent && inputs.contains(&Input::Pictured);
+        let pictures = if shows { contest.last_pictures().to_vec() } else { vec![] };
+        recorder.record(Entry::Decision(Box::new(Decision { frame, pictures, inputs })));
+    }
+
+    /// Records something that goes over the network.
+    pub fn message(&self, entry: Entry) {
+        if let Stage::Recording(recorder) = &self.stage {
+            recorder.record(entry);
+        }
+    }
+
+    /// How it stands.
+    #[must_use]
+    pub fn state(&self) -> RecordingState {
+        let unwritten =
+            |failed| RecordingState { file: self.path.display().to_string(), failed, ..RecordingState::default() };
+        match &self.stage {
+            Stage::Waiting(_) => unwritten(None),
+            Stage::Recording(recorder) => recorder.state(),
+            Stage::Failed(reason) => unwritten(Some(reason.clone())),
+        }
+    }
+
+    /// Ends it well, and says how it stands then.
+    #[must_use]
+    pub fn end(self, report: &Report) -> RecordingState {
+        let state = self.state();
+        let run = serde_json::to_value(&report.run).expect("a run is JSON");
+        let ending = Ending { outcome: report.outcome.clone(), run, dropped: 0 };
+        if let Stage::Recording(recorder) = self.stage { recorder.end(ending.facts()) } else { state }
+    }
+
+    /// Begins at the first decision.
+    fn begin(&mut self, contest: &Contest) {
+        if !matches!(self.stage, Stage::Waiting(_)) {
+            return;
+        }
+        let info = GameInfo {
+            version: game::VERSION.to_owned(),
+            pace: self.pace.clone(),
+            scenario: contest.scenario().clone(),
+        };
+        let water = observers::water(contest);
+        let (commit, game) = (self.commit.clone(), self.game.clone());
+        let header = Header { commit, game, began_utc_ns: utc::now_ns(), info, water };
+        self.stage = match std::mem::replace(&mut self.stage, Stage::Failed(String::new())) {
+            Stage::Waiting(file) => {
+                Recorder::begin(file, &header.opening()).map_or_else(|e| Stage::Failed(e.to_string()), Stage::Recording)
+            }
+            later => later,
+        };
     }
 }

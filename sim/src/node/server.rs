@@ -5,7 +5,7 @@ use super::gateways;
 use super::membership::Membership;
 use super::observers::{self, RecordedTopic};
 use super::pacing::Pacing;
-use super::recorder::{RecordedMessage, Recorder};
+use super::recorder::GameRecorder;
 use super::subscriptions::{self, Incoming};
 use super::{News, NodeError, Pace, Settings};
 use crate::contest::Contest;
@@ -13,11 +13,12 @@ use bus::{Bus, Declaration, Delivery, Inbox, Publisher, Query, clock, inbox};
 use game::codec;
 use game::event::EventCursor;
 use game::external::{ExternalOrder, NavReport};
-use game::message::{Control, GameInfo, JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
+use game::message::{Control, Frame, GameInfo, JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
 use game::refusal::{Refusal, Refusals};
 use game::run_state::{Phase, RunState};
 use game::topic::{self, Part};
 use game::{Order, Picture, SimTime, TeamId, VehicleId};
+use recording::Entry;
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,9 +37,7 @@ const SHUTDOWN: Duration = Duration::from_secs(2);
 pub(super) struct GameServer<'w> {
     pub(super) contest: Contest,
     pub(super) pacing: Pacing,
-    recorder: &'w mut dyn Recorder,
-    /// Whether the recorder writes what it is given.
-    is_recorded: bool,
+    recorder: Option<&'w mut GameRecorder>,
     pub(super) agents: Membership,
     gateways: Membership,
     timing: Timing,
@@ -48,8 +47,10 @@ pub(super) struct GameServer<'w> {
     /// The decision whose pictures were sent last.
     asked: Option<u64>,
     frames: Publisher,
-    /// How far observers were shown the events.
+    /// How far the events are in frames.
     shown: EventCursor,
+    /// The frame that was built last.
+    frame: Option<Arc<Frame>>,
     run: Publisher,
     /// Whether somebody asked for something since the state of the run was sent.
     is_news: bool,
@@ -78,17 +79,16 @@ impl<'w> GameServer<'w> {
     pub(super) fn open(
         mut contest: Contest,
         settings: &Settings,
-        recorder: &'w mut dyn Recorder,
+        recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
         let bus = Bus::hub(&settings.net)?;
         let (inbox_sender, inbox) = inbox(INBOX);
         let game = &settings.game;
-        let is_recorded = recorder.state().is_some();
-        if is_recorded {
+        if recorder.is_some() {
             contest.keep_inputs();
         }
         let scenario = contest.scenario();
-        let recorded_topics = if is_recorded { observers::recorded_topics(scenario) } else { vec![] };
+        let recorded_topics = if recorder.is_some() { observers::recorded_topics(scenario) } else { vec![] };
         let declarations = subscriptions::open(&bus, game, &inbox_sender, &recorded_topics)?;
         let is_lockstep = settings.pace == Pace::Lockstep;
         let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
@@ -112,6 +112,7 @@ impl<'w> GameServer<'w> {
             external_orders,
             frames: bus.publisher(topic::frame(game), Delivery::Drop)?,
             shown: EventCursor::default(),
+            frame: None,
             run: bus.publisher(topic::run(game), Delivery::Drop)?,
             is_news: false,
             run_recorded: clock::now(),
@@ -119,7 +120,6 @@ impl<'w> GameServer<'w> {
             recorded_topics,
             pacing: Pacing::new(speed, is_lockstep, is_real),
             recorder,
-            is_recorded,
             game_info: serde_json::to_vec(&game_info).expect("a scenario is JSON"),
             stop: Arc::clone(&settings.stop),
             refusals: Refusals::default(),
@@ -177,9 +177,21 @@ impl<'w> GameServer<'w> {
         &self.contest.scenario().vehicles[vehicle.index()].name
     }
 
-    /// Gives the recorder the state of the contest, and the inputs that led to it.
+    /// The frame of the open decision, built once for the recording and for observers.
+    fn frame(&mut self) -> Arc<Frame> {
+        let decision = self.contest.decision();
+        let frame = self.frame.take().filter(|frame| frame.stamp.seq == decision);
+        let frame = frame.unwrap_or_else(|| Arc::new(self.contest.frame(&mut self.shown)));
+        self.frame = Some(Arc::clone(&frame));
+        frame
+    }
+
+    /// Records the open decision, and the inputs that led to it.
     pub(super) fn record(&mut self) {
-        self.recorder.turn(&mut self.contest);
+        if self.recorder.is_some() {
+            let frame = self.frame();
+            self.recorder.iter_mut().for_each(|recorder| recorder.decision(&mut self.contest, Arc::clone(&frame)));
+        }
     }
 
     /// Sends observers the truth, if there are any.
@@ -187,8 +199,8 @@ impl<'w> GameServer<'w> {
         if !self.frames.is_heard() {
             return Ok(());
         }
-        let frame = self.contest.frame(&mut self.shown);
-        Ok(self.frames.send(&frame)?)
+        let frame = self.frame();
+        Ok(self.frames.send(&*frame)?)
     }
 
     /// Sends every team the picture of the open decision, and every real boat its order. Sending them twice does no harm.
@@ -197,7 +209,7 @@ impl<'w> GameServer<'w> {
         let is_again = self.asked.replace(self.contest.decision()) == Some(self.contest.decision());
         let pictures: Vec<Vec<u8>> = self.contest.pictures().iter().map(codec::encode).collect();
         for (i, bytes) in pictures.into_iter().enumerate() {
-            if self.is_recorded && !is_again {
+            if self.recorder.is_some() && !is_again {
                 let topic = format!("picture/{}", self.contest.scenario().teams[i].name);
                 self.record_message(topic, Some(Picture::SCHEMA), bytes.clone());
             }
@@ -224,10 +236,11 @@ impl<'w> GameServer<'w> {
         let stamp = Stamp { valid_ns, seq, version: ExternalOrder::VERSION };
         let given_ns = self.contest.given_at(vehicle);
         let order = ExternalOrder { stamp, given_ns, order: VehicleOrder::new(vehicle, order) };
-        publisher.send(&order)?;
-        if self.is_recorded {
+        let bytes = codec::encode(&order);
+        publisher.send_encoded::<ExternalOrder>(bytes.clone())?;
+        if self.recorder.is_some() {
             let topic = format!("external/{}", self.name_of(vehicle));
-            self.record_message(topic, Some(ExternalOrder::SCHEMA), codec::encode(&order));
+            self.record_message(topic, Some(ExternalOrder::SCHEMA), bytes);
         }
         Ok(())
     }
@@ -312,7 +325,7 @@ impl<'w> GameServer<'w> {
     /// Sends observers the state of the run, if there are any.
     fn send_run(&mut self, phase: Phase, rate: f64) -> Result<(), NodeError> {
         let is_news = std::mem::take(&mut self.is_news);
-        let is_due = self.is_recorded && (is_news || clock::since(self.run_recorded) >= RECORD_EVERY);
+        let is_due = self.recorder.is_some() && (is_news || clock::since(self.run_recorded) >= RECORD_EVERY);
         if !self.run.is_heard() && !is_due {
             return Ok(());
         }
@@ -330,7 +343,7 @@ impl<'w> GameServer<'w> {
             gateways: names(&mut self.silent_boats()),
             refused: self.refusals().total(),
             overruns: self.overruns,
-            recording: self.recorder.state(),
+            recording: self.recorder.as_ref().map(|recorder| recorder.state()),
         };
         let json = serde_json::to_vec(&state).expect("a state is JSON");
         self.run.send_json(json.clone())?;
@@ -343,7 +356,9 @@ impl<'w> GameServer<'w> {
 
     /// Gives the recorder something that goes over the network.
     fn record_message(&mut self, topic: impl Into<String>, schema: Option<&'static str>, bytes: Vec<u8>) {
-        self.recorder.heard(RecordedMessage { topic: topic.into(), schema, bytes, at: self.contest.now() });
+        if let Some(recorder) = &self.recorder {
+            recorder.message(Entry::Message { topic: topic.into(), schema, bytes, at: self.contest.now() });
+        }
     }
 
     /// Sends everybody the end of the game, and waits a little for the agents to leave.
@@ -351,7 +366,7 @@ impl<'w> GameServer<'w> {
         for (picture, publisher) in self.contest.pictures().to_vec().into_iter().zip(&self.pictures) {
             publisher.send(&game::Picture { over: true, ..picture })?;
         }
-        let frame = game::message::Frame { over: true, ..self.contest.frame(&mut self.shown) };
+        let frame = Frame { over: true, ..Frame::clone(&self.frame()) };
         self.frames.send(&frame)?;
         // Real boats hold from now on, also where the game is cut short.
         (0..self.external_orders.len()).try_for_each(|boat| self.send_order(boat, Order::Hold))?;
@@ -386,7 +401,7 @@ impl<'w> GameServer<'w> {
 
     fn take_nav(&mut self, bytes: &[u8]) {
         let Some(report) = self.refusals.decode::<NavReport>(bytes) else { return };
-        if self.is_recorded
+        if self.recorder.is_some()
             && let Some(vehicle) = self.contest.scenario().vehicles.get(report.vehicle.index())
         {
             let topic = format!("nav/{}", vehicle.name);

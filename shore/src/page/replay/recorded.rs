@@ -28,9 +28,10 @@ impl Recorded {
     /// # Errors
     /// [`RecordingError`] names the first frame that is none.
     pub fn new(recording: Arc<Recording>, file: String) -> Result<Recorded, RecordingError> {
-        let scenario = &recording.header().notice.scenario;
+        let scenario = recording.scenario();
         let told = |topic: String| {
-            recording.places(&topic).map(|place| (recording.message(place).at, place)).collect::<Vec<_>>()
+            let bag = recording.bag();
+            bag.places(&topic).map(|place| (bag.message(place).at, place)).collect::<Vec<_>>()
         };
         let pictures = scenario.teams.iter().map(|team| told(picture(&team.name))).collect();
         let statuses = scenario.vehicles.iter().map(|vehicle| told(format!("status/{}", vehicle.name))).collect();
@@ -47,7 +48,7 @@ impl Recorded {
 
     /// Gateways' failsafes among the events, where they were first told of.
     fn add_failsafes(&mut self) {
-        let scenario = &self.recording.header().notice.scenario;
+        let scenario = self.recording.scenario();
         for (vehicle, told) in scenario.vehicles.iter().zip(&self.statuses) {
             let mut known = 0;
             for (at, place) in told {
@@ -71,7 +72,7 @@ impl Recorded {
     }
 
     fn status_at(&self, place: usize) -> Option<GatewayStatus> {
-        serde_json::from_slice(self.recording.message(place).bytes).ok()
+        serde_json::from_slice(self.recording.bag().message(place).bytes).ok()
     }
 }
 
@@ -83,7 +84,7 @@ fn last_until(told: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
 
 impl ReplaySource for Recorded {
     fn notice(&self) -> &GameInfo {
-        &self.recording.header().notice
+        &self.recording.header().info
     }
 
     fn game(&self) -> &str {
@@ -117,7 +118,7 @@ impl ReplaySource for Recorded {
     fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat> {
         let team = self.notice().scenario.vehicles.get(vehicle.index())?.team;
         let place = last_until(&self.pictures[team.index()], *self.times.get(frame)?)?;
-        let picture: Picture = self.recording.message(place).read().ok()?;
+        let picture: Picture = self.recording.bag().message(place).read().ok()?;
         picture.own(vehicle).copied()
     }
 

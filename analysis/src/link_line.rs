@@ -74,13 +74,13 @@ mod tests {
 
     #[test]
     fn lines_come_whole_whatever_the_pieces() {
-        let said = b"$GPRMC,1*00\r\n\r\n$PSEAC,T,0*0D\r\nrest";
-        for cut in 0..said.len() {
+        let bytes_in = b"$GPRMC,1*00\r\n\r\n$PSEAC,T,0*0D\r\nrest";
+        for cut in 0..bytes_in.len() {
             let mut lines = Lines::default();
-            let mut all = lines.take(&bytes(false, &said[..cut]));
+            let mut all = lines.take(&bytes(false, &bytes_in[..cut]));
             // The other way does not mix with it.
             assert_eq!(lines.take(&bytes(true, b"$PSEAC,L")), []);
-            all.extend(lines.take(&bytes(false, &said[cut..])));
+            all.extend(lines.take(&bytes(false, &bytes_in[cut..])));
             all.extend(lines.rest());
             let texts: Vec<(&str, bool)> = all.iter().map(|line| (line.text.as_str(), line.outward)).collect();
             let want = [("$GPRMC,1*00", false), ("$PSEAC,T,0*0D", false), ("rest", false), ("$PSEAC,L", true)];

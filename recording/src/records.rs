@@ -12,21 +12,21 @@ const PREFIX: usize = 9;
 /// In a chunk, before its checksum: times of the first and the last message, and size.
 const CHUNK_CRC_AT: usize = 3 * 8;
 
-/// How a walk ended.
+/// How far a file goes, and what of it can be relied on.
 #[derive(Debug)]
-pub(super) struct Walk {
+pub(crate) struct Extent {
     /// Whether the rest of the file is missing.
-    pub is_cut: bool,
+    pub(crate) is_cut: bool,
     /// The bytes that are not what was written, by the checksum of their chunk; if no chunk is to blame, all of them.
-    pub damage: Vec<Range<usize>>,
+    pub(crate) damage: Vec<Range<usize>>,
 }
 
 /// Calls `take` with every schema, channel, message and metadata, and the place of its body in `bytes`, those in chunks
 /// included. Of a damaged chunk the records are given up to the first that makes no sense.
-pub(super) fn walk(
+pub(crate) fn for_each_record(
     bytes: &[u8],
     mut take: impl FnMut(Record<'_>, Range<usize>) -> Result<(), String>,
-) -> Result<Walk, String> {
+) -> Result<Extent, String> {
     if bytes.len() < mcap::MAGIC.len() || !bytes.starts_with(mcap::MAGIC) {
         return Err("it does not begin as MCAP files do".to_owned());
     }
@@ -59,7 +59,7 @@ pub(super) fn walk(
             break;
         }
     }
-    Ok(Walk { is_cut, damage })
+    Ok(Extent { is_cut, damage })
 }
 
 /// Whether the checksum (CRC-32) that stands there is that of the bytes in `place`; 0 says that there is none.

@@ -1,23 +1,23 @@
-//! Made-up games whose figures are known in closed form.
+//! Made-up games whose statistics are known in closed form.
 
-use super::book::{Boat, Book, Moment};
+use crate::series::{BoatSeries, GameSeries, Sample};
 use game::math;
 use game::picture::Nav;
 use std::f64::consts::TAU;
 
-/// A book of moments every 0.1 s up to `span_s`, in which one boat does this.
-pub(super) fn book(span_s: f64, at: impl Fn(f64) -> Moment) -> Book {
+/// A series of samples every 0.1 s up to `span_s`, in which one boat does this.
+pub(crate) fn game(span_s: f64, at: impl Fn(f64) -> Sample) -> GameSeries {
     let times_s: Vec<f64> = (0..=(span_s * 10.0).round() as usize).map(|i| i as f64 / 10.0).collect();
-    let moments = times_s.iter().map(|time_s| at(*time_s)).collect();
-    let boat = Boat { name: "blue_one".to_owned(), moments, ..Boat::default() };
+    let samples = times_s.iter().map(|time_s| at(*time_s)).collect();
+    let boat = BoatSeries { name: "blue_one".to_owned(), samples, ..BoatSeries::default() };
     let score = vec![vec![0, 0]; times_s.len()];
     let teams = vec!["blue".to_owned(), "red".to_owned()];
-    Book { boats: vec![boat], teams, score, times_s, events: vec![] }
+    GameSeries { boats: vec![boat], teams, score, times_s, events: vec![] }
 }
 
 /// A boat that sails clockwise about the datum, once in 100 s.
-pub(super) fn circle(radius_m: f64, span_s: f64) -> Book {
-    book(span_s, |time_s| {
+pub(crate) fn circle(radius_m: f64, span_s: f64) -> GameSeries {
+    game(span_s, |time_s| {
         let turn_rad = TAU * time_s / 100.0;
         let (sin, cos) = math::sin_cos(turn_rad);
         let nav = Nav {
@@ -27,6 +27,6 @@ pub(super) fn circle(radius_m: f64, span_s: f64) -> Book {
             surge_m_s: TAU * radius_m / 100.0,
             ..Nav::default()
         };
-        Moment { truth: nav, ..Moment::default() }
+        Sample { truth: nav, ..Sample::default() }
     })
 }

@@ -4,21 +4,21 @@ use game::codec::ENCAPSULATION;
 use std::ops::Range;
 
 /// The message that holds it.
-pub(super) const SCHEMA: &str = "std_msgs/msg/String";
+pub(crate) const SCHEMA: &str = "std_msgs/msg/String";
 /// Its definition.
-pub(super) const DEFINITION: &str = "string data\n";
+pub(crate) const DEFINITION: &str = "string data\n";
 
 /// What stands before the text: that, and its length with the NUL after it.
 const BEFORE: usize = ENCAPSULATION.len() + 4;
 
 /// The message that holds this text.
-pub(super) fn wrap(text: &[u8]) -> Vec<u8> {
+pub(crate) fn wrap(text: &[u8]) -> Vec<u8> {
     let length = u32::try_from(text.len() + 1).unwrap_or(u32::MAX);
     [&ENCAPSULATION[..], &length.to_le_bytes(), text, &[0]].concat()
 }
 
 /// The place of the text in the message at `place` of `bytes`; of a message that is damaged, all of it, which is no JSON.
-pub(super) fn place_in(bytes: &[u8], place: Range<usize>) -> Range<usize> {
+pub(crate) fn place_in(bytes: &[u8], place: Range<usize>) -> Range<usize> {
     let text = place.start + BEFORE..place.end.saturating_sub(1);
     let is_sound = bytes.get(text.clone()).is_some_and(|text| wrap(text) == bytes[place.clone()]);
     if is_sound { text } else { place }

@@ -1,0 +1,75 @@
+//! The cells of a row: values laid flat, each under the path that leads to it.
+
+use game::SimTime;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// Cells by column.
+pub(super) type Cells = BTreeMap<String, String>;
+
+/// The cells in the order of the columns, the time first.
+pub(super) fn in_order(mut cells: Cells, at: SimTime, columns: &[String]) -> Vec<String> {
+    let rest = columns.iter().skip(1).map(|column| cells.remove(column).unwrap_or_default());
+    std::iter::once(time(at)).chain(rest).collect()
+}
+
+/// A time in s, with no more digits than it has; nothing for one before anything can happen.
+pub(super) fn time(at: SimTime) -> String {
+    if at <= SimTime::LONG_AGO { String::new() } else { (at.0 as f64 / 1e9).to_string() }
+}
+
+/// A text without quotes, everything else as JSON has it.
+pub(super) fn text(leaf: &Value) -> String {
+    leaf.as_str().map_or_else(|| leaf.to_string(), str::to_owned)
+}
+
+/// The values in a value, by path. What is not there is left out.
+pub(super) fn flat(value: &Value) -> BTreeMap<String, Value> {
+    let mut leaves = BTreeMap::new();
+    lay("", value, &mut leaves);
+    leaves
+}
+
+fn lay(path: &str, value: &Value, leaves: &mut BTreeMap<String, Value>) {
+    let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+    match value {
+        Value::Object(fields) => fields.iter().for_each(|(name, value)| lay(&below(name), value, leaves)),
+        Value::Array(items) => {
+            for (i, item) in items.iter().enumerate() {
+                match named(item) {
+                    Some((name, value)) => lay(&below(name), value, leaves),
+                    None => lay(&below(&i.to_string()), item, leaves),
+                }
+            }
+        }
+        Value::Null => {}
+        // What is not within anything is called what it is.
+        leaf => drop(leaves.insert(if path.is_empty() { "value" } else { path }.to_owned(), leaf.clone())),
+    }
+}
+
+/// A list of a name and a number is a number with a name: counts are written so.
+fn named(item: &Value) -> Option<(&str, &Value)> {
+    match item.as_array()?.as_slice() {
+        [Value::String(name), value @ Value::Number(_)] => Some((name, value)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn nested_values_become_paths() {
+        let value = json!({
+            "a": {"b": 1.5, "none": null}, "list": [true, {"c": "x"}], "counts": [["sentences in", 7], ["lost", 0]],
+        });
+        let cells: Vec<(String, String)> = flat(&value).iter().map(|(name, leaf)| (name.clone(), text(leaf))).collect();
+        let want =
+            [("a.b", "1.5"), ("counts.lost", "0"), ("counts.sentences in", "7"), ("list.0", "true"), ("list.1.c", "x")];
+        assert_eq!(cells, want.map(|(name, cell)| (name.to_owned(), cell.to_owned())));
+        assert_eq!(flat(&json!("pause")).get("value"), Some(&json!("pause")));
+    }
+}

@@ -1,0 +1,159 @@
+//! Tables of single topics, for programs that read CSV.
+//!
+//! The first column is `t_s`, the time of the game (or of the gateway's clock). Names are those of the messages, with the
+//! names of boats and teams in place of numbers; units are those of the messages, except that times are in s. What is not
+//! there is an empty cell.
+//!
+//! | topic | a row |
+//! |---|---|
+//! | `frame` | a decision: all boats, flags, the score, and the events since the last as sentences |
+//! | `picture/<team>` | an own boat or a contact in a picture (`seen` says which) |
+//! | `inputs` | one thing that the game was given |
+//! | `say/<team>` | a shared variable of a boat |
+//! | `link/<boat>` | a line on the link, by the time of the piece that ended it |
+//! | `events` | an event of the game (no topic of the file, but told in its frames) |
+//! | any other | a message; JSON is laid flat, with numbered lists |
+
+mod cells;
+mod message;
+
+use cells::Cells;
+use game::external::LinkBytes;
+use game::message::{Frame, Message};
+use game::outcome::EventOutcome;
+use game::{Scenario, SimTime};
+use recording::{Bag, FRAME, RecordedMessage, RecordingError};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use thiserror::Error;
+
+/// What happened, as if it were a topic.
+pub const EVENTS: &str = "events";
+
+/// Takes rows: the names of the columns first.
+pub type Sink<'a> = dyn FnMut(&[String]) -> std::io::Result<()> + 'a;
+
+/// Why there is no table.
+#[derive(Debug, Error)]
+pub enum TableError {
+    /// There is nothing on that topic.
+    #[error("there is no topic {topic:?} in this recording; there are {}", .known.join(", "))]
+    Unknown {
+        /// The topic.
+        topic: String,
+        /// Those there are.
+        known: Vec<String>,
+    },
+    /// What is on it is of a kind that no table is known for.
+    #[error("messages of {topic} are {schema}, which no table is known for")]
+    Strange {
+        /// The topic.
+        topic: String,
+        /// What they are.
+        schema: String,
+    },
+    /// The recording is damaged.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// The rows are not taken.
+    #[error(transparent)]
+    Sink(#[from] std::io::Error),
+}
+
+/// The topics of a recording that there are tables of, by name.
+#[must_use]
+pub fn topics(bag: &Bag) -> Vec<String> {
+    let mut known: Vec<String> = bag.topics().into_keys().map(str::to_owned).collect();
+    if known.iter().any(|topic| topic == FRAME) {
+        known.push(EVENTS.to_owned());
+        known.sort();
+    }
+    known
+}
+
+/// Whether there is such a topic.
+///
+/// # Errors
+/// [`TableError::Unknown`] names those there are.
+pub fn check(bag: &Bag, topic: &str) -> Result<(), TableError> {
+    let known = topics(bag);
+    if known.iter().any(|known| known == topic) {
+        Ok(())
+    } else {
+        Err(TableError::Unknown { topic: topic.to_owned(), known })
+    }
+}
+
+/// Gives the table of a topic, row by row. `scenario` is that of the game, where it is a game's recording.
+///
+/// # Errors
+/// [`TableError`] if there is no such topic, it is damaged, or the rows are not taken.
+pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sink<'_>) -> Result<(), TableError> {
+    check(bag, topic)?;
+    let schema = bag.on(topic).next().and_then(|message| message.schema);
+    match (topic, schema, scenario) {
+        (EVENTS, _, Some(scenario)) => events(bag, scenario, sink),
+        (_, None, _) => json(bag, topic, sink),
+        (_, Some(LinkBytes::SCHEMA), _) => link(bag, topic, sink),
+        (_, Some(schema), Some(scenario)) if let Some(columns) = message::columns(schema, scenario) => {
+            let columns: Vec<String> = std::iter::once("t_s".to_owned()).chain(columns).collect();
+            sink(&columns)?;
+            for message in bag.on(topic) {
+                for cells in message::rows(&message, scenario)? {
+                    sink(&cells::in_order(cells, message.at, &columns))?;
+                }
+            }
+            Ok(())
+        }
+        (_, Some(schema), _) => Err(TableError::Strange { topic: topic.to_owned(), schema: schema.to_owned() }),
+    }
+}
+
+/// JSON laid flat: a column for every path that occurs in any message of the topic.
+fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<(), TableError> {
+    let cells_of = |message: &RecordedMessage<'_>| -> Result<Cells, RecordingError> {
+        let leaves = cells::flat(&message.read_json::<Value>()?);
+        Ok(leaves.into_iter().map(|(path, leaf)| (path, cells::text(&leaf))).collect())
+    };
+    // Which columns there are is known only when all is read; the messages are few.
+    let mut paths = BTreeSet::new();
+    for message in bag.on(topic) {
+        paths.extend(cells_of(&message)?.into_keys());
+    }
+    let columns: Vec<String> = std::iter::once("t_s".to_owned()).chain(paths).collect();
+    sink(&columns)?;
+    for message in bag.on(topic) {
+        sink(&cells::in_order(cells_of(&message)?, message.at, &columns))?;
+    }
+    Ok(())
+}
+
+/// A row for each line on a link.
+fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<(), TableError> {
+    sink(&["t_s", "direction", "text"].map(str::to_owned))?;
+    let mut lines = crate::link_line::Lines::default();
+    let mut last = SimTime::ZERO;
+    let mut put = |at, line: crate::link_line::Line| {
+        let direction = if line.outward { "to_boat" } else { "from_boat" };
+        sink(&[cells::time(at), direction.to_owned(), line.text])
+    };
+    for message in bag.on(topic) {
+        last = message.at;
+        lines.take(&message.read::<LinkBytes>()?).into_iter().try_for_each(|line| put(last, line))?;
+    }
+    Ok(lines.rest().into_iter().try_for_each(|line| put(last, line))?)
+}
+
+fn events(bag: &Bag, scenario: &Scenario, sink: &mut Sink<'_>) -> Result<(), TableError> {
+    sink(&["t_s", "tick", "event", "vehicle", "other", "team", "sentence"].map(str::to_owned))?;
+    for message in bag.on(FRAME) {
+        for logged in message.read::<Frame>()?.logged(scenario) {
+            let event = EventOutcome::new(scenario, &logged);
+            let sentence = event.sentence();
+            let EventOutcome { tick, at_s, event, vehicle, other, team } = event;
+            let [vehicle, other, team] = [vehicle, other, team].map(Option::unwrap_or_default);
+            sink(&[cells::time(SimTime::from_s(at_s)), tick.to_string(), event, vehicle, other, team, sentence])?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,312 @@
+//! A recording of any kind, opened: its header, and its messages one by one, also where the file ends abruptly.
+
+use crate::json_string;
+use crate::records::{Extent, for_each_record};
+use crate::{BEGAN, CHECKSUM, Facts, Kind, RESULT, VERSION, checksum};
+use game::SimTime;
+use game::codec::{self, DecodeError};
+use game::message::Message;
+use mcap::records::{MessageHeader, Record};
+use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why a file cannot be opened or read as a recording.
+#[derive(Debug, Error)]
+pub enum RecordingError {
+    /// There is no such file, or it cannot be read.
+    #[error("cannot read the recording {path}: {reason}", path = path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: std::io::Error,
+    },
+    /// It is no recording of Squall.
+    #[error("not a recording of a game or a gateway: {0}")]
+    Foreign(String),
+    /// It is of another kind.
+    #[error("not a recording of a {wanted}: it is of a {found}")]
+    Kind {
+        /// What was expected.
+        wanted: Kind,
+        /// What it is.
+        found: Kind,
+    },
+    /// It was made by another version, whose messages may mean something else.
+    #[error("recorded by Squall {found}, this is {ours}", ours = game::VERSION)]
+    Version {
+        /// The recorder's.
+        found: String,
+    },
+    /// Something in it is not what it should be.
+    #[error("message {number} of {topic} is damaged: {reason}")]
+    Damaged {
+        /// The topic.
+        topic: String,
+        /// Which, from 0.
+        number: u32,
+        /// What is wrong.
+        reason: DecodeError,
+    },
+    /// Something in it is not the JSON that it should be.
+    #[error("message {number} of {topic} is not JSON: {reason}")]
+    Json {
+        /// The topic.
+        topic: String,
+        /// Which, from 0.
+        number: u32,
+        /// What is wrong.
+        reason: serde_json::Error,
+    },
+}
+
+impl RecordingError {
+    pub(crate) fn not_understood(what: &str, reason: impl std::fmt::Display) -> RecordingError {
+        RecordingError::Foreign(format!("its {what} is not understood: {reason}"))
+    }
+}
+
+/// A recording of any kind.
+#[derive(Debug)]
+pub struct Bag {
+    bytes: Vec<u8>,
+    kind: Kind,
+    facts: Facts,
+    began_utc_ns: u64,
+    result: Option<Facts>,
+    is_cut: bool,
+    damage: Vec<Range<usize>>,
+    channels: BTreeMap<u16, Channel>,
+    index: Vec<IndexEntry>,
+}
+
+#[derive(Debug)]
+struct Channel {
+    topic: String,
+    /// None for JSON.
+    schema: Option<String>,
+    /// Whether the message is JSON as the text of a string.
+    is_json: bool,
+}
+
+/// Where a message is.
+#[derive(Debug)]
+struct IndexEntry {
+    channel: u16,
+    number: u32,
+    at: SimTime,
+    utc_ns: u64,
+    place: Range<usize>,
+}
+
+/// A message of a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RecordedMessage<'a> {
+    /// The topic.
+    pub topic: &'a str,
+    /// The schema, for CDR; none for JSON.
+    pub schema: Option<&'a str>,
+    /// Which of the topic, from 0.
+    pub number: u32,
+    /// Time since the recording began, by the game's clock or the gateway's.
+    pub at: SimTime,
+    /// UTC when it was recorded, ns since 1970.
+    pub utc_ns: u64,
+    /// The message.
+    pub bytes: &'a [u8],
+}
+
+impl RecordedMessage<'_> {
+    /// The message, as what it is.
+    ///
+    /// # Errors
+    /// [`RecordingError::Damaged`] if it is something else.
+    pub fn read<M: Message + DeserializeOwned>(&self) -> Result<M, RecordingError> {
+        let damaged = |reason| RecordingError::Damaged { topic: self.topic.to_owned(), number: self.number, reason };
+        codec::decode(self.bytes).map_err(damaged)
+    }
+
+    /// The JSON, as what it is.
+    ///
+    /// # Errors
+    /// [`RecordingError::Json`] if it is something else.
+    pub fn read_json<T: DeserializeOwned>(&self) -> Result<T, RecordingError> {
+        let strange = |reason| RecordingError::Json { topic: self.topic.to_owned(), number: self.number, reason };
+        serde_json::from_slice(self.bytes).map_err(strange)
+    }
+}
+
+impl Bag {
+    /// Opens the recording in a file.
+    ///
+    /// # Errors
+    /// [`RecordingError`] if it cannot be read, is none, or is of another version.
+    pub fn open(path: &Path) -> Result<Bag, RecordingError> {
+        let file = |reason| RecordingError::File { path: path.to_owned(), reason };
+        Bag::of(std::fs::read(path).map_err(file)?)
+    }
+
+    /// Opens the recording that these bytes are.
+    ///
+    /// # Errors
+    /// [`RecordingError`] if they are none, or of another version.
+    pub fn of(bytes: Vec<u8>) -> Result<Bag, RecordingError> {
+        let mut found = Found::default();
+        let Extent { is_cut, damage } =
+            for_each_record(&bytes, |record, place| found.take(record, place)).map_err(RecordingError::Foreign)?;
+        let (kind, facts) = found.header()?;
+        let began_utc_ns = facts.get(BEGAN).map_or("", String::as_str).parse();
+        let began_utc_ns = began_utc_ns.map_err(|e| RecordingError::not_understood("beginning", e))?;
+        let indexed = |(message, place): (MessageHeader, Range<usize>)| IndexEntry {
+            channel: message.channel_id,
+            number: message.sequence,
+            at: SimTime(i64::try_from(message.log_time.saturating_sub(began_utc_ns)).unwrap_or(i64::MAX)),
+            utc_ns: message.publish_time,
+            place,
+        };
+        let index = found.messages.into_iter().map(indexed).collect();
+        let result = found.metadata.remove(RESULT);
+        Ok(Bag { kind, facts, began_utc_ns, result, is_cut, damage, channels: found.channels, index, bytes })
+    }
+
+    /// What it is a recording of.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// A fact of the header; empty if it is not there.
+    #[must_use]
+    pub fn fact(&self, key: &str) -> &str {
+        self.facts.get(key).map_or("", String::as_str)
+    }
+
+    /// When it began: UTC, ns since 1970.
+    #[must_use]
+    pub fn began_utc_ns(&self) -> u64 {
+        self.began_utc_ns
+    }
+
+    /// What was written at its end; none where the file ends before.
+    #[must_use]
+    pub fn result(&self) -> Option<&Facts> {
+        self.result.as_ref()
+    }
+
+    /// Whether the rest of the file is missing.
+    #[must_use]
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
+    /// Which of its bytes are not what was written, as far as checksums tell: what stands there may be wrong or missing.
+    #[must_use]
+    pub fn damage(&self) -> &[Range<usize>] {
+        &self.damage
+    }
+
+    /// Its size, bytes.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// All messages, in the order in which they were recorded.
+    pub fn messages(&self) -> impl ExactSizeIterator<Item = RecordedMessage<'_>> {
+        (0..self.index.len()).map(|place| self.message(place))
+    }
+
+    /// The messages of one topic.
+    pub fn on<'a>(&'a self, topic: &'a str) -> impl Iterator<Item = RecordedMessage<'a>> {
+        self.places(topic).map(|place| self.message(place))
+    }
+
+    /// The places of the messages of one topic, for [`Bag::message`].
+    pub fn places(&self, topic: &str) -> impl Iterator<Item = usize> {
+        let wanted = self.channels.iter().find(|(_, channel)| channel.topic == topic).map(|(id, _)| *id);
+        (0..self.index.len()).filter(move |place| Some(self.index[*place].channel) == wanted)
+    }
+
+    /// The message at a place.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    #[must_use]
+    pub fn message(&self, place: usize) -> RecordedMessage<'_> {
+        let IndexEntry { channel, number, at, utc_ns, place } = &self.index[place];
+        let channel = self.channels.get(channel);
+        let is_json = channel.is_some_and(|channel| channel.is_json);
+        let place = if is_json { json_string::place_in(&self.bytes, place.clone()) } else { place.clone() };
+        RecordedMessage {
+            topic: channel.map_or("", |channel| &channel.topic),
+            schema: channel.and_then(|channel| channel.schema.as_deref()),
+            number: *number,
+            at: *at,
+            utc_ns: *utc_ns,
+            bytes: &self.bytes[place],
+        }
+    }
+
+    /// The topics that there are messages on, with their numbers of messages, by name.
+    #[must_use]
+    pub fn topics(&self) -> BTreeMap<&str, usize> {
+        let mut topics = BTreeMap::new();
+        self.messages().for_each(|message| *topics.entry(message.topic).or_insert(0) += 1);
+        topics
+    }
+}
+
+/// What is found in a file.
+#[derive(Default)]
+struct Found {
+    schemas: BTreeMap<u16, (String, String)>,
+    channels: BTreeMap<u16, Channel>,
+    messages: Vec<(MessageHeader, Range<usize>)>,
+    metadata: BTreeMap<String, Facts>,
+}
+
+impl Found {
+    fn take(&mut self, record: Record<'_>, place: Range<usize>) -> Result<(), String> {
+        match record {
+            Record::Schema { header, .. } => {
+                self.schemas.insert(header.id, (header.name, header.encoding));
+            }
+            Record::Channel(channel) => {
+                let schema = self.schemas.get(&channel.schema_id).filter(|(_, encoding)| encoding == "ros2msg");
+                let schema = schema.map(|(name, _)| name.clone());
+                let is_json = schema.as_deref() == Some(json_string::SCHEMA);
+                let schema = schema.filter(|_| !is_json);
+                self.channels.insert(channel.id, Channel { topic: channel.topic, schema, is_json });
+            }
+            Record::Message { header, data } => {
+                let data = place.end - data.len()..place.end;
+                self.messages.push((header, data));
+            }
+            Record::Metadata(metadata) => drop(self.metadata.insert(metadata.name, metadata.metadata)),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The header, once it is known that this program can believe it.
+    fn header(&mut self) -> Result<(Kind, Facts), RecordingError> {
+        let foreign = |reason: &str| RecordingError::Foreign(reason.to_owned());
+        let header = Kind::ALL.into_iter().find_map(|kind| Some((kind, self.metadata.remove(kind.header())?)));
+        let (kind, facts) =
+            header.ok_or_else(|| foreign("there is neither metadata \"squall\" nor \"gateway\" in it"))?;
+        let version = facts.get(VERSION).cloned().unwrap_or_default();
+        if version != game::VERSION {
+            return Err(RecordingError::Version { found: version });
+        }
+        match facts.get(CHECKSUM) {
+            Some(written) if *written != checksum(&facts) => Err(foreign("its header is damaged")),
+            None if kind == Kind::Gateway => {
+                Err(foreign("it is a gateway's of the old format, which only the program that made it can replay"))
+            }
+            _ => Ok((kind, facts)),
+        }
+    }
+}
