@@ -7,7 +7,7 @@ use crate::stop;
 use anyhow::{Context, Result, bail};
 use minds::Minds;
 use recording::Recording;
-use shore::page::replay::{Recorded, ReplayShow};
+use shore::page::replay::{Recorded, ReplayView};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -48,11 +48,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// A recording as a page shows it.
-pub(crate) fn show(file: &Path) -> Result<ReplayShow> {
+pub(crate) fn show(file: &Path) -> Result<ReplayView> {
     let recording = Arc::new(open(file)?);
     let film = Recorded::new(Arc::clone(&recording), file.display().to_string())
         .with_context(|| format!("cannot replay {}", file.display()))?;
-    Ok(ReplayShow::new(Arc::new(film), Some(Box::new(Minds::new(recording)))))
+    Ok(ReplayView::new(Arc::new(film), Some(Box::new(Minds::new(recording)))))
 }
 
 fn open(file: &Path) -> Result<Recording> {

@@ -6,7 +6,7 @@ use crate::replay_command;
 use crate::screen::{self, Screen};
 use crate::stop;
 use anyhow::{Context, Result};
-use shore::page::live::LiveShow;
+use shore::page::live::LiveView;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -36,7 +36,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             screen::remark(&format!("no game to show: {missing}"));
         }
     });
-    let live = LiveShow::open(place, args.leaf.game.clone(), tell).context("cannot look for games")?;
+    let live = LiveView::open(place, args.leaf.game.clone(), tell).context("cannot look for games")?;
     page.show(Arc::new(live));
     Screen::new().line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));
     while !stop::is_set_soon(&stop) {

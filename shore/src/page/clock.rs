@@ -1,4 +1,4 @@
-//! The wall clock of the page's server: everything else is told the time.
+//! The wall clock of the page's server. Everything else gets the time as an argument.
 
 use std::time::Instant;
 

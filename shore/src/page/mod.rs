@@ -1,31 +1,31 @@
 //! The live page: a web server that shows a game, or a recording of one, to browsers.
 //!
 //! [`Page`] serves the files of the page and talks with each browser that opens it as `PROTOCOL.md` says. What it shows
-//! is a [`Show`]: `live::LiveShow` or [`replay::ReplayShow`]. Each page has a [`Viewer`] of its own, which is asked what
+//! is a [`View`]: `live::LiveView` or [`replay::ReplayView`]. Each page has a [`Viewer`] of its own, which is asked what
 //! to say next whenever the page can take it; so a slow page sees fewer frames, and nobody waits for it.
 
-mod ask;
+mod access;
 mod asset;
 mod chart;
 mod clock;
-mod conversation;
-mod guard;
-mod line;
+mod connection;
 #[cfg(feature = "net")]
 pub mod live;
+mod message;
 pub mod replay;
+mod request;
 mod rose;
-mod show;
-mod site;
+mod routes;
+mod session;
 mod socket;
-mod tell;
+mod view;
 
-pub use ask::{Ask, Word};
+pub use message::Mode;
+pub use request::{PageCommand, PageRequest};
 pub use rose::{HelmAnswer, is_sound};
-pub use show::{Guest, News, Room, Said, Show, Viewer};
-pub use tell::Mode;
+pub use view::{Access, Budget, Changes, Outgoing, View, Viewer};
 
-use guard::Guard;
+use access::AccessControl;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -80,18 +80,18 @@ pub enum PageError {
 /// A web server in a thread of its own.
 pub struct Page {
     address: SocketAddr,
-    shown: Option<watch::Sender<Option<Arc<dyn Show>>>>,
+    shown: Option<watch::Sender<Option<Arc<dyn View>>>>,
     ended: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// How often it looks whether it is to end.
+/// How often the server checks whether it shall end.
 const LOOK_AGAIN: Duration = Duration::from_millis(50);
-/// How long pages have to hear that it ends.
+/// How long pages have to receive the close message.
 const GOODBYE: Duration = Duration::from_millis(200);
 
 impl Page {
-    /// Listens, and serves pages that have nothing to look at yet.
+    /// Listens, and serves pages that have no view yet.
     ///
     /// # Errors
     /// [`PageError`] if it cannot listen there, or should not.
@@ -115,9 +115,9 @@ impl Page {
         let ended = Arc::new(AtomicBool::new(false));
         let end = Arc::clone(&ended);
         let serve = move || {
-            let guard = Guard::new(address, &hosts, token);
+            let guard = AccessControl::new(address, &hosts, token);
             // What cannot be taken over by the runtime was never a listener.
-            drop(runtime.block_on(site::serve(listener, guard, to_show, async {
+            drop(runtime.block_on(routes::serve(listener, guard, to_show, async {
                 while !end.load(Ordering::Relaxed) && !stop.load(Ordering::Relaxed) {
                     tokio::time::sleep(LOOK_AGAIN).await;
                 }
@@ -136,13 +136,13 @@ impl Page {
     }
 
     /// From now on all pages are shown this.
-    pub fn show(&self, show: Arc<dyn Show>) {
+    pub fn show(&self, show: Arc<dyn View>) {
         if let Some(shown) = &self.shown {
             shown.send_replace(Some(show));
         }
     }
 
-    /// Says good-bye to all pages.
+    /// Closes the connections to all pages.
     pub fn close(self) {
         drop(self);
     }
@@ -151,7 +151,7 @@ impl Page {
 impl Drop for Page {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
-        // Pages hear of it by the end of what is shown.
+        // Pages notice by the end of the channel.
         self.shown = None;
         if let Some(thread) = self.thread.take() {
             // A server that panicked has said so by itself.

@@ -1,6 +1,6 @@
 //! The rose: what a helm thinks, as the page draws it, its utilities as whole per cents.
 
-use super::tell::Tell;
+use super::message::PageMessage;
 use game::helm::{BehaviourReport, HelmReport, VariableReport};
 use game::{Scenario, VehicleId};
 use serde::Serialize;
@@ -91,7 +91,7 @@ pub(super) fn helm_text(scenario: &Scenario, vehicle: VehicleId, functions: bool
     let helm = if functions { helm } else { helm.map(|helm| helm.without_utilities()) };
     let reason = if helm.is_some() { None } else { reason.or_else(|| Some("nobody says why".to_owned())) };
     let name = scenario.vehicles.get(vehicle.index()).map_or("", |vehicle| &vehicle.name);
-    Tell::Helm { vehicle: name, report: helm.as_ref(), reason: reason.as_deref(), computed, agrees }.json()
+    PageMessage::Helm { vehicle: name, report: helm.as_ref(), reason: reason.as_deref(), computed, agrees }.json()
 }
 
 /// Whether a report is about this vehicle and of one piece: an agent that answers is not therefore right.

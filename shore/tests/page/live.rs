@@ -2,7 +2,7 @@
 
 use super::client::Client;
 use super::source::{frame, own_boat, report, scenario, seq_of};
-use super::{look, page};
+use super::page;
 use bus::{Bus, Declaration, Delivery, Net, Publisher, Watched};
 use game::codec;
 use game::event::{Event, Logged};
@@ -17,8 +17,8 @@ use game::topic::{self, GameName, Part};
 use game::water::{PlaneWave, Water};
 use game::{Scenario, SimTime, TeamId, VehicleId};
 use serde_json::json;
-use shore::page::live::LiveShow;
-use shore::page::{Page, Show};
+use shore::page::live::LiveView;
+use shore::page::{Page, View};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -86,18 +86,18 @@ impl Sim {
         let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
         let events = Arc::new(Watched::new(vec![]));
         let (controls, proposals) = (Arc::new(Watched::new(vec![])), Arc::new(Watched::new(vec![])));
-        let notice = GameInfo { version: game::VERSION.to_owned(), pace: pace.to_owned(), scenario: scenario.clone() };
+        let info = GameInfo { version: game::VERSION.to_owned(), pace: pace.to_owned(), scenario: scenario.clone() };
         let wave = PlaneWave { amplitude_m: 0.25, ..PlaneWave::default() };
         let fixed = |key: String, answer: Vec<u8>| {
             bus.answer(key, move |question| question.answer(answer.clone())).expect("it answers")
         };
-        let told = Arc::clone(&events);
+        let sent = Arc::clone(&events);
         let heard = Arc::clone(&controls);
         let proposed = Arc::clone(&proposals);
         let standing = vec![
-            fixed(topic::scenario(&game), json(&notice)),
+            fixed(topic::scenario(&game), json(&info)),
             fixed(topic::water(&game), json(&Water { waves: vec![wave] })),
-            bus.answer(topic::events(&game), move |question| question.answer(told.visit(|events| json(events))))
+            bus.answer(topic::events(&game), move |question| question.answer(sent.visit(|events| json(events))))
                 .expect("it answers"),
             bus.answer(topic::helm(&game, &scenario, BLUE_ONE), |question| {
                 let asked: HelmQuestion = serde_json::from_slice(&question.payload).expect("a question");
@@ -148,10 +148,10 @@ fn port() -> u16 {
     bus::free_port(false).expect("a free port")
 }
 
-fn live(port: u16, game: Option<&str>) -> Arc<dyn Show> {
+fn live(port: u16, game: Option<&str>) -> Arc<dyn View> {
     let net = Net { connect: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
     let game = game.map(|name| GameName::new(name).expect("a good name"));
-    let show = LiveShow::open(Box::new(move || Ok(net.clone())), game, Box::new(|_| ()));
+    let show = LiveView::open(Box::new(move || Ok(net.clone())), game, Box::new(|_| ()));
     Arc::new(show.expect("a thread"))
 }
 
@@ -160,7 +160,7 @@ fn meet(file: &str) -> (Sim, Page, Client) {
     let port = port();
     let sim = Sim::open(port, "pond", steered(file));
     let page = page(live(port, None), None, &[]);
-    let mut client = look(&page);
+    let mut client = viewer(&page);
     let hello = client.text();
     assert_eq!((&hello["kind"], &hello["mode"], &hello["game"]), (&json!("hello"), &json!("live"), &json!("pond")));
     sim.wait_for_ears();
@@ -185,10 +185,10 @@ fn a_page_sees_frames_their_past_and_how_the_run_stands() {
     .find(|frame| seq_of(frame) == 100);
     assert_eq!(shown.expect("the newest comes")[0], 1);
     // A newcomer gets the past first.
-    let mut newcomer = look(&page);
+    let mut newcomer = viewer(&page);
     assert_eq!(newcomer.text()["chart"]["waves"][0]["amplitude_m"], 0.25);
     let past: Vec<u64> =
-        (0..20).map(|_| newcomer.frame()).inspect(|f| assert_eq!(f[0], 2)).map(|f| seq_of(&f)).collect();
+        (0..20).map(|_| newcomer.frame()).inspect(|f| assert_eq!(f[0], 2)).map(|f| seq_of(f)).collect();
     assert_eq!(past, (0..20).map(|step| step * 5).collect::<Vec<u64>>());
     let now = newcomer.frame();
     assert_eq!((now[0], seq_of(&now)), (1, 100));
@@ -236,11 +236,11 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
     }
     page.close();
     let locked = super::page(live_again(&sim), Some("secret"), &[]);
-    let mut observer = look(&locked);
+    let mut observer = viewer(&locked);
     assert_eq!(observer.text()["rights"], false);
     observer.send(r#"{"do":"control","what":"stop"}"#);
     assert_eq!(observer.until("refused", |_| true)["what"], "control");
-    let mut master = Client::connect(locked.address(), "/ws?token=secret", &[]).expect("all may look");
+    let mut master = Client::connect(locked.address(), "/ws?token=secret", &[]).expect("all may viewer");
     master.send(r#"{"do":"control","what":"halt"}"#);
     assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::Halt)));
     sim.controls.visit(|all| assert!(!all.contains(&Control::Stop)));
@@ -252,7 +252,7 @@ fn a_game_in_lockstep_goes_as_fast_as_can_be_if_asked() {
     let port = port();
     let sim = Sim::paced(port, "pond", scenario("pav01_vs_pav01.toml"), "lockstep");
     let page = page(live(port, None), None, &[]);
-    let mut client = look(&page);
+    let mut client = viewer(&page);
     client.until("hello", |_| true);
     sim.wait_for_ears();
     client.send(r#"{"do":"speed","factor":null}"#);
@@ -261,14 +261,14 @@ fn a_game_in_lockstep_goes_as_fast_as_can_be_if_asked() {
 }
 
 /// Another server in the same game.
-fn live_again(sim: &Sim) -> Arc<dyn Show> {
+fn live_again(sim: &Sim) -> Arc<dyn View> {
     live(sim.port, Some("pond"))
 }
 
 #[test]
 fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
     let (sim, page, mut one) = meet("pav01_vs_pav01.toml");
-    let mut other = look(&page);
+    let mut other = viewer(&page);
     sim.show(5, &[]);
     one.frame();
     let steer = r#"{"do":"drive","vehicle":"blue_one","course_deg":-90,"speed_m_s":99}"#;
@@ -286,7 +286,7 @@ fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
     other.send(r#"{"do":"drive","vehicle":"blue_two","course_deg":0,"speed_m_s":1}"#);
     let refused = other.until("refused", |_| true);
     assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains("heeds no policy")), "{refused}");
-    one.send(r#"{"do":"let_go","vehicle":"blue_one"}"#);
+    one.send(r#"{"do":"release","vehicle":"blue_one"}"#);
     other.until("drive", |drive| drive["by"].is_null());
     other.send(steer);
     other.until("drive", |drive| drive["by"] == "you");
@@ -303,7 +303,7 @@ fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
 #[test]
 fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     let (sim, page, mut client) = meet("pav01_vs_pav01.toml");
-    let mut other = look(&page);
+    let mut other = viewer(&page);
     assert!(!sim.pictures.is_heard(), "nobody looks at a boat yet");
     client.send(r#"{"do":"select","vehicle":"blue_one","functions":true}"#);
     other.send(r#"{"do":"select","vehicle":"red_one","functions":false}"#);
@@ -344,8 +344,8 @@ fn gateways_tell_and_real_boats_keep_their_pace() {
     let gateway = sim.bus.publisher(topic::status(&game, &name), Delivery::Wait).expect("it publishes");
     let status = GatewayStatus { vehicle: name.clone(), state: "armed".to_owned(), ..GatewayStatus::default() };
     gateway.send_json(json(&status)).expect("it is open");
-    let told = client.until("status", |_| true);
-    assert_eq!((&told["vehicle"], &told["status"]["state"]), (&json!(name), &json!("armed")));
+    let sent = client.until("status", |_| true);
+    assert_eq!((&sent["vehicle"], &sent["status"]["state"]), (&json!(name), &json!("armed")));
     client.send(r#"{"do":"speed","factor":4}"#);
     client.until("refused", |refused| refused["what"] == "speed");
     client.until("state", |state| state["can_speed"] == false);
@@ -356,7 +356,7 @@ fn gateways_tell_and_real_boats_keep_their_pace() {
 fn a_game_that_goes_is_gone_and_the_next_is_another() {
     let port = port();
     let page = page(live(port, None), None, &[]);
-    let mut client = look(&page);
+    let mut client = viewer(&page);
     assert_eq!(client.rest(), [], "there is no game yet");
     let first = Sim::open(port, "pond", scenario("pav01_vs_pav01.toml"));
     assert_eq!(client.until("hello", |_| true)["game"], "pond");
@@ -371,7 +371,9 @@ fn a_game_that_goes_is_gone_and_the_next_is_another() {
     assert_eq!(client.until("hello", |_| true)["game"], "lake");
     client.until("events", |events| events["reset"] == true);
     client.until("state", |state| state["phase"] == "waiting");
-    second.controls.visit(|all| assert_eq!(all.len(), 0, "what was asked of the first game is not done to the second"));
+    second
+        .controls
+        .visit(|all| assert_eq!(all.len(), 0, "what was asked of the first game is not done to the second"));
     second.close();
 }
 

@@ -1,19 +1,19 @@
 //! The page's server, seen from a browser: over TCP, with websockets.
 
+mod access;
 mod client;
-mod guard;
 #[cfg(feature = "net")]
 mod live;
 mod replay;
+mod session;
 mod source;
-mod talk;
 
 use client::Client;
-use shore::page::{Page, PageSettings, Show};
+use shore::page::{Page, PageSettings, View};
 use std::sync::Arc;
 
 /// A server on a free port that shows this.
-fn page(show: Arc<dyn Show>, token: Option<&str>, hosts: &[&str]) -> Page {
+fn page(show: Arc<dyn View>, token: Option<&str>, hosts: &[&str]) -> Page {
     let settings = PageSettings {
         listen: "127.0.0.1:0".parse().expect("an address"),
         token: token.map(str::to_owned),

@@ -4,13 +4,13 @@ use super::source::{MadeUp, Rememberer, seq_of};
 use super::{client, look, page};
 use proptest::prelude::*;
 use serde_json::json;
-use shore::page::replay::ReplayShow;
-use shore::page::{Ask, Guest, Room, Said, Show, Word};
+use shore::page::replay::ReplayView;
+use shore::page::{Access, Budget, Outgoing, PageCommand, PageRequest, View};
 use std::sync::Arc;
 use std::time::Duration;
 
-pub(crate) fn show() -> Arc<dyn Show> {
-    Arc::new(ReplayShow::new(Arc::new(MadeUp::new()), Some(Box::new(Rememberer))))
+pub(crate) fn show() -> Arc<dyn View> {
+    Arc::new(ReplayView::new(Arc::new(MadeUp::new()), Some(Box::new(Rememberer))))
 }
 
 #[test]
@@ -25,7 +25,7 @@ fn a_replay_says_hello_tells_all_events_and_stands_at_the_beginning() {
     let events = client.text();
     assert_eq!((&events["kind"], &events["reset"]), (&json!("events"), &json!(true)));
     assert_eq!(events["events"].as_array().map(Vec::len), Some(2));
-    let want = json!({"kind": "player", "playing": false, "t_s": 0.0, "speed": 1.0, "from_s": 0.0, "to_s": 120.0,
+    let want = json!({"kind": "playback", "playing": false, "t_s": 0.0, "speed": 1.0, "from_s": 0.0, "to_s": 120.0,
         "cut": true, "file": "made_up.mcap"});
     assert_eq!(client.text(), want);
     let first = client.frame();
@@ -41,7 +41,7 @@ fn seeking_brings_the_past_and_the_moment() {
     client.frame();
     client.ack();
     client.send(r#"{"do":"seek","t_s":100.04}"#);
-    client.until("player", |player| player["t_s"] == 100.04);
+    client.until("playback", |playback| playback["t_s"] == 100.04);
     let past: Vec<Vec<u8>> = (0..120).map(|_| client.frame()).collect();
     assert!(past.iter().all(|frame| frame[0] == 2));
     assert_eq!((seq_of(&past[0]), seq_of(&past[119])), (400, 995));
@@ -67,13 +67,15 @@ fn it_plays_as_fast_as_asked_and_to_the_end() {
     let page = page(show(), None, &[]);
     let mut client = look(&page);
     client.send(r#"{"do":"speed","factor":50}"#);
-    client.until("player", |player| player["speed"] == 50.0);
+    client.until("playback", |playback| playback["speed"] == 50.0);
     client.send(r#"{"do":"seek","t_s":100}"#);
     client.send(r#"{"do":"control","what":"resume"}"#);
-    client.until("player", |player| player["playing"] == true);
-    client.until("player", |player| player["playing"] == false && player["t_s"] == 120.0);
+    client.until("playback", |playback| playback["playing"] == true);
+    client.until("playback", |playback| playback["playing"] == false && playback["t_s"] == 120.0);
     client.send(r#"{"do":"control","what":"resume"}"#);
-    client.until("player", |player| player["playing"] == true && player["t_s"].as_f64().is_some_and(|t_s| t_s < 60.0));
+    client.until("playback", |playback| {
+        playback["playing"] == true && playback["t_s"].as_f64().is_some_and(|t_s| t_s < 60.0)
+    });
 }
 
 #[test]
@@ -85,7 +87,7 @@ fn each_page_has_a_player_of_its_own() {
     other.frame();
     other.ack();
     one.send(r#"{"do":"seek","t_s":3}"#);
-    one.until("player", |player| player["t_s"] == 3.0);
+    one.until("playback", |playback| playback["t_s"] == 3.0);
     assert_eq!(other.rest(), []);
 }
 
@@ -124,48 +126,50 @@ fn what_a_recording_cannot_do_is_refused() {
 
 #[test]
 fn a_recording_without_frames_is_shown_too() {
-    let page = page(Arc::new(ReplayShow::new(Arc::new(MadeUp::of(0)), None)), None, &[]);
+    let page = page(Arc::new(ReplayView::new(Arc::new(MadeUp::of(0)), None)), None, &[]);
     let mut client = look(&page);
     for ask in [r#"{"do":"control","what":"resume"}"#, r#"{"do":"step","by":1}"#, r#"{"do":"seek","t_s":9}"#] {
         client.send(ask);
     }
-    client.until("player", |player| player["t_s"] == 0.0 && player["to_s"] == 0.0);
+    client.until("playback", |playback| playback["t_s"] == 0.0 && playback["to_s"] == 0.0);
 }
 
-fn any_ask() -> impl Strategy<Value = Ask> {
+fn any_ask() -> impl Strategy<Value = PageRequest> {
     let vehicle = prop::sample::select(vec!["blue_one", "red_two", "whale"]);
     prop_oneof![
         (vehicle, any::<bool>())
-            .prop_map(|(name, functions)| Ask::Select { vehicle: Some(name.to_owned()), functions }),
-        prop::sample::select(vec![Word::Pause, Word::Resume, Word::Step, Word::Stop])
-            .prop_map(|what| Ask::Control { what }),
-        prop::option::of(any::<f64>()).prop_map(|factor| Ask::Speed { factor }),
-        any::<i64>().prop_map(|by| Ask::Step { by }),
-        (-2..3_i64).prop_map(|by| Ask::Step { by }),
-        any::<f64>().prop_map(|t_s| Ask::Seek { t_s }),
-        (0.0..130.0).prop_map(|t_s| Ask::Seek { t_s }),
+            .prop_map(|(name, functions)| PageRequest::Select { vehicle: Some(name.to_owned()), functions }),
+        prop::sample::select(vec![PageCommand::Pause, PageCommand::Resume, PageCommand::Step, PageCommand::Stop])
+            .prop_map(|what| PageRequest::Control { what }),
+        prop::option::of(any::<f64>()).prop_map(|factor| PageRequest::Speed { factor }),
+        any::<i64>().prop_map(|by| PageRequest::Step { by }),
+        (-2..3_i64).prop_map(|by| PageRequest::Step { by }),
+        any::<f64>().prop_map(|t_s| PageRequest::Seek { t_s }),
+        (0.0..130.0).prop_map(|t_s| PageRequest::Seek { t_s }),
     ]
 }
 
-fn any_room() -> impl Strategy<Value = Room> {
-    prop::sample::select(vec![Room::None, Room::Frames, Room::All])
+fn any_room() -> impl Strategy<Value = Budget> {
+    prop::sample::select(vec![Budget::None, Budget::Frames, Budget::All])
 }
 
-/// Whether it is told again and again of the boat that is selected.
-fn is_of_selected(said: &Said) -> bool {
+/// Whether it is sent again and again of the boat that is selected.
+fn is_of_selected(said: &Outgoing) -> bool {
     let kinds = [r#"{"kind":"helm""#, r#"{"kind":"estimate""#];
-    matches!(said, Said::Text(text) if kinds.iter().any(|kind| text.starts_with(kind)))
+    matches!(said, Outgoing::Text(text) if kinds.iter().any(|kind| text.starts_with(kind)))
 }
 
 #[test]
 fn what_can_wait_waits_until_there_is_room() {
-    let show = ReplayShow::new(Arc::new(MadeUp::new()), None);
-    let (mut viewer, now) = (show.admit(Guest { rights: false }), client::now());
-    while viewer.say(now, Room::All).is_some() {}
-    viewer.ask(&Ask::Select { vehicle: Some("red_one".to_owned()), functions: true }, now).expect("it is there");
-    let said: Vec<Said> = std::iter::from_fn(|| viewer.say(now, Room::Frames)).collect();
+    let show = ReplayView::new(Arc::new(MadeUp::new()), None);
+    let (mut viewer, now) = (show.open_viewer(Access { rights: false }), client::now());
+    while viewer.next_message(now, Budget::All).is_some() {}
+    viewer
+        .ask(&PageRequest::Select { vehicle: Some("red_one".to_owned()), functions: true }, now)
+        .expect("it is there");
+    let said: Vec<Outgoing> = std::iter::from_fn(|| viewer.next_message(now, Budget::Frames)).collect();
     assert!(!said.iter().any(is_of_selected), "{said:?}");
-    let estimate = viewer.say(now, Room::All).expect("it has waited");
+    let estimate = viewer.next_message(now, Budget::All).expect("it has waited");
     assert!(is_of_selected(&estimate), "{estimate:?}");
 }
 
@@ -175,21 +179,21 @@ proptest! {
     fn whatever_is_asked_frames_come_in_order_between_jumps(
         asks in prop::collection::vec((any_ask(), 0..2_000_u64, any_room()), 1..30),
     ) {
-        let show = ReplayShow::new(Arc::new(MadeUp::new()), None);
-        let mut viewer = show.admit(Guest { rights: false });
+        let show = ReplayView::new(Arc::new(MadeUp::new()), None);
+        let mut viewer = show.open_viewer(Access { rights: false });
         let mut now = client::now();
         for (ask, wait_ms, room) in asks {
             drop(viewer.ask(&ask, now));
             now += Duration::from_millis(wait_ms);
-            let said: Vec<Said> = std::iter::from_fn(|| viewer.say(now, room)).take(1000).collect();
+            let said: Vec<Outgoing> = std::iter::from_fn(|| viewer.next_message(now, room)).take(1000).collect();
             prop_assert!(said.len() < 1000, "it has no end of things to say after {ask:?}");
             let frames: Vec<u64> = said.iter().filter_map(|said| match said {
-                Said::Past(bytes) | Said::Now(bytes) => Some(seq_of(bytes)),
-                Said::Text(_) => None,
+                Outgoing::Past(bytes) | Outgoing::Now(bytes) => Some(seq_of(bytes)),
+                Outgoing::Text(_) => None,
             }).collect();
-            prop_assert!(frames.is_sorted() && (room != Room::None || frames.is_empty()), "{frames:?} after {ask:?}");
-            prop_assert!(room == Room::All || !said.iter().any(is_of_selected));
-            prop_assert!(said.iter().filter(|said| matches!(said, Said::Now(_))).count() <= 1);
+            prop_assert!(frames.is_sorted() && (room != Budget::None || frames.is_empty()), "{frames:?} after {ask:?}");
+            prop_assert!(room == Budget::All || !said.iter().any(is_of_selected));
+            prop_assert!(said.iter().filter(|said| matches!(said, Outgoing::Now(_))).count() <= 1);
             prop_assert!(viewer.due(now).is_none_or(|due| due > now));
         }
     }

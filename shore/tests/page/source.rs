@@ -101,7 +101,7 @@ impl MadeUp {
 }
 
 impl ReplaySource for MadeUp {
-    fn notice(&self) -> &GameInfo {
+    fn info(&self) -> &GameInfo {
         &self.notice
     }
     fn game(&self) -> &str {

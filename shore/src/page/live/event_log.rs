@@ -1,4 +1,4 @@
-//! The event_log: what has happened so far, from frames as they come and from the sim where some were missed.
+//! The event_log: what has happened so far, from frames as they find and from the sim where some were missed.
 
 use game::outcome::EventOutcome;
 use std::collections::VecDeque;
@@ -11,8 +11,8 @@ const ASK_AGAIN: Duration = Duration::from_secs(1);
 
 /// How far somebody has read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Bookmark {
-    edition: u64,
+pub(super) struct EventCursor {
+    revision: u64,
     next: u64,
 }
 
@@ -23,18 +23,18 @@ pub(super) struct EventLog {
     /// The number of the first of them.
     first: u64,
     /// Rises whenever what was written before is not what is written now.
-    edition: u64,
-    is_gappy: bool,
+    revision: u64,
+    has_gap: bool,
     asked: Option<Instant>,
 }
 
 impl EventLog {
     /// A event_log of which all that happened before is missing.
     pub(super) fn new() -> EventLog {
-        EventLog { is_gappy: true, edition: 1, ..EventLog::default() }
+        EventLog { has_gap: true, revision: 1, ..EventLog::default() }
     }
 
-    /// An event from a frame. One that the sim has told already is not told twice.
+    /// An event from a frame. One that the sim has sent already is not sent twice.
     pub(super) fn add(&mut self, event: EventOutcome) {
         let mut recent = self.events.iter().rev().take_while(|known| known.tick >= event.tick);
         if !recent.any(|known| *known == event) {
@@ -43,23 +43,23 @@ impl EventLog {
         }
     }
 
-    /// A frame was missed, and what it told.
-    pub(super) fn miss(&mut self) {
-        self.is_gappy = true;
+    /// A frame was missed, and what it sent.
+    pub(super) fn note_gap(&mut self) {
+        self.has_gap = true;
     }
 
-    /// Whether to ask the sim for all events now; whoever is told to does so.
-    pub(super) fn is_to_ask(&mut self, now: Instant) -> bool {
+    /// Whether to ask the sim for all events now; whoever is sent to does so.
+    pub(super) fn should_query(&mut self, now: Instant) -> bool {
         let rested = self.asked.is_none_or(|asked| now.saturating_duration_since(asked) >= ASK_AGAIN);
-        let asks = self.is_gappy && rested;
+        let asks = self.has_gap && rested;
         if asks {
-            (self.is_gappy, self.asked) = (false, Some(now));
+            (self.has_gap, self.asked) = (false, Some(now));
         }
         asks
     }
 
     /// All events up to a moment, from the sim. Later ones from frames stay.
-    pub(super) fn rewrite(&mut self, mut all: Vec<EventOutcome>) {
+    pub(super) fn replace(&mut self, mut all: Vec<EventOutcome>) {
         let last = all.last().map_or(0, |event| event.tick);
         let later = |event: &&EventOutcome| event.tick > last || (event.tick == last && !all.contains(event));
         let rest: Vec<EventOutcome> = self.events.iter().filter(later).cloned().collect();
@@ -67,7 +67,7 @@ impl EventLog {
         let goes_on =
             self.first == 0 && all.len() >= self.events.len() && self.events.iter().eq(&all[..self.events.len()]);
         if !goes_on {
-            self.edition += 1;
+            self.revision += 1;
             self.first = 0;
         }
         self.events = all.into();
@@ -76,12 +76,15 @@ impl EventLog {
 
     /// What somebody has not read yet, whether that is all there is, and how far they have read with it. Nothing if they
     /// have read everything.
-    pub(super) fn unread(&self, mark: Bookmark) -> Option<(bool, impl Iterator<Item = &EventOutcome>, Bookmark)> {
-        let reset = mark.edition != self.edition;
-        let from = if reset { self.first } else { mark.next.max(self.first) };
+    pub(super) fn unread(
+        &self,
+        cursor: EventCursor,
+    ) -> Option<(bool, impl Iterator<Item = &EventOutcome>, EventCursor)> {
+        let reset = cursor.revision != self.revision;
+        let from = if reset { self.first } else { cursor.next.max(self.first) };
         let next = self.first + self.events.len() as u64;
         let unread = self.events.range((from - self.first) as usize..);
-        (reset || from < next).then_some((reset, unread, Bookmark { edition: self.edition, next }))
+        (reset || from < next).then_some((reset, unread, EventCursor { revision: self.revision, next }))
     }
 
     fn trim(&mut self) {
@@ -100,58 +103,58 @@ mod tests {
         EventOutcome { tick, at_s: 0.0, event: word.into(), vehicle: None, other: None, team: None }
     }
 
-    /// What a reader is told, and that they are told it once.
-    fn read(event_log: &EventLog, mark: &mut Bookmark) -> (bool, Vec<u64>) {
-        let Some((reset, unread, next)) = event_log.unread(*mark) else { return (false, vec![]) };
-        let told = (reset, unread.map(|event| event.tick).collect());
-        *mark = next;
-        assert!(event_log.unread(*mark).is_none());
-        told
+    /// What a reader is sent, and that they are sent it once.
+    fn read(event_log: &EventLog, cursor: &mut EventCursor) -> (bool, Vec<u64>) {
+        let Some((reset, unread, next)) = event_log.unread(*cursor) else { return (false, vec![]) };
+        let sent = (reset, unread.map(|event| event.tick).collect());
+        *cursor = next;
+        assert!(event_log.unread(*cursor).is_none());
+        sent
     }
 
     #[test]
     fn a_newcomer_gets_all_and_then_news() {
         let mut event_log = EventLog::new();
-        let mut mark = Bookmark::default();
-        assert_eq!(read(&event_log, &mut mark), (true, vec![]), "even if there is nothing");
+        let mut cursor = EventCursor::default();
+        assert_eq!(read(&event_log, &mut cursor), (true, vec![]), "even if there is nothing");
         event_log.add(event(5, "a"));
         event_log.add(event(5, "b"));
-        assert_eq!(read(&event_log, &mut mark), (false, vec![5, 5]));
-        assert_eq!(read(&event_log, &mut Bookmark::default()), (true, vec![5, 5]));
+        assert_eq!(read(&event_log, &mut cursor), (false, vec![5, 5]));
+        assert_eq!(read(&event_log, &mut EventCursor::default()), (true, vec![5, 5]));
     }
 
     #[test]
     fn what_was_missed_is_put_in_its_place() {
         let mut event_log = EventLog::new();
-        let mut mark = Bookmark::default();
+        let mut cursor = EventCursor::default();
         event_log.add(event(5, "a"));
-        read(&event_log, &mut mark);
+        read(&event_log, &mut cursor);
         event_log.add(event(9, "c"));
-        // The sim's answer is older than the last frame, and says more of the time before.
-        event_log.rewrite(vec![event(5, "a"), event(7, "b")]);
-        assert_eq!(read(&event_log, &mut mark), (true, vec![5, 7, 9]));
-        // An answer that says nothing new changes nothing; a frame that comes after it is not told twice.
-        event_log.rewrite(vec![event(5, "a"), event(7, "b"), event(9, "c"), event(9, "d")]);
+        // The sim's answer is older than the last frame, and has more events before it.
+        event_log.replace(vec![event(5, "a"), event(7, "b")]);
+        assert_eq!(read(&event_log, &mut cursor), (true, vec![5, 7, 9]));
+        // An answer that says nothing new changes nothing; a frame that comes after it is not sent twice.
+        event_log.replace(vec![event(5, "a"), event(7, "b"), event(9, "c"), event(9, "d")]);
         event_log.add(event(9, "d"));
-        assert_eq!(read(&event_log, &mut mark), (false, vec![9]));
+        assert_eq!(read(&event_log, &mut cursor), (false, vec![9]));
     }
 
     #[test]
     fn the_sim_is_asked_when_something_was_missed_and_not_too_often() {
         let start = clock::now();
         let mut event_log = EventLog::new();
-        assert!(event_log.is_to_ask(start) && !event_log.is_to_ask(start));
-        event_log.miss();
-        assert!(!event_log.is_to_ask(start) && event_log.is_to_ask(start + ASK_AGAIN));
+        assert!(event_log.should_query(start) && !event_log.should_query(start));
+        event_log.note_gap();
+        assert!(!event_log.should_query(start) && event_log.should_query(start + ASK_AGAIN));
     }
 
     #[test]
     fn a_chronicle_without_end_forgets_its_beginning() {
         let mut event_log = EventLog::new();
-        let mut mark = Bookmark::default();
-        read(&event_log, &mut mark);
+        let mut cursor = EventCursor::default();
+        read(&event_log, &mut cursor);
         (0..EVENTS_MAX as u64 + 3).for_each(|tick| event_log.add(event(tick, "x")));
-        let (reset, told) = read(&event_log, &mut mark);
-        assert_eq!((reset, told.len(), told[0]), (false, EVENTS_MAX, 3));
+        let (reset, sent) = read(&event_log, &mut cursor);
+        assert_eq!((reset, sent.len(), sent[0]), (false, EVENTS_MAX, 3));
     }
 }

@@ -1,6 +1,6 @@
-//! The roll of frames: the newest to be shown, and some of the past for trails.
+//! The frames of frames: the newest to be shown, and some of the past for trails.
 
-use crate::page::show::{TRAIL_S, TRAIL_STEP_S, marked};
+use crate::page::view::{TRAIL_S, TRAIL_STEP_S, marked};
 use axum::body::Bytes;
 use game::SimTime;
 use game::message::{Frame, Stamp};
@@ -13,7 +13,7 @@ const METER: Duration = Duration::from_secs(1);
 /// The frames of a game.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameBuffer {
-    /// How many have come so far: the number of the newest, counted from 1.
+    /// How many have find so far: the number of the newest, counted from 1.
     pub(super) count: u64,
     /// The stamp of the newest.
     pub(super) stamp: Stamp,
@@ -47,12 +47,12 @@ impl FrameBuffer {
         missed
     }
 
-    /// The newest frame, with the byte that says so.
+    /// The newest frame, with its leading byte.
     pub(super) fn newest(&self) -> Bytes {
         self.newest.clone()
     }
 
-    /// The frames of the past before it, with the byte that says so.
+    /// The frames of the past before it, with its leading byte.
     pub(super) fn past(&self) -> VecDeque<Bytes> {
         let before = self.past.iter().filter(|(at, _)| *at < self.stamp.valid_ns);
         before.map(|(_, bytes)| bytes.clone()).collect()
@@ -87,26 +87,26 @@ mod tests {
     #[test]
     fn the_newest_is_shown_and_a_minute_is_kept() {
         let start = clock::now();
-        let mut roll = FrameBuffer::default();
+        let mut frames = FrameBuffer::default();
         for seq in 0..2000 {
-            assert!(!roll.take(&frame(seq), &seq.to_le_bytes(), start + Duration::from_millis(100) * seq as u32));
+            assert!(!frames.take(&frame(seq), &seq.to_le_bytes(), start + Duration::from_millis(100) * seq as u32));
         }
-        assert_eq!(roll.newest()[..], [&[1], &1999_u64.to_le_bytes()[..]].concat());
-        let past = roll.past();
+        assert_eq!(frames.newest()[..], [&[1], &1999_u64.to_le_bytes()[..]].concat());
+        let past = frames.past();
         assert_eq!(past.len(), 120);
         assert_eq!(past[119][..], [&[2], &1995_u64.to_le_bytes()[..]].concat());
         let end = start + Duration::from_millis(199_900);
-        assert!((roll.rate_hz(end) - 10.0).abs() < 0.1);
-        assert_eq!(roll.rate_hz(end + Duration::from_secs(5)), 0.0);
+        assert!((frames.rate_hz(end) - 10.0).abs() < 0.1);
+        assert_eq!(frames.rate_hz(end + Duration::from_secs(5)), 0.0);
     }
 
     #[test]
     fn a_gap_is_noticed_and_a_new_beginning_forgets_the_past() {
         let start = clock::now();
-        let mut roll = FrameBuffer::default();
-        assert!(!roll.take(&frame(7), &[], start), "what was before the first is not missed here");
-        assert!(!roll.take(&frame(8), &[], start) && roll.take(&frame(10), &[], start));
-        assert!(!roll.take(&frame(0), &[], start));
-        assert!(roll.past().is_empty());
+        let mut frames = FrameBuffer::default();
+        assert!(!frames.take(&frame(7), &[], start), "what was before the first is not missed here");
+        assert!(!frames.take(&frame(8), &[], start) && frames.take(&frame(10), &[], start));
+        assert!(!frames.take(&frame(0), &[], start));
+        assert!(frames.past().is_empty());
     }
 }

@@ -1,6 +1,6 @@
-//! The keeper: finds the game, hears what is published in it, passes on what pages want, and finds it again.
+//! Finds the game, subscribes to its topics, publishes what pages command, and finds it again when it is gone.
 
-use super::live_state::Play;
+use super::live_state::LiveGame;
 use super::query_thread::QueryThread;
 use super::{Command, Place, SharedState};
 use crate::page::clock;
@@ -20,7 +20,7 @@ use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How often to look again for a game that is not there.
+/// How often to viewer again for a game that is not there.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 /// How often to see to what changes by itself.
 const ROUND: Duration = Duration::from_millis(50);
@@ -28,12 +28,12 @@ const ROUND: Duration = Duration::from_millis(50);
 const ATTEMPTS: u64 = 20;
 /// How long to wait for an answer.
 const ANSWER: Duration = Duration::from_secs(2);
-/// How long a sim's token may take to appear, and to come back: a sim is not gone because its link was cut for a moment.
+/// How long a sim's token may take to appear, and to find back: a sim is not gone because its link was cut for a moment.
 const PATIENCE: Patience = Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1) };
-/// Estimates are looked at no more often than this, however fast the game is.
+/// Estimates are read no more often than this, however fast the game is.
 const PICTURE_AGAIN: Duration = Duration::from_millis(50);
 
-/// Keeps the show going.
+/// Watches for the game.
 pub(super) struct GameWatcher {
     shared: Arc<SharedState>,
     place: Place,
@@ -43,9 +43,9 @@ pub(super) struct GameWatcher {
 }
 
 /// A session in a game.
-struct Visit {
+struct GameSession {
     bus: Bus,
-    play: Arc<Play>,
+    game: Arc<LiveGame>,
     control: Publisher,
     policies: BTreeMap<VehicleId, Publisher>,
     pictures: BTreeMap<TeamId, Declaration>,
@@ -64,17 +64,17 @@ impl GameWatcher {
         GameWatcher { shared, place, game, commands, tell }
     }
 
-    /// Shows one game after the other until the show closes.
-    pub(super) fn keep(self) {
+    /// Shows one game after the other until the view closes.
+    pub(super) fn run(self) {
         let mut bus = None;
         let (mut said, mut attempts) = (String::new(), 0_u64);
         while !self.shared.is_closing() {
             // What was wanted of a game that is gone is not wanted of the next.
             while self.commands.try_recv().is_ok() {}
-            match self.come(&mut bus) {
-                Ok(visit) => {
+            match self.find(&mut bus) {
+                Ok(session) => {
                     said.clear();
-                    self.stay(visit);
+                    self.run_until_gone(session);
                     bus = None;
                 }
                 Err(missing) => {
@@ -87,19 +87,19 @@ impl GameWatcher {
                     if attempts % ATTEMPTS == 0 {
                         bus = None;
                     }
-                    Self::rest(LOOK_AGAIN);
+                    Self::pause(LOOK_AGAIN);
                 }
             }
         }
     }
 
     /// Waits a while, for nothing.
-    fn rest(time: Duration) {
+    fn pause(time: Duration) {
         Watched::new(()).wait(time, |()| false);
     }
 
-    /// Comes to a game, if there is one. The session stays open for the next attempt.
-    fn come(&self, bus: &mut Option<Bus>) -> Result<Visit, Missing> {
+    /// Connects to a game, if there is one. The session stays open for the next attempt.
+    fn find(&self, bus: &mut Option<Bus>) -> Result<GameSession, Missing> {
         let bus = match bus {
             Some(bus) => bus.clone(),
             None => bus.insert(Bus::leaf(&(self.place)().map_err(Missing::Yet)?)?).clone(),
@@ -108,32 +108,32 @@ impl GameWatcher {
             Some(name) => name.clone(),
             None => game_search::only_game(&bus)?,
         };
-        let notice = game_search::game_info(&bus, &name)?;
+        let info = game_search::game_info(&bus, &name)?;
         // An older sim does not answer; then the water is drawn flat.
         let water = bus.ask(&topic::water(&name), Vec::new(), ANSWER)?;
         let water: Water = water.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
-        Ok(Visit::begin(&self.shared, bus, Play::new(name, notice, &water))?)
+        Ok(GameSession::begin(&self.shared, bus, LiveGame::new(name, info, &water))?)
     }
 
-    /// Stays until the game is gone.
-    fn stay(&self, mut visit: Visit) {
+    /// Serves the game until it is gone.
+    fn run_until_gone(&self, mut session: GameSession) {
         let left = Watched::new(false);
-        let asker = QueryThread::new(&self.shared, visit.bus.clone(), Arc::clone(&visit.play));
+        let queries = QueryThread::new(&self.shared, session.bus.clone(), Arc::clone(&session.game));
         std::thread::scope(|scope| {
-            scope.spawn(|| asker.ask(&left));
-            while !self.shared.is_closing() && visit.sim.state_by_token() == SimState::Alive {
+            scope.spawn(|| queries.ask(&left));
+            while !self.shared.is_closing() && session.sim.state_by_token() == SimState::Alive {
                 if let Ok(command) = self.commands.recv_timeout(ROUND) {
-                    visit.send(command);
+                    session.send(command);
                 }
-                visit.steer(&self.shared);
-                visit.see_to_wheels(&self.shared);
-                visit.see_to_pictures(&self.shared);
+                session.steer(&self.shared);
+                session.expire_steering(&self.shared);
+                session.update_picture_subscriptions(&self.shared);
             }
-            self.shared.stage().end();
-            self.shared.news.ring();
+            self.shared.state().end();
+            self.shared.news.notify();
             left.visit(|left| *left = true);
         });
-        visit.bus.close();
+        session.bus.close();
     }
 }
 
@@ -145,30 +145,30 @@ fn in_words(missing: Missing) -> String {
     }
 }
 
-impl Visit {
-    /// Puts the game on the stage and listens to it.
-    fn begin(shared: &Arc<SharedState>, bus: Bus, play: Play) -> Result<Visit, BusError> {
-        let play = Arc::new(play);
-        let sim = SimWatch::open(&bus, &play.name, PATIENCE)?;
-        let control = bus.publisher(topic::control(&play.name), Delivery::Wait)?;
+impl GameSession {
+    /// Puts the game into the state and subscribes to it.
+    fn begin(shared: &Arc<SharedState>, bus: Bus, game: LiveGame) -> Result<GameSession, BusError> {
+        let game = Arc::new(game);
+        let sim = SimWatch::open(&bus, &game.name, PATIENCE)?;
+        let control = bus.publisher(topic::control(&game.name), Delivery::Wait)?;
         let generation = {
-            let mut stage = shared.stage();
-            stage.begin(Arc::clone(&play));
-            stage.generation
+            let mut state = shared.state();
+            state.begin(Arc::clone(&game));
+            state.generation
         };
-        shared.news.ring();
-        let ear = Ear { shared: Arc::clone(shared), generation };
-        let mut standing = vec![ear.clone().frames(&bus, &play)?, ear.clone().run(&bus, &play)?];
-        for (i, vehicle) in play.scenario().vehicles.iter().enumerate() {
+        shared.news.notify();
+        let subscriptions = Subscriptions { shared: Arc::clone(shared), generation };
+        let mut standing = vec![subscriptions.clone().frames(&bus, &game)?, subscriptions.clone().run(&bus, &game)?];
+        for (i, vehicle) in game.scenario().vehicles.iter().enumerate() {
             if vehicle.source == Source::External {
-                standing.push(ear.clone().status(&bus, &play, VehicleId::at(i))?);
+                standing.push(subscriptions.clone().status(&bus, &game, VehicleId::at(i))?);
             }
         }
         let (policies, pictures) = (BTreeMap::new(), BTreeMap::new());
-        Ok(Visit { bus, play, control, policies, pictures, sim, _standing: standing })
+        Ok(GameSession { bus, game, control, policies, pictures, sim, _standing: standing })
     }
 
-    /// Passes on what a page wants. What cannot be sent now is lost with the session, which is looked at anew.
+    /// Publishes a command of a page. What cannot be sent now is lost with the session.
     fn send(&self, command: Command) {
         match command {
             Command::Control(control) => {
@@ -180,16 +180,16 @@ impl Visit {
         }
     }
 
-    /// Tells steered boats where to go, as of the newest frame.
+    /// Publishes set-points of steered boats, stamped with the newest frame.
     fn steer(&mut self, shared: &SharedState) {
         let (steering, stamp) = {
-            let mut stage = shared.stage();
-            (std::mem::take(&mut stage.steering), stage.roll.stamp)
+            let mut state = shared.state();
+            (std::mem::take(&mut state.steering), state.frames.stamp)
         };
         let stamp = Stamp { version: PolicyProposal::VERSION, ..stamp };
         for (vehicle, (course_rad, speed_m_s)) in steering {
             if !self.policies.contains_key(&vehicle) {
-                let key = topic::policy(&self.play.name, self.play.scenario(), vehicle);
+                let key = topic::policy(&self.game.name, self.game.scenario(), vehicle);
                 let Ok(publisher) = self.bus.publisher(key, Delivery::Drop) else { continue };
                 self.policies.insert(vehicle, publisher);
             }
@@ -199,81 +199,81 @@ impl Visit {
         }
     }
 
-    /// Frees the wheels of silent pages.
-    fn see_to_wheels(&self, shared: &SharedState) {
-        if shared.stage().wheels.expire(clock::now()) {
-            shared.news.ring();
+    /// Releases the steering of silent pages.
+    fn expire_steering(&self, shared: &SharedState) {
+        if shared.state().steering_locks.expire(clock::now()) {
+            shared.news.notify();
         }
     }
 
-    /// Listens to the pictures of the teams whose boats somebody looks at, and no others.
-    fn see_to_pictures(&mut self, shared: &Arc<SharedState>) {
+    /// Subscribes to the pictures of the teams whose boats are selected, and no others.
+    fn update_picture_subscriptions(&mut self, shared: &Arc<SharedState>) {
         let (wanted, generation) = {
-            let mut stage = shared.stage();
-            stage.forget_unwanted();
-            (stage.wanted(), stage.generation)
+            let mut state = shared.state();
+            state.forget_unwanted();
+            (state.wanted(), state.generation)
         };
-        let teams: BTreeSet<TeamId> = wanted.keys().map(|vehicle| self.play.scenario().team_of(*vehicle)).collect();
+        let teams: BTreeSet<TeamId> = wanted.keys().map(|vehicle| self.game.scenario().team_of(*vehicle)).collect();
         self.pictures.retain(|team, _| teams.contains(team));
         for team in teams {
             if self.pictures.contains_key(&team) {
                 continue;
             }
-            let ear = Ear { shared: Arc::clone(shared), generation };
-            if let Ok(standing) = ear.pictures(&self.bus, &self.play, team) {
+            let subscriptions = Subscriptions { shared: Arc::clone(shared), generation };
+            if let Ok(standing) = subscriptions.pictures(&self.bus, &self.game, team) {
                 self.pictures.insert(team, standing);
             }
         }
     }
 }
 
-/// Hears what is published in one game.
+/// Subscriptions of one game.
 #[derive(Clone)]
-struct Ear {
+struct Subscriptions {
     shared: Arc<SharedState>,
     generation: u64,
 }
 
-impl Ear {
-    /// Changes the stage, if it is still that of this game.
-    fn note(&self, change: impl FnOnce(&mut super::live_state::LiveState)) {
-        let mut stage = self.shared.stage();
-        if stage.generation == self.generation {
-            change(&mut stage);
-            drop(stage);
-            self.shared.news.ring();
+impl Subscriptions {
+    /// Updates the state, if it is still that of this game.
+    fn update(&self, change: impl FnOnce(&mut super::live_state::LiveState)) {
+        let mut state = self.shared.state();
+        if state.generation == self.generation {
+            change(&mut state);
+            drop(state);
+            self.shared.news.notify();
         }
     }
 
-    fn frames(self, bus: &Bus, play: &Play) -> Result<Declaration, BusError> {
-        bus.subscribe(topic::frame(&play.name), move |bytes| {
+    fn frames(self, bus: &Bus, game: &LiveGame) -> Result<Declaration, BusError> {
+        bus.subscribe(topic::frame(&game.name), move |bytes| {
             if let Ok(frame) = codec::decode::<Frame>(bytes) {
-                self.note(|stage| stage.take_frame(&frame, bytes, clock::now()));
+                self.update(|state| state.take_frame(&frame, bytes, clock::now()));
             }
         })
     }
 
-    fn run(self, bus: &Bus, play: &Play) -> Result<Declaration, BusError> {
-        bus.subscribe(topic::run(&play.name), move |bytes| {
+    fn run(self, bus: &Bus, game: &LiveGame) -> Result<Declaration, BusError> {
+        bus.subscribe(topic::run(&game.name), move |bytes| {
             if let Ok(run) = serde_json::from_slice::<RunState>(bytes) {
-                self.note(|stage| stage.take_run(run));
+                self.update(|state| state.take_run(run));
             }
         })
     }
 
-    fn status(self, bus: &Bus, play: &Play, vehicle: VehicleId) -> Result<Declaration, BusError> {
-        let name = play.name_of(vehicle).to_owned();
-        bus.subscribe(topic::status(&play.name, &name), move |bytes| {
+    fn status(self, bus: &Bus, game: &LiveGame, vehicle: VehicleId) -> Result<Declaration, BusError> {
+        let name = game.name_of(vehicle).to_owned();
+        bus.subscribe(topic::status(&game.name, &name), move |bytes| {
             let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
             if let Some(status) = status.filter(|status| status.vehicle == name) {
-                self.note(|stage| stage.take_status(vehicle, status));
+                self.update(|state| state.take_status(vehicle, status));
             }
         })
     }
 
-    fn pictures(self, bus: &Bus, play: &Play, team: TeamId) -> Result<Declaration, BusError> {
+    fn pictures(self, bus: &Bus, game: &LiveGame, team: TeamId) -> Result<Declaration, BusError> {
         let taken: Mutex<Option<Instant>> = Mutex::new(None);
-        bus.subscribe(topic::picture(&play.name, play.scenario(), team), move |bytes| {
+        bus.subscribe(topic::picture(&game.name, game.scenario(), team), move |bytes| {
             let mut taken = taken.lock().unwrap_or_else(PoisonError::into_inner);
             let now = clock::now();
             if taken.is_some_and(|before| now.saturating_duration_since(before) < PICTURE_AGAIN) {
@@ -281,7 +281,7 @@ impl Ear {
             }
             if let Ok(picture) = codec::decode::<Picture>(bytes) {
                 *taken = Some(now);
-                self.note(|stage| stage.take_picture(&picture));
+                self.update(|state| state.take_picture(&picture));
             }
         })
     }
@@ -302,12 +302,12 @@ mod tests {
         let (found, finds) = sync_channel(1);
         let searched = Arc::clone(&shared);
         let place = move || {
-            // There is room for one command only, and so for none if the one before is still there.
+            // There is budget for one command only, and so for none if the one before is still there.
             found.send(commands.try_send(Command::Steer).is_ok()).unwrap();
             searched.is_closing.store(true, Ordering::Relaxed);
             Err("there is no network".to_owned())
         };
-        GameWatcher::new(shared, Box::new(place), None, to_do, Box::new(|_| ())).keep();
+        GameWatcher::new(shared, Box::new(place), None, to_do, Box::new(|_| ())).run();
         assert!(finds.recv().unwrap());
     }
 }

@@ -1,8 +1,8 @@
-//! The stage: what is known of the game that pages look at.
+//! The state: what is known of the game that pages viewer at.
 
 use super::event_log::EventLog;
 use super::frame_buffer::FrameBuffer;
-use super::steering::Steering;
+use super::steering::SteeringLocks;
 use crate::page::chart::Chart;
 use game::external::GatewayStatus;
 use game::message::{Frame, GameInfo};
@@ -17,15 +17,15 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Without a frame for so long, a game whose sim tells nothing of its run stands.
+/// Without a frame for so long, a game whose sim publishes no run state counts as paused.
 const STILL: Duration = Duration::from_secs(2);
 
 /// A game that is shown, and does not change.
-pub(super) struct Play {
+pub(super) struct LiveGame {
     /// Its name.
     pub(super) name: GameName,
-    /// What its sim says of it.
-    pub(super) notice: GameInfo,
+    /// Its sim's description.
+    pub(super) info: GameInfo,
     /// How it is drawn.
     pub(super) chart: Chart,
 }
@@ -37,9 +37,9 @@ pub(super) struct Numbered<T> {
     pub(super) value: T,
 }
 
-/// What a helm thinks, as pages are told it.
+/// What a helm thinks, as pages are sent it.
 #[derive(Clone, Debug)]
-pub(super) struct HelmTold {
+pub(super) struct HelmMessage {
     pub(super) light: String,
     /// With utilities, if somebody wants them.
     pub(super) full: Option<String>,
@@ -52,39 +52,39 @@ type Latest<T> = BTreeMap<VehicleId, Numbered<T>>;
 #[derive(Default)]
 pub(super) struct LiveState {
     /// The game; also after it has gone.
-    pub(super) play: Option<Arc<Play>>,
+    pub(super) game: Option<Arc<LiveGame>>,
     /// Counts the games.
     pub(super) generation: u64,
     /// Whether the game is gone.
     pub(super) is_gone: bool,
-    /// How its run stands, if its sim says so.
+    /// The state of its run, if its sim publishes it.
     pub(super) run: Option<RunState>,
     /// Rises with news of the run.
     pub(super) run_news: u64,
-    pub(super) roll: FrameBuffer,
+    pub(super) frames: FrameBuffer,
     pub(super) event_log: EventLog,
-    pub(super) helms: Latest<HelmTold>,
+    pub(super) helms: Latest<HelmMessage>,
     pub(super) estimates: Latest<(OwnBoat, SimTime)>,
     pub(super) statuses: Latest<GatewayStatus>,
-    pub(super) wheels: Steering,
+    pub(super) steering_locks: SteeringLocks,
     /// What is to be passed on to steered boats: course, rad, and speed, m/s.
     pub(super) steering: BTreeMap<VehicleId, (f64, f64)>,
-    /// By page whose helm it looks at, and whether with utilities.
+    /// By page: the selected boat, and whether utilities are wanted.
     pub(super) selected: BTreeMap<u64, (VehicleId, bool)>,
-    /// Numbers what comes.
+    /// Numbers messages.
     counter: u64,
 }
 
-impl Play {
+impl LiveGame {
     /// A game with its chart.
-    pub(super) fn new(name: GameName, notice: GameInfo, water: &Water) -> Play {
-        let chart = Chart::new(&notice.scenario, water);
-        Play { name, notice, chart }
+    pub(super) fn new(name: GameName, info: GameInfo, water: &Water) -> LiveGame {
+        let chart = Chart::new(&info.scenario, water);
+        LiveGame { name, info, chart }
     }
 
     /// What is played.
     pub(super) fn scenario(&self) -> &Scenario {
-        &self.notice.scenario
+        &self.info.scenario
     }
 
     /// The name of a vehicle.
@@ -94,7 +94,7 @@ impl Play {
 
     /// Whether the sim waits for minds, rather than going by the clock.
     pub(super) fn is_lockstep(&self) -> bool {
-        self.notice.pace == "lockstep"
+        self.info.pace == "lockstep"
     }
 
     /// Whether there are real boats.
@@ -105,9 +105,9 @@ impl Play {
 
 impl LiveState {
     /// Another game is on. What pages had selected was of the one before.
-    pub(super) fn begin(&mut self, play: Arc<Play>) {
+    pub(super) fn begin(&mut self, game: Arc<LiveGame>) {
         *self = LiveState {
-            play: Some(play),
+            game: Some(game),
             generation: self.generation + 1,
             run_news: self.run_news + 1,
             event_log: EventLog::new(),
@@ -117,29 +117,29 @@ impl LiveState {
     }
 
     /// The game that is on, for something to be done in it.
-    pub(super) fn on(&self) -> Result<Arc<Play>, String> {
-        let play = self.play.clone().filter(|_| !self.is_gone);
-        play.ok_or_else(|| "there is no game now".to_owned())
+    pub(super) fn on(&self) -> Result<Arc<LiveGame>, String> {
+        let game = self.game.clone().filter(|_| !self.is_gone);
+        game.ok_or_else(|| "there is no game now".to_owned())
     }
 
     /// The game is gone.
     pub(super) fn end(&mut self) {
         (self.is_gone, self.run_news) = (true, self.run_news + 1);
-        self.wheels = Steering::default();
+        self.steering_locks = SteeringLocks::default();
         self.steering.clear();
     }
 
     /// A frame, with its CDR.
     pub(super) fn take_frame(&mut self, frame: &Frame, cdr: &[u8], now: Instant) {
-        let Some(play) = self.play.clone() else { return };
-        if !is_of(frame, play.scenario()) {
+        let Some(game) = self.game.clone() else { return };
+        if !is_of(frame, game.scenario()) {
             return;
         }
-        if self.roll.take(frame, cdr, now) {
-            self.event_log.miss();
+        if self.frames.take(frame, cdr, now) {
+            self.event_log.note_gap();
         }
-        for event in frame.logged(play.scenario()) {
-            self.event_log.add(EventOutcome::new(play.scenario(), &event));
+        for event in frame.logged(game.scenario()) {
+            self.event_log.add(EventOutcome::new(game.scenario(), &event));
         }
     }
 
@@ -164,27 +164,27 @@ impl LiveState {
         }
     }
 
-    /// A real boat's gateway tells of itself.
+    /// The status of a real boat's gateway.
     pub(super) fn take_status(&mut self, vehicle: VehicleId, status: GatewayStatus) {
         self.counter += 1;
         self.statuses.insert(vehicle, Numbered { number: self.counter, value: status });
     }
 
     /// What a helm thinks.
-    pub(super) fn take_helm(&mut self, vehicle: VehicleId, told: HelmTold) {
+    pub(super) fn take_helm(&mut self, vehicle: VehicleId, sent: HelmMessage) {
         self.counter += 1;
-        self.helms.insert(vehicle, Numbered { number: self.counter, value: told });
+        self.helms.insert(vehicle, Numbered { number: self.counter, value: sent });
     }
 
-    /// A page wants to look at a boat's helm, with utilities or without.
-    pub(super) fn select(&mut self, page: u64, wish: Option<&(String, bool)>) -> Result<(), String> {
-        let (Some((name, functions)), Some(play)) = (wish, &self.play) else { return Ok(()) };
-        let vehicle = play.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
+    /// A page wants to viewer at a boat's helm, with utilities or without.
+    pub(super) fn select(&mut self, page: u64, selection: Option<&(String, bool)>) -> Result<(), String> {
+        let (Some((name, functions)), Some(game)) = (selection, &self.game) else { return Ok(()) };
+        let vehicle = game.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
         self.selected.insert(page, (vehicle, *functions));
         Ok(())
     }
 
-    /// Whose helm somebody looks at, and whether anybody wants utilities with it.
+    /// Selected boats, and whether any page wants utilities.
     pub(super) fn wanted(&self) -> BTreeMap<VehicleId, bool> {
         let mut wanted = BTreeMap::new();
         for (vehicle, functions) in self.selected.values() {
@@ -193,7 +193,7 @@ impl LiveState {
         wanted
     }
 
-    /// Forgets what nobody looks at any more: it would be old when somebody does.
+    /// Drops what no page has selected any more.
     pub(super) fn forget_unwanted(&mut self) {
         let wanted = self.wanted();
         self.helms.retain(|vehicle, _| wanted.contains_key(vehicle));
@@ -202,7 +202,7 @@ impl LiveState {
 
     /// What the run is about, in the protocol's word.
     pub(super) fn phase(&self, now: Instant) -> &'static str {
-        let still = self.roll.came.is_none_or(|came| now.saturating_duration_since(came) > STILL);
+        let still = self.frames.came.is_none_or(|came| now.saturating_duration_since(came) > STILL);
         match (&self.run, self.is_gone) {
             (_, true) => "gone",
             (Some(run), _) => match run.phase {
@@ -211,9 +211,9 @@ impl LiveState {
                 Phase::Paused => "paused",
                 Phase::Over => "over",
             },
-            // An older sim says nothing of its run.
-            (None, _) if self.roll.is_over => "over",
-            (None, _) if self.roll.count == 0 => "waiting",
+            // An older sim publishes no run state.
+            (None, _) if self.frames.is_over => "over",
+            (None, _) if self.frames.count == 0 => "waiting",
             (None, _) if still => "paused",
             (None, _) => "playing",
         }

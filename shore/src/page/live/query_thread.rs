@@ -1,10 +1,10 @@
-//! The asker: asks a game for what is not published, in a thread of its own, since answers take their time.
+//! The queries: asks a game for what is not published, in a thread of its own, since answers take their time.
 
 use super::SharedState;
-use super::live_state::{HelmTold, Play};
+use super::live_state::{HelmMessage, LiveGame};
 use crate::page::clock;
 use crate::page::rose::{HelmAnswer, helm_text};
-use crate::page::show::HELM_AGAIN;
+use crate::page::view::HELM_INTERVAL;
 use bus::{Bus, Watched};
 use game::VehicleId;
 use game::helm::{HelmQuestion, HelmReport};
@@ -27,19 +27,19 @@ const EVENTS_ANSWER: Duration = Duration::from_secs(3);
 pub(super) struct QueryThread<'a> {
     shared: &'a SharedState,
     bus: Bus,
-    play: Arc<Play>,
+    game: Arc<LiveGame>,
 }
 
 /// Whose helm is asked next.
 #[derive(Default)]
-struct Turns {
+struct QuerySchedule {
     /// When each was asked last, and whether with utilities.
     asked: BTreeMap<VehicleId, (Instant, bool)>,
     /// Until when nobody is asked.
     rest: Option<Instant>,
 }
 
-impl Turns {
+impl QuerySchedule {
     /// Whose turn it is, if it is anybody's: of those that are due, the one that has waited longest.
     fn next(&mut self, wanted: &BTreeMap<VehicleId, bool>, now: Instant) -> Option<(VehicleId, bool)> {
         self.asked.retain(|vehicle, _| wanted.contains_key(vehicle));
@@ -47,9 +47,9 @@ impl Turns {
             return None;
         }
         let is_due = |vehicle: &VehicleId, functions: bool| {
-            self.asked
-                .get(vehicle)
-                .is_none_or(|(start, had)| (functions && !had) || now.saturating_duration_since(*start) >= HELM_AGAIN)
+            self.asked.get(vehicle).is_none_or(|(start, had)| {
+                (functions && !had) || now.saturating_duration_since(*start) >= HELM_INTERVAL
+            })
         };
         let due = wanted.iter().filter(|(vehicle, functions)| is_due(vehicle, **functions));
         let longest = due.min_by_key(|(vehicle, _)| self.asked.get(vehicle).map(|(start, _)| *start));
@@ -58,63 +58,63 @@ impl Turns {
 
     /// A helm was asked from `start` to `end`. In lockstep a game waits while a mind answers, and one process may mind all
     /// boats: after a long answer all have a rest. A game that stands waits for nobody.
-    fn note(&mut self, asked: (VehicleId, bool), start: Instant, end: Instant, is_going: bool) {
+    fn update(&mut self, asked: (VehicleId, bool), start: Instant, end: Instant, is_going: bool) {
         self.asked.insert(asked.0, (start, asked.1));
         self.rest = is_going.then(|| start + end.saturating_duration_since(start) * SHARE);
     }
 }
 
 impl QueryThread<'_> {
-    pub(super) fn new(shared: &SharedState, bus: Bus, play: Arc<Play>) -> QueryThread<'_> {
-        QueryThread { shared, bus, play }
+    pub(super) fn new(shared: &SharedState, bus: Bus, game: Arc<LiveGame>) -> QueryThread<'_> {
+        QueryThread { shared, bus, game }
     }
 
     /// Asks until the game is left.
     pub(super) fn ask(&self, left: &Watched<bool>) {
-        let mut turns = Turns::default();
+        let mut schedule = QuerySchedule::default();
         while !left.wait(ROUND, |left| *left) {
             self.ask_events();
-            let wanted = self.shared.stage().wanted();
+            let wanted = self.shared.state().wanted();
             let start = clock::now();
-            if let Some((vehicle, functions)) = turns.next(&wanted, start) {
+            if let Some((vehicle, functions)) = schedule.next(&wanted, start) {
                 self.ask_helm(vehicle, functions);
                 let end = clock::now();
-                let is_going = self.shared.stage().phase(end) == "playing";
-                turns.note((vehicle, functions), start, end, is_going);
+                let is_going = self.shared.state().phase(end) == "playing";
+                schedule.update((vehicle, functions), start, end, is_going);
             }
         }
     }
 
     /// All that has happened, where something of it was missed.
     fn ask_events(&self) {
-        if !self.shared.stage().event_log.is_to_ask(clock::now()) {
+        if !self.shared.state().event_log.should_query(clock::now()) {
             return;
         }
-        let answer = self.bus.ask(&topic::events(&self.play.name), Vec::new(), EVENTS_ANSWER);
+        let answer = self.bus.ask(&topic::events(&self.game.name), Vec::new(), EVENTS_ANSWER);
         // An older sim does not answer; then frames are all there is.
         let events = answer.ok().flatten().and_then(|bytes| serde_json::from_slice::<Vec<EventOutcome>>(&bytes).ok());
         if let Some(events) = events {
-            self.shared.stage().event_log.rewrite(events);
-            self.shared.news.ring();
+            self.shared.state().event_log.replace(events);
+            self.shared.news.notify();
         }
     }
 
     fn ask_helm(&self, vehicle: VehicleId, functions: bool) {
         let question = serde_json::to_vec(&HelmQuestion { functions }).unwrap_or_default();
-        let key = topic::helm(&self.play.name, self.play.scenario(), vehicle);
+        let key = topic::helm(&self.game.name, self.game.scenario(), vehicle);
         let answer = self.bus.ask(&key, question, HELM_ANSWER).ok().flatten();
-        let name = self.play.name_of(vehicle);
+        let name = self.game.name_of(vehicle);
         let answer = match answer.map(|bytes| serde_json::from_slice::<Option<HelmReport>>(&bytes)) {
             Some(Ok(Some(report))) => HelmAnswer { report: Some(report), ..HelmAnswer::default() },
             Some(Ok(None)) => because(format!("the mind of {name} goes by no helm")),
             Some(Err(_)) => because(format!("the mind of {name} is of another version of Squall")),
             None => because(format!("nobody minds {name} now")),
         };
-        // Long work with a long report, for which the stage is not kept from others.
-        let full = functions.then(|| helm_text(self.play.scenario(), vehicle, true, answer.clone()));
-        let light = helm_text(self.play.scenario(), vehicle, false, answer);
-        self.shared.stage().take_helm(vehicle, HelmTold { light, full });
-        self.shared.news.ring();
+        // Long work with a long report, for which the state is not kept from others.
+        let full = functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
+        let light = helm_text(self.game.scenario(), vehicle, false, answer);
+        self.shared.state().take_helm(vehicle, HelmMessage { light, full });
+        self.shared.news.notify();
     }
 }
 
@@ -132,10 +132,10 @@ mod tests {
     fn asked(wanted: &BTreeMap<VehicleId, bool>, took_ms: u64, until_ms: u64, is_going: bool) -> Vec<(VehicleId, u64)> {
         let start = clock::now();
         let at = |ms| start + Duration::from_millis(ms);
-        let (mut turns, mut now_ms, mut asked) = (Turns::default(), 0, vec![]);
+        let (mut schedule, mut now_ms, mut asked) = (QuerySchedule::default(), 0, vec![]);
         while now_ms < until_ms {
-            if let Some(turn) = turns.next(wanted, at(now_ms)) {
-                turns.note(turn, at(now_ms), at(now_ms + took_ms), is_going);
+            if let Some(turn) = schedule.next(wanted, at(now_ms)) {
+                schedule.update(turn, at(now_ms), at(now_ms + took_ms), is_going);
                 asked.push((turn.0, now_ms));
                 now_ms += took_ms;
             }
@@ -150,8 +150,8 @@ mod tests {
             let wanted: BTreeMap<VehicleId, bool> = BOATS[..boats].iter().map(|boat| (*boat, true)).collect();
             let all = asked(&wanted, 400, 12_000, true);
             assert_eq!(all.iter().map(|(_, at_ms)| *at_ms).collect::<Vec<_>>(), [0, 2000, 4000, 6000, 8000, 10_000]);
-            let turns: Vec<VehicleId> = BOATS[..boats].iter().copied().cycle().take(all.len()).collect();
-            assert_eq!(all.iter().map(|(boat, _)| *boat).collect::<Vec<_>>(), turns, "each gets its turn");
+            let schedule: Vec<VehicleId> = BOATS[..boats].iter().copied().cycle().take(all.len()).collect();
+            assert_eq!(all.iter().map(|(boat, _)| *boat).collect::<Vec<_>>(), schedule, "each gets its turn");
         }
     }
 
@@ -175,9 +175,9 @@ mod tests {
 
     #[test]
     fn who_wants_utilities_too_does_not_wait_for_the_next_round() {
-        let (mut turns, start) = (Turns::default(), clock::now());
-        turns.note((BOATS[0], false), start, start, true);
-        assert_eq!(turns.next(&BTreeMap::from([(BOATS[0], false)]), start), None);
-        assert_eq!(turns.next(&BTreeMap::from([(BOATS[0], true)]), start), Some((BOATS[0], true)));
+        let (mut schedule, start) = (QuerySchedule::default(), clock::now());
+        schedule.update((BOATS[0], false), start, start, true);
+        assert_eq!(schedule.next(&BTreeMap::from([(BOATS[0], false)]), start), None);
+        assert_eq!(schedule.next(&BTreeMap::from([(BOATS[0], true)]), start), Some((BOATS[0], true)));
     }
 }

@@ -1,19 +1,19 @@
-//! The wheels of boats that pages steer: one page at a time has one.
+//! Which page steers which boat: one page at a time.
 
 use game::VehicleId;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// A page that is silent for so long has let go.
+/// A page that is silent for so long no longer steers.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// Who has which wheel, and said so last when.
+/// By boat: the page that steers it, and when that was confirmed last.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Steering(BTreeMap<VehicleId, (u64, Instant)>);
+pub(super) struct SteeringLocks(BTreeMap<VehicleId, (u64, Instant)>);
 
-impl Steering {
-    /// A page wants to steer; whether it has the wheel now.
-    pub(super) fn grip(&mut self, vehicle: VehicleId, page: u64, now: Instant) -> bool {
+impl SteeringLocks {
+    /// A page wants to steer; whether it may.
+    pub(super) fn acquire(&mut self, vehicle: VehicleId, page: u64, now: Instant) -> bool {
         self.expire(now);
         let (holder, at) = self.0.entry(vehicle).or_insert((page, now));
         if *holder == page {
@@ -22,8 +22,8 @@ impl Steering {
         *holder == page
     }
 
-    /// A page lets go; whether it had the wheel.
-    pub(super) fn let_go(&mut self, vehicle: VehicleId, page: u64) -> bool {
+    /// A page stops steering; whether it did steer.
+    pub(super) fn release(&mut self, vehicle: VehicleId, page: u64) -> bool {
         let has = self.holder(vehicle) == Some(page);
         if has {
             self.0.remove(&vehicle);
@@ -31,24 +31,24 @@ impl Steering {
         has
     }
 
-    /// A page goes, and lets go of all it has.
-    pub(super) fn leave(&mut self, page: u64) {
+    /// A page disconnects.
+    pub(super) fn release_all(&mut self, page: u64) {
         self.0.retain(|_, (holder, _)| *holder != page);
     }
 
-    /// Frees the wheels of those who are silent; whether there were any.
+    /// Releases boats of silent pages; whether there were any.
     pub(super) fn expire(&mut self, now: Instant) -> bool {
         let before = self.0.len();
         self.0.retain(|_, (_, at)| now.saturating_duration_since(*at) < SILENCE);
         self.0.len() != before
     }
 
-    /// Who has this one.
+    /// The page that steers this boat.
     pub(super) fn holder(&self, vehicle: VehicleId) -> Option<u64> {
         self.0.get(&vehicle).map(|(holder, _)| *holder)
     }
 
-    /// All that somebody has.
+    /// All boats that are steered.
     pub(super) fn held(&self) -> impl Iterator<Item = VehicleId> + '_ {
         self.0.keys().copied()
     }
@@ -64,13 +64,23 @@ mod tests {
         let start = clock::now();
         let later = |s: f64| start + Duration::from_secs_f64(s);
         let (a, b) = (VehicleId(0), VehicleId(1));
-        let mut wheels = Steering::default();
-        assert!(wheels.grip(a, 1, start) && !wheels.grip(a, 2, later(1.9)) && wheels.grip(b, 2, start));
-        assert!(!wheels.let_go(a, 2) && wheels.let_go(a, 1) && wheels.grip(a, 2, later(1.9)));
-        assert!(!wheels.expire(later(1.0)) && wheels.expire(later(2.5)), "b is free");
-        assert_eq!(wheels.held().collect::<Vec<_>>(), [a]);
-        assert!(wheels.grip(a, 2, later(3.0)) && !wheels.grip(a, 3, later(4.9)) && wheels.grip(a, 3, later(5.1)));
-        wheels.leave(3);
-        assert_eq!(wheels.holder(a), None);
+        let mut steering_locks = SteeringLocks::default();
+        assert!(
+            steering_locks.acquire(a, 1, start)
+                && !steering_locks.acquire(a, 2, later(1.9))
+                && steering_locks.acquire(b, 2, start)
+        );
+        assert!(
+            !steering_locks.release(a, 2) && steering_locks.release(a, 1) && steering_locks.acquire(a, 2, later(1.9))
+        );
+        assert!(!steering_locks.expire(later(1.0)) && steering_locks.expire(later(2.5)), "b is free");
+        assert_eq!(steering_locks.held().collect::<Vec<_>>(), [a]);
+        assert!(
+            steering_locks.acquire(a, 2, later(3.0))
+                && !steering_locks.acquire(a, 3, later(4.9))
+                && steering_locks.acquire(a, 3, later(5.1))
+        );
+        steering_locks.release_all(3);
+        assert_eq!(steering_locks.holder(a), None);
     }
 }

@@ -1,8 +1,8 @@
-//! The desk where replays ask what helms thought: a thread of its own, since the answer may take a while.
+//! The helms where replays ask what helms thought: a thread of its own, since the answer may take a while.
 
 use super::source::Helms;
 use crate::page::rose::{HelmAnswer, helm_text};
-use crate::page::show::News;
+use crate::page::view::Changes;
 use game::{Scenario, VehicleId};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -21,7 +21,7 @@ pub(super) struct HelmRequest {
 /// Those who wait, by number.
 #[derive(Default)]
 struct Queue {
-    wishes: BTreeMap<u64, HelmRequest>,
+    requests: BTreeMap<u64, HelmRequest>,
     answers: BTreeMap<u64, (HelmRequest, String)>,
     /// Whose answer is worked on, unless they have left.
     current: Option<u64>,
@@ -30,18 +30,18 @@ struct Queue {
     is_closed: bool,
 }
 
-struct Counter {
+struct SharedQueue {
     queue: Mutex<Queue>,
-    wished: Condvar,
+    requested: Condvar,
 }
 
-/// The desk.
-pub(super) struct HelmThread(Arc<Counter>);
+/// The helms.
+pub(super) struct HelmThread(Arc<SharedQueue>);
 
 impl HelmThread {
     /// Opens it. Without helms nobody knows what they thought.
-    pub(super) fn open(scenario: Scenario, helms: Option<Box<dyn Helms>>, news: News) -> HelmThread {
-        let counter = Arc::new(Counter { queue: Mutex::default(), wished: Condvar::new() });
+    pub(super) fn open(scenario: Scenario, helms: Option<Box<dyn Helms>>, news: Changes) -> HelmThread {
+        let counter = Arc::new(SharedQueue { queue: Mutex::default(), requested: Condvar::new() });
         let server = Arc::clone(&counter);
         let serve = move || server.serve(&scenario, helms, &news);
         // Without a thread nobody answers; pages see that.
@@ -49,23 +49,23 @@ impl HelmThread {
         HelmThread(counter)
     }
 
-    /// A reader wishes this now, and nothing else any more.
-    pub(super) fn wish(&self, reader: u64, wish: HelmRequest) {
-        self.0.lock().wishes.insert(reader, wish);
-        self.0.wished.notify_one();
+    /// A viewer requests this now, and nothing else any more.
+    pub(super) fn request(&self, viewer: u64, request: HelmRequest) {
+        self.0.lock().requests.insert(viewer, request);
+        self.0.requested.notify_one();
     }
 
-    /// The newest answer to a reader, as it goes to the page.
-    pub(super) fn take(&self, reader: u64) -> Option<(HelmRequest, String)> {
-        self.0.lock().answers.remove(&reader)
+    /// The newest answer to a viewer, as it goes to the page.
+    pub(super) fn take(&self, viewer: u64) -> Option<(HelmRequest, String)> {
+        self.0.lock().answers.remove(&viewer)
     }
 
-    /// A reader goes.
-    pub(super) fn leave(&self, reader: u64) {
+    /// A viewer goes.
+    pub(super) fn remove(&self, viewer: u64) {
         let mut queue = self.0.lock();
-        queue.wishes.remove(&reader);
-        queue.answers.remove(&reader);
-        queue.current.take_if(|current| *current == reader);
+        queue.requests.remove(&viewer);
+        queue.answers.remove(&viewer);
+        queue.current.take_if(|current| *current == viewer);
     }
 }
 
@@ -73,42 +73,42 @@ impl Drop for HelmThread {
     fn drop(&mut self) {
         self.0.lock().is_closed = true;
         // It may be at work for a while; it ends by itself.
-        self.0.wished.notify_one();
+        self.0.requested.notify_one();
     }
 }
 
-impl Counter {
-    fn serve(&self, scenario: &Scenario, mut helms: Option<Box<dyn Helms>>, news: &News) {
-        while let Some(wish) = self.next() {
+impl SharedQueue {
+    fn serve(&self, scenario: &Scenario, mut helms: Option<Box<dyn Helms>>, news: &Changes) {
+        while let Some(request) = self.next() {
             let answer = match &mut helms {
-                Some(helms) => helms.report(wish.vehicle, wish.decision, wish.functions),
+                Some(helms) => helms.report(request.vehicle, request.decision, request.functions),
                 None => HelmAnswer { reason: Some("the recording does not tell".to_owned()), ..HelmAnswer::default() },
             };
-            let text = helm_text(scenario, wish.vehicle, wish.functions, answer);
-            self.hand_out(wish, text);
-            news.ring();
+            let text = helm_text(scenario, request.vehicle, request.functions, answer);
+            self.deliver(request, text);
+            news.notify();
         }
     }
 
-    /// The next wish in turn; none when the desk is closed.
+    /// The next request in turn; none when the helms is closed.
     fn next(&self) -> Option<HelmRequest> {
-        let idle = |queue: &mut Queue| queue.wishes.is_empty() && !queue.is_closed;
-        let mut queue = self.wished.wait_while(self.lock(), idle).unwrap_or_else(PoisonError::into_inner);
+        let idle = |queue: &mut Queue| queue.requests.is_empty() && !queue.is_closed;
+        let mut queue = self.requested.wait_while(self.lock(), idle).unwrap_or_else(PoisonError::into_inner);
         if queue.is_closed {
             return None;
         }
         let after = queue.last + 1;
-        let reader =
-            queue.wishes.range(after..).next().or_else(|| queue.wishes.iter().next()).map(|(reader, _)| *reader)?;
-        (queue.last, queue.current) = (reader, Some(reader));
-        queue.wishes.remove(&reader)
+        let viewer =
+            queue.requests.range(after..).next().or_else(|| queue.requests.iter().next()).map(|(viewer, _)| *viewer)?;
+        (queue.last, queue.current) = (viewer, Some(viewer));
+        queue.requests.remove(&viewer)
     }
 
-    /// The answer for whoever was served last. NoRecorder takes it if they have left meanwhile.
-    fn hand_out(&self, wish: HelmRequest, text: String) {
+    /// The answer for whoever was served last. Nobody takes it if they have left meanwhile.
+    fn deliver(&self, request: HelmRequest, text: String) {
         let mut queue = self.lock();
-        if let Some(reader) = queue.current.take() {
-            queue.answers.insert(reader, (wish, text));
+        if let Some(viewer) = queue.current.take() {
+            queue.answers.insert(viewer, (request, text));
         }
     }
 
@@ -124,10 +124,10 @@ mod tests {
     use std::path::Path;
     use std::sync::mpsc::{Receiver, Sender, channel};
 
-    /// Helms that say when they begin to think, and think until they are told to stop.
-    struct Thinkers(Sender<()>, Receiver<()>);
+    /// Helms that signal when they begin, and work until they may go on.
+    struct SlowHelms(Sender<()>, Receiver<()>);
 
-    impl Helms for Thinkers {
+    impl Helms for SlowHelms {
         fn report(&mut self, _: VehicleId, _: u64, _: bool) -> HelmAnswer {
             self.0.send(()).expect("the test listens");
             self.1.recv().expect("the test goes on");
@@ -140,18 +140,18 @@ mod tests {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
         let scenario = game::scenario::load(&file).unwrap();
         let ((began, begins), (go, goes)) = (channel(), channel());
-        let desk = HelmThread::open(scenario, Some(Box::new(Thinkers(began, goes))), News::default());
-        let wish = HelmRequest { vehicle: VehicleId::at(0), decision: 1, functions: false };
-        for (reader, leaves) in [(1, true), (2, false), (3, false)] {
-            desk.wish(reader, wish);
+        let helms = HelmThread::open(scenario, Some(Box::new(SlowHelms(began, goes))), Changes::default());
+        let request = HelmRequest { vehicle: VehicleId::at(0), decision: 1, functions: false };
+        for (viewer, leaves) in [(1, true), (2, false), (3, false)] {
+            helms.request(viewer, request);
             begins.recv().unwrap();
             if leaves {
-                desk.leave(reader);
+                helms.remove(viewer);
             }
             go.send(()).unwrap();
         }
         // The third is at work only after the second was handed out.
-        let kept: Vec<u64> = desk.0.lock().answers.keys().copied().filter(|reader| *reader < 3).collect();
+        let kept: Vec<u64> = helms.0.lock().answers.keys().copied().filter(|viewer| *viewer < 3).collect();
         assert_eq!(kept, [2]);
     }
 }

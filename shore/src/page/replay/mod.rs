@@ -1,7 +1,7 @@
-//! A recording to look at: each page plays it for itself.
+//! A recording, shown to pages: each has its own playback.
 
 mod helm_thread;
-mod player;
+mod playback;
 mod recorded;
 mod source;
 mod viewer;
@@ -10,45 +10,45 @@ pub use recorded::Recorded;
 pub use source::{Helms, ReplaySource};
 
 use super::chart::Chart;
-use super::show::{Guest, News, Show, Viewer};
+use super::view::{Access, Changes, View, Viewer};
 use helm_thread::HelmThread;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use viewer::PageViewer;
 
 /// A recording, shown to pages.
-pub struct ReplayShow {
-    reel: Arc<Reel>,
-    news: News,
+pub struct ReplayView {
+    shared: Arc<SharedReplay>,
+    news: Changes,
 }
 
-/// What all who look at one recording share.
-struct Reel {
-    film: Arc<dyn ReplaySource>,
+/// What all viewers of a recording share.
+struct SharedReplay {
+    source: Arc<dyn ReplaySource>,
     chart: Chart,
-    desk: HelmThread,
-    readers: AtomicU64,
+    helms: HelmThread,
+    viewers: AtomicU64,
 }
 
-impl ReplayShow {
-    /// Shows a recording. Without helms nobody can say what they thought.
+impl ReplayView {
+    /// Shows a recording. Without helms there are no helm reports.
     #[must_use]
-    pub fn new(film: Arc<dyn ReplaySource>, helms: Option<Box<dyn Helms>>) -> ReplayShow {
-        let news = News::default();
-        let scenario = film.notice().scenario.clone();
-        let chart = Chart::new(&scenario, film.water());
-        let desk = HelmThread::open(scenario, helms, news.clone());
-        ReplayShow { reel: Arc::new(Reel { film, chart, desk, readers: AtomicU64::new(0) }), news }
+    pub fn new(source: Arc<dyn ReplaySource>, helms: Option<Box<dyn Helms>>) -> ReplayView {
+        let news = Changes::default();
+        let scenario = source.info().scenario.clone();
+        let chart = Chart::new(&scenario, source.water());
+        let helms = HelmThread::open(scenario, helms, news.clone());
+        ReplayView { shared: Arc::new(SharedReplay { source, chart, helms, viewers: AtomicU64::new(0) }), news }
     }
 }
 
-impl Show for ReplayShow {
-    fn admit(&self, guest: Guest) -> Box<dyn Viewer> {
-        let reader = self.reel.readers.fetch_add(1, Ordering::Relaxed);
-        Box::new(PageViewer::new(Arc::clone(&self.reel), guest, reader))
+impl View for ReplayView {
+    fn open_viewer(&self, access: Access) -> Box<dyn Viewer> {
+        let viewer = self.shared.viewers.fetch_add(1, Ordering::Relaxed);
+        Box::new(PageViewer::new(Arc::clone(&self.shared), access, viewer))
     }
 
-    fn news(&self) -> &News {
+    fn news(&self) -> &Changes {
         &self.news
     }
 }

@@ -17,7 +17,7 @@ pub struct Recorded {
     times: Vec<SimTime>,
     /// By team, the time and place of every picture.
     pictures: Vec<Vec<(SimTime, usize)>>,
-    /// By vehicle, the same of what its gateway told.
+    /// By vehicle, the same of what its gateway sent.
     statuses: Vec<Vec<(SimTime, usize)>>,
     events: Vec<EventOutcome>,
 }
@@ -29,12 +29,12 @@ impl Recorded {
     /// [`RecordingError`] names the first frame that is none.
     pub fn new(recording: Arc<Recording>, file: String) -> Result<Recorded, RecordingError> {
         let scenario = recording.scenario();
-        let told = |topic: String| {
+        let sent = |topic: String| {
             let bag = recording.bag();
             bag.places(&topic).map(|place| (bag.message(place).at, place)).collect::<Vec<_>>()
         };
-        let pictures = scenario.teams.iter().map(|team| told(picture(&team.name))).collect();
-        let statuses = scenario.vehicles.iter().map(|vehicle| told(format!("status/{}", vehicle.name))).collect();
+        let pictures = scenario.teams.iter().map(|team| sent(picture(&team.name))).collect();
+        let statuses = scenario.vehicles.iter().map(|vehicle| sent(format!("status/{}", vehicle.name))).collect();
         let mut recorded =
             Recorded { file, times: Vec::new(), pictures, statuses, events: Vec::new(), recording: recording.clone() };
         for frame in recording.frames() {
@@ -46,12 +46,12 @@ impl Recorded {
         Ok(recorded)
     }
 
-    /// Gateways' failsafes among the events, where they were first told of.
+    /// Adds the failsafes of gateways to the events, at the time of their first report.
     fn add_failsafes(&mut self) {
         let scenario = self.recording.scenario();
-        for (vehicle, told) in scenario.vehicles.iter().zip(&self.statuses) {
+        for (vehicle, sent) in scenario.vehicles.iter().zip(&self.statuses) {
             let mut known = 0;
-            for (at, place) in told {
+            for (at, place) in sent {
                 let Some(status) = self.status_at(*place) else { continue };
                 // A gateway that began anew counts from nothing.
                 known = known.min(status.failsafes.len());
@@ -77,13 +77,13 @@ impl Recorded {
 }
 
 /// The last of these that is not after `at`.
-fn last_until(told: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
-    let after = told.partition_point(|(when, _)| *when <= at);
-    told[..after].last().map(|(_, place)| *place)
+fn last_until(sent: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
+    let after = sent.partition_point(|(when, _)| *when <= at);
+    sent[..after].last().map(|(_, place)| *place)
 }
 
 impl ReplaySource for Recorded {
-    fn notice(&self) -> &GameInfo {
+    fn info(&self) -> &GameInfo {
         &self.recording.header().info
     }
 
@@ -116,7 +116,7 @@ impl ReplaySource for Recorded {
     }
 
     fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat> {
-        let team = self.notice().scenario.vehicles.get(vehicle.index())?.team;
+        let team = self.info().scenario.vehicles.get(vehicle.index())?.team;
         let place = last_until(&self.pictures[team.index()], *self.times.get(frame)?)?;
         let picture: Picture = self.recording.bag().message(place).read().ok()?;
         picture.own(vehicle).copied()

@@ -11,7 +11,7 @@ use game::{SimTime, VehicleId};
 /// A recorded game.
 pub trait ReplaySource: Send + Sync {
     /// What the game was.
-    fn notice(&self) -> &GameInfo;
+    fn info(&self) -> &GameInfo;
     /// Its name on the network.
     fn game(&self) -> &str;
     /// The file's name.
@@ -28,11 +28,11 @@ pub trait ReplaySource: Send + Sync {
     fn events(&self) -> &[EventOutcome];
     /// Where a boat's own sensors put it at a frame.
     fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat>;
-    /// What a boat's gateway had told last.
+    /// What a boat's gateway had sent last.
     fn status(&self, vehicle: VehicleId, at: SimTime) -> Option<GatewayStatus>;
 }
 
-/// Those who can say what helms thought in a recorded game. They may take their time.
+/// Recomputes helm reports of a recorded game. That may take a while.
 pub trait Helms: Send {
     /// What a boat's helm thought at a decision, with utilities or without.
     fn report(&mut self, vehicle: VehicleId, decision: u64, functions: bool) -> HelmAnswer;

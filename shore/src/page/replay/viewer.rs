@@ -1,11 +1,13 @@
-//! One page's look at a recording.
+//! One page's view of a recording.
 
-use super::Reel;
+use super::SharedReplay;
 use super::helm_thread::HelmRequest;
-use super::player::Player;
-use crate::page::ask::{Ask, Word};
-use crate::page::show::{ESTIMATE_AGAIN, Guest, HELM_AGAIN, Room, Said, TELL_AGAIN, TRAIL_S, TRAIL_STEP_S, Viewer};
-use crate::page::tell::{EventTell, Mode, Tell, seconds};
+use super::playback::Playback;
+use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
+use crate::page::request::{PageCommand, PageRequest};
+use crate::page::view::{
+    Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, Outgoing, SEND_INTERVAL, TRAIL_S, TRAIL_STEP_S, Viewer,
+};
 use game::external::GatewayStatus;
 use game::scenario::Source;
 use game::{SimTime, VehicleId};
@@ -15,54 +17,54 @@ use std::time::{Duration, Instant};
 
 /// Where in a frame the number of its decision stands: after the encapsulation and the time.
 const DECISION: std::ops::Range<usize> = 12..20;
-/// A page is not told of frames more often than this, however fast it plays.
+/// A page is not sent of frames more often than this, however fast it plays.
 const FRAME_AGAIN: Duration = Duration::from_millis(10);
 
-/// One page's look at a recording.
+/// One page's view of a recording.
 pub(super) struct PageViewer {
-    reel: Arc<Reel>,
-    guest: Guest,
-    reader: u64,
-    player: Player,
+    shared: Arc<SharedReplay>,
+    access: Access,
+    viewer: u64,
+    playback: Playback,
     greeted: bool,
     /// Whether the page was given all events.
-    told_events: bool,
-    /// The player as it was told last, and when.
-    told_player: Option<(Player, Instant)>,
+    sent_events: bool,
+    /// The playback as it was sent last, and when.
+    sent_playback: Option<(Playback, Instant)>,
     /// The frame that was shown last.
     shown: Option<usize>,
     /// The frames of the past to be given before the next.
     past: VecDeque<usize>,
     selected: Option<(VehicleId, bool)>,
-    wished: Option<(HelmRequest, Instant)>,
+    requested: Option<(HelmRequest, Instant)>,
     estimated: Option<(usize, Instant)>,
-    /// The real boats, with what was told of each.
+    /// The real boats, with what was sent of each.
     gateways: Vec<(VehicleId, Option<GatewayStatus>)>,
-    /// For which frame they were looked at last, and when.
+    /// The frame for which they were read last, and when.
     looked: Option<(usize, Instant)>,
-    /// What of that is still to be told.
+    /// What of that is still to be sent.
     statuses: VecDeque<String>,
 }
 
 impl PageViewer {
-    pub(super) fn new(reel: Arc<Reel>, guest: Guest, reader: u64) -> PageViewer {
-        let times = reel.film.frame_times();
+    pub(super) fn new(shared: Arc<SharedReplay>, access: Access, viewer: u64) -> PageViewer {
+        let times = shared.source.frame_times();
         let (from, to) = (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
-        let vehicles = reel.film.notice().scenario.vehicles.iter().enumerate();
+        let vehicles = shared.source.info().scenario.vehicles.iter().enumerate();
         let external = vehicles.filter(|(_, vehicle)| vehicle.source == Source::External);
         let gateways = external.map(|(i, _)| (VehicleId::at(i), None)).collect();
         PageViewer {
-            reel,
-            guest,
-            reader,
-            player: Player::new(from, to),
+            shared,
+            access,
+            viewer,
+            playback: Playback::new(from, to),
             greeted: false,
-            told_events: false,
-            told_player: None,
+            sent_events: false,
+            sent_playback: None,
             shown: None,
             past: VecDeque::new(),
             selected: None,
-            wished: None,
+            requested: None,
             estimated: None,
             gateways,
             looked: None,
@@ -72,20 +74,20 @@ impl PageViewer {
 
     /// The frame to be shown at this moment: the last one that is not of the future.
     fn frame_at(&self, moment: SimTime) -> Option<usize> {
-        let times = self.reel.film.frame_times();
+        let times = self.shared.source.frame_times();
         let after = times.partition_point(|time| *time <= moment);
         after.checked_sub(1).or(if times.is_empty() { None } else { Some(0) })
     }
 
     fn jump(&mut self, moment: SimTime, now: Instant) {
-        self.player.seek(moment, now);
+        self.playback.seek(moment, now);
         self.shown = None;
-        self.past = self.frame_at(self.player.at(now)).map(|frame| self.trail(frame)).unwrap_or_default();
+        self.past = self.frame_at(self.playback.at(now)).map(|frame| self.trail(frame)).unwrap_or_default();
     }
 
     /// The frames of the past that lead to this one.
     fn trail(&self, frame: usize) -> VecDeque<usize> {
-        let times = self.reel.film.frame_times();
+        let times = self.shared.source.frame_times();
         let steps = (TRAIL_S / TRAIL_STEP_S) as i64;
         let moments = (1..=steps).rev().map(|back| times[frame] - SimTime::from_s(TRAIL_STEP_S) * back);
         let mut trail: VecDeque<usize> =
@@ -97,121 +99,121 @@ impl PageViewer {
     }
 
     fn step(&mut self, by: i64, now: Instant) {
-        self.player.pause(now);
-        let times = self.reel.film.frame_times();
-        let Some(frame) = self.frame_at(self.player.at(now)) else { return };
+        self.playback.pause(now);
+        let times = self.shared.source.frame_times();
+        let Some(frame) = self.frame_at(self.playback.at(now)) else { return };
         let to = (frame as i64).saturating_add(by).clamp(0, times.len() as i64 - 1) as usize;
         let (one_on, moment) = (to == frame + 1, times[to]);
         if one_on {
-            self.player.seek(moment, now);
+            self.playback.seek(moment, now);
         } else {
             self.jump(moment, now);
         }
     }
 
     fn play(&mut self, now: Instant) {
-        let before = self.player.at(now);
-        self.player.play(now);
-        if self.player.at(now) < before {
-            self.jump(self.player.at(now), now);
+        let before = self.playback.at(now);
+        self.playback.play(now);
+        if self.playback.at(now) < before {
+            self.jump(self.playback.at(now), now);
         }
     }
 
-    fn say_player(&mut self, now: Instant) -> Option<Said> {
-        self.player.end(now);
-        let is_told = |(told, at): &(Player, Instant)| {
-            let recently = now.saturating_duration_since(*at) < TELL_AGAIN;
-            *told == self.player && (recently || !self.player.is_playing())
+    fn next_playback(&mut self, now: Instant) -> Option<Outgoing> {
+        self.playback.end(now);
+        let is_sent = |(sent, at): &(Playback, Instant)| {
+            let recently = now.saturating_duration_since(*at) < SEND_INTERVAL;
+            *sent == self.playback && (recently || !self.playback.is_playing())
         };
-        if self.told_player.as_ref().is_some_and(is_told) {
+        if self.sent_playback.as_ref().is_some_and(is_sent) {
             return None;
         }
-        self.told_player = Some((self.player.clone(), now));
-        let (film, times) = (&self.reel.film, self.reel.film.frame_times());
-        let tell = Tell::Player {
-            playing: self.player.is_playing(),
-            t_s: seconds(self.player.at(now)),
-            speed: self.player.speed(),
+        self.sent_playback = Some((self.playback.clone(), now));
+        let (source, times) = (&self.shared.source, self.shared.source.frame_times());
+        let tell = PageMessage::Player {
+            playing: self.playback.is_playing(),
+            t_s: seconds(self.playback.at(now)),
+            speed: self.playback.speed(),
             from_s: times.first().map_or(0.0, |time| seconds(*time)),
             to_s: times.last().map_or(0.0, |time| seconds(*time)),
-            cut: film.is_cut(),
-            file: film.file(),
+            cut: source.is_cut(),
+            file: source.file(),
         };
-        Some(Said::Text(tell.json()))
+        Some(Outgoing::Text(tell.json()))
     }
 
-    fn say_helm(&mut self, frame: usize, now: Instant) -> Option<Said> {
+    fn next_helm(&mut self, frame: usize, now: Instant) -> Option<Outgoing> {
         let (vehicle, functions) = self.selected?;
-        let wish = HelmRequest { vehicle, decision: self.decision(frame)?, functions };
-        let is_due = self.wished.is_none_or(|(before, at)| {
+        let request = HelmRequest { vehicle, decision: self.decision(frame)?, functions };
+        let is_due = self.requested.is_none_or(|(before, at)| {
             let chosen_anew = (before.vehicle, before.functions) != (vehicle, functions);
-            before != wish && (chosen_anew || now.saturating_duration_since(at) >= HELM_AGAIN)
+            before != request && (chosen_anew || now.saturating_duration_since(at) >= HELM_INTERVAL)
         });
         if is_due {
-            self.wished = Some((wish, now));
-            self.reel.desk.wish(self.reader, wish);
+            self.requested = Some((request, now));
+            self.shared.helms.request(self.viewer, request);
         }
-        let (answered, text) = self.reel.desk.take(self.reader)?;
-        (answered.vehicle == vehicle).then_some(Said::Text(text))
+        let (answered, text) = self.shared.helms.take(self.viewer)?;
+        (answered.vehicle == vehicle).then_some(Outgoing::Text(text))
     }
 
     /// The decision that a frame is of.
     fn decision(&self, frame: usize) -> Option<u64> {
-        let bytes = self.reel.film.frame_bytes(frame).get(DECISION)?;
+        let bytes = self.shared.source.frame_bytes(frame).get(DECISION)?;
         Some(u64::from_le_bytes(bytes.try_into().ok()?))
     }
 
-    /// Whether something else is shown than what was wished for last.
-    fn is_outdated(&self, wish: HelmRequest) -> bool {
+    /// Whether something else is shown than what was requested for last.
+    fn is_outdated(&self, request: HelmRequest) -> bool {
         let decision = self.shown.and_then(|frame| self.decision(frame));
-        decision.is_some_and(|decision| decision != wish.decision)
+        decision.is_some_and(|decision| decision != request.decision)
     }
 
-    fn say_estimate(&mut self, frame: usize, now: Instant) -> Option<Said> {
+    fn next_estimate(&mut self, frame: usize, now: Instant) -> Option<Outgoing> {
         let (vehicle, _) = self.selected?;
-        let is_told =
-            |(told, at): (usize, Instant)| told == frame || now.saturating_duration_since(at) < ESTIMATE_AGAIN;
-        if self.estimated.is_some_and(is_told) {
+        let is_sent =
+            |(sent, at): (usize, Instant)| sent == frame || now.saturating_duration_since(at) < ESTIMATE_INTERVAL;
+        if self.estimated.is_some_and(is_sent) {
             return None;
         }
         self.estimated = Some((frame, now));
-        let boat = self.reel.film.estimate(vehicle, frame)?;
-        let at = self.reel.film.frame_times()[frame];
-        let name = &self.reel.film.notice().scenario.vehicles[vehicle.index()].name;
-        Some(Said::Text(Tell::estimate(name, &boat, at).json()))
+        let boat = self.shared.source.estimate(vehicle, frame)?;
+        let at = self.shared.source.frame_times()[frame];
+        let name = &self.shared.source.info().scenario.vehicles[vehicle.index()].name;
+        Some(Outgoing::Text(PageMessage::estimate(name, &boat, at).json()))
     }
 
-    fn say_status(&mut self, frame: usize, now: Instant) -> Option<Said> {
-        let is_told = |(told, at): (usize, Instant)| told == frame || now.saturating_duration_since(at) < TELL_AGAIN;
-        if self.statuses.is_empty() && !self.looked.is_some_and(is_told) {
+    fn next_status(&mut self, frame: usize, now: Instant) -> Option<Outgoing> {
+        let is_sent = |(sent, at): (usize, Instant)| sent == frame || now.saturating_duration_since(at) < SEND_INTERVAL;
+        if self.statuses.is_empty() && !self.looked.is_some_and(is_sent) {
             self.looked = Some((frame, now));
-            let (film, at) = (&self.reel.film, self.reel.film.frame_times()[frame]);
-            for (vehicle, told) in &mut self.gateways {
-                let status = film.status(*vehicle, at);
-                if status == *told {
+            let (source, at) = (&self.shared.source, self.shared.source.frame_times()[frame]);
+            for (vehicle, sent) in &mut self.gateways {
+                let status = source.status(*vehicle, at);
+                if status == *sent {
                     continue;
                 }
                 if let Some(status) = &status {
-                    let name = &film.notice().scenario.vehicles[vehicle.index()].name;
-                    self.statuses.push_back(Tell::Status { vehicle: name, status }.json());
+                    let name = &source.info().scenario.vehicles[vehicle.index()].name;
+                    self.statuses.push_back(PageMessage::Status { vehicle: name, status }.json());
                 }
-                *told = status;
+                *sent = status;
             }
         }
-        self.statuses.pop_front().map(Said::Text)
+        self.statuses.pop_front().map(Outgoing::Text)
     }
 
     /// The frame for the page's trails or for now, if it is not shown yet.
-    fn say_frame(&mut self, now: Instant) -> Option<Said> {
-        let frame = self.frame_at(self.player.at(now))?;
+    fn next_frame(&mut self, now: Instant) -> Option<Outgoing> {
+        let frame = self.frame_at(self.playback.at(now))?;
         if self.shown == Some(frame) {
             return None;
         }
         if let Some(past) = self.past.pop_front() {
-            return Some(Said::past(self.reel.film.frame_bytes(past)));
+            return Some(Outgoing::past(self.shared.source.frame_bytes(past)));
         }
         self.shown = Some(frame);
-        Some(Said::now(self.reel.film.frame_bytes(frame)))
+        Some(Outgoing::now(self.shared.source.frame_bytes(frame)))
     }
 }
 
@@ -220,79 +222,87 @@ impl Viewer for PageViewer {
         Mode::Replay
     }
 
-    fn ask(&mut self, ask: &Ask, now: Instant) -> Result<(), String> {
+    fn ask(&mut self, ask: &PageRequest, now: Instant) -> Result<(), String> {
         match ask {
-            Ask::Ack => {}
-            Ask::Select { vehicle: None, .. } => self.selected = None,
-            Ask::Select { vehicle: Some(name), functions } => {
-                let vehicle = self.reel.film.notice().scenario.vehicle_named(name).map_err(|e| e.to_string())?;
+            PageRequest::Ack => {}
+            PageRequest::Select { vehicle: None, .. } => self.selected = None,
+            PageRequest::Select { vehicle: Some(name), functions } => {
+                let vehicle = self.shared.source.info().scenario.vehicle_named(name).map_err(|e| e.to_string())?;
                 let is_other = self.selected.is_none_or(|(before, _)| before != vehicle);
                 self.selected = Some((vehicle, *functions));
                 if is_other {
-                    (self.wished, self.estimated) = (None, None);
+                    (self.requested, self.estimated) = (None, None);
                 }
             }
-            Ask::Control { what: Word::Pause } => self.player.pause(now),
-            Ask::Control { what: Word::Resume } => self.play(now),
-            Ask::Control { what: Word::Step } => self.step(1, now),
-            Ask::Step { by } => self.step(*by, now),
-            Ask::Seek { t_s } if t_s.is_finite() => self.jump(SimTime::from_s(*t_s), now),
-            Ask::Speed { factor } if factor.is_none_or(|factor| factor.is_finite() && factor > 0.0) => {
-                self.player.set_speed(*factor, now);
+            PageRequest::Control { what: PageCommand::Pause } => self.playback.pause(now),
+            PageRequest::Control { what: PageCommand::Resume } => self.play(now),
+            PageRequest::Control { what: PageCommand::Step } => self.step(1, now),
+            PageRequest::Step { by } => self.step(*by, now),
+            PageRequest::Seek { t_s } if t_s.is_finite() => self.jump(SimTime::from_s(*t_s), now),
+            PageRequest::Speed { factor } if factor.is_none_or(|factor| factor.is_finite() && factor > 0.0) => {
+                self.playback.set_speed(*factor, now);
             }
-            Ask::Seek { .. } | Ask::Speed { .. } => return Err("not a number that makes sense".to_owned()),
-            Ask::Control { .. } | Ask::Drive { .. } | Ask::LetGo { .. } => return Err("this is a recording".to_owned()),
+            PageRequest::Seek { .. } | PageRequest::Speed { .. } => {
+                return Err("not a number that makes sense".to_owned());
+            }
+            PageRequest::Control { .. } | PageRequest::Drive { .. } | PageRequest::LetGo { .. } => {
+                return Err("this is a recording".to_owned());
+            }
         }
         Ok(())
     }
 
-    fn say(&mut self, now: Instant, room: Room) -> Option<Said> {
-        let film = Arc::clone(&self.reel.film);
+    fn next_message(&mut self, now: Instant, budget: Budget) -> Option<Outgoing> {
+        let source = Arc::clone(&self.shared.source);
         if !std::mem::replace(&mut self.greeted, true) {
-            let version = &film.notice().version;
-            let hello = Tell::hello(version, Mode::Replay, self.guest.rights, film.game(), &self.reel.chart);
-            return Some(Said::Text(hello.json()));
+            let version = &source.info().version;
+            let hello =
+                PageMessage::hello(version, Mode::Replay, self.access.rights, source.game(), &self.shared.chart);
+            return Some(Outgoing::Text(hello.json()));
         }
-        if !std::mem::replace(&mut self.told_events, true) {
-            let events = film.events().iter().map(EventTell::new).collect();
-            return Some(Said::Text(Tell::Events { reset: true, events }.json()));
+        if !std::mem::replace(&mut self.sent_events, true) {
+            let events = source.events().iter().map(EventMessage::new).collect();
+            return Some(Outgoing::Text(PageMessage::Events { reset: true, events }.json()));
         }
-        if let Some(said) = self.say_player(now) {
+        if let Some(said) = self.next_playback(now) {
             return Some(said);
         }
         if let Some(frame) = self.shown {
-            let selected = if room == Room::All {
-                self.say_helm(frame, now).or_else(|| self.say_estimate(frame, now))
+            let selected = if budget == Budget::All {
+                self.next_helm(frame, now).or_else(|| self.next_estimate(frame, now))
             } else {
                 None
             };
-            if let Some(said) = selected.or_else(|| self.say_status(frame, now)) {
+            if let Some(said) = selected.or_else(|| self.next_status(frame, now)) {
                 return Some(said);
             }
         }
-        if room >= Room::Frames { self.say_frame(now) } else { None }
+        if budget >= Budget::Frames { self.next_frame(now) } else { None }
     }
 
     fn due(&self, now: Instant) -> Option<Instant> {
-        let playing = self.player.is_playing();
-        let times = self.reel.film.frame_times();
-        let next = self.shown.and_then(|frame| times.get(frame + 1)).and_then(|time| self.player.when(*time));
-        let told = self.told_player.as_ref().filter(|_| playing).map(|(_, at)| *at + TELL_AGAIN);
-        // What was held back because the same was told shortly before.
+        let playing = self.playback.is_playing();
+        let times = self.shared.source.frame_times();
+        let next = self.shown.and_then(|frame| times.get(frame + 1)).and_then(|time| self.playback.when(*time));
+        let sent = self.sent_playback.as_ref().filter(|_| playing).map(|(_, at)| *at + SEND_INTERVAL);
+        // What was held back because the same was sent shortly before.
         let is_old = |frame: usize| self.shown.is_some_and(|shown| shown != frame);
         let selected = self.selected.is_some();
         let estimate =
-            self.estimated.filter(|(frame, _)| selected && is_old(*frame)).map(|(_, at)| at + ESTIMATE_AGAIN);
-        let helm = self.wished.filter(|(wish, _)| selected && self.is_outdated(*wish)).map(|(_, at)| at + HELM_AGAIN);
-        let status = self.looked.filter(|(frame, _)| is_old(*frame)).map(|(_, at)| at + TELL_AGAIN);
-        let due = [next, told, estimate, helm, status].into_iter().flatten().min();
+            self.estimated.filter(|(frame, _)| selected && is_old(*frame)).map(|(_, at)| at + ESTIMATE_INTERVAL);
+        let helm = self
+            .requested
+            .filter(|(request, _)| selected && self.is_outdated(*request))
+            .map(|(_, at)| at + HELM_INTERVAL);
+        let status = self.looked.filter(|(frame, _)| is_old(*frame)).map(|(_, at)| at + SEND_INTERVAL);
+        let due = [next, sent, estimate, helm, status].into_iter().flatten().min();
         due.map(|due| due.max(now + FRAME_AGAIN))
     }
 }
 
 impl Drop for PageViewer {
     fn drop(&mut self) {
-        self.reel.desk.leave(self.reader);
+        self.shared.helms.remove(self.viewer);
     }
 }
 

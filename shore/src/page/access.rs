@@ -1,22 +1,22 @@
-//! Who may look at the page, under which name, and who may act.
+//! Access control of the page: accepted host names, origins, and the token of those who may act.
 //!
 //! A page that somebody on this machine opens from elsewhere can send requests to this machine too: by its address, or
 //! by a name that is made to lead here. `Host` and `Origin`, which browsers set and pages cannot, tell them apart.
 
 use std::net::{IpAddr, SocketAddr};
 
-/// What is let in.
+/// Which requests are accepted.
 #[derive(Clone, Debug)]
-pub(super) struct Guard {
+pub(super) struct AccessControl {
     bound: SocketAddr,
     hosts: Vec<String>,
     token: Option<String>,
 }
 
-impl Guard {
-    /// A guard at this address, with names under which it may be asked for, and the token of those who may act.
-    pub(super) fn new(bound: SocketAddr, hosts: &[String], token: Option<String>) -> Guard {
-        Guard { bound, hosts: hosts.iter().map(|host| host.to_ascii_lowercase()).collect(), token }
+impl AccessControl {
+    /// For a server at this address, with further host names and the token of those who may act.
+    pub(super) fn new(bound: SocketAddr, hosts: &[String], token: Option<String>) -> AccessControl {
+        AccessControl { bound, hosts: hosts.iter().map(|host| host.to_ascii_lowercase()).collect(), token }
     }
 
     /// Whether a request for this host (as in the header) is meant for this server.
@@ -44,7 +44,7 @@ impl Guard {
         }
     }
 
-    /// Whether whoever opens a websocket comes from our own page, or is no browser.
+    /// Whether a websocket is opened by our own page, or by a client that is no browser.
     ///
     /// # Errors
     /// Says why not.
@@ -57,7 +57,7 @@ impl Guard {
         }
     }
 
-    /// Whether there is anything to show for those who may act.
+    /// Whether acting needs a token.
     pub(super) fn has_token(&self) -> bool {
         self.token.is_some()
     }
@@ -78,7 +78,7 @@ fn name_of(host: &str) -> &str {
     host.rsplit_once(':').map_or(host, |(name, _)| name)
 }
 
-/// Whether two words are the same, in a time that does not tell how much of them is.
+/// Whether two byte strings are equal, in constant time.
 fn is_same(a: &[u8], b: &[u8]) -> bool {
     let differences = a.iter().zip(b).fold(0, |all, (a, b)| std::hint::black_box(all | (a ^ b)));
     a.len() == b.len() && differences == 0
@@ -109,9 +109,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn guard(bound: &str, hosts: &[&str]) -> Guard {
+    fn guard(bound: &str, hosts: &[&str]) -> AccessControl {
         let hosts: Vec<String> = hosts.iter().map(|host| (*host).to_owned()).collect();
-        Guard::new(bound.parse().expect("an address"), &hosts, None)
+        AccessControl::new(bound.parse().expect("an address"), &hosts, None)
     }
 
     #[test]
@@ -152,13 +152,13 @@ mod tests {
             (Some("localhost:8080"), Some("null"), false),
             (None, Some("http://localhost"), false),
         ] {
-            assert_eq!(Guard::check_origin(host, origin).is_ok(), good, "{origin:?} at {host:?}");
+            assert_eq!(AccessControl::check_origin(host, origin).is_ok(), good, "{origin:?} at {host:?}");
         }
     }
 
     #[test]
     fn the_token_gives_rights() {
-        let locked = Guard { token: Some("a b+c%".to_owned()), ..guard("127.0.0.1:1", &[]) };
+        let locked = AccessControl { token: Some("a b+c%".to_owned()), ..guard("127.0.0.1:1", &[]) };
         for (query, rights) in [
             (None, false),
             (Some(""), false),
@@ -178,7 +178,7 @@ mod tests {
         fn no_header_makes_it_panic(host in ".{0,30}", origin in ".{0,30}", query in "[%a-f0-9+&=token]{0,30}") {
             let guard = guard("0.0.0.0:80", &[]);
             drop(guard.check_host(Some(&host)));
-            drop(Guard::check_origin(Some(&host), Some(&origin)));
+            drop(AccessControl::check_origin(Some(&host), Some(&origin)));
             guard.has_rights(Some(&query));
             decoded(&query);
         }

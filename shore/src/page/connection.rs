@@ -1,4 +1,4 @@
-//! The lines to browsers: no more than so many, and none that is silent for ever.
+//! TCP connections to browsers: limited in number, with read and write time-outs.
 
 use std::io;
 use std::pin::Pin;
@@ -10,41 +10,41 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
-/// The most lines at a time; more wait to be accepted.
-const LINES_MAX: usize = 192;
-/// A line on which nothing comes for so long is cut. Websockets are asked for a sign of life more often.
+/// The most connections at a time; more wait to be accepted.
+const CONNECTIONS_MAX: usize = 192;
+/// A connection on which nothing arrives for so long is closed. Websockets are pinged more often.
 const SILENCE: Duration = Duration::from_secs(60);
-/// A line that takes nothing for so long, while there is something for it, is cut.
+/// A connection that accepts no bytes for so long, while there are some to send, is closed.
 const DEAF: Duration = Duration::from_secs(20);
-/// How long to wait when the system has no line to give.
+/// How long to wait after the system could not accept.
 const AGAIN: Duration = Duration::from_millis(200);
 
-/// Where lines come from.
-pub(super) struct Quay {
+/// Accepts connections.
+pub(super) struct Listener {
     listener: TcpListener,
     free: Arc<Semaphore>,
 }
 
-impl Quay {
-    /// All lines come from here.
-    pub(super) fn new(listener: TcpListener) -> Quay {
-        Quay { listener, free: Arc::new(Semaphore::new(LINES_MAX)) }
+impl Listener {
+    /// Accepts from this listener.
+    pub(super) fn new(listener: TcpListener) -> Listener {
+        Listener { listener, free: Arc::new(Semaphore::new(CONNECTIONS_MAX)) }
     }
 
-    /// A place for one more line; nothing while there is none.
+    /// A permit for one more connection.
     async fn place(&self) -> Option<OwnedSemaphorePermit> {
         Arc::clone(&self.free).acquire_owned().await.ok()
     }
 
-    /// The next line.
-    pub(super) async fn accept(&self) -> Line {
+    /// The next connection.
+    pub(super) async fn accept(&self) -> Connection {
         loop {
             let place = self.place().await;
             match (place, self.listener.accept().await) {
                 (Some(place), Ok((stream, _))) => {
                     // A frame is one small write; waiting for more only makes it late.
                     drop(stream.set_nodelay(true));
-                    return Line { stream, silence: Box::pin(sleep(SILENCE)), deaf: None, _place: place };
+                    return Connection { stream, silence: Box::pin(sleep(SILENCE)), deaf: None, _place: place };
                 }
                 _ => sleep(AGAIN).await,
             }
@@ -52,8 +52,8 @@ impl Quay {
     }
 }
 
-/// A line to a browser.
-pub(super) struct Line {
+/// A connection to a browser.
+pub(super) struct Connection {
     stream: TcpStream,
     silence: Pin<Box<Sleep>>,
     /// Ends the wait for a browser to take something, while there is one.
@@ -61,8 +61,8 @@ pub(super) struct Line {
     _place: OwnedSemaphorePermit,
 }
 
-impl Line {
-    /// What comes of an attempt to write, unless attempts have been in vain for too long.
+impl Connection {
+    /// The result of an attempt to write, or a time-out.
     fn written(&mut self, context: &mut Context<'_>, tried: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
         if tried.is_ready() {
             self.deaf = None;
@@ -73,7 +73,7 @@ impl Line {
     }
 }
 
-impl AsyncRead for Line {
+impl AsyncRead for Connection {
     fn poll_read(mut self: Pin<&mut Self>, context: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
         let line = &mut *self;
         match Pin::new(&mut line.stream).poll_read(context, into) {
@@ -86,7 +86,7 @@ impl AsyncRead for Line {
     }
 }
 
-impl AsyncWrite for Line {
+impl AsyncWrite for Connection {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let tried = Pin::new(&mut self.stream).poll_write(context, bytes);
         self.written(context, tried)

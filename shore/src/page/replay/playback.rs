@@ -1,4 +1,4 @@
-//! A player: which moment of a recording is shown, and how that moves on.
+//! The playback position in a recording, and how it advances.
 
 use game::SimTime;
 use std::time::{Duration, Instant};
@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 /// The slowest and the fastest that a recording is played, simulated seconds a second.
 const SPEED: (f64, f64) = (0.01, 100.0);
 
-/// The state of a player.
+/// The state of a playback.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Player {
+pub(super) struct Playback {
     from: SimTime,
     to: SimTime,
     at: SimTime,
@@ -17,10 +17,10 @@ pub(super) struct Player {
     speed: f64,
 }
 
-impl Player {
-    /// A player that stands at the beginning.
-    pub(super) fn new(from: SimTime, to: SimTime) -> Player {
-        Player { from, to, at: from, since: None, speed: 1.0 }
+impl Playback {
+    /// A playback that stands at the beginning.
+    pub(super) fn new(from: SimTime, to: SimTime) -> Playback {
+        Playback { from, to, at: from, since: None, speed: 1.0 }
     }
 
     /// The moment shown.
@@ -92,30 +92,30 @@ mod tests {
     fn it_plays_by_the_clock_to_the_end_and_then_from_the_beginning() {
         let start = clock::now();
         let later = |s: f64| start + Duration::from_secs_f64(s);
-        let mut player = Player::new(SimTime::from_s(10.0), SimTime::from_s(20.0));
-        assert_eq!(player.at(later(5.0)), SimTime::from_s(10.0), "it stands at first");
-        player.play(start);
-        assert_eq!(player.at(later(2.0)), SimTime::from_s(12.0));
-        player.set_speed(Some(4.0), later(2.0));
-        assert_eq!(player.at(later(3.0)), SimTime::from_s(16.0));
-        assert_eq!(player.when(SimTime::from_s(20.0)), Some(later(4.0)));
-        assert!(!player.end(later(3.9)) && player.end(later(9.0)) && !player.end(later(9.0)));
-        assert_eq!((player.is_playing(), player.at(later(9.0))), (false, SimTime::from_s(20.0)));
-        player.play(later(9.0));
-        assert_eq!(player.at(later(9.0)), SimTime::from_s(10.0));
+        let mut playback = Playback::new(SimTime::from_s(10.0), SimTime::from_s(20.0));
+        assert_eq!(playback.at(later(5.0)), SimTime::from_s(10.0), "it stands at first");
+        playback.play(start);
+        assert_eq!(playback.at(later(2.0)), SimTime::from_s(12.0));
+        playback.set_speed(Some(4.0), later(2.0));
+        assert_eq!(playback.at(later(3.0)), SimTime::from_s(16.0));
+        assert_eq!(playback.when(SimTime::from_s(20.0)), Some(later(4.0)));
+        assert!(!playback.end(later(3.9)) && playback.end(later(9.0)) && !playback.end(later(9.0)));
+        assert_eq!((playback.is_playing(), playback.at(later(9.0))), (false, SimTime::from_s(20.0)));
+        playback.play(later(9.0));
+        assert_eq!(playback.at(later(9.0)), SimTime::from_s(10.0));
     }
 
     #[test]
     fn it_goes_where_it_is_told_within_the_recording() {
         let start = clock::now();
-        let mut player = Player::new(SimTime::from_s(10.0), SimTime::from_s(20.0));
+        let mut playback = Playback::new(SimTime::from_s(10.0), SimTime::from_s(20.0));
         for (to_s, want_s) in [(15.0, 15.0), (-4.0, 10.0), (1e30, 20.0)] {
-            player.seek(SimTime::from_s(to_s), start);
-            assert_eq!(player.at(start), SimTime::from_s(want_s), "{to_s}");
+            playback.seek(SimTime::from_s(to_s), start);
+            assert_eq!(playback.at(start), SimTime::from_s(want_s), "{to_s}");
         }
-        player.set_speed(None, start);
-        assert_eq!(player.speed(), SPEED.1);
-        player.set_speed(Some(0.0), start);
-        assert_eq!(player.speed(), SPEED.0);
+        playback.set_speed(None, start);
+        assert_eq!(playback.speed(), SPEED.1);
+        playback.set_speed(Some(0.0), start);
+        assert_eq!(playback.speed(), SPEED.0);
     }
 }

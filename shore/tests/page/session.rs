@@ -3,23 +3,23 @@
 use super::replay::show;
 use super::source::seq_of;
 use super::{look, page};
-use shore::page::{Ask, Guest, Mode, News, Room, Said, Show, Viewer};
+use shore::page::{Access, Budget, Changes, Mode, Outgoing, PageRequest, View, Viewer};
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
 use tungstenite::Message;
 
 /// A show that never stops talking, whatever a page can take, and passes on what it is asked.
-struct Talker(Sender<Ask>, News);
+struct Talker(Sender<PageRequest>, Changes);
 
 /// A look at it.
-struct Ear(Sender<Ask>);
+struct Ear(Sender<PageRequest>);
 
-impl Show for Talker {
-    fn admit(&self, _: Guest) -> Box<dyn Viewer> {
+impl View for Talker {
+    fn open_viewer(&self, _: Access) -> Box<dyn Viewer> {
         Box::new(Ear(self.0.clone()))
     }
-    fn news(&self) -> &News {
+    fn news(&self) -> &Changes {
         &self.1
     }
 }
@@ -28,11 +28,11 @@ impl Viewer for Ear {
     fn mode(&self) -> Mode {
         Mode::Live
     }
-    fn ask(&mut self, ask: &Ask, _: Instant) -> Result<(), String> {
+    fn ask(&mut self, ask: &PageRequest, _: Instant) -> Result<(), String> {
         self.0.send(ask.clone()).map_err(|e| e.to_string())
     }
-    fn say(&mut self, _: Instant, _: Room) -> Option<Said> {
-        Some(Said::Text("x".repeat(1 << 20)))
+    fn next_message(&mut self, _: Instant, _: Budget) -> Option<Outgoing> {
+        Some(Outgoing::Text("x".repeat(1 << 20)))
     }
     fn due(&self, _: Instant) -> Option<Instant> {
         None
@@ -66,13 +66,13 @@ fn a_page_that_draws_nothing_gets_two_frames() {
 #[test]
 fn a_page_is_heard_while_it_takes_nothing() {
     let (asked, asks) = channel();
-    let page = page(Arc::new(Talker(asked, News::default())), None, &[]);
+    let page = page(Arc::new(Talker(asked, Changes::default())), None, &[]);
     let mut client = look(&page);
     // The lines between are full when the page has read nothing for a while.
     assert!(asks.recv_timeout(Duration::from_secs(1)).is_err());
     for ask in [r#"{"do":"control","what":"halt"}"#, r#"{"do":"control","what":"e_stop"}"#] {
         client.send(ask);
-        let want: Ask = serde_json::from_str(ask).expect("an ask");
+        let want: PageRequest = serde_json::from_str(ask).expect("an ask");
         assert_eq!(asks.recv_timeout(Duration::from_secs(10)), Ok(want));
     }
     // What was half sent meanwhile is whole.

@@ -1,11 +1,11 @@
-//! What a page asks of its server.
+//! Requests of a page to its server, as `PROTOCOL.md` defines them.
 
 use serde::Deserialize;
 
 /// A message from a page, as it stands in `PROTOCOL.md`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
-pub enum Ask {
+pub enum PageRequest {
     /// A frame is drawn.
     Ack,
     /// Whose helm and estimate are wanted.
@@ -19,7 +19,7 @@ pub enum Ask {
     /// Something for the whole game.
     Control {
         /// What.
-        what: Word,
+        what: PageCommand,
     },
     /// So many simulated seconds a second.
     Speed {
@@ -56,7 +56,7 @@ pub enum Ask {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[expect(missing_docs, reason = "each says it itself; `game::message::Control` says what it does")]
-pub enum Word {
+pub enum PageCommand {
     Pause,
     Resume,
     Step,
@@ -67,51 +67,60 @@ pub enum Word {
     Stop,
 }
 
-impl Ask {
+impl PageRequest {
     /// What it is called on the wire.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Ask::Ack => "ack",
-            Ask::Select { .. } => "select",
-            Ask::Control { .. } => "control",
-            Ask::Speed { .. } => "speed",
-            Ask::Step { .. } => "step",
-            Ask::Seek { .. } => "seek",
-            Ask::Drive { .. } => "drive",
-            Ask::LetGo { .. } => "let_go",
+            PageRequest::Ack => "ack",
+            PageRequest::Select { .. } => "select",
+            PageRequest::Control { .. } => "control",
+            PageRequest::Speed { .. } => "speed",
+            PageRequest::Step { .. } => "step",
+            PageRequest::Seek { .. } => "seek",
+            PageRequest::Drive { .. } => "drive",
+            PageRequest::LetGo { .. } => "let_go",
         }
     }
 
     /// Whether it changes a game that others play.
     #[must_use]
     pub fn acts(&self) -> bool {
-        matches!(self, Ask::Control { .. } | Ask::Speed { .. } | Ask::Drive { .. } | Ask::LetGo { .. })
+        matches!(
+            self,
+            PageRequest::Control { .. }
+                | PageRequest::Speed { .. }
+                | PageRequest::Drive { .. }
+                | PageRequest::LetGo { .. }
+        )
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Ask, Word};
+    use super::{PageCommand, PageRequest};
 
     #[test]
     fn what_the_protocol_lists_is_understood() {
         for (text, want) in [
-            (r#"{"do":"ack"}"#, Ask::Ack),
-            (r#"{"do":"select","vehicle":null,"functions":false}"#, Ask::Select { vehicle: None, functions: false }),
-            (r#"{"do":"select","vehicle":"a"}"#, Ask::Select { vehicle: Some("a".into()), functions: false }),
-            (r#"{"do":"control","what":"e_stop"}"#, Ask::Control { what: Word::EStop }),
-            (r#"{"do":"speed","factor":null}"#, Ask::Speed { factor: None }),
-            (r#"{"do":"speed","factor":4}"#, Ask::Speed { factor: Some(4.0) }),
-            (r#"{"do":"step","by":-1}"#, Ask::Step { by: -1 }),
-            (r#"{"do":"seek","t_s":1}"#, Ask::Seek { t_s: 1.0 }),
+            (r#"{"do":"ack"}"#, PageRequest::Ack),
+            (
+                r#"{"do":"select","vehicle":null,"functions":false}"#,
+                PageRequest::Select { vehicle: None, functions: false },
+            ),
+            (r#"{"do":"select","vehicle":"a"}"#, PageRequest::Select { vehicle: Some("a".into()), functions: false }),
+            (r#"{"do":"control","what":"e_stop"}"#, PageRequest::Control { what: PageCommand::EStop }),
+            (r#"{"do":"speed","factor":null}"#, PageRequest::Speed { factor: None }),
+            (r#"{"do":"speed","factor":4}"#, PageRequest::Speed { factor: Some(4.0) }),
+            (r#"{"do":"step","by":-1}"#, PageRequest::Step { by: -1 }),
+            (r#"{"do":"seek","t_s":1}"#, PageRequest::Seek { t_s: 1.0 }),
             (
                 r#"{"do":"drive","vehicle":"a","course_deg":90,"speed_m_s":1.5}"#,
-                Ask::Drive { vehicle: "a".into(), course_deg: 90.0, speed_m_s: 1.5 },
+                PageRequest::Drive { vehicle: "a".into(), course_deg: 90.0, speed_m_s: 1.5 },
             ),
-            (r#"{"do":"let_go","vehicle":"a"}"#, Ask::LetGo { vehicle: "a".into() }),
+            (r#"{"do":"let_go","vehicle":"a"}"#, PageRequest::LetGo { vehicle: "a".into() }),
         ] {
-            let ask: Ask = serde_json::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"));
+            let ask: PageRequest = serde_json::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"));
             assert_eq!(ask, want);
             assert!(text.contains(&format!("{:?}", ask.name())), "{text}");
         }

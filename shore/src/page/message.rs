@@ -1,4 +1,4 @@
-//! What the server tells a page, as it stands in `PROTOCOL.md`.
+//! Messages from the server to a page, as `PROTOCOL.md` defines them.
 
 use super::chart::Chart;
 use super::rose::Helm;
@@ -17,7 +17,7 @@ pub(super) const PROTOCOL: u32 = 1;
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[cfg_attr(not(feature = "net"), expect(dead_code, reason = "some is only said of a game on the network"))]
-pub(super) enum Tell<'a> {
+pub(super) enum PageMessage<'a> {
     Hello {
         protocol: u32,
         version: &'a str,
@@ -52,7 +52,7 @@ pub(super) enum Tell<'a> {
     },
     Events {
         reset: bool,
-        events: Vec<EventTell<'a>>,
+        events: Vec<EventMessage<'a>>,
     },
     Helm {
         vehicle: &'a str,
@@ -96,20 +96,20 @@ pub enum Mode {
 
 /// An event, with a sentence about it.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct EventTell<'a> {
+pub(super) struct EventMessage<'a> {
     #[serde(flatten)]
     event: &'a EventOutcome,
     text: String,
 }
 
-impl<'a> EventTell<'a> {
+impl<'a> EventMessage<'a> {
     /// The event as a page shows it.
-    pub(super) fn new(event: &'a EventOutcome) -> EventTell<'a> {
+    pub(super) fn new(event: &'a EventOutcome) -> EventMessage<'a> {
         let text = match (event.event.as_str(), &event.vehicle) {
             ("failsafe", Some(vehicle)) => format!("{vehicle} is STOPPED by its gateway"),
             _ => event.sentence(),
         };
-        EventTell { event, text }
+        EventMessage { event, text }
     }
 }
 
@@ -118,17 +118,23 @@ pub(super) fn seconds(time: SimTime) -> f64 {
     time.0 as f64 / 1e9
 }
 
-impl Tell<'_> {
-    /// The first words to a page.
-    pub(super) fn hello<'a>(version: &'a str, mode: Mode, rights: bool, game: &'a str, chart: &'a Chart) -> Tell<'a> {
+impl PageMessage<'_> {
+    /// The first message to a page.
+    pub(super) fn hello<'a>(
+        version: &'a str,
+        mode: Mode,
+        rights: bool,
+        game: &'a str,
+        chart: &'a Chart,
+    ) -> PageMessage<'a> {
         let definitions = game::ros::DEFINITIONS.into_iter().collect();
-        Tell::Hello { protocol: PROTOCOL, version, mode, rights, game, definitions, chart }
+        PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, game, definitions, chart }
     }
 
-    /// Where a boat's own sensors put it at this time.
-    pub(super) fn estimate<'a>(vehicle: &'a str, boat: &OwnBoat, at: SimTime) -> Tell<'a> {
+    /// The estimated position of a boat at this time.
+    pub(super) fn estimate<'a>(vehicle: &'a str, boat: &OwnBoat, at: SimTime) -> PageMessage<'a> {
         let nav = &boat.nav;
-        Tell::Estimate {
+        PageMessage::Estimate {
             vehicle,
             x: nav.east_m,
             y: nav.north_m,
@@ -147,11 +153,11 @@ impl Tell<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{EventTell, Tell};
+    use super::{EventMessage, PageMessage};
     use game::outcome::EventOutcome;
     use serde_json::{Value, json};
 
-    fn value(tell: &Tell<'_>) -> Value {
+    fn value(tell: &PageMessage<'_>) -> Value {
         serde_json::from_str(&tell.json()).expect("it is JSON")
     }
 
@@ -166,7 +172,8 @@ mod tests {
             team: None,
         };
         let (tagged, failsafe) = (event("tagged"), event("failsafe"));
-        let tell = Tell::Events { reset: true, events: vec![EventTell::new(&tagged), EventTell::new(&failsafe)] };
+        let tell =
+            PageMessage::Events { reset: true, events: vec![EventMessage::new(&tagged), EventMessage::new(&failsafe)] };
         let want = json!({"tick": 7, "at_s": 0.35, "event": "tagged", "vehicle": "a", "other": "b",
             "text": "a is tagged by b"});
         assert_eq!(value(&tell)["kind"], "events");
@@ -176,9 +183,10 @@ mod tests {
 
     #[test]
     fn what_is_not_known_is_null_and_not_left_out() {
-        let tell = value(&Tell::Drive { vehicle: "a", by: None });
+        let tell = value(&PageMessage::Drive { vehicle: "a", by: None });
         assert_eq!(tell, json!({"kind": "drive", "vehicle": "a", "by": null}));
-        let tell = value(&Tell::Helm { vehicle: "a", report: None, reason: Some("x"), computed: true, agrees: None });
+        let tell =
+            value(&PageMessage::Helm { vehicle: "a", report: None, reason: Some("x"), computed: true, agrees: None });
         assert_eq!(tell["report"], Value::Null);
         assert_eq!(tell["agrees"], Value::Null);
     }

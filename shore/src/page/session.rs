@@ -1,0 +1,265 @@
+//! The protocol with one page, without the network (sans-IO).
+
+use super::message::{Mode, PageMessage};
+use super::request::PageRequest;
+use super::view::{Access, Budget, Outgoing, View, Viewer};
+use std::collections::VecDeque;
+use std::time::Instant;
+
+/// The most frames sent and not yet drawn.
+const UNDRAWN_MAX: u8 = 2;
+/// After so much text a ping asks whether it has arrived, bytes. A frame is acknowledged when it is drawn; a text is not.
+const UNCONFIRMED_MAX: usize = 4096;
+/// The most refusals that wait to be sent; a page that sends bad requests faster than it reads misses some.
+const REFUSALS_MAX: usize = 8;
+
+/// The session with one page.
+pub(super) struct PageSession {
+    viewer: Box<dyn Viewer>,
+    access: Access,
+    /// Frames sent and not yet drawn.
+    undrawn: u8,
+    /// Text sent since the last ping, bytes.
+    unconfirmed: usize,
+    /// The last ping that was made, and the last that came back.
+    pings: (u64, u64),
+    /// Refusals to be sent: of what, and why.
+    refusals: VecDeque<(String, String)>,
+}
+
+impl PageSession {
+    /// Begins to show something to a page.
+    pub(super) fn new(show: &dyn View, access: Access) -> PageSession {
+        let viewer = show.open_viewer(access);
+        PageSession { viewer, access, undrawn: 0, unconfirmed: 0, pings: (0, 0), refusals: VecDeque::new() }
+    }
+
+    /// Shows another view. Frames that were sent stay sent.
+    pub(super) fn show(&mut self, show: &dyn View) {
+        self.viewer = show.open_viewer(self.access);
+    }
+
+    /// A text message from the page.
+    pub(super) fn receive(&mut self, text: &str, now: Instant) {
+        let ask: PageRequest = match serde_json::from_str(text) {
+            Ok(ask) => ask,
+            Err(e) => return self.refuse("message", format!("not understood: {e}")),
+        };
+        if ask == PageRequest::Ack {
+            self.undrawn = self.undrawn.saturating_sub(1);
+            return;
+        }
+        if ask.acts() && self.viewer.mode() == Mode::Live && !self.access.rights {
+            return self
+                .refuse(ask.name(), "this page may only look: open it by its address with the token".to_owned());
+        }
+        if let Err(reason) = self.viewer.ask(&ask, now) {
+            self.refuse(ask.name(), reason);
+        }
+    }
+
+    /// A binary message from the page.
+    pub(super) fn receive_binary(&mut self) {
+        self.refuse("message", "not a text".to_owned());
+    }
+
+    /// The next message to the page, if there is one now.
+    pub(super) fn next_message(&mut self, now: Instant) -> Option<Outgoing> {
+        if let Some((what, reason)) = self.refusals.pop_front() {
+            return Some(Outgoing::Text(PageMessage::Refused { what: &what, reason: &reason }.json()));
+        }
+        let outgoing = self.viewer.next_message(now, self.budget());
+        match &outgoing {
+            Some(Outgoing::Now(_)) => self.undrawn += 1,
+            Some(Outgoing::Text(text)) => self.unconfirmed += text.len(),
+            Some(Outgoing::Past(_)) | None => {}
+        }
+        outgoing
+    }
+
+    /// What the page can take now: of frames and of text no more is on its way than it can be late by.
+    fn budget(&self) -> Budget {
+        let (made, back) = self.pings;
+        match self.undrawn < UNDRAWN_MAX {
+            false => Budget::None,
+            true if back < made || self.unconfirmed >= UNCONFIRMED_MAX => Budget::Frames,
+            true => Budget::All,
+        }
+    }
+
+    /// A ping to be sent after what was outgoing last, if it is time for one. The page sends it back at once.
+    pub(super) fn ping(&mut self) -> Option<u64> {
+        if self.unconfirmed < UNCONFIRMED_MAX {
+            return None;
+        }
+        (self.unconfirmed, self.pings.0) = (0, self.pings.0 + 1);
+        Some(self.pings.0)
+    }
+
+    /// The ping that was made last.
+    pub(super) fn last_ping(&self) -> u64 {
+        self.pings.0
+    }
+
+    /// A ping comes back: everything sent before it has arrived.
+    pub(super) fn receive_pong(&mut self, ping: u64) {
+        let (made, back) = self.pings;
+        self.pings.1 = back.max(ping.min(made));
+    }
+
+    /// When the next message is due, if nothing changes.
+    pub(super) fn due(&self, now: Instant) -> Option<Instant> {
+        self.viewer.due(now)
+    }
+
+    fn refuse(&mut self, what: &str, reason: String) {
+        if self.refusals.len() < REFUSALS_MAX {
+            self.refusals.push_back((what.to_owned(), reason));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::clock;
+    use super::super::view::Changes;
+    use super::*;
+    use proptest::prelude::*;
+    use std::sync::{Arc, Mutex};
+
+    /// A show with a frame for every question whether there is one, which notes what it is asked.
+    struct TestView {
+        mode: Mode,
+        news: Changes,
+        asked: Arc<Mutex<Vec<PageRequest>>>,
+    }
+
+    struct TestViewer {
+        mode: Mode,
+        asked: Arc<Mutex<Vec<PageRequest>>>,
+        frames: u8,
+    }
+
+    impl View for TestView {
+        fn open_viewer(&self, _: Access) -> Box<dyn Viewer> {
+            Box::new(TestViewer { mode: self.mode, asked: Arc::clone(&self.asked), frames: 0 })
+        }
+        fn news(&self) -> &Changes {
+            &self.news
+        }
+    }
+
+    impl Viewer for TestViewer {
+        fn mode(&self) -> Mode {
+            self.mode
+        }
+        fn ask(&mut self, ask: &PageRequest, _: Instant) -> Result<(), String> {
+            self.asked.lock().unwrap().push(ask.clone());
+            if matches!(ask, PageRequest::Seek { .. }) { Err("no".to_owned()) } else { Ok(()) }
+        }
+        fn next_message(&mut self, _: Instant, budget: Budget) -> Option<Outgoing> {
+            let fits = budget >= Budget::Frames;
+            self.frames = self.frames.wrapping_add(u8::from(fits));
+            fits.then(|| Outgoing::now(&[self.frames]))
+        }
+        fn due(&self, _: Instant) -> Option<Instant> {
+            None
+        }
+    }
+
+    fn session(mode: Mode, rights: bool) -> (PageSession, Arc<Mutex<Vec<PageRequest>>>) {
+        let asked = Arc::new(Mutex::new(vec![]));
+        let view = TestView { mode, news: Changes::default(), asked: Arc::clone(&asked) };
+        (PageSession::new(&view, Access { rights }), asked)
+    }
+
+    #[test]
+    fn two_frames_are_on_their_way_and_a_third_when_one_is_drawn() {
+        let (mut session, _) = session(Mode::Live, false);
+        let now = clock::now();
+        let frames: Vec<Outgoing> = std::iter::from_fn(|| session.next_message(now)).take(9).collect();
+        assert_eq!(frames, [Outgoing::now(&[1]), Outgoing::now(&[2])]);
+        session.receive(r#"{"do":"ack"}"#, now);
+        assert_eq!(session.next_message(now), Some(Outgoing::now(&[3])));
+        assert_eq!(session.next_message(now), None);
+        // A page that claims to have drawn more than it got gets no more than two.
+        (0..9).for_each(|_| session.receive(r#"{"do":"ack"}"#, now));
+        assert_eq!(std::iter::from_fn(|| session.next_message(now)).take(9).count(), 2);
+    }
+
+    #[test]
+    fn a_long_text_is_on_its_way_until_its_mark_is_back() {
+        let (mut session, _) = session(Mode::Live, false);
+        assert_eq!((session.budget(), session.ping()), (Budget::All, None));
+        session.unconfirmed = UNCONFIRMED_MAX - 1;
+        assert_eq!((session.budget(), session.ping()), (Budget::All, None), "a short one does not matter");
+        session.unconfirmed = UNCONFIRMED_MAX;
+        assert_eq!(session.budget(), Budget::Frames, "frames go on");
+        assert_eq!((session.ping(), session.ping(), session.last_ping()), (Some(1), None, 1));
+        session.receive_pong(0);
+        assert_eq!(session.budget(), Budget::Frames, "an older ping says nothing of it");
+        session.receive_pong(1);
+        assert_eq!(session.budget(), Budget::All);
+        // A page that claims pings it never got has not got what is outgoing next.
+        session.receive_pong(u64::MAX);
+        session.unconfirmed = UNCONFIRMED_MAX;
+        assert_eq!((session.ping(), session.budget()), (Some(2), Budget::Frames));
+        session.undrawn = UNDRAWN_MAX;
+        session.receive_pong(2);
+        assert_eq!(session.budget(), Budget::None);
+    }
+
+    #[test]
+    fn acts_need_rights_in_a_game_and_none_in_a_replay() {
+        let act = r#"{"do":"control","what":"pause"}"#;
+        for (mode, rights, passed) in
+            [(Mode::Live, false, 0), (Mode::Live, true, 1), (Mode::Replay, false, 1), (Mode::Replay, true, 1)]
+        {
+            let (mut session, asked) = session(mode, rights);
+            session.receive(act, clock::now());
+            assert_eq!(asked.lock().unwrap().len(), passed, "{mode:?} {rights}");
+            let refused =
+                matches!(session.next_message(clock::now()), Some(Outgoing::Text(text)) if text.contains("refused"));
+            assert_eq!(refused, passed == 0, "{mode:?} {rights}");
+        }
+    }
+
+    #[test]
+    fn nonsense_is_answered_but_not_without_end() {
+        let (mut session, _) = session(Mode::Live, true);
+        let now = clock::now();
+        (0..100).for_each(|_| session.receive("ahoy", now));
+        session.receive_binary();
+        let outgoing: Vec<Outgoing> = std::iter::from_fn(|| session.next_message(now)).take(100).collect();
+        assert_eq!(outgoing.iter().filter(|outgoing| matches!(outgoing, Outgoing::Text(_))).count(), REFUSALS_MAX);
+        session.receive(r#"{"do":"seek","t_s":3}"#, now);
+        let want = r#"{"kind":"refused","what":"seek","reason":"no"}"#;
+        assert_eq!(session.next_message(now), Some(Outgoing::Text(want.to_owned())));
+    }
+
+    fn anything() -> impl Strategy<Value = String> {
+        let word =
+            prop::sample::select(vec!["ack", "select", "control", "speed", "step", "seek", "drive", "let_go", "x"]);
+        let what = prop::sample::select(vec!["pause", "stop", "e_stop", "release", "fly"]);
+        let asked = (word, what, any::<f64>(), any::<i64>(), ".{0,9}").prop_map(|(word, what, x, by, vehicle)| {
+            serde_json::json!({"do": word, "what": what, "factor": x, "by": by, "t_s": x, "vehicle": vehicle,
+                "course_deg": x, "speed_m_s": x})
+            .to_string()
+        });
+        prop_oneof![asked, ".{0,60}", r#"\{"do":"[a-z_]{0,8}".{0,20}\}"#]
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_that_a_page_says_acts_without_rights(texts in prop::collection::vec(anything(), 0..40)) {
+            let (mut session, asked) = session(Mode::Live, false);
+            let now = clock::now();
+            for text in &texts {
+                session.receive(text, now);
+                session.next_message(now);
+                prop_assert!(session.undrawn <= UNDRAWN_MAX && session.refusals.len() <= REFUSALS_MAX);
+            }
+            prop_assert!(asked.lock().unwrap().iter().all(|ask| !ask.acts()));
+        }
+    }
+}
