@@ -62,7 +62,7 @@ fn with_a_token_only_those_who_show_it_have_rights() {
 #[test]
 fn so_many_may_look_and_no_more() {
     let page = page(show(), None, &[]);
-    let mut clients: Vec<Client> = (0..64).map(|_| look(&page)).collect();
+    let mut clients: Vec<Client> = (0..64).map(|_| open_viewer(&page)).collect();
     assert_eq!(Client::connect(page.address(), "/ws", &[]).err(), Some(503));
     assert_eq!(clients[63].text()["kind"], "hello");
     drop(clients.pop());
@@ -74,7 +74,7 @@ fn so_many_may_look_and_no_more() {
 #[test]
 fn those_who_only_look_keep_nobody_out_who_may_act() {
     let page = page(show(), Some("secret"), &[]);
-    let _onlookers: Vec<Client> = (0..64).map(|_| look(&page)).collect();
+    let _onlookers: Vec<Client> = (0..64).map(|_| open_viewer(&page)).collect();
     assert_eq!(Client::connect(page.address(), "/ws?token=guess", &[]).err(), Some(503));
     let come = || Client::connect(page.address(), "/ws?token=secret", &[]);
     let masters: Vec<Client> = (0..8).map(|_| come().expect("there is a place of its own")).collect();
@@ -105,7 +105,7 @@ fn a_request_that_does_not_come_to_its_end_is_not_waited_for() {
 #[test]
 fn pages_hear_of_the_end() {
     let page = page(show(), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     client.text();
     page.close();
     assert!(client.is_hung_up_on());

@@ -2,7 +2,7 @@
 
 use super::client::Client;
 use super::source::{frame, own_boat, report, scenario, seq_of};
-use super::page;
+use super::{open_viewer, page};
 use bus::{Bus, Declaration, Delivery, Net, Publisher, Watched};
 use game::codec;
 use game::event::{Event, Logged};
@@ -160,7 +160,7 @@ fn meet(file: &str) -> (Sim, Page, Client) {
     let port = port();
     let sim = Sim::open(port, "pond", steered(file));
     let page = page(live(port, None), None, &[]);
-    let mut client = viewer(&page);
+    let mut client = open_viewer(&page);
     let hello = client.text();
     assert_eq!((&hello["kind"], &hello["mode"], &hello["game"]), (&json!("hello"), &json!("live"), &json!("pond")));
     sim.wait_for_ears();
@@ -185,7 +185,7 @@ fn a_page_sees_frames_their_past_and_how_the_run_stands() {
     .find(|frame| seq_of(frame) == 100);
     assert_eq!(shown.expect("the newest comes")[0], 1);
     // A newcomer gets the past first.
-    let mut newcomer = viewer(&page);
+    let mut newcomer = open_viewer(&page);
     assert_eq!(newcomer.text()["chart"]["waves"][0]["amplitude_m"], 0.25);
     let past: Vec<u64> =
         (0..20).map(|_| newcomer.frame()).inspect(|f| assert_eq!(f[0], 2)).map(|f| seq_of(f)).collect();
@@ -236,11 +236,11 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
     }
     page.close();
     let locked = super::page(live_again(&sim), Some("secret"), &[]);
-    let mut observer = viewer(&locked);
+    let mut observer = open_viewer(&locked);
     assert_eq!(observer.text()["rights"], false);
     observer.send(r#"{"do":"control","what":"stop"}"#);
     assert_eq!(observer.until("refused", |_| true)["what"], "control");
-    let mut master = Client::connect(locked.address(), "/ws?token=secret", &[]).expect("all may viewer");
+    let mut master = Client::connect(locked.address(), "/ws?token=secret", &[]).expect("all may look");
     master.send(r#"{"do":"control","what":"halt"}"#);
     assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::Halt)));
     sim.controls.visit(|all| assert!(!all.contains(&Control::Stop)));
@@ -252,7 +252,7 @@ fn a_game_in_lockstep_goes_as_fast_as_can_be_if_asked() {
     let port = port();
     let sim = Sim::paced(port, "pond", scenario("pav01_vs_pav01.toml"), "lockstep");
     let page = page(live(port, None), None, &[]);
-    let mut client = viewer(&page);
+    let mut client = open_viewer(&page);
     client.until("hello", |_| true);
     sim.wait_for_ears();
     client.send(r#"{"do":"speed","factor":null}"#);
@@ -268,7 +268,7 @@ fn live_again(sim: &Sim) -> Arc<dyn View> {
 #[test]
 fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
     let (sim, page, mut one) = meet("pav01_vs_pav01.toml");
-    let mut other = viewer(&page);
+    let mut other = open_viewer(&page);
     sim.show(5, &[]);
     one.frame();
     let steer = r#"{"do":"drive","vehicle":"blue_one","course_deg":-90,"speed_m_s":99}"#;
@@ -303,7 +303,7 @@ fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
 #[test]
 fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     let (sim, page, mut client) = meet("pav01_vs_pav01.toml");
-    let mut other = viewer(&page);
+    let mut other = open_viewer(&page);
     assert!(!sim.pictures.is_heard(), "nobody looks at a boat yet");
     client.send(r#"{"do":"select","vehicle":"blue_one","functions":true}"#);
     other.send(r#"{"do":"select","vehicle":"red_one","functions":false}"#);
@@ -356,7 +356,7 @@ fn gateways_tell_and_real_boats_keep_their_pace() {
 fn a_game_that_goes_is_gone_and_the_next_is_another() {
     let port = port();
     let page = page(live(port, None), None, &[]);
-    let mut client = viewer(&page);
+    let mut client = open_viewer(&page);
     assert_eq!(client.rest(), [], "there is no game yet");
     let first = Sim::open(port, "pond", scenario("pav01_vs_pav01.toml"));
     assert_eq!(client.until("hello", |_| true)["game"], "pond");
@@ -371,9 +371,7 @@ fn a_game_that_goes_is_gone_and_the_next_is_another() {
     assert_eq!(client.until("hello", |_| true)["game"], "lake");
     client.until("events", |events| events["reset"] == true);
     client.until("state", |state| state["phase"] == "waiting");
-    second
-        .controls
-        .visit(|all| assert_eq!(all.len(), 0, "what was asked of the first game is not done to the second"));
+    second.controls.visit(|all| assert_eq!(all.len(), 0, "what was asked of the first game is not done to the second"));
     second.close();
 }
 

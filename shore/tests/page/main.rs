@@ -26,6 +26,6 @@ fn page(show: Arc<dyn View>, token: Option<&str>, hosts: &[&str]) -> Page {
 }
 
 /// A page that looks at it.
-fn look(page: &Page) -> Client {
+fn open_viewer(page: &Page) -> Client {
     Client::connect(page.address(), "/ws", &[]).expect("all may look")
 }

@@ -16,7 +16,7 @@ pub(crate) fn show() -> Arc<dyn View> {
 #[test]
 fn a_replay_says_hello_tells_all_events_and_stands_at_the_beginning() {
     let page = page(show(), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     let hello = client.text();
     assert_eq!((&hello["kind"], &hello["protocol"]), (&json!("hello"), &json!(1)));
     assert_eq!((&hello["mode"], &hello["game"]), (&json!("replay"), &json!("made_up")));
@@ -37,7 +37,7 @@ fn a_replay_says_hello_tells_all_events_and_stands_at_the_beginning() {
 #[test]
 fn seeking_brings_the_past_and_the_moment() {
     let page = page(show(), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     client.frame();
     client.ack();
     client.send(r#"{"do":"seek","t_s":100.04}"#);
@@ -65,7 +65,7 @@ fn seeking_brings_the_past_and_the_moment() {
 #[test]
 fn it_plays_as_fast_as_asked_and_to_the_end() {
     let page = page(show(), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     client.send(r#"{"do":"speed","factor":50}"#);
     client.until("playback", |playback| playback["speed"] == 50.0);
     client.send(r#"{"do":"seek","t_s":100}"#);
@@ -81,7 +81,7 @@ fn it_plays_as_fast_as_asked_and_to_the_end() {
 #[test]
 fn each_page_has_a_player_of_its_own() {
     let page = page(show(), None, &[]);
-    let (mut one, mut other) = (look(&page), look(&page));
+    let (mut one, mut other) = (open_viewer(&page), look(&page));
     one.frame();
     one.ack();
     other.frame();
@@ -94,7 +94,7 @@ fn each_page_has_a_player_of_its_own() {
 #[test]
 fn a_selected_boat_tells_what_its_helm_thought_and_where_it_believed_to_be() {
     let page = page(show(), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     client.send(r#"{"do":"seek","t_s":10}"#);
     client.send(r#"{"do":"select","vehicle":"red_one","functions":true}"#);
     let helm = client.until("helm", |helm| helm["report"]["mode"] == "sailing:100");
@@ -113,7 +113,7 @@ fn a_selected_boat_tells_what_its_helm_thought_and_where_it_believed_to_be() {
 #[test]
 fn what_a_recording_cannot_do_is_refused() {
     let page = page(show(), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     for (ask, what) in [
         (r#"{"do":"control","what":"e_stop"}"#, "control"),
         (r#"{"do":"drive","vehicle":"blue_one","course_deg":0,"speed_m_s":1}"#, "drive"),
@@ -127,7 +127,7 @@ fn what_a_recording_cannot_do_is_refused() {
 #[test]
 fn a_recording_without_frames_is_shown_too() {
     let page = page(Arc::new(ReplayView::new(Arc::new(MadeUp::of(0)), None)), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     for ask in [r#"{"do":"control","what":"resume"}"#, r#"{"do":"step","by":1}"#, r#"{"do":"seek","t_s":9}"#] {
         client.send(ask);
     }

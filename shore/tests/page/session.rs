@@ -51,7 +51,7 @@ fn frames(messages: &[Message]) -> Vec<u64> {
 #[test]
 fn a_page_that_draws_nothing_gets_two_frames() {
     let page = page(show(), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     client.send(r#"{"do":"control","what":"resume"}"#);
     let messages: Vec<Message> = std::iter::from_fn(|| Some(client.next())).take(20).collect();
     assert_eq!(frames(&messages).len(), 2, "while it plays for seconds");
@@ -67,7 +67,7 @@ fn a_page_that_draws_nothing_gets_two_frames() {
 fn a_page_is_heard_while_it_takes_nothing() {
     let (asked, asks) = channel();
     let page = page(Arc::new(Talker(asked, Changes::default())), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     // The lines between are full when the page has read nothing for a while.
     assert!(asks.recv_timeout(Duration::from_secs(1)).is_err());
     for ask in [r#"{"do":"control","what":"halt"}"#, r#"{"do":"control","what":"e_stop"}"#] {
@@ -82,7 +82,7 @@ fn a_page_is_heard_while_it_takes_nothing() {
 #[test]
 fn another_show_begins_with_a_hello() {
     let page = page(show(), None, &[]);
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     client.frame();
     page.show(show());
     client.until("hello", |_| true);
@@ -101,7 +101,7 @@ fn a_page_opened_before_there_is_a_show_waits_for_it() {
         stop: std::sync::Arc::default(),
     };
     let page = shore::page::Page::open(settings).expect("a free port");
-    let mut client = look(&page);
+    let mut client = open_viewer(&page);
     client.ack();
     assert_eq!(client.rest(), []);
     page.show(show());
@@ -111,7 +111,7 @@ fn a_page_opened_before_there_is_a_show_waits_for_it() {
 #[test]
 fn garbage_is_refused_and_survived() {
     let page = page(show(), None, &[]);
-    let (mut rude, mut polite) = (look(&page), look(&page));
+    let (mut rude, mut polite) = (open_viewer(&page), look(&page));
     for garbage in [
         Message::text("ahoy"),
         Message::text(r#"{"do":"fly"}"#),

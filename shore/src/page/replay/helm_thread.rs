@@ -1,4 +1,4 @@
-//! The helms where replays ask what helms thought: a thread of its own, since the answer may take a while.
+//! A thread that recomputes helm reports for replays, since that may take a while.
 
 use super::source::Helms;
 use crate::page::rose::{HelmAnswer, helm_text};
