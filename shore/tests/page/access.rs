@@ -2,7 +2,7 @@
 
 use super::client::{Client, get, now};
 use super::replay::show;
-use super::{look, page};
+use super::{open_viewer, page};
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;

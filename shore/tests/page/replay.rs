@@ -1,7 +1,7 @@
 //! A recording, played by pages.
 
 use super::source::{MadeUp, Rememberer, seq_of};
-use super::{client, look, page};
+use super::{client, open_viewer, page};
 use proptest::prelude::*;
 use serde_json::json;
 use shore::page::replay::ReplayView;
@@ -81,7 +81,7 @@ fn it_plays_as_fast_as_asked_and_to_the_end() {
 #[test]
 fn each_page_has_a_player_of_its_own() {
     let page = page(show(), None, &[]);
-    let (mut one, mut other) = (open_viewer(&page), look(&page));
+    let (mut one, mut other) = (open_viewer(&page), open_viewer(&page));
     one.frame();
     one.ack();
     other.frame();

@@ -2,7 +2,7 @@
 
 use super::replay::show;
 use super::source::seq_of;
-use super::{look, page};
+use super::{open_viewer, page};
 use shore::page::{Access, Budget, Changes, Mode, Outgoing, PageRequest, View, Viewer};
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
@@ -111,7 +111,7 @@ fn a_page_opened_before_there_is_a_show_waits_for_it() {
 #[test]
 fn garbage_is_refused_and_survived() {
     let page = page(show(), None, &[]);
-    let (mut rude, mut polite) = (open_viewer(&page), look(&page));
+    let (mut rude, mut polite) = (open_viewer(&page), open_viewer(&page));
     for garbage in [
         Message::text("ahoy"),
         Message::text(r#"{"do":"fly"}"#),
