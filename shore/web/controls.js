@@ -50,8 +50,8 @@ export class Controls {
     select.addEventListener('keydown', () => { byHand = false; });
     select.addEventListener('change', () => {
       this.setSpeed(select.value);
-      // Arrow keys are for the wheel and the chart again; who chooses by keys goes on choosing.
-      if (byHand) byId(document.body.classList.contains('driving') ? 'wheel' : 'sheet').focus({ preventScroll: true });
+      // Arrow keys are for steering and the chart again; who chooses by keys goes on choosing.
+      if (byHand) byId(document.body.classList.contains('driving') ? 'steering' : 'sheet').focus({ preventScroll: true });
     });
   }
 
@@ -151,7 +151,7 @@ export class Controls {
     byId('rights').title = WATCHING;
   }
 
-  /** Takes what the events say of halts and E-stops; the newest word counts. */
+  /** Takes what the events say of halts and E-stops; the newest event counts. */
   tellEvents(events, reset) {
     if (reset) this.eStopped = false;
     for (const { event } of events) {

@@ -28,7 +28,7 @@ export class Details {
     this.drive = this.button('drive', 'Drive', 'Steer this boat yourself (d)', on.drive);
     this.close = this.button('deselect', 'Close', 'Select no boat (Escape)', on.close);
     const buttons = make('div', 'row', '', this.follow, this.drive, this.close);
-    this.wheelNote = make('p', 'note');
+    this.steeringNote = make('p', 'note');
     this.matter = make('p', 'matter');
     this.facts = make('dl', 'facts');
     this.thrust = make('div', 'thrust', '', this.bar('Port'), this.bar('Starboard'));
@@ -50,7 +50,7 @@ export class Details {
     this.helmBox = make('div', '', '', make('h3', '', 'Why it steers so'), this.chooser, this.canvas, this.key,
       this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
     this.gatewayBox = make('div', '', '', make('h3', '', 'Gateway'), this.gateway);
-    this.body = make('div', 'boat', '', make('div', 'boat-head', '', this.name, this.about), buttons, this.wheelNote, this.matter,
+    this.body = make('div', 'boat', '', make('div', 'boat-head', '', this.name, this.about), buttons, this.steeringNote, this.matter,
       this.facts, this.gatewayBox, this.reason, this.helmBox, make('h3', '', 'Thrust'), this.thrust);
     this.pane.replaceChildren(this.none, this.body);
   }
@@ -87,9 +87,9 @@ export class Details {
     this.drive.disabled = !game.hello.rights;
     this.drive.title = game.hello.rights ? 'Steer this boat yourself (d)' : 'This page may only watch.';
     this.drive.setAttribute('aria-pressed', String(driver === 'you'));
-    const wheel = { you: 'You have the wheel. Escape lets go.', other: 'Somebody else has the wheel.' }[driver] ?? '';
-    write(this.wheelNote, wheel);
-    show(this.wheelNote, wheel !== '');
+    const steering = { you: 'You steer this boat. Escape stops steering.', other: 'Somebody else steers this boat.' }[driver] ?? '';
+    write(this.steeringNote, steering);
+    show(this.steeringNote, steering !== '');
     this.tellFacts(game, index);
     this.tellThrust(game, index);
     this.tellGateway(game.statuses.get(vehicle.name));

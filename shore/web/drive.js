@@ -1,16 +1,16 @@
-// The wheel: steers a boat by keys, by a point dragged on a rose, or by a gamepad's stick.
+// Steering: drives a boat by keys, by a point dragged on a rose, or by a gamepad's stick.
 
 import { notice } from './status.js';
 import { palette } from './palette.js';
 import { Stick } from './stick.js';
 import { bearing, number, plain, show, wrapDeg, write } from './words.js';
 
-/** The boat hears from us twice in a simulated second: its helm heeds a word for 1.5 of them. */
+/** A set-point is sent twice in a simulated second: its helm uses a set-point for 1.5 of them. */
 const SEND_SIMULATED_MS = 500;
 /** No more and no less often than this, whatever the speed of the game, ms. */
 const SEND_MIN_MS = 20;
 const SEND_MAX_MS = 200;
-/** In a game that may go faster than this a word is old before the next can come, times real time. */
+/** In a game that may go faster than this a set-point expires before the next can arrive, times real time. */
 const STEERED_MAX = 50;
 const TURN_DEG = 5;
 const SPEED_STEP_M_S = 0.25;
@@ -24,10 +24,10 @@ const KEYS = {
 export class Drive {
   constructor(send) {
     this.send = send;
-    this.place = document.getElementById('wheel-place');
-    this.canvas = document.getElementById('wheel');
-    this.text = document.getElementById('wheel-text');
-    this.note = document.getElementById('wheel-note');
+    this.place = document.getElementById('steering-place');
+    this.canvas = document.getElementById('steering');
+    this.text = document.getElementById('steering-text');
+    this.note = document.getElementById('steering-note');
     this.context = this.canvas.getContext('2d');
     this.vehicle = null;
     this.timer = 0;
@@ -49,7 +49,7 @@ export class Drive {
     return this.vehicle !== null;
   }
 
-  /** Takes the wheel of a boat, at its heading and at rest. */
+  /** Begins to steer a boat, at its heading and at rest. */
   take(vehicle, heading_deg) {
     this.letGo();
     this.vehicle = vehicle.name;
@@ -73,13 +73,13 @@ export class Drive {
     document.body.classList.remove('driving');
   }
 
-  /** Takes word of who has the wheel of a boat. */
+  /** The server says who steers a boat. */
   hear({ vehicle, by }) {
     if (vehicle !== this.vehicle) return;
     if (by === 'you') this.had = true;
     else if (by === 'other' || this.had) {
       this.letGo();
-      notice(by === 'other' ? `Somebody else has the wheel of ${plain(vehicle)}.` : `You no longer have the wheel of ${plain(vehicle)}.`);
+      notice(by === 'other' ? `Somebody else steers ${plain(vehicle)}.` : `You no longer steer ${plain(vehicle)}.`);
     }
   }
 

@@ -16,7 +16,7 @@ export const MARKS = [
   [TAGGED, 'T', 'tagged'],
   [DISABLED, 'X', 'out of action'],
   [OUTSIDE, 'O', 'outside the field'],
-  [AGENT_LOST, 'M', 'has lost its mind'],
+  [AGENT_LOST, 'M', 'agent lost'],
   [QUARANTINED, 'Q', 'quarantined'],
   [NAV_LOST, 'N', 'nobody knows where it is'],
 ];

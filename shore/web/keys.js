@@ -15,7 +15,7 @@ const HELP = [
     ['o', 'follow the boat'], ['Escape', 'close, let go, or select no boat'], ['1 to 4', 'boats, details, events, game']]],
   ['The game', [['space', 'pause or go on'], ['s', 'pause, and one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or let them go on'],
     ['e', 'E-stop, or release it; Enter says yes']]],
-  ['Driving', [['d', 'take the wheel of a boat that lets you'], ['arrows, w a s d', 'course and speed'], ['Escape', 'let go'],
+  ['Driving', [['d', 'steer a boat that can be steered'], ['arrows, w a s d', 'course and speed'], ['Escape', 'let go'],
     ['gamepad', PAD]]],
   ['A replay', [['n  p', 'next event, event before'], [KINDS.map(([, key]) => key).join('  '),
     `next of the ${KINDS.map(([name]) => name.toLowerCase()).join(', ')}; with Shift before`],

@@ -15,7 +15,7 @@
 //   view                          { x, y, scale }: middle, and pixels to a metre
 //
 // Elements with an id that stays: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
-// rose-function, behaviours, variables, gateway, helm-reason, follow, drive, deselect, wheel, pause, step, step-back, speed, halt,
+// rose-function, behaviours, variables, gateway, helm-reason, follow, drive, deselect, steering, pause, step, step-back, speed, halt,
 // halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop, stop-confirm, stop-cancel, timeline, event-kind, event-back,
 // event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game, zoom-in, zoom-out, fit, show-names, show-trails,
 // show-circles, show-waves, help, help-box, sheet.
@@ -150,7 +150,7 @@ class Page {
         this.drive.hear(message);
         break;
       case 'refused':
-        // Whoever is refused the wheel does not have it.
+        // A page that is refused does not steer.
         if (message.what === 'drive') this.drive.letGo();
         notice(`Not done: ${plain(message.what)}. ${message.reason}`);
         break;
@@ -267,7 +267,7 @@ class Page {
     const { game, drive } = this;
     const index = game.indexOf.get(game.selected);
     if (drive.driving) drive.letGo();
-    else if (this.driver === 'other') notice(`Somebody else has the wheel of ${plain(game.selected)}.`);
+    else if (this.driver === 'other') notice(`Somebody else steers ${plain(game.selected)}.`);
     else if (index !== undefined && game.vehicles[index].teleop && game.mode === 'live' && game.hello.rights) {
       drive.take(game.vehicles[index], (game.heading[index] * 180) / Math.PI);
     }

@@ -22,7 +22,7 @@ export class Pointer {
 
   /** Buttons upon the chart look after themselves. */
   elsewhere(event) {
-    return event.target.closest('button, #wheel-place') !== null;
+    return event.target.closest('button, #steering-place') !== null;
   }
 
   down(event) {

@@ -15,7 +15,7 @@ export class Status {
     this.pane = byId('pane-game');
     this.facts = make('dl', 'facts');
     this.drawn = make('dl', 'facts');
-    this.drawnBox = make('details', '', '', make('summary', '', 'Drawn by lot'), this.drawn);
+    this.drawnBox = make('details', '', '', make('summary', '', 'Randomised'), this.drawn);
     this.rights = make('p', 'note', 'This page may only watch. Open it at the address with a token to act.');
     this.trouble = make('p', 'matter');
     this.pane.prepend(this.rights, this.trouble, this.facts, this.drawnBox);
@@ -73,7 +73,7 @@ export class Status {
     const { state } = game;
     let words = '';
     const waited = [...(state?.gateways ?? []).map((name) => `the gateway of ${plain(name)}`)];
-    if (state?.minds && state.phase === 'waiting') waited.unshift(...this.mindWords(state.minds));
+    if (state?.minds && state.phase === 'waiting') waited.unshift(...this.agentWords(state.minds));
     if (state?.phase === 'waiting') words = waited.length > 0 ? `Waiting for ${waited.join(', ')}` : 'Waiting to begin';
     if (state?.phase === 'gone') words = 'The game is gone. Waiting for another.';
     const over = byId('over');
@@ -81,9 +81,9 @@ export class Status {
     show(over, words !== '');
   }
 
-  mindWords(minds) {
-    if (Array.isArray(minds)) return minds.map((name) => `the mind of ${plain(name)}`);
-    return Number.isFinite(minds) && minds > 0 ? [`${minds} minds`] : [];
+  agentWords(minds) {
+    if (Array.isArray(minds)) return minds.map((name) => `the agent of ${plain(name)}`);
+    return Number.isFinite(minds) && minds > 0 ? [`${minds} agents`] : [];
   }
 
   tellPane(game) {
@@ -114,7 +114,7 @@ export class Status {
     if (state.pace !== undefined && state.pace !== null) pairs.push(['Pace', plain(String(state.pace))]);
     if (Number.isFinite(state.rate)) pairs.push(['Achieved', `${number(state.rate, 1)}× real time`]);
     if (Number.isFinite(state.frames_hz)) pairs.push(['Frames', `${number(state.frames_hz, 0)} a second`]);
-    const lists = [['Minds waited for', state.minds], ['Gateways waited for', state.gateways]];
+    const lists = [['Agents waited for', state.minds], ['Gateways waited for', state.gateways]];
     for (const [name, list] of lists) {
       if (Array.isArray(list) ? list.length > 0 : list) pairs.push([name, Array.isArray(list) ? list.map(plain).join(', ') : String(list)]);
     }

@@ -1,4 +1,4 @@
-// A boat that people steer: two pages look at one game, and one of them has the wheel.
+// A boat that people steer: two pages show one game, and one of them steers.
 
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -23,22 +23,22 @@ const goes = (sight, course_deg, speed_m_s) => sight.until(`${BOAT} goes ${cours
   }, [BOAT, course_deg, speed_m_s, OFF_DEG, OFF_M_S]);
 
 /** Course and speed that are ordered, as the page says them. */
-const ordered = async (sight) => (await sight.text('#wheel-text')).match(/(\d+)°\s+([\d.]+)/).slice(1).map(Number);
+const ordered = async (sight) => (await sight.text('#steering-text')).match(/(\d+)°\s+([\d.]+)/).slice(1).map(Number);
 
 /** Waits until these are ordered. */
 const orders = (sight, course_deg, speed_m_s) => sight.until(`${course_deg}° at ${speed_m_s} m/s are ordered`, ([course_deg, speed_m_s]) => {
-  const [, deg, m_s] = document.getElementById('wheel-text').textContent.match(/(\d+)°\s+([\d.]+)/).map(Number);
+  const [, deg, m_s] = document.getElementById('steering-text').textContent.match(/(\d+)°\s+([\d.]+)/).map(Number);
   return deg === course_deg && m_s === speed_m_s;
 }, [course_deg, speed_m_s]);
 
 /** Waits until the boat stands. */
 const stands = (sight) => sight.until(`${BOAT} stands`, (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s < 0.2, BOAT);
 
-/** Waits until nobody has its wheel, as the server says. */
-const isFree = (sight) => sight.until('the wheel is free', () => squall.driving === null
+/** Waits until nobody steers it, as the server says. */
+const isFree = (sight) => sight.until('nobody steers it', () => squall.driving === null
   && document.querySelector('#pane-boat .note').hidden);
 
-/** Takes the wheel of the boat. */
+/** Begins to steer the boat. */
 async function take(sight) {
   await sight.press(`[data-vehicle=${BOAT}]`);
   await sight.press('#drive');
@@ -61,11 +61,11 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   });
   await theirs.press(`[data-vehicle=${BOAT}]`);
   await take(mine);
-  await mine.until('the wheel is ours', () => /You have the wheel/.test(document.getElementById('pane-boat').textContent));
-  await theirs.until('they are told', () => /Somebody else has the wheel/.test(document.getElementById('pane-boat').textContent));
+  await mine.until('we steer', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
+  await theirs.until('they are told', () => /Somebody else steers/.test(document.getElementById('pane-boat').textContent));
   const start = await mine.get((name) => squall.frame.boats.find((boat) => boat.name === name), BOAT);
   const course_deg = 90;
-  const begun_deg = await mine.get(() => Number(document.getElementById('wheel-text').textContent.match(/\d+/)[0]));
+  const begun_deg = await mine.get(() => Number(document.getElementById('steering-text').textContent.match(/\d+/)[0]));
   const turn = Math.round((((course_deg - begun_deg + 540) % 360) - 180) / 5);
   await mine.keys(...Array(Math.abs(turn)).fill(turn < 0 ? 'a' : 'd'), 'w', 'w', 'w', 'w', 'w', 'w');
   const [ordered_deg, ordered_m_s] = await ordered(mine);
@@ -75,18 +75,18 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   await mine.until('it gets on eastward', ([name, x]) => squall.frame.boats.find((boat) => boat.name === name).x > x + 3, [BOAT, x]);
   t.diagnostic(`from ${start.x.toFixed(1)}, ${start.y.toFixed(1)} to ${x.toFixed(1)}, ${y.toFixed(1)}; ordered ${ordered_deg}° at ${ordered_m_s} m/s, went ${JSON.stringify(went)}`);
   await theirs.press('#drive');
-  await theirs.until('they are refused the wheel', () => squall.driving === null
+  await theirs.until('they are refused', () => squall.driving === null
     && /Somebody else/.test(document.getElementById('notices').textContent));
   assert.equal(await mine.get(() => squall.driving), BOAT, 'and it stays ours');
-  await mine.page.focus('#wheel');
+  await mine.page.focus('#steering');
   await mine.keys(...Array(6).fill('ArrowDown'));
   await stands(mine);
   await mine.keys('Escape');
   assert.equal(await mine.get(() => squall.driving), null);
-  await theirs.until('the wheel is free', () => !/Somebody else has the wheel/.test(document.querySelector('.note:not([hidden])')?.textContent ?? ''));
+  await theirs.until('nobody steers it', () => !/Somebody else steers/.test(document.querySelector('.note:not([hidden])')?.textContent ?? ''));
   await theirs.press('#drive');
-  await theirs.until('it is theirs', () => /You have the wheel/.test(document.getElementById('pane-boat').textContent));
-  await mine.until('and we are told', () => /Somebody else has the wheel/.test(document.getElementById('pane-boat').textContent));
+  await theirs.until('it is theirs', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
+  await mine.until('and we are told', () => /Somebody else steers/.test(document.getElementById('pane-boat').textContent));
 });
 
 const person = (t, ...words) => new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--no-record', '--listen', '127.0.0.1:0', ...words);
@@ -154,7 +154,7 @@ test('whoever looks elsewhere lets go, and the boat stops', async (t) => {
   };
   for (const [why, go] of Object.entries(away)) {
     await take(sight);
-    await sight.until('it has the wheel', () => /You have the wheel/.test(document.getElementById('pane-boat').textContent));
+    await sight.until('it steers', () => /You steer this boat/.test(document.getElementById('pane-boat').textContent));
     await sight.keys(...Array(8).fill('w'));
     await sight.until('it goes', (name) => squall.frame.boats.find((boat) => boat.name === name).speed_m_s > 0.8, BOAT);
     await sight.get(go);
@@ -205,8 +205,8 @@ test('a fast game is steered without gaps, and one as fast as can be is said to 
   const isSteered = ({ gap_s, went_m_s }) => gap_s < HEEDED_S && Math.abs(went_m_s - speed_m_s) < OFF_M_S / 2;
   while (seen.length < 10 && !seen.some(isSteered)) seen.push(await stretch());
   assert(seen.some(isSteered), `the page says where to every so many s, and the boat goes: ${JSON.stringify(seen)}`);
-  assert(!(await sight.page.isVisible('#wheel-note')));
+  assert(!(await sight.page.isVisible('#steering-note')));
   await sight.page.selectOption('#speed', 'max');
-  await sight.until('the page says that nobody can', () => /Too fast/.test(document.getElementById('wheel-note').textContent)
-    && !document.getElementById('wheel-note').hidden);
+  await sight.until('the page says that nobody can', () => /Too fast/.test(document.getElementById('steering-note').textContent)
+    && !document.getElementById('steering-note').hidden);
 });
