@@ -1,4 +1,4 @@
-//! `squall agent`: minds boats.
+//! `squall agent`: decides for boats in a game.
 
 use crate::net_args::LeafArgs;
 use crate::screen;
@@ -14,12 +14,12 @@ use std::time::Duration;
 /// Which boats, and where.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The vehicles to mind, by name
+    /// The vehicles to decide for, by name
     #[arg(long, required = true, num_args = 1.., value_name = "NAME")]
     vehicle: Vec<String>,
     #[command(flatten)]
     leaf: LeafArgs,
-    /// How long to look for the sim and to wait for a free seat, s
+    /// How long to look for the sim and to wait until the vehicles are free, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     wait_s: f64,
     /// After this long without a picture the sim counts as dead, s (5 s where it dies and the network does not)
@@ -28,11 +28,11 @@ pub(crate) struct Args {
     /// Plays by this strategy file in place of the one that the sim's scenario names
     #[arg(long, value_name = "FILE")]
     strategy: Option<PathBuf>,
-    /// In lockstep: how long to wait at every decision for the proposal of a policy outside, s, where the strategy heeds
+    /// In lockstep: how long to wait at every decision for the proposal of a policy outside, s, where the strategy uses
     /// one (at most half of the game's patience_s)
     #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = seconds)]
     policy_wait_s: f64,
-    /// Says nothing that is well, and stops when standard input ends
+    /// Prints nothing that is well, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -43,10 +43,7 @@ fn load_strategy(path: &Path) -> Result<Strategy> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let stop = stop::on_ctrl_c()?;
-    if args.for_parent {
-        stop::with_parent(&stop);
-    }
+    let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let names = args.vehicle.join(", ");
     let strategy = args.strategy.as_deref().map(load_strategy).transpose()?;
     let settings = Settings {

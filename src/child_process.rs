@@ -1,34 +1,57 @@
 //! The processes that `run` starts: none of them outlives it.
 
 use anyhow::{Context, Result};
-use std::io::Write;
+use bus::clock;
+use std::fmt::Display;
+use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::time::Duration;
+
+/// This program with other arguments, to be started as a child.
+pub(crate) fn squall(args: &[&str]) -> Result<Command> {
+    let program = std::env::current_exe().context("cannot find this program's own file")?;
+    let mut command = Command::new(program);
+    if std::env::var_os("ZENOH_RUNTIME").is_none() {
+        command.env("ZENOH_RUNTIME", bus::RUNTIME);
+    }
+    command.args(args).arg("--for-parent");
+    Ok(command)
+}
+
+/// Adds an option, if it has a value.
+pub(crate) fn option(command: &mut Command, name: &str, value: Option<impl Display>) {
+    if let Some(value) = value {
+        command.args([name, &value.to_string()]);
+    }
+}
 
 /// One child. It stops when its standard input ends, which the death of this process sees to.
 pub(crate) struct ChildProcess {
     name: String,
     child: Child,
-    life_line: Option<ChildStdin>,
+    stdin: Option<ChildStdin>,
 }
 
 impl ChildProcess {
-    /// Starts this program with other arguments; its output goes where `stdout` says.
-    pub(crate) fn start(name: &str, args: &[String], stdout: Stdio) -> Result<ChildProcess> {
-        let program = std::env::current_exe().context("cannot find this program's own file")?;
-        let mut command = Command::new(program);
-        if std::env::var_os("ZENOH_RUNTIME").is_none() {
-            command.env("ZENOH_RUNTIME", bus::RUNTIME);
-        }
-        command.args(args).stdin(Stdio::piped()).stdout(stdout);
-        let mut child = command.spawn().with_context(|| format!("cannot start {name}"))?;
-        let life_line = child.stdin.take();
-        Ok(ChildProcess { name: name.to_owned(), child, life_line })
+    /// Starts a command; its output goes where `stdout` says.
+    pub(crate) fn start(name: &str, mut command: Command, stdout: Stdio) -> Result<ChildProcess> {
+        let mut child =
+            command.stdin(Stdio::piped()).stdout(stdout).spawn().with_context(|| format!("cannot start {name}"))?;
+        let stdin = child.stdin.take();
+        Ok(ChildProcess { name: name.to_owned(), child, stdin })
     }
 
-    /// The child's output, once.
-    pub(crate) fn output(&mut self) -> Option<std::process::ChildStdout> {
-        self.child.stdout.take()
+    /// What `parse` makes of the lines of the child's piped output, once. It ends with the child.
+    pub(crate) fn lines<T: Send + 'static>(&mut self, parse: fn(&str) -> Option<T>) -> Result<Receiver<T>> {
+        let output = self.child.stdout.take().with_context(|| format!("{} has no output", self.name))?;
+        let (sender, receiver) = sync_channel(1024);
+        std::thread::spawn(move || {
+            let lines = BufReader::new(output).lines().map_while(std::result::Result::ok);
+            // The child must be able to print more, whether or not somebody still listens.
+            lines.filter_map(|line| parse(&line)).for_each(|item| sender.send(item).unwrap_or_default());
+        });
+        Ok(receiver)
     }
 
     /// Whether it has ended, and how badly: `Some(None)` is well.
@@ -37,19 +60,19 @@ impl ChildProcess {
         Some((!status.success()).then(|| format!("{} ended with {status}", self.name)))
     }
 
-    /// Tells it a line.
+    /// Sends it a line.
     ///
     /// # Errors
     /// If it does not listen any more.
-    pub(crate) fn tell(&mut self, line: &str) -> Result<()> {
+    pub(crate) fn send(&mut self, line: &str) -> Result<()> {
         let name = &self.name;
-        let mut said = self.life_line.as_ref().with_context(|| format!("{name} was asked to stop"))?;
-        writeln!(said, "{line}").with_context(|| format!("{name} does not listen"))
+        let mut stdin = self.stdin.as_ref().with_context(|| format!("{name} was asked to stop"))?;
+        writeln!(stdin, "{line}").with_context(|| format!("{name} does not listen"))
     }
 
     /// Asks it to stop.
     pub(crate) fn ask_to_stop(&mut self) {
-        self.life_line = None;
+        self.stdin = None;
     }
 }
 
@@ -61,24 +84,17 @@ impl Drop for ChildProcess {
     }
 }
 
-/// Waits until all have ended, but no longer than `limit`; says who ended badly.
-#[expect(clippy::disallowed_methods, reason = "children are waited for with a limit")]
-pub(crate) fn wait_for_all(child_process: &mut [ChildProcess], limit: Duration) -> Vec<String> {
-    let start = Instant::now();
+/// Waits until all have ended, but no longer than `limit`; gives who ended badly.
+pub(crate) fn wait_for_all(children: &mut [ChildProcess], limit: Duration) -> Vec<String> {
+    let start = clock::now();
     let mut badly = Vec::new();
-    for child in child_process {
-        loop {
-            match child.ended() {
-                Some(outcome) => {
-                    badly.extend(outcome);
-                    break;
-                }
-                None if start.elapsed() >= limit => {
-                    badly.push(format!("{} did not end and was killed", child.name));
-                    break;
-                }
-                None => std::thread::sleep(Duration::from_millis(5)),
-            }
+    for child in children {
+        while child.ended().is_none() && clock::since(start) < limit {
+            clock::rest(Duration::from_millis(5));
+        }
+        match child.ended() {
+            Some(outcome) => badly.extend(outcome),
+            None => badly.push(format!("{} did not end and was killed", child.name)),
         }
     }
     badly

@@ -1,13 +1,12 @@
 //! The hardware loop, closed on one machine: water of its own, an emulated boat and a gateway for every real one.
 
-use crate::child_process::{self, ChildProcess};
+use crate::child_process::{self, ChildProcess, option};
 use crate::net_args::unique_game_name;
 use crate::override_args;
 use anyhow::{Context, Result, anyhow, bail};
 use game::Scenario;
 use game::scenario::Overrides;
 use sim::node::Pace;
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
@@ -38,7 +37,7 @@ pub(crate) struct Match<'a> {
     pub(crate) endpoint: &'a str,
 }
 
-/// How long an emulator may take to say where it listens.
+/// How long an emulator may take to report where it listens.
 const WINDOW: Duration = Duration::from_secs(20);
 /// How long everybody may take to end.
 const LEAVE: Duration = Duration::from_secs(5);
@@ -79,8 +78,7 @@ impl LoopArgs {
         let water = start_water(game, &names, place)?;
         let (mut emulators, mut gateways) = (Vec::new(), Vec::new());
         for vehicle in names {
-            let mut emulator = start_emulator(vehicle, declination_deg, place)?;
-            let link = reach(&mut emulator).with_context(|| format!("the emulator of {vehicle}"))?;
+            let (emulator, link) = start_emulator(vehicle, declination_deg, place)?;
             emulators.push(emulator);
             gateways.push(self.start_gateway(vehicle, &link, game)?);
         }
@@ -89,15 +87,15 @@ impl LoopArgs {
     }
 
     fn start_gateway(&self, name: &str, link: &str, game: &Match<'_>) -> Result<ChildProcess> {
-        let mut words = words(&["gateway", "surveyor", "--vehicle", name, "--link", link, "--arm", "--at-game-pace"]);
-        words.extend(self::words(&["--game", game.game, "--connect", game.endpoint, "--for-parent"]));
-        let option = |name: &str, path: PathBuf| [name.to_owned(), path.display().to_string()];
-        words.extend(self.gateway.clone().into_iter().flat_map(|path| option("--config", path)));
+        let mut command =
+            child_process::squall(&["gateway", "surveyor", "--game", game.game, "--connect", game.endpoint])?;
+        command.args(["--vehicle", name, "--link", link, "--arm", "--at-game-pace"]);
+        option(&mut command, "--config", self.gateway.as_ref().map(|path| path.display()));
         match &self.record_gateways {
-            Some(folder) => words.extend(option("--record", folder.join(format!("{name}.mcap")))),
-            None => words.push("--no-record".to_owned()),
-        }
-        ChildProcess::start(&format!("the gateway of {name}"), &words, Stdio::inherit())
+            Some(folder) => command.arg("--record").arg(folder.join(format!("{name}.mcap"))),
+            None => command.arg("--no-record"),
+        };
+        ChildProcess::start(&format!("the gateway of {name}"), command, Stdio::inherit())
     }
 }
 
@@ -116,37 +114,27 @@ impl HardwareLoop {
     }
 }
 
-fn words(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
-}
-
 fn start_water(game: &Match<'_>, names: &[&str], (water, endpoint): (&str, &str)) -> Result<ChildProcess> {
-    let (file, pace, seed) = (game.file.display().to_string(), game.pace.to_string(), game.seed.to_string());
-    let mut words = words(&["sim", &file, "--pace", &pace, "--seed", &seed, "--game", water, "--listen", endpoint]);
-    words.extend(override_args::words(game.overrides));
-    words.push("--for-parent".to_owned());
-    words.push("--afloat".to_owned());
-    words.extend(names.iter().map(|name| (*name).to_owned()));
-    ChildProcess::start("the water", &words, Stdio::null())
+    let mut command = child_process::squall(&["sim", "--game", water, "--listen", endpoint])?;
+    command.arg(game.file).args(override_args::words(game.overrides));
+    option(&mut command, "--pace", Some(game.pace));
+    option(&mut command, "--seed", Some(game.seed));
+    command.arg("--afloat").args(names);
+    ChildProcess::start("the water", command, Stdio::null())
 }
 
-fn start_emulator(name: &str, declination_deg: Option<f64>, (water, endpoint): (&str, &str)) -> Result<ChildProcess> {
-    let mut words = words(&["gateway", "emulate", "--vehicle", name, "--listen", "tcp://127.0.0.1:0"]);
-    words.extend(self::words(&["--game", water, "--connect", endpoint, "--for-parent"]));
-    words.extend(declination_deg.into_iter().flat_map(|deg| ["--declination-deg".to_owned(), deg.to_string()]));
-    ChildProcess::start(&format!("the emulator of {name}"), &words, Stdio::piped())
-}
-
-/// Where an emulator says that it can be reached.
-fn reach(emulator: &mut ChildProcess) -> Result<String> {
-    let output = emulator.output().context("it has no output")?;
-    let (sender, receiver) = std::sync::mpsc::sync_channel(1);
-    std::thread::spawn(move || {
-        let mut lines = BufReader::new(output).lines().map_while(std::result::Result::ok);
-        let first = lines.find_map(|line| line.strip_prefix("back seat at ").map(str::to_owned));
-        first.into_iter().for_each(|reach| drop(sender.send(reach)));
-        // It must be able to say more, whoever listens.
-        lines.for_each(drop);
-    });
-    receiver.recv_timeout(WINDOW).map_err(|_| anyhow!("it does not say where it listens"))
+/// Starts an emulator; gives it and the address of its link.
+fn start_emulator(
+    name: &str,
+    declination_deg: Option<f64>,
+    (water, endpoint): (&str, &str),
+) -> Result<(ChildProcess, String)> {
+    let listen = "tcp://127.0.0.1:0";
+    let mut command = child_process::squall(&["gateway", "emulate", "--game", water, "--connect", endpoint])?;
+    command.args(["--vehicle", name, "--listen", listen]);
+    option(&mut command, "--declination-deg", declination_deg);
+    let mut emulator = ChildProcess::start(&format!("the emulator of {name}"), command, Stdio::piped())?;
+    let addresses = emulator.lines(|line| line.strip_prefix("back seat at ").map(str::to_owned))?;
+    let address = addresses.recv_timeout(WINDOW);
+    Ok((emulator, address.map_err(|_| anyhow!("the emulator of {name} does not report where it listens"))?))
 }

@@ -8,7 +8,6 @@ use game::message::GameInfo;
 use game::topic::{self, GameName, Part};
 use std::collections::BTreeMap;
 use std::process::ExitCode;
-use std::time::Duration;
 
 /// Where to look.
 #[derive(clap::Args)]
@@ -19,8 +18,6 @@ pub(crate) struct Args {
     #[arg(long)]
     elsewhere: bool,
 }
-
-const ANSWER: Duration = Duration::from_secs(2);
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut places: Vec<Net> = Vec::new();
@@ -47,23 +44,23 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn games_at(bus: &Bus, place: &Net) -> Result<BTreeMap<GameName, String>> {
-    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
+    let keys = bus.who_is_alive(&topic::everyone_alive(), bus::ANSWER)?;
     let nodes: Vec<(GameName, Part, String)> = keys.iter().filter_map(|key| topic::parse_alive(key)).collect();
     let mut games = BTreeMap::new();
     for (game, _, sim) in nodes.iter().filter(|(_, part, _)| *part == Part::Sim) {
         let agents = nodes.iter().filter(|(other, part, _)| other == game && *part == Part::Agent);
         let mut text = format!("{}  {}\n  sim {sim}\n", game.as_str(), place.connect.join(" "));
         agents.for_each(|(_, _, agent)| text.push_str(&format!("  agent {agent}\n")));
-        let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
-        if let Some(notice) = answer.and_then(|bytes| serde_json::from_slice::<GameInfo>(&bytes).ok()) {
-            let scenario = &notice.scenario;
+        let answer = bus.ask(&topic::scenario(game), Vec::new(), bus::ANSWER)?;
+        if let Some(info) = answer.and_then(|bytes| serde_json::from_slice::<GameInfo>(&bytes).ok()) {
+            let scenario = &info.scenario;
             text.push_str(&format!(
                 "  {} seed {}, {}, {} boats, Squall {}\n",
                 scenario.name,
                 scenario.seed,
-                notice.pace,
+                info.pace,
                 scenario.vehicles.len(),
-                notice.version
+                info.version
             ));
         }
         games.insert(game.clone(), text);

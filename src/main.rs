@@ -15,7 +15,6 @@ mod observer;
 mod override_args;
 mod page_args;
 mod plot;
-mod progress_message;
 mod record_args;
 mod recording_file;
 mod replay_command;
@@ -54,9 +53,9 @@ enum Command {
     Run(run_command::Args),
     /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
     Tournament(tournament_command::Args),
-    /// Serves one game to agents that join it.
+    /// Serves one game to agents and gateways that join it.
     Sim(sim_command::Args),
-    /// Minds one or many boats in a game that a sim serves.
+    /// Decides for one or many boats in a game that a sim serves.
     Agent(agent_command::Args),
     /// Shows a running game in the terminal, or what one boat's helm thinks.
     Watch(watch_command::Args),

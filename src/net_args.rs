@@ -1,4 +1,4 @@
-//! The command line's way of saying where nodes meet.
+//! Command line arguments for where nodes meet.
 
 use anyhow::{Result, anyhow, bail};
 use bus::Net;
@@ -37,8 +37,8 @@ pub(crate) struct LeafArgs {
 }
 
 impl HubArgs {
-    /// Where to listen: the network, and an endpoint that local nodes can connect to.
-    pub(crate) fn net(&self) -> Result<(Net, String)> {
+    /// Where to listen.
+    pub(crate) fn net(&self) -> Result<Net> {
         let mut listen = self.listen.clone();
         if listen.is_empty() && self.lan {
             listen.push(format!("tcp/0.0.0.0:{}", bus::DEFAULT_PORT));
@@ -46,14 +46,12 @@ impl HubArgs {
             let port = bus::free_port(true).map_err(|e| anyhow!("no free port to listen on: {e}"))?;
             listen.push(format!("tcp/127.0.0.1:{port}"));
         }
-        let reach = listen[0].replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:");
-        let net = Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone() };
-        Ok((net, reach))
+        Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone() })
     }
 }
 
 impl LeafArgs {
-    /// Where to connect: as asked for, or where this machine's local_registry says.
+    /// Where to connect: as asked for, or where this machine's local registry says.
     pub(crate) fn net(&self) -> Result<Net> {
         let mut connect = self.connect.clone();
         if connect.is_empty() && !self.lan {

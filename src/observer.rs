@@ -9,44 +9,41 @@ use game::helm::{HelmQuestion, HelmReport};
 use game::message::GameInfo;
 use game::topic::{self, GameName, Part};
 use shore::page::is_sound;
-use std::time::Duration;
 
-const ANSWER: Duration = Duration::from_secs(2);
-
-/// Somebody who looks on.
+/// A session in a game that runs.
 pub(crate) struct Observer {
     pub(crate) bus: Bus,
     pub(crate) game: GameName,
-    pub(crate) notice: GameInfo,
+    pub(crate) info: GameInfo,
 }
 
 impl Observer {
-    /// Comes to a game that runs.
-    pub(crate) fn come(leaf: &LeafArgs) -> Result<Observer> {
+    /// Connects to a game that runs.
+    pub(crate) fn connect(leaf: &LeafArgs) -> Result<Observer> {
         let bus = Bus::leaf(&leaf.net()?).context("no game to watch")?;
         let game = match &leaf.game {
             Some(game) => game.clone(),
             None => now(game_search::only_game(&bus))?,
         };
-        let notice = now(game_search::game_info(&bus, &game))?;
-        Ok(Observer { bus, game, notice })
+        let info = now(game_search::game_info(&bus, &game))?;
+        Ok(Observer { bus, game, info })
     }
 
     /// The vehicle of this name.
     pub(crate) fn vehicle(&self, name: &str) -> Result<VehicleId> {
-        Ok(self.notice.scenario.vehicle_named(name)?)
+        Ok(self.info.scenario.vehicle_named(name)?)
     }
 
-    /// What a vehicle's helm thinks; nothing if nobody minds it now.
+    /// What a vehicle's helm thinks; nothing if it has no agent now.
     pub(crate) fn helm(&self, vehicle: VehicleId, question: HelmQuestion) -> Result<Option<HelmReport>> {
         let question = serde_json::to_vec(&question).context("a question is JSON")?;
-        let key = topic::helm(&self.game, &self.notice.scenario, vehicle);
-        let Some(answer) = self.bus.ask(&key, question, ANSWER)? else { return Ok(None) };
+        let key = topic::helm(&self.game, &self.info.scenario, vehicle);
+        let Some(answer) = self.bus.ask(&key, question, bus::ANSWER)? else { return Ok(None) };
         let report: Option<HelmReport> =
             serde_json::from_slice(&answer).context("the agent is of another version of Squall")?;
-        let name = &self.notice.scenario.vehicles[vehicle.index()].name;
-        let report = report.with_context(|| format!("the mind of {name} goes by no helm"))?;
-        if !is_sound(&report, vehicle, self.notice.scenario.vehicles.len()) {
+        let name = &self.info.scenario.vehicles[vehicle.index()].name;
+        let report = report.with_context(|| format!("the agent of {name} has no helm"))?;
+        if !is_sound(&report, vehicle, self.info.scenario.vehicles.len()) {
             bail!("the answer about the helm of {name} makes no sense");
         }
         Ok(Some(report))
@@ -54,7 +51,7 @@ impl Observer {
 
     /// Whether the game's sim is still there.
     pub(crate) fn is_on(&self) -> Result<bool> {
-        Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game, Part::Sim), ANSWER)?.is_empty())
+        Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game, Part::Sim), bus::ANSWER)?.is_empty())
     }
 }
 

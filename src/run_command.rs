@@ -1,27 +1,26 @@
 //! `squall run`: a whole game from one command.
 
-use crate::child_process::{self, ChildProcess};
+use crate::child_process::{self, ChildProcess, option};
 use crate::hardware_loop::{HardwareLoop, LoopArgs, Match};
 use crate::net_args::unique_game_name;
 use crate::override_args::{self, OverrideArgs};
 use crate::page_args::PageArgs;
-use crate::progress_message::{ProgressMessage, Teller};
 use crate::record_args::{self, RecordArgs};
 use crate::screen::{self, Screen};
 use crate::sim_command::{load, seconds, speed, write_json};
 use crate::stop;
 use anyhow::{Context, Result, anyhow, bail};
+use bus::clock;
 use game::Scenario;
 use game::event::EventCursor;
 use sim::Contest;
-use sim::node::{GameRecorder, Pace, Report, Run};
-use std::io::{BufRead, BufReader};
+use sim::node::{GameRecorder, Pace, ProgressMessage, Report, Reporter, Run};
 use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Duration;
 
 /// What to play, and how.
 #[derive(clap::Args)]
@@ -49,7 +48,7 @@ pub(crate) struct Args {
     /// Plays in this process, without a network: the same game, byte for byte
     #[arg(long, conflicts_with_all = ["pace", "agents_per_process"])]
     in_process: bool,
-    /// How many boats one agent process minds
+    /// For how many boats one agent process decides
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     agents_per_process: u16,
     #[command(flatten)]
@@ -95,7 +94,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         screen.line("the game is over; the page stays until Ctrl-C");
         // The sim has ended, so that the recording is whole.
         if let (Some(file), false) = (&file, stop::is_set_soon(&stop))
-            && let Err(error) = page.tell(&file.display().to_string())
+            && let Err(error) = page.send(&file.display().to_string())
         {
             screen::remark(&format!("{error:#}"));
         }
@@ -107,7 +106,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// The game in this process.
-#[expect(clippy::disallowed_methods, reason = "progress is shown by the clock; the game does not see it")]
 fn play_here(
     args: &Args,
     scenario: &Scenario,
@@ -117,8 +115,8 @@ fn play_here(
     const SHOW_EVERY: Duration = Duration::from_millis(100);
     let seed = args.seed.unwrap_or(scenario.seed);
     let scenario = scenario.of_seed(seed)?;
-    let mut teller = Teller::default();
-    let start = Instant::now();
+    let mut reporter = Reporter::default();
+    let start = clock::now();
     let mut shown = (start, 0.0);
     let record = |path: &Path| {
         GameRecorder::in_process(path.to_owned(), &scenario.name, env!("SQUALL_COMMIT"))
@@ -132,18 +130,18 @@ fn play_here(
             recorder.decision(contest, frame);
         }
         // The clock is slower than a decision: look at it now and then.
-        if contest.decision().is_multiple_of(64) && shown.0.elapsed() >= SHOW_EVERY {
+        if contest.decision().is_multiple_of(64) && clock::since(shown.0) >= SHOW_EVERY {
             let now_s = contest.now().as_s();
-            let rate = (now_s - shown.1) / shown.0.elapsed().as_secs_f64();
-            shown = (Instant::now(), now_s);
-            teller.progress(contest, rate, 0).iter().for_each(|telling| screen.show(telling));
+            let rate = (now_s - shown.1) / clock::since(shown.0).as_secs_f64();
+            shown = (clock::now(), now_s);
+            reporter.progress(contest, (rate, 0), &mut |message| screen.show(&message));
         }
         !stop.load(Ordering::Relaxed)
     };
     let outcome = arena::play_watched(&scenario, agent::minds_of(&scenario), seed, watch)?;
     let run = Run {
         pace: "in process".to_owned(),
-        wall_s: start.elapsed().as_secs_f64(),
+        wall_s: clock::since(start).as_secs_f64(),
         cut_short: stop.load(Ordering::Relaxed),
         ..Run::default()
     };
@@ -151,7 +149,8 @@ fn play_here(
     if let Some(problem) = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report))) {
         screen::remark(&problem);
     }
-    teller.done(report.clone()).iter().for_each(|telling| screen.show(telling));
+    reporter.rest(&report.outcome, &mut |message| screen.show(&message));
+    screen.show(&ProgressMessage::Done(Box::new(report.clone())));
     Ok(report)
 }
 
@@ -166,7 +165,7 @@ fn play_across_processes(
     let game = unique_game_name(&scenario.name)?.as_str().to_owned();
     let endpoint = format!("tcp/127.0.0.1:{port}");
     let mut sim = start_sim(args, &game, &endpoint, file)?;
-    let tellings = read_tellings(&mut sim)?;
+    let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
     let page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
     let names: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
     let mut agents = Vec::new();
@@ -182,7 +181,7 @@ fn play_across_processes(
         game: &game,
         endpoint: &endpoint,
     })?;
-    let report = follow(&tellings, &mut sim, stop, screen)?;
+    let report = follow(&messages, &mut sim, stop, screen)?;
     let mut problems = hardware_loop.map(HardwareLoop::end).unwrap_or_default();
     let mut everybody = agents;
     everybody.push(sim);
@@ -199,62 +198,42 @@ fn play_across_processes(
 }
 
 fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<ChildProcess> {
-    let mut words = ["view", "--game", game, "--connect", endpoint, "--for-parent"].map(str::to_owned).to_vec();
-    words.extend(args.page.words());
-    ChildProcess::start("the page", &words, Stdio::inherit())
+    let mut command = child_process::squall(&["view", "--game", game, "--connect", endpoint])?;
+    command.args(args.page.words());
+    ChildProcess::start("the page", command, Stdio::inherit())
 }
 
 fn start_sim(args: &Args, game: &str, endpoint: &str, file: Option<&Path>) -> Result<ChildProcess> {
-    let mut words = vec!["sim".to_owned(), args.scenario.display().to_string()];
-    let options = [
-        ("--pace", args.pace.to_string()),
-        ("--game", game.to_owned()),
-        ("--listen", endpoint.to_owned()),
-        ("--join-s", args.join_s.to_string()),
-    ];
-    words.extend(options.into_iter().flat_map(|(name, value)| [name.to_owned(), value]));
-    words.extend(override_args::words(&args.instead.overrides(&args.scenario)?));
-    words.extend(args.seed.into_iter().flat_map(|seed| ["--seed".to_owned(), seed.to_string()]));
+    let mut command = child_process::squall(&["sim", "--game", game, "--listen", endpoint])?;
+    command.arg(&args.scenario).args(override_args::words(&args.instead.overrides(&args.scenario)?));
     let speed = args.speed.or((args.view && args.pace == Pace::Lockstep).then_some(SPEED_TO_WATCH));
-    words.extend(speed.into_iter().flat_map(|speed| ["--speed".to_owned(), speed.to_string()]));
-    words.extend(file.into_iter().flat_map(|file| ["--record".to_owned(), file.display().to_string()]));
-    words.push("--for-parent".to_owned());
-    ChildProcess::start("the sim", &words, Stdio::piped())
+    option(&mut command, "--pace", Some(args.pace));
+    option(&mut command, "--join-s", Some(args.join_s));
+    option(&mut command, "--seed", args.seed);
+    option(&mut command, "--speed", speed);
+    option(&mut command, "--record", file.map(Path::display));
+    ChildProcess::start("the sim", command, Stdio::piped())
 }
 
 fn start_agent(names: &[&str], game: &str, endpoint: &str) -> Result<ChildProcess> {
-    let mut words: Vec<String> =
-        ["agent", "--game", game, "--connect", endpoint, "--for-parent", "--vehicle"].map(str::to_owned).to_vec();
-    words.extend(names.iter().map(|name| (*name).to_owned()));
-    ChildProcess::start(&format!("the agent of {}", names.join(", ")), &words, Stdio::null())
+    let mut command = child_process::squall(&["agent", "--game", game, "--connect", endpoint])?;
+    command.arg("--vehicle").args(names);
+    ChildProcess::start(&format!("the agent of {}", names.join(", ")), command, Stdio::null())
 }
 
-/// What the sim tells, line by line.
-fn read_tellings(sim: &mut ChildProcess) -> Result<Receiver<ProgressMessage>> {
-    let output = sim.output().context("the sim has no output")?;
-    let (sender, receiver) = sync_channel(1024);
-    std::thread::spawn(move || {
-        let lines = BufReader::new(output).lines().map_while(std::result::Result::ok);
-        let tellings = lines.filter_map(|line| serde_json::from_str(&line).ok());
-        // Ends with the sim, or when nobody listens any more.
-        tellings.map_while(|telling| sender.send(telling).ok()).for_each(drop);
-    });
-    Ok(receiver)
-}
-
-/// Shows what the sim tells until it has told the result, or has ended.
+/// Shows what the sim reports until it has reported the result, or has ended.
 fn follow(
-    tellings: &Receiver<ProgressMessage>,
+    messages: &Receiver<ProgressMessage>,
     sim: &mut ChildProcess,
     stop: &AtomicBool,
     screen: &mut Screen,
 ) -> Result<Option<Report>> {
     let mut asked = 0;
     loop {
-        match tellings.recv_timeout(Duration::from_millis(100)) {
-            Ok(telling) => {
-                screen.show(&telling);
-                if let ProgressMessage::Done(report) = telling {
+        match messages.recv_timeout(Duration::from_millis(100)) {
+            Ok(message) => {
+                screen.show(&message);
+                if let ProgressMessage::Done(report) = message {
                     return Ok(Some(*report));
                 }
             }

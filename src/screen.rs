@@ -1,10 +1,10 @@
 //! The terminal: events as lines, how the game stands as one line that is written over.
 
-use crate::progress_message::{Progress, ProgressMessage};
 use crate::result_table;
+use sim::node::{Progress, ProgressMessage};
 use std::io::{IsTerminal, Write};
 
-/// Shows tellings to a person.
+/// Shows the progress of a game to a person.
 pub(crate) struct Screen {
     /// Whether a line can be written over.
     live: bool,
@@ -13,8 +13,8 @@ pub(crate) struct Screen {
     last_s: f64,
 }
 
-/// On paper, how it stands is told this often, simulated seconds.
-const PAPER_EVERY_S: f64 = 60.0;
+/// Where nothing can be written over, a status line is printed this often, simulated seconds.
+const PRINT_EVERY_S: f64 = 60.0;
 
 impl Screen {
     /// The screen of this process.
@@ -23,17 +23,17 @@ impl Screen {
     }
 
     /// Shows one thing.
-    pub(crate) fn show(&mut self, telling: &ProgressMessage) {
-        match telling {
+    pub(crate) fn show(&mut self, message: &ProgressMessage) {
+        match message {
             ProgressMessage::Open { game, endpoint } => {
                 self.line(&format!("game {game} at {endpoint}"));
                 self.line(&format!(
-                    "look on with: squall watch --game {game}, or on a page: squall view --game {game}"
+                    "watch it with: squall watch --game {game}, or on a page: squall view --game {game}"
                 ));
             }
-            ProgressMessage::Waiting { missing, gateways } => match waiting(missing, gateways) {
+            ProgressMessage::Waiting { agents, gateways } => match waiting(agents, gateways) {
                 Some(text) => self.status(&text),
-                None => self.line("every boat has a mind"),
+                None => self.line("every boat has an agent"),
             },
             ProgressMessage::Started => {}
             ProgressMessage::Event(event) => self.line(&format!("{:>7.1} s  {}", event.at_s, event.sentence())),
@@ -59,7 +59,7 @@ impl Screen {
             score.join("  "),
             progress.rate,
         );
-        if self.live || progress.now_s - self.last_s >= PAPER_EVERY_S {
+        if self.live || progress.now_s - self.last_s >= PRINT_EVERY_S {
             self.last_s = progress.now_s;
             self.status(&text);
         }
@@ -91,9 +91,9 @@ impl Screen {
 }
 
 /// For whom a game waits, if for anybody.
-fn waiting(minds: &[String], gateways: &[String]) -> Option<String> {
+fn waiting(agents: &[String], gateways: &[String]) -> Option<String> {
     const SHOWN: usize = 6;
-    let parts = [("minds", minds), ("gateways", gateways)].into_iter().filter(|(_, names)| !names.is_empty());
+    let parts = [("agents", agents), ("gateways", gateways)].into_iter().filter(|(_, names)| !names.is_empty());
     let parts = parts.map(|(of, names)| {
         let more = names.len().saturating_sub(SHOWN);
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
@@ -114,12 +114,12 @@ pub(crate) fn is_read(text: &str) -> bool {
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_ok()
 }
 
-/// Says what went wrong.
+/// Prints what went wrong.
 pub(crate) fn complain(text: &str) {
     remark(&format!("squall: {text}"));
 }
 
-/// Says something on the side, where it does not mix with results.
+/// Prints something to standard error, where it does not mix with results.
 pub(crate) fn remark(text: &str) {
     drop(writeln!(std::io::stderr(), "{text}"));
 }

@@ -2,7 +2,6 @@
 
 use crate::net_args::{HubArgs, unique_game_name};
 use crate::override_args::OverrideArgs;
-use crate::progress_message::{ProgressMessage, Teller};
 use crate::record_args;
 use crate::screen::{self, Screen};
 use crate::stop;
@@ -10,7 +9,7 @@ use anyhow::{Context, Result};
 use game::Scenario;
 use game::scenario::Overrides;
 use game::topic::GameName;
-use sim::node::{GameRecorder, News, Pace, Report, Settings};
+use sim::node::{GameRecorder, Pace, ProgressMessage, Report, Settings};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -37,7 +36,7 @@ pub(crate) struct Args {
     /// The game's name on the network [default: the file's name and a random number]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     game: Option<GameName>,
-    /// How long to wait for minds, and for gateways of real boats, before starting without the missing ones, s
+    /// How long to wait for agents, and for gateways of real boats, before starting without the missing ones, s
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     join_s: f64,
     /// Serves only the water of the game, with these of its boats in it and nobody who judges: for gateway emulate
@@ -48,7 +47,7 @@ pub(crate) struct Args {
     /// Writes the result to this file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Tells everything as JSON lines on standard output, and stops when standard input ends
+    /// Reports everything as JSON lines on standard output, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
 }
@@ -83,24 +82,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let scenario = load(&args.scenario, &args.instead.overrides(&args.scenario)?)?;
     let seed = args.seed.unwrap_or(scenario.seed);
     let scenario = if args.afloat.is_empty() { scenario } else { sim::afloat(&scenario, seed, &args.afloat)? };
-    let stop = stop::on_ctrl_c()?;
-    if args.for_parent {
-        stop::with_parent(&stop);
-    }
+    let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let game = match &args.game {
         Some(game) => game.clone(),
         None => unique_game_name(&scenario.name)?,
     };
-    let (net, endpoint) = args.hub.net()?;
     let mut screen = Screen::new();
-    let mut show = |telling: &ProgressMessage| {
+    let mut show = |message: &ProgressMessage| {
         if args.for_parent {
-            screen::print(&(serde_json::to_string(telling).expect("a telling is JSON") + "\n"));
+            screen::print(&(serde_json::to_string(message).expect("a message is JSON") + "\n"));
         } else {
-            screen.show(telling);
+            screen.show(message);
         }
     };
-    let entry = bus::Entry { game: game.as_str().to_owned(), endpoint, pid: std::process::id() };
     let mut registration = None;
     let record = |path: &PathBuf| {
         GameRecorder::on_network(path.clone(), game.as_str(), &args.pace.to_string(), env!("SQUALL_COMMIT"))
@@ -109,20 +103,19 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut recorder = args.record.as_ref().map(record).transpose()?;
     let settings = Settings {
         game,
-        net,
+        net: args.hub.net()?,
         pace: args.pace,
         join_limit: Duration::from_secs_f64(args.join_s),
         speed: args.speed,
         stop: stop.clone(),
     };
-    let mut teller = Teller::default();
-    let report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), &mut |news| {
-        if let News::Open = news {
-            // Without a local_registry others must be told where the game is; nothing else is lost.
+    let report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), &mut |message| {
+        if let ProgressMessage::Open { game, endpoint } = &message {
+            let entry = bus::Entry { game: game.clone(), endpoint: endpoint.clone(), pid: std::process::id() };
+            // Where it cannot be registered, others must be told where the game is; nothing else is lost.
             registration = bus::register(&entry).ok();
-            show(&ProgressMessage::Open { game: entry.game.clone(), endpoint: entry.endpoint.clone() });
         }
-        teller.news(&news).iter().for_each(&mut show);
+        show(&message);
     })?;
     drop(registration);
     if let Some(problem) = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report))) {
@@ -132,6 +125,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         write_json(path, &report)?;
     }
     let cut_short = report.run.cut_short;
-    teller.done(report).iter().for_each(&mut show);
+    show(&ProgressMessage::Done(Box::new(report)));
     Ok(if cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
 }

@@ -1,6 +1,7 @@
-//! The wish to stop: Ctrl-C, SIGTERM, or the end of the process that started us.
+//! The request to stop: Ctrl-C, SIGTERM, or the end of the process that started us.
 
 use anyhow::Context;
+use bus::clock;
 use std::io::BufRead;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -26,11 +27,20 @@ pub(crate) fn on_ctrl_c() -> anyhow::Result<Arc<AtomicBool>> {
     Ok(stop)
 }
 
+/// The same flag; in a child, the end of standard input sets it too.
+pub(crate) fn on_ctrl_c_or_parent(for_parent: bool) -> anyhow::Result<Arc<AtomicBool>> {
+    let stop = on_ctrl_c()?;
+    if for_parent {
+        with_parent(&stop);
+    }
+    Ok(stop)
+}
+
 /// Sets the flag when standard input ends: a child whose parent has died, however it died, must not stay. Gives what the
-/// parent says before, line by line.
+/// parent sends before, line by line.
 pub(crate) fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
     let flag = Arc::clone(stop);
-    let (sender, said) = channel();
+    let (sender, lines) = channel();
     std::thread::spawn(move || {
         for line in std::io::stdin().lock().split(b'\n').map_while(Result::ok) {
             // Not every child listens.
@@ -38,13 +48,12 @@ pub(crate) fn with_parent(stop: &Arc<AtomicBool>) -> Receiver<String> {
         }
         flag.store(true, Ordering::Relaxed);
     });
-    said
+    lines
 }
 
 /// Whether the flag is set, after a little while.
-#[expect(clippy::disallowed_methods, reason = "somebody waits for a person")]
 pub(crate) fn is_set_soon(stop: &AtomicBool) -> bool {
-    std::thread::sleep(Duration::from_millis(100));
+    clock::rest(Duration::from_millis(100));
     stop.load(Ordering::Relaxed)
 }
 

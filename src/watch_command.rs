@@ -5,8 +5,9 @@ use crate::observer::Observer;
 use crate::screen;
 use crate::stop;
 use anyhow::{Result, bail};
-use bus::Latest;
+use bus::{Watched, clock};
 use game::codec;
+use game::event::Logged;
 use game::message::Frame;
 use game::outcome::EventOutcome;
 use game::topic;
@@ -15,7 +16,7 @@ use std::collections::VecDeque;
 use std::io::IsTerminal;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 mod chart;
@@ -41,7 +42,7 @@ const EVENTS: usize = 6;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
-    let observer = Observer::come(&args.leaf)?;
+    let observer = Observer::connect(&args.leaf)?;
     let pause = Duration::from_secs_f64(1.0 / f64::from(args.rate));
     match &args.helm {
         Some(name) => helm::watch(&observer, name, pause, &stop)?,
@@ -51,47 +52,55 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// What has come since the last picture.
+#[derive(Default)]
+struct Seen {
+    frame: Option<Frame>,
+    /// Frames so far.
+    count: u64,
+    /// The newest events.
+    events: VecDeque<Logged>,
+}
+
+impl Seen {
+    fn take(&mut self, scenario: &Scenario, bytes: &[u8]) {
+        let Ok(frame) = codec::decode::<Frame>(bytes) else { return };
+        self.count += 1;
+        self.events.extend(frame.logged(scenario));
+        let surplus = self.events.len().saturating_sub(EVENTS);
+        self.events.drain(..surplus);
+        self.frame = Some(frame);
+    }
+}
+
 /// Shows the field until the game is over, this often.
-fn watch_field(Observer { bus, game, notice }: &Observer, pause: Duration, stop: &AtomicBool) -> Result<()> {
-    let frames: Arc<Latest<Frame>> = Arc::new(Latest::new(1));
-    let events: Arc<Latest<Frame>> = Arc::clone(&frames);
-    let count = Arc::new(AtomicU64::new(0));
-    let counter = Arc::clone(&count);
-    let news = Arc::new(std::sync::Mutex::new(VecDeque::new()));
-    let inbox = Arc::clone(&news);
-    let scenario = notice.scenario.clone();
-    let take = move |bytes: &[u8]| {
-        counter.fetch_add(1, Ordering::Relaxed);
-        if let Ok(frame) = codec::decode::<Frame>(bytes) {
-            let mut queue = inbox.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            queue.extend(frame.logged(&scenario));
-            let surplus = queue.len().saturating_sub(EVENTS);
-            queue.drain(..surplus);
-            events.put(0, frame);
-        }
-    };
-    let _standing = bus.subscribe(topic::frame(game), take)?;
+fn watch_field(Observer { bus, game, info }: &Observer, pause: Duration, stop: &AtomicBool) -> Result<()> {
+    let seen = Arc::new(Watched::new(Seen::default()));
+    let (incoming, scenario) = (Arc::clone(&seen), info.scenario.clone());
+    let take = move |bytes: &[u8]| incoming.visit(|seen| seen.take(&scenario, bytes));
+    let _frames = bus.subscribe(topic::frame(game), take)?;
     let mut meter = Meter::new();
     let live = std::io::stdout().is_terminal();
     while !stop.load(Ordering::Relaxed) {
-        let Some(frame) = frames.take(SILENCE).pop().flatten() else { bail!("game {} is gone", game.as_str()) };
-        let rates = meter.read(frame.stamp.valid_ns, count.load(Ordering::Relaxed));
-        let queue = news.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
-        let told: Vec<String> = queue.iter().map(|logged| sentence(&notice.scenario, logged)).collect();
+        seen.wait(SILENCE, |seen| seen.frame.is_some());
+        let (frame, count, events) = seen.visit(|seen| (seen.frame.take(), seen.count, seen.events.clone()));
+        let Some(frame) = frame else { bail!("game {} is gone", game.as_str()) };
+        let rates = meter.read(frame.stamp.valid_ns, count);
+        let events: Vec<String> = events.iter().map(|logged| sentence(&info.scenario, logged)).collect();
         let text = if live {
-            format!("\x1b[H\x1b[J{}", chart::page(notice, game, &frame, &told, &rates))
+            format!("\x1b[H\x1b[J{}", chart::page(info, game, &frame, &events, &rates))
         } else {
-            chart::line(&notice.scenario, &frame, &rates)
+            chart::line(&info.scenario, &frame, &rates)
         };
         if !screen::is_read(&text) || frame.over {
             break;
         }
-        rest(pause);
+        clock::rest(pause);
     }
     Ok(())
 }
 
-fn sentence(scenario: &Scenario, logged: &game::event::Logged) -> String {
+fn sentence(scenario: &Scenario, logged: &Logged) -> String {
     let event = EventOutcome::new(scenario, logged);
     format!("{:>7.1} s  {}", event.at_s, event.sentence())
 }
@@ -112,22 +121,16 @@ pub(crate) struct Rates {
     pub(crate) factor: f64,
 }
 
-#[expect(clippy::disallowed_methods, reason = "rates are read by the clock")]
 impl Meter {
     fn new() -> Meter {
-        Meter { then: Instant::now(), sim: None, frames: 0 }
+        Meter { then: clock::now(), sim: None, frames: 0 }
     }
 
     fn read(&mut self, sim: SimTime, frames: u64) -> Rates {
-        let passed_s = self.then.elapsed().as_secs_f64().max(1e-6);
+        let passed_s = clock::since(self.then).as_secs_f64().max(1e-6);
         let sim_s = self.sim.map_or(0.0, |before| (sim - before).as_s());
         let rates = Rates { frames_hz: (frames - self.frames) as f64 / passed_s, factor: sim_s / passed_s };
-        *self = Meter { then: Instant::now(), sim: Some(sim), frames };
+        *self = Meter { then: clock::now(), sim: Some(sim), frames };
         rates
     }
-}
-
-#[expect(clippy::disallowed_methods, reason = "a person reads only so many pictures a second")]
-fn rest(time: Duration) {
-    std::thread::sleep(time);
 }

@@ -11,7 +11,7 @@ use thiserror::Error;
 /// How often to look again for what is not there.
 const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// How long to wait for an answer.
-const ANSWER: Duration = Duration::from_secs(2);
+pub const ANSWER: Duration = Duration::from_secs(2);
 
 /// Why something is not there.
 #[derive(Debug)]
@@ -92,7 +92,7 @@ impl<'a> GameSearch<'a> {
         }
     }
 
-    /// A session at the hub that `net` leads to, and the game: this one, or the only one there is.
+    /// A session at the hub that `net` leads to, and the game (this one, or the only one there is) with what it is.
     ///
     /// # Errors
     /// [`NotFound`] says what was missing to the end.
@@ -101,13 +101,14 @@ impl<'a> GameSearch<'a> {
         tell: &mut dyn FnMut(&str),
         net: &Net,
         game: Option<&GameName>,
-    ) -> Result<(Bus, GameName), NotFound> {
+    ) -> Result<(Bus, GameName, GameInfo), NotFound> {
         let bus = self.until(tell, || Ok(Bus::leaf(net)?))?;
         let game = match game {
             Some(game) => game.clone(),
             None => self.until(tell, || only_game(&bus))?,
         };
-        Ok((bus, game))
+        let info = self.until(tell, || game_info(&bus, &game))?;
+        Ok((bus, game, info))
     }
 }
 

@@ -18,6 +18,7 @@ mod sim_liveness;
 mod watched;
 
 pub use error::BusError;
+pub use game_search::ANSWER;
 pub use inbox::{Inbox, InboxSender, inbox};
 pub use latest::Latest;
 pub use local_registry::{Entry, Registration, list as local_registry, register};

@@ -23,6 +23,13 @@ pub struct Net {
 }
 
 impl Net {
+    /// The endpoint at which nodes on the same machine reach a hub that listens here.
+    #[must_use]
+    pub fn local_endpoint(&self) -> Option<String> {
+        let first = self.listen.first()?;
+        Some(first.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:"))
+    }
+
     /// The zenoh configuration of a hub.
     pub(crate) fn hub(&self) -> Result<Config, BusError> {
         let mut config = self.base()?;

@@ -80,10 +80,7 @@ fn address(option: &str, text: &str) -> Result<LinkAddress> {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let listen = address("--listen", &args.listen)?;
     let primary = args.primary.as_deref().map(|text| address("--primary", text)).transpose()?;
-    let stop = stop::on_ctrl_c()?;
-    if args.for_parent {
-        stop::with_parent(&stop);
-    }
+    let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let extra = |kind: &ExtraArg| match kind {
         ExtraArg::Rmc => Extra::Rmc,
         ExtraArg::Hdt => Extra::Hdt,

@@ -57,10 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         None => game::scenario::default_gateway(),
     };
-    let stop = stop::on_ctrl_c()?;
-    if args.for_parent {
-        stop::with_parent(&stop);
-    }
+    let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let record = recording(args)?;
     if let (Some(path), false) = (&record, args.for_parent) {
         screen::remark(&format!("recording to {}", path.display()));

@@ -14,9 +14,7 @@ use game::topic;
 use gateway::nmea::{Framer, Sentence};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Duration;
 
-const ANSWER: Duration = Duration::from_secs(2);
 /// All boats at once.
 const ALL: &str = "all";
 
@@ -55,7 +53,7 @@ enum CommandArg {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let command = command_of(args)?;
-    let observer = Observer::come(&args.leaf)?;
+    let observer = Observer::connect(&args.leaf)?;
     let result = if args.vehicle == ALL { tell_all(&observer, args.command) } else { tell(&observer, args, &command) };
     observer.bus.close();
     result
@@ -88,7 +86,7 @@ fn tell(observer: &Observer, args: &Args, command: &OperatorCommand) -> Result<E
 
 fn ask(observer: &Observer, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
     let question = serde_json::to_vec(command).context("a command is JSON")?;
-    let answer = observer.bus.ask(&topic::operate(&observer.game, vehicle), question, ANSWER)?;
+    let answer = observer.bus.ask(&topic::operate(&observer.game, vehicle), question, bus::ANSWER)?;
     let bytes = answer.with_context(|| format!("no gateway of {vehicle} answers"))?;
     serde_json::from_slice(&bytes).context("the gateway is of another version of Squall")
 }
@@ -105,7 +103,7 @@ fn tell_all(observer: &Observer, command: CommandArg) -> Result<ExitCode> {
         let line = observer.bus.publisher(topic::control(&observer.game), Delivery::Wait)?;
         line.send_json(serde_json::to_vec(&control).context("a command is JSON")?)?;
     }
-    let scenario = &observer.notice.scenario;
+    let scenario = &observer.info.scenario;
     let mut silent = Vec::new();
     for vehicle in scenario.vehicles.iter().filter(|vehicle| vehicle.source == Source::External) {
         match ask(observer, &vehicle.name, &OperatorCommand::Status) {

@@ -15,12 +15,12 @@ const COLOURS: [&str; 2] = ["\x1b[94m", "\x1b[91m"];
 const PLAIN: &str = "\x1b[0m";
 
 /// One picture of the game.
-pub(super) fn page(notice: &GameInfo, game: &GameName, frame: &Frame, events: &[String], rates: &Rates) -> String {
-    let scenario = &notice.scenario;
+pub(super) fn page(info: &GameInfo, game: &GameName, frame: &Frame, events: &[String], rates: &Rates) -> String {
+    let scenario = &info.scenario;
     let mut text = format!(
         "{}  {}  {:.1} s of {:.0} s  {:.0}x  {:.0} frames/s\n",
         game.as_str(),
-        notice.pace,
+        info.pace,
         frame.stamp.valid_ns.as_s(),
         scenario.rules.time_limit.as_s(),
         rates.factor,
@@ -41,7 +41,7 @@ pub(super) fn page(notice: &GameInfo, game: &GameName, frame: &Frame, events: &[
 /// How the game stands, in one line.
 pub(super) fn line(scenario: &Scenario, frame: &Frame, rates: &Rates) -> String {
     let lost = frame.vehicles.iter().filter(|boat| boat.agent_lost).count();
-    let lost = if lost > 0 { format!("  {lost} without a mind") } else { String::new() };
+    let lost = if lost > 0 { format!("  {lost} without an agent") } else { String::new() };
     format!(
         "{:>7.1} s  {}  {:.0}x  {:.0} frames/s{lost}\n",
         frame.stamp.valid_ns.as_s(),
@@ -114,7 +114,7 @@ fn boats<'a>(scenario: &'a Scenario, frame: &'a Frame) -> impl Iterator<Item = S
 
 fn state(boat: &VehicleTruth) -> String {
     let words = [
-        (boat.agent_lost, "NO MIND"),
+        (boat.agent_lost, "NO AGENT"),
         (boat.quarantined, "QUARANTINED"),
         (boat.carrying >= 0, "carries a flag"),
         (boat.tagged, "tagged"),

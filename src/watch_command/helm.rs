@@ -1,30 +1,29 @@
 //! One boat's helm, live.
 
-use super::rest;
 use crate::observer::Observer;
 use crate::{helm_page, screen};
 use anyhow::{Result, bail};
+use bus::clock;
 use game::helm::HelmQuestion;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-/// A boat without a mind for this long has none.
+/// A boat of which nothing is heard for this long has no agent.
 const SILENCE: Duration = Duration::from_secs(10);
 
 /// Shows what the helm of the vehicle of this name thinks until the game is over, this often.
-#[expect(clippy::disallowed_methods, reason = "silence is measured by the clock")]
 pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &AtomicBool) -> Result<()> {
     let vehicle = observer.vehicle(name)?;
-    let scenario = &observer.notice.scenario;
+    let scenario = &observer.info.scenario;
     let live = std::io::stdout().is_terminal();
     let mut last = None;
-    let mut heard = Instant::now();
+    let mut heard = clock::now();
     while !stop.load(Ordering::Relaxed) {
         match observer.helm(vehicle, HelmQuestion { functions: false })? {
             Some(report) => {
-                heard = Instant::now();
-                // On paper a decision is told once.
+                heard = clock::now();
+                // Where nothing can be written over, a decision is printed once.
                 let text = match live {
                     true => format!("\x1b[H\x1b[J{}", helm_page::page(scenario, &report)),
                     false if last.replace(report.at) == Some(report.at) => String::new(),
@@ -35,10 +34,10 @@ pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &Ato
                 }
             }
             None if !observer.is_on()? => return Ok(()),
-            None if heard.elapsed() > SILENCE => bail!("nobody minds {name}"),
+            None if clock::since(heard) > SILENCE => bail!("{name} has no agent"),
             None => {}
         }
-        rest(pause);
+        clock::rest(pause);
     }
     Ok(())
 }

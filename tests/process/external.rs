@@ -1,6 +1,8 @@
 //! Real boats: a gateway of the test's own brings one, sails it by the orders that come, and falls silent.
 
-use crate::support::{LIMIT, Sim, real_attacker, result_of, run, scenarios, write};
+use crate::support::{
+    LIMIT, Sim, based_on, real_attacker, refusal_of, result_of, scenarios, temporary, wait_until, write,
+};
 use bus::{Bus, Declaration, Delivery, Publisher};
 use game::angle::rad_from_compass_deg;
 use game::external::{ExternalOrder, NavReport};
@@ -10,7 +12,7 @@ use game::topic::{self, GameName, Part};
 use game::{Order, VehicleId, codec};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 const ME: VehicleId = VehicleId(0);
 /// Simulated seconds a second.
@@ -39,7 +41,7 @@ fn join(bus: &Bus, name: &GameName, vehicle: &str) -> JoinReply {
 
 impl Gateway {
     fn joined(sim: &Sim, file: &Path) -> Gateway {
-        let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
+        let (bus, name) = (sim.bus(), sim.name());
         let scenario = game::scenario::load(file).unwrap_or_else(|e| panic!("{e}"));
         let orders = Arc::new(Mutex::new(Vec::new()));
         let inbox = Arc::clone(&orders);
@@ -91,32 +93,23 @@ impl Gateway {
 
     /// Sails on until something is so.
     fn sail_until(&mut self, what: &str, is_so: impl Fn(&Gateway) -> bool) {
-        let start = Instant::now();
-        while !is_so(self) {
-            assert!(start.elapsed() < LIMIT, "never: {what}");
-            self.sail();
-            std::thread::sleep(Duration::from_millis(10));
-        }
-    }
-
-    /// Waits in silence until something is so.
-    fn wait_until(&self, what: &str, is_so: impl Fn(&Gateway) -> bool) {
-        let start = Instant::now();
-        while !is_so(self) {
-            assert!(start.elapsed() < LIMIT, "never: {what}");
-            std::thread::sleep(Duration::from_millis(10));
-        }
+        wait_until(what, || {
+            is_so(self) || {
+                self.sail();
+                false
+            }
+        });
     }
 }
 
 #[test]
 fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let file = real_attacker(dir.path());
     let sim = Sim::start(&file, &["--pace", &format!("{FACTOR}x")]);
     let mut agent = sim.agent(&["blue_one"]);
     let _still = sim.agent(&["red_one"]);
-    let waiting = sim.wait_for(|t| t["tell"] == "waiting" && t["missing"].as_array().is_some_and(Vec::is_empty));
+    let waiting = sim.wait_for(|t| t["kind"] == "waiting" && t["agents"].as_array().is_some_and(Vec::is_empty));
     assert_eq!(waiting["gateways"][0], "blue_one", "{waiting}");
 
     let mut gateway = Gateway::joined(&sim, &file);
@@ -133,7 +126,7 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
 
     // It stops reporting, and reports again.
     sim.wait_for_event("nav_lost", "blue_one");
-    gateway.wait_until("a lost boat is sent a hold", Gateway::is_held);
+    wait_until("a lost boat is sent a hold", || gateway.is_held());
     gateway.sail_until("what is back is driven again", |gateway| !gateway.is_held());
     sim.wait_for_event("nav_back", "blue_one");
     let before = gateway.newest().expect("an order").given_ns;
@@ -149,7 +142,7 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
 
     // Its gateway dies: another may join, and the old one's reports are refused.
     gateway.alive.remove(1);
-    gateway.wait_until("the boat is free again", |gateway| join(&other, &gateway.name, "blue_one") != busy);
+    wait_until("the boat is free again", || join(&other, &gateway.name, "blue_one") != busy);
     gateway.report(gateway.ticket);
     gateway.bus.close();
     sim.play_on(1.0);
@@ -160,7 +153,7 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
 
 #[test]
 fn real_boats_are_refused_without_real_time_and_the_error_names_what_to_do() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let mixed = "scenarios/games/mixed_2v2.toml";
     let root = scenarios();
     let entry = |name: &str| format!("[[entry]]\nname = \"{name}\"\nstrategy = \"{root}/strategies/{name}.toml\"\n");
@@ -172,9 +165,7 @@ fn real_boats_are_refused_without_real_time_and_the_error_names_what_to_do() {
         &["sim", mixed],
         &["tournament", &tournament, "--games", "2"],
     ] {
-        let output = run(args);
-        let printed = String::from_utf8_lossy(&output.stderr);
-        assert!(!output.status.success(), "{args:?}");
+        let printed = refusal_of(args);
         for part in ["blue_one, red_one", "--pace realtime", "--rehearse"] {
             assert!(printed.contains(part), "{args:?}: {printed}");
         }
@@ -183,11 +174,8 @@ fn real_boats_are_refused_without_real_time_and_the_error_names_what_to_do() {
 
 #[test]
 fn a_rehearsal_is_the_game_of_simulated_boats_in_one_process_and_across() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
-    let short = |name: &str| {
-        let text = format!("base = \"{}/games/{name}.toml\"\nduration_s = 30\n", scenarios());
-        write(dir.path(), &format!("short_{name}.toml"), &text).display().to_string()
-    };
+    let dir = temporary();
+    let short = |name: &str| based_on(dir.path(), name, "duration_s = 30").display().to_string();
     let (mixed, simulated) = (short("mixed_2v2"), short("pav01_vs_pav01"));
     let want = result_of(&[&simulated, "--in-process"])["digest"].clone();
     assert!(want.is_string());

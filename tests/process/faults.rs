@@ -1,26 +1,23 @@
 //! Nodes that die or fall silent: the game goes on, nobody waits forever.
 
-use crate::support::{FOUR, Process, Sim, long_game, squall};
-use std::io::Read;
+use crate::support::{FOUR, Process, Sim, long_game, squall, stderr, temporary};
 use std::time::Instant;
 
 /// Patience of these games, s.
 const PATIENCE: &str = "patience_s = 2";
 
 fn game(pace: &str) -> (tempfile::TempDir, Sim, Vec<Process>) {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let sim = Sim::start(&long_game(dir.path(), PATIENCE), &["--pace", pace]);
     let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
-    sim.wait_for(|telling| telling["tell"] == "started");
+    sim.wait_for_kind("started");
     (dir, sim, agents)
 }
 
 /// They end with an error, and say why.
 fn expect_sim_gone(agents: &mut [Process]) {
     for agent in agents {
-        assert!(!agent.wait().success());
-        let mut said = String::new();
-        agent.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+        let said = agent.refusal();
         assert!(said.contains("the sim is gone"), "{said}");
     }
 }
@@ -84,7 +81,7 @@ fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
     let next = Sim::start_with(squall(&[]), &long_game(dir.path(), PATIENCE), &args);
     // Pictures come again: an agent that goes by them alone would stay.
     let _others = FOUR.map(|vehicle| next.agent(&[vehicle]));
-    next.wait_for(|telling| telling["tell"] == "started");
+    next.wait_for_kind("started");
     expect_sim_gone(&mut agents);
     next.stop();
 }
@@ -92,10 +89,9 @@ fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
 #[test]
 fn a_seat_that_is_taken_stays_taken() {
     let (_dir, sim, _agents) = game("lockstep");
-    let args = ["agent", "--connect", &sim.endpoint, "--game", &sim.game, "--wait-s", "1", "--vehicle", "blue_one"];
-    let output = crate::support::run(&args);
+    let output = sim.run(&["agent", "--wait-s", "1", "--vehicle", "blue_one"]);
     assert!(!output.status.success());
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = stderr(&output);
     assert!(said.contains("blue_one has another agent"), "{said}");
     sim.stop();
 }
@@ -103,10 +99,9 @@ fn a_seat_that_is_taken_stays_taken() {
 #[test]
 fn an_agent_for_an_unknown_vehicle_is_told_which_there_are() {
     let (_dir, sim, _agents) = game("lockstep");
-    let args = ["agent", "--connect", &sim.endpoint, "--game", &sim.game, "--vehicle", "green_one"];
-    let output = crate::support::run(&args);
+    let output = sim.run(&["agent", "--vehicle", "green_one"]);
     assert!(!output.status.success());
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let said = stderr(&output);
     assert!(said.contains("green_one") && said.contains("blue_one, blue_two, red_one, red_two"), "{said}");
     sim.stop();
 }

@@ -1,6 +1,9 @@
 //! Whole games: the same bytes in one process and across processes.
 
-use crate::support::{FOUR, LIMIT, Process, Sim, agent, free_endpoint, long_game, result_of, run, squall};
+use crate::support::{
+    FOUR, LIMIT, Process, Sim, agent, based_on, free_endpoint, long_game, refusal_of, result_of, run, scenarios,
+    squall, stdout, temporary, two_fleets, wait_until, write,
+};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -8,35 +11,8 @@ use std::time::Instant;
 
 /// A game in which the seed decides who plays what and where boats start.
 fn seeded_game(dir: &Path) -> PathBuf {
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let path = dir.join("seeded.toml");
-    let text = format!(
-        r#"
-field = "{root}/fields/popolopen_2025.toml"
-rules = "{root}/rules/aquaticus_2023.toml"
-boat = "{root}/boats/surveyor_m1_8.toml"
-duration_s = 300
-[[team]]
-name = "blue"
-strategy = "{root}/strategies/pav01_seeded.toml"
-[[team]]
-name = "red"
-strategy = "{root}/strategies/pav01_seeded.toml"
-[[fleet]]
-team = "blue"
-name = "blue_{{}}"
-count = 3
-spawn = {{}}
-[[fleet]]
-team = "red"
-name = "red_{{}}"
-count = 3
-spawn = {{}}
-"#,
-        root = scenarios.display()
-    );
-    std::fs::write(&path, text).expect("a file can be written");
-    path
+    let strategy = format!("{}/strategies/pav01_seeded.toml", scenarios());
+    write(dir, "seeded.toml", &format!("duration_s = 300\n{}", two_fleets(3, &strategy)))
 }
 
 /// What must not depend on how a game was run.
@@ -47,7 +23,7 @@ pub(crate) fn game_itself(mut result: Value) -> Value {
 
 #[test]
 fn a_lockstep_game_over_the_network_is_the_game_in_one_process_byte_for_byte() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let game = seeded_game(dir.path()).display().to_string();
     let mut digests = Vec::new();
     for seed in ["1", "2", "3", "4", "5"] {
@@ -64,19 +40,13 @@ fn a_lockstep_game_over_the_network_is_the_game_in_one_process_byte_for_byte() {
 
 #[test]
 fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let rules = dir.path().join("short_sighted.toml");
+    let dir = temporary();
+    let root = scenarios();
     let sharing = "sharing = { range_m = 80, view_deg = 270, delay_s = 0.3, noise_m = 1, loss = 0.2, memory_s = 5 }\n";
-    let base = scenarios.join("rules/aquaticus_2023.toml");
-    std::fs::write(&rules, format!("base = {:?}\n{sharing}", base.display().to_string()))
-        .expect("a file can be written");
-    let path = dir.path().join("rough.toml");
-    let base = scenarios.join("games/pav01_afloat.toml").display().to_string();
-    std::fs::write(&path, format!("base = {base:?}\nrules = \"short_sighted.toml\"\nduration_s = 200\n"))
-        .expect("a file can be written");
-    let game = path.display().to_string();
-    let bay = scenarios.join("seas/bay_fresh_breeze.toml").display().to_string();
+    write(dir.path(), "short_sighted.toml", &format!("base = \"{root}/rules/aquaticus_2023.toml\"\n{sharing}"));
+    let more = "rules = \"short_sighted.toml\"\nduration_s = 200";
+    let game = based_on(dir.path(), "pav01_afloat", more).display().to_string();
+    let bay = format!("{root}/seas/bay_fresh_breeze.toml");
     let mut digests = Vec::new();
     for (seed, sea) in [("1", &[][..]), ("2", &[]), ("1", &["--sea", bay.as_str()])] {
         let words = [&[game.as_str(), "--seed", seed], sea].concat();
@@ -122,10 +92,8 @@ fn two_runs_at_once_do_not_see_each_other() {
 
 #[test]
 fn a_paced_game_keeps_its_pace() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
-    let path = dir.path().join("short.toml");
-    let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/pav01_vs_pav01.toml");
-    std::fs::write(&path, format!("base = \"{}\"\nduration_s = 20\n", base.display())).expect("a file");
+    let dir = temporary();
+    let path = based_on(dir.path(), "pav01_vs_pav01", "duration_s = 20");
     let result = result_of(&[&path.display().to_string(), "--pace", "4x"]);
     let wall_s = result["run"]["wall_s"].as_f64().expect("a number");
     // The clock may be late on a busy machine, but never early.
@@ -136,13 +104,13 @@ fn a_paced_game_keeps_its_pace() {
 
 #[test]
 fn agents_may_come_before_the_sim_and_in_any_order() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let game = long_game(dir.path(), "");
     let endpoint = free_endpoint();
     let mut agents: Vec<Process> = FOUR.iter().rev().map(|name| agent(&endpoint, "early", &[name])).collect();
     std::thread::sleep(std::time::Duration::from_millis(500));
     let sim = Sim::start_with(squall(&[]), &game, &["--game", "early", "--listen", &endpoint]);
-    sim.wait_for(|telling| telling["tell"] == "started");
+    sim.wait_for_kind("started");
     sim.play_on(5.0);
     let done = sim.stop();
     assert!(done["outcome"]["events"].as_array().expect("a list").iter().all(|e| e["event"] != "agent_lost"), "{done}");
@@ -153,7 +121,7 @@ fn agents_may_come_before_the_sim_and_in_any_order() {
 
 #[test]
 fn a_mind_may_join_late() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let sim = Sim::start(&long_game(dir.path(), ""), &["--join-s", "1"]);
     let _three = sim.agent(&FOUR[..3]);
     sim.wait_for_event("agent_lost", "red_two");
@@ -166,25 +134,24 @@ fn a_mind_may_join_late() {
 /// Processes whose command line holds this word.
 fn processes_with(word: &str) -> Vec<String> {
     let output = Command::new("ps").args(["-eo", "pid,args"]).output().expect("ps is there");
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let text = stdout(&output);
     text.lines().filter(|line| line.contains(word) && !line.contains("<defunct>")).map(str::to_owned).collect()
 }
 
 #[test]
 fn nothing_is_left_of_a_run_that_is_ended_early() {
     for signal in ["INT", "TERM", "KILL"] {
-        let dir = tempfile::tempdir().expect("a temporary directory");
+        let dir = temporary();
         let game = long_game(dir.path(), "");
         let word = dir.path().display().to_string();
         let mut command = squall(&["run", &game.display().to_string(), "--pace", "realtime", "--no-record"]);
         command.stdout(Stdio::null()).stderr(Stdio::null());
         let mut run = Process::start(command);
-        let start = Instant::now();
-        let agents = |run: &Process| children_of(run.0.id());
-        while agents(&run).len() < 5 {
-            assert!(start.elapsed() < LIMIT, "sim and agents start");
-        }
-        let family = agents(&run);
+        let mut family = Vec::new();
+        wait_until("sim and agents start", || {
+            family = children_of(run.0.id());
+            family.len() >= 5
+        });
         run.signal(signal);
         let status = run.wait();
         assert!(!status.success(), "{signal}: a game that was cut short is no success");
@@ -198,24 +165,23 @@ fn nothing_is_left_of_a_run_that_is_ended_early() {
 /// The children of a process.
 fn children_of(pid: u32) -> Vec<u32> {
     let output = Command::new("ps").args(["-o", "pid=", "--ppid", &pid.to_string()]).output().expect("ps is there");
-    String::from_utf8_lossy(&output.stdout).split_whitespace().filter_map(|pid| pid.parse().ok()).collect()
+    stdout(&output).split_whitespace().filter_map(|pid| pid.parse().ok()).collect()
 }
 
 #[test]
 fn games_on_this_machine_are_listed_and_can_be_watched() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let sim = Sim::start(&long_game(dir.path(), ""), &[]);
     let _agents = sim.agent(&FOUR);
     sim.play_on(1.0);
-    let list = String::from_utf8_lossy(&run(&["list"]).stdout).into_owned();
+    let list = stdout(&run(&["list"]));
     assert!(list.contains(&sim.game) && list.contains("  agent ") && list.contains("4 boats"), "{list}");
     let mut command = squall(&["watch", "--game", &sim.game, "--rate", "20"]);
     command.stdout(Stdio::piped());
     let mut watch = Process::start(command);
-    let output = watch.0.stdout.take().expect("its output is piped");
-    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(output));
+    let mut lines = watch.lines();
     for _ in 0..3 {
-        let line = lines.next().expect("it goes on").expect("it is text");
+        let line = lines.next().expect("it goes on");
         assert!(line.contains("blue") && line.contains("frames/s"), "{line}");
     }
     sim.stop();
@@ -224,15 +190,14 @@ fn games_on_this_machine_are_listed_and_can_be_watched() {
 
 #[test]
 fn broken_scenarios_are_explained_where_they_are_broken() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
-    let path = dir.path().join("broken.toml");
-    std::fs::write(&path, "fild = \"x.toml\"\nseed = \"one\"\n").expect("a file");
+    let dir = temporary();
+    let path = write(dir.path(), "broken.toml", "fild = \"x.toml\"\nseed = \"one\"\n");
     let output = run(&["check", &path.display().to_string()]);
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let text = stdout(&output);
     assert!(!output.status.success());
     for place in ["broken.toml:1:1: ", "broken.toml:2:8: "] {
         assert!(text.contains(place), "{place} is not in {text}");
     }
-    let output = run(&["run", &path.display().to_string(), "--no-record"]);
-    assert!(!output.status.success() && String::from_utf8_lossy(&output.stderr).contains("broken.toml:1:1: "));
+    let said = refusal_of(&["run", &path.display().to_string(), "--no-record"]);
+    assert!(said.contains("broken.toml:1:1: "), "{said}");
 }

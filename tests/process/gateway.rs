@@ -3,13 +3,13 @@
 //! Water with one boat, its emulator, a proxy that can be cut, the gateway, the game and its agents. The boat is watched
 //! in the water itself, by the truth about its thrusters.
 
-use crate::support::{LIMIT, Process, Sim, real_attacker, result_of, squall};
+use crate::support::{LIMIT, Process, Sim, real_attacker, result_of, run, stderr, stdout, temporary, wait_until};
 use bus::{Bus, Declaration};
 use game::codec;
 use game::external::{GatewayStatus, OperatorCommand, OperatorReply};
 use game::message::Frame;
-use game::topic::{self, GameName};
-use std::io::{BufRead, BufReader, Read, Write};
+use game::topic;
+use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
 use std::process::Stdio;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -102,7 +102,7 @@ struct Loop {
 impl Loop {
     /// A boat under way by its agent's orders.
     fn under_way(watchdog: &str) -> Loop {
-        let dir = tempfile::tempdir().expect("a temporary directory");
+        let dir = temporary();
         let file = real_attacker(dir.path());
         let sim = Sim::start(&file, &["--pace", "realtime"]);
         let water = Sim::start(&file, &["--pace", "realtime", "--afloat", "blue_one"]);
@@ -146,7 +146,7 @@ impl Loop {
 
     fn ask(&self, command: &OperatorCommand) -> OperatorReply {
         let bus = self.sim.bus();
-        let key = topic::operate(&GameName::new(&self.sim.game).expect("a name"), "blue_one");
+        let key = topic::operate(&self.sim.name(), "blue_one");
         let question = serde_json::to_vec(command).expect("JSON");
         let answer = bus.ask(&key, question, Duration::from_secs(10)).expect("the hub is there");
         serde_json::from_slice(&answer.expect("the gateway answers")).expect("a reply")
@@ -158,31 +158,22 @@ impl Loop {
 
     /// Waits until the gateway's state contains these words.
     fn wait_for_state(&self, words: &str) {
-        let start = Instant::now();
-        while !self.status().state.contains(words) {
-            assert!(start.elapsed() < LIMIT, "never {words:?}: {:?}", self.status());
-            std::thread::sleep(Duration::from_millis(50));
-        }
+        wait_until(words, || self.status().state.contains(words));
     }
 
     /// Arms it, as soon as it can be.
     fn arm(&self) {
-        let start = Instant::now();
-        while let Some(reason) = self.ask(&OperatorCommand::Arm).refused {
-            assert!(start.elapsed() < LIMIT, "never: {reason}");
-            std::thread::sleep(Duration::from_millis(100));
-        }
+        wait_until("it can be armed", || self.ask(&OperatorCommand::Arm).refused.is_none());
         self.wait(LIMIT, "it sails again", |boat| boat.0 > 0.6);
     }
 }
 
 fn start_emulator(water: &Sim, watchdog: &str) -> (Process, String, Option<String>) {
     let listen = ["--listen", "tcp://127.0.0.1:0", "--primary", "tcp://127.0.0.1:0", "--watchdog-s", watchdog];
-    let game = ["gateway", "emulate", "--vehicle", "blue_one", "--connect", &water.endpoint, "--game", &water.game];
-    let mut command = squall(&[&game[..], &listen].concat());
+    let mut command = water.squall(&[&["gateway", "emulate", "--vehicle", "blue_one"], &listen[..]].concat());
     command.stdout(Stdio::piped()).stderr(Stdio::null());
     let mut process = Process::start(command);
-    let mut lines = BufReader::new(process.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
+    let mut lines = process.lines();
     let mut reach = |what: &str| {
         let line = lines.find(|line| line.starts_with(what)).expect("it prints where it listens");
         line.rsplit("tcp://").next().expect("an address").to_owned()
@@ -194,10 +185,8 @@ fn start_emulator(water: &Sim, watchdog: &str) -> (Process, String, Option<Strin
 
 fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
     let link = format!("tcp://127.0.0.1:{port}");
-    let game = ["gateway", "surveyor", "--vehicle", "blue_one", "--connect", &sim.endpoint, "--game", &sim.game];
-    let mut command = squall(&[&game[..], &["--link", &link, "--no-record"], more].concat());
-    command.stdout(Stdio::null()).stderr(Stdio::null());
-    Process::start(command)
+    let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--link", &link, "--no-record"];
+    sim.quiet(&[&args[..], more].concat())
 }
 
 /// The truth about the water, the newest of it.
@@ -205,7 +194,7 @@ fn watch(water: &Sim) -> (Arc<Mutex<Frame>>, (Bus, Declaration)) {
     let frame = Arc::new(Mutex::new(Frame::default()));
     let newest = Arc::clone(&frame);
     let bus = water.bus();
-    let key = topic::frame(&GameName::new(&water.game).expect("a name"));
+    let key = topic::frame(&water.name());
     let take = move |bytes: &[u8]| *newest.lock().expect("whole") = codec::decode(bytes).expect("a frame");
     let standing = bus.subscribe(key, take).expect("the hub is there");
     (frame, (bus, standing))
@@ -296,15 +285,12 @@ fn the_primary_operator_and_an_e_stop_stop_the_boat_through_the_whole_loop() {
     assert!(all.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("secondary control")));
     operator.write_all(b"$PSEAC,L,0,0,0,OP2_ON*67\r\n").expect("a command");
     all.arm();
-    let mut estop =
-        squall(&["gateway", "tell", "all", "estop", "--connect", &all.sim.endpoint, "--game", &all.sim.game]);
-    let output = estop.output().expect("the program starts");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output = all.sim.run(&["gateway", "tell", "all", "estop"]);
+    assert!(output.status.success(), "{}", stderr(&output));
     all.stops_within(Duration::from_millis(300));
     all.wait_for_state("e-stopped");
     assert!(all.ask(&OperatorCommand::Arm).refused.is_some_and(|reason| reason.contains("release it first")));
-    let release = ["gateway", "tell", "all", "release", "--connect", &all.sim.endpoint, "--game", &all.sim.game];
-    assert!(squall(&release).status().expect("the program starts").success());
+    assert!(all.sim.run(&["gateway", "tell", "all", "release"]).status.success());
     all.wait_for_state("safed");
     all.arm();
     drop((all.emulator, all.water));
@@ -312,7 +298,7 @@ fn the_primary_operator_and_an_e_stop_stop_the_boat_through_the_whole_loop() {
 
 #[test]
 fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let (game, gateways) = ("scenarios/games/mixed_2v2.toml", "scenarios/gateways/emulated.toml");
     let records = dir.path().display().to_string();
     let looped = result_of(&[game, "--emulate", "--pace", "10x", "--gateway", gateways, "--record-gateways", &records]);
@@ -335,8 +321,8 @@ fn a_game_through_gateways_and_emulated_boats_is_like_one_without() {
     assert_eq!(looped["duration_s"], pure["duration_s"]);
     for name in ["blue_one", "red_one"] {
         let file = dir.path().join(format!("{name}.mcap")).display().to_string();
-        let output = squall(&["gateway", "replay", &file]).output().expect("the program starts");
-        let printed = String::from_utf8_lossy(&output.stdout);
+        let output = run(&["gateway", "replay", &file]);
+        let printed = stdout(&output);
         assert!(output.status.success() && printed.contains("the recording, byte for byte"), "{printed}");
     }
 }

@@ -1,18 +1,16 @@
-//! Looking into helms while they play, and giving a boat another strategy.
+//! Helm queries while a game is on, and a boat that is given another strategy.
 
-use crate::support::{FOUR, LIMIT, Process, Sim, long_game, run, scenarios, squall, write};
+use crate::support::{FOUR, LIMIT, Process, Sim, long_game, run, scenarios, squall, stderr, stdout, temporary, write};
 use game::helm::HelmReport;
-use game::message::GameInfo;
-use game::topic::{self, GameName};
-use std::io::{BufRead, BufReader, Read};
+use game::topic;
 use std::process::Stdio;
 
 /// A game that goes on, with an agent for each boat.
 fn game() -> (tempfile::TempDir, Sim, Vec<Process>) {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let sim = Sim::start(&long_game(dir.path(), ""), &[]);
     let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
-    sim.wait_for(|telling| telling["tell"] == "started");
+    sim.wait_for_kind("started");
     sim.play_on(1.0);
     (dir, sim, agents)
 }
@@ -20,12 +18,11 @@ fn game() -> (tempfile::TempDir, Sim, Vec<Process>) {
 #[test]
 fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
     let (_dir, sim, _agents) = game();
-    let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
-    let notice = bus.ask(&topic::scenario(&name), Vec::new(), LIMIT).expect("the hub is there").expect("an answer");
-    let notice: GameInfo = serde_json::from_slice(&notice).expect("a notice");
-    let two = notice.scenario.vehicle_by_name("blue_two").expect("it is there");
+    let (bus, name) = (sim.bus(), sim.name());
+    let scenario = sim.info(&bus).scenario;
+    let two = scenario.vehicle_by_name("blue_two").expect("it is there");
     let ask = |question: &[u8]| -> HelmReport {
-        let key = topic::helm(&name, &notice.scenario, two);
+        let key = topic::helm(&name, &scenario, two);
         let answer = bus.ask(&key, question.to_vec(), LIMIT).expect("the hub is there");
         serde_json::from_slice(&answer.expect("an answer")).expect("a report")
     };
@@ -43,9 +40,8 @@ fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
     let before = ask(b"").at;
     sim.play_on(1.0);
     assert!(ask(b"").at > before);
-    let args = ["helm", "--connect", &sim.endpoint, "--game", &sim.game, "--vehicle"];
-    let other = run(&[&args[..], &["green_one"]].concat());
-    let said = String::from_utf8_lossy(&other.stderr).into_owned();
+    let other = sim.run(&["helm", "--vehicle", "green_one"]);
+    let said = stderr(&other);
     assert!(!other.status.success() && said.contains("blue_one, blue_two, red_one, red_two"), "{said}");
     sim.stop();
 }
@@ -53,20 +49,19 @@ fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
 #[test]
 fn watch_shows_a_helm_and_helm_writes_its_functions() {
     let (dir, sim, _agents) = game();
-    let leaf = ["--connect", &sim.endpoint, "--game", &sim.game];
-    let mut command = squall(&[&["watch", "--helm", "blue_two", "--rate", "20"], &leaf[..]].concat());
+    let mut command = sim.squall(&["watch", "--helm", "blue_two", "--rate", "20"]);
     command.stdout(Stdio::piped());
     let mut watch = Process::start(command);
-    let mut lines = BufReader::new(watch.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
+    let mut lines = watch.lines();
     for line in lines.by_ref().take(3) {
         let is_mode = |mode: &&str| line.contains(&format!("blue_two  {mode}  course"));
         assert!(["attacking", "returning", "tagged"].iter().any(is_mode), "{line}");
     }
     let files = ["one.csv", "one.png", "one.svg"].map(|name| dir.path().join(name).display().to_string());
     let args = ["helm", "--vehicle", "blue_two", "--csv", &files[0], "--png", &files[1], "--svg", &files[2]];
-    let output = run(&[&args[..], &leaf[..]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let page = String::from_utf8_lossy(&output.stdout).into_owned();
+    let output = sim.run(&args);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let page = stdout(&output);
     assert!(
         page.contains("goes by easy_attacker") && page.contains("waypoint") && page.contains("op_region"),
         "{page}"
@@ -85,16 +80,16 @@ fn watch_shows_a_helm_and_helm_writes_its_functions() {
 
 #[test]
 fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let scenario = long_game(dir.path(), "").display().to_string();
     let mut command = squall(&["run", &scenario, "--pace", "1x", "--no-record"]);
     command.stdout(Stdio::piped());
     let mut game = Process::start(command);
-    let mut lines = BufReader::new(game.0.stdout.take().expect("piped")).lines().map_while(Result::ok);
+    let mut lines = game.lines();
     let open = lines.next().expect("where it is");
     let words: Vec<&str> = open.split_whitespace().collect();
     let ["game", name, "at", endpoint] = words[..] else { panic!("{open}") };
-    lines.by_ref().find(|line| line.contains("every boat has a mind")).expect("it starts");
+    lines.by_ref().find(|line| line.contains("every boat has an agent")).expect("it starts");
     let csv = dir.path().join("one.csv").display().to_string();
     // All of them at once: half a megabyte from each goes through the hub.
     std::thread::scope(|scope| {
@@ -103,7 +98,7 @@ fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
             let csv = format!("{csv}.{vehicle}");
             scope.spawn(move || {
                 let output = run(&[&args[..], &[csv.as_str()]].concat());
-                assert!(output.status.success(), "{vehicle}: {}", String::from_utf8_lossy(&output.stderr));
+                assert!(output.status.success(), "{vehicle}: {}", stderr(&output));
             });
         }
     });
@@ -114,22 +109,15 @@ fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
 
 #[test]
 fn an_agent_plays_by_a_strategy_file_of_its_own() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let text = format!("base = \"{}/strategies/easy_attacker.toml\"\nabout = \"mine\"\n", scenarios());
     let mine = write(dir.path(), "mine.toml", &text).display().to_string();
     let sim = Sim::start(&long_game(dir.path(), ""), &[]);
-    let agent = |words: &[&str]| {
-        let args = ["agent", "--connect", &sim.endpoint, "--game", &sim.game];
-        let mut command = squall(&[&args[..], words].concat());
-        command.stdout(Stdio::null()).stderr(Stdio::null());
-        Process::start(command)
-    };
-    let _ours = agent(&["--vehicle", "blue_one", "blue_two", "--strategy", &mine]);
-    let _theirs = agent(&["--vehicle", "red_one", "red_two"]);
-    sim.wait_for(|telling| telling["tell"] == "started");
+    let _ours = sim.quiet(&["agent", "--vehicle", "blue_one", "blue_two", "--strategy", &mine]);
+    let _theirs = sim.quiet(&["agent", "--vehicle", "red_one", "red_two"]);
+    sim.wait_for_kind("started");
     for (vehicle, program) in [("blue_one", "mine"), ("blue_two", "mine"), ("red_two", "easy_attacker")] {
-        let output = run(&["helm", "--connect", &sim.endpoint, "--game", &sim.game, "--vehicle", vehicle]);
-        let page = String::from_utf8_lossy(&output.stdout).into_owned();
+        let page = stdout(&sim.run(&["helm", "--vehicle", vehicle]));
         assert!(page.contains(&format!("goes by {program}")), "{page}");
     }
     sim.stop();
@@ -137,14 +125,12 @@ fn an_agent_plays_by_a_strategy_file_of_its_own() {
 
 #[test]
 fn mistakes_in_a_strategy_file_are_told_before_joining() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let bad = write(dir.path(), "bad.toml", "about = \"bad\"\n[behaviour.go]\nkind = \"fly\"\n").display().to_string();
-    // NoRecorder is there to join: it does not even look.
+    // There is no game to join: it does not even look for one.
     let mut command = squall(&["agent", "--vehicle", "blue_one", "--strategy", &bad, "--wait-s", "50"]);
     command.stderr(Stdio::piped());
     let mut agent = Process::start(command);
-    assert!(!agent.wait().success());
-    let mut said = String::new();
-    agent.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+    let said = agent.refusal();
     assert!(said.contains("bad.toml:3:") && said.contains("\"fly\"") && said.contains("waypoint"), "{said}");
 }

@@ -1,6 +1,6 @@
 //! Two machines: network namespaces joined by a cable, which is cut for a while.
 
-use crate::support::{FOUR, Process, Sim, long_game};
+use crate::support::{FOUR, Process, Sim, long_game, stderr, temporary};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -11,11 +11,7 @@ struct Hosts {
 
 fn ip(args: &str) -> Result<(), String> {
     let output = Command::new("ip").args(args.split_whitespace()).output().map_err(|e| format!("ip: {e}"))?;
-    if output.status.success() {
-        Ok(())
-    } else {
-        Err(format!("ip {args}: {}", String::from_utf8_lossy(&output.stderr).trim()))
-    }
+    if output.status.success() { Ok(()) } else { Err(format!("ip {args}: {}", stderr(&output).trim())) }
 }
 
 impl Hosts {
@@ -79,18 +75,18 @@ fn two_machines_play_a_game_and_survive_a_cable_that_is_cut() {
             return;
         }
     };
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let game = long_game(dir.path(), "patience_s = 2");
     let args = ["--game", "two-hosts", "--listen", "tcp/10.77.0.1:7447"];
     let sim = Sim::start_with(hosts.squall(0), &game, &args);
     let mut blue = hosts.agent(0, "two-hosts", &FOUR[..2]);
     let mut red = hosts.agent(1, "two-hosts", &FOUR[2..]);
-    sim.wait_for(|telling| telling["tell"] == "started");
+    sim.wait_for_kind("started");
     // For a moment, and until both ends have given the link up: zenoh does after ten seconds.
     for cut_s in [2, 15] {
         sim.play_on(5.0);
         hosts.cable("down");
-        // Longer than the sim's patience: the boats over there are without a mind, the game goes on.
+        // Longer than the sim's patience: the boats over there are without an agent, the game goes on.
         sim.wait_for_event("agent_lost", "red_one");
         sim.play_on(1.0);
         std::thread::sleep(Duration::from_secs(cut_s));

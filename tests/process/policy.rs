@@ -1,12 +1,11 @@
 //! Policies outside of the helm: another program proposes, the helm weighs it against keeping inside of the field.
 
-use crate::support::{LIMIT, Process, Sim, scenarios, squall, write};
+use crate::support::{Sim, scenarios, temporary, two_fleets, write};
 use bus::{Bus, Declaration, Delivery};
 use game::message::{Frame, GameInfo, Message, PolicyProposal, Stamp};
 use game::topic::{self, GameName};
 use game::{Picture, TeamId, VehicleId, codec};
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -23,25 +22,14 @@ fn game(dir: &Path, is_safe: bool) -> (PathBuf, PathBuf) {
     };
     let strategy =
         format!("{safety}\nabout = \"does what it is told\"\n[behaviour.told]\nkind = \"policy\"\nttl_s = 2\n");
-    let boat = |name: &str| {
-        format!(
-            "[[team]]\nname = \"{name}\"\nstrategy = \"{root}/strategies/idle.toml\"\n\
-             [[fleet]]\nteam = \"{name}\"\nname = \"{name}_{{}}\"\ncount = 1\nspawn = {{}}\n"
-        )
-    };
-    let game = format!(
-        "field = \"{root}/fields/popolopen_2025.toml\"\nrules = \"{root}/rules/aquaticus_2023.toml\"\n\
-         boat = \"{root}/boats/surveyor_m1_8.toml\"\nduration_s = {LIMIT_S}\n{}{}",
-        boat("blue"),
-        boat("red")
-    );
+    let game = format!("duration_s = {LIMIT_S}\n{}", two_fleets(1, &format!("{root}/strategies/idle.toml")));
     (write(dir, "told_game.toml", &game), write(dir, "told.toml", &strategy))
 }
 
 /// A policy as another program would be: it sees the picture and wants to drive north in a zigzag, whatever happens. Now
 /// and then it is slow.
-fn drive_north(bus: &Bus, name: &GameName, notice: &GameInfo) -> Declaration {
-    let publisher = bus.publisher(topic::policy(name, &notice.scenario, ME), Delivery::Wait).expect("the hub is there");
+fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
+    let publisher = bus.publisher(topic::policy(name, &info.scenario, ME), Delivery::Wait).expect("the hub is there");
     let answer = move |bytes: &[u8]| {
         let picture: Picture = codec::decode(bytes).expect("a picture");
         let stamp = Stamp { version: PolicyProposal::VERSION, ..picture.stamp };
@@ -55,33 +43,27 @@ fn drive_north(bus: &Bus, name: &GameName, notice: &GameInfo) -> Declaration {
         publisher.send(&PolicyProposal { vehicle: VehicleId(1), course_rad: 3.0, ..proposal }).unwrap_or_default();
         publisher.send(&proposal).unwrap_or_default();
     };
-    bus.subscribe(topic::picture(name, &notice.scenario, TeamId(0)), answer).expect("the hub is there")
+    bus.subscribe(topic::picture(name, &info.scenario, TeamId(0)), answer).expect("the hub is there")
 }
 
 /// Plays a game with the policy, or without one: what happened, and the frames that were seen of it.
 fn play(is_safe: bool, has_policy: bool) -> (serde_json::Value, Vec<Frame>) {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let (game, strategy) = game(dir.path(), is_safe);
     let sim = Sim::start(&game, &[]);
-    let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
-    let notice = bus.ask(&topic::scenario(&name), Vec::new(), LIMIT).expect("the hub is there").expect("an answer");
-    let notice: GameInfo = serde_json::from_slice(&notice).expect("a notice");
+    let (bus, name) = (sim.bus(), sim.name());
+    let info = sim.info(&bus);
     let frames = Arc::new(Mutex::new(Vec::new()));
-    let film = Arc::clone(&frames);
-    let see = move |bytes: &[u8]| film.lock().expect("whole").push(codec::decode(bytes).expect("a frame"));
+    let seen = Arc::clone(&frames);
+    let see = move |bytes: &[u8]| seen.lock().expect("whole").push(codec::decode(bytes).expect("a frame"));
     let _seen = bus.subscribe(topic::frame(&name), see).expect("the hub is there");
-    let _policy = has_policy.then(|| drive_north(&bus, &name, &notice));
+    let _policy = has_policy.then(|| drive_north(&bus, &name, &info));
     let strategy = strategy.display().to_string();
-    let mut words = vec!["agent", "--connect", &sim.endpoint, "--game", &sim.game, "--vehicle", "blue_1"];
-    words.extend(["--strategy", &strategy]);
-    if has_policy {
-        words.extend(["--policy-wait-s", "2"]);
-    }
-    let mut command = squall(&words);
-    command.stdout(Stdio::null()).stderr(Stdio::null());
-    let _told = Process::start(command);
+    let wait: &[&str] = if has_policy { &["--policy-wait-s", "2"] } else { &[] };
+    let args = ["agent", "--vehicle", "blue_1", "--strategy", &strategy];
+    let _told = sim.quiet(&[&args[..], wait].concat());
     let _still = sim.agent(&["red_1"]);
-    let done = sim.wait_for(|telling| telling["tell"] == "done");
+    let done = sim.wait_for_kind("done");
     let frames = frames.lock().expect("whole").clone();
     (done["outcome"].clone(), frames)
 }

@@ -1,11 +1,11 @@
 //! Recordings as people make them: of whole games, of games that were killed, of real boats; and games played again.
 
-use crate::support::{FOUR, Sim, long_game, result_of, run, squall};
+use crate::support::{FOUR, Sim, based_on, long_game, refusal_of, result_of, run, temporary, write};
 use bus::Delivery;
 use game::VehicleId;
 use game::external::LinkBytes;
 use game::message::{Message, PolicyProposal, Stamp};
-use game::topic::{self, GameName};
+use game::topic;
 use recording::Recording;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -34,7 +34,7 @@ fn a_game_recorded_replayed_and_played_again_is_one_game() {
     let game = "scenarios/games/pav01_vs_pav01.toml";
     let mut digests = Vec::new();
     for how in [&["--in-process"][..], &["--agents-per-process", "2"]] {
-        let dir = tempfile::tempdir().expect("a temporary directory");
+        let dir = temporary();
         let folder = dir.path().join("runs").display().to_string();
         let result = result_of(&[&[game, "--record", &folder], how].concat());
         let path = only_recording(Path::new(&folder));
@@ -58,7 +58,7 @@ fn a_game_recorded_replayed_and_played_again_is_one_game() {
 
 #[test]
 fn a_killed_sim_leaves_a_recording_up_to_the_last_second() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let path = dir.path().join("killed.mcap");
     let file = path.display().to_string();
     let mut sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x", "--record", &file]);
@@ -75,12 +75,12 @@ fn a_killed_sim_leaves_a_recording_up_to_the_last_second() {
 
 #[test]
 fn what_is_heard_is_written_down_if_it_is_sound() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let path = dir.path().join("heard.mcap");
     let file = path.display().to_string();
     let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x", "--record", &file]);
     let _agent = sim.agent(&FOUR);
-    let (bus, game) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
+    let (bus, game) = (sim.bus(), sim.name());
     let scenario = game::scenario::load(&long_game(dir.path(), "")).unwrap_or_else(|e| panic!("{e}"));
     // A recording begins with the game.
     sim.play_on(1.0);
@@ -103,9 +103,8 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     };
     assert_eq!(json("control"), serde_json::json!({"control": "halt"}));
     assert_eq!(json("run")["phase"], "over");
-    let output = run(&["sim", "scenarios/games/attack_1v1.toml", "--record", &file]);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success() && said.contains(&format!("cannot record into {file}")), "{said}");
+    let said = refusal_of(&["sim", "scenarios/games/attack_1v1.toml", "--record", &file]);
+    assert!(said.contains(&format!("cannot record into {file}")), "{said}");
 }
 
 #[test]
@@ -114,35 +113,29 @@ fn what_is_no_recording_is_refused_with_the_reason() {
         [("README.md", "does not begin as MCAP files do"), ("nowhere.mcap", "cannot read the recording")]
     {
         for how in [&["replay", file][..], &["replay", "--check", file]] {
-            let output = squall(how).output().expect("it starts");
-            let said = String::from_utf8_lossy(&output.stderr);
-            assert!(!output.status.success() && said.contains(file) && said.contains(part), "{how:?}: {said}");
+            let said = refusal_of(how);
+            assert!(said.contains(file) && said.contains(part), "{how:?}: {said}");
         }
     }
-    let dir = tempfile::tempdir().expect("a temporary directory");
-    let output = run(&["replay", "--check", "README.md", "--listen", "127.0.0.1:0"]);
-    assert!(String::from_utf8_lossy(&output.stderr).contains("--check shows no page"));
-    let taken = dir.path().join("file");
-    std::fs::write(&taken, "").expect("it can be written");
-    let taken = taken.display().to_string();
-    let output = run(&["run", "scenarios/games/attack_1v1.toml", "--in-process", "--record", &taken]);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success() && said.contains("cannot make the folder"), "{said}");
-    let output = run(&["run", "scenarios/games/attack_1v1.toml", "--no-record", "--token", "secret"]);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success() && said.contains("they need --view"), "{said}");
-    let output = run(&["view", "--listen", "0.0.0.0:0"]);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success() && said.contains("or give a token"), "{said}");
+    let dir = temporary();
+    let taken = write(dir.path(), "file", "").display().to_string();
+    let game = "scenarios/games/attack_1v1.toml";
+    for (args, part) in [
+        (&["replay", "--check", "README.md", "--listen", "127.0.0.1:0"][..], "--check shows no page"),
+        (&["run", game, "--in-process", "--record", &taken], "cannot make the folder"),
+        (&["run", game, "--no-record", "--token", "secret"], "they need --view"),
+        (&["view", "--listen", "0.0.0.0:0"], "or give a token"),
+    ] {
+        let said = refusal_of(args);
+        assert!(said.contains(part), "{args:?}: {said}");
+    }
 }
 
 #[test]
 fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let (runs, gateways) = (dir.path().join("runs"), dir.path().join("gateways"));
-    let game = dir.path().join("short.toml");
-    let text = format!("base = \"{}/games/mixed_2v2.toml\"\nduration_s = 60\n", crate::support::scenarios());
-    std::fs::write(&game, text).expect("a file can be written");
+    let game = based_on(dir.path(), "mixed_2v2", "duration_s = 60");
     let [game, runs_text, gateways_text] = [&game, &runs, &gateways].map(|path| path.display().to_string());
     let config = "scenarios/gateways/emulated.toml";
     let options = ["--emulate", "--pace", "10x", "--gateway", config, "--record-gateways", &gateways_text];
@@ -178,7 +171,7 @@ fn mcap_bytes(file: &[u8], topic: &str) -> Vec<u8> {
 
 #[test]
 fn a_recording_can_be_read_while_the_game_goes_on() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let path = dir.path().join("live.mcap");
     let file = path.display().to_string();
     let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x", "--record", &file]);

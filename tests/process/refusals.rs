@@ -1,12 +1,11 @@
 //! Agents that send what they should not: refused with a counted reason, the game unharmed.
 
-use crate::support::{FOUR, Sim, long_game};
+use crate::support::{FOUR, Sim, long_game, temporary};
 use bus::{Bus, Delivery, Latest, Publisher};
 use game::codec;
 use game::message::{JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
 use game::topic::{self, GameName};
 use game::{Order, Picture, TeamId, VehicleId};
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -33,15 +32,13 @@ fn request(vehicles: &[&str]) -> JoinRequest {
 impl Rogue {
     fn enter(sim: &Sim) -> Rogue {
         let bus = sim.bus();
-        let game = GameName::new(&sim.game).expect("a name");
+        let game = sim.name();
         let pictures = Arc::new(Latest::new(1));
         let slots = Arc::clone(&pictures);
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/games/pav01_vs_pav01.toml");
-        let scenario = game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"));
-        let key = topic::picture(&game, &scenario, TeamId(1));
+        let key = topic::picture(&game, &sim.info(&bus).scenario, TeamId(1));
         let standing = bus.subscribe(key, move |bytes| slots.put(0, codec::decode(bytes).expect("a picture")));
         let JoinReply::Granted { ticket, .. } = join(&bus, &game, &request(&["red_two"])) else {
-            panic!("the seat is free")
+            panic!("the boat is free")
         };
         let orders = bus.publisher(topic::orders(&game, "rogue"), Delivery::Wait).expect("a session");
         Rogue { _bus: bus, pictures, orders, ticket, _standing: standing.expect("a session") }
@@ -61,7 +58,7 @@ impl Rogue {
 
 #[test]
 fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let sim = Sim::start(&long_game(dir.path(), "patience_s = 20"), &[]);
     let _agents = sim.agent(&FOUR[..3]);
     let rogue = Rogue::enter(&sim);
@@ -112,10 +109,10 @@ fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
 
 #[test]
 fn another_version_is_a_clear_refusal() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let sim = Sim::start(&long_game(dir.path(), ""), &[]);
     let bus = sim.bus();
-    let game = GameName::new(&sim.game).expect("a name");
+    let game = sim.name();
     let JoinReply::Refused { reason } =
         join(&bus, &game, &JoinRequest { version: "9.9.9".to_owned(), ..request(&["blue_one"]) })
     else {

@@ -1,14 +1,15 @@
-//! People ashore have a hand in a game: they pause it, step it, slow it down, and make boats hold.
+//! People on shore control a game: they pause it, step it, slow it down, and make boats hold.
 
-use crate::support::{FOUR, LIMIT, Sim, long_game, result_of, scenarios, write};
+use crate::support::{FOUR, LIMIT, Sim, based_on, long_game, result_of, temporary};
 use bus::{Bus, Declaration, Delivery, Publisher, Watched};
 use game::message::{Control, Frame};
 use game::run_state::{Phase, RunState};
-use game::topic::{self, GameName};
+use game::topic;
 use game::{codec, math};
+use serde_json::Value;
 use std::sync::Arc;
 
-/// Somebody ashore.
+/// An operator on shore.
 struct Shore {
     control: Publisher,
     run: Arc<Watched<RunState>>,
@@ -19,7 +20,7 @@ struct Shore {
 
 impl Shore {
     fn of(sim: &Sim) -> Shore {
-        let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
+        let (bus, name) = (sim.bus(), sim.name());
         let (run, frame) = (Arc::new(Watched::new(RunState::default())), Arc::new(Watched::new(Frame::default())));
         let (to_run, to_frame) = (Arc::clone(&run), Arc::clone(&frame));
         let take_run = move |bytes: &[u8]| {
@@ -59,9 +60,8 @@ impl Shore {
 
 #[test]
 fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
-    let text = format!("base = \"{}/games/pav01_vs_pav01.toml\"\nduration_s = 120\n", scenarios());
-    let game = write(dir.path(), "short.toml", &text);
+    let dir = temporary();
+    let game = based_on(dir.path(), "pav01_vs_pav01", "duration_s = 120");
     let want = result_of(&[&game.display().to_string(), "--in-process"])["digest"].clone();
     let sim = Sim::start(&game, &["--speed", "20x"]);
     let shore = Shore::of(&sim);
@@ -82,14 +82,14 @@ fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
     shore.ask(Control::Resume);
     shore.wait_for_run("it goes on", |run| run.phase == Phase::Playing);
     shore.ask(Control::Speed(None));
-    let done = sim.wait_for(|telling| telling["tell"] == "done");
+    let done = sim.wait_for_kind("done");
     assert_eq!(done["outcome"]["digest"], want, "pauses are not part of a game");
     assert_eq!(done["run"]["refused"]["out_of_place"], 0);
 }
 
 #[test]
 fn a_game_goes_as_fast_as_it_is_asked_to() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     for (pace, is_lockstep) in [("lockstep", true), ("realtime", false)] {
         let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", pace]);
         let shore = Shore::of(&sim);
@@ -109,8 +109,8 @@ fn a_game_goes_as_fast_as_it_is_asked_to() {
 }
 
 #[test]
-fn boats_hold_for_as_long_as_somebody_ashore_wants_it() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+fn boats_hold_for_as_long_as_an_operator_wants_it() {
+    let dir = temporary();
     let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x"]);
     let shore = Shore::of(&sim);
     let _agent = sim.agent(&FOUR);
@@ -124,16 +124,16 @@ fn boats_hold_for_as_long_as_somebody_ashore_wants_it() {
     ] {
         shore.wait_for_frame("they are under way", |frame| speed(frame) > 1.0);
         shore.ask(stop);
-        sim.wait_for(|telling| telling["tell"] == "event" && telling["event"] == stopped);
+        sim.wait_for_event(stopped, Value::Null);
         shore.wait_for_frame("all stop", |frame| frame.stopped && speed(frame) < 0.1);
         shore.ask(go);
-        sim.wait_for(|telling| telling["tell"] == "event" && telling["event"] == gone_on);
+        sim.wait_for_event(gone_on, Value::Null);
     }
     // Whoever lets them go on after a halt does not lift an E-stop.
     for control in [Control::Halt, Control::EStop, Control::GoOn] {
         shore.ask(control);
     }
-    sim.wait_for(|telling| telling["tell"] == "event" && telling["event"] == "went_on");
+    sim.wait_for_event("went_on", Value::Null);
     shore.wait_for_frame("they stay stopped", |frame| frame.stopped && speed(frame) < 0.1);
     sim.stop();
 }

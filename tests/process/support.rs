@@ -1,12 +1,15 @@
-//! Starting the program, reading what it tells, waiting with a limit.
+//! Starting the program, reading what it reports, waiting with a limit.
 
 use bus::{Bus, Net};
+use game::message::GameInfo;
+use game::topic::{self, GameName};
 use serde_json::Value;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Output, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 /// Longer than anything should take on a busy machine; a test that waits this long has failed.
 pub(crate) const LIMIT: Duration = Duration::from_secs(60);
@@ -23,25 +26,74 @@ pub(crate) fn run(args: &[&str]) -> Output {
     squall(args).output().expect("the program starts")
 }
 
+/// What it printed to standard output.
+pub(crate) fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// What it printed to standard error.
+pub(crate) fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Runs the program, which is to fail, and gives what it says.
+pub(crate) fn refusal_of(args: &[&str]) -> String {
+    let output = run(args);
+    assert!(!output.status.success(), "{args:?} works");
+    stderr(&output)
+}
+
+/// A folder that is gone with the test.
+pub(crate) fn temporary() -> TempDir {
+    tempfile::tempdir().expect("a temporary directory")
+}
+
+/// Waits until something is so.
+pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !is_so() {
+        assert!(start.elapsed() < LIMIT, "never: {what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
 /// Runs a game to its end and gives its result.
 pub(crate) fn result_of(args: &[&str]) -> Value {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let json = dir.path().join("result.json");
     let json_text = json.display().to_string();
     let unrecorded: &[&str] = if args.contains(&"--record") { &[] } else { &["--no-record"] };
     let output = run(&[&["run"], args, unrecorded, &["--json", &json_text]].concat());
-    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{args:?}: {}", stderr(&output));
     serde_json::from_str(&std::fs::read_to_string(&json).expect("a result was written")).expect("it is JSON")
 }
 
 /// A game file of two against two that lasts long enough for anything; `more` are further lines on top.
 pub(crate) fn long_game(dir: &Path, more: &str) -> PathBuf {
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let path = dir.join("long_game.toml");
-    let base = scenarios.join("games/pav01_vs_pav01.toml");
-    let text = format!("base = \"{}\"\nduration_s = 80000\n{more}\n", base.display());
-    std::fs::write(&path, text).expect("a file can be written");
-    path
+    based_on(dir, "pav01_vs_pav01", &format!("duration_s = 80000\n{more}"))
+}
+
+/// A game file based on one of ours, with further lines.
+pub(crate) fn based_on(dir: &Path, game: &str, more: &str) -> PathBuf {
+    let text = format!("base = \"{}/games/{game}.toml\"\n{more}\n", scenarios());
+    write(dir, &format!("{game}_changed.toml"), &text)
+}
+
+/// The lines of a game on the field of Popolopen with so many Surveyors a team, that all go by one strategy file.
+pub(crate) fn two_fleets(count: usize, strategy: &str) -> String {
+    let root = scenarios();
+    let team = |name: &str| {
+        format!(
+            "[[team]]\nname = \"{name}\"\nstrategy = \"{strategy}\"\n\
+             [[fleet]]\nteam = \"{name}\"\nname = \"{name}_{{}}\"\ncount = {count}\nspawn = {{}}\n"
+        )
+    };
+    format!(
+        "field = \"{root}/fields/popolopen_2025.toml\"\nrules = \"{root}/rules/aquaticus_2023.toml\"\n\
+         boat = \"{root}/boats/surveyor_m1_8.toml\"\n{}{}",
+        team("blue"),
+        team("red")
+    )
 }
 
 /// The folder of scenario files.
@@ -59,14 +111,13 @@ pub(crate) fn write(dir: &Path, name: &str, text: &str) -> PathBuf {
 /// A real boat that attacks, and a simulated one that lies still.
 pub(crate) fn real_attacker(dir: &Path) -> PathBuf {
     let root = scenarios();
-    let text = format!(
-        "base = \"{root}/games/pav01_vs_pav01.toml\"\nduration_s = 80000\n\
-         [[team]]\nname = \"blue\"\nstrategy = \"{root}/strategies/easy_attacker.toml\"\n\
+    let more = format!(
+        "[[team]]\nname = \"blue\"\nstrategy = \"{root}/strategies/easy_attacker.toml\"\n\
          [[team]]\nname = \"red\"\nstrategy = \"{root}/strategies/idle.toml\"\n\
          [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nsource = \"external\"\n\
          [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\n"
     );
-    write(dir, "real_attacker.toml", &text)
+    long_game(dir, &more)
 }
 
 /// A process that is gone with the test.
@@ -90,14 +141,25 @@ impl Process {
     }
 
     pub(crate) fn wait(&mut self) -> ExitStatus {
-        let start = Instant::now();
-        loop {
-            if let Some(status) = self.0.try_wait().expect("it can be waited for") {
-                return status;
-            }
-            assert!(start.elapsed() < LIMIT, "the process does not end");
-            std::thread::sleep(Duration::from_millis(10));
-        }
+        let mut ended = None;
+        wait_until("the process ends", || {
+            ended = self.0.try_wait().expect("it can be waited for");
+            ended.is_some()
+        });
+        ended.expect("it has ended")
+    }
+
+    /// Waits for it to fail, and gives what it said on its piped standard error.
+    pub(crate) fn refusal(&mut self) -> String {
+        assert!(!self.wait().success());
+        let mut said = String::new();
+        self.0.stderr.take().expect("piped").read_to_string(&mut said).expect("text");
+        said
+    }
+
+    /// The lines of its piped standard output.
+    pub(crate) fn lines(&mut self) -> impl Iterator<Item = String> + use<> {
+        BufReader::new(self.0.stdout.take().expect("piped")).lines().map_while(Result::ok)
     }
 }
 
@@ -108,11 +170,11 @@ impl Drop for Process {
     }
 }
 
-/// A sim whose tellings the test reads.
+/// A sim whose progress messages the test reads.
 pub(crate) struct Sim {
     pub(crate) process: Process,
-    life_line: Option<ChildStdin>,
-    tellings: Receiver<Value>,
+    stdin: Option<ChildStdin>,
+    messages: Receiver<Value>,
     pub(crate) game: String,
     pub(crate) endpoint: String,
 }
@@ -129,49 +191,56 @@ impl Sim {
         program.args(["sim", &scenario.display().to_string(), "--for-parent"]).args(args);
         program.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = Process::start(program);
-        let output = process.0.stdout.take().expect("its output is piped");
-        let (sender, tellings) = channel();
+        let lines = process.lines();
+        let (sender, messages) = channel();
         std::thread::spawn(move || {
-            let lines = BufReader::new(output).lines().map_while(Result::ok);
             lines.filter_map(|line| serde_json::from_str(&line).ok()).map_while(|v| sender.send(v).ok()).for_each(drop);
         });
-        let life_line = process.0.stdin.take();
-        let mut sim = Sim { process, life_line, tellings, game: String::new(), endpoint: String::new() };
-        let open = sim.wait_for(|telling| telling["tell"] == "open");
+        let stdin = process.0.stdin.take();
+        let mut sim = Sim { process, stdin, messages, game: String::new(), endpoint: String::new() };
+        let open = sim.wait_for_kind("open");
         sim.game = open["game"].as_str().expect("a name").to_owned();
         sim.endpoint = open["endpoint"].as_str().expect("an endpoint").to_owned();
         sim
     }
 
-    /// The next telling like this.
+    /// The next message like this.
     pub(crate) fn wait_for(&self, is_it: impl Fn(&Value) -> bool) -> Value {
         let start = Instant::now();
         loop {
             let left = LIMIT.saturating_sub(start.elapsed());
-            let telling = self.tellings.recv_timeout(left).expect("the sim tells it in time");
-            if is_it(&telling) {
-                return telling;
+            let message = self.messages.recv_timeout(left).expect("the sim reports it in time");
+            if is_it(&message) {
+                return message;
             }
         }
     }
 
+    /// The next message of this kind.
+    pub(crate) fn wait_for_kind(&self, kind: &str) -> Value {
+        self.wait_for(|message| message["kind"] == kind)
+    }
+
     /// Waits until the game has gone on for a while.
     pub(crate) fn play_on(&self, seconds: f64) -> f64 {
-        let now_s = |telling: &Value| telling["now_s"].as_f64();
-        let from_s = now_s(&self.wait_for(|t| t["tell"] == "progress")).expect("a time");
-        let there = |telling: &Value| now_s(telling).is_some_and(|now| now >= from_s + seconds);
+        let now_s = |message: &Value| message["now_s"].as_f64();
+        let from_s = now_s(&self.wait_for_kind("progress")).expect("a time");
+        let there = |message: &Value| now_s(message).is_some_and(|now| now >= from_s + seconds);
         now_s(&self.wait_for(there)).expect("a time")
     }
 
-    /// Waits for an event of a boat.
-    pub(crate) fn wait_for_event(&self, event: &str, vehicle: &str) -> Value {
-        self.wait_for(|t| t["tell"] == "event" && t["event"] == event && t["vehicle"] == vehicle)
+    /// Waits for an event of a boat; `null` is one of the whole game.
+    pub(crate) fn wait_for_event(&self, event: &str, vehicle: impl Into<Value>) -> Value {
+        let vehicle = vehicle.into();
+        self.wait_for(|message| {
+            message["kind"] == "event" && message["event"] == event && message["vehicle"] == vehicle
+        })
     }
 
     /// Ends the game and gives its report.
     pub(crate) fn stop(mut self) -> Value {
-        self.life_line = None;
-        let done = self.wait_for(|telling| telling["tell"] == "done");
+        self.stdin = None;
+        let done = self.wait_for_kind("done");
         self.process.wait();
         done
     }
@@ -179,6 +248,34 @@ impl Sim {
     /// An agent for some of its vehicles.
     pub(crate) fn agent(&self, vehicles: &[&str]) -> Process {
         agent(&self.endpoint, &self.game, vehicles)
+    }
+
+    /// A process with these arguments, and where this game is; nobody reads what it prints.
+    pub(crate) fn quiet(&self, args: &[&str]) -> Process {
+        let mut command = self.squall(args);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        Process::start(command)
+    }
+
+    /// The game's name.
+    pub(crate) fn name(&self) -> GameName {
+        GameName::new(&self.game).expect("a name")
+    }
+
+    /// The program with these arguments, and where this game is.
+    pub(crate) fn squall(&self, args: &[&str]) -> Command {
+        squall(&[args, &["--connect", &self.endpoint, "--game", &self.game]].concat())
+    }
+
+    /// Runs it to its end.
+    pub(crate) fn run(&self, args: &[&str]) -> Output {
+        self.squall(args).output().expect("the program starts")
+    }
+
+    /// What the game is, as it says itself.
+    pub(crate) fn info(&self, bus: &Bus) -> GameInfo {
+        let info = bus.ask(&topic::scenario(&self.name()), Vec::new(), LIMIT).expect("the hub is there");
+        serde_json::from_slice(&info.expect("an answer")).expect("a game")
     }
 
     /// A session of our own at its hub.

@@ -1,14 +1,14 @@
-//! Minds of a team that talk to each other from process to process: heard exactly one decision later.
+//! Team messages from process to process: received exactly one decision later.
 
 use crate::games::game_itself;
-use crate::support::{LIMIT, Process, Sim, result_of, scenarios, write};
+use crate::support::{LIMIT, Process, Sim, result_of, scenarios, temporary, two_fleets, wait_until, write};
 use game::helm::HelmReport;
 use game::message::{GameInfo, Message, Say, Stamp, Word};
 use game::topic::{self, GameName};
 use game::{TeamId, VehicleId, codec};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::channel;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A game of three against three who steer by what their mates said.
 fn talking_game(dir: &Path, duration_s: f64) -> PathBuf {
@@ -31,29 +31,18 @@ weight = 40
 "#
     );
     write(dir, "talker.toml", &strategy);
-    let team = |name: &str| {
-        format!(
-            "[[team]]\nname = \"{name}\"\nstrategy = \"talker.toml\"\n\
-             [[fleet]]\nteam = \"{name}\"\nname = \"{name}_{{}}\"\ncount = 3\nspawn = {{}}\n"
-        )
-    };
-    let game = format!(
-        "field = \"{root}/fields/popolopen_2025.toml\"\nrules = \"{root}/rules/aquaticus_2023.toml\"\n\
-         boat = \"{root}/boats/surveyor_m1_8.toml\"\nduration_s = {duration_s}\npatience_s = 2\n{}{}",
-        team("blue"),
-        team("red")
-    );
+    let game = format!("duration_s = {duration_s}\npatience_s = 2\n{}", two_fleets(3, "talker.toml"));
     write(dir, "talking.toml", &game)
 }
 
 #[test]
 fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let game = talking_game(dir.path(), 200.0).display().to_string();
     let mut digests = Vec::new();
     for seed in ["1", "2", "3"] {
         let here = game_itself(result_of(&[&game, "--seed", seed, "--in-process"]));
-        // With two boats a process one process minds a boat of each team.
+        // With two boats a process one process decides for a boat of each team.
         for boats_each in ["1", "2", "6"] {
             let there = result_of(&[&game, "--seed", seed, "--agents-per-process", boats_each]);
             assert_eq!(here, game_itself(there), "seed {seed}, {boats_each} boats a process");
@@ -65,8 +54,8 @@ fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
 }
 
 /// A variable of a boat, as its helm tells it.
-fn variable(bus: &bus::Bus, name: &GameName, notice: &GameInfo, vehicle: &str, variable: &str) -> String {
-    let scenario = &notice.scenario;
+fn variable(bus: &bus::Bus, name: &GameName, info: &GameInfo, vehicle: &str, variable: &str) -> String {
+    let scenario = &info.scenario;
     let key = topic::helm(name, scenario, scenario.vehicle_by_name(vehicle).expect("it is there"));
     let answer = bus.ask(&key, Vec::new(), Duration::from_secs(10)).expect("the hub is there").expect("an answer");
     let report: HelmReport = serde_json::from_slice(&answer).expect("a report");
@@ -75,23 +64,22 @@ fn variable(bus: &bus::Bus, name: &GameName, notice: &GameInfo, vehicle: &str, v
 
 #[test]
 fn a_killed_mate_does_not_silence_the_others_and_nonsense_hurts_nobody() {
-    let dir = tempfile::tempdir().expect("a temporary directory");
+    let dir = temporary();
     let sim = Sim::start(&talking_game(dir.path(), 80_000.0), &[]);
     let mut agents: Vec<Process> =
         ["blue_1", "blue_2", "blue_3", "red_1", "red_2", "red_3"].iter().map(|name| sim.agent(&[name])).collect();
-    sim.wait_for(|telling| telling["tell"] == "started");
+    sim.wait_for_kind("started");
     sim.play_on(5.0);
     agents[1].kill();
     sim.wait_for_event("agent_lost", "blue_2");
 
-    let (bus, name) = (sim.bus(), GameName::new(&sim.game).expect("a name"));
-    let notice = bus.ask(&topic::scenario(&name), Vec::new(), LIMIT).expect("the hub is there").expect("an answer");
-    let notice: GameInfo = serde_json::from_slice(&notice).expect("a notice");
+    let (bus, name) = (sim.bus(), sim.name());
+    let info = sim.info(&bus);
     let (sender, said) = channel();
     let hear = move |bytes: &[u8]| sender.send(codec::decode::<Say>(bytes)).unwrap_or_default();
-    let _standing = bus.subscribe(topic::all_say(&name, &notice.scenario, TeamId(0)), hear).expect("the hub is there");
+    let _standing = bus.subscribe(topic::all_say(&name, &info.scenario, TeamId(0)), hear).expect("the hub is there");
     let publisher = bus
-        .publisher(topic::say(&name, &notice.scenario, TeamId(0), "stranger"), bus::Delivery::Wait)
+        .publisher(topic::say(&name, &info.scenario, TeamId(0), "stranger"), bus::Delivery::Wait)
         .expect("the hub is there");
     for vehicle in [1, 4, 5, 99] {
         let stamp = Stamp { seq: u64::MAX, version: Say::VERSION, ..Stamp::default() };
@@ -107,12 +95,10 @@ fn a_killed_mate_does_not_silence_the_others_and_nonsense_hurts_nobody() {
         say.words.iter().filter(|word| word.value.is_finite()).for_each(|w| speakers[w.vehicle.index()] += 1);
     }
     assert_eq!(speakers[1], 0, "the dead do not talk");
-    // What the third hears of the first goes on changing; the second's last words stand.
-    let start = Instant::now();
-    let first = variable(&bus, &name, &notice, "blue_3", "high");
-    while variable(&bus, &name, &notice, "blue_3", "high") == first {
-        assert!(start.elapsed() < LIMIT, "it hears nothing any more");
-    }
+    // What the third hears of the first goes on changing; the second's last message stands.
+    let high = || variable(&bus, &name, &info, "blue_3", "high");
+    let first = high();
+    wait_until("it hears something new", || high() != first);
     let done = sim.stop();
     let lost = |boat: &str| done["outcome"]["counts"]["boats"][boat]["agents_lost"].as_u64();
     assert_eq!([lost("blue_1"), lost("blue_2"), lost("blue_3")], [Some(0), Some(1), Some(0)]);

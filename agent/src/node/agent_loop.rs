@@ -1,9 +1,10 @@
 //! The loop of an agent process: pictures come in, its minds decide, messages to mates and orders go out.
 
+use super::error::NodeError;
 use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
+use super::settings::Settings;
 use super::talk::Talk;
-use super::{LOOK_AGAIN, NodeError, Settings};
 use crate::{MindRunner, mind_by, mind_of};
 use bus::{Bus, Declaration, Delivery, Latest, Patience, Publisher, SimState, SimWatch};
 use game::codec::{self, DecodeError};
@@ -12,13 +13,14 @@ use game::refusal::Refusals;
 use game::topic::{self, GameName};
 use game::{Picture, Scenario, TeamId, VehicleId};
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// In lockstep words of mates are there before the picture, unless something on the way between several hubs changes
+/// How often an agent that hears nothing looks whether the sim is still there.
+const LOOK_AGAIN: Duration = Duration::from_millis(100);
+/// In lockstep messages of mates are there before the picture, unless something on the way between several hubs changes
 /// their order, or a link was cut: they are waited for this long, once.
-const WORDS_LATE: Duration = Duration::from_millis(500);
-
+const MESSAGES_LATE: Duration = Duration::from_millis(500);
 /// Pictures of a team that are kept while the minds decide.
 const UNREAD_MAX: usize = 64;
 /// Events that are carried over from pictures on which nobody decided.
@@ -29,24 +31,24 @@ pub(super) struct AgentLoop {
     runner: MindRunner,
     talk: Talk,
     policies: PolicyInbox,
-    /// Opened with the seat: an agent that waits for one must not answer for the one that has it.
-    window: Option<HelmQueries>,
+    /// Opened when it has joined: an agent that waits for a boat must not answer for the one that has it.
+    helm_queries: Option<HelmQueries>,
     orders: Publisher,
-    line: Line,
+    subscriptions: Subscriptions,
     ticket: u64,
     /// The newest picture, by team.
     pictures: Vec<Option<Picture>>,
 }
 
 impl AgentLoop {
-    /// Makes the minds and opens all their lines, before the sim counts on them.
-    pub(super) fn lay(
+    /// Makes the minds, subscribes and prepares to publish, before the sim counts on them.
+    pub(super) fn open(
         bus: &Bus,
         game: &GameName,
-        notice: &GameInfo,
+        info: &GameInfo,
         settings: &Settings,
     ) -> Result<AgentLoop, NodeError> {
-        let scenario = &notice.scenario;
+        let scenario = &info.scenario;
         let mind = |vehicle| match &settings.strategy {
             Some(strategy) => mind_by(scenario, vehicle, strategy),
             None => mind_of(scenario, vehicle),
@@ -55,22 +57,22 @@ impl AgentLoop {
         let known = settings.vehicles.iter().filter_map(|name| scenario.vehicle_by_name(name));
         let runner = MindRunner::new(known.map(|vehicle| (vehicle, mind(vehicle))));
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
-        let is_lockstep = notice.pace == "lockstep";
+        let is_lockstep = info.pace == "lockstep";
         let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
         Ok(AgentLoop {
-            talk: Talk::open(bus, game, scenario, &runner, limit(WORDS_LATE))?,
+            talk: Talk::open(bus, game, scenario, &runner, limit(MESSAGES_LATE))?,
             policies: PolicyInbox::open(bus, game, scenario, &runner, limit(settings.policy_wait))?,
-            window: None,
+            helm_queries: None,
             orders: bus.publisher(topic::orders(game, &bus.id()), Delivery::Wait)?,
-            line: Line::open(bus, game, scenario, &runner, settings.silence)?,
+            subscriptions: Subscriptions::open(bus, game, scenario, &runner, settings.silence)?,
             runner,
             ticket: 0,
             pictures: vec![None; scenario.teams.len()],
         })
     }
 
-    /// The sim has let these boats in, with this ticket.
-    pub(super) fn seat(
+    /// The sim has granted these boats, with this ticket.
+    pub(super) fn join(
         &mut self,
         bus: &Bus,
         game: &GameName,
@@ -78,10 +80,10 @@ impl AgentLoop {
         (ticket, vehicles): (u64, Vec<VehicleId>),
     ) -> Result<(), NodeError> {
         if !self.runner.minds().map(|(vehicle, _)| vehicle).eq(vehicles) {
-            return Err(NodeError::Refused("it let other boats in than those that asked".to_owned()));
+            return Err(NodeError::Refused("it granted other boats than those that were asked for".to_owned()));
         }
         self.ticket = ticket;
-        self.window = Some(HelmQueries::open(bus, game, scenario, &self.runner)?);
+        self.helm_queries = Some(HelmQueries::open(bus, game, scenario, &self.runner)?);
         Ok(())
     }
 
@@ -91,22 +93,22 @@ impl AgentLoop {
     }
 
     /// Decides until the game is over.
-    pub(super) fn play(&mut self, settings: &Settings) -> Result<(), NodeError> {
-        while !settings.stop.load(Ordering::Relaxed) {
+    pub(super) fn play(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
+        while !stop.load(Ordering::Relaxed) {
             let mut decided = false;
-            for (cell, unread) in self.line.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
+            for (cell, unread) in self.subscriptions.pictures.take(LOOK_AGAIN).into_iter().enumerate() {
                 let Some(unread) = unread else { continue };
-                self.line.sim.hears();
+                self.subscriptions.sim.hears();
                 unread.iter().try_for_each(|bytes| self.see(cell, bytes))?;
                 if self.pictures[cell].as_ref().is_some_and(|picture| picture.over) {
                     return Ok(());
                 }
                 decided |= self.decide()?;
             }
-            if let Some(window) = &mut self.window {
-                window.answer(&mut self.runner, decided);
+            if let Some(queries) = &mut self.helm_queries {
+                queries.answer(&mut self.runner, decided);
             }
-            match self.line.sim.state() {
+            match self.subscriptions.sim.state() {
                 SimState::Alive => {}
                 SimState::Replaced => return Err(NodeError::SimReplaced),
                 SimState::Dead(silent) => return Err(NodeError::SimGone(silent)),
@@ -128,12 +130,12 @@ impl AgentLoop {
         Ok(())
     }
 
-    /// Decides when the pictures of all teams are of one tick; answers a tick that is asked again as before. Says
+    /// Decides when the pictures of all teams are of one tick; answers a tick that is asked again as before. Gives
     /// whether the minds have decided.
     fn decide(&mut self) -> Result<bool, NodeError> {
         let stamp_of = |team: &TeamId| self.pictures[team.index()].as_ref().map(|picture| picture.stamp);
-        let Some(stamp) = self.line.teams.first().and_then(stamp_of) else { return Ok(false) };
-        if self.line.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
+        let Some(stamp) = self.subscriptions.teams.first().and_then(stamp_of) else { return Ok(false) };
+        if self.subscriptions.teams.iter().any(|team| stamp_of(team) != Some(stamp)) {
             return Ok(false);
         }
         let is_new = self.runner.decided() != Some(stamp.seq);
@@ -144,7 +146,7 @@ impl AgentLoop {
             self.runner.decide(stamp, |vehicle| pictures.iter().flatten().find(|p| p.own(vehicle).is_some()));
             self.talk.take(self.runner.said(), stamp);
         }
-        // Words before orders: the sim goes on when it has the orders, and then the words are under way.
+        // Messages to mates before orders: the sim goes on when it has the orders, and then the messages are under way.
         self.talk.send()?;
         if let Some(orders) = self.runner.answer(self.ticket) {
             self.orders.send(&orders)?;
@@ -154,7 +156,7 @@ impl AgentLoop {
 }
 
 /// A picture with the events of the one before, if nobody decided on that: `decided` is the number of the last decision. An
-/// event is told in one picture only.
+/// event is in one picture only.
 fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Option<u64>) -> Picture {
     let is_missed =
         |old: &Picture| old.stamp.seq < picture.stamp.seq && decided.is_none_or(|decided| decided < old.stamp.seq);
@@ -167,41 +169,41 @@ fn with_missed_events(mut picture: Picture, before: Option<Picture>, decided: Op
 }
 
 /// What comes in from the sim: the newest pictures of each team, oldest first, and whether it is alive.
-struct Line {
+struct Subscriptions {
     pictures: Arc<Latest<Vec<Vec<u8>>>>,
     sim: SimWatch,
     /// The teams whose pictures come.
     teams: Vec<TeamId>,
-    _standing: Vec<Declaration>,
+    _declarations: Vec<Declaration>,
 }
 
-impl Line {
+impl Subscriptions {
     fn open(
         bus: &Bus,
         game: &GameName,
         scenario: &Scenario,
         runner: &MindRunner,
         silence: Duration,
-    ) -> Result<Line, NodeError> {
+    ) -> Result<Subscriptions, NodeError> {
         let pictures = Arc::new(Latest::new(scenario.teams.len()));
         let mut teams: Vec<TeamId> = runner.minds().map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
         teams.sort_unstable();
         teams.dedup();
-        let mut standing = Vec::new();
+        let mut declarations = Vec::new();
         for team in &teams {
-            let (slots, cell) = (Arc::clone(&pictures), team.index());
+            let (latest, cell) = (Arc::clone(&pictures), team.index());
             let take = move |bytes: &[u8]| {
-                slots.change(cell, |unread| {
+                latest.change(cell, |unread| {
                     let mut unread: Vec<Vec<u8>> = unread.unwrap_or_default();
                     unread.drain(..(unread.len() + 1).saturating_sub(UNREAD_MAX));
                     unread.push(bytes.to_vec());
                     unread
                 });
             };
-            standing.push(bus.subscribe(topic::picture(game, scenario, *team), take)?);
+            declarations.push(bus.subscribe(topic::picture(game, scenario, *team), take)?);
         }
         let sim = SimWatch::open(bus, game, Patience::of_player(silence))?;
-        Ok(Line { pictures, sim, teams, _standing: standing })
+        Ok(Subscriptions { pictures, sim, teams, _declarations: declarations })
     }
 }
 
@@ -220,14 +222,14 @@ mod tests {
     }
 
     #[test]
-    fn events_of_pictures_on_which_nobody_decided_are_told_with_the_next() {
-        let told = |picture: &Picture| picture.events.iter().map(|event| event.subject).collect::<Vec<_>>();
+    fn events_of_pictures_on_which_nobody_decided_come_with_the_next() {
+        let subjects = |picture: &Picture| picture.events.iter().map(|event| event.subject).collect::<Vec<_>>();
         let late = with_missed_events(picture(4), Some(picture(3)), Some(2));
-        assert_eq!(told(&late), [3, 4]);
+        assert_eq!(subjects(&late), [3, 4]);
         let later = with_missed_events(picture(5), Some(late.clone()), Some(2));
-        assert_eq!(told(&later), [3, 4, 5]);
-        assert_eq!(told(&with_missed_events(picture(5), Some(late.clone()), Some(4))), [5], "it was decided on");
-        assert_eq!(told(&with_missed_events(picture(4), Some(late), None)), [4], "the same picture once more");
+        assert_eq!(subjects(&later), [3, 4, 5]);
+        assert_eq!(subjects(&with_missed_events(picture(5), Some(late.clone()), Some(4))), [5], "it was decided on");
+        assert_eq!(subjects(&with_missed_events(picture(4), Some(late), None)), [4], "the same picture once more");
         let many = (0..3000).fold(picture(0), |last, seq| with_missed_events(picture(seq + 1), Some(last), None));
         assert_eq!((many.events.len(), many.events.last().map(|event| event.subject)), (EVENTS_MAX, Some(3000)));
     }

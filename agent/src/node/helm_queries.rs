@@ -1,6 +1,6 @@
-//! A window into helms: questions what a boat's helm thinks, answered between decisions.
+//! Helm queries: what a boat's helm thinks, answered between decisions.
 
-use super::NodeError;
+use super::error::NodeError;
 use crate::{Mind, MindRunner};
 use bus::{Bus, Declaration, Inbox, Query, clock, inbox};
 use game::helm::HelmQuestion;
@@ -8,36 +8,36 @@ use game::topic::{self, GameName};
 use game::{Scenario, VehicleId};
 use std::time::{Duration, Instant};
 
-/// Questions that may wait to be looked at.
+/// Queries that may wait to be read.
 const INBOX: usize = 32;
-/// A mind keeps what people look at for this long after the last question.
+/// A mind keeps its utilities for this long after the last query.
 const LOOKED_AT: Duration = Duration::from_secs(5);
-/// A question that came before anything was kept waits this long for the next decision. In a game that is paused there is
+/// A query that came before anything was kept waits this long for the next decision. In a game that is paused there is
 /// none, and the page waits no longer than a second.
 const NEXT_DECISION: Duration = Duration::from_millis(500);
-/// Answers between two looks at the pictures: a flood of questions must not keep a boat from deciding.
+/// Answers between two looks at the pictures: a flood of queries must not keep a boat from deciding.
 const ANSWERS: usize = 2;
 
-/// A question about one of the boats.
+/// A query about one of the boats.
 struct Asked {
     vehicle: VehicleId,
     wants: HelmQuestion,
-    question: Query,
+    query: Query,
     at: Instant,
 }
 
-/// What people ask of the helms here.
+/// The queries about the helms that are run here.
 pub(super) struct HelmQueries {
     inbox: Inbox<(VehicleId, Query)>,
     /// Asked before a decision was kept.
     waiting: Vec<Asked>,
     /// The boats whose helms are looked at, and when each was last.
     looked: Vec<(VehicleId, Instant)>,
-    _standing: Vec<Declaration>,
+    _declarations: Vec<Declaration>,
 }
 
 impl HelmQueries {
-    /// Opens a window into each helm.
+    /// Begins to take queries about each helm.
     pub(super) fn open(
         bus: &Bus,
         game: &GameName,
@@ -45,13 +45,13 @@ impl HelmQueries {
         runner: &MindRunner,
     ) -> Result<HelmQueries, NodeError> {
         let (inbox_sender, inbox) = inbox(INBOX);
-        let mut standing = Vec::new();
+        let mut declarations = Vec::new();
         for (vehicle, _) in runner.minds() {
             let inbox_sender = inbox_sender.clone();
-            let take = move |question| inbox_sender.put((vehicle, question));
-            standing.push(bus.answer(topic::helm(game, scenario, vehicle), take)?);
+            let take = move |query| inbox_sender.put((vehicle, query));
+            declarations.push(bus.answer(topic::helm(game, scenario, vehicle), take)?);
         }
-        Ok(HelmQueries { inbox, waiting: Vec::new(), looked: Vec::new(), _standing: standing })
+        Ok(HelmQueries { inbox, waiting: Vec::new(), looked: Vec::new(), _declarations: declarations })
     }
 
     /// Answers what was asked; `decided` says whether the minds have decided since the last time.
@@ -65,8 +65,8 @@ impl HelmQueries {
             }
         }
         for _ in 0..ANSWERS {
-            let Some((vehicle, question)) = self.inbox.take_now() else { break };
-            self.take(runner, vehicle, question);
+            let Some((vehicle, query)) = self.inbox.take_now() else { break };
+            self.take(runner, vehicle, query);
         }
         self.looked.retain(|(vehicle, at)| {
             let is_looked_at = clock::since(*at) <= LOOKED_AT;
@@ -75,10 +75,10 @@ impl HelmQueries {
         });
     }
 
-    fn take(&mut self, runner: &mut MindRunner, vehicle: VehicleId, question: Query) {
-        // Whoever asks without words wants the short answer.
-        let wants: HelmQuestion = serde_json::from_slice(&question.payload).unwrap_or_default();
-        let asked = Asked { vehicle, wants, question, at: clock::now() };
+    fn take(&mut self, runner: &mut MindRunner, vehicle: VehicleId, query: Query) {
+        // A query without a payload wants the short answer.
+        let wants: HelmQuestion = serde_json::from_slice(&query.payload).unwrap_or_default();
+        let asked = Asked { vehicle, wants, query, at: clock::now() };
         match self.looked.iter_mut().find(|(looked, _)| *looked == vehicle) {
             Some((_, at)) => *at = asked.at,
             None => {
@@ -112,5 +112,5 @@ fn reply(runner: &MindRunner, asked: Asked) {
     if let Some(report) = report.as_mut().filter(|_| !asked.wants.functions) {
         report.functions.iter_mut().for_each(|function| function.utilities.clear());
     }
-    asked.question.answer(serde_json::to_vec(&report).expect("a report is JSON"));
+    asked.query.answer(serde_json::to_vec(&report).expect("a report is JSON"));
 }

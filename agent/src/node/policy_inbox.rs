@@ -1,6 +1,6 @@
-//! PolicyInbox: what policies outside propose for the boats minded here.
+//! Policy proposals: what programs and people outside propose for the boats that are run here.
 
-use super::NodeError;
+use super::error::NodeError;
 use crate::MindRunner;
 use bus::{Bus, Declaration, Watched};
 use game::message::{PolicyProposal, Stamp};
@@ -13,31 +13,31 @@ use std::time::Duration;
 
 /// What was proposed for one boat.
 #[derive(Clone, Debug)]
-struct Adviser {
+struct Boat {
     vehicle: VehicleId,
-    /// NoRecorder waits for a person.
+    /// A person is not waited for.
     is_awaited: bool,
     newest: Option<PolicyProposal>,
 }
 
 /// What was proposed for all of them.
 #[derive(Clone, Debug, Default)]
-struct Heap {
-    advisers: Vec<Adviser>,
+struct Proposals {
+    boats: Vec<Boat>,
     refusals: Refusals,
 }
 
-/// The lines from policies to the boats whose program heeds one.
+/// The proposals to the boats whose strategy uses them.
 pub(super) struct PolicyInbox {
-    heap: Arc<Watched<Heap>>,
+    proposals: Arc<Watched<Proposals>>,
     /// How long the proposal for a decision is waited for.
     patience: Duration,
     is_wanted: bool,
-    _standing: Vec<Declaration>,
+    _declarations: Vec<Declaration>,
 }
 
 impl PolicyInbox {
-    /// Listens to policies, where a program heeds them.
+    /// Subscribes to proposals, where a strategy uses them.
     pub(super) fn open(
         bus: &Bus,
         game: &GameName,
@@ -46,17 +46,16 @@ impl PolicyInbox {
         patience: Duration,
     ) -> Result<PolicyInbox, NodeError> {
         let minds = runner.minds().filter_map(|(vehicle, mind)| Some((vehicle, mind.proposer()?)));
-        let adviser =
-            |(vehicle, proposer)| Adviser { vehicle, is_awaited: proposer == Proposer::Program, newest: None };
-        let advisers: Vec<Adviser> = minds.map(adviser).collect();
-        let heap = Arc::new(Watched::new(Heap { advisers: advisers.clone(), refusals: Refusals::default() }));
-        let mut standing = Vec::new();
-        for (i, adviser) in advisers.iter().enumerate() {
-            let inbox = Arc::clone(&heap);
-            let take = move |bytes: &[u8]| inbox.visit(|heap| heap.take(i, bytes));
-            standing.push(bus.subscribe_remote(topic::policy(game, scenario, adviser.vehicle), take)?);
+        let boat = |(vehicle, proposer)| Boat { vehicle, is_awaited: proposer == Proposer::Program, newest: None };
+        let boats: Vec<Boat> = minds.map(boat).collect();
+        let proposals = Arc::new(Watched::new(Proposals { boats: boats.clone(), refusals: Refusals::default() }));
+        let mut declarations = Vec::new();
+        for (i, boat) in boats.iter().enumerate() {
+            let inbox = Arc::clone(&proposals);
+            let take = move |bytes: &[u8]| inbox.visit(|proposals| proposals.take(i, bytes));
+            declarations.push(bus.subscribe_remote(topic::policy(game, scenario, boat.vehicle), take)?);
         }
-        Ok(PolicyInbox { heap, patience, is_wanted: !advisers.is_empty(), _standing: standing })
+        Ok(PolicyInbox { proposals, patience, is_wanted: !boats.is_empty(), _declarations: declarations })
     }
 
     /// Gives the newest proposals to the minds that decide on the picture with this stamp.
@@ -64,35 +63,36 @@ impl PolicyInbox {
         if !self.is_wanted {
             return;
         }
-        let advised = self.patience.is_zero() || self.heap.wait(self.patience, |heap| heap.is_for(stamp.seq));
-        self.heap.visit(|heap| {
-            heap.refusals.add(Refusal::ProposalMissing, u64::from(!advised));
-            let proposals = heap.advisers.iter().filter_map(|adviser| adviser.newest.as_ref());
-            proposals.for_each(|proposal| runner.propose(proposal, stamp));
+        let is_complete =
+            self.patience.is_zero() || self.proposals.wait(self.patience, |proposals| proposals.is_for(stamp.seq));
+        self.proposals.visit(|proposals| {
+            proposals.refusals.add(Refusal::ProposalMissing, u64::from(!is_complete));
+            let newest = proposals.boats.iter().filter_map(|boat| boat.newest.as_ref());
+            newest.for_each(|proposal| runner.propose(proposal, stamp));
         });
     }
 
     pub(super) fn refusals(&self) -> Refusals {
-        self.heap.visit(|heap| heap.refusals)
+        self.proposals.visit(|proposals| proposals.refusals)
     }
 }
 
-impl Heap {
+impl Proposals {
     fn take(&mut self, i: usize, bytes: &[u8]) {
         let Some(proposal) = self.refusals.decode::<PolicyProposal>(bytes) else { return };
-        if proposal.vehicle != self.advisers[i].vehicle {
+        if proposal.vehicle != self.boats[i].vehicle {
             self.refusals.count(Refusal::NotYours);
         } else if !is_sound(&proposal) {
             self.refusals.count(Refusal::BadNumber);
         } else {
-            self.advisers[i].newest = Some(proposal);
+            self.boats[i].newest = Some(proposal);
         }
     }
 
     /// Whether the proposals for decision `seq` are there that are waited for.
     fn is_for(&self, seq: u64) -> bool {
         let is_for = |proposal: &PolicyProposal| proposal.stamp.seq >= seq;
-        self.advisers.iter().all(|adviser| !adviser.is_awaited || adviser.newest.as_ref().is_some_and(is_for))
+        self.boats.iter().all(|boat| !boat.is_awaited || boat.newest.as_ref().is_some_and(is_for))
     }
 }
 
@@ -114,23 +114,23 @@ mod tests {
 
     #[test]
     fn the_newest_good_proposal_stands_and_others_are_counted() {
-        let adviser = |v: u16| Adviser { vehicle: VehicleId(v), is_awaited: v < 2, newest: None };
-        let mut heap = Heap { advisers: vec![adviser(0), adviser(1), adviser(2)], refusals: Refusals::default() };
-        heap.take(0, &codec::encode(&proposal(0, 4, 1.0)));
-        assert!(!heap.is_for(4), "the other is missing");
-        heap.take(1, &codec::encode(&proposal(1, 4, 1.0)));
-        assert!(heap.is_for(4) && !heap.is_for(5));
-        heap.take(1, &codec::encode(&proposal(1, 5, 2.0)));
-        heap.take(1, &codec::encode(&proposal(0, 6, 9.0)));
-        heap.take(1, &codec::encode(&proposal(1, 6, f64::NAN)));
+        let boat = |v: u16| Boat { vehicle: VehicleId(v), is_awaited: v < 2, newest: None };
+        let mut proposals = Proposals { boats: vec![boat(0), boat(1), boat(2)], refusals: Refusals::default() };
+        proposals.take(0, &codec::encode(&proposal(0, 4, 1.0)));
+        assert!(!proposals.is_for(4), "the other is missing");
+        proposals.take(1, &codec::encode(&proposal(1, 4, 1.0)));
+        assert!(proposals.is_for(4) && !proposals.is_for(5));
+        proposals.take(1, &codec::encode(&proposal(1, 5, 2.0)));
+        proposals.take(1, &codec::encode(&proposal(0, 6, 9.0)));
+        proposals.take(1, &codec::encode(&proposal(1, 6, f64::NAN)));
         let early = Stamp { valid_ns: SimTime(i64::MIN), ..proposal(1, 6, 9.0).stamp };
-        heap.take(1, &codec::encode(&PolicyProposal { stamp: early, ..proposal(1, 6, 9.0) }));
-        heap.take(1, b"ahoy");
+        proposals.take(1, &codec::encode(&PolicyProposal { stamp: early, ..proposal(1, 6, 9.0) }));
+        proposals.take(1, b"ahoy");
         let mut other = proposal(1, 6, 9.0);
         other.stamp.version += 1;
-        heap.take(1, &codec::encode(&other));
-        assert_eq!(heap.advisers[1].newest, Some(proposal(1, 5, 2.0)));
+        proposals.take(1, &codec::encode(&other));
+        assert_eq!(proposals.boats[1].newest, Some(proposal(1, 5, 2.0)));
         let want = [(Refusal::NotYours, 1), (Refusal::BadNumber, 2), (Refusal::Garbage, 1), (Refusal::Version, 1)];
-        assert_eq!(heap.refusals, Refusals::from(want));
+        assert_eq!(proposals.refusals, Refusals::from(want));
     }
 }

@@ -1,6 +1,6 @@
-//! Team talk over the network: what the minds here tell their mates elsewhere, and hear from them.
+//! Team messages over the network: what the minds here publish to their mates elsewhere, and receive from them.
 
-use super::NodeError;
+use super::error::NodeError;
 use super::team_inbox::TeamInbox;
 use crate::MindRunner;
 use bus::{Bus, Declaration, Delivery, Publisher, Watched};
@@ -11,27 +11,27 @@ use game::{Scenario, TeamId, VehicleId};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The line to one team.
-struct Line {
+/// Messages to one team.
+struct Outgoing {
     team: TeamId,
     publisher: Publisher,
-    /// Said last, to be said again when orders are sent again.
-    said: Option<Say>,
+    /// Sent last, to be sent again when orders are sent again.
+    last: Option<Say>,
 }
 
-/// The talk of the teams whose minds here talk.
+/// The team messages of the teams whose minds here talk.
 pub(super) struct Talk {
-    lines: Vec<Line>,
+    outgoing: Vec<Outgoing>,
     team_inbox: Arc<Watched<TeamInbox>>,
     teams: Vec<TeamId>,
-    /// How long words that should be there may take.
+    /// How long messages that should be there may take.
     patience: Duration,
     words: Vec<Word>,
-    _standing: Vec<Declaration>,
+    _declarations: Vec<Declaration>,
 }
 
 impl Talk {
-    /// Opens a line to each team of which a mind here talks, and listens to its mates.
+    /// Prepares to publish to each team of which a mind here talks, and subscribes to what its mates publish.
     pub(super) fn open(
         bus: &Bus,
         game: &GameName,
@@ -44,22 +44,22 @@ impl Talk {
             runner.minds().filter(|(_, mind)| mind.talks()).map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
         talking.sort_unstable();
         talking.dedup();
-        let minded: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
-        let team_inbox = Arc::new(Watched::new(TeamInbox::new(teams.iter().copied(), &minded)));
-        let (mut lines, mut standing) = (Vec::new(), Vec::new());
+        let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
+        let team_inbox = Arc::new(Watched::new(TeamInbox::new(teams.iter().copied(), &own)));
+        let (mut outgoing, mut declarations) = (Vec::new(), Vec::new());
         for team in talking {
             let inbox = Arc::clone(&team_inbox);
             let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.take(team, bytes));
-            standing.push(bus.subscribe_remote(topic::all_say(game, scenario, team), take)?);
+            declarations.push(bus.subscribe_remote(topic::all_say(game, scenario, team), take)?);
             let publisher = bus.publisher(topic::say(game, scenario, team, &bus.id()), Delivery::Wait)?;
-            lines.push(Line { team, publisher, said: None });
+            outgoing.push(Outgoing { team, publisher, last: None });
         }
-        Ok(Talk { lines, team_inbox, teams, patience, words: Vec::new(), _standing: standing })
+        Ok(Talk { outgoing, team_inbox, teams, patience, words: Vec::new(), _declarations: declarations })
     }
 
-    /// Lets the minds hear what mates elsewhere said after the decision before.
+    /// Gives the minds what mates elsewhere sent after the decision before.
     pub(super) fn hear(&mut self, runner: &mut MindRunner, seq: u64) {
-        if self.lines.is_empty() {
+        if self.outgoing.is_empty() {
             return;
         }
         // In real time nobody waits, and nobody counts either: mates decide when they do.
@@ -69,27 +69,27 @@ impl Talk {
         }
         self.words.clear();
         self.team_inbox.visit(|team_inbox| {
-            let missed = team_inbox.hear(seq, &mut self.words);
+            let missed = team_inbox.deliver(seq, &mut self.words);
             team_inbox.refusals.add(Refusal::TeamMessageMissing, if waits { missed } else { 0 });
         });
         runner.hear(&self.words);
     }
 
-    /// Takes what the minds here said after deciding, to be sent to mates elsewhere.
+    /// Takes what the minds here tell their teams after deciding, to be sent to mates elsewhere.
     pub(super) fn take(&mut self, said: &[Word], stamp: Stamp) {
-        for line in &mut self.lines {
-            let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&line.team);
+        for to in &mut self.outgoing {
+            let ours = |word: &&Word| self.teams.get(word.vehicle.index()) == Some(&to.team);
             let words: Vec<Word> = said.iter().filter(ours).copied().collect();
-            line.said = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
+            to.last = (!words.is_empty()).then_some(Say { stamp: Stamp { version: Say::VERSION, ..stamp }, words });
         }
     }
 
     /// Sends it, or sends it again: it may have been lost with the orders that are asked for again. It must be sent before
     /// the orders are: then it is on its way before the next picture.
     pub(super) fn send(&self) -> Result<(), NodeError> {
-        for line in &self.lines {
-            if let Some(said) = &line.said {
-                line.publisher.send(said)?;
+        for to in &self.outgoing {
+            if let Some(last) = &to.last {
+                to.publisher.send(last)?;
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives by the boat's own sentences.
 
-use super::{NodeError, NodeEvent, declination_today_rad, find_game, pace_factor};
+use super::{NodeError, NodeEvent, declination_today_rad, pace_factor};
 use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
@@ -63,7 +63,8 @@ struct Incoming {
 /// [`NodeError`] if there is no such game or boat, if it has another agent, or if the network or a link cannot work.
 pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
-    let (bus, game, info) = find_game(&mut search, &settings.net, settings.game.as_ref(), notify)?;
+    let mut looking = |reason: &str| notify(NodeEvent::Looking { reason });
+    let (bus, game, info) = search.game(&mut looking, &settings.net, settings.game.as_ref())?;
     let vehicle = info.scenario.vehicle_named(&settings.vehicle)?;
     // A back seat runs in real time.
     pace_factor(&info.pace, true)?;

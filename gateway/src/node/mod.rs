@@ -143,7 +143,8 @@ const INBOX: usize = 4096;
 /// sim that goes away is none: the gateway waits for it.
 pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
-    let (bus, game, info) = find_game(&mut search, &settings.net, settings.game.as_ref(), notify)?;
+    let mut looking = |reason: &str| notify(NodeEvent::Looking { reason });
+    let (bus, game, info) = search.game(&mut looking, &settings.net, settings.game.as_ref())?;
     let vehicle = external_vehicle(&info, &settings.vehicle)?;
     let factor = pace_factor(&info.pace, settings.at_game_pace)?;
     let field = info.scenario.field.clone();
@@ -242,19 +243,6 @@ fn subscribe(
         subscriptions.push(bus.subscribe(topic::frame(game), move |bytes| frames.put(Call::Frame(bytes.to_vec())))?);
     }
     Ok(subscriptions)
-}
-
-/// Finds the game and its description.
-fn find_game(
-    search: &mut GameSearch<'_>,
-    net: &Net,
-    game: Option<&GameName>,
-    notify: &mut dyn FnMut(NodeEvent<'_>),
-) -> Result<(Bus, GameName, GameInfo), NodeError> {
-    let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
-    let (bus, game) = search.game(&mut say, net, game)?;
-    let info = search.until(&mut say, || game_search::game_info(&bus, &game))?;
-    Ok((bus, game, info))
 }
 
 fn external_vehicle(info: &GameInfo, name: &str) -> Result<VehicleId, NodeError> {

@@ -1,7 +1,7 @@
 //! Lockstep: every tick waits for every agent, but never forever.
 
 use super::server::GameServer;
-use super::{News, NodeError};
+use super::{NodeError, ProgressMessage};
 use bus::clock;
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 const SEND_AGAIN: Duration = Duration::from_millis(250);
 
 /// Plays until the game is over or stopped.
-pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let mut due = clock::now();
     while !server.contest.is_over() && !server.is_stopped() {
         server.record();
@@ -32,7 +32,11 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) 
 }
 
 /// Waits until a decision's time has passed at the speed that is not to be exceeded; gives the moment.
-fn keep_speed(server: &mut GameServer<'_>, due: Instant, tell: &mut dyn FnMut(News<'_>)) -> Result<Instant, NodeError> {
+fn keep_speed(
+    server: &mut GameServer<'_>,
+    due: Instant,
+    tell: &mut dyn FnMut(ProgressMessage),
+) -> Result<Instant, NodeError> {
     let Some(speed) = server.pacing.speed() else { return Ok(due) };
     let decision_s = server.contest.scenario().decision().as_s();
     let now = clock::now();
@@ -48,7 +52,7 @@ fn keep_speed(server: &mut GameServer<'_>, due: Instant, tell: &mut dyn FnMut(Ne
 }
 
 /// Waits until everybody has answered the open tick; who takes longer than the scenario's patience is lost.
-fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let tick = server.contest.decision();
     let patience = Duration::from_secs_f64(server.contest.scenario().patience_s);
     // The clock is only looked at when somebody is slow.

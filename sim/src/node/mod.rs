@@ -9,11 +9,13 @@ mod lockstep;
 pub mod membership;
 mod observers;
 mod pacing;
+mod progress;
 mod realtime;
 mod recorder;
 mod server;
 mod subscriptions;
 
+pub use progress::{Progress, ProgressMessage, Reporter};
 pub use recorder::GameRecorder;
 
 use crate::contest::Contest;
@@ -55,30 +57,6 @@ pub struct Settings {
     pub speed: Option<f64>,
     /// Set from outside to end the game early.
     pub stop: Arc<AtomicBool>,
-}
-
-/// What a node reports to the program that runs it.
-pub enum News<'a> {
-    /// The hub listens: nodes can join.
-    Open,
-    /// Somebody is not there yet.
-    Waiting {
-        /// The vehicles without an agent, by name.
-        agents: Vec<&'a str>,
-        /// The real boats that no gateway has reported the position of, by name.
-        gateways: Vec<&'a str>,
-    },
-    /// The game begins.
-    Started,
-    /// Some time has passed: ten times a second or so.
-    Progress {
-        /// The game.
-        contest: &'a Contest,
-        /// Simulated seconds a second, lately.
-        rate: f64,
-        /// Messages refused so far.
-        refused: u64,
-    },
 }
 
 /// How a served game went.
@@ -151,16 +129,19 @@ pub fn serve(
     seed: u64,
     settings: &Settings,
     recorder: Option<&mut GameRecorder>,
-    tell: &mut dyn FnMut(News<'_>),
+    tell: &mut dyn FnMut(ProgressMessage),
 ) -> Result<Report, NodeError> {
     if settings.pace == Pace::Lockstep {
         scenario.has_no_real_boats().map_err(NoStart::from)?;
     }
     let contest = Contest::new(scenario, seed)?;
     let mut server = GameServer::open(contest, settings, recorder)?;
-    tell(News::Open);
+    tell(ProgressMessage::Open {
+        game: settings.game.as_str().to_owned(),
+        endpoint: settings.net.local_endpoint().unwrap_or_default(),
+    });
     server.wait_for_everybody(settings.join_limit, tell)?;
-    tell(News::Started);
+    tell(ProgressMessage::Started);
     let started = clock::now();
     match settings.pace {
         Pace::Lockstep => lockstep::play(&mut server, tell)?,
@@ -170,6 +151,7 @@ pub fn serve(
     let wall_s = clock::since(started).as_secs_f64();
     // The result stands before the agents leave: that they do is not part of the game.
     let outcome = server.contest.outcome();
+    std::mem::take(&mut server.reporter).rest(&outcome, tell);
     server.shut_down()?;
     let overruns = server.overruns;
     let run = Run { pace: settings.pace.to_string(), wall_s, refused: server.refusals(), overruns, cut_short };

@@ -1,12 +1,12 @@
 //! Real time, or a factor of it: the clock paces, nobody is waited for.
 
 use super::server::GameServer;
-use super::{News, NodeError};
+use super::{NodeError, ProgressMessage};
 use bus::clock;
 use std::time::Duration;
 
 /// Plays until the game is over or stopped, and counts the decision ticks that began late.
-pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let mut due = clock::now() + period(server);
     while !server.contest.is_over() && !server.is_stopped() {
         server.record();

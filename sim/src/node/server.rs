@@ -7,7 +7,7 @@ use super::observers::{self, RecordedTopic};
 use super::pacing::Pacing;
 use super::recorder::GameRecorder;
 use super::subscriptions::{self, Incoming};
-use super::{News, NodeError, Pace, Settings};
+use super::{NodeError, Pace, ProgressMessage, Reporter, Settings};
 use crate::contest::Contest;
 use bus::{Bus, Declaration, Delivery, Inbox, Publisher, Query, clock, inbox};
 use game::codec;
@@ -27,7 +27,7 @@ use std::time::{Duration, Instant};
 /// Messages that may wait to be read.
 const INBOX: usize = 8192;
 /// How often progress is reported.
-const NEWS_EVERY: Duration = Duration::from_millis(100);
+const REPORT_EVERY: Duration = Duration::from_millis(100);
 /// How often the state of the run is recorded, where nothing has changed.
 const RECORD_EVERY: Duration = Duration::from_secs(1);
 /// How long agents may take to leave when the game is over.
@@ -67,7 +67,8 @@ pub(super) struct GameServer<'w> {
     refusals: Refusals,
     /// When each vehicle's agent was last heard.
     heard: Vec<Instant>,
-    last_news: (Instant, SimTime),
+    pub(super) reporter: Reporter,
+    last_report: (Instant, SimTime),
     /// When the open decision was opened, once the game runs.
     opened: Option<Instant>,
     pace: Pace,
@@ -124,7 +125,8 @@ impl<'w> GameServer<'w> {
             stop: Arc::clone(&settings.stop),
             refusals: Refusals::default(),
             heard: vec![clock::now(); scenario.vehicles.len()],
-            last_news: (clock::now(), SimTime::ZERO),
+            reporter: Reporter::default(),
+            last_report: (clock::now(), SimTime::ZERO),
             opened: None,
             pace: settings.pace,
             declarations,
@@ -138,7 +140,7 @@ impl<'w> GameServer<'w> {
     pub(super) fn wait_for_everybody(
         &mut self,
         limit: Duration,
-        tell: &mut dyn FnMut(News<'_>),
+        tell: &mut dyn FnMut(ProgressMessage),
     ) -> Result<(), NodeError> {
         let start = clock::now();
         let mut told = (usize::MAX, usize::MAX);
@@ -147,8 +149,8 @@ impl<'w> GameServer<'w> {
             let silent: Vec<VehicleId> = self.silent_boats().collect();
             if (vacant.len(), silent.len()) != told {
                 told = (vacant.len(), silent.len());
-                let names = |vehicles: &[VehicleId]| vehicles.iter().map(|vehicle| self.name_of(*vehicle)).collect();
-                tell(News::Waiting { agents: names(&vacant), gateways: names(&silent) });
+                let [agents, gateways] = [&vacant, &silent].map(|vehicles| self.names_of(vehicles.iter().copied()));
+                tell(ProgressMessage::Waiting { agents, gateways });
                 self.is_news = true;
             }
             self.send_run(Phase::Waiting, 0.0)?;
@@ -161,7 +163,7 @@ impl<'w> GameServer<'w> {
             }
             self.listen(Duration::from_millis(100));
         }
-        self.last_news = (clock::now(), SimTime::ZERO);
+        self.last_report = (clock::now(), SimTime::ZERO);
         self.heard.fill(clock::now());
         Ok(())
     }
@@ -175,6 +177,10 @@ impl<'w> GameServer<'w> {
 
     fn name_of(&self, vehicle: VehicleId) -> &str {
         &self.contest.scenario().vehicles[vehicle.index()].name
+    }
+
+    fn names_of(&self, vehicles: impl Iterator<Item = VehicleId>) -> Vec<String> {
+        vehicles.map(|vehicle| self.name_of(vehicle).to_owned()).collect()
     }
 
     /// The frame of the open decision, built once for the recording and for observers.
@@ -310,15 +316,15 @@ impl<'w> GameServer<'w> {
     }
 
     /// Reports progress, if it is time again.
-    pub(super) fn report_progress(&mut self, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
-        let (then, then_sim) = self.last_news;
+    pub(super) fn report_progress(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
+        let (then, then_sim) = self.last_report;
         let passed = clock::since(then);
-        if passed < NEWS_EVERY && !self.is_news {
+        if passed < REPORT_EVERY && !self.is_news {
             return Ok(());
         }
         let rate = (self.contest.now() - then_sim).as_s() / passed.as_secs_f64().max(1e-3);
-        self.last_news = (clock::now(), self.contest.now());
-        tell(News::Progress { contest: &self.contest, rate, refused: self.refusals().total() });
+        self.last_report = (clock::now(), self.contest.now());
+        self.reporter.progress(&self.contest, (rate, self.refusals().total()), tell);
         self.send_run(if self.pacing.is_paused() { Phase::Paused } else { Phase::Playing }, rate)
     }
 
@@ -330,17 +336,14 @@ impl<'w> GameServer<'w> {
             return Ok(());
         }
         let is_waiting = phase == Phase::Waiting;
-        let names = |vehicles: &mut dyn Iterator<Item = VehicleId>| {
-            vehicles.filter(|_| is_waiting).map(|vehicle| self.name_of(vehicle).to_owned()).collect()
-        };
         let state = RunState {
             phase,
             now_s: self.contest.now().as_s(),
             pace: self.pace.to_string(),
             speed: self.pacing.speed(),
             rate,
-            minds: names(&mut self.agents.vacant()),
-            gateways: names(&mut self.silent_boats()),
+            minds: self.names_of(self.agents.vacant().filter(|_| is_waiting)),
+            gateways: self.names_of(self.silent_boats().filter(|_| is_waiting)),
             refused: self.refusals().total(),
             overruns: self.overruns,
             recording: self.recorder.as_ref().map(|recorder| recorder.state()),
@@ -460,7 +463,7 @@ impl<'w> GameServer<'w> {
     }
 
     /// Waits for as long as somebody has paused the game: agents and boats are kept, and messages are read.
-    pub(super) fn stay_paused(&mut self, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
+    pub(super) fn stay_paused(&mut self, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
         /// Agents that hear nothing for too long leave.
         const SEND_AGAIN: Duration = Duration::from_secs(1);
         if !self.pacing.is_held() {
