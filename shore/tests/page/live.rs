@@ -188,7 +188,7 @@ fn a_page_sees_frames_their_past_and_how_the_run_stands() {
     let mut newcomer = open_viewer(&page);
     assert_eq!(newcomer.text()["chart"]["waves"][0]["amplitude_m"], 0.25);
     let past: Vec<u64> =
-        (0..20).map(|_| newcomer.frame()).inspect(|f| assert_eq!(f[0], 2)).map(|f| seq_of(f)).collect();
+        (0..20).map(|_| newcomer.frame()).inspect(|f| assert_eq!(f[0], 2)).map(|f| seq_of(&f)).collect();
     assert_eq!(past, (0..20).map(|step| step * 5).collect::<Vec<u64>>());
     let now = newcomer.frame();
     assert_eq!((now[0], seq_of(&now)), (1, 100));
