@@ -5,7 +5,7 @@ use analysis::{Comparison, Summary, alog, table};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use game::input::Input;
 use game::message::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth};
-use game::picture::{FlagView, Imu, Nav, OwnBoat};
+use game::picture::{FlagView, Nav, OwnBoat};
 use game::water::Water;
 use game::{Order, Picture, SimTime, VehicleId};
 use proptest::prelude::*;
@@ -87,16 +87,12 @@ prop_compose! {
         let stamp = |version| Stamp { valid_ns: SimTime(at), seq, version };
         let truth = |(nav, carrying): &(Nav, i16)| VehicleTruth { nav: *nav, carrying: *carrying, ..VehicleTruth::default() };
         let flags: Vec<FlagView> = flags.iter().map(|carrier| FlagView { carrier: *carrier }).collect();
+        let time = SimTime(at);
         let own = |(vehicle, nav, carrying): &(u16, Nav, i16)| OwnBoat {
-            vehicle: VehicleId(*vehicle),
-            nav: *nav,
-            fix_ns: SimTime(at),
-            imu: Imu::default(),
-            tagged: false,
+            fix_ns: time,
             carrying: *carrying,
-            disabled: false,
-            outside: false,
-            tag_ready_ns: SimTime(at),
+            tag_ready_ns: time,
+            ..OwnBoat::new(VehicleId(*vehicle), *nav)
         };
         let own = seen.iter().map(own).collect();
         let picture =

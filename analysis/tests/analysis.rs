@@ -5,7 +5,7 @@ use game::event::{Event, Logged};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use game::input::Input;
 use game::message::{Frame, GameInfo, Message, Stamp, VehicleTruth};
-use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat};
+use game::picture::{Contact, FlagView, Nav, OwnBoat};
 use game::water::Water;
 use game::{FlagId, Order, Outcome, Picture, SimTime, TeamId, VehicleId};
 use recording::{Decision, Ending, Entry, Header, Recording, Writer};
@@ -48,17 +48,7 @@ fn decision(seq: u64) -> Decision {
         Frame { stamp, vehicles, score: score.clone(), flags: flags.clone(), events, ..Frame::default() }.into();
     let Some(before) = seq.checked_sub(1) else { return Decision { frame, ..Decision::default() } };
     let believed = Nav { north_m: nav(before).north_m + 3.0, east_m: 4.0, ..nav(before) };
-    let own = OwnBoat {
-        vehicle: VehicleId(0),
-        nav: believed,
-        fix_ns: SimTime(0),
-        imu: Imu::default(),
-        tagged: false,
-        carrying: -1,
-        disabled: false,
-        outside: false,
-        tag_ready_ns: SimTime(0),
-    };
+    let own = OwnBoat::new(VehicleId(0), believed);
     let contact = Contact {
         vehicle: VehicleId(2),
         team: TeamId(1),

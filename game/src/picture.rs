@@ -157,6 +157,22 @@ impl Picture {
 }
 
 impl OwnBoat {
+    /// A boat in play of which only the navigation is known.
+    #[must_use]
+    pub fn new(vehicle: VehicleId, nav: Nav) -> OwnBoat {
+        OwnBoat {
+            vehicle,
+            nav,
+            fix_ns: SimTime::ZERO,
+            imu: Imu::default(),
+            tagged: false,
+            carrying: -1,
+            disabled: false,
+            outside: false,
+            tag_ready_ns: SimTime::ZERO,
+        }
+    }
+
     /// The flag it carries.
     #[must_use]
     pub fn carried_flag(&self) -> Option<FlagId> {

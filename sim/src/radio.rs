@@ -197,23 +197,13 @@ fn bursts(link: &Link, decision: SimTime) -> TwoStateChain {
 mod tests {
     use super::*;
     use game::link::Loss;
-    use game::picture::{Imu, Nav};
+    use game::picture::Nav;
     use game::{VehicleId, math};
 
     const TENTH: SimTime = SimTime(100_000_000);
 
     fn boat(north_m: f64) -> OwnBoat {
-        OwnBoat {
-            vehicle: VehicleId(0),
-            nav: Nav { north_m, ..Nav::default() },
-            fix_ns: SimTime::ZERO,
-            imu: Imu::default(),
-            tagged: false,
-            carrying: -1,
-            disabled: false,
-            outside: false,
-            tag_ready_ns: SimTime::ZERO,
-        }
+        OwnBoat::new(VehicleId(0), Nav { north_m, ..Nav::default() })
     }
 
     fn radio(link: Link) -> Radio {

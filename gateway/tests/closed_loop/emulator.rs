@@ -27,17 +27,7 @@ fn with_checksum(body: &str) -> Vec<u8> {
 fn send(boat: &mut Emulator, body: &str) -> (char, Order) {
     boat.take(SimTime::ZERO, Port::Secondary, &with_checksum(body));
     // It has to know where it is to do anything.
-    let own = game::picture::OwnBoat {
-        vehicle: game::VehicleId(0),
-        nav: game::picture::Nav::default(),
-        fix_ns: SimTime::ZERO,
-        imu: game::picture::Imu::default(),
-        tagged: false,
-        carrying: -1,
-        disabled: false,
-        outside: false,
-        tag_ready_ns: SimTime::ZERO,
-    };
+    let own = game::picture::OwnBoat::new(game::VehicleId(0), game::picture::Nav::default());
     boat.observe(SimTime::ZERO, &own);
     (boat.command().mode.letter(), boat.order(SimTime::ZERO))
 }

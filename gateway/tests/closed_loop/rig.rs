@@ -243,17 +243,8 @@ impl Rig {
             sway_m_s: 0.0,
             yaw_rate_rad_s: self.boat.turn_rad_s,
         };
-        let own = OwnBoat {
-            vehicle: VehicleId(0),
-            nav,
-            fix_ns: self.now,
-            imu: Imu { down_m_s2: -9.8, ..Imu::default() },
-            tagged: false,
-            carrying: -1,
-            disabled: false,
-            outside: false,
-            tag_ready_ns: SimTime::ZERO,
-        };
+        let imu = Imu { down_m_s2: -9.8, ..Imu::default() };
+        let own = OwnBoat { fix_ns: self.now, imu, ..OwnBoat::new(VehicleId(0), nav) };
         if !self.frozen {
             self.emulator.observe(self.now, &own);
         }

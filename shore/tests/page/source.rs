@@ -40,17 +40,8 @@ pub(crate) fn seq_of(wire: &[u8]) -> u64 {
 }
 
 pub(crate) fn own_boat(vehicle: VehicleId) -> OwnBoat {
-    OwnBoat {
-        vehicle,
-        nav: Nav { north_m: 3.0, east_m: 4.0, psi_rad: std::f64::consts::FRAC_PI_2, surge_m_s: 1.5, ..Nav::default() },
-        fix_ns: SimTime::ZERO,
-        imu: game::picture::Imu::default(),
-        tagged: false,
-        carrying: -1,
-        disabled: false,
-        outside: false,
-        tag_ready_ns: SimTime::ZERO,
-    }
+    let nav = Nav { north_m: 3.0, east_m: 4.0, psi_rad: std::f64::consts::FRAC_PI_2, surge_m_s: 1.5, ..Nav::default() };
+    OwnBoat::new(vehicle, nav)
 }
 
 pub(crate) fn report(vehicle: VehicleId) -> HelmReport {
