@@ -2,8 +2,8 @@
 
 use crate::net_args::LeafArgs;
 use crate::observer::Observer;
-use crate::plot::rose::{self, Rose};
-use crate::{helm_page, screen};
+use crate::plot::polar::{self, PolarPlot};
+use crate::{helm_text, screen};
 use anyhow::{Context, Result, bail};
 use game::Scenario;
 use game::helm::{FunctionReport, HelmQuestion, HelmReport};
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if report.functions.iter().any(|function| function.utilities.is_empty()) {
         bail!("the helm of {} has not decided since it was asked; ask again", args.vehicle);
     }
-    screen::print(&helm_page::page(scenario, &report));
+    screen::print(&helm_text::page(scenario, &report));
     if let Some(path) = &args.csv {
         write_csv(path, scenario, &report)
             .with_context(|| format!("cannot write the functions to {}", path.display()))?;
@@ -54,14 +54,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             report.program,
             report.at.as_s(),
             report.mode,
-            helm_page::decision(&report)
+            helm_text::decision(&report)
         );
-        let roses = roses(&report);
+        let plots = plots(&report);
         if let Some(path) = &args.png {
-            rose::write_png(path, &title, &roses)?;
+            polar::write_png(path, &title, &plots)?;
         }
         if let Some(path) = &args.svg {
-            rose::write_svg(path, &title, &roses)?;
+            polar::write_svg(path, &title, &plots)?;
         }
     }
     observer.bus.close();
@@ -109,8 +109,8 @@ fn write_csv(path: &Path, scenario: &Scenario, report: &HelmReport) -> Result<()
 }
 
 /// A picture of all together, then of each behaviour that asked for something.
-fn roses(report: &HelmReport) -> Vec<Rose> {
-    let rose = |title: String, values: Vec<f64>, range: (f64, f64)| Rose {
+fn plots(report: &HelmReport) -> Vec<PolarPlot> {
+    let plot = |title: String, values: Vec<f64>, range: (f64, f64)| PolarPlot {
         title,
         courses: report.courses,
         speed_max_m_s: report.speed_max_m_s,
@@ -120,7 +120,7 @@ fn roses(report: &HelmReport) -> Vec<Rose> {
     };
     let all = sum(report, report.functions.iter());
     let range = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
-    let mut roses = vec![rose(format!("{COLLECTIVE}: sum of weight × utility"), all, range)];
+    let mut plots = vec![plot(format!("{COLLECTIVE}: sum of weight × utility"), all, range)];
     for behaviour in &report.behaviours {
         let of_it = || report.functions.iter().filter(|function| function.behaviour == behaviour.name);
         let weight: f64 = of_it().map(|function| function.weight).sum();
@@ -134,11 +134,11 @@ fn roses(report: &HelmReport) -> Vec<Rose> {
             n => format!(", {n} contacts"),
         };
         let mean = sum(report, of_it()).into_iter().map(|v| v / weight.max(f64::MIN_POSITIVE)).collect();
-        roses.push(rose(
+        plots.push(plot(
             format!("{} ({}): weight {weight:.1}{about}", behaviour.name, behaviour.kind),
             mean,
             (0.0, 100.0),
         ));
     }
-    roses
+    plots
 }

@@ -6,7 +6,7 @@ mod child_process;
 mod gateway_command;
 mod hardware_loop;
 mod helm_command;
-mod helm_page;
+mod helm_text;
 mod identify_command;
 mod list_command;
 mod log_command;
@@ -57,7 +57,7 @@ enum Command {
     Sim(sim_command::Args),
     /// Decides for one or many boats in a game that a sim serves.
     Agent(agent_command::Args),
-    /// Shows a running game in the terminal, or what one boat's helm thinks.
+    /// Shows a running game in the terminal, or one boat's helm.
     Watch(watch_command::Args),
     /// Shows a running game on a page.
     View(view_command::Args),

@@ -34,7 +34,7 @@ impl Observer {
         Ok(self.info.scenario.vehicle_named(name)?)
     }
 
-    /// What a vehicle's helm thinks; nothing if it has no agent now.
+    /// The helm report of a vehicle; nothing if it has no agent now.
     pub(crate) fn helm(&self, vehicle: VehicleId, question: HelmQuestion) -> Result<Option<HelmReport>> {
         let question = serde_json::to_vec(&question).context("a question is JSON")?;
         let key = topic::helm(&self.game, &self.info.scenario, vehicle);

@@ -3,7 +3,7 @@
 use arena::tournament::{Cell, Estimate, Report, Row};
 use std::fmt::Write;
 
-/// What is counted, as heads of columns: the name in the file, the words for people, and where it is.
+/// A column: its name in the CSV file, its heading for people, and its value.
 type Column = (&'static str, &'static str, fn(&Row) -> Estimate);
 
 const COLUMNS: [Column; 7] = [
@@ -22,7 +22,7 @@ pub(crate) fn text(report: &Report) -> String {
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(", sea {sea}"));
     line(&mut text, format_args!("{}: {}{sea}", report.tournament, report.game));
     match report.matrix.first() {
-        None => line(&mut text, format_args!("no seed of which all games were played: nothing to tell")),
+        None => line(&mut text, format_args!("no seed of which all games were played: no result")),
         Some(Cell { games, seeds, .. }) => {
             let (count, first, last) = (report.seeds_counted, seeds.first, seeds.last);
             line(&mut text, format_args!("{games} games a pairing, half of them on each side"));
@@ -81,8 +81,8 @@ fn beaten(cell: &Cell) -> String {
 
 /// What is not in the tables.
 fn missing(text: &mut String, report: &Report) {
-    /// Failures that are told in full.
-    const TOLD: usize = 5;
+    /// Failures that are listed.
+    const LISTED: usize = 5;
     let Report { games_unplayed, games_left_out, failures, .. } = report;
     if *games_unplayed > 0 {
         line(text, format_args!("\nCUT SHORT: {games_unplayed} games were not played"));
@@ -90,12 +90,12 @@ fn missing(text: &mut String, report: &Report) {
     if !failures.is_empty() {
         line(text, format_args!("\n{} games could not start:", failures.len()));
     }
-    for failure in failures.iter().take(TOLD) {
+    for failure in failures.iter().take(LISTED) {
         let why = failure.why.replace('\n', "; ");
         line(text, format_args!("  {} against {}, seed {}: {why}", failure.blue, failure.red, failure.seed));
     }
-    if failures.len() > TOLD {
-        line(text, format_args!("  and {} more", failures.len() - TOLD));
+    if failures.len() > LISTED {
+        line(text, format_args!("  and {} more", failures.len() - LISTED));
     }
     if *games_left_out > 0 {
         line(text, format_args!("{games_left_out} games are left out, since others of their seed are missing"));
@@ -105,18 +105,17 @@ fn missing(text: &mut String, report: &Report) {
 /// How to play one of the games again.
 fn again(text: &mut String, report: &Report) {
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {sea}"));
-    let sides: String = report.teams.iter().map(|team| format!(" {}", flag(team))).collect();
-    let files: Vec<String> = report.entries.iter().map(|row| format!("  {:<16} {}", row.name, row.strategy)).collect();
+    let sides: String = report.teams.iter().zip(["A", "B"]).map(|(team, file)| option(team, file)).collect();
     line(text, format_args!("\nany of these games again, with strategy files for A and B:"));
-    let [a, b] = ["A", "B"];
-    let sides = sides.replacen("{}", a, 1).replacen("{}", b, 1);
     line(text, format_args!("  squall run {}{sea}{sides} --seed {} --in-process", report.game, report.seed));
-    files.iter().for_each(|file| line(text, format_args!("{file}")));
+    for row in &report.entries {
+        line(text, format_args!("  {:<16} {}", row.name, row.strategy));
+    }
 }
 
-/// The option that gives a team its strategy, with a hole for it.
-fn flag(team: &str) -> String {
-    if ["blue", "red"].contains(&team) { format!("--{team} {{}}") } else { format!("--strategy {team}={{}}") }
+/// The option that gives a team its strategy file.
+fn option(team: &str, file: &str) -> String {
+    if ["blue", "red"].contains(&team) { format!(" --{team} {file}") } else { format!(" --strategy {team}={file}") }
 }
 
 /// A line for each entry, separated by commas. Names hold no commas, and paths are put in quotes.

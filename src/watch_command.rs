@@ -1,4 +1,4 @@
-//! `squall watch`: a running game in the terminal, or what one boat's helm thinks.
+//! `squall watch`: a running game in the terminal, or one boat's helm.
 
 use crate::net_args::LeafArgs;
 use crate::observer::Observer;
@@ -27,7 +27,7 @@ mod helm;
 pub(crate) struct Args {
     #[command(flatten)]
     leaf: LeafArgs,
-    /// Shows what this vehicle's helm thinks instead of the field
+    /// Shows this vehicle's helm instead of the field: mode, decision, behaviours
     #[arg(long, value_name = "NAME")]
     helm: Option<String>,
     /// Pictures a second

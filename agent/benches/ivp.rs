@@ -1,7 +1,8 @@
 //! What a decision of the helm costs, with building its functions, and what it would cost to look at every point.
 
-use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Peaks, Problem, Wish};
+use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem};
 use criterion::{Criterion, criterion_group, criterion_main};
+use game::Ned;
 use game::stream::Stream;
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
@@ -10,24 +11,21 @@ use std::hint::black_box;
 const SCENES: usize = 64;
 
 /// A waypoint, and contacts within 80 m, as a helm meets them.
-fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Wish)> {
+fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Preference)> {
     let mut stream = Stream::new(1, "bench/ivp");
     let scene = |_| {
         let (bearing_rad, course_rad) = (stream.between(0.0, TAU), stream.between(0.0, TAU));
-        let heading = Peak { peak_width: 0.5, summit_delta: 50.0, height: 20.0, ..Peak::tent(course_rad, 0.5) };
         let waypoint = Objective::Coupled {
-            course: Peaks::one(Peak::tent(bearing_rad, PI)).and(heading),
-            speed: Peaks::one(Peak { peak_width: 1.25, summit_delta: 20.0, ..Peak::tent(2.5, 1.6) }),
+            course: Peak::tent(bearing_rad, PI),
+            speed: Peak { peak_width: 1.25, summit_delta: 20.0, ..Peak::tent(2.5, 1.6) },
             course_share: 0.5,
         };
         let mut functions = vec![(100.0, waypoint)];
         for _ in 0..contacts {
-            let (north_m, east_m) = (stream.between(-80.0, 80.0), stream.between(-80.0, 80.0));
+            let mut within = |most: f64| Ned { north: stream.between(-most, most), east: stream.between(-most, most) };
             let closest = Closest {
-                north_m,
-                east_m,
-                velocity_north_m_s: stream.between(-2.0, 2.0),
-                velocity_east_m_s: stream.between(-2.0, 2.0),
+                offset: within(80.0),
+                velocity: within(2.0),
                 horizon_s: 120.0,
                 min_m: 10.0,
                 max_m: 75.0,
@@ -37,7 +35,7 @@ fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Wish)> {
             };
             functions.push((300.0, Objective::Closest(closest)));
         }
-        (functions, Wish { course_rad, speed_m_s: 2.0, keep: None })
+        (functions, Preference { course_rad, speed_m_s: 2.0, keep: None })
     };
     (0..SCENES).map(scene).collect()
 }
@@ -50,11 +48,11 @@ fn decide(criterion: &mut Criterion) {
         let mut next = 0;
         group.bench_function(format!("functions {}", contacts + 1), |bencher| {
             bencher.iter(|| {
-                let (functions, wish) = black_box(&scenes[next % SCENES]);
+                let (functions, preference) = black_box(&scenes[next % SCENES]);
                 next += 1;
                 problem.clear();
                 functions.iter().for_each(|(weight, objective)| problem.add(*weight, objective));
-                problem.solve(*wish)
+                problem.solve(*preference)
             });
         });
     }
@@ -84,10 +82,9 @@ fn best_of_all(grid: &Grid, functions: &[(f64, Objective)]) -> (f64, usize, usiz
         let (north, east) = grid.direction(k);
         let of_course = f64::from(course.of_course(grid, k));
         for (j, of_speed) in speeds.iter().enumerate() {
-            let speed_m_s = grid.speed_m_s(j);
-            let (own_north, own_east) = (speed_m_s * f64::from(north), speed_m_s * f64::from(east));
+            let own = Ned { north: north.into(), east: east.into() }.scaled(grid.speed_m_s(j));
             let waypoint = functions[0].0 * (of_course * course_share + of_speed * (1.0 - course_share));
-            let contacts: f64 = functions[1..].iter().map(|(weight, f)| weight * plain(f, own_north, own_east)).sum();
+            let contacts: f64 = functions[1..].iter().map(|(weight, f)| weight * plain(f, own)).sum();
             if waypoint + contacts > best.0 {
                 best = (waypoint + contacts, k, j);
             }
@@ -97,12 +94,11 @@ fn best_of_all(grid: &Grid, functions: &[(f64, Objective)]) -> (f64, usize, usiz
 }
 
 /// Utility of the distance at the closest point of approach.
-fn plain(objective: &Objective, own_north_m_s: f64, own_east_m_s: f64) -> f64 {
+fn plain(objective: &Objective, own: Ned) -> f64 {
     let Objective::Closest(c) = objective else { return 0.0 };
-    let (w_north, w_east) = (c.velocity_north_m_s - own_north_m_s, c.velocity_east_m_s - own_east_m_s);
-    let square = (w_north * w_north + w_east * w_east).max(1e-20);
-    let t = (-(c.north_m * w_north + c.east_m * w_east) / square).clamp(0.0, c.horizon_s);
-    let distance_m = game::math::length(c.north_m + w_north * t, c.east_m + w_east * t);
+    let w = c.velocity - own;
+    let t = (-c.offset.dot(w) / w.dot(w).max(1e-20)).clamp(0.0, c.horizon_s);
+    let distance_m = (c.offset + w.scaled(t)).length();
     let rise = 75.0 * (distance_m - c.min_m) / (c.max_m - c.min_m);
     if distance_m > c.min_m { (25.0 + rise).min(100.0) } else { 0.0 }
 }

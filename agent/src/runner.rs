@@ -1,10 +1,10 @@
-//! Runs minds, decision by decision: messages of mates are taken in, then policy proposals; every mind decides; what it
-//! tells its team is passed on.
+//! Runs minds, decision by decision: messages of mates come in, then policy proposals; every mind decides; its messages to
+//! its team are passed on.
 //!
 //! No network and no clock. The arena, agent processes, replays and emulated boats all run minds by this one loop, so a
 //! game is the same bytes in each of them.
 
-use crate::{Mind, Proposal};
+use crate::mind::{Mind, Proposal};
 use game::message::{Message, Orders, PolicyProposal, Stamp, VehicleOrder, Word};
 use game::{Order, Picture, VehicleId};
 
@@ -20,8 +20,8 @@ pub struct MindRunner<M: Mind + ?Sized = dyn Mind> {
     boats: Vec<Boat<M>>,
     /// The picture that was decided on last.
     decided: Option<Stamp>,
-    /// What the minds told their teams after the last decision.
-    said: Vec<Word>,
+    /// The minds' messages to their teams after the last decision.
+    sent: Vec<Word>,
 }
 
 impl<M: Mind + ?Sized> MindRunner<M> {
@@ -29,7 +29,7 @@ impl<M: Mind + ?Sized> MindRunner<M> {
     #[must_use]
     pub fn new(minds: impl IntoIterator<Item = (VehicleId, Box<M>)>) -> MindRunner<M> {
         let boat = |(vehicle, mind)| Boat { vehicle, order: Order::Hold, mind };
-        MindRunner { boats: minds.into_iter().map(boat).collect(), decided: None, said: Vec::new() }
+        MindRunner { boats: minds.into_iter().map(boat).collect(), decided: None, sent: Vec::new() }
     }
 
     /// The minds and their boats, in the order in which they decide.
@@ -54,10 +54,10 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.boats.iter_mut().find(|boat| boat.vehicle == vehicle).map(|boat| &mut *boat.mind)
     }
 
-    /// Takes in what mates in other processes said after the decision before. Minds ignore words of the other team.
-    pub fn hear(&mut self, words: &[Word]) {
-        if !words.is_empty() {
-            self.boats.iter_mut().for_each(|boat| boat.mind.hear(words));
+    /// Takes in what mates in other processes sent after the decision before. Minds ignore messages of the other team.
+    pub fn receive(&mut self, messages: &[Word]) {
+        if !messages.is_empty() {
+            self.boats.iter_mut().for_each(|boat| boat.mind.receive(messages));
         }
     }
 
@@ -66,22 +66,22 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         let PolicyProposal { vehicle, course_rad, speed_m_s, .. } = *proposal;
         if let Some(mind) = self.mind_mut(vehicle) {
             // A proposal cannot know more than the newest picture.
-            mind.propose(proposal.stamp.valid_ns.min(stamp.valid_ns), Proposal { course_rad, speed_m_s });
+            mind.propose(Proposal { at: proposal.stamp.valid_ns.min(stamp.valid_ns), course_rad, speed_m_s });
         }
     }
 
     /// Lets every mind decide on its boat's picture, which has this stamp; a boat without a picture holds. What the minds
-    /// say then, their mates here know at the next decision.
+    /// send then, their mates here know at the next decision.
     pub fn decide<'p>(&mut self, stamp: Stamp, picture_of: impl Fn(VehicleId) -> Option<&'p Picture>) {
         for Boat { vehicle, order, mind } in &mut self.boats {
             *order = picture_of(*vehicle).map(|picture| mind.decide(picture)).unwrap_or_default();
         }
         self.decided = Some(stamp);
-        let mut said = std::mem::take(&mut self.said);
-        said.clear();
-        self.boats.iter().for_each(|boat| boat.mind.say(&mut said));
-        self.hear(&said);
-        self.said = said;
+        let mut sent = std::mem::take(&mut self.sent);
+        sent.clear();
+        self.boats.iter().for_each(|boat| boat.mind.send(&mut sent));
+        self.receive(&sent);
+        self.sent = sent;
     }
 
     /// The number of the last decision.
@@ -95,10 +95,10 @@ impl<M: Mind + ?Sized> MindRunner<M> {
         self.boats.iter().map(|boat| (boat.vehicle, boat.order))
     }
 
-    /// What the minds told their teams after the last decision.
+    /// The minds' messages to their teams after the last decision.
     #[must_use]
-    pub fn said(&self) -> &[Word] {
-        &self.said
+    pub fn sent(&self) -> &[Word] {
+        &self.sent
     }
 
     /// The orders of the last decision as a message to the sim, which gave this ticket; the same whenever it is asked for
@@ -115,28 +115,28 @@ mod tests {
     use super::*;
     use game::SimTime;
 
-    /// Orders the speed that is proposed plus what it has heard, and says how often it has decided.
+    /// Orders the speed that is proposed plus what it has received, and sends how often it has decided.
     struct Adder {
         me: VehicleId,
         decisions: f64,
-        heard: f64,
-        proposed: Option<(SimTime, f64)>,
+        received: f64,
+        proposed: Option<Proposal>,
     }
 
     impl Mind for Adder {
         fn decide(&mut self, _picture: &Picture) -> Order {
             self.decisions += 1.0;
-            let speed_m_s = self.heard + self.proposed.map_or(0.0, |(_, speed_m_s)| speed_m_s);
+            let speed_m_s = self.received + self.proposed.map_or(0.0, |proposal| proposal.speed_m_s);
             Order::Steer { heading_rad: 0.0, speed_m_s }
         }
-        fn say(&self, words: &mut Vec<Word>) {
-            words.push(Word { vehicle: self.me, key: 1, value: self.decisions });
+        fn send(&self, messages: &mut Vec<Word>) {
+            messages.push(Word { vehicle: self.me, key: 1, value: self.decisions });
         }
-        fn hear(&mut self, words: &[Word]) {
-            self.heard += words.iter().filter(|word| word.vehicle != self.me).map(|word| word.value).sum::<f64>();
+        fn receive(&mut self, messages: &[Word]) {
+            self.received += messages.iter().filter(|word| word.vehicle != self.me).map(|word| word.value).sum::<f64>();
         }
-        fn propose(&mut self, at: SimTime, proposal: Proposal) {
-            self.proposed = Some((at, proposal.speed_m_s));
+        fn propose(&mut self, proposal: Proposal) {
+            self.proposed = Some(proposal);
         }
     }
 
@@ -146,10 +146,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_after_a_decision_is_known_at_the_next_one() {
+    fn what_is_sent_after_a_decision_is_known_at_the_next_one() {
         let adder = |i| {
             let me = VehicleId(i);
-            (me, Box::new(Adder { me, decisions: 0.0, heard: 0.0, proposed: None }))
+            (me, Box::new(Adder { me, decisions: 0.0, received: 0.0, proposed: None }))
         };
         let mut runner = MindRunner::new([adder(0), adder(4)]);
         assert!(runner.answer(7).is_none() && runner.decided().is_none());
@@ -159,15 +159,15 @@ mod tests {
             runner.decide(stamp(seq), |_| Some(&picture));
             assert_eq!((speeds(&runner), runner.decided()), (want.to_vec(), Some(seq)));
         }
-        runner.hear(&[Word { vehicle: VehicleId(9), key: 1, value: 100.0 }]);
+        runner.receive(&[Word { vehicle: VehicleId(9), key: 1, value: 100.0 }]);
         let proposal = PolicyProposal { stamp: stamp(99), vehicle: VehicleId(4), course_rad: 0.0, speed_m_s: 0.5 };
         runner.propose(&proposal, stamp(3));
         runner.propose(&PolicyProposal { vehicle: VehicleId(5), ..proposal }, stamp(3));
         runner.decide(stamp(3), |vehicle| (vehicle == VehicleId(4)).then_some(&picture));
         assert_eq!(speeds(&runner), [-1.0, 106.5], "without a picture the boat holds");
-        let known_at = runner.mind(VehicleId(4)).and_then(|mind| mind.proposed).map(|(at, _)| at);
+        let known_at = runner.mind(VehicleId(4)).and_then(|mind| mind.proposed).map(|proposal| proposal.at);
         assert_eq!(known_at, Some(SimTime(30)), "no proposal is newer than the picture");
-        assert_eq!(runner.said().iter().map(|word| word.value).collect::<Vec<_>>(), [3.0, 4.0]);
+        assert_eq!(runner.sent().iter().map(|word| word.value).collect::<Vec<_>>(), [3.0, 4.0]);
         let answer = runner.answer(7).expect("it has decided");
         assert_eq!((answer.ticket, answer.stamp.seq, answer.orders.len()), (7, 3, 2));
         assert_eq!(runner.answer(7), Some(answer), "asked again, it answers the same");

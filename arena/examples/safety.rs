@@ -2,7 +2,7 @@
 //! hulls touch.
 //!
 //! `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S]`, by default 10,000 games of 120 s in
-//! calm water. Every boat has a strategy drawn by lot over `safety.toml`: places on the field and up to 20 m beyond it,
+//! calm water. Every boat has a random strategy over `safety.toml`: places on the field and up to 20 m beyond it,
 //! pursuits, stations, headings, at any speed. The same seeds are the same games.
 
 use game::event::EventCursor;
@@ -46,16 +46,16 @@ impl Tally {
     }
 }
 
-/// Whatever a boat leaves of its own accord must not be laid to a push long ago.
+/// A boat that leaves the field so long after hulls touched was not pushed out, s.
 const PUSH_REMEMBERED_S: f64 = 5.0;
-/// Boats this near make each other give way, m.
+/// Boats that are nearer than this make each other give way, m.
 const CROWD_M: f64 = 15.0;
 
 fn main() {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let number = |i: usize, otherwise: u64| words.get(i).and_then(|word| word.parse().ok()).unwrap_or(otherwise);
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let number = |i: usize, default: u64| args.get(i).and_then(|arg| arg.parse().ok()).unwrap_or(default);
     let (games, duration_s) = (number(0, 10_000), number(2, 120));
-    let sea = words.get(1).map_or("calm", String::as_str);
+    let sea = args.get(1).map_or("calm", String::as_str);
     let next = AtomicU64::new(1);
     let jobs = std::thread::available_parallelism().map_or(1, usize::from);
     let mut total = Tally::default();
@@ -76,11 +76,11 @@ fn main() {
             total.add(worker.join().expect("a worker ends"));
         }
     });
-    tell(&total, sea, duration_s);
+    print_summary(&total, sea, duration_s);
 }
 
 #[expect(clippy::print_stdout, reason = "this is a program")]
-fn tell(total: &Tally, sea: &str, duration_s: u64) {
+fn print_summary(total: &Tally, sea: &str, duration_s: u64) {
     let share = |n: u64| 100.0 * n as f64 / total.games as f64;
     let hourly = |n: u64| n as f64 / total.boat_hours;
     println!("{} games of {duration_s} s, sea {sea}, {:.0} boat-hours", total.games, total.boat_hours);
@@ -106,7 +106,7 @@ fn tell(total: &Tally, sea: &str, duration_s: u64) {
     );
 }
 
-/// A game between strategies drawn by lot.
+/// A game between random strategies.
 fn scenario(folder: &Path, sea: &str, duration_s: u64, seed: u64) -> Scenario {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let mut stream = Stream::new(seed, "safety");
@@ -119,7 +119,7 @@ fn scenario(folder: &Path, sea: &str, duration_s: u64, seed: u64) -> Scenario {
         for role in &roles {
             write(folder.join(role), &program(&scenarios, &mut stream));
         }
-        write(folder.join(format!("{team}.toml")), &format!("about = \"By lot\"\nroles = {roles:?}\n"));
+        write(folder.join(format!("{team}.toml")), &format!("about = \"Random\"\nroles = {roles:?}\n"));
         game += &format!("[[team]]\nname = \"{team}\"\nstrategy = \"{team}.toml\"\n");
     }
     write(folder.join("game.toml"), &game);
@@ -130,15 +130,15 @@ fn write(path: PathBuf, text: &str) {
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
 }
 
-/// A program drawn by lot: one to three behaviours over the mandatory ones.
+/// A random program: one to three behaviours over the mandatory ones.
 fn program(scenarios: &Path, stream: &mut Stream) -> String {
-    let mut text = format!("base = \"{}/strategies/safety.toml\"\nabout = \"By lot\"\n", scenarios.display());
+    let mut text = format!("base = \"{}/strategies/safety.toml\"\nabout = \"Random\"\n", scenarios.display());
     let count = 1 + stream.below(3);
     for i in 0..count {
         let weight = stream.between(20.0, 100.0);
         text += &format!("[behaviour.b{i}]\nweight = {weight:.1}\n");
         text += &behaviour(stream);
-        // The first one always has something to say.
+        // The first one is always active.
         if i > 0 {
             let conditions =
                 ["enemy_in_zone", "own_side", "time_s > 60", "has_flag", "!tagged", "distance(nearest_enemy) < 30"];
@@ -187,7 +187,7 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
     let count = scenario.vehicles.len();
     let (mut touching, mut touched_s) = (vec![false; count * count], vec![f64::NEG_INFINITY; count]);
     let mut tally = Tally { games: 1, ..Tally::default() };
-    let mut told = EventCursor::default();
+    let mut cursor = EventCursor::default();
     while !contest.is_over() {
         arena::decide(&mut contest, &mut runner);
         contest.advance();
@@ -205,7 +205,7 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
                 }
             }
         }
-        for logged in told.read(contest.events()) {
+        for logged in cursor.read(contest.events()) {
             if let Event::LeftField { vehicle } = logged.event {
                 let i = vehicle.index();
                 tally.left += 1;

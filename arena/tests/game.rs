@@ -1,19 +1,27 @@
-//! Whole games between the minds of the house.
+//! Whole games of the shipped strategies.
 
 use game::count::Counts;
 use game::{Outcome, Scenario, SimTime, VehicleId};
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::{Arc, Mutex, OnceLock};
 
 fn shipped(name: &str) -> Scenario {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games").join(name);
     game::scenario::load(&path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn play(game: &str, seed: u64) -> Outcome {
-    play_scenario(&shipped(game), seed)
+/// Games that were played once, by name and seed: no two tests play the same one.
+type Played = BTreeMap<(&'static str, u64), Arc<OnceLock<Outcome>>>;
+
+/// The outcome of a shipped game.
+fn played(game: &'static str, seed: u64) -> Outcome {
+    static PLAYED: Mutex<Played> = Mutex::new(BTreeMap::new());
+    let outcome = Arc::clone(PLAYED.lock().expect("no test fails with it").entry((game, seed)).or_default());
+    outcome.get_or_init(|| play(&shipped(game), seed)).clone()
 }
 
-fn play_scenario(scenario: &Scenario, seed: u64) -> Outcome {
+fn play(scenario: &Scenario, seed: u64) -> Outcome {
     let scenario = Scenario { seed, ..scenario.clone() };
     arena::play(&scenario, agent::minds_of(&scenario), seed).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -25,7 +33,7 @@ fn all(outcome: &Outcome, count: impl Fn(&Counts) -> u32) -> u32 {
 #[test]
 fn the_first_game_of_the_paper_is_played_to_its_end() {
     for seed in 1..=5 {
-        let outcome = play("pav01_vs_pav01.toml", seed);
+        let outcome = played("pav01_vs_pav01.toml", seed);
         assert_eq!((outcome.ticks, outcome.duration_s), (12_000, 600.0), "seed {seed}");
         let ends: Vec<usize> = (0..outcome.events.len()).filter(|i| outcome.events[*i].event == "ended").collect();
         assert_eq!(ends, [outcome.events.len() - 1], "seed {seed}: it ends once, and nothing comes after");
@@ -46,13 +54,13 @@ fn the_first_game_of_the_paper_is_played_to_its_end() {
 #[test]
 fn the_same_seed_is_the_same_game() {
     for game in ["pav01_vs_pav01.toml", "harbour_2v2.toml"] {
-        let (first, again) = (play(game, 5), play(game, 5));
+        let (first, again) = (played(game, 5), play(&shipped(game), 5));
         assert_eq!(first, again, "{game}");
     }
-    // Forty boats that heed each other take long to play: two minutes of theirs will do.
+    // Forty boats that avoid each other take long to play: two minutes of theirs will do.
     let mut swarm = shipped("swarm_20v20.toml");
     swarm.rules.time_limit = SimTime::from_s(120.0);
-    let [first, again, other] = [5, 5, 6].map(|seed| play_scenario(&swarm, seed));
+    let [first, again, other] = [5, 5, 6].map(|seed| play(&swarm, seed));
     assert_eq!(first, again);
     assert_ne!(first.digest, other.digest);
     assert!(all(&first, |counts| counts.tags) > 5, "much happens in it: {:?}", first.counts);
@@ -61,7 +69,7 @@ fn the_same_seed_is_the_same_game() {
 #[test]
 fn mirrored_teams_draw() {
     // Both teams play the same strategy from mirrored start_positions: what one does, the other does.
-    let outcome = play("pav01_vs_pav01.toml", 1);
+    let outcome = played("pav01_vs_pav01.toml", 1);
     assert_eq!(outcome.winner, None);
     assert_eq!(outcome.score.teams["blue"], outcome.score.teams["red"]);
 }
@@ -86,8 +94,8 @@ fn seeds_deal_the_roles_when_the_strategy_says_so() {
 
 #[test]
 fn the_shipped_games_are_what_they_say_and_no_boat_is_quarantined() {
-    let sums = |game: &str, seeds: u64| {
-        let games: Vec<Outcome> = (1..=seeds).map(|seed| play(game, seed)).collect();
+    let sums = |game: &'static str, seeds: u64| {
+        let games: Vec<Outcome> = (1..=seeds).map(|seed| played(game, seed)).collect();
         let mut events = games.iter().flat_map(|outcome| &outcome.events);
         assert!(events.all(|event| event.event != "quarantined"), "{game}");
         let sum = |count: fn(&Counts) -> u32| games.iter().map(|outcome| all(outcome, count)).sum::<u32>();

@@ -1,4 +1,4 @@
-//! Tournaments: the same on any number of threads, both sides alike, and honest about what they know.
+//! Tournaments: the same on any number of threads, fair to both sides, and with honest intervals.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use arena::tournament::{Game, Match, Plan, Record, Report, play};
@@ -157,8 +157,8 @@ fn equal_entries_are_equal_to_the_last_digit() {
     let plan = Plan::new(&tournament).unwrap();
     let records = records(&plan, 2);
     // Wind and waves favour a side: there is something to cancel.
-    let is_even = |record: &Record| record.result.as_ref().unwrap().score.windows(2).all(|pair| pair[0] == pair[1]);
-    assert!(!records.iter().all(is_even));
+    let is_drawn = |record: &Record| record.result.as_ref().unwrap().score.windows(2).all(|pair| pair[0] == pair[1]);
+    assert!(!records.iter().all(is_drawn));
     let report = Report::new(&plan, &records);
     let [one, other] = &report.entries[..] else { panic!("{report:?}") };
     assert_eq!((one.score, one.tags, one.wins, one.losses), (other.score, other.tags, other.wins, other.losses));
@@ -173,13 +173,13 @@ fn equal_entries_are_equal_to_the_last_digit() {
 fn a_tournament_that_is_stopped_keeps_whole_seeds() {
     let plan = Plan::new(&tournament("attack_1v1", 40, &["idle", "easy_attackers"])).unwrap();
     let stop = AtomicBool::new(false);
-    let mut told = 0;
+    let mut shown = 0;
     let records = play(&plan, NonZeroUsize::new(1).unwrap(), &stop, |_| {
-        told += 1;
-        stop.store(told >= 3, Ordering::Relaxed);
+        shown += 1;
+        stop.store(shown >= 3, Ordering::Relaxed);
     });
-    assert_eq!(records.len(), told);
-    assert!((3..40).contains(&told), "{told} games");
+    assert_eq!(records.len(), shown);
+    assert!((3..40).contains(&shown), "{shown} games");
     // Whatever was under way, three games are one seed and a half.
     let report = Report::new(&plan, &records[..3]);
     assert_eq!((report.seeds_counted, report.games_left_out, report.games_unplayed), (1, 1, 37));
@@ -201,7 +201,7 @@ fn a_game_that_cannot_start_is_reported_and_its_seed_does_not_count() {
 }
 
 #[test]
-fn boats_that_do_not_fit_into_their_berths_are_a_failure_of_the_game_and_not_of_the_tournament() {
+fn boats_that_do_not_fit_into_their_spawn_area_fail_the_game_and_not_the_tournament() {
     let dir = tempfile::tempdir().unwrap();
     let game = dir.path().join("crowd.toml");
     let base = shipped("games/pav01_vs_pav01.toml").canonicalize().unwrap();

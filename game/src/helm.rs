@@ -4,7 +4,7 @@ use crate::id::VehicleId;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
-/// What a helm thinks at one decision.
+/// A helm at one decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HelmReport {
     /// Whose helm.
@@ -44,19 +44,19 @@ pub struct BehaviourReport {
     pub name: String,
     /// Its kind.
     pub kind: String,
-    /// Where it is in its life.
-    pub stage: StageReport,
+    /// Whether it runs, and whether it influences the helm.
+    pub run_state: RunState,
     /// Its weight now; 0 if it does not run.
     pub weight: f64,
 }
 
-/// Where a behaviour is in its life.
+/// The run state of a behaviour, as MOOS-IvP calls it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum StageReport {
+pub enum RunState {
     /// It may not run.
     Idle,
-    /// It runs but asks for nothing.
+    /// It runs, but produces no objective function.
     Running,
     /// It runs and influences the helm.
     Active,

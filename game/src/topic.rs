@@ -79,7 +79,7 @@ pub fn policy(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> Strin
     format!("squall/{}/policy/{}", game.0, scenario.vehicles[vehicle.index()].name)
 }
 
-/// What a boat's helm thinks (query).
+/// The helm report of a boat (query).
 #[must_use]
 pub fn helm(game: &GameName, scenario: &Scenario, vehicle: VehicleId) -> String {
     format!("squall/{}/helm/{}", game.0, scenario.vehicles[vehicle.index()].name)

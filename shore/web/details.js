@@ -197,14 +197,14 @@ export class Details {
     const behaviours = report.behaviours ?? [];
     show(this.behaviourHead, behaviours.length > 0);
     const most = Math.max(1, ...behaviours.map((each) => each.weight));
-    const row = () => make('div', 'behaviour', '', make('span', 'name'), make('span', 'stage'),
+    const row = () => make('div', 'behaviour', '', make('span', 'name'), make('span', 'run-state'),
       make('span', 'bar', '', make('span', 'fill')), make('span', 'value'));
     fill(this.behaviours, behaviours, row, (line, each) => {
-      const classes = `behaviour ${each.stage}`;
+      const classes = `behaviour ${each.run_state}`;
       if (line.className !== classes) line.className = classes;
       write(line.children[0], plain(each.name));
       line.children[0].title = `${each.name} (${each.kind})`;
-      write(line.children[1], each.stage);
+      write(line.children[1], each.run_state);
       line.children[2].firstElementChild.style.width = `${Math.round((100 * each.weight) / most)}%`;
       write(line.children[3], number(each.weight, 0));
     });

@@ -3,6 +3,7 @@
 const NAMES = [
   'water', 'crest', 'trough', 'grid', 'ink', 'faint', 'edge', 'wall', 'land', 'halo', 'accent', 'danger', 'paper',
   'team-0', 'team-1', 'team-2', 'team-3',
+  'heat-0', 'heat-1', 'heat-2', 'heat-3', 'heat-4', 'heat-5', 'heat-6', 'heat-7', 'heat-8',
 ];
 
 const dark = matchMedia('(prefers-color-scheme: dark)');
@@ -14,6 +15,7 @@ function readColours() {
   const style = getComputedStyle(document.documentElement);
   for (const name of NAMES) palette[name] = style.getPropertyValue(`--${name}`).trim();
   palette.teams = [0, 1, 2, 3].map((team) => palette[`team-${team}`]);
+  palette.heat = NAMES.filter((name) => name.startsWith('heat-')).map((name) => rgb(palette[name]));
   palette.version += 1;
 }
 

@@ -3,15 +3,15 @@
 import { palette } from './palette.js';
 import { number, wrapDeg } from './words.js';
 
-/** From least to greatest; brightness alone tells as much as colour (after cividis: Nuñez, Anderton and Renslow 2018). */
-const STOPS = [[0, 32, 77], [49, 68, 107], [102, 105, 112], [149, 143, 120], [202, 185, 105], [255, 233, 69]];
 /** Room around the rose for its letters, px. */
 const RIM = 20;
 
+/** The heat map's colour of every utility. */
 const SHADES = Uint32Array.from({ length: 101 }, (_, value) => {
-  const at = (value / 100) * (STOPS.length - 1);
-  const low = Math.min(STOPS.length - 2, Math.floor(at));
-  const [r, g, b] = STOPS[low].map((channel, i) => Math.round(channel + (STOPS[low + 1][i] - channel) * (at - low)));
+  const at = (value / 100) * (palette.heat.length - 1);
+  const low = Math.min(palette.heat.length - 2, Math.floor(at));
+  const [below, above] = [palette.heat[low], palette.heat[low + 1]];
+  const [r, g, b] = below.map((channel, i) => Math.round(channel + (above[i] - channel) * (at - low)));
   return (255 << 24) | (b << 16) | (g << 8) | r;
 });
 

@@ -1,7 +1,7 @@
 //! A recorded game in plots: tracks on the field, the score, every boat; and two games over each other.
 
 use crate::plot::field::{self, Chart, Spot, Symbol, Track};
-use crate::plot::{self, Line, Page, Panel};
+use crate::plot::{self, Line, Page, Panel, colour};
 use analysis::{BoatSeries, Comparison, GameSeries, Sample, distances};
 use anyhow::Result;
 use game::angle::compass_deg_from_rad;
@@ -64,11 +64,6 @@ fn title(header: &Header, what: &str) -> String {
     format!("{}, seed {}: {what}", scenario.name, scenario.seed)
 }
 
-/// The colour of a team: the first two are blue and vermilion, whatever they are called.
-fn colour(team: usize) -> RGBColor {
-    plot::COLOURS[team % plot::COLOURS.len()]
-}
-
 /// The colours of a team's boats: from its own to half of it in white.
 fn shades(series: &GameSeries) -> Vec<RGBColor> {
     let shade = |(i, boat): (usize, &BoatSeries)| {
@@ -76,7 +71,7 @@ fn shades(series: &GameSeries) -> Vec<RGBColor> {
         let (place, all) = (mates(&series.boats[..i]), mates(&series.boats));
         let white = if all > 1 { 0.5 * place as f64 / (all - 1) as f64 } else { 0.0 };
         let mix = |part: u8| (f64::from(part) + white * (255.0 - f64::from(part))).round() as u8;
-        let RGBColor(red, green, blue) = colour(boat.team);
+        let RGBColor(red, green, blue) = colour::of_team(boat.team);
         RGBColor(mix(red), mix(green), mix(blue))
     };
     series.boats.iter().enumerate().map(shade).collect()
@@ -89,8 +84,9 @@ fn chart<'a>(header: &'a Header, series: &GameSeries) -> Chart<'a> {
         colour,
         places: boat.track().collect(),
     };
-    let start =
-        |boat: &BoatSeries| Some(Spot { symbol: Symbol::Start, at: boat.track().next()?, colour: colour(boat.team) });
+    let start = |boat: &BoatSeries| {
+        Some(Spot { symbol: Symbol::Start, at: boat.track().next()?, colour: colour::of_team(boat.team) })
+    };
     let mut spots: Vec<Spot> = series.boats.iter().filter_map(start).collect();
     for logged in &series.events {
         let symbol = match logged.event {
@@ -103,13 +99,13 @@ fn chart<'a>(header: &'a Header, series: &GameSeries) -> Chart<'a> {
         let place =
             |boat: &BoatSeries| boat.samples.get(series.sample_at(logged.at.as_s())).map(|sample| sample.truth.at());
         if let Some((boat, at)) = boat.and_then(|boat| Some((boat, place(boat)?))) {
-            spots.push(Spot { symbol, at, colour: colour(boat.team) });
+            spots.push(Spot { symbol, at, colour: colour::of_team(boat.team) });
         }
     }
     Chart {
         title: title(header, "tracks"),
         field: &header.info.scenario.field,
-        teams: series.teams.iter().enumerate().map(|(i, name)| (name.clone(), colour(i))).collect(),
+        teams: series.teams.iter().enumerate().map(|(i, name)| (name.clone(), colour::of_team(i))).collect(),
         tracks: series.boats.iter().zip(shades(series)).map(track).collect(),
         spots,
     }
@@ -129,7 +125,8 @@ fn score(header: &Header, series: &GameSeries) -> Page {
         }
         line
     };
-    let line = |(team, name): (usize, &String)| Line { colour: Some(colour(team)), ..Line::of(name, steps(team)) };
+    let line =
+        |(team, name): (usize, &String)| Line { colour: Some(colour::of_team(team)), ..Line::of(name, steps(team)) };
     let lines = series.teams.iter().enumerate().map(line).collect();
     let panels = vec![Panel::of("Score", [TIME, "points"], lines, "nothing was recorded")];
     Page { title: title(header, "score"), columns: 1, panel: WIDE, panels }
@@ -142,7 +139,7 @@ fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page {
         samples.map(|(time_s, sample)| (*time_s, of(sample).unwrap_or(f64::NAN))).collect()
     };
     let ordered = |points| Line { colour: Some(ORDERED), ..Line::of("ordered", points) };
-    let sailed = |points| Line { colour: Some(colour(boat.team)), ..Line::of("sailed", points) };
+    let sailed = |points| Line { colour: Some(colour::of_team(boat.team)), ..Line::of("sailed", points) };
     let speed = |sample: &Sample| match sample.order {
         Order::Steer { speed_m_s, .. } => Some(speed_m_s),
         Order::Hold => Some(0.0),
@@ -157,7 +154,7 @@ fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page {
         ordered(unwound(series(&heading))),
         sailed(unwound(series(&|sample| Some(compass_deg_from_rad(sample.truth.psi_rad))))),
     ];
-    let error = Line { colour: Some(colour(boat.team)), ..Line::of("", series(&Sample::nav_error_m)) };
+    let error = Line { colour: Some(colour::of_team(boat.team)), ..Line::of("", series(&Sample::nav_error_m)) };
     let is_known = error.points.iter().any(|(_, error_m)| error_m.is_finite());
     let absent = "no picture showed the estimated position of this boat";
     let panels = vec![

@@ -1,8 +1,9 @@
 //! Plots as SVG and PNG files: panels with axes and units, each with a few lines and a legend.
 
+pub(crate) mod colour;
 pub(crate) mod field;
 pub(crate) mod game;
-pub(crate) mod rose;
+pub(crate) mod polar;
 pub(crate) mod sea;
 pub(crate) mod trial;
 

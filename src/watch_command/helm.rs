@@ -1,7 +1,7 @@
 //! One boat's helm, live.
 
 use crate::observer::Observer;
-use crate::{helm_page, screen};
+use crate::{helm_text, screen};
 use anyhow::{Result, bail};
 use bus::clock;
 use game::helm::HelmQuestion;
@@ -12,7 +12,7 @@ use std::time::Duration;
 /// A boat of which nothing is heard for this long has no agent.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// Shows what the helm of the vehicle of this name thinks until the game is over, this often.
+/// Shows the helm of the vehicle of this name until the game is over, this often.
 pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &AtomicBool) -> Result<()> {
     let vehicle = observer.vehicle(name)?;
     let scenario = &observer.info.scenario;
@@ -25,9 +25,9 @@ pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &Ato
                 heard = clock::now();
                 // Where nothing can be written over, a decision is printed once.
                 let text = match live {
-                    true => format!("\x1b[H\x1b[J{}", helm_page::page(scenario, &report)),
+                    true => format!("\x1b[H\x1b[J{}", helm_text::page(scenario, &report)),
                     false if last.replace(report.at) == Some(report.at) => String::new(),
-                    false => helm_page::line(scenario, &report),
+                    false => helm_text::line(scenario, &report),
                 };
                 if !screen::is_read(&text) {
                     return Ok(());

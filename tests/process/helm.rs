@@ -63,7 +63,7 @@ fn watch_shows_a_helm_and_helm_writes_its_functions() {
     assert!(output.status.success(), "{}", stderr(&output));
     let page = stdout(&output);
     assert!(
-        page.contains("goes by easy_attacker") && page.contains("waypoint") && page.contains("op_region"),
+        page.contains("follows easy_attacker") && page.contains("waypoint") && page.contains("op_region"),
         "{page}"
     );
     let csv = std::fs::read_to_string(&files[0]).expect("it was written");
@@ -118,7 +118,7 @@ fn an_agent_plays_by_a_strategy_file_of_its_own() {
     sim.wait_for_kind("started");
     for (vehicle, program) in [("blue_one", "mine"), ("blue_two", "mine"), ("red_two", "easy_attacker")] {
         let page = stdout(&sim.run(&["helm", "--vehicle", vehicle]));
-        assert!(page.contains(&format!("goes by {program}")), "{page}");
+        assert!(page.contains(&format!("follows {program}")), "{page}");
     }
     sim.stop();
 }

@@ -1,37 +1,28 @@
 //! Collision avoidance: keeps clear of other boats by the closest point of approach, with a function for each.
 
-use super::{CPA_MIN_UTILITY, Conduct, Nearest, is_meant, lag, nearness};
-use crate::helm::{Bid, Scene};
-use crate::ivp::{Approach, Closest, Objective};
+use super::logic::BehaviourLogic;
+use super::nearest::{Nearest, is_meant, nearness};
+use super::output::BehaviourOutput;
+use super::steering::keep_clear;
+use crate::situation::{MovingPoint, Situation};
 use game::strategy::{AvoidCollision, Grade};
 
-pub(super) struct Conductor(pub(super) AvoidCollision);
+pub(super) struct AvoidCollisionBehaviour(pub(super) AvoidCollision);
 
-impl Conduct for Conductor {
-    fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
+impl BehaviourLogic for AvoidCollisionBehaviour {
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         let task = &self.0;
-        let (inner_m, outer_m) = (task.inner_m.value(scene), task.outer_m.value(scene));
-        let (min_m, max_m) = (task.cpa_min_m.value(scene), task.cpa_max_m.value(scene));
-        let horizon_s = task.time_on_leg_s.value(scene);
-        let near = scene.others.iter().enumerate().map(|(i, other)| (scene.at.distance(other.at), i));
-        let meant = |i: usize| is_meant(task.contacts, scene, &scene.others[i]);
+        let (inner_m, outer_m) = (task.inner_m.value(situation), task.outer_m.value(situation));
+        let (min_m, max_m) = (task.cpa_min_m.value(situation), task.cpa_max_m.value(situation));
+        let horizon_s = task.time_on_leg_s.value(situation);
+        let near = situation.others.iter().enumerate().map(|(i, other)| (situation.at.distance(other.at), i));
+        let meant = |i: usize| is_meant(task.contacts, situation, &situation.others[i]);
         for (distance_m, i) in Nearest::of(near.filter(|(distance_m, i)| *distance_m < outer_m && meant(*i))).iter() {
-            let other = &scene.others[i];
-            let line = other.at - scene.at;
-            let closest = Closest {
-                north_m: line.north,
-                east_m: line.east,
-                velocity_north_m_s: other.velocity.north,
-                velocity_east_m_s: other.velocity.east,
-                horizon_s,
-                min_m,
-                max_m: max_m.max(min_m),
-                touch_m: 0.0,
-                approach: Approach::Avoid { at_min: CPA_MIN_UTILITY },
-                lag: Some(lag(scene)),
-            };
+            let other = &situation.others[i];
+            let disc = MovingPoint { at: other.at, velocity: other.velocity };
+            let function = keep_clear(situation, disc, 0.0, (min_m, max_m), horizon_s);
             let share = graded(task.grade, nearness(distance_m, inner_m, outer_m));
-            bid.ask_for(share, Some(other.vehicle), &Objective::Closest(closest));
+            output.add_share(share, Some(other.vehicle), &function);
         }
     }
 }

@@ -1,22 +1,25 @@
 //! Intercept: steers for the point where a boat can be met soonest (lead pursuit).
 
-use super::{Conduct, drive};
-use crate::helm::{Bid, Scene, Spot};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
+use super::steering::toward;
+use crate::situation::{MovingPoint, Situation};
 use game::Ned;
 use game::strategy::Intercept;
 
-pub(super) struct Conductor(pub(super) Intercept);
+pub(super) struct InterceptBehaviour(pub(super) Intercept);
 
-impl Conduct for Conductor {
-    fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
-        let Some(contact) = scene.boat(self.0.contact).copied() else { return };
-        let giveup_m = self.0.giveup_m.value(scene);
-        if giveup_m > 0.0 && scene.at.distance(contact.at) > giveup_m {
+impl BehaviourLogic for InterceptBehaviour {
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        let Some(contact) = situation.boat(self.0.contact).copied() else { return };
+        let giveup_m = self.0.giveup_m.value(situation);
+        if giveup_m > 0.0 && situation.at.distance(contact.at) > giveup_m {
             return;
         }
-        let speed_m_s = self.0.speed_m_s.value(scene).min(scene.chart.speed_max_m_s);
-        let meeting = meeting_point(scene.at, speed_m_s, Spot { at: contact.at, velocity: contact.velocity });
-        bid.ask_for(1.0, Some(contact.vehicle), &drive(scene, meeting, speed_m_s));
+        let speed_m_s = self.0.speed_m_s.value(situation).min(situation.model.speed_max_m_s);
+        let meeting =
+            meeting_point(situation.at, speed_m_s, MovingPoint { at: contact.at, velocity: contact.velocity });
+        output.add_share(1.0, Some(contact.vehicle), &toward(situation, meeting, speed_m_s));
     }
 }
 
@@ -24,7 +27,7 @@ impl Conduct for Conductor {
 /// if it never does.
 ///
 /// The time is the smallest positive root of |line + velocity t| = speed t.
-pub(super) fn meeting_point(from: Ned, speed_m_s: f64, contact: Spot) -> Ned {
+pub(super) fn meeting_point(from: Ned, speed_m_s: f64, contact: MovingPoint) -> Ned {
     let line = contact.at - from;
     let a = contact.velocity.dot(contact.velocity) - speed_m_s * speed_m_s;
     let half_b = line.dot(contact.velocity);
@@ -46,18 +49,18 @@ mod tests {
 
     #[test]
     fn boats_meet_where_both_arrive_at_once() {
-        let contact = |north, east, v_north, v_east| Spot {
+        let contact = |north, east, v_north, v_east| MovingPoint {
             at: Ned { north, east },
             velocity: Ned { north: v_north, east: v_east },
         };
         // Crossing at right angles: 3-4-5.
         let got = meeting_point(Ned::default(), 2.0, contact(40.0, 0.0, 0.0, 1.2));
         assert!(got.distance(Ned { north: 40.0, east: 30.0 }) < 1e-9, "{got:?}");
-        for spot in [contact(50.0, 10.0, -1.0, 0.5), contact(-20.0, 30.0, 1.5, 1.0), contact(9.0, 9.0, 0.0, 0.0)] {
-            let got = meeting_point(Ned::default(), 2.5, spot);
-            let speed_m_s = spot.velocity.length();
-            let times_s = (got.length() / 2.5, if speed_m_s > 0.0 { got.distance(spot.at) / speed_m_s } else { -1.0 });
-            assert!(times_s.1 < 0.0 || (times_s.0 - times_s.1).abs() < 1e-9, "{spot:?}: {times_s:?}");
+        for point in [contact(50.0, 10.0, -1.0, 0.5), contact(-20.0, 30.0, 1.5, 1.0), contact(9.0, 9.0, 0.0, 0.0)] {
+            let got = meeting_point(Ned::default(), 2.5, point);
+            let speed_m_s = point.velocity.length();
+            let times_s = (got.length() / 2.5, if speed_m_s > 0.0 { got.distance(point.at) / speed_m_s } else { -1.0 });
+            assert!(times_s.1 < 0.0 || (times_s.0 - times_s.1).abs() < 1e-9, "{point:?}: {times_s:?}");
         }
         // One that flees faster is chased where it is.
         let got = meeting_point(Ned::default(), 1.0, contact(10.0, 0.0, 2.0, 0.0));

@@ -1,46 +1,48 @@
 //! Loiter: drives round and round a convex polygon.
 
-use super::waypoint::Approach;
-use super::{Conduct, drive};
-use crate::helm::{Bid, Scene};
+use super::arrival::Arrival;
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
+use super::steering::toward;
+use crate::situation::Situation;
 use game::field::{distance_to_outline, sides};
 use game::strategy::{Ellipse, Loiter, Shape, Turn};
 use game::{Ned, math};
 use std::f64::consts::TAU;
 
-pub(super) struct Conductor {
+pub(super) struct LoiterBehaviour {
     task: Loiter,
     /// The corners, clockwise.
     corners: Vec<Ned>,
     /// The corner that is steered for; none until the first is chosen.
     target: Option<usize>,
     clockwise: bool,
-    approach: Approach,
+    arrival: Arrival,
 }
 
-impl Conductor {
-    pub(super) fn new(task: Loiter) -> Conductor {
-        Conductor { task, corners: Vec::new(), target: None, clockwise: true, approach: Approach::new() }
+impl LoiterBehaviour {
+    pub(super) fn new(task: Loiter) -> LoiterBehaviour {
+        LoiterBehaviour { task, corners: Vec::new(), target: None, clockwise: true, arrival: Arrival::new() }
     }
 
     /// The corner to steer for first, and which way round from there: the corners ahead in the chosen direction.
-    fn choose(&mut self, scene: &Scene) {
+    fn choose(&mut self, situation: &Situation) {
         let centre = centre_of(&self.corners);
-        let out = scene.at - centre;
+        let out = situation.at - centre;
         self.clockwise = match self.task.turn {
             Turn::Clockwise => true,
             Turn::Counterclockwise => false,
             // North-east-down: the cross product is positive where the course goes clockwise round the centre.
             Turn::Best => {
-                let (east, north) = math::sin_cos(scene.own.nav.psi_rad);
+                let (east, north) = math::sin_cos(situation.own.nav.psi_rad);
                 out.north * east - out.east * north >= 0.0
             }
         };
         let count = self.corners.len();
-        let distance = |i: usize| scene.at.distance_squared(self.corners[i]);
+        let distance = |i: usize| situation.at.distance_squared(self.corners[i]);
         let nearest = (1..count).fold(0, |best, i| if distance(i) < distance(best) { i } else { best });
         self.target = Some(self.after(nearest));
-        self.approach = Approach::new();
+        self.arrival = Arrival::new();
     }
 
     fn after(&self, corner: usize) -> usize {
@@ -49,53 +51,54 @@ impl Conductor {
     }
 }
 
-impl Conduct for Conductor {
-    fn begin(&mut self, scene: &Scene) {
+impl BehaviourLogic for LoiterBehaviour {
+    fn begin(&mut self, situation: &Situation) {
         self.target = None;
-        corners_of(&self.task.shape, scene, &mut self.corners);
+        corners_of(&self.task.shape, situation, &mut self.corners);
     }
 
-    fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         if self.corners.len() < 3 {
             // What it goes round was not known when it began.
-            corners_of(&self.task.shape, scene, &mut self.corners);
+            corners_of(&self.task.shape, situation, &mut self.corners);
         }
         if self.corners.len() < 3 {
             return;
         }
-        let far = distance_to_outline(&self.corners, scene.at) > self.task.acquire_m.value(scene);
+        let far = distance_to_outline(&self.corners, situation.at) > self.task.acquire_m.value(situation);
         if self.target.is_none() || far {
-            self.choose(scene);
+            self.choose(situation);
         }
         let Some(mut target) = self.target else { return };
-        let (capture_m, slip_m) = (self.task.capture_radius_m.value(scene), self.task.slip_radius_m.value(scene));
+        let (capture_m, slip_m) =
+            (self.task.capture_radius_m.value(situation), self.task.slip_radius_m.value(situation));
         // On a short way round several corners may be behind the boat at once, but never all of them.
         for _ in 1..self.corners.len() {
-            if !self.approach.reaches(scene.at.distance(self.corners[target]), capture_m, slip_m) {
+            if !self.arrival.reaches(situation.at.distance(self.corners[target]), capture_m, slip_m) {
                 break;
             }
-            (bid.reached, self.approach) = (true, Approach::new());
+            (output.reached, self.arrival) = (true, Arrival::new());
             target = self.after(target);
         }
         self.target = Some(target);
-        bid.ask(&drive(scene, self.corners[target], self.task.speed_m_s.value(scene)));
+        output.add(&toward(situation, self.corners[target], self.task.speed_m_s.value(situation)));
     }
 }
 
 /// The corners of a shape, clockwise; none if a place of it is not known.
-fn corners_of(shape: &Shape, scene: &Scene, corners: &mut Vec<Ned>) {
+fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec<Ned>) {
     corners.clear();
     match shape {
         Shape::Corners(places) => {
-            let known = places.iter().filter_map(|place| scene.spot(place));
-            corners.extend(known.map(|spot| spot.at));
+            let known = places.iter().filter_map(|place| situation.locate(place));
+            corners.extend(known.map(|point| point.at));
             if corners.len() != places.len() {
                 corners.clear();
             }
         }
         Shape::Ellipse(Ellipse { centre, along_m, across_m, corners: count }) => {
-            let Some(centre) = scene.spot(centre) else { return };
-            let field = &scene.chart.field;
+            let Some(centre) = situation.locate(centre) else { return };
+            let field = &situation.model.field;
             corners.extend((0..*count).map(|i| {
                 let (sin, cos) = math::sin_cos(TAU * i as f64 / *count as f64);
                 centre.at + field.along.scaled(0.5 * along_m * cos) + field.across.scaled(0.5 * across_m * sin)

@@ -1,8 +1,9 @@
 //! Memory turn limit: discourages turns away from the mean heading of the last while.
 
-use super::Conduct;
-use crate::helm::{Bid, Scene};
-use crate::ivp::{Objective, Peak, Peaks};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
+use crate::ivp::{Objective, Peak};
+use crate::situation::Situation;
 use game::strategy::MemoryTurnLimit;
 use game::{SimTime, math};
 use std::collections::VecDeque;
@@ -13,14 +14,14 @@ const MOST: usize = 256;
 /// From the range that costs nothing down to nothing, as a share of what is left of half a turn.
 const BASE: f64 = 1.0;
 
-pub(super) struct Conductor {
+pub(super) struct MemoryTurnLimitBehaviour {
     task: MemoryTurnLimit,
     headings: VecDeque<(SimTime, f64)>,
 }
 
-impl Conductor {
-    pub(super) fn new(task: MemoryTurnLimit) -> Conductor {
-        Conductor { task, headings: VecDeque::with_capacity(MOST) }
+impl MemoryTurnLimitBehaviour {
+    pub(super) fn new(task: MemoryTurnLimit) -> MemoryTurnLimitBehaviour {
+        MemoryTurnLimitBehaviour { task, headings: VecDeque::with_capacity(MOST) }
     }
 
     /// The mean of the headings remembered, rad: that of their directions.
@@ -34,28 +35,28 @@ impl Conductor {
     }
 }
 
-impl Conduct for Conductor {
-    fn begin(&mut self, _scene: &Scene) {
+impl BehaviourLogic for MemoryTurnLimitBehaviour {
+    fn begin(&mut self, _situation: &Situation) {
         self.headings.clear();
     }
 
-    fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
-        let memory = SimTime::from_s(self.task.memory_s.value(scene));
-        while self.headings.front().is_some_and(|(at, _)| *at + memory < scene.now) {
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        let memory = SimTime::from_s(self.task.memory_s.value(situation));
+        while self.headings.front().is_some_and(|(at, _)| *at + memory < situation.now) {
             self.headings.pop_front();
         }
         // Evenly spread over a memory that is longer than fits decision by decision.
         let spacing = SimTime::from_s(memory.as_s() / (MOST - 1) as f64);
-        if self.headings.back().is_none_or(|(at, _)| *at + spacing <= scene.now) && self.headings.len() < MOST {
-            self.headings.push_back((scene.now, scene.own.nav.psi_rad));
+        if self.headings.back().is_none_or(|(at, _)| *at + spacing <= situation.now) && self.headings.len() < MOST {
+            self.headings.push_back((situation.now, situation.own.nav.psi_rad));
         }
-        let range_rad = self.task.turn_range_deg.value(scene).to_radians();
-        bid.ask(&Objective::Course(Peaks::one(Peak {
+        let range_rad = self.task.turn_range_deg.value(situation).to_radians();
+        output.add(&Objective::Course(Peak {
             summit: self.mean_rad(),
             peak_width: range_rad,
             base_width: BASE * (PI - range_rad).max(0.0),
             summit_delta: 0.0,
             height: 100.0,
-        })));
+        }));
     }
 }

@@ -1,8 +1,10 @@
 //! Operation region: keeps the boat on the field, and brings it back slowly if it got out.
 
-use super::{Conduct, REACTION_S, TURN_RAD_S};
-use crate::helm::{Bid, Scene};
-use crate::ivp::{Objective, Peak, Peaks};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
+use super::steering::{REACTION_S, TURN_RAD_S};
+use crate::ivp::{Objective, Peak};
+use crate::situation::Situation;
 use game::angle::wrap_pi;
 use game::strategy::OpRegion;
 use game::{Ned, SimTime, math};
@@ -20,7 +22,7 @@ enum Side {
     Out,
 }
 
-pub(super) struct Conductor {
+pub(super) struct OpRegionBehaviour {
     task: OpRegion,
     side: Side,
     /// Since when the boat has been on the other side of the edge than it counts.
@@ -31,70 +33,76 @@ pub(super) struct Conductor {
     speeds: Vec<f32>,
 }
 
-impl Conductor {
-    pub(super) fn new(task: OpRegion) -> Conductor {
-        Conductor { task, side: Side::In, crossed: None, table: Vec::new(), speeds: Vec::new() }
+impl OpRegionBehaviour {
+    pub(super) fn new(task: OpRegion) -> OpRegionBehaviour {
+        OpRegionBehaviour { task, side: Side::In, crossed: None, table: Vec::new(), speeds: Vec::new() }
     }
 
     /// A boat counts as out, or in again, when it has been so for a while.
-    fn debounce(&mut self, scene: &Scene, inside_m: f64) {
+    fn debounce(&mut self, situation: &Situation, inside_m: f64) {
         let (is_other, wait_s) = match self.side {
-            Side::In => (inside_m < 0.0, self.task.exit_s.value(scene)),
-            Side::Out => (inside_m > 0.0, self.task.entry_s.value(scene)),
+            Side::In => (inside_m < 0.0, self.task.exit_s.value(situation)),
+            Side::Out => (inside_m > 0.0, self.task.entry_s.value(situation)),
         };
         if !is_other {
             self.crossed = None;
             return;
         }
-        let since = *self.crossed.get_or_insert(scene.now);
-        if (scene.now - since).as_s() + 1e-9 >= wait_s {
+        let since = *self.crossed.get_or_insert(situation.now);
+        if (situation.now - since).as_s() + 1e-9 >= wait_s {
             self.side = if self.side == Side::In { Side::Out } else { Side::In };
             self.crossed = None;
         }
     }
 }
 
-impl Conduct for Conductor {
-    fn begin(&mut self, _scene: &Scene) {
+impl BehaviourLogic for OpRegionBehaviour {
+    fn begin(&mut self, _situation: &Situation) {
         (self.side, self.crossed) = (Side::In, None);
     }
 
-    fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
-        let region = Region::new(scene, self.task.margin_m.value(scene));
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        let region = Region::new(situation, self.task.margin_m.value(situation));
         let inside_m = region.inside_m();
-        self.debounce(scene, inside_m);
+        self.debounce(situation, inside_m);
         if self.side == Side::Out {
-            if -inside_m > self.task.halt_m.value(scene) {
-                bid.stop();
+            if -inside_m > self.task.halt_m.value(situation) {
+                output.stop();
                 return;
             }
-            let speed_m_s = self.task.recovery_speed_m_s.value(scene).min(scene.chart.speed_max_m_s);
-            bid.ask(&Objective::Coupled {
-                course: Peaks::one(Peak::tent(scene.at.bearing_rad(region.nearest_inside(scene)), PI)),
-                speed: Peaks::one(Peak::tent(speed_m_s, RECOVERY_BASE_M_S)),
+            let speed_m_s = self.task.recovery_speed_m_s.value(situation).min(situation.model.speed_max_m_s);
+            output.add(&Objective::Coupled {
+                course: Peak::tent(situation.at.bearing_rad(region.nearest_inside(situation)), PI),
+                speed: Peak::tent(speed_m_s, RECOVERY_BASE_M_S),
                 course_share: 0.5,
             });
             return;
         }
-        let (lookahead_s, save_m) = (self.task.lookahead_s.value(scene), self.task.save_m.value(scene));
-        if inside_m > region.reach_m(scene, lookahead_s, save_m) {
+        let (lookahead_s, save_m) = (self.task.lookahead_s.value(situation), self.task.save_m.value(situation));
+        if inside_m > region.reach_m(situation, lookahead_s, save_m) {
             return;
         }
-        self.fill(scene, bid, &region, (lookahead_s, save_m.max(0.1)));
-        bid.ask(&Objective::Table(&self.table));
+        self.fill(situation, output, &region, (lookahead_s, save_m.max(0.1)));
+        output.add(&Objective::Table(&self.table));
     }
 }
 
-impl Conductor {
+impl OpRegionBehaviour {
     /// Fills the table with how well each candidate keeps clear of the edges.
     ///
     /// A candidate is worth as much as it keeps of `save_m`: half of it for the least distance to an edge on the way, half
     /// for the distance at the end of the look-ahead; the worst edge counts. On the way the boat goes on for its reaction
     /// time, then turns the shorter way at its rate, then goes straight.
-    fn fill(&mut self, scene: &Scene, bid: &Bid<'_>, region: &Region, (lookahead_s, save_m): (f64, f64)) {
-        let grid = bid.grid();
-        let (heading_rad, surge_m_s) = (scene.own.nav.psi_rad, scene.own.nav.surge_m_s.max(0.0));
-        let near = |edge: &&(Ned, f64)| edge.1 <= region.reach_m(scene, lookahead_s, save_m);
+    fn fill(
+        &mut self,
+        situation: &Situation,
+        output: &BehaviourOutput<'_>,
+        region: &Region,
+        (lookahead_s, save_m): (f64, f64),
+    ) {
+        let grid = output.grid();
+        let (heading_rad, surge_m_s) = (situation.own.nav.psi_rad, situation.own.nav.surge_m_s.max(0.0));
+        let near = |edge: &&(Ned, f64)| edge.1 <= region.reach_m(situation, lookahead_s, save_m);
         let per_m = (50.0 / save_m) as f32;
         self.table.clear();
         self.table.resize(grid.courses() * grid.speeds(), 100.0);
@@ -214,12 +222,12 @@ struct Region {
 }
 
 impl Region {
-    fn new(scene: &Scene, margin_m: f64) -> Region {
-        let field = &scene.chart.field;
-        let (x, y) = field.along_across(scene.at);
+    fn new(situation: &Situation, margin_m: f64) -> Region {
+        let field = &situation.model.field;
+        let (x, y) = field.along_across(situation.at);
         let (width_m, depth_m) = (field.plan.width_m, field.plan.depth_m);
         let minus = |v: Ned| v.scaled(-1.0);
-        let (sin, cos) = math::sin_cos(scene.own.nav.psi_rad);
+        let (sin, cos) = math::sin_cos(situation.own.nav.psi_rad);
         let starboard = Ned { north: -sin, east: cos };
         Region {
             edges: [
@@ -228,7 +236,7 @@ impl Region {
                 (minus(field.across), y - margin_m),
                 (field.across, depth_m - margin_m - y),
             ],
-            drift: starboard.scaled(scene.own.nav.sway_m_s),
+            drift: starboard.scaled(situation.own.nav.sway_m_s),
             margin_m,
         }
     }
@@ -239,16 +247,16 @@ impl Region {
     }
 
     /// Farther inside than this no candidate comes near an edge, m.
-    fn reach_m(&self, scene: &Scene, lookahead_s: f64, save_m: f64) -> f64 {
-        let fastest_m_s = scene.chart.speed_max_m_s.max(scene.own.nav.surge_m_s);
+    fn reach_m(&self, situation: &Situation, lookahead_s: f64, save_m: f64) -> f64 {
+        let fastest_m_s = situation.model.speed_max_m_s.max(situation.own.nav.surge_m_s);
         // The widest turn there is goes out by twice its radius.
         save_m + (lookahead_s.max(2.0 / TURN_RAD_S) + REACTION_S) * (fastest_m_s + self.drift.length())
     }
 
     /// The nearest point well inside.
-    fn nearest_inside(&self, scene: &Scene) -> Ned {
-        let field = &scene.chart.field;
-        let (x, y) = field.along_across(scene.at);
+    fn nearest_inside(&self, situation: &Situation) -> Ned {
+        let field = &situation.model.field;
+        let (x, y) = field.along_across(situation.at);
         let within = |v: f64, extent_m: f64| {
             let in_m = (self.margin_m + WELL_IN_M).min(0.5 * extent_m);
             v.clamp(in_m, extent_m - in_m)

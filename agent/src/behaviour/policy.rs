@@ -1,32 +1,32 @@
 //! Policy: lets somebody outside of the helm propose course and speed, weighed with everything else.
 
-use super::Conduct;
-use crate::helm::{Bid, Scene};
-use crate::ivp::{Objective, Peak, Peaks};
+use super::logic::BehaviourLogic;
+use super::output::BehaviourOutput;
+use crate::ivp::{Objective, Peak};
+use crate::situation::Situation;
 use game::strategy::Policy;
 
 /// From the peak of the proposed speed down to nothing, m/s.
 const SPEED_BASE_M_S: f64 = 1.0;
 
-pub(super) struct Conductor(pub(super) Policy);
+pub(super) struct PolicyBehaviour(pub(super) Policy);
 
-impl Conduct for Conductor {
-    fn act(&mut self, scene: &Scene, bid: &mut Bid<'_>) {
-        let Some(proposed) = scene.proposed else { return };
-        if (scene.now - proposed.at).as_s() > self.0.ttl_s.value(scene) {
+impl BehaviourLogic for PolicyBehaviour {
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        let Some(proposal) = situation.proposed else { return };
+        if (situation.now - proposal.at).as_s() > self.0.ttl_s.value(situation) {
             return;
         }
-        let proposal = proposed.proposal;
-        bid.ask(&Objective::Coupled {
-            course: Peaks::one(Peak {
+        output.add(&Objective::Coupled {
+            course: Peak {
                 summit: proposal.course_rad,
-                peak_width: self.0.peak_width_deg.value(scene).to_radians(),
-                base_width: self.0.base_width_deg.value(scene).to_radians(),
+                peak_width: self.0.peak_width_deg.value(situation).to_radians(),
+                base_width: self.0.base_width_deg.value(situation).to_radians(),
                 summit_delta: 10.0,
                 height: 100.0,
-            }),
-            speed: Peaks::one(Peak::tent(proposal.speed_m_s.clamp(0.0, scene.chart.speed_max_m_s), SPEED_BASE_M_S)),
-            course_share: self.0.course_share.value(scene),
+            },
+            speed: Peak::tent(proposal.speed_m_s.clamp(0.0, situation.model.speed_max_m_s), SPEED_BASE_M_S),
+            course_share: self.0.course_share.value(situation),
         });
     }
 }

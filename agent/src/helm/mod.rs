@@ -1,37 +1,28 @@
-//! The helm of one boat: it goes by a strategy's program, and decides course and speed by interval programming.
+//! The helm of one boat: it follows a strategy's program, and decides course and speed by interval programming.
 //!
-//! A decision is: take in the picture, apply the rules, choose the mode, ask every behaviour that may run what it wants,
-//! and take the course and speed with the largest weighted sum of utilities. Values that behaviours post become known
-//! when all have been asked, so that their order does not matter.
+//! A decision is: take in the picture, apply the rules, choose the mode, run every behaviour that may run, and take the
+//! course and speed with the largest weighted sum of utilities. Values that behaviours post become known when all have
+//! run, so that their order does not matter.
 
-mod bid;
-mod chart;
-mod life;
 mod report;
-mod scene;
-mod talk;
+mod run_state;
 
-pub(crate) use bid::Bid;
-pub(crate) use chart::Chart;
-pub(crate) use scene::{Other, Scene, Spot};
-
-use crate::behaviour::{Conduct, conduct_of};
-use crate::ivp::{Choice, Decision, Grid, Problem, Wish};
-use crate::{Mind, Proposal};
-use bid::Entry;
+use crate::behaviour::{BehaviourLogic, BehaviourOutput, Functions, logic_of};
+use crate::ivp::{Choice, Decision, Grid, Preference};
+use crate::mind::{Mind, Proposal};
+use crate::situation::{GameModel, Situation, TeamMessages};
 use game::helm::HelmReport;
 use game::message::Word;
 use game::scenario::Scenario;
-use game::strategy::{Expression, Moment, Program, Proposer, Rule, What, Who};
-use game::{Event, Order, Picture, SimTime, VehicleId};
-use life::Life;
-use scene::Proposed;
-use talk::Ears;
+use game::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule, What, Who};
+use game::{Event, Order, Picture, VehicleId};
+use run_state::BehaviourRun;
 
-/// A behaviour at work.
-struct Worker {
-    life: Life,
-    conduct: Box<dyn Conduct>,
+/// A behaviour of the program.
+struct BehaviourInstance {
+    run: BehaviourRun,
+    logic: Box<dyn BehaviourLogic>,
+    /// Its weight at the last decision; 0 if it did not run.
     weight: f64,
 }
 
@@ -44,38 +35,33 @@ enum Decided {
     Steer(Choice),
 }
 
-/// A mind that goes by a program.
+/// A mind that follows a program.
 pub struct HelmMind {
     program: Program,
-    scene: Scene,
+    situation: Situation,
     mode: Option<usize>,
-    workers: Vec<Worker>,
-    problem: Problem,
-    entries: Vec<Entry>,
-    /// Values posted in this decision, to be known when all behaviours have been asked.
+    instances: Vec<BehaviourInstance>,
+    functions: Functions,
+    /// Values posted in this decision, to be known when all behaviours have run.
     posted: Vec<(u16, f64)>,
     decided: Decided,
-    /// Whether somebody looks.
-    shown: bool,
 }
 
 impl HelmMind {
-    /// The helm of a vehicle that goes by `program`.
+    /// The helm of a vehicle that follows `program`.
     #[must_use]
     pub fn new(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> HelmMind {
-        let chart = Chart::new(scenario, vehicle, program);
-        let grid = Grid::new(program.helm.courses, program.helm.speeds, chart.speed_max_m_s);
-        let ears = Ears::new(program, &chart.mates);
-        let worker = |task| Worker { life: Life::new(), conduct: conduct_of(task), weight: 0.0 };
+        let model = GameModel::new(scenario, vehicle, program);
+        let grid = Grid::new(program.helm.courses, program.helm.speeds, model.speed_max_m_s);
+        let team_messages = TeamMessages::new(program, &model.mates);
+        let instance = |task| BehaviourInstance { run: BehaviourRun::new(), logic: logic_of(task), weight: 0.0 };
         HelmMind {
-            workers: program.behaviours.iter().map(|behaviour| worker(&behaviour.task)).collect(),
-            scene: Scene::new(chart, program, ears),
+            instances: program.behaviours.iter().map(|behaviour| instance(&behaviour.task)).collect(),
+            situation: Situation::new(model, program, team_messages),
             mode: None,
-            problem: Problem::new(grid),
-            entries: Vec::new(),
+            functions: Functions::new(grid),
             posted: Vec::new(),
             decided: Decided::Hold("nothing decided yet"),
-            shown: false,
             program: program.clone(),
         }
     }
@@ -83,65 +69,63 @@ impl HelmMind {
     /// Rules give values to variables, one after the other.
     fn apply_rules(&mut self, picture: &Picture) {
         for rule in &self.program.rules {
-            if is_due(rule, &self.scene, picture) {
-                set(&mut self.scene, &rule.set, &mut self.posted);
+            if is_due(rule, &self.situation, picture) {
+                set(&mut self.situation, &rule.set, &mut self.posted);
             }
         }
     }
 
     fn choose_mode(&mut self) {
-        let mode = self.program.leaf(&self.scene);
+        let mode = self.program.leaf(&self.situation);
         let before = self.mode.replace(mode);
         if before == Some(mode) {
             return;
         }
-        self.scene.mode_since = self.scene.now;
+        self.situation.mode_since = self.situation.now;
         // Modes that begin, outermost first; parents stand before their children.
         for (i, entered) in self.program.modes.iter().enumerate() {
             if is_within(&self.program, mode, i) && !before.is_some_and(|before| is_within(&self.program, before, i)) {
-                set(&mut self.scene, &entered.enter, &mut self.posted);
+                set(&mut self.situation, &entered.enter, &mut self.posted);
             }
         }
     }
 
-    /// Asks all behaviours; says whether one wants the boat stopped.
-    fn ask_behaviours(&mut self, mode: usize) -> bool {
-        let (scene, posted) = (&self.scene, &mut self.posted);
+    /// Runs all behaviours that may run; says whether one wants the boat stopped.
+    fn run_behaviours(&mut self, mode: usize) -> bool {
+        let (situation, posted) = (&self.situation, &mut self.posted);
         let mut stop = false;
-        self.problem.clear();
-        self.entries.clear();
-        for (i, (behaviour, worker)) in self.program.behaviours.iter().zip(&mut self.workers).enumerate() {
+        self.functions.clear();
+        for (i, (behaviour, instance)) in self.program.behaviours.iter().zip(&mut self.instances).enumerate() {
             let mut post = |moment: Moment| {
                 let due = behaviour.posts.iter().filter(|post| post.at == moment);
-                posted.extend(due.map(|post| (post.variable, post.value.value(scene))));
+                posted.extend(due.map(|post| (post.variable, post.value.value(situation))));
             };
-            let may_run = behaviour.modes[mode] && behaviour.when.as_ref().is_none_or(|when| when.is_true(scene));
-            if worker.life.allow(may_run, scene.now, &mut post) {
-                worker.conduct.begin(scene);
+            let BehaviourInstance { run, logic, weight } = instance;
+            let may_run = behaviour.modes[mode] && behaviour.when.as_ref().is_none_or(|when| when.is_true(situation));
+            if run.allow(may_run, situation.now, &mut post) {
+                logic.begin(situation);
             }
-            worker.weight = 0.0;
-            if !worker.life.runs() {
+            *weight = 0.0;
+            if !run.runs() {
                 continue;
             }
-            worker.weight = behaviour.weight.value(scene);
-            let mut bid = Bid::new(&mut self.problem, &mut self.entries, (i, worker.weight), self.shown);
-            worker.conduct.act(scene, &mut bid);
-            let Bid { active, reached, mut complete, .. } = bid;
-            stop |= bid.stop;
-            worker.life.asked(active, &mut post);
-            let time_is_up =
-                |duration: &game::strategy::Parameter| worker.life.running_s(scene.now) + 1e-9 >= duration.value(scene);
-            let time_is_up = behaviour.duration_s.as_ref().is_some_and(time_is_up);
+            *weight = behaviour.weight.value(situation);
+            let mut output = BehaviourOutput::new(&mut self.functions, i, *weight);
+            logic.run(situation, &mut output);
+            stop |= output.stop;
+            let BehaviourOutput { active, reached, complete, .. } = output;
+            run.produced(active, &mut post);
+            let is_over = |duration: &Parameter| run.running_s(situation.now) + 1e-9 >= duration.value(situation);
+            let time_is_up = behaviour.duration_s.as_ref().is_some_and(is_over);
             if reached || time_is_up {
                 post(Moment::Reach);
             }
-            complete |= time_is_up;
-            if complete {
-                worker.life.complete(behaviour.perpetual, &mut post);
+            if complete || time_is_up {
+                run.complete(behaviour.perpetual, &mut post);
             }
         }
         for (variable, value) in self.posted.drain(..) {
-            self.scene.variables[usize::from(variable)] = value;
+            self.situation.variables[usize::from(variable)] = value;
         }
         stop
     }
@@ -150,13 +134,14 @@ impl HelmMind {
         if stop {
             return Decided::Hold("stopped by a behaviour");
         }
-        if self.problem.is_empty() {
+        let problem = &mut self.functions.problem;
+        if problem.is_empty() {
             return Decided::Hold("no behaviour asks for anything");
         }
-        if !self.problem.decides_course() {
+        if !problem.decides_course() {
             return Decided::Hold("no behaviour asks for a course");
         }
-        if !self.problem.decides_speed() {
+        if !problem.decides_speed() {
             return Decided::Hold("no behaviour asks for a speed");
         }
         let last = match self.decided {
@@ -164,8 +149,8 @@ impl HelmMind {
             Decided::Hold(_) => None,
         };
         let hysteresis = self.program.helm.hysteresis;
-        let nav = &self.scene.own.nav;
-        Decided::Steer(self.problem.solve(Wish {
+        let nav = &self.situation.own.nav;
+        Decided::Steer(problem.solve(Preference {
             course_rad: nav.psi_rad,
             speed_m_s: nav.surge_m_s,
             keep: last.filter(|_| hysteresis > 0.0).map(|last| (last, hysteresis)),
@@ -175,51 +160,54 @@ impl HelmMind {
     fn order(&self) -> Order {
         match self.decided {
             Decided::Hold(_) => Order::Hold,
-            Decided::Steer(Choice { decision: Decision { course, speed }, .. }) => Order::Steer {
-                heading_rad: game::angle::wrap_pi(self.problem.grid().course_rad(usize::from(course))),
-                speed_m_s: self.problem.grid().speed_m_s(usize::from(speed)),
-            },
+            Decided::Steer(Choice { decision: Decision { course, speed }, .. }) => {
+                let grid = self.functions.problem.grid();
+                Order::Steer {
+                    heading_rad: game::angle::wrap_pi(grid.course_rad(usize::from(course))),
+                    speed_m_s: grid.speed_m_s(usize::from(speed)),
+                }
+            }
         }
     }
 }
 
 impl Mind for HelmMind {
     fn decide(&mut self, picture: &Picture) -> Order {
-        if !self.scene.take(picture) {
+        if !self.situation.take(picture) {
             self.decided = Decided::Hold("the picture does not show the own boat");
-            self.entries.clear();
-            self.workers.iter_mut().for_each(|worker| worker.weight = 0.0);
+            self.functions.clear();
+            self.instances.iter_mut().for_each(|instance| instance.weight = 0.0);
             return Order::Hold;
         }
         self.apply_rules(picture);
         self.choose_mode();
-        let stop = self.mode.is_none_or(|mode| self.ask_behaviours(mode));
+        let stop = self.mode.is_none_or(|mode| self.run_behaviours(mode));
         self.decided = self.solve(stop);
         self.order()
     }
 
-    fn talks(&self) -> bool {
-        self.scene.ears.talks()
+    fn shares(&self) -> bool {
+        self.situation.team_messages.shares()
     }
 
     fn proposer(&self) -> Option<Proposer> {
         self.program.proposer()
     }
 
-    fn say(&self, words: &mut Vec<Word>) {
-        self.scene.ears.say(self.scene.chart.me, &self.scene.variables, words);
+    fn send(&self, messages: &mut Vec<Word>) {
+        self.situation.team_messages.send(self.situation.model.me, &self.situation.variables, messages);
     }
 
-    fn hear(&mut self, words: &[Word]) {
-        self.scene.ears.hear(words);
+    fn receive(&mut self, messages: &[Word]) {
+        self.situation.team_messages.receive(messages);
     }
 
-    fn propose(&mut self, at: SimTime, proposal: Proposal) {
-        self.scene.proposed = Some(Proposed { at, proposal });
+    fn propose(&mut self, proposal: Proposal) {
+        self.situation.proposed = Some(proposal);
     }
 
     fn show(&mut self, shown: bool) {
-        self.shown = shown;
+        self.functions.shown = shown;
     }
 
     fn report(&self) -> Option<HelmReport> {
@@ -233,23 +221,23 @@ fn is_within(program: &Program, mode: usize, whole: usize) -> bool {
 }
 
 /// Gives values to variables: all are worked out before the first is given.
-fn set(scene: &mut Scene, values: &[(u16, Expression)], scratch: &mut Vec<(u16, f64)>) {
+fn set(situation: &mut Situation, values: &[(u16, Expression)], scratch: &mut Vec<(u16, f64)>) {
     scratch.clear();
-    scratch.extend(values.iter().map(|(variable, value)| (*variable, value.value(scene))));
+    scratch.extend(values.iter().map(|(variable, value)| (*variable, value.value(situation))));
     for (variable, value) in scratch.drain(..) {
-        scene.variables[usize::from(variable)] = value;
+        situation.variables[usize::from(variable)] = value;
     }
 }
 
-fn is_due(rule: &Rule, scene: &Scene, picture: &Picture) -> bool {
+fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
     let happened = rule.on.is_none_or(|trigger| {
         let events = picture.events.iter().filter_map(|record| record.logged());
         events
             .flat_map(|logged| happening(logged.event, trigger.what))
             .flatten()
-            .any(|vehicle| who(scene, vehicle) == trigger.who)
+            .any(|vehicle| who(situation, vehicle) == trigger.who)
     });
-    happened && rule.when.as_ref().is_none_or(|when| when.is_true(scene))
+    happened && rule.when.as_ref().is_none_or(|when| when.is_true(situation))
 }
 
 /// The boats that do or suffer this, if the event is it.
@@ -270,10 +258,10 @@ fn happening(event: Event, what: What) -> [Option<VehicleId>; 2] {
     [one, None]
 }
 
-fn who(scene: &Scene, vehicle: VehicleId) -> Who {
-    if vehicle == scene.chart.me {
+fn who(situation: &Situation, vehicle: VehicleId) -> Who {
+    if vehicle == situation.model.me {
         Who::I
-    } else if scene.chart.mates.contains(&vehicle) {
+    } else if situation.model.mates.contains(&vehicle) {
         Who::Mate
     } else {
         Who::Enemy

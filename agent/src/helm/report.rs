@@ -1,40 +1,35 @@
-//! What a helm tells those who look inside.
+//! The helm report: what is shown to those who look inside.
 
-use super::life::Stage;
 use super::{Decided, HelmMind};
 use game::angle::compass_deg_from_rad;
-use game::helm::{BehaviourReport, FunctionReport, HelmReport, StageReport, VariableReport};
+use game::helm::{BehaviourReport, FunctionReport, HelmReport, VariableReport};
 use game::strategy::Kind;
 
 impl HelmMind {
     pub(super) fn reported(&self) -> HelmReport {
-        let grid = self.problem.grid();
+        let grid = self.functions.problem.grid();
         let steered = match self.decided {
             Decided::Steer(choice) => Some(choice),
             Decided::Hold(_) => None,
         };
         let at = steered.map(|choice| (usize::from(choice.decision.course), usize::from(choice.decision.speed)));
         let utility = |utilities: &[f32]| at.and_then(|(k, j)| utilities.get(k * grid.speeds() + j).copied());
-        let functions = self.entries.iter().map(|entry| FunctionReport {
-            behaviour: self.program.behaviours[entry.behaviour].name.clone(),
-            contact: entry.contact,
-            weight: entry.weight,
-            utility: utility(&entry.utilities),
-            utilities: entry.utilities.clone(),
+        let functions = self.functions.list.iter().map(|function| FunctionReport {
+            behaviour: self.program.behaviours[function.behaviour].name.clone(),
+            contact: function.contact,
+            weight: function.weight,
+            utility: utility(&function.utilities),
+            utilities: function.utilities.clone(),
         });
-        let behaviours = self.program.behaviours.iter().zip(&self.workers).map(|(behaviour, worker)| BehaviourReport {
-            name: behaviour.name.clone(),
-            kind: behaviour.task.kind().to_owned(),
-            stage: match worker.life.stage {
-                Stage::Idle => StageReport::Idle,
-                Stage::Running => StageReport::Running,
-                Stage::Active => StageReport::Active,
-                Stage::Complete => StageReport::Complete,
-            },
-            weight: worker.weight,
-        });
+        let behaviours =
+            self.program.behaviours.iter().zip(&self.instances).map(|(behaviour, instance)| BehaviourReport {
+                name: behaviour.name.clone(),
+                kind: behaviour.task.kind().to_owned(),
+                run_state: instance.run.state,
+                weight: instance.weight,
+            });
         let variables =
-            self.program.variables.iter().zip(&self.scene.variables).map(|(variable, value)| VariableReport {
+            self.program.variables.iter().zip(&self.situation.variables).map(|(variable, value)| VariableReport {
                 name: variable.name.clone(),
                 value: match &variable.kind {
                     Kind::Truth => (*value != 0.0).to_string(),
@@ -43,8 +38,8 @@ impl HelmMind {
                 },
             });
         HelmReport {
-            vehicle: self.scene.chart.me,
-            at: self.scene.now,
+            vehicle: self.situation.model.me,
+            at: self.situation.now,
             program: self.program.name.clone(),
             mode: self.mode.map(|mode| self.program.path(mode)).unwrap_or_default(),
             course_deg: at.map(|(k, _)| compass_deg_from_rad(grid.course_rad(k))),

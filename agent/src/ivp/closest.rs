@@ -16,6 +16,7 @@
 //! end of the span; and since the closest approach is no farther than the distance at `t`, that is a bound for all of
 //! the span. The other way round, a change of speed by `ds` moves the own ship by no more than `ds` times the horizon.
 
+use game::Ned;
 use wide::f32x8;
 
 /// What one number in single precision may be wrong by, with room to spare, in parts of the lengths that went into it.
@@ -41,14 +42,10 @@ pub enum Approach {
 /// Utility of the distance at the closest point of approach to a contact that keeps its course and speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// The contact from the own ship, to the north, m.
-    pub north_m: f64,
-    /// The contact from the own ship, to the east, m.
-    pub east_m: f64,
-    /// Velocity of the contact to the north, m/s.
-    pub velocity_north_m_s: f64,
-    /// Velocity of the contact to the east, m/s.
-    pub velocity_east_m_s: f64,
+    /// The contact from the own ship, m.
+    pub offset: Ned,
+    /// Velocity of the contact, m/s.
+    pub velocity: Ned,
     /// How long the course and speed are kept, s.
     pub horizon_s: f64,
     /// The least distance to keep, m.
@@ -67,14 +64,10 @@ pub struct Closest {
 /// half of its turn takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
-    /// Present velocity of the own ship to the north, m/s.
-    pub velocity_north_m_s: f64,
-    /// Present velocity of the own ship to the east, m/s.
-    pub velocity_east_m_s: f64,
-    /// Present heading, as a unit vector: its part to the north.
-    pub heading_north: f64,
-    /// Its part to the east.
-    pub heading_east: f64,
+    /// Present velocity of the own ship, m/s.
+    pub velocity: Ned,
+    /// Present heading, as a unit vector.
+    pub heading: Ned,
     /// Until a decision shows at all, s.
     pub reaction_s: f64,
     /// How fast it turns, rad/s.
@@ -88,18 +81,16 @@ const ANGLE_OF_CHORD: f64 = 1.15;
 impl Lag {
     /// Of a boat that does as decided at once.
     const NONE: Lag = Lag {
-        velocity_north_m_s: 0.0,
-        velocity_east_m_s: 0.0,
-        heading_north: 1.0,
-        heading_east: 0.0,
+        velocity: Ned { north: 0.0, east: 0.0 },
+        heading: Ned { north: 1.0, east: 0.0 },
         reaction_s: 0.0,
         turn_rad_s: f64::INFINITY,
     };
 
     /// How long it goes on before it is on a course, a unit vector, s.
     #[must_use]
-    pub fn duration_s(&self, north: f64, east: f64) -> f64 {
-        let chord = game::math::length(north - self.heading_north, east - self.heading_east);
+    pub fn duration_s(&self, course: Ned) -> f64 {
+        let chord = (course - self.heading).length();
         self.reaction_s + self.chord_s() * chord
     }
 
@@ -110,18 +101,16 @@ impl Lag {
 }
 
 impl Closest {
-    /// The function in single precision; none if a number is none or the horizon is negative.
+    /// The function in single precision; none if a number is not finite or the horizon is negative.
     pub(super) fn ready(&self, speed_max_m_s: f64) -> Option<Ready> {
         let at_min = match self.approach {
             Approach::Avoid { at_min } => at_min,
             Approach::Seek => 0.0,
         };
-        let numbers = [self.north_m, self.east_m, self.velocity_north_m_s, self.velocity_east_m_s];
-        let limits = [self.horizon_s, self.min_m, self.max_m, self.touch_m, at_min];
         let lag = self.lag.unwrap_or(Lag::NONE);
-        let heading = [lag.heading_north, lag.heading_east];
-        let own = [lag.velocity_north_m_s, lag.velocity_east_m_s, lag.reaction_s, lag.chord_s()];
-        let sound = numbers.iter().chain(&limits).chain(&heading).chain(&own).all(|x| x.is_finite() && x.abs() < 1e7)
+        let vectors = [self.offset, self.velocity, lag.velocity, lag.heading].map(|v| [v.north, v.east]);
+        let limits = [self.horizon_s, self.min_m, self.max_m, self.touch_m, at_min, lag.reaction_s, lag.chord_s()];
+        let sound = vectors.as_flattened().iter().chain(&limits).all(|x| x.is_finite() && x.abs() < 1e7)
             && self.horizon_s >= 0.0
             && lag.reaction_s >= 0.0
             && lag.chord_s() >= 0.0;
@@ -132,16 +121,15 @@ impl Closest {
         let at_min = at_min.clamp(0.0, 100.0);
         let width_m = self.max_m - self.min_m;
         let slope = |rise: f64, width_m: f64| if width_m > 0.0 { (rise / width_m).min(STEP) } else { STEP };
-        let reach_m = game::math::length(self.velocity_north_m_s, self.velocity_east_m_s) + speed_max_m_s;
-        let own_m_s = game::math::length(lag.velocity_north_m_s, lag.velocity_east_m_s);
+        let reach_m = self.velocity.length() + speed_max_m_s;
+        let own_m_s = lag.velocity.length();
         let lag_m = (reach_m + own_m_s) * (lag.reaction_s + 2.0 * lag.chord_s());
-        let scale_m = game::math::length(self.north_m, self.east_m) + reach_m * self.horizon_s + lag_m;
+        let scale_m = self.offset.length() + reach_m * self.horizon_s + lag_m;
         let splat = |x: f64| f32x8::splat(x as f32);
+        let splat_both = |v: Ned| (splat(v.north), splat(v.east));
         Some(Ready {
-            north: splat(self.north_m),
-            east: splat(self.east_m),
-            velocity_north: splat(self.velocity_north_m_s),
-            velocity_east: splat(self.velocity_east_m_s),
+            offset: splat_both(self.offset),
+            velocity: splat_both(self.velocity),
             horizon: splat(self.horizon_s),
             min: splat(self.min_m),
             slope: splat(slope(100.0 - at_min, width_m)),
@@ -149,13 +137,10 @@ impl Closest {
             inner_slope: splat(slope(at_min, self.min_m - self.touch_m)),
             at_min: splat(at_min),
             seek: self.approach == Approach::Seek,
-            heading: (splat(lag.heading_north), splat(lag.heading_east)),
+            heading: splat_both(lag.heading),
             reaction: splat(lag.reaction_s),
             chord: splat(lag.chord_s()),
-            present: (
-                splat(self.velocity_north_m_s - lag.velocity_north_m_s),
-                splat(self.velocity_east_m_s - lag.velocity_east_m_s),
-            ),
+            present: splat_both(self.velocity - lag.velocity),
             margin: splat(ROUNDING * scale_m),
         })
     }
@@ -164,10 +149,8 @@ impl Closest {
 /// The function in single precision, m and s throughout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ready {
-    north: f32x8,
-    east: f32x8,
-    velocity_north: f32x8,
-    velocity_east: f32x8,
+    offset: (f32x8, f32x8),
+    velocity: (f32x8, f32x8),
     horizon: f32x8,
     min: f32x8,
     /// Beyond the least distance, for each m.
@@ -230,7 +213,7 @@ impl Ready {
         let cosine = self.heading.0 * north + self.heading.1 * east;
         let chord = (f32x8::splat(2.0) - f32x8::splat(2.0) * cosine).fast_max(f32x8::ZERO).sqrt();
         let lag = self.reaction + self.chord * chord;
-        let p = (self.north, self.east);
+        let p = self.offset;
         let least = square(p, self.present, Ready::time(p, self.present, lag));
         Leg { north: p.0 + self.present.0 * lag, east: p.1 + self.present.1 * lag, least }
     }
@@ -238,7 +221,7 @@ impl Ready {
     /// How the contact moves past, m/s.
     #[inline(always)]
     fn passing(&self, north: f32x8, east: f32x8, speed: f32x8) -> (f32x8, f32x8) {
-        (self.velocity_north - speed * north, self.velocity_east - speed * east)
+        (self.velocity.0 - speed * north, self.velocity.1 - speed * east)
     }
 
     /// The time of the closest point of approach, up to a longest one, s.

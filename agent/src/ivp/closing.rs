@@ -1,42 +1,36 @@
 //! How fast the own ship comes nearer to a point or a contact, or draws away from it.
 
+use game::Ned;
 use wide::f32x8;
 
 /// Utility of the rate of closure: linear from 0, opening as fast as own ship and contact could, to 100, closing as fast
-/// as they could; the other way round for one that flees.
+/// as they could.
 ///
 /// The rate of closure is the sum of both velocities along the line of sight, at this moment. With no distance there is no
 /// line of sight, and all candidates are worth 50.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closing {
-    /// The contact from the own ship, to the north, m.
-    pub north_m: f64,
-    /// The contact from the own ship, to the east, m.
-    pub east_m: f64,
-    /// Velocity of the contact to the north, m/s; 0 for a point.
-    pub velocity_north_m_s: f64,
-    /// Velocity of the contact to the east, m/s; 0 for a point.
-    pub velocity_east_m_s: f64,
-    /// Whether to draw away.
-    pub flee: bool,
+    /// The contact from the own ship, m.
+    pub offset: Ned,
+    /// Velocity of the contact, m/s; 0 for a point.
+    pub velocity: Ned,
 }
 
 impl Closing {
-    /// The function in single precision; none if a number is none.
+    /// The function in single precision; none if a number is not finite.
     pub(super) fn ready(&self, speed_max_m_s: f64) -> Option<Ready> {
-        let numbers = [self.north_m, self.east_m, self.velocity_north_m_s, self.velocity_east_m_s];
+        let numbers = [self.offset.north, self.offset.east, self.velocity.north, self.velocity.east];
         let sound = numbers.iter().all(|x| x.is_finite() && x.abs() < 1e7);
         debug_assert!(sound, "{self:?}");
         if !sound {
             return None;
         }
-        let range_m = game::math::length(self.north_m, self.east_m);
+        let range_m = self.offset.length();
         let (sight_north, sight_east) =
-            if range_m > 0.0 { (self.north_m / range_m, self.east_m / range_m) } else { (0.0, 0.0) };
-        let contact_m_s = game::math::length(self.velocity_north_m_s, self.velocity_east_m_s);
-        let towards_m_s = -(sight_north * self.velocity_north_m_s + sight_east * self.velocity_east_m_s);
-        let sign = if self.flee { -1.0 } else { 1.0 };
-        let slope = sign * 50.0 / (speed_max_m_s + contact_m_s);
+            if range_m > 0.0 { (self.offset.north / range_m, self.offset.east / range_m) } else { (0.0, 0.0) };
+        let contact_m_s = self.velocity.length();
+        let towards_m_s = -(sight_north * self.velocity.north + sight_east * self.velocity.east);
+        let slope = 50.0 / (speed_max_m_s + contact_m_s);
         let splat = |x: f64| f32x8::splat(x as f32);
         Some(Ready {
             north: splat(sight_north),

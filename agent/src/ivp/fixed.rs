@@ -25,7 +25,7 @@ pub(super) const NOWHERE: i32 = i32::MIN / 4;
 pub(super) struct Weight(f32);
 
 impl Weight {
-    /// The weight brought into 0 to [`WEIGHT_MAX`]; one that is no number counts 0.
+    /// The weight brought into 0 to [`WEIGHT_MAX`]; a non-finite one counts 0.
     pub(super) fn new(weight: f64) -> Weight {
         debug_assert!(weight.is_finite(), "weight {weight}");
         let weight = if weight.is_finite() { weight.clamp(0.0, WEIGHT_MAX) } else { 0.0 };
@@ -61,13 +61,13 @@ impl Weight {
     }
 }
 
-/// A utility brought into 0 to 100; one that is no number counts 0.
+/// A utility brought into 0 to 100; a non-finite one counts 0.
 pub(super) fn utility(utility: f64) -> f32 {
     debug_assert!(utility.is_finite(), "utility {utility}");
     if utility.is_finite() { utility.clamp(0.0, 100.0) as f32 } else { 0.0 }
 }
 
-/// Eight utilities brought into 0 to 100; those that are no number count 0. The same as [`utility`].
+/// Eight utilities brought into 0 to 100; non-finite ones count 0. The same as [`utility`].
 #[inline]
 pub(super) fn utilities(utilities: f32x8) -> f32x8 {
     debug_assert!(utilities.as_array().iter().all(|utility| utility.is_finite()), "utilities {utilities:?}");

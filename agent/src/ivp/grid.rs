@@ -81,20 +81,6 @@ impl Grid {
         j as f64 * self.speed_max_m_s / (self.speeds - 1) as f64
     }
 
-    /// The course nearest to an angle in rad; 0 for one that is no number.
-    #[must_use]
-    pub fn nearest_course(&self, course_rad: f64) -> usize {
-        ((self.ticks_of(course_rad) + TICKS / 2) / TICKS) as usize % self.courses
-    }
-
-    /// The speed nearest to one in m/s.
-    #[must_use]
-    pub fn nearest_speed(&self, speed_m_s: f64) -> usize {
-        let place = speed_m_s / self.speed_max_m_s * (self.speeds - 1) as f64;
-        // A negative one, or none at all, becomes 0.
-        (place.round() as usize).min(self.speeds - 1)
-    }
-
     /// The unit vector of course `k`: north, east.
     ///
     /// Courses that are mirror images in an axis or a diagonal, or turned by a quarter or half, have exactly the same

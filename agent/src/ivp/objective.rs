@@ -1,26 +1,29 @@
 //! An objective function: what one behaviour would like of course and speed.
 
+use super::closest::{self, Closest};
+use super::closing::{self, Closing};
 use super::fixed::{self, Weight};
 use super::grid::{Grid, LANES};
-use super::{Closest, Closing, Peaks, SpeedLimit, closest, closing};
+use super::limit::SpeedLimit;
+use super::peak::Peak;
 use wide::f32x8;
 
 /// A utility of 0 to 100 for each course and speed.
 ///
-/// Numbers that are none count as no utility at all (a debug build stops at them). `Course`, `Speed`, `Coupled`, `Limit`,
-/// `CourseTable` and `SpeedTable` cost next to nothing; the others are asked point by point.
+/// Non-finite numbers count as no utility at all (a debug build stops at them). `Course`, `Speed`, `Coupled` and `Limit`
+/// cost next to nothing; the others are evaluated point by point.
 #[derive(Clone, Copy, Debug)]
 pub enum Objective<'a> {
     /// Of course alone.
-    Course(Peaks),
+    Course(Peak),
     /// Of speed alone.
-    Speed(Peaks),
+    Speed(Peak),
     /// Of course and speed, added.
     Coupled {
         /// What it would like of course.
-        course: Peaks,
+        course: Peak,
         /// What it would like of speed.
-        speed: Peaks,
+        speed: Peak,
         /// How much of the utility the course makes, 0 to 1; the speed makes the rest.
         course_share: f64,
     },
@@ -32,10 +35,6 @@ pub enum Objective<'a> {
     Closing(Closing),
     /// Utilities in a table, one row of all speeds for each course.
     Table(&'a [f32]),
-    /// Utilities by course.
-    CourseTable(&'a [f32]),
-    /// Utilities by speed.
-    SpeedTable(&'a [f32]),
 }
 
 impl Objective<'_> {
@@ -43,7 +42,7 @@ impl Objective<'_> {
     #[must_use]
     pub fn decides_course(&self) -> bool {
         match self {
-            Objective::Speed(_) | Objective::Limit(_) | Objective::SpeedTable(_) => false,
+            Objective::Speed(_) | Objective::Limit(_) => false,
             Objective::Coupled { course_share, .. } => *course_share > 0.0,
             _ => true,
         }
@@ -53,7 +52,7 @@ impl Objective<'_> {
     #[must_use]
     pub fn decides_speed(&self) -> bool {
         match self {
-            Objective::Course(_) | Objective::CourseTable(_) => false,
+            Objective::Course(_) => false,
             Objective::Coupled { course_share, .. } => *course_share < 1.0,
             _ => true,
         }
@@ -98,7 +97,7 @@ impl Objective<'_> {
     /// How much of the utility the course makes, of functions that are a sum of two.
     fn course_share(&self) -> f64 {
         match self {
-            Objective::Course(_) | Objective::CourseTable(_) => 1.0,
+            Objective::Course(_) => 1.0,
             Objective::Coupled { course_share, .. } if course_share.is_finite() => course_share.clamp(0.0, 1.0),
             _ => 0.0,
         }
@@ -111,22 +110,20 @@ impl Objective<'_> {
     }
 
     /// Utility of course alone, for eight courses at a time; nothing beyond the last course.
-    pub(super) fn each_course(&self, grid: &Grid, told: impl FnMut(usize, f32x8)) {
-        if let Objective::Course(peaks) | Objective::Coupled { course: peaks, .. } = self {
-            eight_at_a_time(grid.courses(), peaks.courses(grid), told);
-        } else {
-            eight_at_a_time(grid.courses(), |k| self.of_course(grid, k), told);
+    pub(super) fn each_course(&self, grid: &Grid, mut take: impl FnMut(usize, f32x8)) {
+        let (Objective::Course(peak) | Objective::Coupled { course: peak, .. }) = self else { return };
+        let (courses, utility) = (grid.courses(), peak.courses(grid));
+        for lanes in 0..courses.div_ceil(LANES) {
+            let first = LANES * lanes;
+            let eight = std::array::from_fn(|lane| if first + lane < courses { utility(first + lane) } else { 0.0 });
+            take(lanes, f32x8::new(eight));
         }
     }
 
     /// Utility of course alone.
     fn of_course(&self, grid: &Grid, k: usize) -> f32 {
         match self {
-            Objective::Course(peaks) | Objective::Coupled { course: peaks, .. } => peaks.of_course(grid, k),
-            Objective::CourseTable(table) => {
-                assert!(table.len() == grid.courses(), "{} utilities, {} courses", table.len(), grid.courses());
-                fixed::utility(f64::from(table[k]))
-            }
+            Objective::Course(peak) | Objective::Coupled { course: peak, .. } => peak.of_course(grid, k),
             _ => 0.0,
         }
     }
@@ -134,12 +131,8 @@ impl Objective<'_> {
     /// Utility of speed alone.
     pub(super) fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
         match self {
-            Objective::Speed(peaks) | Objective::Coupled { speed: peaks, .. } => peaks.of_speed(grid, j),
+            Objective::Speed(peak) | Objective::Coupled { speed: peak, .. } => peak.of_speed(grid, j),
             Objective::Limit(limit) => limit.of_speed(grid, j),
-            Objective::SpeedTable(table) => {
-                assert!(table.len() == grid.speeds(), "{} utilities, {} speeds", table.len(), grid.speeds());
-                fixed::utility(f64::from(table[j]))
-            }
             _ => 0.0,
         }
     }
@@ -161,15 +154,6 @@ impl Objective<'_> {
     }
 }
 
-/// Tells the utilities of so many courses by eights, and those beyond the last as nothing.
-fn eight_at_a_time(courses: usize, utility: impl Fn(usize) -> f32, mut told: impl FnMut(usize, f32x8)) {
-    for lanes in 0..courses.div_ceil(LANES) {
-        let first = LANES * lanes;
-        let eight = std::array::from_fn(|lane| if first + lane < courses { utility(first + lane) } else { 0.0 });
-        told(lanes, f32x8::new(eight));
-    }
-}
-
 /// How a function is evaluated.
 #[expect(
     clippy::large_enum_variant,
@@ -182,7 +166,7 @@ pub(super) enum Parts<'a> {
     Field(Field),
     /// Numbers for both.
     Table(&'a [f32]),
-    /// Its numbers are none.
+    /// It has a number that is not finite.
     Nothing,
 }
 

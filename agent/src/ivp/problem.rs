@@ -17,7 +17,7 @@ pub struct Decision {
 
 /// What decides between candidates that are equally good, or nearly so.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wish {
+pub struct Preference {
     /// Present course of the own ship, rad.
     pub course_rad: f64,
     /// Present speed of the own ship, m/s.
@@ -38,8 +38,8 @@ pub struct Choice {
     pub best: f64,
     /// Whether an earlier decision was kept; it may be the best one itself.
     pub is_kept: bool,
-    /// How many points were asked; the others could not win.
-    pub asked: usize,
+    /// How many points were evaluated; the others could not win.
+    pub evaluated: usize,
 }
 
 /// The functions of one decision, ready to be added up; its lists are used again for the next one.
@@ -176,25 +176,25 @@ impl Problem {
     /// The best decision: exactly the largest weighted sum on the grid.
     ///
     /// Of equal ones it is the course with the smallest angle from the present one, of two such the one to starboard; on
-    /// that course the speed nearest to the present one, of two such the lower. If an earlier decision is nearly as good
-    /// and the wish is to keep it, it is that.
-    pub fn solve(&mut self, wish: Wish) -> Choice {
+    /// that course the speed nearest to the present one, of two such the lower. An earlier decision that is
+    /// nearly as good and is to be kept comes before all of them.
+    pub fn solve(&mut self, preference: Preference) -> Choice {
         self.bound_blocks();
-        let present = Present { course: self.grid.ticks_of(wish.course_rad), speed_m_s: wish.speed_m_s };
+        let present = Present { course: self.grid.ticks_of(preference.course_rad), speed_m_s: preference.speed_m_s };
         let mut best = Best { value: NOWHERE, course: 0, speed: 0 };
-        let mut asked = 0;
+        let mut evaluated = 0;
         // The most promising block first: what it reaches rules out most others.
         let most = self.bounds.iter().fold(i32x8::splat(NOWHERE), |a, &b| a.max(b)).reduce_max();
-        self.ask_those_up_to(most, present, &mut best, &mut asked);
-        self.ask_those_up_to(best.value, present, &mut best, &mut asked);
+        self.evaluate_blocks(most, present, &mut best, &mut evaluated);
+        self.evaluate_blocks(best.value, present, &mut best, &mut evaluated);
         let found = Decision { course: best.course as u16, speed: best.speed as u16 };
-        let kept = wish.keep.and_then(|(old, share)| self.kept(old, share, best.value));
+        let kept = preference.keep.and_then(|(old, share)| self.kept(old, share, best.value));
         Choice {
             decision: kept.map_or(found, |(old, _)| old),
             value: f64::from(kept.map_or(best.value, |(_, value)| value)) * QUANTUM,
             best: f64::from(best.value) * QUANTUM,
             is_kept: kept.is_some(),
-            asked,
+            evaluated,
         }
     }
 
@@ -284,8 +284,8 @@ impl Problem {
         }
     }
 
-    /// Asks the blocks whose bound reaches `least` and the best found, unless they were asked before.
-    fn ask_those_up_to(&mut self, least: i32, present: Present, best: &mut Best, asked: &mut usize) {
+    /// Evaluates the blocks whose bound reaches `least` and the best found, unless that was done before.
+    fn evaluate_blocks(&mut self, least: i32, present: Present, best: &mut Best, evaluated: &mut usize) {
         let courses = self.courses.len();
         for i in 0..self.bounds.len() {
             let bounds = self.bounds[i];
@@ -295,16 +295,16 @@ impl Problem {
             let (lanes, first) = (i / courses, LANES * (i % courses));
             for (lane, &bound) in bounds.as_array().iter().enumerate() {
                 if bound >= least.max(best.value) && first + lane < self.grid.courses() {
-                    self.ask(first + lane, lanes, present, best);
+                    self.evaluate(first + lane, lanes, present, best);
                     self.bounds[i].as_mut_array()[lane] = NOWHERE;
-                    *asked += LANES.min(self.grid.speeds() - LANES * lanes);
+                    *evaluated += LANES.min(self.grid.speeds() - LANES * lanes);
                 }
             }
         }
     }
 
-    /// Asks a block, and takes its best point if that is better than what was found.
-    fn ask(&self, k: usize, lanes: usize, present: Present, best: &mut Best) {
+    /// Evaluates a block, and takes its best point if that is better than what was found.
+    fn evaluate(&self, k: usize, lanes: usize, present: Present, best: &mut Best) {
         let sums = self.block(k, lanes);
         let value = sums.reduce_max();
         if value < best.value {

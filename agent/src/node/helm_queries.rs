@@ -1,4 +1,4 @@
-//! Helm queries: what a boat's helm thinks, answered between decisions.
+//! Helm queries: a boat's helm report, answered between decisions.
 
 use super::error::NodeError;
 use crate::{Mind, MindRunner};

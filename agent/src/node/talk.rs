@@ -41,7 +41,7 @@ impl Talk {
     ) -> Result<Talk, NodeError> {
         let teams: Vec<TeamId> = (0..scenario.vehicles.len()).map(|i| scenario.team_of(VehicleId::at(i))).collect();
         let mut talking: Vec<TeamId> =
-            runner.minds().filter(|(_, mind)| mind.talks()).map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
+            runner.minds().filter(|(_, mind)| mind.shares()).map(|(vehicle, _)| scenario.team_of(vehicle)).collect();
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
@@ -72,7 +72,7 @@ impl Talk {
             let missed = team_inbox.deliver(seq, &mut self.words);
             team_inbox.refusals.add(Refusal::TeamMessageMissing, if waits { missed } else { 0 });
         });
-        runner.hear(&self.words);
+        runner.receive(&self.words);
     }
 
     /// Takes what the minds here tell their teams after deciding, to be sent to mates elsewhere.

@@ -1,24 +1,25 @@
 //! Each behaviour, alone: what it makes of a scene.
 
-use crate::scene::{Boat, alone, helm, only, picture, scenario, thought};
+use crate::scene::{Boat, alone, decided, helm, only, picture, scenario, without_safety};
 use agent::Mind;
-use game::helm::{HelmReport, StageReport};
+use game::SimTime;
+use game::helm::{HelmReport, RunState};
 use game::picture::Picture;
 
 /// A course and a speed, or that it asks for nothing.
 type Want = Option<(f64, f64)>;
 
 /// What boat 0 decides by this behaviour alone in this scene.
-fn decided(behaviour: &str, picture: &Picture) -> HelmReport {
-    thought(&mut helm(&only(behaviour)), picture)
+fn alone_decides(behaviour: &str, picture: &Picture) -> HelmReport {
+    decided(&mut helm(&only(behaviour)), picture)
 }
 
 fn is_active(report: &HelmReport) -> bool {
-    report.behaviours.iter().any(|b| b.name == "it" && b.stage == StageReport::Active)
+    report.behaviours.iter().any(|b| b.name == "it" && b.run_state == RunState::Active)
 }
 
 fn assert_decides(behaviour: &str, picture: &Picture, want: Want) {
-    let report = decided(behaviour, picture);
+    let report = alone_decides(behaviour, picture);
     let got = report.course_deg.zip(report.speed_m_s).filter(|_| is_active(&report));
     match (got, want) {
         (None, None) => {}
@@ -37,16 +38,16 @@ fn here() -> Picture {
     alone(0.0, Boat::at(0.0, 0.0).going(0.0, 1.0))
 }
 
+/// With a contact; everybody else is far away.
+fn with_contact(own: Boat, contact: Boat) -> Picture {
+    picture(0.0, [own, Boat::at(-70.0, -30.0)], [contact, Boat::at(75.0, -35.0)])
+}
+
 #[test]
 fn behaviours_that_go_somewhere_go_there() {
     // The own flag is at (-60, 0), the enemy's at (60, 0).
-    let contact =
-        |boat: Boat| picture(0.0, [Boat::at(0.0, 0.0), Boat::at(-70.0, -30.0)], [boat, Boat::at(75.0, -35.0)]);
-    let by = |boat: Boat, x: f64, y: f64| {
-        let mut picture = contact(boat);
-        (picture.own[0].nav.east_m, picture.own[0].nav.north_m) = (x, y);
-        picture
-    };
+    let contact = |boat: Boat| with_contact(Boat::at(0.0, 0.0), boat);
+    let by = |boat: Boat, x: f64, y: f64| with_contact(Boat::at(x, y), boat);
     for (behaviour, picture, want) in [
         ("kind = 'waypoint'\npoints = ['enemy_flag']\nspeed_m_s = 2", here(), Some((90.0, 2.0))),
         ("kind = 'waypoint'\npoints = ['CF']\nspeed_m_s = 9", here(), Some((270.0, 3.0))),
@@ -115,9 +116,7 @@ fn behaviours_that_go_somewhere_go_there() {
 
 #[test]
 fn behaviours_that_hold_or_wait_do_so() {
-    let contact = |boat: Boat| {
-        picture(0.0, [Boat::at(0.0, 0.0).going(0.0, 1.0), Boat::at(-70.0, -30.0)], [boat, Boat::at(75.0, -35.0)])
-    };
+    let contact = |boat: Boat| with_contact(Boat::at(0.0, 0.0).going(0.0, 1.0), boat);
     for (behaviour, picture, want) in [
         ("kind = 'constant_heading'\nheading_deg = 250", here(), Some((250.0, 2.0))),
         ("kind = 'constant_speed'\nspeed_m_s = 1.2", here(), Some((0.0, 1.2))),
@@ -148,7 +147,7 @@ fn a_loiter_goes_round_the_way_it_is_told() {
         [("clockwise", 270.0, true), ("counterclockwise", 90.0, false), ("best", 80.0, true), ("best", 280.0, false)]
     {
         let picture = alone(0.0, Boat::at(0.0, 20.0).going(heading_deg, 1.0));
-        let course_deg = decided(&ring(turn), &picture).course_deg.expect("it goes on");
+        let course_deg = alone_decides(&ring(turn), &picture).course_deg.expect("it goes on");
         assert_eq!((0.0..180.0).contains(&course_deg), east, "{turn} with heading {heading_deg}: {course_deg}");
     }
 }
@@ -158,7 +157,7 @@ fn a_loiter_goes_all_the_way_round() {
     let ring = "kind = 'loiter'\nellipse = { centre = [0, 0], along_m = 60, across_m = 30 }\nturn = 'clockwise'\nspeed_m_s = 2";
     let (mut helm, mut at, mut turned_deg, mut last) = (helm(&only(ring)), (0.0_f64, 15.0_f64), 0.0, 0.0_f64);
     for step in 0..1500 {
-        let report = thought(&mut helm, &alone(f64::from(step) * 0.1, Boat::at(at.0, at.1).going(90.0, 2.0)));
+        let report = decided(&mut helm, &alone(f64::from(step) * 0.1, Boat::at(at.0, at.1).going(90.0, 2.0)));
         let (course, speed_m_s) = (report.course_deg.expect("a course").to_radians(), 2.0);
         at = (at.0 + 0.1 * speed_m_s * libm::sin(course), at.1 + 0.1 * speed_m_s * libm::cos(course));
         let bearing_deg = libm::atan2(at.0, at.1).to_degrees();
@@ -174,12 +173,7 @@ fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
     let weight = |distance_m: f64, grade: &str| {
         let behaviour =
             format!("kind = 'avoid_collision'\nweight = 300\ninner_m = 10\nouter_m = 20\ngrade = '{grade}'");
-        let scene = picture(
-            0.0,
-            [Boat::at(0.0, 0.0), Boat::at(-70.0, -30.0)],
-            [Boat::at(0.0, distance_m), Boat::at(75.0, -35.0)],
-        );
-        let report = decided(&behaviour, &scene);
+        let report = alone_decides(&behaviour, &with_contact(Boat::at(0.0, 0.0), Boat::at(0.0, distance_m)));
         report.functions.iter().find(|f| f.behaviour == "it").map_or(0.0, |f| f.weight)
     };
     for (distance_m, grade, want) in [
@@ -197,33 +191,25 @@ fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
 }
 
 #[test]
-fn a_boat_in_the_way_is_passed_and_one_astern_is_not_heeded() {
-    let behaviours = "unsafe_i_know = true\nunsafe_because = \"two behaviours\"\n\
-        [behaviour.go]\nkind = 'waypoint'\npoints = [[60, 0]]\nspeed_m_s = 2\nweight = 50\n\
+fn a_boat_in_the_way_is_passed_and_one_astern_changes_nothing() {
+    let behaviours = "[behaviour.go]\nkind = 'waypoint'\npoints = [[60, 0]]\nspeed_m_s = 2\nweight = 50\n\
         [behaviour.avoid]\nkind = 'avoid_collision'\nweight = 300\n";
-    let scene = |x: f64| {
-        picture(
-            0.0,
-            [Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(-70.0, -30.0)],
-            [Boat::at(x, 0.0), Boat::at(75.0, -35.0)],
-        )
-    };
-    let scenario = scenario(behaviours);
-    let ahead = thought(&mut helm(&scenario), &scene(13.0));
+    let scene = |x: f64| with_contact(Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(x, 0.0));
+    let scenario = without_safety(behaviours);
+    let ahead = decided(&mut helm(&scenario), &scene(13.0));
     let course_rad = ahead.course_deg.expect("a course").to_radians();
     // It goes on for a moment before it turns.
     let miss_m = ((13.0 - 2.0 * 0.7) * libm::cos(course_rad)).abs();
     assert!(miss_m > 5.5, "course {course_rad} rad passes at {miss_m} m");
-    assert!((thought(&mut helm(&scenario), &scene(-9.0)).course_deg.expect("a course") - 90.0).abs() < 0.51);
+    assert!((decided(&mut helm(&scenario), &scene(-9.0)).course_deg.expect("a course") - 90.0).abs() < 0.51);
 }
 
 #[test]
 fn obstacles_are_passed() {
-    let behaviours = "unsafe_i_know = true\nunsafe_because = \"two behaviours\"\n\
-        [behaviour.go]\nkind = 'waypoint'\npoints = [[0, 39]]\nspeed_m_s = 2\nweight = 50\n\
+    let behaviours = "[behaviour.go]\nkind = 'waypoint'\npoints = [[0, 39]]\nspeed_m_s = 2\nweight = 50\n\
         [behaviour.avoid]\nkind = 'avoid_obstacle'\nweight = 300\n";
     // The field's obstacle is a disc of 2 m at (0, 30).
-    let report = thought(&mut helm(&scenario(behaviours)), &alone(0.0, Boat::at(0.0, 14.0).going(0.0, 2.0)));
+    let report = decided(&mut helm(&without_safety(behaviours)), &alone(0.0, Boat::at(0.0, 14.0).going(0.0, 2.0)));
     let course_rad = report.course_deg.expect("a course").to_radians();
     let miss_m = (16.0 * libm::sin(course_rad)).abs() - 2.0;
     assert!(miss_m > 2.9, "passes its edge at {miss_m} m: {report:?}");
@@ -231,11 +217,10 @@ fn obstacles_are_passed() {
 
 #[test]
 fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
-    let program = "unsafe_i_know = true\nunsafe_because = \"no other boats\"\n\
-        [behaviour.go]\nkind = 'waypoint'\npoints = [[300, 0]]\nspeed_m_s = 3\nweight = 50\n\
+    let program = "[behaviour.go]\nkind = 'waypoint'\npoints = [[300, 0]]\nspeed_m_s = 3\nweight = 50\n\
         [behaviour.stay]\nkind = 'op_region'\nhalt_m = 20\nexit_s = 1\nentry_s = 1\nrecovery_speed_m_s = 0.5\nweight = 300\n";
-    let mut helm = helm(&scenario(program));
-    let mut see = |at_s: f64, x: f64| thought(&mut helm, &alone(at_s, Boat::at(x, 5.0).going(90.0, 2.0)));
+    let mut helm = helm(&without_safety(program));
+    let mut see = |at_s: f64, x: f64| decided(&mut helm, &alone(at_s, Boat::at(x, 5.0).going(90.0, 2.0)));
     let deep_inside = see(0.0, 0.0);
     assert!((deep_inside.course_deg.expect("a course") - 91.0).abs() < 1.0, "far inside the waypoint has its way");
     let near = see(1.0, 76.0);
@@ -257,9 +242,9 @@ fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
 #[test]
 fn who_looks_inside_sees_the_utilities() {
     let mut helm = helm(&only("kind = 'waypoint'\npoints = ['enemy_flag']\nspeed_m_s = 2"));
-    assert!(thought(&mut helm, &here()).functions.iter().all(|f| f.utilities.is_empty() && f.utility.is_none()));
+    assert!(decided(&mut helm, &here()).functions.iter().all(|f| f.utilities.is_empty() && f.utility.is_none()));
     helm.show(true);
-    let report = thought(&mut helm, &here());
+    let report = decided(&mut helm, &here());
     assert_eq!(report.functions.len(), 3);
     for function in &report.functions {
         assert_eq!(function.utilities.len(), report.courses * report.speeds, "{}", function.behaviour);
@@ -275,11 +260,10 @@ fn who_looks_inside_sees_the_utilities() {
 #[test]
 fn a_proposal_is_heard_while_it_is_fresh() {
     let mut helm = helm(&only("kind = 'policy'\nttl_s = 1"));
-    assert!(!is_active(&thought(&mut helm, &here())));
-    let proposal = agent::Proposal { course_rad: 2.0, speed_m_s: 1.5 };
-    helm.propose(game::SimTime::from_s(1.0), proposal);
+    assert!(!is_active(&decided(&mut helm, &here())));
+    helm.propose(agent::Proposal { at: SimTime::from_s(1.0), course_rad: 2.0, speed_m_s: 1.5 });
     for (at_s, heard) in [(1.0, true), (1.9, true), (2.1, false)] {
-        let report = thought(&mut helm, &alone(at_s, Boat::at(0.0, 0.0)));
+        let report = decided(&mut helm, &alone(at_s, Boat::at(0.0, 0.0)));
         assert_eq!(is_active(&report), heard, "{at_s} s");
         if heard {
             assert!((report.course_deg.expect("a course") - 2.0_f64.to_degrees()).abs() <= 0.51);
@@ -293,8 +277,8 @@ fn safety_arbitrates_what_a_policy_proposes() {
     let program = "base = \"SCENARIOS/strategies/safety.toml\"\n[behaviour.learned]\nkind = \"policy\"\n";
     let advised = |picture: &Picture, (course_rad, speed_m_s): (f64, f64)| {
         let mut helm = helm(&scenario(program));
-        helm.propose(game::SimTime::ZERO, agent::Proposal { course_rad, speed_m_s });
-        let report = thought(&mut helm, picture);
+        helm.propose(agent::Proposal { at: SimTime::ZERO, course_rad, speed_m_s });
+        let report = decided(&mut helm, picture);
         (report.course_deg.expect("a course").to_radians(), report.speed_m_s.expect("a speed"))
     };
     let east = (std::f64::consts::FRAC_PI_2, 3.0);
@@ -302,8 +286,7 @@ fn safety_arbitrates_what_a_policy_proposes() {
     assert!((course_rad - east.0).abs() < 0.01 && (speed_m_s - 3.0).abs() < 0.05, "in the open it has its way");
     let (course_rad, speed_m_s) = advised(&alone(0.0, Boat::at(74.0, 0.0).going(90.0, 2.0)), east);
     assert!(speed_m_s * libm::sin(course_rad) < 0.1, "not out of the field: {course_rad} rad, {speed_m_s} m/s");
-    let boats = [Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(-70.0, -30.0)];
-    let ahead = picture(0.0, boats, [Boat::at(14.0, 0.0), Boat::at(75.0, -35.0)]);
+    let ahead = with_contact(Boat::at(0.0, 0.0).going(90.0, 2.0), Boat::at(14.0, 0.0));
     let (course_rad, speed_m_s) = advised(&ahead, east);
     // It goes on for a moment, then as decided for the eight seconds that it looks ahead.
     let places = (0..=80).map(|i| 0.1 * f64::from(i) * speed_m_s);
@@ -314,14 +297,13 @@ fn safety_arbitrates_what_a_policy_proposes() {
 
 #[test]
 fn a_full_stop_lies_still_and_lets_safety_have_its_way() {
-    let unsafely = "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n";
     let stop = "[behaviour.stop]\nkind = \"full_stop\"\n";
-    let alone_it_is = thought(&mut helm(&scenario(&format!("{unsafely}{stop}"))), &here());
+    let alone_it_is = decided(&mut helm(&without_safety(stop)), &here());
     assert_eq!(alone_it_is.hold.as_deref(), Some("no behaviour asks for a course"));
     let go = "[behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\nspeed_m_s = 2\nweight = 50\n";
-    let against = thought(&mut helm(&scenario(&format!("{unsafely}{stop}{go}"))), &here());
+    let against = decided(&mut helm(&without_safety(&format!("{stop}{go}"))), &here());
     assert_eq!(against.speed_m_s, Some(0.0));
     let safely = scenario(&format!("base = \"SCENARIOS/strategies/safety.toml\"\n{stop}"));
-    let drifting = thought(&mut helm(&safely), &alone(0.0, Boat::at(79.5, 0.0).going(270.0, 0.0)));
+    let drifting = decided(&mut helm(&safely), &alone(0.0, Boat::at(79.5, 0.0).going(270.0, 0.0)));
     assert!(drifting.speed_m_s.is_some_and(|speed_m_s| speed_m_s > 0.5), "{drifting:?}");
 }

@@ -1,16 +1,13 @@
 //! Modes, rules, variables, and the lives of behaviours.
 
-use crate::scene::{Boat, alone, helm, picture, scenario, thought};
+use crate::scene::{Boat, alone, decided, helm, picture, without_safety};
 use agent::{HelmMind, Mind};
 use game::event::{Event, Logged, TagCause};
-use game::helm::{HelmReport, StageReport};
+use game::helm::{HelmReport, RunState};
 use game::message::{EventRecord, Word};
 use game::{SimTime, VehicleId};
 
 const PROGRAM: &str = r#"
-unsafe_i_know = true
-unsafe_because = "about modes only"
-
 [variables]
 laps = { initial = 0, shared = true }
 phase = { values = ["go", "rest"], shared = true }
@@ -66,33 +63,33 @@ fn variable(report: &HelmReport, name: &str) -> String {
     report.variables.iter().find(|variable| variable.name == name).expect("such a variable").value.clone()
 }
 
-fn stage(report: &HelmReport, name: &str) -> StageReport {
-    report.behaviours.iter().find(|behaviour| behaviour.name == name).expect("such a behaviour").stage
+fn run_state(report: &HelmReport, name: &str) -> RunState {
+    report.behaviours.iter().find(|behaviour| behaviour.name == name).expect("such a behaviour").run_state
 }
 
 fn at(helm: &mut HelmMind, at_s: f64, x: f64) -> HelmReport {
-    thought(helm, &alone(at_s, Boat::at(x, 0.0)))
+    decided(helm, &alone(at_s, Boat::at(x, 0.0)))
 }
 
 #[test]
 fn the_first_mode_whose_condition_holds_is_the_one() {
-    let mut helm = helm(&scenario(PROGRAM));
+    let mut helm = helm(&without_safety(PROGRAM));
     assert_eq!(at(&mut helm, 0.0, -30.0).mode, "home");
     assert_eq!(at(&mut helm, 0.1, 30.0).mode, "away:roam");
     let mut tagged = alone(0.2, Boat::at(30.0, 0.0));
     tagged.own[0].tagged = true;
-    assert_eq!(thought(&mut helm, &tagged).mode, "tagged");
+    assert_eq!(decided(&mut helm, &tagged).mode, "tagged");
 }
 
 #[test]
 fn events_and_conditions_give_values_to_variables() {
-    let mut helm = helm(&scenario(PROGRAM));
+    let mut helm = helm(&without_safety(PROGRAM));
     assert_eq!(variable(&at(&mut helm, 0.0, 30.0), "alarmed"), "false");
     for (vehicle, want) in [(0, "false"), (2, "false"), (1, "true")] {
         let mut tagged = alone(0.1, Boat::at(30.0, 0.0));
         let event = Event::Tagged { vehicle: VehicleId(vehicle), cause: TagCause::Boundary };
         tagged.events = vec![EventRecord::from(Logged { tick: 2, at: SimTime::ZERO, event })];
-        assert_eq!(variable(&thought(&mut helm, &tagged), "alarmed"), want, "vehicle {vehicle}");
+        assert_eq!(variable(&decided(&mut helm, &tagged), "alarmed"), want, "vehicle {vehicle}");
     }
     let alarm = at(&mut helm, 0.2, 30.0);
     assert_eq!((alarm.mode.as_str(), variable(&alarm, "phase").as_str()), ("away:alarm", "rest"));
@@ -102,26 +99,26 @@ fn events_and_conditions_give_values_to_variables() {
 
 #[test]
 fn behaviours_live_and_post() {
-    let mut helm = helm(&scenario(PROGRAM));
+    let mut helm = helm(&without_safety(PROGRAM));
     let first = at(&mut helm, 0.0, -30.0);
-    assert_eq!((stage(&first, "drive"), stage(&first, "rest")), (StageReport::Active, StageReport::Active));
+    assert_eq!((run_state(&first, "drive"), run_state(&first, "rest")), (RunState::Active, RunState::Active));
     // Its duration is over.
-    assert_eq!(stage(&at(&mut helm, 0.9, -30.0), "rest"), StageReport::Active);
-    assert_eq!(stage(&at(&mut helm, 1.0, -30.0), "rest"), StageReport::Complete);
+    assert_eq!(run_state(&at(&mut helm, 0.9, -30.0), "rest"), RunState::Active);
+    assert_eq!(run_state(&at(&mut helm, 1.0, -30.0), "rest"), RunState::Complete);
     // Each point that is reached counts; after the last the list begins anew.
     for (at_s, x, laps) in [(2.0, -1.0, "1"), (3.0, 9.0, "2"), (4.0, 9.0, "2"), (5.0, 1.0, "3")] {
         assert_eq!(variable(&at(&mut helm, at_s, x), "laps"), laps, "{at_s} s");
     }
     let done = at(&mut helm, 6.0, -30.0);
     assert_eq!(
-        (stage(&done, "drive"), done.hold.as_deref()),
-        (StageReport::Idle, Some("no behaviour asks for anything"))
+        (run_state(&done, "drive"), done.hold.as_deref()),
+        (RunState::Idle, Some("no behaviour asks for anything"))
     );
 }
 
 #[test]
-fn mates_are_heard_when_they_have_said_everything_that_is_asked() {
-    let scenario = scenario(PROGRAM);
+fn mates_count_when_they_have_sent_everything_that_is_asked() {
+    let scenario = without_safety(PROGRAM);
     let (mut mine, mut words) = (helm(&scenario), vec![]);
     let weight = |helm: &mut HelmMind| {
         let report = at(helm, 0.0, -30.0);
@@ -129,22 +126,22 @@ fn mates_are_heard_when_they_have_said_everything_that_is_asked() {
     };
     assert_eq!(weight(&mut mine), 1.0);
     let mate = HelmMind::new(&scenario, VehicleId(1), agent::roles::role_of(&scenario, VehicleId(1)));
-    mate.say(&mut words);
+    mate.send(&mut words);
     assert_eq!(words.len(), 2, "two variables are shared");
     assert!(words.iter().all(|word| word.vehicle == VehicleId(1)));
-    let said = |laps: f64, phase: f64| [Word { value: laps, ..words[0] }, Word { value: phase, ..words[1] }];
-    for (heard, want) in [
-        (&said(2.0, 1.0)[..1], 1.0),
-        (&said(2.0, 0.0)[..], 1.0),
-        (&said(2.0, 1.0)[..], 101.0),
-        (&said(f64::NAN, 1.0)[..], 101.0),
-        (&said(1.0, 1.0)[..], 1.0),
+    let sent = |laps: f64, phase: f64| [Word { value: laps, ..words[0] }, Word { value: phase, ..words[1] }];
+    for (received, want) in [
+        (&sent(2.0, 1.0)[..1], 1.0),
+        (&sent(2.0, 0.0)[..], 1.0),
+        (&sent(2.0, 1.0)[..], 101.0),
+        (&sent(f64::NAN, 1.0)[..], 101.0),
+        (&sent(1.0, 1.0)[..], 1.0),
     ] {
-        mine.hear(heard);
-        assert_eq!(weight(&mut mine), want, "{heard:?}");
+        mine.receive(received);
+        assert_eq!(weight(&mut mine), want, "{received:?}");
     }
     // Words of nobody's mate, and of what nobody knows.
-    mine.hear(&[Word { vehicle: VehicleId(2), ..said(5.0, 1.0)[0] }, Word { key: 7, ..said(5.0, 1.0)[0] }]);
+    mine.receive(&[Word { vehicle: VehicleId(2), ..sent(5.0, 1.0)[0] }, Word { key: 7, ..sent(5.0, 1.0)[0] }]);
     assert_eq!(weight(&mut mine), 1.0);
 }
 
@@ -152,7 +149,7 @@ fn mates_are_heard_when_they_have_said_everything_that_is_asked() {
 fn a_collision_is_one_for_both_boats() {
     let rule = |who: &str| {
         format!(
-            "unsafe_i_know = true\nunsafe_because = \"about rules only\"\n[variables]\nhit = 0\n\
+            "[variables]\nhit = 0\n\
              [[rule]]\non = \"{who} collides\"\nset = {{ hit = \"hit + 1\" }}\n[behaviour.wait]\nkind = \"full_stop\"\n"
         )
     };
@@ -162,37 +159,37 @@ fn a_collision_is_one_for_both_boats() {
     {
         let event = Event::Collided { first: VehicleId(first), second: VehicleId(second) };
         seen.events = vec![EventRecord::from(Logged { tick: 2, at: SimTime::ZERO, event })];
-        let report = thought(&mut helm(&scenario(&rule(who))), &seen);
+        let report = decided(&mut helm(&without_safety(&rule(who))), &seen);
         assert_eq!(report.variables[0].value, want.to_string(), "{first} and {second}: {who}");
     }
 }
 
 #[test]
 fn what_a_behaviour_has_reached_is_a_point_or_its_time() {
-    let program = "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n[variables]\nreached = 0\n\
+    let program = "[variables]\nreached = 0\n\
         [behaviour.wait]\nkind = \"timer\"\nduration_s = 5\non_reach = { reached = \"reached + 1\" }\n\
         [behaviour.stop]\nkind = \"full_stop\"\n";
-    let mut mind = helm(&scenario(program));
+    let mut mind = helm(&without_safety(program));
     for (at_s, want) in [(0.0, "0"), (4.9, "0"), (5.0, "1"), (9.0, "1")] {
-        assert_eq!(thought(&mut mind, &alone(at_s, Boat::at(0.0, 0.0))).variables[0].value, want, "{at_s} s");
+        assert_eq!(decided(&mut mind, &alone(at_s, Boat::at(0.0, 0.0))).variables[0].value, want, "{at_s} s");
     }
 }
 
 #[test]
 fn time_is_counted_from_the_first_picture() {
-    let program = "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n[variables]\nwaited_s = 0\n\
+    let program = "[variables]\nwaited_s = 0\n\
         [[rule]]\nwhen = \"true\"\nset = { waited_s = \"waited_s + step_s\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
-    let mut mind = helm(&scenario(program));
+    let mut mind = helm(&without_safety(program));
     for (at_s, want) in [(300.0, "0"), (300.5, "0.5"), (301.0, "1")] {
-        assert_eq!(thought(&mut mind, &alone(at_s, Boat::at(0.0, 0.0))).variables[0].value, want, "{at_s} s");
+        assert_eq!(decided(&mut mind, &alone(at_s, Boat::at(0.0, 0.0))).variables[0].value, want, "{at_s} s");
     }
 }
 
 #[test]
 fn a_decision_is_kept_while_it_is_nearly_as_good() {
     let program = |hysteresis: f64| {
-        scenario(&format!(
-            "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\nhelm = {{ hysteresis = {hysteresis} }}\n\
+        without_safety(&format!(
+            "helm = {{ hysteresis = {hysteresis} }}\n\
              [behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\nspeed_m_s = 2\n"
         ))
     };
@@ -201,15 +198,15 @@ fn a_decision_is_kept_while_it_is_nearly_as_good() {
         assert!((at(&mut helm, 0.0, 0.0).course_deg.expect("a course") - 90.0).abs() < 0.51);
         // From here the point bears 100 degrees: the old course is worth 10/180 of half of the function less.
         let from = Boat::at(0.0, 60.0 * 0.176_326_98);
-        let got_deg = thought(&mut helm, &alone(0.1, from)).course_deg.expect("a course");
+        let got_deg = decided(&mut helm, &alone(0.1, from)).course_deg.expect("a course");
         assert!((got_deg - want_deg).abs() < 0.51, "hysteresis {hysteresis}: {got_deg}");
     }
 }
 
 #[test]
 fn a_boat_that_is_not_in_the_picture_holds() {
-    let mut helm = helm(&scenario(PROGRAM));
+    let mut helm = helm(&without_safety(PROGRAM));
     let mut without = picture(0.0, [Boat::at(0.0, 0.0); 2], [Boat::at(50.0, 0.0); 2]);
     without.own.remove(0);
-    assert_eq!(thought(&mut helm, &without).hold.as_deref(), Some("the picture does not show the own boat"));
+    assert_eq!(decided(&mut helm, &without).hold.as_deref(), Some("the picture does not show the own boat"));
 }

@@ -2,7 +2,7 @@
 
 use agent::{HelmMind, Mind};
 use game::helm::HelmReport;
-use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat, Picture};
+use game::picture::{Contact, FlagView, Nav, OwnBoat, Picture};
 use game::{Ned, Order, Scenario, SimTime, TeamId, VehicleId};
 use std::path::Path;
 
@@ -41,10 +41,15 @@ pub(crate) fn scenario(strategy: &str) -> Scenario {
     game::scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A program with one behaviour and nothing else.
+/// The scenario in which all boats follow a program without the mandatory safety behaviours.
+pub(crate) fn without_safety(program: &str) -> Scenario {
+    scenario(&format!("unsafe_i_know = true\nunsafe_because = \"what is tested is alone\"\n{program}"))
+}
+
+/// A program with one behaviour, and hardly any preference besides.
 pub(crate) fn only(behaviour: &str) -> Scenario {
-    scenario(&format!(
-        "unsafe_i_know = true\nunsafe_because = \"one behaviour alone\"\n[behaviour.it]\n{behaviour}\n\
+    without_safety(&format!(
+        "[behaviour.it]\n{behaviour}\n\
          [behaviour.head]\nkind = \"constant_heading\"\nheading_deg = 0\nweight = 0.01\n\
          [behaviour.speed]\nkind = \"constant_speed\"\nspeed_m_s = 2\nweight = 0.01\n"
     ))
@@ -79,17 +84,7 @@ impl Boat {
     }
 
     pub(crate) fn own(self, vehicle: u16) -> OwnBoat {
-        OwnBoat {
-            vehicle: VehicleId(vehicle),
-            nav: self.nav(),
-            fix_ns: SimTime::ZERO,
-            imu: Imu::default(),
-            tagged: false,
-            carrying: -1,
-            disabled: false,
-            outside: false,
-            tag_ready_ns: SimTime::ZERO,
-        }
+        OwnBoat::new(VehicleId(vehicle), self.nav())
     }
 
     pub(crate) fn contact(self, vehicle: u16, seen: SimTime) -> Contact {
@@ -133,8 +128,8 @@ pub(crate) fn helm(scenario: &Scenario) -> HelmMind {
     HelmMind::new(scenario, VehicleId(0), agent::roles::role_of(scenario, VehicleId(0)))
 }
 
-/// What the helm thinks after this picture.
-pub(crate) fn thought(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
+/// The helm's report after this picture.
+pub(crate) fn decided(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
     let order = helm.decide(picture);
     let report = helm.report().expect("a helm reports");
     match (order, report.course_deg.zip(report.speed_m_s)) {

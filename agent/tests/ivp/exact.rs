@@ -1,8 +1,9 @@
 //! The solver against the whole grid.
 
-use crate::scene::{self, Tables, decision, points, solved};
-use agent::ivp::{Approach, Choice, Closest, Closing, Decision, FUNCTIONS_MAX, Grid, Objective, Peak, Peaks};
-use agent::ivp::{Problem, QUANTUM, WEIGHT_MAX, Wish};
+use crate::scene::{self, Table, decision, points, solved};
+use agent::ivp::{Approach, Choice, Closest, Closing, Decision, FUNCTIONS_MAX, Grid, Objective, Peak};
+use agent::ivp::{Preference, Problem, QUANTUM, SpeedLimit, WEIGHT_MAX};
+use game::Ned;
 use game::angle::wrap_pi;
 use game::stream::Stream;
 
@@ -12,12 +13,12 @@ fn sums(grid: &Grid, functions: &[(f64, Objective)]) -> Vec<i64> {
     points(grid).map(at).collect()
 }
 
-/// The best decision, the slow way: every point, and the tie-break as it is told.
-fn searched(grid: &Grid, sums: &[i64], wish: Wish) -> (Decision, f64) {
+/// The best decision, the slow way: every point, and the tie-break as documented.
+fn searched(grid: &Grid, sums: &[i64], preference: Preference) -> (Decision, f64) {
     let largest = sums.iter().copied().max().expect("a grid has points");
     let key = |(k, j): (usize, usize)| {
-        let away = wrap_pi(grid.course_rad(k) - wish.course_rad);
-        ((away.abs(), away < 0.0), (grid.speed_m_s(j) - wish.speed_m_s).abs(), j)
+        let away = wrap_pi(grid.course_rad(k) - preference.course_rad);
+        ((away.abs(), away < 0.0), (grid.speed_m_s(j) - preference.speed_m_s).abs(), j)
     };
     let equal = points(grid).zip(sums).filter(|(_, sum)| **sum == largest).map(|(point, _)| point);
     let (k, j) = equal.min_by(|a, b| key(*a).partial_cmp(&key(*b)).expect("numbers")).expect("one is largest");
@@ -31,15 +32,15 @@ fn the_solver_finds_what_a_search_of_the_whole_grid_finds() {
     for seed in 0..4_000 {
         let mut stream = Stream::new(seed, "ivp/exact");
         let grid = scene::grid(&mut stream);
-        let tables = Tables::random(&mut stream, &grid);
-        let functions = scene::functions(&mut stream, &grid, &tables);
-        let wish = scene::wish(&mut stream, &grid);
+        let table = Table::random(&mut stream, &grid);
+        let functions = scene::functions(&mut stream, &grid, &table);
+        let preference = scene::preference(&mut stream, &grid);
         let sums = sums(&grid, &functions);
-        let (want, value) = searched(&grid, &sums, wish);
-        let got = solved(&grid, &functions, wish);
-        assert_eq!((got.decision, got.value), (want, value), "seed {seed}: {functions:?} {wish:?}");
+        let (want, value) = searched(&grid, &sums, preference);
+        let got = solved(&grid, &functions, preference);
+        assert_eq!((got.decision, got.value), (want, value), "seed {seed}: {functions:?} {preference:?}");
         ties += usize::from(sums.iter().filter(|&&sum| sum as f64 * QUANTUM == value).count() > 1);
-        passed_over += points(&grid).count() - got.asked;
+        passed_over += points(&grid).count() - got.evaluated;
     }
     assert!(ties > 400, "{ties} scenes in which equals had to be told apart");
     assert!(passed_over > 400_000, "{passed_over} points passed over");
@@ -52,17 +53,17 @@ fn the_solver_finds_the_best_of_a_full_grid_among_contacts() {
         let mut stream = Stream::new(seed, "ivp/contacts");
         let summit = stream.between(0.0, 6.0);
         let waypoint = Objective::Coupled {
-            course: Peaks::one(Peak::tent(summit, 3.1)),
-            speed: Peaks::one(Peak { peak_width: 1.0, summit_delta: 20.0, ..Peak::tent(2.0, 1.6) }),
+            course: Peak::tent(summit, 3.1),
+            speed: Peak { peak_width: 1.0, summit_delta: 20.0, ..Peak::tent(2.0, 1.6) },
             course_share: 0.5,
         };
         let mut functions = vec![(100.0, waypoint)];
         for _ in 0..3 {
             functions.push((stream.between(50.0, 300.0), Objective::Closest(scene::closest(&mut stream, &grid))));
         }
-        let wish = scene::wish(&mut stream, &grid);
-        let (want, value) = searched(&grid, &sums(&grid, &functions), wish);
-        let got = solved(&grid, &functions, wish);
+        let preference = scene::preference(&mut stream, &grid);
+        let (want, value) = searched(&grid, &sums(&grid, &functions), preference);
+        let got = solved(&grid, &functions, preference);
         assert_eq!((got.decision, got.value), (want, value), "seed {seed}");
     }
 }
@@ -72,13 +73,13 @@ fn the_order_of_functions_changes_nothing() {
     for seed in 0..1_000 {
         let mut stream = Stream::new(seed, "ivp/order");
         let grid = scene::grid(&mut stream);
-        let tables = Tables::random(&mut stream, &grid);
-        let mut functions = scene::functions(&mut stream, &grid, &tables);
-        let wish = scene::wish(&mut stream, &grid);
-        let first = solved(&grid, &functions, wish);
+        let table = Table::random(&mut stream, &grid);
+        let mut functions = scene::functions(&mut stream, &grid, &table);
+        let preference = scene::preference(&mut stream, &grid);
+        let first = solved(&grid, &functions, preference);
         for _ in 0..3 {
             stream.shuffle(&mut functions);
-            assert_eq!(solved(&grid, &functions, wish), first, "seed {seed}");
+            assert_eq!(solved(&grid, &functions, preference), first, "seed {seed}");
         }
     }
 }
@@ -89,15 +90,15 @@ fn a_problem_that_was_cleared_is_as_new() {
     let mut old = Problem::new(grid.clone());
     for seed in 0..200 {
         let mut stream = Stream::new(seed, "ivp/again");
-        let tables = Tables::random(&mut stream, &grid);
-        let functions = scene::functions(&mut stream, &grid, &tables);
-        let wish = scene::wish(&mut stream, &grid);
+        let table = Table::random(&mut stream, &grid);
+        let functions = scene::functions(&mut stream, &grid, &table);
+        let preference = scene::preference(&mut stream, &grid);
         old.clear();
         assert!(old.is_empty() && !old.decides_course() && !old.decides_speed());
         functions.iter().for_each(|(weight, objective)| old.add(*weight, objective));
         assert_eq!(old.len(), functions.len());
-        let got: Choice = old.solve(wish);
-        assert_eq!(got, solved(&grid, &functions, wish), "seed {seed}");
+        let got: Choice = old.solve(preference);
+        assert_eq!(got, solved(&grid, &functions, preference), "seed {seed}");
         let Decision { course, speed } = got.decision;
         assert_eq!(old.collective(course.into(), speed.into()), got.value, "seed {seed}");
     }
@@ -106,20 +107,19 @@ fn a_problem_that_was_cleared_is_as_new() {
 #[test]
 fn without_functions_the_boat_goes_on_as_it_does() {
     let grid = Grid::default();
-    let wish = Wish { course_rad: 1.0, speed_m_s: 1.23, keep: None };
-    let got = Problem::new(grid.clone()).solve(wish);
-    assert_eq!(got.decision, decision(grid.nearest_course(1.0), grid.nearest_speed(1.23)));
+    let preference = Preference { course_rad: 1.0, speed_m_s: 1.23, keep: None };
+    let got = Problem::new(grid.clone()).solve(preference);
     assert_eq!((got.decision, got.value), (decision(57, 12), 0.0));
 }
 
 #[test]
 fn of_equal_courses_the_one_to_starboard_and_of_equal_speeds_the_lower_is_taken() {
     let grid = Grid::new(4, 3, 2.0);
-    let courses = Objective::CourseTable(&[0.0, 70.0, 0.0, 70.0]);
-    let speeds = Objective::SpeedTable(&[60.0, 0.0, 60.0]);
+    let courses: Vec<f32> = [0.0, 70.0, 0.0, 70.0].into_iter().flat_map(|of_course| [of_course; 3]).collect();
+    let speeds = [60.0, 0.0, 60.0].repeat(4);
     for (course_rad, want) in [(0.0, 1), (std::f64::consts::PI, 3), (-0.1, 3), (0.1, 1)] {
-        let wish = Wish { course_rad, speed_m_s: 1.0, keep: None };
-        let got = solved(&grid, &[(1.0, courses), (2.0, speeds)], wish);
+        let preference = Preference { course_rad, speed_m_s: 1.0, keep: None };
+        let got = solved(&grid, &[(1.0, Objective::Table(&courses)), (2.0, Objective::Table(&speeds))], preference);
         assert_eq!(got.decision, decision(want, 0), "{course_rad} rad");
         assert_eq!(got.value, 190.0);
     }
@@ -128,19 +128,20 @@ fn of_equal_courses_the_one_to_starboard_and_of_equal_speeds_the_lower_is_taken(
 #[test]
 fn an_earlier_decision_stays_while_it_is_nearly_as_good() {
     let grid = Grid::new(4, 2, 2.0);
-    let table = [90.0, 92.0, 100.0, 10.0];
-    let functions = [(3.0, Objective::CourseTable(&table))];
+    let of_course = [90.0, 92.0, 100.0, 10.0];
+    let table: Vec<f32> = of_course.into_iter().flat_map(|of_course| [of_course; 2]).collect();
+    let functions = [(3.0, Objective::Table(&table))];
     for (old, share, want) in [(0, 0.05, 2), (0, 0.1, 0), (0, 0.11, 0), (1, 0.09, 1), (2, 0.0, 2), (3, 0.5, 2)] {
         let keep = Some((decision(old, 1), share));
-        let got = solved(&grid, &functions, Wish { course_rad: 0.0, speed_m_s: 0.0, keep });
+        let got = solved(&grid, &functions, Preference { course_rad: 0.0, speed_m_s: 0.0, keep });
         assert_eq!(usize::from(got.decision.course), want, "from {old} with {share}");
-        assert_eq!((got.value, got.best), (3.0 * f64::from(table[want]), 300.0));
+        assert_eq!((got.value, got.best), (3.0 * f64::from(of_course[want]), 300.0));
         assert_eq!(got.is_kept, want == old, "from {old} with {share}");
     }
     let nowhere = Some((decision(9, 9), 1.0));
-    assert!(!solved(&grid, &functions, Wish { keep: nowhere, ..Wish::default() }).is_kept);
+    assert!(!solved(&grid, &functions, Preference { keep: nowhere, ..Preference::default() }).is_kept);
     let nonsense = Some((decision(0, 0), f64::NAN));
-    assert!(!solved(&grid, &functions, Wish { keep: nonsense, ..Wish::default() }).is_kept);
+    assert!(!solved(&grid, &functions, Preference { keep: nonsense, ..Preference::default() }).is_kept);
 }
 
 #[test]
@@ -149,7 +150,7 @@ fn as_many_functions_as_there_may_be_do_not_overflow() {
     let grid = Grid::new(9, 9, 3.0);
     let mut stream = Stream::new(1, "ivp/many");
     let far = Closest {
-        north_m: 5e4,
+        offset: Ned { north: 5e4, east: 0.0 },
         min_m: 0.0,
         max_m: 1.0,
         touch_m: 0.0,
@@ -158,8 +159,8 @@ fn as_many_functions_as_there_may_be_do_not_overflow() {
         ..scene::closest(&mut stream, &grid)
     };
     let functions = vec![(1e9, Objective::Closest(far)); FUNCTIONS_MAX];
-    let wish = Wish { course_rad: grid.course_rad(8), speed_m_s: 9.0, keep: None };
-    let got = solved(&grid, &functions, wish);
+    let preference = Preference { course_rad: grid.course_rad(8), speed_m_s: 9.0, keep: None };
+    let got = solved(&grid, &functions, preference);
     assert_eq!((got.decision, got.value), (decision(8, 8), FUNCTIONS_MAX as f64 * WEIGHT_MAX * 100.0));
 }
 
@@ -167,13 +168,10 @@ fn as_many_functions_as_there_may_be_do_not_overflow() {
 #[test]
 fn a_scene_is_pinned_so_that_every_machine_decides_alike() {
     let grid = Grid::new(360, 21, 4.0);
-    let avoid = |north_m: f64, east_m: f64, course_deg: f64, speed_m_s: f64| {
-        let (sin, cos) = game::math::sin_cos_deg(course_deg);
+    let avoid = |north: f64, east: f64, course_deg: f64, speed_m_s: f64| {
         Objective::Closest(Closest {
-            north_m,
-            east_m,
-            velocity_north_m_s: speed_m_s * cos,
-            velocity_east_m_s: speed_m_s * sin,
+            offset: Ned { north, east },
+            velocity: Ned::toward_deg(course_deg).scaled(speed_m_s),
             horizon_s: 120.0,
             min_m: 10.0,
             max_m: 75.0,
@@ -182,32 +180,31 @@ fn a_scene_is_pinned_so_that_every_machine_decides_alike() {
             lag: None,
         })
     };
-    let waypoint =
-        Closing { north_m: 45.0, east_m: 70.0, velocity_north_m_s: 0.0, velocity_east_m_s: 0.0, flee: false };
+    let waypoint = Closing { offset: Ned { north: 45.0, east: 70.0 }, velocity: Ned::default() };
     let functions = [
         (100.0, Objective::Closing(waypoint)),
         (300.0, avoid(20.0, 35.0, 250.0, 1.5)),
         (300.0, avoid(38.0, 20.0, 160.0, 1.2)),
         (300.0, avoid(5.0, 55.0, 330.0, 1.8)),
     ];
-    let two = solved(&grid, &functions[..2], Wish::default());
+    let two = solved(&grid, &functions[..2], Preference::default());
     assert_eq!((two.decision, two.value), (decision(332, 20), 22_282.484_375));
-    let four = solved(&grid, &functions, Wish::default());
+    let four = solved(&grid, &functions, Preference::default());
     assert_eq!((four.decision, four.value), (decision(277, 9), 63_275.25));
 }
 
 #[test]
 fn a_problem_tells_what_is_decided() {
     let grid = Grid::new(8, 4, 2.0);
-    let peaks = Peaks::one(Peak::tent(0.0, 1.0));
-    let coupled = |course_share| Objective::Coupled { course: peaks, speed: peaks, course_share };
+    let peak = Peak::tent(0.0, 1.0);
+    let coupled = |course_share| Objective::Coupled { course: peak, speed: peak, course_share };
     let cases = [
-        (1.0, Objective::Course(peaks), (true, false)),
-        (1.0, Objective::Speed(peaks), (false, true)),
+        (1.0, Objective::Course(peak), (true, false)),
+        (1.0, Objective::Speed(peak), (false, true)),
         (1.0, coupled(0.5), (true, true)),
         (1.0, coupled(1.0), (true, false)),
         (0.0, coupled(0.5), (false, false)),
-        (1.0, Objective::SpeedTable(&[1.0; 4]), (false, true)),
+        (1.0, Objective::Limit(SpeedLimit { high_m_s: 1.0, base_m_s: 0.5 }), (false, true)),
         (1.0, Objective::Table(&[1.0; 32]), (true, true)),
     ];
     for (weight, objective, want) in cases {
@@ -219,26 +216,27 @@ fn a_problem_tells_what_is_decided() {
 
 #[test]
 #[cfg(not(debug_assertions))]
-fn numbers_that_are_none_count_nothing() {
+fn numbers_that_are_not_finite_count_nothing() {
     let grid = Grid::new(36, 9, 3.0);
-    let mut stream = Stream::new(1, "ivp/none");
+    let mut stream = Stream::new(1, "ivp/nan");
     let closest = scene::closest(&mut stream, &grid);
-    let peaks = Peaks::one(Peak::tent(1.0, 1.0));
-    let sound = [(10.0, Objective::Course(peaks))];
-    let wish = Wish { course_rad: 1.0, speed_m_s: 1.0, keep: None };
-    let want = solved(&grid, &sound, wish);
-    let none = f64::NAN;
+    let peak = Peak::tent(1.0, 1.0);
+    let sound = [(10.0, Objective::Course(peak))];
+    let preference = Preference { course_rad: 1.0, speed_m_s: 1.0, keep: None };
+    let want = solved(&grid, &sound, preference);
+    let nan = f64::NAN;
     let unsound = [
-        (5.0, Objective::Closest(agent::ivp::Closest { north_m: none, ..closest })),
-        (5.0, Objective::Closest(agent::ivp::Closest { horizon_s: f64::INFINITY, ..closest })),
-        (5.0, Objective::Course(peaks.moved(|_| none))),
-        (5.0, Objective::Speed(peaks.moved(|_| f64::INFINITY))),
-        (5.0, Objective::SpeedTable(&[f32::NAN; 9])),
-        (none, Objective::Speed(peaks)),
-        (-3.0, Objective::Speed(peaks)),
+        (5.0, Objective::Closest(Closest { offset: Ned { north: nan, east: 0.0 }, ..closest })),
+        (5.0, Objective::Closest(Closest { horizon_s: f64::INFINITY, ..closest })),
+        (5.0, Objective::Course(Peak { summit: nan, ..peak })),
+        (5.0, Objective::Speed(Peak { summit: f64::INFINITY, ..peak })),
+        (5.0, Objective::Limit(SpeedLimit { high_m_s: nan, base_m_s: 1.0 })),
+        (5.0, Objective::Table(&[f32::NAN; 36 * 9])),
+        (nan, Objective::Speed(peak)),
+        (-3.0, Objective::Speed(peak)),
     ];
     for bad in unsound {
-        let got = solved(&grid, &[sound[0], bad], wish);
+        let got = solved(&grid, &[sound[0], bad], preference);
         assert_eq!((got.decision, got.value), (want.decision, want.value), "{bad:?}");
     }
 }

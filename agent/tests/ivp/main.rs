@@ -1,7 +1,6 @@
-//! Does the helm's solver find what there is to find?
+//! The helm's solver: whether it finds the best decision there is.
 
 mod exact;
-mod pieces;
 mod scene;
 mod shape;
 mod symmetry;

@@ -1,49 +1,35 @@
 //! Random decisions, with functions of every kind and plenty of equal values.
 
-use agent::ivp::{Approach, Choice, Closest, Closing, Combine, Decision, Grid, Lag, Objective, Peak, Peaks};
-use agent::ivp::{Problem, SpeedLimit, Wish};
+use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Lag, Objective, Peak, Preference};
+use agent::ivp::{Problem, SpeedLimit};
+use game::Ned;
 use game::stream::Stream;
 
-/// Numbers that functions refer to.
-pub(crate) struct Tables {
-    points: Vec<f32>,
-    courses: Vec<f32>,
-    speeds: Vec<f32>,
-}
+/// Utilities of all points of a grid, a row of speeds for each course.
+pub(crate) struct Table(Vec<f32>);
 
-impl Tables {
-    pub(crate) fn random(stream: &mut Stream, grid: &Grid) -> Tables {
+impl Table {
+    pub(crate) fn random(stream: &mut Stream, grid: &Grid) -> Table {
         // Whole tens, so that there are ties.
-        let mut numbers = |count: usize| (0..count).map(|_| 10.0 * stream.below(11) as f32).collect();
-        Tables {
-            points: numbers(grid.courses() * grid.speeds()),
-            courses: numbers(grid.courses()),
-            speeds: numbers(grid.speeds()),
-        }
+        Table((0..grid.courses() * grid.speeds()).map(|_| 10.0 * stream.below(11) as f32).collect())
     }
 
-    /// The same tables with course `k` taken from `from(k)`.
-    pub(crate) fn turned(&self, grid: &Grid, from: impl Fn(usize) -> usize) -> Tables {
-        let rows = (0..grid.courses()).flat_map(|k| &self.points[from(k) * grid.speeds()..][..grid.speeds()]);
-        Tables {
-            points: rows.copied().collect(),
-            courses: (0..grid.courses()).map(|k| self.courses[from(k)]).collect(),
-            speeds: self.speeds.clone(),
-        }
+    /// The same table with course `k` taken from `from(k)`.
+    pub(crate) fn turned(&self, grid: &Grid, from: impl Fn(usize) -> usize) -> Table {
+        let rows = (0..grid.courses()).flat_map(|k| &self.0[from(k) * grid.speeds()..][..grid.speeds()]);
+        Table(rows.copied().collect())
     }
 
-    /// The same function, with its numbers from here.
+    /// The same function, with its table from here.
     pub(crate) fn of<'a>(&'a self, objective: &Objective) -> Objective<'a> {
         match *objective {
-            Objective::Course(peaks) => Objective::Course(peaks),
-            Objective::Speed(peaks) => Objective::Speed(peaks),
+            Objective::Course(peak) => Objective::Course(peak),
+            Objective::Speed(peak) => Objective::Speed(peak),
             Objective::Coupled { course, speed, course_share } => Objective::Coupled { course, speed, course_share },
             Objective::Limit(limit) => Objective::Limit(limit),
             Objective::Closest(closest) => Objective::Closest(closest),
             Objective::Closing(closing) => Objective::Closing(closing),
-            Objective::Table(_) => Objective::Table(&self.points),
-            Objective::CourseTable(_) => Objective::CourseTable(&self.courses),
-            Objective::SpeedTable(_) => Objective::SpeedTable(&self.speeds),
+            Objective::Table(_) => Objective::Table(&self.0),
         }
     }
 }
@@ -58,7 +44,7 @@ pub(crate) fn grid(stream: &mut Stream) -> Grid {
 }
 
 /// One to five functions with their weights.
-pub(crate) fn functions<'a>(stream: &mut Stream, grid: &Grid, tables: &'a Tables) -> Vec<(f64, Objective<'a>)> {
+pub(crate) fn functions<'a>(stream: &mut Stream, grid: &Grid, table: &'a Table) -> Vec<(f64, Objective<'a>)> {
     let count = 1 + stream.below(5);
     let weight = |stream: &mut Stream| match stream.below(8) {
         0 => 0.0,
@@ -66,76 +52,59 @@ pub(crate) fn functions<'a>(stream: &mut Stream, grid: &Grid, tables: &'a Tables
         2 | 3 => 100.0,
         _ => stream.between(0.01, 900.0),
     };
-    (0..count).map(|_| (weight(stream), function(stream, grid, tables))).collect()
+    (0..count).map(|_| (weight(stream), function(stream, grid, table))).collect()
 }
 
-fn function<'a>(stream: &mut Stream, grid: &Grid, tables: &'a Tables) -> Objective<'a> {
-    match stream.below(14) {
-        0 => Objective::Course(course_peaks(stream)),
-        1 => Objective::Speed(speed_peaks(stream, grid)),
+fn function<'a>(stream: &mut Stream, grid: &Grid, table: &'a Table) -> Objective<'a> {
+    match stream.below(13) {
+        0 => Objective::Course(course_peak(stream)),
+        1 => Objective::Speed(speed_peak(stream, grid)),
         2 | 3 => Objective::Coupled {
-            course: course_peaks(stream),
-            speed: speed_peaks(stream, grid),
+            course: course_peak(stream),
+            speed: speed_peak(stream, grid),
             course_share: [0.0, 0.3, 0.5, 1.0][stream.below(4) as usize],
         },
-        4 => Objective::Limit(limit(stream, grid)),
+        4 => {
+            let (high_m_s, base_m_s) =
+                (stream.between(0.0, 1.1), [0.0, stream.between(0.0, 1.1)][stream.below(2) as usize]);
+            let fastest_m_s = grid.speed_max_m_s();
+            Objective::Limit(SpeedLimit { high_m_s: high_m_s * fastest_m_s, base_m_s: base_m_s * fastest_m_s })
+        }
         5..=8 => Objective::Closest(closest(stream, grid)),
         9 | 10 => Objective::Closing(closing(stream)),
-        11 => Objective::Table(&tables.points),
-        12 => Objective::CourseTable(&tables.courses),
-        _ => Objective::SpeedTable(&tables.speeds),
+        _ => Objective::Table(&table.0),
     }
 }
 
-fn course_peaks(stream: &mut Stream) -> Peaks {
-    let mut peak = |height: f64| Peak {
+fn course_peak(stream: &mut Stream) -> Peak {
+    Peak {
         summit: stream.between(-7.0, 7.0),
         peak_width: stream.between(0.0, 1.0),
         base_width: stream.between(0.0, 3.0),
         summit_delta: stream.between(0.0, 60.0),
-        height,
-    };
-    let one = Peaks::one(peak(100.0));
-    let peaks = [one, one.and(peak(60.0)), one.and(peak(50.0)).and(peak(20.0))][stream.below(3) as usize];
-    peaks.combined([Combine::Max, Combine::Sum][stream.below(2) as usize])
+        height: [100.0, 60.0][stream.below(2) as usize],
+    }
 }
 
-fn speed_peaks(stream: &mut Stream, grid: &Grid) -> Peaks {
+fn speed_peak(stream: &mut Stream, grid: &Grid) -> Peak {
     let fastest = grid.speed_max_m_s();
-    let mut peak = || Peak {
+    Peak {
         summit: stream.between(-0.2, 1.2) * fastest,
         peak_width: stream.between(0.0, 0.5) * fastest,
         base_width: stream.between(0.0, 1.0) * fastest,
         summit_delta: stream.between(0.0, 60.0),
         height: 100.0,
-    };
-    let one = Peaks::one(peak());
-    if stream.below(2) == 0 { one } else { one.and(Peak { height: 40.0, ..one.peaks()[0] }) }
-}
-
-fn limit(stream: &mut Stream, grid: &Grid) -> SpeedLimit {
-    let mut speed = || stream.between(0.0, 1.1) * grid.speed_max_m_s();
-    let (a, b, base) = (speed(), speed(), speed());
-    match stream.below(4) {
-        0 => SpeedLimit::at_most(a, base),
-        1 => SpeedLimit::at_least(a, base),
-        2 => SpeedLimit::at_most(a, 0.0),
-        _ => SpeedLimit::between(a.min(b), a.max(b), base),
     }
 }
 
 pub(crate) fn closest(stream: &mut Stream, grid: &Grid) -> Closest {
     let range = [3.0, 60.0, 400.0, 5000.0][stream.below(4) as usize];
     let speed = [0.0, 1.0, 3.0][stream.below(3) as usize] * grid.speed_max_m_s();
-    let mut within = |x: f64| stream.between(-x, x);
-    let (north_m, east_m) = (within(range), within(range));
-    let (velocity_north_m_s, velocity_east_m_s) = (within(speed), within(speed));
+    let (offset, velocity) = (within(stream, range), within(stream, speed));
     let min_m = stream.between(0.0, 0.5) * range;
     Closest {
-        north_m,
-        east_m,
-        velocity_north_m_s,
-        velocity_east_m_s,
+        offset,
+        velocity,
         horizon_s: [0.0, 15.0, 120.0][stream.below(3) as usize],
         min_m,
         max_m: min_m + [0.0, 0.3, 1.0][stream.below(3) as usize] * range,
@@ -149,42 +118,38 @@ pub(crate) fn closest(stream: &mut Stream, grid: &Grid) -> Closest {
 fn lag(stream: &mut Stream, grid: &Grid) -> Lag {
     let (heading_east, heading_north) = game::math::sin_cos(stream.between(-4.0, 4.0));
     Lag {
-        velocity_north_m_s: stream.between(-1.0, 1.0) * grid.speed_max_m_s(),
-        velocity_east_m_s: stream.between(-1.0, 1.0) * grid.speed_max_m_s(),
-        heading_north,
-        heading_east,
+        velocity: within(stream, grid.speed_max_m_s()),
+        heading: Ned { north: heading_north, east: heading_east },
         reaction_s: stream.between(0.0, 2.0),
         turn_rad_s: stream.between(0.1, 2.0),
     }
 }
 
 fn closing(stream: &mut Stream) -> Closing {
-    let mut within = |x: f64| stream.between(-x, x);
-    Closing {
-        north_m: within(300.0),
-        east_m: within(300.0),
-        velocity_north_m_s: within(3.0),
-        velocity_east_m_s: within(3.0),
-        flee: stream.below(2) == 0,
-    }
+    Closing { offset: within(stream, 300.0), velocity: within(stream, 3.0) }
+}
+
+/// A vector with parts of no more than `most`.
+pub(crate) fn within(stream: &mut Stream, most: f64) -> Ned {
+    Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
 }
 
 /// What the own ship is doing.
-pub(crate) fn wish(stream: &mut Stream, grid: &Grid) -> Wish {
-    Wish {
+pub(crate) fn preference(stream: &mut Stream, grid: &Grid) -> Preference {
+    Preference {
         course_rad: stream.between(-7.0, 7.0),
         speed_m_s: stream.between(-0.1, 1.1) * grid.speed_max_m_s(),
         keep: None,
     }
 }
 
-/// What the solver says.
-pub(crate) fn solved(grid: &Grid, functions: &[(f64, Objective)], wish: Wish) -> Choice {
+/// The solver's choice.
+pub(crate) fn solved(grid: &Grid, functions: &[(f64, Objective)], preference: Preference) -> Choice {
     let mut problem = Problem::new(grid.clone());
     for (weight, objective) in functions {
         problem.add(*weight, objective);
     }
-    problem.solve(wish)
+    problem.solve(preference)
 }
 
 /// All points of the grid.

@@ -1,7 +1,8 @@
 //! The same scene turned or mirrored must give the same decision turned or mirrored.
 
-use crate::scene::{self, Tables, solved};
-use agent::ivp::{Closest, Closing, Grid, Lag, Objective, Wish};
+use crate::scene::{self, Table, solved};
+use agent::ivp::{Closest, Closing, Grid, Lag, Objective, Peak, Preference};
+use game::Ned;
 use game::stream::Stream;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -14,11 +15,11 @@ enum Motion {
 }
 
 impl Motion {
-    fn vector(self, north: f64, east: f64) -> (f64, f64) {
+    fn vector(self, Ned { north, east }: Ned) -> Ned {
         match self {
-            Motion::HalfTurn => (-north, -east),
-            Motion::QuarterTurn => (-east, north),
-            Motion::Mirror => (north, -east),
+            Motion::HalfTurn => Ned { north: -north, east: -east },
+            Motion::QuarterTurn => Ned { north: -east, east: north },
+            Motion::Mirror => Ned { north, east: -east },
         }
     }
 
@@ -47,32 +48,24 @@ impl Motion {
         }
     }
 
+    fn peak(self, peak: Peak) -> Peak {
+        Peak { summit: self.angle(peak.summit), ..peak }
+    }
+
     fn objective<'a>(self, objective: &Objective<'a>) -> Objective<'a> {
         match *objective {
-            Objective::Course(peaks) => Objective::Course(peaks.moved(|x| self.angle(x))),
+            Objective::Course(peak) => Objective::Course(self.peak(peak)),
             Objective::Coupled { course, speed, course_share } => {
-                Objective::Coupled { course: course.moved(|x| self.angle(x)), speed, course_share }
+                Objective::Coupled { course: self.peak(course), speed, course_share }
             }
             Objective::Closest(c) => {
-                let (north_m, east_m) = self.vector(c.north_m, c.east_m);
-                let (velocity_north_m_s, velocity_east_m_s) = self.vector(c.velocity_north_m_s, c.velocity_east_m_s);
-                let lag = c.lag.map(|lag| {
-                    let velocity = self.vector(lag.velocity_north_m_s, lag.velocity_east_m_s);
-                    let heading = self.vector(lag.heading_north, lag.heading_east);
-                    Lag {
-                        velocity_north_m_s: velocity.0,
-                        velocity_east_m_s: velocity.1,
-                        heading_north: heading.0,
-                        heading_east: heading.1,
-                        ..lag
-                    }
-                });
-                Objective::Closest(Closest { north_m, east_m, velocity_north_m_s, velocity_east_m_s, lag, ..c })
+                let turned =
+                    |lag: Lag| Lag { velocity: self.vector(lag.velocity), heading: self.vector(lag.heading), ..lag };
+                let (offset, velocity, lag) = (self.vector(c.offset), self.vector(c.velocity), c.lag.map(turned));
+                Objective::Closest(Closest { offset, velocity, lag, ..c })
             }
-            Objective::Closing(c) => {
-                let (north_m, east_m) = self.vector(c.north_m, c.east_m);
-                let (velocity_north_m_s, velocity_east_m_s) = self.vector(c.velocity_north_m_s, c.velocity_east_m_s);
-                Objective::Closing(Closing { north_m, east_m, velocity_north_m_s, velocity_east_m_s, ..c })
+            Objective::Closing(Closing { offset, velocity }) => {
+                Objective::Closing(Closing { offset: self.vector(offset), velocity: self.vector(velocity) })
             }
             same => same,
         }
@@ -81,17 +74,17 @@ impl Motion {
 
 fn holds_under(motion: Motion, grid: &Grid, seed: u64) {
     let mut stream = Stream::new(seed, "ivp/symmetry");
-    let tables = Tables::random(&mut stream, grid);
-    let functions = scene::functions(&mut stream, grid, &tables);
-    let wish = scene::wish(&mut stream, grid);
-    let moved_tables = tables.turned(grid, |k| motion.back(k, grid.courses()));
+    let table = Table::random(&mut stream, grid);
+    let functions = scene::functions(&mut stream, grid, &table);
+    let preference = scene::preference(&mut stream, grid);
+    let moved_table = table.turned(grid, |k| motion.back(k, grid.courses()));
     let moved: Vec<(f64, Objective)> =
-        functions.iter().map(|(w, f)| (*w, motion.objective(&moved_tables.of(f)))).collect();
-    let mut want = solved(grid, &functions, wish);
-    let got = solved(grid, &moved, Wish { course_rad: motion.angle(wish.course_rad), ..wish });
+        functions.iter().map(|(w, f)| (*w, motion.objective(&moved_table.of(f)))).collect();
+    let mut want = solved(grid, &functions, preference);
+    let got = solved(grid, &moved, Preference { course_rad: motion.angle(preference.course_rad), ..preference });
     want.decision.course = motion.course(want.decision.course.into(), grid.courses()) as u16;
-    // How many points had to be asked depends on where the search began.
-    want.asked = got.asked;
+    // How many points had to be evaluated depends on where the search began.
+    want.evaluated = got.evaluated;
     assert_eq!(got, want, "seed {seed}, {motion:?}: {functions:?}");
 }
 

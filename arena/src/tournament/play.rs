@@ -30,12 +30,12 @@ pub struct Game {
     pub digest: String,
 }
 
-/// Plays the games of a plan on `jobs` threads, until all are played or `stop` is set, and shows each to `told`.
+/// Plays the games of a plan on `jobs` threads, until all are played or `stop` is set, and shows each to `watch`.
 ///
 /// The records are in the order of the plan, and the same whatever the number of threads. Games that `stop` cut
 /// short are not among them.
-pub fn play(plan: &Plan, jobs: NonZeroUsize, stop: &AtomicBool, mut told: impl FnMut(&Record)) -> Vec<Record> {
-    /// Games that may wait to be told.
+pub fn play(plan: &Plan, jobs: NonZeroUsize, stop: &AtomicBool, mut watch: impl FnMut(&Record)) -> Vec<Record> {
+    /// Games that may wait to be shown.
     const QUEUE: usize = 64;
     let next = AtomicUsize::new(0);
     let mut records: Vec<(usize, Record)> = vec![];
@@ -47,7 +47,7 @@ pub fn play(plan: &Plan, jobs: NonZeroUsize, stop: &AtomicBool, mut told: impl F
         }
         drop(sender);
         for (index, record) in receiver {
-            told(&record);
+            watch(&record);
             records.push((index, record));
         }
     });

@@ -310,7 +310,7 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     let helm = client.until("helm", |helm| helm["report"]["mode"] == "functions:true");
     assert_eq!((&helm["computed"], &helm["agrees"]), (&json!(false), &json!(null)));
     let none = other.until("helm", |_| true);
-    assert_eq!((&none["report"], &none["reason"]), (&json!(null), &json!("nobody minds red_one now")));
+    assert_eq!((&none["report"], &none["reason"]), (&json!(null), &json!("no agent runs red_one now")));
     let ears = Watched::new(());
     let heard = (0..3000).any(|_| {
         ears.wait(Duration::from_millis(10), |()| false);

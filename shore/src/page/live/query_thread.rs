@@ -108,7 +108,7 @@ impl QueryThread<'_> {
             Some(Ok(Some(report))) => HelmAnswer { report: Some(report), ..HelmAnswer::default() },
             Some(Ok(None)) => because(format!("the mind of {name} goes by no helm")),
             Some(Err(_)) => because(format!("the mind of {name} is of another version of Squall")),
-            None => because(format!("nobody minds {name} now")),
+            None => because(format!("no agent runs {name} now")),
         };
         // Long work with a long report, for which the state is not kept from others.
         let full = functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));

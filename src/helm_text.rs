@@ -1,20 +1,20 @@
-//! What a helm thinks, as a page of text or as one line.
+//! A helm report as text: a page, or one line.
 
 use game::Scenario;
-use game::helm::{FunctionReport, HelmReport, StageReport};
+use game::helm::{FunctionReport, HelmReport, RunState};
 use std::fmt::Write;
 
-/// A page: what the boat is at, what was decided, and what every behaviour wants.
+/// A page: mode, decision, and what every behaviour wants.
 pub(crate) fn page(scenario: &Scenario, report: &HelmReport) -> String {
     let name = &scenario.vehicles[report.vehicle.index()].name;
-    let mut text = format!("{name}  goes by {}  {:.1} s\n", report.program, report.at.as_s());
+    let mut text = format!("{name}  follows {}  {:.1} s\n", report.program, report.at.as_s());
     push(&mut text, format_args!("mode    {}\n", report.mode));
     push(&mut text, format_args!("helm    {}\n\n", decision(report)));
     let rows = rows(scenario, report);
     let widths = [0, 1].map(|i| rows.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
-    for [what, kind, stage, weight, utility] in &rows {
+    for [what, kind, state, weight, utility] in &rows {
         let line =
-            format!("{what:<w$}  {kind:<k$}  {stage:<8}  {weight:>7}  {utility:>7}", w = widths[0], k = widths[1]);
+            format!("{what:<w$}  {kind:<k$}  {state:<8}  {weight:>7}  {utility:>7}", w = widths[0], k = widths[1]);
         push(&mut text, format_args!("{}\n", line.trim_end()));
     }
     if !report.variables.is_empty() {
@@ -27,14 +27,14 @@ pub(crate) fn page(scenario: &Scenario, report: &HelmReport) -> String {
     text
 }
 
-/// One line: mode, decision, and how content each function is with it.
+/// One line: mode, decision, and its utility to each function.
 pub(crate) fn line(scenario: &Scenario, report: &HelmReport) -> String {
     let name = &scenario.vehicles[report.vehicle.index()].name;
-    let content = |function: &FunctionReport| {
+    let utility = |function: &FunctionReport| {
         let of = function.contact.map(|contact| format!("({})", scenario.vehicles[contact.index()].name));
         format!("{}{} {}", function.behaviour, of.unwrap_or_default(), number(function.utility.map(f64::from), 0))
     };
-    let functions: Vec<String> = report.functions.iter().map(content).collect();
+    let functions: Vec<String> = report.functions.iter().map(utility).collect();
     let variables: Vec<String> =
         report.variables.iter().map(|variable| format!("{}={}", variable.name, variable.value)).collect();
     let line = format!(
@@ -57,23 +57,23 @@ pub(crate) fn decision(report: &HelmReport) -> String {
     }
 }
 
-/// The table of behaviours: name, kind, stage, weight and utility; functions about contacts stand under theirs.
+/// The table of behaviours: name, kind, run state, weight and utility; functions about contacts stand under theirs.
 fn rows(scenario: &Scenario, report: &HelmReport) -> Vec<[String; 5]> {
-    let mut rows = vec![["behaviour", "kind", "stage", "weight", "utility"].map(str::to_owned)];
+    let mut rows = vec![["behaviour", "kind", "state", "weight", "utility"].map(str::to_owned)];
     for behaviour in &report.behaviours {
         let functions = || report.functions.iter().filter(|function| function.behaviour == behaviour.name);
-        let stage = match behaviour.stage {
-            StageReport::Idle => "-",
-            StageReport::Running => "running",
-            StageReport::Active => "active",
-            StageReport::Complete => "complete",
+        let state = match behaviour.run_state {
+            RunState::Idle => "-",
+            RunState::Running => "running",
+            RunState::Active => "active",
+            RunState::Complete => "complete",
         };
         let own = functions().find(|function| function.contact.is_none());
-        let runs = matches!(behaviour.stage, StageReport::Running | StageReport::Active);
+        let runs = matches!(behaviour.run_state, RunState::Running | RunState::Active);
         rows.push([
             behaviour.name.clone(),
             behaviour.kind.clone(),
-            stage.to_owned(),
+            state.to_owned(),
             number(runs.then_some(behaviour.weight), 1),
             number(own.and_then(|function| function.utility).map(f64::from), 1),
         ]);

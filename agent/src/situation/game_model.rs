@@ -1,4 +1,4 @@
-//! The chart of one boat: everything about the game that does not change while it is played.
+//! The game as one boat sees it: everything that does not change while it is played.
 
 use game::rules::{CaptureAt, UntagAt};
 use game::scenario::Scenario;
@@ -7,7 +7,7 @@ use game::{Field, FlagId, Ned, SimTime, TeamId, VehicleId};
 
 /// What a helm knows before the game begins.
 #[derive(Clone, Debug)]
-pub(crate) struct Chart {
+pub(crate) struct GameModel {
     pub(crate) me: VehicleId,
     pub(crate) team: TeamId,
     pub(crate) field: Field,
@@ -31,8 +31,8 @@ pub(crate) struct Chart {
     points: Vec<(String, Ned)>,
 }
 
-impl Chart {
-    pub(crate) fn new(scenario: &Scenario, me: VehicleId, program: &Program) -> Chart {
+impl GameModel {
+    pub(crate) fn new(scenario: &Scenario, me: VehicleId, program: &Program) -> GameModel {
         let team = scenario.vehicles[me.index()].team;
         let field = &scenario.field;
         let of = |wanted: bool| {
@@ -47,7 +47,7 @@ impl Chart {
             Field::point_names().into_iter().filter_map(|name| field.point(team, &name).map(|at| (name, at))).collect();
         points.sort_by(|a, b| a.0.cmp(&b.0));
         let own_m_s = scenario.boat_of(me).speed_max_m_s();
-        Chart {
+        GameModel {
             me,
             team,
             rank: of(true).position(|vehicle| vehicle == me).unwrap_or(0),

@@ -1,6 +1,6 @@
-//! Roses: what every course and speed is worth, as coloured discs with north on top.
+//! Polar plots of a helm's objective functions: coloured discs with north on top.
 
-use crate::plot;
+use crate::plot::{self, colour};
 use anyhow::{Context, Result};
 use game::math;
 use plotters::coord::Shift;
@@ -9,7 +9,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
 
 /// A disc: course as its angle, clockwise from north, speed as its radius, colour as the value.
-pub(crate) struct Rose {
+pub(crate) struct PolarPlot {
     /// What it shows.
     pub(crate) title: String,
     /// How many courses there are.
@@ -35,48 +35,36 @@ const RADIUS: f64 = 180.0;
 const SCALE: [i32; 4] = [444, 460, 88, 448];
 /// Steps of the colour scale.
 const SHADES: usize = 64;
-/// matplotlib's viridis at every eighth: evenly spaced to the eye, whatever its colour vision.
-const VIRIDIS: [[u8; 3]; 9] = [
-    [68, 1, 84],
-    [71, 44, 122],
-    [59, 81, 139],
-    [44, 113, 142],
-    [33, 144, 141],
-    [39, 173, 129],
-    [92, 200, 99],
-    [170, 220, 50],
-    [253, 231, 37],
-];
 const GREY: RGBColor = RGBColor(90, 90, 90);
 
-/// Draws roses into an SVG file.
-pub(crate) fn write_svg(path: &Path, title: &str, roses: &[Rose]) -> Result<()> {
+/// Draws polar plots into an SVG file.
+pub(crate) fn write_svg(path: &Path, title: &str, plots: &[PolarPlot]) -> Result<()> {
     let mut svg = String::new();
-    let backend = SVGBackend::with_string(&mut svg, size(roses));
-    draw(backend, title, roses, 2).with_context(|| format!("cannot draw {}", path.display()))?;
+    let backend = SVGBackend::with_string(&mut svg, size(plots));
+    draw(backend, title, plots, 2).with_context(|| format!("cannot draw {}", path.display()))?;
     std::fs::write(path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))
 }
 
-/// Draws roses into a PNG file.
-pub(crate) fn write_png(path: &Path, title: &str, roses: &[Rose]) -> Result<()> {
-    let (wide, high) = size(roses);
+/// Draws polar plots into a PNG file.
+pub(crate) fn write_png(path: &Path, title: &str, plots: &[PolarPlot]) -> Result<()> {
+    let (wide, high) = size(plots);
     let mut pixels = vec![0; 3 * wide as usize * high as usize];
     let backend = BitMapBackend::with_buffer(&mut pixels, (wide, high));
-    draw(backend, title, roses, 1).with_context(|| format!("cannot draw {}", path.display()))?;
+    draw(backend, title, plots, 1).with_context(|| format!("cannot draw {}", path.display()))?;
     plot::save_png(path, (wide, high), &pixels)
 }
 
-fn columns(roses: &[Rose]) -> usize {
-    roses.len().clamp(1, COLUMNS_MAX)
+fn columns(plots: &[PolarPlot]) -> usize {
+    plots.len().clamp(1, COLUMNS_MAX)
 }
 
-fn size(roses: &[Rose]) -> (u32, u32) {
-    let columns = columns(roses);
-    let rows = roses.len().div_ceil(columns).max(1);
+fn size(plots: &[PolarPlot]) -> (u32, u32) {
+    let columns = columns(plots);
+    let rows = plots.len().div_ceil(columns).max(1);
     (PANEL.0 * columns as u32, TITLE_HEIGHT + PANEL.1 * rows as u32)
 }
 
-fn draw<B: DrawingBackend>(backend: B, title: &str, roses: &[Rose], grain: i32) -> Result<()>
+fn draw<B: DrawingBackend>(backend: B, title: &str, plots: &[PolarPlot], grain: i32) -> Result<()>
 where
     B::ErrorType: 'static,
 {
@@ -84,24 +72,24 @@ where
     let root = backend.into_drawing_area();
     root.fill(&WHITE).map_err(plot::failed)?;
     root.draw(&Text::new(title.to_owned(), (24, 20), (plot::FONT, 20).into_font())).map_err(plot::failed)?;
-    let columns = columns(roses);
-    for (i, rose) in roses.iter().enumerate() {
+    let columns = columns(plots);
+    for (i, plot) in plots.iter().enumerate() {
         let corner = ((i % columns) as u32 * PANEL.0, TITLE_HEIGHT + (i / columns) as u32 * PANEL.1);
         let area = root.clone().shrink(corner, PANEL);
-        draw_rose(&area, rose, grain).map_err(plot::failed)?;
+        draw_plot(&area, plot, grain).map_err(plot::failed)?;
     }
     root.present().map_err(plot::failed)
 }
 
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-fn draw_rose<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, grain: i32) -> Drawn<B> {
-    area.draw(&Text::new(rose.title.clone(), (24, 12), (plot::FONT, 15).into_font()))?;
-    draw_disc(area, rose, grain)?;
-    draw_axes(area, rose)?;
-    draw_scale(area, rose)?;
-    let Some((course_deg, speed_m_s)) = rose.chosen else { return Ok(()) };
-    let at = place(course_deg, RADIUS * speed_m_s / rose.speed_max_m_s);
+fn draw_plot<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot, grain: i32) -> Drawn<B> {
+    area.draw(&Text::new(plot.title.clone(), (24, 12), (plot::FONT, 15).into_font()))?;
+    draw_disc(area, plot, grain)?;
+    draw_axes(area, plot)?;
+    draw_scale(area, plot)?;
+    let Some((course_deg, speed_m_s)) = plot.chosen else { return Ok(()) };
+    let at = place(course_deg, RADIUS * speed_m_s / plot.speed_max_m_s);
     area.draw(&Circle::new(at, 8, BLACK.filled()))?;
     area.draw(&Circle::new(at, 6, WHITE.filled()))?;
     area.draw(&Circle::new(at, 3, BLACK.filled()))
@@ -109,21 +97,21 @@ fn draw_rose<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, grain
 
 /// The disc, row by row of its grains, each a few stretches of one colour. Where grains are more than a pixel, in a
 /// drawing that can be enlarged, stretches reach a pixel under those that are drawn after them, so that no gap shows.
-fn draw_disc<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, grain: i32) -> Drawn<B> {
-    let rim = rim(rose);
+fn draw_disc<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot, grain: i32) -> Drawn<B> {
+    let rim = rim(plot);
     let (x0, y0) = place(0.0, 0.0);
     let rows = (rim.ceil() as i32) / grain;
     for row in -rows..=rows {
         let y = row * grain;
         let half = ((rim * rim - f64::from(y * y)).max(0.0).sqrt().floor() as i32) / grain;
-        let value = |i: i32| value_at(rose, i * grain, y);
-        let shades: Vec<usize> = (-half..=half).map(|i| shade(value(i), rose.range)).collect();
+        let value = |i: i32| value_at(plot, i * grain, y);
+        let shades: Vec<usize> = (-half..=half).map(|i| shade(value(i), plot.range)).collect();
         let mut x = x0 - half * grain;
         for stretch in shades.chunk_by(|a, b| a == b) {
             let right = x + stretch.len() as i32 * grain;
             let under = grain - 1;
             let corners = [(x, y0 + y), (right + under, y0 + y + grain + under)];
-            area.draw(&Rectangle::new(corners, colour(stretch[0]).filled()))?;
+            area.draw(&Rectangle::new(corners, colour_of(stretch[0]).filled()))?;
             x = right;
         }
     }
@@ -131,31 +119,31 @@ fn draw_disc<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose, grain
 }
 
 /// The radius of the disc: half a step more than that of the highest speed.
-fn rim(rose: &Rose) -> f64 {
-    let speeds = rose.values.len() / rose.courses;
+fn rim(plot: &PolarPlot) -> f64 {
+    let speeds = plot.values.len() / plot.courses;
     RADIUS * (1.0 + 0.5 / (speeds - 1) as f64)
 }
 
 /// The value of the course and speed nearest to a place, in pixels right and down of the middle.
-fn value_at(rose: &Rose, x: i32, y: i32) -> f64 {
-    let speeds = rose.values.len() / rose.courses;
+fn value_at(plot: &PolarPlot, x: i32, y: i32) -> f64 {
+    let speeds = plot.values.len() / plot.courses;
     let turn = math::atan2(f64::from(x), f64::from(-y)) / std::f64::consts::TAU;
-    let course = (turn.rem_euclid(1.0) * rose.courses as f64).round() as usize % rose.courses;
+    let course = (turn.rem_euclid(1.0) * plot.courses as f64).round() as usize % plot.courses;
     let speed = math::length(f64::from(x), f64::from(y)) / RADIUS * (speeds - 1) as f64;
-    rose.values[course * speeds + (speed.round() as usize).min(speeds - 1)]
+    plot.values[course * speeds + (speed.round() as usize).min(speeds - 1)]
 }
 
 /// Rings of speed and the four quarters of the compass.
-fn draw_axes<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose) -> Drawn<B> {
+fn draw_axes<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot) -> Drawn<B> {
     let text = |pos, size: u32, colour: &RGBColor| (plot::FONT, size).into_font().color(colour).pos(pos);
     let centre = Pos::new(HPos::Center, VPos::Center);
-    let rim = rim(rose);
+    let rim = rim(plot);
     area.draw(&Circle::new(place(0.0, 0.0), rim.round() as i32, GREY.stroke_width(1)))?;
-    let ring_m_s = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0].into_iter().find(|step| rose.speed_max_m_s / step <= 4.0);
-    let ring_m_s = ring_m_s.unwrap_or(0.25 * rose.speed_max_m_s);
+    let ring_m_s = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0].into_iter().find(|step| plot.speed_max_m_s / step <= 4.0);
+    let ring_m_s = ring_m_s.unwrap_or(0.25 * plot.speed_max_m_s);
     for i in 1..=4 {
         let speed_m_s = f64::from(i) * ring_m_s;
-        let radius = RADIUS * speed_m_s / rose.speed_max_m_s;
+        let radius = RADIUS * speed_m_s / plot.speed_max_m_s;
         if radius > RADIUS + 1.0 {
             break;
         }
@@ -171,20 +159,20 @@ fn draw_axes<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose) -> Dr
         area.draw(&Text::new(name, place(course_deg, rim + 17.0), text(centre, 14, &GREY)))?;
     }
     let below = (MIDDLE.0 as i32, (MIDDLE.1 + rim) as i32 + 36);
-    let name = format!("course, north up; speed from the middle out, to {:.2} m/s", rose.speed_max_m_s);
+    let name = format!("course, north up; speed from the middle out, to {:.2} m/s", plot.speed_max_m_s);
     area.draw(&Text::new(name, below, text(centre, 12, &GREY)))
 }
 
 /// The legend of colours.
-fn draw_scale<B: DrawingBackend>(area: &DrawingArea<B, Shift>, rose: &Rose) -> Drawn<B> {
+fn draw_scale<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot) -> Drawn<B> {
     let [left, right, top, bottom] = SCALE;
     let y = |share: f64| bottom - (share * f64::from(bottom - top)).round() as i32;
     for i in 0..SHADES {
         let (low, high) = (i as f64 / SHADES as f64, (i + 1) as f64 / SHADES as f64);
-        area.draw(&Rectangle::new([(left, y(high)), (right, y(low))], colour(i).filled()))?;
+        area.draw(&Rectangle::new([(left, y(high)), (right, y(low))], colour_of(i).filled()))?;
     }
     area.draw(&Rectangle::new([(left, top), (right, bottom)], GREY.stroke_width(1)))?;
-    let (low, high) = rose.range;
+    let (low, high) = plot.range;
     let places = if high - low >= 20.0 { 0 } else { 2 };
     for i in 0..=4 {
         let share = f64::from(i) / 4.0;
@@ -202,26 +190,22 @@ fn place(course_deg: f64, radius: f64) -> (i32, i32) {
     ((MIDDLE.0 + radius * sin).round() as i32, (MIDDLE.1 - radius * cos).round() as i32)
 }
 
-/// Where a value is on the scale; one that is no number is at its lower end.
+/// Where a value is on the scale; one that is not a number is at its lower end.
 fn shade(value: f64, (low, high): (f64, f64)) -> usize {
     let share = if high > low { (value - low) / (high - low) } else { 0.0 };
     ((share * SHADES as f64) as usize).min(SHADES - 1)
 }
 
-fn colour(shade: usize) -> RGBColor {
-    let place = shade as f64 / (SHADES - 1) as f64 * (VIRIDIS.len() - 1) as f64;
-    let below = (place as usize).min(VIRIDIS.len() - 2);
-    let (a, b, share) = (VIRIDIS[below], VIRIDIS[below + 1], place - below as f64);
-    let mix = |i: usize| (f64::from(a[i]) + share * (f64::from(b[i]) - f64::from(a[i]))).round() as u8;
-    RGBColor(mix(0), mix(1), mix(2))
+fn colour_of(shade: usize) -> RGBColor {
+    colour::of_share(shade as f64 / (SHADES - 1) as f64)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn rose(values: Vec<f64>) -> Rose {
-        Rose {
+    fn plot(values: Vec<f64>) -> PolarPlot {
+        PolarPlot {
             title: "keep_clear: weight 300".into(),
             courses: 36,
             speed_max_m_s: 3.5,
@@ -244,14 +228,14 @@ mod tests {
     #[test]
     fn north_is_up_east_is_right_and_speed_goes_outwards() {
         let dir = tempfile::tempdir().expect("a temporary directory");
-        let (png, svg) = (dir.path().join("rose.png"), dir.path().join("rose.svg"));
+        let (png, svg) = (dir.path().join("plot.png"), dir.path().join("plot.svg"));
         // East at more than half the speed is good, everything else is not.
         let good = |k: usize, j: usize| (6..=12).contains(&k) && j >= 5;
         let values = (0..36 * 8).map(|i| if good(i / 8, i % 8) { 100.0 } else { 0.0 }).collect();
-        let roses = [rose(values)];
-        write_png(&png, "blue_one", &roses).expect("it can be drawn");
-        write_svg(&svg, "blue_one", &roses).expect("it can be drawn");
-        let (best, worst) = (VIRIDIS[8], VIRIDIS[0]);
+        let plots = [plot(values)];
+        write_png(&png, "blue_one", &plots).expect("it can be drawn");
+        write_svg(&svg, "blue_one", &plots).expect("it can be drawn");
+        let (best, worst) = ([253, 231, 37], [68, 1, 84]);
         for (course_deg, speed, want) in
             [(80.0, 0.75, best), (80.0, 0.4, worst), (10.0, 0.75, worst), (190.0, 0.75, worst), (280.0, 0.75, worst)]
         {

@@ -1,0 +1,82 @@
+//! Which of many boats or obstacles a behaviour responds to, and how much: the nearest, the nearer the more.
+
+use crate::situation::{OtherBoat, Situation};
+use game::strategy::{Contacts, NEAREST_MAX};
+
+/// How far ahead a boat looks whether it comes to the side on which it can be tagged, s.
+const TAG_FORESIGHT_S: f64 = 5.0;
+
+/// The nearest of a few, without a list on the heap: no behaviour responds to more.
+pub(super) struct Nearest {
+    /// Distance, m, and index; the nearest first, of equally near ones the first.
+    entries: [(f64, usize); NEAREST_MAX],
+    count: usize,
+}
+
+impl Nearest {
+    pub(super) fn of(those: impl Iterator<Item = (f64, usize)>) -> Nearest {
+        let mut nearest = Nearest { entries: [(f64::INFINITY, 0); NEAREST_MAX], count: 0 };
+        for entry in those {
+            let place = nearest.entries[..nearest.count].partition_point(|known| known.0 <= entry.0);
+            if place < NEAREST_MAX {
+                nearest.count = (nearest.count + 1).min(NEAREST_MAX);
+                nearest.entries[place..nearest.count].rotate_right(1);
+                nearest.entries[place] = entry;
+            }
+        }
+        nearest
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = (f64, usize)> {
+        self.entries[..self.count].iter().copied()
+    }
+}
+
+/// How much of a weight is left at a distance: all of it up to `inner_m`, nothing from `outer_m` on.
+pub(super) fn nearness(distance_m: f64, inner_m: f64, outer_m: f64) -> f64 {
+    if distance_m <= inner_m {
+        1.0
+    } else if distance_m >= outer_m {
+        0.0
+    } else {
+        (outer_m - distance_m) / (outer_m - inner_m)
+    }
+}
+
+/// Whether a boat is one of those meant.
+pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherBoat) -> bool {
+    match contacts {
+        Contacts::All => true,
+        Contacts::Enemies => other.is_enemy,
+        Contacts::Mates => !other.is_enemy,
+        Contacts::Taggers => {
+            // It tags on its own side only; where the own boat is about to be there it counts already.
+            let soon = situation.at + situation.velocity.scaled(TAG_FORESIGHT_S);
+            let exposed = !situation.model.is_own_side(situation.at) || !situation.model.is_own_side(soon);
+            other.is_enemy && !other.tagged && !other.on_own_side && exposed && !situation.own.tagged
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NEAREST_MAX, Nearest, nearness};
+
+    #[test]
+    fn the_nearest_of_many_come_in_order() {
+        let many: Vec<(f64, usize)> = (0..100).map(|i| (f64::from((i * 37) % 50), i as usize)).collect();
+        let mut sorted = many.clone();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sorted.truncate(NEAREST_MAX);
+        assert!(Nearest::of(many.into_iter()).iter().eq(sorted));
+        assert_eq!(Nearest::of([(2.0, 0), (1.0, 1)].into_iter()).iter().collect::<Vec<_>>(), [(1.0, 1), (2.0, 0)]);
+    }
+
+    #[test]
+    fn a_weight_falls_from_inner_to_outer_and_never_exceeds_itself() {
+        for (distance_m, want) in [(0.0, 1.0), (10.0, 1.0), (15.0, 0.5), (20.0, 0.0), (90.0, 0.0)] {
+            assert!((nearness(distance_m, 10.0, 20.0) - want).abs() < 1e-12, "{distance_m} m");
+        }
+        assert!(nearness(5.0, 5.0, 5.0) == 1.0 && nearness(5.1, 5.0, 5.0) == 0.0, "a step");
+    }
+}

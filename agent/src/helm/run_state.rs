@@ -1,0 +1,107 @@
+//! The run state of a behaviour and how it changes: idle, running, active, complete.
+
+use game::SimTime;
+use game::helm::RunState;
+use game::strategy::Moment;
+
+/// One behaviour's run state, and since when it has been running.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BehaviourRun {
+    pub(crate) state: RunState,
+    /// When it last began to run.
+    since: SimTime,
+}
+
+impl BehaviourRun {
+    pub(crate) fn new() -> BehaviourRun {
+        BehaviourRun { state: RunState::Idle, since: SimTime::ZERO }
+    }
+
+    /// It may run, or not. Says whether it begins to run now.
+    pub(crate) fn allow(&mut self, may_run: bool, now: SimTime, mut post: impl FnMut(Moment)) -> bool {
+        match (self.state, may_run) {
+            (RunState::Idle, true) => {
+                (self.state, self.since) = (RunState::Running, now);
+                post(Moment::Run);
+                true
+            }
+            (RunState::Running | RunState::Active, false) => {
+                if self.state == RunState::Active {
+                    post(Moment::Inactive);
+                }
+                post(Moment::Idle);
+                self.state = RunState::Idle;
+                false
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether it runs.
+    pub(crate) fn runs(&self) -> bool {
+        matches!(self.state, RunState::Running | RunState::Active)
+    }
+
+    /// How long it has been running.
+    pub(crate) fn running_s(&self, now: SimTime) -> f64 {
+        (now - self.since).as_s()
+    }
+
+    /// It has produced a function, or none.
+    pub(crate) fn produced(&mut self, active: bool, mut post: impl FnMut(Moment)) {
+        match (self.state, active) {
+            (RunState::Running, true) => {
+                self.state = RunState::Active;
+                post(Moment::Active);
+            }
+            (RunState::Active, false) => {
+                self.state = RunState::Running;
+                post(Moment::Inactive);
+            }
+            _ => {}
+        }
+    }
+
+    /// It is done; one that is perpetual begins anew at the next decision.
+    pub(crate) fn complete(&mut self, perpetual: bool, mut post: impl FnMut(Moment)) {
+        if self.state == RunState::Active {
+            post(Moment::Inactive);
+        }
+        post(Moment::Complete);
+        self.state = if perpetual { RunState::Idle } else { RunState::Complete };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is posted while a behaviour may or may not run, is active or not, and completes.
+    fn posted(perpetual: bool, steps: &[(bool, bool, bool)]) -> (Vec<Moment>, RunState) {
+        let (mut run, mut moments) = (BehaviourRun::new(), vec![]);
+        for (i, (may_run, active, complete)) in steps.iter().enumerate() {
+            run.allow(*may_run, SimTime(i as i64), |moment| moments.push(moment));
+            if run.runs() {
+                run.produced(*active, |moment| moments.push(moment));
+            }
+            if run.runs() && *complete {
+                run.complete(perpetual, |moment| moments.push(moment));
+            }
+        }
+        (moments, run.state)
+    }
+
+    #[test]
+    fn every_change_of_run_state_is_posted_once() {
+        use Moment::{Active, Complete, Idle, Inactive, Run};
+        let steps = [(false, true, false), (true, false, false), (true, true, false), (true, true, false)];
+        assert_eq!(posted(false, &steps), (vec![Run, Active], RunState::Active));
+        assert_eq!(
+            posted(false, &[(true, true, false), (false, true, false), (true, true, false)]),
+            (vec![Run, Active, Inactive, Idle, Run, Active], RunState::Active)
+        );
+        let done = [(true, true, true), (true, true, false), (false, true, false), (true, true, false)];
+        assert_eq!(posted(false, &done), (vec![Run, Active, Inactive, Complete], RunState::Complete));
+        assert_eq!(posted(true, &done[..2]), (vec![Run, Active, Inactive, Complete, Run, Active], RunState::Active));
+    }
+}
