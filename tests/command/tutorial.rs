@@ -1,7 +1,6 @@
 //! The tutorial of strategies: its files are taken from its text, and its commands print what it says they print.
 
-use std::path::Path;
-use std::process::Command;
+use crate::program::{self, project};
 
 /// The blocks of code of a page: their language and text.
 fn blocks(page: &str) -> Vec<(&str, String)> {
@@ -18,7 +17,7 @@ fn blocks(page: &str) -> Vec<(&str, String)> {
 
 #[test]
 fn the_tutorial_holds_what_it_promises() {
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let scenarios = project().join("scenarios");
     let page = std::fs::read_to_string(scenarios.join("strategies/TUTORIAL.md")).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let own = folder.path().join("scenarios");
@@ -30,7 +29,7 @@ fn the_tutorial_holds_what_it_promises() {
         }
     }
     let squall = |args: &[&str]| {
-        let output = Command::new(env!("CARGO_BIN_EXE_squall")).current_dir(folder.path()).args(args).output().unwrap();
+        let output = program::squall(&folder, args);
         (output.status.success(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
     };
     let (mut files, mut shown, mut command) = (Vec::new(), 0, None);

@@ -1,9 +1,8 @@
 //! `squall tournament` and strategies from the command line, from outside.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+use crate::program::{command, printed, project, refusal, squall};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
@@ -11,22 +10,9 @@ const GAME: &str = "scenarios/games/pav01_vs_pav01.toml";
 const SEA: &str = "scenarios/seas/moderate_breeze.toml";
 const TOURNAMENT: &str = "scenarios/tournaments/simple.toml";
 
-/// The program, in the folder of the project.
-fn squall(args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
-    command.current_dir(env!("CARGO_MANIFEST_DIR")).args(args);
-    command
-}
-
+/// Runs it where it is, to its end.
 fn output(args: &[&str]) -> Output {
-    squall(args).output().expect("the program starts")
-}
-
-/// Runs what must succeed; what it printed.
-fn said(args: &[&str]) -> String {
-    let output = output(args);
-    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+    squall(project(), args)
 }
 
 /// A file of a temporary folder, as an argument.
@@ -40,7 +26,7 @@ fn json(path: &str) -> Value {
 
 /// A tournament of the shipped strategies in short games.
 fn short_tournament(dir: &TempDir, more: &str) -> String {
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let scenarios = project().join("scenarios");
     let game = format!("base = {:?}\nduration_s = 60\n", scenarios.join("games/pav01_vs_pav01.toml"));
     std::fs::write(dir.path().join("short.toml"), game).unwrap();
     let base = scenarios.join("tournaments/simple.toml");
@@ -59,19 +45,10 @@ fn keys(value: &Value) -> Vec<&str> {
 fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
     let dir = tempfile::tempdir().unwrap();
     let (report, result) = (place(&dir, "report.json"), place(&dir, "result.json"));
-    let text = said(&[
-        "tournament",
-        TOURNAMENT,
-        "--games",
-        "2",
-        "--seed",
-        "11",
-        "--jobs",
-        "2",
-        "--matches",
-        "--json",
-        &report,
-    ]);
+    let text = printed(
+        project(),
+        &["tournament", TOURNAMENT, "--games", "2", "--seed", "11", "--jobs", "2", "--matches", "--json", &report],
+    );
     let how = format!("squall run {GAME} --sea {SEA} --blue A --red B --seed 11 --in-process");
     assert!(text.contains(&how), "{text}");
 
@@ -85,7 +62,7 @@ fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
     for game in matches {
         let (blue, red, seed) = (strategy(&game["blue"]), strategy(&game["red"]), game["seed"].to_string());
         let options = ["--sea", SEA, "--blue", &blue, "--red", &red, "--seed", &seed, "--in-process"];
-        said(&[&["run", GAME, "--no-record"], &options[..], &["--json", &result]].concat());
+        printed(project(), &[&["run", GAME, "--no-record"], &options[..], &["--json", &result]].concat());
         let played = json(&result);
         assert_eq!(played["digest"], game["digest"], "{game}");
         assert_eq!(played["score"]["teams"]["blue"], game["score"][0], "{game}");
@@ -99,7 +76,10 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
     let tournament = short_tournament(&dir, "self_play = true");
     let (path, table) = (place(&dir, "report.json"), place(&dir, "table.csv"));
     let play = |jobs: &str| {
-        let text = said(&["tournament", &tournament, "--games", "4", "--jobs", jobs, "--json", &path, "--csv", &table]);
+        let text = printed(
+            project(),
+            &["tournament", &tournament, "--games", "4", "--jobs", jobs, "--json", &path, "--csv", &table],
+        );
         let mut report = json(&path);
         assert!(report["rate"].as_f64().unwrap() > 0.0);
         report["rate"] = Value::Null;
@@ -131,7 +111,7 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
     let commit = report["commit"].as_str().unwrap();
     let hash = commit.trim_end_matches("-dirty");
     assert!(commit == "unknown" || hash.len() == 12 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{commit}");
-    assert!(said(&["--version"]).contains(commit));
+    assert!(printed(project(), &["--version"]).contains(commit));
 
     let entries = report["entries"].as_array().unwrap();
     let scores: Vec<f64> = entries.iter().map(|row| row["score"]["mean"].as_f64().unwrap()).collect();
@@ -197,9 +177,7 @@ fn mistakes_in_a_tournament_are_explained() {
         (&[&tournament, "--games", "2", "--json", "no/where.json"], &["cannot write the report to no/where.json"]),
     ];
     for (args, wants) in cases {
-        let output = output(&[&["tournament"], args].concat());
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert!(!output.status.success() && !error.contains("panicked"), "{args:?}: {error}");
+        let error = refusal(project(), &[&["tournament"], args].concat());
         for want in wants {
             assert!(error.contains(want), "{args:?} should say {want:?}: {error}");
         }
@@ -221,7 +199,7 @@ fn mistakes_in_a_tournament_are_explained() {
 fn an_interrupted_tournament_tells_what_was_finished() {
     let dir = tempfile::tempdir().unwrap();
     let tournament = short_tournament(&dir, "");
-    let mut command = squall(&["tournament", &tournament, "--games", "1000000", "--jobs", "2"]);
+    let mut command = command(project(), &["tournament", &tournament, "--games", "1000000", "--jobs", "2"]);
     let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut error = BufReader::new(process.stderr.take().unwrap());
     let mut line = String::new();
@@ -242,7 +220,7 @@ fn run_gives_teams_other_strategies_in_one_process_and_across_processes() {
     let result = place(&dir, "result.json");
     let game = "scenarios/games/attack_1v1.toml";
     let digest = |args: &[&str]| {
-        said(&[&["run", game, "--no-record"], args, &["--json", &result]].concat());
+        printed(project(), &[&["run", game, "--no-record"], args, &["--json", &result]].concat());
         json(&result)["digest"].as_str().unwrap().to_owned()
     };
     let path = "scenarios/strategies/easy_defenders.toml";
@@ -277,9 +255,8 @@ fn strategies_that_nobody_can_follow_are_explained() {
         (&["--red", SEA], "wind is unknown, expected one of"),
     ] {
         for command in [&["run", game, "--in-process"][..], &["sim", game]] {
-            let output = output(&[command, args].concat());
-            let error = String::from_utf8(output.stderr).unwrap();
-            assert!(!output.status.success() && error.contains(want), "{command:?} {args:?}: {error}");
+            let error = refusal(project(), &[command, args].concat());
+            assert!(error.contains(want), "{command:?} {args:?}: {error}");
         }
     }
 }

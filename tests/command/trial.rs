@@ -1,41 +1,26 @@
 //! `squall trial` and `squall identify` from outside: references through their CSV door, mistakes explained.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![expect(clippy::disallowed_methods, reason = "tolerances are far above the last bit")]
 
+use crate::program::{self, printed, project, scenario, squall};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// Numbers by column.
 type Columns = BTreeMap<String, Vec<f64>>;
 
-fn project() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 fn boat(name: &str) -> String {
-    project().join(format!("scenarios/boats/{name}.toml")).display().to_string()
-}
-
-fn squall(dir: &TempDir, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_squall")).current_dir(dir.path()).args(args).output().expect("the program starts")
+    scenario(&format!("boats/{name}.toml"))
 }
 
 /// Runs a trial that must succeed; what it printed.
 fn trial(dir: &TempDir, args: &[&str]) -> String {
-    let output = squall(dir, &[&["trial"], args].concat());
-    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+    printed(dir, &[&["trial"], args].concat())
 }
 
 /// Runs a trial that must be refused; why it was.
 fn refusal(dir: &TempDir, args: &[&str]) -> String {
-    let output = squall(dir, &[&["trial"], args].concat());
-    assert!(!output.status.success(), "{args:?} is accepted");
-    let text = String::from_utf8(output.stderr).unwrap();
-    assert!(!text.contains("panicked"), "{text}");
-    text
+    program::refusal(dir, &[&["trial"], args].concat())
 }
 
 fn columns(path: &Path) -> Columns {

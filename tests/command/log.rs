@@ -1,16 +1,10 @@
 //! `squall log` from outside: a short game is recorded, then looked at in every way there is; mistakes are explained.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+use crate::program;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 use std::sync::OnceLock;
 use tempfile::TempDir;
-
-fn squall(args: &[&str]) -> Output {
-    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR"));
-    Command::new(env!("CARGO_BIN_EXE_squall")).current_dir(scenarios).args(args).output().expect("the program starts")
-}
 
 /// A recorded game and its result, made once for all tests.
 struct Game {
@@ -25,8 +19,7 @@ fn game() -> &'static Game {
         let dir = tempfile::tempdir().unwrap();
         let (runs, json) = (text(dir.path().join("runs")), text(dir.path().join("result.json")));
         let game = "scenarios/games/attack_1v1.toml";
-        let output = squall(&["run", game, "--in-process", "--record", &runs, "--json", &json]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        program::printed(program::project(), &["run", game, "--in-process", "--record", &runs, "--json", &json]);
         let recording = std::fs::read_dir(&runs).unwrap().next().unwrap().unwrap().path();
         let result = serde_json::from_str(&std::fs::read_to_string(json).unwrap()).unwrap();
         Game { _dir: dir, recording: text(recording), result }
@@ -39,18 +32,7 @@ fn text(path: PathBuf) -> String {
 
 /// What `squall log` prints of the game, where it must succeed.
 fn log(args: &[&str]) -> String {
-    let output = squall(&[&["log"], args].concat());
-    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// Why it is refused.
-fn refusal(args: &[&str]) -> String {
-    let output = squall(&[&["log"], args].concat());
-    assert!(!output.status.success(), "{args:?} is accepted");
-    let text = String::from_utf8(output.stderr).unwrap();
-    assert!(!text.contains("panicked"), "{text}");
-    text
+    program::printed(program::project(), &[&["log"], args].concat())
 }
 
 #[test]
@@ -164,7 +146,7 @@ fn mistakes_are_explained() {
         (&[], "FILE"),
         (&[recording, "--plot", toml], "cannot make the folder"),
     ] {
-        let refused = refusal(args);
+        let refused = program::refusal(program::project(), &[&["log"], args].concat());
         assert!(refused.contains(said), "{args:?} should say {said:?}, but says {refused}");
     }
 }

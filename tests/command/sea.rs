@@ -1,8 +1,6 @@
 //! `squall sea` from outside: the numbers it tells, the page it draws, mistakes explained.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use std::path::Path;
-use std::process::{Command, Output};
+use crate::program::{printed, refusal, scenario};
 use tempfile::TempDir;
 
 /// What stands over the panels.
@@ -13,26 +11,10 @@ const TITLES: [&str; 4] = [
     "Track of a free boat",
 ];
 
-fn scenario(file: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").join(file).display().to_string()
-}
-
-/// Runs the program in a folder without any scenarios.
-fn squall(dir: &TempDir, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_squall")).current_dir(dir.path()).args(args).output().expect("the program starts")
-}
-
-/// Runs what must succeed; what it printed.
-fn said(dir: &TempDir, args: &[&str]) -> String {
-    let output = squall(dir, args);
-    assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
 /// `squall sea` for the Surveyor, from any folder: what it printed, and the page.
 fn sea(dir: &TempDir, file: &str, more: &[&str]) -> (String, String) {
     let boat = scenario("boats/surveyor_m1_8.toml");
-    let text = said(dir, &[&["sea", file, "--boat", &boat, "--plot", "page.svg"], more].concat());
+    let text = printed(dir, &[&["sea", file, "--boat", &boat, "--plot", "page.svg"], more].concat());
     assert!(text.ends_with("plot in page.svg\n"), "{text}");
     (text, std::fs::read_to_string(dir.path().join("page.svg")).unwrap())
 }
@@ -100,7 +82,7 @@ fn the_page_is_named_after_the_sea_and_changes_with_the_seed() {
     let (file, boat) = (dir.path().join("own_gale.toml"), scenario("boats/otter.toml"));
     std::fs::write(&file, format!("base = {:?}\n", scenario("seas/gale.toml"))).unwrap();
     let page = |seed: &str| {
-        let text = said(&dir, &["sea", "own_gale.toml", "--boat", &boat, "--seed", seed]);
+        let text = printed(&dir, &["sea", "own_gale.toml", "--boat", &boat, "--seed", seed]);
         assert!(text.ends_with("plot in own_gale.svg\n"), "{text}");
         std::fs::read_to_string(dir.path().join("own_gale.svg")).unwrap()
     };
@@ -116,7 +98,7 @@ fn the_free_boat_is_that_of_the_trial() {
         let dir = tempfile::tempdir().unwrap();
         let (file, boat) = (scenario(&format!("seas/{name}.toml")), scenario("boats/surveyor_m1_8.toml"));
         let (text, _) = sea(&dir, &file, &["--seed", seed]);
-        let trial = said(&dir, &["trial", &boat, "--manoeuvre", "drift", "--sea", &file, "--seed", seed]);
+        let trial = printed(&dir, &["trial", &boat, "--manoeuvre", "drift", "--sea", &file, "--seed", seed]);
         let want = ["drift speed", "drift toward", "mean heading"].map(|name| numbers(value(&trial, name))[0]);
         let got = numbers(value(&text, "free boat, simulated"));
         // Speeds are told in hundredths, bearings in whole degrees.
@@ -162,7 +144,7 @@ fn a_stream_carries_the_free_boat_as_fast_as_it_runs() {
 fn a_kinematic_boat_stays_in_a_gale_and_the_text_says_why() {
     let dir = tempfile::tempdir().unwrap();
     let boat = scenario("boats/heron_kinematic.toml");
-    let text = said(&dir, &["sea", &scenario("seas/gale.toml"), "--boat", &boat]);
+    let text = printed(&dir, &["sea", &scenario("seas/gale.toml"), "--boat", &boat]);
     assert_eq!(value(&text, "free boat, simulated"), "stays");
     assert!(text.contains("a kinematic boat feels the current alone"), "{text}");
 }
@@ -180,9 +162,7 @@ fn what_is_wrong_is_said() {
         (&[&calm, "--boat", &boat, "--plot", "no/where.svg"], &["cannot write the plot to no/where.svg"]),
     ];
     for (args, wants) in cases {
-        let output = squall(&dir, &[&["sea"], args].concat());
-        let error = String::from_utf8(output.stderr).unwrap();
-        assert!(!output.status.success() && !error.contains("panicked"), "{args:?}: {error}");
+        let error = refusal(&dir, &[&["sea"], args].concat());
         for want in wants {
             assert!(error.contains(want), "{args:?} should say {want:?}: {error}");
         }

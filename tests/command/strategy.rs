@@ -1,13 +1,6 @@
 //! `squall strategy` from outside: what it shows of good files, and of bad ones.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use std::path::Path;
-use std::process::{Command, Output};
-
-fn squall(args: &[&str]) -> Output {
-    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
-    Command::new(env!("CARGO_BIN_EXE_squall")).current_dir(project).args(args).output().expect("the program starts")
-}
+use crate::program::{project, squall};
 
 /// What `squall strategy` prints of a file with this text.
 fn shown(text: &str, more: &[&str]) -> (bool, String, String) {
@@ -15,7 +8,7 @@ fn shown(text: &str, more: &[&str]) -> (bool, String, String) {
     let path = folder.path().join("x.toml");
     std::fs::write(&path, text).unwrap();
     let file = path.display().to_string();
-    let output = squall(&[&["strategy", file.as_str()], more].concat());
+    let output = squall(project(), &[&["strategy", file.as_str()], more].concat());
     let root = format!("{}/", folder.path().display());
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap().replace(&root, "");
     (output.status.success(), text(output.stdout), text(output.stderr))
@@ -122,7 +115,7 @@ fn a_strategy_is_drawn_as_a_graph() {
 
 #[test]
 fn shipped_strategies_are_shown_role_by_role() {
-    let output = squall(&["strategy", "scenarios/strategies/pav01.toml"]);
+    let output = squall(project(), &["strategy", "scenarios/strategies/pav01.toml"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(output.status.success(), "{text}");
     for words in ["role 1: easy_defender", "role 2: easy_attacker", "\n  in tagged\n"] {
@@ -132,8 +125,8 @@ fn shipped_strategies_are_shown_role_by_role() {
 
 #[test]
 fn the_reference_is_printed_without_a_file() {
-    let output = squall(&["strategy", "--reference"]);
-    let page = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/strategies/REFERENCE.md")).unwrap();
+    let output = squall(project(), &["strategy", "--reference"]);
+    let page = std::fs::read(project().join("scenarios/strategies/REFERENCE.md")).unwrap();
     assert!(output.status.success() && output.stdout == page);
-    assert!(!squall(&["strategy"]).status.success());
+    assert!(!squall(project(), &["strategy"]).status.success());
 }

@@ -1,0 +1,10 @@
+//! Commands of the program from outside: what they print and write, and how they refuse.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+mod log;
+mod program;
+mod sea;
+mod strategy;
+mod tournament;
+mod trial;
+mod tutorial;
