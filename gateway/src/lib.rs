@@ -19,4 +19,3 @@ pub mod sensor_check;
 pub mod set_point;
 pub mod supervisor;
 mod thrust_map;
-pub mod utc;

@@ -1,120 +1,87 @@
-//! The recording of a gateway: every byte both ways, everything else that came in, and what happened, as MCAP.
+//! What a gateway records of itself: every byte both ways, everything else that its core was given, and what happened.
 //!
-//! | topic | what | encoding |
-//! |---|---|---|
-//! | `link/in` | bytes from the boat, as they came | raw |
-//! | `link/out` | bytes to the boat, as they went | raw |
-//! | `input` | everything else that the core was given | JSON of [`Input`] |
-//! | `event` | what happened | JSON of [`Event`] |
-//!
-//! `log_time` is UTC, `publish_time` the gateway's own clock, which never steps, both in ns; `sequence` counts through all
-//! topics. The metadata `gateway` holds the version and the plan. Nothing is compressed or held back in chunks, so that a
-//! file that ends abruptly is good up to there.
+//! The topics are listed in the crate [`recording`]. A step of the core is what came in, then what it led to.
 
 use crate::bridge::{Event, Input, Output, Plan};
-use game::SimTime;
-use mcap::records::{MessageHeader, Metadata};
-use std::collections::BTreeMap;
-use std::io::{Seek, Write};
-use thiserror::Error;
+use game::external::LinkBytes;
+use game::message::{Message, Stamp};
+use game::{SimTime, VehicleId, codec};
+use recording::{Entry, Facts, Kind, Opening};
+use serde::{Deserialize, Serialize};
 
-/// The name of the metadata.
-pub(crate) const METADATA: &str = "gateway";
-/// The topics, by what they hold.
-pub(crate) const LINK_IN: &str = "link/in";
-pub(crate) const LINK_OUT: &str = "link/out";
+/// The topics of JSON; that of bytes has the boat's name in it.
 pub(crate) const INPUT: &str = "input";
 pub(crate) const EVENT: &str = "event";
 
-/// Why something cannot be recorded.
-#[derive(Debug, Error)]
-pub enum RecordError {
-    /// The file does not take it.
-    #[error("the recording cannot be written: {0}")]
-    Mcap(#[from] mcap::McapError),
-    /// It is not JSON.
-    #[error("the recording cannot hold this: {0}")]
-    Json(#[from] serde_json::Error),
+/// The topic of the bytes of a boat's link.
+pub(crate) fn link_topic(boat: &str) -> String {
+    format!("link/{boat}")
 }
 
-/// When something was: by the gateway's own clock, and UTC in ns since 1970.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Moment {
-    /// Since the gateway began.
-    pub at: SimTime,
-    /// By the host's clock.
-    pub utc_ns: u64,
+/// An input other than bytes. JSON in a recording is an object.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct RecordedInput {
+    pub(crate) input: Input,
 }
 
-/// Writes a recording.
-pub struct Recorder<W: Write + Seek> {
-    writer: mcap::Writer<W>,
-    /// The channels of the four topics.
-    channels: [u16; 4],
-    sequence: u32,
+/// Something that happened.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct RecordedEvent {
+    pub(crate) event: Event,
 }
 
-impl<W: Write + Seek> Recorder<W> {
-    /// Begins a recording of the gateway that `plan` makes.
-    ///
-    /// # Errors
-    /// [`RecordError`] if the file does not take it.
-    pub fn begin(file: W, plan: &Plan) -> Result<Recorder<W>, RecordError> {
-        let options = mcap::WriteOptions::new().use_chunks(false).compression(None).library("squall");
-        let mut writer = options.create(file)?;
-        let metadata = BTreeMap::from([
-            ("version".to_owned(), game::VERSION.to_owned()),
-            ("plan".to_owned(), serde_json::to_string(plan)?),
-        ]);
-        writer.write_metadata(&Metadata { name: METADATA.to_owned(), metadata })?;
-        let mut channel = |topic, encoding| writer.add_channel(0, topic, encoding, &BTreeMap::new());
-        let channels =
-            [channel(LINK_IN, "raw")?, channel(LINK_OUT, "raw")?, channel(INPUT, "json")?, channel(EVENT, "json")?];
-        writer.flush()?;
-        Ok(Recorder { writer, channels, sequence: 0 })
+/// How the recording of a gateway begins that `plan` makes: at this UTC (ns), by a program of this commit.
+#[must_use]
+pub fn opening(plan: &Plan, began_utc_ns: u64, commit: &str) -> Opening {
+    let plan_json = serde_json::to_string(plan).expect("a plan is JSON");
+    let facts = [("commit", commit.to_owned()), ("vehicle", plan.vehicle.clone()), ("plan", plan_json)];
+    let facts: Facts = facts.map(|(key, value)| (key.to_owned(), value)).into();
+    Opening { kind: Kind::Gateway, began_utc_ns, facts, more: vec![], teams: vec![] }
+}
+
+/// Turns the steps of a core into entries of its recording.
+pub struct StepEncoder {
+    link_topic: String,
+    vehicle: VehicleId,
+    /// Pieces of bytes so far.
+    pieces: u64,
+}
+
+impl StepEncoder {
+    /// For the boat of this name and number.
+    #[must_use]
+    pub fn new(boat: &str, vehicle: VehicleId) -> StepEncoder {
+        StepEncoder { link_topic: link_topic(boat), vehicle, pieces: 0 }
     }
 
-    /// Records one turn of the core: what went in, and what came out.
-    ///
-    /// # Errors
-    /// [`RecordError`] if the file does not take it.
-    pub fn turn(&mut self, moment: Moment, input: &Input, out: &Output) -> Result<(), RecordError> {
-        let [link_in, link_out, inputs, events] = self.channels;
-        match input {
-            Input::Bytes(bytes) => self.write(link_in, moment, bytes)?,
-            other => self.write(inputs, moment, &serde_json::to_vec(other)?)?,
-        }
+    /// The entries of a step at `at` by the gateway's clock, `game_now` being the game's time as last received.
+    pub fn step(&mut self, at: SimTime, game_now: SimTime, input: &Input, out: &Output) -> Vec<Entry> {
+        let mut entries = match input {
+            Input::Bytes(bytes) => vec![self.link_bytes(at, game_now, false, bytes)],
+            other => vec![json(INPUT, at, &RecordedInput { input: other.clone() })],
+        };
         if !out.bytes.is_empty() {
-            self.write(link_out, moment, &out.bytes)?;
+            entries.push(self.link_bytes(at, game_now, true, &out.bytes));
         }
-        for event in &out.events {
-            self.write(events, moment, &serde_json::to_vec(event)?)?;
-        }
-        Ok(self.writer.flush()?)
+        entries.extend(out.events.iter().cloned().map(|event| StepEncoder::event(at, event)));
+        entries
     }
 
-    /// Records something that the core does not know of.
-    ///
-    /// # Errors
-    /// [`RecordError`] if the file does not take it.
-    pub fn remark(&mut self, moment: Moment, event: &Event) -> Result<(), RecordError> {
-        self.write(self.channels[3], moment, &serde_json::to_vec(event)?)?;
-        Ok(self.writer.flush()?)
+    /// The entry of something that happened.
+    #[must_use]
+    pub fn event(at: SimTime, event: Event) -> Entry {
+        json(EVENT, at, &RecordedEvent { event })
     }
 
-    /// Ends it well.
-    ///
-    /// # Errors
-    /// [`RecordError`] if the file does not take it.
-    pub fn end(mut self) -> Result<(), RecordError> {
-        self.writer.finish()?;
-        Ok(())
+    fn link_bytes(&mut self, at: SimTime, game_now: SimTime, outward: bool, data: &[u8]) -> Entry {
+        let stamp = Stamp { valid_ns: game_now, seq: self.pieces, version: LinkBytes::VERSION };
+        self.pieces += 1;
+        let bytes = codec::encode(&LinkBytes { stamp, vehicle: self.vehicle, outward, data: data.to_vec() });
+        Entry::Message { topic: self.link_topic.clone(), schema: Some(LinkBytes::SCHEMA), bytes, at }
     }
+}
 
-    fn write(&mut self, channel_id: u16, moment: Moment, data: &[u8]) -> Result<(), RecordError> {
-        let publish_time = u64::try_from(moment.at.0).unwrap_or(0);
-        let header = MessageHeader { channel_id, sequence: self.sequence, log_time: moment.utc_ns, publish_time };
-        self.sequence = self.sequence.wrapping_add(1);
-        Ok(self.writer.write_to_known_channel(&header, data)?)
-    }
+fn json(topic: &str, at: SimTime, message: &impl Serialize) -> Entry {
+    let bytes = serde_json::to_vec(message).expect("inputs and events are JSON");
+    Entry::Message { topic: topic.to_owned(), schema: None, bytes, at }
 }

@@ -1,7 +1,7 @@
 """Reads a recording with the Python packages `mcap` and `mcap-ros2-support`, and with `rosbags`, and compares it with the
 game's result.
 
-Usage: mcap_check.py RECORDING RESULT.json
+Usage: mcap_check.py RECORDING [RESULT.json]; of a gateway there is no result.
 """
 
 import io
@@ -90,5 +90,28 @@ def main(recording, result_path):
     print(f"{recording}: {sum(counts.values())} messages on {len(counts)} topics agree; {some} frames in the first half")
 
 
+def of_gateway(recording):
+    """The recording of a gateway: the bytes of its link by both packages, and JSON for everything else."""
+    data = open(recording, "rb").read()
+    reader = make_reader(io.BytesIO(data), decoder_factories=FACTORIES)
+    boat = metadata_of(reader)["gateway"]["vehicle"]
+    counts, link = {}, {False: b"", True: b""}
+    for schema, channel, _, decoded in reader.iter_decoded_messages(log_time_order=False):
+        counts[channel.topic] = counts.get(channel.topic, 0) + 1
+        if schema.name == TEXT:
+            check(isinstance(json.loads(decoded.data), dict), f"{channel.topic} has something else than an object")
+        else:
+            check(channel.topic == f"link/{boat}", f"{channel.topic} is {schema.name}")
+            link[decoded.outward] += bytes(decoded.data)
+    check(b"$PSEAC" in link[True] and b"GGA" in link[False], "there are no sentences on the link")
+    bag_counts = {}
+    with AnyReader([Path(recording)]) as bag:
+        for connection, _, raw in bag.messages():
+            bag.deserialize(raw, connection.msgtype)
+            bag_counts[connection.topic] = bag_counts.get(connection.topic, 0) + 1
+    check(bag_counts == counts, f"a bag of {bag_counts} messages, not {counts}")
+    print(f"{recording}: {sum(counts.values())} messages on {len(counts)} topics agree")
+
+
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2])
+    main(*sys.argv[1:]) if len(sys.argv) > 2 else of_gateway(sys.argv[1])

@@ -6,7 +6,9 @@ use crate::stop;
 use anyhow::{Result, anyhow, bail};
 use game::SimTime;
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::nmea::date_and_time;
 use gateway::sensor_check::SensorCheck;
+use recording::utc;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
@@ -54,7 +56,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         let counts = check.counts();
         bail!("no sentence from {address} in {} s: {reason} ({} bytes of garbage)", args.for_s, counts.garbage);
     }
-    screen::print(&report(&check, at(Instant::now()), gateway::utc::now().1));
+    screen::print(&report(&check, at(Instant::now()), date_and_time(utc::now_ns()).1));
     Ok(if check.missing().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

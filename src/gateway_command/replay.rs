@@ -1,7 +1,7 @@
 //! `squall gateway replay`: a recording through the codec and the supervisor again.
 
 use super::log_line::{full, text_of};
-use crate::screen;
+use crate::{recording_file, screen};
 use anyhow::{Context, Result};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,8 +15,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let name = || args.file.display().to_string();
-    let bytes = std::fs::read(&args.file).with_context(|| format!("cannot read {}", name()))?;
-    let replay = gateway::replay::replay(&bytes).with_context(name)?;
+    let bag = recording_file::open_any(&args.file, "replay")?;
+    let replay = gateway::replay::replay(&bag).with_context(name)?;
     for (at, event) in &replay.events {
         screen::print(&format!("{:>8.1} s  {}\n", at.as_s(), text_of(event)));
     }

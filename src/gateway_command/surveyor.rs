@@ -8,6 +8,7 @@ use crate::stop;
 use anyhow::{Context, Result, anyhow};
 use gateway::link::LinkAddress;
 use gateway::node::{NodeEvent, Settings};
+use recording::utc;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -72,6 +73,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         arms_itself: args.arm,
         at_game_pace: args.at_game_pace,
         record,
+        commit: env!("SQUALL_COMMIT"),
         wait: Duration::from_secs_f64(args.wait_s),
         stop: stop.clone(),
     };
@@ -100,5 +102,5 @@ fn recording(args: &Args) -> Result<Option<PathBuf>> {
     }
     let folder = Path::new("runs");
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    Ok(Some(folder.join(format!("gateway-{}-{}.mcap", args.vehicle, gateway::utc::name()))))
+    Ok(Some(folder.join(format!("gateway-{}-{}.mcap", args.vehicle, utc::file_stamp(utc::now_ns())))))
 }

@@ -6,7 +6,7 @@ use game::VehicleId;
 use game::external::LinkBytes;
 use game::message::{Message, PolicyProposal, Stamp};
 use game::topic;
-use recording::Recording;
+use recording::{Bag, Recording};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -147,26 +147,37 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
         assert!(topics.contains_key(topic), "{topic} is not in {topics:?}");
     }
     // What the gateway itself recorded, as far as the game went.
-    let bytes = |outward: bool| -> Vec<u8> {
-        let said = recording.bag().on("link/blue_one").map(|said| said.read::<LinkBytes>().expect("bytes"));
+    let bytes = |bag: &Bag, outward: bool| -> Vec<u8> {
+        let said = bag.on("link/blue_one").map(|said| said.read::<LinkBytes>().expect("bytes"));
         said.filter(|link| link.outward == outward).flat_map(|link| link.data).collect()
     };
-    let own = std::fs::read(gateways.join("blue_one.mcap")).expect("it is there");
+    let file = gateways.join("blue_one.mcap").display().to_string();
+    let own = Bag::open(Path::new(&file)).unwrap_or_else(|e| panic!("{e}"));
     let sentences = |bytes: &[u8]| bytes.split(|byte| *byte == b'\n').filter(|line| line.len() > 9).count();
-    for (topic, outward) in [("link/in", false), ("link/out", true)] {
-        let ours = bytes(outward);
-        let theirs: Vec<u8> = mcap_bytes(&own, topic);
+    for outward in [false, true] {
+        let (ours, theirs) = (bytes(recording.bag(), outward), bytes(&own, outward));
         let place = theirs.windows(ours.len()).position(|window| window == ours);
-        assert!(place.is_some() && sentences(&ours) > 100, "{topic}: {} of {} bytes", ours.len(), theirs.len());
+        assert!(
+            place.is_some() && sentences(&ours) > 100,
+            "outward {outward}: {} of {} bytes",
+            ours.len(),
+            theirs.len()
+        );
     }
     let (same, said) = checked(&path);
     assert!(same, "{said}");
-}
-
-/// Everything on one topic of a gateway's own recording.
-fn mcap_bytes(file: &[u8], topic: &str) -> Vec<u8> {
-    let messages = mcap::MessageStream::new(file).expect("a recording").map(|message| message.expect("a message"));
-    messages.filter(|message| message.channel.topic == topic).flat_map(|message| message.data.into_owned()).collect()
+    for (args, part) in [
+        (&["log", &file][..], "the gateway of blue_one"),
+        (&["log", &file, "--csv", "link/blue_one"], "to_boat,$PSEAC"),
+        (&["log", &file, "--csv", "event"], "event.state.to"),
+        (&["log", &file, "--events"], "is of a gateway, not of a game"),
+        (&["replay", "--check", &file], "not a recording of a game: it is of a gateway"),
+        (&["gateway", "replay", &path.display().to_string()], "not a recording of a gateway: it is of a game"),
+    ] {
+        let output = run(args);
+        let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+        assert!(said.contains(part), "{args:?} should say {part:?}, but says {said:.500}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use game::SimTime;
 use serde::{Deserialize, Serialize};
-use time::Month;
+use time::{Month, UtcDateTime};
 
 /// Milliseconds of a day, and one second more for the day that ends with a leap second.
 const DAY_MS: u32 = 86_400_000;
@@ -56,6 +56,14 @@ impl TimeOfDay {
         let apart_s = (f64::from(self.0) - f64::from(other.0)) * 1e-3;
         apart_s - day_s * (apart_s / day_s).round()
     }
+}
+
+/// The date and the time of day at this UTC, ns since 1970.
+#[must_use]
+pub fn date_and_time(utc_ns: u64) -> (Date, TimeOfDay) {
+    let at = UtcDateTime::from_unix_timestamp_nanos(i128::from(utc_ns)).unwrap_or(UtcDateTime::UNIX_EPOCH);
+    let date = Date { year: u16::try_from(at.year()).unwrap_or(0), month: u8::from(at.month()), day: at.day() };
+    (date, TimeOfDay((utc_ns / 1_000_000 % u64::from(DAY_MS)) as u32))
 }
 
 /// A date of the Gregorian calendar.

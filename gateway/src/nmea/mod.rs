@@ -19,7 +19,7 @@ mod talker;
 mod wind;
 mod writer;
 
-pub use date_time::{Date, TimeOfDay};
+pub use date_time::{Date, TimeOfDay, date_and_time};
 pub use framer::{ACCEPTED_MAX, Counts, Framer};
 pub use mode::Mode;
 pub use operator::Operator;

@@ -4,13 +4,14 @@ use super::{NodeError, NodeEvent, declination_today_rad, pace_factor};
 use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
-use crate::utc;
+use crate::nmea::date_and_time;
 use agent::{Mind, MindRunner};
 use bus::game_search::{self, GameSearch};
 use bus::{Delivery, Net, Patience, Publisher, SimState, SimWatch, Watched};
 use game::message::Role;
 use game::topic::{self, GameName, Part};
 use game::{Order, Picture, SimTime, VehicleId, codec};
+use recording::utc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -81,7 +82,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
         integers: settings.integers,
         extra: settings.extra.clone(),
         vtg_mode: false,
-        began: utc::now(),
+        began: date_and_time(utc::now_ns()),
     };
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &bus.id()))?;
@@ -230,7 +231,7 @@ impl EmulatorNode {
             self.now = picture.stamp.valid_ns;
             if self.runner.decided().is_none() {
                 let now = self.now;
-                self.emulator().set_clock(now, utc::now());
+                self.emulator().set_clock(now, date_and_time(utc::now_ns()));
             }
             self.runner.decide(picture.stamp, |_| Some(picture));
         }

@@ -2,10 +2,10 @@
 
 use super::clock::Clock;
 use super::latency::Latency;
-use super::logbook::Logbook;
 use super::{NodeError, NodeEvent};
-use crate::bridge::{Bridge, FleetCommand, Input, NavOut, Output};
+use crate::bridge::{Bridge, Event, FleetCommand, Input, NavOut, Output};
 use crate::link::{Link, LinkEvent};
+use crate::record::StepEncoder;
 use bus::{Inbox, InboxSender, Publisher, Query, clock};
 use game::codec;
 use game::external::{ExternalOrder, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply};
@@ -13,6 +13,7 @@ use game::frame::Ned;
 use game::message::{Frame, Message, Stamp};
 use game::{Order, SimTime, VehicleId};
 use parking_lot::Mutex;
+use recording::{Entry, Recorder};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -67,7 +68,8 @@ pub(super) struct GatewayLoop {
     pub(super) vehicle: VehicleId,
     /// The other real boats.
     pub(super) others: Vec<VehicleId>,
-    pub(super) logbook: Option<Logbook>,
+    pub(super) recorder: Option<Recorder>,
+    pub(super) encoder: StepEncoder,
     pub(super) counters: Counters,
 }
 
@@ -77,7 +79,6 @@ pub(super) struct Counters {
     /// Time of the game, as last received.
     game_now: SimTime,
     reports: u64,
-    published_bytes: u64,
     link: String,
     tag: u64,
     /// Sentences with orders on their way: tag, and when the order came.
@@ -97,7 +98,6 @@ impl Counters {
             ticket: None,
             game_now: SimTime::ZERO,
             reports: 0,
-            published_bytes: 0,
             link: "not connected yet".to_owned(),
             tag: 0,
             writing: VecDeque::new(),
@@ -140,9 +140,9 @@ impl GatewayLoop {
         }
         status.latency_us =
             [self.counters.sentence_to_topic.summary_us(), self.counters.order_to_sentence.summary_us()];
-        let lost = self.logbook.as_ref().map_or(0, Logbook::lost);
+        let lost = self.recorder.as_ref().map_or(0, |recorder| recorder.state().dropped);
         let more = [("nav reports", self.counters.reports), ("displaced writes", self.link.displaced())];
-        let rest = [("calls dropped", self.inbox.dropped()), ("turns not recorded", lost)];
+        let rest = [("calls dropped", self.inbox.dropped()), ("messages not recorded", lost)];
         status.counts.extend(more.into_iter().chain(rest).map(|(name, count)| (name.to_owned(), count)));
         status
     }
@@ -283,27 +283,25 @@ impl GatewayLoop {
         for event in &out.events {
             notify(NodeEvent::Event { at_s: now.as_s(), event });
         }
-        if self.link_bytes.is_heard() {
-            if let Input::Bytes(bytes) = &input {
-                self.publish_bytes(false, bytes)?;
-            }
-            self.publish_bytes(true, &out.bytes)?;
-        }
-        if let Some(logbook) = &self.logbook {
-            logbook.turn(now, input, &out);
-        }
+        self.record_step(now, &input, &out)?;
         Ok(out.refused)
     }
 
-    /// Publishes bytes that went over the link, if any.
-    fn publish_bytes(&mut self, outward: bool, data: &[u8]) -> Result<(), NodeError> {
-        if data.is_empty() {
+    /// Publishes the bytes that went over the link, and records the whole step.
+    fn record_step(&mut self, now: SimTime, input: &Input, out: &Output) -> Result<(), NodeError> {
+        let is_heard = self.link_bytes.is_heard();
+        if !is_heard && self.recorder.is_none() {
             return Ok(());
         }
-        let stamp =
-            Stamp { valid_ns: self.counters.game_now, seq: self.counters.published_bytes, version: LinkBytes::VERSION };
-        self.counters.published_bytes += 1;
-        Ok(self.link_bytes.send(&LinkBytes { stamp, vehicle: self.vehicle, outward, data: data.to_vec() })?)
+        for entry in self.encoder.step(now, self.counters.game_now, input, out) {
+            if let (true, Entry::Message { schema: Some(LinkBytes::SCHEMA), bytes, .. }) = (is_heard, &entry) {
+                self.link_bytes.send_encoded::<LinkBytes>(bytes.clone())?;
+            }
+            if let Some(recorder) = &self.recorder {
+                recorder.record(entry);
+            }
+        }
+        Ok(())
     }
 
     fn report(&mut self, out: &NavOut) -> Result<(), NodeError> {
@@ -323,8 +321,8 @@ impl GatewayLoop {
             return;
         }
         self.counters.remarked = (now, text.to_owned());
-        if let Some(logbook) = &self.logbook {
-            logbook.remark(self.clock.now(), text);
+        if let Some(recorder) = &self.recorder {
+            recorder.record(StepEncoder::event(self.clock.now(), Event::Remark(text.to_owned())));
         }
         notify(NodeEvent::Remark { at_s: self.clock.now().as_s(), text });
     }

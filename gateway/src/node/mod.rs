@@ -8,15 +8,14 @@ mod emulator;
 mod gateway_loop;
 mod join;
 mod latency;
-mod logbook;
 
 pub use emulator::{EmulatorSettings, emulate};
 
 use crate::bridge::{Bridge, Event, Plan};
 use crate::declination::{DeclinationError, declination_deg};
 use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
-use crate::record::RecordError;
-use crate::utc;
+use crate::nmea::date_and_time;
+use crate::record::{self, StepEncoder};
 use bus::game_search::{self, GameSearch, NotFound};
 use bus::{Bus, BusError, Declaration, Delivery, Net, inbox};
 use clock::Clock;
@@ -29,7 +28,7 @@ use game::topic::{self, GameName, Part};
 use game::{VehicleId, codec};
 use gateway_loop::{Call, Counters, GatewayLoop, LatestOrder, LoopInputs};
 use join::Join;
-use logbook::Logbook;
+use recording::{NewFile, RecordError, Recorder, utc};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -56,6 +55,8 @@ pub struct Settings {
     pub at_game_pace: bool,
     /// The file of the recording, if any.
     pub record: Option<PathBuf>,
+    /// The commit that the program was built from.
+    pub commit: &'static str,
     /// How long to look for the game.
     pub wait: Duration,
     /// Set from outside to end.
@@ -160,12 +161,12 @@ pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Resu
         declination_rad,
         arms_itself: settings.arms_itself,
     };
-    let logbook = match &settings.record {
-        Some(path) => {
-            Some(Logbook::open(path, &plan).map_err(|source| NodeError::Record { path: path.clone(), source })?)
-        }
-        None => None,
-    };
+    let opening = record::opening(&plan, utc::now_ns(), settings.commit);
+    let recorder = settings.record.as_ref().map(|path| {
+        let begun = NewFile::create(path).and_then(|file| Recorder::begin(file, &opening));
+        begun.map_err(|source| NodeError::Record { path: path.clone(), source })
+    });
+    let recorder = recorder.transpose()?;
     let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;
     // Nothing is sent to a boat that another gateway has. The thread that keeps it joined asks again, and gets it again.
     let names = [settings.vehicle.clone()];
@@ -189,7 +190,8 @@ pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Resu
         link_bytes: bus.publisher(topic::link(&game, &settings.vehicle), Delivery::Drop)?,
         vehicle,
         others: others.map(|(i, _)| VehicleId::at(i)).filter(|other| *other != vehicle).collect(),
-        logbook,
+        recorder,
+        encoder: StepEncoder::new(&settings.vehicle, vehicle),
         counters: Counters::new(),
     };
     let join = Join::begin(&bus, &game, &settings.vehicle, inputs.calls)?;
@@ -269,5 +271,5 @@ fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeError> {
 
 /// The declination here and today, east positive, rad.
 fn declination_today_rad(at: LatLon) -> Result<f64, NodeError> {
-    Ok(declination_deg(at, utc::now().0)?.to_radians())
+    Ok(declination_deg(at, date_and_time(utc::now_ns()).0)?.to_radians())
 }

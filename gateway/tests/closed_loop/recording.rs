@@ -2,9 +2,11 @@
 
 use crate::rig::{Rig, steer};
 use game::external::OperatorCommand;
+use game::{SimTime, VehicleId};
 use gateway::bridge::Event;
-use gateway::record::{Moment, Recorder};
-use gateway::replay::{ReplayError, replay};
+use gateway::record::{StepEncoder, opening};
+use gateway::replay::{Replay, replay};
+use recording::{Bag, Facts, Kind, Opening, RecordingError, Writer};
 use std::io::Cursor;
 
 /// A recording of a trip with orders of odd numbers, a trip, a mission and a cut of the link.
@@ -24,27 +26,31 @@ fn recording(end_well: bool) -> (Vec<u8>, usize, usize) {
     rig.run(2.0);
     rig.operate(OperatorCommand::Arm);
     rig.run(2.0);
-    let mut bytes = Cursor::new(Vec::new());
-    let mut recorder = Recorder::begin(&mut bytes, &crate::rig::plan("surveyor.toml", false)).expect("memory");
-    for (at, input, out) in &rig.turns {
-        let moment = Moment { at: *at, utc_ns: 1_700_000_000_000_000_000 + at.0 as u64 };
-        recorder.turn(moment, input, out).expect("memory");
+    let opening = opening(&crate::rig::plan("surveyor.toml", false), 1_700_000_000_000_000_000, "c0ffee");
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("memory");
+    let mut encoder = StepEncoder::new("blue_one", VehicleId(0));
+    let mut entries = Vec::new();
+    rig.turns.iter().for_each(|(at, input, out)| entries.extend(encoder.step(*at, SimTime::ZERO, input, out)));
+    entries.push(StepEncoder::event(rig.now, Event::Remark("the end".to_owned())));
+    entries.iter().for_each(|entry| writer.write(entry, 1_700_000_000_000_000_000).expect("memory"));
+    let mut file = writer.end(Facts::new()).expect("memory").into_inner();
+    if !end_well {
+        // All of the messages, and nothing of what follows them.
+        let end = file.windows(7).rposition(|window| window == b"the end").expect("it is there");
+        file.truncate(end + b"the end\"}}\0".len());
     }
-    let moment = Moment { at: rig.now, utc_ns: 1_700_000_000_000_000_000 };
-    recorder.remark(moment, &Event::Remark("the end".to_owned())).expect("memory");
-    if end_well {
-        recorder.end().expect("memory");
-    } else {
-        std::mem::forget(recorder);
-    }
-    (bytes.into_inner(), rig.turns.len(), rig.events.len())
+    (file, rig.turns.len(), rig.events.len())
+}
+
+fn replayed(file: &[u8]) -> Result<Replay, RecordingError> {
+    Bag::of(file.to_vec()).and_then(|bag| replay(&bag))
 }
 
 #[test]
 fn a_recording_plays_again_byte_for_byte() {
     for end_well in [true, false] {
         let (file, turns, events) = recording(end_well);
-        let replay = replay(&file).expect("it is one");
+        let replay = replayed(&file).expect("it is one");
         assert_eq!(replay.difference, None);
         assert_eq!((replay.inputs as usize, replay.events.len(), replay.is_cut), (turns, events, !end_well));
         assert_eq!(replay.status.state, "armed");
@@ -56,8 +62,9 @@ fn a_recording_plays_again_byte_for_byte() {
 fn a_recording_that_is_cut_plays_up_to_the_cut() {
     let (file, ..) = recording(true);
     let mut inputs = 0;
-    for cut in (5000..file.len()).step_by(997) {
-        let replay = replay(&file[..cut]).unwrap_or_else(|e| panic!("cut at {cut}: {e}"));
+    let header = (0..file.len()).find(|cut| Bag::of(file[..*cut].to_vec()).is_ok()).expect("it opens at last");
+    for cut in (header..file.len()).step_by(997) {
+        let replay = replayed(&file[..cut]).unwrap_or_else(|e| panic!("cut at {cut}: {e}"));
         assert_eq!(replay.difference, None, "cut at {cut}");
         assert!(replay.inputs >= inputs);
         inputs = replay.inputs;
@@ -70,21 +77,30 @@ fn a_recording_that_says_something_else_is_found_out() {
     let (mut file, ..) = recording(true);
     let place = file.windows(12).rposition(|window| window == b"$PSEAC,T,0,3").expect("it was driven");
     file[place + 9] = b'1';
-    let difference = replay(&file).expect("still one").difference.expect("it is another");
+    let difference = replayed(&file).expect("still one").difference.expect("it is another");
     assert!(difference.recorded.contains("PSEAC,T,1") && difference.replayed.contains("PSEAC,T,0"), "{difference:?}");
 }
 
 #[test]
 fn what_is_no_recording_is_refused() {
-    assert!(matches!(replay(b"$GPGGA,,"), Err(ReplayError::Foreign(_))));
-    let mut bytes = Cursor::new(Vec::new());
-    let mut writer = mcap::Writer::new(&mut bytes).expect("memory");
+    assert!(matches!(replayed(b"$GPGGA,,"), Err(RecordingError::Foreign(_))));
+    let opening = opening(&crate::rig::plan("surveyor.toml", false), 0, "c0ffee");
+    let refused = |change: fn(&mut Opening)| {
+        let mut opening = opening.clone();
+        change(&mut opening);
+        let writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("memory");
+        let file = writer.end(Facts::new()).expect("memory").into_inner();
+        replayed(&file).map(|replay| replay.inputs).expect_err("it is refused").to_string()
+    };
+    let version = |opening: &mut Opening| drop(opening.facts.insert("version".to_owned(), "9.1.0".to_owned()));
+    assert!(refused(version).contains("recorded by Squall 9.1.0"));
+    assert!(refused(|opening| opening.kind = Kind::Game).contains("not a recording of a gateway: it is of a game"));
+    assert!(refused(|opening| opening.facts.clear()).contains("its plan is not understood"));
+    // Before gateways recorded bags, their headers had no checksum.
+    let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).expect("memory");
+    let metadata = [("version".to_owned(), game::VERSION.to_owned())].into();
+    writer.write_metadata(&mcap::records::Metadata { name: "gateway".to_owned(), metadata }).expect("memory");
     writer.finish().expect("memory");
-    drop(writer);
-    let error = replay(&bytes.into_inner()).expect_err("another's");
-    assert!(error.to_string().contains("no metadata \"gateway\""), "{error}");
-    let (mut file, ..) = recording(true);
-    let place = file.windows(5).position(|window| window == b"0.1.0").expect("the version");
-    file[place] = b'9';
-    assert!(matches!(replay(&file), Err(ReplayError::Version { found }) if found == "9.1.0"));
+    let error = replayed(writer.into_inner().get_ref()).expect_err("an old one").to_string();
+    assert!(error.contains("it is a gateway's of the old format"), "{error}");
 }
