@@ -215,7 +215,7 @@ fn boats_that_do_not_fit_into_their_spawn_area_fail_the_game_and_not_the_tournam
     let plan = Plan::new(&tournament).unwrap_or_else(|problems| panic!("{problems}"));
     let report = Report::new(&plan, &records(&plan, 2));
     assert_eq!((report.failures.len(), report.seeds_counted, report.games_unplayed), (4, 0, 0));
-    assert!(report.failures[0].why.contains("no free start_position for red_1"), "{}", report.failures[0].why);
+    assert!(report.failures[0].why.contains("no free start position for red_1"), "{}", report.failures[0].why);
 }
 
 #[test]

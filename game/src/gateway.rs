@@ -161,7 +161,7 @@ pub struct ControlWatch {
     /// How old the boat's word on it may grow, s.
     #[schemars(range(min = 0.1, max = 30), extend("default" = 2))]
     pub age_max_s: f64,
-    /// A command that the boat does not show after this time is not obeyed, s.
+    /// A command that the boat does not show after this time is not followed, s.
     #[schemars(range(min = 0.2, max = 30), extend("default" = 1.5))]
     pub echo_s: f64,
 }

@@ -1,12 +1,12 @@
-//! What a mind asks of its boat.
+//! Orders: what a mind asks of its boat.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// One order for one boat; it holds until the next one comes.
+/// One order for one boat; it is in force until the next one comes, or until it expires.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Order {
-    /// Thrusters to zero. What a boat does without a mind: the safe order.
+    /// Thrusters to zero: the safe order, and what a boat does without an agent.
     #[default]
     Hold,
     /// The front seat's own loops steer this course.
@@ -25,7 +25,7 @@ pub enum Order {
     },
 }
 
-/// Why an order cannot be obeyed.
+/// Why an order cannot be followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum BadOrder {
     /// A number in it is NaN or infinite.

@@ -1,4 +1,4 @@
-//! Only the water of a game: some of its boats afloat, and nobody who judges them.
+//! A game without a referee's consequences: some of its boats afloat on its sea, for `squall sim --afloat`.
 //!
 //! This is where emulated boats float, while the game that they play in takes them for real ones. The sea, the boats and
 //! their sensors are those of the game; there are no tags, no flags that matter, no limits of sharing and no radio.

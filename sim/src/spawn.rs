@@ -7,12 +7,12 @@ use game::stream::Stream;
 use game::{Field, TeamId};
 use thiserror::Error;
 
-/// How often a start_position is drawn before the field counts as full.
+/// How often a start position is drawn before the field counts as full.
 const TRIES: u32 = 10_000;
 
 /// No room on the field.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("no free start_position for {vehicle} after {TRIES} tries: enlarge its spawn area or lower gap_m")]
+#[error("no free start position for {vehicle} after {TRIES} tries: enlarge its spawn area or lower gap_m")]
 pub struct SpawnError {
     /// Which vehicle found none.
     pub vehicle: String,

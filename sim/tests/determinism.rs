@@ -259,7 +259,7 @@ fn boats_start_inside_of_their_areas_and_apart() {
 }
 
 #[test]
-fn a_full_area_says_which_boat_has_no_berth() {
+fn a_full_area_says_which_boat_has_no_start_position() {
     let mut scenario = shipped("swarm_20v20.toml");
     for vehicle in &mut scenario.vehicles {
         if let StartPosition::Somewhere { gap_m, .. } = &mut vehicle.start_position {

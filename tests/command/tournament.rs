@@ -192,7 +192,7 @@ fn mistakes_in_a_tournament_are_explained() {
     let output = output(&["tournament", &crowd, "--games", "2"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("6 games could not start") && text.contains("no free start_position for red_1"), "{text}");
+    assert!(text.contains("6 games could not start") && text.contains("no free start position for red_1"), "{text}");
 }
 
 #[test]

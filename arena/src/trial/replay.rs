@@ -30,7 +30,7 @@ pub fn ticks_per_row(tick: SimTime) -> Result<u32, String> {
 
 /// Sails a boat by `orders` for `duration` and gives a sample every [`ROW`], that of the start first.
 ///
-/// A command is obeyed from the first tick that begins at its time or later.
+/// A command is in force from the first tick that begins at its time or later.
 ///
 /// # Errors
 /// [`Unsound`] where the boat's numbers go bad.
