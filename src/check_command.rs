@@ -17,7 +17,7 @@ pub(crate) struct Args {
 /// Which kind.
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
-    /// game, field, rules, boat, sea, strategy or tournament
+    /// game, field, rules, boat, sea, strategy, tournament or gateway
     kind: String,
 }
 
@@ -25,7 +25,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut errors = 0;
     for file in &args.files {
         match check_file(file) {
-            Ok(checked) => screen::print(&format!("{}: a good {}\n", file.display(), checked.kind())),
+            Ok(kind) => screen::print(&format!("{}: a good {kind}\n", file.display())),
             Err(problems) => {
                 errors += problems.0.len();
                 screen::print(&format!("{problems}\n"));

@@ -1,4 +1,4 @@
-//! Numbers drawn by lot: where distributions stand instead of numbers.
+//! Randomised numbers: where distributions stand in place of numbers.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 use game::scenario::{self, Scenario};
@@ -130,12 +130,12 @@ fn a_distribution_that_reaches_where_a_number_may_not_is_refused_with_its_place(
         (
             "length_m = { uniform = [2, 1] }\n",
             "",
-            "boats/drawn.toml:2:12: length_m is no distribution, expected one of { uniform",
+            "boats/drawn.toml:2:12: length_m is not a distribution, expected one of { uniform",
         ),
-        ("length_m = { normal = [2] }\n", "", "boats/drawn.toml:2:12: length_m is no distribution"),
-        ("length_m = { choice = [] }\n", "", "boats/drawn.toml:2:12: length_m is no distribution"),
-        ("length_m = { uniform = [1, 2], tims = 3 }\n", "", "boats/drawn.toml:2:12: length_m is no distribution"),
-        ("length_m = { log_normal = [-1, 0.1] }\n", "", "boats/drawn.toml:2:12: length_m is no distribution"),
+        ("length_m = { normal = [2] }\n", "", "boats/drawn.toml:2:12: length_m is not a distribution"),
+        ("length_m = { choice = [] }\n", "", "boats/drawn.toml:2:12: length_m is not a distribution"),
+        ("length_m = { uniform = [1, 2], tims = 3 }\n", "", "boats/drawn.toml:2:12: length_m is not a distribution"),
+        ("length_m = { log_normal = [-1, 0.1] }\n", "", "boats/drawn.toml:2:12: length_m is not a distribution"),
     ] {
         let problems = scenario::load(&written(dir.path(), boat, sea, "")).unwrap_err();
         let told = problems.to_string();

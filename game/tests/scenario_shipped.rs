@@ -4,9 +4,10 @@
 
 use game::field::Walls;
 use game::id::{TeamId, VehicleId};
-use game::scenario::{self, Checked, Kind, StartPosition};
+use game::scenario::{self, Kind, StartPosition};
 use game::{Ned, Scenario};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 fn shipped(path: &str) -> PathBuf {
@@ -26,10 +27,26 @@ fn game(name: &str) -> Scenario {
 }
 
 fn field(name: &str) -> game::Field {
-    match scenario::check_file(&shipped(&format!("fields/{name}.toml"))) {
-        Ok(Checked::Field(field)) => *field,
-        other => panic!("{other:?}"),
-    }
+    scenario::load_field(&shipped(&format!("fields/{name}.toml"))).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap().to_str().unwrap().to_owned()
+}
+
+/// What a file calls itself where it stands for itself.
+fn name_of(kind: Kind, path: &Path) -> Option<String> {
+    let name = match kind {
+        Kind::Game => scenario::load(path).map(|game| game.name),
+        Kind::Field => scenario::load_field(path).map(|field| field.plan.name),
+        Kind::Rules => return None,
+        Kind::Boat => scenario::load_boat(path).map(|boat| boat.name),
+        Kind::Sea => scenario::load_sea(path).map(|sea| sea.name),
+        Kind::Strategy => scenario::load_strategy(path).map(|strategy| strategy.name),
+        Kind::Tournament => scenario::load_tournament(path).map(|tournament| tournament.name),
+        Kind::Gateway => scenario::load_gateway(path).map(|gateway| gateway.name),
+    };
+    Some(name.unwrap_or_else(|problems| panic!("{problems}")))
 }
 
 #[test]
@@ -39,8 +56,8 @@ fn every_shipped_file_is_sound_and_says_what_it_is_for() {
         assert!(!files.is_empty(), "no {kind}");
         for path in files {
             let checked = scenario::check_file(&path).unwrap_or_else(|problems| panic!("{problems}"));
-            assert_eq!(checked.kind(), kind, "{}", path.display());
-            assert_eq!(checked.name(), path.file_stem().unwrap().to_str().unwrap());
+            assert_eq!(checked, kind, "{}", path.display());
+            assert_eq!(name_of(kind, &path).unwrap_or(stem(&path)), stem(&path));
             assert!(std::fs::read_to_string(&path).unwrap().starts_with("# "), "{}", path.display());
         }
     }
@@ -60,7 +77,7 @@ fn a_file_is_recognised_wherever_it_lies() {
             }
             let copy = folder.path().join(path.file_name().unwrap());
             std::fs::write(&copy, text).unwrap();
-            assert_eq!(scenario::check_file(&copy).map(|checked| checked.kind()), Ok(kind), "{}", path.display());
+            assert_eq!(scenario::check_file(&copy), Ok(kind), "{}", path.display());
         }
     }
 }
@@ -241,6 +258,37 @@ fn a_number_beyond_the_range_of_its_schema_is_refused() {
     }
 }
 
+/// The values in lists, whole numbers as all others.
+fn flat(value: &Value) -> Vec<String> {
+    match value {
+        Value::Array(values) => values.iter().flat_map(flat).collect(),
+        value => vec![value.as_f64().map_or(value.to_string(), |number| number.to_string())],
+    }
+}
+
+/// Checks that a line of an example gives the default of its key, unless its comment says otherwise.
+fn assert_shows_defaults(schema: &Value, text: &str) {
+    let mut table = schema;
+    for line in text.lines() {
+        let (said, comment) = line.split_once('#').unwrap_or((line, ""));
+        let inner = |key: &str| {
+            let about = &schema["properties"][key];
+            let name = about["allOf"][0]["$ref"].as_str().or(about["items"]["$ref"].as_str()).unwrap_or_default();
+            &schema["definitions"][name.rsplit('/').next().unwrap_or_default()]
+        };
+        if let Some(key) = said.trim().strip_prefix('[') {
+            table = inner(key.trim_matches(['[', ']']));
+        } else if let Some((key, value)) = said.split_once(" = ") {
+            let default = &table["properties"][key]["default"];
+            let is_other = ["example", "required", "default"].iter().any(|word| comment.contains(word));
+            if !default.is_null() && !is_other {
+                let shown: BTreeMap<String, Value> = toml::from_str(&format!("x = {value}")).unwrap();
+                assert_eq!(flat(&shown["x"]), flat(default), "{line}");
+            }
+        }
+    }
+}
+
 #[test]
 fn the_examples_of_the_handbook_are_sound() {
     let handbook = std::fs::read_to_string(shipped("README.md")).unwrap();
@@ -255,10 +303,11 @@ fn the_examples_of_the_handbook_are_sound() {
         examples.push((path, text));
     }
     // All texts of a kind: there are two kinds of boat.
-    let mut texts = std::collections::BTreeMap::<&str, String>::new();
+    let mut texts = BTreeMap::<&str, String>::new();
     for (path, text) in &examples {
         let checked = scenario::check_file(path).unwrap_or_else(|problems| panic!("{problems}"));
-        texts.entry(checked.kind().name()).or_default().push_str(text);
+        texts.entry(checked.name()).or_default().push_str(text);
+        assert_shows_defaults(&scenario::schema(checked), text);
     }
     assert_eq!(texts.len(), Kind::ALL.len());
     for kind in Kind::ALL {

@@ -81,7 +81,7 @@ pub(super) fn draw(
     let Some(distribution) = distribution(table) else {
         let key = path.rsplit('.').next().unwrap_or(path);
         let message = format!(
-            "{key} is no distribution, expected one of {{ uniform = [low, high] }}, {{ normal = [mean, sigma] }}, \
+            "{key} is not a distribution, expected one of {{ uniform = [low, high] }}, {{ normal = [mean, sigma] }}, \
              {{ log_normal = [median, sigma] }} with a median above 0, {{ choice = [a, b, ...] }}; \
              and times = a factor, if wanted"
         );

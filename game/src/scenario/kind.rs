@@ -34,31 +34,13 @@ impl Kind {
     /// Its name, which is also that of its schema file.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Kind::Game => "game",
-            Kind::Field => "field",
-            Kind::Rules => "rules",
-            Kind::Boat => "boat",
-            Kind::Sea => "sea",
-            Kind::Strategy => "strategy",
-            Kind::Tournament => "tournament",
-            Kind::Gateway => "gateway",
-        }
+        ["game", "field", "rules", "boat", "sea", "strategy", "tournament", "gateway"][self as usize]
     }
 
     /// The folder its files lie in.
     #[must_use]
     pub fn folder(self) -> &'static str {
-        match self {
-            Kind::Game => "games",
-            Kind::Field => "fields",
-            Kind::Rules => "rules",
-            Kind::Boat => "boats",
-            Kind::Sea => "seas",
-            Kind::Strategy => "strategies",
-            Kind::Tournament => "tournaments",
-            Kind::Gateway => "gateways",
-        }
+        ["games", "fields", "rules", "boats", "seas", "strategies", "tournaments", "gateways"][self as usize]
     }
 
     /// The kind that the folder of `path` says, if it says one.

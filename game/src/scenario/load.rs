@@ -10,64 +10,10 @@ use super::{Scenario, Tournament, check};
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::gateway::Gateway;
-use crate::rules::Rules;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
 use std::collections::BTreeSet;
 use std::path::Path;
-
-/// What a scenario file of any kind says.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Checked {
-    /// A game, with all the files it names.
-    Game(Box<Scenario>),
-    /// A field.
-    Field(Box<Field>),
-    /// Rules.
-    Rules(Box<Rules>),
-    /// A kind of boat.
-    Boat(Box<Boat>),
-    /// A sea.
-    Sea(Box<Sea>),
-    /// A strategy.
-    Strategy(Strategy),
-    /// A tournament, with all the files it names.
-    Tournament(Tournament),
-    /// The way to a real boat.
-    Gateway(Box<Gateway>),
-}
-
-impl Checked {
-    /// Which kind of file it was.
-    #[must_use]
-    pub fn kind(&self) -> Kind {
-        match self {
-            Checked::Game(_) => Kind::Game,
-            Checked::Field(_) => Kind::Field,
-            Checked::Rules(_) => Kind::Rules,
-            Checked::Boat(_) => Kind::Boat,
-            Checked::Sea(_) => Kind::Sea,
-            Checked::Strategy(_) => Kind::Strategy,
-            Checked::Tournament(_) => Kind::Tournament,
-            Checked::Gateway(_) => Kind::Gateway,
-        }
-    }
-
-    /// The file's stem.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        match self {
-            Checked::Game(game) => &game.name,
-            Checked::Field(field) => &field.plan.name,
-            Checked::Rules(rules) => &rules.name,
-            Checked::Boat(boat) => &boat.name,
-            Checked::Sea(sea) => &sea.name,
-            Checked::Strategy(strategy) => &strategy.name,
-            Checked::Tournament(tournament) => &tournament.name,
-            Checked::Gateway(gateway) => &gateway.name,
-        }
-    }
-}
 
 /// Reads and checks the game file at `path` and every file it names. Where files give distributions, the numbers
 /// are those of the game's own seed; [`Scenario::of_seed`] draws others.
@@ -127,6 +73,14 @@ impl Scenario {
         }
         Ok(drawn)
     }
+}
+
+/// Reads and checks the field file at `path`.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn load_field(path: &Path) -> Result<Field, Problems> {
+    one(path, check::field, 1).map(|(field, _)| field)
 }
 
 /// Reads and checks the boat file at `path`. Where it gives distributions, the numbers are those of seed 1.
@@ -200,26 +154,27 @@ pub fn default_gateway() -> Gateway {
     document.and_then(|document| check::gateway(&mut diagnostics, &document)).expect("every key has a default")
 }
 
-/// Reads and checks a scenario file of any kind.
+/// Reads and checks a scenario file of any kind, and says which kind it is.
 ///
-/// The folder it lies in says which kind it is (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`,
-/// `tournaments`, `gateways`).
+/// The folder it lies in tells (`games`, `fields`, `rules`, `boats`, `seas`, `strategies`, `tournaments`, `gateways`).
 /// In any other folder it is the kind that knows most of its top-level keys, its bases' included; where
 /// several know as many, the first of [`Kind::ALL`].
 ///
 /// # Errors
 /// Everything that is wrong in it, its bases and the files it names.
-pub fn check_file(path: &Path) -> Result<Checked, Problems> {
-    match Kind::by_folder(path).unwrap_or_else(|| Kind::by_keys(&top_keys(path))) {
-        Kind::Game => load(path).map(|game| Checked::Game(Box::new(game))),
-        Kind::Field => one(path, check::field, 1).map(|(field, _)| Checked::Field(Box::new(field))),
-        Kind::Rules => one(path, check::rules, 1).map(|(rules, _)| Checked::Rules(Box::new(rules))),
-        Kind::Boat => load_boat(path).map(|boat| Checked::Boat(Box::new(boat))),
-        Kind::Sea => load_sea(path).map(|sea| Checked::Sea(Box::new(sea))),
-        Kind::Strategy => load_strategy(path).map(Checked::Strategy),
-        Kind::Tournament => load_tournament(path).map(Checked::Tournament),
-        Kind::Gateway => load_gateway(path).map(|gateway| Checked::Gateway(Box::new(gateway))),
-    }
+pub fn check_file(path: &Path) -> Result<Kind, Problems> {
+    let kind = Kind::by_folder(path).unwrap_or_else(|| Kind::by_keys(&top_keys(path)));
+    match kind {
+        Kind::Game => load(path).map(drop),
+        Kind::Field => load_field(path).map(drop),
+        Kind::Rules => one(path, check::rules, 1).map(drop),
+        Kind::Boat => load_boat(path).map(drop),
+        Kind::Sea => load_sea(path).map(drop),
+        Kind::Strategy => load_strategy(path).map(drop),
+        Kind::Tournament => load_tournament(path).map(drop),
+        Kind::Gateway => load_gateway(path).map(drop),
+    }?;
+    Ok(kind)
 }
 
 /// A file of one kind, and what was drawn for it.

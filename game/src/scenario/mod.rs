@@ -25,8 +25,8 @@ mod validate;
 pub use draw::{Drawn, Recipe};
 pub use kind::Kind;
 pub use load::{
-    Checked, check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_gateway, load_sea, load_strategy,
-    load_tournament, load_with,
+    check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_sea,
+    load_strategy, load_tournament, load_with,
 };
 pub use overrides::Overrides;
 pub use problem::{Problem, Problems};

@@ -61,8 +61,6 @@ impl<T> Document<T> {
 const LARGEST_BYTES: u64 = 4 << 20;
 /// Bases of bases of bases.
 const LONGEST_CHAIN: usize = 16;
-/// Of a dotted key.
-const MOST_PARTS: usize = 100;
 
 /// A file and its bases, the file first: where each begins, and its text.
 pub(super) type Chain = Vec<(usize, Arc<str>)>;
@@ -172,47 +170,22 @@ fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
 
 /// Notes what is wrong with the syntax, and returns the base the file names.
 fn syntax_of(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Option<(String, usize)> {
-    if let Some(at) = too_deep(text) {
-        diagnostics.note_syntax(
-            start + at,
-            format!("found a key of more than {MOST_PARTS} parts, expected at most 3").as_str(),
-        );
-        return None;
-    }
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in errors {
-        let at = error.span().map_or(0, |span| span.start);
-        diagnostics.note_syntax(start + at, error.message());
+        match error.span() {
+            Some(span) => diagnostics.note_syntax(start + span.start, error.message()),
+            None => diagnostics.note_syntax(start, "found a key of very many parts, expected at most 3"),
+        }
     }
     let base = table.get_ref().get("base")?;
     let at = start + base.span().start;
     Some((base.get_ref().as_str()?.to_owned(), at))
 }
 
-/// Where a dotted key has more parts than can be meant: the parser recurses once a part.
-pub(super) fn too_deep(text: &str) -> Option<usize> {
-    let (mut dots, mut before, mut in_comment) = (0, '\n', false);
-    for (at, c) in text.char_indices() {
-        in_comment = c != '\n' && (in_comment || c == '#' && before.is_whitespace());
-        match c {
-            '.' if !in_comment => dots += 1,
-            '=' | '\n' | ',' | '[' | '{' => dots = 0,
-            _ => {}
-        }
-        if dots > MOST_PARTS {
-            return Some(at);
-        }
-        before = c;
-    }
-    None
-}
-
 /// The file laid over its bases; the keys `own` of bases do not count.
 pub(super) fn tree(chain: &Chain, own: &[&str]) -> Node {
-    let mut trees = chain.iter().map(|(start, text)| {
-        let usable = if too_deep(text).is_some() { "" } else { text };
-        Node::root(DeTable::parse_recoverable(usable).0.into_inner(), *start)
-    });
+    let mut trees =
+        chain.iter().map(|(start, text)| Node::root(DeTable::parse_recoverable(text).0.into_inner(), *start));
     let mut over = trees.next().unwrap_or_else(|| Node::empty(0));
     for mut base in trees {
         base.remove(own);

@@ -70,9 +70,6 @@ fn problems(asked: &str, files: &[(&str, &[u8])]) -> Vec<String> {
     found.to_string().lines().map(|line| line.replace(&root, "")).collect()
 }
 
-/// A name for the case, the file to check, the files to replace, and what must be reported.
-type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static [&'static str]);
-
 /// Long lists of what is allowed: how they begin and end, and what stands for them here.
 const LISTS: [(&str, &str, &str); 10] = [
     ("PPB PPF", "SSBX", "{points}"),
@@ -99,17 +96,54 @@ fn abridged(line: &str) -> String {
     })
 }
 
-fn assert_reported(cases: &[Case]) {
-    let mut differences = vec![];
-    for (name, asked, files, want) in cases {
-        let files: Vec<(&str, &[u8])> = files.iter().map(|(path, text)| (*path, text.as_bytes())).collect();
-        let got = problems(asked, &files);
-        let got: Vec<String> = got.iter().map(|line| abridged(line)).collect();
-        if got != *want {
-            differences.push(format!("{name}:\n  got  {got:#?}\n  want {want:#?}"));
+/// Checks that broken files are reported as they say themselves.
+///
+/// A case is `## `, a name, and from the next line the file at `path`, which begins with `head`. After a line `--- PATH`
+/// follows another file; where the case begins with one, it is the file to check. What must be reported for a line
+/// stands behind it: `#~ COLUMN: MESSAGE`, after the name `#~ LINE:COLUMN: MESSAGE` or `#~ PATH:LINE:COLUMN: MESSAGE`.
+/// Nothing else may be reported.
+fn assert_broken(path: &str, head: &str, cases: &str) {
+    let mut failures = vec![];
+    for case in cases.split("\n## ").skip(1) {
+        let (title, text) = case.split_once('\n').expect("a case has a text");
+        let mut title = title.split(" #~ ");
+        let name = title.next().unwrap_or_default();
+        let mut said: Vec<String> = title.map(str::to_owned).collect();
+        let mut files = vec![(path, head.to_owned())];
+        for (i, line) in text.lines().filter(|line| !line.is_empty()).enumerate() {
+            if let Some(path) = line.strip_prefix("--- ") {
+                files.truncate(if i == 0 { 0 } else { files.len() });
+                files.push((path, String::new()));
+                continue;
+            }
+            let mut parts = line.split(" #~ ");
+            let (path, text) = files.last_mut().expect("a case has a file");
+            text.push_str(parts.next().unwrap_or_default());
+            text.push('\n');
+            let number = text.lines().count();
+            said.extend(parts.map(|said| format!("{path}:{number}:{said}")));
         }
+        let mut want: Vec<_> = said.iter().map(|said| expected(files[0].0, said)).collect();
+        want.sort();
+        let want: Vec<String> =
+            want.into_iter().map(|(path, line, column, what)| format!("{path}:{line}:{column}: {what}")).collect();
+        let texts: Vec<(&str, &[u8])> = files.iter().map(|(path, text)| (*path, text.as_bytes())).collect();
+        let got: Vec<String> = problems(files[0].0, &texts).iter().map(|line| abridged(line)).collect();
+        failures.extend((got != want).then(|| format!("{name}\n   is: {got:#?}\n want: {want:#?}")));
     }
-    assert!(differences.is_empty(), "{}", differences.join("\n"));
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// A problem, from `PATH:LINE:COLUMN: MESSAGE`, or in the file at `path` from `LINE:COLUMN: MESSAGE`.
+fn expected<'a>(path: &'a str, said: &'a str) -> (&'a str, usize, usize, &'a str) {
+    let (path, said) = match said.split_once(".toml:") {
+        Some((stem, rest)) if !stem.contains(' ') => (&said[..stem.len() + ".toml".len()], rest),
+        _ => (path, said),
+    };
+    let mut parts = said.splitn(3, ':');
+    let mut number = || parts.next().and_then(|number| number.parse().ok()).expect("a line and a column");
+    let (line, column) = (number(), number());
+    (path, line, column, parts.next().unwrap_or_default().trim_start())
 }
 
 #[test]
@@ -120,4 +154,10 @@ fn the_sound_files_are_sound() {
     // What a base names stays where the base says, wherever the file that builds on it lies.
     let elsewhere = ("mine/of/today/x.toml", b"base = \"../../../games/g.toml\"\nseed = 7\n".as_slice());
     assert_eq!(problems(elsewhere.0, &[elsewhere]), [""; 0]);
+}
+
+#[test]
+fn a_file_that_is_not_there_is_reported() {
+    let want = "games/none.toml:1:1: cannot be read (No such file or directory (os error 2)), expected a file";
+    assert_eq!(problems("games/none.toml", &[]), [want]);
 }
