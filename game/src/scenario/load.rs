@@ -6,6 +6,7 @@ use super::kind::Kind;
 use super::overrides::Overrides;
 use super::problem::Problems;
 use super::read::{self, Declared, Document};
+use super::tree::Node;
 use super::{Scenario, Tournament, check};
 use crate::boat::Boat;
 use crate::field::Field;
@@ -199,6 +200,6 @@ fn one<R: Declared, T>(
 
 /// The top-level keys of a file and its bases; what is wrong with them is found again by the check.
 fn top_keys(path: &Path) -> BTreeSet<String> {
-    let Some(chain) = read::chain(&mut Diagnostics::new(Drawing::Least), path, None) else { return BTreeSet::new() };
-    read::tree(&chain, &[]).entries().map(|(key, _)| key.clone()).collect()
+    let tree = read::tree(&mut Diagnostics::new(Drawing::Least), path, None, &[]);
+    tree.iter().flat_map(Node::entries).map(|(key, _)| key.clone()).collect()
 }

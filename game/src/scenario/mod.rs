@@ -1,8 +1,9 @@
 //! What makes a game: read from TOML files, checked once, believed ever after.
 //!
 //! [`Scenario`] is the checked form, SI and radians, and travels to every process that joins the game.
-//! [`load`] makes one: `read` finds the files and lays them over their bases, `raw` is what people type,
-//! `check` makes of it what the program believes, and the `diagnostics` collects every [`Problem`] on the way.
+//! [`load`] makes one. `raw` declares the keys of files, `schema` makes the JSON Schemas of them. `read` finds the files and
+//! lays them over their bases, `validate` reads them by their schema, `check` makes of them what the program believes,
+//! and `diagnostics` collects every [`Problem`] on the way.
 
 mod check;
 mod diagnostics;
@@ -31,7 +32,7 @@ pub use load::{
 pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
 pub use real_boats::RealBoats;
-pub use reference::reference;
+pub use reference::{file_reference, reference};
 pub use schema::schema;
 pub use tournament::{Entrant, Tournament};
 

@@ -4,7 +4,7 @@ use super::diagnostics::Diagnostics;
 use super::kind::Kind;
 use super::schema::declared;
 use super::source::tidied;
-use super::tree::Node;
+use super::tree::{Node, Value};
 use super::validate::validated;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -62,9 +62,6 @@ const LARGEST_BYTES: u64 = 4 << 20;
 /// Bases of bases of bases.
 const LONGEST_CHAIN: usize = 16;
 
-/// A file and its bases, the file first: where each begins, and its text.
-pub(super) type Chain = Vec<(usize, Arc<str>)>;
-
 /// Reads the file at `path` with its bases. Problems with finding it stand at `asked_at`, the reference.
 pub(super) fn document<T: Declared>(
     diagnostics: &mut Diagnostics,
@@ -82,11 +79,10 @@ pub(super) fn document_of<T: Declared>(
     owner: &str,
 ) -> Option<Document<T>> {
     let faults = diagnostics.faults();
-    let chain = chain(diagnostics, path, asked_at)?;
-    let start = chain[0].0;
+    let tree = tree(diagnostics, path, asked_at, T::OWN)?;
+    let start = tree.at;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     diagnostics.is_name(start, "the file's name", &name);
-    let tree = tree(&chain, T::OWN);
     let (value, wrong) = validated(diagnostics, &tree, declared(T::KIND), owner);
     match serde_json::from_value(value) {
         Ok(raw) => Some(Document { name, raw, faults, tree, wrong }),
@@ -97,11 +93,15 @@ pub(super) fn document_of<T: Declared>(
     }
 }
 
-/// Reads a file and its bases, and notes what is wrong with their syntax.
-pub(super) fn chain(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) -> Option<Chain> {
-    let mut chain: Chain = vec![];
-    let mut paths: Vec<PathBuf> = vec![];
-    let (mut path, mut asked_at) = (tidied(path), asked_at);
+/// Reads a file, lays it over its bases, and notes what is wrong with their syntax; the keys `own` of bases do not count.
+pub(super) fn tree(
+    diagnostics: &mut Diagnostics,
+    path: &Path,
+    mut asked_at: Option<usize>,
+    own: &[&str],
+) -> Option<Node> {
+    let (mut path, mut paths) = (tidied(path), Vec::<PathBuf>::new());
+    let mut tree: Option<Node> = None;
     loop {
         if let Some(at) = asked_at
             && (paths.contains(&path) || paths.len() == LONGEST_CHAIN)
@@ -112,16 +112,22 @@ pub(super) fn chain(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option
             return None;
         }
         let (start, text) = text_of(diagnostics, &path, asked_at)?;
-        let base = syntax_of(diagnostics, start, &text);
-        chain.push((start, text));
+        let mut layer = parsed(diagnostics, start, &text);
+        let base = match layer.find("base") {
+            (Node { value: Value::Text(base), at, .. }, true) => Some((base.clone(), *at)),
+            _ => None,
+        };
         paths.push(path);
-        match base {
-            Some((base, at)) => {
-                path = diagnostics.sources.resolve(at, &base);
-                asked_at = Some(at);
+        match &mut tree {
+            None => tree = Some(layer),
+            Some(over) => {
+                layer.remove(own);
+                over.lay_over(layer);
             }
-            None => return Some(chain),
         }
+        let Some((base, at)) = base else { return tree };
+        path = diagnostics.sources.resolve(at, &base);
+        asked_at = Some(at);
     }
 }
 
@@ -168,8 +174,8 @@ fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(unreadable)
 }
 
-/// Notes what is wrong with the syntax, and returns the base the file names.
-fn syntax_of(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Option<(String, usize)> {
+/// The tree of a text that begins at `start`, as far as its syntax is good; what is not is noted.
+fn parsed(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Node {
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in errors {
         match error.span() {
@@ -177,19 +183,5 @@ fn syntax_of(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Option<
             None => diagnostics.note_syntax(start, "found a key of very many parts, expected at most 3"),
         }
     }
-    let base = table.get_ref().get("base")?;
-    let at = start + base.span().start;
-    Some((base.get_ref().as_str()?.to_owned(), at))
-}
-
-/// The file laid over its bases; the keys `own` of bases do not count.
-pub(super) fn tree(chain: &Chain, own: &[&str]) -> Node {
-    let mut trees =
-        chain.iter().map(|(start, text)| Node::root(DeTable::parse_recoverable(text).0.into_inner(), *start));
-    let mut over = trees.next().unwrap_or_else(|| Node::empty(0));
-    for mut base in trees {
-        base.remove(own);
-        over.lay_over(base);
-    }
-    over
+    Node::root(table.into_inner(), start)
 }

@@ -17,7 +17,7 @@ pub(super) struct Node {
 }
 
 /// What TOML knows.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) enum Value {
     Table(Table),
     List(Vec<Node>),
@@ -31,21 +31,10 @@ pub(super) enum Value {
 /// Keys and values.
 pub(super) type Table = BTreeMap<String, Node>;
 
-impl PartialEq for Node {
-    fn eq(&self, other: &Node) -> bool {
-        self.value == other.value
-    }
-}
-
 impl Node {
     /// The root of a file that begins at `start` in the virtual text.
     pub(super) fn root(table: DeTable<'_>, start: usize) -> Node {
         Node { at: start, key_at: start, value: Value::Table(table_from(table, start)) }
-    }
-
-    /// An empty table.
-    pub(super) fn empty(at: usize) -> Node {
-        Node { at, key_at: at, value: Value::Table(Table::new()) }
     }
 
     /// The entries of a table; nothing else has any.

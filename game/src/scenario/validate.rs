@@ -218,8 +218,9 @@ impl<'a> Validator<'a> {
         if schema.get("properties").is_some() {
             return Some(self.table(owner, const { &Table::new() }, schema));
         }
-        let is_list_of_tables = schema["type"] == "array" && resolved(&schema["items"], self.root)["type"] == "object";
-        if is_list_of_tables || counts(schema).contains(&0) && !takes(schema, "string") && schema["type"] == "array" {
+        // No entries are as good as an empty list, and wrong in the same way.
+        let is_list_of_tables = || resolved(&schema["items"], self.root)["type"] == "object";
+        if schema["type"] == "array" && (counts(schema).contains(&0) || is_list_of_tables()) {
             return self.list(owner, &[], schema);
         }
         self.missing(owner, &allowed(schema, self.root))
