@@ -2,8 +2,8 @@
 
 use crate::net_args::LeafArgs;
 use crate::observer::Observer;
-use crate::plot::polar::{self, PolarPlot};
-use crate::{helm_text, screen};
+use crate::plot::polar::{PolarPage, PolarPlot};
+use crate::{helm_text, plot, screen};
 use anyhow::{Context, Result, bail};
 use game::Scenario;
 use game::helm::{FunctionReport, HelmQuestion, HelmReport};
@@ -56,13 +56,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             report.mode,
             helm_text::decision(&report)
         );
-        let plots = plots(&report);
-        if let Some(path) = &args.png {
-            polar::write_png(path, &title, &plots)?;
-        }
-        if let Some(path) = &args.svg {
-            polar::write_svg(path, &title, &plots)?;
-        }
+        let page = PolarPage { title, plots: plots(&report) };
+        args.png.iter().try_for_each(|path| plot::write_png(path, &page))?;
+        args.svg.iter().try_for_each(|path| plot::write_svg(path, &page))?;
     }
     observer.bus.close();
     Ok(ExitCode::SUCCESS)

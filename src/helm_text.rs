@@ -2,26 +2,25 @@
 
 use game::Scenario;
 use game::helm::{FunctionReport, HelmReport, RunState};
-use std::fmt::Write;
 
 /// A page: mode, decision, and what every behaviour wants.
 pub(crate) fn page(scenario: &Scenario, report: &HelmReport) -> String {
     let name = &scenario.vehicles[report.vehicle.index()].name;
     let mut text = format!("{name}  follows {}  {:.1} s\n", report.program, report.at.as_s());
-    push(&mut text, format_args!("mode    {}\n", report.mode));
-    push(&mut text, format_args!("helm    {}\n\n", decision(report)));
+    text += &format!("mode    {}\n", report.mode);
+    text += &format!("helm    {}\n\n", decision(report));
     let rows = rows(scenario, report);
     let widths = [0, 1].map(|i| rows.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
     for [what, kind, state, weight, utility] in &rows {
         let line =
             format!("{what:<w$}  {kind:<k$}  {state:<8}  {weight:>7}  {utility:>7}", w = widths[0], k = widths[1]);
-        push(&mut text, format_args!("{}\n", line.trim_end()));
+        text += &format!("{}\n", line.trim_end());
     }
     if !report.variables.is_empty() {
         let width = report.variables.iter().map(|variable| variable.name.len()).max().unwrap_or(0);
         text.push('\n');
         for variable in &report.variables {
-            push(&mut text, format_args!("{:<width$}  {}\n", variable.name, variable.value));
+            text += &format!("{:<width$}  {}\n", variable.name, variable.value);
         }
     }
     text
@@ -93,8 +92,4 @@ fn rows(scenario: &Scenario, report: &HelmReport) -> Vec<[String; 5]> {
 
 fn number(value: Option<f64>, places: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.places$}"))
-}
-
-fn push(text: &mut String, args: std::fmt::Arguments<'_>) {
-    text.write_fmt(args).expect("writing to a String cannot fail");
 }

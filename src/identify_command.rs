@@ -23,7 +23,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     fit: Vec<String>,
     /// The model starts anew from the log this often, s
-    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = segment)]
+    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = within(1.0, 3600.0, "s"))]
     segment_s: f64,
     /// Writes the new boat to this file [default: BOAT_identified.toml here]
     #[arg(long, value_name = "FILE")]
@@ -33,10 +33,6 @@ pub(crate) struct Args {
     tick_s: Option<f64>,
     #[command(flatten)]
     water: WaterArgs,
-}
-
-fn segment(text: &str) -> Result<f64, String> {
-    within(text, 1.0, 3600.0, "s")
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {

@@ -1,6 +1,7 @@
 //! `squall log`: what a recorded game tells afterwards.
 
 use crate::plot::game as plot;
+use crate::water_args::within;
 use crate::{recording_file, screen};
 use analysis::{Comparison, GameSeries, Summary};
 use anyhow::{Context, Result};
@@ -44,17 +45,13 @@ pub(crate) struct Args {
     #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["file", "events"])]
     compare: Option<Vec<PathBuf>>,
     /// Events of two recordings that are nearer than this are the same, s
-    #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = tolerance, requires = "compare")]
+    #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
     tolerance_s: f64,
 }
 
 const AFTER_HELP: &str = "\
 Topics are in the summary. Tables have one row a message, except: pictures one a boat seen, inputs one an input, say one \
 a word, link one a sentence.";
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    crate::water_args::within(text, 0.0, 3600.0, "s")
-}
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     match (&args.compare, &args.file) {

@@ -1,6 +1,7 @@
 //! The command line's way of saying where the page is served.
 
 use anyhow::Result;
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use shore::page::{Page, PageError, PageSettings};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::Arc;
@@ -68,9 +69,8 @@ impl PageArgs {
 
 /// A text as it may stand in an address.
 fn in_address(text: &str) -> String {
-    let stands = |byte: u8| byte.is_ascii_alphanumeric() || b"-._~".contains(&byte);
-    let spell = |byte: u8| if stands(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") };
-    text.bytes().map(spell).collect()
+    const SPELLED: &AsciiSet = &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~');
+    utf8_percent_encode(text, SPELLED).to_string()
 }
 
 /// The address of this machine on the network, if it is on one. Nothing is sent for it.

@@ -44,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "S", value_parser = tick)]
     tick_s: Option<f64>,
     /// How long the trial lasts, s [default: until the last command, or as the manoeuvre needs]
-    #[arg(long, value_name = "S", value_parser = duration)]
+    #[arg(long, value_name = "S", value_parser = within(0.1, trial::LONGEST_S, "s"))]
     duration_s: Option<f64>,
     #[command(flatten)]
     manoeuvring: ManoeuvreArgs,
@@ -57,16 +57,16 @@ pub(crate) struct ManoeuvreArgs {
     #[arg(long, value_name = "M_S", value_parser = water_args::speed, conflicts_with = "orders")]
     approach_m_s: Option<f64>,
     /// How long the approach takes, s
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = approach_time, conflicts_with = "orders")]
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = within(0.0, 3600.0, "s"), conflicts_with = "orders")]
     approach_s: f64,
     /// Turns to port (first)
     #[arg(long, conflicts_with = "orders")]
     to_port: bool,
     /// The heading at which a zigzag switches, degrees: 10 for 10/10, 20 for 20/20
-    #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = switch_angle, conflicts_with = "orders")]
+    #[arg(long, value_name = "DEG", default_value_t = 10.0, value_parser = within(1.0, 90.0, "degrees"), conflicts_with = "orders")]
     angle_deg: f64,
     /// How far a zigzag sets the thrusters off their mean, or the rudder, per cent of full [default: as many as --angle-deg]
-    #[arg(long, value_name = "PCT", value_parser = differential, conflicts_with = "orders")]
+    #[arg(long, value_name = "PCT", value_parser = within(1.0, 100.0, "per cent"), conflicts_with = "orders")]
     differential_pct: Option<f64>,
 }
 
@@ -85,16 +85,16 @@ pub(crate) struct StartArgs {
     #[arg(long, value_name = "DEG", default_value_t = 0.0, value_parser = degrees, allow_negative_numbers = true)]
     start_heading_deg: f64,
     /// Speed ahead over the ground at the start, m/s
-    #[arg(long, value_name = "M_S", default_value_t = 0.0, value_parser = any_speed, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M_S", default_value_t = 0.0, value_parser = within(-60.0, 60.0, "m/s"), allow_negative_numbers = true)]
     start_surge_m_s: f64,
     /// Speed to starboard over the ground at the start, m/s
-    #[arg(long, value_name = "M_S", default_value_t = 0.0, value_parser = any_speed, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M_S", default_value_t = 0.0, value_parser = within(-60.0, 60.0, "m/s"), allow_negative_numbers = true)]
     start_sway_m_s: f64,
     /// Yaw rate at the start, degrees a second clockwise
     #[arg(long, value_name = "DEG_S", default_value_t = 0.0, value_parser = degrees, allow_negative_numbers = true)]
     start_yaw_rate_deg_s: f64,
     /// Thrust of a kinematic boat at the start, per cent [default: what keeps its speed]
-    #[arg(long, value_name = "PCT", value_parser = per_cent, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PCT", value_parser = within(-100.0, 100.0, "per cent"), allow_negative_numbers = true)]
     start_thrust_pct: Option<f64>,
 }
 
@@ -115,33 +115,9 @@ impl StartArgs {
     }
 }
 
-fn any_speed(text: &str) -> Result<f64, String> {
-    within(text, -60.0, 60.0, "m/s")
-}
-
-fn per_cent(text: &str) -> Result<f64, String> {
-    within(text, -100.0, 100.0, "per cent")
-}
-
-fn approach_time(text: &str) -> Result<f64, String> {
-    within(text, 0.0, 3600.0, "s")
-}
-
-fn switch_angle(text: &str) -> Result<f64, String> {
-    within(text, 1.0, 90.0, "degrees")
-}
-
-fn differential(text: &str) -> Result<f64, String> {
-    within(text, 1.0, 100.0, "per cent")
-}
-
-fn duration(text: &str) -> Result<f64, String> {
-    within(text, 0.1, trial::LONGEST_S, "s")
-}
-
 /// A physics tick from the command line, s.
 pub(crate) fn tick(text: &str) -> Result<f64, String> {
-    let tick_s = within(text, 0.001, 0.1, "s")?;
+    let tick_s = within(0.001, 0.1, "s")(text)?;
     trial::ticks_per_row(SimTime::from_s(tick_s)).map(|_| tick_s)
 }
 

@@ -93,22 +93,21 @@ pub(crate) fn names_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// A number from the command line, within limits.
-pub(crate) fn within(text: &str, low: f64, high: f64, unit: &str) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|_| format!("{text:?} is not a number, expected {low} to {high} {unit}"))?;
-    if (low..=high).contains(&number) {
-        Ok(number)
-    } else {
-        Err(format!("{text} is not within {low} to {high} {unit}"))
+/// Reads a number from the command line, within limits.
+pub(crate) fn within(low: f64, high: f64, unit: &'static str) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text: &str| {
+        let number = text.parse().map_err(|_| format!("{text:?} is not a number, expected {low} to {high} {unit}"))?;
+        let is_within = (low..=high).contains(&number);
+        if is_within { Ok(number) } else { Err(format!("{text} is not within {low} to {high} {unit}")) }
     }
 }
 
 /// A speed, m/s.
 pub(crate) fn speed(text: &str) -> Result<f64, String> {
-    within(text, 0.0, 60.0, "m/s")
+    within(0.0, 60.0, "m/s")(text)
 }
 
 /// An angle, degrees.
 pub(crate) fn degrees(text: &str) -> Result<f64, String> {
-    within(text, -720.0, 720.0, "degrees")
+    within(-720.0, 720.0, "degrees")(text)
 }

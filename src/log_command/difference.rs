@@ -29,12 +29,7 @@ fn tracks(text: &mut String, width: usize, comparison: &Comparison) {
         let cells = cells.map(|metres| format!("{metres:>12.2}")).concat();
         line(text, format_args!("{boat:width$}{cells}"));
     }
-    line(
-        text,
-        format_args!(
-            "as shapes: discrete Fréchet distance (Eiter and Mannila 1994), which forgives being early or late"
-        ),
-    );
+    *text += "as shapes: discrete Fréchet distance (Eiter and Mannila 1994), which forgives being early or late\n";
 }
 
 /// A name of a number of a response, its unit, how many places it has, and where it is.
@@ -69,11 +64,8 @@ fn responses(text: &mut String, width: usize, boats: &[Pair]) {
             line(text, format_args!("{name:width$}{game} {}{drift:>22}", MEASURES.map(cell).concat()));
         }
     }
-    line(
-        text,
-        format_args!(
-            "drift counts from {SETTLED_S:.0} s after the order to hold on; - is what the game gave no occasion to tell"
-        ),
+    *text += &format!(
+        "drift counts from {SETTLED_S:.0} s after the order to hold on; - is what the game gave no occasion to tell\n"
     );
 }
 

@@ -1,13 +1,10 @@
 //! A chart of the field with tracks on it, as SVG and PNG files.
 
-use crate::plot::{self, FONT, failed};
-use anyhow::{Context, Result, bail};
+use crate::plot::{Area, Drawing, Drawn, FONT, Ink};
 use game::field::{Field, Obstacle};
 use game::{Ned, math};
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::path::Path;
 
 /// A chart.
 pub(crate) struct Chart<'a> {
@@ -77,23 +74,6 @@ const GREY: RGBColor = RGBColor(90, 90, 90);
 /// Tracks are drawn no finer than this, pixels.
 const FINE: f64 = 0.7;
 
-/// Draws a chart into an SVG and a PNG file of this name.
-pub(crate) fn write(stem: &Path, chart: &Chart<'_>) -> Result<()> {
-    plot::provide_font();
-    let view = View::of(chart);
-    let path = stem.with_extension("svg");
-    let mut svg = String::new();
-    draw(SVGBackend::with_string(&mut svg, view.size()), chart, &view)
-        .with_context(|| format!("cannot draw {}", path.display()))?;
-    std::fs::write(&path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))?;
-    let path = stem.with_extension("png");
-    let (wide, high) = view.size();
-    let mut pixels = vec![0; 3 * wide as usize * high as usize];
-    draw(BitMapBackend::with_buffer(&mut pixels, (wide, high)), chart, &view)
-        .with_context(|| format!("cannot draw {}", path.display()))?;
-    plot::save_png(&path, (wide, high), &pixels)
-}
-
 /// What part of the world is shown, and how large.
 struct View {
     east_m: (f64, f64),
@@ -139,51 +119,44 @@ impl View {
     }
 }
 
-type Area<B> = DrawingArea<B, Shift>;
+impl Drawing for Chart<'_> {
+    fn size(&self) -> (u32, u32) {
+        View::of(self).size()
+    }
 
-fn draw<B: DrawingBackend>(backend: B, chart: &Chart<'_>, view: &View) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
-    let root = backend.into_drawing_area();
-    root.fill(&WHITE).map_err(failed)?;
-    root.draw(&Text::new(chart.title.clone(), (24, 16), (FONT, 20).into_font())).map_err(failed)?;
-    draw_axes(&root, view)?;
-    draw_field(&root, chart, view)?;
-    for track in &chart.tracks {
-        let line = PathElement::new(fine(&track.places, view), track.colour.stroke_width(2));
-        root.draw(&line).map_err(failed)?;
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>, _: Ink) -> Drawn<B> {
+        let view = View::of(self);
+        root.draw(&Text::new(self.title.clone(), (24, 16), (FONT, 20).into_font()))?;
+        draw_axes(root, &view)?;
+        draw_field(root, self, &view)?;
+        for track in &self.tracks {
+            root.draw(&PathElement::new(fine(&track.places, &view), track.colour.stroke_width(2)))?;
+        }
+        for flag in &self.field.flags {
+            let colour = self.teams.get(flag.team.index()).map_or(GREY, |team| team.1);
+            draw_symbol(root, Symbol::Flag, view.pixel(flag.home), colour)?;
+        }
+        for spot in self.spots.iter().filter(|spot| is_drawn(&spot.at)) {
+            draw_symbol(root, spot.symbol, view.pixel(spot.at), spot.colour)?;
+        }
+        draw_names(root, self, &view)?;
+        draw_legend(root, self, &view)
     }
-    for flag in &chart.field.flags {
-        let colour = chart.teams.get(flag.team.index()).map_or(GREY, |team| team.1);
-        draw_symbol(&root, Symbol::Flag, view.pixel(flag.home), colour)?;
-    }
-    for spot in chart.spots.iter().filter(|spot| is_drawn(&spot.at)) {
-        draw_symbol(&root, spot.symbol, view.pixel(spot.at), spot.colour)?;
-    }
-    draw_names(&root, chart, view)?;
-    draw_legend(&root, chart, view)?;
-    root.present().map_err(failed)
 }
 
 /// The frame of the water with metres beside it.
-fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
+fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Drawn<B> {
     let area = root.margin(TITLE, BELOW + MARGIN, MARGIN, MARGIN);
     let mut axes = ChartBuilder::on(&area)
         .x_label_area_size(LABELS.1)
         .y_label_area_size(LABELS.0)
-        .build_cartesian_2d(view.east_m.0..view.east_m.1, view.north_m.0..view.north_m.1)
-        .map_err(failed)?;
+        .build_cartesian_2d(view.east_m.0..view.east_m.1, view.north_m.0..view.north_m.1)?;
     // What is drawn is placed by the view: the axes must agree with it.
     for (east_m, north_m) in [(view.east_m.0, view.north_m.0), (view.east_m.1, view.north_m.1)] {
         let (on_axes, drawn) =
             (axes.backend_coord(&(east_m, north_m)), view.pixel(Ned { north: north_m, east: east_m }));
-        if on_axes.0.abs_diff(drawn.0).max(on_axes.1.abs_diff(drawn.1)) > 2 {
-            bail!("the axes are not where the field is: {on_axes:?} instead of {drawn:?}");
-        }
+        let off = on_axes.0.abs_diff(drawn.0).max(on_axes.1.abs_diff(drawn.1));
+        assert!(off <= 2, "the axes are not where the field is: {on_axes:?} instead of {drawn:?}");
     }
     axes.configure_mesh()
         .x_desc("x (east) in m")
@@ -197,21 +170,17 @@ where
         .x_label_formatter(&|x| arena::trial::decimal(*x, 0))
         .y_label_formatter(&|y| arena::trial::decimal(*y, 0))
         .draw()
-        .map_err(failed)
 }
 
 /// Zones in their teams' colours, the outline, the scrimmage line, and what stands in the water.
-fn draw_field<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
+fn draw_field<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Drawn<B> {
     let pixels = |places: &[Ned]| places.iter().map(|place| view.pixel(*place)).collect::<Vec<_>>();
     for (zone, (_, colour)) in chart.field.zones.iter().zip(&chart.teams) {
-        root.draw(&Polygon::new(pixels(&zone.corners), colour.mix(0.08))).map_err(failed)?;
+        root.draw(&Polygon::new(pixels(&zone.corners), colour.mix(0.08)))?;
     }
     let outline: Vec<Ned> = chart.field.corners.iter().chain(chart.field.corners.first()).copied().collect();
-    root.draw(&PathElement::new(pixels(&outline), GREY.stroke_width(1))).map_err(failed)?;
-    root.draw(&PathElement::new(pixels(&chart.field.scrimmage), GREY.mix(0.6).stroke_width(1))).map_err(failed)?;
+    root.draw(&PathElement::new(pixels(&outline), GREY.stroke_width(1)))?;
+    root.draw(&PathElement::new(pixels(&chart.field.scrimmage), GREY.mix(0.6).stroke_width(1)))?;
     for obstacle in &chart.field.plan.obstacles {
         let corners = match obstacle {
             Obstacle::Polygon { corners } => corners.clone(),
@@ -220,7 +189,7 @@ where
                 (0..36).map(|i| *centre + toward(i).scaled(*radius_m)).collect()
             }
         };
-        root.draw(&Polygon::new(pixels(&corners), GREY.mix(0.5))).map_err(failed)?;
+        root.draw(&Polygon::new(pixels(&corners), GREY.mix(0.5)))?;
     }
     Ok(())
 }
@@ -242,10 +211,7 @@ fn fine(places: &[Ned], view: &View) -> Vec<(i32, i32)> {
     kept.into_iter().map(|place| view.pixel(place)).collect()
 }
 
-fn draw_symbol<B: DrawingBackend>(root: &Area<B>, symbol: Symbol, at: (i32, i32), colour: RGBColor) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
+fn draw_symbol<B: DrawingBackend>(root: &Area<B>, symbol: Symbol, at: (i32, i32), colour: RGBColor) -> Drawn<B> {
     let off = |(right, down): (i32, i32)| (at.0 + right, at.1 + down);
     let edge = BLACK.stroke_width(1);
     let solid = |corners: Vec<(i32, i32)>| {
@@ -256,22 +222,22 @@ where
     };
     match symbol {
         Symbol::Start => {
-            root.draw(&Circle::new(at, 6, WHITE.filled())).map_err(failed)?;
-            root.draw(&Circle::new(at, 6, colour.stroke_width(3))).map_err(failed)
+            root.draw(&Circle::new(at, 6, WHITE.filled()))?;
+            root.draw(&Circle::new(at, 6, colour.stroke_width(3)))
         }
-        Symbol::Grab => solid(vec![(0, -8), (7, 5), (-7, 5)]).map_err(failed),
-        Symbol::Capture => solid(star(10.0)).map_err(failed),
+        Symbol::Grab => solid(vec![(0, -8), (7, 5), (-7, 5)]),
+        Symbol::Capture => solid(star(10.0)),
         Symbol::Tag => {
             for corners in [[(-5, -5), (5, 5)], [(-5, 5), (5, -5)]] {
-                root.draw(&PathElement::new(corners.map(off), WHITE.stroke_width(5))).map_err(failed)?;
-                root.draw(&PathElement::new(corners.map(off), colour.stroke_width(3))).map_err(failed)?;
+                root.draw(&PathElement::new(corners.map(off), WHITE.stroke_width(5)))?;
+                root.draw(&PathElement::new(corners.map(off), colour.stroke_width(3)))?;
             }
             Ok(())
         }
         Symbol::Flag => {
-            root.draw(&PathElement::new([(0, 2), (0, -18)].map(off), BLACK.stroke_width(2))).map_err(failed)?;
-            solid(vec![(1, -18), (14, -13), (1, -8)]).map_err(failed)?;
-            root.draw(&Circle::new(at, 3, BLACK.filled())).map_err(failed)
+            root.draw(&PathElement::new([(0, 2), (0, -18)].map(off), BLACK.stroke_width(2)))?;
+            solid(vec![(1, -18), (14, -13), (1, -8)])?;
+            root.draw(&Circle::new(at, 3, BLACK.filled()))
         }
     }
 }
@@ -287,10 +253,7 @@ fn star(radius: f64) -> Vec<(i32, i32)> {
 }
 
 /// Names beside the starts, on a light ground so that tracks do not hide them.
-fn draw_names<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
+fn draw_names<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Drawn<B> {
     for track in chart.tracks.iter().filter(|track| !track.name.is_empty()) {
         let Some(start) = track.places.first() else { continue };
         let at = view.pixel(*start);
@@ -300,27 +263,24 @@ where
         let wide = 8 + 7 * track.name.chars().count() as i32;
         let left = if is_right { x - wide } else { x };
         let ground = Rectangle::new([(left - 1, at.1 - 9), (left + wide, at.1 + 8)], WHITE.mix(0.75).filled());
-        root.draw(&ground).map_err(failed)?;
+        root.draw(&ground)?;
         let x = if is_right { x - 3 } else { x + 3 };
         let style = (FONT, 14).into_font().color(&BLACK).pos(Pos::new(side, VPos::Center));
-        root.draw(&Text::new(track.name.clone(), (x, at.1), style)).map_err(failed)?;
+        root.draw(&Text::new(track.name.clone(), (x, at.1), style))?;
     }
     Ok(())
 }
 
-fn draw_legend<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
+fn draw_legend<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Drawn<B> {
     let y = (TITLE + view.water.1 + LABELS.1 + BELOW / 2) as i32;
     let mut x = (MARGIN + LABELS.0) as i32;
     let name = |text: &str, x: i32| {
         let style = (FONT, 14).into_font().color(&BLACK).pos(Pos::new(HPos::Left, VPos::Center));
-        root.draw(&Text::new(text.to_owned(), (x, y), style)).map_err(failed)
+        root.draw(&Text::new(text.to_owned(), (x, y), style))
     };
     let width = |text: &str| 8 * text.chars().count() as i32;
     for (team, colour) in &chart.teams {
-        root.draw(&PathElement::new([(x, y), (x + 22, y)], colour.stroke_width(3))).map_err(failed)?;
+        root.draw(&PathElement::new([(x, y), (x + 22, y)], colour.stroke_width(3)))?;
         name(team, x + 28)?;
         x += 28 + width(team) + 18;
     }
@@ -388,7 +348,7 @@ mod tests {
         for places in [vec![], vec![Ned { north: f64::NAN, east: 1.0 }, Ned::from_xy(5.0, 5.0)]] {
             let stem = dir.path().join("tracks");
             let field = field(90.0);
-            write(&stem, &chart(&field, places)).expect("it can be drawn");
+            crate::plot::write_both(&stem, &chart(&field, places)).expect("it can be drawn");
             let svg = std::fs::read_to_string(stem.with_extension("svg")).expect("it is there");
             for text in ["a game", "blue", "red", "capture", "tagged", "x (east) in m"] {
                 assert!(svg.contains(text), "{text}");

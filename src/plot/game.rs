@@ -1,6 +1,6 @@
 //! A recorded game in plots: tracks on the field, the score, every boat; and two games over each other.
 
-use crate::plot::field::{self, Chart, Spot, Symbol, Track};
+use crate::plot::field::{Chart, Spot, Symbol, Track};
 use crate::plot::{self, Line, Page, Panel, colour};
 use analysis::{BoatSeries, Comparison, GameSeries, Sample, distances};
 use anyhow::Result;
@@ -21,10 +21,10 @@ const TIME: &str = "simulated time in s";
 
 /// Draws a game into files in a folder, and says how many plots there are.
 pub(crate) fn write(dir: &Path, header: &Header, series: &GameSeries) -> Result<usize> {
-    field::write(&dir.join("tracks"), &chart(header, series))?;
-    write_page(&dir.join("score"), &score(header, series))?;
+    plot::write_both(&dir.join("tracks"), &chart(header, series))?;
+    plot::write_both(&dir.join("score"), &score(header, series))?;
     for boat in &series.boats {
-        write_page(&dir.join(format!("boat_{}", boat.name)), &boat_page(header, series, boat))?;
+        plot::write_both(&dir.join(format!("boat_{}", boat.name)), &boat_page(header, series, boat))?;
     }
     Ok(2 + series.boats.len())
 }
@@ -47,12 +47,7 @@ pub(crate) fn write_comparison(
         panels.push(Panel::of(&title, [TIME, "m"], vec![apart], ""));
     }
     let title = format!("A {}   B {}", stem(name_a), stem(name_b));
-    write_page(&dir.join("compare"), &Page { title, columns: 2, panel: plot::PANEL, panels })
-}
-
-fn write_page(stem: &Path, page: &Page) -> Result<()> {
-    plot::write_svg(&stem.with_extension("svg"), page)?;
-    plot::write_png(&stem.with_extension("png"), page)
+    plot::write_both(&dir.join("compare"), &Page { title, columns: 2, panel: plot::PANEL, panels })
 }
 
 fn stem(path: &Path) -> String {

@@ -7,7 +7,7 @@ pub(crate) mod polar;
 pub(crate) mod sea;
 pub(crate) mod trial;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::Context;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -96,7 +96,7 @@ pub(crate) const COLOURS: [RGBColor; 6] = [
 ];
 
 /// Where something is drawn.
-type Area<B> = DrawingArea<B, Shift>;
+pub(crate) type Area<B> = DrawingArea<B, Shift>;
 
 /// How lines are made thick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,60 +125,76 @@ impl Ink {
     }
 }
 
-/// Draws a page into an SVG file.
-pub(crate) fn write_svg(path: &Path, page: &Page) -> Result<()> {
+/// Something that can be drawn into a file.
+pub(crate) trait Drawing {
+    /// Width and height, pixels.
+    fn size(&self) -> (u32, u32);
+
+    /// Draws it onto a white ground of this size.
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>, ink: Ink) -> Drawn<B>;
+}
+
+/// What comes of drawing.
+pub(crate) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+
+/// Draws into an SVG file.
+pub(crate) fn write_svg(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
     let mut svg = String::new();
-    draw(SVGBackend::with_string(&mut svg, size(page)), page, Ink::Vector)
+    draw_on(SVGBackend::with_string(&mut svg, drawing.size()), drawing, Ink::Vector)
         .with_context(|| format!("cannot draw {}", path.display()))?;
     std::fs::write(path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))
 }
 
-/// Draws a page into a PNG file.
-pub(crate) fn write_png(path: &Path, page: &Page) -> Result<()> {
-    let (wide, high) = size(page);
+/// Draws into a PNG file, three bytes a pixel.
+pub(crate) fn write_png(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
+    let (wide, high) = drawing.size();
     let mut pixels = vec![0; 3 * wide as usize * high as usize];
-    draw(BitMapBackend::with_buffer(&mut pixels, (wide, high)), page, Ink::Pixels)
+    draw_on(BitMapBackend::with_buffer(&mut pixels, (wide, high)), drawing, Ink::Pixels)
         .with_context(|| format!("cannot draw {}", path.display()))?;
-    save_png(path, (wide, high), &pixels)
-}
-
-/// Writes a picture, three bytes a pixel, into a PNG file.
-pub(crate) fn save_png(path: &Path, (wide, high): (u32, u32), pixels: &[u8]) -> Result<()> {
-    let write = || -> Result<()> {
+    let write = || -> anyhow::Result<()> {
         let file = std::io::BufWriter::new(std::fs::File::create(path)?);
         let mut encoder = png::Encoder::new(file, wide, high);
         encoder.set_color(png::ColorType::Rgb);
-        encoder.write_header()?.write_image_data(pixels)?;
+        encoder.write_header()?.write_image_data(&pixels)?;
         Ok(())
     };
     write().with_context(|| format!("cannot write the plot to {}", path.display()))
 }
 
-fn size(page: &Page) -> (u32, u32) {
-    let rows = page.panels.len().div_ceil(page.columns) as u32;
-    (page.panel.0 * page.columns as u32, TITLE_HEIGHT + page.panel.1 * rows)
+/// Draws into an SVG and a PNG file of this name.
+pub(crate) fn write_both(stem: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
+    write_svg(&stem.with_extension("svg"), drawing)?;
+    write_png(&stem.with_extension("png"), drawing)
 }
 
-fn draw<B: DrawingBackend>(backend: B, page: &Page, ink: Ink) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
+fn draw_on<B: DrawingBackend>(backend: B, drawing: &impl Drawing, ink: Ink) -> Drawn<B> {
     provide_font();
-    let rows = page.panels.len().div_ceil(page.columns);
     let root = backend.into_drawing_area();
-    root.fill(&WHITE).map_err(failed)?;
-    let (top, rest) = root.split_vertically(TITLE_HEIGHT);
-    top.draw(&Text::new(page.title.clone(), (24, 14), (FONT, 20).into_font())).map_err(failed)?;
-    for (area, panel) in rest.split_evenly((rows, page.columns)).iter().zip(&page.panels) {
-        draw_panel(area, panel, ink)?;
-    }
-    root.present().map_err(failed)
+    root.fill(&WHITE)?;
+    drawing.draw(&root, ink)?;
+    root.present()
 }
 
-fn draw_panel<B: DrawingBackend>(area: &Area<B>, panel: &Panel, ink: Ink) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
+impl Page {
+    fn rows(&self) -> usize {
+        self.panels.len().div_ceil(self.columns)
+    }
+}
+
+impl Drawing for Page {
+    fn size(&self) -> (u32, u32) {
+        (self.panel.0 * self.columns as u32, TITLE_HEIGHT + self.panel.1 * self.rows() as u32)
+    }
+
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>, ink: Ink) -> Drawn<B> {
+        let (top, rest) = root.split_vertically(TITLE_HEIGHT);
+        top.draw(&Text::new(self.title.clone(), (24, 14), (FONT, 20).into_font()))?;
+        let areas = rest.split_evenly((self.rows(), self.columns));
+        areas.iter().zip(&self.panels).try_for_each(|(area, panel)| draw_panel(area, panel, ink))
+    }
+}
+
+fn draw_panel<B: DrawingBackend>(area: &Area<B>, panel: &Panel, ink: Ink) -> Drawn<B> {
     if panel.lines.is_empty() {
         return draw_absent(area, panel);
     }
@@ -190,8 +206,7 @@ where
         .caption(&panel.title, CAPTION)
         .x_label_area_size(40)
         .y_label_area_size(64)
-        .build_cartesian_2d(x0..x1, y0..y1)
-        .map_err(failed)?;
+        .build_cartesian_2d(x0..x1, y0..y1)?;
     chart
         .configure_mesh()
         .x_desc(&panel.x)
@@ -204,8 +219,7 @@ where
         .bold_line_style(RGBColor(222, 222, 222))
         .x_label_formatter(&|x| label(*x, x1 - x0))
         .y_label_formatter(&|y| label(*y, y1 - y0))
-        .draw()
-        .map_err(failed)?;
+        .draw()?;
     // Tracks turn every way, and the library's thin lines have gaps where they go back.
     let ink = if panel.equal { Ink::Vector } else { ink };
     let (wide, high) = chart.plotting_area().dim_in_pixel();
@@ -215,12 +229,12 @@ where
         let style = colour.stroke_width(ink.width());
         for (i, piece) in pieces(&line.points).into_iter().enumerate() {
             if line.filled {
-                chart.draw_series([Polygon::new(down_to_0(piece), colour.mix(FILLING))]).map_err(failed)?;
+                chart.draw_series([Polygon::new(down_to_0(piece), colour.mix(FILLING))])?;
             }
             for (right, down) in ink.strokes() {
                 let beside = (f64::from(*right) * pixel.0, f64::from(*down) * pixel.1);
                 let points = piece.iter().map(move |(x, y)| (x + beside.0, y + beside.1));
-                let drawn = chart.draw_series(LineSeries::new(points, style)).map_err(failed)?;
+                let drawn = chart.draw_series(LineSeries::new(points, style))?;
                 if i == 0 && (*right, *down) == (0, 0) && !line.name.is_empty() {
                     let key = colour.stroke_width(2);
                     drawn.label(&line.name).legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], key));
@@ -234,9 +248,7 @@ where
         let (side, right) = if mark.at.0 > 0.5 * (x0 + x1) { (HPos::Right, -1) } else { (HPos::Left, 1) };
         let style = (FONT, 12).into_font().into_text_style(area).pos(Pos::new(side, VPos::Center));
         let name = Text::new(mark.name.clone(), (7 * right, if rises { 6 * right } else { -6 * right }), style);
-        chart
-            .draw_series([EmptyElement::at(mark.at) + Circle::new((0, 0), 3, BLACK.filled()) + name])
-            .map_err(failed)?;
+        chart.draw_series([EmptyElement::at(mark.at) + Circle::new((0, 0), 3, BLACK.filled()) + name])?;
     }
     if has_names && panel.lines.iter().any(|line| !pieces(&line.points).is_empty()) {
         chart
@@ -245,23 +257,19 @@ where
             .background_style(WHITE.mix(0.85))
             .border_style(RGBColor(200, 200, 200))
             .label_font((FONT, 12))
-            .draw()
-            .map_err(failed)?;
+            .draw()?;
     }
     Ok(())
 }
 
 /// A panel of what there is not.
-fn draw_absent<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
-    let area = area.margin(12, 12, 12, 24).titled(&panel.title, CAPTION).map_err(failed)?;
+fn draw_absent<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Drawn<B> {
+    let area = area.margin(12, 12, 12, 24).titled(&panel.title, CAPTION)?;
     let (wide, high) = area.dim_in_pixel();
     let frame = RGBColor(222, 222, 222).stroke_width(1);
-    area.draw(&Rectangle::new([(0, 0), (wide as i32 - 1, high as i32 - 1)], frame)).map_err(failed)?;
+    area.draw(&Rectangle::new([(0, 0), (wide as i32 - 1, high as i32 - 1)], frame))?;
     let style = CAPTION.into_font().color(&RGBColor(120, 120, 120)).pos(Pos::new(HPos::Center, VPos::Center));
-    area.draw(&Text::new(panel.absent, (wide as i32 / 2, high as i32 / 2), style)).map_err(failed)
+    area.draw(&Text::new(panel.absent, (wide as i32 / 2, high as i32 / 2), style))
 }
 
 /// What a panel shows horizontally and vertically.
@@ -324,14 +332,10 @@ fn label(number: f64, width: f64) -> String {
 }
 
 /// Gives the plotting library the letters that it measures texts by and draws into pictures.
-pub(crate) fn provide_font() {
+fn provide_font() {
     let font = epaint_default_fonts::UBUNTU_LIGHT;
     // It cannot fail with a font that is one; a plot without letters would say so itself.
     drop(plotters::style::register_font(FONT, FontStyle::Normal, font));
-}
-
-pub(crate) fn failed<E: std::error::Error + Send + Sync>(error: DrawingAreaErrorKind<E>) -> anyhow::Error {
-    anyhow!("{error}")
 }
 
 #[cfg(test)]

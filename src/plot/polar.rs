@@ -1,12 +1,9 @@
 //! Polar plots of a helm's objective functions: coloured discs with north on top.
 
-use crate::plot::{self, colour};
-use anyhow::{Context, Result};
+use crate::plot::{self, Area, Drawing, Drawn, Ink, colour};
 use game::math;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::path::Path;
 
 /// A disc: course as its angle, clockwise from north, speed as its radius, colour as the value.
 pub(crate) struct PolarPlot {
@@ -37,53 +34,39 @@ const SCALE: [i32; 4] = [444, 460, 88, 448];
 const SHADES: usize = 64;
 const GREY: RGBColor = RGBColor(90, 90, 90);
 
-/// Draws polar plots into an SVG file.
-pub(crate) fn write_svg(path: &Path, title: &str, plots: &[PolarPlot]) -> Result<()> {
-    let mut svg = String::new();
-    let backend = SVGBackend::with_string(&mut svg, size(plots));
-    draw(backend, title, plots, 2).with_context(|| format!("cannot draw {}", path.display()))?;
-    std::fs::write(path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))
+/// A page of polar plots.
+pub(crate) struct PolarPage {
+    /// What stands on top.
+    pub(crate) title: String,
+    /// Row by row.
+    pub(crate) plots: Vec<PolarPlot>,
 }
 
-/// Draws polar plots into a PNG file.
-pub(crate) fn write_png(path: &Path, title: &str, plots: &[PolarPlot]) -> Result<()> {
-    let (wide, high) = size(plots);
-    let mut pixels = vec![0; 3 * wide as usize * high as usize];
-    let backend = BitMapBackend::with_buffer(&mut pixels, (wide, high));
-    draw(backend, title, plots, 1).with_context(|| format!("cannot draw {}", path.display()))?;
-    plot::save_png(path, (wide, high), &pixels)
-}
-
-fn columns(plots: &[PolarPlot]) -> usize {
-    plots.len().clamp(1, COLUMNS_MAX)
-}
-
-fn size(plots: &[PolarPlot]) -> (u32, u32) {
-    let columns = columns(plots);
-    let rows = plots.len().div_ceil(columns).max(1);
-    (PANEL.0 * columns as u32, TITLE_HEIGHT + PANEL.1 * rows as u32)
-}
-
-fn draw<B: DrawingBackend>(backend: B, title: &str, plots: &[PolarPlot], grain: i32) -> Result<()>
-where
-    B::ErrorType: 'static,
-{
-    plot::provide_font();
-    let root = backend.into_drawing_area();
-    root.fill(&WHITE).map_err(plot::failed)?;
-    root.draw(&Text::new(title.to_owned(), (24, 20), (plot::FONT, 20).into_font())).map_err(plot::failed)?;
-    let columns = columns(plots);
-    for (i, plot) in plots.iter().enumerate() {
-        let corner = ((i % columns) as u32 * PANEL.0, TITLE_HEIGHT + (i / columns) as u32 * PANEL.1);
-        let area = root.clone().shrink(corner, PANEL);
-        draw_plot(&area, plot, grain).map_err(plot::failed)?;
+impl PolarPage {
+    fn columns(&self) -> usize {
+        self.plots.len().clamp(1, COLUMNS_MAX)
     }
-    root.present().map_err(plot::failed)
 }
 
-type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+impl Drawing for PolarPage {
+    fn size(&self) -> (u32, u32) {
+        let rows = self.plots.len().div_ceil(self.columns()).max(1);
+        (PANEL.0 * self.columns() as u32, TITLE_HEIGHT + PANEL.1 * rows as u32)
+    }
 
-fn draw_plot<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot, grain: i32) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>, ink: Ink) -> Drawn<B> {
+        let grain = if ink == Ink::Vector { 2 } else { 1 };
+        root.draw(&Text::new(self.title.clone(), (24, 20), (plot::FONT, 20).into_font()))?;
+        let columns = self.columns();
+        for (i, plot) in self.plots.iter().enumerate() {
+            let corner = ((i % columns) as u32 * PANEL.0, TITLE_HEIGHT + (i / columns) as u32 * PANEL.1);
+            draw_plot(&root.clone().shrink(corner, PANEL), plot, grain)?;
+        }
+        Ok(())
+    }
+}
+
+fn draw_plot<B: DrawingBackend>(area: &Area<B>, plot: &PolarPlot, grain: i32) -> Drawn<B> {
     area.draw(&Text::new(plot.title.clone(), (24, 12), (plot::FONT, 15).into_font()))?;
     draw_disc(area, plot, grain)?;
     draw_axes(area, plot)?;
@@ -97,7 +80,7 @@ fn draw_plot<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot, 
 
 /// The disc, row by row of its grains, each a few stretches of one colour. Where grains are more than a pixel, in a
 /// drawing that can be enlarged, stretches reach a pixel under those that are drawn after them, so that no gap shows.
-fn draw_disc<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot, grain: i32) -> Drawn<B> {
+fn draw_disc<B: DrawingBackend>(area: &Area<B>, plot: &PolarPlot, grain: i32) -> Drawn<B> {
     let rim = rim(plot);
     let (x0, y0) = place(0.0, 0.0);
     let rows = (rim.ceil() as i32) / grain;
@@ -134,7 +117,7 @@ fn value_at(plot: &PolarPlot, x: i32, y: i32) -> f64 {
 }
 
 /// Rings of speed and the four quarters of the compass.
-fn draw_axes<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot) -> Drawn<B> {
+fn draw_axes<B: DrawingBackend>(area: &Area<B>, plot: &PolarPlot) -> Drawn<B> {
     let text = |pos, size: u32, colour: &RGBColor| (plot::FONT, size).into_font().color(colour).pos(pos);
     let centre = Pos::new(HPos::Center, VPos::Center);
     let rim = rim(plot);
@@ -164,7 +147,7 @@ fn draw_axes<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot) 
 }
 
 /// The legend of colours.
-fn draw_scale<B: DrawingBackend>(area: &DrawingArea<B, Shift>, plot: &PolarPlot) -> Drawn<B> {
+fn draw_scale<B: DrawingBackend>(area: &Area<B>, plot: &PolarPlot) -> Drawn<B> {
     let [left, right, top, bottom] = SCALE;
     let y = |share: f64| bottom - (share * f64::from(bottom - top)).round() as i32;
     for i in 0..SHADES {
@@ -203,6 +186,7 @@ fn colour_of(shade: usize) -> RGBColor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     fn plot(values: Vec<f64>) -> PolarPlot {
         PolarPlot {
@@ -232,9 +216,9 @@ mod tests {
         // East at more than half the speed is good, everything else is not.
         let good = |k: usize, j: usize| (6..=12).contains(&k) && j >= 5;
         let values = (0..36 * 8).map(|i| if good(i / 8, i % 8) { 100.0 } else { 0.0 }).collect();
-        let plots = [plot(values)];
-        write_png(&png, "blue_one", &plots).expect("it can be drawn");
-        write_svg(&svg, "blue_one", &plots).expect("it can be drawn");
+        let page = PolarPage { title: "blue_one".into(), plots: vec![plot(values)] };
+        plot::write_png(&png, &page).expect("it can be drawn");
+        plot::write_svg(&svg, &page).expect("it can be drawn");
         let (best, worst) = ([253, 231, 37], [68, 1, 84]);
         for (course_deg, speed, want) in
             [(80.0, 0.75, best), (80.0, 0.4, worst), (10.0, 0.75, worst), (190.0, 0.75, worst), (280.0, 0.75, worst)]

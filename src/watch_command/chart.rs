@@ -5,7 +5,6 @@ use game::angle::compass_deg_from_rad;
 use game::message::{Frame, GameInfo, VehicleTruth};
 use game::topic::GameName;
 use game::{Ned, Scenario};
-use std::fmt::Write;
 
 /// Columns and rows of the chart. Letters are twice as high as wide, a field twice as wide as deep.
 const COLUMNS: usize = 80;
@@ -26,15 +25,15 @@ pub(super) fn page(info: &GameInfo, game: &GameName, frame: &Frame, events: &[St
         rates.factor,
         rates.frames_hz
     );
-    push(&mut text, format_args!("{}\n", score(scenario, frame)));
+    text += &format!("{}\n", score(scenario, frame));
     let mut cells = vec![vec![" ".to_owned(); COLUMNS]; ROWS];
     draw_field(scenario, frame, &mut cells);
     draw_boats(scenario, frame, &mut cells);
-    push(&mut text, format_args!("+{}+\n", "-".repeat(COLUMNS)));
-    cells.iter().for_each(|row| push(&mut text, format_args!("|{}|\n", row.concat())));
-    push(&mut text, format_args!("+{}+\n", "-".repeat(COLUMNS)));
-    boats(scenario, frame).for_each(|line| push(&mut text, format_args!("{line}\n")));
-    events.iter().for_each(|line| push(&mut text, format_args!("{line}\n")));
+    text += &format!("+{}+\n", "-".repeat(COLUMNS));
+    cells.iter().for_each(|row| text += &format!("|{}|\n", row.concat()));
+    text += &format!("+{}+\n", "-".repeat(COLUMNS));
+    boats(scenario, frame).for_each(|line| text += &format!("{line}\n"));
+    events.iter().for_each(|line| text += &format!("{line}\n"));
     text
 }
 
@@ -49,10 +48,6 @@ pub(super) fn line(scenario: &Scenario, frame: &Frame, rates: &Rates) -> String 
         rates.factor,
         rates.frames_hz
     )
-}
-
-fn push(text: &mut String, args: std::fmt::Arguments<'_>) {
-    text.write_fmt(args).expect("writing to a String cannot fail");
 }
 
 fn score(scenario: &Scenario, frame: &Frame) -> String {

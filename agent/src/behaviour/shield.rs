@@ -21,25 +21,15 @@ impl BehaviourLogic for ShieldBehaviour {
         let station = if range_m > 1e-6 { guarded.at + line.scaled(ahead_m / range_m) } else { guarded.at };
         let distance_m = situation.at.distance(station);
         let (guarded_m_s, fastest_m_s) = (guarded.velocity.length(), self.0.speed_m_s.value(situation));
-        if distance_m <= self.0.radius_m.value(situation) {
+        let (course_rad, speed_m_s) = if distance_m > self.0.radius_m.value(situation) {
+            (situation.at.bearing_rad(station), guarded_m_s + CATCH_UP_PER_S * distance_m)
+        } else if guarded_m_s > 0.1 {
             // On station: as what it guards, bow to the enemy where that lies still.
-            let course_rad = if guarded_m_s > 0.1 {
-                game::math::atan2(guarded.velocity.east, guarded.velocity.north)
-            } else {
-                situation.at.bearing_rad(enemy.at)
-            };
-            output.add_share(
-                1.0,
-                Some(enemy.vehicle),
-                &steer(situation, course_rad, guarded_m_s.min(fastest_m_s), 0.5),
-            );
+            (game::math::atan2(guarded.velocity.east, guarded.velocity.north), guarded_m_s)
         } else {
-            let speed_m_s = (guarded_m_s + CATCH_UP_PER_S * distance_m).min(fastest_m_s);
-            output.add_share(
-                1.0,
-                Some(enemy.vehicle),
-                &steer(situation, situation.at.bearing_rad(station), speed_m_s, 0.5),
-            );
-        }
+            (situation.at.bearing_rad(enemy.at), guarded_m_s)
+        };
+        let objective = steer(situation, course_rad, speed_m_s.min(fastest_m_s), 0.5);
+        output.add_share(1.0, Some(enemy.vehicle), &objective);
     }
 }

@@ -21,19 +21,12 @@ impl BehaviourLogic for TrailBehaviour {
         let contact_m_s = contact.velocity.length();
         let distance_m = situation.at.distance(place);
         let fastest_m_s = self.0.speed_m_s.value(situation);
-        if distance_m <= self.0.radius_m.value(situation) {
-            output.add_share(
-                1.0,
-                Some(contact.vehicle),
-                &steer(situation, contact.psi_rad, contact_m_s.min(fastest_m_s), 0.5),
-            );
+        let (course_rad, speed_m_s) = if distance_m <= self.0.radius_m.value(situation) {
+            (contact.psi_rad, contact_m_s)
         } else {
-            let speed_m_s = (contact_m_s + CATCH_UP_PER_S * distance_m).min(fastest_m_s);
-            output.add_share(
-                1.0,
-                Some(contact.vehicle),
-                &steer(situation, situation.at.bearing_rad(place), speed_m_s, 0.5),
-            );
-        }
+            (situation.at.bearing_rad(place), contact_m_s + CATCH_UP_PER_S * distance_m)
+        };
+        let objective = steer(situation, course_rad, speed_m_s.min(fastest_m_s), 0.5);
+        output.add_share(1.0, Some(contact.vehicle), &objective);
     }
 }

@@ -104,7 +104,7 @@ impl Situation {
         (self.now, self.begun) = (now, true);
         self.own = *own;
         self.at = own.nav.at();
-        self.velocity = velocity_of(own);
+        self.velocity = own.nav.velocity_m_s();
         self.others.clear();
         for mate in picture.own.iter().filter(|boat| boat.vehicle != self.model.me) {
             let at = mate.nav.at();
@@ -112,7 +112,7 @@ impl Situation {
                 vehicle: mate.vehicle,
                 is_enemy: false,
                 at,
-                velocity: velocity_of(mate),
+                velocity: mate.nav.velocity_m_s(),
                 psi_rad: mate.nav.psi_rad,
                 tagged: mate.tagged,
                 carrying: mate.carried_flag(),
@@ -200,10 +200,7 @@ impl Situation {
     /// The nearest flag to attack that is home, or the nearest of all.
     fn enemy_flag(&self) -> Ned {
         let targets = self.model.targets.iter();
-        let key = |(flag, home): &&(FlagId, Ned)| {
-            let is_gone = self.carriers.get(flag.index()).is_some_and(Option::is_some);
-            (is_gone, self.at.distance_squared(*home))
-        };
+        let key = |(flag, home): &&(FlagId, Ned)| (self.carried(*flag).is_some(), self.at.distance_squared(*home));
         let best = targets.min_by(|a, b| {
             let (a, b) = (key(a), key(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
@@ -218,6 +215,16 @@ impl Situation {
     /// Who carries a flag.
     fn carried(&self, flag: FlagId) -> Option<VehicleId> {
         self.carriers.get(flag.index()).copied().flatten()
+    }
+
+    /// How fast the distance to a point shrinks, m/s.
+    fn closing_m_s(&self, point: MovingPoint) -> f64 {
+        let line = point.at - self.at;
+        let distance_m = line.length();
+        if distance_m < 1e-6 {
+            return 0.0;
+        }
+        (self.velocity - point.velocity).dot(line) / distance_m
     }
 }
 
@@ -272,23 +279,6 @@ impl Values for Situation {
     fn mates(&self, condition: &Expression) -> f64 {
         self.team_messages.count(self, condition)
     }
-}
-
-impl Situation {
-    /// How fast the distance to a point shrinks, m/s.
-    fn closing_m_s(&self, point: MovingPoint) -> f64 {
-        let line = point.at - self.at;
-        let distance_m = line.length();
-        if distance_m < 1e-6 {
-            return 0.0;
-        }
-        (self.velocity - point.velocity).dot(line) / distance_m
-    }
-}
-
-/// Velocity over the ground, m/s.
-fn velocity_of(boat: &OwnBoat) -> Ned {
-    boat.nav.velocity_m_s()
 }
 
 /// The estimated position and velocity of a contact now: it goes on as seen, then slows down and lies still.

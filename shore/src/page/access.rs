@@ -86,22 +86,7 @@ fn is_same(a: &[u8], b: &[u8]) -> bool {
 
 /// The bytes that a part of an address stands for.
 fn decoded(text: &str) -> Vec<u8> {
-    let digit = |c: &u8| char::from(*c).to_digit(16);
-    let mut bytes = Vec::with_capacity(text.len());
-    let mut rest = text.as_bytes();
-    while let [first, after @ ..] = rest {
-        rest = after;
-        match (first, after) {
-            (b'%', [high, low, after @ ..]) if digit(high).is_some() && digit(low).is_some() => {
-                let value = digit(high).unwrap_or(0) * 16 + digit(low).unwrap_or(0);
-                bytes.push(value as u8);
-                rest = after;
-            }
-            (b'+', _) => bytes.push(b' '),
-            (other, _) => bytes.push(*other),
-        }
-    }
-    bytes
+    percent_encoding::percent_decode_str(&text.replace('+', " ")).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Messages from the server to a page, as `PROTOCOL.md` defines them.
 
-use super::chart::Chart;
 use super::rose::Helm;
 use game::SimTime;
 use game::external::GatewayStatus;
@@ -8,6 +7,7 @@ use game::outcome::EventOutcome;
 use game::picture::OwnBoat;
 use game::run_state::RecordingState;
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// The version of the protocol.
@@ -25,7 +25,7 @@ pub(super) enum PageMessage<'a> {
         rights: bool,
         game: &'a str,
         definitions: BTreeMap<&'static str, &'static str>,
-        chart: &'a Chart,
+        chart: &'a Value,
     },
     State {
         phase: &'a str,
@@ -125,7 +125,7 @@ impl PageMessage<'_> {
         mode: Mode,
         rights: bool,
         game: &'a str,
-        chart: &'a Chart,
+        chart: &'a Value,
     ) -> PageMessage<'a> {
         let definitions = game::ros::DEFINITIONS.into_iter().collect();
         PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, game, definitions, chart }

@@ -34,14 +34,15 @@ pub(super) struct Function {
 }
 
 impl Helm {
-    /// A sound report with names in place of numbers.
-    pub(super) fn new(scenario: &Scenario, report: &HelmReport) -> Helm {
+    /// A sound report with names in place of numbers, with utilities for those who asked for them.
+    pub(super) fn new(scenario: &Scenario, report: &HelmReport, has_utilities: bool) -> Helm {
+        let percents = |utilities: &[f32]| utilities.iter().map(|utility| whole(f64::from(*utility))).collect();
         let function = |function: &game::helm::FunctionReport| Function {
             behaviour: function.behaviour.clone(),
             contact: function.contact.and_then(|v| Some(scenario.vehicles.get(v.index())?.name.clone())),
             weight: function.weight,
             utility: function.utility,
-            utilities: function.utilities.iter().map(|utility| whole(f64::from(*utility))).collect(),
+            utilities: if has_utilities { percents(&function.utilities) } else { vec![] },
         };
         Helm {
             at_s: report.at.as_s(),
@@ -56,14 +57,8 @@ impl Helm {
             speeds: report.speeds,
             speed_max_m_s: report.speed_max_m_s,
             functions: report.functions.iter().map(function).collect(),
-            collective: collective(report),
+            collective: if has_utilities { collective(report) } else { None },
         }
-    }
-
-    /// The same without utilities, for those who did not ask for them.
-    pub(super) fn without_utilities(&self) -> Helm {
-        let functions = self.functions.iter().map(|f| Function { utilities: vec![], ..f.clone() }).collect();
-        Helm { functions, collective: None, ..self.clone() }
     }
 }
 
@@ -87,8 +82,7 @@ pub(super) fn helm_text(scenario: &Scenario, vehicle: VehicleId, functions: bool
     if report.is_some() && sound.is_none() {
         reason = Some("the answer makes no sense".to_owned());
     }
-    let helm = sound.map(|report| Helm::new(scenario, report));
-    let helm = if functions { helm } else { helm.map(|helm| helm.without_utilities()) };
+    let helm = sound.map(|report| Helm::new(scenario, report, functions));
     let reason = if helm.is_some() { None } else { reason.or_else(|| Some("nobody says why".to_owned())) };
     let name = scenario.vehicles.get(vehicle.index()).map_or("", |vehicle| &vehicle.name);
     PageMessage::Helm { vehicle: name, report: helm.as_ref(), reason: reason.as_deref(), computed, agrees }.json()
@@ -171,21 +165,21 @@ pub(super) mod tests {
     #[test]
     fn utilities_are_whole_and_their_sum_goes_from_its_least_to_its_greatest() {
         let all = report(vec![function(100.0, &[0.0, 49.6, 100.0, 20.0]), function(300.0, &[0.0, 0.0, 100.0, 80.0])]);
-        let helm = Helm::new(&scenario(), &all);
+        let helm = Helm::new(&scenario(), &all, true);
         assert_eq!(helm.functions[0].utilities, [0, 50, 100, 20]);
         assert_eq!(helm.functions[0].contact.as_deref(), Some("blue_two"));
         assert_eq!(helm.collective, Some(vec![0, 12, 100, 65]));
         assert_eq!(helm.at_s, 1.5);
-        let light = helm.without_utilities();
+        let light = Helm::new(&scenario(), &all, false);
         assert_eq!((light.collective, light.functions[1].utilities.len(), light.functions[1].weight), (None, 0, 300.0));
     }
 
     #[test]
     fn a_flat_sum_and_no_sum_are_told_apart() {
         let scenario = scenario();
-        assert_eq!(Helm::new(&scenario, &report(vec![])).collective, None);
-        assert_eq!(Helm::new(&scenario, &report(vec![function(1.0, &[])])).collective, None);
-        let flat = Helm::new(&scenario, &report(vec![function(1.0, &[7.0, 7.0, 7.0, 7.0])]));
+        assert_eq!(Helm::new(&scenario, &report(vec![]), true).collective, None);
+        assert_eq!(Helm::new(&scenario, &report(vec![function(1.0, &[])]), true).collective, None);
+        let flat = Helm::new(&scenario, &report(vec![function(1.0, &[7.0, 7.0, 7.0, 7.0])]), true);
         assert_eq!(flat.collective, Some(vec![100; 4]));
     }
 
@@ -208,7 +202,7 @@ pub(super) mod tests {
         #[test]
         fn any_numbers_make_whole_ones(weights in prop::array::uniform2(any::<f64>()), values in prop::array::uniform8(any::<f32>())) {
             let all = report(vec![function(weights[0], &values[..4]), function(weights[1], &values[4..])]);
-            let helm = Helm::new(&scenario(), &all);
+            let helm = Helm::new(&scenario(), &all, true);
             prop_assert!(helm.collective.is_some_and(|sums| sums.iter().all(|sum| *sum <= 100)));
             prop_assert!(helm.functions.iter().all(|f| f.utilities.iter().all(|utility| *utility <= 100)));
         }

@@ -130,18 +130,20 @@ impl Sim {
     }
 
     /// Waits until the page's server listens to frames.
-    fn wait_for_ears(&self) {
-        let ears = Watched::new(());
-        let heard = (0..3000).any(|_| {
-            ears.wait(Duration::from_millis(10), |()| false);
-            self.frames.is_heard() && self.run.is_heard()
-        });
-        assert!(heard, "nobody listens");
+    fn wait_for_subscribers(&self) {
+        wait_until("the page listens", || self.frames.is_heard() && self.run.is_heard());
     }
 
     fn close(self) {
         self.bus.close();
     }
+}
+
+/// Waits until something is so.
+fn wait_until(what: &str, is_so: impl Fn() -> bool) {
+    let never = Watched::new(());
+    let waits = || !never.wait(Duration::from_millis(10), |()| false);
+    assert!((0..3000).any(|_| waits() && is_so()), "never: {what}");
 }
 
 fn port() -> u16 {
@@ -163,7 +165,7 @@ fn meet(file: &str) -> (Sim, Page, Client) {
     let mut client = open_viewer(&page);
     let hello = client.text();
     assert_eq!((&hello["kind"], &hello["mode"], &hello["game"]), (&json!("hello"), &json!("live"), &json!("pond")));
-    sim.wait_for_ears();
+    sim.wait_for_subscribers();
     (sim, page, client)
 }
 
@@ -254,7 +256,7 @@ fn a_game_in_lockstep_goes_as_fast_as_can_be_if_asked() {
     let page = page(live(port, None), None, &[]);
     let mut client = open_viewer(&page);
     client.until("hello", |_| true);
-    sim.wait_for_ears();
+    sim.wait_for_subscribers();
     client.send(r#"{"do":"speed","factor":null}"#);
     assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::Speed(None))));
     sim.close();
@@ -286,7 +288,7 @@ fn one_page_at_a_time_steers_a_boat_that_can_be_steered() {
     other.send(r#"{"do":"drive","vehicle":"blue_two","course_deg":0,"speed_m_s":1}"#);
     let refused = other.until("refused", |_| true);
     assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains("heeds no policy")), "{refused}");
-    one.send(r#"{"do":"release","vehicle":"blue_one"}"#);
+    one.send(r#"{"do":"let_go","vehicle":"blue_one"}"#);
     other.until("drive", |drive| drive["by"].is_null());
     other.send(steer);
     other.until("drive", |drive| drive["by"] == "you");
@@ -311,12 +313,7 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
     assert_eq!((&helm["computed"], &helm["agrees"]), (&json!(false), &json!(null)));
     let none = other.until("helm", |_| true);
     assert_eq!((&none["report"], &none["reason"]), (&json!(null), &json!("no agent runs red_one now")));
-    let ears = Watched::new(());
-    let heard = (0..3000).any(|_| {
-        ears.wait(Duration::from_millis(10), |()| false);
-        sim.pictures.is_heard()
-    });
-    assert!(heard, "the picture of its team is wanted");
+    wait_until("the picture of its team is wanted", || sim.pictures.is_heard());
     let stamp = Stamp { valid_ns: SimTime::from_s(2.0), seq: 20, version: Picture::VERSION };
     let picture = Picture { stamp, own: vec![own_boat(BLUE_ONE)], ..Picture::default() };
     sim.pictures.send(&picture).expect("it is open");
@@ -326,12 +323,8 @@ fn a_selected_boat_tells_what_its_helm_thinks_and_where_it_believes_to_be() {
         (&json!("blue_one"), &json!(4.0), &json!(2.0))
     );
     client.send(r#"{"do":"select","vehicle":null}"#);
-    let unheard = (0..3000).any(|_| {
-        ears.wait(Duration::from_millis(10), |()| false);
-        !sim.pictures.is_heard()
-    });
     // The other page looks at a red boat; nobody wants blue's picture any more.
-    assert!(unheard, "nobody looks at it any more");
+    wait_until("nobody looks at it any more", || !sim.pictures.is_heard());
     sim.close();
 }
 
@@ -360,7 +353,7 @@ fn a_game_that_goes_is_gone_and_the_next_is_another() {
     assert_eq!(client.rest(), [], "there is no game yet");
     let first = Sim::open(port, "pond", scenario("pav01_vs_pav01.toml"));
     assert_eq!(client.until("hello", |_| true)["game"], "pond");
-    first.wait_for_ears();
+    first.wait_for_subscribers();
     first.show(9, &[]);
     client.until("state", |state| state["phase"] == "playing");
     first.close();

@@ -12,15 +12,20 @@ use client::Client;
 use shore::page::{Page, PageSettings, View};
 use std::sync::Arc;
 
-/// A server on a free port that shows this.
-fn page(show: Arc<dyn View>, token: Option<&str>, hosts: &[&str]) -> Page {
+/// A server on a free port that shows nothing yet.
+fn empty_page(token: Option<&str>, hosts: &[&str]) -> Page {
     let settings = PageSettings {
         listen: "127.0.0.1:0".parse().expect("an address"),
         token: token.map(str::to_owned),
         hosts: hosts.iter().map(|host| (*host).to_owned()).collect(),
         stop: Arc::default(),
     };
-    let page = Page::open(settings).expect("a free port");
+    Page::open(settings).expect("a free port")
+}
+
+/// A server on a free port that shows this.
+fn page(show: Arc<dyn View>, token: Option<&str>, hosts: &[&str]) -> Page {
+    let page = empty_page(token, hosts);
     page.show(show);
     page
 }

@@ -25,7 +25,7 @@ fn a_replay_says_hello_tells_all_events_and_stands_at_the_beginning() {
     let events = client.text();
     assert_eq!((&events["kind"], &events["reset"]), (&json!("events"), &json!(true)));
     assert_eq!(events["events"].as_array().map(Vec::len), Some(2));
-    let want = json!({"kind": "playback", "playing": false, "t_s": 0.0, "speed": 1.0, "from_s": 0.0, "to_s": 120.0,
+    let want = json!({"kind": "player", "playing": false, "t_s": 0.0, "speed": 1.0, "from_s": 0.0, "to_s": 120.0,
         "cut": true, "file": "made_up.mcap"});
     assert_eq!(client.text(), want);
     let first = client.frame();
@@ -41,7 +41,7 @@ fn seeking_brings_the_past_and_the_moment() {
     client.frame();
     client.ack();
     client.send(r#"{"do":"seek","t_s":100.04}"#);
-    client.until("playback", |playback| playback["t_s"] == 100.04);
+    client.until("player", |playback| playback["t_s"] == 100.04);
     let past: Vec<Vec<u8>> = (0..120).map(|_| client.frame()).collect();
     assert!(past.iter().all(|frame| frame[0] == 2));
     assert_eq!((seq_of(&past[0]), seq_of(&past[119])), (400, 995));
@@ -67,13 +67,13 @@ fn it_plays_as_fast_as_asked_and_to_the_end() {
     let page = page(show(), None, &[]);
     let mut client = open_viewer(&page);
     client.send(r#"{"do":"speed","factor":50}"#);
-    client.until("playback", |playback| playback["speed"] == 50.0);
+    client.until("player", |playback| playback["speed"] == 50.0);
     client.send(r#"{"do":"seek","t_s":100}"#);
     client.send(r#"{"do":"control","what":"resume"}"#);
-    client.until("playback", |playback| playback["playing"] == true);
-    client.until("playback", |playback| playback["playing"] == false && playback["t_s"] == 120.0);
+    client.until("player", |playback| playback["playing"] == true);
+    client.until("player", |playback| playback["playing"] == false && playback["t_s"] == 120.0);
     client.send(r#"{"do":"control","what":"resume"}"#);
-    client.until("playback", |playback| {
+    client.until("player", |playback| {
         playback["playing"] == true && playback["t_s"].as_f64().is_some_and(|t_s| t_s < 60.0)
     });
 }
@@ -87,7 +87,7 @@ fn each_page_has_a_player_of_its_own() {
     other.frame();
     other.ack();
     one.send(r#"{"do":"seek","t_s":3}"#);
-    one.until("playback", |playback| playback["t_s"] == 3.0);
+    one.until("player", |playback| playback["t_s"] == 3.0);
     assert_eq!(other.rest(), []);
 }
 
@@ -131,7 +131,7 @@ fn a_recording_without_frames_is_shown_too() {
     for ask in [r#"{"do":"control","what":"resume"}"#, r#"{"do":"step","by":1}"#, r#"{"do":"seek","t_s":9}"#] {
         client.send(ask);
     }
-    client.until("playback", |playback| playback["t_s"] == 0.0 && playback["to_s"] == 0.0);
+    client.until("player", |playback| playback["t_s"] == 0.0 && playback["to_s"] == 0.0);
 }
 
 fn any_ask() -> impl Strategy<Value = PageRequest> {

@@ -2,7 +2,7 @@
 
 use super::replay::show;
 use super::source::seq_of;
-use super::{open_viewer, page};
+use super::{empty_page, open_viewer, page};
 use shore::page::{Access, Budget, Changes, Mode, Outgoing, PageRequest, View, Viewer};
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
@@ -94,13 +94,7 @@ fn another_show_begins_with_a_hello() {
 
 #[test]
 fn a_page_opened_before_there_is_a_show_waits_for_it() {
-    let settings = shore::page::PageSettings {
-        listen: "127.0.0.1:0".parse().expect("an address"),
-        token: None,
-        hosts: vec![],
-        stop: std::sync::Arc::default(),
-    };
-    let page = shore::page::Page::open(settings).expect("a free port");
+    let page = empty_page(None, &[]);
     let mut client = open_viewer(&page);
     client.ack();
     assert_eq!(client.rest(), []);

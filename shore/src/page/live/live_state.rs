@@ -3,7 +3,7 @@
 use super::event_log::EventLog;
 use super::frame_buffer::FrameBuffer;
 use super::steering::SteeringLocks;
-use crate::page::chart::Chart;
+use crate::page::chart::chart;
 use game::external::GatewayStatus;
 use game::message::{Frame, GameInfo};
 use game::outcome::EventOutcome;
@@ -13,6 +13,7 @@ use game::scenario::Source;
 use game::topic::GameName;
 use game::water::Water;
 use game::{Scenario, SimTime, VehicleId};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -27,7 +28,7 @@ pub(super) struct LiveGame {
     /// Its sim's description.
     pub(super) info: GameInfo,
     /// How it is drawn.
-    pub(super) chart: Chart,
+    pub(super) chart: Value,
 }
 
 /// Something with a number that rises with every new one.
@@ -78,7 +79,7 @@ pub(super) struct LiveState {
 impl LiveGame {
     /// A game with its chart.
     pub(super) fn new(name: GameName, info: GameInfo, water: &Water) -> LiveGame {
-        let chart = Chart::new(&info.scenario, water);
+        let chart = chart(&info.scenario, water);
         LiveGame { name, info, chart }
     }
 

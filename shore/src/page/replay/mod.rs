@@ -9,9 +9,10 @@ mod viewer;
 pub use recorded::Recorded;
 pub use source::{Helms, ReplaySource};
 
-use super::chart::Chart;
+use super::chart::chart;
 use super::view::{Access, Changes, View, Viewer};
 use helm_thread::HelmThread;
+use serde_json::Value;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use viewer::PageViewer;
@@ -25,7 +26,7 @@ pub struct ReplayView {
 /// What all viewers of a recording share.
 struct SharedReplay {
     source: Arc<dyn ReplaySource>,
-    chart: Chart,
+    chart: Value,
     helms: HelmThread,
     viewers: AtomicU64,
 }
@@ -36,7 +37,7 @@ impl ReplayView {
     pub fn new(source: Arc<dyn ReplaySource>, helms: Option<Box<dyn Helms>>) -> ReplayView {
         let news = Changes::default();
         let scenario = source.info().scenario.clone();
-        let chart = Chart::new(&scenario, source.water());
+        let chart = chart(&scenario, source.water());
         let helms = HelmThread::open(scenario, helms, news.clone());
         ReplayView { shared: Arc::new(SharedReplay { source, chart, helms, viewers: AtomicU64::new(0) }), news }
     }
