@@ -168,7 +168,7 @@ fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() 
     assert!(same, "{said}");
     for (args, part) in [
         (&["log", &file][..], "the gateway of blue_one"),
-        (&["log", &file, "--csv", "link/blue_one"], "to_boat,$PSEAC"),
+        (&["log", &file, "--csv", "link/blue_one"], "to_boat,\"$PSEAC"),
         (&["log", &file, "--csv", "event"], "event.state.to"),
         (&["log", &file, "--events"], "is of a gateway, not of a game"),
         (&["replay", "--check", &file], "not a recording of a game: it is of a gateway"),

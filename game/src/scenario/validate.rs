@@ -119,7 +119,9 @@ impl<'a> Validator<'a> {
             let surplus = items.get(*counts(schema).end()).filter(|item| matches!(item.value, Value::Table(_)));
             let message =
                 format!("{} has {} entries, expected {}", self.key(), items.len(), allowed(schema, self.root));
-            self.note(surplus.unwrap_or(node).at, message);
+            self.diagnostics.note(surplus.unwrap_or(node).at, message);
+            // Its entries may be sound all the same.
+            self.wrong.push(format!("{}.length", self.path));
             if is_number(about) || about.is_array() {
                 return None;
             }
