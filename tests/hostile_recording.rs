@@ -10,7 +10,7 @@ use game::water::Water;
 use game::{Order, Picture, SimTime, VehicleId};
 use proptest::prelude::*;
 use recording::{Decision, Ending, Entry, Header, Recording, RecordingError, Writer};
-use shore::page::replay::{Recorded, ReplaySource};
+use shore::page::replay::Recorded;
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
@@ -119,8 +119,8 @@ fn look_at_all_of(recording: Recording) -> Result<(), RecordingError> {
     Comparison::of([recording.header(); 2], [&series; 2], 0.0).ok();
     let recorded = Recorded::new(Arc::new(recording), "odd.mcap".to_owned())?;
     for frame in 0..recorded.frame_times().len() {
-        recorded.estimate(VehicleId(0), frame);
-        recorded.status(VehicleId(0), recorded.frame_times()[frame]);
+        let _ = recorded.estimate(VehicleId(0), frame);
+        let _ = recorded.status(VehicleId(0), recorded.frame_times()[frame]);
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! A recording, played by pages.
 
-use super::source::{MadeUp, Rememberer, seq_of};
+use super::source::{Rememberer, recorded, seq_of, two_minutes};
 use super::{client, open_viewer, page};
 use proptest::prelude::*;
 use serde_json::json;
@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 pub(crate) fn show() -> Arc<dyn View> {
-    Arc::new(ReplayView::new(Arc::new(MadeUp::new()), Some(Box::new(Rememberer))))
+    Arc::new(ReplayView::new(two_minutes(), Some(Box::new(Rememberer))))
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn what_a_recording_cannot_do_is_refused() {
 
 #[test]
 fn a_recording_without_frames_is_shown_too() {
-    let page = page(Arc::new(ReplayView::new(Arc::new(MadeUp::of(0)), None)), None, &[]);
+    let page = page(Arc::new(ReplayView::new(recorded(0), None)), None, &[]);
     let mut client = open_viewer(&page);
     for ask in [r#"{"do":"control","what":"resume"}"#, r#"{"do":"step","by":1}"#, r#"{"do":"seek","t_s":9}"#] {
         client.send(ask);
@@ -161,7 +161,7 @@ fn is_of_selected(said: &Outgoing) -> bool {
 
 #[test]
 fn what_can_wait_waits_until_there_is_room() {
-    let show = ReplayView::new(Arc::new(MadeUp::new()), None);
+    let show = ReplayView::new(two_minutes(), None);
     let (mut viewer, now) = (show.open_viewer(Access { rights: false }), client::now());
     while viewer.next_message(now, Budget::All).is_some() {}
     viewer
@@ -179,7 +179,7 @@ proptest! {
     fn whatever_is_asked_frames_come_in_order_between_jumps(
         asks in prop::collection::vec((any_ask(), 0..2_000_u64, any_room()), 1..30),
     ) {
-        let show = ReplayView::new(Arc::new(MadeUp::new()), None);
+        let show = ReplayView::new(two_minutes(), None);
         let mut viewer = show.open_viewer(Access { rights: false });
         let mut now = client::now();
         for (ask, wait_ms, room) in asks {

@@ -1,22 +1,17 @@
 //! A made-up recording.
 
-use game::external::GatewayStatus;
+use game::event::{Event, Logged};
+use game::external::{FailsafeReport, GatewayStatus};
 use game::helm::HelmReport;
-use game::message::{Frame, GameInfo, Message, Stamp, VehicleTruth};
-use game::outcome::EventOutcome;
-use game::picture::{FlagView, Nav, OwnBoat};
+use game::message::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth};
+use game::picture::{FlagView, Nav, OwnBoat, Picture};
 use game::water::Water;
 use game::{Scenario, SimTime, VehicleId};
+use recording::{Decision, Entry, Header, Recording, Writer};
 use shore::page::HelmAnswer;
-use shore::page::replay::{Helms, ReplaySource};
-
-pub(crate) struct MadeUp {
-    notice: GameInfo,
-    water: Water,
-    times: Vec<SimTime>,
-    frames: Vec<Vec<u8>>,
-    events: Vec<EventOutcome>,
-}
+use shore::page::replay::{Helms, Recorded};
+use std::io::Cursor;
+use std::sync::{Arc, OnceLock};
 
 pub(crate) fn scenario(file: &str) -> Scenario {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games").join(file);
@@ -63,65 +58,48 @@ pub(crate) fn report(vehicle: VehicleId) -> HelmReport {
     }
 }
 
-impl MadeUp {
-    /// A recording of two minutes.
-    pub(crate) fn new() -> MadeUp {
-        MadeUp::of(1201)
-    }
-
-    /// A recording of so many frames.
-    pub(crate) fn of(frames: u64) -> MadeUp {
-        let scenario = scenario("pav01_vs_pav01.toml");
-        let frames: Vec<Frame> = (0..frames).map(|seq| frame(&scenario, seq)).collect();
-        let event = |tick: u64, event: &str| EventOutcome {
-            tick,
-            at_s: tick as f64 * 0.05,
-            event: event.to_owned(),
-            vehicle: Some("blue_one".to_owned()),
-            other: None,
-            team: None,
-        };
-        MadeUp {
-            notice: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario },
-            water: Water::default(),
-            times: frames.iter().map(|frame| frame.stamp.valid_ns).collect(),
-            frames: frames.iter().map(game::codec::encode).collect(),
-            events: vec![event(20, "untagged"), event(60, "failsafe")],
-        }
-    }
+/// A recording of two minutes.
+pub(crate) fn two_minutes() -> Arc<Recorded> {
+    static RECORDED: OnceLock<Arc<Recorded>> = OnceLock::new();
+    Arc::clone(RECORDED.get_or_init(|| recorded(1201)))
 }
 
-impl ReplaySource for MadeUp {
-    fn info(&self) -> &GameInfo {
-        &self.notice
-    }
-    fn game(&self) -> &str {
-        "made_up"
-    }
-    fn file(&self) -> &str {
-        "made_up.mcap"
-    }
-    fn is_cut(&self) -> bool {
-        true
-    }
-    fn water(&self) -> &Water {
-        &self.water
-    }
-    fn frame_times(&self) -> &[SimTime] {
-        &self.times
-    }
-    fn frame_bytes(&self, frame: usize) -> &[u8] {
-        &self.frames[frame]
-    }
-    fn events(&self) -> &[EventOutcome] {
-        &self.events
-    }
-    fn estimate(&self, vehicle: VehicleId, _: usize) -> Option<OwnBoat> {
-        Some(own_boat(vehicle))
-    }
-    fn status(&self, _: VehicleId, _: SimTime) -> Option<GatewayStatus> {
-        None
-    }
+/// A recording of so many frames without an end, with an event in the eleventh, one set of pictures, and a failsafe.
+pub(crate) fn recorded(frames: u64) -> Arc<Recorded> {
+    let scenario = scenario("pav01_vs_pav01.toml");
+    let picture = |team: u8| {
+        let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
+        let own = boats.filter(|boat| scenario.team_of(*boat).0 == team).map(own_boat).collect();
+        Picture { stamp: Stamp { version: Picture::VERSION, ..Stamp::default() }, team, own, ..Picture::default() }
+    };
+    let decision = |seq: u64| {
+        let mut frame = frame(&scenario, seq);
+        let untagged = Event::Untagged { vehicle: VehicleId(0) };
+        let logged = Logged { tick: 2 * seq, at: frame.stamp.valid_ns, event: untagged };
+        frame.events.extend((seq == 10).then(|| EventRecord::from(logged)));
+        let pictures = if seq == 0 { vec![picture(0), picture(1)] } else { vec![] };
+        Entry::Decision(Box::new(Decision { frame: frame.into(), pictures, inputs: vec![] }))
+    };
+    let failsafes = vec![FailsafeReport { at_s: 3.0, cause: "link down".to_owned() }];
+    let status = GatewayStatus { failsafes, ..GatewayStatus::default() };
+    let status = Entry::Message {
+        topic: "status/blue_one".to_owned(),
+        schema: None,
+        bytes: serde_json::to_vec(&status).expect("JSON"),
+        at: SimTime::from_s(3.0),
+    };
+    let header = Header {
+        commit: "c0ffee".to_owned(),
+        game: "made_up".to_owned(),
+        began_utc_ns: 1_700_000_000_000_000_000,
+        info: GameInfo { version: game::VERSION.to_owned(), pace: "lockstep".to_owned(), scenario: scenario.clone() },
+        water: Water::default(),
+    };
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");
+    (0..frames).map(decision).chain([status]).for_each(|entry| writer.write(&entry, 1).expect("it is written"));
+    let bytes = writer.end(recording::Facts::new()).expect("it ends").into_inner();
+    let recording = Recording::of(bytes).expect("a recording");
+    Arc::new(Recorded::new(Arc::new(recording), "made_up.mcap".to_owned()).expect("its frames are sound"))
 }
 
 /// Helms that remember nothing but which decision they were asked about.

@@ -1,11 +1,16 @@
 //! A thread that recomputes helm reports for replays, since that may take a while.
 
-use super::source::Helms;
 use crate::page::rose::{HelmAnswer, helm_text};
 use crate::page::view::Changes;
 use game::{Scenario, VehicleId};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+/// Recomputes helm reports of a recorded game. That may take a while.
+pub trait Helms: Send {
+    /// What a boat's helm thought at a decision, with utilities or without.
+    fn report(&mut self, vehicle: VehicleId, decision: u64, functions: bool) -> HelmAnswer;
+}
 
 /// What is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,11 +3,10 @@
 mod helm_thread;
 mod playback;
 mod recorded;
-mod source;
 mod viewer;
 
+pub use helm_thread::Helms;
 pub use recorded::Recorded;
-pub use source::{Helms, ReplaySource};
 
 use super::chart::chart;
 use super::view::{Access, Changes, View, Viewer};
@@ -25,7 +24,7 @@ pub struct ReplayView {
 
 /// What all viewers of a recording share.
 struct SharedReplay {
-    source: Arc<dyn ReplaySource>,
+    source: Arc<Recorded>,
     chart: Value,
     helms: HelmThread,
     viewers: AtomicU64,
@@ -34,10 +33,10 @@ struct SharedReplay {
 impl ReplayView {
     /// Shows a recording. Without helms there are no helm reports.
     #[must_use]
-    pub fn new(source: Arc<dyn ReplaySource>, helms: Option<Box<dyn Helms>>) -> ReplayView {
+    pub fn new(source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
         let news = Changes::default();
         let scenario = source.info().scenario.clone();
-        let chart = chart(&scenario, source.water());
+        let chart = chart(&scenario, &source.header().water);
         let helms = HelmThread::open(scenario, helms, news.clone());
         ReplayView { shared: Arc::new(SharedReplay { source, chart, helms, viewers: AtomicU64::new(0) }), news }
     }

@@ -1,25 +1,25 @@
 //! A recording as a replay needs it.
 
-use super::ReplaySource;
 use game::external::GatewayStatus;
 use game::message::GameInfo;
 use game::outcome::EventOutcome;
 use game::picture::{OwnBoat, Picture};
-use game::water::Water;
 use game::{SimTime, VehicleId};
-use recording::{Recording, RecordingError, picture};
+use recording::{Header, Recording, RecordingError, picture};
 use std::sync::Arc;
 
 /// A recording, ready to be shown.
 pub struct Recorded {
     recording: Arc<Recording>,
-    file: String,
+    /// The file's name.
+    pub(super) file: String,
     times: Vec<SimTime>,
     /// By team, the time and place of every picture.
     pictures: Vec<Vec<(SimTime, usize)>>,
     /// By vehicle, the same of what its gateway sent.
     statuses: Vec<Vec<(SimTime, usize)>>,
-    events: Vec<EventOutcome>,
+    /// All that happened, gateways' failsafes included.
+    pub(super) events: Vec<EventOutcome>,
 }
 
 impl Recorded {
@@ -74,55 +74,50 @@ impl Recorded {
     fn status_at(&self, place: usize) -> Option<GatewayStatus> {
         serde_json::from_slice(self.recording.bag().message(place).bytes).ok()
     }
-}
-
-/// The last of these that is not after `at`.
-fn last_until(sent: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
-    let after = sent.partition_point(|(when, _)| *when <= at);
-    sent[..after].last().map(|(_, place)| *place)
-}
-
-impl ReplaySource for Recorded {
-    fn info(&self) -> &GameInfo {
-        &self.recording.header().info
+    /// What the recording says of its game.
+    pub(super) fn header(&self) -> &Header {
+        self.recording.header()
     }
 
-    fn game(&self) -> &str {
-        &self.recording.header().game
+    /// What the game was.
+    pub(super) fn info(&self) -> &GameInfo {
+        &self.header().info
     }
 
-    fn file(&self) -> &str {
-        &self.file
-    }
-
-    fn is_cut(&self) -> bool {
+    /// Whether the file ends abruptly.
+    pub(super) fn is_cut(&self) -> bool {
         self.recording.is_cut()
     }
 
-    fn water(&self) -> &Water {
-        &self.recording.header().water
-    }
-
-    fn frame_times(&self) -> &[SimTime] {
+    /// When the frames are, in order.
+    #[must_use]
+    pub fn frame_times(&self) -> &[SimTime] {
         &self.times
     }
 
-    fn frame_bytes(&self, frame: usize) -> &[u8] {
+    /// A frame, as CDR.
+    pub(super) fn frame_bytes(&self, frame: usize) -> &[u8] {
         self.recording.frame(frame).bytes
     }
 
-    fn events(&self) -> &[EventOutcome] {
-        &self.events
-    }
-
-    fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat> {
+    /// Where a boat's own sensors put it at a frame.
+    #[must_use]
+    pub fn estimate(&self, vehicle: VehicleId, frame: usize) -> Option<OwnBoat> {
         let team = self.info().scenario.vehicles.get(vehicle.index())?.team;
         let place = last_until(&self.pictures[team.index()], *self.times.get(frame)?)?;
         let picture: Picture = self.recording.bag().message(place).read().ok()?;
         picture.own(vehicle).copied()
     }
 
-    fn status(&self, vehicle: VehicleId, at: SimTime) -> Option<GatewayStatus> {
+    /// What a boat's gateway had sent last.
+    #[must_use]
+    pub fn status(&self, vehicle: VehicleId, at: SimTime) -> Option<GatewayStatus> {
         self.status_at(last_until(self.statuses.get(vehicle.index())?, at)?)
     }
+}
+
+/// The last of these that is not after `at`.
+fn last_until(sent: &[(SimTime, usize)], at: SimTime) -> Option<usize> {
+    let after = sent.partition_point(|(when, _)| *when <= at);
+    sent[..after].last().map(|(_, place)| *place)
 }

@@ -137,7 +137,7 @@ impl PageViewer {
             from_s: times.first().map_or(0.0, |time| seconds(*time)),
             to_s: times.last().map_or(0.0, |time| seconds(*time)),
             cut: source.is_cut(),
-            file: source.file(),
+            file: &source.file,
         };
         Some(Outgoing::Text(tell.json()))
     }
@@ -256,12 +256,17 @@ impl Viewer for PageViewer {
         let source = Arc::clone(&self.shared.source);
         if !std::mem::replace(&mut self.greeted, true) {
             let version = &source.info().version;
-            let hello =
-                PageMessage::hello(version, Mode::Replay, self.access.rights, source.game(), &self.shared.chart);
+            let hello = PageMessage::hello(
+                version,
+                Mode::Replay,
+                self.access.rights,
+                &source.header().game,
+                &self.shared.chart,
+            );
             return Some(Outgoing::Text(hello.json()));
         }
         if !std::mem::replace(&mut self.sent_events, true) {
-            let events = source.events().iter().map(EventMessage::new).collect();
+            let events = source.events.iter().map(EventMessage::new).collect();
             return Some(Outgoing::Text(PageMessage::Events { reset: true, events }.json()));
         }
         if let Some(said) = self.next_playback(now) {
