@@ -129,10 +129,11 @@ mod tests {
 
     #[test]
     fn what_an_agent_gets_wrong_is_counted_and_its_boat_holds() {
-        let nan = VehicleOrder::new(VehicleId(0), Order::Thrust { port: f64::NAN, starboard: 0.0 });
+        // Numbers that no boat can follow are the contest's to refuse; a kind that nobody knows cannot get that far.
+        let unknown = VehicleOrder { kind: 9, ..VehicleOrder::new(VehicleId(0), PUSH) };
         for (message, refusal, order) in [
             (orders(1, 0, &[0]), None, PUSH),
-            (Orders { orders: vec![nan], ..orders(1, 0, &[]) }, Some(Refusal::BadNumber), Order::Hold),
+            (Orders { orders: vec![unknown], ..orders(1, 0, &[]) }, Some(Refusal::BadNumber), Order::Hold),
             (orders(1, 0, &[]), Some(Refusal::Missing), Order::Hold),
             (orders(1, 0, &[0, 1]), Some(Refusal::NotYours), PUSH),
             (orders(1, 0, &[999, 0]), Some(Refusal::NotYours), PUSH),
