@@ -6,12 +6,8 @@ use std::time::Instant;
 /// Patience of these games, s.
 const PATIENCE: &str = "patience_s = 2";
 
-fn game(pace: &str) -> (tempfile::TempDir, Sim, Vec<Process>) {
-    let dir = temporary();
-    let sim = Sim::start(&long_game(dir.path(), PATIENCE), &["--pace", pace]);
-    let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
-    sim.wait_for_kind("started");
-    (dir, sim, agents)
+fn game(pace: &str) -> (Sim, Vec<Process>) {
+    Sim::long_with_agents(PATIENCE, &["--pace", pace])
 }
 
 /// They end with an error, and say why.
@@ -25,7 +21,7 @@ fn expect_sim_gone(agents: &mut [Process]) {
 #[test]
 fn a_killed_agents_boat_holds_and_a_new_agent_takes_it_on() {
     for pace in ["lockstep", "20x"] {
-        let (_dir, sim, mut agents) = game(pace);
+        let (sim, mut agents) = game(pace);
         sim.play_on(5.0);
         agents[1].kill();
         let killed = Instant::now();
@@ -46,7 +42,7 @@ fn a_killed_agents_boat_holds_and_a_new_agent_takes_it_on() {
 #[test]
 fn an_agent_that_hangs_is_given_up_after_patience_and_may_come_back() {
     for pace in ["lockstep", "20x"] {
-        let (_dir, sim, agents) = game(pace);
+        let (sim, agents) = game(pace);
         sim.play_on(2.0);
         agents[2].signal("STOP");
         let hung = Instant::now();
@@ -62,7 +58,7 @@ fn an_agent_that_hangs_is_given_up_after_patience_and_may_come_back() {
 
 #[test]
 fn agents_report_a_killed_sim_and_fail() {
-    let (_dir, mut sim, mut agents) = game("lockstep");
+    let (mut sim, mut agents) = game("lockstep");
     sim.play_on(2.0);
     sim.process.kill();
     let killed = Instant::now();
@@ -73,11 +69,11 @@ fn agents_report_a_killed_sim_and_fail() {
 
 #[test]
 fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
-    let (dir, mut sim, mut agents) = game("lockstep");
+    let (mut sim, mut agents) = game("lockstep");
     sim.play_on(2.0);
     let (endpoint, name) = (sim.endpoint.clone(), sim.game.clone());
     sim.process.kill();
-    let args = ["--listen", &endpoint, "--game", &name];
+    let (dir, args) = (temporary(), ["--listen", &endpoint, "--game", &name]);
     let next = Sim::start_with(squall(&[]), &long_game(dir.path(), PATIENCE), &args);
     // Pictures come again: an agent that goes by them alone would stay.
     let _others = FOUR.map(|vehicle| next.agent(&[vehicle]));
@@ -88,7 +84,7 @@ fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
 
 #[test]
 fn a_seat_that_is_taken_stays_taken() {
-    let (_dir, sim, _agents) = game("lockstep");
+    let (sim, _agents) = game("lockstep");
     let output = sim.run(&["agent", "--wait-s", "1", "--vehicle", "blue_one"]);
     assert!(!output.status.success());
     let said = stderr(&output);
@@ -98,7 +94,7 @@ fn a_seat_that_is_taken_stays_taken() {
 
 #[test]
 fn an_agent_for_an_unknown_vehicle_is_told_which_there_are() {
-    let (_dir, sim, _agents) = game("lockstep");
+    let (sim, _agents) = game("lockstep");
     let output = sim.run(&["agent", "--vehicle", "green_one"]);
     assert!(!output.status.success());
     let said = stderr(&output);

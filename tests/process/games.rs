@@ -1,8 +1,8 @@
 //! Whole games: the same bytes in one process and across processes.
 
 use crate::support::{
-    FOUR, LIMIT, Process, Sim, agent, based_on, free_endpoint, long_game, refusal_of, result_of, run, scenarios,
-    squall, stdout, temporary, two_fleets, wait_until, write,
+    FOUR, LIMIT, Process, Sim, agent, assert_a_game_each, based_on, free_endpoint, game_itself, long_game, refusal_of,
+    result_of, run, scenarios, squall, stdout, temporary, two_fleets, wait_until, write,
 };
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -15,27 +15,10 @@ fn seeded_game(dir: &Path) -> PathBuf {
     write(dir, "seeded.toml", &format!("duration_s = 300\n{}", two_fleets(3, &strategy)))
 }
 
-/// What must not depend on how a game was run.
-pub(crate) fn game_itself(mut result: Value) -> Value {
-    result.as_object_mut().expect("an object").remove("run");
-    result
-}
-
 #[test]
 fn a_lockstep_game_over_the_network_is_the_game_in_one_process_byte_for_byte() {
     let dir = temporary();
-    let game = seeded_game(dir.path()).display().to_string();
-    let mut digests = Vec::new();
-    for seed in ["1", "2", "3", "4", "5"] {
-        let here = game_itself(result_of(&[&game, "--seed", seed, "--in-process"]));
-        for boats_each in ["1", "2", "6"] {
-            let there = result_of(&[&game, "--seed", seed, "--agents-per-process", boats_each]);
-            assert_eq!(here, game_itself(there), "seed {seed}, {boats_each} boats a process");
-        }
-        digests.push(here["digest"].clone());
-    }
-    digests.dedup();
-    assert_eq!(digests.len(), 5, "each seed is another game");
+    assert_a_game_each(&seeded_game(dir.path()), &["1", "2", "3", "4", "5"]);
 }
 
 #[test]
@@ -121,8 +104,7 @@ fn agents_may_come_before_the_sim_and_in_any_order() {
 
 #[test]
 fn a_mind_may_join_late() {
-    let dir = temporary();
-    let sim = Sim::start(&long_game(dir.path(), ""), &["--join-s", "1"]);
+    let sim = Sim::long("", &["--join-s", "1"]);
     let _three = sim.agent(&FOUR[..3]);
     sim.wait_for_event("agent_lost", "red_two");
     let _late = sim.agent(&FOUR[3..]);
@@ -170,8 +152,7 @@ fn children_of(pid: u32) -> Vec<u32> {
 
 #[test]
 fn games_on_this_machine_are_listed_and_can_be_watched() {
-    let dir = temporary();
-    let sim = Sim::start(&long_game(dir.path(), ""), &[]);
+    let sim = Sim::long("", &[]);
     let _agents = sim.agent(&FOUR);
     sim.play_on(1.0);
     let list = stdout(&run(&["list"]));

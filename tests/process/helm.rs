@@ -6,18 +6,15 @@ use game::topic;
 use std::process::Stdio;
 
 /// A game that goes on, with an agent for each boat.
-fn game() -> (tempfile::TempDir, Sim, Vec<Process>) {
-    let dir = temporary();
-    let sim = Sim::start(&long_game(dir.path(), ""), &[]);
-    let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
-    sim.wait_for_kind("started");
+fn game() -> (Sim, Vec<Process>) {
+    let (sim, agents) = Sim::long_with_agents("", &[]);
     sim.play_on(1.0);
-    (dir, sim, agents)
+    (sim, agents)
 }
 
 #[test]
 fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
-    let (_dir, sim, _agents) = game();
+    let (sim, _agents) = game();
     let (bus, name) = (sim.bus(), sim.name());
     let scenario = sim.info(&bus).scenario;
     let two = scenario.vehicle_by_name("blue_two").expect("it is there");
@@ -48,7 +45,7 @@ fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
 
 #[test]
 fn watch_shows_a_helm_and_helm_writes_its_functions() {
-    let (dir, sim, _agents) = game();
+    let ((sim, _agents), dir) = (game(), temporary());
     let mut command = sim.squall(&["watch", "--helm", "blue_two", "--rate", "20"]);
     command.stdout(Stdio::piped());
     let mut watch = Process::start(command);
@@ -112,7 +109,7 @@ fn an_agent_plays_by_a_strategy_file_of_its_own() {
     let dir = temporary();
     let text = format!("base = \"{}/strategies/easy_attacker.toml\"\nabout = \"mine\"\n", scenarios());
     let mine = write(dir.path(), "mine.toml", &text).display().to_string();
-    let sim = Sim::start(&long_game(dir.path(), ""), &[]);
+    let sim = Sim::long("", &[]);
     let _ours = sim.quiet(&["agent", "--vehicle", "blue_one", "blue_two", "--strategy", &mine]);
     let _theirs = sim.quiet(&["agent", "--vehicle", "red_one", "red_two"]);
     sim.wait_for_kind("started");

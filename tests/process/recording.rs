@@ -61,7 +61,7 @@ fn a_killed_sim_leaves_a_recording_up_to_the_last_second() {
     let dir = temporary();
     let path = dir.path().join("killed.mcap");
     let file = path.display().to_string();
-    let mut sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x", "--record", &file]);
+    let mut sim = Sim::long("", &["--pace", "20x", "--record", &file]);
     let _agent = sim.agent(&FOUR);
     let now_s = sim.play_on(40.0);
     sim.process.kill();
@@ -78,7 +78,7 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     let dir = temporary();
     let path = dir.path().join("heard.mcap");
     let file = path.display().to_string();
-    let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x", "--record", &file]);
+    let sim = Sim::long("", &["--pace", "20x", "--record", &file]);
     let _agent = sim.agent(&FOUR);
     let (bus, game) = (sim.bus(), sim.name());
     let scenario = game::scenario::load(&long_game(dir.path(), "")).unwrap_or_else(|e| panic!("{e}"));
@@ -185,7 +185,7 @@ fn a_recording_can_be_read_while_the_game_goes_on() {
     let dir = temporary();
     let path = dir.path().join("live.mcap");
     let file = path.display().to_string();
-    let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x", "--record", &file]);
+    let sim = Sim::long("", &["--pace", "20x", "--record", &file]);
     let _agent = sim.agent(&FOUR);
     sim.play_on(20.0);
     let start = Instant::now();

@@ -1,6 +1,6 @@
 //! Agents that send what they should not: refused with a counted reason, the game unharmed.
 
-use crate::support::{FOUR, Sim, long_game, temporary};
+use crate::support::{FOUR, Sim};
 use bus::{Bus, Delivery, Latest, Publisher};
 use game::codec;
 use game::message::{JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
@@ -58,8 +58,7 @@ impl Rogue {
 
 #[test]
 fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
-    let dir = temporary();
-    let sim = Sim::start(&long_game(dir.path(), "patience_s = 20"), &[]);
+    let sim = Sim::long("patience_s = 20", &[]);
     let _agents = sim.agent(&FOUR[..3]);
     let rogue = Rogue::enter(&sim);
     let send = |orders: &Orders| rogue.orders.send(orders).expect("a session");
@@ -109,8 +108,7 @@ fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
 
 #[test]
 fn another_version_is_a_clear_refusal() {
-    let dir = temporary();
-    let sim = Sim::start(&long_game(dir.path(), ""), &[]);
+    let sim = Sim::long("", &[]);
     let bus = sim.bus();
     let game = sim.name();
     let JoinReply::Refused { reason } =

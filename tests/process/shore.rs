@@ -1,6 +1,6 @@
 //! People on shore control a game: they pause it, step it, slow it down, and make boats hold.
 
-use crate::support::{FOUR, LIMIT, Sim, based_on, long_game, result_of, temporary};
+use crate::support::{FOUR, LIMIT, Sim, based_on, result_of, temporary};
 use bus::{Bus, Declaration, Delivery, Publisher, Watched};
 use game::message::{Control, Frame};
 use game::run_state::{Phase, RunState};
@@ -89,9 +89,8 @@ fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
 
 #[test]
 fn a_game_goes_as_fast_as_it_is_asked_to() {
-    let dir = temporary();
     for (pace, is_lockstep) in [("lockstep", true), ("realtime", false)] {
-        let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", pace]);
+        let sim = Sim::long("", &["--pace", pace]);
         let shore = Shore::of(&sim);
         let _agent = sim.agent(&FOUR);
         sim.play_on(0.5);
@@ -110,8 +109,7 @@ fn a_game_goes_as_fast_as_it_is_asked_to() {
 
 #[test]
 fn boats_hold_for_as_long_as_an_operator_wants_it() {
-    let dir = temporary();
-    let sim = Sim::start(&long_game(dir.path(), ""), &["--pace", "20x"]);
+    let sim = Sim::long("", &["--pace", "20x"]);
     let shore = Shore::of(&sim);
     let _agent = sim.agent(&FOUR);
     let speed = |frame: &Frame| {

@@ -68,6 +68,29 @@ pub(crate) fn result_of(args: &[&str]) -> Value {
     serde_json::from_str(&std::fs::read_to_string(&json).expect("a result was written")).expect("it is JSON")
 }
 
+/// Each of these seeds gives one game, byte for byte, in one process and across processes, and each another.
+pub(crate) fn assert_a_game_each(game: &Path, seeds: &[&str]) {
+    let game = game.display().to_string();
+    let mut digests = Vec::new();
+    for seed in seeds {
+        let here = game_itself(result_of(&[&game, "--seed", seed, "--in-process"]));
+        // With two boats a process one process decides for a boat of each team.
+        for boats_each in ["1", "2", "6"] {
+            let there = result_of(&[&game, "--seed", seed, "--agents-per-process", boats_each]);
+            assert_eq!(here, game_itself(there), "seed {seed}, {boats_each} boats a process");
+        }
+        digests.push(here["digest"].clone());
+    }
+    digests.dedup();
+    assert_eq!(digests.len(), seeds.len(), "each seed is another game");
+}
+
+/// What must not depend on how a game was run.
+pub(crate) fn game_itself(mut result: Value) -> Value {
+    result.as_object_mut().expect("an object").remove("run");
+    result
+}
+
 /// A game file of two against two that lasts long enough for anything; `more` are further lines on top.
 pub(crate) fn long_game(dir: &Path, more: &str) -> PathBuf {
     based_on(dir, "pav01_vs_pav01", &format!("duration_s = 80000\n{more}"))
@@ -184,6 +207,20 @@ impl Sim {
     pub(crate) fn start(scenario: &Path, args: &[&str]) -> Sim {
         let endpoint = free_endpoint();
         Sim::start_with(squall(&[]), scenario, &[&["--listen", &endpoint], args].concat())
+    }
+
+    /// Serves a long game of two against two; `more` are further lines of its file.
+    pub(crate) fn long(more: &str, args: &[&str]) -> Sim {
+        let dir = temporary();
+        Sim::start(&long_game(dir.path(), more), args)
+    }
+
+    /// The same, with an agent process for each boat, when all have joined.
+    pub(crate) fn long_with_agents(more: &str, args: &[&str]) -> (Sim, Vec<Process>) {
+        let sim = Sim::long(more, args);
+        let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
+        sim.wait_for_kind("started");
+        (sim, agents)
     }
 
     /// Serves a game file by a program that takes the arguments of `squall`.

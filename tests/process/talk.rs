@@ -1,7 +1,6 @@
 //! Team messages from process to process: received exactly one decision later.
 
-use crate::games::game_itself;
-use crate::support::{LIMIT, Process, Sim, result_of, scenarios, temporary, two_fleets, wait_until, write};
+use crate::support::{LIMIT, Process, Sim, assert_a_game_each, scenarios, temporary, two_fleets, wait_until, write};
 use game::helm::HelmReport;
 use game::message::{GameInfo, Message, Say, Stamp, Word};
 use game::topic::{self, GameName};
@@ -38,19 +37,7 @@ weight = 40
 #[test]
 fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
     let dir = temporary();
-    let game = talking_game(dir.path(), 200.0).display().to_string();
-    let mut digests = Vec::new();
-    for seed in ["1", "2", "3"] {
-        let here = game_itself(result_of(&[&game, "--seed", seed, "--in-process"]));
-        // With two boats a process one process decides for a boat of each team.
-        for boats_each in ["1", "2", "6"] {
-            let there = result_of(&[&game, "--seed", seed, "--agents-per-process", boats_each]);
-            assert_eq!(here, game_itself(there), "seed {seed}, {boats_each} boats a process");
-        }
-        digests.push(here["digest"].clone());
-    }
-    digests.dedup();
-    assert_eq!(digests.len(), 3, "each seed is another game");
+    assert_a_game_each(&talking_game(dir.path(), 200.0), &["1", "2", "3"]);
 }
 
 /// A variable of a boat, as its helm tells it.
