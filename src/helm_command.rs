@@ -6,7 +6,7 @@ use crate::plot::polar::{PolarPage, PolarPlot};
 use crate::{helm_text, plot, screen};
 use anyhow::{Context, Result, bail};
 use game::Scenario;
-use game::helm::{FunctionReport, HelmQuestion, HelmReport};
+use game::helm::{HelmQuestion, HelmReport};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -72,15 +72,6 @@ fn speed_m_s(report: &HelmReport, j: usize) -> f64 {
     report.speed_max_m_s * j as f64 / (report.speeds - 1) as f64
 }
 
-/// The weighted sum of these functions, course by course.
-fn sum<'a>(report: &HelmReport, functions: impl Iterator<Item = &'a FunctionReport>) -> Vec<f64> {
-    let mut total = vec![0.0; report.courses * report.speeds];
-    for function in functions {
-        total.iter_mut().zip(&function.utilities).for_each(|(sum, u)| *sum += function.weight * f64::from(*u));
-    }
-    total
-}
-
 /// A row for each function, course and speed; then the sums, of which the largest is what the helm takes.
 fn write_csv(path: &Path, scenario: &Scenario, report: &HelmReport) -> Result<()> {
     let mut csv = csv::Writer::from_path(path)?;
@@ -100,7 +91,7 @@ fn write_csv(path: &Path, scenario: &Scenario, report: &HelmReport) -> Result<()
         write(&function.behaviour, contact, function.weight, utilities)?;
     }
     let weight: f64 = report.functions.iter().map(|function| function.weight).sum();
-    write(COLLECTIVE, "", weight, &mut sum(report, report.functions.iter()).into_iter())?;
+    write(COLLECTIVE, "", weight, &mut report.sum(report.functions.iter()).into_iter())?;
     Ok(csv.flush()?)
 }
 
@@ -114,7 +105,7 @@ fn plots(report: &HelmReport) -> Vec<PolarPlot> {
         range,
         chosen: report.course_deg.zip(report.speed_m_s),
     };
-    let all = sum(report, report.functions.iter());
+    let all = report.sum(report.functions.iter());
     let range = all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
     let mut plots = vec![plot(format!("{COLLECTIVE}: sum of weight × utility"), all, range)];
     for behaviour in &report.behaviours {
@@ -129,7 +120,7 @@ fn plots(report: &HelmReport) -> Vec<PolarPlot> {
             1 => ", 1 contact".to_owned(),
             n => format!(", {n} contacts"),
         };
-        let mean = sum(report, of_it()).into_iter().map(|v| v / weight.max(f64::MIN_POSITIVE)).collect();
+        let mean = report.sum(of_it()).into_iter().map(|v| v / weight.max(f64::MIN_POSITIVE)).collect();
         plots.push(plot(
             format!("{} ({}): weight {weight:.1}{about}", behaviour.name, behaviour.kind),
             mean,

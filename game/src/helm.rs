@@ -37,6 +37,18 @@ pub struct HelmReport {
     pub functions: Vec<FunctionReport>,
 }
 
+impl HelmReport {
+    /// The weighted sum of these functions by course and speed; those without utilities add nothing.
+    #[must_use]
+    pub fn sum<'a>(&self, functions: impl Iterator<Item = &'a FunctionReport>) -> Vec<f64> {
+        let mut total = vec![0.0; self.courses * self.speeds];
+        for function in functions {
+            total.iter_mut().zip(&function.utilities).for_each(|(sum, u)| *sum += function.weight * f64::from(*u));
+        }
+        total
+    }
+}
+
 /// A behaviour at one decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BehaviourReport {

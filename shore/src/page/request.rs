@@ -3,8 +3,9 @@
 use serde::Deserialize;
 
 /// A message from a page, as it stands in `PROTOCOL.md`.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, strum::IntoStaticStr)]
 #[serde(tag = "do", rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum PageRequest {
     /// A frame is drawn.
     Ack,
@@ -71,16 +72,7 @@ impl PageRequest {
     /// What it is called on the wire.
     #[must_use]
     pub fn name(&self) -> &'static str {
-        match self {
-            PageRequest::Ack => "ack",
-            PageRequest::Select { .. } => "select",
-            PageRequest::Control { .. } => "control",
-            PageRequest::Speed { .. } => "speed",
-            PageRequest::Step { .. } => "step",
-            PageRequest::Seek { .. } => "seek",
-            PageRequest::Drive { .. } => "drive",
-            PageRequest::LetGo { .. } => "let_go",
-        }
+        self.into()
     }
 
     /// Whether it changes a game that others play.

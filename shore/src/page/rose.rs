@@ -105,14 +105,8 @@ pub fn is_sound(report: &HelmReport, vehicle: VehicleId, vehicles: usize) -> boo
 
 /// The weighted sum of all functions, from its least to its greatest; none without functions.
 fn collective(report: &HelmReport) -> Option<Vec<u8>> {
-    let shown = || report.functions.iter().filter(|function| !function.utilities.is_empty());
-    let count = shown().next()?.utilities.len();
-    let mut sums = vec![0.0; count];
-    for function in shown() {
-        sums.iter_mut()
-            .zip(&function.utilities)
-            .for_each(|(sum, utility)| *sum += function.weight * f64::from(*utility));
-    }
+    report.functions.iter().find(|function| !function.utilities.is_empty())?;
+    let sums = report.sum(report.functions.iter());
     let (least, greatest) =
         sums.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), sum| (least.min(*sum), most.max(*sum)));
     let range = greatest - least;

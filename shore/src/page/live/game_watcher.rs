@@ -11,7 +11,6 @@ use game::external::GatewayStatus;
 use game::message::{Frame, Message, PolicyProposal, Stamp};
 use game::picture::Picture;
 use game::run_state::RunState;
-use game::scenario::Source;
 use game::topic::{self, GameName};
 use game::water::Water;
 use game::{TeamId, VehicleId};
@@ -159,10 +158,8 @@ impl GameSession {
         shared.news.notify();
         let subscriptions = Subscriptions { shared: Arc::clone(shared), generation };
         let mut standing = vec![subscriptions.clone().frames(&bus, &game)?, subscriptions.clone().run(&bus, &game)?];
-        for (i, vehicle) in game.scenario().vehicles.iter().enumerate() {
-            if vehicle.source == Source::External {
-                standing.push(subscriptions.clone().status(&bus, &game, VehicleId::at(i))?);
-            }
+        for vehicle in game.scenario().externals() {
+            standing.push(subscriptions.clone().status(&bus, &game, vehicle)?);
         }
         let (policies, pictures) = (BTreeMap::new(), BTreeMap::new());
         Ok(GameSession { bus, game, control, policies, pictures, sim, _standing: standing })

@@ -9,7 +9,6 @@ use game::message::{Frame, GameInfo};
 use game::outcome::EventOutcome;
 use game::picture::{OwnBoat, Picture};
 use game::run_state::{Phase, RunState};
-use game::scenario::Source;
 use game::topic::GameName;
 use game::water::Water;
 use game::{Scenario, SimTime, VehicleId};
@@ -100,7 +99,7 @@ impl LiveGame {
 
     /// Whether there are real boats.
     pub(super) fn has_real_boats(&self) -> bool {
-        self.scenario().vehicles.iter().any(|vehicle| vehicle.source == Source::External)
+        self.scenario().externals().next().is_some()
     }
 }
 

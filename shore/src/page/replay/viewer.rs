@@ -9,7 +9,6 @@ use crate::page::view::{
     Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, Outgoing, SEND_INTERVAL, TRAIL_S, TRAIL_STEP_S, Viewer,
 };
 use game::external::GatewayStatus;
-use game::scenario::Source;
 use game::{SimTime, VehicleId};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -50,9 +49,7 @@ impl PageViewer {
     pub(super) fn new(shared: Arc<SharedReplay>, access: Access, viewer: u64) -> PageViewer {
         let times = shared.source.frame_times();
         let (from, to) = (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
-        let vehicles = shared.source.info().scenario.vehicles.iter().enumerate();
-        let external = vehicles.filter(|(_, vehicle)| vehicle.source == Source::External);
-        let gateways = external.map(|(i, _)| (VehicleId::at(i), None)).collect();
+        let gateways = shared.source.info().scenario.externals().map(|vehicle| (vehicle, None)).collect();
         PageViewer {
             shared,
             access,
