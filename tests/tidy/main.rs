@@ -44,7 +44,7 @@ fn every_rule_notices_its_breach() {
 fn what_is_allowed_is_not_reported() {
     let mut tree = sound_tree();
     for (path, text) in [
-        ("sim/src/node/server.rs", "//! Booth.\nuse bus::Bus;\n".to_owned()),
+        ("sim/src/node/server.rs", "//! Game server.\nuse bus::Bus;\n".to_owned()),
         ("agent/src/node.rs", "//! Node.\nuse bus::Bus;\n".to_owned()),
         ("sim/src/tide.rs", format!("//! Tide, not {}.\nfn f() {{}} // {}\n", joined(["zen", "oh::"]), "x.unwrap()")),
         ("sim/src/wave.rs", "//! Waves.\n#[cfg(test)]\nmod tests {\n    fn f() { g().unwrap() }\n}\n".to_owned()),

@@ -37,7 +37,7 @@ pub(super) fn text(status: StatusCode, words: &str) -> Response<Body> {
 }
 
 /// Adds what every answer carries.
-pub(super) fn seal(headers: &mut HeaderMap) {
+pub(super) fn add_security_headers(headers: &mut HeaderMap) {
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
     }

@@ -115,9 +115,9 @@ impl Page {
         let ended = Arc::new(AtomicBool::new(false));
         let end = Arc::clone(&ended);
         let serve = move || {
-            let guard = AccessControl::new(address, &hosts, token);
+            let access_control = AccessControl::new(address, &hosts, token);
             // What cannot be taken over by the runtime was never a listener.
-            drop(runtime.block_on(routes::serve(listener, guard, to_show, async {
+            drop(runtime.block_on(routes::serve(listener, access_control, to_show, async {
                 while !end.load(Ordering::Relaxed) && !stop.load(Ordering::Relaxed) {
                     tokio::time::sleep(LOOK_AGAIN).await;
                 }

@@ -32,66 +32,74 @@ const REQUEST: Duration = Duration::from_secs(10);
 /// What all requests have in common.
 #[derive(Clone)]
 struct AppState {
-    guard: Arc<AccessControl>,
+    access_control: Arc<AccessControl>,
     shown: Shown,
-    places: Arc<Semaphore>,
-    masters: Arc<Semaphore>,
+    observers: Arc<Semaphore>,
+    operators: Arc<Semaphore>,
 }
 
 impl AppState {
     /// A permit for a page with this query, and what it may do.
     fn open_viewer(&self, query: Option<&str>) -> Option<(OwnedSemaphorePermit, Access)> {
-        let access = Access { rights: self.guard.has_rights(query) };
-        let free = |places: &Arc<Semaphore>| Arc::clone(places).try_acquire_owned().ok();
-        let own = if access.rights && self.guard.has_token() { free(&self.masters) } else { None };
-        Some((own.or_else(|| free(&self.places))?, access))
+        let access = Access { rights: self.access_control.has_rights(query) };
+        let permit = |of: &Arc<Semaphore>| Arc::clone(of).try_acquire_owned().ok();
+        let own = if access.rights && self.access_control.has_token() { permit(&self.operators) } else { None };
+        Some((own.or_else(|| permit(&self.observers))?, access))
     }
 }
 
 /// Answers until the end.
 pub(super) async fn serve(
     listener: std::net::TcpListener,
-    guard: AccessControl,
+    access_control: AccessControl,
     shown: Shown,
     end: impl Future<Output = ()>,
 ) -> std::io::Result<()> {
-    let quay = Listener::new(tokio::net::TcpListener::from_std(listener)?);
-    let places = |places| Arc::new(Semaphore::new(places));
-    let app = AppState { guard: Arc::new(guard), shown, places: places(PAGES_MAX), masters: places(OPERATORS_MAX) };
+    let listener = Listener::new(tokio::net::TcpListener::from_std(listener)?);
+    let permits = |count| Arc::new(Semaphore::new(count));
+    let app = AppState {
+        access_control: Arc::new(access_control),
+        shown,
+        observers: permits(PAGES_MAX),
+        operators: permits(OPERATORS_MAX),
+    };
     let site = Router::new()
         .route("/ws", get(upgrade))
         .fallback(file)
         .layer(middleware::from_fn_with_state(app.clone(), check))
         .with_state(app);
-    let answer_all = async {
+    let accept_all = async {
         loop {
-            let line = quay.accept().await;
+            let connection = listener.accept().await;
             // An error ends the connection of one browser only.
-            let answer = answer(line, site.clone());
-            tokio::spawn(async { drop(answer.await) });
+            let served = serve_connection(connection, site.clone());
+            tokio::spawn(async { drop(served.await) });
         }
     };
     tokio::select! {
-        () = answer_all => {}
+        () = accept_all => {}
         () = end => {}
     }
     Ok(())
 }
 
 /// Serves one connection. `axum::serve` would wait for ever for a request that never ends.
-async fn answer(line: Connection, site: Router) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+async fn serve_connection(
+    connection: Connection,
+    site: Router,
+) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     let mut server = Builder::new(TokioExecutor::new()).http1_only();
     server.http1().timer(TokioTimer::new()).header_read_timeout(REQUEST);
-    server.serve_connection_with_upgrades(TokioIo::new(line), TowerToHyperService::new(site)).await
+    server.serve_connection_with_upgrades(TokioIo::new(connection), TowerToHyperService::new(site)).await
 }
 
-/// Lets nothing through that is not meant for this server, and seals what it answers.
+/// Refuses requests that are not meant for this server, and adds security headers to responses.
 async fn check(State(app): State<AppState>, request: Request, next: Next) -> Response<Body> {
-    let mut response = match app.guard.check_host(text_of(request.headers(), &HOST)) {
+    let mut response = match app.access_control.check_host(text_of(request.headers(), &HOST)) {
         Ok(()) => next.run(request).await,
         Err(reason) => asset::text(StatusCode::FORBIDDEN, &reason),
     };
-    asset::seal(response.headers_mut());
+    asset::add_security_headers(response.headers_mut());
     response
 }
 

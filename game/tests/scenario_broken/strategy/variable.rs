@@ -32,7 +32,7 @@ b = { values = ["x", "x"] } #~ 22: values has "x" again, expected different ones
 c = { values = ["Go now"] } #~ 17: values is "Go now", expected 1 to 40 of a-z, 0-9 and _
 d = { values = [1] } #~ 17: values is 1, expected 1 to 40 of a-z, 0-9 and _
 
-## a number that is none
+## a non-finite number
 [variables]
 a = nan #~ 5: a is nan, expected a finite number
 b = { initial = inf } #~ 17: initial is inf, expected a finite number
