@@ -14,9 +14,10 @@ use game::run_state::RunState;
 use game::topic::{self, GameName};
 use game::water::Water;
 use game::{TeamId, VehicleId};
+use parking_lot::Mutex;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use std::sync::mpsc::Receiver;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How often to viewer again for a game that is not there.
@@ -271,7 +272,7 @@ impl Subscriptions {
     fn pictures(self, bus: &Bus, game: &LiveGame, team: TeamId) -> Result<Declaration, BusError> {
         let taken: Mutex<Option<Instant>> = Mutex::new(None);
         bus.subscribe(topic::picture(&game.name, game.scenario(), team), move |bytes| {
-            let mut taken = taken.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut taken = taken.lock();
             let now = clock::now();
             if taken.is_some_and(|before| now.saturating_duration_since(before) < PICTURE_AGAIN) {
                 return;

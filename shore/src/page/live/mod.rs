@@ -16,9 +16,10 @@ use bus::Net;
 use game::message::Control;
 use game::topic::GameName;
 use live_state::LiveState;
+use parking_lot::{Mutex, MutexGuard};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use viewer::PageViewer;
 
 /// The most commands that wait for the network.
@@ -97,7 +98,7 @@ impl SharedState {
 
     /// The state, to be locked for moments only.
     fn state(&self) -> MutexGuard<'_, LiveState> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock()
     }
 
     fn is_closing(&self) -> bool {

@@ -3,8 +3,9 @@
 use crate::page::rose::{HelmAnswer, helm_text};
 use crate::page::view::Changes;
 use game::{Scenario, VehicleId};
+use parking_lot::{Condvar, Mutex};
 use std::collections::BTreeMap;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 /// Recomputes helm reports of a recorded game. That may take a while.
 pub trait Helms: Send {
@@ -56,18 +57,18 @@ impl HelmThread {
 
     /// A viewer requests this now, and nothing else any more.
     pub(super) fn request(&self, viewer: u64, request: HelmRequest) {
-        self.0.lock().requests.insert(viewer, request);
+        self.0.queue.lock().requests.insert(viewer, request);
         self.0.requested.notify_one();
     }
 
     /// The newest answer to a viewer, as it goes to the page.
     pub(super) fn take(&self, viewer: u64) -> Option<(HelmRequest, String)> {
-        self.0.lock().answers.remove(&viewer)
+        self.0.queue.lock().answers.remove(&viewer)
     }
 
     /// A viewer goes.
     pub(super) fn remove(&self, viewer: u64) {
-        let mut queue = self.0.lock();
+        let mut queue = self.0.queue.lock();
         queue.requests.remove(&viewer);
         queue.answers.remove(&viewer);
         queue.current.take_if(|current| *current == viewer);
@@ -76,7 +77,7 @@ impl HelmThread {
 
 impl Drop for HelmThread {
     fn drop(&mut self) {
-        self.0.lock().is_closed = true;
+        self.0.queue.lock().is_closed = true;
         // It may be at work for a while; it ends by itself.
         self.0.requested.notify_one();
     }
@@ -95,10 +96,11 @@ impl SharedQueue {
         }
     }
 
-    /// The next request in turn; none when the helms is closed.
+    /// The next request in turn; none when the view is closed.
     fn next(&self) -> Option<HelmRequest> {
         let idle = |queue: &mut Queue| queue.requests.is_empty() && !queue.is_closed;
-        let mut queue = self.requested.wait_while(self.lock(), idle).unwrap_or_else(PoisonError::into_inner);
+        let mut queue = self.queue.lock();
+        self.requested.wait_while(&mut queue, idle);
         if queue.is_closed {
             return None;
         }
@@ -111,15 +113,10 @@ impl SharedQueue {
 
     /// The answer for whoever was served last. Nobody takes it if they have left meanwhile.
     fn deliver(&self, request: HelmRequest, text: String) {
-        let mut queue = self.lock();
+        let mut queue = self.queue.lock();
         if let Some(viewer) = queue.current.take() {
             queue.answers.insert(viewer, (request, text));
         }
-    }
-
-    /// Wishes and answers are put in and taken out whole.
-    fn lock(&self) -> MutexGuard<'_, Queue> {
-        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -156,7 +153,7 @@ mod tests {
             go.send(()).unwrap();
         }
         // The third is at work only after the second was handed out.
-        let kept: Vec<u64> = helms.0.lock().answers.keys().copied().filter(|viewer| *viewer < 3).collect();
+        let kept: Vec<u64> = helms.0.queue.lock().answers.keys().copied().filter(|viewer| *viewer < 3).collect();
         assert_eq!(kept, [2]);
     }
 }
