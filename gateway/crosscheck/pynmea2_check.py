@@ -10,6 +10,17 @@ import sys
 
 import pynmea2
 
+# What stands for a value of ours on the wire.
+MODES = "Standby Thruster Heading Speed StationKeep RiverNav Waypoint Autopilot CompassCalibration GoToErp Depth " \
+    "GravityVector FileDownload BootLoader"
+WORDS = {
+    **dict(zip(MODES.split(), "LTCGRNWI3HDSF!")),
+    "Primary": "1", "Secondary": "2", "PrimaryBackup": "3", "Rc": "5", "ObstacleAvoidance": "6",
+    "Relative": "R", "Theoretical": "T", "None": "",
+}
+# Values of ours that pynmea2 does not have, and parts of others.
+OURS = {"", "talker", "at", "unit", "with_mode", "heave_m", "year", "month", "day"}
+
 KNOT_M_S = 1852.0 / 3600.0
 UNIT_M_S = {"M": 1.0, "K": 1.0 / 3.6, "N": KNOT_M_S, "S": 0.44704}
 
@@ -31,7 +42,9 @@ def time_ms(time):
 def place(msg):
     # By the class, since a WPL of pynmea2 has coordinates but not this mixin.
     fix = pynmea2.nmea_utils.LatLonFix
-    return {"lat": fix.latitude.fget(msg) if msg.lat else None, "lon": fix.longitude.fget(msg) if msg.lon else None}
+    return {
+        "lat_deg": fix.latitude.fget(msg) if msg.lat else None, "lon_deg": fix.longitude.fget(msg) if msg.lon else None
+    }
 
 
 def wind_m_s(msg):
@@ -47,12 +60,13 @@ def proprietary(msg):
     """The values of a PSEAx: pynmea2 has the letter and the fields, and no names."""
     kind, *fields = msg.data
     names = {
-        "C": "mode heading thrust difference words",
-        "A": "pitch roll heading - box ahead starboard down yaw_rate",
-        "B": "volts charge amps celsius charge_used reset_time reset_date port_volts - system_amps - - - - hours",
-        "D": "mode heading thrust difference words transmission sent_to operator",
+        "C": "mode heading_deg thrust difference words",
+        "A": "pitch_deg roll_deg heading_deg - box_c accel_ahead_g accel_starboard_g accel_down_g yaw_rate_deg_s",
+        "B": "volts charge amps celsius charge_used reset_time reset_date port_volts starboard_volts system_amps "
+             "port_amps starboard_amps port_bilge_amps starboard_bilge_amps hours",
+        "D": "mode heading_deg thrust difference words transmission sent_to operator",
         "G": "code",
-        "R": "- - throttle - -",
+        "R": "- - throttle_pct - -",
     }[kind].split()
     assert len(fields) == len(names), (len(fields), msg)
     return {name: text for name, text in zip(names, fields) if name != "-"}
@@ -61,37 +75,43 @@ def proprietary(msg):
 READERS = {
     "GGA": lambda m: {
         **place(m), "time": time_ms(m.timestamp), "quality": m.gps_qual, "satellites": m.num_sats,
-        "hdop": m.horizontal_dil, "altitude": m.altitude, "geoid": m.geo_sep,
+        "hdop": m.horizontal_dil, "altitude_m": m.altitude, "geoid_m": m.geo_sep,
     },
     "RMC": lambda m: {
-        **place(m), "time": time_ms(m.timestamp), "valid": m.status == "A", "speed": m.spd_over_grnd,
-        "course": m.true_course, "date": date_text(m.datestamp),
+        **place(m), "time": time_ms(m.timestamp), "valid": m.status == "A", "speed_kn": m.spd_over_grnd,
+        "course_deg": m.true_course, "date": date_text(m.datestamp),
     },
     "VTG": lambda m: {
-        "true": m.true_track, "magnetic": m.mag_track, "knots": m.spd_over_grnd_kts, "km_h": m.spd_over_grnd_kmph,
+        "course_true_deg": m.true_track, "course_magnetic_deg": m.mag_track, "speed_kn": m.spd_over_grnd_kts,
+        "speed_km_h": m.spd_over_grnd_kmph,
     },
-    "HDT": lambda m: {"heading": m.heading},
+    "HDT": lambda m: {"heading_deg": m.heading},
     "HDG": lambda m: {
-        "heading": m.heading, "deviation": signed(m.deviation, m.dev_dir), "variation": signed(m.variation, m.var_dir),
+        "heading_deg": m.heading, "deviation_deg": signed(m.deviation, m.dev_dir),
+        "variation_deg": signed(m.variation, m.var_dir),
     },
     "ZDA": lambda m: {"time": time_ms(m.timestamp), "date": date_text(m.datestamp) if m.day else None},
     "GLL": lambda m: {**place(m), "time": time_ms(m.timestamp), "valid": m.status == "A"},
     "MWV": lambda m: {
-        "angle": m.wind_angle, "reference": m.reference, "m_s": wind_m_s(m), "valid": m.status == "A",
+        "angle_deg": m.wind_angle, "reference": m.reference, "speed_m_s": wind_m_s(m), "valid": m.status == "A",
     },
-    "VHW": lambda m: {"true": m.heading_true, "magnetic": m.heading_magnetic, "knots": m.water_speed_knots},
+    "VHW": lambda m: {
+        "heading_true_deg": m.heading_true, "heading_magnetic_deg": m.heading_magnetic, "speed_kn": m.water_speed_knots,
+    },
     "WPL": lambda m: {**place(m), "index": m.waypoint_id},
 }
 
 # Half of the last digit that we write.
-TOLERANCE = {"lat": 5.01e-5 / 60, "lon": 5.01e-5 / 60, "time": 0.001}
-HUNDREDTHS = {"hdop", "speed", "knots", "km_h", "ahead", "starboard", "down", "yaw_rate"}
-WHOLES = {"thrust", "difference", "charge", "charge_used", "hours", "throttle"}
+TOLERANCE = {"lat_deg": 5.01e-5 / 60, "lon_deg": 5.01e-5 / 60, "time": 0.001}
+HUNDREDTHS = {
+    "hdop", "speed_kn", "speed_km_h", "accel_ahead_g", "accel_starboard_g", "accel_down_g", "yaw_rate_deg_s",
+}
+WHOLES = {"thrust", "difference", "charge", "charge_used", "hours", "throttle_pct"}
 TEXTS = {"mode", "words", "code", "reference", "date", "transmission", "reset_time", "reset_date"}
 
 
 def tolerance(name, values):
-    if name in WHOLES or name == "heading" and values.get("mode") == "T":
+    if name in WHOLES or name == "heading_deg" and values.get("mode") == "T":
         return 0.501
     return TOLERANCE.get(name, 0.00501 if name in HUNDREDTHS else 0.0501)
 
@@ -120,7 +140,13 @@ def compare(ours, theirs, wire):
 
 
 def pairs(text):
-    return dict(pair.split("=", 1) for pair in text.split("\t"))
+    """The values of a sentence of ours, as they stand on the wire."""
+    known = dict(pair.split("=", 1) for pair in text.split("\t"))
+    if known.get("at") == "None":
+        known["lat_deg"] = known["lon_deg"] = "None"
+    if known.get("date") == "Date":
+        known["date"] = f"{int(known['year']):04d}-{int(known['month']):02d}-{int(known['day']):02d}"
+    return {name: WORDS.get(value, value.strip("'\"")) for name, value in known.items() if name not in OURS}
 
 
 def read_back(peer, wires):

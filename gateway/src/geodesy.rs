@@ -25,12 +25,6 @@ impl LocalFrame {
         LocalFrame { datum, earth: Geodesic::wgs84() }
     }
 
-    /// The position of (0, 0).
-    #[must_use]
-    pub fn datum(&self) -> LatLon {
-        self.datum
-    }
-
     /// Metres from the datum; non-finite for a position off the globe.
     #[must_use]
     pub fn ned(&self, at: LatLon) -> Ned {
@@ -158,7 +152,7 @@ mod tests {
             prop_assert!((-180.0..=180.0).contains(&at.lon_deg), "{at:?}");
             let back = frame.ned(at);
             prop_assert!(back.distance(ned) < 1e-6, "{ned:?} -> {at:?} -> {back:?}");
-            let plane = tangent(frame.datum(), at);
+            let plane = tangent(frame.datum, at);
             prop_assert!(back.distance(plane) < 0.0045, "{back:?} in the plane is {plane:?}");
         }
     }

@@ -3,18 +3,19 @@
 //! It has no writer. The sentences of the second test are therefore put together here, in the ways in which
 //! devices differ: zeros before numbers, more or fewer decimals, fields that are empty.
 
+#[allow(dead_code, reason = "the tests of the codec use more of it")]
+#[path = "../../tests/nmea/sentences.rs"]
+mod sentences;
+
 use chrono::{Datelike, Timelike};
 use game::LatLon;
-use gateway::nmea::{
-    Date, Framer, Gga, Gll, Hdt, Mwv, Rmc, Sentence, SpeedUnit, Talker, TimeOfDay, Vhw, Vtg, WindReference, Zda,
-    checksum,
-};
+use gateway::nmea::{Date, Framer, Mwv, Sentence, SpeedUnit, TimeOfDay, Vtg, WindReference, checksum};
 use nmea::ParseResult;
 use nmea::sentences::mwv::{MwvReference, MwvWindSpeedUnits};
 use nmea::sentences::rmc::RmcStatusOfFix;
-use proptest::option;
 use proptest::prelude::*;
 use proptest::sample::select;
+use sentences::{Domain, on_the_globe, standard_sentences};
 
 /// Half of the last digit that we write, and a little: the crate computes most numbers in single precision.
 const TENTH: f64 = 0.0501;
@@ -127,82 +128,26 @@ fn written(sentence: &Sentence) -> String {
     String::from_utf8(out).expect("ASCII")
 }
 
-fn talker() -> impl Strategy<Value = Talker> {
-    select(vec![Talker::GP, Talker::GN, Talker::WI, Talker::VW])
-}
-
-fn angle() -> impl Strategy<Value = Option<f64>> {
-    option::of(0.0..359.9)
-}
-
-fn speed() -> impl Strategy<Value = Option<f64>> {
-    option::of(0.0..99.0)
-}
-
-fn time() -> impl Strategy<Value = Option<TimeOfDay>> {
-    option::of((0..86_400_000_u32).prop_map(TimeOfDay))
-}
-
-/// The crate takes 80 to 82 for this century.
-fn date() -> impl Strategy<Value = Option<Date>> {
-    let days = (1983..2080_u16, 1..=12_u8, 1..=28_u8);
-    option::of(days.prop_map(|(year, month, day)| Date { year, month, day }))
-}
-
-fn place() -> impl Strategy<Value = Option<LatLon>> {
-    option::of((-90.0..90.0, -180.0..180.0).prop_map(|(lat_deg, lon_deg)| LatLon { lat_deg, lon_deg }))
-}
-
-fn sentence() -> BoxedStrategy<Sentence> {
-    prop_oneof![fix(), heading_or_wind()].boxed()
-}
-
-fn fix() -> BoxedStrategy<Sentence> {
-    let heights = (option::of(-99.0..999.0), option::of(-99.0..99.0));
-    let gga = (talker(), time(), place(), 0..9_u8, option::of(0..99_u8), speed(), heights).prop_map(
-        |(talker, time, at, quality, satellites, hdop, (altitude_m, geoid_m))| {
-            Sentence::Gga(Gga { talker, time, at, quality, satellites, hdop, altitude_m, geoid_m })
-        },
-    );
-    let rmc = (talker(), time(), any::<bool>(), place(), speed(), angle(), date()).prop_map(
-        |(talker, time, valid, at, speed_kn, course_deg, date)| {
-            Sentence::Rmc(Rmc { talker, time, valid, at, speed_kn, course_deg, date })
-        },
-    );
-    let vtg = (talker(), angle(), angle(), 0.0..99.0, any::<bool>()).prop_map(
-        |(talker, course_true_deg, course_magnetic_deg, knots, with_mode)| {
-            let (speed_kn, speed_km_h) = (Some(knots), Some(knots * 1.852));
-            Sentence::Vtg(Vtg { talker, course_true_deg, course_magnetic_deg, speed_kn, speed_km_h, with_mode })
-        },
-    );
-    let gll = (talker(), place(), time(), any::<bool>())
-        .prop_map(|(talker, at, time, valid)| Sentence::Gll(Gll { talker, at, time, valid }));
-    let zda = (talker(), time(), date()).prop_map(|(talker, time, date)| Sentence::Zda(Zda { talker, time, date }));
-    prop_oneof![gga, rmc, vtg, gll, zda].boxed()
-}
-
-fn heading_or_wind() -> BoxedStrategy<Sentence> {
-    let units = select(vec![
-        SpeedUnit::MetresPerSecond,
-        SpeedUnit::KilometresPerHour,
-        SpeedUnit::Knots,
-        SpeedUnit::MilesPerHour,
-    ]);
-    let references = select(vec![WindReference::Relative, WindReference::Theoretical]);
-    let hdt = (talker(), (0.0..359.9).prop_map(Some))
-        .prop_map(|(talker, heading_deg)| Sentence::Hdt(Hdt { talker, heading_deg }));
-    let mwv = (talker(), angle(), references, speed(), units, any::<bool>()).prop_map(
-        |(talker, angle_deg, reference, speed_m_s, unit, valid)| {
-            Sentence::Mwv(Mwv { talker, angle_deg, reference, speed_m_s, unit, valid })
-        },
-    );
-    let some = |end: f64| (0.0..end).prop_map(Some);
-    let vhw = (talker(), some(359.9), some(359.9), some(99.0)).prop_map(
-        |(talker, heading_true_deg, heading_magnetic_deg, speed_kn)| {
-            Sentence::Vhw(Vhw { talker, heading_true_deg, heading_magnetic_deg, speed_kn })
-        },
-    );
-    prop_oneof![hdt, mwv, vhw].boxed()
+/// Sentences that the crate reads: it has no magnetic heading, and needs some of the numbers.
+fn sentence() -> impl Strategy<Value = Sentence> {
+    let domain = Domain {
+        angles: (0.0..359.9).boxed(),
+        sizes: (0.0..99.0).boxed(),
+        signed: (-99.0..999.0).boxed(),
+        texts: "".boxed(),
+        places: on_the_globe(),
+        // The crate takes 80 to 82 for this century.
+        years: 1983..2080,
+        day_ms: 0..86_400_000,
+    };
+    standard_sentences(&domain).prop_filter_map("the crate needs it", |sentence| match sentence {
+        // It computes one speed from the other.
+        Sentence::Vtg(v) => Some(Sentence::Vtg(Vtg { speed_km_h: Some(v.speed_kn? * 1.852), ..v })),
+        Sentence::Vhw(v) => v.heading_true_deg.and(v.heading_magnetic_deg).and(v.speed_kn).map(|_| Sentence::Vhw(v)),
+        Sentence::Hdt(h) => h.heading_deg.map(|_| Sentence::Hdt(h)),
+        Sentence::Hdg(_) => None,
+        other => Some(other),
+    })
 }
 
 /// Lines as other devices write them.

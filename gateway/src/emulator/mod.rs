@@ -29,8 +29,6 @@ pub struct Plan {
     pub integers: bool,
     /// Sentences beyond those that a Surveyor sends.
     pub extra: Vec<Extra>,
-    /// Whether VTG has its mode field: new boats leave it out.
-    pub vtg_mode: bool,
     /// Date and time of day at time zero.
     pub began: (Date, TimeOfDay),
 }

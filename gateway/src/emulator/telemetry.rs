@@ -96,7 +96,8 @@ impl FixReport {
             course_magnetic_deg: self.course_rad.map(|rad| degrees(rad - boat.plan.declination_rad)),
             speed_kn: Some(self.speed_m_s / M_S_PER_KN),
             speed_km_h: Some(3.6 * self.speed_m_s),
-            with_mode: boat.plan.vtg_mode,
+            // New boats leave it out.
+            with_mode: false,
         }
     }
 

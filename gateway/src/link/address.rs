@@ -18,34 +18,10 @@ const TO_LISTEN: &str =
 /// The address of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkAddress {
-    /// A TCP port to connect to.
-    TcpClient {
-        /// Name or number of the machine; IPv6 without brackets.
-        host: String,
-        /// Its port.
-        port: u16,
-    },
-    /// A TCP port of our own.
-    TcpServer {
-        /// Where to listen; `0.0.0.0` for everywhere.
-        host: String,
-        /// The port; 0 for any that is free.
-        port: u16,
-    },
-    /// A UDP port to send to.
-    UdpClient {
-        /// Name or number of the machine; IPv6 without brackets.
-        host: String,
-        /// Its port.
-        port: u16,
-    },
-    /// A UDP port of our own, that answers whoever sent to it.
-    UdpServer {
-        /// Where to listen; `0.0.0.0` for everywhere.
-        host: String,
-        /// The port; 0 for any that is free.
-        port: u16,
-    },
+    /// A TCP port.
+    Tcp(Side, HostPort),
+    /// A UDP port. One of our own answers whoever sent to it.
+    Udp(Side, HostPort),
     /// A serial line, 8N1.
     Serial {
         /// The device.
@@ -58,6 +34,24 @@ pub enum LinkAddress {
         /// Where a symlink to it is wanted.
         link: Option<PathBuf>,
     },
+}
+
+/// Which side of a link an address is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The port is somebody else's: connect to it.
+    Connects,
+    /// The port is our own.
+    Listens,
+}
+
+/// A port of a machine.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HostPort {
+    /// Name or number of the machine, IPv6 without brackets; `0.0.0.0` listens everywhere.
+    pub host: String,
+    /// The port; 0 listens on any that is free.
+    pub port: u16,
 }
 
 /// A link address that is not understood.
@@ -74,13 +68,6 @@ pub struct LinkAddressError {
 
 /// What is wrong with it, and what would be right.
 type Fault = (String, &'static str);
-
-/// Which side of a link an address is for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Connects,
-    Listens,
-}
 
 impl LinkAddress {
     /// For the side that connects: `tcp://HOST:PORT`, `udp://HOST:PORT`, `serial:///dev/ttyUSB0?baud=38400`.
@@ -103,12 +90,8 @@ impl LinkAddress {
 impl fmt::Display for LinkAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            LinkAddress::TcpClient { host, port } | LinkAddress::TcpServer { host, port } => {
-                write!(f, "tcp://{}:{port}", bracketed(host))
-            }
-            LinkAddress::UdpClient { host, port } | LinkAddress::UdpServer { host, port } => {
-                write!(f, "udp://{}:{port}", bracketed(host))
-            }
+            LinkAddress::Tcp(_, at) => write!(f, "tcp://{at}"),
+            LinkAddress::Udp(_, at) => write!(f, "udp://{at}"),
             LinkAddress::Serial { path, baud } => write!(f, "serial://{}?baud={baud}", path.display()),
             LinkAddress::Pty { link: None } => write!(f, "pty"),
             LinkAddress::Pty { link: Some(link) } => write!(f, "pty://{}", link.display()),
@@ -116,12 +99,15 @@ impl fmt::Display for LinkAddress {
     }
 }
 
-fn error(text: &str, (found, allowed): Fault) -> LinkAddressError {
-    LinkAddressError { text: text.to_owned(), found, allowed }
+impl fmt::Display for HostPort {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let HostPort { host, port } = self;
+        if host.contains(':') { write!(f, "[{host}]:{port}") } else { write!(f, "{host}:{port}") }
+    }
 }
 
-fn bracketed(host: &str) -> String {
-    if host.contains(':') { format!("[{host}]") } else { host.to_owned() }
+fn error(text: &str, (found, allowed): Fault) -> LinkAddressError {
+    LinkAddressError { text: text.to_owned(), found, allowed }
 }
 
 fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
@@ -134,14 +120,8 @@ fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
         return Err(("it has no `://`".to_owned(), forms));
     };
     match scheme {
-        "tcp" => host_and_port(rest, side).map(|(host, port)| match side {
-            Side::Connects => LinkAddress::TcpClient { host, port },
-            Side::Listens => LinkAddress::TcpServer { host, port },
-        }),
-        "udp" => host_and_port(rest, side).map(|(host, port)| match side {
-            Side::Connects => LinkAddress::UdpClient { host, port },
-            Side::Listens => LinkAddress::UdpServer { host, port },
-        }),
+        "tcp" => Ok(LinkAddress::Tcp(side, host_and_port(rest, side)?)),
+        "udp" => Ok(LinkAddress::Udp(side, host_and_port(rest, side)?)),
         "serial" => serial(rest),
         "pty" if listens => Ok(LinkAddress::Pty { link: Some(absolute(rest)?) }),
         "pty" => Err(("a pty can only be listened on".to_owned(), forms)),
@@ -149,7 +129,7 @@ fn parse(text: &str, side: Side) -> Result<LinkAddress, Fault> {
     }
 }
 
-fn host_and_port(text: &str, side: Side) -> Result<(String, u16), Fault> {
+fn host_and_port(text: &str, side: Side) -> Result<HostPort, Fault> {
     let Some((host, port)) = text.rsplit_once(':').filter(|(_, port)| !port.ends_with(']')) else {
         return Err(("it has no port".to_owned(), "HOST:PORT"));
     };
@@ -168,7 +148,7 @@ fn host_and_port(text: &str, side: Side) -> Result<(String, u16), Fault> {
     // `parse` alone would take "+80".
     let number = Some(port).filter(|port| port.bytes().all(|b| b.is_ascii_digit()));
     match number.and_then(|port| port.parse::<u16>().ok()) {
-        Some(number) if number >= first => Ok((name.to_owned(), number)),
+        Some(port) if port >= first => Ok(HostPort { host: name.to_owned(), port }),
         _ => Err((format!("the port is {port:?}"), ports)),
     }
 }

@@ -5,7 +5,7 @@ use super::clock::{self, TICK};
 use super::connection::Connection;
 use super::port::Port;
 use super::threads::{Threads, Woken};
-use super::{LinkAddress, LinkEvent};
+use super::{HostPort, LinkAddress, LinkEvent, Side};
 use serial2::SerialPort;
 use socket2::{Domain, Protocol, Socket, TcpKeepalive, Type};
 use std::io::{self, ErrorKind};
@@ -57,16 +57,16 @@ pub(super) fn run(threads: &Arc<Threads>, address: &LinkAddress) {
 
 fn connect(threads: &Threads, address: &LinkAddress) -> io::Result<(Port, String)> {
     match address {
-        LinkAddress::TcpClient { host, port } => connect_tcp(threads, host, *port),
-        LinkAddress::UdpClient { host, port } => connect_udp(host, *port),
+        LinkAddress::Tcp(Side::Connects, at) => connect_tcp(threads, at),
+        LinkAddress::Udp(Side::Connects, at) => connect_udp(at),
         LinkAddress::Serial { path, baud } => open_serial(path, *baud),
         _ => Err(io::Error::new(ErrorKind::Unsupported, "nothing to connect to")),
     }
 }
 
-fn connect_tcp(threads: &Threads, host: &str, port: u16) -> io::Result<(Port, String)> {
+fn connect_tcp(threads: &Threads, at: &HostPort) -> io::Result<(Port, String)> {
     let mut last = io::Error::new(ErrorKind::NotFound, "the host has no address");
-    for address in (host, port).to_socket_addrs()? {
+    for address in (at.host.as_str(), at.port).to_socket_addrs()? {
         match connect_to(threads, address) {
             Ok(stream) => return Ok((Port::Tcp(stream), address.to_string())),
             Err(e) => last = e,
@@ -119,8 +119,8 @@ pub(super) fn tune(socket: Socket) -> io::Result<TcpStream> {
     Ok(socket.into())
 }
 
-fn connect_udp(host: &str, port: u16) -> io::Result<(Port, String)> {
-    let mut addresses = (host, port).to_socket_addrs()?;
+fn connect_udp(at: &HostPort) -> io::Result<(Port, String)> {
+    let mut addresses = (at.host.as_str(), at.port).to_socket_addrs()?;
     let Some(address) = addresses.next() else {
         return Err(io::Error::new(ErrorKind::NotFound, "the host has no address"));
     };

@@ -19,7 +19,7 @@ mod tcp_server;
 mod threads;
 mod udp_server;
 
-pub use address::{BAUDS, LinkAddress, LinkAddressError};
+pub use address::{BAUDS, HostPort, LinkAddress, LinkAddressError, Side};
 
 use outbox::Priority;
 use std::io;
@@ -105,14 +105,12 @@ pub enum LinkEvent {
 #[derive(Debug, Error)]
 pub enum LinkError {
     /// The port cannot be listened on.
-    #[error("cannot listen on {kind} port {port} of {host}: {reason}")]
+    #[error("cannot listen on {kind} port {} of {}: {reason}", at.port, at.host)]
     Listen {
         /// `TCP` or `UDP`.
         kind: &'static str,
-        /// The host.
-        host: String,
         /// The port.
-        port: u16,
+        at: HostPort,
         /// What the system says.
         reason: String,
     },
@@ -217,12 +215,12 @@ type Work = Box<dyn FnOnce() + Send>;
 /// The address at which others reach the link, and what its first thread does.
 fn prepare(threads: Arc<Threads>, address: &LinkAddress) -> Result<(String, Work), LinkError> {
     Ok(match address {
-        LinkAddress::TcpServer { host, port } => {
-            let (listener, at) = tcp_server::bind(host, *port)?;
+        LinkAddress::Tcp(Side::Listens, at) => {
+            let (listener, at) = tcp_server::bind(at)?;
             (reached("tcp", at), Box::new(move || tcp_server::run(&threads, &listener)))
         }
-        LinkAddress::UdpServer { host, port } => {
-            let (socket, at) = udp_server::bind(host, *port)?;
+        LinkAddress::Udp(Side::Listens, at) => {
+            let (socket, at) = udp_server::bind(at)?;
             let socket = Arc::new(socket);
             (reached("udp", at), Box::new(move || udp_server::run(&threads, &socket)))
         }
@@ -233,11 +231,20 @@ fn prepare(threads: Arc<Threads>, address: &LinkAddress) -> Result<(String, Work
         LinkAddress::Serial { path, baud } if !BAUDS.contains(baud) => {
             return Err(LinkError::Baud { path: path.clone(), baud: *baud });
         }
-        LinkAddress::TcpClient { .. } | LinkAddress::UdpClient { .. } | LinkAddress::Serial { .. } => {
+        LinkAddress::Tcp(..) | LinkAddress::Udp(..) | LinkAddress::Serial { .. } => {
             let address = address.clone();
             (address.to_string(), Box::new(move || client::run(&threads, &address)))
         }
     })
+}
+
+/// What `bound` has taken, and its address.
+fn listening<T>(
+    kind: &'static str,
+    at: &HostPort,
+    bound: impl FnOnce((&str, u16)) -> io::Result<T>,
+) -> Result<T, LinkError> {
+    bound((&at.host, at.port)).map_err(|e| LinkError::Listen { kind, at: at.clone(), reason: e.to_string() })
 }
 
 fn reached(scheme: &str, at: SocketAddr) -> String {

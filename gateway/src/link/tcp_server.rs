@@ -5,22 +5,21 @@ use super::clock::TICK;
 use super::connection::Connection;
 use super::port::Port;
 use super::threads::{Threads, Woken};
-use super::{LinkError, PEERS_MAX};
+use super::{HostPort, LinkError, PEERS_MAX, listening};
 use socket2::SockRef;
 use std::io;
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 
 /// Takes the port.
-pub(super) fn bind(host: &str, port: u16) -> Result<(TcpListener, SocketAddr), LinkError> {
-    let bound = || -> io::Result<(TcpListener, SocketAddr)> {
-        let listener = TcpListener::bind((host, port))?;
+pub(super) fn bind(at: &HostPort) -> Result<(TcpListener, SocketAddr), LinkError> {
+    listening("TCP", at, |at| {
+        let listener = TcpListener::bind(at)?;
         // On Linux it holds for `accept` too.
         SockRef::from(&listener).set_read_timeout(Some(TICK))?;
         let address = listener.local_addr()?;
         Ok((listener, address))
-    };
-    bound().map_err(|e| LinkError::Listen { kind: "TCP", host: host.to_owned(), port, reason: e.to_string() })
+    })
 }
 
 /// Accepts connections, until the link is closed.

@@ -5,7 +5,7 @@ use super::connection::{CHUNK, Connection};
 use super::peer::End;
 use super::port::Port;
 use super::threads::{Threads, Woken};
-use super::{LinkError, LinkEvent, PEERS_MAX};
+use super::{HostPort, LinkError, LinkEvent, PEERS_MAX, listening};
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::Arc;
@@ -21,15 +21,14 @@ struct UdpPeer {
 }
 
 /// Takes the port.
-pub(super) fn bind(host: &str, port: u16) -> Result<(UdpSocket, SocketAddr), LinkError> {
-    let bound = || -> io::Result<(UdpSocket, SocketAddr)> {
-        let socket = UdpSocket::bind((host, port))?;
+pub(super) fn bind(at: &HostPort) -> Result<(UdpSocket, SocketAddr), LinkError> {
+    listening("UDP", at, |at| {
+        let socket = UdpSocket::bind(at)?;
         socket.set_read_timeout(Some(TICK))?;
         socket.set_write_timeout(Some(TICK))?;
         let address = socket.local_addr()?;
         Ok((socket, address))
-    };
-    bound().map_err(|e| LinkError::Listen { kind: "UDP", host: host.to_owned(), port, reason: e.to_string() })
+    })
 }
 
 /// Receives from all peers, until the link is closed.

@@ -11,8 +11,6 @@ impl Talker {
     pub const GN: Talker = Talker(*b"GN");
     /// A magnetic compass.
     pub const HC: Talker = Talker(*b"HC");
-    /// A gyro or another true heading.
-    pub const HE: Talker = Talker(*b"HE");
     /// A weather instrument.
     pub const WI: Talker = Talker(*b"WI");
     /// A log: speed through the water.

@@ -1,6 +1,6 @@
 //! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives by the boat's own sentences.
 
-use super::{NodeError, NodeEvent, declination_today_rad, pace_factor};
+use super::{NodeError, NodeEvent, declination_rad, pace_factor};
 use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
@@ -71,17 +71,12 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     pace_factor(&info.pace, true)?;
     let scenario = &info.scenario;
     let datum = scenario.field.plan.datum;
-    let declination_rad = match settings.declination_rad {
-        Some(rad) => rad,
-        None => declination_today_rad(datum)?,
-    };
     let plan = Plan {
         datum,
-        declination_rad,
+        declination_rad: declination_rad(settings.declination_rad, datum)?,
         watchdog_s: settings.watchdog_s,
         integers: settings.integers,
         extra: settings.extra.clone(),
-        vtg_mode: false,
         began: date_and_time(utc::now_ns()),
     };
     let incoming = Arc::new(Watched::new(Incoming::default()));

@@ -149,10 +149,7 @@ pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Resu
     let vehicle = external_vehicle(&info, &settings.vehicle)?;
     let factor = pace_factor(&info.pace, settings.at_game_pace)?;
     let field = info.scenario.field.clone();
-    let declination_rad = match settings.gateway.declination_rad {
-        Some(rad) => rad,
-        None => declination_today_rad(field.plan.datum)?,
-    };
+    let declination_rad = declination_rad(settings.gateway.declination_rad, field.plan.datum)?;
     let plan = Plan {
         vehicle: settings.vehicle.clone(),
         gateway: settings.gateway.clone(),
@@ -269,7 +266,8 @@ fn pace_factor(pace: &str, at_game_pace: bool) -> Result<f64, NodeError> {
     }
 }
 
-/// The declination here and today, east positive, rad.
-fn declination_today_rad(at: LatLon) -> Result<f64, NodeError> {
-    Ok(declination_deg(at, date_and_time(utc::now_ns()).0)?.to_radians())
+/// The declination as it is set, or else that of here and today; east positive, rad.
+fn declination_rad(set_rad: Option<f64>, at: LatLon) -> Result<f64, NodeError> {
+    let today_rad = || Ok(declination_deg(at, date_and_time(utc::now_ns()).0)?.to_radians());
+    set_rad.map_or_else(today_rad, Ok)
 }

@@ -1,66 +1,90 @@
 //! The cause of a failsafe, and what is missing for arming, with their texts for operators.
 
-use super::{Control, Refusal, State, Task};
+use super::{Control, State, Task};
 use std::fmt;
+use thiserror::Error;
 
 /// The cause of a failsafe.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Cause {
     /// No order came for longer than its time to live.
+    #[error("no fresh order")]
     OrderStale,
     /// Navigation cannot be relied on.
+    #[error("navigation: {0}")]
     Nav(NavFault),
     /// The boat was outside of the geofence, or could not have stopped inside.
+    #[error("outside of the geofence, or unable to stop inside")]
     Geofence,
     /// The battery was low.
+    #[error("the battery is low")]
     BatteryLow,
     /// Another operator took it over: PSEAD's number.
+    #[error("{} has taken over", operator(*.0))]
     TakenOver(u8),
     /// It no longer reported who commands it.
+    #[error("the boat no longer reports who commands it")]
     ControlUnknown,
     /// It did not take up the mode that it was sent: this is the one it reported.
+    #[error("the boat does not follow the commands it is sent: it is in mode {0}")]
     Disobeyed(char),
     /// The link broke.
+    #[error("the link is lost")]
     LinkLost,
 }
 
 /// What is wrong with navigation.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NavFault {
     /// There was no fix yet.
+    #[error("no fix yet")]
     NoFix,
     /// There was no heading yet.
+    #[error("no heading yet")]
     NoHeading,
     /// The last fix is this old, s.
+    #[error("the last fix is {0:.1} s old")]
     FixStale(f64),
     /// The last heading is this old, s.
+    #[error("the last heading is {0:.1} s old")]
     HeadingStale(f64),
     /// The receiver says that its fix is of this quality.
+    #[error("the fix is of quality {0}")]
     Quality(u8),
     /// The dilution of precision is this large.
+    #[error("the horizontal dilution of precision is {0}")]
     Dilution(f64),
     /// The position is 0° N, 0° E: what receivers send that know nothing.
+    #[error("the position is 0 N 0 E")]
     ZeroZero,
     /// The position jumped this far, m.
+    #[error("the position jumped by {0:.0} m")]
     Jump(f64),
     /// The position has been the same to the last digit for this long though the boat is driven, s.
+    #[error("the position has not changed for {0:.1} s under thrust")]
     Frozen(f64),
 }
 
 /// What is missing for arming.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Missing {
     /// The link is down.
+    #[error("the link to the boat")]
     Link,
     /// The boat does not report that we command it.
+    #[error("secondary control: {}", commander(*.0))]
     Control(Control),
     /// Navigation is not sound.
+    #[error("navigation: {0}")]
     Nav(NavFault),
     /// It is outside of the geofence.
+    #[error("a position inside of the geofence, and room to stop")]
     Inside,
     /// The battery is low.
+    #[error("a charged battery")]
     Battery,
     /// There is no fresh order.
+    #[error("a fresh order")]
     Order,
 }
 
@@ -75,50 +99,11 @@ fn operator(number: u8) -> String {
     }
 }
 
-impl fmt::Display for Cause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Cause::OrderStale => f.write_str("no fresh order"),
-            Cause::Nav(fault) => write!(f, "navigation: {fault}"),
-            Cause::Geofence => f.write_str("outside of the geofence, or unable to stop inside"),
-            Cause::BatteryLow => f.write_str("the battery is low"),
-            Cause::TakenOver(by) => write!(f, "{} has taken over", operator(*by)),
-            Cause::ControlUnknown => f.write_str("the boat no longer reports who commands it"),
-            Cause::Disobeyed(mode) => {
-                write!(f, "the boat does not follow the commands it is sent: it is in mode {mode}")
-            }
-            Cause::LinkLost => f.write_str("the link is lost"),
-        }
-    }
-}
-
-impl fmt::Display for NavFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            NavFault::NoFix => f.write_str("no fix yet"),
-            NavFault::NoHeading => f.write_str("no heading yet"),
-            NavFault::FixStale(age_s) => write!(f, "the last fix is {age_s:.1} s old"),
-            NavFault::HeadingStale(age_s) => write!(f, "the last heading is {age_s:.1} s old"),
-            NavFault::Quality(quality) => write!(f, "the fix is of quality {quality}"),
-            NavFault::Dilution(hdop) => write!(f, "the horizontal dilution of precision is {hdop}"),
-            NavFault::ZeroZero => f.write_str("the position is 0 N 0 E"),
-            NavFault::Jump(by_m) => write!(f, "the position jumped by {by_m:.0} m"),
-            NavFault::Frozen(for_s) => write!(f, "the position has not changed for {for_s:.1} s under thrust"),
-        }
-    }
-}
-
-impl fmt::Display for Missing {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Missing::Link => f.write_str("the link to the boat"),
-            Missing::Control(Control::Other(by)) => write!(f, "secondary control: {} commands the boat", operator(*by)),
-            Missing::Control(_) => f.write_str("secondary control: the boat does not report that we command it"),
-            Missing::Nav(fault) => write!(f, "navigation: {fault}"),
-            Missing::Inside => f.write_str("a position inside of the geofence, and room to stop"),
-            Missing::Battery => f.write_str("a charged battery"),
-            Missing::Order => f.write_str("a fresh order"),
-        }
+/// Who commands a boat that we do not.
+fn commander(control: Control) -> String {
+    match control {
+        Control::Other(by) => format!("{} commands the boat", operator(by)),
+        _ => "the boat does not report that we command it".to_owned(),
     }
 }
 
@@ -132,18 +117,6 @@ impl fmt::Display for State {
             State::Delegated(Task::GoToErp) => f.write_str("delegated: to the emergency recovery point"),
             State::Delegated(Task::Mission) => f.write_str("delegated: mission"),
             State::EStopped => f.write_str("e-stopped"),
-        }
-    }
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Refusal::EStopped => f.write_str("an E-stop is in force"),
-            Refusal::NotReady(missing) => {
-                let missing: Vec<String> = missing.iter().map(ToString::to_string).collect();
-                write!(f, "missing: {}", missing.join("; "))
-            }
         }
     }
 }

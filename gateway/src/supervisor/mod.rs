@@ -28,6 +28,7 @@ mod cause;
 pub use cause::{Cause, Missing, NavFault};
 
 use game::gateway::LowBattery;
+use thiserror::Error;
 
 /// What is true now.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,11 +139,13 @@ pub enum Action {
 }
 
 /// Why a request is refused.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum Refusal {
     /// These things are missing.
+    #[error("missing: {}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     NotReady(Vec<Missing>),
     /// An E-stop is in force.
+    #[error("an E-stop is in force")]
     EStopped,
 }
 

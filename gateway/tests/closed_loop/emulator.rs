@@ -1,31 +1,18 @@
 //! The emulated boat alone, with the bytes of real back seats: as strict and as tolerant as the real one.
 
-use crate::rig::{Rig, plan};
-use game::Order;
-use game::SimTime;
+use crate::rig::{Rig, emulated, plan, with_checksum};
+use game::{Order, SimTime};
 use gateway::emulator::{self, Emulator, Extra, Port};
-use gateway::nmea::{Date, Operator, Sentence, TimeOfDay};
+use gateway::nmea::{Operator, Sentence};
 
 fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
-    let mut plan = emulator::Plan {
-        datum: plan("surveyor.toml", false).field.plan.datum,
-        declination_rad: 0.0,
-        watchdog_s: None,
-        integers: false,
-        extra: vec![],
-        vtg_mode: false,
-        began: (Date { year: 2026, month: 11, day: 20 }, TimeOfDay(54_302_000)),
-    };
+    let mut plan = emulated(plan("surveyor.toml", false).field.plan.datum, 0.0);
     change(&mut plan);
     Emulator::new(plan)
 }
 
-fn with_checksum(body: &str) -> Vec<u8> {
-    format!("${body}*{:02X}\r\n", body.bytes().fold(0, |a, b| a ^ b)).into_bytes()
-}
-
 fn send(boat: &mut Emulator, body: &str) -> (char, Order) {
-    boat.take(SimTime::ZERO, Port::Secondary, &with_checksum(body));
+    boat.take(SimTime::ZERO, Port::Secondary, with_checksum(body).as_bytes());
     // It has to know where it is to do anything.
     let own = game::picture::OwnBoat::new(game::VehicleId(0), game::picture::Nav::default());
     boat.observe(SimTime::ZERO, &own);
@@ -100,11 +87,11 @@ fn without_a_watchdog_it_goes_on_for_ever_and_with_one_it_does_not() {
 fn only_the_operator_in_control_is_followed() {
     let mut boat = boat(|_| ());
     send(&mut boat, "PSEAC,T,0,20,0,");
-    boat.take(SimTime::ZERO, Port::Primary, &with_checksum("PSEAC,C,90,20,0,"));
+    boat.take(SimTime::ZERO, Port::Primary, with_checksum("PSEAC,C,90,20,0,").as_bytes());
     assert_eq!((boat.operator(), boat.command().mode.letter()), (Operator::Primary, 'C'));
     assert_eq!(send(&mut boat, "PSEAC,T,0,50,0,").0, 'C', "the back seat is not in control");
     assert_eq!(boat.counters(), (2, 1));
-    boat.take(SimTime::ZERO, Port::Primary, &with_checksum("PSEAC,L,0,0,0,OP2_ON"));
+    boat.take(SimTime::ZERO, Port::Primary, with_checksum("PSEAC,L,0,0,0,OP2_ON").as_bytes());
     assert_eq!((boat.operator(), boat.command().mode.letter()), (Operator::Secondary, 'L'));
     assert_eq!(send(&mut boat, "PSEAC,T,0,50,0,").0, 'T');
 }

@@ -3,10 +3,11 @@
 //! The oracle checks every sentence; the tests check when and why the boat is stopped. Times are until the boat has been
 //! sent standby. The death of whole processes is tested with real processes.
 
-use crate::rig::{Rig, steer};
+use crate::rig::{Rig, refixed, rewritten, steer};
+use game::Order;
 use game::external::OperatorCommand;
 use game::frame::Ned;
-use game::{Order, SimTime};
+use game::gateway::LowBattery;
 use gateway::bridge::{FleetCommand, Input};
 use gateway::nmea::Operator;
 
@@ -125,11 +126,6 @@ fn a_position_that_jumps_stops_the_boat_at_once() {
 
 #[test]
 fn no_fix_a_bad_one_or_zero_zero_stop_the_boat_at_once() {
-    let replaced = |from: &'static str, to: &'static str| {
-        move |_: SimTime, bytes: Vec<u8>| {
-            vec![resummed(&String::from_utf8_lossy(&bytes).replace(from, to)).into_bytes()]
-        }
-    };
     for (from, to, why, limit_s) in [
         (",W,2,11,", ",W,0,11,", "quality 0", 0.3),
         (",0.98,", ",9.80,", "dilution of precision is 9.8", 0.3),
@@ -137,29 +133,12 @@ fn no_fix_a_bad_one_or_zero_zero_stop_the_boat_at_once() {
         ("GPGGA", "GPXXX", "fix is", 1.8),
     ] {
         let mut rig = Rig::under_way("surveyor.toml", None);
-        rig.tamper = Some(Box::new(replaced(from, to)));
+        rig.tamper = rewritten(move |line| line.replace(from, to));
         stops_within(&mut rig, limit_s, why);
     }
     let mut rig = Rig::under_way("surveyor.toml", None);
-    rig.tamper = Some(Box::new(|_, bytes| {
-        let text = String::from_utf8_lossy(&bytes).into_owned();
-        let lines = text.lines().map(|line| match line.starts_with("$GPGGA") {
-            true => format!("{}0000.00000,N,00000.00000,W,2,11,0.98,5.5,M,-33.2,M,,*00", &line[..17]),
-            false => line.to_owned(),
-        });
-        vec![resummed(&(lines.collect::<Vec<_>>().join("\r\n") + "\r\n")).into_bytes()]
-    }));
+    rig.tamper = refixed(|fix| format!("{}0000.00000,N,00000.00000,W,2,11,0.98,5.5,M,-33.2,M,,", &fix[..17]));
     stops_within(&mut rig, 0.3, "0 N 0 E");
-}
-
-/// The same sentences with right checksums.
-fn resummed(text: &str) -> String {
-    let line = |line: &str| {
-        let body = line.trim_start_matches('$').split('*').next().unwrap_or_default().to_owned();
-        let sum = body.bytes().fold(0, |a, b| a ^ b);
-        format!("${body}*{sum:02X}\r\n")
-    };
-    text.lines().map(line).collect()
 }
 
 #[test]
@@ -190,13 +169,9 @@ fn a_boat_before_the_bow_halts_this_one_until_it_has_gone() {
 
 #[test]
 fn a_low_battery_stops_the_boat_or_sends_it_where_its_file_says() {
-    for (action, letter) in [("standby", 'L'), ("station_keep", 'R'), ("go_to_erp", 'H')] {
+    for (action, letter) in [(LowBattery::Standby, 'L'), (LowBattery::StationKeep, 'R'), (LowBattery::GoToErp, 'H')] {
         let mut plan = crate::rig::plan("surveyor.toml", false);
-        plan.gateway.battery.action = match action {
-            "station_keep" => game::gateway::LowBattery::StationKeep,
-            "go_to_erp" => game::gateway::LowBattery::GoToErp,
-            _ => game::gateway::LowBattery::Standby,
-        };
+        plan.gateway.battery.action = action;
         let mut rig = Rig::of(plan, None);
         rig.order = Some(steer(90.0, 1.5));
         rig.run(1.0);
@@ -206,9 +181,9 @@ fn a_low_battery_stops_the_boat_or_sends_it_where_its_file_says() {
         rig.run(4.8);
         assert_eq!(rig.mode(), 'T', "a dip under load is none");
         rig.run(0.6);
-        assert_eq!(rig.mode(), letter, "{action}");
+        assert_eq!(rig.mode(), letter, "{action:?}");
         rig.run(30.0);
-        assert_eq!(rig.mode(), letter, "{action}");
+        assert_eq!(rig.mode(), letter, "{action:?}");
     }
 }
 
@@ -233,9 +208,7 @@ fn a_takeover_lasts_until_we_are_armed_again() {
 #[test]
 fn a_boat_that_does_not_follow_commands_is_not_driven_on() {
     let mut rig = Rig::under_way("surveyor.toml", None);
-    rig.tamper = Some(Box::new(|_, bytes| {
-        vec![resummed(&String::from_utf8_lossy(&bytes).replace("PSEAD,T,", "PSEAD,N,")).into_bytes()]
-    }));
+    rig.tamper = rewritten(|line| line.replace("PSEAD,T,", "PSEAD,N,"));
     let after_s = rig.run_until(1.8, |rig| rig.state().contains("it is in mode N"));
     assert!(after_s > 1.4, "{after_s}");
 }
@@ -280,14 +253,7 @@ fn two_e_stops_need_two_releases_and_the_refusal_names_the_one_in_force() {
 #[test]
 fn a_receiver_that_stamps_whole_seconds_gives_ten_fixes_a_second() {
     let mut rig = Rig::under_way("surveyor.toml", None);
-    rig.tamper = Some(Box::new(|_, bytes| {
-        let text = String::from_utf8_lossy(&bytes).into_owned();
-        let lines = text.lines().map(|line| match line.starts_with("$GPGGA") {
-            true => format!("{}.00{}", &line[..13], &line[16..]),
-            false => line.to_owned(),
-        });
-        vec![resummed(&(lines.collect::<Vec<_>>().join("\r\n") + "\r\n")).into_bytes()]
-    }));
+    rig.tamper = refixed(|fix| format!("{}.00{}", &fix[..13], &fix[16..]));
     rig.run(2.0);
     let before = rig.navs.len();
     let places: Vec<f64> = (0..10)
@@ -303,9 +269,7 @@ fn a_receiver_that_stamps_whole_seconds_gives_ten_fixes_a_second() {
 #[test]
 fn a_step_of_the_receivers_clock_is_a_warning_and_harmless() {
     let mut rig = Rig::under_way("surveyor.toml", None);
-    rig.tamper = Some(Box::new(|_, bytes| {
-        vec![resummed(&String::from_utf8_lossy(&bytes).replace("GPGGA,15", "GPGGA,03")).into_bytes()]
-    }));
+    rig.tamper = rewritten(|line| line.replace("GPGGA,15", "GPGGA,03"));
     rig.run(5.0);
     assert!(rig.has_event("clock stepped by"), "{:?}", rig.events);
     assert_eq!(rig.state(), "armed");

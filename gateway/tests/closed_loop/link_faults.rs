@@ -1,10 +1,12 @@
 //! Faults of the link: cut, half open, garbage, fragments, floods.
 
 use crate::rig::{Rig, steer};
-use game::SimTime;
 use game::external::OperatorCommand;
-use gateway::bridge::Input;
+use game::{Ned, Order, SimTime};
+use gateway::bridge::{FleetCommand, Input};
+use gateway::nmea::Operator;
 use proptest::prelude::*;
+use proptest::sample::select;
 
 #[test]
 fn a_cut_link_stops_a_boat_with_a_watchdog_and_the_first_command_after_it_stops_any() {
@@ -139,60 +141,53 @@ fn ten_thousand_orders_a_second_come_out_as_twenty_sentences() {
 #[derive(Clone, Debug)]
 enum Move {
     Run(u8),
-    Order(u8),
-    Operate(u8),
+    /// The agent's order, and whether the agent hangs.
+    Order(Option<Order>, bool),
+    Put(Input),
     Link(bool),
     Open(bool, bool),
     Tamper(u8),
     Jump(u8),
     Freeze(bool),
-    Operator(u8),
+    Operator(Operator),
     Volts(bool),
     Others(bool),
-    Fleet(bool),
 }
 
 fn moves() -> impl Strategy<Value = Vec<Move>> {
+    use OperatorCommand::{Arm, Disarm, EStop, GoToErp, Release, StationKeep};
+    let orders = vec![
+        (None, false),
+        (Some(Order::Hold), false),
+        (Some(steer(f64::NAN, 1.0)), false),
+        (Some(Order::Thrust { port: -0.5, starboard: 0.7 }), false),
+        (Some(steer(200.0, 2.0)), false),
+        (Some(steer(200.0, 2.0)), true),
+    ];
+    let commands = vec![Disarm, EStop, Release, StationKeep, GoToErp, Arm, Arm];
+    let operators = vec![Operator::Secondary, Operator::Secondary, Operator::Primary, Operator::Rc];
     let one = prop_oneof![
         4 => (1..40_u8).prop_map(Move::Run),
-        2 => (0..6_u8).prop_map(Move::Order),
-        4 => (0..7_u8).prop_map(Move::Operate),
+        2 => select(orders).prop_map(|(order, hangs)| Move::Order(order, hangs)),
+        4 => select(commands).prop_map(|command| Move::Put(Input::Operator(command))),
         1 => any::<bool>().prop_map(Move::Link),
         1 => any::<(bool, bool)>().prop_map(|(to, from)| Move::Open(to, from)),
         1 => (0..4_u8).prop_map(Move::Tamper),
         1 => any::<u8>().prop_map(Move::Jump),
         1 => any::<bool>().prop_map(Move::Freeze),
-        1 => (0..4_u8).prop_map(Move::Operator),
+        1 => select(operators).prop_map(Move::Operator),
         1 => any::<bool>().prop_map(Move::Volts),
         1 => any::<bool>().prop_map(Move::Others),
-        1 => any::<bool>().prop_map(Move::Fleet),
+        1 => select(vec![FleetCommand::EStop, FleetCommand::Release]).prop_map(|all| Move::Put(Input::Fleet(all))),
     ];
     proptest::collection::vec(one, 1..60)
 }
 
 fn play(rig: &mut Rig, one: &Move) {
-    use gateway::bridge::FleetCommand;
-    use gateway::nmea::Operator;
     match one {
         Move::Run(tenths) => rig.run(0.1 * f64::from(*tenths)),
-        Move::Order(which) => {
-            rig.hangs = *which == 5;
-            rig.order = match which {
-                0 => None,
-                1 => Some(game::Order::Hold),
-                2 => Some(steer(f64::NAN, 1.0)),
-                3 => Some(game::Order::Thrust { port: -0.5, starboard: 0.7 }),
-                _ => Some(steer(200.0, 2.0)),
-            };
-        }
-        Move::Operate(which) => rig.operate(match which {
-            0 => OperatorCommand::Disarm,
-            1 => OperatorCommand::EStop,
-            2 => OperatorCommand::Release,
-            3 => OperatorCommand::StationKeep,
-            4 => OperatorCommand::GoToErp,
-            _ => OperatorCommand::Arm,
-        }),
+        Move::Order(order, hangs) => (rig.order, rig.hangs) = (*order, *hangs),
+        Move::Put(input) => rig.put(input),
         Move::Link(up) => {
             if rig.oracle.link_up != *up {
                 rig.link(*up);
@@ -203,17 +198,11 @@ fn play(rig: &mut Rig, one: &Move) {
         Move::Tamper(1) => rig.tamper = Some(Box::new(|_, _| vec![])),
         Move::Tamper(2) => rig.tamper = Some(Box::new(|_, bytes| vec![bytes[..bytes.len() / 2].to_vec()])),
         Move::Tamper(_) => rig.tamper = Some(Box::new(|_, bytes| vec![bytes.iter().map(|byte| byte ^ 8).collect()])),
-        Move::Jump(far) => rig.offset = game::Ned { north: f64::from(*far), east: 0.0 },
+        Move::Jump(far) => rig.offset = Ned { north: f64::from(*far), east: 0.0 },
         Move::Freeze(frozen) => rig.frozen = *frozen,
-        Move::Operator(which) => {
-            let operator =
-                [Operator::Secondary, Operator::Secondary, Operator::Primary, Operator::Rc][usize::from(*which)];
-            rig.emulator.give_control(rig.now, operator);
-        }
+        Move::Operator(operator) => rig.emulator.give_control(rig.now, *operator),
         Move::Volts(low) => rig.emulator.set_volts(if *low { 20.0 } else { 25.0 }),
         Move::Others(near) => rig.others = near.then(|| vec![rig.boat.at]),
-        Move::Fleet(true) => rig.put(&Input::Fleet(FleetCommand::EStop)),
-        Move::Fleet(false) => rig.put(&Input::Fleet(FleetCommand::Release)),
     }
 }
 
@@ -231,14 +220,14 @@ proptest! {
         play(&mut rig, &Move::Open(true, true));
         (rig.tamper, rig.others, rig.frozen, rig.hangs) = (None, None, false, false);
         rig.emulator.set_volts(25.0);
-        rig.emulator.give_control(rig.now, gateway::nmea::Operator::Secondary);
+        rig.emulator.give_control(rig.now, Operator::Secondary);
         if !rig.oracle.link_up {
             rig.link(true);
         }
-        rig.order = Some(game::Order::Hold);
-        rig.offset = game::Ned::from_xy(60.0, 40.0) - rig.boat.at;
+        rig.order = Some(Order::Hold);
+        rig.offset = Ned::from_xy(60.0, 40.0) - rig.boat.at;
         rig.operate(OperatorCommand::Release);
-        rig.put(&Input::Fleet(gateway::bridge::FleetCommand::Release));
+        rig.put(&Input::Fleet(FleetCommand::Release));
         rig.run(12.0);
         rig.refused = None;
         rig.operate(OperatorCommand::Arm);

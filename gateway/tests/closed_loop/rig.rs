@@ -2,7 +2,7 @@
 
 use crate::oracle::Oracle;
 use game::external::OperatorCommand;
-use game::frame::{Ned, Rotation};
+use game::frame::{LatLon, Ned, Rotation};
 use game::picture::{Imu, Nav, OwnBoat};
 use game::{Order, SimTime, VehicleId};
 use gateway::bridge::{Bridge, Event, FleetCommand, Input, NavOut, Output, Plan};
@@ -66,6 +66,40 @@ pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
     }
 }
 
+/// The plan of an emulated boat.
+pub(crate) fn emulated(datum: LatLon, declination_rad: f64) -> emulator::Plan {
+    emulator::Plan {
+        datum,
+        declination_rad,
+        watchdog_s: None,
+        integers: false,
+        extra: vec![],
+        began: (Date { year: 2026, month: 11, day: 20 }, TimeOfDay(54_302_000)),
+    }
+}
+
+/// The sentence of a body.
+pub(crate) fn with_checksum(body: &str) -> String {
+    format!("${body}*{:02X}\r\n", body.bytes().fold(0, |a, b| a ^ b))
+}
+
+/// A link that changes sentences from the boat, with right checksums.
+pub(crate) fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Option<Tamper> {
+    let mut line = move |line: &str| {
+        let body = change(line);
+        with_checksum(body.trim_start_matches('$').split('*').next().unwrap_or_default())
+    };
+    Some(Box::new(move |_, bytes| {
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        vec![text.lines().map(&mut line).collect::<String>().into_bytes()]
+    }))
+}
+
+/// The same for fixes alone.
+pub(crate) fn refixed(change: fn(&str) -> String) -> Option<Tamper> {
+    rewritten(move |line| if line.starts_with("$GPGGA") { change(line) } else { line.to_owned() })
+}
+
 pub(crate) fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
     Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
 }
@@ -76,15 +110,7 @@ impl Rig {
     }
 
     pub(crate) fn of(plan: Plan, watchdog_s: Option<f64>) -> Rig {
-        let emulator = emulator::Plan {
-            datum: plan.field.plan.datum,
-            declination_rad: plan.declination_rad,
-            watchdog_s,
-            integers: false,
-            extra: vec![],
-            vtg_mode: false,
-            began: (Date { year: 2026, month: 11, day: 20 }, TimeOfDay(54_302_000)),
-        };
+        let emulator = emulator::Plan { watchdog_s, ..emulated(plan.field.plan.datum, plan.declination_rad) };
         let mut rig = Rig {
             now: SimTime::ZERO,
             steps: 0,

@@ -1,9 +1,11 @@
 //! Addresses as people type them.
 
-use gateway::link::LinkAddress::{self, Pty, Serial, TcpClient, TcpServer, UdpClient, UdpServer};
+use gateway::link::HostPort;
+use gateway::link::LinkAddress::{self, Pty, Serial, Tcp, Udp};
+use gateway::link::Side::{Connects, Listens};
 
-fn host(name: &str) -> String {
-    name.to_owned()
+fn at(host: &str, port: u16) -> HostPort {
+    HostPort { host: host.to_owned(), port }
 }
 
 fn serial(path: &str, baud: u32) -> LinkAddress {
@@ -13,11 +15,11 @@ fn serial(path: &str, baud: u32) -> LinkAddress {
 #[test]
 fn what_a_client_may_connect_to_is_read_and_printed_again() {
     for (text, want) in [
-        ("tcp://192.168.1.11:8003", TcpClient { host: host("192.168.1.11"), port: 8003 }),
-        ("tcp://boat-1.local:1", TcpClient { host: host("boat-1.local"), port: 1 }),
-        ("tcp://[::1]:65535", TcpClient { host: host("::1"), port: 65535 }),
-        ("udp://127.0.0.1:10110", UdpClient { host: host("127.0.0.1"), port: 10110 }),
-        ("udp://[fe80::1%eth0]:7", UdpClient { host: host("fe80::1%eth0"), port: 7 }),
+        ("tcp://192.168.1.11:8003", Tcp(Connects, at("192.168.1.11", 8003))),
+        ("tcp://boat-1.local:1", Tcp(Connects, at("boat-1.local", 1))),
+        ("tcp://[::1]:65535", Tcp(Connects, at("::1", 65535))),
+        ("udp://127.0.0.1:10110", Udp(Connects, at("127.0.0.1", 10110))),
+        ("udp://[fe80::1%eth0]:7", Udp(Connects, at("fe80::1%eth0", 7))),
         ("serial:///dev/ttyUSB0?baud=38400", serial("/dev/ttyUSB0", 38400)),
         ("serial:///dev/pts/3?baud=4800", serial("/dev/pts/3", 4800)),
         ("serial:///dev/ttyS0?baud=115200", serial("/dev/ttyS0", 115_200)),
@@ -32,10 +34,10 @@ fn what_a_client_may_connect_to_is_read_and_printed_again() {
 #[test]
 fn what_a_server_may_listen_on_is_read_and_printed_again() {
     for (text, want) in [
-        ("tcp://0.0.0.0:8003", TcpServer { host: host("0.0.0.0"), port: 8003 }),
-        ("tcp://127.0.0.1:0", TcpServer { host: host("127.0.0.1"), port: 0 }),
-        ("tcp://[::]:8003", TcpServer { host: host("::"), port: 8003 }),
-        ("udp://127.0.0.1:0", UdpServer { host: host("127.0.0.1"), port: 0 }),
+        ("tcp://0.0.0.0:8003", Tcp(Listens, at("0.0.0.0", 8003))),
+        ("tcp://127.0.0.1:0", Tcp(Listens, at("127.0.0.1", 0))),
+        ("tcp://[::]:8003", Tcp(Listens, at("::", 8003))),
+        ("udp://127.0.0.1:0", Udp(Listens, at("127.0.0.1", 0))),
         ("serial:///dev/ttyUSB1?baud=9600", serial("/dev/ttyUSB1", 9600)),
         ("pty", Pty { link: None }),
         ("pty:///tmp/boat", Pty { link: Some("/tmp/boat".into()) }),

@@ -1,6 +1,7 @@
 //! The log of a link's events, for tests that wait for one of them.
 
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use std::io::Read;
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::{Duration, Instant};
 
@@ -37,6 +38,19 @@ pub(crate) fn open(address: &LinkAddress, settings: LinkSettings) -> (Link, Arc<
     let events = Arc::clone(&log);
     let link = Link::open(address, settings, move |event| events.push(event)).unwrap();
     (link, log)
+}
+
+/// Drops a link, which takes less than 200 ms.
+pub(crate) fn close(link: Link) {
+    let start = Instant::now();
+    drop(link);
+    assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
+}
+
+pub(crate) fn read(from: &mut impl Read, count: usize) -> Vec<u8> {
+    let mut got = vec![0; count];
+    from.read_exact(&mut got).unwrap();
+    got
 }
 
 impl EventLog {
@@ -76,6 +90,11 @@ impl EventLog {
             _ => None,
         };
         self.until("peer down", |events| events.iter().filter_map(down).nth(nth))
+    }
+
+    /// Waits for an attempt that fails; gives the wait after it.
+    pub(crate) fn failure(&self) -> Duration {
+        self.until("failure", |events| events.iter().find_map(wait))
     }
 
     /// Waits until a tag is written.

@@ -1,11 +1,11 @@
 //! How long a command takes from `send` to the boat's socket. Run by hand, alone, and in release:
 //! `cargo test --release -p squall-gateway --test link latency -- --ignored --nocapture`.
 
-use crate::event_log::{LIMIT, connect, patient};
+use crate::event_log::patient;
+use crate::tcp_client::joined;
 use gateway::link::LinkEvent;
 use std::collections::BTreeMap;
 use std::io::Read;
-use std::net::TcpListener;
 use std::time::{Duration, Instant};
 
 const COMMANDS: u64 = 5000;
@@ -14,11 +14,7 @@ const COMMANDS: u64 = 5000;
 #[ignore = "a measurement"]
 #[expect(clippy::print_stdout, reason = "a measurement is for people")]
 fn a_command_reaches_the_system_and_the_boat_soon() {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let (link, log) = connect(&format!("tcp://{}", listener.local_addr().unwrap()), patient());
-    let (mut boat, _) = listener.accept().unwrap();
-    boat.set_read_timeout(Some(LIMIT)).unwrap();
-    log.up(0);
+    let (link, log, mut boat, _listener) = joined(patient());
     let mut sent_at = Vec::new();
     let mut to_boat = Vec::new();
     for tag in 0..COMMANDS {

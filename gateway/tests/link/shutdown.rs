@@ -1,10 +1,10 @@
 //! Shutdown messages: the last bytes that a link sends.
 
-use crate::event_log::{LIMIT, connect, listen, patient};
+use crate::event_log::{LIMIT, listen};
+use crate::tcp_client::joined_narrowly;
 use gateway::link::Link;
-use socket2::SockRef;
 use std::io::Read;
-use std::net::{TcpListener, TcpStream};
+use std::net::TcpStream;
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -20,20 +20,9 @@ impl Drop for Guard {
     }
 }
 
-/// A link with somebody on it who reads nothing yet, and whose buffers are small.
-fn joined() -> (Link, TcpStream) {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    SockRef::from(&listener).set_recv_buffer_size(4096).unwrap();
-    let (link, log) = connect(&format!("tcp://{}", listener.local_addr().unwrap()), patient());
-    let (boat, _) = listener.accept().unwrap();
-    boat.set_read_timeout(Some(LIMIT)).unwrap();
-    log.up(0);
-    (link, boat)
-}
-
 #[test]
 fn a_guard_sends_it_while_its_thread_panics() {
-    let (link, mut boat) = joined();
+    let (link, _log, mut boat, _listener) = joined_narrowly();
     let guard = Guard(link);
     let died = thread::spawn(move || {
         guard.0.send(b"$PSEAC,T,0,99,0,*00\r\n".to_vec(), 1);
@@ -55,7 +44,7 @@ fn without_a_peer_it_fails_at_once() {
 
 #[test]
 fn a_peer_that_does_not_read_delays_it_up_to_the_limit_only() {
-    let (link, mut boat) = joined();
+    let (link, _log, mut boat, _listener) = joined_narrowly();
     begin_bulk(&link, &mut boat);
     let limit = Duration::from_millis(300);
     let start = Instant::now();
@@ -67,7 +56,7 @@ fn a_peer_that_does_not_read_delays_it_up_to_the_limit_only() {
 
 #[test]
 fn it_displaces_what_is_queued_and_nothing_displaces_it() {
-    let (link, mut boat) = joined();
+    let (link, _log, mut boat, _listener) = joined_narrowly();
     let link = Arc::new(link);
     begin_bulk(&link, &mut boat);
     link.send(b"$PSEAC,T,0,98,0,*00\r\n".to_vec(), 1);

@@ -1,6 +1,6 @@
 //! A link that connects by TCP.
 
-use crate::event_log::{EventLog, LIMIT, connect, patient, retrying, up, wait};
+use crate::event_log::{EventLog, LIMIT, close, connect, patient, read, retrying, up, wait};
 use gateway::link::{Link, LinkSettings};
 use socket2::SockRef;
 use std::io::{Read, Write};
@@ -15,6 +15,27 @@ fn listener() -> (TcpListener, String) {
     (listener, address)
 }
 
+/// A link and a boat that has accepted it.
+type Joined = (Link, Arc<EventLog>, TcpStream, TcpListener);
+
+pub(crate) fn joined(settings: LinkSettings) -> Joined {
+    joined_at(listener(), settings)
+}
+
+/// The same with a boat whose buffers are small.
+pub(crate) fn joined_narrowly() -> Joined {
+    let (listener, address) = listener();
+    SockRef::from(&listener).set_recv_buffer_size(4096).unwrap();
+    joined_at((listener, address), patient())
+}
+
+fn joined_at((listener, address): (TcpListener, String), settings: LinkSettings) -> Joined {
+    let (link, log) = connect(&address, settings);
+    let stream = accept(&listener);
+    assert_eq!(log.up(0).0, 0);
+    (link, log, stream, listener)
+}
+
 /// Accepts a connection; what it reads comes within the limit.
 fn accept(listener: &TcpListener) -> TcpStream {
     let (stream, _) = listener.accept().unwrap();
@@ -23,22 +44,13 @@ fn accept(listener: &TcpListener) -> TcpStream {
     stream
 }
 
-fn joined(settings: LinkSettings) -> (Link, Arc<EventLog>, TcpStream, TcpListener) {
-    let (listener, address) = listener();
-    let (link, log) = connect(&address, settings);
-    let stream = accept(&listener);
-    assert_eq!(log.up(0).0, 0);
-    (link, log, stream, listener)
-}
-
 #[test]
 fn single_bytes_go_out_and_come_back() {
     let (link, log, mut boat, _listener) = joined(patient());
     let mut sent = Vec::new();
     for byte in 0..=255 {
         link.send(vec![byte], u64::from(byte));
-        let mut echo = [0];
-        boat.read_exact(&mut echo).unwrap();
+        let echo = read(&mut boat, 1);
         boat.write_all(&echo).unwrap();
         sent.push(byte);
         log.received(&sent);
@@ -52,9 +64,7 @@ fn sixty_four_kib_in_one_write_arrive_whole() {
     let (link, log, mut boat, _listener) = joined(patient());
     let bulk: Vec<u8> = (0..65536_u32).map(|i| (i % 251) as u8).collect();
     link.send(bulk.clone(), 7);
-    let mut got = vec![0; bulk.len()];
-    boat.read_exact(&mut got).unwrap();
-    assert!(got == bulk, "what arrived is not what was sent");
+    assert!(read(&mut boat, bulk.len()) == bulk, "what arrived is not what was sent");
     log.written(7);
     boat.write_all(&bulk).unwrap();
     log.received(&bulk);
@@ -77,9 +87,7 @@ fn a_server_that_is_gone_is_tried_with_growing_waits_and_found_when_it_returns()
     let mut boat = accept(&listener);
     assert_eq!(log.up(1).0, 1);
     link.send(b"back".to_vec(), 1);
-    let mut got = [0; 4];
-    boat.read_exact(&mut got).unwrap();
-    assert_eq!(&got, b"back");
+    assert_eq!(read(&mut boat, 4), b"back");
 }
 
 #[test]
@@ -87,8 +95,7 @@ fn nobody_there_is_no_error() {
     let (listener, address) = listener();
     drop(listener);
     let (link, log) = connect(&address, patient());
-    let wait = log.until("failure", |events| events.iter().find_map(wait));
-    assert_eq!(wait, patient().retry_first);
+    assert_eq!(log.failure(), patient().retry_first);
     link.send(b"to nobody".to_vec(), 1);
     assert_eq!(link.displaced(), 0);
     assert_eq!(link.reach(), address);
@@ -164,11 +171,7 @@ fn a_peer_that_falls_silent_counts_as_gone() {
 fn a_peer_that_does_not_read_gets_the_newest_late_instead_of_all_in_order() {
     const SENT: u64 = 3000;
     const SIZE: usize = 1024;
-    let (listener, address) = listener();
-    SockRef::from(&listener).set_recv_buffer_size(4096).unwrap();
-    let (link, log) = connect(&address, patient());
-    let mut boat = accept(&listener);
-    log.up(0);
+    let (link, log, mut boat, _listener) = joined_narrowly();
     let mut slowest = Duration::ZERO;
     for tag in 0..SENT {
         let start = Instant::now();
@@ -180,9 +183,7 @@ fn a_peer_that_does_not_read_gets_the_newest_late_instead_of_all_in_order() {
 
     let mut got: Vec<u64> = Vec::new();
     while got.last() != Some(&(SENT - 1)) {
-        let mut line = vec![0; SIZE];
-        boat.read_exact(&mut line).unwrap();
-        got.push(String::from_utf8(line).unwrap().trim().parse().unwrap());
+        got.push(String::from_utf8(read(&mut boat, SIZE)).unwrap().trim().parse().unwrap());
     }
     assert!(got.is_sorted(), "{got:?}");
     assert_eq!(got.len() as u64 + link.displaced(), SENT, "each is written whole or not at all");
@@ -216,9 +217,7 @@ fn a_reconnect_breaks_the_connection_and_makes_a_new_one() {
     let mut boat = accept(&listener);
     assert_eq!(log.up(1).0, 1);
     link.send(b"new".to_vec(), 0);
-    let mut got = [0; 3];
-    boat.read_exact(&mut got).unwrap();
-    assert_eq!(&got, b"new");
+    assert_eq!(read(&mut boat, 3), b"new");
 }
 
 #[test]
@@ -243,10 +242,7 @@ fn a_dropped_link_closes_gracefully_within_200_ms() {
     log.written(0);
     // Bytes that nobody took would turn the close into a reset.
     boat.write_all(&[0; 1000]).unwrap();
-    let start = Instant::now();
-    drop(link);
-    let took = start.elapsed();
-    assert!(took < Duration::from_millis(200), "{took:?}");
+    close(link);
     let mut got = Vec::new();
     boat.read_to_end(&mut got).unwrap();
     assert_eq!(got, b"last");
@@ -273,31 +269,29 @@ fn a_boat_that_keeps_sending_receives_everything_before_the_close() {
     closer.join().unwrap();
 }
 
-#[test]
-fn a_link_that_cannot_reach_anybody_is_dropped_as_quickly() {
-    // Full: nobody answers the next one.
+/// A listener that is full, nobody answers the next one; with who filled it.
+fn full() -> (String, socket2::Socket, TcpStream) {
     let listener = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();
     listener.bind(&"127.0.0.1:0".parse::<std::net::SocketAddr>().unwrap().into()).unwrap();
     listener.listen(0).unwrap();
     let address = listener.local_addr().unwrap().as_socket().unwrap();
-    let _first = TcpStream::connect(address).unwrap();
-    let (link, log) = connect(&format!("tcp://{address}"), patient());
-    let start = Instant::now();
-    drop(link);
-    assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
+    (format!("tcp://{address}"), listener, TcpStream::connect(address).unwrap())
+}
+
+#[test]
+fn a_link_that_cannot_reach_anybody_is_dropped_as_quickly() {
+    let (address, _listener, _first) = full();
+    let (link, log) = connect(&address, patient());
+    close(link);
     assert!(log.all().is_empty(), "{:?}", log.all());
 }
 
 #[test]
 fn a_peer_that_never_answers_is_given_up_after_two_seconds() {
-    let listener = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();
-    listener.bind(&"127.0.0.1:0".parse::<std::net::SocketAddr>().unwrap().into()).unwrap();
-    listener.listen(0).unwrap();
-    let address = listener.local_addr().unwrap().as_socket().unwrap();
-    let _first = TcpStream::connect(address).unwrap();
+    let (address, _listener, _first) = full();
     let start = Instant::now();
-    let (_link, log) = connect(&format!("tcp://{address}"), patient());
-    log.until("failure", |events| events.iter().find_map(wait));
+    let (_link, log) = connect(&address, patient());
+    log.failure();
     let took = start.elapsed();
     assert!(took > Duration::from_millis(1900) && took < Duration::from_millis(2500), "{took:?}");
 }

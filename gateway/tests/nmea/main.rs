@@ -4,6 +4,7 @@ mod edge_cases;
 mod framing;
 mod golden;
 mod round_trip;
+mod sentences;
 
 use gateway::nmea::{Framer, Sentence};
 
