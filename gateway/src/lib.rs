@@ -18,4 +18,3 @@ pub mod replay;
 pub mod sensor_check;
 pub mod set_point;
 pub mod supervisor;
-mod thrust_map;

@@ -3,9 +3,9 @@
 //! With `drive = "thrust"` the heading and speed loops are here; with `drive = "speed"` they are the boat's. Thrust is in
 //! per cent, its difference positive to starboard: port = thrust + difference, starboard = thrust − difference.
 
-use crate::thrust_map::thrust_for;
 use game::angle::{compass_deg_from_rad, wrap_pi};
 use game::gateway::{Drive, Gateway, Limits, Loops};
+use game::math::interpolate;
 use game::picture::Nav;
 use game::{Order, SimTime};
 
@@ -122,6 +122,11 @@ impl SetPointMapper {
     }
 }
 
+/// The thrust, per cent, that gives a speed, m/s: the map read from right to left.
+fn thrust_for(map: &[(f64, f64)], speed_m_s: f64) -> f64 {
+    interpolate(map.iter().map(|(thrust, speed)| (*speed, *thrust)), speed_m_s)
+}
+
 /// `to`, or as far towards it as `growth` allows; towards zero there is no limit.
 fn slewed(from: f64, to: f64, growth: f64) -> f64 {
     let (least, most) = (from.min(0.0) - growth, from.max(0.0) + growth);
@@ -131,6 +136,7 @@ fn slewed(from: f64, to: f64, growth: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use game::gateway::SURVEYOR_THRUST_MAP;
 
     fn gateway(drive: &str) -> Gateway {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/gateways");
@@ -203,5 +209,18 @@ mod tests {
         // Magnetic north is west of true: the compass shows more.
         assert!((heading_deg - 102.5).abs() < 1e-9, "{heading_deg}");
         assert_eq!(speed_m_s, 3.0);
+    }
+
+    #[test]
+    fn a_speed_between_two_of_the_map_takes_thrust_between() {
+        for (speed, want) in
+            [(0.0, 0.0), (0.5, 10.0), (1.25, 30.0), (3.0, 100.0), (4.0, 100.0), (-2.0, -100.0), (-3.0, -100.0)]
+        {
+            assert!((thrust_for(&SURVEYOR_THRUST_MAP, speed) - want).abs() < 1e-9, "{speed}");
+        }
+        for thrust in [-100.0, -50.0, 0.0, 10.0, 65.0, 100.0] {
+            let there_and_back = thrust_for(&SURVEYOR_THRUST_MAP, interpolate(SURVEYOR_THRUST_MAP, thrust));
+            assert!((there_and_back - thrust).abs() < 1e-9, "{thrust}");
+        }
     }
 }

@@ -1,6 +1,5 @@
 //! The emulated boat's own controller: set-points, station keeping, missions.
 
-use crate::thrust_map::speed_for;
 use game::angle::wrap_pi;
 use game::frame::{Ned, Pose};
 use game::gateway::SURVEYOR_THRUST_MAP;
@@ -57,7 +56,7 @@ pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
 
 /// The speed ahead that a thrust gives, m/s.
 pub(super) fn speed_of_thrust(thrust_pct: f64) -> f64 {
-    speed_for(&SURVEYOR_THRUST_MAP, thrust_pct.clamp(0.0, 100.0))
+    math::interpolate(SURVEYOR_THRUST_MAP, thrust_pct.clamp(0.0, 100.0))
 }
 
 impl Autopilot {
