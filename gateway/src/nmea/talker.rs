@@ -16,24 +16,18 @@ impl Talker {
     /// A log: speed through the water.
     pub const VW: Talker = Talker(*b"VW");
 
-    /// The talker of two characters; nothing if they are not two of A to Z and 0 to 9. `P` is not the first of
-    /// any: it begins the sentences of a maker.
-    #[must_use]
-    pub fn new(characters: [u8; 2]) -> Option<Talker> {
-        let known = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit();
-        (characters.iter().all(known) && characters[0] != b'P').then_some(Talker(characters))
-    }
-
     /// The two characters.
     #[must_use]
     pub fn characters(self) -> [u8; 2] {
         self.0
     }
 
-    /// Talker and kind of an address of five characters.
+    /// Talker and kind of an address of five characters. A maker's own sentence begins with `P` and has no talker.
     pub(super) fn split(address: &str) -> Option<(Talker, &str)> {
         let (talker, kind) = address.split_at_checked(2)?;
-        Some((Talker::new(talker.as_bytes().try_into().ok()?)?, kind))
+        let characters: [u8; 2] = talker.as_bytes().try_into().ok()?;
+        let known = |byte: &u8| byte.is_ascii_uppercase() || byte.is_ascii_digit();
+        (characters.iter().all(known) && characters[0] != b'P').then_some((Talker(characters), kind))
     }
 }
 
