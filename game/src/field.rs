@@ -10,7 +10,7 @@
 //! ```
 
 use crate::frame::{LatLon, Ned};
-use crate::id::{FlagId, TeamId};
+use crate::id::TeamId;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -171,17 +171,13 @@ pub struct Zone {
 impl Zone {
     /// The convex polygon with these corners, given in order clockwise as seen on the chart.
     fn new(corners: Vec<Ned>) -> Zone {
-        let edges = (0..corners.len())
-            .map(|i| {
-                let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
-                let side = b - a;
-                let length = side.length();
-                // A quarter turn to port of the side's direction: outward, since we go clockwise.
-                let out = Ned { north: side.east / length, east: -side.north / length };
-                (out, out.dot(a))
-            })
-            .collect();
-        Zone { edges, corners }
+        let edge = |(a, b): (Ned, Ned)| {
+            let (side, length) = (b - a, a.distance(b));
+            // A quarter turn to port of the side's direction: outward, since we go clockwise.
+            let out = Ned { north: side.east / length, east: -side.north / length };
+            (out, out.dot(a))
+        };
+        Zone { edges: sides(&corners).map(edge).collect(), corners }
     }
 
     /// Whether `at` is inside or on an edge (to a nanometre, so that rounding does not decide).
@@ -267,12 +263,6 @@ impl Field {
     pub fn contains(&self, at: Ned) -> bool {
         let (x, y) = self.along_across(at);
         x > 0.0 && x < self.plan.width_m && y > 0.0 && y < self.plan.depth_m
-    }
-
-    /// The first flag that `team` defends.
-    #[must_use]
-    pub fn flag_of(&self, team: TeamId) -> Option<FlagId> {
-        self.flags.iter().position(|flag| flag.team == team).map(|i| FlagId(i as u8))
     }
 
     /// Compass bearing in which `team` looks at its opponent's end, degrees.

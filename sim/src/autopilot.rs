@@ -28,13 +28,13 @@ impl AutopilotModel {
     /// The loops for this hull and ticks of `dt_s`.
     #[must_use]
     pub fn new(autopilot: &Autopilot, hull: &HullModel, dt_s: f64) -> AutopilotModel {
-        let (inertia, omega) = (hull.yaw_inertia_kg_m2(), autopilot.heading_bandwidth_rad_s);
+        let (inertia, omega) = (hull.m_yaw, autopilot.heading_bandwidth_rad_s);
         let wanted_damping = 2.0 * autopilot.heading_damping * omega * inertia;
-        let surge_per_m_s = hull.surge_mass_kg() / autopilot.speed_time_s;
+        let surge_per_m_s = hull.m_surge / autopilot.speed_time_s;
         AutopilotModel {
             speed_max_m_s: autopilot.speed_max_m_s,
             yaw_per_rad: inertia * omega * omega,
-            yaw_per_rad_s: (wanted_damping - hull.yaw_damping_kg_m2_s()).max(0.0),
+            yaw_per_rad_s: (wanted_damping - hull.hull.yaw_linear_kg_m2_s).max(0.0),
             surge_per_m_s,
             surge_integral: surge_per_m_s * dt_s / (INTEGRAL_SLOWNESS * autopilot.speed_time_s),
         }

@@ -5,24 +5,16 @@
 //! shares s of full thrust then draw P = P_hotel + P_full (s_port^1.5 + s_starboard^1.5) / 2.
 
 use game::boat::Battery;
-use serde::{Deserialize, Serialize};
 
 /// A battery ready for computing, for one tick length.
 #[derive(Clone, Copy, Debug)]
 pub struct BatteryModel {
-    /// Charge at the start.
-    charge: f64,
+    /// Charge at the start, as a share of a full battery.
+    pub(crate) charge: f64,
     sag: f64,
     /// Charge that goes in a tick whatever the thrusters do, and with them at full.
     hotel_per_tick: f64,
     full_per_tick: f64,
-}
-
-/// How full a battery is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct BatteryState {
-    /// As a share of a full one, 0 to 1.
-    pub charge: f64,
 }
 
 impl BatteryModel {
@@ -37,25 +29,19 @@ impl BatteryModel {
         }
     }
 
-    /// The battery at the start of a game.
-    #[must_use]
-    pub fn start(&self) -> BatteryState {
-        BatteryState { charge: self.charge }
-    }
-
-    /// Factor on the thrust.
+    /// Factor on the thrust at a charge.
     #[inline]
     #[must_use]
-    pub fn thrust_factor(&self, state: BatteryState) -> f64 {
-        1.0 - self.sag * (1.0 - state.charge)
+    pub fn thrust_factor(&self, charge: f64) -> f64 {
+        1.0 - self.sag * (1.0 - charge)
     }
 
     /// Takes a tick's energy out, with the thrusters at these shares (0 to 1) of full thrust.
     #[inline]
-    pub fn draw(&self, state: &mut BatteryState, shares: [f64; 2]) {
+    pub fn draw(&self, charge: &mut f64, shares: [f64; 2]) {
         let [port, starboard] = shares.map(|share| share * share.sqrt());
         let spent = self.hotel_per_tick + self.full_per_tick * 0.5 * (port + starboard);
-        state.charge = (state.charge - spent).max(0.0);
+        *charge = (*charge - spent).max(0.0);
     }
 }
 
@@ -69,9 +55,9 @@ mod tests {
     /// The charge after `seconds` of it.
     fn charge_after(shares: [f64; 2], seconds: u32) -> f64 {
         let model = BatteryModel::new(&BATTERY, 0.05);
-        let mut state = model.start();
-        (0..20 * seconds).for_each(|_| model.draw(&mut state, shares));
-        state.charge
+        let mut charge = model.charge;
+        (0..20 * seconds).for_each(|_| model.draw(&mut charge, shares));
+        charge
     }
 
     #[test]
@@ -94,7 +80,7 @@ mod tests {
     fn thrust_falls_in_step_with_the_charge() {
         let model = BatteryModel::new(&BATTERY, 0.05);
         for (charge, want) in [(1.0, 1.0), (0.5, 0.925), (0.0, 0.85)] {
-            assert!((model.thrust_factor(BatteryState { charge }) - want).abs() < 1e-15);
+            assert!((model.thrust_factor(charge) - want).abs() < 1e-15);
         }
     }
 }

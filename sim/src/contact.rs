@@ -249,7 +249,7 @@ impl ContactModel {
             .linvel(velocity)
             .angvel(spin_rad_s)
             .can_sleep(false)
-            .additional_mass_properties(MassProperties::new(Vector::ZERO, mass_kg, model.yaw_inertia_kg_m2()));
+            .additional_mass_properties(MassProperties::new(Vector::ZERO, mass_kg, model.m_yaw));
         let collider = ColliderBuilder::new(self.hulls[displacement.kind].capsule.clone())
             .density(0.0)
             .friction(FRICTION)
@@ -336,7 +336,7 @@ fn leave(world: &PhysicsWorld, entry: &Entry, model: &HullModel, displacement: &
     displacement.rotation_to = displacement.to.rotation();
     let impulse = (body.linvel() - entry.velocity) * entry.mass_kg;
     let impulse = frame::body_from_ned(displacement.rotation, Ned { north: impulse.x, east: impulse.y });
-    let twist = (body.angvel() - entry.spin_rad_s) * model.yaw_inertia_kg_m2();
+    let twist = (body.angvel() - entry.spin_rad_s) * model.m_yaw;
     displacement.velocity_change =
         model.velocity_change(Planar { surge: impulse.ahead, sway: impulse.starboard, yaw: twist });
 }

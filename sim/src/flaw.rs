@@ -2,10 +2,10 @@
 //!
 //! The front seat knows nothing of them: it reckons with the thrusters as they are sold.
 
-use crate::battery::{BatteryModel, BatteryState};
-use crate::delay_line::DelayLine;
+use crate::battery::BatteryModel;
 use game::boat::{Flaws, Ventilation};
 use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
 
 /// The flaws of a pair of thrusters, for one tick length.
 #[derive(Clone, Debug)]
@@ -25,9 +25,9 @@ pub(crate) struct FlawModel {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlawState {
     /// Settings on their way to the thrusters, the oldest first: as many as a setting takes ticks.
-    under_way: DelayLine<[f64; 2]>,
-    /// What the thrusters live on; empty and of no effect where they have no battery.
-    pub battery: BatteryState,
+    under_way: VecDeque<[f64; 2]>,
+    /// Charge of the thrusters' battery as a share of a full one, 0 to 1; 0 and of no effect where they have none.
+    pub charge: f64,
 }
 
 impl FlawModel {
@@ -50,8 +50,8 @@ impl FlawModel {
 
     pub(crate) fn start(&self) -> FlawState {
         FlawState {
-            under_way: DelayLine::of([0.0; 2], self.latency_ticks),
-            battery: self.battery.map(|battery| battery.start()).unwrap_or_default(),
+            under_way: VecDeque::from(vec![[0.0; 2]; self.latency_ticks]),
+            charge: self.battery.map_or(0.0, |battery| battery.charge),
         }
     }
 
@@ -65,7 +65,7 @@ impl FlawModel {
     /// Factor on the thrust of each thruster over this tick, from the battery and the water above the propellers.
     #[inline]
     pub(crate) fn thrust_factors(&self, state: &FlawState, water_above_m: [f64; 2]) -> [f64; 2] {
-        let battery = self.battery.map_or(1.0, |battery| battery.thrust_factor(state.battery));
+        let battery = self.battery.map_or(1.0, |battery| battery.thrust_factor(state.charge));
         let wet = |above_m: f64| self.ventilation.map_or(1.0, |ventilation| wetness(ventilation, above_m));
         water_above_m.map(|above_m| battery * wet(above_m))
     }
@@ -75,7 +75,8 @@ impl FlawState {
     /// Sends `settings` off; gives those that arrive.
     #[inline]
     pub(crate) fn pass(&mut self, settings: [f64; 2]) -> [f64; 2] {
-        self.under_way.shift(settings)
+        self.under_way.push_back(settings);
+        self.under_way.pop_front().unwrap_or(settings)
     }
 }
 

@@ -131,27 +131,9 @@ impl HullModel {
         1.0 / (ahead * ahead / self.m_surge + starboard * starboard / self.m_sway)
     }
 
-    /// Moment of inertia with added mass, kg m².
-    #[must_use]
-    pub fn yaw_inertia_kg_m2(&self) -> f64 {
-        self.m_yaw
-    }
-
-    /// Mass with added mass in surge, kg.
-    #[must_use]
-    pub fn surge_mass_kg(&self) -> f64 {
-        self.m_surge
-    }
-
     /// Thrust that holds `speed_m_s` straight ahead, N.
     #[must_use]
     pub fn surge_resistance_newton(&self, speed_m_s: f64) -> f64 {
         (self.hull.surge_linear_kg_s + self.hull.surge_quadratic_kg_m * speed_m_s.abs()) * speed_m_s
-    }
-
-    /// Linear yaw damping, kg m²/s.
-    #[must_use]
-    pub fn yaw_damping_kg_m2_s(&self) -> f64 {
-        self.hull.yaw_linear_kg_m2_s
     }
 }

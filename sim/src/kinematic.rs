@@ -78,10 +78,6 @@ pub struct KinematicMotion {
     pub travel_m: Ned,
     /// By how much it turned, rad clockwise.
     pub turn_rad: f64,
-    /// Where it points now, rad clockwise from north, −pi to pi.
-    pub psi_rad: f64,
-    /// Speed through the water at the end, m/s.
-    pub speed_m_s: f64,
 }
 
 /// Memory of a PID loop.
@@ -157,12 +153,6 @@ impl KinematicModel {
         }
     }
 
-    /// The highest speed it accepts, m/s.
-    #[must_use]
-    pub fn speed_max_m_s(&self) -> f64 {
-        self.boat.speed_max_m_s
-    }
-
     /// The thrust at which the boat keeps this speed straight ahead, per cent: the thrust map read backwards. Speeds
     /// beyond its ends count as its ends.
     #[must_use]
@@ -181,12 +171,7 @@ impl KinematicModel {
         // What is astern counts for the position once and is forgotten: the reference keeps no negative speed.
         state.speed_m_s = v_mean_m_s.clamp(0.0, self.boat.speed_max_m_s);
         state.heading_deg = heading_deg;
-        KinematicMotion {
-            travel_m: (way + drift_m_s).scaled(dt_s),
-            turn_rad: turn_deg.to_radians(),
-            psi_rad: state.psi_rad(),
-            speed_m_s: state.speed_m_s,
-        }
+        KinematicMotion { travel_m: (way + drift_m_s).scaled(dt_s), turn_rad: turn_deg.to_radians() }
     }
 
     /// Sets thrust and rudder (pMarinePID).
@@ -399,8 +384,8 @@ mod tests {
     fn bad_numbers_come_out_as_bad_numbers() {
         let mut state = KinematicState { heading_deg: f64::NAN, ..KinematicState::default() };
         for _ in 0..3 {
-            let motion = step(&plain(), &mut state, ahead(1.0));
-            assert!(motion.psi_rad.is_nan());
+            step(&plain(), &mut state, ahead(1.0));
+            assert!(state.psi_rad().is_nan());
         }
     }
 }

@@ -7,7 +7,6 @@ pub mod autopilot;
 pub mod battery;
 pub mod contact;
 pub mod contest;
-mod delay_line;
 pub mod external;
 pub mod flaw;
 pub mod hull;

@@ -209,9 +209,9 @@ impl Model {
             Order::Hold => Command::Hold,
         };
         let motion = point.step(state, command, drift_m_s, self.dt_s);
-        let rotation_to = Rotation::from_heading(motion.psi_rad);
-        let to = Pose { at: boat.pose.at + motion.travel_m, psi_rad: motion.psi_rad };
-        let nu = Planar { surge: motion.speed_m_s, sway: 0.0, yaw: motion.turn_rad / self.dt_s };
+        let to = Pose { at: boat.pose.at + motion.travel_m, psi_rad: state.psi_rad() };
+        let rotation_to = to.rotation();
+        let nu = Planar { surge: state.speed_m_s, sway: 0.0, yaw: motion.turn_rad / self.dt_s };
         let still = self.still(vehicle, boat, boat.pose.rotation());
         (Displacement { to, rotation_to, ..still }, through_water(nu, rotation_to, drift_m_s, 1.0))
     }

@@ -3,13 +3,13 @@
 //! All of it is drawn from the game's seed, by vehicle, direction and number of the decision: the same losses in one
 //! process and over a network, whatever else is sent. What the real network does comes on top.
 
-use crate::delay_line::DelayLine;
 use crate::two_state::TwoStateChain;
 use game::link::Link;
 use game::picture::OwnBoat;
 use game::stream::Noise;
 use game::{Ned, Order, Scenario, SimTime};
 use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
 
 /// The largest number that [`Noise::exponential`] gives, 53 ln 2, rounded up.
 const MOST_JITTERS: f64 = 37.0;
@@ -46,14 +46,9 @@ pub(crate) struct RadioState {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Line {
     is_bad: bool,
-    orders: Way<Order>,
-    reports: Way<OwnBoat>,
-}
-
-/// Messages in one direction, by rising arrival. One that is overtaken by a later one is not taken any more.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Way<T> {
-    under_way: DelayLine<Sent<T>>,
+    /// Messages under way in each direction, by rising arrival. One that is overtaken by a later one is not taken any more.
+    orders: VecDeque<Sent<Order>>,
+    reports: VecDeque<Sent<OwnBoat>>,
 }
 
 /// A message under way.
@@ -72,23 +67,21 @@ enum Direction {
     In = 3,
 }
 
-impl<T: Copy> Way<T> {
-    fn send(&mut self, sent: Sent<T>, most: usize) {
-        // What would arrive after this one is overtaken by it.
-        self.under_way.drop_overtaken(|earlier| earlier.arrival >= sent.arrival);
-        assert!(self.under_way.len() < most, "one message a decision, and none takes longer than the longest");
-        self.under_way.send(sent);
-    }
+fn send<T>(under_way: &mut VecDeque<Sent<T>>, sent: Sent<T>, most: usize) {
+    // What would arrive after this one is overtaken by it.
+    while under_way.pop_back_if(|earlier| earlier.arrival >= sent.arrival).is_some() {}
+    assert!(under_way.len() < most, "one message a decision, and none takes longer than the longest");
+    under_way.push_back(sent);
+}
 
-    /// The newest message that has arrived by `now`, if any has; `each` is told of all of them by their decisions.
-    fn receive(&mut self, now: SimTime, mut each: impl FnMut(u64)) -> Option<T> {
-        let mut newest = None;
-        while let Some(sent) = self.under_way.receive(|sent| sent.arrival <= now) {
-            each(sent.decision);
-            newest = Some(sent.message);
-        }
-        newest
+/// The newest message that has arrived by `now`, if any has; `each` is told of all of them by their decisions.
+fn receive<T>(under_way: &mut VecDeque<Sent<T>>, now: SimTime, mut each: impl FnMut(u64)) -> Option<T> {
+    let mut newest = None;
+    while let Some(sent) = under_way.pop_front_if(|sent| sent.arrival <= now) {
+        each(sent.decision);
+        newest = Some(sent.message);
     }
+    newest
 }
 
 impl Radio {
@@ -105,8 +98,8 @@ impl Radio {
         let usual = decisions(link.delay_s);
         let line = |_: &Noise| Line {
             is_bad: false,
-            orders: Way { under_way: DelayLine::with_room(usual) },
-            reports: Way { under_way: DelayLine::with_room(usual) },
+            orders: VecDeque::with_capacity(usual),
+            reports: VecDeque::with_capacity(usual),
         };
         let noises: Vec<Noise> = noises.collect();
         let state = RadioState { decision: 0, lines: noises.iter().map(line).collect() };
@@ -136,36 +129,36 @@ impl Radio {
     /// An order goes out to a boat, which is at `at`. Of one decision's orders the last one counts.
     pub(crate) fn send_order(&mut self, vehicle: usize, order: Order, at: Ned, now: SimTime) {
         if let Some(sent) = self.sent(vehicle, Direction::Out, order, at, now) {
-            self.state.lines[vehicle].orders.send(sent, self.model.most);
+            send(&mut self.state.lines[vehicle].orders, sent, self.model.most);
         }
     }
 
     /// The order that arrives at a boat by `now`, if a new one does.
     pub(crate) fn order(&mut self, vehicle: usize, now: SimTime) -> Option<Order> {
-        self.state.lines[vehicle].orders.receive(now, |_| {})
+        receive(&mut self.state.lines[vehicle].orders, now, |_| {})
     }
 
     /// Orders under way to a boat do not arrive any more.
     pub(crate) fn recall_orders(&mut self, vehicle: usize) {
-        self.state.lines[vehicle].orders.under_way.clear();
+        self.state.lines[vehicle].orders.clear();
     }
 
     /// A boat reports from `at`, once a decision.
     pub(crate) fn send_report(&mut self, vehicle: usize, report: OwnBoat, at: Ned, now: SimTime) {
         if let Some(sent) = self.sent(vehicle, Direction::In, report, at, now) {
-            self.state.lines[vehicle].reports.send(sent, self.model.most);
+            send(&mut self.state.lines[vehicle].reports, sent, self.model.most);
         }
     }
 
     /// The newest report of a boat that has come in by `now`, if any has; `each` is told of all of them by the decisions
     /// at which they were sent.
     pub(crate) fn report(&mut self, vehicle: usize, now: SimTime, each: impl FnMut(u64)) -> Option<OwnBoat> {
-        self.state.lines[vehicle].reports.receive(now, each)
+        receive(&mut self.state.lines[vehicle].reports, now, each)
     }
 
     /// The decision of the oldest report that is under way, or the one that is open.
     pub(crate) fn oldest_report(&self) -> u64 {
-        let oldest = |line: &Line| line.reports.under_way.first().map(|sent| sent.decision);
+        let oldest = |line: &Line| line.reports.front().map(|sent| sent.decision);
         self.state.lines.iter().filter_map(oldest).min().unwrap_or(self.state.decision)
     }
 

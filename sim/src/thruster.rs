@@ -188,7 +188,7 @@ impl ThrusterModel {
             shaft.newton = given[side][2];
         }
         if let Some(battery) = flaws.battery {
-            battery.draw(&mut state.battery, taken);
+            battery.draw(&mut state.charge, taken);
         }
         let mut on_hull = self.on_hull(given[0], given[1]);
         for (i, force) in on_hull.iter_mut().enumerate() {
@@ -402,7 +402,7 @@ mod tests {
             charge -= 0.05 * (30.0 + 600.0 * 0.5 * both) / 90_000.0;
             last = model.drive([&mut port, &mut starboard], &mut state, [-1.0, 0.5], [0.0; 2])[2];
         }
-        assert!((state.battery.charge - charge).abs() < 1e-12, "{} {charge}", state.battery.charge);
+        assert!((state.charge - charge).abs() < 1e-12, "{} {charge}", state.charge);
         assert!((0.55..0.75).contains(&charge), "{charge}");
         assert!((last.surge - sag * -10.0).abs() < 1e-9, "{last:?}, sag {sag}");
         assert_eq!(port.newton + starboard.newton, last.surge);

@@ -66,18 +66,6 @@ impl Sheet {
         Ok(sheet)
     }
 
-    /// How many rows there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.rows.len()
-    }
-
-    /// Never: a file without rows is refused.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
-    }
-
     /// The columns' names.
     #[must_use]
     pub fn heads(&self) -> &[String] {
@@ -133,8 +121,8 @@ impl Sheet {
     pub fn times(&self, high_s: f64) -> Result<Vec<f64>, Mistake> {
         let missing = || self.mistake(Some(1), format!("no column t_s among {}", self.heads.join(", ")));
         let column = self.column("t_s").ok_or_else(missing)?;
-        let mut times_s: Vec<f64> = Vec::with_capacity(self.len());
-        for row in 0..self.len() {
+        let mut times_s: Vec<f64> = Vec::with_capacity(self.rows.len());
+        for row in 0..self.rows.len() {
             let t_s = self.number(row, column, (0.0, high_s))?;
             if let Some(before_s) = times_s.last().filter(|before_s| t_s <= **before_s) {
                 let message = format!("t_s is {t_s}, expected more than the {before_s} of the row before");

@@ -83,38 +83,28 @@ impl HullWaves {
     /// The waves at a boat.
     #[must_use]
     pub fn at(&self, pose: Pose, time_s: f64) -> WaveSample {
-        let mut sums = Sums::default();
-        let (lines, fraction) = self.velocity.at(pose.psi_rad);
-        for (row, lines) in self.rows.iter().zip(lines) {
-            let (sin, cos) = row.phases.sin_cos(pose.at, time_s);
-            sums.add(
-                row,
-                [lines[0].at_fraction(fraction), lines[1].at_fraction(fraction), lines[2].at_fraction(fraction)],
-                sin,
-                cos,
-            );
-        }
-        self.sample(&sums, pose.psi_rad)
+        self.summed(pose, time_s, |_, _, _, _| ())
     }
 
-    /// The waves at a boat, and how much higher than in calm the water stands over its propellers, m: [`HullWaves::at`]
-    /// and [`Submergence::at`] in one go.
+    /// The waves at a boat, and how much deeper than in calm water its propellers are, m.
     #[must_use]
     pub fn at_with(&self, submergence: &Submergence, pose: Pose, time_s: f64) -> (WaveSample, [f64; 2]) {
-        let (mut sums, mut depths) = (Sums::default(), PropellerSums::default());
+        let (mut depths, (lines, _)) = (PropellerSums::default(), submergence.lines(pose.psi_rad));
+        let sample = self.summed(pose, time_s, |row, fraction, sin, cos| depths.add(&lines[row], fraction, sin, cos));
+        (sample, depths.submergence_change_m())
+    }
+
+    /// The sum over the components; `also` gets each row's number, the place between two headings, sine and cosine.
+    #[inline(always)]
+    fn summed(&self, pose: Pose, time_s: f64, mut also: impl FnMut(usize, f32x4, f32x4, f32x4)) -> WaveSample {
+        let mut sums = Sums::default();
         let (lines, fraction) = self.velocity.at(pose.psi_rad);
-        let (depth_lines, _) = submergence.lines(pose.psi_rad);
-        for ((row, lines), depth_lines) in self.rows.iter().zip(lines).zip(depth_lines) {
+        for (i, (row, lines)) in self.rows.iter().zip(lines).enumerate() {
             let (sin, cos) = row.phases.sin_cos(pose.at, time_s);
-            sums.add(
-                row,
-                [lines[0].at_fraction(fraction), lines[1].at_fraction(fraction), lines[2].at_fraction(fraction)],
-                sin,
-                cos,
-            );
-            depths.add(depth_lines, fraction, sin, cos);
+            sums.add(row, lines.each_ref().map(|line| line.at_fraction(fraction)), sin, cos);
+            also(i, fraction, sin, cos);
         }
-        (self.sample(&sums, pose.psi_rad), depths.submergence_change_m())
+        self.sample(&sums, pose.psi_rad)
     }
 
     #[inline(always)]

@@ -3,16 +3,15 @@
 use super::heading::{HeadingTable, Segment};
 use super::hull_wave::Patch;
 use super::sine::sum;
-use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes};
+use super::wave::{LANES, PlaneWave, WaveField, lanes};
 use super::wave_response::{HEAVE, PITCH, ROLL, quasi_static, transfer};
 use game::boat::Boat;
-use game::frame::{Body, Pose};
+use game::frame::Body;
 use wide::f32x4;
 
 /// How the submergence of the two propellers of a kind of boat changes in a field of waves.
 #[derive(Clone, Debug)]
 pub struct Submergence {
-    phases: Vec<Phases>,
     /// Port per cosine and per sine of the phase amidships, then starboard, m.
     change: HeadingTable<4>,
 }
@@ -29,22 +28,10 @@ impl Submergence {
             });
             std::array::from_fn(|part| f32x4::new(parts.map(|parts| parts[part] as f32)))
         });
-        Submergence { phases: chunks.iter().map(|waves| Phases::new(waves)).collect(), change }
+        Submergence { change }
     }
 
-    /// By how much each propeller is deeper than in calm water, m.
-    #[must_use]
-    pub fn at(&self, pose: Pose, time_s: f64) -> [f64; 2] {
-        let mut sums = PropellerSums::default();
-        let (lines, fraction) = self.lines(pose.psi_rad);
-        for (phases, lines) in self.phases.iter().zip(lines) {
-            let (sin, cos) = phases.sin_cos(pose.at, time_s);
-            sums.add(lines, fraction, sin, cos);
-        }
-        sums.submergence_change_m()
-    }
-
-    /// The numbers for a heading, for who has the phases at hand.
+    /// The numbers for a heading, for [`HullWaves::at_with`](super::HullWaves::at_with), which has the phases at hand.
     #[inline(always)]
     pub(super) fn lines(&self, heading_rad: f64) -> (&[[Segment; 4]], f32x4) {
         self.change.at(heading_rad)
@@ -90,9 +77,9 @@ fn change_of(wave: &PlaneWave, boat: &Boat, heading_rad: f64, place: Body) -> (f
 
 #[cfg(test)]
 mod tests {
-    use super::super::{WaveResponse, waves_from};
+    use super::super::{HullWaves, WaveResponse, waves_from};
     use super::*;
-    use game::frame::{Ned, ned_from_body};
+    use game::frame::{Ned, Pose, ned_from_body};
 
     #[test]
     fn it_is_the_surface_less_the_hull_at_that_place() {
@@ -101,13 +88,14 @@ mod tests {
         let field = WaveField::new(&waves_from(0.7, 0.3, 2.5, 64), None, 3);
         let places = [-0.33, 0.33].map(|starboard| Body { ahead: -0.7, starboard });
         let (submergence, response) = (Submergence::new(&field, &boat, places), WaveResponse::new(&field, &boat));
+        let waves = HullWaves::new(&field, &boat, 1000.0);
         for k in 0..200 {
             // Headings of the table, so that nothing is interpolated.
             let psi_rad = f64::from(k % 72) * std::f64::consts::TAU / 72.0;
             let pose = Pose { at: Ned { north: f64::from(k) * 3.1, east: f64::from(k) * -1.7 }, psi_rad };
             let time_s = f64::from(k) * 0.37;
             let attitude = response.at(pose, Ned::default(), 0.0, time_s);
-            for (place, got_m) in places.into_iter().zip(submergence.at(pose, time_s)) {
+            for (place, got_m) in places.into_iter().zip(waves.at_with(&submergence, pose, time_s).1) {
                 let at = pose.at + ned_from_body(pose.rotation(), place);
                 let risen_m =
                     attitude.heave_up_m + attitude.pitch_rad * place.ahead - attitude.roll_rad * place.starboard;

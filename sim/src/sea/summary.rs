@@ -59,14 +59,13 @@ impl Summary {
     #[must_use]
     pub fn new(sea: &Sea, boat: &Boat, field: &Field, seed: u64) -> Summary {
         let hull = HullModel::new(&boat.hull, sea.water_density_kg_m3);
-        let middle = (field.corners[0] + field.corners[2]).scaled(0.5);
         Summary {
             waves: sea.waves.as_ref().map(|waves| {
                 let waves_seen = WaveField::new(waves, sea.depth_m, seed);
                 wave_summary(&waves_seen, (waves.tp_s, waves.from_rad), boat, sea.water_density_kg_m3)
             }),
             wind: sea.wind.as_ref().map(|wind| wind_summary(wind, boat, &hull)),
-            current_m_s: CurrentField::new(&sea.current, field, seed).at_time(game::SimTime::ZERO).at(middle),
+            current_m_s: CurrentField::new(&sea.current, field, seed).at_time(game::SimTime::ZERO).at(field.middle()),
         }
     }
 }

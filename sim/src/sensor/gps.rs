@@ -5,13 +5,13 @@
 //! Drop-outs and freezes come and go as a [`TwoStateChain`], sampled at the fixes.
 
 use super::{GaussMarkovStep, Truth, whole_ticks};
-use crate::delay_line::DelayLine;
 use crate::two_state::TwoStateChain;
 use game::SimTime;
 use game::boat::{Gps, Outage};
 use game::frame::Ned;
 use game::stream::Noise;
 use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
 
 /// Most fixes that can be under way at once: the latency is at most this many periods. A file may state 12 periods; of
 /// them, rounded to whole decisions, as many as 18 may be left of the same time.
@@ -55,8 +55,8 @@ pub struct GpsModel {
 pub struct GpsState {
     /// The fix that came out last.
     latest: Fix,
-    /// Fixes that have been taken and have not come out.
-    under_way: DelayLine<Fix>,
+    /// Fixes that have been taken and have not come out, the oldest first.
+    under_way: VecDeque<Fix>,
     /// m, by axis.
     bias: Ned,
     /// m, by axis.
@@ -103,7 +103,7 @@ impl GpsModel {
     /// there at once, and nothing is amiss at first.
     pub fn read(&self, state: &mut GpsState, truth: &Truth, now: SimTime) -> Fix {
         // What is out makes room for the new fix.
-        while let Some(fix) = state.under_way.receive(|fix| fix.at + self.latency <= now) {
+        while let Some(fix) = state.under_way.pop_front_if(|fix| fix.at + self.latency <= now) {
             state.latest = fix;
         }
         if now.0 % self.period.0 == 0 {
@@ -113,7 +113,7 @@ impl GpsModel {
                 state.latest = fix;
             } else if !state.dropped {
                 assert!(state.under_way.len() < UNDER_WAY_MAX, "a latency is at most {UNDER_WAY_MAX} periods");
-                state.under_way.send(fix);
+                state.under_way.push_back(fix);
             }
         }
         state.latest
