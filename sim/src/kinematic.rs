@@ -16,7 +16,7 @@
 
 use crate::piecewise_linear::PiecewiseLinear;
 use game::boat::{Kinematic, Pid};
-use game::{Ned, Rotation, math};
+use game::{Ned, Order, Rotation, math};
 use serde::{Deserialize, Serialize};
 
 /// Less thrust than this, per cent, is none.
@@ -50,27 +50,6 @@ pub struct KinematicState {
     heading_loop: Loop,
 }
 
-/// What a point boat is told.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
-    /// The loops steer this course.
-    Steer {
-        /// Desired heading, radians clockwise from north.
-        heading_rad: f64,
-        /// Desired speed, m/s; what is above the boat's highest counts as that.
-        speed_m_s: f64,
-    },
-    /// Thrust and rudder are imposed and the loops rest.
-    Impose {
-        /// Per cent, −100 to 100.
-        thrust: f64,
-        /// Per cent, −100 to 100, to starboard.
-        rudder: f64,
-    },
-    /// Speed 0 on whatever heading it has.
-    Hold,
-}
-
 /// What a point boat did in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KinematicMotion {
@@ -95,15 +74,6 @@ impl Loop {
         self.error = Some(error);
         self.integral = (self.integral + gains.i * error * dt_s).clamp(-gains.i_limit, gains.i_limit);
         (gains.p * error + gains.d * rate + self.integral).clamp(-limit, limit)
-    }
-}
-
-impl Command {
-    /// What the thrusts of two thrusters, each a share −1 to 1, are to a boat that has one and a rudder: half the sum
-    /// and half the difference.
-    #[must_use]
-    pub fn of_shares(port: f64, starboard: f64) -> Command {
-        Command::Impose { thrust: 0.5 * FULL * (port + starboard), rudder: 0.5 * FULL * (port - starboard) }
     }
 }
 
@@ -161,7 +131,10 @@ impl KinematicModel {
     }
 
     /// Moves a boat on by `dt_s`. `drift_m_s` carries it along: the current.
-    pub fn step(&self, state: &mut KinematicState, command: Command, drift_m_s: Ned, dt_s: f64) -> KinematicMotion {
+    ///
+    /// The loops steer a course. The thrusts of two thrusters, shares of full, are to a boat that has one and a rudder half
+    /// their sum and half their difference; then the loops rest. To hold is speed 0 on whatever heading it has.
+    pub fn step(&self, state: &mut KinematicState, command: Order, drift_m_s: Ned, dt_s: f64) -> KinematicMotion {
         self.control(state, command, dt_s);
         let v_next_m_s = self.next_speed(state, dt_s);
         let turn_deg = self.turn_deg(state, v_next_m_s, dt_s);
@@ -175,18 +148,18 @@ impl KinematicModel {
     }
 
     /// Sets thrust and rudder (pMarinePID).
-    fn control(&self, state: &mut KinematicState, command: Command, dt_s: f64) {
+    fn control(&self, state: &mut KinematicState, command: Order, dt_s: f64) {
         let boat = &self.boat;
         let (wanted_m_s, error_deg) = match command {
-            Command::Impose { thrust, rudder } => {
-                state.thrust = thrust.clamp(-FULL, FULL);
-                state.rudder = rudder.clamp(-FULL, FULL);
+            Order::Thrust { port, starboard } => {
+                state.thrust = (0.5 * FULL * (port + starboard)).clamp(-FULL, FULL);
+                state.rudder = (0.5 * FULL * (port - starboard)).clamp(-FULL, FULL);
                 return;
             }
-            Command::Steer { heading_rad, speed_m_s } => {
+            Order::Steer { heading_rad, speed_m_s } => {
                 (speed_m_s.min(boat.speed_max_m_s), wrap_180(heading_rad.to_degrees() - state.heading_deg))
             }
-            Command::Hold => (0.0, 0.0),
+            Order::Hold => (0.0, 0.0),
         };
         let thrust = if boat.speed_factor > 0.0 {
             wanted_m_s * boat.speed_factor
@@ -263,12 +236,12 @@ mod tests {
         }
     }
 
-    fn step(boat: &Kinematic, state: &mut KinematicState, command: Command) -> KinematicMotion {
+    fn step(boat: &Kinematic, state: &mut KinematicState, command: Order) -> KinematicMotion {
         KinematicModel::new(boat).step(state, command, Ned::default(), 0.1)
     }
 
-    fn ahead(speed_m_s: f64) -> Command {
-        Command::Steer { heading_rad: 0.0, speed_m_s }
+    fn ahead(speed_m_s: f64) -> Order {
+        Order::Steer { heading_rad: 0.0, speed_m_s }
     }
 
     #[test]
@@ -287,7 +260,7 @@ mod tests {
         let mut state = KinematicState { speed_m_s: 0.5, ..KinematicState::default() };
         step(&boat, &mut state, ahead(1.0));
         assert!((state.speed_m_s - 0.51).abs() < 1e-15, "{}", state.speed_m_s);
-        step(&boat, &mut state, Command::Hold);
+        step(&boat, &mut state, Order::Hold);
         assert!((state.speed_m_s - 0.49).abs() < 1e-15, "{}", state.speed_m_s);
     }
 
@@ -302,7 +275,7 @@ mod tests {
     fn drift_carries_it_along_and_nothing_else() {
         let drift = Ned { north: 0.3, east: -0.2 };
         let model = KinematicModel::new(&plain());
-        let command = Command::Steer { heading_rad: 1.0, speed_m_s: 0.8 };
+        let command = Order::Steer { heading_rad: 1.0, speed_m_s: 0.8 };
         let (mut still, mut adrift) = (KinematicState::default(), KinematicState::default());
         for _ in 0..50 {
             let a = model.step(&mut still, command, Ned::default(), 0.1);
@@ -315,17 +288,17 @@ mod tests {
     #[test]
     fn without_thrust_there_is_no_rudder_and_without_way_no_turn() {
         let mut state = KinematicState { speed_m_s: 1.0, ..KinematicState::default() };
-        step(&plain(), &mut state, Command::Steer { heading_rad: 1.0, speed_m_s: 0.0 });
+        step(&plain(), &mut state, Order::Steer { heading_rad: 1.0, speed_m_s: 0.0 });
         assert_eq!((state.thrust, state.rudder), (0.0, 0.0));
         let mut state = KinematicState::default();
-        let motion = step(&plain(), &mut state, Command::Impose { thrust: 0.0, rudder: 100.0 });
+        let motion = step(&plain(), &mut state, Order::Thrust { port: 1.0, starboard: -1.0 });
         assert_eq!((motion.turn_rad, state.rudder), (0.0, 100.0));
     }
 
     #[test]
     fn astern_the_rudder_turns_the_other_way_and_no_way_is_kept() {
         let mut state = KinematicState::default();
-        let motion = step(&plain(), &mut state, Command::of_shares(-0.5, -1.0));
+        let motion = step(&plain(), &mut state, Order::Thrust { port: -0.5, starboard: -1.0 });
         assert_eq!((state.thrust, state.rudder), (-75.0, 25.0));
         let want_deg: f64 = -25.0 * 0.1 * 0.1 * 1.5;
         assert!((motion.turn_rad - want_deg.to_radians()).abs() < 1e-15, "{}", motion.turn_rad);
@@ -338,7 +311,7 @@ mod tests {
         boat.rotate_rad_s = 0.02;
         let mut state = KinematicState::at_rest(3.135);
         for _ in 0..10 {
-            step(&boat, &mut state, Command::Hold);
+            step(&boat, &mut state, Order::Hold);
         }
         let turned = game::angle::wrap_pi(state.psi_rad() - 3.135);
         assert!((turned - 0.02).abs() < 1e-12 && state.psi_rad() < 0.0, "{turned}");
@@ -373,7 +346,7 @@ mod tests {
     fn a_boat_under_way_feels_the_derivative_of_its_first_error() {
         let mut boat = plain();
         boat.heading_pid = Pid { d: 0.1, ..boat.heading_pid };
-        let turn = Command::Steer { heading_rad: 0.2, speed_m_s: 1.0 };
+        let turn = Order::Steer { heading_rad: 0.2, speed_m_s: 1.0 };
         let (mut rested, mut sailing) = (KinematicState::at_rest(0.0), KinematicState::under_way(0.0, 1.0, 100.0));
         step(&boat, &mut rested, turn);
         step(&boat, &mut sailing, turn);

@@ -17,7 +17,6 @@ pub mod motion;
 pub mod node;
 mod piecewise_linear;
 mod radio;
-pub mod resimulation;
 pub mod sea;
 pub mod sensor;
 mod sighting;

@@ -5,7 +5,7 @@ use crate::contact::{ContactModel, ContactRole, Displacement};
 use crate::external;
 use crate::flaw::FlawState;
 use crate::hull::{HullModel, Planar};
-use crate::kinematic::{Command, KinematicModel, KinematicState};
+use crate::kinematic::{KinematicModel, KinematicState};
 use crate::motion::{Fleet, Forcing, Motion};
 use crate::sea::{Attitude, SeaModel, SeaNow};
 use crate::sensor::{Reading, SensorModel, SensorState, Truth};
@@ -203,11 +203,6 @@ impl Model {
         command: Order,
         drift_m_s: Ned,
     ) -> (Displacement, Planar) {
-        let command = match command {
-            Order::Steer { heading_rad, speed_m_s } => Command::Steer { heading_rad, speed_m_s },
-            Order::Thrust { port, starboard } => Command::of_shares(port, starboard),
-            Order::Hold => Command::Hold,
-        };
         let motion = point.step(state, command, drift_m_s, self.dt_s);
         let to = Pose { at: boat.pose.at + motion.travel_m, psi_rad: state.psi_rad() };
         let rotation_to = to.rotation();

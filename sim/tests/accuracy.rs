@@ -3,10 +3,9 @@
 
 mod common;
 
-use common::{alone, put, scenarios, waves};
+use common::{afloat, alone, scenarios, waves};
 use game::sea::{Gusts, Sea, Wind};
 use game::{Ned, Order, Pose, SimTime};
-use sim::World;
 use sim::hull::{HullModel, Planar};
 
 /// Where the Otter is after 20 s on this sea under imposed thrust, by the length of the tick.
@@ -14,8 +13,7 @@ fn pose_after(tick_s: f64, change: impl Fn(&mut Sea)) -> Pose {
     let mut scenario = alone("otter", "calm_salt");
     change(&mut scenario.sea);
     scenario.tick = SimTime::from_s(tick_s);
-    let mut world = World::of_game(&scenario, 2).unwrap();
-    put(&mut world, 0, (300.0, 100.0, 11.0), (0.6, 0.05, 0.03));
+    let mut world = afloat(&scenario, 2, (300.0, 100.0, 11.0), (0.6, 0.05, 0.03));
     for _ in 0..(20.0 / tick_s).round() as u64 {
         world.step(&[Order::Thrust { port: 0.5, starboard: 0.4 }, Order::Hold]);
     }
@@ -65,8 +63,7 @@ fn whatever_water_a_hull_carries_along_it_stays_stable_in_a_gale() {
             hull.added_sway_kg = sway * hull.mass_kg;
             hull.added_yaw_kg_m2 = yaw * hull.yaw_inertia_kg_m2;
             let model = HullModel::new(hull, scenario.sea.water_density_kg_m3);
-            let mut world = World::of_game(&scenario, 1).unwrap();
-            put(&mut world, 0, (300.0, 200.0, 10.0), (0.0, 0.0, 0.0));
+            let mut world = afloat(&scenario, 1, (300.0, 200.0, 10.0), (0.0, 0.0, 0.0));
             let crests_m_s = 9.806_65 * scenario.sea.waves.as_ref().unwrap().tp_s / std::f64::consts::TAU;
             let limit_joule = model.energy_joule(Planar { surge: crests_m_s, ..Planar::default() });
             for tick in 0..36_000 {

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{alone, put};
+use common::{afloat, alone};
 use game::angle::wrap_pi;
 use game::frame::body_from_ned;
 use game::sea::{Gusts, Wind};
@@ -28,8 +28,7 @@ fn beam_drift_m_s(scenario: &Scenario, wind_m_s: f64) -> f64 {
 fn left_to_the_wind(kind: &str, wind_m_s: f64, heading_deg: f64, minutes: u32) -> (f64, Planar) {
     let mut scenario = alone(kind, "calm");
     scenario.sea.wind = Some(blowing(wind_m_s));
-    let mut world = World::of_game(&scenario, 1).unwrap();
-    put(&mut world, 0, (400.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
+    let mut world = afloat(&scenario, 1, (400.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
     for _ in 0..minutes * 1_200 {
         world.step(&[Order::Hold; 2]);
     }

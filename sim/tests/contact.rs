@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{among, came_together, digest, energy_joule, gap_m, hulls, put, shipped};
+use common::{afloat, among, came_together, digest, energy_joule, gap_m, hulls, put, shipped};
 use game::field::Obstacle;
 use game::stream::Stream;
 use game::{Ned, Order, Scenario};
@@ -27,8 +27,7 @@ fn sail(world: &mut World, scenario: &Scenario, orders: [Order; 2], ticks: u32) 
 fn boats_that_meet_head_on_stop_each_other() {
     for boat in BOATS {
         let scenario = among(boat, Vec::new());
-        let mut world = World::of_game(&scenario, 1).unwrap();
-        put(&mut world, 0, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
+        let mut world = afloat(&scenario, 1, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
         put(&mut world, 1, (110.0, 100.0, 270.0), (2.0, 0.0, 0.0));
         let least_m = sail(&mut world, &scenario, [AHEAD; 2], 200);
         assert!((-DEEPEST_M..0.05).contains(&least_m), "{boat}: hulls come as near as {least_m} m");
@@ -41,8 +40,7 @@ fn boats_that_meet_head_on_stop_each_other() {
 fn a_boat_that_rams_anothers_side_pushes_it_away() {
     for boat in BOATS {
         let scenario = among(boat, Vec::new());
-        let mut world = World::of_game(&scenario, 1).unwrap();
-        put(&mut world, 0, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
+        let mut world = afloat(&scenario, 1, (100.0, 100.0, 90.0), (2.0, 0.0, 0.0));
         put(&mut world, 1, (106.0, 100.0, 0.0), (0.0, 0.0, 0.0));
         let least_m = sail(&mut world, &scenario, [AHEAD, Order::Hold], 120);
         assert!((-DEEPEST_M..0.05).contains(&least_m), "{boat}: hulls come as near as {least_m} m");
@@ -98,9 +96,7 @@ fn no_collision_makes_energy() {
 /// The boat drives on for half a minute; how deep its capsule gets into the obstacle's outline, m, and where it is.
 fn run_into(obstacle: &Obstacle, start: (f64, f64, f64)) -> (f64, Ned) {
     let scenario = among("surveyor_m1_8", vec![obstacle.clone()]);
-    let mut world = World::of_game(&scenario, 1).expect("an empty sea has room");
-    put(&mut world, 0, start, (2.5, 0.0, 0.0));
-    put(&mut world, 1, (700.0, 300.0, 0.0), (0.0, 0.0, 0.0));
+    let mut world = afloat(&scenario, 1, start, (2.5, 0.0, 0.0));
     let mut least_m = f64::INFINITY;
     for _ in 0..600 {
         // The front seat keeps it pointing where it started out.
@@ -213,9 +209,8 @@ fn asking_rapier_only_about_close_hulls_changes_no_byte() {
 fn mirrored_orders_make_a_mirrored_course() {
     for boat in BOATS {
         let scenario = among(boat, Vec::new());
-        let mut world = World::of_game(&scenario, 1).unwrap();
         // The mirror stands along the meridian of the datum, so that mirrored numbers are exact.
-        put(&mut world, 0, (20.0, 100.0, 30.0), (1.0, 0.3, -0.2));
+        let mut world = afloat(&scenario, 1, (20.0, 100.0, 30.0), (1.0, 0.3, -0.2));
         put(&mut world, 1, (-20.0, 100.0, -30.0), (1.0, -0.3, 0.2));
         let mut stream = Stream::new(1, "orders");
         let mut orders = [Order::Hold; 2];

@@ -5,7 +5,6 @@
 mod common;
 
 use common::{order, shipped};
-use game::link::{Link, Loss, Sharing};
 use game::{Order, VehicleId};
 use sim::Contest;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -20,18 +19,7 @@ const WARM_UP: u64 = 1_500;
 #[test]
 fn a_decision_over_the_air_takes_nothing_from_the_heap_unless_hulls_are_close_or_something_happens() {
     let mut scenario = shipped("pav01_4v4.toml");
-    let station = scenario.field.corners[0];
-    let loss = Loss { good: 0.1, bad: 0.8, good_time_s: 5.0, bad_time_s: 2.0 };
-    scenario.link = Some(Link { delay_s: 0.35, jitter_s: 0.2, loss, range_m: Some(500.0), station });
-    scenario.rules.sharing = Sharing {
-        range_m: Some(60.0),
-        view_rad: Some(4.0),
-        delay_s: 0.3,
-        noise_m: 1.0,
-        velocity_noise_m_s: 0.1,
-        loss: 0.1,
-        memory_s: 5.0,
-    };
+    common::hamper(&mut scenario);
     let mut contest = Contest::new(&scenario, 1).unwrap();
     let middle = scenario.field.middle();
     let (mut free, mut busy, mut contacts) = (0, 0, 0);

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::mean_of;
+use common::{assert_memory, five_errors};
 use game::math;
 use game::sea::{Current, Eddy, RandomEddies, Shear, Tide, Wander};
 use game::{Field, Ned, Rotation, SimTime};
@@ -209,14 +209,9 @@ fn a_wander_has_the_variance_and_the_memory_stated() {
     const SIGMA_M_S: f64 = 0.05;
     let speed = wander_record(&wandering(SIGMA_M_S, (-9.0, 9.0)), COUNT as i64, STEP_S);
     let x: Vec<f64> = speed.iter().map(|speed| (speed - 0.2) / SIGMA_M_S).collect();
-    let within = 5.0 * (2.0 / (COUNT as f64 * STEP_S / 120.0)).sqrt();
+    let within = five_errors(COUNT, STEP_S / 120.0);
     assert!(within < 0.03);
-    assert!(mean_of(COUNT, |i| x[i]).abs() < within);
-    for lag in [0, 3, 10, 17, 34] {
-        let got = mean_of(COUNT - lag, |i| x[i] * x[i + lag]);
-        let want = math::exp(-(lag as f64) * STEP_S / 120.0);
-        assert!((got - want).abs() < within, "lag {lag}: {got}, not {want} within {within}");
-    }
+    assert_memory("wander", &x, &[0, 3, 10, 17, 34], STEP_S / 120.0, within);
 }
 
 #[test]

@@ -4,7 +4,6 @@ mod common;
 
 use common::{alone, digest, order, put, shipped};
 use game::event::{EventCursor, Logged};
-use game::link::{Link, Loss, Sharing};
 use game::order::BadOrder;
 use game::scenario::StartPosition;
 use game::{Event, Order, Pose, Scenario, VehicleId};
@@ -44,18 +43,7 @@ fn started(scenario: &Scenario, seed: u64) -> Contest {
 /// Waves, wind, sensors and flawed thrusters, over radio links, with limits of what boats see of each other.
 fn hampered() -> Scenario {
     let mut scenario = shipped("pav01_afloat.toml");
-    let loss = Loss { good: 0.1, bad: 0.8, good_time_s: 5.0, bad_time_s: 2.0 };
-    let station = scenario.field.corners[0];
-    scenario.link = Some(Link { delay_s: 0.35, jitter_s: 0.2, loss, range_m: Some(500.0), station });
-    scenario.rules.sharing = Sharing {
-        range_m: Some(60.0),
-        view_rad: Some(4.0),
-        delay_s: 0.3,
-        noise_m: 1.0,
-        velocity_noise_m_s: 0.1,
-        loss: 0.1,
-        memory_s: 5.0,
-    };
+    common::hamper(&mut scenario);
     scenario
 }
 
@@ -74,12 +62,16 @@ fn the_same_seed_makes_the_same_bytes_and_another_seed_other_ones() {
 
 #[test]
 fn a_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
-    let games = [shipped("swarm_20v20.toml"), shipped("harbour_2v2.toml"), hampered()];
-    for (scenario, meet) in games.iter().zip([true, true, false]) {
-        let name = &scenario.name;
+    let mut games =
+        vec![(shipped("swarm_20v20.toml"), 30, true), (shipped("harbour_2v2.toml"), 30, true), (hampered(), 30, false)];
+    for sea in ["fresh_breeze.toml", "bay_gale.toml", "river.toml", "tidal.toml", "eddies.toml", "any.toml"] {
+        games.push((common::on_sea("pav01_afloat.toml", sea.as_ref()), 10, false));
+    }
+    for (scenario, legs, meet) in &games {
+        let name = format!("{}, {}", scenario.name, scenario.sea.name);
         let mut contest = started(scenario, 3);
         let mut collisions = 0;
-        for leg in 0..30 {
+        for leg in 0..*legs {
             // Every other time in the middle of a decision, after the pictures.
             if leg % 2 == 1 {
                 contest.pictures();

@@ -2,21 +2,17 @@
 
 mod common;
 
-use common::{alone, put};
+use common::alone;
+use game::Order;
 use game::angle::wrap_pi;
-use game::{Order, Scenario};
 use sim::World;
 
 /// Cruising and at top speed, m/s.
 const BOATS: [(&str, f64); 6] =
     [("heron", 1.5), ("heron", 2.0), ("otter", 2.0), ("otter", 3.0), ("surveyor_m1_8", 2.0), ("surveyor_m1_8", 3.0)];
 
-fn afloat(boat: &str) -> (Scenario, World) {
-    let scenario = alone(boat, "calm_salt");
-    let mut world = World::of_game(&scenario, 1).expect("an empty sea has room");
-    put(&mut world, 0, (100.0, 100.0, 0.0), (0.0, 0.0, 0.0));
-    put(&mut world, 1, (700.0, 300.0, 0.0), (0.0, 0.0, 0.0));
-    (scenario, world)
+fn afloat(boat: &str) -> World {
+    common::afloat(&alone(boat, "calm_salt"), 1, (100.0, 100.0, 0.0), (0.0, 0.0, 0.0))
 }
 
 fn steer(world: &mut World, heading_deg: f64, speed_m_s: f64, seconds: u32, mut look: impl FnMut(&sim::BoatState)) {
@@ -29,7 +25,7 @@ fn steer(world: &mut World, heading_deg: f64, speed_m_s: f64, seconds: u32, mut 
 #[test]
 fn a_right_turn_at_speed_settles_without_much_overshoot() {
     for (boat, speed_m_s) in BOATS {
-        let (_, mut world) = afloat(boat);
+        let mut world = afloat(boat);
         steer(&mut world, 0.0, speed_m_s, 60, |_| ());
         let mut farthest_rad = 0.0_f64;
         steer(&mut world, 90.0, speed_m_s, 60, |boat| farthest_rad = farthest_rad.max(boat.pose.psi_rad));
@@ -46,7 +42,7 @@ fn a_right_turn_at_speed_settles_without_much_overshoot() {
 #[test]
 fn a_change_of_speed_settles_at_the_speed_ordered() {
     for (boat, speed_m_s) in BOATS {
-        let (_, mut world) = afloat(boat);
+        let mut world = afloat(boat);
         for wanted_m_s in [speed_m_s, 0.5 * speed_m_s, speed_m_s] {
             steer(&mut world, 0.0, wanted_m_s, 60, |_| ());
             let (mut least, mut most) = (f64::INFINITY, 0.0_f64);

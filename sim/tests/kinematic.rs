@@ -2,9 +2,9 @@
 
 mod common;
 
-use game::Ned;
 use game::boat::Kinematic;
-use sim::kinematic::{Command, KinematicModel, KinematicState};
+use game::{Ned, Order};
+use sim::kinematic::{KinematicModel, KinematicState};
 
 const DT_S: f64 = 0.1;
 /// How long a boat runs up before a manoeuvre.
@@ -47,13 +47,13 @@ impl Afloat {
         afloat
     }
 
-    fn step(&mut self, command: Command) {
+    fn step(&mut self, command: Order) {
         let motion = self.model.step(&mut self.state, command, Ned::default(), DT_S);
         self.at = self.at + motion.travel_m;
         self.rate_deg_s = motion.turn_rad.to_degrees() / DT_S;
     }
 
-    fn sail(&mut self, seconds: f64, command: impl Fn(&KinematicState) -> Command) -> Vec<Row> {
+    fn sail(&mut self, seconds: f64, command: impl Fn(&KinematicState) -> Order) -> Vec<Row> {
         let ticks = 1..=(seconds / DT_S).round() as u32;
         let row = |tick: u32| {
             self.step(command(&self.state));
@@ -63,11 +63,16 @@ impl Afloat {
     }
 }
 
-fn steer(heading_deg: f64, speed_m_s: f64) -> Command {
-    Command::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
+fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
+    Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
 }
 
-fn north(speed_m_s: f64) -> Command {
+/// Thrust and rudder, per cent.
+fn impose(thrust: f64, rudder: f64) -> Order {
+    Order::Thrust { port: (thrust + rudder) / 100.0, starboard: (thrust - rudder) / 100.0 }
+}
+
+fn north(speed_m_s: f64) -> Order {
     steer(0.0, speed_m_s)
 }
 
@@ -84,7 +89,7 @@ fn follow(name: &str, mut afloat: Afloat, text: &str) {
         match (c[1], c[2]) {
             _ if i == 0 => {}
             (Some(speed_m_s), Some(heading_deg)) => afloat.step(steer(heading_deg, speed_m_s)),
-            _ => afloat.step(Command::Impose { thrust: number(8), rudder: number(9) }),
+            _ => afloat.step(impose(number(8), number(9))),
         }
         let state = afloat.state;
         let got = [afloat.at.east, afloat.at.north, state.speed_m_s, state.heading_deg, state.thrust, state.rudder];
@@ -111,7 +116,7 @@ fn it_turns_as_the_reference_does() {
 
 #[test]
 fn it_takes_thrust_and_rudder_from_outside_as_the_reference_does() {
-    for run_up in [north(3.0), Command::Impose { thrust: 100.0, rudder: 0.0 }] {
+    for run_up in [north(3.0), impose(100.0, 0.0)] {
         let mut surveyor = Afloat::new(&shipped("surveyor"));
         surveyor.sail(RUN_UP_S, |_| run_up);
         surveyor.at = Ned::default();
@@ -239,7 +244,7 @@ fn its_stops_have_the_reference_numbers() {
         let stop = |share: f64| {
             let mut afloat = Afloat::under_way(&boat, share * boat.speed_max_m_s);
             let speed_m_s = afloat.state.speed_m_s;
-            let rows = afloat.sail(120.0, |_| Command::Hold);
+            let rows = afloat.sail(120.0, |_| Order::Hold);
             (first(&rows, |row| row.state.speed_m_s <= 0.05 * speed_m_s), rows[1199].at.north)
         };
         let (full, half) = (stop(1.0), stop(0.5));

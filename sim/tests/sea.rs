@@ -3,12 +3,11 @@
 
 mod common;
 
-use common::{alone, order, put, scenarios, surveyor_on};
-use game::scenario::Overrides;
+use common::{afloat, alone, on_sea, put, scenarios, surveyor_on};
 use game::sea::{GRAVITY_M_S2, Spreading, Waves};
-use game::{Ned, Order, VehicleId};
+use game::{Ned, Order};
+use sim::World;
 use sim::sea::WaveField;
-use sim::{Contest, World};
 use std::f64::consts::TAU;
 
 const DRIFTING: [Order; 2] = [Order::Hold; 2];
@@ -26,9 +25,8 @@ fn run(world: &mut World, orders: &[Order], seconds: f64) {
 #[test]
 fn without_thrust_a_boat_ends_up_going_with_the_current_whatever_its_heading() {
     for heading_deg in [0.0, 37.0, 90.0, 200.0] {
-        let mut world =
-            World::of_game(&surveyor_on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.4 }), 1).unwrap();
-        put(&mut world, 0, (300.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
+        let scenario = surveyor_on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.4 });
+        let mut world = afloat(&scenario, 1, (300.0, 200.0, heading_deg), (0.0, 0.0, 0.0));
         run(&mut world, &DRIFTING, 240.0);
         let before = world.state().boats[0].pose.at;
         world.step(&DRIFTING);
@@ -41,8 +39,7 @@ fn without_thrust_a_boat_ends_up_going_with_the_current_whatever_its_heading() {
 fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
     let scenario = surveyor_on(|sea| sea.current.mean_m_s = Ned { north: 0.3, east: 0.1 });
     let hull = &common::hulls(&scenario)[0];
-    let mut world = World::of_game(&scenario, 1).unwrap();
-    put(&mut world, 0, (200.0, 200.0, 70.0), (2.0, -0.5, 0.6));
+    let mut world = afloat(&scenario, 1, (200.0, 200.0, 70.0), (2.0, -0.5, 0.6));
     let relative = |world: &World| {
         let boat = world.state().boats[0];
         let rotation = boat.pose.rotation();
@@ -62,8 +59,7 @@ fn energy_does_not_grow_without_input_in_a_moving_water_seen_from_it() {
 /// without drift force.
 fn adrift(hs_m: f64, seed: u64) -> (Ned, f64) {
     let scenario = surveyor_on(|sea| sea.waves = Some(Waves { drift_factor: 0.0, ..waves(hs_m, 2.5) }));
-    let mut world = World::of_game(&scenario, seed).unwrap();
-    put(&mut world, 0, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
+    let mut world = afloat(&scenario, seed, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
     run(&mut world, &DRIFTING, 60.0);
     let start = world.state().boats[0].pose.at;
     let (mut sum, n) = (0.0, 12_000);
@@ -100,9 +96,8 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
             let (components, spreading) = (1, Spreading::None);
             sea.waves = Some(Waves { components, spreading, from_rad, drift_factor: 0.0, ..waves(0.1, 2.5) });
         });
-        let mut world = World::of_game(&scenario, 1).unwrap();
+        let mut world = afloat(&scenario, 1, (300.0, 50.0, 0.0), (speed_m_s, 0.0, 0.0));
         let wave = *world.sea().waves().unwrap().components().next().unwrap();
-        put(&mut world, 0, (300.0, 50.0, 0.0), (speed_m_s, 0.0, 0.0));
         let orders = [Order::Steer { heading_rad: 0.0, speed_m_s }, Order::Hold];
         run(&mut world, &orders, 20.0);
         let start = world.state().boats[0].pose.at;
@@ -125,45 +120,13 @@ fn boats_in_waves_heave_at_the_frequency_of_encounter() {
 }
 
 #[test]
-fn a_rough_game_goes_on_from_a_snapshot_as_if_it_had_never_stopped() {
-    for file in ["fresh_breeze.toml", "bay_gale.toml", "river.toml", "tidal.toml", "eddies.toml", "any.toml"] {
-        let scenario = game::scenario::load_with(
-            &scenarios().join("games/pav01_afloat.toml"),
-            &Overrides { sea: Some(scenarios().join("seas").join(file)), ..Overrides::default() },
-        )
-        .unwrap_or_else(|e| panic!("{e}"));
-        let mut contest = Contest::new(&scenario, 5).unwrap();
-        let sail = |contest: &mut Contest, decisions: u32| {
-            for _ in 0..decisions {
-                for vehicle in (0..4).map(VehicleId::at) {
-                    order(contest, vehicle, Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 });
-                }
-                contest.advance();
-            }
-        };
-        for leg in 0..10 {
-            let bytes = contest.snapshot();
-            let mut other = Contest::new(&scenario, 5).unwrap();
-            sail(&mut other, 5 * leg);
-            other.restore(&bytes).unwrap();
-            sail(&mut contest, 69);
-            sail(&mut other, 69);
-            assert!(contest.snapshot() == other.snapshot(), "{file}, leg {leg}");
-        }
-    }
-}
-
-#[test]
 fn every_shipped_sea_can_be_sailed_for_a_whole_game() {
     let mut files: Vec<_> =
         std::fs::read_dir(scenarios().join("seas")).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     assert!(files.len() >= 14, "{files:?}");
     for file in files {
-        let game = scenarios().join("games/pav01_afloat.toml");
-        let scenario = game::scenario::load_with(&game, &Overrides { sea: Some(file.clone()), ..Overrides::default() })
-            .unwrap_or_else(|e| panic!("{e}"));
-        let mut world = World::of_game(&scenario, 1).unwrap();
+        let mut world = World::of_game(&on_sea("pav01_afloat.toml", &file), 1).unwrap();
         for _ in 0..12_000 {
             world.step(&[Order::Steer { heading_rad: 1.0, speed_m_s: 2.0 }; 4]);
         }
@@ -181,13 +144,10 @@ fn a_free_boat_in_a_long_swell_goes_with_stokes_drift() {
         let scenario = surveyor_on(|sea| sea.waves = Some(swell.clone()));
         let field = WaveField::new(&swell, None, 4);
         let want = field.stokes_drift_m_s(scenario.boats[0].draught_m);
-        let mut world = World::of_game(&scenario, 4).unwrap();
-        put(&mut world, 0, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
+        let mut world = afloat(&scenario, 4, (300.0, 200.0, 20.0), (0.0, 0.0, 0.0));
         let start = world.state().boats[0].pose.at;
         let minutes = 40;
-        for _ in 0..20 * 60 * minutes {
-            world.step(&DRIFTING);
-        }
+        run(&mut world, &DRIFTING, 60.0 * f64::from(minutes));
         let gone = (world.state().boats[0].pose.at - start).scaled(1.0 / f64::from(60 * minutes));
         assert!(gone.distance(want) < 0.15 * want.length(), "{hs_m} m, {tp_s} s: {gone:?} m/s, not {want:?}");
     }
@@ -199,9 +159,8 @@ fn point_boats_collide_in_a_current_as_they_do_in_still_water() {
     let after = |mean_m_s: Ned| {
         let mut scenario = alone("heron_kinematic", "calm");
         scenario.sea.current.mean_m_s = mean_m_s;
-        let mut world = World::of_game(&scenario, 1).unwrap();
         // Blue runs into red's side.
-        put(&mut world, 0, (300.0, 200.0, 90.0), (0.0, 0.0, 0.0));
+        let mut world = afloat(&scenario, 1, (300.0, 200.0, 90.0), (0.0, 0.0, 0.0));
         put(&mut world, 1, (308.0, 200.2, 0.0), (0.0, 0.0, 0.0));
         let ahead = Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 };
         run(&mut world, &[ahead, Order::Hold], 30.0);

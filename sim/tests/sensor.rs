@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::mean_of;
+use common::{assert_memory, five_errors, mean_of};
 use game::boat::{Compass, Gps, Imu, Jump, Outage, Sensors};
 use game::frame::{Body, Pose, Rotation, body_from_ned, ned_from_body};
 use game::math;
@@ -31,15 +31,13 @@ fn exact_gps() -> Gps {
     }
 }
 
-fn exact_compass() -> Compass {
-    Compass {
-        deviation_rad: [0.0; 5],
-        thrust_error_rad: 0.0,
-        noise_rad: 0.0,
-        period_s: 0.1,
-        declination_error_rad: 0.0,
-    }
-}
+const EXACT_COMPASS: Compass = Compass {
+    deviation_rad: [0.0; 5],
+    thrust_error_rad: 0.0,
+    noise_rad: 0.0,
+    period_s: 0.1,
+    declination_error_rad: 0.0,
+};
 
 fn with_gps(gps: Gps) -> Sensors {
     Sensors { gps: Some(gps), ..Sensors::default() }
@@ -47,10 +45,6 @@ fn with_gps(gps: Gps) -> Sensors {
 
 fn with_compass(compass: Compass) -> Sensors {
     Sensors { compass: Some(compass), ..Sensors::default() }
-}
-
-fn with_imu(imu: Imu) -> Sensors {
-    Sensors { imu: Some(imu), ..Sensors::default() }
 }
 
 /// A boat that goes 2 m/s ahead and 0.5 m/s to starboard with its bow 30° east of north.
@@ -71,6 +65,11 @@ fn record(sensors: &Sensors, seed: u64, ticks: i64, truth: impl Fn(SimTime) -> T
     (0..ticks).map(|i| (TICK * i, model.read(&mut state, &truth(TICK * i), TICK * i))).collect()
 }
 
+/// What one boat with this receiver reads, fix by fix.
+fn gps_record(gps: Gps, seed: u64, fixes: i64, truth: impl Fn(SimTime) -> Truth) -> Vec<(SimTime, Reading)> {
+    record(&with_gps(gps), seed, 4 * fixes, truth).into_iter().step_by(4).collect()
+}
+
 fn at_rest(_now: SimTime) -> Truth {
     Truth::default()
 }
@@ -88,7 +87,7 @@ fn faulty() -> Sensors {
             jump: Jump { rate_per_s: 0.1, sigma_m: 6.0 },
             ..exact_gps()
         }),
-        compass: Some(Compass { noise_rad: 0.02, thrust_error_rad: 0.05, ..exact_compass() }),
+        compass: Some(Compass { noise_rad: 0.02, thrust_error_rad: 0.05, ..EXACT_COMPASS }),
         imu: Some(Imu {
             gyro_noise_rad_s: 1e-3,
             gyro_bias_rad_s: 5e-4,
@@ -185,18 +184,14 @@ fn the_bias_of_a_receiver_wanders_as_stated_and_noise_comes_on_top() {
     const STEP_S: f64 = 0.2;
     let gps = Gps { bias_m: 1.5, bias_time_s: 8.0, noise_m: 0.0, ..exact_gps() };
     let fixes = |gps: Gps, seed| -> Vec<Ned> {
-        let read = record(&with_gps(gps), seed, 4 * FIXES as i64, at_rest);
-        read.iter().step_by(4).map(|(_, reading)| reading.nav.at()).collect()
+        gps_record(gps, seed, FIXES as i64, at_rest).iter().map(|(_, reading)| reading.nav.at()).collect()
     };
     let biased = fixes(gps.clone(), 2);
-    let within = 5.0 * (2.0 / (FIXES as f64 * STEP_S / 8.0)).sqrt();
+    let within = five_errors(FIXES, STEP_S / 8.0);
     assert!(within < 0.05);
-    for lag in [0, 10, 40, 80] {
-        let want = math::exp(-(lag as f64) * STEP_S / 8.0);
-        let north = mean_of(FIXES - lag, |i| biased[i].north * biased[i + lag].north) / 2.25;
-        let east = mean_of(FIXES - lag, |i| biased[i].east * biased[i + lag].east) / 2.25;
-        assert!((north - want).abs() < within, "north, lag {lag}: {north}, not {want} within {within}");
-        assert!((east - want).abs() < within, "east, lag {lag}: {east}, not {want} within {within}");
+    let (north, east): (Vec<f64>, Vec<f64>) = biased.iter().map(|at| (at.north / 1.5, at.east / 1.5)).unzip();
+    for (what, x) in [("north", north), ("east", east)] {
+        assert_memory(what, &x, &[0, 10, 40, 80], STEP_S / 8.0, within);
     }
     assert!(mean_of(FIXES, |i| biased[i].north * biased[i].east).abs() / 2.25 < within);
     // Noise does not move the bias: the difference of the two records is the noise.
@@ -220,7 +215,7 @@ fn velocity_is_noisy_over_the_ground_and_turned_with_the_heading_that_is_read() 
     const TURN_RAD: f64 = 0.3;
     let sensors = Sensors {
         gps: Some(exact_gps()),
-        compass: Some(Compass { declination_error_rad: TURN_RAD, ..exact_compass() }),
+        compass: Some(Compass { declination_error_rad: TURN_RAD, ..EXACT_COMPASS }),
         imu: None,
     };
     let (_, reading) = record(&sensors, 1, 9, sailing)[8];
@@ -230,8 +225,8 @@ fn velocity_is_noisy_over_the_ground_and_turned_with_the_heading_that_is_read() 
     assert!((reading.nav.sway_m_s - want.starboard).abs() < 1e-12);
     assert!((reading.nav.sway_m_s - 0.5).abs() > 0.5, "a wrong heading makes way ahead look like leeway");
 
-    let noisy = record(&with_gps(Gps { velocity_noise_m_s: 0.08, ..exact_gps() }), 1, 400_000, sailing);
-    let error: Vec<f64> = noisy.iter().step_by(4).map(|(_, reading)| reading.nav.surge_m_s - 2.0).collect();
+    let noisy = gps_record(Gps { velocity_noise_m_s: 0.08, ..exact_gps() }, 1, 100_000, sailing);
+    let error: Vec<f64> = noisy.iter().map(|(_, reading)| reading.nav.surge_m_s - 2.0).collect();
     let sigma = mean_of(error.len(), |i| error[i] * error[i]).sqrt();
     assert!((sigma / 0.08 - 1.0).abs() < 0.02, "{sigma}");
 }
@@ -240,12 +235,8 @@ fn velocity_is_noisy_over_the_ground_and_turned_with_the_heading_that_is_read() 
 fn drop_outs_take_their_share_and_last_as_stated_and_the_last_fix_is_kept() {
     const RATE_PER_S: f64 = 0.1;
     const MEAN_S: f64 = 3.0;
-    let read = record(
-        &with_gps(Gps { dropout: Outage { rate_per_s: RATE_PER_S, mean_s: MEAN_S }, ..exact_gps() }),
-        3,
-        4_000_000,
-        sailing,
-    );
+    let dropout = Outage { rate_per_s: RATE_PER_S, mean_s: MEAN_S };
+    let read = record(&with_gps(Gps { dropout, ..exact_gps() }), 3, 4_000_000, sailing);
     let fixes: Vec<&(SimTime, Reading)> = read.iter().step_by(4).collect();
     let dropped: Vec<bool> = fixes.iter().map(|(now, reading)| reading.fix_at != *now).collect();
     let share = mean_of(dropped.len(), |i| f64::from(u8::from(dropped[i])));
@@ -266,9 +257,8 @@ fn drop_outs_take_their_share_and_last_as_stated_and_the_last_fix_is_kept() {
 
 #[test]
 fn a_frozen_receiver_repeats_itself_with_new_times() {
-    let read =
-        record(&with_gps(Gps { freeze: Outage { rate_per_s: 0.1, mean_s: 3.0 }, ..exact_gps() }), 4, 400_000, sailing);
-    let fixes: Vec<&(SimTime, Reading)> = read.iter().step_by(4).collect();
+    let freeze = Outage { rate_per_s: 0.1, mean_s: 3.0 };
+    let fixes = gps_record(Gps { freeze, ..exact_gps() }, 4, 100_000, sailing);
     let mut frozen = 0;
     for pair in fixes.windows(2) {
         let [before, (now, reading)] = pair else { unreachable!("windows of two") };
@@ -286,9 +276,9 @@ fn a_frozen_receiver_repeats_itself_with_new_times() {
 
 #[test]
 fn a_jump_lasts_until_the_next() {
-    let read =
-        record(&with_gps(Gps { jump: Jump { rate_per_s: 0.05, sigma_m: 4.0 }, ..exact_gps() }), 5, 1_000_000, at_rest);
-    let fixes: Vec<Ned> = read.iter().step_by(4).map(|(_, reading)| reading.nav.at()).collect();
+    let jump = Jump { rate_per_s: 0.05, sigma_m: 4.0 };
+    let read = gps_record(Gps { jump, ..exact_gps() }, 5, 250_000, at_rest);
+    let fixes: Vec<Ned> = read.iter().map(|(_, reading)| reading.nav.at()).collect();
     assert_eq!(fixes[0], Ned::default());
     let offsets: Vec<Ned> = fixes.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| pair[1]).collect();
     let rate_per_s = offsets.len() as f64 / (fixes.len() as f64 * 0.2);
@@ -304,7 +294,7 @@ fn a_compass_deviates_by_its_curve_and_no_more() {
         deviation_rad: [a, b, c, d, e],
         thrust_error_rad: 0.06,
         declination_error_rad: -0.21,
-        ..exact_compass()
+        ..EXACT_COMPASS
     };
     let sensors = with_compass(compass);
     for i in -180..=180_i32 {
@@ -325,11 +315,11 @@ fn a_compass_deviates_by_its_curve_and_no_more() {
 fn a_compass_is_read_every_period_with_white_noise() {
     let turning =
         |now: SimTime| Truth { pose: Pose { at: Ned::default(), psi_rad: 0.1 * now.as_s() }, ..Truth::default() };
-    for (now, reading) in record(&with_compass(exact_compass()), 1, 100, turning) {
+    for (now, reading) in record(&with_compass(EXACT_COMPASS), 1, 100, turning) {
         let taken = TICK * (now.0 / TICK.0 / 2 * 2);
         assert_eq!(reading.nav.psi_rad, turning(taken).pose.psi_rad);
     }
-    let noisy = record(&with_compass(Compass { noise_rad: 0.02, ..exact_compass() }), 1, 400_000, at_rest);
+    let noisy = record(&with_compass(Compass { noise_rad: 0.02, ..EXACT_COMPASS }), 1, 400_000, at_rest);
     let error: Vec<f64> = noisy.iter().step_by(2).map(|(_, reading)| reading.nav.psi_rad).collect();
     let n = error.len();
     let sigma = mean_of(n, |i| error[i] * error[i]).sqrt();
@@ -348,8 +338,8 @@ fn at_rest_a_gyro_reads_its_bias_and_noise_and_an_accelerometer_the_water_s_push
         accelerometer_noise_m_s2: 0.04,
         accelerometer_bias_m_s2: 0.03,
     };
-    let read = record(&with_imu(imu.clone()), 6, TICKS as i64, at_rest);
-    let within = 5.0 * (2.0 / (TICKS as f64 * 0.05 / 5.0)).sqrt();
+    let read = record(&Sensors { imu: Some(imu), ..Sensors::default() }, 6, TICKS as i64, at_rest);
+    let within = five_errors(TICKS, 0.05 / 5.0);
     let columns: Vec<(Vec<f64>, f64, f64)> = (0..6)
         .map(|axis| {
             let rest = if axis == 5 { -GRAVITY_M_S2 } else { 0.0 };
@@ -447,15 +437,14 @@ fn a_gyro_feels_the_turning_of_its_attitude() {
 
 #[test]
 fn the_same_seed_reads_the_same_and_another_boat_or_seed_otherwise() {
-    let model = |seed, vehicle: &str| SensorModel::new(&faulty(), TICK, seed, vehicle);
-    let read = |model: &SensorModel| -> Vec<Reading> {
-        let mut state = SensorState::default();
+    let read = |seed, vehicle: &str| -> Vec<Reading> {
+        let (model, mut state) = (SensorModel::new(&faulty(), TICK, seed, vehicle), SensorState::default());
         (0..600).map(|i| model.read(&mut state, &sailing(TICK * i), TICK * i)).collect()
     };
-    let one = read(&model(1, "blue_one"));
-    assert_eq!(one, read(&model(1, "blue_one")));
+    let one = read(1, "blue_one");
+    assert_eq!(one, read(1, "blue_one"));
     for (seed, vehicle) in [(1, "blue_two"), (2, "blue_one")] {
-        let other = read(&model(seed, vehicle));
+        let other = read(seed, vehicle);
         assert!(one.iter().zip(&other).all(|(one, other)| one.nav.at() != other.nav.at()), "{vehicle}: gps");
         assert!(one.iter().zip(&other).all(|(one, other)| one.nav.psi_rad != other.nav.psi_rad), "{vehicle}: compass");
         assert!(one.iter().zip(&other).all(|(one, other)| one.imu != other.imu), "{vehicle}: imu");
@@ -487,7 +476,7 @@ fn sensors_go_on_from_a_snapshot_to_the_bit() {
 #[test]
 fn the_front_seat_steers_by_the_heading_that_the_compass_shows() {
     let mut scenario = common::alone("surveyor_m1_8", "calm");
-    let off = Compass { deviation_rad: [0.2, 0.0, 0.0, 0.0, 0.0], ..exact_compass() };
+    let off = Compass { deviation_rad: [0.2, 0.0, 0.0, 0.0, 0.0], ..EXACT_COMPASS };
     scenario.boats[0].sensors = with_compass(off);
     let mut world = World::of_game(&scenario, 1).unwrap();
     let orders = [Order::Steer { heading_rad: 1.0, speed_m_s: 1.5 }, Order::Hold];

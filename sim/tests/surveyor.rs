@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{alone, put};
+use common::alone;
 use game::Order;
 use game::boat::{Drive, ThrustCurve};
 use sim::hull::Planar;
@@ -11,10 +11,7 @@ use sim::{BoatState, World};
 const AT_REST: (f64, f64, f64) = (0.0, 0.0, 0.0);
 
 fn afloat(nu: (f64, f64, f64)) -> World {
-    let mut world = World::of_game(&alone("surveyor_m1_8", "calm"), 1).expect("an empty sea has room");
-    put(&mut world, 0, (100.0, 100.0, 0.0), nu);
-    put(&mut world, 1, (700.0, 300.0, 0.0), (0.0, 0.0, 0.0));
-    world
+    common::afloat(&alone("surveyor_m1_8", "calm"), 1, (100.0, 100.0, 0.0), nu)
 }
 
 /// The boat after this time under an order.

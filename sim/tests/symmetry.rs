@@ -3,12 +3,11 @@
 
 mod common;
 
-use common::{digest, put, surveyor_on};
+use common::{afloat, digest, surveyor_on};
 use game::field::Plan;
 use game::math::sin_cos;
 use game::sea::{Eddy, Gusts, RandomEddies, Sea, Shear, Spreading, Tide, Wander, Waves, Wind};
 use game::{Field, Ned, Order, Pose, Scenario};
-use sim::World;
 
 fn waves(hs_m: f64) -> Waves {
     common::waves(hs_m, 2.5, 0.4)
@@ -58,10 +57,9 @@ fn everything(sea: &mut Sea) {
 /// Where a boat is after each tick, its heading and its velocity, from north 200 and east 300 on a heading of 20°, in a
 /// world turned by `by_rad`; turned back.
 fn track(scenario: &Scenario, order_of: impl Fn(f64) -> Order, by_rad: f64) -> Vec<[f64; 6]> {
-    let mut world = World::of_game(scenario, 3).unwrap();
     let start = turned(Ned { north: 200.0, east: 300.0 }, by_rad);
-    let (x, y) = (start.east, start.north);
-    put(&mut world, 0, (x, y, 20.0 + by_rad.to_degrees()), (1.0, 0.2, 0.1));
+    let start = (start.east, start.north, 20.0 + by_rad.to_degrees());
+    let mut world = afloat(scenario, 3, start, (1.0, 0.2, 0.1));
     let step = |_| {
         world.step(&[order_of(by_rad), Order::Hold]);
         let boat = world.state().boats[0];
@@ -112,8 +110,7 @@ fn it_does_not_matter_which_side_is_port() {
             sea.waves = has_waves.then(|| Waves { from_rad: side * 0.7, spreading: Spreading::None, ..waves(0.3) });
         });
         scenario.field.plan.obstacles.clear();
-        let mut world = World::of_game(&scenario, 1).unwrap();
-        put(&mut world, 0, (0.0, 200.0, side * 20.0), (1.0, side * 0.2, side * 0.1));
+        let mut world = afloat(&scenario, 1, (0.0, 200.0, side * 20.0), (1.0, side * 0.2, side * 0.1));
         let (port, starboard) = if side > 0.0 { (0.9, 0.3) } else { (0.3, 0.9) };
         let step = |_| {
             world.step(&[Order::Thrust { port, starboard }, Order::Hold]);
@@ -140,11 +137,10 @@ fn a_uniform_current_carries_everything_along_and_changes_nothing_else() {
     // Of imposed thrust. The front seat steers by what it is told of the ground, and a current changes that.
     let current = Ned { north: 0.35, east: -0.2 };
     let orders = [Order::Thrust { port: 0.8, starboard: 0.5 }, Order::Hold];
-    let mut still = World::of_game(&surveyor_on(|_| ()), 1).unwrap();
-    let mut carried = World::of_game(&surveyor_on(|sea| sea.current.mean_m_s = current), 1).unwrap();
+    let (at_rest, streaming) = (surveyor_on(|_| ()), surveyor_on(|sea| sea.current.mean_m_s = current));
     // The same velocity through the water: over the ground it is that and the current, seen from the boat at 0°.
-    put(&mut carried, 0, (200.0, 200.0, 0.0), (1.0 + current.north, current.east, 0.1));
-    put(&mut still, 0, (200.0, 200.0, 0.0), (1.0, 0.0, 0.1));
+    let mut carried = afloat(&streaming, 1, (200.0, 200.0, 0.0), (1.0 + current.north, current.east, 0.1));
+    let mut still = afloat(&at_rest, 1, (200.0, 200.0, 0.0), (1.0, 0.0, 0.1));
     for tick in 1..=12_000 {
         still.step(&orders);
         carried.step(&orders);
@@ -186,8 +182,7 @@ const NOTHINGS: [Change; 9] = [
 
 /// The digests of a game's state, tick by tick, on the sea so changed.
 fn digests(change: impl FnOnce(&mut Sea)) -> Vec<u128> {
-    let mut world = World::of_game(&surveyor_on(change), 1).unwrap();
-    put(&mut world, 0, (200.0, 200.0, 40.0), (1.0, 0.2, -0.1));
+    let mut world = afloat(&surveyor_on(change), 1, (200.0, 200.0, 40.0), (1.0, 0.2, -0.1));
     let orders = [Order::Steer { heading_rad: 2.0, speed_m_s: 2.0 }, Order::Thrust { port: 0.7, starboard: 0.2 }];
     let step = |_| {
         world.step(&orders);

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::mean_of;
+use common::{assert_memory, five_errors, mean_of};
 use game::boat::Windage;
 use game::frame::Body;
 use game::math;
@@ -65,19 +65,12 @@ fn ornstein_uhlenbeck_gusts_have_the_moments_and_the_memory_of_their_process() {
     let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), 1).mean_m_s(HEIGHT_M);
     let time_s = LENGTH_M / mean_m_s;
     let x = record(ornstein_uhlenbeck(), 11, COUNT, STEP_S);
-    // Five standard errors of a mean square over this many correlation times.
-    let within = 5.0 * (2.0 / (COUNT as f64 * STEP_S / time_s)).sqrt();
+    let within = five_errors(x.len(), STEP_S / time_s);
     assert!(within < 0.03);
-    assert!(mean_of(x.len(), |i| x[i].0).abs() < within, "mean along");
-    assert!(mean_of(x.len(), |i| x[i].1).abs() < within, "mean across");
     assert!(mean_of(x.len(), |i| x[i].0 * x[i].1).abs() < within, "correlation of along and across");
-    let across_variance = ACROSS_RATIO * ACROSS_RATIO;
-    for lag in [0, 4, 12, 20, 40, 80] {
-        let want = math::exp(-(lag as f64) * STEP_S / time_s);
-        let along = mean_of(x.len() - lag, |i| x[i].0 * x[i + lag].0);
-        let across = mean_of(x.len() - lag, |i| x[i].1 * x[i + lag].1) / across_variance;
-        assert!((along - want).abs() < within, "along, lag {lag}: {along}, not {want} within {within}");
-        assert!((across - want).abs() < within, "across, lag {lag}: {across}, not {want} within {within}");
+    let (along, across): (Vec<f64>, Vec<f64>) = x.into_iter().map(|(a, b)| (a, b / ACROSS_RATIO)).unzip();
+    for (what, x) in [("along", along), ("across", across)] {
+        assert_memory(what, &x, &[0, 4, 12, 20, 40, 80], STEP_S / time_s, within);
     }
 }
 

@@ -3,11 +3,12 @@
 use anyhow::{Result, bail};
 use game::Scenario;
 use game::codec;
+use game::event::EventCursor;
 use game::input::Inputs;
 use game::message::Frame;
 use recording::{FRAME, INPUTS, Recording};
 use serde_json::Value;
-use sim::resimulation::Resimulation;
+use sim::Contest;
 
 /// What came of it.
 #[derive(Debug)]
@@ -61,7 +62,7 @@ impl Verdict {
 /// Plays the game again.
 pub(super) fn check(recording: &Recording) -> Result<Verdict> {
     let scenario = recording.scenario();
-    let mut resimulation = Resimulation::new(scenario)?;
+    let (mut contest, mut shown) = (Contest::new(scenario, scenario.seed)?, EventCursor::default());
     let mut inputs = Vec::new();
     let mut verdict = Verdict { frames: 0, end_s: 0.0, is_cut: recording.is_cut(), difference: None, digests: None };
     let ticks = u64::from(scenario.ticks_per_decision);
@@ -79,7 +80,8 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
         let Some(understood) = given.of(scenario).collect::<Option<Vec<_>>>() else {
             bail!("an input at {:.1} s is not understood", given.stamp.valid_ns.as_s());
         };
-        let again = resimulation.frame_after(understood);
+        understood.into_iter().for_each(|input| contest.give(input));
+        let again = contest.frame(&mut shown);
         inputs.clear();
         if codec::encode(&again) != message.bytes {
             let recorded: Frame = message.read()?;
@@ -94,7 +96,7 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
     if verdict.frames == 0 {
         bail!("there are no frames in it");
     }
-    let outcome = resimulation.outcome();
+    let outcome = contest.outcome();
     if let Some(ending) = recording.ending() {
         if ending.outcome.ticks != outcome.ticks {
             bail!("the game went on to tick {}, the recording to {}", ending.outcome.ticks, outcome.ticks);

@@ -93,10 +93,7 @@ impl CurrentNow<'_> {
     #[inline]
     #[must_use]
     pub fn at(&self, place: Ned) -> Ned {
-        let sheared = self.shear.map_or(self.uniform_m_s, |shear| {
-            self.uniform_m_s + shear.toward.scaled(shear.per_s * (place - shear.origin).dot(shear.across))
-        });
-        self.eddies.iter().fold(sheared, |sum, vortex| sum + vortex.at(place))
+        self.over_hull(place, Rotation::NORTH).0
     }
 
     /// The water's velocity (m/s) at a hull's middle and its rotation (rad/s clockwise) as a hull feels it that points

@@ -33,14 +33,6 @@ impl Vortex {
         }
     }
 
-    /// The water's velocity, m/s.
-    #[inline]
-    pub(super) fn at(&self, place: Ned) -> Ned {
-        let from_centre = place - self.centre;
-        let (rate, _) = self.rate_and_share(from_centre);
-        Ned { north: -rate * from_centre.east, east: rate * from_centre.north }
-    }
-
     /// The water's velocity, m/s, and the rate at which it turns a line that points along the unit vector `ahead`, rad/s
     /// clockwise.
     ///

@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use game::field::{Obstacle, Plan, Walls};
+use game::link::{Link, Loss, Sharing};
+use game::scenario::Overrides;
 use game::sea::{Sea, Spreading, Waves};
 use game::{Boat, Field, LatLon, Ned, Order, Pose, Scenario, VehicleId};
 use sim::hull::{HullModel, Planar};
@@ -59,6 +61,36 @@ pub(crate) fn among(boat: &str, obstacles: Vec<Obstacle>) -> Scenario {
     let mut scenario = alone(boat, "calm");
     scenario.field.plan.obstacles = obstacles;
     scenario
+}
+
+/// The world of a game, with its first boat put somewhere as [`put`] does.
+pub(crate) fn afloat(scenario: &Scenario, seed: u64, start: (f64, f64, f64), nu: (f64, f64, f64)) -> World {
+    let mut world = World::of_game(scenario, seed).expect("an empty sea has room");
+    put(&mut world, 0, start, nu);
+    world
+}
+
+/// A shipped game on a shipped sea.
+pub(crate) fn on_sea(game: &str, sea: &Path) -> Scenario {
+    let overrides = Overrides { sea: Some(scenarios().join("seas").join(sea)), ..Overrides::default() };
+    let path = scenarios().join("games").join(game);
+    game::scenario::load_with(&path, &overrides).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Radio links with losses, and limits of what boats see of each other.
+pub(crate) fn hamper(scenario: &mut Scenario) {
+    let loss = Loss { good: 0.1, bad: 0.8, good_time_s: 5.0, bad_time_s: 2.0 };
+    let station = scenario.field.corners[0];
+    scenario.link = Some(Link { delay_s: 0.35, jitter_s: 0.2, loss, range_m: Some(500.0), station });
+    scenario.rules.sharing = Sharing {
+        range_m: Some(60.0),
+        view_rad: Some(4.0),
+        delay_s: 0.3,
+        noise_m: 1.0,
+        velocity_noise_m_s: 0.1,
+        loss: 0.1,
+        memory_s: 5.0,
+    };
 }
 
 /// Changes the state of a world from outside.
@@ -196,6 +228,22 @@ pub(crate) fn waves(hs_m: f64, tp_s: f64, from_rad: f64) -> Waves {
 
 pub(crate) fn square(x: f64) -> f64 {
     x * x
+}
+
+/// Within how much the mean square of so many samples of a process, `step` correlation times apart, must be 1: five
+/// standard errors.
+pub(crate) fn five_errors(count: usize, step: f64) -> f64 {
+    5.0 * (2.0 / (count as f64 * step)).sqrt()
+}
+
+/// A series of mean 0 and variance 1, `step` correlation times apart, has the correlation e^(−lag) to within this.
+pub(crate) fn assert_memory(what: &str, x: &[f64], lags: &[usize], step: f64, within: f64) {
+    assert!(mean_of(x.len(), |i| x[i]).abs() < within, "{what}: mean");
+    for lag in lags {
+        let want = game::math::exp(-(*lag as f64) * step);
+        let got = mean_of(x.len() - lag, |i| x[i] * x[i + lag]);
+        assert!((got - want).abs() < within, "{what}, lag {lag}: {got}, not {want} within {within}");
+    }
 }
 
 /// The mean of `f` over 0 to `count`.
