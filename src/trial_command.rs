@@ -72,10 +72,7 @@ pub(crate) struct ManoeuvreArgs {
 
 /// Reads the name of a manoeuvre.
 fn manoeuvre_name() -> impl TypedValueParser<Value = Manoeuvre> {
-    PossibleValuesParser::new(Manoeuvre::ALL.map(Manoeuvre::name)).map(|name| {
-        let named = Manoeuvre::ALL.into_iter().find(|manoeuvre| manoeuvre.name() == name);
-        named.expect("no other name gets here")
-    })
+    PossibleValuesParser::new(Manoeuvre::NAMES).map(|name| name.parse().expect("no other name gets here"))
 }
 
 /// How the boat begins.

@@ -43,14 +43,14 @@ fn orders_csv(stream: &mut Stream) -> String {
     text + "245,0,0\n"
 }
 
-/// A log of `boat` under those commands, with noise.
-fn log_csv(boat: &Boat, orders_csv: &str, stream: &mut Stream) -> String {
+/// A log of `boat` under those commands, with so much of [`NOISE`].
+fn log_csv(boat: &Boat, orders_csv: &str, noise: f64, stream: &mut Stream) -> String {
     let sheet = Sheet::read("orders.csv", orders_csv.as_bytes()).expect("it is CSV");
     let orders = Orders::of_sheet(&sheet, &Engine::new(boat)).expect("it understands them");
     let mut trial_boat = TrialBoat::new(boat, &trial::still_sea(), TICK, 1, &Start::default());
     let mut samples = trial::replay(&mut trial_boat, &orders, orders.end()).expect("it sails");
     for sample in &mut samples {
-        let [x, y, heading, surge, sway, yaw] = NOISE.map(|sigma| sigma * stream.normal());
+        let [x, y, heading, surge, sway, yaw] = NOISE.map(|sigma| noise * sigma * stream.normal());
         (sample.at.east, sample.at.north) = (sample.at.east + x, sample.at.north + y);
         sample.psi_rad += heading.to_radians();
         sample.nu = sim::hull::Planar {
@@ -82,7 +82,8 @@ fn known_parameters_come_back_within_their_stated_confidence() {
     for seed in 1..=4 {
         let mut stream = Stream::new(seed, "test");
         let orders = orders_csv(&mut stream);
-        let fit = fitted(&wrong(&truth), &log_csv(&truth, &orders, &mut stream), &[]).unwrap_or_else(|e| panic!("{e}"));
+        let fit =
+            fitted(&wrong(&truth), &log_csv(&truth, &orders, 1.0, &mut stream), &[]).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(fit.estimates.len(), 9, "seed {seed}");
         for estimate in &fit.estimates {
             let want = estimate.parameter.value(&truth).expect("it has it");
@@ -104,14 +105,9 @@ fn known_parameters_come_back_within_their_stated_confidence() {
 #[test]
 fn without_noise_they_come_back_to_four_places() {
     let truth = boat();
-    let orders = orders_csv(&mut Stream::new(9, "test"));
-    let sheet = Sheet::read("orders.csv", orders.as_bytes()).expect("it is CSV");
-    let series = Orders::of_sheet(&sheet, &Engine::new(&truth)).expect("it understands them");
-    let mut trial_boat = TrialBoat::new(&truth, &trial::still_sea(), TICK, 1, &Start::default());
-    let samples = trial::replay(&mut trial_boat, &series, series.end()).expect("it sails");
-    let mut text = vec![];
-    trial::write_csv(&samples, true, &mut text).expect("a vector takes everything");
-    let fit = fitted(&wrong(&truth), &String::from_utf8_lossy(&text), &[]).unwrap_or_else(|e| panic!("{e}"));
+    let mut stream = Stream::new(9, "test");
+    let csv = log_csv(&truth, &orders_csv(&mut stream), 0.0, &mut stream);
+    let fit = fitted(&wrong(&truth), &csv, &[]).unwrap_or_else(|e| panic!("{e}"));
     for estimate in &fit.estimates {
         let want = estimate.parameter.value(&truth).expect("it has it");
         let name = estimate.parameter.name;
@@ -124,7 +120,7 @@ fn what_the_log_cannot_tell_is_said() {
     let truth = boat();
     // Straight ahead, at one speed: thrust and resistance are one number.
     let straight = "t_s,port_pct,starboard_pct\n0,60,60\n120,60,60\n";
-    let csv = log_csv(&truth, straight, &mut Stream::new(1, "test"));
+    let csv = log_csv(&truth, straight, 1.0, &mut Stream::new(1, "test"));
     let fit =
         fitted(&truth, &csv, &["surge_linear", "surge_quadratic", "yaw_linear"]).unwrap_or_else(|e| panic!("{e}"));
     let pair = ["surge_linear", "surge_quadratic"];

@@ -13,19 +13,27 @@ use proptest::prelude::*;
 use serde_reflection::{ContainerFormat, Format, Registry, Samples, Tracer, TracerConfig};
 use std::path::Path;
 
-fn registry() -> Registry {
+/// A message's schema and definition, noted in `tracer`.
+fn traced<M: Message + serde::de::DeserializeOwned>(tracer: &mut Tracer) -> (&'static str, &'static str) {
+    tracer.trace_type::<M>(&Samples::new()).expect("a plain struct");
+    (M::SCHEMA, M::DEFINITION)
+}
+
+/// All messages: what they are made of, and their schemas and definitions.
+fn registry() -> (Registry, [(&'static str, &'static str); 9]) {
     let mut tracer = Tracer::new(TracerConfig::default());
-    let samples = Samples::new();
-    tracer.trace_type::<Picture>(&samples).expect("a plain struct");
-    tracer.trace_type::<Frame>(&samples).expect("a plain struct");
-    tracer.trace_type::<Orders>(&samples).expect("a plain struct");
-    tracer.trace_type::<Say>(&samples).expect("a plain struct");
-    tracer.trace_type::<PolicyProposal>(&samples).expect("a plain struct");
-    tracer.trace_type::<NavReport>(&samples).expect("a plain struct");
-    tracer.trace_type::<ExternalOrder>(&samples).expect("a plain struct");
-    tracer.trace_type::<Inputs>(&samples).expect("a plain struct");
-    tracer.trace_type::<LinkBytes>(&samples).expect("a plain struct");
-    tracer.registry().expect("all is known")
+    let definitions = [
+        traced::<Picture>(&mut tracer),
+        traced::<Frame>(&mut tracer),
+        traced::<Orders>(&mut tracer),
+        traced::<Say>(&mut tracer),
+        traced::<PolicyProposal>(&mut tracer),
+        traced::<NavReport>(&mut tracer),
+        traced::<ExternalOrder>(&mut tracer),
+        traced::<Inputs>(&mut tracer),
+        traced::<LinkBytes>(&mut tracer),
+    ];
+    (tracer.registry().expect("all is known"), definitions)
 }
 
 /// The ROS 2 name of a field's type.
@@ -63,7 +71,7 @@ fn fields_of(definition: &str) -> Vec<(String, String)> {
 #[test]
 fn every_struct_on_the_wire_is_in_step_with_its_msg_file() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("msg");
-    let registry = registry();
+    let (registry, _) = registry();
     for (name, format) in &registry {
         let ContainerFormat::Struct(fields) = format else { panic!("{name} is not a struct with named fields") };
         let ours: Vec<_> = fields.iter().map(|field| (ros_type(&field.value), field.name.clone())).collect();
@@ -77,17 +85,7 @@ fn every_struct_on_the_wire_is_in_step_with_its_msg_file() {
 
 #[test]
 fn definitions_belong_to_their_messages() {
-    for (schema, definition) in [
-        (Frame::SCHEMA, Frame::DEFINITION),
-        (Picture::SCHEMA, Picture::DEFINITION),
-        (Orders::SCHEMA, Orders::DEFINITION),
-        (Say::SCHEMA, Say::DEFINITION),
-        (PolicyProposal::SCHEMA, PolicyProposal::DEFINITION),
-        (NavReport::SCHEMA, NavReport::DEFINITION),
-        (ExternalOrder::SCHEMA, ExternalOrder::DEFINITION),
-        (Inputs::SCHEMA, Inputs::DEFINITION),
-        (LinkBytes::SCHEMA, LinkBytes::DEFINITION),
-    ] {
+    for (schema, definition) in registry().1 {
         let name = schema.rsplit('/').next().expect("a name");
         let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("msg/{name}.msg")));
         assert_eq!(text.expect("it is there"), definition);

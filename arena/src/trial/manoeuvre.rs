@@ -10,9 +10,11 @@ use super::trial_boat::TrialBoat;
 use game::SimTime;
 use game::angle::wrap_pi;
 use game::boat::{Boat, Drive};
+use strum::{EnumString, IntoStaticStr, VariantNames};
 
 /// A standard manoeuvre. *Port* and *starboard* are thrusters; a kinematic boat has thrust and rudder instead.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
+#[strum(serialize_all = "snake_case")]
 pub enum Manoeuvre {
     /// From a straight approach the inner thruster stops and the outer one stays (full rudder, thrust stays), for two
     /// turns.
@@ -31,27 +33,13 @@ pub enum Manoeuvre {
 }
 
 impl Manoeuvre {
-    /// All there are.
-    pub const ALL: [Manoeuvre; 6] = [
-        Manoeuvre::TurningCircle,
-        Manoeuvre::Zigzag,
-        Manoeuvre::CrashStop,
-        Manoeuvre::Acceleration,
-        Manoeuvre::Drift,
-        Manoeuvre::Spin,
-    ];
+    /// The names of all there are.
+    pub const NAMES: &[&str] = Manoeuvre::VARIANTS;
 
     /// What it is called on the command line and in the names of files.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Manoeuvre::TurningCircle => "turning_circle",
-            Manoeuvre::Zigzag => "zigzag",
-            Manoeuvre::CrashStop => "crash_stop",
-            Manoeuvre::Acceleration => "acceleration",
-            Manoeuvre::Drift => "drift",
-            Manoeuvre::Spin => "spin",
-        }
+        self.into()
     }
 }
 

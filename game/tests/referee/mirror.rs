@@ -27,33 +27,32 @@ impl Mirror {
         FlagId(flag.0 ^ 1)
     }
 
-    pub(crate) fn event(&self, event: Event) -> Event {
-        let v = |vehicle| self.vehicle(vehicle);
-        match event {
-            Event::Grabbed { vehicle, flag } => Event::Grabbed { vehicle: v(vehicle), flag: Mirror::flag(flag) },
-            Event::Captured { vehicle, flag } => Event::Captured { vehicle: v(vehicle), flag: Mirror::flag(flag) },
-            Event::FlagReturned { vehicle, flag } => {
-                Event::FlagReturned { vehicle: v(vehicle), flag: Mirror::flag(flag) }
+    pub(crate) fn event(&self, mut event: Event) -> Event {
+        match &mut event {
+            Event::Grabbed { vehicle, flag }
+            | Event::Captured { vehicle, flag }
+            | Event::FlagReturned { vehicle, flag } => {
+                (*vehicle, *flag) = (self.vehicle(*vehicle), Mirror::flag(*flag));
             }
             Event::Tagged { vehicle, cause } => {
-                let cause = if let TagCause::Opponent(by) = cause { TagCause::Opponent(v(by)) } else { cause };
-                Event::Tagged { vehicle: v(vehicle), cause }
+                *vehicle = self.vehicle(*vehicle);
+                if let TagCause::Opponent(by) = cause {
+                    *by = self.vehicle(*by);
+                }
             }
-            Event::Untagged { vehicle } => Event::Untagged { vehicle: v(vehicle) },
-            Event::LeftField { vehicle } => Event::LeftField { vehicle: v(vehicle) },
-            Event::ReturnedToField { vehicle } => Event::ReturnedToField { vehicle: v(vehicle) },
-            Event::EnteredKeepout { vehicle } => Event::EnteredKeepout { vehicle: v(vehicle) },
-            Event::Disabled { vehicle } => Event::Disabled { vehicle: v(vehicle) },
-            Event::Enabled { vehicle } => Event::Enabled { vehicle: v(vehicle) },
-            Event::Collided { first, second } => {
-                let (first, second) = self.pair(first, second);
-                Event::Collided { first, second }
-            }
-            Event::Ended { winner } => Event::Ended { winner: winner.map(|team| TeamId(1 - team.0)) },
-            Event::AgentLost { .. } | Event::AgentBack { .. } | Event::Quarantined { .. } => event,
-            Event::NavLost { .. } | Event::NavBack { .. } => event,
-            Event::EStopped | Event::Released | Event::Halted | Event::WentOn => event,
+            Event::Untagged { vehicle }
+            | Event::LeftField { vehicle }
+            | Event::ReturnedToField { vehicle }
+            | Event::EnteredKeepout { vehicle }
+            | Event::Disabled { vehicle }
+            | Event::Enabled { vehicle } => *vehicle = self.vehicle(*vehicle),
+            Event::Collided { first, second } => (*first, *second) = self.pair(*first, *second),
+            Event::Ended { winner } => *winner = winner.map(|team| TeamId(1 - team.0)),
+            Event::AgentLost { .. } | Event::AgentBack { .. } | Event::Quarantined { .. } => {}
+            Event::NavLost { .. } | Event::NavBack { .. } => {}
+            Event::EStopped | Event::Released | Event::Halted | Event::WentOn => {}
         }
+        event
     }
 
     pub(crate) fn fleet(&self, fleet: &[Ned]) -> Vec<Ned> {

@@ -44,7 +44,7 @@ pub struct SeaModel {
     wind: Option<WindField>,
     current: CurrentField,
     /// Hulls of different size; kinds of boat that differ in other things share one.
-    shapes: Vec<Shape>,
+    shapes: Vec<([f64; 3], Shape)>,
     /// Propeller submergence, by size of hull and place of the propellers.
     submergences: Vec<([f64; 4], Submergence)>,
     kinds: Vec<Kind>,
@@ -56,9 +56,6 @@ pub struct SeaModel {
 /// A size of hull in the waves.
 #[derive(Clone, Debug)]
 struct Shape {
-    length_m: f64,
-    beam_m: f64,
-    draught_m: f64,
     waves: HullWaves,
     response: WaveResponse,
     /// The part of Stokes drift that a drifting hull does not already get from the orbital motion.
@@ -139,30 +136,19 @@ impl SeaModel {
         let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
         thruster.flaws.ventilation?;
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
-        let known = self.submergences.iter().position(|(other, _)| *other == size);
-        Some(known.unwrap_or_else(|| {
+        Some(index_of(&mut self.submergences, size, || {
             let ahead = -PROPELLER_ASTERN * boat.length_m;
-            let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
-            self.submergences.push((size, Submergence::new(field, boat, places)));
-            self.submergences.len() - 1
+            Submergence::new(field, boat, [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m }))
         }))
     }
 
     /// The index of the boat's shape, made if it is the first of it.
     fn shape_of(&mut self, boat: &Boat, water_density_kg_m3: f64) -> usize {
         let Some(field) = &self.waves else { return 0 };
-        let size = (boat.length_m, boat.beam_m, boat.draught_m);
-        let known = self.shapes.iter().position(|shape| (shape.length_m, shape.beam_m, shape.draught_m) == size);
-        known.unwrap_or_else(|| {
-            self.shapes.push(Shape {
-                length_m: boat.length_m,
-                beam_m: boat.beam_m,
-                draught_m: boat.draught_m,
-                waves: HullWaves::new(field, boat, water_density_kg_m3),
-                response: WaveResponse::new(field, boat),
-                rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
-            });
-            self.shapes.len() - 1
+        index_of(&mut self.shapes, [boat.length_m, boat.beam_m, boat.draught_m], || Shape {
+            waves: HullWaves::new(field, boat, water_density_kg_m3),
+            response: WaveResponse::new(field, boat),
+            rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
         })
     }
 
@@ -225,7 +211,7 @@ impl SeaNow<'_> {
         nu: Planar,
         forcing: &mut SeaForcing,
     ) {
-        let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape]);
+        let (half_s, shape) = (self.model.half_s, &self.model.shapes[boat.shape].1);
         let velocity_m_s = nu.in_ned(rotation);
         let middle = Pose { at: pose.at + velocity_m_s.scaled(half_s), psi_rad: pose.psi_rad + half_s * nu.yaw };
         let (waves, submergence_change_m) = match boat.submergence.map(|index| &self.model.submergences[index].1) {
@@ -272,8 +258,16 @@ impl SeaNow<'_> {
             return Attitude::default();
         }
         let velocity_m_s = nu.in_ned(rotation);
-        self.model.shapes[self.model.kinds[kind].shape].response.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
+        self.model.shapes[self.model.kinds[kind].shape].1.response.at(pose, velocity_m_s, nu.yaw, self.now.as_s())
     }
+}
+
+/// The place of what was made for this size, made now if it is the first of it.
+fn index_of<const N: usize, T>(made: &mut Vec<([f64; N], T)>, size: [f64; N], make: impl FnOnce() -> T) -> usize {
+    made.iter().position(|(other, _)| *other == size).unwrap_or_else(|| {
+        made.push((size, make()));
+        made.len() - 1
+    })
 }
 
 /// A short-crested sea for tests.
