@@ -2,7 +2,7 @@
 //!
 //! A fix is taken every period and comes out after the latency. Its position errs by a wandering bias (Gauss-Markov), by
 //! white noise and by the last jump; its velocity, which a receiver has from the Doppler shift, by white noise alone.
-//! Drop-outs and freezes come and go as a [`TwoStateChain`], sampled at the fixes.
+//! Drop-outs and freezes come and go as a two-state Markov chain, sampled at the fixes.
 
 use super::{GaussMarkovStep, Truth, whole_ticks};
 use crate::two_state::TwoStateChain;
