@@ -68,7 +68,7 @@ fn the_same_seed_is_the_same_game() {
 
 #[test]
 fn mirrored_teams_draw() {
-    // Both teams play the same strategy from mirrored start_positions: what one does, the other does.
+    // Both teams play the same strategy from mirrored start positions: what one does, the other does.
     let outcome = played("pav01_vs_pav01.toml", 1);
     assert_eq!(outcome.winner, None);
     assert_eq!(outcome.score.teams["blue"], outcome.score.teams["red"]);

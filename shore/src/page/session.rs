@@ -87,7 +87,7 @@ impl PageSession {
         }
     }
 
-    /// A ping to be sent after what was outgoing last, if it is time for one. The page sends it back at once.
+    /// A ping to be sent after the last message, if it is time for one. The page sends it back at once.
     pub(super) fn ping(&mut self) -> Option<u64> {
         if self.unconfirmed < UNCONFIRMED_MAX {
             return None;
@@ -200,7 +200,7 @@ mod tests {
         assert_eq!(session.budget(), Budget::Frames, "an older ping says nothing of it");
         session.receive_pong(1);
         assert_eq!(session.budget(), Budget::All);
-        // A page that claims pings it never got has not got what is outgoing next.
+        // A page that claims pings it never got has not got what is sent next.
         session.receive_pong(u64::MAX);
         session.unconfirmed = UNCONFIRMED_MAX;
         assert_eq!((session.ping(), session.budget()), (Some(2), Budget::Frames));

@@ -38,7 +38,7 @@ enum End {
 struct Socket {
     sink: SplitSink<WebSocket, Message>,
     stream: SplitStream<WebSocket>,
-    /// When the page was last_received last.
+    /// When the last message of the page came.
     last_received: std::time::Instant,
 }
 

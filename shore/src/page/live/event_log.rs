@@ -1,4 +1,4 @@
-//! The event_log: what has happened so far, from frames as they find and from the sim where some were missed.
+//! The event log of a running game: events from frames as they come, and from the sim where frames were missed.
 
 use game::outcome::EventOutcome;
 use std::collections::VecDeque;
@@ -29,12 +29,12 @@ pub(super) struct EventLog {
 }
 
 impl EventLog {
-    /// A event_log of which all that happened before is missing.
+    /// A log that lacks all events so far.
     pub(super) fn new() -> EventLog {
         EventLog { has_gap: true, revision: 1, ..EventLog::default() }
     }
 
-    /// An event from a frame. One that the sim has sent already is not sent twice.
+    /// An event from a frame. One that the sim has listed already is not added twice.
     pub(super) fn add(&mut self, event: EventOutcome) {
         let mut recent = self.events.iter().rev().take_while(|known| known.tick >= event.tick);
         if !recent.any(|known| *known == event) {
@@ -43,12 +43,12 @@ impl EventLog {
         }
     }
 
-    /// A frame was missed, and what it sent.
+    /// A frame was missed, with its events.
     pub(super) fn note_gap(&mut self) {
         self.has_gap = true;
     }
 
-    /// Whether to ask the sim for all events now; whoever is sent to does so.
+    /// Whether to query the sim for all events now; a caller that gets `true` does so.
     pub(super) fn should_query(&mut self, now: Instant) -> bool {
         let rested = self.asked.is_none_or(|asked| now.saturating_duration_since(asked) >= ASK_AGAIN);
         let asks = self.has_gap && rested;
@@ -103,7 +103,7 @@ mod tests {
         EventOutcome { tick, at_s: 0.0, event: word.into(), vehicle: None, other: None, team: None }
     }
 
-    /// What a reader is sent, and that they are sent it once.
+    /// The events that a reader gets, and that it gets them once.
     fn read(event_log: &EventLog, cursor: &mut EventCursor) -> (bool, Vec<u64>) {
         let Some((reset, unread, next)) = event_log.unread(*cursor) else { return (false, vec![]) };
         let sent = (reset, unread.map(|event| event.tick).collect());
@@ -133,7 +133,7 @@ mod tests {
         // The sim's answer is older than the last frame, and has more events before it.
         event_log.replace(vec![event(5, "a"), event(7, "b")]);
         assert_eq!(read(&event_log, &mut cursor), (true, vec![5, 7, 9]));
-        // An answer that says nothing new changes nothing; a frame that comes after it is not sent twice.
+        // An answer that says nothing new changes nothing; a frame that comes after it is not added twice.
         event_log.replace(vec![event(5, "a"), event(7, "b"), event(9, "c"), event(9, "d")]);
         event_log.add(event(9, "d"));
         assert_eq!(read(&event_log, &mut cursor), (false, vec![9]));

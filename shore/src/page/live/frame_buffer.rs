@@ -1,4 +1,4 @@
-//! The frames of frames: the newest to be shown, and some of the past for trails.
+//! A buffer of frames: the newest to be shown, and some of the past for trails.
 
 use crate::page::view::{TRAIL_S, TRAIL_STEP_S, marked};
 use axum::body::Bytes;

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-/// How often to viewer again for a game that is not there.
+/// How often to look again for a game that is not there.
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
 /// How often to see to what changes by itself.
 const ROUND: Duration = Duration::from_millis(50);
@@ -300,7 +300,7 @@ mod tests {
         let (found, finds) = sync_channel(1);
         let searched = Arc::clone(&shared);
         let place = move || {
-            // There is budget for one command only, and so for none if the one before is still there.
+            // There is room for one command only, and so for none if the one before is still there.
             found.send(commands.try_send(Command::Steer).is_ok()).unwrap();
             searched.is_closing.store(true, Ordering::Relaxed);
             Err("there is no network".to_owned())

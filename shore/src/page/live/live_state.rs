@@ -1,4 +1,4 @@
-//! The state: what is known of the game that pages viewer at.
+//! The state of the running game, shared by all viewers.
 
 use super::event_log::EventLog;
 use super::frame_buffer::FrameBuffer;
@@ -37,7 +37,7 @@ pub(super) struct Numbered<T> {
     pub(super) value: T,
 }
 
-/// What a helm thinks, as pages are sent it.
+/// The report of a helm, encoded for pages.
 #[derive(Clone, Debug)]
 pub(super) struct HelmMessage {
     pub(super) light: String,
@@ -176,7 +176,7 @@ impl LiveState {
         self.helms.insert(vehicle, Numbered { number: self.counter, value: sent });
     }
 
-    /// A page wants to viewer at a boat's helm, with utilities or without.
+    /// A page selects a boat's helm, with utilities or without.
     pub(super) fn select(&mut self, page: u64, selection: Option<&(String, bool)>) -> Result<(), String> {
         let (Some((name, functions)), Some(game)) = (selection, &self.game) else { return Ok(()) };
         let vehicle = game.scenario().vehicle_named(name).map_err(|e| e.to_string())?;

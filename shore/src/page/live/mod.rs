@@ -1,4 +1,4 @@
-//! A game to viewer at while it is played, and to have a hand in.
+//! A running game, shown to pages that may also control it.
 //!
 //! One thread finds the game, subscribes to it, and finds it again when it is gone (`game_watcher`). Another queries what is
 //! not published (`query_thread`). Both write the state that all viewers read (`live_state`).
@@ -33,7 +33,7 @@ pub struct LiveView {
     shared: Arc<SharedState>,
 }
 
-/// What the threads and all who viewer share.
+/// What the threads and all viewers share.
 struct SharedState {
     state: Mutex<LiveState>,
     news: Changes,

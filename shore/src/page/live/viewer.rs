@@ -1,4 +1,4 @@
-//! One page's viewer at a game.
+//! One page's view of a running game.
 
 use super::live_state::{LiveGame, LiveState};
 use super::{Command, SharedState};
@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// One page's viewer at a game.
+/// One page's view of a running game.
 pub(super) struct PageViewer {
     shared: Arc<SharedState>,
     access: Access,
@@ -22,7 +22,7 @@ pub(super) struct PageViewer {
     sent: Sent,
 }
 
-/// What a page was sent of one game.
+/// What was sent to a page about one game.
 #[derive(Default)]
 struct Sent {
     /// Which game it is.
@@ -46,7 +46,7 @@ impl PageViewer {
         PageViewer { shared, access, page, selection: None, sent: Sent::default() }
     }
 
-    /// Passes on what is wanted of the game that is on: the state is kept meanwhile, so that it is not wanted of the next.
+    /// Passes on a command to this game. The state stays locked meanwhile, so that the next game does not get it.
     fn control(&self, state: &LiveState, control: Control) -> Result<(), String> {
         state.on()?;
         self.send(Command::Control(control))

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 /// Where in a frame the number of its decision stands: after the encapsulation and the time.
 const DECISION: std::ops::Range<usize> = 12..20;
-/// A page is not sent of frames more often than this, however fast it plays.
+/// A page gets frames no more often than this, however fast it plays.
 const FRAME_AGAIN: Duration = Duration::from_millis(10);
 
 /// One page's view of a recording.
@@ -37,7 +37,7 @@ pub(super) struct PageViewer {
     selected: Option<(VehicleId, bool)>,
     requested: Option<(HelmRequest, Instant)>,
     estimated: Option<(usize, Instant)>,
-    /// The real boats, with what was sent of each.
+    /// The real boats, with the status that was sent of each.
     gateways: Vec<(VehicleId, Option<GatewayStatus>)>,
     /// The frame for which they were read last, and when.
     looked: Option<(usize, Instant)>,
