@@ -1,76 +1,49 @@
 //! Broken scenario files: every mistake is reported, at its place, with what is allowed.
+//!
+//! The cases are data: `README.md` beside this file says how to read and add them.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-mod boats;
-mod files;
-mod games;
-mod strategy;
-mod tournaments;
-mod values;
-
 use game::scenario;
+use std::fs;
+use std::path::{Path, PathBuf};
 
-/// A sound set of files; each case replaces some of them.
-const SOUND: [(&str, &str); 9] = [
-    (
-        "games/g.toml",
-        r#"field = "../fields/f.toml"
-rules = "../rules/r.toml"
-sea = "../seas/s.toml"
-boat = "../boats/b.toml"
-team = [{ name = "blue", strategy = "../strategies/p.toml" }, { name = "red", strategy = "../strategies/p.toml" }]
-vehicle = [{ name = "blue_one", team = "blue" }, { name = "red_one", team = "red" }]
-"#,
-    ),
-    ("fields/f.toml", "datum = { lat_deg = 41.0, lon_deg = -74.0 }\nwidth_m = 160\ndepth_m = 80\n"),
-    ("rules/r.toml", ""),
-    ("seas/s.toml", ""),
-    (
-        "boats/b.toml",
-        r#"length_m = 2
-beam_m = 1
-[hull]
-mass_kg = 50
-[thruster]
-arm_m = 0.4
-table_pct_newton = [[-100, -20], [0, 0], [100, 40]]
-[autopilot]
-speed_max_m_s = 2
-"#,
-    ),
-    ("strategies/p.toml", "roles = [\"s.toml\"]\n"),
-    (
-        "strategies/unsafe.toml",
-        "unsafe_i_know = true\nunsafe_because = \"a test\"\n[behaviour.stop]\nkind = \"full_stop\"\n",
-    ),
-    (
-        "strategies/s.toml",
-        "[behaviour.stay_in]\nkind = \"op_region\"\n[behaviour.keep_clear]\nkind = \"avoid_collision\"\n",
-    ),
-    (
-        "tournaments/t.toml",
-        r#"game = "../games/g.toml"
-entry = [{ name = "a", strategy = "../strategies/p.toml" }, { name = "b", strategy = "../strategies/p.toml" }]
-"#,
-    ),
-];
+fn beside(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenario_broken").join(path)
+}
+
+/// The files in a folder of this test, in order.
+fn files_in(folder: &str) -> Vec<PathBuf> {
+    let mut files: Vec<_> = fs::read_dir(beside(folder)).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// Paths and texts of the sound files, some of which a case replaces.
+fn sound() -> Vec<(String, String)> {
+    let folders = ["boats", "fields", "games", "rules", "seas", "strategies", "tournaments"];
+    let files = folders.into_iter().flat_map(|folder| files_in(&format!("sound/{folder}")));
+    let file = |path: PathBuf| {
+        let name = path.strip_prefix(beside("sound")).unwrap().display().to_string();
+        (name, fs::read_to_string(path).unwrap())
+    };
+    files.map(file).collect()
+}
 
 /// What is wrong with `asked` when the files are the sound ones with `files` over them, line by line.
-fn problems(asked: &str, files: &[(&str, &[u8])]) -> Vec<String> {
+fn problems(asked: &str, files: &[(String, String)]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
-    let sound = SOUND.iter().map(|(path, text)| (*path, text.as_bytes()));
-    for (path, text) in sound.chain(files.iter().copied()) {
+    for (path, text) in sound().iter().chain(files) {
         let path = folder.path().join(path);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
     }
     let Err(found) = scenario::check_file(&folder.path().join(asked)) else { return vec![] };
     let root = format!("{}/", folder.path().display());
     found.to_string().lines().map(|line| line.replace(&root, "")).collect()
 }
 
-/// Long lists of what is allowed: how they begin and end, and what stands for them here.
+/// Long lists of what is allowed: how they begin and end, and what stands for them in the cases.
 const LISTS: [(&str, &str, &str); 10] = [
     ("PPB PPF", "SSBX", "{points}"),
     ("base, boundary", "win_score", "{keys of rules}"),
@@ -96,42 +69,48 @@ fn abridged(line: &str) -> String {
     })
 }
 
-/// Checks that broken files are reported as they say themselves.
-///
-/// A case is `## `, a name, and from the next line the file at `path`, which begins with `head`. After a line `--- PATH`
-/// follows another file; where the case begins with one, it is the file to check. What must be reported for a line
-/// stands behind it: `#~ COLUMN: MESSAGE`, after the name `#~ LINE:COLUMN: MESSAGE` or `#~ PATH:LINE:COLUMN: MESSAGE`.
-/// Nothing else may be reported.
-fn assert_broken(path: &str, head: &str, cases: &str) {
-    let mut failures = vec![];
-    for case in cases.split("\n## ").skip(1) {
-        let (title, text) = case.split_once('\n').expect("a case has a text");
-        let mut title = title.split(" #~ ");
-        let name = title.next().unwrap_or_default();
-        let mut said: Vec<String> = title.map(str::to_owned).collect();
-        let mut files = vec![(path, head.to_owned())];
-        for (i, line) in text.lines().filter(|line| !line.is_empty()).enumerate() {
-            if let Some(path) = line.strip_prefix("--- ") {
-                files.truncate(if i == 0 { 0 } else { files.len() });
-                files.push((path, String::new()));
-                continue;
-            }
-            let mut parts = line.split(" #~ ");
-            let (path, text) = files.last_mut().expect("a case has a file");
-            text.push_str(parts.next().unwrap_or_default());
-            text.push('\n');
-            let number = text.lines().count();
-            said.extend(parts.map(|said| format!("{path}:{number}:{said}")));
+/// Checks the cases in `text`, laid out as `README.md` says: how many there are, and what is wrong with them.
+fn check(text: &str) -> (usize, Vec<String>) {
+    let mut cases = text.split("\n## ");
+    let head = cases.next().unwrap_or_default();
+    let head = head.split_once("\n--- ").map(|(_, head)| format!("--- {head}")).expect("a line `--- PATH` at the top");
+    let (before, after) = head.split_once("\n{case}").unwrap_or((&head, ""));
+    let cases: Vec<&str> = cases.collect();
+    let failures = cases.iter().filter_map(|case| {
+        let (title, own) = case.split_once('\n').unwrap_or((case, ""));
+        let whole = if own.starts_with("--- ") { own.to_owned() } else { format!("{before}\n{own}\n{after}") };
+        failure(title, &whole)
+    });
+    (cases.len(), failures.collect())
+}
+
+/// What is wrong with one case: `title`, which may say what must be reported, and its files.
+fn failure(title: &str, text: &str) -> Option<String> {
+    let mut title = title.split(" #~ ");
+    let name = title.next().unwrap_or_default();
+    let mut said: Vec<String> = title.map(str::to_owned).collect();
+    let mut files: Vec<(String, String)> = vec![];
+    for line in text.lines().filter(|line| !line.is_empty()) {
+        if let Some(path) = line.strip_prefix("--- ") {
+            files.push((path.to_owned(), String::new()));
+            continue;
         }
-        let mut want: Vec<_> = said.iter().map(|said| expected(files[0].0, said)).collect();
-        want.sort();
-        let want: Vec<String> =
-            want.into_iter().map(|(path, line, column, what)| format!("{path}:{line}:{column}: {what}")).collect();
-        let texts: Vec<(&str, &[u8])> = files.iter().map(|(path, text)| (*path, text.as_bytes())).collect();
-        let got: Vec<String> = problems(files[0].0, &texts).iter().map(|line| abridged(line)).collect();
-        failures.extend((got != want).then(|| format!("{name}\n   is: {got:#?}\n want: {want:#?}")));
+        let mut parts = line.split(" #~ ");
+        let (path, text) = files.last_mut()?;
+        let line = parts.next().unwrap_or_default();
+        assert!(!line.contains("#~") && !line.starts_with("##"), "{name}: not a case and not a report: {line}");
+        text.push_str(line);
+        text.push('\n');
+        let number = text.lines().count();
+        said.extend(parts.map(|said| format!("{path}:{number}:{said}")));
     }
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    let asked = &files[0].0;
+    let mut want: Vec<_> = said.iter().map(|said| expected(asked, said)).collect();
+    want.sort();
+    let want: Vec<String> =
+        want.into_iter().map(|(path, line, column, what)| format!("{path}:{line}:{column}: {what}")).collect();
+    let got: Vec<String> = problems(asked, &files).iter().map(|line| abridged(line)).collect();
+    (got != want || want.is_empty()).then(|| format!("{name}\n   is: {got:#?}\n want: {want:#?}"))
 }
 
 /// A problem, from `PATH:LINE:COLUMN: MESSAGE`, or in the file at `path` from `LINE:COLUMN: MESSAGE`.
@@ -147,13 +126,38 @@ fn expected<'a>(path: &'a str, said: &'a str) -> (&'a str, usize, usize, &'a str
 }
 
 #[test]
+fn every_mistake_is_reported_at_its_place() {
+    let mut failures = vec![];
+    for path in files_in("cases") {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        assert!(name.ends_with(".toml"), "{name} is not a file of cases");
+        let text = fs::read_to_string(&path).unwrap();
+        let (read, wrong) = check(&text);
+        assert!(read > 0, "{name} has no cases");
+        assert_eq!(read, text.lines().filter(|line| line.starts_with("##")).count(), "{name}: cases read, and there");
+        failures.extend(wrong.into_iter().map(|failure| format!("cases/{name}: {failure}")));
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn mates_hear_so_many_variables_and_no_more() {
+    let shared: String = (0..257).map(|i| format!("v{i} = {{ initial = 0, shared = true }}\n")).collect();
+    let variables = "[variables] #~ 1: variables has 257 shared ones, expected at most 256";
+    let text = format!("--- strategies/x.toml\nbase = \"s.toml\"\n{variables}\n{shared}");
+    assert_eq!(failure("more than mates hear", &text), None);
+}
+
+#[test]
 fn the_sound_files_are_sound() {
-    for (path, _) in SOUND {
-        assert_eq!(problems(path, &[]), [""; 0], "{path}");
+    let sound = sound();
+    assert_eq!(sound.len(), 9);
+    for (path, _) in sound {
+        assert_eq!(problems(&path, &[]), [""; 0], "{path}");
     }
     // What a base names stays where the base says, wherever the file that builds on it lies.
-    let elsewhere = ("mine/of/today/x.toml", b"base = \"../../../games/g.toml\"\nseed = 7\n".as_slice());
-    assert_eq!(problems(elsewhere.0, &[elsewhere]), [""; 0]);
+    let elsewhere = ("mine/of/today/x.toml".to_owned(), "base = \"../../../games/g.toml\"\nseed = 7\n".to_owned());
+    assert_eq!(problems(&elsewhere.0, std::slice::from_ref(&elsewhere)), [""; 0]);
 }
 
 #[test]
