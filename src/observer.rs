@@ -1,9 +1,9 @@
 //! An observer: a session that watches a game and asks about it.
 
 use crate::net_args::LeafArgs;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use bus::Bus;
-use bus::game_search::{self, Missing};
+use bus::game_search;
 use game::VehicleId;
 use game::helm::{HelmQuestion, HelmReport};
 use game::message::GameInfo;
@@ -21,11 +21,7 @@ impl Observer {
     /// Connects to a game that runs.
     pub(crate) fn connect(leaf: &LeafArgs) -> Result<Observer> {
         let bus = Bus::leaf(&leaf.net()?).context("no game to watch")?;
-        let game = match &leaf.game {
-            Some(game) => game.clone(),
-            None => now(game_search::only_game(&bus))?,
-        };
-        let info = now(game_search::game_info(&bus, &game))?;
+        let (game, info) = game_search::choose_game(&bus, leaf.game.as_ref())?;
         Ok(Observer { bus, game, info })
     }
 
@@ -53,12 +49,4 @@ impl Observer {
     pub(crate) fn is_on(&self) -> Result<bool> {
         Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game, Part::Sim), bus::ANSWER)?.is_empty())
     }
-}
-
-/// What must be there now.
-fn now<T>(found: Result<T, Missing>) -> Result<T> {
-    found.map_err(|missing| match missing {
-        Missing::Yet(reason) => anyhow!(reason),
-        Missing::Forever(refusal) => anyhow!(refusal),
-    })
 }

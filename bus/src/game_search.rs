@@ -14,12 +14,14 @@ const LOOK_AGAIN: Duration = Duration::from_millis(100);
 pub const ANSWER: Duration = Duration::from_secs(2);
 
 /// Why something is not there.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 pub enum Missing {
     /// It may come.
+    #[error("{0}")]
     Yet(String),
     /// It will not.
-    Forever(Refusal),
+    #[error(transparent)]
+    Forever(#[from] Refusal),
 }
 
 /// Why a game cannot be joined, and asking again will not help.
@@ -103,20 +105,23 @@ impl<'a> GameSearch<'a> {
         game: Option<&GameName>,
     ) -> Result<(Bus, GameName, GameInfo), NotFound> {
         let bus = self.until(tell, || Ok(Bus::leaf(net)?))?;
-        let game = match game {
-            Some(game) => game.clone(),
-            None => self.until(tell, || only_game(&bus))?,
-        };
-        let info = self.until(tell, || game_info(&bus, &game))?;
+        let (game, info) = self.until(tell, || choose_game(&bus, game))?;
         Ok((bus, game, info))
     }
 }
 
-/// The only game on the network.
+/// The game of this name, or the only one on the network, with what it is.
 ///
 /// # Errors
-/// [`Missing`] if there is none yet, or if there are several.
-pub fn only_game(bus: &Bus) -> Result<GameName, Missing> {
+/// [`Missing`] if it is not there yet, if there are several to choose from, or if its sim is of another version.
+pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, GameInfo), Missing> {
+    let game = named.map_or_else(|| only_game(bus), |game| Ok(game.clone()))?;
+    let info = game_info(bus, &game)?;
+    Ok((game, info))
+}
+
+/// The only game on the network.
+fn only_game(bus: &Bus) -> Result<GameName, Missing> {
     let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
     let sims = keys.iter().filter_map(|key| topic::parse_alive(key)).filter(|(_, part, _)| *part == Part::Sim);
     let games: Vec<GameName> = sims.map(|(game, _, _)| game).collect();
@@ -131,10 +136,7 @@ pub fn only_game(bus: &Bus) -> Result<GameName, Missing> {
 }
 
 /// What the game is, from the sim.
-///
-/// # Errors
-/// [`Missing`] if no sim answers, or if it is of another version.
-pub fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
+fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
     let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
     let bytes = answer.ok_or_else(|| Missing::Yet(format!("no sim answers for game {:?}", game.as_str())))?;
     // The version first: of another version we may not understand the rest.

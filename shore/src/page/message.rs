@@ -16,7 +16,6 @@ pub(super) const PROTOCOL: u32 = 1;
 /// A message to a page.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
-#[cfg_attr(not(feature = "net"), expect(dead_code, reason = "some is only said of a game on the network"))]
 pub(super) enum PageMessage<'a> {
     Hello {
         protocol: u32,

@@ -7,9 +7,6 @@
 mod access;
 mod asset;
 mod chart;
-mod clock;
-mod connection;
-#[cfg(feature = "net")]
 pub mod live;
 mod message;
 pub mod replay;
@@ -21,7 +18,7 @@ mod socket;
 mod view;
 
 pub use message::Mode;
-pub use request::{PageCommand, PageRequest};
+pub use request::PageRequest;
 pub use rose::{HelmAnswer, is_sound};
 pub use view::{Access, Budget, Changes, Outgoing, View, Viewer};
 

@@ -1,5 +1,6 @@
 //! Requests of a page to its server, as `PROTOCOL.md` defines them.
 
+use game::message::Control;
 use serde::Deserialize;
 
 /// A message from a page, as it stands in `PROTOCOL.md`.
@@ -20,7 +21,7 @@ pub enum PageRequest {
     /// Something for the whole game.
     Control {
         /// What.
-        what: PageCommand,
+        what: Control,
     },
     /// So many simulated seconds a second.
     Speed {
@@ -53,21 +54,6 @@ pub enum PageRequest {
     },
 }
 
-/// What can be asked of a whole game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "each says it itself; `game::message::Control` says what it does")]
-pub enum PageCommand {
-    Pause,
-    Resume,
-    Step,
-    Halt,
-    GoOn,
-    EStop,
-    Release,
-    Stop,
-}
-
 impl PageRequest {
     /// What it is called on the wire.
     #[must_use]
@@ -90,30 +76,15 @@ impl PageRequest {
 
 #[cfg(test)]
 mod tests {
-    use super::{PageCommand, PageRequest};
+    use super::PageRequest;
 
     #[test]
     fn what_the_protocol_lists_is_understood() {
-        for (text, want) in [
-            (r#"{"do":"ack"}"#, PageRequest::Ack),
-            (
-                r#"{"do":"select","vehicle":null,"functions":false}"#,
-                PageRequest::Select { vehicle: None, functions: false },
-            ),
-            (r#"{"do":"select","vehicle":"a"}"#, PageRequest::Select { vehicle: Some("a".into()), functions: false }),
-            (r#"{"do":"control","what":"e_stop"}"#, PageRequest::Control { what: PageCommand::EStop }),
-            (r#"{"do":"speed","factor":null}"#, PageRequest::Speed { factor: None }),
-            (r#"{"do":"speed","factor":4}"#, PageRequest::Speed { factor: Some(4.0) }),
-            (r#"{"do":"step","by":-1}"#, PageRequest::Step { by: -1 }),
-            (r#"{"do":"seek","t_s":1}"#, PageRequest::Seek { t_s: 1.0 }),
-            (
-                r#"{"do":"drive","vehicle":"a","course_deg":90,"speed_m_s":1.5}"#,
-                PageRequest::Drive { vehicle: "a".into(), course_deg: 90.0, speed_m_s: 1.5 },
-            ),
-            (r#"{"do":"let_go","vehicle":"a"}"#, PageRequest::LetGo { vehicle: "a".into() }),
-        ] {
+        let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/src/page/request_cases.txt");
+        for line in std::fs::read_to_string(cases).expect("the cases").lines() {
+            let (text, want) = line.split_once(" is ").expect("a message, and what it is");
             let ask: PageRequest = serde_json::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"));
-            assert_eq!(ask, want);
+            assert_eq!(format!("{ask:?}"), want);
             assert!(text.contains(&format!("{:?}", ask.name())), "{text}");
         }
     }

@@ -2,7 +2,6 @@
 
 use super::access::AccessControl;
 use super::asset;
-use super::connection::{Connection, Listener};
 use super::socket::{self, RECEIVED_MAX, Shown};
 use super::view::Access;
 use axum::Router;
@@ -20,12 +19,23 @@ use hyper_util::service::TowerToHyperService;
 use std::future::Future;
 use std::sync::Arc;
 use std::time::Duration;
+use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::sleep;
+use tokio_io_timeout::TimeoutStream;
 
 /// The most pages at a time.
 const PAGES_MAX: usize = 64;
 /// Connections reserved for pages with the token, so that observers cannot shut out operators.
 const OPERATORS_MAX: usize = 8;
+/// The most connections at a time that are no websockets yet; more wait to be accepted.
+const CONNECTIONS_MAX: usize = 192;
+/// A connection on which nothing arrives for so long is closed. Websockets are pinged more often.
+const SILENCE: Duration = Duration::from_secs(60);
+/// A connection that accepts no bytes for so long, while there are some to send, is closed.
+const DEAF: Duration = Duration::from_secs(20);
+/// How long to wait after the system could not accept.
+const AGAIN: Duration = Duration::from_millis(200);
 /// How long a request may take to arrive, counted from the connection's beginning or the response before.
 const REQUEST: Duration = Duration::from_secs(10);
 
@@ -55,7 +65,7 @@ pub(super) async fn serve(
     shown: Shown,
     end: impl Future<Output = ()>,
 ) -> std::io::Result<()> {
-    let listener = Listener::new(tokio::net::TcpListener::from_std(listener)?);
+    let listener = TcpListener::from_std(listener)?;
     let permits = |count| Arc::new(Semaphore::new(count));
     let app = AppState {
         access_control: Arc::new(access_control),
@@ -68,12 +78,20 @@ pub(super) async fn serve(
         .fallback(file)
         .layer(middleware::from_fn_with_state(app.clone(), check))
         .with_state(app);
+    let free = permits(CONNECTIONS_MAX);
     let accept_all = async {
         loop {
-            let connection = listener.accept().await;
-            // An error ends the connection of one browser only.
-            let served = serve_connection(connection, site.clone());
-            tokio::spawn(async { drop(served.await) });
+            let place = Arc::clone(&free).acquire_owned().await;
+            let Ok((stream, _)) = listener.accept().await else {
+                sleep(AGAIN).await;
+                continue;
+            };
+            let served = serve_connection(stream, site.clone());
+            tokio::spawn(async {
+                // An error ends the connection of one browser only.
+                drop(served.await);
+                drop(place);
+            });
         }
     };
     tokio::select! {
@@ -84,13 +102,15 @@ pub(super) async fn serve(
 }
 
 /// Serves one connection. `axum::serve` would wait for ever for a request that never ends.
-async fn serve_connection(
-    connection: Connection,
-    site: Router,
-) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+async fn serve_connection(stream: TcpStream, site: Router) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    // A frame is one small write; waiting for more only makes it late.
+    drop(stream.set_nodelay(true));
+    let mut stream = TimeoutStream::new(stream);
+    stream.set_read_timeout(Some(SILENCE));
+    stream.set_write_timeout(Some(DEAF));
     let mut server = Builder::new(TokioExecutor::new()).http1_only();
     server.http1().timer(TokioTimer::new()).header_read_timeout(REQUEST);
-    server.serve_connection_with_upgrades(TokioIo::new(connection), TowerToHyperService::new(site)).await
+    server.serve_connection_with_upgrades(TokioIo::new(Box::pin(stream)), TowerToHyperService::new(site)).await
 }
 
 /// Refuses requests that are not meant for this server, and adds security headers to responses.

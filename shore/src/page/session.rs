@@ -121,9 +121,9 @@ impl PageSession {
 
 #[cfg(test)]
 mod tests {
-    use super::super::clock;
     use super::super::view::Changes;
     use super::*;
+    use bus::clock;
     use proptest::prelude::*;
     use std::sync::{Arc, Mutex};
 

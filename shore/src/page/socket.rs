@@ -1,9 +1,9 @@
 //! A websocket: the network shell around the session of one page.
 
-use super::clock;
 use super::session::PageSession;
 use super::view::{Access, Changes, Outgoing, View};
 use axum::extract::ws::{Message, WebSocket};
+use bus::clock;
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
 use std::pin::pin;
@@ -85,7 +85,7 @@ impl Socket {
 
     /// Talks about one show, until there is another.
     async fn run(&mut self, shown: &mut Shown, news: &Changes, session: &mut PageSession) -> Result<(), End> {
-        let mut news = news.listen();
+        let mut news = news.subscribe();
         self.last_received = clock::now();
         let mut pinged = self.last_received;
         loop {

@@ -94,23 +94,5 @@ pub(super) fn marked(byte: u8, cdr: &[u8]) -> Bytes {
     bytes.into()
 }
 
-/// Notifies viewers that there may be something new.
-#[derive(Clone, Debug)]
-pub struct Changes(watch::Sender<()>);
-
-impl Default for Changes {
-    fn default() -> Changes {
-        Changes(watch::Sender::new(()))
-    }
-}
-
-impl Changes {
-    /// Notifies, from any thread; never blocks.
-    pub fn notify(&self) {
-        self.0.send_replace(());
-    }
-
-    pub(super) fn listen(&self) -> watch::Receiver<()> {
-        self.0.subscribe()
-    }
-}
+/// Notifies viewers that there may be something new: whatever is sent, from any thread.
+pub type Changes = watch::Sender<()>;

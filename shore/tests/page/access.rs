@@ -1,8 +1,9 @@
 //! Who is let in, and who may act.
 
-use super::client::{Client, get, now};
+use super::client::{Client, get};
 use super::replay::show;
 use super::{open_viewer, page};
+use bus::clock::now;
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;

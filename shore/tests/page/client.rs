@@ -1,9 +1,10 @@
 //! A browser's side of the talk.
 
+use bus::clock::now;
 use serde_json::Value;
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use tungstenite::client::IntoClientRequest;
 use tungstenite::http::{HeaderName, HeaderValue};
 use tungstenite::{Error, Message, WebSocket};
@@ -133,9 +134,4 @@ pub(crate) fn get(address: SocketAddr, path: &str, host: &str) -> (u16, String) 
     stream.read_to_string(&mut answer).expect("it answers in words");
     let status = answer.split(' ').nth(1).and_then(|status| status.parse().ok()).expect("a status");
     (status, answer)
-}
-
-#[expect(clippy::disallowed_methods, reason = "a test waits no longer than a limit")]
-pub(crate) fn now() -> Instant {
-    Instant::now()
 }

@@ -2,7 +2,6 @@
 
 mod access;
 mod client;
-#[cfg(feature = "net")]
 mod live;
 mod replay;
 mod session;

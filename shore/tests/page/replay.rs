@@ -1,11 +1,13 @@
 //! A recording, played by pages.
 
 use super::source::{Rememberer, recorded, seq_of, two_minutes};
-use super::{client, open_viewer, page};
+use super::{open_viewer, page};
+use bus::clock;
+use game::message::Control;
 use proptest::prelude::*;
 use serde_json::json;
 use shore::page::replay::ReplayView;
-use shore::page::{Access, Budget, Outgoing, PageCommand, PageRequest, View};
+use shore::page::{Access, Budget, Outgoing, PageRequest, View};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -139,7 +141,7 @@ fn any_ask() -> impl Strategy<Value = PageRequest> {
     prop_oneof![
         (vehicle, any::<bool>())
             .prop_map(|(name, functions)| PageRequest::Select { vehicle: Some(name.to_owned()), functions }),
-        prop::sample::select(vec![PageCommand::Pause, PageCommand::Resume, PageCommand::Step, PageCommand::Stop])
+        prop::sample::select(vec![Control::Pause, Control::Resume, Control::Step, Control::Stop])
             .prop_map(|what| PageRequest::Control { what }),
         prop::option::of(any::<f64>()).prop_map(|factor| PageRequest::Speed { factor }),
         any::<i64>().prop_map(|by| PageRequest::Step { by }),
@@ -162,7 +164,7 @@ fn is_of_selected(said: &Outgoing) -> bool {
 #[test]
 fn what_can_wait_waits_until_there_is_room() {
     let show = ReplayView::new(two_minutes(), None);
-    let (mut viewer, now) = (show.open_viewer(Access { rights: false }), client::now());
+    let (mut viewer, now) = (show.open_viewer(Access { rights: false }), clock::now());
     while viewer.next_message(now, Budget::All).is_some() {}
     viewer
         .ask(&PageRequest::Select { vehicle: Some("red_one".to_owned()), functions: true }, now)
@@ -181,7 +183,7 @@ proptest! {
     ) {
         let show = ReplayView::new(two_minutes(), None);
         let mut viewer = show.open_viewer(Access { rights: false });
-        let mut now = client::now();
+        let mut now = clock::now();
         for (ask, wait_ms, room) in asks {
             drop(viewer.ask(&ask, now));
             now += Duration::from_millis(wait_ms);

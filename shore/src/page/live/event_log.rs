@@ -97,7 +97,7 @@ impl EventLog {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::clock;
+    use bus::clock;
 
     fn event(tick: u64, word: &str) -> EventOutcome {
         EventOutcome { tick, at_s: 0.0, event: word.into(), vehicle: None, other: None, team: None }

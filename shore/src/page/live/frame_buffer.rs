@@ -77,7 +77,7 @@ impl FrameBuffer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::clock;
+    use bus::clock;
 
     fn frame(seq: u64) -> Frame {
         let stamp = Stamp { valid_ns: SimTime(100_000_000 * seq as i64), seq, version: 3 };

@@ -3,7 +3,7 @@
 use super::live_state::LiveGame;
 use super::query_thread::QueryThread;
 use super::{Command, Place, SharedState};
-use crate::page::clock;
+use bus::clock;
 use bus::game_search::{self, Missing};
 use bus::{Bus, BusError, Declaration, Delivery, Patience, Publisher, SimState, SimWatch, Watched};
 use game::codec;
@@ -35,11 +35,11 @@ const PICTURE_AGAIN: Duration = Duration::from_millis(50);
 
 /// Watches for the game.
 pub(super) struct GameWatcher {
-    shared: Arc<SharedState>,
-    place: Place,
-    game: Option<GameName>,
-    commands: Receiver<Command>,
-    tell: Box<dyn Fn(&str) + Send>,
+    pub(super) shared: Arc<SharedState>,
+    pub(super) place: Place,
+    pub(super) game: Option<GameName>,
+    pub(super) commands: Receiver<Command>,
+    pub(super) tell: Box<dyn Fn(&str) + Send>,
 }
 
 /// A session in a game.
@@ -54,16 +54,6 @@ struct GameSession {
 }
 
 impl GameWatcher {
-    pub(super) fn new(
-        shared: Arc<SharedState>,
-        place: Place,
-        game: Option<GameName>,
-        commands: Receiver<Command>,
-        tell: Box<dyn Fn(&str) + Send>,
-    ) -> GameWatcher {
-        GameWatcher { shared, place, game, commands, tell }
-    }
-
     /// Shows one game after the other until the view closes.
     pub(super) fn run(self) {
         let mut bus = None;
@@ -78,7 +68,8 @@ impl GameWatcher {
                     bus = None;
                 }
                 Err(missing) => {
-                    let reason = in_words(missing);
+                    // What will never be there may yet be replaced by something else.
+                    let reason = missing.to_string();
                     if reason != said {
                         (self.tell)(&reason);
                         said = reason;
@@ -87,15 +78,10 @@ impl GameWatcher {
                     if attempts % ATTEMPTS == 0 {
                         bus = None;
                     }
-                    Self::pause(LOOK_AGAIN);
+                    clock::rest(LOOK_AGAIN);
                 }
             }
         }
-    }
-
-    /// Waits a while, for nothing.
-    fn pause(time: Duration) {
-        Watched::new(()).wait(time, |()| false);
     }
 
     /// Connects to a game, if there is one. The session stays open for the next attempt.
@@ -104,11 +90,7 @@ impl GameWatcher {
             Some(bus) => bus.clone(),
             None => bus.insert(Bus::leaf(&(self.place)().map_err(Missing::Yet)?)?).clone(),
         };
-        let name = match &self.game {
-            Some(name) => name.clone(),
-            None => game_search::only_game(&bus)?,
-        };
-        let info = game_search::game_info(&bus, &name)?;
+        let (name, info) = game_search::choose_game(&bus, self.game.as_ref())?;
         // An older sim does not answer; then the water is drawn flat.
         let water = bus.ask(&topic::water(&name), Vec::new(), ANSWER)?;
         let water: Water = water.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
@@ -118,7 +100,7 @@ impl GameWatcher {
     /// Serves the game until it is gone.
     fn run_until_gone(&self, mut session: GameSession) {
         let left = Watched::new(false);
-        let queries = QueryThread::new(&self.shared, session.bus.clone(), Arc::clone(&session.game));
+        let queries = QueryThread { shared: &self.shared, bus: session.bus.clone(), game: Arc::clone(&session.game) };
         std::thread::scope(|scope| {
             scope.spawn(|| queries.ask(&left));
             while !self.shared.is_closing() && session.sim.state_by_token() == SimState::Alive {
@@ -130,18 +112,10 @@ impl GameWatcher {
                 session.update_picture_subscriptions(&self.shared);
             }
             self.shared.state().end();
-            self.shared.news.notify();
+            self.shared.news.send_replace(());
             left.visit(|left| *left = true);
         });
         session.bus.close();
-    }
-}
-
-/// What is missing, in words. What will never be there may yet be replaced by something else.
-fn in_words(missing: Missing) -> String {
-    match missing {
-        Missing::Yet(reason) => reason,
-        Missing::Forever(refusal) => refusal.to_string(),
     }
 }
 
@@ -156,7 +130,7 @@ impl GameSession {
             state.begin(Arc::clone(&game));
             state.generation
         };
-        shared.news.notify();
+        shared.news.send_replace(());
         let subscriptions = Subscriptions { shared: Arc::clone(shared), generation };
         let mut standing = vec![subscriptions.clone().frames(&bus, &game)?, subscriptions.clone().run(&bus, &game)?];
         for vehicle in game.scenario().externals() {
@@ -200,7 +174,7 @@ impl GameSession {
     /// Releases the steering of silent pages.
     fn expire_steering(&self, shared: &SharedState) {
         if shared.state().steering_locks.expire(clock::now()) {
-            shared.news.notify();
+            shared.news.send_replace(());
         }
     }
 
@@ -239,7 +213,7 @@ impl Subscriptions {
         if state.generation == self.generation {
             change(&mut state);
             drop(state);
-            self.shared.news.notify();
+            self.shared.news.send_replace(());
         }
     }
 
@@ -305,7 +279,8 @@ mod tests {
             searched.is_closing.store(true, Ordering::Relaxed);
             Err("there is no network".to_owned())
         };
-        GameWatcher::new(shared, Box::new(place), None, to_do, Box::new(|_| ())).run();
+        let (place, tell) = (Box::new(place), Box::new(|_: &str| ()));
+        GameWatcher { shared, place, game: None, commands: to_do, tell }.run();
         assert!(finds.recv().unwrap());
     }
 }

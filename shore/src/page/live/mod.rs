@@ -15,6 +15,7 @@ use super::view::{Access, Changes, View, Viewer};
 use bus::Net;
 use game::message::Control;
 use game::topic::GameName;
+use game_watcher::GameWatcher;
 use live_state::LiveState;
 use parking_lot::{Mutex, MutexGuard};
 use std::sync::Arc;
@@ -60,7 +61,7 @@ impl LiveView {
     pub fn open(place: Place, game: Option<GameName>, tell: Box<dyn Fn(&str) + Send>) -> std::io::Result<LiveView> {
         let (commands, to_do) = sync_channel(COMMANDS_MAX);
         let shared = Arc::new(SharedState::new(commands));
-        let watcher = game_watcher::GameWatcher::new(Arc::clone(&shared), place, game, to_do, tell);
+        let watcher = GameWatcher { shared: Arc::clone(&shared), place, game, commands: to_do, tell };
         std::thread::Builder::new().name("page-live".to_owned()).spawn(move || watcher.run())?;
         Ok(LiveView { shared })
     }

@@ -2,9 +2,9 @@
 
 use super::SharedState;
 use super::live_state::{HelmMessage, LiveGame};
-use crate::page::clock;
 use crate::page::rose::{HelmAnswer, helm_text};
 use crate::page::view::HELM_INTERVAL;
+use bus::clock;
 use bus::{Bus, Watched};
 use game::VehicleId;
 use game::helm::{HelmQuestion, HelmReport};
@@ -25,9 +25,9 @@ const EVENTS_ANSWER: Duration = Duration::from_secs(3);
 
 /// Asks one game.
 pub(super) struct QueryThread<'a> {
-    shared: &'a SharedState,
-    bus: Bus,
-    game: Arc<LiveGame>,
+    pub(super) shared: &'a SharedState,
+    pub(super) bus: Bus,
+    pub(super) game: Arc<LiveGame>,
 }
 
 /// Whose helm is asked next.
@@ -65,10 +65,6 @@ impl QuerySchedule {
 }
 
 impl QueryThread<'_> {
-    pub(super) fn new(shared: &SharedState, bus: Bus, game: Arc<LiveGame>) -> QueryThread<'_> {
-        QueryThread { shared, bus, game }
-    }
-
     /// Asks until the game is left.
     pub(super) fn ask(&self, left: &Watched<bool>) {
         let mut schedule = QuerySchedule::default();
@@ -95,7 +91,7 @@ impl QueryThread<'_> {
         let events = answer.ok().flatten().and_then(|bytes| serde_json::from_slice::<Vec<EventOutcome>>(&bytes).ok());
         if let Some(events) = events {
             self.shared.state().event_log.replace(events);
-            self.shared.news.notify();
+            self.shared.news.send_replace(());
         }
     }
 
@@ -114,7 +110,7 @@ impl QueryThread<'_> {
         let full = functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
         let light = helm_text(self.game.scenario(), vehicle, false, answer);
         self.shared.state().take_helm(vehicle, HelmMessage { light, full });
-        self.shared.news.notify();
+        self.shared.news.send_replace(());
     }
 }
 

@@ -57,7 +57,7 @@ impl SteeringLocks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::clock;
+    use bus::clock;
 
     #[test]
     fn one_page_has_the_wheel_until_it_lets_go_goes_or_is_silent() {

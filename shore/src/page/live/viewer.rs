@@ -3,7 +3,7 @@
 use super::live_state::{LiveGame, LiveState};
 use super::{Command, SharedState};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
-use crate::page::request::{PageCommand, PageRequest};
+use crate::page::request::PageRequest;
 use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
 use axum::body::Bytes;
 use game::VehicleId;
@@ -104,7 +104,7 @@ impl PageViewer {
         state.steering.insert(vehicle, (course_rad, speed_m_s));
         drop(state);
         if is_news {
-            self.shared.news.notify();
+            self.shared.news.send_replace(());
         }
         if is_on_its_way { Ok(()) } else { self.send(Command::Steer) }
     }
@@ -115,7 +115,7 @@ impl PageViewer {
         let had = state.steering_locks.release(vehicle, self.page);
         drop(state);
         if had {
-            self.shared.news.notify();
+            self.shared.news.send_replace(());
         }
         Ok(())
     }
@@ -130,8 +130,10 @@ impl Viewer for PageViewer {
         match ask {
             PageRequest::Ack => Ok(()),
             PageRequest::Select { vehicle, functions } => self.select(vehicle.as_deref(), *functions),
-            PageRequest::Control { what } => self.control(&self.shared.state(), control(*what)),
-            PageRequest::Speed { factor } => self.set_speed(*factor),
+            PageRequest::Speed { factor } | PageRequest::Control { what: Control::Speed(factor) } => {
+                self.set_speed(*factor)
+            }
+            PageRequest::Control { what } => self.control(&self.shared.state(), *what),
             PageRequest::Drive { vehicle, course_deg, speed_m_s } => self.drive(vehicle, *course_deg, *speed_m_s, now),
             PageRequest::LetGo { vehicle } => self.release(vehicle),
             PageRequest::Step { .. } | PageRequest::Seek { .. } => {
@@ -178,7 +180,7 @@ impl Drop for PageViewer {
         state.selected.remove(&self.page);
         state.steering_locks.release_all(self.page);
         drop(state);
-        self.shared.news.notify();
+        self.shared.news.send_replace(());
     }
 }
 
@@ -269,25 +271,11 @@ impl Sent {
     }
 }
 
-/// What a page's word means to a game.
-fn control(word: PageCommand) -> Control {
-    match word {
-        PageCommand::Pause => Control::Pause,
-        PageCommand::Resume => Control::Resume,
-        PageCommand::Step => Control::Step,
-        PageCommand::Halt => Control::Halt,
-        PageCommand::GoOn => Control::GoOn,
-        PageCommand::EStop => Control::EStop,
-        PageCommand::Release => Control::Release,
-        PageCommand::Stop => Control::Stop,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::live_state::HelmMessage;
     use super::*;
-    use crate::page::clock;
+    use bus::clock;
     use game::message::{Frame, GameInfo};
     use game::topic::GameName;
     use game::water::Water;

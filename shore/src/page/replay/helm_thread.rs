@@ -2,10 +2,11 @@
 
 use crate::page::rose::{HelmAnswer, helm_text};
 use crate::page::view::Changes;
+use bus::Watched;
 use game::{Scenario, VehicleId};
-use parking_lot::{Condvar, Mutex};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Recomputes helm reports of a recorded game. That may take a while.
 pub trait Helms: Send {
@@ -36,20 +37,15 @@ struct Queue {
     is_closed: bool,
 }
 
-struct SharedQueue {
-    queue: Mutex<Queue>,
-    requested: Condvar,
-}
-
 /// The helms.
-pub(super) struct HelmThread(Arc<SharedQueue>);
+pub(super) struct HelmThread(Arc<Watched<Queue>>);
 
 impl HelmThread {
     /// Opens it. Without helms nobody knows what they thought.
     pub(super) fn open(scenario: Scenario, helms: Option<Box<dyn Helms>>, news: Changes) -> HelmThread {
-        let counter = Arc::new(SharedQueue { queue: Mutex::default(), requested: Condvar::new() });
+        let counter = Arc::new(Watched::<Queue>::default());
         let server = Arc::clone(&counter);
-        let serve = move || server.serve(&scenario, helms, &news);
+        let serve = move || serve(&server, &scenario, helms, &news);
         // Without a thread nobody answers; pages see that.
         drop(std::thread::Builder::new().name("page-helms".to_owned()).spawn(serve));
         HelmThread(counter)
@@ -57,66 +53,58 @@ impl HelmThread {
 
     /// A viewer requests this now, and nothing else any more.
     pub(super) fn request(&self, viewer: u64, request: HelmRequest) {
-        self.0.queue.lock().requests.insert(viewer, request);
-        self.0.requested.notify_one();
+        self.0.visit(|queue| queue.requests.insert(viewer, request));
     }
 
     /// The newest answer to a viewer, as it goes to the page.
     pub(super) fn take(&self, viewer: u64) -> Option<(HelmRequest, String)> {
-        self.0.queue.lock().answers.remove(&viewer)
+        self.0.visit(|queue| queue.answers.remove(&viewer))
     }
 
     /// A viewer goes.
     pub(super) fn remove(&self, viewer: u64) {
-        let mut queue = self.0.queue.lock();
-        queue.requests.remove(&viewer);
-        queue.answers.remove(&viewer);
-        queue.current.take_if(|current| *current == viewer);
+        self.0.visit(|queue| {
+            queue.requests.remove(&viewer);
+            queue.answers.remove(&viewer);
+            queue.current.take_if(|current| *current == viewer);
+        });
     }
 }
 
 impl Drop for HelmThread {
     fn drop(&mut self) {
-        self.0.queue.lock().is_closed = true;
-        // It may be at work for a while; it ends by itself.
-        self.0.requested.notify_one();
+        // The thread may be at work for a while; it ends by itself.
+        self.0.visit(|queue| queue.is_closed = true);
     }
 }
 
-impl SharedQueue {
-    fn serve(&self, scenario: &Scenario, mut helms: Option<Box<dyn Helms>>, news: &Changes) {
-        while let Some(request) = self.next() {
-            let answer = match &mut helms {
-                Some(helms) => helms.report(request.vehicle, request.decision, request.functions),
-                None => HelmAnswer { reason: Some("the recording does not tell".to_owned()), ..HelmAnswer::default() },
-            };
-            let text = helm_text(scenario, request.vehicle, request.functions, answer);
-            self.deliver(request, text);
-            news.notify();
+/// Answers one request after the other until the view is closed.
+fn serve(shared: &Watched<Queue>, scenario: &Scenario, mut helms: Option<Box<dyn Helms>>, news: &Changes) {
+    const ROUND: Duration = Duration::from_secs(60);
+    loop {
+        shared.wait(ROUND, |queue| queue.is_closed || !queue.requests.is_empty());
+        if shared.visit(|queue| queue.is_closed) {
+            return;
         }
+        let Some(request) = shared.visit(Queue::next) else { continue };
+        let answer = match &mut helms {
+            Some(helms) => helms.report(request.vehicle, request.decision, request.functions),
+            None => HelmAnswer { reason: Some("the recording does not tell".to_owned()), ..HelmAnswer::default() },
+        };
+        let text = helm_text(scenario, request.vehicle, request.functions, answer);
+        // Nobody takes it if they have left meanwhile.
+        shared.visit(|queue| queue.current.take().map(|viewer| queue.answers.insert(viewer, (request, text))));
+        news.send_replace(());
     }
+}
 
-    /// The next request in turn; none when the view is closed.
-    fn next(&self) -> Option<HelmRequest> {
-        let idle = |queue: &mut Queue| queue.requests.is_empty() && !queue.is_closed;
-        let mut queue = self.queue.lock();
-        self.requested.wait_while(&mut queue, idle);
-        if queue.is_closed {
-            return None;
-        }
-        let after = queue.last + 1;
-        let viewer =
-            queue.requests.range(after..).next().or_else(|| queue.requests.iter().next()).map(|(viewer, _)| *viewer)?;
-        (queue.last, queue.current) = (viewer, Some(viewer));
-        queue.requests.remove(&viewer)
-    }
-
-    /// The answer for whoever was served last. Nobody takes it if they have left meanwhile.
-    fn deliver(&self, request: HelmRequest, text: String) {
-        let mut queue = self.queue.lock();
-        if let Some(viewer) = queue.current.take() {
-            queue.answers.insert(viewer, (request, text));
-        }
+impl Queue {
+    /// The next request in turn.
+    fn next(&mut self) -> Option<HelmRequest> {
+        let after = self.requests.range(self.last + 1..).next().or_else(|| self.requests.iter().next());
+        let viewer = *after?.0;
+        (self.last, self.current) = (viewer, Some(viewer));
+        self.requests.remove(&viewer)
     }
 }
 
@@ -153,7 +141,8 @@ mod tests {
             go.send(()).unwrap();
         }
         // The third is at work only after the second was handed out.
-        let kept: Vec<u64> = helms.0.queue.lock().answers.keys().copied().filter(|viewer| *viewer < 3).collect();
+        let kept: Vec<u64> =
+            helms.0.visit(|queue| queue.answers.keys().copied().filter(|viewer| *viewer < 3).collect());
         assert_eq!(kept, [2]);
     }
 }

@@ -86,7 +86,7 @@ impl Playback {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::clock;
+    use bus::clock;
 
     #[test]
     fn it_plays_by_the_clock_to_the_end_and_then_from_the_beginning() {

@@ -4,11 +4,12 @@ use super::SharedReplay;
 use super::helm_thread::HelmRequest;
 use super::playback::Playback;
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
-use crate::page::request::{PageCommand, PageRequest};
+use crate::page::request::PageRequest;
 use crate::page::view::{
     Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, Outgoing, SEND_INTERVAL, TRAIL_S, TRAIL_STEP_S, Viewer,
 };
 use game::external::GatewayStatus;
+use game::message::Control;
 use game::{SimTime, VehicleId};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -231,9 +232,9 @@ impl Viewer for PageViewer {
                     (self.requested, self.estimated) = (None, None);
                 }
             }
-            PageRequest::Control { what: PageCommand::Pause } => self.playback.pause(now),
-            PageRequest::Control { what: PageCommand::Resume } => self.play(now),
-            PageRequest::Control { what: PageCommand::Step } => self.step(1, now),
+            PageRequest::Control { what: Control::Pause } => self.playback.pause(now),
+            PageRequest::Control { what: Control::Resume } => self.play(now),
+            PageRequest::Control { what: Control::Step } => self.step(1, now),
             PageRequest::Step { by } => self.step(*by, now),
             PageRequest::Seek { t_s } if t_s.is_finite() => self.jump(SimTime::from_s(*t_s), now),
             PageRequest::Speed { factor } if factor.is_none_or(|factor| factor.is_finite() && factor > 0.0) => {
