@@ -46,6 +46,5 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             Err(error) => screen::remark(&format!("{error:#}")),
         }
     }
-    page.close();
     Ok(ExitCode::SUCCESS)
 }

@@ -22,14 +22,7 @@ pub enum Delivery {
 }
 
 /// Something declared that lasts as long as this is kept.
-pub struct Declaration(#[expect(dead_code, reason = "kept for its drop")] Kept);
-
-#[expect(dead_code, reason = "kept for their drop")]
-enum Kept {
-    Subscriber(zenoh::pubsub::Subscriber<()>),
-    Queryable(zenoh::query::Queryable<()>),
-    Token(zenoh::liveliness::LivelinessToken),
-}
+pub struct Declaration(#[expect(dead_code, reason = "kept for its drop")] Box<dyn Send + Sync>);
 
 /// A node's session.
 #[derive(Clone)]
@@ -136,7 +129,7 @@ impl Bus {
         let callback = move |sample: zenoh::sample::Sample| take(&sample.payload().to_bytes());
         let builder = self.session.declare_subscriber(key.clone()).allowed_origin(origin);
         let subscriber = builder.callback(callback).wait();
-        Ok(Declaration(Kept::Subscriber(subscriber.map_err(failed("subscribe to", &key))?)))
+        Ok(Declaration(Box::new(subscriber.map_err(failed("subscribe to", &key))?)))
     }
 
     /// Calls `take` with every query at `key`.
@@ -149,7 +142,7 @@ impl Bus {
             take(Query { query, payload });
         };
         let queryable = self.session.declare_queryable(key.clone()).callback(callback).wait();
-        Ok(Declaration(Kept::Queryable(queryable.map_err(failed("answer at", &key))?)))
+        Ok(Declaration(Box::new(queryable.map_err(failed("answer at", &key))?)))
     }
 
     /// Asks at `key`; gives the first answer that comes within `limit`.
@@ -169,7 +162,7 @@ impl Bus {
     /// [`BusError`] if the session is closed.
     pub fn show_alive(&self, key: String) -> Result<Declaration, BusError> {
         let token = self.session.liveliness().declare_token(key.clone()).wait();
-        Ok(Declaration(Kept::Token(token.map_err(failed("be alive as", &key))?)))
+        Ok(Declaration(Box::new(token.map_err(failed("be alive as", &key))?)))
     }
 
     /// Calls `take` with the key of every node under `key` that comes (`true`) or goes, beginning with those that are there.
@@ -185,7 +178,7 @@ impl Bus {
             take(sample.key_expr().as_str(), sample.kind() == SampleKind::Put);
         };
         let watch = self.session.liveliness().declare_subscriber(key.clone()).history(true).callback(callback);
-        Ok(Declaration(Kept::Subscriber(watch.wait().map_err(failed("watch", &key))?)))
+        Ok(Declaration(Box::new(watch.wait().map_err(failed("watch", &key))?)))
     }
 
     /// The keys of all nodes under `key` that are there now.

@@ -74,7 +74,7 @@ pub enum PageError {
     Begin(std::io::Error),
 }
 
-/// A web server in a thread of its own.
+/// A web server in a thread of its own; dropped, it closes the connections to all pages.
 pub struct Page {
     address: SocketAddr,
     shown: Option<watch::Sender<Option<Arc<dyn View>>>>,
@@ -138,11 +138,6 @@ impl Page {
             shown.send_replace(Some(show));
         }
     }
-
-    /// Closes the connections to all pages.
-    pub fn close(self) {
-        drop(self);
-    }
 }
 
 impl Drop for Page {
@@ -192,6 +187,5 @@ mod tests {
         let first = open("127.0.0.1:0", None).expect("any port");
         let again = open(&first.address().to_string(), None);
         assert!(matches!(again, Err(PageError::Listen { .. })));
-        first.close();
     }
 }

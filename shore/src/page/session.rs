@@ -2,7 +2,7 @@
 
 use super::message::{Mode, PageMessage};
 use super::request::PageRequest;
-use super::view::{Access, Budget, Outgoing, View, Viewer};
+use super::view::{Access, Budget, Outgoing, Viewer};
 use std::collections::VecDeque;
 use std::time::Instant;
 
@@ -29,14 +29,13 @@ pub(super) struct PageSession {
 
 impl PageSession {
     /// Begins to show something to a page.
-    pub(super) fn new(show: &dyn View, access: Access) -> PageSession {
-        let viewer = show.open_viewer(access);
+    pub(super) fn new(viewer: Box<dyn Viewer>, access: Access) -> PageSession {
         PageSession { viewer, access, undrawn: 0, unconfirmed: 0, pings: (0, 0), refusals: VecDeque::new() }
     }
 
-    /// Shows another view. Frames that were sent stay sent.
-    pub(super) fn show(&mut self, show: &dyn View) {
-        self.viewer = show.open_viewer(self.access);
+    /// Shows something else. Frames that were sent stay sent.
+    pub(super) fn show(self, viewer: Box<dyn Viewer>) -> PageSession {
+        PageSession { viewer, ..self }
     }
 
     /// A text message from the page.
@@ -121,32 +120,16 @@ impl PageSession {
 
 #[cfg(test)]
 mod tests {
-    use super::super::view::Changes;
     use super::*;
     use bus::clock;
     use proptest::prelude::*;
     use std::sync::{Arc, Mutex};
 
-    /// A show with a frame for every question whether there is one, which notes what it is asked.
-    struct TestView {
-        mode: Mode,
-        news: Changes,
-        asked: Arc<Mutex<Vec<PageRequest>>>,
-    }
-
+    /// A viewer with a frame for every question whether there is one, which notes what it is asked.
     struct TestViewer {
         mode: Mode,
         asked: Arc<Mutex<Vec<PageRequest>>>,
         frames: u8,
-    }
-
-    impl View for TestView {
-        fn open_viewer(&self, _: Access) -> Box<dyn Viewer> {
-            Box::new(TestViewer { mode: self.mode, asked: Arc::clone(&self.asked), frames: 0 })
-        }
-        fn news(&self) -> &Changes {
-            &self.news
-        }
     }
 
     impl Viewer for TestViewer {
@@ -169,8 +152,8 @@ mod tests {
 
     fn session(mode: Mode, rights: bool) -> (PageSession, Arc<Mutex<Vec<PageRequest>>>) {
         let asked = Arc::new(Mutex::new(vec![]));
-        let view = TestView { mode, news: Changes::default(), asked: Arc::clone(&asked) };
-        (PageSession::new(&view, Access { rights }), asked)
+        let viewer = TestViewer { mode, asked: Arc::clone(&asked), frames: 0 };
+        (PageSession::new(Box::new(viewer), Access { rights }), asked)
     }
 
     #[test]

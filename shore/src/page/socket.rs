@@ -49,14 +49,14 @@ pub(super) async fn serve(socket: WebSocket, mut shown: Shown, access: Access, _
     let mut session: Option<PageSession> = None;
     let end = loop {
         let show = shown.borrow_and_update().clone();
-        let ended = match (show, &mut session) {
-            (None, _) => socket.wait(&mut shown).await,
-            (Some(show), Some(session)) => {
-                session.show(&*show);
-                socket.run(&mut shown, show.news(), session).await
-            }
-            (Some(show), session) => {
-                let session = session.insert(PageSession::new(&*show, access));
+        let ended = match show {
+            None => socket.wait(&mut shown).await,
+            Some(show) => {
+                let viewer = show.open_viewer(access);
+                let session = match session.take() {
+                    Some(before) => session.insert(before.show(viewer)),
+                    None => session.insert(PageSession::new(viewer, access)),
+                };
                 socket.run(&mut shown, show.news(), session).await
             }
         };

@@ -2,7 +2,7 @@
 
 use super::client::{Client, get};
 use super::replay::show;
-use super::{open_viewer, page};
+use super::{open_viewer, page, visit};
 use bus::clock::now;
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -34,7 +34,7 @@ fn the_page_is_served_under_its_own_names_and_sealed() {
         }
         assert!(status != 403 || answer.contains("not known as"), "it says why: {answer}");
     }
-    page.close();
+    drop(page);
 }
 
 #[test]
@@ -105,9 +105,8 @@ fn a_request_that_does_not_come_to_its_end_is_not_waited_for() {
 
 #[test]
 fn pages_hear_of_the_end() {
-    let page = page(show(), None, &[]);
-    let mut client = open_viewer(&page);
+    let (page, mut client) = visit(show());
     client.text();
-    page.close();
+    drop(page);
     assert!(client.is_hung_up_on());
 }

@@ -49,23 +49,23 @@ impl Client {
         self.send(r#"{"do":"ack"}"#);
     }
 
-    /// What comes next within a time; nothing if the server has hung up.
-    fn next_within(&mut self, limit: Duration) -> Option<Message> {
+    /// What comes next within a time, if anything does; an error if the server has hung up.
+    fn next_within(&mut self, limit: Duration) -> Result<Option<Message>, Error> {
         let end = now() + limit;
         while now() < end {
             match self.socket.read() {
                 Ok(Message::Ping(_) | Message::Pong(_)) => {}
-                Ok(message) => return Some(message),
+                Ok(message) => return Ok(Some(message)),
                 Err(Error::Io(e)) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
-                Err(_) => return None,
+                Err(e) => return Err(e),
             }
         }
-        None
+        Ok(None)
     }
 
     /// The next message that is one.
     pub(crate) fn next(&mut self) -> Message {
-        self.next_within(LIMIT).expect("something comes in time")
+        self.next_within(LIMIT).expect("it is open").expect("something comes in time")
     }
 
     /// The next text, which must be next of all.
@@ -107,20 +107,18 @@ impl Client {
 
     /// All that comes until it is quiet for a while.
     pub(crate) fn rest(&mut self) -> Vec<Message> {
-        std::iter::from_fn(|| self.next_within(QUIET)).collect()
+        std::iter::from_fn(|| self.next_within(QUIET).ok().flatten()).collect()
     }
 
     /// Whether the server hangs up in time.
     pub(crate) fn is_hung_up_on(&mut self) -> bool {
-        let end = now() + LIMIT;
-        while now() < end {
-            match self.socket.read() {
-                Err(Error::Io(e)) if matches!(e.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+        loop {
+            match self.next_within(LIMIT) {
                 Err(_) => return true,
-                Ok(_) => {}
+                Ok(None) => return false,
+                Ok(Some(_)) => {}
             }
         }
-        false
     }
 }
 

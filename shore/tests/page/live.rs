@@ -2,7 +2,7 @@
 
 use super::client::Client;
 use super::source::{frame, own_boat, report, scenario, seq_of};
-use super::{open_viewer, page};
+use super::{open_viewer, visit};
 use bus::{Bus, Declaration, Delivery, Net, Publisher, Watched};
 use game::codec;
 use game::event::{Event, Logged};
@@ -161,8 +161,7 @@ fn live(port: u16, game: Option<&str>) -> Arc<dyn View> {
 fn meet(file: &str) -> (Sim, Page, Client) {
     let port = port();
     let sim = Sim::open(port, "pond", steered(file));
-    let page = page(live(port, None), None, &[]);
-    let mut client = open_viewer(&page);
+    let (page, mut client) = visit(live(port, None));
     let hello = client.text();
     assert_eq!((&hello["kind"], &hello["mode"], &hello["game"]), (&json!("hello"), &json!("live"), &json!("pond")));
     sim.wait_for_subscribers();
@@ -236,7 +235,7 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
         let refused = client.until("refused", |_| true);
         assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains(why)), "{ask}: {refused}");
     }
-    page.close();
+    drop(page);
     let locked = super::page(live_again(&sim), Some("secret"), &[]);
     let mut observer = open_viewer(&locked);
     assert_eq!(observer.text()["rights"], false);
@@ -253,8 +252,7 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
 fn a_game_in_lockstep_goes_as_fast_as_can_be_if_asked() {
     let port = port();
     let sim = Sim::paced(port, "pond", scenario("pav01_vs_pav01.toml"), "lockstep");
-    let page = page(live(port, None), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(live(port, None));
     client.until("hello", |_| true);
     sim.wait_for_subscribers();
     client.send(r#"{"do":"speed","factor":null}"#);
@@ -348,8 +346,7 @@ fn gateways_tell_and_real_boats_keep_their_pace() {
 #[test]
 fn a_game_that_goes_is_gone_and_the_next_is_another() {
     let port = port();
-    let page = page(live(port, None), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(live(port, None));
     assert_eq!(client.rest(), [], "there is no game yet");
     let first = Sim::open(port, "pond", scenario("pav01_vs_pav01.toml"));
     assert_eq!(client.until("hello", |_| true)["game"], "pond");

@@ -29,6 +29,13 @@ fn page(show: Arc<dyn View>, token: Option<&str>, hosts: &[&str]) -> Page {
     page
 }
 
+/// A server on a free port that shows this, and a page that looks at it.
+fn visit(show: Arc<dyn View>) -> (Page, Client) {
+    let page = page(show, None, &[]);
+    let client = open_viewer(&page);
+    (page, client)
+}
+
 /// A page that looks at it.
 fn open_viewer(page: &Page) -> Client {
     Client::connect(page.address(), "/ws", &[]).expect("all may look")

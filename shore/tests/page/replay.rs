@@ -1,7 +1,7 @@
 //! A recording, played by pages.
 
 use super::source::{Rememberer, recorded, seq_of, two_minutes};
-use super::{open_viewer, page};
+use super::{open_viewer, page, visit};
 use bus::clock;
 use game::message::Control;
 use proptest::prelude::*;
@@ -17,8 +17,7 @@ pub(crate) fn show() -> Arc<dyn View> {
 
 #[test]
 fn a_replay_says_hello_tells_all_events_and_stands_at_the_beginning() {
-    let page = page(show(), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(show());
     let hello = client.text();
     assert_eq!((&hello["kind"], &hello["protocol"]), (&json!("hello"), &json!(1)));
     assert_eq!((&hello["mode"], &hello["game"]), (&json!("replay"), &json!("made_up")));
@@ -38,8 +37,7 @@ fn a_replay_says_hello_tells_all_events_and_stands_at_the_beginning() {
 
 #[test]
 fn seeking_brings_the_past_and_the_moment() {
-    let page = page(show(), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(show());
     client.frame();
     client.ack();
     client.send(r#"{"do":"seek","t_s":100.04}"#);
@@ -66,8 +64,7 @@ fn seeking_brings_the_past_and_the_moment() {
 
 #[test]
 fn it_plays_as_fast_as_asked_and_to_the_end() {
-    let page = page(show(), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(show());
     client.send(r#"{"do":"speed","factor":50}"#);
     client.until("player", |playback| playback["speed"] == 50.0);
     client.send(r#"{"do":"seek","t_s":100}"#);
@@ -95,8 +92,7 @@ fn each_page_has_a_player_of_its_own() {
 
 #[test]
 fn a_selected_boat_tells_what_its_helm_thought_and_where_it_believed_to_be() {
-    let page = page(show(), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(show());
     client.send(r#"{"do":"seek","t_s":10}"#);
     client.send(r#"{"do":"select","vehicle":"red_one","functions":true}"#);
     let helm = client.until("helm", |helm| helm["report"]["mode"] == "sailing:100");
@@ -114,8 +110,7 @@ fn a_selected_boat_tells_what_its_helm_thought_and_where_it_believed_to_be() {
 
 #[test]
 fn what_a_recording_cannot_do_is_refused() {
-    let page = page(show(), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(show());
     for (ask, what) in [
         (r#"{"do":"control","what":"e_stop"}"#, "control"),
         (r#"{"do":"drive","vehicle":"blue_one","course_deg":0,"speed_m_s":1}"#, "drive"),
@@ -128,8 +123,7 @@ fn what_a_recording_cannot_do_is_refused() {
 
 #[test]
 fn a_recording_without_frames_is_shown_too() {
-    let page = page(Arc::new(ReplayView::new(recorded(0), None)), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(Arc::new(ReplayView::new(recorded(0), None)));
     for ask in [r#"{"do":"control","what":"resume"}"#, r#"{"do":"step","by":1}"#, r#"{"do":"seek","t_s":9}"#] {
         client.send(ask);
     }

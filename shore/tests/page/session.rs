@@ -2,7 +2,7 @@
 
 use super::replay::show;
 use super::source::seq_of;
-use super::{empty_page, open_viewer, page};
+use super::{empty_page, open_viewer, page, visit};
 use shore::page::{Access, Budget, Changes, Mode, Outgoing, PageRequest, View, Viewer};
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
@@ -50,8 +50,7 @@ fn frames(messages: &[Message]) -> Vec<u64> {
 
 #[test]
 fn a_page_that_draws_nothing_gets_two_frames() {
-    let page = page(show(), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(show());
     client.send(r#"{"do":"control","what":"resume"}"#);
     let messages: Vec<Message> = std::iter::from_fn(|| Some(client.next())).take(20).collect();
     assert_eq!(frames(&messages).len(), 2, "while it plays for seconds");
@@ -66,8 +65,7 @@ fn a_page_that_draws_nothing_gets_two_frames() {
 #[test]
 fn a_page_is_heard_while_it_takes_nothing() {
     let (asked, asks) = channel();
-    let page = page(Arc::new(Talker(asked, Changes::default())), None, &[]);
-    let mut client = open_viewer(&page);
+    let (_page, mut client) = visit(Arc::new(Talker(asked, Changes::default())));
     // The lines between are full when the page has read nothing for a while.
     assert!(asks.recv_timeout(Duration::from_secs(1)).is_err());
     for ask in [r#"{"do":"control","what":"halt"}"#, r#"{"do":"control","what":"e_stop"}"#] {
@@ -81,8 +79,7 @@ fn a_page_is_heard_while_it_takes_nothing() {
 
 #[test]
 fn another_show_begins_with_a_hello() {
-    let page = page(show(), None, &[]);
-    let mut client = open_viewer(&page);
+    let (page, mut client) = visit(show());
     client.frame();
     page.show(show());
     client.until("hello", |_| true);

@@ -111,7 +111,7 @@ impl GameWatcher {
                 session.expire_steering(&self.shared);
                 session.update_picture_subscriptions(&self.shared);
             }
-            self.shared.state().end();
+            self.shared.state.lock().end();
             self.shared.news.send_replace(());
             left.visit(|left| *left = true);
         });
@@ -126,7 +126,7 @@ impl GameSession {
         let sim = SimWatch::open(&bus, &game.name, PATIENCE)?;
         let control = bus.publisher(topic::control(&game.name), Delivery::Wait)?;
         let generation = {
-            let mut state = shared.state();
+            let mut state = shared.state.lock();
             state.begin(Arc::clone(&game));
             state.generation
         };
@@ -155,7 +155,7 @@ impl GameSession {
     /// Publishes set-points of steered boats, stamped with the newest frame.
     fn steer(&mut self, shared: &SharedState) {
         let (steering, stamp) = {
-            let mut state = shared.state();
+            let mut state = shared.state.lock();
             (std::mem::take(&mut state.steering), state.frames.stamp)
         };
         let stamp = Stamp { version: PolicyProposal::VERSION, ..stamp };
@@ -173,7 +173,7 @@ impl GameSession {
 
     /// Releases the steering of silent pages.
     fn expire_steering(&self, shared: &SharedState) {
-        if shared.state().steering_locks.expire(clock::now()) {
+        if shared.state.lock().steering_locks.expire(clock::now()) {
             shared.news.send_replace(());
         }
     }
@@ -181,7 +181,7 @@ impl GameSession {
     /// Subscribes to the pictures of the teams whose boats are selected, and no others.
     fn update_picture_subscriptions(&mut self, shared: &Arc<SharedState>) {
         let (wanted, generation) = {
-            let mut state = shared.state();
+            let mut state = shared.state.lock();
             state.forget_unwanted();
             (state.wanted(), state.generation)
         };
@@ -209,7 +209,7 @@ struct Subscriptions {
 impl Subscriptions {
     /// Updates the state, if it is still that of this game.
     fn update(&self, change: impl FnOnce(&mut super::live_state::LiveState)) {
-        let mut state = self.shared.state();
+        let mut state = self.shared.state.lock();
         if state.generation == self.generation {
             change(&mut state);
             drop(state);
@@ -238,7 +238,7 @@ impl Subscriptions {
         bus.subscribe(topic::status(&game.name, &name), move |bytes| {
             let status = serde_json::from_slice::<GatewayStatus>(bytes).ok();
             if let Some(status) = status.filter(|status| status.vehicle == name) {
-                self.update(|state| state.take_status(vehicle, status));
+                self.update(|state| drop(state.statuses.insert(vehicle, Arc::new(status))));
             }
         })
     }

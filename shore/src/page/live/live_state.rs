@@ -30,13 +30,6 @@ pub(super) struct LiveGame {
     pub(super) chart: Value,
 }
 
-/// Something with a number that rises with every new one.
-#[derive(Clone, Debug)]
-pub(super) struct Numbered<T> {
-    pub(super) number: u64,
-    pub(super) value: T,
-}
-
 /// The report of a helm, encoded for pages.
 #[derive(Clone, Debug)]
 pub(super) struct HelmMessage {
@@ -45,8 +38,8 @@ pub(super) struct HelmMessage {
     pub(super) full: Option<String>,
 }
 
-/// By vehicle what came last of something.
-type Latest<T> = BTreeMap<VehicleId, Numbered<T>>;
+/// By vehicle what came last of something. What a page was sent is told from what is new by its place in memory.
+pub(super) type Latest<T> = BTreeMap<VehicleId, Arc<T>>;
 
 /// What is known.
 #[derive(Default)]
@@ -71,8 +64,6 @@ pub(super) struct LiveState {
     pub(super) steering: BTreeMap<VehicleId, (f64, f64)>,
     /// By page: the selected boat, and whether utilities are wanted.
     pub(super) selected: BTreeMap<u64, (VehicleId, bool)>,
-    /// Numbers messages.
-    counter: u64,
 }
 
 impl LiveGame {
@@ -111,7 +102,6 @@ impl LiveState {
             generation: self.generation + 1,
             run_news: self.run_news + 1,
             event_log: EventLog::new(),
-            counter: self.counter,
             ..LiveState::default()
         };
     }
@@ -158,22 +148,8 @@ impl LiveState {
     pub(super) fn take_picture(&mut self, picture: &Picture) {
         let selected: Vec<VehicleId> = self.selected.values().map(|(vehicle, _)| *vehicle).collect();
         for boat in picture.own.iter().filter(|boat| selected.contains(&boat.vehicle)) {
-            self.counter += 1;
-            let value = (*boat, picture.stamp.valid_ns);
-            self.estimates.insert(boat.vehicle, Numbered { number: self.counter, value });
+            self.estimates.insert(boat.vehicle, Arc::new((*boat, picture.stamp.valid_ns)));
         }
-    }
-
-    /// The status of a real boat's gateway.
-    pub(super) fn take_status(&mut self, vehicle: VehicleId, status: GatewayStatus) {
-        self.counter += 1;
-        self.statuses.insert(vehicle, Numbered { number: self.counter, value: status });
-    }
-
-    /// What a helm thinks.
-    pub(super) fn take_helm(&mut self, vehicle: VehicleId, sent: HelmMessage) {
-        self.counter += 1;
-        self.helms.insert(vehicle, Numbered { number: self.counter, value: sent });
     }
 
     /// A page selects a boat's helm, with utilities or without.

@@ -17,7 +17,7 @@ use game::message::Control;
 use game::topic::GameName;
 use game_watcher::GameWatcher;
 use live_state::LiveState;
-use parking_lot::{Mutex, MutexGuard};
+use parking_lot::Mutex;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
@@ -36,6 +36,7 @@ pub struct LiveView {
 
 /// What the threads and all viewers share.
 struct SharedState {
+    /// To be locked for moments only.
     state: Mutex<LiveState>,
     news: Changes,
     commands: SyncSender<Command>,
@@ -95,11 +96,6 @@ impl SharedState {
             pages: AtomicU64::new(1),
             is_closing: AtomicBool::new(false),
         }
-    }
-
-    /// The state, to be locked for moments only.
-    fn state(&self) -> MutexGuard<'_, LiveState> {
-        self.state.lock()
     }
 
     fn is_closing(&self) -> bool {

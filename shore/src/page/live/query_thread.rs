@@ -70,12 +70,12 @@ impl QueryThread<'_> {
         let mut schedule = QuerySchedule::default();
         while !left.wait(ROUND, |left| *left) {
             self.ask_events();
-            let wanted = self.shared.state().wanted();
+            let wanted = self.shared.state.lock().wanted();
             let start = clock::now();
             if let Some((vehicle, functions)) = schedule.next(&wanted, start) {
                 self.ask_helm(vehicle, functions);
                 let end = clock::now();
-                let is_going = self.shared.state().phase(end) == "playing";
+                let is_going = self.shared.state.lock().phase(end) == "playing";
                 schedule.update((vehicle, functions), start, end, is_going);
             }
         }
@@ -83,14 +83,14 @@ impl QueryThread<'_> {
 
     /// All that has happened, where something of it was missed.
     fn ask_events(&self) {
-        if !self.shared.state().event_log.should_query(clock::now()) {
+        if !self.shared.state.lock().event_log.should_query(clock::now()) {
             return;
         }
         let answer = self.bus.ask(&topic::events(&self.game.name), Vec::new(), EVENTS_ANSWER);
         // An older sim does not answer; then frames are all there is.
         let events = answer.ok().flatten().and_then(|bytes| serde_json::from_slice::<Vec<EventOutcome>>(&bytes).ok());
         if let Some(events) = events {
-            self.shared.state().event_log.replace(events);
+            self.shared.state.lock().event_log.replace(events);
             self.shared.news.send_replace(());
         }
     }
@@ -109,7 +109,7 @@ impl QueryThread<'_> {
         // Long work with a long report, for which the state is not kept from others.
         let full = functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
         let light = helm_text(self.game.scenario(), vehicle, false, answer);
-        self.shared.state().take_helm(vehicle, HelmMessage { light, full });
+        self.shared.state.lock().helms.insert(vehicle, Arc::new(HelmMessage { light, full }));
         self.shared.news.send_replace(());
     }
 }

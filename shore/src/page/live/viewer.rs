@@ -1,13 +1,15 @@
 //! One page's view of a running game.
 
-use super::live_state::{LiveGame, LiveState};
+use super::live_state::{HelmMessage, Latest, LiveGame, LiveState};
 use super::{Command, SharedState};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
 use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
 use axum::body::Bytes;
-use game::VehicleId;
+use game::external::GatewayStatus;
 use game::message::Control;
+use game::picture::OwnBoat;
+use game::{SimTime, VehicleId};
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
@@ -32,9 +34,9 @@ struct Sent {
     run: Option<(u64, Instant)>,
     /// Which page steers which boat.
     steering_locks: BTreeMap<VehicleId, &'static str>,
-    statuses: BTreeMap<VehicleId, u64>,
-    helm: u64,
-    estimate: Option<(u64, Instant)>,
+    statuses: Latest<GatewayStatus>,
+    helm: Option<Arc<HelmMessage>>,
+    estimate: Option<(Arc<(OwnBoat, SimTime)>, Instant)>,
     /// The newest frame; 0 is none.
     frame: u64,
     /// The frames of the past that find before it, once there is one.
@@ -58,14 +60,14 @@ impl PageViewer {
 
     fn select(&mut self, vehicle: Option<&str>, functions: bool) -> Result<(), String> {
         self.selection = vehicle.map(|name| (name.to_owned(), functions));
-        (self.sent.helm, self.sent.estimate) = (0, None);
-        let mut state = self.shared.state();
+        (self.sent.helm, self.sent.estimate) = (None, None);
+        let mut state = self.shared.state.lock();
         state.selected.remove(&self.page);
         state.select(self.page, self.selection.as_ref())
     }
 
     fn set_speed(&self, factor: Option<f64>) -> Result<(), String> {
-        let state = self.shared.state();
+        let state = self.shared.state.lock();
         let game = state.on()?;
         if game.has_real_boats() {
             return Err("a game with real boats keeps its pace".to_owned());
@@ -83,7 +85,7 @@ impl PageViewer {
     }
 
     fn drive(&self, name: &str, course_deg: f64, speed_m_s: f64, now: Instant) -> Result<(), String> {
-        let mut state = self.shared.state();
+        let mut state = self.shared.state.lock();
         let game = state.on()?;
         let scenario = game.scenario();
         let vehicle = scenario.vehicle_named(name).map_err(|e| e.to_string())?;
@@ -110,7 +112,7 @@ impl PageViewer {
     }
 
     fn release(&self, name: &str) -> Result<(), String> {
-        let mut state = self.shared.state();
+        let mut state = self.shared.state.lock();
         let vehicle = state.on()?.scenario().vehicle_named(name).map_err(|e| e.to_string())?;
         let had = state.steering_locks.release(vehicle, self.page);
         drop(state);
@@ -133,7 +135,7 @@ impl Viewer for PageViewer {
             PageRequest::Speed { factor } | PageRequest::Control { what: Control::Speed(factor) } => {
                 self.set_speed(*factor)
             }
-            PageRequest::Control { what } => self.control(&self.shared.state(), *what),
+            PageRequest::Control { what } => self.control(&self.shared.state.lock(), *what),
             PageRequest::Drive { vehicle, course_deg, speed_m_s } => self.drive(vehicle, *course_deg, *speed_m_s, now),
             PageRequest::LetGo { vehicle } => self.release(vehicle),
             PageRequest::Step { .. } | PageRequest::Seek { .. } => {
@@ -143,7 +145,7 @@ impl Viewer for PageViewer {
     }
 
     fn next_message(&mut self, now: Instant, budget: Budget) -> Option<Outgoing> {
-        let mut state = self.shared.state();
+        let mut state = self.shared.state.lock();
         let game = state.game.clone()?;
         if self.sent.generation != state.generation {
             self.sent = Sent { generation: state.generation, ..Sent::default() };
@@ -169,14 +171,14 @@ impl Viewer for PageViewer {
 
     fn due(&self, now: Instant) -> Option<Instant> {
         let run = self.sent.run.map(|(_, at)| at + SEND_INTERVAL);
-        let estimate = self.sent.estimate.map(|(_, at)| at + ESTIMATE_INTERVAL).filter(|at| *at > now);
+        let estimate = self.sent.estimate.as_ref().map(|(_, at)| *at + ESTIMATE_INTERVAL).filter(|at| *at > now);
         run.into_iter().chain(estimate).min()
     }
 }
 
 impl Drop for PageViewer {
     fn drop(&mut self) {
-        let mut state = self.shared.state();
+        let mut state = self.shared.state.lock();
         state.selected.remove(&self.page);
         state.steering_locks.release_all(self.page);
         drop(state);
@@ -230,31 +232,32 @@ impl Sent {
     }
 
     fn next_status(&mut self, state: &LiveState, game: &LiveGame) -> Option<String> {
-        let is_news = |sent: &BTreeMap<VehicleId, u64>, vehicle, number| sent.get(vehicle) != Some(number);
-        let (vehicle, status) = state.statuses.iter().find(|(v, status)| is_news(&self.statuses, v, &status.number))?;
-        self.statuses.insert(*vehicle, status.number);
-        Some(PageMessage::Status { vehicle: game.name_of(*vehicle), status: &status.value }.json())
+        let is_sent = |vehicle, status| self.statuses.get(vehicle).is_some_and(|sent| Arc::ptr_eq(sent, status));
+        let (vehicle, status) = state.statuses.iter().find(|(vehicle, status)| !is_sent(vehicle, status))?;
+        self.statuses.insert(*vehicle, Arc::clone(status));
+        Some(PageMessage::Status { vehicle: game.name_of(*vehicle), status }.json())
     }
 
     /// What is known of the boat that the page has selected.
     fn next_selected(&mut self, state: &LiveState, game: &LiveGame, page: u64, now: Instant) -> Option<String> {
         let (vehicle, functions) = *state.selected.get(&page)?;
-        if let Some(helm) = state.helms.get(&vehicle).filter(|helm| helm.number != self.helm) {
-            let text = if functions { helm.value.full.as_ref() } else { Some(&helm.value.light) };
+        let is_sent = |helm: &Arc<HelmMessage>| self.helm.as_ref().is_some_and(|sent| Arc::ptr_eq(sent, helm));
+        if let Some(helm) = state.helms.get(&vehicle).filter(|helm| !is_sent(helm)) {
+            let text = if functions { helm.full.as_ref() } else { Some(&helm.light) };
             if let Some(text) = text {
-                self.helm = helm.number;
+                self.helm = Some(Arc::clone(helm));
                 return Some(text.clone());
             }
         }
         let estimate = state.estimates.get(&vehicle)?;
-        let is_sent = |(number, at): (u64, Instant)| {
-            number == estimate.number || now.saturating_duration_since(at) < ESTIMATE_INTERVAL
+        let is_sent = |(sent, at): &(Arc<_>, Instant)| {
+            Arc::ptr_eq(sent, estimate) || now.saturating_duration_since(*at) < ESTIMATE_INTERVAL
         };
-        if self.estimate.is_some_and(is_sent) {
+        if self.estimate.as_ref().is_some_and(is_sent) {
             return None;
         }
-        self.estimate = Some((estimate.number, now));
-        let (boat, at) = &estimate.value;
+        self.estimate = Some((Arc::clone(estimate), now));
+        let (boat, at) = &**estimate;
         Some(PageMessage::estimate(game.name_of(vehicle), boat, *at).json())
     }
 
@@ -273,7 +276,6 @@ impl Sent {
 
 #[cfg(test)]
 mod tests {
-    use super::super::live_state::HelmMessage;
     use super::*;
     use bus::clock;
     use game::message::{Frame, GameInfo};
@@ -289,14 +291,15 @@ mod tests {
         let (scenario, now) = (game::scenario::load(&file).unwrap(), clock::now());
         let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };
         let name = GameName::new("pond").unwrap();
-        shared.state().begin(Arc::new(LiveGame::new(name, info, &Water::default())));
+        shared.state.lock().begin(Arc::new(LiveGame::new(name, info, &Water::default())));
         let mut viewer = PageViewer::new(Arc::clone(&shared), Access { rights: false }, 1);
         let mut say = |budget| std::iter::from_fn(|| viewer.next_message(now, budget)).collect::<Vec<Outgoing>>();
         say(Budget::None);
-        shared.state().select(1, Some(&("red_one".to_owned(), false))).unwrap();
+        shared.state.lock().select(1, Some(&("red_one".to_owned(), false))).unwrap();
         let light = "what it thinks".to_owned();
-        shared.state().take_helm(VehicleId(2), HelmMessage { light: light.clone(), full: None });
-        shared.state().frames.take(&Frame::default(), &[], now);
+        let helm = HelmMessage { light: light.clone(), full: None };
+        shared.state.lock().helms.insert(VehicleId(2), Arc::new(helm));
+        shared.state.lock().frames.take(&Frame::default(), &[], now);
         assert_eq!(say(Budget::None), []);
         assert_eq!(say(Budget::Frames), [Outgoing::now(&[])]);
         assert_eq!(say(Budget::All), [Outgoing::Text(light)]);

@@ -23,12 +23,10 @@ const FRAME_AGAIN: Duration = Duration::from_millis(10);
 /// One page's view of a recording.
 pub(super) struct PageViewer {
     shared: Arc<SharedReplay>,
-    access: Access,
     viewer: u64,
     playback: Playback,
-    greeted: bool,
-    /// Whether the page was given all events.
-    sent_events: bool,
+    /// What the page is told first: what it looks at, and all events.
+    greeting: VecDeque<String>,
     /// The playback as it was sent last, and when.
     sent_playback: Option<(Playback, Instant)>,
     /// The frame that was shown last.
@@ -50,14 +48,14 @@ impl PageViewer {
     pub(super) fn new(shared: Arc<SharedReplay>, access: Access, viewer: u64) -> PageViewer {
         let times = shared.source.frame_times();
         let (from, to) = (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
-        let gateways = shared.source.info().scenario.externals().map(|vehicle| (vehicle, None)).collect();
+        let (info, game) = (shared.source.info(), &shared.source.header().game);
+        let gateways = info.scenario.externals().map(|vehicle| (vehicle, None)).collect();
+        let hello = PageMessage::hello(&info.version, Mode::Replay, access.rights, game, &shared.chart);
+        let events = shared.source.events.iter().map(EventMessage::new).collect();
         PageViewer {
-            shared,
-            access,
             viewer,
             playback: Playback::new(from, to),
-            greeted: false,
-            sent_events: false,
+            greeting: VecDeque::from([hello.json(), PageMessage::Events { reset: true, events }.json()]),
             sent_playback: None,
             shown: None,
             past: VecDeque::new(),
@@ -67,6 +65,7 @@ impl PageViewer {
             gateways,
             looked: None,
             statuses: VecDeque::new(),
+            shared,
         }
     }
 
@@ -251,21 +250,8 @@ impl Viewer for PageViewer {
     }
 
     fn next_message(&mut self, now: Instant, budget: Budget) -> Option<Outgoing> {
-        let source = Arc::clone(&self.shared.source);
-        if !std::mem::replace(&mut self.greeted, true) {
-            let version = &source.info().version;
-            let hello = PageMessage::hello(
-                version,
-                Mode::Replay,
-                self.access.rights,
-                &source.header().game,
-                &self.shared.chart,
-            );
-            return Some(Outgoing::Text(hello.json()));
-        }
-        if !std::mem::replace(&mut self.sent_events, true) {
-            let events = source.events.iter().map(EventMessage::new).collect();
-            return Some(Outgoing::Text(PageMessage::Events { reset: true, events }.json()));
+        if let Some(text) = self.greeting.pop_front() {
+            return Some(Outgoing::Text(text));
         }
         if let Some(said) = self.next_playback(now) {
             return Some(said);
