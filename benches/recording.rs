@@ -15,24 +15,7 @@ fn main() {
         return;
     }
     let dir = tempfile::tempdir().expect("a temporary directory");
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
-    let game = dir.path().join("twenty.toml");
-    let team = |name: &str| {
-        let strategy = root.join("strategies/pav01.toml");
-        format!(
-            "[[team]]\nname = \"{name}\"\nstrategy = \"{}\"\n[[fleet]]\nteam = \"{name}\"\nname = \"{name}_{{}}\"\n\
-             count = 20\nspawn = {{}}\n",
-            strategy.display()
-        )
-    };
-    let text = format!(
-        "field = \"{0}/fields/open_800x400.toml\"\nrules = \"{0}/rules/aquaticus_2023.toml\"\n\
-         boat = \"{0}/boats/surveyor_m1_8.toml\"\nduration_s = 60\n{1}{2}",
-        root.display(),
-        team("blue"),
-        team("red")
-    );
-    std::fs::write(&game, text).expect("a file can be written");
+    let game = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/twenty.toml");
     println!("20 against 20 for 60 s in lockstep, median of {ROUNDS} games each, taking turns");
     println!("| agent processes | without, x real time | with a recording | with over without | MB recorded |");
     println!("|---|---|---|---|---|");

@@ -1,8 +1,6 @@
 //! Real boats: a gateway of the test's own brings one, sails it by the orders that come, and falls silent.
 
-use crate::support::{
-    LIMIT, Sim, based_on, real_attacker, refusal_of, result_of, scenarios, temporary, wait_until, write,
-};
+use crate::support::{LIMIT, Sim, own, refusal_of, result_of, wait_until};
 use bus::{Bus, Declaration, Delivery, Publisher};
 use game::angle::rad_from_compass_deg;
 use game::external::{ExternalOrder, NavReport};
@@ -10,7 +8,6 @@ use game::message::{JoinReply, JoinRequest, Message, Role, Stamp};
 use game::picture::Nav;
 use game::topic::{self, GameName, Part};
 use game::{Order, VehicleId, codec};
-use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -40,9 +37,9 @@ fn join(bus: &Bus, name: &GameName, vehicle: &str) -> JoinReply {
 }
 
 impl Gateway {
-    fn joined(sim: &Sim, file: &Path) -> Gateway {
+    fn joined(sim: &Sim) -> Gateway {
         let (bus, name) = (sim.bus(), sim.name());
-        let scenario = game::scenario::load(file).unwrap_or_else(|e| panic!("{e}"));
+        let scenario = sim.info(&bus).scenario;
         let orders = Arc::new(Mutex::new(Vec::new()));
         let inbox = Arc::clone(&orders);
         let take = move |bytes: &[u8]| inbox.lock().expect("whole").push(codec::decode(bytes).expect("an order"));
@@ -104,15 +101,13 @@ impl Gateway {
 
 #[test]
 fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
-    let dir = temporary();
-    let file = real_attacker(dir.path());
-    let sim = Sim::start(&file, &["--pace", &format!("{FACTOR}x")]);
+    let sim = Sim::start("real_attacker", &["--pace", &format!("{FACTOR}x")]);
     let mut agent = sim.agent(&["blue_one"]);
     let _still = sim.agent(&["red_one"]);
     let waiting = sim.wait_for(|t| t["kind"] == "waiting" && t["agents"].as_array().is_some_and(Vec::is_empty));
     assert_eq!(waiting["gateways"][0], "blue_one", "{waiting}");
 
-    let mut gateway = Gateway::joined(&sim, &file);
+    let mut gateway = Gateway::joined(&sim);
     let other = sim.bus();
     let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
     assert_eq!(join(&other, &gateway.name, "blue_one"), busy, "somebody else brings it");
@@ -153,12 +148,8 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
 
 #[test]
 fn real_boats_are_refused_without_real_time_and_the_error_names_what_to_do() {
-    let dir = temporary();
     let mixed = "scenarios/games/mixed_2v2.toml";
-    let root = scenarios();
-    let entry = |name: &str| format!("[[entry]]\nname = \"{name}\"\nstrategy = \"{root}/strategies/{name}.toml\"\n");
-    let text = format!("game = \"{root}/games/mixed_2v2.toml\"\n{}{}", entry("pav01"), entry("idle"));
-    let tournament = write(dir.path(), "tournament.toml", &text).display().to_string();
+    let tournament = own("tournament_of_real_boats");
     for args in [
         &["run", mixed][..],
         &["run", mixed, "--in-process"],
@@ -174,9 +165,7 @@ fn real_boats_are_refused_without_real_time_and_the_error_names_what_to_do() {
 
 #[test]
 fn a_rehearsal_is_the_game_of_simulated_boats_in_one_process_and_across() {
-    let dir = temporary();
-    let short = |name: &str| based_on(dir.path(), name, "duration_s = 30").display().to_string();
-    let (mixed, simulated) = (short("mixed_2v2"), short("pav01_vs_pav01"));
+    let (mixed, simulated) = (own("mixed_30s"), own("pav01_30s"));
     let want = result_of(&[&simulated, "--in-process"])["digest"].clone();
     assert!(want.is_string());
     assert_eq!(result_of(&[&mixed, "--rehearse", "--in-process"])["digest"], want);

@@ -1,13 +1,10 @@
 //! Nodes that die or fall silent: the game goes on, nobody waits forever.
 
-use crate::support::{FOUR, Process, Sim, long_game, squall, stderr, temporary};
+use crate::support::{FOUR, Process, Sim, squall};
 use std::time::Instant;
 
-/// Patience of these games, s.
-const PATIENCE: &str = "patience_s = 2";
-
 fn game(pace: &str) -> (Sim, Vec<Process>) {
-    Sim::long_with_agents(PATIENCE, &["--pace", pace])
+    Sim::start_with_agents("impatient", &["--pace", pace])
 }
 
 /// They end with an error, and say why.
@@ -73,8 +70,7 @@ fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
     sim.play_on(2.0);
     let (endpoint, name) = (sim.endpoint.clone(), sim.game.clone());
     sim.process.kill();
-    let (dir, args) = (temporary(), ["--listen", &endpoint, "--game", &name]);
-    let next = Sim::start_with(squall(&[]), &long_game(dir.path(), PATIENCE), &args);
+    let next = Sim::start_with(squall(&[]), "impatient", &["--listen", &endpoint, "--game", &name]);
     // Pictures come again: an agent that goes by them alone would stay.
     let _others = FOUR.map(|vehicle| next.agent(&[vehicle]));
     next.wait_for_kind("started");
@@ -85,9 +81,7 @@ fn an_agent_does_not_stay_with_a_sim_that_never_let_it_in() {
 #[test]
 fn a_seat_that_is_taken_stays_taken() {
     let (sim, _agents) = game("lockstep");
-    let output = sim.run(&["agent", "--wait-s", "1", "--vehicle", "blue_one"]);
-    assert!(!output.status.success());
-    let said = stderr(&output);
+    let said = sim.refusal_of(&["agent", "--wait-s", "1", "--vehicle", "blue_one"]);
     assert!(said.contains("blue_one has another agent"), "{said}");
     sim.stop();
 }
@@ -95,9 +89,7 @@ fn a_seat_that_is_taken_stays_taken() {
 #[test]
 fn an_agent_for_an_unknown_vehicle_is_told_which_there_are() {
     let (sim, _agents) = game("lockstep");
-    let output = sim.run(&["agent", "--vehicle", "green_one"]);
-    assert!(!output.status.success());
-    let said = stderr(&output);
+    let said = sim.refusal_of(&["agent", "--vehicle", "green_one"]);
     assert!(said.contains("green_one") && said.contains("blue_one, blue_two, red_one, red_two"), "{said}");
     sim.stop();
 }

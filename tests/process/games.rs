@@ -1,37 +1,23 @@
 //! Whole games: the same bytes in one process and across processes.
 
 use crate::support::{
-    FOUR, LIMIT, Process, Sim, agent, assert_a_game_each, based_on, free_endpoint, game_itself, long_game, refusal_of,
-    result_of, run, scenarios, squall, stdout, temporary, two_fleets, wait_until, write,
+    FOUR, Process, Sim, agent, assert_a_game_each, free_endpoint, game_itself, own, refusal_of, result_of, run, squall,
+    stdout, wait_until,
 };
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Instant;
-
-/// A game in which the seed decides who plays what and where boats start.
-fn seeded_game(dir: &Path) -> PathBuf {
-    let strategy = format!("{}/strategies/pav01_seeded.toml", scenarios());
-    write(dir, "seeded.toml", &format!("duration_s = 300\n{}", two_fleets(3, &strategy)))
-}
 
 #[test]
 fn a_lockstep_game_over_the_network_is_the_game_in_one_process_byte_for_byte() {
-    let dir = temporary();
-    assert_a_game_each(&seeded_game(dir.path()), &["1", "2", "3", "4", "5"]);
+    assert_a_game_each(&own("seeded_3v3"), &["1", "2", "3", "4", "5"]);
 }
 
 #[test]
 fn a_rough_game_with_lossy_links_is_the_same_over_the_network_too() {
-    let dir = temporary();
-    let root = scenarios();
-    let sharing = "sharing = { range_m = 80, view_deg = 270, delay_s = 0.3, noise_m = 1, loss = 0.2, memory_s = 5 }\n";
-    write(dir.path(), "short_sighted.toml", &format!("base = \"{root}/rules/aquaticus_2023.toml\"\n{sharing}"));
-    let more = "rules = \"short_sighted.toml\"\nduration_s = 200";
-    let game = based_on(dir.path(), "pav01_afloat", more).display().to_string();
-    let bay = format!("{root}/seas/bay_fresh_breeze.toml");
+    let (game, bay) = (own("rough"), "scenarios/seas/bay_fresh_breeze.toml");
     let mut digests = Vec::new();
-    for (seed, sea) in [("1", &[][..]), ("2", &[]), ("1", &["--sea", bay.as_str()])] {
+    for (seed, sea) in [("1", &[][..]), ("2", &[]), ("1", &["--sea", bay])] {
         let words = [&[game.as_str(), "--seed", seed], sea].concat();
         let here = game_itself(result_of(&[words.as_slice(), &["--in-process"]].concat()));
         let there = game_itself(result_of(&[words.as_slice(), &["--agents-per-process", "2"]].concat()));
@@ -75,9 +61,7 @@ fn two_runs_at_once_do_not_see_each_other() {
 
 #[test]
 fn a_paced_game_keeps_its_pace() {
-    let dir = temporary();
-    let path = based_on(dir.path(), "pav01_vs_pav01", "duration_s = 20");
-    let result = result_of(&[&path.display().to_string(), "--pace", "4x"]);
+    let result = result_of(&[&own("pav01_20s"), "--pace", "4x"]);
     let wall_s = result["run"]["wall_s"].as_f64().expect("a number");
     // The clock may be late on a busy machine, but never early.
     assert!(wall_s > 20.0 / 4.0 * 0.98, "{wall_s}");
@@ -87,12 +71,10 @@ fn a_paced_game_keeps_its_pace() {
 
 #[test]
 fn agents_may_come_before_the_sim_and_in_any_order() {
-    let dir = temporary();
-    let game = long_game(dir.path(), "");
     let endpoint = free_endpoint();
     let mut agents: Vec<Process> = FOUR.iter().rev().map(|name| agent(&endpoint, "early", &[name])).collect();
     std::thread::sleep(std::time::Duration::from_millis(500));
-    let sim = Sim::start_with(squall(&[]), &game, &["--game", "early", "--listen", &endpoint]);
+    let sim = Sim::start_with(squall(&[]), "long", &["--game", "early", "--listen", &endpoint]);
     sim.wait_for_kind("started");
     sim.play_on(5.0);
     let done = sim.stop();
@@ -104,7 +86,7 @@ fn agents_may_come_before_the_sim_and_in_any_order() {
 
 #[test]
 fn a_mind_may_join_late() {
-    let sim = Sim::long("", &["--join-s", "1"]);
+    let sim = Sim::start("long", &["--join-s", "1"]);
     let _three = sim.agent(&FOUR[..3]);
     sim.wait_for_event("agent_lost", "red_two");
     let _late = sim.agent(&FOUR[3..]);
@@ -113,20 +95,10 @@ fn a_mind_may_join_late() {
     sim.stop();
 }
 
-/// Processes whose command line holds this word.
-fn processes_with(word: &str) -> Vec<String> {
-    let output = Command::new("ps").args(["-eo", "pid,args"]).output().expect("ps is there");
-    let text = stdout(&output);
-    text.lines().filter(|line| line.contains(word) && !line.contains("<defunct>")).map(str::to_owned).collect()
-}
-
 #[test]
 fn nothing_is_left_of_a_run_that_is_ended_early() {
     for signal in ["INT", "TERM", "KILL"] {
-        let dir = temporary();
-        let game = long_game(dir.path(), "");
-        let word = dir.path().display().to_string();
-        let mut command = squall(&["run", &game.display().to_string(), "--pace", "realtime", "--no-record"]);
+        let mut command = squall(&["run", &own("long"), "--pace", "realtime", "--no-record"]);
         command.stdout(Stdio::null()).stderr(Stdio::null());
         let mut run = Process::start(command);
         let mut family = Vec::new();
@@ -137,10 +109,8 @@ fn nothing_is_left_of_a_run_that_is_ended_early() {
         run.signal(signal);
         let status = run.wait();
         assert!(!status.success(), "{signal}: a game that was cut short is no success");
-        let start = Instant::now();
-        while family.iter().any(|pid| Path::new(&format!("/proc/{pid}/exe")).exists()) {
-            assert!(start.elapsed() < LIMIT, "{signal}: still there: {:?}", processes_with(&word));
-        }
+        let is_there = |pid: &u32| Path::new(&format!("/proc/{pid}/exe")).exists();
+        wait_until(&format!("after {signal} all of {family:?} end"), || !family.iter().any(is_there));
     }
 }
 
@@ -152,7 +122,7 @@ fn children_of(pid: u32) -> Vec<u32> {
 
 #[test]
 fn games_on_this_machine_are_listed_and_can_be_watched() {
-    let sim = Sim::long("", &[]);
+    let sim = Sim::start("long", &[]);
     let _agents = sim.agent(&FOUR);
     sim.play_on(1.0);
     let list = stdout(&run(&["list"]));
@@ -171,14 +141,12 @@ fn games_on_this_machine_are_listed_and_can_be_watched() {
 
 #[test]
 fn broken_scenarios_are_explained_where_they_are_broken() {
-    let dir = temporary();
-    let path = write(dir.path(), "broken.toml", "fild = \"x.toml\"\nseed = \"one\"\n");
-    let output = run(&["check", &path.display().to_string()]);
+    let output = run(&["check", &own("broken")]);
     let text = stdout(&output);
     assert!(!output.status.success());
     for place in ["broken.toml:1:1: ", "broken.toml:2:8: "] {
         assert!(text.contains(place), "{place} is not in {text}");
     }
-    let said = refusal_of(&["run", &path.display().to_string(), "--no-record"]);
+    let said = refusal_of(&["run", &own("broken"), "--no-record"]);
     assert!(said.contains("broken.toml:1:1: "), "{said}");
 }

@@ -3,8 +3,8 @@
 //! Water with one boat, its emulator, a proxy that can be cut, the gateway, the game and its agents. The boat is watched
 //! in the water itself, by the truth about its thrusters.
 
-use crate::support::{LIMIT, Process, Sim, real_attacker, result_of, run, stderr, stdout, temporary, wait_until};
-use bus::{Bus, Declaration};
+use crate::support::{LIMIT, Process, Sim, newest, result_of, run, stderr, stdout, temporary, wait_until, wait_within};
+use bus::{Bus, Declaration, Watched};
 use game::codec;
 use game::external::{GatewayStatus, OperatorCommand, OperatorReply};
 use game::message::Frame;
@@ -94,44 +94,39 @@ struct Loop {
     proxy: Proxy,
     primary: Option<String>,
     water: Sim,
-    frame: Arc<Mutex<Frame>>,
+    /// The truth about the water.
+    frame: Arc<Watched<Frame>>,
     _observer: (Bus, Declaration),
-    _dir: tempfile::TempDir,
 }
 
 impl Loop {
     /// A boat under way by its agent's orders.
     fn under_way(watchdog: &str) -> Loop {
-        let dir = temporary();
-        let file = real_attacker(dir.path());
-        let sim = Sim::start(&file, &["--pace", "realtime"]);
-        let water = Sim::start(&file, &["--pace", "realtime", "--afloat", "blue_one"]);
+        let sim = Sim::start("real_attacker", &["--pace", "realtime"]);
+        let water = Sim::start("real_attacker", &["--pace", "realtime", "--afloat", "blue_one"]);
         let (emulator, back_seat, primary) = start_emulator(&water, watchdog);
         let proxy = Proxy::start(back_seat);
         let gateway = start_gateway(&sim, proxy.port, &["--arm"]);
         let agents = sim.agent(&["blue_one", "red_one"]);
-        let (frame, observer) = watch(&water);
-        let all = Loop { sim, agents, gateway, emulator, proxy, primary, water, frame, _observer: observer, _dir: dir };
+        let bus = water.bus();
+        let key = topic::frame(&water.name());
+        let (frame, frames) = newest(&bus, key, |bytes| codec::decode(bytes).expect("a frame"));
+        let all = Loop { sim, agents, gateway, emulator, proxy, primary, water, frame, _observer: (bus, frames) };
         all.wait(LIMIT, "the boat sails", |boat| boat.0 > 0.6);
         all
     }
 
     /// The boat's speed, and whether its thrusters stand still.
     fn boat(&self) -> (f64, bool) {
-        let frame = self.frame.lock().expect("whole");
-        frame.vehicles.first().map_or((0.0, true), |boat| {
+        let boat = self.frame.visit(|frame| frame.vehicles.first().cloned());
+        boat.map_or((0.0, true), |boat| {
             let still = boat.port_newton.abs() < STILL_NEWTON && boat.starboard_newton.abs() < STILL_NEWTON;
             (boat.nav.surge_m_s, still)
         })
     }
 
     fn wait(&self, limit: Duration, what: &str, is_so: impl Fn((f64, bool)) -> bool) -> Duration {
-        let start = Instant::now();
-        while !is_so(self.boat()) {
-            assert!(start.elapsed() < limit, "not within {limit:?}: {what}; {:?}", self.boat());
-            std::thread::sleep(Duration::from_millis(10));
-        }
-        start.elapsed()
+        wait_within(limit, what, || is_so(self.boat()))
     }
 
     /// The thrusters stand still within this time, and from then on.
@@ -187,17 +182,6 @@ fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
     let link = format!("tcp://127.0.0.1:{port}");
     let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--link", &link, "--no-record"];
     sim.quiet(&[&args[..], more].concat())
-}
-
-/// The truth about the water, the newest of it.
-fn watch(water: &Sim) -> (Arc<Mutex<Frame>>, (Bus, Declaration)) {
-    let frame = Arc::new(Mutex::new(Frame::default()));
-    let newest = Arc::clone(&frame);
-    let bus = water.bus();
-    let key = topic::frame(&water.name());
-    let take = move |bytes: &[u8]| *newest.lock().expect("whole") = codec::decode(bytes).expect("a frame");
-    let standing = bus.subscribe(key, take).expect("the hub is there");
-    (frame, (bus, standing))
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! Helm queries while a game is on, and a boat that is given another strategy.
 
-use crate::support::{FOUR, LIMIT, Process, Sim, long_game, run, scenarios, squall, stderr, stdout, temporary, write};
+use crate::support::{FOUR, LIMIT, Process, Sim, own, run, squall, stderr, stdout, temporary};
 use game::helm::HelmReport;
 use game::topic;
 use std::process::Stdio;
 
 /// A game that goes on, with an agent for each boat.
 fn game() -> (Sim, Vec<Process>) {
-    let (sim, agents) = Sim::long_with_agents("", &[]);
+    let (sim, agents) = Sim::start_with_agents("long", &[]);
     sim.play_on(1.0);
     (sim, agents)
 }
@@ -37,9 +37,8 @@ fn a_helm_says_what_it_thinks_and_its_functions_if_they_are_asked_for() {
     let before = ask(b"").at;
     sim.play_on(1.0);
     assert!(ask(b"").at > before);
-    let other = sim.run(&["helm", "--vehicle", "green_one"]);
-    let said = stderr(&other);
-    assert!(!other.status.success() && said.contains("blue_one, blue_two, red_one, red_two"), "{said}");
+    let said = sim.refusal_of(&["helm", "--vehicle", "green_one"]);
+    assert!(said.contains("blue_one, blue_two, red_one, red_two"), "{said}");
     sim.stop();
 }
 
@@ -78,8 +77,7 @@ fn watch_shows_a_helm_and_helm_writes_its_functions() {
 #[test]
 fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
     let dir = temporary();
-    let scenario = long_game(dir.path(), "").display().to_string();
-    let mut command = squall(&["run", &scenario, "--pace", "1x", "--no-record"]);
+    let mut command = squall(&["run", &own("long"), "--pace", "1x", "--no-record"]);
     command.stdout(Stdio::piped());
     let mut game = Process::start(command);
     let mut lines = game.lines();
@@ -106,10 +104,7 @@ fn a_game_goes_on_while_somebody_takes_a_decision_apart() {
 
 #[test]
 fn an_agent_plays_by_a_strategy_file_of_its_own() {
-    let dir = temporary();
-    let text = format!("base = \"{}/strategies/easy_attacker.toml\"\nabout = \"mine\"\n", scenarios());
-    let mine = write(dir.path(), "mine.toml", &text).display().to_string();
-    let sim = Sim::long("", &[]);
+    let (mine, sim) = (own("mine"), Sim::start("long", &[]));
     let _ours = sim.quiet(&["agent", "--vehicle", "blue_one", "blue_two", "--strategy", &mine]);
     let _theirs = sim.quiet(&["agent", "--vehicle", "red_one", "red_two"]);
     sim.wait_for_kind("started");
@@ -122,10 +117,8 @@ fn an_agent_plays_by_a_strategy_file_of_its_own() {
 
 #[test]
 fn mistakes_in_a_strategy_file_are_told_before_joining() {
-    let dir = temporary();
-    let bad = write(dir.path(), "bad.toml", "about = \"bad\"\n[behaviour.go]\nkind = \"fly\"\n").display().to_string();
     // There is no game to join: it does not even look for one.
-    let mut command = squall(&["agent", "--vehicle", "blue_one", "--strategy", &bad, "--wait-s", "50"]);
+    let mut command = squall(&["agent", "--vehicle", "blue_one", "--strategy", &own("bad"), "--wait-s", "50"]);
     command.stderr(Stdio::piped());
     let mut agent = Process::start(command);
     let said = agent.refusal();

@@ -1,6 +1,6 @@
 //! Two machines: network namespaces joined by a cable, which is cut for a while.
 
-use crate::support::{FOUR, Process, Sim, long_game, stderr, temporary};
+use crate::support::{FOUR, Process, Sim, stderr};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -75,10 +75,8 @@ fn two_machines_play_a_game_and_survive_a_cable_that_is_cut() {
             return;
         }
     };
-    let dir = temporary();
-    let game = long_game(dir.path(), "patience_s = 2");
     let args = ["--game", "two-hosts", "--listen", "tcp/10.77.0.1:7447"];
-    let sim = Sim::start_with(hosts.squall(0), &game, &args);
+    let sim = Sim::start_with(hosts.squall(0), "impatient", &args);
     let mut blue = hosts.agent(0, "two-hosts", &FOUR[..2]);
     let mut red = hosts.agent(1, "two-hosts", &FOUR[2..]);
     sim.wait_for_kind("started");

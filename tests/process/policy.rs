@@ -1,30 +1,14 @@
 //! Policies outside of the helm: another program proposes, the helm weighs it against keeping inside of the field.
 
-use crate::support::{Sim, scenarios, temporary, two_fleets, write};
+use crate::support::{Sim, own};
 use bus::{Bus, Declaration, Delivery};
 use game::message::{Frame, GameInfo, Message, PolicyProposal, Stamp};
 use game::topic::{self, GameName};
 use game::{Picture, TeamId, VehicleId, codec};
-use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 const ME: VehicleId = VehicleId(0);
-const LIMIT_S: f64 = 100.0;
-
-/// Two boats that lie still, and a strategy for one that lets a policy steer, weighed with keeping inside or not.
-fn game(dir: &Path, is_safe: bool) -> (PathBuf, PathBuf) {
-    let root = scenarios();
-    let safety = if is_safe {
-        format!("base = \"{root}/strategies/safety.toml\"")
-    } else {
-        "unsafe_i_know = true\nunsafe_because = \"to see what safety is good for\"".to_owned()
-    };
-    let strategy =
-        format!("{safety}\nabout = \"does what it is told\"\n[behaviour.told]\nkind = \"policy\"\nttl_s = 2\n");
-    let game = format!("duration_s = {LIMIT_S}\n{}", two_fleets(1, &format!("{root}/strategies/idle.toml")));
-    (write(dir, "told_game.toml", &game), write(dir, "told.toml", &strategy))
-}
 
 /// A policy as another program would be: it sees the picture and wants to drive north in a zigzag, whatever happens. Now
 /// and then it is slow.
@@ -48,9 +32,7 @@ fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
 
 /// Plays a game with the policy, or without one: what happened, and the frames that were seen of it.
 fn play(is_safe: bool, has_policy: bool) -> (serde_json::Value, Vec<Frame>) {
-    let dir = temporary();
-    let (game, strategy) = game(dir.path(), is_safe);
-    let sim = Sim::start(&game, &[]);
+    let sim = Sim::start("still_1v1", &[]);
     let (bus, name) = (sim.bus(), sim.name());
     let info = sim.info(&bus);
     let frames = Arc::new(Mutex::new(Vec::new()));
@@ -58,7 +40,8 @@ fn play(is_safe: bool, has_policy: bool) -> (serde_json::Value, Vec<Frame>) {
     let see = move |bytes: &[u8]| seen.lock().expect("whole").push(codec::decode(bytes).expect("a frame"));
     let _seen = bus.subscribe(topic::frame(&name), see).expect("the hub is there");
     let _policy = has_policy.then(|| drive_north(&bus, &name, &info));
-    let strategy = strategy.display().to_string();
+    // A strategy that lets a policy steer, weighed with keeping inside or not.
+    let strategy = own(if is_safe { "told" } else { "told_unsafe" });
     let wait: &[&str] = if has_policy { &["--policy-wait-s", "2"] } else { &[] };
     let args = ["agent", "--vehicle", "blue_1", "--strategy", &strategy];
     let _told = sim.quiet(&[&args[..], wait].concat());

@@ -1,6 +1,6 @@
 //! Recordings as people make them: of whole games, of games that were killed, of real boats; and games played again.
 
-use crate::support::{FOUR, Sim, based_on, long_game, refusal_of, result_of, run, temporary, write};
+use crate::support::{FOUR, Sim, own, refusal_of, result_of, run, temporary, wait_until};
 use bus::Delivery;
 use game::VehicleId;
 use game::external::LinkBytes;
@@ -8,7 +8,6 @@ use game::message::{Message, PolicyProposal, Stamp};
 use game::topic;
 use recording::{Bag, Recording};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 /// The only recording in a folder.
 fn only_recording(dir: &Path) -> PathBuf {
@@ -61,7 +60,7 @@ fn a_killed_sim_leaves_a_recording_up_to_the_last_second() {
     let dir = temporary();
     let path = dir.path().join("killed.mcap");
     let file = path.display().to_string();
-    let mut sim = Sim::long("", &["--pace", "20x", "--record", &file]);
+    let mut sim = Sim::start("long", &["--pace", "20x", "--record", &file]);
     let _agent = sim.agent(&FOUR);
     let now_s = sim.play_on(40.0);
     sim.process.kill();
@@ -78,10 +77,10 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     let dir = temporary();
     let path = dir.path().join("heard.mcap");
     let file = path.display().to_string();
-    let sim = Sim::long("", &["--pace", "20x", "--record", &file]);
+    let sim = Sim::start("long", &["--pace", "20x", "--record", &file]);
     let _agent = sim.agent(&FOUR);
     let (bus, game) = (sim.bus(), sim.name());
-    let scenario = game::scenario::load(&long_game(dir.path(), "")).unwrap_or_else(|e| panic!("{e}"));
+    let scenario = game::scenario::load(Path::new(&own("long"))).unwrap_or_else(|e| panic!("{e}"));
     // A recording begins with the game.
     sim.play_on(1.0);
     let publisher = |key| bus.publisher(key, Delivery::Wait).expect("a session");
@@ -118,7 +117,8 @@ fn what_is_no_recording_is_refused_with_the_reason() {
         }
     }
     let dir = temporary();
-    let taken = write(dir.path(), "file", "").display().to_string();
+    let taken = dir.path().join("file").display().to_string();
+    std::fs::write(&taken, "").expect("a file can be written");
     let game = "scenarios/games/attack_1v1.toml";
     for (args, part) in [
         (&["replay", "--check", "README.md", "--listen", "127.0.0.1:0"][..], "--check shows no page"),
@@ -135,11 +135,10 @@ fn what_is_no_recording_is_refused_with_the_reason() {
 fn real_boats_are_recorded_with_every_byte_and_their_game_can_be_played_again() {
     let dir = temporary();
     let (runs, gateways) = (dir.path().join("runs"), dir.path().join("gateways"));
-    let game = based_on(dir.path(), "mixed_2v2", "duration_s = 60");
-    let [game, runs_text, gateways_text] = [&game, &runs, &gateways].map(|path| path.display().to_string());
+    let [runs_text, gateways_text] = [&runs, &gateways].map(|path| path.display().to_string());
     let config = "scenarios/gateways/emulated.toml";
     let options = ["--emulate", "--pace", "10x", "--gateway", config, "--record-gateways", &gateways_text];
-    result_of(&[&[game.as_str(), "--record", &runs_text][..], &options].concat());
+    result_of(&[&[own("mixed_60s").as_str(), "--record", &runs_text][..], &options].concat());
     let path = only_recording(&runs);
     let recording = opened(&path);
     let topics = recording.bag().topics();
@@ -185,18 +184,17 @@ fn a_recording_can_be_read_while_the_game_goes_on() {
     let dir = temporary();
     let path = dir.path().join("live.mcap");
     let file = path.display().to_string();
-    let sim = Sim::long("", &["--pace", "20x", "--record", &file]);
+    let sim = Sim::start("long", &["--pace", "20x", "--record", &file]);
     let _agent = sim.agent(&FOUR);
     sim.play_on(20.0);
-    let start = Instant::now();
-    let mut counts = vec![opened(&path).frame_count()];
-    while counts.len() < 3 && start.elapsed() < crate::support::LIMIT {
+    let mut counts = vec![];
+    wait_until("it grows twice", || {
         let count = opened(&path).frame_count();
         if Some(&count) != counts.last() {
             counts.push(count);
         }
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    assert!(counts.len() == 3 && counts.is_sorted(), "{counts:?}");
+        counts.len() == 3
+    });
+    assert!(counts.is_sorted(), "{counts:?}");
     sim.stop();
 }

@@ -58,7 +58,7 @@ impl Rogue {
 
 #[test]
 fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
-    let sim = Sim::long("patience_s = 20", &[]);
+    let sim = Sim::start("patient", &[]);
     let _agents = sim.agent(&FOUR[..3]);
     let rogue = Rogue::enter(&sim);
     let send = |orders: &Orders| rogue.orders.send(orders).expect("a session");
@@ -108,7 +108,7 @@ fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
 
 #[test]
 fn another_version_is_a_clear_refusal() {
-    let sim = Sim::long("", &[]);
+    let sim = Sim::start("long", &[]);
     let bus = sim.bus();
     let game = sim.name();
     let JoinReply::Refused { reason } =

@@ -1,6 +1,6 @@
 //! People on shore control a game: they pause it, step it, slow it down, and make boats hold.
 
-use crate::support::{FOUR, LIMIT, Sim, based_on, result_of, temporary};
+use crate::support::{FOUR, LIMIT, Sim, newest, own, result_of};
 use bus::{Bus, Declaration, Delivery, Publisher, Watched};
 use game::message::{Control, Frame};
 use game::run_state::{Phase, RunState};
@@ -14,29 +14,17 @@ struct Shore {
     control: Publisher,
     run: Arc<Watched<RunState>>,
     frame: Arc<Watched<Frame>>,
-    _standing: Vec<Declaration>,
+    _standing: [Declaration; 2],
     _bus: Bus,
 }
 
 impl Shore {
     fn of(sim: &Sim) -> Shore {
         let (bus, name) = (sim.bus(), sim.name());
-        let (run, frame) = (Arc::new(Watched::new(RunState::default())), Arc::new(Watched::new(Frame::default())));
-        let (to_run, to_frame) = (Arc::clone(&run), Arc::clone(&frame));
-        let take_run = move |bytes: &[u8]| {
-            let state = serde_json::from_slice(bytes).expect("a state");
-            to_run.visit(|run| *run = state);
-        };
-        let take_frame = move |bytes: &[u8]| {
-            let frame = codec::decode(bytes).expect("a frame");
-            to_frame.visit(|newest| *newest = frame);
-        };
-        let standing = vec![
-            bus.subscribe(topic::run(&name), take_run).expect("the hub is there"),
-            bus.subscribe(topic::frame(&name), take_frame).expect("the hub is there"),
-        ];
+        let (run, runs) = newest(&bus, topic::run(&name), |bytes| serde_json::from_slice(bytes).expect("a state"));
+        let (frame, frames) = newest(&bus, topic::frame(&name), |bytes| codec::decode(bytes).expect("a frame"));
         let control = bus.publisher(topic::control(&name), Delivery::Wait).expect("the hub is there");
-        Shore { control, run, frame, _standing: standing, _bus: bus }
+        Shore { control, run, frame, _standing: [runs, frames], _bus: bus }
     }
 
     fn ask(&self, control: Control) {
@@ -60,10 +48,8 @@ impl Shore {
 
 #[test]
 fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
-    let dir = temporary();
-    let game = based_on(dir.path(), "pav01_vs_pav01", "duration_s = 120");
-    let want = result_of(&[&game.display().to_string(), "--in-process"])["digest"].clone();
-    let sim = Sim::start(&game, &["--speed", "20x"]);
+    let want = result_of(&[&own("pav01_120s"), "--in-process"])["digest"].clone();
+    let sim = Sim::start("pav01_120s", &["--speed", "20x"]);
     let shore = Shore::of(&sim);
     let _agents = [sim.agent(&FOUR[..2]), sim.agent(&FOUR[2..])];
     sim.play_on(2.0);
@@ -90,7 +76,7 @@ fn a_paused_game_stands_still_is_stepped_and_goes_on_as_if_nothing_had_been() {
 #[test]
 fn a_game_goes_as_fast_as_it_is_asked_to() {
     for (pace, is_lockstep) in [("lockstep", true), ("realtime", false)] {
-        let sim = Sim::long("", &["--pace", pace]);
+        let sim = Sim::start("long", &["--pace", pace]);
         let shore = Shore::of(&sim);
         let _agent = sim.agent(&FOUR);
         sim.play_on(0.5);
@@ -109,7 +95,7 @@ fn a_game_goes_as_fast_as_it_is_asked_to() {
 
 #[test]
 fn boats_hold_for_as_long_as_an_operator_wants_it() {
-    let sim = Sim::long("", &["--pace", "20x"]);
+    let sim = Sim::start("long", &["--pace", "20x"]);
     let shore = Shore::of(&sim);
     let _agent = sim.agent(&FOUR);
     let speed = |frame: &Frame| {

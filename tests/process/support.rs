@@ -1,12 +1,12 @@
 //! Starting the program, reading what it reports, waiting with a limit.
 
-use bus::{Bus, Net};
+use bus::{Bus, Declaration, Net, Watched};
 use game::message::GameInfo;
 use game::topic::{self, GameName};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Output, Stdio};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
@@ -38,8 +38,12 @@ pub(crate) fn stderr(output: &Output) -> String {
 
 /// Runs the program, which is to fail, and gives what it says.
 pub(crate) fn refusal_of(args: &[&str]) -> String {
-    let output = run(args);
-    assert!(!output.status.success(), "{args:?} works");
+    refused(squall(args))
+}
+
+fn refused(mut command: Command) -> String {
+    let output = command.output().expect("the program starts");
+    assert!(!output.status.success(), "{command:?} works");
     stderr(&output)
 }
 
@@ -48,13 +52,31 @@ pub(crate) fn temporary() -> TempDir {
     tempfile::tempdir().expect("a temporary directory")
 }
 
-/// Waits until something is so.
-pub(crate) fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+/// Waits until something is so; for how long it did.
+pub(crate) fn wait_until(what: &str, is_so: impl FnMut() -> bool) -> Duration {
+    wait_within(LIMIT, what, is_so)
+}
+
+/// The same, with a limit of its own.
+pub(crate) fn wait_within(limit: Duration, what: &str, mut is_so: impl FnMut() -> bool) -> Duration {
     let start = Instant::now();
     while !is_so() {
-        assert!(start.elapsed() < LIMIT, "never: {what}");
+        assert!(start.elapsed() < limit, "not within {limit:?}: {what}");
         std::thread::sleep(Duration::from_millis(10));
     }
+    start.elapsed()
+}
+
+/// The newest of what comes on a key.
+pub(crate) fn newest<T: Default + Send + 'static>(
+    bus: &Bus,
+    key: String,
+    read: fn(&[u8]) -> T,
+) -> (Arc<Watched<T>>, Declaration) {
+    let newest = Arc::new(Watched::<T>::default());
+    let to = Arc::clone(&newest);
+    let standing = bus.subscribe(key, move |bytes| to.visit(|newest| *newest = read(bytes)));
+    (newest, standing.expect("the hub is there"))
 }
 
 /// Runs a game to its end and gives its result.
@@ -69,14 +91,13 @@ pub(crate) fn result_of(args: &[&str]) -> Value {
 }
 
 /// Each of these seeds gives one game, byte for byte, in one process and across processes, and each another.
-pub(crate) fn assert_a_game_each(game: &Path, seeds: &[&str]) {
-    let game = game.display().to_string();
+pub(crate) fn assert_a_game_each(game: &str, seeds: &[&str]) {
     let mut digests = Vec::new();
     for seed in seeds {
-        let here = game_itself(result_of(&[&game, "--seed", seed, "--in-process"]));
+        let here = game_itself(result_of(&[game, "--seed", seed, "--in-process"]));
         // With two boats a process one process decides for a boat of each team.
         for boats_each in ["1", "2", "6"] {
-            let there = result_of(&[&game, "--seed", seed, "--agents-per-process", boats_each]);
+            let there = result_of(&[game, "--seed", seed, "--agents-per-process", boats_each]);
             assert_eq!(here, game_itself(there), "seed {seed}, {boats_each} boats a process");
         }
         digests.push(here["digest"].clone());
@@ -91,56 +112,9 @@ pub(crate) fn game_itself(mut result: Value) -> Value {
     result
 }
 
-/// A game file of two against two that lasts long enough for anything; `more` are further lines on top.
-pub(crate) fn long_game(dir: &Path, more: &str) -> PathBuf {
-    based_on(dir, "pav01_vs_pav01", &format!("duration_s = 80000\n{more}"))
-}
-
-/// A game file based on one of ours, with further lines.
-pub(crate) fn based_on(dir: &Path, game: &str, more: &str) -> PathBuf {
-    let text = format!("base = \"{}/games/{game}.toml\"\n{more}\n", scenarios());
-    write(dir, &format!("{game}_changed.toml"), &text)
-}
-
-/// The lines of a game on the field of Popolopen with so many Surveyors a team, that all go by one strategy file.
-pub(crate) fn two_fleets(count: usize, strategy: &str) -> String {
-    let root = scenarios();
-    let team = |name: &str| {
-        format!(
-            "[[team]]\nname = \"{name}\"\nstrategy = \"{strategy}\"\n\
-             [[fleet]]\nteam = \"{name}\"\nname = \"{name}_{{}}\"\ncount = {count}\nspawn = {{}}\n"
-        )
-    };
-    format!(
-        "field = \"{root}/fields/popolopen_2025.toml\"\nrules = \"{root}/rules/aquaticus_2023.toml\"\n\
-         boat = \"{root}/boats/surveyor_m1_8.toml\"\n{}{}",
-        team("blue"),
-        team("red")
-    )
-}
-
-/// The folder of scenario files.
-pub(crate) fn scenarios() -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").display().to_string()
-}
-
-/// A file of this name in a folder.
-pub(crate) fn write(dir: &Path, name: &str, text: &str) -> PathBuf {
-    let path = dir.join(name);
-    std::fs::write(&path, text).expect("a file can be written");
-    path
-}
-
-/// A real boat that attacks, and a simulated one that lies still.
-pub(crate) fn real_attacker(dir: &Path) -> PathBuf {
-    let root = scenarios();
-    let more = format!(
-        "[[team]]\nname = \"blue\"\nstrategy = \"{root}/strategies/easy_attacker.toml\"\n\
-         [[team]]\nname = \"red\"\nstrategy = \"{root}/strategies/idle.toml\"\n\
-         [[vehicle]]\nname = \"blue_one\"\nteam = \"blue\"\nsource = \"external\"\n\
-         [[vehicle]]\nname = \"red_one\"\nteam = \"red\"\n"
-    );
-    long_game(dir, &more)
+/// A file of the tests' own, from the folder of the project.
+pub(crate) fn own(name: &str) -> String {
+    format!("tests/process/scenarios/{name}.toml")
 }
 
 /// A process that is gone with the test.
@@ -203,29 +177,23 @@ pub(crate) struct Sim {
 }
 
 impl Sim {
-    /// Serves a game file on a free port of loopback.
-    pub(crate) fn start(scenario: &Path, args: &[&str]) -> Sim {
+    /// Serves a game of the tests' own on a free port of loopback.
+    pub(crate) fn start(name: &str, args: &[&str]) -> Sim {
         let endpoint = free_endpoint();
-        Sim::start_with(squall(&[]), scenario, &[&["--listen", &endpoint], args].concat())
+        Sim::start_with(squall(&[]), name, &[&["--listen", &endpoint], args].concat())
     }
 
-    /// Serves a long game of two against two; `more` are further lines of its file.
-    pub(crate) fn long(more: &str, args: &[&str]) -> Sim {
-        let dir = temporary();
-        Sim::start(&long_game(dir.path(), more), args)
-    }
-
-    /// The same, with an agent process for each boat, when all have joined.
-    pub(crate) fn long_with_agents(more: &str, args: &[&str]) -> (Sim, Vec<Process>) {
-        let sim = Sim::long(more, args);
+    /// The same, with an agent process for each boat of two against two, when all have joined.
+    pub(crate) fn start_with_agents(name: &str, args: &[&str]) -> (Sim, Vec<Process>) {
+        let sim = Sim::start(name, args);
         let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
         sim.wait_for_kind("started");
         (sim, agents)
     }
 
-    /// Serves a game file by a program that takes the arguments of `squall`.
-    pub(crate) fn start_with(mut program: Command, scenario: &Path, args: &[&str]) -> Sim {
-        program.args(["sim", &scenario.display().to_string(), "--for-parent"]).args(args);
+    /// Serves such a game by a program that takes the arguments of `squall`.
+    pub(crate) fn start_with(mut program: Command, name: &str, args: &[&str]) -> Sim {
+        program.args(["sim", &own(name), "--for-parent"]).args(args);
         program.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut process = Process::start(program);
         let lines = process.lines();
@@ -307,6 +275,11 @@ impl Sim {
     /// Runs it to its end.
     pub(crate) fn run(&self, args: &[&str]) -> Output {
         self.squall(args).output().expect("the program starts")
+    }
+
+    /// Runs it; it is to fail, and this is what it says.
+    pub(crate) fn refusal_of(&self, args: &[&str]) -> String {
+        refused(self.squall(args))
     }
 
     /// What the game is, as it says itself.

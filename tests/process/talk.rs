@@ -1,43 +1,16 @@
 //! Team messages from process to process: received exactly one decision later.
 
-use crate::support::{LIMIT, Process, Sim, assert_a_game_each, scenarios, temporary, two_fleets, wait_until, write};
+use crate::support::{LIMIT, Process, Sim, assert_a_game_each, own, wait_until};
 use game::helm::HelmReport;
 use game::message::{GameInfo, Message, Say, Stamp, Word};
 use game::topic::{self, GameName};
 use game::{TeamId, VehicleId, codec};
-use std::path::{Path, PathBuf};
 use std::sync::mpsc::channel;
 use std::time::Duration;
 
-/// A game of three against three who steer by what their mates said.
-fn talking_game(dir: &Path, duration_s: f64) -> PathBuf {
-    let root = scenarios();
-    let strategy = format!(
-        r#"
-base = "{root}/strategies/easy_attacker.toml"
-about = "weaves by what mates say"
-[variables]
-beat = {{ initial = 0, shared = true }}
-turn = {{ initial = false, shared = true }}
-high = 0
-[[rule]]
-when = "time_s >= 0"
-set = {{ beat = "beat > 40 ? 0 : beat + 1 + rank / 7 + mates(turn)", turn = "mates(turn) < 1 || beat > 30", high = "mates(beat > 20)" }}
-[behaviour.weave]
-kind = "constant_heading"
-heading_deg = "high * 60 + beat"
-weight = 40
-"#
-    );
-    write(dir, "talker.toml", &strategy);
-    let game = format!("duration_s = {duration_s}\npatience_s = 2\n{}", two_fleets(3, "talker.toml"));
-    write(dir, "talking.toml", &game)
-}
-
 #[test]
 fn boats_that_talk_play_the_same_game_across_processes_as_in_one() {
-    let dir = temporary();
-    assert_a_game_each(&talking_game(dir.path(), 200.0), &["1", "2", "3"]);
+    assert_a_game_each(&own("talking_200s"), &["1", "2", "3"]);
 }
 
 /// A variable of a boat, as its helm tells it.
@@ -51,8 +24,7 @@ fn variable(bus: &bus::Bus, name: &GameName, info: &GameInfo, vehicle: &str, var
 
 #[test]
 fn a_killed_mate_does_not_silence_the_others_and_nonsense_hurts_nobody() {
-    let dir = temporary();
-    let sim = Sim::start(&talking_game(dir.path(), 80_000.0), &[]);
+    let sim = Sim::start("talking", &[]);
     let mut agents: Vec<Process> =
         ["blue_1", "blue_2", "blue_3", "red_1", "red_2", "red_3"].iter().map(|name| sim.agent(&[name])).collect();
     sim.wait_for_kind("started");
