@@ -74,6 +74,12 @@ impl ChildProcess {
     pub(crate) fn ask_to_stop(&mut self) {
         self.stdin = None;
     }
+
+    /// Asks it to stop and waits for that; says so if it ended badly.
+    pub(crate) fn stop(&mut self) -> Vec<String> {
+        self.ask_to_stop();
+        wait_for_all(std::slice::from_mut(self))
+    }
 }
 
 impl Drop for ChildProcess {
@@ -84,12 +90,13 @@ impl Drop for ChildProcess {
     }
 }
 
-/// Waits until all have ended, but no longer than `limit`; gives who ended badly.
-pub(crate) fn wait_for_all(children: &mut [ChildProcess], limit: Duration) -> Vec<String> {
+/// Waits until all have ended, but no longer than five seconds; gives who ended badly.
+pub(crate) fn wait_for_all(children: &mut [ChildProcess]) -> Vec<String> {
+    const LIMIT: Duration = Duration::from_secs(5);
     let start = clock::now();
     let mut badly = Vec::new();
     for child in children {
-        while child.ended().is_none() && clock::since(start) < limit {
+        while child.ended().is_none() && clock::since(start) < LIMIT {
             clock::rest(Duration::from_millis(5));
         }
         match child.ended() {

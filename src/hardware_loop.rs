@@ -1,13 +1,12 @@
 //! The hardware loop, closed on one machine: water of its own, an emulated boat and a gateway for every real one.
 
 use crate::child_process::{self, ChildProcess, option};
+use crate::game_args::GameArgs;
 use crate::net_args::unique_game_name;
-use crate::override_args;
+use crate::output_file;
 use anyhow::{Context, Result, anyhow, bail};
 use game::Scenario;
-use game::scenario::Overrides;
-use sim::node::Pace;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Stdio;
 use std::time::Duration;
 
@@ -26,22 +25,8 @@ pub(crate) struct LoopArgs {
     record_gateways: Option<PathBuf>,
 }
 
-/// The game that the boats are to play in.
-pub(crate) struct Match<'a> {
-    pub(crate) file: &'a Path,
-    pub(crate) scenario: &'a Scenario,
-    pub(crate) overrides: &'a Overrides,
-    pub(crate) seed: u64,
-    pub(crate) pace: Pace,
-    pub(crate) game: &'a str,
-    pub(crate) endpoint: &'a str,
-}
-
 /// How long an emulator may take to report where it listens.
 const WINDOW: Duration = Duration::from_secs(20);
-/// How long everybody may take to end.
-const LEAVE: Duration = Duration::from_secs(5);
-
 /// The processes of the loop.
 pub(crate) struct HardwareLoop {
     /// Gateways, then emulators: the order in which they are to end.
@@ -50,9 +35,14 @@ pub(crate) struct HardwareLoop {
 }
 
 impl LoopArgs {
-    /// Starts the loop, if it is asked for and there are real boats.
-    pub(crate) fn start(&self, game: &Match<'_>) -> Result<Option<HardwareLoop>> {
-        let vehicles = game.scenario.externals().map(|vehicle| &game.scenario.vehicles[vehicle.index()]);
+    /// Starts the loop for the boats of a game with this name and endpoint, if it is asked for and there are real boats.
+    pub(crate) fn start(
+        &self,
+        args: &GameArgs,
+        scenario: &Scenario,
+        game: (&str, &str),
+    ) -> Result<Option<HardwareLoop>> {
+        let vehicles = scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()]);
         let names: Vec<&str> = vehicles.map(|vehicle| vehicle.name.as_str()).collect();
         if !self.emulate {
             return Ok(None);
@@ -69,13 +59,15 @@ impl LoopArgs {
             }
         };
         if let Some(folder) = &self.record_gateways {
-            std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+            output_file::make_folder(folder)?;
         }
         let port = bus::free_port(false).map_err(|e| anyhow!("no free port on this machine: {e}"))?;
         let name = unique_game_name("water")?.as_str().to_owned();
         let endpoint = format!("tcp/127.0.0.1:{port}");
         let place = (name.as_str(), endpoint.as_str());
-        let water = start_water(game, &names, place)?;
+        let mut water = args.sim(place.0, place.1)?;
+        water.arg("--afloat").args(&names);
+        let water = ChildProcess::start("the water", water, Stdio::null())?;
         let (mut emulators, mut gateways) = (Vec::new(), Vec::new());
         for vehicle in names {
             let (emulator, link) = start_emulator(vehicle, declination_deg, place)?;
@@ -86,9 +78,8 @@ impl LoopArgs {
         Ok(Some(HardwareLoop { ends: gateways, water }))
     }
 
-    fn start_gateway(&self, name: &str, link: &str, game: &Match<'_>) -> Result<ChildProcess> {
-        let mut command =
-            child_process::squall(&["gateway", "surveyor", "--game", game.game, "--connect", game.endpoint])?;
+    fn start_gateway(&self, name: &str, link: &str, (game, endpoint): (&str, &str)) -> Result<ChildProcess> {
+        let mut command = child_process::squall(&["gateway", "surveyor", "--game", game, "--connect", endpoint])?;
         command.args(["--vehicle", name, "--link", link, "--arm", "--at-game-pace"]);
         option(&mut command, "--config", self.gateway.as_ref().map(|path| path.display()));
         match &self.record_gateways {
@@ -102,25 +93,11 @@ impl LoopArgs {
 impl HardwareLoop {
     /// Ends it all, gateways first: they leave their boats at rest. Says who ended badly.
     pub(crate) fn end(mut self) -> Vec<String> {
-        let mut badly = Vec::new();
-        for one in &mut self.ends {
-            one.ask_to_stop();
-            badly.extend(child_process::wait_for_all(std::slice::from_mut(one), LEAVE));
-        }
+        let badly = self.ends.iter_mut().flat_map(ChildProcess::stop).collect();
         // The water has no end of its own: it is cut short, and says so.
-        self.water.ask_to_stop();
-        child_process::wait_for_all(std::slice::from_mut(&mut self.water), LEAVE);
+        self.water.stop();
         badly
     }
-}
-
-fn start_water(game: &Match<'_>, names: &[&str], (water, endpoint): (&str, &str)) -> Result<ChildProcess> {
-    let mut command = child_process::squall(&["sim", "--game", water, "--listen", endpoint])?;
-    command.arg(game.file).args(override_args::words(game.overrides));
-    option(&mut command, "--pace", Some(game.pace));
-    option(&mut command, "--seed", Some(game.seed));
-    command.arg("--afloat").args(names);
-    ChildProcess::start("the water", command, Stdio::null())
 }
 
 /// Starts an emulator; gives it and the address of its link.

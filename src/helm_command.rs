@@ -2,7 +2,8 @@
 
 use crate::net_args::LeafArgs;
 use crate::observer::Observer;
-use crate::plot::polar::{PolarPage, PolarPlot};
+use crate::plot::Page;
+use crate::plot::polar::{self, PolarPlot};
 use crate::{helm_text, plot, screen};
 use anyhow::{Context, Result, bail};
 use game::Scenario;
@@ -56,7 +57,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             report.mode,
             helm_text::decision(&report)
         );
-        let page = PolarPage { title, plots: plots(&report) };
+        let panels = plots(&report);
+        let columns = panels.len().min(polar::COLUMNS_MAX);
+        let page = Page { title, columns, panel: polar::PANEL, panels };
         args.png.iter().try_for_each(|path| plot::write_png(path, &page))?;
         args.svg.iter().try_for_each(|path| plot::write_svg(path, &page))?;
     }

@@ -1,8 +1,8 @@
 //! `squall identify`: fits a boat file to a recorded series.
 
-use crate::screen;
 use crate::trial_command::{read_sheet, tick, usual_tick_s};
 use crate::water_args::{self, WaterArgs, within};
+use crate::{output_file, screen};
 use anyhow::{Context, Result, bail};
 use arena::identify::{self, Fit, Log, Setting};
 use game::SimTime;
@@ -60,7 +60,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let fit = identify::fit(&boat, &log, &setting, &parameters).with_context(|| format!("cannot fit {named}"))?;
     screen::print(&table(&boat.name, &named, &fit));
     let text = identify::written(&fit, &base_of(&out, &path), &named);
-    std::fs::write(&out, text).with_context(|| format!("cannot write {}", out.display()))?;
+    output_file::write(&out, "the boat", text)?;
     game::scenario::load_boat(&out).with_context(|| format!("{} is written, but no sound boat", out.display()))?;
     screen::print(&format!("boat in {}\n", out.display()));
     Ok(ExitCode::SUCCESS)

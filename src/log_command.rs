@@ -2,12 +2,11 @@
 
 use crate::plot::game as plot;
 use crate::water_args::within;
-use crate::{recording_file, screen};
+use crate::{output_file, recording_file, screen};
 use analysis::{Comparison, GameSeries, Summary};
 use anyhow::{Context, Result};
 use game::Scenario;
 use recording::{Bag, Kind, Recording};
-use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -64,12 +63,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 fn look_at(args: &Args, file: &Path) -> Result<()> {
     let bag = recording_file::open_any(file, "look at")?;
-    let is_gateway = bag.kind() == Kind::Gateway;
     let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none();
-    if let (Some(topic), true) = (&args.csv, is_gateway) {
-        return csv(args, file, (&bag, None), topic);
-    }
-    if is_gateway {
+    if bag.kind() == Kind::Gateway {
+        if let Some(topic) = &args.csv {
+            return csv(args, file, (&bag, None), topic);
+        }
         let asks_for_more = args.events || args.json.is_some() || !wants_page;
         anyhow::ensure!(!asks_for_more, "{} is of a gateway, not of a game: only --csv is known of it", file.display());
         screen::print(&page::gateway(&bag).with_context(|| format!("cannot read {}", file.display()))?);
@@ -89,10 +87,10 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
         screen::print(&page::text(&summary));
     }
     if let Some(path) = &args.json {
-        write_json(path, &summary)?;
+        output_file::write_json(path, "the summary", &summary)?;
     }
     if let Some(dir) = &args.plot {
-        make_folder(dir)?;
+        output_file::make_folder(dir)?;
         let files = plot::write(dir, recording.header(), &series)?;
         screen::remark(&format!("{files} plots in {}, each as SVG and PNG", dir.display()));
     }
@@ -119,21 +117,12 @@ fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
         .with_context(|| format!("cannot compare {} with {}", a.display(), b.display()))?;
     screen::print(&difference::text([a, b], &comparison));
     if let Some(path) = &args.json {
-        write_json(path, &comparison)?;
+        output_file::write_json(path, "the comparison", &comparison)?;
     }
     if let Some(dir) = &args.plot {
-        make_folder(dir)?;
+        output_file::make_folder(dir)?;
         plot::write_comparison(dir, [a, b], series.each_ref(), &comparison)?;
         screen::remark(&format!("compare.svg and compare.png in {}", dir.display()));
     }
     Ok(())
-}
-
-fn make_folder(dir: &Path) -> Result<()> {
-    std::fs::create_dir_all(dir).with_context(|| format!("cannot make the folder {}", dir.display()))
-}
-
-fn write_json(path: &Path, what: &impl Serialize) -> Result<()> {
-    let text = serde_json::to_string_pretty(what).context("this is not JSON")?;
-    std::fs::write(path, text + "\n").with_context(|| format!("cannot write {}", path.display()))
 }

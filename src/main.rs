@@ -3,6 +3,7 @@
 mod agent_command;
 mod check_command;
 mod child_process;
+mod game_args;
 mod gateway_command;
 mod hardware_loop;
 mod helm_command;
@@ -12,7 +13,7 @@ mod list_command;
 mod log_command;
 mod net_args;
 mod observer;
-mod override_args;
+mod output_file;
 mod page_args;
 mod plot;
 mod record_args;

@@ -1,5 +1,6 @@
 //! Whether and where a game is recorded.
 
+use crate::output_file;
 use anyhow::{Context, Result};
 use game::Scenario;
 use game::run_state::RecordingState;
@@ -23,8 +24,7 @@ impl RecordArgs {
         if self.no_record {
             return Ok(None);
         }
-        std::fs::create_dir_all(&self.record)
-            .with_context(|| format!("cannot make the folder {} for recordings", self.record.display()))?;
+        output_file::make_folder(&self.record).context("nowhere to record")?;
         let stem = format!("{}_{}_{seed}", utc::file_stamp(utc::now_ns()), scenario.name);
         let names = std::iter::once(format!("{stem}.mcap")).chain((2..).map(|n| format!("{stem}_{n}.mcap")));
         Ok(names.map(|name| self.record.join(name)).find(|path| !path.exists()))

@@ -34,8 +34,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         let recording = open(&args.file)?;
         let verdict = check::check(&recording).with_context(|| format!("cannot play {} again", args.file.display()))?;
-        screen::print(&verdict.text());
-        return Ok(if verdict.is_same() { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+        screen::print(&verdict.text);
+        return Ok(if verdict.is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE });
     }
     let show = show(&args.file)?;
     let stop = stop::on_ctrl_c()?;
@@ -43,7 +43,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     page.show(Arc::new(show));
     Screen::new().line(&format!("{} at {} (Ctrl-C ends it)", args.file.display(), args.page.url(&page)));
     stop::wait(&stop);
-    page.close();
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,13 +1,12 @@
 //! `squall run`: a whole game from one command.
 
 use crate::child_process::{self, ChildProcess, option};
-use crate::hardware_loop::{HardwareLoop, LoopArgs, Match};
+use crate::game_args::GameArgs;
+use crate::hardware_loop::{HardwareLoop, LoopArgs};
 use crate::net_args::unique_game_name;
-use crate::override_args::{self, OverrideArgs};
 use crate::page_args::PageArgs;
 use crate::record_args::{self, RecordArgs};
 use crate::screen::{self, Screen};
-use crate::sim_command::{load, seconds, speed, write_json};
 use crate::stop;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::clock;
@@ -15,7 +14,7 @@ use game::Scenario;
 use game::event::EventCursor;
 use sim::Contest;
 use sim::node::{GameRecorder, Pace, ProgressMessage, Report, Reporter, Run};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{ExitCode, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,19 +24,8 @@ use std::time::Duration;
 /// What to play, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The game file
-    scenario: PathBuf,
-    /// Chooses the game [default: as the file says]
-    #[arg(long)]
-    seed: Option<u64>,
     #[command(flatten)]
-    instead: OverrideArgs,
-    /// lockstep, realtime, or a factor such as 4x
-    #[arg(long, default_value = "lockstep")]
-    pace: Pace,
-    /// In lockstep: plays no faster than this many times real time, until somebody asks for another speed
-    #[arg(long, value_name = "FACTOR", value_parser = speed, conflicts_with = "in_process")]
-    speed: Option<f64>,
+    play: GameArgs,
     #[command(flatten)]
     record: RecordArgs,
     /// Shows the game on a page, and its recording when it is over; in lockstep at 10x unless --speed says otherwise
@@ -46,29 +34,21 @@ pub(crate) struct Args {
     #[command(flatten)]
     page: PageArgs,
     /// Plays in this process, without a network: the same game, byte for byte
-    #[arg(long, conflicts_with_all = ["pace", "agents_per_process"])]
+    #[arg(long, conflicts_with_all = ["pace", "speed", "agents_per_process"])]
     in_process: bool,
     /// For how many boats one agent process decides
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     agents_per_process: u16,
     #[command(flatten)]
     hardware_loop: LoopArgs,
-    /// Writes the result to this file
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// How long to wait for the agents, and for gateways of real boats, before starting without the missing ones, s
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
-    join_s: f64,
 }
 
 /// As fast as a person can follow a game, simulated seconds a second.
 const SPEED_TO_WATCH: f64 = 10.0;
-/// How long processes may take to end once the game is over.
-const LEAVE: Duration = Duration::from_secs(5);
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    let scenario = load(&args.scenario, &args.instead.overrides(&args.scenario)?)?;
-    if args.in_process || args.pace == Pace::Lockstep {
+    let scenario = args.play.load()?;
+    if args.in_process || args.play.pace == Pace::Lockstep {
         scenario.has_no_real_boats()?;
     }
     if args.page.is_given() && !args.view {
@@ -76,7 +56,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
-    let file = args.record.file(&scenario, args.seed.unwrap_or(scenario.seed))?;
+    let file = args.record.file(&scenario, args.play.seed(&scenario))?;
     let (report, page) = if args.in_process {
         (Some(play_here(args, &scenario, file.as_deref(), (&stop, &mut screen))?), None)
     } else {
@@ -87,9 +67,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         screen.line(&format!("recorded; look at it with: squall replay {}", file.display()));
     }
     let Some(report) = report else { return Ok(stop::interrupted()) };
-    if let Some(path) = &args.json {
-        write_json(path, &report)?;
-    }
+    args.play.write_result(&report)?;
     if let Some(mut page) = page {
         screen.line("the game is over; the page stays until Ctrl-C");
         // The sim has ended, so that the recording is whole.
@@ -99,8 +77,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             screen::remark(&format!("{error:#}"));
         }
         while page.ended().is_none() && !stop::is_set_soon(&stop) {}
-        page.ask_to_stop();
-        child_process::wait_for_all(std::slice::from_mut(&mut page), LEAVE);
+        page.stop();
     }
     Ok(if report.run.cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
 }
@@ -113,7 +90,7 @@ fn play_here(
     (stop, screen): (&AtomicBool, &mut Screen),
 ) -> Result<Report> {
     const SHOW_EVERY: Duration = Duration::from_millis(100);
-    let seed = args.seed.unwrap_or(scenario.seed);
+    let seed = args.play.seed(scenario);
     let scenario = scenario.of_seed(seed)?;
     let mut reporter = Reporter::default();
     let start = clock::now();
@@ -172,20 +149,12 @@ fn play_across_processes(
     for names in names.chunks(usize::from(args.agents_per_process)) {
         agents.push(start_agent(names, &game, &endpoint)?);
     }
-    let hardware_loop = args.hardware_loop.start(&Match {
-        file: &args.scenario,
-        scenario,
-        overrides: &args.instead.overrides(&args.scenario)?,
-        seed: args.seed.unwrap_or(scenario.seed),
-        pace: args.pace,
-        game: &game,
-        endpoint: &endpoint,
-    })?;
+    let hardware_loop = args.hardware_loop.start(&args.play, scenario, (&game, &endpoint))?;
     let report = follow(&messages, &mut sim, stop, screen)?;
     let mut problems = hardware_loop.map(HardwareLoop::end).unwrap_or_default();
     let mut everybody = agents;
     everybody.push(sim);
-    problems.extend(child_process::wait_for_all(&mut everybody, LEAVE));
+    problems.extend(child_process::wait_for_all(&mut everybody));
     for problem in problems {
         if !stop.load(Ordering::Relaxed) {
             screen::remark(&problem);
@@ -204,12 +173,9 @@ fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<ChildProcess> {
 }
 
 fn start_sim(args: &Args, game: &str, endpoint: &str, file: Option<&Path>) -> Result<ChildProcess> {
-    let mut command = child_process::squall(&["sim", "--game", game, "--listen", endpoint])?;
-    command.arg(&args.scenario).args(override_args::words(&args.instead.overrides(&args.scenario)?));
-    let speed = args.speed.or((args.view && args.pace == Pace::Lockstep).then_some(SPEED_TO_WATCH));
-    option(&mut command, "--pace", Some(args.pace));
-    option(&mut command, "--join-s", Some(args.join_s));
-    option(&mut command, "--seed", args.seed);
+    let mut command = args.play.sim(game, endpoint)?;
+    let speed = args.play.speed.or((args.view && args.play.pace == Pace::Lockstep).then_some(SPEED_TO_WATCH));
+    option(&mut command, "--join-s", Some(args.play.join_s));
     option(&mut command, "--speed", speed);
     option(&mut command, "--record", file.map(Path::display));
     ChildProcess::start("the sim", command, Stdio::piped())

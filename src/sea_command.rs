@@ -1,8 +1,7 @@
 //! `squall sea`: what a sea means for a boat, in numbers and as a plot.
 
-use crate::plot::sea::{self, Shown};
 use crate::trial_command::usual_tick_s;
-use crate::{screen, water_args};
+use crate::{plot, screen, water_args};
 use anyhow::{Context, Result};
 use arena::trial::{self, Drift, Manoeuvre, Plan, Sample, Start, TrialBoat};
 use game::angle::compass_deg_from_rad;
@@ -10,7 +9,6 @@ use game::boat::Drive;
 use game::sea::Sea;
 use game::{Boat, Ned, SimTime};
 use sim::sea::{SeaModel, Summary, WaveSummary, WindSummary};
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -41,11 +39,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let drifted = drifted(&boat, &sea, tick, args.seed)?;
     screen::print(&told(&sea, &boat, &summary, &drifted));
 
-    let plot = args.plot.clone().unwrap_or_else(|| PathBuf::from(format!("{}.svg", sea.name)));
+    let file = args.plot.clone().unwrap_or_else(|| PathBuf::from(format!("{}.svg", sea.name)));
     let title = format!("{}: {}, seed {}", sea.name, boat.name, args.seed);
     let model = SeaModel::new(&sea, std::slice::from_ref(&boat), &field, tick, args.seed);
-    sea::write(&plot, &Shown { title, sea: &sea, model: &model, drift: &drifted })?;
-    screen::print(&format!("plot in {}\n", plot.display()));
+    plot::sea::write(&file, title, &sea, &model, &drifted)?;
+    screen::print(&format!("plot in {}\n", file.display()));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -65,28 +63,31 @@ fn drifted(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64) -> Result<Vec<Sampl
     Ok(trial::sail(boat, &mut trial_boat, &plan)?.samples)
 }
 
+/// A line of the summary: what, and how much.
+type Line = (&'static str, String);
+
 /// The summary as text.
 fn told(sea: &Sea, boat: &Boat, summary: &Summary, drifted: &[Sample]) -> String {
-    let mut text = format!("{} for a boat of kind {}\n", sea.name, boat.name);
     let depth = sea.depth_m.map_or("deep".to_owned(), |depth_m| format!("{depth_m} m deep"));
-    line(&mut text, "water", &format!("{} kg/m³, {depth}", sea.water_density_kg_m3));
+    let mut lines = vec![("water", format!("{} kg/m³, {depth}", sea.water_density_kg_m3))];
     match &summary.waves {
-        None => line(&mut text, "waves", "none"),
-        Some(waves) => tell_waves(&mut text, waves),
+        None => lines.push(("waves", "none".to_owned())),
+        Some(waves) => lines.extend(waves_told(waves)),
     }
-    line(&mut text, "current at the datum", &flow(summary.current_m_s, "none at the start", " at the start"));
+    lines.push(("current at the datum", flow(summary.current_m_s, "none at the start", " at the start")));
     match &summary.wind {
-        None => line(&mut text, "wind", "none"),
-        Some(wind) => tell_wind(&mut text, wind),
+        None => lines.push(("wind", "none".to_owned())),
+        Some(wind) => lines.extend(wind_told(wind)),
     }
-    tell_drift(&mut text, drifted, boat);
-    text
+    lines.extend(drift_told(drifted, boat));
+    let text = lines.iter().map(|(what, value)| format!("  {what:<24}{value}\n"));
+    format!("{} for a boat of kind {}\n{}", sea.name, boat.name, text.collect::<String>())
 }
 
-fn tell_waves(text: &mut String, waves: &WaveSummary) {
+fn waves_told(waves: &WaveSummary) -> [Line; 8] {
     let [head, beam] = waves.orbital_on_hull_m_s;
     let [from_ahead, from_abeam] = waves.drift_newton;
-    for (what, value) in [
+    [
         ("significant wave height", format!("{:.2} m", waves.hs_m)),
         ("peak period", format!("{:.2} s", waves.tp_s)),
         ("wavelength at the peak", format!("{:.1} m", waves.wavelength_m)),
@@ -95,34 +96,33 @@ fn tell_waves(text: &mut String, waves: &WaveSummary) {
         ("  on the hull", format!("{head:.2} m/s from ahead, {beam:.2} m/s from abeam")),
         ("Stokes drift", format!("{:.3} m/s over the draught", waves.stokes_m_s)),
         ("mean drift force", format!("{from_ahead:.1} N from ahead, {from_abeam:.1} N from abeam")),
-    ] {
-        line(text, what, &value);
-    }
+    ]
 }
 
-fn tell_wind(text: &mut String, wind: &WindSummary) {
+fn wind_told(wind: &WindSummary) -> [Line; 4] {
     let [high, low] = wind.mean_m_s;
     let [from_ahead, from_abeam] = wind.force_newton;
     let share_pct = if low > 0.0 { 100.0 * wind.drift_m_s / low } else { 0.0 };
-    for (what, value) in [
+    [
         ("mean wind", format!("{high:.1} m/s at 10 m, {low:.1} m/s at the boat")),
         ("gusts, rms", format!("{:.1} m/s", wind.gust_m_s)),
         ("force of the mean wind", format!("{from_ahead:.1} N from ahead, {from_abeam:.1} N from abeam")),
         ("wind drift, beam on", format!("{:.2} m/s, {share_pct:.1} % of the wind", wind.drift_m_s)),
-    ] {
-        line(text, what, &value);
-    }
+    ]
 }
 
 /// Where the boat went. The speed is that of the second half, the distance that of the whole.
-fn tell_drift(text: &mut String, drifted: &[Sample], boat: &Boat) {
-    let (Some(drift), Some(last)) = (Drift::of(drifted), drifted.last()) else { return };
+fn drift_told(drifted: &[Sample], boat: &Boat) -> Vec<Line> {
+    let (Some(drift), Some(last)) = (Drift::of(drifted), drifted.last()) else { return vec![] };
     let heading_deg = whole_deg(drift.heading_rad);
-    line(text, "free boat, simulated", &flow(drift.velocity_m_s, "stays", &format!(", heading {heading_deg}°")));
-    line(text, "  from its start", &format!("{:.1} m in {:.0} s", last.at.length(), last.t_s));
+    let mut lines = vec![
+        ("free boat, simulated", flow(drift.velocity_m_s, "stays", &format!(", heading {heading_deg}°"))),
+        ("  from its start", format!("{:.1} m in {:.0} s", last.at.length(), last.t_s)),
+    ];
     if matches!(boat.drive, Drive::Kinematic(_)) {
-        line(text, "", "a kinematic boat feels the current alone");
+        lines.push(("", "a kinematic boat feels the current alone".to_owned()));
     }
+    lines
 }
 
 /// A velocity as speed and bearing, with more to say about it; or that there is none.
@@ -137,9 +137,4 @@ fn flow(velocity_m_s: Ned, none: &str, more: &str) -> String {
 /// A bearing in whole degrees, 0 to 359.
 fn whole_deg(bearing_rad: f64) -> u32 {
     compass_deg_from_rad(bearing_rad).round() as u32 % 360
-}
-
-fn line(text: &mut String, what: &str, value: &str) {
-    // Writing to a string does not fail.
-    let _ = writeln!(text, "  {what:<24}{value}");
 }

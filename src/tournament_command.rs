@@ -1,12 +1,12 @@
 //! `squall tournament`: every strategy against every other, in this process.
 
 use crate::tournament_progress::Progress;
-use crate::{screen, stop, tournament_table};
+use crate::{output_file, screen, stop, tournament_table};
 use anyhow::{Context, Result};
 use arena::tournament::{Plan, Report, play};
 use game::scenario::{Tournament, load_tournament};
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Which tournament, and how.
@@ -54,11 +54,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         report.matches.clear();
     }
     if let Some(path) = &args.json {
-        let text = serde_json::to_string_pretty(&report).context("the report is not JSON")?;
-        write(path, &(text + "\n"))?;
+        output_file::write_json(path, "the report", &report)?;
     }
     if let Some(path) = &args.csv {
-        write(path, &tournament_table::csv(&report))?;
+        output_file::write(path, "the report", tournament_table::csv(&report))?;
     }
     screen::print(&tournament_table::text(&report));
     Ok(match (report.games_unplayed > 0, report.failures.is_empty()) {
@@ -78,8 +77,4 @@ fn planned(args: &Args) -> Result<Plan> {
     }
     let tournament = Tournament { games, seed: args.seed.unwrap_or(file.seed), ..file };
     Plan::new(&tournament).with_context(context)
-}
-
-fn write(path: &Path, text: &str) -> Result<()> {
-    std::fs::write(path, text).with_context(|| format!("cannot write the report to {}", path.display()))
 }

@@ -1,7 +1,7 @@
 //! The report of a tournament as tables: for people, and one for spreadsheets.
 
+use crate::screen::line;
 use arena::tournament::{Cell, Estimate, Report, Row};
-use std::fmt::Write;
 
 /// A column: its name in the CSV file, its heading for people, and its value.
 type Column = (&'static str, &'static str, fn(&Row) -> Estimate);
@@ -135,9 +135,4 @@ pub(crate) fn csv(report: &Report) -> String {
         line(&mut text, format_args!("{name},\"{strategy}\",{games},{wins},{draws},{losses}{cells}"));
     }
     text
-}
-
-fn line(text: &mut String, args: std::fmt::Arguments<'_>) {
-    text.write_fmt(args).expect("writing to a String cannot fail");
-    text.push('\n');
 }

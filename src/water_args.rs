@@ -63,29 +63,42 @@ pub(crate) fn tell_drawn(seed: u64, drawn: &[Drawn]) {
 
 /// The folder `scenarios/boats` is looked for in the working folder and those above it, then in the program's.
 fn boat_file(named: &str) -> Result<PathBuf> {
+    named_file(named, ["file", "boat"], || {
+        let starts = [std::env::current_dir().ok(), std::env::current_exe().ok()];
+        let above: Vec<&Path> = starts.iter().flatten().flat_map(|start| start.ancestors()).collect();
+        let folder = above.iter().map(|folder| folder.join("scenarios/boats")).find(|folder| folder.is_dir());
+        folder.ok_or_else(|| {
+            anyhow!(
+                "there is no file {named}, and no folder scenarios/boats here or above to look for a boat of that name"
+            )
+        })
+    })
+}
+
+/// A scenario file: a path, or the name of one in a folder. Errors call it a `file` with a `kind` of thing in it.
+pub(crate) fn named_file(
+    named: &str,
+    [file, kind]: [&str; 2],
+    folder: impl FnOnce() -> Result<PathBuf>,
+) -> Result<PathBuf> {
     let given = PathBuf::from(named);
     if given.is_file() {
         return Ok(given);
     }
     if named.ends_with(".toml") || named.contains(['/', '\\']) {
-        bail!("there is no file {named}");
+        bail!("there is no {file} {named}");
     }
-    let starts = [std::env::current_dir().ok(), std::env::current_exe().ok()];
-    let above: Vec<&Path> = starts.iter().flatten().flat_map(|start| start.ancestors()).collect();
-    let folder = above.iter().map(|folder| folder.join("scenarios/boats")).find(|folder| folder.is_dir());
-    let folder = folder.ok_or_else(|| {
-        anyhow!("there is no file {named}, and no folder scenarios/boats here or above to look for a boat of that name")
-    })?;
+    let folder = folder()?;
     let path = folder.join(format!("{named}.toml"));
     if !path.is_file() {
         let names = names_in(&folder).join(", ");
-        bail!("there is no file {named}, and no boat of that name in {}: {names}", folder.display());
+        bail!("there is no {file} {named}, and no {kind} of that name in {}: {names}", folder.display());
     }
     Ok(path)
 }
 
 /// The scenario files in a folder, by name.
-pub(crate) fn names_in(folder: &Path) -> Vec<String> {
+fn names_in(folder: &Path) -> Vec<String> {
     let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
     let paths = files.map(|file| file.path()).filter(|path| path.extension().is_some_and(|end| end == "toml"));
     let mut names: Vec<String> = paths.filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned())).collect();

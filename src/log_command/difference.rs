@@ -1,6 +1,6 @@
 //! Two recorded games beside each other, as text.
 
-use super::page::line;
+use crate::screen::line;
 use analysis::{Comparison, Pair, Response, SETTLED_S};
 use std::path::Path;
 

@@ -1,5 +1,6 @@
 //! A recording, or a topic of it, as files for other programs.
 
+use crate::output_file;
 use analysis::{GameSeries, alog, table};
 use anyhow::{Context, Result};
 use game::Scenario;
@@ -12,21 +13,18 @@ type Source<'a> = (&'a Bag, Option<&'a Scenario>);
 
 /// Writes a topic as CSV, into a file or to whoever reads.
 pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Result<()> {
-    let Some(path) = file else {
-        let done = rows(source, topic, &mut csv::Writer::from_writer(BufWriter::new(std::io::stdout().lock())));
-        return match done {
-            // Who has read enough goes away: that is nothing to complain about.
-            Err(table::TableError::Sink(e)) if e.kind() == ErrorKind::BrokenPipe => Ok(()),
-            other => Ok(other?),
-        };
-    };
-    let trying = || format!("cannot write {}", path.display());
     // An unknown topic leaves no empty file behind.
     table::check(source.0, topic)?;
-    let file = std::fs::File::create(path).with_context(trying)?;
-    match rows(source, topic, &mut csv::Writer::from_writer(BufWriter::new(file))) {
-        Err(table::TableError::Sink(e)) => Err(e).with_context(trying),
-        other => Ok(other?),
+    let trying = |path: &Path| format!("cannot write {}", path.display());
+    let sink: Box<dyn Write> = match file {
+        Some(path) => Box::new(std::fs::File::create(path).with_context(|| trying(path))?),
+        None => Box::new(std::io::stdout().lock()),
+    };
+    match (rows(source, topic, &mut csv::Writer::from_writer(BufWriter::new(sink))), file) {
+        // Who has read enough goes away: that is nothing to complain about.
+        (Err(table::TableError::Sink(e)), None) if e.kind() == ErrorKind::BrokenPipe => Ok(()),
+        (Err(table::TableError::Sink(e)), Some(path)) => Err(e).with_context(|| trying(path)),
+        (done, _) => Ok(done?),
     }
 }
 
@@ -44,21 +42,17 @@ fn rows<W: Write>(source: Source<'_>, topic: &str, csv: &mut csv::Writer<W>) -> 
 pub(super) fn alog(recording: &Recording, series: &GameSeries, path: &Path) -> Result<usize> {
     let header = recording.header();
     if path.extension().is_some_and(|ending| ending == "alog") && !path.is_dir() {
-        save(path, &alog::shoreside(header, series))?;
+        output_file::write(path, "the log", alog::shoreside(header, series))?;
         return Ok(1);
     }
-    super::make_folder(path)?;
+    output_file::make_folder(path)?;
     let names = alog::names(series);
     for (i, name) in names.iter().enumerate() {
         let text = match i.checked_sub(1) {
             Some(place) => alog::vehicle(header, series, place).unwrap_or_default(),
             None => alog::shoreside(header, series),
         };
-        save(&path.join(format!("{name}.alog")), &text)?;
+        output_file::write(&path.join(format!("{name}.alog")), "the log", text)?;
     }
     Ok(names.len())
-}
-
-fn save(path: &Path, text: &str) -> Result<()> {
-    std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
 }

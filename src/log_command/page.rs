@@ -1,9 +1,9 @@
 //! The summary of a recorded game as text.
 
+use crate::screen::line;
 use analysis::{BoatStatistics, Gateway, Summary, Topic, Traffic};
 use recording::{Bag, RecordingError, utc};
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// The whole page.
 pub(super) fn text(summary: &Summary) -> String {
@@ -131,12 +131,4 @@ fn topics(topics: &BTreeMap<String, Topic>) -> String {
         line(&mut text, format_args!("{name:width$}{:>10}{rate:>10}{kilobytes:>10.0}", topic.count));
     }
     text
-}
-
-/// A line without blanks at its end.
-pub(super) fn line(text: &mut String, args: std::fmt::Arguments<'_>) {
-    let mut whole = String::new();
-    whole.write_fmt(args).expect("writing to a String cannot fail");
-    text.push_str(whole.trim_end());
-    text.push('\n');
 }

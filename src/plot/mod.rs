@@ -7,14 +7,15 @@ pub(crate) mod polar;
 pub(crate) mod sea;
 pub(crate) mod trial;
 
+use crate::output_file;
 use anyhow::Context;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
 
-/// A page of panels.
-pub(crate) struct Page {
+/// A page of panels of one kind.
+pub(crate) struct Page<P> {
     /// What stands on top.
     pub(crate) title: String,
     /// Panels per row.
@@ -22,10 +23,10 @@ pub(crate) struct Page {
     /// Width and height of a panel, pixels.
     pub(crate) panel: (u32, u32),
     /// Row by row.
-    pub(crate) panels: Vec<Panel>,
+    pub(crate) panels: Vec<P>,
 }
 
-/// One diagram.
+/// One diagram with lines.
 pub(crate) struct Panel {
     /// What it shows.
     pub(crate) title: String,
@@ -80,7 +81,7 @@ impl Line {
 
 /// The usual size of a panel, pixels.
 pub(crate) const PANEL: (u32, u32) = (560, 400);
-const TITLE_HEIGHT: u32 = 44;
+pub(crate) const TITLE_HEIGHT: u32 = 44;
 pub(crate) const FONT: &str = "sans-serif";
 const CAPTION: (&str, u32) = (FONT, 16);
 /// How much of a line's colour is in what it fills.
@@ -134,6 +135,12 @@ pub(crate) trait Drawing {
     fn draw<B: DrawingBackend>(&self, root: &Area<B>, ink: Ink) -> Drawn<B>;
 }
 
+/// Something that can be drawn onto a part of a page.
+pub(crate) trait Diagram {
+    /// Draws it onto a white ground of any size.
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>, ink: Ink) -> Drawn<B>;
+}
+
 /// What comes of drawing.
 pub(crate) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
@@ -142,7 +149,7 @@ pub(crate) fn write_svg(path: &Path, drawing: &impl Drawing) -> anyhow::Result<(
     let mut svg = String::new();
     draw_on(SVGBackend::with_string(&mut svg, drawing.size()), drawing, Ink::Vector)
         .with_context(|| format!("cannot draw {}", path.display()))?;
-    std::fs::write(path, svg).with_context(|| format!("cannot write the plot to {}", path.display()))
+    output_file::write(path, "the plot", svg)
 }
 
 /// Draws into a PNG file, three bytes a pixel.
@@ -151,14 +158,11 @@ pub(crate) fn write_png(path: &Path, drawing: &impl Drawing) -> anyhow::Result<(
     let mut pixels = vec![0; 3 * wide as usize * high as usize];
     draw_on(BitMapBackend::with_buffer(&mut pixels, (wide, high)), drawing, Ink::Pixels)
         .with_context(|| format!("cannot draw {}", path.display()))?;
-    let write = || -> anyhow::Result<()> {
-        let file = std::io::BufWriter::new(std::fs::File::create(path)?);
-        let mut encoder = png::Encoder::new(file, wide, high);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.write_header()?.write_image_data(&pixels)?;
-        Ok(())
-    };
-    write().with_context(|| format!("cannot write the plot to {}", path.display()))
+    let mut file = vec![];
+    let mut encoder = png::Encoder::new(&mut file, wide, high);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header()?.write_image_data(&pixels)?;
+    output_file::write(path, "the plot", file)
 }
 
 /// Draws into an SVG and a PNG file of this name.
@@ -175,13 +179,13 @@ fn draw_on<B: DrawingBackend>(backend: B, drawing: &impl Drawing, ink: Ink) -> D
     root.present()
 }
 
-impl Page {
+impl<P> Page<P> {
     fn rows(&self) -> usize {
         self.panels.len().div_ceil(self.columns)
     }
 }
 
-impl Drawing for Page {
+impl<P: Diagram> Drawing for Page<P> {
     fn size(&self) -> (u32, u32) {
         (self.panel.0 * self.columns as u32, TITLE_HEIGHT + self.panel.1 * self.rows() as u32)
     }
@@ -190,14 +194,17 @@ impl Drawing for Page {
         let (top, rest) = root.split_vertically(TITLE_HEIGHT);
         top.draw(&Text::new(self.title.clone(), (24, 14), (FONT, 20).into_font()))?;
         let areas = rest.split_evenly((self.rows(), self.columns));
-        areas.iter().zip(&self.panels).try_for_each(|(area, panel)| draw_panel(area, panel, ink))
+        areas.iter().zip(&self.panels).try_for_each(|(area, panel)| panel.draw(area, ink))
     }
 }
 
-fn draw_panel<B: DrawingBackend>(area: &Area<B>, panel: &Panel, ink: Ink) -> Drawn<B> {
-    if panel.lines.is_empty() {
-        return draw_absent(area, panel);
+impl Diagram for Panel {
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>, ink: Ink) -> Drawn<B> {
+        if self.lines.is_empty() { draw_absent(area, self) } else { draw_lines(area, self, ink) }
     }
+}
+
+fn draw_lines<B: DrawingBackend>(area: &Area<B>, panel: &Panel, ink: Ink) -> Drawn<B> {
     let has_names = panel.lines.iter().any(|line| !line.name.is_empty());
     let ((x0, x1), (y0, y1)) = ranges(panel, has_names, area.dim_in_pixel());
     let mut chart = ChartBuilder::on(area)
@@ -342,7 +349,7 @@ fn provide_font() {
 mod tests {
     use super::*;
 
-    fn page(points: Vec<(f64, f64)>) -> Page {
+    fn page(points: Vec<(f64, f64)>) -> Page<Panel> {
         let line =
             |name: &str| Line { name: name.into(), points: points.clone(), filled: !name.is_empty(), colour: None };
         let mark = |at: &(f64, f64)| Mark { name: "here".into(), at: *at };
@@ -362,7 +369,7 @@ mod tests {
         svg(&page(points))
     }
 
-    fn svg(page: &Page) -> String {
+    fn svg(page: &Page<Panel>) -> String {
         let dir = tempfile::tempdir().expect("a temporary directory");
         let path = dir.path().join("plot.svg");
         write_svg(&path, page).expect("it can be drawn");

@@ -1,6 +1,6 @@
 //! Polar plots of a helm's objective functions: coloured discs with north on top.
 
-use crate::plot::{self, Area, Drawing, Drawn, Ink, colour};
+use crate::plot::{self, Area, Diagram, Drawn, Ink, colour};
 use game::math;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -22,9 +22,7 @@ pub(crate) struct PolarPlot {
 }
 
 /// Size of a panel, pixels.
-const PANEL: (u32, u32) = (520, 500);
-const COLUMNS_MAX: usize = 3;
-const TITLE_HEIGHT: u32 = 56;
+pub(crate) const PANEL: (u32, u32) = (520, 500);
 /// The middle of the disc in its panel, and the radius of the highest speed.
 const MIDDLE: (f64, f64) = (225.0, 268.0);
 const RADIUS: f64 = 180.0;
@@ -34,48 +32,21 @@ const SCALE: [i32; 4] = [444, 460, 88, 448];
 const SHADES: usize = 64;
 const GREY: RGBColor = RGBColor(90, 90, 90);
 
-/// A page of polar plots.
-pub(crate) struct PolarPage {
-    /// What stands on top.
-    pub(crate) title: String,
-    /// Row by row.
-    pub(crate) plots: Vec<PolarPlot>,
-}
+/// How many stand beside each other at most.
+pub(crate) const COLUMNS_MAX: usize = 3;
 
-impl PolarPage {
-    fn columns(&self) -> usize {
-        self.plots.len().clamp(1, COLUMNS_MAX)
+impl Diagram for PolarPlot {
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>, ink: Ink) -> Drawn<B> {
+        area.draw(&Text::new(self.title.clone(), (24, 12), (plot::FONT, 15).into_font()))?;
+        draw_disc(area, self, if ink == Ink::Vector { 2 } else { 1 })?;
+        draw_axes(area, self)?;
+        draw_scale(area, self)?;
+        let Some((course_deg, speed_m_s)) = self.chosen else { return Ok(()) };
+        let at = place(course_deg, RADIUS * speed_m_s / self.speed_max_m_s);
+        area.draw(&Circle::new(at, 8, BLACK.filled()))?;
+        area.draw(&Circle::new(at, 6, WHITE.filled()))?;
+        area.draw(&Circle::new(at, 3, BLACK.filled()))
     }
-}
-
-impl Drawing for PolarPage {
-    fn size(&self) -> (u32, u32) {
-        let rows = self.plots.len().div_ceil(self.columns()).max(1);
-        (PANEL.0 * self.columns() as u32, TITLE_HEIGHT + PANEL.1 * rows as u32)
-    }
-
-    fn draw<B: DrawingBackend>(&self, root: &Area<B>, ink: Ink) -> Drawn<B> {
-        let grain = if ink == Ink::Vector { 2 } else { 1 };
-        root.draw(&Text::new(self.title.clone(), (24, 20), (plot::FONT, 20).into_font()))?;
-        let columns = self.columns();
-        for (i, plot) in self.plots.iter().enumerate() {
-            let corner = ((i % columns) as u32 * PANEL.0, TITLE_HEIGHT + (i / columns) as u32 * PANEL.1);
-            draw_plot(&root.clone().shrink(corner, PANEL), plot, grain)?;
-        }
-        Ok(())
-    }
-}
-
-fn draw_plot<B: DrawingBackend>(area: &Area<B>, plot: &PolarPlot, grain: i32) -> Drawn<B> {
-    area.draw(&Text::new(plot.title.clone(), (24, 12), (plot::FONT, 15).into_font()))?;
-    draw_disc(area, plot, grain)?;
-    draw_axes(area, plot)?;
-    draw_scale(area, plot)?;
-    let Some((course_deg, speed_m_s)) = plot.chosen else { return Ok(()) };
-    let at = place(course_deg, RADIUS * speed_m_s / plot.speed_max_m_s);
-    area.draw(&Circle::new(at, 8, BLACK.filled()))?;
-    area.draw(&Circle::new(at, 6, WHITE.filled()))?;
-    area.draw(&Circle::new(at, 3, BLACK.filled()))
 }
 
 /// The disc, row by row of its grains, each a few stretches of one colour. Where grains are more than a pixel, in a
@@ -186,6 +157,7 @@ fn colour_of(shade: usize) -> RGBColor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::{Page, TITLE_HEIGHT};
     use std::path::Path;
 
     fn plot(values: Vec<f64>) -> PolarPlot {
@@ -216,7 +188,7 @@ mod tests {
         // East at more than half the speed is good, everything else is not.
         let good = |k: usize, j: usize| (6..=12).contains(&k) && j >= 5;
         let values = (0..36 * 8).map(|i| if good(i / 8, i % 8) { 100.0 } else { 0.0 }).collect();
-        let page = PolarPage { title: "blue_one".into(), plots: vec![plot(values)] };
+        let page = Page { title: "blue_one".into(), columns: 1, panel: PANEL, panels: vec![plot(values)] };
         plot::write_png(&png, &page).expect("it can be drawn");
         plot::write_svg(&svg, &page).expect("it can be drawn");
         let (best, worst) = ([253, 231, 37], [68, 1, 84]);

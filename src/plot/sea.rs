@@ -23,29 +23,17 @@ const MARK_S: f64 = 60.0;
 /// A boat that stays within this distance has not drifted, m.
 const STAYS_M: f64 = 0.01;
 
-/// What is shown.
-pub(crate) struct Shown<'a> {
-    /// What stands on top.
-    pub(crate) title: String,
-    /// As its file states it.
-    pub(crate) sea: &'a Sea,
-    /// As it is.
-    pub(crate) model: &'a SeaModel,
-    /// The track of a boat that nobody steers, from the datum.
-    pub(crate) drift: &'a [Sample],
-}
-
-/// Draws a sea into a file.
-pub(crate) fn write(path: &Path, shown: &Shown<'_>) -> Result<()> {
-    let panels = vec![spectrum(shown), elevation(shown), wind(shown), drift(shown.drift)];
-    plot::write_svg(path, &Page { title: shown.title.clone(), columns: 2, panel: plot::PANEL, panels })
+/// Draws a sea into a file: as its file states it, as it is, and with the track of a boat that nobody steers, from the datum.
+pub(crate) fn write(path: &Path, title: String, sea: &Sea, model: &SeaModel, track: &[Sample]) -> Result<()> {
+    let panels = vec![spectrum(sea, model), elevation(sea, model), wind(sea, model), drift(track)];
+    plot::write_svg(path, &Page { title, columns: 2, panel: plot::PANEL, panels })
 }
 
 /// Bars and curve are densities alike: the area of a bar is the variance of the components in its band.
-fn spectrum(shown: &Shown<'_>) -> Panel {
+fn spectrum(sea: &Sea, model: &SeaModel) -> Panel {
     let mut lines = vec![];
-    let field = shown.model.at_time(SimTime::ZERO);
-    if let (Some(waves), Some(field)) = (&shown.sea.waves, field.waves()) {
+    let field = model.at_time(SimTime::ZERO);
+    if let (Some(waves), Some(field)) = (&sea.waves, field.waves()) {
         let (low_hz, high_hz) = band::range_hz(waves.tp_s);
         let at = |i: usize| low_hz + (high_hz - low_hz) * i as f64 / CURVE as f64;
         let corners = |band: &Band| [(band.range_hz.0, band.density_m2_hz()), (band.range_hz.1, band.density_m2_hz())];
@@ -62,24 +50,24 @@ fn spectrum(shown: &Shown<'_>) -> Panel {
     Panel::of("Wave spectrum", ["frequency in Hz", "m²/Hz"], lines, "no waves")
 }
 
-fn elevation(shown: &Shown<'_>) -> Panel {
-    let tp_s = shown.sea.waves.as_ref().map(|waves| waves.tp_s);
+fn elevation(sea: &Sea, model: &SeaModel) -> Panel {
+    let tp_s = sea.waves.as_ref().map(|waves| waves.tp_s);
     let point = |tp_s: f64, i: u32| {
         let t_s = tp_s * f64::from(i) / f64::from(ELEVATION_STEPS);
-        (t_s, shown.model.at_time(SimTime::from_s(t_s)).elevation_m(Ned::default()))
+        (t_s, model.at_time(SimTime::from_s(t_s)).elevation_m(Ned::default()))
     };
     let line = |tp_s: f64| Line::of("", (0..=ELEVATION_PERIODS * ELEVATION_STEPS).map(|i| point(tp_s, i)).collect());
     Panel::of("Surface elevation at the datum", ["time in s", "m"], tp_s.map(line).into_iter().collect(), "no waves")
 }
 
-fn wind(shown: &Shown<'_>) -> Panel {
+fn wind(sea: &Sea, model: &SeaModel) -> Panel {
     let mut lines = vec![];
-    if let Some(wind) = &shown.sea.wind {
+    if let Some(wind) = &sea.wind {
         let (sin, cos) = math::sin_cos(wind.from_rad);
         let series = |name: &str, unit: Ned| {
             let point = |i: u32| {
                 let t_s = f64::from(i) / f64::from(WIND_STEPS_PER_S);
-                (t_s, shown.model.at_time(SimTime::from_s(t_s)).wind_at(Ned::default()).dot(unit))
+                (t_s, model.at_time(SimTime::from_s(t_s)).wind_at(Ned::default()).dot(unit))
             };
             Line::of(name, (0..=WIND_S * WIND_STEPS_PER_S).map(point).collect())
         };

@@ -13,50 +13,9 @@ use sim::Contest;
 /// What came of it.
 #[derive(Debug)]
 pub(super) struct Verdict {
-    frames: usize,
-    end_s: f64,
-    is_cut: bool,
-    difference: Option<Difference>,
-    /// Digests in the end: recorded and played again. None where the file ends abruptly.
-    digests: Option<[String; 2]>,
-}
-
-/// Where the game first goes another way.
-#[derive(Debug)]
-struct Difference {
-    tick: u64,
-    at_s: f64,
-    /// What differs, and both values.
-    what: String,
-    recorded: String,
-    again: String,
-}
-
-impl Verdict {
-    pub(super) fn is_same(&self) -> bool {
-        self.difference.is_none() && self.digests.as_ref().is_none_or(|[recorded, again]| recorded == again)
-    }
-
-    pub(super) fn text(&self) -> String {
-        let Verdict { frames, end_s, is_cut, .. } = self;
-        let cut = if *is_cut { "; the file ends abruptly there" } else { "" };
-        if let Some(Difference { tick, at_s, what, recorded, again }) = &self.difference {
-            return format!(
-                "DIFFERENT from tick {tick} on ({at_s:.1} s): {what} was {recorded}, played again it is {again}\n"
-            );
-        }
-        match &self.digests {
-            Some([recorded, again]) if recorded != again => {
-                format!(
-                    "DIFFERENT in the end: {frames} frames agree, but the digest was {recorded}, now it is {again}\n"
-                )
-            }
-            Some([digest, _]) => {
-                format!("the same: {frames} frames to {end_s:.1} s to the last bit, digest {digest}\n")
-            }
-            None => format!("the same: {frames} frames to {end_s:.1} s to the last bit{cut}\n"),
-        }
-    }
+    pub(super) is_same: bool,
+    /// A line for people.
+    pub(super) text: String,
 }
 
 /// Plays the game again.
@@ -64,7 +23,7 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
     let scenario = recording.scenario();
     let (mut contest, mut shown) = (Contest::new(scenario, scenario.seed)?, EventCursor::default());
     let mut inputs = Vec::new();
-    let mut verdict = Verdict { frames: 0, end_s: 0.0, is_cut: recording.is_cut(), difference: None, digests: None };
+    let (mut frames, mut end_s) = (0, 0.0);
     let ticks = u64::from(scenario.ticks_per_decision);
     for message in recording.bag().messages().filter(|message| [FRAME, INPUTS].contains(&message.topic)) {
         if message.topic == INPUTS {
@@ -72,7 +31,7 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
             continue;
         }
         // A decision that the disk was too slow for is missing with all that it was given.
-        let seq = verdict.frames as u64;
+        let seq = frames;
         let [given] = inputs.as_slice() else { bail!("{} inputs before frame {seq}, expected one", inputs.len()) };
         if given.stamp.seq != seq {
             bail!("decisions {seq} to {} are missing in this recording", given.stamp.seq.saturating_sub(1));
@@ -87,23 +46,33 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
             let recorded: Frame = message.read()?;
             let [what, then, now] = first_difference(&recorded, &again, scenario)?;
             let (tick, at_s) = (recorded.stamp.seq * ticks, recorded.stamp.valid_ns.as_s());
-            verdict.difference = Some(Difference { tick, at_s, what, recorded: then, again: now });
-            return Ok(verdict);
+            let from = format!("DIFFERENT from tick {tick} on ({at_s:.1} s)");
+            let text = format!("{from}: {what} was {then}, played again it is {now}\n");
+            return Ok(Verdict { is_same: false, text });
         }
-        verdict.frames += 1;
-        verdict.end_s = message.at.as_s();
+        frames += 1;
+        end_s = message.at.as_s();
     }
-    if verdict.frames == 0 {
+    if frames == 0 {
         bail!("there are no frames in it");
     }
     let outcome = contest.outcome();
-    if let Some(ending) = recording.ending() {
-        if ending.outcome.ticks != outcome.ticks {
-            bail!("the game went on to tick {}, the recording to {}", ending.outcome.ticks, outcome.ticks);
-        }
-        verdict.digests = Some([ending.outcome.digest.clone(), outcome.digest]);
+    let same = format!("the same: {frames} frames to {end_s:.1} s to the last bit");
+    let Some(ending) = recording.ending() else {
+        let cut = if recording.is_cut() { "; the file ends abruptly there" } else { "" };
+        return Ok(Verdict { is_same: true, text: format!("{same}{cut}\n") });
+    };
+    if ending.outcome.ticks != outcome.ticks {
+        bail!("the game went on to tick {}, the recording to {}", ending.outcome.ticks, outcome.ticks);
     }
-    Ok(verdict)
+    let (recorded, again) = (&ending.outcome.digest, &outcome.digest);
+    let is_same = recorded == again;
+    let text = if is_same {
+        format!("{same}, digest {again}\n")
+    } else {
+        format!("DIFFERENT in the end: {frames} frames agree, but the digest was {recorded}, now it is {again}\n")
+    };
+    Ok(Verdict { is_same, text })
 }
 
 /// What differs first between two frames: its name, and both values.
@@ -188,8 +157,8 @@ mod tests {
     #[test]
     fn what_was_played_is_played_again() {
         let verdict = check(&recorded(Some)).unwrap_or_else(|e| panic!("{e}"));
-        assert!(verdict.is_same(), "{}", verdict.text());
-        assert!(verdict.text().starts_with("the same: 11 frames to 1.0 s to the last bit, digest "));
+        assert!(verdict.is_same, "{}", verdict.text);
+        assert!(verdict.text.starts_with("the same: 11 frames to 1.0 s to the last bit, digest "));
     }
 
     #[test]
@@ -197,13 +166,9 @@ mod tests {
         let order = Order::Thrust { port: 1.0, starboard: -1.0 };
         let input = Input::Ordered { vehicle: VehicleId(0), order, given_at: SimTime::from_s(0.4) };
         let verdict = check(&with(input)).unwrap_or_else(|e| panic!("{e}"));
-        assert!(!verdict.is_same());
+        assert!(!verdict.is_same);
         let name = recorded(Some).scenario().vehicles[0].name.clone();
-        assert!(
-            verdict.text().starts_with(&format!("DIFFERENT from tick 10 on (0.5 s): {name} ")),
-            "{}",
-            verdict.text()
-        );
+        assert!(verdict.text.starts_with(&format!("DIFFERENT from tick 10 on (0.5 s): {name} ")), "{}", verdict.text);
     }
 
     #[test]

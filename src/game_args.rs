@@ -1,0 +1,117 @@
+//! Which game, and what takes the place of what its file says: what `run` and `sim` ask alike.
+
+use crate::child_process::{self, option};
+use crate::output_file;
+use crate::sim_command::seconds;
+use crate::water_args::named_file;
+use anyhow::{Context, Result, bail};
+use game::Scenario;
+use game::scenario::{Kind, Overrides};
+use sim::node::{Pace, Report};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A game, from the command line.
+#[derive(clap::Args)]
+pub(crate) struct GameArgs {
+    /// The game file
+    scenario: PathBuf,
+    /// Chooses the game [default: as the file says]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// A sea file in place of the game's own
+    #[arg(long, value_name = "FILE")]
+    sea: Option<PathBuf>,
+    /// The strategy of all boats of the team blue, also of those that the game gives one of their own: a file, or the
+    /// name of one in the folder strategies beside the game's
+    #[arg(long, value_name = "FILE")]
+    blue: Option<String>,
+    /// The same for the team red
+    #[arg(long, value_name = "FILE")]
+    red: Option<String>,
+    /// The same for a team of any name; may be given again for another
+    #[arg(long, value_name = "TEAM=FILE", value_parser = team_and_file)]
+    strategy: Vec<(String, String)>,
+    /// Plays external boats as simulated ones: a rehearsal
+    #[arg(long)]
+    rehearse: bool,
+    /// lockstep, realtime, or a factor such as 4x
+    #[arg(long, default_value = "lockstep")]
+    pub(crate) pace: Pace,
+    /// In lockstep: plays no faster than this many times real time, until somebody asks for another speed
+    #[arg(long, value_name = "FACTOR", value_parser = speed)]
+    pub(crate) speed: Option<f64>,
+    /// How long to wait for agents, and for gateways of real boats, before starting without the missing ones, s
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    pub(crate) join_s: f64,
+    /// Writes the result to this file
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl GameArgs {
+    /// The scenario, with every problem in the error.
+    pub(crate) fn load(&self) -> Result<Scenario> {
+        game::scenario::load_with(&self.scenario, &self.overrides()?)
+            .with_context(|| format!("cannot play {}", self.scenario.display()))
+    }
+
+    /// Which of the games of this scenario it is.
+    pub(crate) fn seed(&self, scenario: &Scenario) -> u64 {
+        self.seed.unwrap_or(scenario.seed)
+    }
+
+    /// A process that serves this game, or something of it, under a name.
+    pub(crate) fn sim(&self, name: &str, endpoint: &str) -> Result<Command> {
+        let mut command = child_process::squall(&["sim", "--game", name, "--listen", endpoint])?;
+        command.arg(&self.scenario);
+        let overrides = self.overrides()?;
+        option(&mut command, "--sea", overrides.sea.as_ref().map(|sea| sea.display()));
+        for (team, path) in &overrides.strategies {
+            option(&mut command, "--strategy", Some(format!("{team}={}", path.display())));
+        }
+        command.args(overrides.simulate_all.then_some("--rehearse"));
+        option(&mut command, "--pace", Some(self.pace));
+        option(&mut command, "--seed", self.seed);
+        Ok(command)
+    }
+
+    /// Writes the result of the game to a file, if it is asked for.
+    pub(crate) fn write_result(&self, report: &Report) -> Result<()> {
+        let Some(path) = &self.json else { return Ok(()) };
+        let mut value = serde_json::to_value(&report.outcome).context("the result is not JSON")?;
+        value["run"] = serde_json::to_value(&report.run).context("the result is not JSON")?;
+        output_file::write_json(path, "the result", &value)
+    }
+
+    /// What takes the place of what the game file says.
+    fn overrides(&self) -> Result<Overrides> {
+        let mut overrides = Overrides { sea: self.sea.clone(), simulate_all: self.rehearse, ..Overrides::default() };
+        let beside = self.scenario.parent().unwrap_or(Path::new(""));
+        let folder = || Ok(beside.join("..").join(Kind::Strategy.folder()));
+        let named = [("blue", &self.blue), ("red", &self.red)];
+        let named = named.into_iter().filter_map(|(team, file)| Some((team, file.as_deref()?)));
+        for (team, file) in named.chain(self.strategy.iter().map(|(team, file)| (team.as_str(), file.as_str()))) {
+            let path = named_file(file, ["strategy file", "strategy"], folder)?;
+            if overrides.strategies.insert(team.to_owned(), path).is_some() {
+                bail!("the strategy of team {team} is given twice, expected one");
+            }
+        }
+        Ok(overrides)
+    }
+}
+
+/// A speed from the command line, as in `10x` or `0.5`.
+fn speed(text: &str) -> Result<f64, String> {
+    let factor = text.strip_suffix('x').unwrap_or(text).parse().ok();
+    let factor = factor.filter(|factor| (0.01..=1000.0).contains(factor));
+    factor.ok_or_else(|| format!("speed {text:?} is not a factor from 0.01x to 1000x such as 10x"))
+}
+
+/// A team and its file from the command line.
+fn team_and_file(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((team, file)) if !team.is_empty() && !file.is_empty() => Ok((team.to_owned(), file.to_owned())),
+        _ => Err(format!("{text:?} is not TEAM=FILE")),
+    }
+}

@@ -1,0 +1,21 @@
+//! Files that commands write, with errors that name them.
+
+use anyhow::{Context, Result};
+use serde::Serialize;
+use std::path::Path;
+
+/// Writes a file; `what` stands in the error.
+pub(crate) fn write(path: &Path, what: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
+    std::fs::write(path, bytes).with_context(|| format!("cannot write {what} to {}", path.display()))
+}
+
+/// Writes a value as JSON that people can read.
+pub(crate) fn write_json(path: &Path, what: &str, value: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(value).with_context(|| format!("{what} is not JSON"))?;
+    write(path, what, text + "\n")
+}
+
+/// A folder that is there.
+pub(crate) fn make_folder(dir: &Path) -> Result<()> {
+    std::fs::create_dir_all(dir).with_context(|| format!("cannot make the folder {}", dir.display()))
+}
