@@ -69,53 +69,22 @@ fn deep_and_large_files_are_refused() {
     }
 }
 
-/// Keys of strategy files, and values that may stand there, or not.
-const KEYS: [&str; 16] = [
-    "base",
-    "about",
-    "roles",
-    "helm",
-    "variables",
-    "mode",
-    "rule",
-    "behaviour",
-    "behaviour.go",
-    "behaviour.go.kind",
-    "behaviour.go.points",
-    "behaviour.go.on_run",
-    "behaviour.go.ellipse",
-    "variables.a",
-    "unsafe_i_know",
-    "behaviour.go.in",
-];
-const VALUES: [&str; 17] = [
-    "3",
-    "nan",
-    "true",
-    "\"x\"",
-    "\"waypoint\"",
-    "\"loiter\"",
-    "[]",
-    "[[]]",
-    "[\"x.toml\"]",
-    "{}",
-    "{ a = 1 }",
-    "[{}]",
-    "{ values = [\"a\"], initial = 3 }",
-    "[{ name = \"a\", when = \"b\", set = { a = 1 } }]",
-    "1979-05-27",
-    "[1, [2, 3]]",
-    "{ go = { kind = \"timer\", in = [3] } }",
-];
+/// Keys of strategy files, and values that may stand there, or not: one a line.
+const KEYS: &str = include_str!("scenario_hostile_keys.txt");
+const VALUES: &str = include_str!("scenario_hostile_values.txt");
+
+fn lines(of: &'static str) -> impl Strategy<Value = &'static str> {
+    prop::sample::select(of.lines().collect::<Vec<_>>())
+}
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn arbitrary_values_in_a_strategy_are_refused_or_read(
-        entries in prop::collection::vec((0..KEYS.len(), 0..VALUES.len()), 0..6)
+        entries in prop::collection::vec((lines(KEYS), lines(VALUES)), 0..6)
     ) {
-        let line = |(key, value): &(usize, usize)| format!("{} = {}\n", KEYS[*key], VALUES[*value]);
+        let line = |(key, value): &(&str, &str)| format!("{key} = {value}\n");
         let text: String = entries.iter().map(line).collect();
         check_as_all_kinds(text.as_bytes());
     }

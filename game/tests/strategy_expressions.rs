@@ -73,94 +73,55 @@ fn number(program: &Program) -> &Expression {
     &wait.duration_s.as_ref().unwrap().expression
 }
 
-const CONDITIONS: [(&str, bool); 42] = [
-    ("true", true),
-    ("false", false),
-    ("!false", true),
-    ("!!true", true),
-    ("tagged", true),
-    ("has_flag", false),
-    ("tagged && has_flag", false),
-    ("tagged || has_flag", true),
-    // && binds tighter than ||.
-    ("true || false && false", true),
-    ("(true || false) && false", false),
-    ("false && false || true", true),
-    // Comparisons bind tighter than both, ! tighter than comparisons.
-    ("1 < 2 && 2 < 1", false),
-    ("!tagged == false", true),
-    ("!(tagged == false)", true),
-    ("laps > 2", true),
-    ("laps > 3", false),
-    ("laps >= 3", true),
-    ("laps <= 3", true),
-    ("laps < 3", false),
-    ("laps == 3", true),
-    ("laps == 3.0", true),
-    ("laps != 3", false),
-    ("-laps < 0", true),
-    ("laps == -3", false),
-    ("1 + 2 * 3 == 7", true),
-    ("(1 + 2) * 3 == 9", true),
-    ("10 - 4 - 3 == 3", true),
-    ("12 / 2 / 3 == 2.0", true),
-    ("2 - -2 == 4", true),
-    ("1e2 == 100.0 && 0x10 == 16 && .5 == 0.5", true),
-    ("phase == 'return'", true),
-    ("'return' == phase", true),
-    ("phase == \"go\"", false),
-    ("phase != 'go'", true),
-    ("tagged == own_side", true),
-    ("tagged != own_side", false),
-    ("tagged ? has_flag : true", false),
-    ("false ? false : false ? false : true", true),
-    ("tagged && (laps > 2 ? true : false)", true),
-    ("distance(CF) < 10 && distance('CF') == distance(CF) && distance(own_flag) > 1e8", true),
-    ("mates(phase == 'return') == 2 && mates(phase == 'go') == 0", true),
-    ("tagged // a comment, as CEL has it", true),
-];
+/// The expressions of the file beside this one: whether it is a condition, its text, and its value (1 for true).
+fn cases() -> Vec<(bool, &'static str, f64)> {
+    let lines = include_str!("strategy_expressions.txt").lines().filter(|line| !line.starts_with('#'));
+    let case = |line: &'static str| {
+        let (text, want) = line.rsplit_once(" => ").unwrap_or_else(|| panic!("not EXPRESSION => VALUE: {line}"));
+        match want {
+            "true" | "false" => (true, text, f64::from(u8::from(want == "true"))),
+            number => (false, text, number.parse().unwrap_or_else(|e| panic!("{line}: {e}"))),
+        }
+    };
+    let cases: Vec<_> = lines.map(case).collect();
+    assert!(cases.len() >= 54, "{} expressions", cases.len());
+    cases
+}
 
-const NUMBERS: [(&str, f64); 12] = [
-    ("5", 5.0),
-    ("2.5e1", 25.0),
-    ("laps * 2 + 1", 7.0),
-    ("laps - 1 - 1", 1.0),
-    ("laps - (1 - 1)", 3.0),
-    ("5 / 2", 2.5),
-    ("laps / 0", 0.0),
-    ("min(laps, 2) + max(laps, 2)", 5.0),
-    ("tagged ? 1 + 1 : 9", 2.0),
-    ("time_s", 12.5),
-    ("-laps + 10", 7.0),
-    ("mates(phase != 'go') + mates", 2.0),
-];
+/// The program with this expression, which must be sound, and the expression in it.
+fn read(is_condition: bool, text: &str) -> (Program, Expression) {
+    let program = if is_condition { with_condition(text) } else { with_number(text) };
+    let program = program.unwrap_or_else(|problems| panic!("{text}: {problems}"));
+    let expression = if is_condition { condition(&program) } else { number(&program) }.clone();
+    (program, expression)
+}
+
+fn value(is_condition: bool, expression: &Expression) -> f64 {
+    if is_condition { f64::from(u8::from(expression.is_true(&Known))) } else { expression.value(&Known) }
+}
 
 #[test]
-fn expressions_are_evaluated_as_cel_does() {
-    for (text, want) in CONDITIONS {
-        let program = with_condition(text).unwrap_or_else(|problems| panic!("{text}: {problems}"));
-        assert_eq!(condition(&program).is_true(&Known), want, "{text}");
-    }
-    for (text, want) in NUMBERS {
-        let program = with_number(text).unwrap_or_else(|problems| panic!("{text}: {problems}"));
-        assert_eq!(number(&program).value(&Known), want, "{text}");
+fn expressions_are_evaluated_as_cel_does_and_survive_json_exactly() {
+    for (is_condition, text, want) in cases() {
+        let (program, expression) = read(is_condition, text);
+        assert_eq!(value(is_condition, &expression), want, "{text}");
+        let json = serde_json::to_string(&program).unwrap();
+        assert_eq!(serde_json::from_str::<Program>(&json).unwrap(), program, "{json}");
     }
 }
 
 #[test]
 fn expressions_in_words_mean_the_same() {
-    for (text, want) in CONDITIONS {
-        let program = with_condition(text).unwrap();
-        let words = program.condition_text(condition(&program));
-        let again = with_condition(&words).unwrap_or_else(|problems| panic!("{text}: {words}: {problems}"));
-        assert_eq!(condition(&again).is_true(&Known), want, "{text}: {words}");
-        assert_eq!(again.condition_text(condition(&again)), words, "{text}");
-    }
-    for (text, want) in NUMBERS {
-        let program = with_number(text).unwrap();
-        let words = program.number_text(number(&program));
-        let again = with_number(&words).unwrap_or_else(|problems| panic!("{text}: {words}: {problems}"));
-        assert_eq!(number(&again).value(&Known), want, "{text}: {words}");
+    for (is_condition, text, want) in cases() {
+        let in_words = |program: &Program, expression: &Expression| match is_condition {
+            true => program.condition_text(expression),
+            false => program.number_text(expression),
+        };
+        let (program, expression) = read(is_condition, text);
+        let words = in_words(&program, &expression);
+        let (again, expression) = read(is_condition, &words);
+        assert_eq!(value(is_condition, &expression), want, "{text}: {words}");
+        assert_eq!(in_words(&again, &expression), words, "{text}");
     }
     for text in [
         "phase == 'return' && !alarmed || distance(CF) <= 3",
@@ -174,71 +135,12 @@ fn expressions_in_words_mean_the_same() {
     }
 }
 
-#[test]
-fn expressions_survive_json_exactly() {
-    for (text, _) in CONDITIONS {
-        let program = with_condition(text).unwrap();
-        let text = serde_json::to_string(&program).unwrap();
-        assert_eq!(serde_json::from_str::<Program>(&text).unwrap(), program, "{text}");
-    }
-    for (text, _) in NUMBERS {
-        let program = with_number(text).unwrap();
-        let text = serde_json::to_string(&program).unwrap();
-        assert_eq!(serde_json::from_str::<Program>(&text).unwrap(), program, "{text}");
-    }
-}
-
 /// What expressions are made of, and what they are not.
-const PIECES: [&str; 48] = [
-    "tagged",
-    "laps",
-    "phase",
-    "'go'",
-    "\"go\"",
-    "1",
-    "2.5",
-    "true",
-    "null",
-    "&&",
-    "||",
-    "!",
-    "==",
-    "!=",
-    "<",
-    ">=",
-    "+",
-    "-",
-    "*",
-    "/",
-    "%",
-    "?",
-    ":",
-    "(",
-    ")",
-    "[",
-    "]",
-    "{",
-    "}",
-    ",",
-    ".",
-    "distance(",
-    "mates(",
-    "min(",
-    "CF",
-    "in",
-    "has(",
-    "\\",
-    "'",
-    "\"",
-    "é",
-    "\u{1f6a4}",
-    "0x",
-    "1u",
-    "b'x'",
-    "\n",
-    "//",
-    "`",
-];
+fn pieces() -> Vec<&'static str> {
+    let words = "tagged laps phase 'go' \"go\" 1 2.5 true null CF in 0x 1u b'x' é \u{1f6a4} \n";
+    let signs = "&& || ! == != < >= + - * / % ? : ( ) [ ] { } , . distance( mates( min( has( \\ ' \" // `";
+    words.split(' ').chain(signs.split(' ')).collect()
+}
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
@@ -250,9 +152,8 @@ proptest! {
     }
 
     #[test]
-    fn arbitrary_pieces_are_refused_or_read(which in prop::collection::vec(0..PIECES.len(), 0..24), spaced in any::<bool>()) {
-        let pieces: Vec<&str> = which.into_iter().map(|which| PIECES[which]).collect();
-        answers(&quoted(&pieces.join(if spaced { " " } else { "" })));
+    fn arbitrary_pieces_are_refused_or_read(these in prop::collection::vec(prop::sample::select(pieces()), 0..24), spaced in any::<bool>()) {
+        answers(&quoted(&these.join(if spaced { " " } else { "" })));
     }
 }
 

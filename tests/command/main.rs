@@ -3,6 +3,7 @@
 
 mod log;
 mod program;
+mod refusals;
 mod sea;
 mod strategy;
 mod tournament;

@@ -1,6 +1,6 @@
-//! `squall sea` from outside: the numbers it tells, the page it draws, mistakes explained.
+//! `squall sea` from outside: the numbers it tells, the page it draws.
 
-use crate::program::{printed, refusal, scenario};
+use crate::program::{printed, scenario};
 use tempfile::TempDir;
 
 /// What stands over the panels.
@@ -147,24 +147,4 @@ fn a_kinematic_boat_stays_in_a_gale_and_the_text_says_why() {
     let text = printed(&dir, &["sea", &scenario("seas/gale.toml"), "--boat", &boat]);
     assert_eq!(value(&text, "free boat, simulated"), "stays");
     assert!(text.contains("a kinematic boat feels the current alone"), "{text}");
-}
-
-#[test]
-fn what_is_wrong_is_said() {
-    let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("bad.toml"), "wind = { speed_m_s = -3, from_deg = 0 }\n").unwrap();
-    let (calm, boat) = (scenario("seas/calm.toml"), scenario("boats/surveyor_m1_8.toml"));
-    let cases: [(&[&str], &[&str]); 5] = [
-        (&["none.toml"], &["no sea in none.toml"]),
-        (&["bad.toml"], &["no sea in bad.toml", "bad.toml:1", "speed_m_s"]),
-        (&[&boat], &["no sea in", "length_m"]),
-        (&[&calm, "--boat", "nonesuch"], &["there is no file nonesuch", "--boat"]),
-        (&[&calm, "--boat", &boat, "--plot", "no/where.svg"], &["cannot write the plot to no/where.svg"]),
-    ];
-    for (args, wants) in cases {
-        let error = refusal(&dir, &[&["sea"], args].concat());
-        for want in wants {
-            assert!(error.contains(want), "{args:?} should say {want:?}: {error}");
-        }
-    }
 }

@@ -1,6 +1,6 @@
 //! `squall tournament` and strategies from the command line, from outside.
 
-use crate::program::{command, printed, project, refusal, squall};
+use crate::program::{command, printed, project, squall};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Output, Stdio};
@@ -153,35 +153,10 @@ fn an_odd_number_of_games_is_rounded_up_with_a_note() {
 }
 
 #[test]
-fn mistakes_in_a_tournament_are_explained() {
+fn games_that_cannot_start_are_explained() {
     let dir = tempfile::tempdir().unwrap();
-    let (bad, crowd) = (place(&dir, "bad.toml"), place(&dir, "crowd.toml"));
-    let entries = "[[entry]]\nname = \"a\"\nstrategy = \"none.toml\"\n";
-    std::fs::write(&bad, format!("game = \"none.toml\"\ngames = 0\n{entries}")).unwrap();
-    let tournament = short_tournament(&dir, "");
-    let cases: [(&[&str], &[&str]); 7] = [
-        (&["none.toml"], &["no tournament in none.toml", "cannot be read"]),
-        (&[GAME], &["no tournament in", "vehicle is unknown"]),
-        (
-            &[&bad],
-            &[
-                "bad.toml:1:8",
-                "bad.toml:2:9: games is 0, expected 2 to 1000000",
-                "entry has 1 entries",
-                "bad.toml:5:12",
-            ],
-        ),
-        (&[&tournament, "--games", "1"], &["2..=1000000"]),
-        (&[&tournament, "--jobs", "0"], &["--jobs"]),
-        (&[&tournament, "--matches"], &["--json"]),
-        (&[&tournament, "--games", "2", "--json", "no/where.json"], &["cannot write the report to no/where.json"]),
-    ];
-    for (args, wants) in cases {
-        let error = refusal(project(), &[&["tournament"], args].concat());
-        for want in wants {
-            assert!(error.contains(want), "{args:?} should say {want:?}: {error}");
-        }
-    }
+    short_tournament(&dir, "");
+    let crowd = place(&dir, "crowd.toml");
     // Two boats lie where a third would have to keep clear of them.
     let game = "[[vehicle]]\nname = \"a\"\nteam = \"blue\"\nat = [20.5, 50]\n\
                 [[vehicle]]\nname = \"b\"\nteam = \"blue\"\nat = [22.4, 50]\n\
@@ -235,28 +210,4 @@ fn run_gives_teams_other_strategies_in_one_process_and_across_processes() {
         assert_eq!(digest(args), other, "{args:?}");
     }
     assert_eq!(digest(&["--blue", "easy_attackers", "--red", "idle", "--in-process"]), own);
-}
-
-#[test]
-fn strategies_that_nobody_can_follow_are_explained() {
-    let game = "scenarios/games/attack_1v1.toml";
-    for (args, want) in [
-        (
-            &["--strategy", "green=idle"][..],
-            "there is no team \"green\" to give another strategy to, expected one of blue, red",
-        ),
-        (
-            &["--blue", "nonesuch"],
-            "no strategy of that name in scenarios/games/../strategies: easy_attacker, easy_attackers",
-        ),
-        (&["--blue", "none/such.toml"], "there is no strategy file none/such.toml"),
-        (&["--blue", "idle", "--strategy", "blue=idle"], "the strategy of team blue is given twice"),
-        (&["--strategy", "blue"], "\"blue\" is not TEAM=FILE"),
-        (&["--red", SEA], "wind is unknown, expected one of"),
-    ] {
-        for command in [&["run", game, "--in-process"][..], &["sim", game]] {
-            let error = refusal(project(), &[command, args].concat());
-            assert!(error.contains(want), "{command:?} {args:?}: {error}");
-        }
-    }
 }

@@ -1,7 +1,7 @@
-//! `squall trial` and `squall identify` from outside: references through their CSV door, mistakes explained.
+//! `squall trial` and `squall identify` from outside: references through their CSV door.
 #![expect(clippy::disallowed_methods, reason = "tolerances are far above the last bit")]
 
-use crate::program::{self, printed, project, scenario, squall};
+use crate::program::{printed, project, scenario, squall};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -16,11 +16,6 @@ fn boat(name: &str) -> String {
 /// Runs a trial that must succeed; what it printed.
 fn trial(dir: &TempDir, args: &[&str]) -> String {
     printed(dir, &[&["trial"], args].concat())
-}
-
-/// Runs a trial that must be refused; why it was.
-fn refusal(dir: &TempDir, args: &[&str]) -> String {
-    program::refusal(dir, &[&["trial"], args].concat())
 }
 
 fn columns(path: &Path) -> Columns {
@@ -214,56 +209,6 @@ fn kinematic_boats_turn_as_the_reference_does() {
 fn kinematic_boats_take_thrust_and_rudder_as_the_reference_does() {
     let start = ["--start-surge-m-s", "3", "--start-thrust-pct", "100"];
     kinematic("tr_thrust100_rudder50", "surveyor", ["thrust", "rudder"], &start);
-}
-
-#[test]
-fn mistakes_in_a_series_name_file_line_and_column() {
-    let dir = tempfile::tempdir().unwrap();
-    let (otter, surveyor, point) = (boat("otter"), boat("surveyor_m1_8"), boat("heron_kinematic"));
-    for (boat, text, want) in [
-        (
-            &otter,
-            "t_s,port_rad_s,starboard_rad_s\n0,80,120\n",
-            "in.csv:2: starboard_rad_s is 120, expected -101.737 to 103.931",
-        ),
-        (&otter, "t_s,port_rad_s,starboard_rad_s\n0,80,x\n", "in.csv:2: starboard_rad_s is x, expected"),
-        (&otter, "t_s,port_rad_s,starboard_rad_s\n0,80,80\n0,80,80\n", "in.csv:3: t_s is 0, expected more than"),
-        (&otter, "t_s,port_rad_s\n0,80\n", "in.csv:1: column port_rad_s without starboard_rad_s"),
-        (&otter, "t_s,a\n0,80\n", "in.csv:1: no columns of commands among t_s, a, expected one of"),
-        (&otter, "t_s,port_rad_s,starboard_rad_s,port_pct,starboard_pct\n0,1,1,1,1\n", "several kinds of commands"),
-        (&otter, "t_s,thrust_pct,rudder_pct\n0,1,1\n", "the boat has two thrusters and no rudder"),
-        (&surveyor, "t_s,port_rad_s,starboard_rad_s\n0,1,1\n", "the boat has a thrust table and no propeller curve"),
-        (&surveyor, "t_s,port_newton,starboard_newton\n0,1,70\n", "starboard_newton is 70, expected -32 to 67.5"),
-        (&point, "t_s,port_pct,starboard_pct\n0,1,1\n", "the boat is kinematic and has no thrusters"),
-        (&otter, "t_s,port_pct,starboard_pct\n0,1,1\n", "the series ends where it begins"),
-        (&otter, "", "in.csv: no rows"),
-    ] {
-        std::fs::write(dir.path().join("in.csv"), text).unwrap();
-        let said = refusal(&dir, &[boat, "--orders", "in.csv", "--csv", "out.csv"]);
-        assert!(said.contains(want), "{text:?}: {said}");
-    }
-}
-
-#[test]
-fn what_cannot_be_is_refused_with_what_could() {
-    let dir = tempfile::tempdir().unwrap();
-    std::fs::write(dir.path().join("in.csv"), "t_s,port_pct,starboard_pct\n0,1,1\n5,1,1\n").unwrap();
-    let otter = boat("otter");
-    let orders = ["--orders", "in.csv", "--csv", "out.csv"];
-    for (args, want) in [
-        (&["--manoeuvre", "loop"][..], "turning_circle"),
-        (&[], "--orders"),
-        (&["--orders", "none.csv", "--csv", "out.csv"], "cannot read none.csv"),
-        (&["--orders", "in.csv"], "--csv"),
-        (&[&orders[..], &["--tick-s", "0.03"]].concat(), "expected 0.001 to 0.1"),
-        (&[&orders[..], &["--sea", "none.toml"]].concat(), "none.toml"),
-        (&[&orders[..], &["--start-thrust-pct", "50"]].concat(), "kinematic"),
-        (&[&orders[..], &["--current-toward-deg", "50"]].concat(), "--current-m-s"),
-    ] {
-        let said = refusal(&dir, &[&[otter.as_str()], args].concat());
-        assert!(said.contains(want), "{args:?}: {said}");
-    }
-    assert!(refusal(&dir, &["no_such_boat", "--manoeuvre", "spin"]).contains("no_such_boat"));
 }
 
 #[test]

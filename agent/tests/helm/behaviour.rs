@@ -6,9 +6,6 @@ use game::SimTime;
 use game::helm::{HelmReport, RunState};
 use game::picture::Picture;
 
-/// A course and a speed, or that it asks for nothing.
-type Want = Option<(f64, f64)>;
-
 /// What boat 0 decides by this behaviour alone in this scene.
 fn alone_decides(behaviour: &str, picture: &Picture) -> HelmReport {
     decided(&mut helm(&only(behaviour)), picture)
@@ -16,21 +13,6 @@ fn alone_decides(behaviour: &str, picture: &Picture) -> HelmReport {
 
 fn is_active(report: &HelmReport) -> bool {
     report.behaviours.iter().any(|b| b.name == "it" && b.run_state == RunState::Active)
-}
-
-fn assert_decides(behaviour: &str, picture: &Picture, want: Want) {
-    let report = alone_decides(behaviour, picture);
-    let got = report.course_deg.zip(report.speed_m_s).filter(|_| is_active(&report));
-    match (got, want) {
-        (None, None) => {}
-        (Some((course_deg, speed_m_s)), Some((want_deg, want_m_s))) => {
-            let off_deg = (course_deg - want_deg).rem_euclid(360.0);
-            // Half a step of the grid: 1 degree, 3/35 m/s.
-            assert!(off_deg.min(360.0 - off_deg) <= 0.51, "{behaviour}: course {course_deg}, wanted {want_deg}");
-            assert!((speed_m_s - want_m_s).abs() <= 0.044, "{behaviour}: {speed_m_s} m/s, wanted {want_m_s}");
-        }
-        _ => panic!("{behaviour}: {got:?}, wanted {want:?}"),
-    }
 }
 
 /// From the middle of the field.
@@ -43,96 +25,56 @@ fn with_contact(own: Boat, contact: Boat) -> Picture {
     picture(0.0, [own, Boat::at(-70.0, -30.0)], [contact, Boat::at(75.0, -35.0)])
 }
 
-#[test]
-fn behaviours_that_go_somewhere_go_there() {
-    // The own flag is at (-60, 0), the enemy's at (60, 0).
-    let contact = |boat: Boat| with_contact(Boat::at(0.0, 0.0), boat);
-    let by = |boat: Boat, x: f64, y: f64| with_contact(Boat::at(x, y), boat);
-    for (behaviour, picture, want) in [
-        ("kind = 'waypoint'\npoints = ['enemy_flag']\nspeed_m_s = 2", here(), Some((90.0, 2.0))),
-        ("kind = 'waypoint'\npoints = ['CF']\nspeed_m_s = 9", here(), Some((270.0, 3.0))),
-        (
-            "kind = 'waypoint'\npoints = [[0, -20], [20, -20]]\nreverse = true\nspeed_m_s = 2",
-            here(),
-            Some((135.0, 2.0)),
-        ),
-        // On the line from the start to the point, which is the boat's own place: straight there.
-        ("kind = 'waypoint'\npoints = [[30, 30]]\nlead_m = 5\nspeed_m_s = 2", here(), Some((45.0, 2.0))),
-        ("kind = 'station_keep'\nat = [0, 30]\ntransit_speed_m_s = 2", here(), Some((0.0, 2.0))),
-        // Two thirds of the way from the inner radius to the outer.
-        (
-            "kind = 'station_keep'\nat = [0, 10]\ninner_radius_m = 4\nouter_radius_m = 13\nouter_speed_m_s = 1.5",
-            here(),
-            Some((0.0, 1.0)),
-        ),
-        ("kind = 'station_keep'\nat = [0, 3]", here(), Some((0.0, 0.0))),
-        (
-            "kind = 'intercept'\ncontact = 'opponent'\nspeed_m_s = 2",
-            contact(Boat::at(0.0, 40.0).going(90.0, 1.2)),
-            Some((36.87, 2.0)),
-        ),
-        ("kind = 'intercept'\ncontact = 'opponent'\ngiveup_m = 30", contact(Boat::at(0.0, 40.0)), None),
-        (
-            "kind = 'cut_range'\ncontact = 'opponent'\npatience = 0",
-            contact(Boat::at(0.0, 40.0).going(90.0, 2.0)),
-            Some((0.0, 3.0)),
-        ),
-        (
-            "kind = 'cut_range'\ncontact = 'opponent'\npatience = 100\ntime_on_leg_s = 60",
-            contact(Boat::at(0.0, 40.0).going(180.0, 2.0)),
-            Some((0.0, 2.0)),
-        ),
-        ("kind = 'cut_range'\ncontact = 'opponent'\ngiveup_m = 30", contact(Boat::at(0.0, 40.0)), None),
-        ("kind = 'cut_range'\ncontact = 'nearest_intruder'", contact(Boat::at(20.0, 10.0)), None),
-        // 10 m astern of a boat that heads east at (30, 30) is (20, 30).
-        (
-            "kind = 'trail'\ncontact = 'opponent'\nrange_m = 10\nspeed_m_s = 2",
-            by(Boat::at(30.0, 30.0).going(90.0, 1.0), 0.0, 10.0),
-            Some((45.0, 2.0)),
-        ),
-        (
-            "kind = 'trail'\ncontact = 'opponent'\nrange_m = 10\nspeed_m_s = 2",
-            by(Boat::at(30.0, 30.0).going(90.0, 1.0), 19.0, 30.0),
-            Some((90.0, 1.0)),
-        ),
-        // Between the own flag and an enemy due north of it, 10 m from the flag.
-        (
-            "kind = 'shield'\nguarded = 'own_flag'\nagainst = 'opponent'\nspeed_m_s = 2",
-            by(Boat::at(-60.0, 40.0), -80.0, 10.0),
-            Some((90.0, 2.0)),
-        ),
-        // The nearer the enemy, the nearer the station: never beyond the middle.
-        (
-            "kind = 'shield'\nguarded = 'own_flag'\nagainst = 'opponent'\nspeed_m_s = 2",
-            by(Boat::at(-60.0, 12.0), -80.0, 6.0),
-            Some((90.0, 2.0)),
-        ),
-        ("kind = 'attractor'\nto = [30, 0]\nouter_m = 50\nspeed_m_s = 2", here(), Some((90.0, 2.0))),
-        ("kind = 'attractor'\nto = [30, 0]\nouter_m = 20\nspeed_m_s = 2", here(), None),
-    ] {
-        assert_decides(behaviour, &picture, want);
+/// The boat of `at X Y` or `at X Y going HEADING SPEED`.
+fn boat(text: &str) -> Boat {
+    let numbers: Vec<f64> = text.split(' ').filter_map(|word| word.parse().ok()).collect();
+    match (text.split(' ').count(), numbers.as_slice()) {
+        (3, &[x, y]) => Boat::at(x, y),
+        (6, &[x, y, heading_deg, speed_m_s]) => Boat::at(x, y).going(heading_deg, speed_m_s),
+        _ => panic!("no boat: {text}"),
+    }
+}
+
+/// Whether a decision is the course and the speed that are wanted, or none.
+fn is_wanted(report: &HelmReport, want: &str) -> bool {
+    match report.course_deg.zip(report.speed_m_s).filter(|_| is_active(report)) {
+        None => want == "nothing",
+        Some((course_deg, speed_m_s)) => want.split_once(' ').is_some_and(|(want_deg, want_m_s)| {
+            let number = |text: &str| text.parse::<f64>().unwrap_or(f64::NAN);
+            let off_deg = (course_deg - number(want_deg)).rem_euclid(360.0);
+            // Half a step of the grid: 1 degree, 3/35 m/s.
+            off_deg.min(360.0 - off_deg) <= 0.51 && (speed_m_s - number(want_m_s)).abs() <= 0.044
+        }),
     }
 }
 
 #[test]
-fn behaviours_that_hold_or_wait_do_so() {
-    let contact = |boat: Boat| with_contact(Boat::at(0.0, 0.0).going(0.0, 1.0), boat);
-    for (behaviour, picture, want) in [
-        ("kind = 'constant_heading'\nheading_deg = 250", here(), Some((250.0, 2.0))),
-        ("kind = 'constant_speed'\nspeed_m_s = 1.2", here(), Some((0.0, 1.2))),
-        ("kind = 'timer'\nduration_s = 5", here(), None),
-        ("kind = 'memory_turn_limit'", alone(0.0, Boat::at(0.0, 0.0).going(120.0, 1.0)), Some((75.0, 2.0))),
-        ("kind = 'policy'", here(), None),
-        ("kind = 'op_region'", here(), None),
-        ("kind = 'avoid_collision'", here(), None),
-        ("kind = 'max_speed'\nspeed_m_s = 0.61", here(), None),
-        ("kind = 'max_speed'\nspeed_m_s = 0.61\nrange_m = 0", here(), Some((0.0, 0.6))),
-        ("kind = 'max_speed'\nspeed_m_s = 0.61\nrange_m = 20", contact(Boat::at(0.0, 15.0)), Some((0.0, 0.6))),
-        // Abaft the beam it does not count.
-        ("kind = 'max_speed'\nspeed_m_s = 0.61\nrange_m = 20", contact(Boat::at(0.0, -15.0)), None),
-    ] {
-        assert_decides(behaviour, &picture, want);
+fn every_behaviour_alone_decides_as_the_cases_say() {
+    let text = include_str!("behaviours.txt");
+    let (mut decided, mut wrong) = (0, vec![]);
+    for case in text.split("\n## ").skip(1) {
+        let (mut own, mut contact, mut behaviour) = (Boat::at(0.0, 0.0).going(0.0, 1.0), None, String::new());
+        let mut lines = case.lines();
+        let name = lines.next().unwrap_or_default();
+        for line in lines.filter(|line| !line.is_empty() && !line.starts_with('#')) {
+            if let Some(text) = line.strip_prefix("own ") {
+                own = boat(text);
+            } else if let Some(text) = line.strip_prefix("contact ").filter(|text| text.starts_with("at ")) {
+                contact = Some(boat(text));
+            } else if let Some(want) = line.strip_prefix("decides ") {
+                let picture = contact.map_or_else(|| alone(0.0, own), |contact| with_contact(own, contact));
+                let report = alone_decides(&behaviour, &picture);
+                decided += 1;
+                let got = (report.course_deg, report.speed_m_s, is_active(&report));
+                wrong.extend((!is_wanted(&report, want)).then(|| format!("{name}: {got:?}, wanted {want}")));
+            } else {
+                behaviour += &format!("{line}\n");
+            }
+        }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_eq!(decided, text.lines().filter(|line| line.starts_with("##")).count(), "cases, each with one decision");
+    assert!(decided >= 30, "only {decided} cases");
 }
 
 #[test]

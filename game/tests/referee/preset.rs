@@ -1,8 +1,8 @@
-//! The four rule books the referee must be able to apply, and a scene that tells each from the others.
+//! The four rule books the referee must be able to apply, and what scenes cannot tell of them.
 
-use crate::scene::{Scene, captured, freed, grabbed, tagged};
+use crate::scene::Scene;
 use game::link::Sharing;
-use game::rules::{CaptureAt, Directive, Points, Rules, TagChoice, TaggedBoat, UntagAt, UntagOn};
+use game::rules::{CaptureAt, Points, Rules, TagChoice, TaggedBoat, UntagAt, UntagOn};
 use game::{Ned, SimTime, VehicleId};
 
 /// The paper's rules: grab 1, capture 2 at the own flag, tags cool down for 10 s.
@@ -78,55 +78,6 @@ pub(crate) fn all() -> [Rules; 4] {
 }
 
 #[test]
-fn a_flag_is_captured_where_the_rules_say_and_for_the_points_they_give() {
-    // Over the line, then to the own flag, then into the own corner.
-    let way = [(80.0, 40.0), (20.0, 40.0), (10.0, 10.0)];
-    for (rules, want_stop, want_score) in
-        [(aquaticus_2023(), 1, 3), (pyquaticus(), 0, 1), (mctf_2025(), 0, 1), (mctf_2026(), 2, 1)]
-    {
-        let mut scene = Scene::new(Rules { power_play: SimTime::ZERO, ..rules }, 2);
-        assert_eq!(scene.put(0, 140.0, 40.0).look(), [grabbed(0, 1)]);
-        let stops: Vec<_> = way.iter().map(|(x, y)| scene.put(0, *x, *y).look().contains(&captured(0, 1))).collect();
-        let stop = stops.iter().position(|captured| *captured);
-        assert_eq!((stop, scene.standing.score[0]), (Some(want_stop), want_score), "{}", scene.name());
-    }
-}
-
-#[test]
-fn tags_cool_down_and_choose_as_the_rules_say() {
-    for (rules, want_first, want_s) in
-        [(aquaticus_2023(), 3, 10.0), (pyquaticus(), 2, 60.0), (mctf_2025(), 2, 60.0), (mctf_2026(), 2, 60.0)]
-    {
-        let mut scene = Scene::new(Rules { power_play: SimTime::ZERO, ..rules }, 2);
-        let events = scene.put(0, 60.0, 40.0).put(2, 67.0, 40.0).put(3, 55.0, 40.0).look();
-        assert_eq!(events, [tagged(want_first, 0)], "{}", scene.name());
-        let second = tagged(5 - want_first, 0);
-        assert_eq!(scene.wait(want_s - 0.1).look(), [], "{}", scene.name());
-        assert_eq!(scene.wait(0.1).look(), [second], "{}", scene.name());
-    }
-}
-
-#[test]
-fn tagged_boats_are_sent_home_as_the_rules_say() {
-    let (flag, corner) = (Ned::from_xy(140.0, 40.0), Ned::from_xy(160.0, 80.0));
-    let driven = |to, speed_factor| Directive::DrivenHome { to, speed_factor };
-    for (rules, want) in [
-        (aquaticus_2023(), Directive::Free { speed_factor: 1.0 }),
-        (pyquaticus(), driven(flag, 1.0)),
-        (mctf_2025(), driven(flag, 1.0)),
-        (mctf_2026(), driven(corner, 0.5)),
-    ] {
-        let mut scene = Scene::new(Rules { power_play: SimTime::ZERO, ..rules }, 1);
-        assert_eq!(scene.put(0, 60.0, 50.0).put(1, 65.0, 50.0).look(), [tagged(1, 0)]);
-        assert_eq!(scene.directive(1), want, "{}", scene.name());
-        let home = scene.referee.rules().untag_at;
-        let (x, y) = if home == UntagAt::OwnFlag { (131.0, 40.0) } else { (150.0, 70.0) };
-        assert_eq!(scene.put(1, x, y).look(), [freed(1)], "{}", scene.name());
-        assert_eq!(scene.directive(1), Directive::Free { speed_factor: 1.0 });
-    }
-}
-
-#[test]
 fn only_pyquaticus_keeps_defenders_from_their_flag_and_only_2026_has_power_play() {
     for (rules, keepout_m, power_plays) in
         [(aquaticus_2023(), None, 0), (pyquaticus(), Some(5.0), 0), (mctf_2025(), Some(5.0), 0), (mctf_2026(), None, 2)]
@@ -136,5 +87,13 @@ fn only_pyquaticus_keeps_defenders_from_their_flag_and_only_2026_has_power_play(
         assert_eq!(circle, keepout_m.map(|radius_m| (Ned::from_xy(20.0, 40.0), radius_m)), "{}", scene.name());
         let drawn = scene.standing.disabled.iter().filter(|(from, _)| *from < SimTime::NEVER).count();
         assert_eq!(drawn, power_plays, "{}", scene.name());
+    }
+}
+
+#[test]
+fn the_reach_covers_tags_and_collisions() {
+    for (tag_radius_m, collision_distance_m, want_m) in [(10.0, 4.0, 10.0), (1.0, 4.0, 4.0)] {
+        let scene = Scene::new(Rules { tag_radius_m, collision_distance_m, ..aquaticus_2023() }, 1);
+        assert_eq!(scene.referee.rules().reach_m(), want_m);
     }
 }

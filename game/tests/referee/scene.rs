@@ -24,7 +24,7 @@ pub(crate) fn field(extra_flags: Vec<Flag>) -> Field {
     rectangle(0.0, 160.0, extra_flags)
 }
 
-pub(crate) fn rectangle(x_m: f64, width_m: f64, extra_flags: Vec<Flag>) -> Field {
+fn rectangle(x_m: f64, width_m: f64, extra_flags: Vec<Flag>) -> Field {
     Field::new(Plan {
         name: "test".into(),
         datum: LatLon::default(),
@@ -46,6 +46,16 @@ pub(crate) fn flag(team: u8, x: f64, y: f64) -> Flag {
 /// Vehicles `0..boats` play for the first team, the next as many for the second, and so on.
 pub(crate) fn teams_of(boats: usize, teams: usize) -> Vec<TeamId> {
     (0..boats * teams).map(|i| TeamId((i / boats) as u8)).collect()
+}
+
+/// Three sides of 64 m each, next to each other, one flag in each.
+pub(crate) fn three_sided(rules: Rules) -> Scene {
+    let mut field = rectangle(0.0, 192.0, vec![flag(2, 160.0, 40.0)]);
+    let thirds = [0.0, 64.0, 128.0].map(|x_m| rectangle(x_m, 128.0, vec![]));
+    field.zones = thirds.iter().map(|third| third.zones[0].clone()).collect();
+    field.own_corners = thirds.iter().map(|third| third.own_corners[0]).collect();
+    field.flags[1] = flag(1, 96.0, 40.0);
+    Scene::on(rules, field, teams_of(1, 3))
 }
 
 impl Scene {
@@ -94,18 +104,10 @@ impl Scene {
     pub(crate) fn directive(&self, vehicle: usize) -> Directive {
         self.referee.directive(&self.standing, VehicleId::at(vehicle), self.fleet[vehicle])
     }
-
-    pub(crate) fn carrier(&self, flag: usize) -> Option<u16> {
-        self.standing.flags[flag].carrier.map(|vehicle| vehicle.0)
-    }
 }
 
 pub(crate) fn tagged(vehicle: u16, by: u16) -> Event {
     Event::Tagged { vehicle: VehicleId(vehicle), cause: TagCause::Opponent(VehicleId(by)) }
-}
-
-pub(crate) fn stopped_at_the_boundary(vehicle: u16) -> Event {
-    Event::Tagged { vehicle: VehicleId(vehicle), cause: TagCause::Boundary }
 }
 
 pub(crate) fn freed(vehicle: u16) -> Event {
@@ -116,20 +118,8 @@ pub(crate) fn grabbed(vehicle: u16, flag: u8) -> Event {
     Event::Grabbed { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
 }
 
-pub(crate) fn captured(vehicle: u16, flag: u8) -> Event {
-    Event::Captured { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
-}
-
 pub(crate) fn lost(vehicle: u16, flag: u8) -> Event {
     Event::FlagReturned { vehicle: VehicleId(vehicle), flag: FlagId(flag) }
-}
-
-pub(crate) fn left(vehicle: u16) -> Event {
-    Event::LeftField { vehicle: VehicleId(vehicle) }
-}
-
-pub(crate) fn back(vehicle: u16) -> Event {
-    Event::ReturnedToField { vehicle: VehicleId(vehicle) }
 }
 
 pub(crate) fn ended(winner: Option<u8>) -> Event {
