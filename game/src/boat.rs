@@ -1,7 +1,10 @@
-//! A kind of boat: its hull, thrusters and front seat, as the physics wants them.
+//! A kind of boat: its hull, thrusters and front seat.
 //!
 //! Everything is SI, in the boat's own frame with its origin midships (CO): x ahead, y to starboard,
 //! yaw clockwise. The equation that these numbers enter stands in `sim::hull`.
+//!
+//! These types also declare the keys of boat files. Where a key is in another unit, `rename` names the key, its
+//! description gives that unit, and `x-field` names the field.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -42,6 +45,11 @@ pub enum Drive {
     Kinematic(Kinematic),
 }
 
+/// What stands for a number that a file leaves out, until the check of the boat estimates it.
+fn unstated() -> f64 {
+    f64::NAN
+}
+
 impl Boat {
     /// The highest speed its front seat accepts, m/s.
     #[must_use]
@@ -53,53 +61,83 @@ impl Boat {
     }
 }
 
-/// Wind on the hull: coefficients and areas of Fossen (2021), ch. 10: X = −½ρ V² C_x A_F cos γ, Y = ½ρ V² C_y A_L sin γ,
-/// N = ½ρ V² C_n A_L L sin 2γ, with the relative wind V at the angle γ off the bow.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// What the wind gets hold of: projected areas and coefficients (Fossen 2021, ch. 10):
+/// X = −½ρ V² C_x A_F cos γ, Y = ½ρ V² C_y A_L sin γ, N = ½ρ V² C_n A_L L sin 2γ, with the relative wind V at the
+/// angle γ off the bow.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Windage {
-    /// Projected area from ahead, m².
+    /// Area from ahead, m². Default 0.36 beam².
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000))]
     pub frontal_area_m2: f64,
-    /// Projected area from the side, m².
+    /// Area from the side, m². Default 0.16 L².
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 5000))]
     pub lateral_area_m2: f64,
-    /// Height of its centre above the water, m: where the wind's profile is taken.
+    /// Height at which the wind is taken, m. Default 0.25 L.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0.05, max = 100))]
     pub height_m: f64,
     /// C_x.
+    #[schemars(range(min = 0, max = 2), extend("default" = 0.6))]
     pub surge_coefficient: f64,
     /// C_y.
+    #[schemars(range(min = 0, max = 2), extend("default" = 0.85))]
     pub sway_coefficient: f64,
     /// C_n.
+    #[schemars(range(min = -0.5, max = 0.5), extend("default" = 0.1))]
     pub yaw_coefficient: f64,
 }
 
-/// A point boat with thrust, rudder and PID loops: the constants of uSimMarine and pMarinePID, in SI where they have
-/// units, in their own per-cent scales where they have none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// The point boat of MOOS (uSimMarine under pMarinePID), with its own constants.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Kinematic {
-    /// The highest speed it accepts, m/s.
+    /// Highest speed, m/s.
+    #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: f64,
-    /// Thrust (per cent) and speed (m/s), both rising.
+    /// Thrust in per cent and speed in m/s, both rising, with [0, 0].
+    #[schemars(with = "Vec<ThrustAndSpeed>")]
     pub thrust_map: Vec<(f64, f64)>,
     /// Largest thrust, per cent.
+    #[schemars(range(min = 1, max = 100), extend("default" = 100))]
     pub thrust_max: f64,
     /// Largest rudder, per cent.
+    #[schemars(range(min = 1, max = 100), extend("default" = 100))]
     pub rudder_max: f64,
-    /// uSimMarine's turn rate: at full rudder and half thrust it turns by this many degrees a second.
+    /// Degrees a second at full rudder and half thrust.
+    #[schemars(range(min = 0, max = 1000))]
     pub turn_rate: f64,
     /// Share of the speed that full rudder costs.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0.85))]
     pub turn_loss: f64,
-    /// Bias of the turn, rad/s clockwise.
+    /// Bias of the turn, degrees a second.
+    #[schemars(rename = "rotate_deg_s", range(min = -90, max = 90), extend("default" = 0, "x-field" = "rotate_rad_s"))]
     pub rotate_rad_s: f64,
-    /// Configured acceleration limit, m/s²; 0 is none. The boat does half of it, as uSimMarine's does.
+    /// Acceleration limit, m/s²; the boat does half of it, 0 is none.
+    #[schemars(range(min = 0, max = 100), extend("default" = 0))]
     pub acceleration_max_m_s2: f64,
-    /// Configured deceleration limit, m/s²; 0 is none.
+    /// Deceleration limit, m/s²; the boat does half of it, 0 is none.
+    #[schemars(range(min = 0, max = 100), extend("default" = 0.5))]
     pub deceleration_max_m_s2: f64,
-    /// Thrust over desired speed, per cent per m/s; 0 uses the speed loop instead.
+    /// Thrust over desired speed, per cent per m/s; 0 uses the speed loop.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub speed_factor: f64,
-    /// The speed loop: error in m/s to change of thrust in per cent.
+    /// The speed loop. Required, unless speed_factor is given.
+    #[serde(default)]
+    #[schemars(with = "Option<Pid>", !default)]
     pub speed_pid: Pid,
-    /// The heading loop: error in degrees to rudder in per cent.
+    /// The heading loop.
     pub heading_pid: Pid,
 }
+
+/// Thrust in per cent, and the speed in m/s that it gives.
+#[derive(JsonSchema)]
+#[schemars(inline)]
+#[expect(dead_code, reason = "the schema of a pair")]
+pub(crate) struct ThrustAndSpeed(
+    #[schemars(range(min = -100, max = 100))] f64,
+    #[schemars(range(min = -60, max = 60))] f64,
+);
 
 /// Gains of pMarinePID.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -119,125 +157,204 @@ pub struct Pid {
 }
 
 /// What a boat knows of itself. What is `None` is known perfectly and at once.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sensors {
-    /// Satellite navigation: position and velocity over the ground.
+    /// Satellite navigation. Default perfect.
     pub gps: Option<Gps>,
-    /// Magnetic compass: heading.
+    /// Magnetic compass. Default perfect.
     pub compass: Option<Compass>,
-    /// Gyro and accelerometers.
+    /// Gyro and accelerometers. Default perfect.
     pub imu: Option<Imu>,
 }
 
-/// A satellite receiver.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A satellite receiver: position and velocity over the ground.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Gps {
-    /// Standard deviation of the position's wandering bias (Gauss-Markov), each axis, m.
+    /// Standard deviation of the wandering error, each axis, m.
+    #[schemars(range(min = 0, max = 100), extend("default" = 0.8))]
     pub bias_m: f64,
-    /// Correlation time of the bias, s.
+    /// Its correlation time, s.
+    #[schemars(range(min = 1, max = 86400), extend("default" = 200))]
     pub bias_time_s: f64,
-    /// Standard deviation of the position's white noise, each axis, m.
+    /// Standard deviation of the white noise, each axis, m.
+    #[schemars(range(min = 0, max = 100), extend("default" = 0.1))]
     pub noise_m: f64,
-    /// Standard deviation of the velocity's white noise, each axis, m/s.
+    /// Standard deviation of the velocity's noise, each axis, m/s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0.05))]
     pub velocity_noise_m_s: f64,
     /// Time between fixes, s.
+    #[schemars(range(min = 0.02, max = 10), extend("default" = 0.2))]
     pub period_s: f64,
     /// Age of a fix when it comes out, s.
+    #[schemars(range(min = 0, max = 2), extend("default" = 0.1))]
     pub latency_s: f64,
-    /// Drop-outs: no fixes come out meanwhile.
+    /// Times without fixes. Default none.
+    #[serde(default)]
+    #[schemars(with = "Option<Outage>", !default)]
     pub dropout: Outage,
-    /// Freezes: fixes come out with the position and velocity that they had at the beginning.
+    /// Times in which position and velocity stand still. Default none.
+    #[serde(default)]
+    #[schemars(with = "Option<Outage>", !default)]
     pub freeze: Outage,
-    /// Jumps of the position.
+    /// Jumps of the position. Default none.
+    #[serde(default)]
+    #[schemars(with = "Option<Jump>", !default)]
     pub jump: Jump,
 }
 
-/// A fault that comes and goes. The default never does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Something that comes and goes by chance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Outage {
-    /// How often it begins, 1/s.
+    /// How often it begins, 1/h.
+    #[schemars(rename = "per_hour", range(min = 0, max = 3600), extend("x-field" = "rate_per_s"))]
     pub rate_per_s: f64,
     /// How long it lasts on average, s.
+    #[schemars(range(min = 0.1, max = 3600))]
     pub mean_s: f64,
 }
 
-/// Offsets, each of which lasts until the next. The default has none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Jumps: each lasts until the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Jump {
-    /// How often one comes, 1/s.
+    /// How often, 1/h.
+    #[schemars(rename = "per_hour", range(min = 0, max = 3600), extend("x-field" = "rate_per_s"))]
     pub rate_per_s: f64,
     /// Standard deviation of the offset, each axis, m.
+    #[schemars(range(min = 0, max = 1000))]
     pub sigma_m: f64,
 }
 
-/// A magnetic compass. Its deviation is A + B sin ψ + C cos ψ + D sin 2ψ + E cos 2ψ.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A magnetic compass with the deviation A + B sin h + C cos h + D sin 2h + E cos 2h at the heading h.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Compass {
-    /// A to E, rad: A is a misalignment, B and C hard iron, D and E soft iron.
+    /// A to E, rad.
+    #[schemars(flatten, with = "Deviation")]
     pub deviation_rad: [f64; 5],
-    /// Error at full thrust of both thrusters, rad: it grows with their current.
+    /// Error at full thrust of both thrusters, degrees.
+    #[schemars(rename = "thrust_error_deg", range(min = -90, max = 90))]
+    #[schemars(extend("x-field" = "thrust_error_rad", "default" = 0))]
     pub thrust_error_rad: f64,
-    /// Standard deviation of the white noise, rad.
+    /// Standard deviation of the noise, degrees.
+    #[schemars(rename = "noise_deg", range(min = 0, max = 45), extend("x-field" = "noise_rad", "default" = 1))]
     pub noise_rad: f64,
     /// Time between readings, s.
+    #[schemars(range(min = 0.02, max = 10), extend("default" = 0.1))]
     pub period_s: f64,
-    /// What is left of the declination after correction, rad: magnetic north, as the boat takes it, east of true north.
+    /// What is left of the declination after correction, degrees.
+    #[schemars(rename = "declination_error_deg", range(min = -180, max = 180))]
+    #[schemars(extend("x-field" = "declination_error_rad", "default" = 0))]
     pub declination_error_rad: f64,
 }
 
+/// The coefficients of a compass's deviation, by the names that they have in files.
+#[derive(JsonSchema)]
+#[expect(dead_code, reason = "the schema of five keys")]
+struct Deviation {
+    /// Misalignment, degrees.
+    #[schemars(range(min = -180, max = 180), extend("x-field" = "deviation_rad.0", "default" = 0))]
+    a_deg: f64,
+    /// Hard iron along the boat, degrees.
+    #[schemars(range(min = -45, max = 45), extend("x-field" = "deviation_rad.1", "default" = 0))]
+    b_deg: f64,
+    /// Hard iron across the boat, degrees.
+    #[schemars(range(min = -45, max = 45), extend("x-field" = "deviation_rad.2", "default" = 0))]
+    c_deg: f64,
+    /// Soft iron, degrees.
+    #[schemars(range(min = -45, max = 45), extend("x-field" = "deviation_rad.3", "default" = 0))]
+    d_deg: f64,
+    /// Soft iron, degrees.
+    #[schemars(range(min = -45, max = 45), extend("x-field" = "deviation_rad.4", "default" = 0))]
+    e_deg: f64,
+}
+
 /// Gyro and accelerometers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Imu {
-    /// Standard deviation of the gyro's white noise, rad/s.
+    /// Standard deviation of the gyro's noise, degrees a second.
+    #[schemars(rename = "gyro_noise_deg_s", range(min = 0, max = 100))]
+    #[schemars(extend("x-field" = "gyro_noise_rad_s", "default" = 0.05))]
     pub gyro_noise_rad_s: f64,
-    /// Standard deviation of the gyro's bias, rad/s.
+    /// Standard deviation of its bias, degrees a second.
+    #[schemars(rename = "gyro_bias_deg_s", range(min = 0, max = 100))]
+    #[schemars(extend("x-field" = "gyro_bias_rad_s", "default" = 0.02))]
     pub gyro_bias_rad_s: f64,
     /// Correlation time of the biases, s.
+    #[schemars(range(min = 1, max = 86400), extend("default" = 600))]
     pub bias_time_s: f64,
-    /// Standard deviation of the accelerometers' white noise, m/s².
+    /// Standard deviation of the accelerometers' noise, m/s².
+    #[schemars(range(min = 0, max = 100), extend("default" = 0.03))]
     pub accelerometer_noise_m_s2: f64,
-    /// Standard deviation of the accelerometers' bias, m/s².
+    /// Standard deviation of their bias, m/s².
+    #[schemars(range(min = 0, max = 100), extend("default" = 0.03))]
     pub accelerometer_bias_m_s2: f64,
 }
 
-/// Inertia and resistance of a hull in surge, sway and yaw.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Inertia and resistance of a hull. What is left out is estimated from length L, beam, mass m and thrust.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Hull {
     /// Mass with payload, kg.
+    #[schemars(range(min = 0.1, max = 1000000))]
     pub mass_kg: f64,
-    /// Moment of inertia about midships, kg m².
+    /// Moment of inertia about midships, kg m². Default m (L/4)² + m x_g².
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0.0001, max = 1000000000))]
     pub yaw_inertia_kg_m2: f64,
-    /// Centre of gravity ahead of midships, m.
+    /// Centre of gravity ahead of midships, m, within the hull.
+    #[schemars(range(min = -50, max = 50), extend("default" = 0))]
     pub x_g_m: f64,
-    /// Added mass in surge, A11, kg.
+    /// Added mass in surge A11, kg. Default 2.7 ρ (m/ρ)^(5/3) / L² with ρ = 1000 (Söding).
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000000))]
     pub added_surge_kg: f64,
-    /// Added mass in sway, A22, kg.
+    /// Added mass in sway A22, kg. Default m.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 10000000))]
     pub added_sway_kg: f64,
-    /// Added moment of inertia in yaw, A66, kg m².
+    /// Added moment of inertia in yaw A66, kg m². Default the moment of inertia.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000000000))]
     pub added_yaw_kg_m2: f64,
-    /// Added coupling of sway and yaw, A26, kg m.
+    /// Added coupling of sway and yaw A26, kg m.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub added_sway_yaw_kg_m: f64,
-    /// Linear resistance in surge, −X_u, kg/s.
+    /// Linear resistance in surge -X_u, kg/s. Default what makes both thrusters full ahead give the autopilot's
+    /// speed_max_m_s, with the quadratic part as given (0 if that alone is more).
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000000))]
     pub surge_linear_kg_s: f64,
-    /// Quadratic resistance in surge, −X_|u|u, kg/m.
+    /// Quadratic resistance in surge -X_|u|u, kg/m.
+    #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
     pub surge_quadratic_kg_m: f64,
-    /// Linear resistance in sway, −Y_v, kg/s.
+    /// Linear resistance in sway -Y_v, kg/s. Default (m + A22) / 1 s.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 10000000))]
     pub sway_linear_kg_s: f64,
-    /// Lift-like resistance in sway, −Y_|u|v, kg/m.
+    /// Lift-like resistance in sway -Y_|u|v, kg/m.
+    #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
     pub sway_lift_kg_m: f64,
-    /// Linear resistance in yaw, −N_r, kg m²/s.
+    /// Linear resistance in yaw -N_r, kg m²/s. Default (inertia + A66) / 1 s.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000000000))]
     pub yaw_linear_kg_m2_s: f64,
-    /// Quadratic resistance in yaw, −N_|r|r, kg m².
+    /// Quadratic resistance in yaw -N_|r|r, kg m².
+    #[schemars(range(min = 0, max = 1000000000), extend("default" = 0))]
     pub yaw_quadratic_kg_m2: f64,
-    /// Resistance in yaw that grows with speed, −N_|u|r, kg m.
+    /// Resistance in yaw that grows with speed -N_|u|r, kg m.
+    #[schemars(range(min = 0, max = 10000000), extend("default" = 0))]
     pub yaw_lift_kg_m: f64,
-    /// Cross-flow drag coefficient C_d of the immersed side (Hoerner); 0 leaves it out.
+    /// Cross-flow drag coefficient of the immersed side (Hoerner); 0 is no cross-flow.
+    #[schemars(range(min = 0, max = 3), extend("default" = 0))]
     pub crossflow_coefficient: f64,
-    /// Draught that meets the cross-flow, m.
+    /// Draught that meets the cross-flow, m. Required with a coefficient, else 0.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 20))]
     pub crossflow_draught_m: f64,
-    /// Length that meets the cross-flow, m.
+    /// Length that meets the cross-flow, m. Default L.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 200))]
     pub crossflow_length_m: f64,
-    /// Share of the Munk moment (A22 − A11) u v that acts: 1 is the bare hull in ideal flow.
+    /// Share of the Munk moment (A22 - A11) u v that acts, where 1 is the bare hull in ideal flow.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
     pub munk_factor: f64,
 }
 
@@ -259,24 +376,42 @@ pub struct Thruster {
 }
 
 /// What keeps thrusters from doing what they are told. The default is nothing.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Flaws {
     /// Largest setting that is taken up, as a share of full ahead or astern.
+    #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub saturation: f64,
     /// Factor on the port thruster's thrust, and on the starboard one's.
+    #[schemars(flatten, with = "Gains")]
     pub gain: (f64, f64),
-    /// Factor on thrust astern.
+    /// Factor on thrust astern. The front seat does not know it.
+    #[schemars(range(min = 0, max = 1), extend("default" = 1))]
     pub reverse_efficiency: f64,
-    /// Moment that acts unasked for, N m clockwise at full thrust of both: a bent bracket, a worn propeller.
+    /// Moment at full thrust that nobody asked for, N m clockwise.
+    #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub bias_newton_m: f64,
     /// How long a command is on its way to the thrusters, s.
+    #[schemars(range(min = 0, max = 5), extend("default" = 0))]
     pub latency_s: f64,
-    /// Without a new command for this long the thrusters stop, s; `None` is never.
+    /// Without a new order for this long the thrusters stop, s. Default never.
+    #[schemars(range(min = 0.1, max = 3600))]
     pub watchdog_s: Option<f64>,
-    /// What the thrusters live on.
+    /// A battery that sags. Default one that does not.
     pub battery: Option<Battery>,
-    /// Thrust lost in waves.
+    /// Propellers that suck air in waves. Default they do not.
     pub ventilation: Option<Ventilation>,
+}
+
+/// The factors on the thrusters' thrust, by the names that they have in files.
+#[derive(JsonSchema)]
+#[expect(dead_code, reason = "the schema of two keys")]
+struct Gains {
+    /// Factor on the port thruster's thrust. The front seat does not know it.
+    #[schemars(range(min = 0, max = 2), extend("default" = 1, "x-field" = "gain.0"))]
+    port_gain: f64,
+    /// Factor on the starboard thruster's thrust. The front seat does not know it.
+    #[schemars(range(min = 0, max = 2), extend("default" = 1, "x-field" = "gain.1"))]
+    starboard_gain: f64,
 }
 
 impl Default for Flaws {
@@ -294,18 +429,24 @@ impl Default for Flaws {
     }
 }
 
-/// A battery that sags.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A battery whose voltage, and with it the thrust, falls with its charge.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Battery {
-    /// Energy when full, J.
+    /// Energy when full, W h.
+    #[schemars(rename = "capacity_wh", range(min = 1, max = 1000000), extend("x-field" = "capacity_joule"))]
     pub capacity_joule: f64,
-    /// Charge at the start of a game, as a share.
+    /// Charge at the start of a game.
+    #[schemars(range(min = 0, max = 1), extend("default" = 1))]
     pub charge: f64,
-    /// Power that both thrusters together draw at full ahead, W.
+    /// Power that both thrusters draw at full ahead, W.
+    #[schemars(rename = "full_power_w", range(min = 0, max = 1000000), extend("x-field" = "full_power_watt"))]
     pub full_power_watt: f64,
     /// Power that everything else draws, W.
+    #[schemars(rename = "hotel_power_w", range(min = 0, max = 100000))]
+    #[schemars(extend("x-field" = "hotel_power_watt", "default" = 0))]
     pub hotel_power_watt: f64,
-    /// Share of the thrust that is lost when the battery is empty; it falls in step with the charge.
+    /// Share of the thrust that is lost when it is empty.
+    #[schemars(range(min = 0, max = 0.9), extend("default" = 0.15))]
     pub sag: f64,
 }
 
@@ -320,22 +461,32 @@ pub struct Ventilation {
 /// Thrust as a function of the thruster's setting.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ThrustCurve {
-    /// A propeller: T = k n |n|; the setting is the shaft speed n, rad/s, and the lag acts on n.
-    Propeller {
-        /// k for n > 0, N s²/rad².
-        k_ahead: f64,
-        /// k for n < 0, N s²/rad².
-        k_astern: f64,
-        /// Shaft speed at full ahead, rad/s.
-        n_max_rad_s: f64,
-        /// Shaft speed at full astern (a positive number), rad/s.
-        n_min_rad_s: f64,
-    },
+    /// A propeller: the setting is the shaft speed n, rad/s, and the lag acts on n.
+    Propeller(Propeller),
     /// A measured table; the setting is the share of full ahead, −1 to 1, and the lag acts on it.
     Table {
         /// (setting, thrust in N), both rising strictly, with (0, 0) among them.
         points: Vec<(f64, f64)>,
     },
+}
+
+/// A propeller: thrust k n |n| newton at n rad/s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Propeller {
+    /// k turning ahead, N s²/rad².
+    #[schemars(range(min = 0.00000001, max = 1000))]
+    pub k_ahead: f64,
+    /// k turning astern, N s²/rad². Default k_ahead.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0.00000001, max = 1000))]
+    pub k_astern: f64,
+    /// Shaft speed at full ahead, rad/s.
+    #[schemars(range(min = 0.1, max = 10000))]
+    pub n_max_rad_s: f64,
+    /// Shaft speed at full astern, rad/s, a positive number. Default n_max_rad_s.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default, range(min = 0.1, max = 10000))]
+    pub n_min_rad_s: f64,
 }
 
 /// The front seat: how the boat follows a heading and a speed.

@@ -4,6 +4,7 @@
 //! clockwise from north. Files, the terminal and Python use x east, y north and compass degrees.
 
 use crate::math;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A vector in the horizontal plane of the field: north and east, in metres or metres a second.
@@ -45,11 +46,13 @@ pub struct Rotation {
 }
 
 /// A geographic position, WGS 84.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LatLon {
     /// Latitude, degrees north.
+    #[schemars(range(min = -90, max = 90))]
     pub lat_deg: f64,
     /// Longitude, degrees east.
+    #[schemars(range(min = -180, max = 180))]
     pub lon_deg: f64,
 }
 

@@ -1,41 +1,50 @@
 //! How a gateway drives a real boat, and when it stops it.
 //!
-//! Everything is SI but for what the boat's own sentences count in: thrust is in per cent of full ahead.
+//! Everything is SI but for what the boat's own sentences count in: thrust is in per cent of full ahead. These
+//! types also declare the keys of gateway files, as those in [`crate::boat`] do.
 
+use crate::boat::ThrustAndSpeed;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A gateway file, checked.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// How a gateway drives a real boat, and when it stops it. The defaults are for the SeaRobotics Surveyor, and careful.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Gateway {
     /// The file's stem.
+    #[schemars(skip)]
     pub name: String,
     /// Whose heading and speed loops steer.
+    #[schemars(extend("default" = "thrust"))]
     pub drive: Drive,
-    /// East of true north, rad; `None` asks the World Magnetic Model.
+    /// East of true north, degrees. Default by the World Magnetic Model, at the field and today.
+    #[schemars(rename = "declination_deg", range(min = -180, max = 180), extend("x-field" = "declination_rad"))]
     pub declination_rad: Option<f64>,
     /// What the boat's headings count from.
+    #[schemars(extend("default" = "magnetic"))]
     pub compass: CompassFrame,
     /// How often the boat hears from us at least, 1/s.
+    #[schemars(range(min = 1, max = 20), extend("default" = 10))]
     pub rate_hz: f64,
-    /// How old an order may grow, s.
+    /// How old an order may grow before the boat is stopped, s.
+    #[schemars(range(min = 0.1, max = 10), extend("default" = 1))]
     pub order_ttl_s: f64,
+    /// Time between two lines of a mission that is taken up, s.
+    #[schemars(range(min = 0.005, max = 5), extend("default" = 0.1))]
+    pub upload_gap_s: f64,
     /// How much may be asked of the boat.
     pub limits: Limits,
     /// What navigation must be like.
     pub nav: NavWatch,
     /// Where the boat must not be, nor be unable to stop before.
     pub geofence: Geofence,
-    /// When another real boat is too near.
+    /// When another real boat is too near: the boat stops until it is clear.
     pub halt: Halt,
     /// When the battery is low, and what then.
     pub battery: BatteryWatch,
     /// How we know that the boat listens to us.
     pub control: ControlWatch,
-    /// Our own heading and speed loops.
+    /// Our own heading and speed loops, where `drive` is "thrust".
     pub loops: Loops,
-    /// Time between two lines of a mission that is taken up, s.
-    pub upload_gap_s: f64,
 }
 
 /// Whose loops steer.
@@ -170,17 +179,24 @@ pub struct ControlWatch {
 pub const SURVEYOR_THRUST_MAP: [(f64, f64); 7] =
     [(-100.0, -2.0), (0.0, 0.0), (20.0, 1.0), (40.0, 1.5), (60.0, 2.0), (70.0, 2.25), (100.0, 3.0)];
 
-/// Our own heading and speed loops, for [`Drive::Thrust`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Our own heading and speed loops.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Loops {
-    /// Thrust (per cent) and the speed (m/s) that it gives, both rising.
+    /// Pairs of thrust in per cent and the speed in m/s that it gives, both rising.
+    #[schemars(with = "Vec<ThrustAndSpeed>", extend("default" = SURVEYOR_THRUST_MAP))]
     pub thrust_map: Vec<(f64, f64)>,
     /// Thrust for a speed error, per cent per m/s.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 15))]
     pub speed_pct_per_m_s: f64,
     /// Integral time of the speed loop, s.
+    #[schemars(range(min = 0.1, max = 1000), extend("default" = 5))]
     pub speed_integral_s: f64,
-    /// Thrust difference for a heading error, per cent per rad.
+    /// Thrust difference for a heading error, per cent per degree.
+    #[schemars(rename = "heading_pct_per_deg", range(min = 0, max = 100))]
+    #[schemars(extend("x-field" = "heading_pct_per_rad", "default" = 0.9))]
     pub heading_pct_per_rad: f64,
-    /// Thrust difference against a rate of turn, per cent per rad/s.
+    /// Thrust difference against a rate of turn, per cent per degree a second.
+    #[schemars(rename = "turn_pct_per_deg_s", range(min = 0, max = 100))]
+    #[schemars(extend("x-field" = "turn_pct_per_rad_s", "default" = 1.4))]
     pub turn_pct_per_rad_s: f64,
 }

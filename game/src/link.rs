@@ -7,18 +7,26 @@ use crate::frame::Ned;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The radio link between the minds ashore and each boat: reports come in over it, orders go out.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// The radio link between the minds ashore and each boat. Any number may be drawn for every game.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Link {
     /// Shortest time a message takes, s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0.02))]
     pub delay_s: f64,
-    /// Mean of what it takes longer, s; exponentially distributed.
+    /// Mean of what it takes longer, s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0))]
     pub jitter_s: f64,
-    /// Losses.
+    /// Losses. Default none.
+    #[serde(default)]
+    #[schemars(with = "Option<Loss>", !default)]
     pub loss: Loss,
-    /// How far it reaches, m; `None` is everywhere.
+    /// How far it reaches, m. Default everywhere.
+    #[schemars(range(min = 1, max = 1000000))]
     pub range_m: Option<f64>,
-    /// Where the station ashore stands.
+    /// Where the station ashore stands, [x, y] in m from the datum. Default the middle of the field.
+    #[serde(default)]
+    #[schemars(with = "Option<[f64; 2]>", !default, inner(range(min = -1000000, max = 1000000)))]
+    #[schemars(extend("x-field" = "station"))]
     pub station: Ned,
 }
 
@@ -39,21 +47,29 @@ pub struct Loss {
     pub bad_time_s: f64,
 }
 
-/// What a team is shown of other boats. The default is all of it at once, as Aquaticus shares it ashore.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// What a team is shown of other boats.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sharing {
-    /// A boat is seen by whoever is nearer than this, m; `None` is from everywhere.
+    /// A boat is seen by whoever is nearer than this, m. Default from everywhere.
+    #[schemars(range(min = 1, max = 1000000))]
     pub range_m: Option<f64>,
-    /// Full angle of view about the bow, rad; `None` is all round.
+    /// Full angle of view about the bow, degrees.
+    #[schemars(rename = "view_deg", with = "f64", range(min = 1, max = 360))]
+    #[schemars(extend("x-field" = "view_rad", "default" = 360))]
     pub view_rad: Option<f64>,
     /// How old a report is when it comes, s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0))]
     pub delay_s: f64,
     /// Standard deviation of its position, each axis, m.
+    #[schemars(range(min = 0, max = 100), extend("default" = 0))]
     pub noise_m: f64,
     /// Standard deviation of its velocity, each axis, m/s.
+    #[schemars(range(min = 0, max = 10), extend("default" = 0))]
     pub velocity_noise_m_s: f64,
     /// Share of reports that is lost.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0))]
     pub loss: f64,
     /// A contact is forgotten when its last report is older than this, s.
+    #[schemars(range(min = 0, max = 86400), extend("default" = 10))]
     pub memory_s: f64,
 }

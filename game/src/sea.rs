@@ -4,6 +4,7 @@
 //! from, the current by where it goes to.
 
 use crate::frame::Ned;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The exponent of the wind's mean profile over open water.
@@ -165,24 +166,30 @@ pub struct Shear {
     pub origin: Ned,
 }
 
-/// A Lamb-Oseen vortex: v(r) = Γ / (2 π r) (1 − exp(−r² / a²)).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A vortex (Lamb-Oseen): v(r) = Γ / (2 π r) (1 − exp(−r² / a²)).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Eddy {
-    /// Its middle.
+    /// Its middle, [x, y] in m from the datum.
+    #[schemars(with = "[f64; 2]", inner(range(min = -1000000, max = 1000000)), extend("x-field" = "centre"))]
     pub centre: Ned,
-    /// Core radius a, m. The fastest flow is at 1.121 a.
+    /// Radius of its core, m. The fastest flow is at 1.121 of it.
+    #[schemars(range(min = 1, max = 1000))]
     pub radius_m: f64,
-    /// The fastest flow, m/s; positive turns clockwise seen from above.
+    /// Its fastest flow, m/s; positive turns clockwise.
+    #[schemars(range(min = -5, max = 5))]
     pub peak_m_s: f64,
 }
 
-/// Eddies whose places, sizes and senses are drawn from the stream `eddies`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// Vortices at random places.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RandomEddies {
     /// How many.
+    #[schemars(range(min = 0, max = 100))]
     pub count: u32,
-    /// Core radius, from and to, m.
+    /// Radius of a core, from and to, m.
+    #[schemars(with = "[f64; 2]", inner(range(min = 1, max = 1000)), extend("default" = [10, 40]))]
     pub radius_m: (f64, f64),
-    /// The fastest flow, from and to, m/s; turning either way.
+    /// Fastest flow, from and to, m/s; either way round.
+    #[schemars(with = "[f64; 2]", inner(range(min = 0, max = 5)), extend("default" = [0.1, 0.3]))]
     pub peak_m_s: (f64, f64),
 }

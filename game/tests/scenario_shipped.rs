@@ -178,7 +178,7 @@ fn boats_reach_the_speed_they_are_named_for() {
         let game::boat::Drive::Thrusters { thruster, .. } = &boat.drive else { panic!("{name} has no thrusters") };
         let thrust_newton = 2.0
             * match &thruster.curve {
-                game::boat::ThrustCurve::Propeller { k_ahead, n_max_rad_s, .. } => k_ahead * n_max_rad_s * n_max_rad_s,
+                game::boat::ThrustCurve::Propeller(p) => p.k_ahead * p.n_max_rad_s * p.n_max_rad_s,
                 game::boat::ThrustCurve::Table { points } => points.last().unwrap().1,
             };
         let (a, b) = (boat.hull.surge_quadratic_kg_m, boat.hull.surge_linear_kg_s);

@@ -3,7 +3,7 @@
 use crate::flaw::{FlawModel, FlawState};
 use crate::hull::Planar;
 use crate::piecewise_linear::PiecewiseLinear;
-use game::boat::{ThrustCurve, Thruster, Ventilation};
+use game::boat::{Propeller, ThrustCurve, Thruster, Ventilation};
 use game::math;
 use serde::{Deserialize, Serialize};
 
@@ -62,7 +62,7 @@ impl ThrusterModel {
     #[must_use]
     pub fn new(thruster: &Thruster, dt_s: f64) -> ThrusterModel {
         let (curve, ahead, astern) = match &thruster.curve {
-            ThrustCurve::Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s } => {
+            ThrustCurve::Propeller(Propeller { k_ahead, k_astern, n_max_rad_s, n_min_rad_s }) => {
                 (Curve::Propeller { k_ahead: *k_ahead, k_astern: *k_astern }, *n_max_rad_s, *n_min_rad_s)
             }
             ThrustCurve::Table { points } => {
@@ -229,7 +229,8 @@ mod tests {
     }
 
     fn propeller() -> Thruster {
-        thruster(ThrustCurve::Propeller { k_ahead: 0.011, k_astern: 0.006, n_max_rad_s: 100.0, n_min_rad_s: 90.0 })
+        let (n_max_rad_s, n_min_rad_s) = (100.0, 90.0);
+        thruster(ThrustCurve::Propeller(Propeller { k_ahead: 0.011, k_astern: 0.006, n_max_rad_s, n_min_rad_s }))
     }
 
     fn table() -> Thruster {

@@ -129,14 +129,14 @@ impl Engine {
     pub fn ranges(&self, pair: Pair) -> Result<[(f64, f64); 2], String> {
         match (self, pair) {
             (Engine::Thrusters(_, thruster), Pair::RadS) => match &thruster.curve {
-                ThrustCurve::Propeller { n_max_rad_s, n_min_rad_s, .. } => Ok([(-n_min_rad_s, *n_max_rad_s); 2]),
+                ThrustCurve::Propeller(propeller) => Ok([(-propeller.n_min_rad_s, propeller.n_max_rad_s); 2]),
                 ThrustCurve::Table { .. } => Err("the boat has a thrust table and no propeller curve, expected \
                      port_pct,starboard_pct or port_newton,starboard_newton"
                     .to_owned()),
             },
             (Engine::Thrusters(_, thruster), Pair::Pct) => match &thruster.curve {
                 ThrustCurve::Table { points } => Ok([(100.0 * points[0].0, 100.0 * points[points.len() - 1].0); 2]),
-                ThrustCurve::Propeller { .. } => Ok([(-100.0, 100.0); 2]),
+                ThrustCurve::Propeller(_) => Ok([(-100.0, 100.0); 2]),
             },
             (Engine::Thrusters(model, _), Pair::Newton) => Ok([(model.newton_min, model.newton_max); 2]),
             (Engine::Thrusters(..), Pair::ThrustRudder) => Err("the boat has two thrusters and no rudder, expected \
@@ -171,7 +171,7 @@ impl Engine {
 /// The share of full ahead or astern that a number in a thruster's column is.
 fn share(model: &ThrusterModel, thruster: &Thruster, pair: Pair, number: f64) -> f64 {
     let setting = match (pair, &thruster.curve) {
-        (Pair::Pct, ThrustCurve::Propeller { .. }) => return number / 100.0,
+        (Pair::Pct, ThrustCurve::Propeller(_)) => return number / 100.0,
         (Pair::Pct, ThrustCurve::Table { .. }) => number / 100.0,
         (Pair::Newton, _) => model.setting(number),
         _ => number,

@@ -1,7 +1,8 @@
 //! The rules of the game, and the referee who applies them.
 //!
-//! [`Rules`] are data, from `scenarios/rules/*.toml`. The [`Referee`] sees where boats are and what time
-//! it is, never physics: the same referee judges a simulation, a replay and real water.
+//! [`Rules`] are data, from `scenarios/rules/*.toml`, whose keys they declare as the types in [`crate::boat`] do. The
+//! [`Referee`] sees where boats are and what time it is, never physics: the same referee judges a simulation, a replay and
+//! real water.
 
 mod ability;
 mod boundary;
@@ -28,52 +29,77 @@ use crate::time::SimTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Everything about the game that is a matter of agreement.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// The rules of the game. The defaults are those of `aquaticus_2023`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Rules {
     /// The rules file's stem.
+    #[schemars(skip)]
     pub name: String,
     /// What is worth what.
     pub points: Points,
     /// A flag is grabbed closer than this, m.
+    #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub grab_radius_m: f64,
     /// An intruder is tagged closer than this, m.
+    #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub tag_radius_m: f64,
     /// A tagged boat plays again closer than this to its home, m.
+    #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub untag_radius_m: f64,
-    /// A flag is captured closer than this to the place of capture, m (not for [`CaptureAt::OwnSide`]).
+    /// A flag is captured closer than this to the place of capture, m. Means nothing where the own side is the place.
+    #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
     pub capture_radius_m: f64,
-    /// Two boats closer than this (centre to centre) have collided, m.
+    /// Two boats closer than this, centre to centre, have collided, m.
+    #[schemars(range(min = 0, max = 100), extend("default" = 3))]
     pub collision_distance_m: f64,
+    /// What a team is shown of other boats. Without it, all of it and at once.
+    #[serde(default)]
+    #[schemars(with = "Option<Sharing>", !default, extend("x-drawn" = true))]
+    pub sharing: Sharing,
     /// Where a flag must be brought.
+    #[schemars(extend("default" = "own_flag"))]
     pub capture_at: CaptureAt,
     /// Whether a capture needs the own flag at its home.
+    #[schemars(extend("default" = false))]
     pub capture_needs_own_flag: bool,
     /// Where a tagged boat is freed.
+    #[schemars(extend("default" = "own_flag"))]
     pub untag_at: UntagAt,
     /// What frees it there.
+    #[schemars(extend("default" = "entering"))]
     pub untag_on: UntagOn,
-    /// How long a boat waits after a successful tag before it can tag again.
+    /// How long a boat waits after a successful tag before it can tag again, s.
+    #[schemars(rename = "tag_cooldown_s", with = "f64", range(min = 0, max = 86400))]
+    #[schemars(extend("x-field" = "tag_cooldown", "default" = 10))]
     pub tag_cooldown: SimTime,
     /// Which of several intruders in reach is tagged.
+    #[schemars(extend("default" = "nearest"))]
     pub tag_choice: TagChoice,
     /// Whether leaving the field tags a boat.
+    #[schemars(extend("default" = true))]
     pub boundary_tags: bool,
     /// What a tagged boat does.
+    #[schemars(extend("default" = "drives_itself"))]
     pub tagged_boat: TaggedBoat,
     /// Share of its top speed that a tagged boat may use.
+    #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub tagged_speed_factor: f64,
     /// Share of its top speed that a boat outside of the field may use.
+    #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub outside_speed_factor: f64,
-    /// What a team is shown of other boats. The referee sees everything.
-    pub sharing: Sharing,
     /// Boats keep this far from their own flag while it is home, m; 0 is no such rule.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub flag_keepout_m: f64,
-    /// The game ends when a team has this score.
+    /// The game ends when a team has this score; 0 is no such rule.
+    #[schemars(with = "u32", range(min = 0, max = 1000000), extend("default" = 0))]
     pub win_score: Option<u32>,
-    /// The game ends at this time.
+    /// The game ends at this time, s.
+    #[schemars(rename = "time_limit_s", with = "f64", range(min = 1, max = 86400))]
+    #[schemars(extend("x-field" = "time_limit", "default" = 600))]
     pub time_limit: SimTime,
-    /// For how long one boat of each team is out of action; zero is no such rule.
+    /// For how long one boat of each team is out of action, s; 0 is no such rule.
+    #[schemars(rename = "power_play_s", with = "f64", range(min = 0, max = 86400))]
+    #[schemars(extend("x-field" = "power_play", "default" = 0))]
     pub power_play: SimTime,
 }
 

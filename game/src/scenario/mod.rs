@@ -8,6 +8,7 @@
 mod check;
 mod diagnostics;
 mod draw;
+mod field_value;
 mod guess;
 mod kind;
 mod load;

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
 
-/// A kind of file as typed, declared in `raw`.
+/// A kind of file.
 pub(super) trait Declared: DeserializeOwned {
     /// Which kind it is.
     const KIND: Kind;
@@ -83,7 +83,8 @@ pub(super) fn document_of<T: Declared>(
     let start = tree.at;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     diagnostics.is_name(start, "the file's name", &name);
-    let (value, wrong) = validated(diagnostics, &tree, declared(T::KIND), owner);
+    let (mut value, wrong) = validated(diagnostics, &tree, declared(T::KIND), owner);
+    value["name"] = name.clone().into();
     match serde_json::from_value(value) {
         Ok(raw) => Some(Document { name, raw, faults, tree, wrong }),
         Err(error) => {

@@ -19,7 +19,9 @@
 //! [`declared`] is the schema in this form, by which files are read (see `validate`); [`schema`] is the one for editors.
 
 use super::kind::Kind;
-use super::raw;
+use super::{Tournament, raw};
+use crate::gateway::Gateway;
+use crate::rules::Rules;
 use schemars::{JsonSchema, generate::SchemaSettings};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -31,12 +33,12 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
     SCHEMAS[kind as usize].get_or_init(|| match kind {
         Kind::Game => generated::<raw::Game>(kind),
         Kind::Field => generated::<raw::Field>(kind),
-        Kind::Rules => generated::<raw::Rules>(kind),
+        Kind::Rules => generated::<Rules>(kind),
         Kind::Boat => generated::<raw::Boat>(kind),
         Kind::Sea => generated::<raw::Sea>(kind),
         Kind::Strategy => generated::<raw::Strategy>(kind),
-        Kind::Tournament => generated::<raw::Tournament>(kind),
-        Kind::Gateway => generated::<raw::Gateway>(kind),
+        Kind::Tournament => generated::<Tournament>(kind),
+        Kind::Gateway => generated::<Gateway>(kind),
     })
 }
 

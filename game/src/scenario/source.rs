@@ -79,7 +79,7 @@ impl Sources {
     }
 
     /// The file that the reference `reference`, standing at `offset`, means.
-    pub(super) fn resolve(&self, offset: usize, reference: &str) -> PathBuf {
+    pub(super) fn resolve(&self, offset: usize, reference: impl AsRef<Path>) -> PathBuf {
         let here = &self.files[self.index_at(offset)].path;
         tidied(&here.parent().unwrap_or(Path::new("")).join(reference))
     }

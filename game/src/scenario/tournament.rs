@@ -1,34 +1,47 @@
 //! A tournament: who enters, and which game they play against each other.
 
+use super::raw::{FilePath, Name};
 use super::{Overrides, Problems, Scenario, load, load_with};
+use schemars::JsonSchema;
+use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// A tournament, ready to be played.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A tournament: every entry against every other, in one game, over many seeds and from both sides.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 pub struct Tournament {
     /// The tournament file's stem.
+    #[schemars(skip)]
     pub name: String,
-    /// The game file.
+    /// The game file; the strategies of its teams are replaced by those of the entries.
+    #[schemars(with = "FilePath")]
     pub game: PathBuf,
-    /// The sea file that takes the place of the game's own.
+    /// The sea file. Default the game's.
+    #[schemars(with = "Option<FilePath>")]
     pub sea: Option<PathBuf>,
-    /// Who enters: two at least, with names of their own.
-    pub entries: Vec<Entrant>,
-    /// How many games each pairing is to play, half of them on each side.
+    /// Games of each pairing, half of them on each side; an odd number is rounded up.
+    #[schemars(range(min = 2, max = 1000000), extend("default" = 200))]
     pub games: u32,
-    /// The first seed.
+    /// The first seed; one more for every two games of a pairing.
+    #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
     /// Whether entries also play against themselves.
+    #[schemars(extend("default" = false))]
     pub self_play: bool,
+    /// Who enters.
+    #[serde(rename = "entry")]
+    #[schemars(length(min = 2, max = 100))]
+    pub entries: Vec<Entrant>,
 }
 
-/// Who enters a tournament.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Who enters.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 pub struct Entrant {
     /// Its name in the tables.
+    #[schemars(with = "Name")]
     pub name: String,
     /// The strategy file that all its boats follow.
+    #[schemars(with = "FilePath")]
     pub strategy: PathBuf,
 }
 

@@ -6,6 +6,7 @@
 
 use super::diagnostics::{Diagnostics, NAME_EXPECTED, NAME_PATTERN, is_name};
 use super::draw::{Owner, distribution_kind, draw};
+use super::field_value::by_fields;
 use super::guess::did_you_mean;
 use super::schema::{DRAWN, resolved};
 use super::tree::{Node, Table, Value};
@@ -193,7 +194,7 @@ impl<'a> Validator<'a> {
                 values.insert(key.clone(), self.stand_in(about));
             }
         }
-        values.into()
+        by_fields(values, &schema["properties"])
     }
 
     /// The value of a key that is there.
@@ -300,7 +301,8 @@ impl<'a> Validator<'a> {
                 let properties = schema["properties"].as_object().into_iter().flatten();
                 let needed =
                     properties.filter(|(key, about)| is_required(schema, key) || about.get("default").is_some());
-                Json::Object(needed.map(|(key, about)| (key.clone(), self.stand_in(about))).collect())
+                let values = needed.map(|(key, about)| (key.clone(), self.stand_in(about))).collect();
+                by_fields(values, &schema["properties"])
             }
             None if takes(schema, "array") => {
                 let items = (0..*counts(schema).start()).map(|i| schema["items"].get(i).unwrap_or(&schema["items"]));

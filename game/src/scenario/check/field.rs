@@ -1,7 +1,7 @@
 //! A field file, checked.
 
 use crate::field::{Field, Flag, Obstacle, Plan, do_meet, turn};
-use crate::frame::{LatLon, Ned};
+use crate::frame::Ned;
 use crate::id::TeamId;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
@@ -21,7 +21,7 @@ pub(in crate::scenario) fn field(diagnostics: &mut Diagnostics, document: &Docum
     }
     let mut plan = Plan {
         name: document.name.clone(),
-        datum: LatLon { lat_deg: raw.datum.lat_deg, lon_deg: raw.datum.lon_deg },
+        datum: raw.datum,
         corner: Ned::from_xy(raw.corner[0], raw.corner[1]),
         along_deg: raw.along_deg,
         width_m: raw.width_m,

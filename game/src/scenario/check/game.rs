@@ -1,7 +1,6 @@
 //! A game file and all the files it names, checked.
 
 use super::boat::{FASTEST_PER_TICK, fastest_decay};
-use super::link::link;
 use super::start_position;
 use crate::boat::Boat;
 use crate::field::Field;
@@ -102,8 +101,8 @@ struct Fleet<'a> {
 /// Checks a game.
 pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
     let raw = &document.raw;
-    let field = referenced(diagnostics, document, "field", &raw.field, super::field);
-    let rules = referenced(diagnostics, document, "rules", &raw.rules, super::rules);
+    let field = referenced(diagnostics, document, "field", &raw.field.0, super::field);
+    let rules = referenced(diagnostics, document, "rules", &raw.rules.0, super::rules);
     let sea = sea(diagnostics, document);
     let (tick, ticks_per_decision) = clock(diagnostics, document);
     check_teams(diagnostics, document);
@@ -136,6 +135,11 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
         start_position,
         source: entry.source,
     });
+    let mut link = raw.link.clone();
+    if !document.has("link.station") {
+        let middle = field.seen_from(TeamId(0), 0.5 * field.plan.width_m, 0.5 * field.plan.depth_m);
+        link.iter_mut().for_each(|link| link.station = middle);
+    }
     let scenario = Scenario {
         name: document.name.clone(),
         seed: raw.seed,
@@ -143,7 +147,7 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
         ticks_per_decision,
         patience_s: raw.patience_s,
         order_ttl_s: raw.order_ttl_s,
-        link: raw.link.as_ref().map(|raw| link(raw, &field)),
+        link,
         field,
         rules,
         sea,
@@ -164,7 +168,7 @@ fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<
         return super::sea(diagnostics, &document);
     }
     match &document.raw.sea {
-        Some(given) => referenced(diagnostics, document, "sea", given, super::sea),
+        Some(given) => referenced(diagnostics, document, "sea", &given.0, super::sea),
         None => Some(Sea::at_rest()),
     }
 }
@@ -174,14 +178,14 @@ pub(super) fn referenced<D, R: Declared, T>(
     diagnostics: &mut Diagnostics,
     document: &Document<D>,
     key: &str,
-    given: &raw::FilePath,
+    given: impl AsRef<Path>,
     check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
 ) -> Option<T> {
     if !document.is_sound(key) {
         return None;
     }
     let place = document.at(key);
-    let path = diagnostics.sources.resolve(place, &given.0);
+    let path = diagnostics.sources.resolve(place, given);
     let document = read::document(diagnostics, &path, Some(place))?;
     check(diagnostics, &document)
 }

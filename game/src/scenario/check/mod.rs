@@ -7,7 +7,6 @@ mod boat;
 mod field;
 mod game;
 mod gateway;
-mod link;
 mod rules;
 mod sea;
 mod start_position;

@@ -1,6 +1,7 @@
 //! A field file as typed.
 
 use crate::field::Walls;
+use crate::frame::LatLon;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -9,7 +10,7 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Field {
     /// Geographic position of the local origin. A boat that goes out on the water steers by it.
-    pub(crate) datum: Datum,
+    pub(crate) datum: LatLon,
     /// The corner of the first team's end that is to starboard as it looks at its opponent, [x, y] in m.
     #[schemars(inner(range(min = -1000000, max = 1000000)), extend("default" = [0, 0]))]
     pub(crate) corner: [f64; 2],
@@ -32,17 +33,6 @@ pub(crate) struct Field {
     /// Flags beyond the one that each team has anyway.
     #[schemars(length(max = 100))]
     pub(crate) flag: Vec<Flag>,
-}
-
-/// A geographic position, WGS 84.
-#[derive(Debug, Deserialize, JsonSchema)]
-pub(crate) struct Datum {
-    /// Latitude, degrees north.
-    #[schemars(range(min = -90, max = 90))]
-    pub(crate) lat_deg: f64,
-    /// Longitude, degrees east.
-    #[schemars(range(min = -180, max = 180))]
-    pub(crate) lon_deg: f64,
 }
 
 /// Something solid in the water: either `circle` or `polygon`.

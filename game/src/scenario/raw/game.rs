@@ -1,6 +1,7 @@
 //! A game file as typed.
 
-use super::{FilePath, Link, Name, Position};
+use super::{FilePath, Name, Position};
+use crate::link::Link;
 use crate::scenario::Source;
 use schemars::JsonSchema;
 use serde::Deserialize;

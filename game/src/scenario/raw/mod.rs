@@ -1,37 +1,26 @@
-//! Scenario files as people type them: degrees and relative paths. Every key is declared here, and only here; how, is
-//! told in `schema`.
+//! Scenario files as people type them, where what the program believes has another form: `check` makes the one from the other.
 //!
-//! The doc comments are the descriptions in the JSON Schemas and the reference, so they are written for people who
-//! write files. Where units do not differ, a type of the checked scenario stands for itself. `check` turns these types
-//! into those the program believes.
+//! All other types of a scenario stand for themselves. Every key is declared once, here or there; how, is told in
+//! `schema`. The doc comments are the descriptions in the JSON Schemas and the reference, so they are written for people
+//! who write files.
 
 mod boat;
 mod field;
 mod game;
-mod gateway;
-mod kinematic;
-mod link;
-mod rules;
 mod sea;
-mod sensor;
 mod strategy;
-mod tournament;
 
 pub(super) use boat::{Boat, SettingAndThrust, Thruster};
 pub(super) use field::{Circle, Field, Flag, Obstacle, Side};
 pub(super) use game::{Fleet, Game, Spawn, Team, Vehicle};
-pub(super) use gateway::Gateway;
-pub(super) use kinematic::{Kinematic, ThrustAndSpeed};
-pub(super) use link::{Link, Sharing};
-pub(super) use rules::Rules;
-pub(super) use sea::{Current, Eddy, Gusts, Sea, Spectrum, Spreading, Waves, Wind};
-pub(super) use sensor::{Compass, Fault, Gps, Imu};
+pub(super) use sea::{Current, Gusts, Sea, Spectrum, Spreading, Waves, Wind};
 pub(super) use strategy::{Common, Rule, Strategy, Value, Values, Variable, VariableTable};
-pub(super) use tournament::{Entry, Tournament};
 
-use super::Kind;
 use super::diagnostics::NAME_PATTERN;
 use super::read::Declared;
+use super::{Kind, Tournament};
+use crate::gateway::Gateway;
+use crate::rules::Rules;
 use schemars::JsonSchema;
 use serde::Deserialize;
 

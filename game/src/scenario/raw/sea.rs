@@ -1,6 +1,6 @@
 //! A sea file as typed.
 
-use crate::sea::PROFILE_EXPONENT;
+use crate::sea::{Eddy, PROFILE_EXPONENT, RandomEddies};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -139,7 +139,7 @@ pub(crate) struct Current {
     /// Eddies at stated places.
     pub(crate) eddy: Vec<Eddy>,
     /// Eddies whose places are drawn over the field for every game.
-    pub(crate) eddies: Option<Eddies>,
+    pub(crate) eddies: Option<RandomEddies>,
 }
 
 /// A first-order Gauss-Markov process.
@@ -185,32 +185,4 @@ pub(crate) struct Shear {
     /// Where it is nothing, [x, y] in m from the datum.
     #[schemars(inner(range(min = -1000000, max = 1000000)), extend("default" = [0, 0]))]
     pub(crate) origin: [f64; 2],
-}
-
-/// A vortex (Lamb-Oseen).
-#[derive(Debug, Deserialize, JsonSchema)]
-pub(crate) struct Eddy {
-    /// Its middle, [x, y] in m from the datum.
-    #[schemars(inner(range(min = -1000000, max = 1000000)))]
-    pub(crate) centre: [f64; 2],
-    /// Radius of its core, m.
-    #[schemars(range(min = 1, max = 1000))]
-    pub(crate) radius_m: f64,
-    /// Its fastest flow, m/s; positive turns clockwise.
-    #[schemars(range(min = -5, max = 5))]
-    pub(crate) peak_m_s: f64,
-}
-
-/// Vortices at random places.
-#[derive(Debug, Deserialize, JsonSchema)]
-pub(crate) struct Eddies {
-    /// How many.
-    #[schemars(range(min = 0, max = 100))]
-    pub(crate) count: u32,
-    /// Radius of a core, from and to, m.
-    #[schemars(inner(range(min = 1, max = 1000)), extend("default" = [10, 40]))]
-    pub(crate) radius_m: [f64; 2],
-    /// Fastest flow, from and to, m/s; either way round.
-    #[schemars(inner(range(min = 0, max = 5)), extend("default" = [0.1, 0.3]))]
-    pub(crate) peak_m_s: [f64; 2],
 }

@@ -1,15 +1,15 @@
 //! A boat file, checked, with what it leaves out estimated.
 
 mod kinematic;
-mod sensor;
 mod thruster;
 
-pub(super) use kinematic::thrust_map;
+pub(super) use kinematic::check_thrust_map;
 
-use crate::boat::{Boat, Drive, Hull, Sensors, ThrustCurve, Windage};
+use crate::boat::{Boat, Drive, Gps, Propeller, ThrustCurve};
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
 use crate::scenario::read::Document;
+use kinematic::check_kinematic;
 
 /// The physics takes explicit steps of the game's tick: motions that die out faster than this many times
 /// a tick would grow instead. (Runge-Kutta of order four bears 2.78; the rest is margin.)
@@ -18,6 +18,8 @@ pub(super) const FASTEST_PER_TICK: f64 = 2.0;
 const USUAL_TICK_S: f64 = 0.05;
 /// Water for the estimates, kg/m³.
 const RHO_KG_M3: f64 = 1000.0;
+/// Fixes that are under way at once.
+const MOST_PERIODS_LATE: f64 = 12.0;
 
 /// Checks a boat.
 pub(in crate::scenario) fn boat(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Option<Boat> {
@@ -27,36 +29,27 @@ pub(in crate::scenario) fn boat(diagnostics: &mut Diagnostics, document: &Docume
         let message = "hull.crossflow_draught_m is missing, expected 0 to 20 with a crossflow_coefficient";
         diagnostics.note_if_intact(document.at("hull"), message);
     }
-    let sensors = Sensors {
-        gps: raw.gps.as_ref().map(|gps| sensor::gps(diagnostics, document, gps)),
-        compass: raw.compass.as_ref().map(sensor::compass),
-        imu: raw.imu.as_ref().map(sensor::imu),
-    };
+    if let Some(gps) = &raw.sensors.gps {
+        check_gps(diagnostics, document, gps);
+    }
     let drive = drive(diagnostics, document);
     if !document.is_faultless(diagnostics) {
         return None;
     }
-    let drive = drive?;
-    let boat = Boat {
+    let mut boat = Boat {
         name: document.name.clone(),
         length_m: raw.length_m,
         beam_m: raw.beam_m,
         draught_m: raw.draught_m.unwrap_or_else(|| match hull.crossflow_draught_m {
-            Some(draught_m) if draught_m > 0.0 => draught_m,
+            draught_m if draught_m > 0.0 => draught_m,
             _ => raw.length_m / 12.0,
         }),
-        hull: estimated(raw, &drive),
-        windage: Windage {
-            frontal_area_m2: raw.windage.frontal_area_m2.unwrap_or(0.36 * raw.beam_m * raw.beam_m),
-            lateral_area_m2: raw.windage.lateral_area_m2.unwrap_or(0.16 * raw.length_m * raw.length_m),
-            height_m: raw.windage.height_m.unwrap_or(0.25 * raw.length_m),
-            surge_coefficient: raw.windage.surge_coefficient,
-            sway_coefficient: raw.windage.sway_coefficient,
-            yaw_coefficient: raw.windage.yaw_coefficient,
-        },
-        drive,
-        sensors,
+        hull: hull.clone(),
+        windage: raw.windage.clone(),
+        drive: drive?,
+        sensors: raw.sensors.clone(),
     };
+    estimate_rest(&mut boat);
     check_inertia(diagnostics, document, &boat);
     check_decay(diagnostics, document, &boat);
     document.is_faultless(diagnostics).then_some(boat)
@@ -69,7 +62,8 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
             let message = "kinematic beside thruster or autopilot, expected the one or the other";
             diagnostics.note(document.at("kinematic"), message);
         }
-        return Some(Drive::Kinematic(kinematic::kinematic(diagnostics, document, kinematic)));
+        check_kinematic(diagnostics, document, kinematic);
+        return Some(Drive::Kinematic(kinematic.clone()));
     }
     for key in ["thruster", "autopilot"] {
         if !document.has(key) && !document.has("kinematic") {
@@ -81,49 +75,52 @@ fn drive(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>) -> Optio
     Some(Drive::Thrusters { thruster, autopilot: raw.autopilot.clone()? })
 }
 
-/// The hull, with what the file leaves out estimated by the recipes that the keys' descriptions state.
-fn estimated(boat: &raw::Boat, drive: &Drive) -> Hull {
-    let (thrust_max_newton, speed_max_m_s) = match drive {
+/// A fix may be late by so many periods only.
+fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps: &Gps) {
+    let (latency_s, most_s) = (gps.latency_s, MOST_PERIODS_LATE * gps.period_s);
+    if latency_s > most_s {
+        let path = if document.has("gps.latency_s") { "gps.latency_s" } else { "gps.period_s" };
+        let message = format!("latency_s is {latency_s}, expected at most {most_s}: {MOST_PERIODS_LATE} periods");
+        diagnostics.note(document.at(path), message);
+    }
+}
+
+/// Gives a number that the file leaves out.
+fn estimate(number: &mut f64, estimated: impl FnOnce() -> f64) {
+    if number.is_nan() {
+        *number = estimated();
+    }
+}
+
+/// Estimates what the file leaves out, by the recipes that the keys' descriptions state.
+fn estimate_rest(boat: &mut Boat) {
+    let (thrust_max_newton, speed_max_m_s) = match &boat.drive {
         Drive::Thrusters { thruster, autopilot } => (2.0 * full_ahead_newton(&thruster.curve), autopilot.speed_max_m_s),
         Drive::Kinematic(kinematic) => (0.0, kinematic.speed_max_m_s),
     };
-    let (raw, length_m) = (&boat.hull, boat.length_m);
-    let mass_kg = raw.mass_kg;
+    let Boat { length_m, beam_m, hull, windage, .. } = boat;
+    let (length_m, beam_m, mass_kg) = (*length_m, *beam_m, hull.mass_kg);
+    estimate(&mut windage.frontal_area_m2, || 0.36 * beam_m * beam_m);
+    estimate(&mut windage.lateral_area_m2, || 0.16 * length_m * length_m);
+    estimate(&mut windage.height_m, || 0.25 * length_m);
     // A radius of gyration of a quarter of the length, moved from the centre of gravity to midships.
-    let inertia_kg_m2 = || mass_kg * (length_m * length_m / 16.0 + raw.x_g_m * raw.x_g_m);
-    let yaw_inertia_kg_m2 = raw.yaw_inertia_kg_m2.unwrap_or_else(inertia_kg_m2);
+    estimate(&mut hull.yaw_inertia_kg_m2, || mass_kg * (length_m * length_m / 16.0 + hull.x_g_m * hull.x_g_m));
     // Söding (1982), as in MSS addedMassSurge.m: 2.7 ρ ∇^(5/3) / L².
-    let added_surge_kg = || {
+    estimate(&mut hull.added_surge_kg, || {
         let displaced_m3 = mass_kg / RHO_KG_M3;
         let cube_root = libm::cbrt(displaced_m3);
         2.7 * RHO_KG_M3 * displaced_m3 * cube_root * cube_root / (length_m * length_m)
-    };
-    let surge_linear_kg_s = || {
-        let quadratic_kg_s = raw.surge_quadratic_kg_m * speed_max_m_s;
+    });
+    estimate(&mut hull.added_sway_kg, || mass_kg);
+    estimate(&mut hull.added_yaw_kg_m2, || hull.yaw_inertia_kg_m2);
+    estimate(&mut hull.surge_linear_kg_s, || {
+        let quadratic_kg_s = hull.surge_quadratic_kg_m * speed_max_m_s;
         (thrust_max_newton / speed_max_m_s - quadratic_kg_s).max(0.0)
-    };
-    let added_sway_kg = raw.added_sway_kg.unwrap_or(mass_kg);
-    let added_yaw_kg_m2 = raw.added_yaw_kg_m2.unwrap_or(yaw_inertia_kg_m2);
-    Hull {
-        mass_kg,
-        yaw_inertia_kg_m2,
-        x_g_m: raw.x_g_m,
-        added_surge_kg: raw.added_surge_kg.unwrap_or_else(added_surge_kg),
-        added_sway_kg,
-        added_yaw_kg_m2,
-        added_sway_yaw_kg_m: raw.added_sway_yaw_kg_m,
-        surge_linear_kg_s: raw.surge_linear_kg_s.unwrap_or_else(surge_linear_kg_s),
-        surge_quadratic_kg_m: raw.surge_quadratic_kg_m,
-        sway_linear_kg_s: raw.sway_linear_kg_s.unwrap_or(mass_kg + added_sway_kg),
-        sway_lift_kg_m: raw.sway_lift_kg_m,
-        yaw_linear_kg_m2_s: raw.yaw_linear_kg_m2_s.unwrap_or(yaw_inertia_kg_m2 + added_yaw_kg_m2),
-        yaw_quadratic_kg_m2: raw.yaw_quadratic_kg_m2,
-        yaw_lift_kg_m: raw.yaw_lift_kg_m,
-        crossflow_coefficient: raw.crossflow_coefficient,
-        crossflow_draught_m: raw.crossflow_draught_m.unwrap_or(0.0),
-        crossflow_length_m: raw.crossflow_length_m.unwrap_or(length_m),
-        munk_factor: raw.munk_factor,
-    }
+    });
+    estimate(&mut hull.sway_linear_kg_s, || mass_kg + hull.added_sway_kg);
+    estimate(&mut hull.yaw_linear_kg_m2_s, || hull.yaw_inertia_kg_m2 + hull.added_yaw_kg_m2);
+    estimate(&mut hull.crossflow_draught_m, || 0.0);
+    estimate(&mut hull.crossflow_length_m, || length_m);
 }
 
 /// A mass matrix with a direction that has no inertia would accelerate without bound.
@@ -185,7 +182,7 @@ pub(super) fn fastest_decay(boat: &Boat) -> (&'static str, f64) {
 
 fn full_ahead_newton(curve: &ThrustCurve) -> f64 {
     match curve {
-        ThrustCurve::Propeller { k_ahead, n_max_rad_s, .. } => k_ahead * n_max_rad_s * n_max_rad_s,
+        ThrustCurve::Propeller(Propeller { k_ahead, n_max_rad_s, .. }) => k_ahead * n_max_rad_s * n_max_rad_s,
         ThrustCurve::Table { points } => points.last().map_or(0.0, |(_, thrust_newton)| *thrust_newton),
     }
 }

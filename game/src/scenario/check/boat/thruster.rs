@@ -1,6 +1,7 @@
 //! Thrusters, and what they fall short of.
 
-use crate::boat::{Battery, Flaws, ThrustCurve, Thruster};
+use super::estimate;
+use crate::boat::{ThrustCurve, Thruster};
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
 use crate::scenario::read::Document;
@@ -12,12 +13,12 @@ pub(super) fn thruster(
     raw: &raw::Thruster,
 ) -> Option<Thruster> {
     let curve = match (&raw.propeller, &raw.table_pct_newton) {
-        (Some(propeller), None) => ThrustCurve::Propeller {
-            k_ahead: propeller.k_ahead,
-            k_astern: propeller.k_astern.unwrap_or(propeller.k_ahead),
-            n_max_rad_s: propeller.n_max_rad_s,
-            n_min_rad_s: propeller.n_min_rad_s.unwrap_or(propeller.n_max_rad_s),
-        },
+        (Some(propeller), None) => {
+            let mut propeller = *propeller;
+            estimate(&mut propeller.k_astern, || propeller.k_ahead);
+            estimate(&mut propeller.n_min_rad_s, || propeller.n_max_rad_s);
+            ThrustCurve::Propeller(propeller)
+        }
         (None, Some(rows)) => table(diagnostics, document, rows),
         (Some(_), Some(_)) => {
             let message = "thruster has both, expected either propeller or table_pct_newton";
@@ -32,24 +33,8 @@ pub(super) fn thruster(
             return None;
         }
     };
-    let flaws = Flaws {
-        saturation: raw.saturation,
-        gain: (raw.port_gain, raw.starboard_gain),
-        reverse_efficiency: raw.reverse_efficiency,
-        bias_newton_m: raw.bias_newton_m,
-        latency_s: raw.latency_s,
-        watchdog_s: raw.watchdog_s,
-        battery: raw.battery.as_ref().map(|raw| Battery {
-            capacity_joule: 3600.0 * raw.capacity_wh,
-            charge: raw.charge,
-            full_power_watt: raw.full_power_w,
-            hotel_power_watt: raw.hotel_power_w,
-            sag: raw.sag,
-        }),
-        ventilation: raw.ventilation,
-    };
     let raw::Thruster { arm_m, lag_s, slew_per_s, deadband, .. } = *raw;
-    Some(Thruster { arm_m, curve, lag_s, slew_per_s, deadband, flaws })
+    Some(Thruster { arm_m, curve, lag_s, slew_per_s, deadband, flaws: raw.flaws.clone() })
 }
 
 fn table(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, rows: &[raw::SettingAndThrust]) -> ThrustCurve {

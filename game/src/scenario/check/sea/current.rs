@@ -4,7 +4,7 @@ use crate::frame::Ned;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
 use crate::scenario::read::Document;
-use crate::sea::{Current, Eddy, RandomEddies, Shear, Tide, Wander};
+use crate::sea::{Current, Shear, Tide, Wander};
 
 /// Checks a current.
 pub(super) fn current(diagnostics: &mut Diagnostics, document: &Document<raw::Sea>, raw: &raw::Current) -> Current {
@@ -17,6 +17,10 @@ pub(super) fn current(diagnostics: &mut Diagnostics, document: &Document<raw::Se
         }
         (from, to)
     };
+    if let Some(eddies) = raw.eddies {
+        rising("current.eddies.radius_m", eddies.radius_m.into());
+        rising("current.eddies.peak_m_s", eddies.peak_m_s.into());
+    }
     Current {
         mean_m_s: toward.scaled(raw.speed_m_s),
         wander: raw.wander.as_ref().map(|raw| Wander {
@@ -36,15 +40,7 @@ pub(super) fn current(diagnostics: &mut Diagnostics, document: &Document<raw::Se
             per_s: raw.per_s,
             origin: Ned::from_xy(raw.origin[0], raw.origin[1]),
         }),
-        eddies: raw.eddy.iter().map(eddy).collect(),
-        random_eddies: raw.eddies.as_ref().map(|raw| RandomEddies {
-            count: raw.count,
-            radius_m: rising("current.eddies.radius_m", raw.radius_m),
-            peak_m_s: rising("current.eddies.peak_m_s", raw.peak_m_s),
-        }),
+        eddies: raw.eddy.clone(),
+        random_eddies: raw.eddies,
     }
-}
-
-fn eddy(raw: &raw::Eddy) -> Eddy {
-    Eddy { centre: Ned::from_xy(raw.centre[0], raw.centre[1]), radius_m: raw.radius_m, peak_m_s: raw.peak_m_s }
 }
