@@ -45,8 +45,8 @@ pub enum Drive {
     Kinematic(Kinematic),
 }
 
-/// What stands for a number that a file leaves out, until the check of the boat estimates it.
-fn unstated() -> f64 {
+/// What stands for a number that a file leaves out, until the check of the file estimates it.
+pub(crate) fn unstated() -> f64 {
     f64::NAN
 }
 

@@ -9,33 +9,47 @@
 //!              along ▶
 //! ```
 
+use crate::boat::unstated;
 use crate::frame::{LatLon, Ned};
 use crate::id::TeamId;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a field file states, checked; [`Field::new`] derives the rest.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// What a field file states; [`Field::new`] derives the rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Plan {
     /// The field file's stem.
+    #[schemars(skip)]
     pub name: String,
-    /// The geographic position of the local origin.
+    /// Geographic position of the local origin. A boat that goes out on the water steers by it.
     pub datum: LatLon,
-    /// Corner 0 from the datum.
+    /// The corner of the first team's end that is to starboard as it looks at its opponent, [x, y] in m.
+    #[schemars(with = "[f64; 2]", inner(range(min = -1000000, max = 1000000)))]
+    #[schemars(extend("x-field" = "corner", "default" = [0, 0]))]
     pub corner: Ned,
     /// Compass bearing from the first team's end to the second's, degrees.
+    #[schemars(range(min = -360, max = 360), extend("default" = 90))]
     pub along_deg: f64,
-    /// Extent along, m.
+    /// Extent from end to end, m.
+    #[schemars(range(min = 10, max = 20000))]
     pub width_m: f64,
     /// Extent across, m.
+    #[schemars(range(min = 10, max = 20000))]
     pub depth_m: f64,
-    /// Distance of the flags from the ends, m.
+    /// Distance of the flags from the ends, m: more than 0 and less than half the width. Default width / 8.
+    #[serde(default = "unstated")]
+    #[schemars(with = "Option<f64>", !default)]
     pub flag_inset_m: f64,
     /// Flags beyond the one each team has by default.
+    #[serde(default)]
+    #[schemars(skip)]
     pub extra_flags: Vec<Flag>,
     /// What stands in the water.
+    #[serde(default)]
+    #[schemars(skip)]
     pub obstacles: Vec<Obstacle>,
-    /// Whether the edges are walls that boats bump into.
+    /// Whether the edges are walls.
+    #[schemars(extend("default" = "none"))]
     pub walls: Walls,
 }
 

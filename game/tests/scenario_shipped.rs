@@ -204,14 +204,10 @@ fn the_schemas_beside_the_files_are_those_of_the_types() {
 }
 
 /// Every number that a schema gives a range: its path in the file, its type, and the range.
-fn ranges(schema: &Value, at: &Value, path: &str, found: &mut Vec<(String, bool, [Value; 2])>) {
+fn ranges(at: &Value, path: &str, found: &mut Vec<(String, bool, [Value; 2])>) {
     for (key, about) in at["properties"].as_object().into_iter().flatten() {
         let path = format!("{path}{key}");
-        let name = about["allOf"][0]["$ref"].as_str().or(about["$ref"].as_str());
-        if let Some(name) = name {
-            let inner = &schema["definitions"][name.rsplit('/').next().unwrap()];
-            ranges(schema, inner, &format!("{path}."), found);
-        }
+        ranges(about, &format!("{path}."), found);
         for about in [about, &about["anyOf"][0]] {
             if let (Some(low), Some(high)) = (about.get("minimum"), about.get("maximum")) {
                 found.push((path.clone(), about["type"] == "integer", [low.clone(), high.clone()]));
@@ -236,7 +232,7 @@ fn a_number_beyond_the_range_of_its_schema_is_refused() {
     for (kind, base) in Kind::ALL.into_iter().zip(bases) {
         let schema = scenario::schema(kind);
         let mut found = vec![];
-        ranges(&schema, &schema, "", &mut found);
+        ranges(&schema, "", &mut found);
         assert!(!found.is_empty(), "{kind}");
         for (path, is_whole, [low, high]) in found {
             let base = shipped(&format!("{base}.toml")).canonicalize().unwrap();
@@ -271,13 +267,9 @@ fn assert_shows_defaults(schema: &Value, text: &str) {
     let mut table = schema;
     for line in text.lines() {
         let (said, comment) = line.split_once('#').unwrap_or((line, ""));
-        let inner = |key: &str| {
-            let about = &schema["properties"][key];
-            let name = about["allOf"][0]["$ref"].as_str().or(about["items"]["$ref"].as_str()).unwrap_or_default();
-            &schema["definitions"][name.rsplit('/').next().unwrap_or_default()]
-        };
         if let Some(key) = said.trim().strip_prefix('[') {
-            table = inner(key.trim_matches(['[', ']']));
+            let about = &schema["properties"][key.trim_matches(['[', ']'])];
+            table = about.get("items").unwrap_or(about);
         } else if let Some((key, value)) = said.split_once(" = ") {
             let default = &table["properties"][key]["default"];
             let is_other = ["example", "required", "default"].iter().any(|word| comment.contains(word));
@@ -286,6 +278,19 @@ fn assert_shows_defaults(schema: &Value, text: &str) {
                 assert_eq!(flat(&shown["x"]), flat(default), "{line}");
             }
         }
+    }
+}
+
+/// The keys of a table and of all tables in it.
+fn keys(schema: &Value) -> Vec<String> {
+    match schema {
+        Value::Object(object) => {
+            let own = schema["properties"].as_object().into_iter().flatten().map(|(key, _)| key.clone());
+            let inner = object.iter().filter(|(key, _)| *key != "definitions");
+            own.chain(inner.flat_map(|(_, value)| keys(value))).collect()
+        }
+        Value::Array(items) => items.iter().flat_map(keys).collect(),
+        _ => vec![],
     }
 }
 
@@ -313,10 +318,8 @@ fn the_examples_of_the_handbook_are_sound() {
     for kind in Kind::ALL {
         // Every key of the schema is shown.
         let (schema, text) = (scenario::schema(kind), &texts[kind.name()]);
-        let tables =
-            std::iter::once(&schema).chain(schema["definitions"].as_object().into_iter().flat_map(|o| o.values()));
-        for key in tables.flat_map(|table| table["properties"].as_object().into_iter().flatten()).map(|(key, _)| key) {
-            assert!(key == "base" || text.contains(key.as_str()), "{key} is not in the example of a {kind}");
+        for key in keys(&schema) {
+            assert!(key == "base" || text.contains(&key), "{key} is not in the example of a {kind}");
         }
     }
 }

@@ -243,8 +243,8 @@ fn required(kind: &str) -> &'static str {
 fn numbers_of_behaviours_have_the_ranges_and_defaults_that_are_declared() {
     let schema = scenario::schema(Kind::Strategy);
     let (mut kinds, mut ranges, mut defaults) = (0, 0, 0);
-    for about in schema["definitions"].as_object().unwrap().values() {
-        let Some(kind) = about["properties"]["kind"]["const"].as_str() else { continue };
+    for about in schema["properties"]["behaviour"]["additionalProperties"]["anyOf"].as_array().unwrap() {
+        let kind = about["properties"]["kind"]["const"].as_str().unwrap();
         kinds += 1;
         let file = |keys: &str| format!("base = \"safe.toml\"\n[behaviour.it]\nkind = \"{kind}\"\n{keys}");
         let sound = program(&file(required(kind)));

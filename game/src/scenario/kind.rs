@@ -2,11 +2,12 @@
 
 use super::schema::declared;
 use std::collections::BTreeSet;
-use std::fmt;
 use std::path::Path;
+use strum::{Display, IntoStaticStr};
 
 /// A kind of scenario file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Display, IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Kind {
     /// A game.
     Game,
@@ -34,7 +35,7 @@ impl Kind {
     /// Its name, which is also that of its schema file.
     #[must_use]
     pub fn name(self) -> &'static str {
-        ["game", "field", "rules", "boat", "sea", "strategy", "tournament", "gateway"][self as usize]
+        self.into()
     }
 
     /// The folder its files lie in.
@@ -58,12 +59,6 @@ impl Kind {
         };
         // Of equals `max_by_key` takes the last.
         Kind::ALL.into_iter().rev().max_by_key(|kind| known(*kind)).unwrap_or(Kind::Game)
-    }
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
     }
 }
 

@@ -1,62 +1,19 @@
 //! The reference pages: every key of every kind of file, and every name in strategies, made from the types that declare them.
 
 use super::kind::Kind;
-use super::schema::{declared, may_be_empty, resolved};
+use super::schema::{TABLE, declared, may_be_empty};
 use crate::strategy::{Boat, Fact, Mark, Measure, Named, What, Who};
 use serde_json::Value;
 use std::fmt::Write;
 
 /// What stands before the tables of all files but strategies.
-const FILES: &str = "\
-# Scenario files: reference
-
-Every key, with its range, its default and its meaning; examples stand in [the handbook](README.md), and strategies have [a
-page of their own](strategies/REFERENCE.md). This page is made from the program's types:
-`SQUALL_BLESS=1 cargo test -p squall-game --test strategy_reference` brings it into step.
-
-Any file may name another one of its kind as `base`. In boat and sea files, and in the tables `link` and `sharing`, a number may
-be a distribution.
-";
+const FILES: &str = include_str!("reference/files.md");
 
 /// What stands before the tables of strategies.
-const OPENING: &str = "\
-# Strategy files: reference
-
-Every key and every name, with what it means. How they work together is told in [the handbook](../README.md), section
-*A strategy*. This page is made from the program's types: `squall strategy --reference` prints it, and
-`SQUALL_BLESS=1 cargo test -p squall-game --test strategy_reference` brings it into step.
-
-Where a type is *number or expression*, a text is an [expression](#expressions), evaluated anew at every decision; a
-value outside of the range then counts as the nearest one inside.
-";
+const OPENING: &str = include_str!("reference/strategies.md");
 
 /// How expressions are written.
-const EXPRESSIONS: &str = "\
-## Expressions
-
-Expressions are written in [CEL](https://cel.dev), the Common Expression Language, of which these are allowed. All
-numbers are doubles: `5 / 2` is 2.5, and `5` and `5.0` are the same. Division by 0 gives 0. At most 1000 characters, and
-30 levels of nesting.
-
-| binds | operators | meaning |
-|---|---|---|
-| tightest | `!a` `-a` | not, minus |
-| | `a * b` `a / b` | product, quotient |
-| | `a + b` `a - b` | sum, difference |
-| | `a < b` `a <= b` `a > b` `a >= b` `a == b` `a != b` | comparisons; texts only with `==` and `!=`, and one of the values of the variable |
-| | `a && b` | both |
-| | `a \\|\\| b` | one at least |
-| loosest | `a ? b : c` | b if a is true, else c |
-
-| value | meaning |
-|---|---|
-| `2` `0.5` `1e3` | a number |
-| `true` `false` | a truth |
-| `'go'` `\"go\"` | a text, beside a text variable |
-| a name | a variable or a fact |
-| `min(a, b)` `max(a, b)` | the smaller and the greater one |
-| `mates(condition)` | how many other boats of the own team there are for which the condition holds, with their values of shared variables; nothing but shared variables is known in it |
-";
+const EXPRESSIONS: &str = include_str!("reference/expressions.md");
 
 /// The page of all kinds of files but strategies, in Markdown.
 #[must_use]
@@ -64,20 +21,24 @@ pub fn file_reference() -> String {
     let mut page = FILES.to_owned();
     for kind in Kind::ALL.into_iter().filter(|kind| *kind != Kind::Strategy) {
         let root = declared(kind);
-        tables(&mut page, root, &format!("## `{}/`", kind.folder()), "", root);
+        tables(&mut page, &format!("## `{}/`", kind.folder()), "", root);
     }
     page
 }
 
 /// The table of what stands at `path`, and those of the tables in it.
-fn tables(page: &mut String, root: &Value, heading: &str, path: &str, about: &Value) {
-    table(page, root, &format!("{heading}\n\n{}", description(about)), about, |key| key != "base");
+fn tables(page: &mut String, heading: &str, path: &str, about: &Value) {
+    table(
+        page,
+        &format!("{heading}\n\n{}", in_a_line(about.get(TABLE).unwrap_or(&about["description"]))),
+        about,
+        |key| key != "base",
+    );
     for (key, about) in about["properties"].as_object().into_iter().flatten() {
         let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-        let (one, item) = (resolved(about, root), resolved(&resolved(about, root)["items"], root));
-        for (about, heading) in [(one, format!("### `{path}`")), (item, format!("### `[[{path}]]`"))] {
+        for (about, heading) in [(about, format!("### `{path}`")), (&about["items"], format!("### `[[{path}]]`"))] {
             if about.get("properties").is_some() {
-                tables(page, root, &heading, &path, about);
+                tables(page, &heading, &path, about);
             }
         }
     }
@@ -88,14 +49,14 @@ fn tables(page: &mut String, root: &Value, heading: &str, path: &str, about: &Va
 pub fn reference() -> String {
     let root = declared(Kind::Strategy);
     let mut page = OPENING.to_owned();
-    table(&mut page, root, "## The file", root, |_| true);
+    table(&mut page, "## The file", root, |_| true);
     for (name, heading) in [
         ("Helm", "## `helm`"),
         ("Variable", "## A variable as a table"),
         ("Mode", "## `[[mode]]`"),
         ("Rule", "## `[[rule]]`"),
     ] {
-        table(&mut page, root, heading, &root["definitions"][name], |_| true);
+        table(&mut page, heading, &root["definitions"][name], |_| true);
     }
     let quoted = |names: &[&str]| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     let (who, what) = (quoted(&Who::names()), quoted(&What::names()));
@@ -149,24 +110,23 @@ fn names(page: &mut String) {
 fn behaviours(page: &mut String, root: &Value) {
     // A full stop has the keys of all kinds and none of its own.
     let common = &root["definitions"]["FullStop"];
-    table(page, root, "## `[behaviour.NAME]`\n\nWhat every kind has.", common, |_| true);
-    for kind in root["properties"]["behaviour"]["additionalProperties"]["oneOf"].as_array().into_iter().flatten() {
-        let about = resolved(kind, root);
+    table(page, "## `[behaviour.NAME]`\n\nWhat every kind has.", common, |_| true);
+    for about in root["properties"]["behaviour"]["additionalProperties"]["oneOf"].as_array().into_iter().flatten() {
         let name = about["properties"]["kind"]["const"].as_str().unwrap_or_default();
         let heading = format!("### `{name}`\n\n{}", description(about));
-        table(page, root, &heading, about, |key| common["properties"].get(key).is_none());
+        table(page, &heading, about, |key| common["properties"].get(key).is_none());
         if name == "loiter" {
-            table(page, root, "#### `ellipse`", &root["definitions"]["Ellipse"], |_| true);
+            table(page, "#### `ellipse`", &root["definitions"]["Ellipse"], |_| true);
         }
     }
 }
 
 /// A heading and a table of the keys that are `wanted`, first those that are required.
-fn table(page: &mut String, root: &Value, heading: &str, about: &Value, wanted: impl Fn(&str) -> bool) {
+fn table(page: &mut String, heading: &str, about: &Value, wanted: impl Fn(&str) -> bool) {
     let _ = write!(page, "\n{heading}\n");
     let required: Vec<&str> = about["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
     let keys = about["properties"].as_object().into_iter().flatten().filter(|(key, _)| wanted(key));
-    let is_required = |key: &str, about| required.contains(&key) && !may_be_empty(about, root);
+    let is_required = |key: &str, about| required.contains(&key) && !may_be_empty(about);
     let (first, rest): (Vec<_>, Vec<_>) = keys.partition(|(key, about)| is_required(key, about));
     if first.is_empty() && rest.is_empty() {
         return;
@@ -181,14 +141,18 @@ fn table(page: &mut String, root: &Value, heading: &str, about: &Value, wanted: 
         let kind = match key.as_str() {
             "kind" => "text: one of those below".to_owned(),
             "when" => "expression".to_owned(),
-            _ => type_of(about, root),
+            _ => type_of(about),
         };
         let _ = writeln!(page, "| `{key}` | {kind} | {} | {default} | {} |", range(about), description(about));
     }
 }
 
 fn description(about: &Value) -> String {
-    about["description"].as_str().unwrap_or_default().replace('\n', " ")
+    in_a_line(&about["description"])
+}
+
+fn in_a_line(text: &Value) -> String {
+    text.as_str().unwrap_or_default().replace('\n', " ")
 }
 
 /// From the least to the most that a number may be, or a list long.
@@ -209,12 +173,11 @@ fn range(about: &Value) -> String {
 
 /// Whether it is a list of two numbers.
 fn is_pair(about: &Value) -> bool {
-    about["minItems"] == 2 && about["maxItems"] == 2 && about["items"].get("$ref").is_none()
+    about["minItems"] == 2 && about["maxItems"] == 2 && about["items"].get("properties").is_none()
 }
 
 /// The type that a schema describes, in words.
-fn type_of(about: &Value, root: &Value) -> String {
-    let about = resolved(about, root);
+fn type_of(about: &Value) -> String {
     match about["title"].as_str() {
         Some("a number or an expression") => return "number or expression".to_owned(),
         Some(title @ ("boat" | "place")) => return title.to_owned(),
@@ -235,7 +198,7 @@ fn type_of(about: &Value, root: &Value) -> String {
         "object" => "table".to_owned(),
         "array" if is_pair(about) => "pair of numbers".to_owned(),
         "array" if is_pair(&about["items"]) => "list of pairs of numbers".to_owned(),
-        "array" => format!("list of {}s", type_of(&about["items"], root)),
+        "array" => format!("list of {}s", type_of(&about["items"])),
         name => name.to_owned(),
     }
 }

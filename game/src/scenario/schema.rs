@@ -24,7 +24,6 @@ use crate::gateway::Gateway;
 use crate::rules::Rules;
 use schemars::{JsonSchema, generate::SchemaSettings};
 use serde_json::{Map, Value, json};
-use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// The schema that files of a kind are read by.
@@ -45,57 +44,30 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
 /// The JSON Schema of a kind of file, for editors.
 ///
 /// It asks for required keys only where no base can give them: at the top of a file without one, and in lists.
+///
+/// # Panics
+/// Never: the schema of a distribution is JSON.
 #[must_use]
 pub fn schema(kind: Kind) -> Value {
-    let declared = declared(kind);
-    let mut uses = BTreeMap::new();
-    collect_uses(declared, &declared["definitions"], Use::default(), &mut uses);
-    let mut schema = declared.clone();
-    relax(&mut schema, declared);
-    for (name, definition) in schema["definitions"].as_object_mut().into_iter().flatten() {
-        let of = uses.get(name.as_str()).copied().unwrap_or_default();
-        if !of.is_item {
-            definition.as_object_mut().and_then(|definition| definition.remove("required"));
-        }
-        publish(definition, of.is_drawn);
+    let mut schema = declared(kind).clone();
+    let has_drawn = schema.to_string().contains(DRAWN);
+    schema.as_object_mut().map(|schema| schema.remove("definitions"));
+    publish(&mut schema, false, true);
+    if has_drawn {
+        let distribution: Value = serde_json::from_str(DISTRIBUTION).expect("it is JSON");
+        schema["definitions"] = json!({ "Distribution": distribution });
     }
     let required = schema.as_object_mut().and_then(|schema| schema.remove("required"));
     if let Some(required) = required.filter(|required| *required != json!([])) {
         schema["if"] = json!({ "not": { "required": ["base"] } });
         schema["then"] = json!({ "required": required });
     }
-    let definitions = schema.as_object_mut().and_then(|schema| schema.remove("definitions"));
-    let mut definitions = definitions.unwrap_or_else(|| json!({}));
-    let is_drawn = declared.get(DRAWN).is_some();
-    publish(&mut schema, is_drawn);
-    if is_drawn || uses.values().any(|of| of.is_drawn) {
-        definitions["Distribution"] = distribution();
-    }
-    if definitions.as_object().is_some_and(|definitions| !definitions.is_empty()) {
-        schema["definitions"] = definitions;
-    }
     schema
 }
 
-/// Stops asking for what may be left out, since it is then an empty list or a table of defaults.
-fn relax(value: &mut Value, root: &Value) {
-    match value {
-        Value::Object(object) => {
-            let properties = object.get("properties").cloned().unwrap_or_default();
-            if let Some(Value::Array(required)) = object.get_mut("required") {
-                required.retain(|key| !may_be_empty(&properties[key.as_str().unwrap_or_default()], root));
-            }
-            object.values_mut().for_each(|value| relax(value, root));
-        }
-        Value::Array(items) => items.iter_mut().for_each(|item| relax(item, root)),
-        _ => {}
-    }
-}
-
 /// Whether a list may have no entries, or a table no keys.
-pub(super) fn may_be_empty(schema: &Value, root: &Value) -> bool {
-    let schema = resolved(schema, root);
-    let is_optional = |key: &Value| may_be_empty(&schema["properties"][key.as_str().unwrap_or_default()], root);
+pub(super) fn may_be_empty(schema: &Value) -> bool {
+    let is_optional = |key: &Value| may_be_empty(&schema["properties"][key.as_str().unwrap_or_default()]);
     match schema["type"].as_str() {
         Some("array") => schema["minItems"].as_u64().unwrap_or(0) == 0,
         Some("object") => {
@@ -105,67 +77,40 @@ pub(super) fn may_be_empty(schema: &Value, root: &Value) -> bool {
     }
 }
 
+/// The schema of a distribution.
+const DISTRIBUTION: &str = include_str!("distribution.schema.json");
 /// The mark of tables whose numbers may be distributions.
 pub(super) const DRAWN: &str = "x-drawn";
+/// What a table is, where its key has a description too.
+pub(super) const TABLE: &str = "x-table";
 
-/// What a schema refers to: the definition itself, or the schema as it stands.
-pub(super) fn resolved<'a>(schema: &'a Value, root: &'a Value) -> &'a Value {
-    let name = schema.get("$ref").or_else(|| schema.get("allOf")?.get(0)?.get("$ref")).and_then(Value::as_str);
-    name.map_or(schema, |name| &root["definitions"][name.rsplit('/').next().unwrap_or_default()])
-}
-
-/// How a definition is used.
-#[derive(Clone, Copy, Default, PartialEq)]
-struct Use {
-    is_drawn: bool,
-    is_item: bool,
-}
-
-/// Finds how each definition is used in `value`, and in the definitions that it uses.
-fn collect_uses<'a>(value: &'a Value, definitions: &'a Value, of: Use, uses: &mut BTreeMap<&'a str, Use>) {
-    match value {
-        Value::Array(items) => items.iter().for_each(|item| collect_uses(item, definitions, of, uses)),
-        Value::Object(object) => {
-            let is_drawn = of.is_drawn || object.contains_key(DRAWN);
-            if let Some(name) = object.get("$ref").and_then(|name| name.as_str()?.rsplit('/').next()) {
-                let known = uses.entry(name).or_default();
-                let now = Use { is_drawn: known.is_drawn || is_drawn, is_item: known.is_item || of.is_item };
-                if std::mem::replace(known, now) != now || !is_drawn && !of.is_item {
-                    collect_uses(&definitions[name], definitions, Use { is_drawn, is_item: false }, uses);
-                }
-            }
-            for (key, value) in object.iter().filter(|(key, _)| *key != "definitions") {
-                let is_item = key == "items" || of.is_item && key == "allOf";
-                collect_uses(value, definitions, Use { is_drawn, is_item }, uses);
-            }
+/// Makes the schema of a table one for editors: without our own marks, with distributions where they are allowed. Keys are
+/// required in entries of lists only, and not where they may be left out, being then an empty list or a table of defaults.
+fn publish(value: &mut Value, is_drawn: bool, is_item: bool) {
+    let object = match value {
+        Value::Array(items) => return items.iter_mut().for_each(|item| publish(item, is_drawn, is_item)),
+        Value::Object(object) => object,
+        _ => return,
+    };
+    let is_drawn = is_drawn || object.contains_key(DRAWN);
+    object.retain(|key, _| !key.starts_with("x-") && (is_item || key != "required"));
+    if let Some(properties) = object.get("properties").cloned() {
+        object.insert("additionalProperties".into(), false.into());
+        if let Some(Value::Array(required)) = object.get_mut("required") {
+            required.retain(|key| !may_be_empty(&properties[key.as_str().unwrap_or_default()]));
         }
-        _ => {}
     }
-}
-
-/// Makes the schema of a table one for editors: without our own marks, with distributions where they are allowed.
-fn publish(value: &mut Value, is_drawn: bool) {
-    match value {
-        Value::Object(object) => {
-            object.retain(|key, _| !key.starts_with("x-"));
-            if object.contains_key("properties") {
-                object.insert("additionalProperties".into(), false.into());
-            }
-            // A file that is laid over a base need not say again which of several tables this is.
-            if object.get("oneOf").is_some_and(|kinds| kinds[0].get("$ref").is_some()) {
-                let kinds = object.remove("oneOf").unwrap_or_default();
-                object.insert("anyOf".into(), kinds);
-            }
-            object.values_mut().for_each(|value| publish(value, is_drawn));
-            let is_number = |kind: &Value| kind == "number" || kind == "integer";
-            if is_drawn && object.get("type").is_some_and(is_number) {
-                let keys = ["type", "minimum", "maximum"].into_iter();
-                let number: Map<_, _> = keys.filter_map(|key| object.remove_entry(key)).collect();
-                object.insert("anyOf".into(), json!([number, { "$ref": "#/definitions/Distribution" }]));
-            }
-        }
-        Value::Array(items) => items.iter_mut().for_each(|item| publish(item, is_drawn)),
-        _ => {}
+    // A file that is laid over a base need not say again which of several tables this is.
+    if object.get("oneOf").is_some_and(|kinds| kinds[0].get("properties").is_some()) {
+        let kinds = object.remove("oneOf").unwrap_or_default();
+        object.insert("anyOf".into(), kinds);
+    }
+    object.iter_mut().for_each(|(key, value)| publish(value, is_drawn, key == "items"));
+    let is_number = |kind: &Value| kind == "number" || kind == "integer";
+    if is_drawn && object.get("type").is_some_and(is_number) {
+        let keys = ["type", "minimum", "maximum"].into_iter();
+        let number: Map<_, _> = keys.filter_map(|key| object.remove_entry(key)).collect();
+        object.insert("anyOf".into(), json!([number, { "$ref": "#/definitions/Distribution" }]));
     }
 }
 
@@ -175,6 +120,8 @@ fn generated<T: JsonSchema>(kind: Kind) -> Value {
     let generator = SchemaSettings::draft07().into_generator();
     let mut schema = generator.into_root_schema_for::<T>().to_value();
     tidy(&mut schema);
+    let definitions = schema["definitions"].clone();
+    put_in(&mut schema, &definitions);
     schema["title"] = format!("Squall {kind}").into();
     let base = format!("Another {kind} file that this one is laid over, relative to this file.");
     schema["properties"]["base"] = json!({ "type": "string", "description": base });
@@ -201,15 +148,7 @@ fn tidy(value: &mut Value) {
         if let [only] = choices.as_slice() {
             let only = only.clone();
             object.remove("anyOf");
-            match only {
-                Value::Object(only) if !only.contains_key("$ref") => {
-                    for (key, value) in only {
-                        object.entry(key).or_insert(value);
-                    }
-                }
-                // Draft 7 ignores what stands beside a `$ref`, so the reference goes into a list of one.
-                only => drop(object.insert("allOf".into(), Value::Array(vec![only]))),
-            }
+            add(object, only);
         }
     }
     let has_default: Vec<String> = object.get("properties").and_then(Value::as_object).map_or(vec![], |properties| {
@@ -221,27 +160,29 @@ fn tidy(value: &mut Value) {
     object.values_mut().for_each(tidy);
 }
 
-fn distribution() -> Value {
-    let kind = |name: &str, most: Option<u32>, what: &str| {
-        let mut numbers = json!({ "type": "array", "items": { "type": "number" }, "minItems": most.unwrap_or(1) });
-        if let Some(most) = most {
-            numbers["maxItems"] = most.into();
+/// Puts definitions in the place of references to them.
+fn put_in(value: &mut Value, definitions: &Value) {
+    match value {
+        Value::Array(items) => items.iter_mut().for_each(|item| put_in(item, definitions)),
+        Value::Object(object) => {
+            // Draft 7 ignores what stands beside a reference, which is then in a list of one.
+            let reference =
+                object.remove("$ref").or_else(|| object.remove("allOf").map(|mut list| list[0]["$ref"].take()));
+            if let Some(name) = reference.as_ref().and_then(|name| name.as_str()?.rsplit('/').next()) {
+                object.insert(TABLE.into(), definitions[name]["description"].clone());
+                add(object, definitions[name].clone());
+            }
+            object.values_mut().for_each(|value| put_in(value, definitions));
         }
-        json!({
-            "type": "object",
-            "description": what,
-            "properties": { name: numbers, "times": { "type": "number", "description": "A factor.", "default": 1 } },
-            "required": [name],
-            "additionalProperties": false
-        })
-    };
-    json!({
-        "description": "A number that is drawn anew for every game, and for every vehicle.",
-        "anyOf": [
-            kind("uniform", Some(2), "Between two numbers, all equally likely."),
-            kind("normal", Some(2), "Mean and standard deviation; within three of them."),
-            kind("log_normal", Some(2), "Median, and standard deviation of the logarithm; within three of them."),
-            kind("choice", None, "One of these.")
-        ]
-    })
+        _ => {}
+    }
+}
+
+/// Adds what `other` says and `object` does not.
+fn add(object: &mut Map<String, Value>, other: Value) {
+    if let Value::Object(other) = other {
+        for (key, value) in other {
+            object.entry(key).or_insert(value);
+        }
+    }
 }

@@ -8,7 +8,7 @@ use super::diagnostics::{Diagnostics, NAME_EXPECTED, NAME_PATTERN, is_name};
 use super::draw::{Owner, distribution_kind, draw};
 use super::field_value::by_fields;
 use super::guess::did_you_mean;
-use super::schema::{DRAWN, resolved};
+use super::schema::DRAWN;
 use super::tree::{Node, Table, Value};
 use serde_json::{Map, Value as Json};
 
@@ -20,14 +20,13 @@ pub(super) fn validated<'a>(
     owner: &'a str,
 ) -> (Json, Vec<String>) {
     let owner = root.get(DRAWN).map(|_| Owner { name: owner, path_from: 0 });
-    let mut validator = Validator { diagnostics, root, path: String::new(), owner, wrong: vec![] };
+    let mut validator = Validator { diagnostics, path: String::new(), owner, wrong: vec![] };
     let value = validator.value(tree, root);
     (value.unwrap_or_else(|| validator.stand_in(root)), validator.wrong)
 }
 
 struct Validator<'a> {
     diagnostics: &'a mut Diagnostics,
-    root: &'a Json,
     /// From the root of the file to the value at hand, as in `team.1.name`.
     path: String,
     /// Who draws the numbers at hand; nobody where they may not be drawn.
@@ -39,7 +38,6 @@ struct Validator<'a> {
 impl<'a> Validator<'a> {
     /// The value of `node`, if it fits the schema.
     fn value(&mut self, node: &'a Node, schema: &'a Json) -> Option<Json> {
-        let schema = resolved(schema, self.root);
         if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
             return match branches.iter().find(|branch| self.fits(node, branch)) {
                 Some(branch) => self.value(node, branch),
@@ -78,7 +76,7 @@ impl<'a> Validator<'a> {
         let bound = |key: &str, none: f64| schema.get(key).and_then(Json::as_f64).unwrap_or(none);
         if !number.is_finite() || !(bound("minimum", f64::MIN)..=bound("maximum", f64::MAX)).contains(&number) {
             let found = if number.is_nan() { "nan".to_owned() } else { number.to_string() };
-            return self.wrong(node, &found, &allowed(schema, self.root));
+            return self.wrong(node, &found, &allowed(schema));
         }
         Some(if let Value::Whole(whole) = node.value { whole.into() } else { number.into() })
     }
@@ -109,7 +107,7 @@ impl<'a> Validator<'a> {
         if is_allowed {
             return Some(text.into());
         }
-        let expected = format!("{}{}", allowed(schema, self.root), did_you_mean(text, &choices));
+        let expected = format!("{}{}", allowed(schema), did_you_mean(text, &choices));
         self.wrong(node, &format!("{text:?}"), &expected)
     }
 
@@ -118,8 +116,7 @@ impl<'a> Validator<'a> {
         if !counts(schema).contains(&items.len()) {
             // Where tables are too many, the first of those is at fault.
             let surplus = items.get(*counts(schema).end()).filter(|item| matches!(item.value, Value::Table(_)));
-            let message =
-                format!("{} has {} entries, expected {}", self.key(), items.len(), allowed(schema, self.root));
+            let message = format!("{} has {} entries, expected {}", self.key(), items.len(), allowed(schema));
             self.diagnostics.note(surplus.unwrap_or(node).at, message);
             // Its entries may be sound all the same.
             self.wrong.push(format!("{}.length", self.path));
@@ -141,7 +138,7 @@ impl<'a> Validator<'a> {
     fn tagged(&mut self, node: &'a Node, table: &'a Table, schema: &'a Json) -> Option<Json> {
         let kinds = schema["oneOf"].as_array()?;
         let tag_of = |kind: &'a Json| {
-            let properties = resolved(kind, self.root)["properties"].as_object();
+            let properties = kind["properties"].as_object();
             properties
                 .into_iter()
                 .flatten()
@@ -154,11 +151,11 @@ impl<'a> Validator<'a> {
         let text =
             given.and_then(|given| if let Value::Text(text) = &given.value { Some(text.as_str()) } else { None });
         if let Some(kind) = kinds.iter().find(|kind| text.is_some() && tag_of(kind).map(|(_, name)| name) == text) {
-            return Some(self.table(node, table, resolved(kind, self.root)));
+            return Some(self.table(node, table, kind));
         }
         // Without its kind, at least the keys that every kind has are looked at.
         for (key, value) in table.iter().filter(|(other, _)| *other != key) {
-            let mut abouts = kinds.iter().map(|kind| resolved(kind, self.root)["properties"].get(key));
+            let mut abouts = kinds.iter().map(|kind| kind["properties"].get(key));
             if let Some(about) = abouts.clone().next().flatten().filter(|_| abouts.all(|about| about.is_some())) {
                 self.below(key, |below| below.property(key, value, about));
             }
@@ -210,11 +207,10 @@ impl<'a> Validator<'a> {
     }
 
     /// The value of a key that the table `owner` lacks.
-    fn absent(&mut self, owner: &'a Node, about: &'a Json, is_required: bool) -> Option<Json> {
-        if let Some(default) = about.get("default") {
+    fn absent(&mut self, owner: &'a Node, schema: &'a Json, is_required: bool) -> Option<Json> {
+        if let Some(default) = schema.get("default") {
             return Some(default.clone());
         }
-        let schema = resolved(about, self.root);
         if !is_required {
             return None;
         }
@@ -222,11 +218,11 @@ impl<'a> Validator<'a> {
             return Some(self.table(owner, const { &Table::new() }, schema));
         }
         // No entries are as good as an empty list, and wrong in the same way.
-        let is_list_of_tables = || resolved(&schema["items"], self.root)["type"] == "object";
+        let is_list_of_tables = || schema["items"]["type"] == "object";
         if schema["type"] == "array" && (counts(schema).contains(&0) || is_list_of_tables()) {
             return self.list(owner, &[], schema);
         }
-        self.missing(owner, &allowed(schema, self.root))
+        self.missing(owner, &allowed(schema))
     }
 
     fn unknown(&mut self, key: &str, node: &Node, schema: &Json) {
@@ -246,7 +242,7 @@ impl<'a> Validator<'a> {
     }
 
     fn wrong_type(&mut self, node: &Node, schema: &Json) -> Option<Json> {
-        self.wrong(node, &found(node), &kind_of(schema, self.root))
+        self.wrong(node, &found(node), &kind_of(schema))
     }
 
     fn wrong(&mut self, node: &Node, found: &str, expected: &str) -> Option<Json> {
@@ -267,7 +263,6 @@ impl<'a> Validator<'a> {
 
     /// Whether a value is of the type that the schema wants.
     fn fits(&self, node: &Node, schema: &Json) -> bool {
-        let schema = resolved(schema, self.root);
         let any_of = |key: &str| {
             let branches = schema.get(key).and_then(Json::as_array);
             branches.is_some_and(|branches| branches.iter().any(|branch| self.fits(node, branch)))
@@ -291,7 +286,6 @@ impl<'a> Validator<'a> {
         if let Some(default) = schema.get("default") {
             return default.clone();
         }
-        let schema = resolved(schema, self.root);
         if let Some(choice) = choices(schema).first() {
             return (*choice).into();
         }
@@ -362,19 +356,19 @@ fn found(node: &Node) -> String {
 }
 
 /// What the schema allows, in words.
-fn allowed(schema: &Json, root: &Json) -> String {
+fn allowed(schema: &Json) -> String {
     let (from, to) = match &schema["type"] {
         Json::String(kind) if kind == "array" => ("minItems", "maxItems"),
         _ => ("minimum", "maximum"),
     };
     match (schema.get(from), schema.get(to)) {
-        _ if schema.get("x-expected").is_some() => kind_of(schema, root),
+        _ if schema.get("x-expected").is_some() => kind_of(schema),
         (Some(_), Some(to)) if from == "minItems" && to == 2 => "a pair of numbers [a, b]".to_owned(),
         (Some(from), Some(to)) if from == to => format!("exactly {from}"),
         (Some(from), Some(to)) => format!("{} to {}", bound(from), bound(to)),
         (Some(from), None) => format!("at least {}", bound(from)),
         (None, Some(to)) => format!("at most {}", bound(to)),
-        (None, None) => kind_of(schema, root),
+        (None, None) => kind_of(schema),
     }
 }
 
@@ -384,13 +378,12 @@ fn bound(value: &Json) -> String {
 }
 
 /// What type the schema wants, in words.
-fn kind_of(schema: &Json, root: &Json) -> String {
-    let schema = resolved(schema, root);
+fn kind_of(schema: &Json) -> String {
     if let Some(expected) = schema.get("x-expected").and_then(Json::as_str) {
         return expected.to_owned();
     }
     if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
-        return branches.iter().map(|branch| kind_of(branch, root)).collect::<Vec<_>>().join(" or ");
+        return branches.iter().map(|branch| kind_of(branch)).collect::<Vec<_>>().join(" or ");
     }
     let choices = choices(schema);
     if !choices.is_empty() {

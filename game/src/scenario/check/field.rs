@@ -1,6 +1,7 @@
 //! A field file, checked.
 
-use crate::field::{Field, Flag, Obstacle, Plan, do_meet, turn};
+use super::boat::estimate;
+use crate::field::{Field, Flag, Obstacle, do_meet, turn};
 use crate::frame::Ned;
 use crate::id::TeamId;
 use crate::scenario::diagnostics::Diagnostics;
@@ -13,24 +14,13 @@ const NEAR_M: f64 = 50.0;
 /// Checks a field.
 pub(in crate::scenario) fn field(diagnostics: &mut Diagnostics, document: &Document<raw::Field>) -> Option<Field> {
     let raw = &document.raw;
-    let half_m = raw.width_m / 2.0;
-    let flag_inset_m = raw.flag_inset_m.unwrap_or(raw.width_m / 8.0);
+    let mut plan = raw.plan.clone();
+    estimate(&mut plan.flag_inset_m, || plan.width_m / 8.0);
+    let (flag_inset_m, half_m) = (plan.flag_inset_m, plan.width_m / 2.0);
     if !(flag_inset_m > 0.0 && flag_inset_m < half_m) && document.is_sound("width_m") {
         let message = format!("flag_inset_m is {flag_inset_m}, expected more than 0 and less than {half_m}");
         diagnostics.note(document.at("flag_inset_m"), message);
     }
-    let mut plan = Plan {
-        name: document.name.clone(),
-        datum: raw.datum,
-        corner: Ned::from_xy(raw.corner[0], raw.corner[1]),
-        along_deg: raw.along_deg,
-        width_m: raw.width_m,
-        depth_m: raw.depth_m,
-        flag_inset_m,
-        extra_flags: vec![],
-        obstacles: vec![],
-        walls: raw.walls,
-    };
     let is_plane_sound =
         ["corner", "along_deg", "width_m", "depth_m", "flag_inset_m"].iter().all(|key| document.is_sound(key));
     if !is_plane_sound {

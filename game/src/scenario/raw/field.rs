@@ -1,7 +1,6 @@
 //! A field file as typed.
 
-use crate::field::Walls;
-use crate::frame::LatLon;
+use crate::field::Plan;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -9,25 +8,8 @@ use serde::Deserialize;
 /// named points follow from it. Positions are [x east, y north] in metres from the datum.
 #[derive(Debug, Deserialize, JsonSchema)]
 pub(crate) struct Field {
-    /// Geographic position of the local origin. A boat that goes out on the water steers by it.
-    pub(crate) datum: LatLon,
-    /// The corner of the first team's end that is to starboard as it looks at its opponent, [x, y] in m.
-    #[schemars(inner(range(min = -1000000, max = 1000000)), extend("default" = [0, 0]))]
-    pub(crate) corner: [f64; 2],
-    /// Compass bearing from the first team's end to the second's, degrees.
-    #[schemars(range(min = -360, max = 360), extend("default" = 90))]
-    pub(crate) along_deg: f64,
-    /// Extent from end to end, m.
-    #[schemars(range(min = 10, max = 20000))]
-    pub(crate) width_m: f64,
-    /// Extent across, m.
-    #[schemars(range(min = 10, max = 20000))]
-    pub(crate) depth_m: f64,
-    /// Distance of the flags from the ends, m: more than 0 and less than half the width. Default width / 8.
-    pub(crate) flag_inset_m: Option<f64>,
-    /// Whether the edges are walls.
-    #[schemars(extend("default" = "none"))]
-    pub(crate) walls: Walls,
+    #[serde(flatten)]
+    pub(crate) plan: Plan,
     /// What stands in the water.
     pub(crate) obstacle: Vec<Obstacle>,
     /// Flags beyond the one that each team has anyway.

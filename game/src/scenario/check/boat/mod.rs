@@ -86,7 +86,7 @@ fn check_gps(diagnostics: &mut Diagnostics, document: &Document<raw::Boat>, gps:
 }
 
 /// Gives a number that the file leaves out.
-fn estimate(number: &mut f64, estimated: impl FnOnce() -> f64) {
+pub(super) fn estimate(number: &mut f64, estimated: impl FnOnce() -> f64) {
     if number.is_nan() {
         *number = estimated();
     }

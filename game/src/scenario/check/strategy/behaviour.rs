@@ -6,7 +6,7 @@ use crate::frame::Ned;
 use crate::scenario::Kind;
 use crate::scenario::guess::did_you_mean;
 use crate::scenario::raw::Common;
-use crate::scenario::schema::{declared, resolved};
+use crate::scenario::schema::declared;
 use crate::strategy::{Behaviour, Boat, Mode, Moment, Named, Parameter, Place, Post, Task};
 use serde_json::{Map, Value as Json, json};
 
@@ -62,7 +62,6 @@ fn checked_table(scope: &mut Scope<'_>, path: &str, given: &Map<String, Json>, a
 
 /// The value at `path` as the checked types have it; `about` is the schema of the typed one.
 fn checked(scope: &mut Scope<'_>, path: &str, given: &Json, about: &Json) -> Option<Json> {
-    let about = resolved(about, declared(Kind::Strategy));
     let value = match (about["title"].as_str(), given) {
         (Some("a number or an expression"), _) => serde_json::to_value(scope.parameter(path, given, about)?),
         (Some("boat"), Json::String(name)) => serde_json::to_value(Boat::by_name(name)?),
