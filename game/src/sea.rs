@@ -129,16 +129,21 @@ pub struct Current {
     pub random_eddies: Option<RandomEddies>,
 }
 
-/// A first-order Gauss-Markov process that is added to the mean speed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A first-order Gauss-Markov process.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Wander {
     /// The direction it acts in: the unit vector of the mean current, or its bearing where there is no mean.
+    #[serde(default)]
+    #[schemars(skip)]
     pub toward: Ned,
     /// Standard deviation, m/s.
+    #[schemars(range(min = 0, max = 5))]
     pub sigma_m_s: f64,
     /// Correlation time, s.
+    #[schemars(range(min = 1, max = 86400), extend("default" = 300))]
     pub time_s: f64,
-    /// What the sum of mean speed and process is clipped to, m/s.
+    /// What mean and process together are clipped to, m/s.
+    #[schemars(with = "[f64; 2]", inner(range(min = -10, max = 10)), extend("default" = [-10, 10]))]
     pub speed_m_s: (f64, f64),
 }
 

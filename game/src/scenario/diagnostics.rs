@@ -71,8 +71,7 @@ impl Diagnostics {
     }
 
     fn push(&mut self, at: usize, message: String) {
-        let place = self.sources.place(at);
-        self.problems.push(Problem { path: place.path, line: place.line, column: place.column, message });
+        self.problems.push(self.sources.problem(at, message));
     }
 
     /// How much is wrong so far: checks that combine values run only if it has not grown.

@@ -47,14 +47,6 @@ pub(super) enum Drawing {
     Seed(u64),
 }
 
-#[derive(Clone, Debug, PartialEq)]
-enum Distribution {
-    Uniform(f64, f64),
-    Normal(f64, f64),
-    LogNormal(f64, f64),
-    Choice(Vec<f64>),
-}
-
 /// Who draws numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Owner<'a> {
@@ -78,7 +70,7 @@ pub(super) fn draw(
     path: &str,
 ) -> Option<Value> {
     let path = path.get(owner.path_from..).unwrap_or_default();
-    let Some(distribution) = distribution(table) else {
+    let Some(value) = number(table, diagnostics.drawing, &format!("draw/{}/{path}", owner.name)) else {
         let key = path.rsplit('.').next().unwrap_or(path);
         let message = format!(
             "{key} is not a distribution, expected one of {{ uniform = [low, high] }}, {{ normal = [mean, sigma] }}, \
@@ -88,70 +80,50 @@ pub(super) fn draw(
         diagnostics.note(node.at, message);
         return None;
     };
-    let value = distribution.number(diagnostics.drawing, owner.name, path);
     diagnostics.drawn.push(Drawn { parameter: format!("{}/{path}", owner.name), value });
     // Whole numbers up to 1e15 are exact, and are what some keys take only.
     let is_whole = value.fract() == 0.0 && value.abs() < 1e15;
     Some(if is_whole { Value::Whole(value as i64) } else { Value::Number(value) })
 }
 
-fn distribution(table: &Table) -> Option<Distribution> {
+/// The number that is taken from a distribution, by the stream of this name; none if it is a bad one.
+fn number(table: &Table, drawing: Drawing, stream: &str) -> Option<f64> {
     let kind = distribution_kind(table)?;
     let finite = |node: &Node| node.as_number().filter(|number| number.is_finite());
     let Value::List(items) = &table[kind].value else { return None };
     let numbers: Vec<f64> = items.iter().map(finite).collect::<Option<_>>()?;
     let times = table.get("times").map_or(Some(1.0), finite)?;
-    let is_known = table.keys().all(|key| key == kind || key == "times");
-    if is_known { of(kind, &numbers, times) } else { None }
-}
-
-fn of(kind: &str, numbers: &[f64], times: f64) -> Option<Distribution> {
-    let found = match (kind, numbers) {
-        ("uniform", &[low, high]) if low <= high => {
-            let (a, b) = (low * times, high * times);
-            Distribution::Uniform(a.min(b), a.max(b))
-        }
-        ("normal", &[mean, sigma]) if sigma >= 0.0 => Distribution::Normal(mean * times, (sigma * times).abs()),
-        ("log_normal", &[median, sigma]) if median * times > 0.0 && (0.0..=10.0).contains(&sigma) => {
-            Distribution::LogNormal(median * times, sigma)
-        }
-        ("choice", choices) if !choices.is_empty() => {
-            Distribution::Choice(choices.iter().map(|choice| choice * times).collect())
-        }
-        _ => return None,
-    };
-    Some(found)
-}
-
-impl Distribution {
-    /// The number that is taken.
-    fn number(&self, drawing: Drawing, owner: &str, path: &str) -> f64 {
-        let end = match drawing {
-            Drawing::Seed(seed) => return self.draw(&mut Stream::new(seed, &format!("draw/{owner}/{path}"))),
-            Drawing::Least => -1.0,
-            Drawing::Greatest => 1.0,
-        };
-        match self {
-            Distribution::Uniform(low, high) => {
-                if end < 0.0 {
-                    *low
-                } else {
-                    *high
-                }
-            }
-            Distribution::Normal(mean, sigma) => mean + end * WITHIN_SIGMA * sigma,
-            Distribution::LogNormal(median, sigma) => median * libm::exp(end * WITHIN_SIGMA * sigma),
-            Distribution::Choice(choices) => end * choices.iter().map(|x| end * x).fold(f64::NEG_INFINITY, f64::max),
-        }
+    if !table.keys().all(|key| key == kind || key == "times") {
+        return None;
     }
-
-    fn draw(&self, stream: &mut Stream) -> f64 {
-        match self {
-            Distribution::Uniform(low, high) => stream.between(*low, *high),
-            Distribution::Normal(mean, sigma) => mean + sigma * within(stream),
-            Distribution::LogNormal(median, sigma) => median * libm::exp(sigma * within(stream)),
-            Distribution::Choice(choices) => choices[stream.below(choices.len() as u64) as usize],
+    let stream = |seed: u64| Stream::new(seed, stream);
+    let sigmas = || match drawing {
+        Drawing::Least => -WITHIN_SIGMA,
+        Drawing::Greatest => WITHIN_SIGMA,
+        Drawing::Seed(seed) => within(&mut stream(seed)),
+    };
+    match (kind, numbers.as_slice()) {
+        ("uniform", &[low, high]) if low <= high => {
+            let (low, high) = ((low * times).min(high * times), (low * times).max(high * times));
+            Some(match drawing {
+                Drawing::Least => low,
+                Drawing::Greatest => high,
+                Drawing::Seed(seed) => stream(seed).between(low, high),
+            })
         }
+        ("normal", &[mean, sigma]) if sigma >= 0.0 => Some(mean * times + sigmas() * (sigma * times).abs()),
+        ("log_normal", &[median, sigma]) if median * times > 0.0 && (0.0..=10.0).contains(&sigma) => {
+            Some(median * times * libm::exp(sigmas() * sigma))
+        }
+        ("choice", choices) => {
+            let mut scaled = choices.iter().map(|choice| choice * times);
+            match drawing {
+                Drawing::Least => scaled.reduce(f64::min),
+                Drawing::Greatest => scaled.reduce(f64::max),
+                Drawing::Seed(seed) => scaled.nth(stream(seed).below(choices.len().max(1) as u64) as usize),
+            }
+        }
+        _ => None,
     }
 }
 

@@ -100,14 +100,6 @@ pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems>
     one(path, check::boat, seed)
 }
 
-/// Reads and checks the sea file at `path`. Where it gives distributions, the numbers are those of seed 1.
-///
-/// # Errors
-/// Everything that is wrong in it and its bases.
-pub fn load_sea(path: &Path) -> Result<Sea, Problems> {
-    draw_sea(path, 1).map(|(sea, _)| sea)
-}
-
 /// Reads and checks the sea file at `path`, and draws its numbers with this seed: those of a game of that seed.
 ///
 /// # Errors
@@ -170,7 +162,7 @@ pub fn check_file(path: &Path) -> Result<Kind, Problems> {
         Kind::Field => load_field(path).map(drop),
         Kind::Rules => one(path, check::rules, 1).map(drop),
         Kind::Boat => load_boat(path).map(drop),
-        Kind::Sea => load_sea(path).map(drop),
+        Kind::Sea => draw_sea(path, 1).map(drop),
         Kind::Strategy => load_strategy(path).map(drop),
         Kind::Tournament => load_tournament(path).map(drop),
         Kind::Gateway => load_gateway(path).map(drop),

@@ -1,9 +1,9 @@
 //! What makes a game: read from TOML files, checked once, believed ever after.
 //!
 //! [`Scenario`] is the checked form, SI and radians, and travels to every process that joins the game.
-//! [`load`] makes one. `raw` declares the keys of files, `schema` makes the JSON Schemas of them. `read` finds the files and
-//! lays them over their bases, `validate` reads them by their schema, `check` makes of them what the program believes,
-//! and `diagnostics` collects every [`Problem`] on the way.
+//! [`load`] makes one. Its types and those in `raw` declare the keys of files, `schema` makes the JSON Schemas of them.
+//! `read` finds the files and lays them over their bases, `validate` reads them by their schema, `check` makes of them
+//! what the program believes, and `diagnostics` collects every [`Problem`] on the way.
 
 mod check;
 mod diagnostics;
@@ -27,8 +27,8 @@ mod validate;
 pub use draw::{Drawn, Recipe};
 pub use kind::Kind;
 pub use load::{
-    check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_sea,
-    load_strategy, load_tournament, load_with,
+    check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_strategy,
+    load_tournament, load_with,
 };
 pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
@@ -132,12 +132,6 @@ impl Scenario {
     #[must_use]
     pub fn decision(&self) -> SimTime {
         self.tick * i64::from(self.ticks_per_decision)
-    }
-
-    /// The team with this name.
-    #[must_use]
-    pub fn team_by_name(&self, name: &str) -> Option<TeamId> {
-        self.teams.iter().position(|team| team.name == name).map(|index| TeamId(index as u8))
     }
 
     /// The team of a vehicle.

@@ -1,11 +1,11 @@
 //! The JSON Schema of each kind of scenario file: the single owner of every key's type, range, default and meaning.
 //!
-//! A key is a field of a type in `raw`, and is declared once, there:
+//! A key is a field of a type, and is declared once, there:
 //!
 //! ```text
 //! /// An intruder is tagged closer than this, m.
 //! #[schemars(range(min = 0.1, max = 1000), extend("default" = 10))]
-//! pub(crate) tag_radius_m: f64,
+//! pub tag_radius_m: f64,
 //! ```
 //!
 //! * Its doc comment is the description, with the unit; a unit is also the end of its name.
@@ -14,6 +14,7 @@
 //!   is an `Option`. A list or a table of which nothing is required may be left out too, and is then empty.
 //! * Choices are enums with `rename_all = "snake_case"` and a doc comment for each choice.
 //! * `extend("x-expected" = "…")` says in messages what is expected, where the type alone would not.
+//! * `rename` with `extend("x-field" = "…")` gives the key another name, and with it another unit, than the field has.
 //! * `extend("x-drawn" = true)` allows distributions in place of all numbers in a table.
 //!
 //! [`declared`] is the schema in this form, by which files are read (see `validate`); [`schema`] is the one for editors.
@@ -119,22 +120,29 @@ fn generated<T: JsonSchema>(kind: Kind) -> Value {
     // Draft 7 is what editors' TOML extensions understand.
     let generator = SchemaSettings::draft07().into_generator();
     let mut schema = generator.into_root_schema_for::<T>().to_value();
-    tidy(&mut schema);
     let definitions = schema["definitions"].clone();
-    put_in(&mut schema, &definitions);
+    tidy(&mut schema, &definitions);
     schema["title"] = format!("Squall {kind}").into();
     let base = format!("Another {kind} file that this one is laid over, relative to this file.");
     schema["properties"]["base"] = json!({ "type": "string", "description": base });
     schema
 }
 
-/// What has a default is not required, and may not be null, since TOML has no null.
-fn tidy(value: &mut Value) {
+/// Puts definitions in the place of references to them. What has a default is not required, and may not be null, since
+/// TOML has no null.
+fn tidy(value: &mut Value, definitions: &Value) {
     let is_null = |choice: &Value| *choice == "null" || choice.get("type").is_some_and(|kind| kind == "null");
     if let Value::Array(items) = value {
-        items.iter_mut().for_each(tidy);
+        items.iter_mut().for_each(|item| tidy(item, definitions));
     }
     let Value::Object(object) = value else { return };
+    // Draft 7 ignores what stands beside a reference, which is then in a list of one.
+    let reference = object.remove("$ref").or_else(|| object.remove("allOf").map(|mut list| list[0]["$ref"].take()));
+    if let Some(name) = reference.as_ref().and_then(|name| name.as_str()?.rsplit('/').next()) {
+        object.insert(TABLE.into(), definitions[name]["description"].clone());
+        add(object, definitions[name].clone());
+    }
+    object.values_mut().for_each(|value| tidy(value, definitions));
     object.remove("format");
     if let Some(Value::Array(types)) = object.get_mut("type") {
         types.retain(|choice| !is_null(choice));
@@ -156,25 +164,6 @@ fn tidy(value: &mut Value) {
     });
     if let Some(Value::Array(required)) = object.get_mut("required") {
         required.retain(|key| has_default.iter().all(|known| key != known));
-    }
-    object.values_mut().for_each(tidy);
-}
-
-/// Puts definitions in the place of references to them.
-fn put_in(value: &mut Value, definitions: &Value) {
-    match value {
-        Value::Array(items) => items.iter_mut().for_each(|item| put_in(item, definitions)),
-        Value::Object(object) => {
-            // Draft 7 ignores what stands beside a reference, which is then in a list of one.
-            let reference =
-                object.remove("$ref").or_else(|| object.remove("allOf").map(|mut list| list[0]["$ref"].take()));
-            if let Some(name) = reference.as_ref().and_then(|name| name.as_str()?.rsplit('/').next()) {
-                object.insert(TABLE.into(), definitions[name]["description"].clone());
-                add(object, definitions[name].clone());
-            }
-            object.values_mut().for_each(|value| put_in(value, definitions));
-        }
-        _ => {}
     }
 }
 

@@ -1,5 +1,6 @@
 //! Every file that was read, laid end to end in one virtual text: one byte offset names file, line and column.
 
+use super::problem::Problem;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
@@ -18,17 +19,6 @@ struct Source {
     start: usize,
     /// Lines with a syntax error, from 1.
     broken_lines: Vec<usize>,
-}
-
-/// A place in a file, for people.
-#[derive(Debug, PartialEq)]
-pub(super) struct Place {
-    /// The file.
-    pub(super) path: PathBuf,
-    /// Line, from 1.
-    pub(super) line: usize,
-    /// Column in characters, from 1.
-    pub(super) column: usize,
 }
 
 impl Sources {
@@ -56,8 +46,8 @@ impl Sources {
         self.files.partition_point(|file| file.start <= offset) - 1
     }
 
-    /// The place that `offset` names; at least one file must have been added.
-    pub(super) fn place(&self, offset: usize) -> Place {
+    /// A problem at the place that `offset` names; at least one file must have been added.
+    pub(super) fn problem(&self, offset: usize, message: String) -> Problem {
         let file = &self.files[self.index_at(offset)];
         let mut end = (offset - file.start).min(file.text.len());
         while !file.text.is_char_boundary(end) {
@@ -65,11 +55,12 @@ impl Sources {
         }
         let before = &file.text[..end];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        Place {
-            path: file.path.clone(),
-            line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-        }
+        let (line, column) = (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1);
+        Problem { path: file.path.clone(), line, column, message }
+    }
+
+    fn line(&self, offset: usize) -> usize {
+        self.problem(offset, String::new()).line
     }
 
     /// The text from `offset` to the end of its file.
@@ -86,14 +77,14 @@ impl Sources {
 
     /// Remembers that the syntax is wrong at `offset`.
     pub(super) fn mark_broken(&mut self, offset: usize) {
-        let line = self.place(offset).line;
+        let line = self.line(offset);
         let index = self.index_at(offset);
         self.files[index].broken_lines.push(line);
     }
 
     /// Whether the syntax is wrong in the line of `offset`.
     pub(super) fn is_broken_line(&self, offset: usize) -> bool {
-        self.files[self.index_at(offset)].broken_lines.contains(&self.place(offset).line)
+        self.files[self.index_at(offset)].broken_lines.contains(&self.line(offset))
     }
 
     /// Whether the syntax is wrong anywhere in the file of `offset`.
@@ -135,7 +126,8 @@ mod tests {
             (b, "b.toml", 1, 1),
             (b + 70, "b.toml", 1, 2),
         ] {
-            assert_eq!(sources.place(offset), Place { path: path.into(), line, column }, "{offset}");
+            let problem = Problem { path: path.into(), line, column, message: "wrong".into() };
+            assert_eq!(sources.problem(offset, "wrong".into()), problem, "{offset}");
         }
         assert_eq!(sources.resolve(a, "../fields/f.toml"), Path::new("fields/f.toml"));
         assert_eq!(sources.resolve(b, "../c.toml"), Path::new("../c.toml"));

@@ -383,7 +383,7 @@ fn kind_of(schema: &Json) -> String {
         return expected.to_owned();
     }
     if let Some(branches) = schema.get("anyOf").and_then(Json::as_array) {
-        return branches.iter().map(|branch| kind_of(branch)).collect::<Vec<_>>().join(" or ");
+        return branches.iter().map(kind_of).collect::<Vec<_>>().join(" or ");
     }
     let choices = choices(schema);
     if !choices.is_empty() {

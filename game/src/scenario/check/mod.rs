@@ -1,6 +1,6 @@
-//! From files as typed to what the program believes: units, and rules that combine several values.
+//! From files as typed to what the program believes: estimates, and rules that combine several values.
 //!
-//! What a single value may be says its declaration in `raw`, and has been checked when a check gets it. Every check
+//! What a single value may be says its declaration, and has been checked when a check gets it. Every check
 //! notes all it finds in the [`Diagnostics`] and returns `None` if anything was wrong.
 
 mod boat;

@@ -1,6 +1,6 @@
 //! A sea file as typed.
 
-use crate::sea::{Eddy, PROFILE_EXPONENT, RandomEddies};
+use crate::sea::{Eddy, PROFILE_EXPONENT, RandomEddies, Wander};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -140,20 +140,6 @@ pub(crate) struct Current {
     pub(crate) eddy: Vec<Eddy>,
     /// Eddies whose places are drawn over the field for every game.
     pub(crate) eddies: Option<RandomEddies>,
-}
-
-/// A first-order Gauss-Markov process.
-#[derive(Debug, Deserialize, JsonSchema)]
-pub(crate) struct Wander {
-    /// Standard deviation, m/s.
-    #[schemars(range(min = 0, max = 5))]
-    pub(crate) sigma_m_s: f64,
-    /// Correlation time, s.
-    #[schemars(range(min = 1, max = 86400), extend("default" = 300))]
-    pub(crate) time_s: f64,
-    /// What mean and process together are clipped to, m/s.
-    #[schemars(inner(range(min = -10, max = 10)), extend("default" = [-10, 10]))]
-    pub(crate) speed_m_s: [f64; 2],
 }
 
 /// A tidal stream.
