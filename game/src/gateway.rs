@@ -28,9 +28,6 @@ pub struct Gateway {
     /// How old an order may grow before the boat is stopped, s.
     #[schemars(range(min = 0.1, max = 10), extend("default" = 1))]
     pub order_ttl_s: f64,
-    /// Time between two lines of a mission that is taken up, s.
-    #[schemars(range(min = 0.005, max = 5), extend("default" = 0.1))]
-    pub upload_gap_s: f64,
     /// How much may be asked of the boat.
     pub limits: Limits,
     /// What navigation must be like.
@@ -45,6 +42,9 @@ pub struct Gateway {
     pub control: ControlWatch,
     /// Our own heading and speed loops, where `drive` is "thrust".
     pub loops: Loops,
+    /// Time between two lines of a mission that is taken up, s.
+    #[schemars(range(min = 0.005, max = 5), extend("default" = 0.1))]
+    pub upload_gap_s: f64,
 }
 
 /// Whose loops steer.

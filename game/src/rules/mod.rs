@@ -52,10 +52,6 @@ pub struct Rules {
     /// Two boats closer than this, centre to centre, have collided, m.
     #[schemars(range(min = 0, max = 100), extend("default" = 3))]
     pub collision_distance_m: f64,
-    /// What a team is shown of other boats. Without it, all of it and at once.
-    #[serde(default)]
-    #[schemars(with = "Option<Sharing>", !default, extend("x-drawn" = true))]
-    pub sharing: Sharing,
     /// Where a flag must be brought.
     #[schemars(extend("default" = "own_flag"))]
     pub capture_at: CaptureAt,
@@ -87,6 +83,10 @@ pub struct Rules {
     /// Share of its top speed that a boat outside of the field may use.
     #[schemars(range(min = 0.05, max = 1), extend("default" = 1))]
     pub outside_speed_factor: f64,
+    /// What a team is shown of other boats. Without it, all of it and at once.
+    #[serde(default)]
+    #[schemars(with = "Option<Sharing>", !default, extend("x-drawn" = true))]
+    pub sharing: Sharing,
     /// Boats keep this far from their own flag while it is home, m; 0 is no such rule.
     #[schemars(range(min = 0, max = 1000), extend("default" = 0))]
     pub flag_keepout_m: f64,
