@@ -70,7 +70,7 @@ fn odd_input() -> impl Strategy<Value = Input> {
         fix_at: SimTime(at),
         valid: true,
     });
-    prop_oneof![ordered, reported, vehicle.prop_map(|vehicle| Input::Held { vehicle }), Just(Input::Played)]
+    prop_oneof![ordered, reported, vehicle.prop_map(Input::Held), Just(Input::Played)]
 }
 
 prop_compose! {

@@ -44,7 +44,7 @@ fn decide(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("ivp 360x36");
     for contacts in [0, 1, 3] {
         let scenes = scenes(contacts);
-        let mut problem = Problem::new(Grid::default());
+        let mut problem = Problem::new(Grid::new(360, 36, 3.5));
         let mut next = 0;
         group.bench_function(format!("functions {}", contacts + 1), |bencher| {
             bencher.iter(|| {
@@ -62,7 +62,7 @@ fn decide(criterion: &mut Criterion) {
 /// The closed form at every point of the grid, in plain double precision and with no bounds: what anybody would write
 /// first. The waypoint's two lists are made once, as in the solver.
 fn every_point(criterion: &mut Criterion) {
-    let grid = Grid::default();
+    let grid = Grid::new(360, 36, 3.5);
     let scenes = scenes(3);
     let mut next = 0;
     criterion.bench_function("ivp 360x36/functions 4, every point", |bencher| {
@@ -80,7 +80,7 @@ fn best_of_all(grid: &Grid, functions: &[(f64, Objective)]) -> (f64, usize, usiz
     let mut best = (f64::NEG_INFINITY, 0, 0);
     for k in 0..grid.courses() {
         let (north, east) = grid.direction(k);
-        let of_course = f64::from(course.of_course(grid, k));
+        let of_course = f64::from(course.courses(grid)(k));
         for (j, of_speed) in speeds.iter().enumerate() {
             let own = Ned { north: north.into(), east: east.into() }.scaled(grid.speed_m_s(j));
             let waypoint = functions[0].0 * (of_course * course_share + of_speed * (1.0 - course_share));

@@ -16,7 +16,7 @@ const WARM_UP: usize = 1_500;
 #[test]
 fn a_decision_takes_nothing_from_the_heap_once_its_lists_have_grown() {
     let table: Vec<f32> = (0..360 * 36).map(|i| (i % 101) as f32).collect();
-    let mut problem = Problem::new(Grid::default());
+    let mut problem = Problem::new(Grid::new(360, 36, 3.5));
     for decision in 0..3_000 {
         let peak = Peak::tent(decision as f64, 2.0);
         let closest = Closest {

@@ -12,9 +12,10 @@
 
 use crate::series::{BoatSeries, GameSeries, Sample};
 use game::angle::compass_deg_from_rad;
+use game::math::decimal;
 use game::outcome::EventOutcome;
 use game::picture::Nav;
-use game::{Order, Scenario, math};
+use game::{Order, Scenario};
 use recording::Header;
 use recording::utc;
 use std::fmt::Write;
@@ -123,7 +124,7 @@ impl Log {
             ("X", nav.east_m),
             ("Y", nav.north_m),
             ("HEADING", compass_deg_from_rad(nav.psi_rad)),
-            ("SPEED", speed_m_s(nav)),
+            ("SPEED", nav.speed_m_s()),
         ] {
             self.number(at_s, &format!("{prefix}{name}"), value);
         }
@@ -159,7 +160,7 @@ impl Log {
             self.start_utc_s + at_s,
             decimal(nav.east_m, 2),
             decimal(nav.north_m, 2),
-            decimal(speed_m_s(nav), 2),
+            decimal(nav.speed_m_s(), 2),
             decimal(compass_deg_from_rad(nav.psi_rad), 2),
             mode(sample),
         )
@@ -208,16 +209,6 @@ fn mode(sample: &Sample) -> &'static str {
         Sample { is_free: false, .. } => "STOPPED",
         _ => "PLAYING",
     }
-}
-
-fn speed_m_s(nav: &Nav) -> f64 {
-    math::length(nav.surge_m_s, nav.sway_m_s)
-}
-
-/// A number with so many places; what is nothing has no sign.
-fn decimal(number: f64, places: usize) -> String {
-    let text = format!("{number:.places$}");
-    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
 }
 
 /// Says at which samples something comes that does not come at all.

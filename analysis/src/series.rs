@@ -61,12 +61,6 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// How fast it went over the ground, m/s.
-    #[must_use]
-    pub fn speed_m_s(&self) -> f64 {
-        game::math::length(self.truth.surge_m_s, self.truth.sway_m_s)
-    }
-
     /// The heading, rad, and the speed, m/s, that it steered by order.
     #[must_use]
     pub fn steered(&self) -> Option<(f64, f64)> {
@@ -199,7 +193,7 @@ impl<'a> Builder<'a> {
         for input in inputs.of(self.scenario).flatten() {
             match input {
                 Input::Ordered { vehicle, order, given_at } => self.orders[vehicle.index()] = (order, given_at),
-                Input::Held { vehicle } | Input::AgentLost { vehicle } => self.orders[vehicle.index()].0 = Order::Hold,
+                Input::Held(vehicle) | Input::AgentLost(vehicle) => self.orders[vehicle.index()].0 = Order::Hold,
                 Input::Played => self.expire_orders(),
                 _ => {}
             }

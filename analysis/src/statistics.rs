@@ -73,14 +73,14 @@ fn of(boat: &BoatSeries, counts: Counts, steps_s: &[f64], teams: &[String]) -> B
         total(steps.map(|(_, step_s)| *step_s))
     };
     let span_s = total(steps_s.iter().copied());
-    let travelled_m = boat.samples.iter().zip(steps_s).map(|(sample, step_s)| sample.speed_m_s() * step_s);
+    let travelled_m = boat.samples.iter().zip(steps_s).map(|(sample, step_s)| sample.truth.speed_m_s() * step_s);
     BoatStatistics {
         boat: boat.name.clone(),
         team: teams.get(boat.team).cloned().unwrap_or_default(),
         is_real: boat.is_real,
         distance_m: length_m(boat),
         speed_mean_m_s: if span_s > 0.0 { total(travelled_m) / span_s } else { 0.0 },
-        speed_max_m_s: boat.samples.iter().map(Sample::speed_m_s).fold(0.0, f64::max),
+        speed_max_m_s: boat.samples.iter().map(|sample| sample.truth.speed_m_s()).fold(0.0, f64::max),
         tagged_s: lasted(|sample| sample.tagged),
         outside_s: lasted(|sample| sample.outside),
         carrying_s: lasted(|sample| sample.carrying),

@@ -206,7 +206,7 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
             }
         }
         for logged in cursor.read(contest.events()) {
-            if let Event::LeftField { vehicle } = logged.event {
+            if let Event::LeftField(vehicle) = logged.event {
                 let i = vehicle.index();
                 tally.left += 1;
                 let crowded = (0..count).any(|j| j != i && pose(i).at.distance(pose(j).at) < CROWD_M);

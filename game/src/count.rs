@@ -52,12 +52,12 @@ impl Tally {
                     count(by, |c| &mut c.tags);
                 }
             }
-            Event::LeftField { vehicle } => count(vehicle, |c| &mut c.out_of_bounds),
+            Event::LeftField(vehicle) => count(vehicle, |c| &mut c.out_of_bounds),
             Event::Collided { first, second } => {
                 count(first, |c| &mut c.collisions);
                 count(second, |c| &mut c.collisions);
             }
-            Event::AgentLost { vehicle } => count(vehicle, |c| &mut c.agents_lost),
+            Event::AgentLost(vehicle) => count(vehicle, |c| &mut c.agents_lost),
             _ => {}
         }
     }

@@ -4,6 +4,7 @@ use crate::id::{FlagId, TeamId, VehicleId};
 use crate::scenario::Scenario;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
+use strum::IntoStaticStr;
 
 /// An event, with the tick and the time at which it happened.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,7 +40,8 @@ pub enum TagCause {
 }
 
 /// What happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum Event {
     /// A boat took an opponent's flag.
     Grabbed {
@@ -63,10 +65,7 @@ pub enum Event {
         cause: TagCause,
     },
     /// A tagged boat came home and plays again.
-    Untagged {
-        /// Who plays again.
-        vehicle: VehicleId,
-    },
+    Untagged(VehicleId),
     /// A carrier lost its flag, which is at its home again.
     FlagReturned {
         /// Who lost it.
@@ -75,15 +74,9 @@ pub enum Event {
         flag: FlagId,
     },
     /// A boat left the field.
-    LeftField {
-        /// Who left.
-        vehicle: VehicleId,
-    },
+    LeftField(VehicleId),
     /// A boat came back onto the field.
-    ReturnedToField {
-        /// Who came back.
-        vehicle: VehicleId,
-    },
+    ReturnedToField(VehicleId),
     /// Two boats came closer than the collision distance.
     Collided {
         /// The one with the lower index.
@@ -92,45 +85,21 @@ pub enum Event {
         second: VehicleId,
     },
     /// A boat came into the keep-out circle of its own flag.
-    EnteredKeepout {
-        /// Who came in.
-        vehicle: VehicleId,
-    },
+    EnteredKeepout(VehicleId),
     /// A boat is out of action for a while (power play).
-    Disabled {
-        /// Who.
-        vehicle: VehicleId,
-    },
+    Disabled(VehicleId),
     /// A boat is back in action.
-    Enabled {
-        /// Who.
-        vehicle: VehicleId,
-    },
+    Enabled(VehicleId),
     /// A boat's agent is lost: the boat holds from now on.
-    AgentLost {
-        /// Whose agent.
-        vehicle: VehicleId,
-    },
+    AgentLost(VehicleId),
     /// A boat's agent is back.
-    AgentBack {
-        /// Whose agent.
-        vehicle: VehicleId,
-    },
+    AgentBack(VehicleId),
     /// A boat's numbers went bad: it lies still where it last was and plays no more.
-    Quarantined {
-        /// Which boat.
-        vehicle: VehicleId,
-    },
+    Quarantined(VehicleId),
     /// It is not known any more where a real boat is: it is to hold.
-    NavLost {
-        /// Which boat.
-        vehicle: VehicleId,
-    },
+    NavLost(VehicleId),
     /// It is known again where a real boat is.
-    NavBack {
-        /// Which boat.
-        vehicle: VehicleId,
-    },
+    NavBack(VehicleId),
     /// Somebody ashore stopped all boats.
     EStopped,
     /// That stop is over.
@@ -154,37 +123,47 @@ impl Event {
             Event::Grabbed { vehicle, .. }
             | Event::Captured { vehicle, .. }
             | Event::Tagged { vehicle, .. }
-            | Event::Untagged { vehicle }
+            | Event::Untagged(vehicle)
             | Event::FlagReturned { vehicle, .. }
-            | Event::LeftField { vehicle }
-            | Event::ReturnedToField { vehicle }
-            | Event::EnteredKeepout { vehicle }
-            | Event::Disabled { vehicle }
-            | Event::Enabled { vehicle }
-            | Event::AgentLost { vehicle }
-            | Event::AgentBack { vehicle }
-            | Event::Quarantined { vehicle }
-            | Event::NavLost { vehicle }
-            | Event::NavBack { vehicle } => Some(vehicle),
+            | Event::LeftField(vehicle)
+            | Event::ReturnedToField(vehicle)
+            | Event::EnteredKeepout(vehicle)
+            | Event::Disabled(vehicle)
+            | Event::Enabled(vehicle)
+            | Event::AgentLost(vehicle)
+            | Event::AgentBack(vehicle)
+            | Event::Quarantined(vehicle)
+            | Event::NavLost(vehicle)
+            | Event::NavBack(vehicle) => Some(vehicle),
             Event::Collided { first, .. } => Some(first),
             Event::EStopped | Event::Released | Event::Halted | Event::WentOn | Event::Ended { .. } => None,
+        }
+    }
+
+    /// The second boat that it took: the tagger, or the other of two in a collision.
+    #[must_use]
+    pub fn other(self) -> Option<VehicleId> {
+        match self {
+            Event::Tagged { cause: TagCause::Opponent(by), .. } => Some(by),
+            Event::Collided { second, .. } => Some(second),
+            _ => None,
+        }
+    }
+
+    /// The flag that it is about.
+    #[must_use]
+    pub fn flag(self) -> Option<FlagId> {
+        match self {
+            Event::Grabbed { flag, .. } | Event::Captured { flag, .. } | Event::FlagReturned { flag, .. } => Some(flag),
+            _ => None,
         }
     }
 
     /// Whether everything that it names is in the game: whoever sends it is not therefore right.
     #[must_use]
     pub fn is_of(self, scenario: &Scenario) -> bool {
-        let other = match self {
-            Event::Tagged { cause: TagCause::Opponent(by), .. } => Some(by),
-            Event::Collided { second, .. } => Some(second),
-            _ => None,
-        };
-        let flag = match self {
-            Event::Grabbed { flag, .. } | Event::Captured { flag, .. } | Event::FlagReturned { flag, .. } => Some(flag),
-            _ => None,
-        };
-        let team = if let Event::Ended { winner } = self { winner } else { None };
-        [self.vehicle(), other].into_iter().flatten().all(|vehicle| vehicle.index() < scenario.vehicles.len())
+        let (flag, team) = (self.flag(), if let Event::Ended { winner } = self { winner } else { None });
+        [self.vehicle(), self.other()].into_iter().flatten().all(|vehicle| vehicle.index() < scenario.vehicles.len())
             && flag.is_none_or(|flag| flag.index() < scenario.field.flags.len())
             && team.is_none_or(|team| team.index() < scenario.teams.len())
     }
@@ -214,19 +193,19 @@ impl From<Logged> for EventRecord {
             Event::Captured { vehicle, flag } => (1, v(vehicle), f(flag)),
             Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => (2, v(vehicle), v(by)),
             Event::Tagged { vehicle, cause: TagCause::Boundary } => (3, v(vehicle), -1),
-            Event::Untagged { vehicle } => (4, v(vehicle), -1),
+            Event::Untagged(vehicle) => (4, v(vehicle), -1),
             Event::FlagReturned { vehicle, flag } => (5, v(vehicle), f(flag)),
-            Event::LeftField { vehicle } => (6, v(vehicle), -1),
-            Event::ReturnedToField { vehicle } => (7, v(vehicle), -1),
+            Event::LeftField(vehicle) => (6, v(vehicle), -1),
+            Event::ReturnedToField(vehicle) => (7, v(vehicle), -1),
             Event::Collided { first, second } => (8, v(first), v(second)),
-            Event::EnteredKeepout { vehicle } => (9, v(vehicle), -1),
-            Event::Disabled { vehicle } => (10, v(vehicle), -1),
-            Event::Enabled { vehicle } => (11, v(vehicle), -1),
-            Event::AgentLost { vehicle } => (12, v(vehicle), -1),
-            Event::AgentBack { vehicle } => (13, v(vehicle), -1),
-            Event::Quarantined { vehicle } => (14, v(vehicle), -1),
-            Event::NavLost { vehicle } => (16, v(vehicle), -1),
-            Event::NavBack { vehicle } => (17, v(vehicle), -1),
+            Event::EnteredKeepout(vehicle) => (9, v(vehicle), -1),
+            Event::Disabled(vehicle) => (10, v(vehicle), -1),
+            Event::Enabled(vehicle) => (11, v(vehicle), -1),
+            Event::AgentLost(vehicle) => (12, v(vehicle), -1),
+            Event::AgentBack(vehicle) => (13, v(vehicle), -1),
+            Event::Quarantined(vehicle) => (14, v(vehicle), -1),
+            Event::NavLost(vehicle) => (16, v(vehicle), -1),
+            Event::NavBack(vehicle) => (17, v(vehicle), -1),
             Event::EStopped => (18, -1, -1),
             Event::Released => (19, -1, -1),
             Event::Halted => (20, -1, -1),
@@ -249,20 +228,20 @@ impl EventRecord {
             1 => Event::Captured { vehicle: vehicle?, flag: flag? },
             2 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Opponent(other?) },
             3 => Event::Tagged { vehicle: vehicle?, cause: TagCause::Boundary },
-            4 => Event::Untagged { vehicle: vehicle? },
+            4 => Event::Untagged(vehicle?),
             5 => Event::FlagReturned { vehicle: vehicle?, flag: flag? },
-            6 => Event::LeftField { vehicle: vehicle? },
-            7 => Event::ReturnedToField { vehicle: vehicle? },
+            6 => Event::LeftField(vehicle?),
+            7 => Event::ReturnedToField(vehicle?),
             8 => Event::Collided { first: vehicle?, second: other? },
-            9 => Event::EnteredKeepout { vehicle: vehicle? },
-            10 => Event::Disabled { vehicle: vehicle? },
-            11 => Event::Enabled { vehicle: vehicle? },
-            12 => Event::AgentLost { vehicle: vehicle? },
-            13 => Event::AgentBack { vehicle: vehicle? },
-            14 => Event::Quarantined { vehicle: vehicle? },
+            9 => Event::EnteredKeepout(vehicle?),
+            10 => Event::Disabled(vehicle?),
+            11 => Event::Enabled(vehicle?),
+            12 => Event::AgentLost(vehicle?),
+            13 => Event::AgentBack(vehicle?),
+            14 => Event::Quarantined(vehicle?),
             15 => Event::Ended { winner: u8::try_from(self.subject).ok().map(TeamId) },
-            16 => Event::NavLost { vehicle: vehicle? },
-            17 => Event::NavBack { vehicle: vehicle? },
+            16 => Event::NavLost(vehicle?),
+            17 => Event::NavBack(vehicle?),
             18 => Event::EStopped,
             19 => Event::Released,
             20 => Event::Halted,

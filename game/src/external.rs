@@ -42,19 +42,11 @@ pub struct ExternalOrder {
 impl Message for NavReport {
     const SCHEMA: &'static str = "squall_msgs/msg/NavReport";
     const VERSION: u8 = 1;
-    const DEFINITION: &'static str = include_str!("../msg/NavReport.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
 }
 
 impl Message for ExternalOrder {
     const SCHEMA: &'static str = "squall_msgs/msg/ExternalOrder";
     const VERSION: u8 = 2;
-    const DEFINITION: &'static str = include_str!("../msg/ExternalOrder.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
 }
 
 /// Bytes between a gateway and its boat.
@@ -73,10 +65,6 @@ pub struct LinkBytes {
 impl Message for LinkBytes {
     const SCHEMA: &'static str = "squall_msgs/msg/LinkBytes";
     const VERSION: u8 = 1;
-    const DEFINITION: &'static str = include_str!("../msg/LinkBytes.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
 }
 
 /// An operator's command to a gateway.

@@ -23,20 +23,11 @@ pub enum Input {
         given_at: SimTime,
     },
     /// A vehicle was made to hold.
-    Held {
-        /// Which.
-        vehicle: VehicleId,
-    },
+    Held(VehicleId),
     /// A vehicle's agent was lost.
-    AgentLost {
-        /// Whose.
-        vehicle: VehicleId,
-    },
+    AgentLost(VehicleId),
     /// A vehicle's agent is back.
-    AgentBack {
-        /// Which.
-        vehicle: VehicleId,
-    },
+    AgentBack(VehicleId),
     /// A gateway reported where its boat was.
     Reported {
         /// Which boat.
@@ -62,7 +53,7 @@ impl Input {
     pub fn is_of(self, scenario: &Scenario) -> bool {
         let has = |vehicle: VehicleId| vehicle.index() < scenario.vehicles.len();
         match self {
-            Input::Held { vehicle } | Input::AgentLost { vehicle } | Input::AgentBack { vehicle } => has(vehicle),
+            Input::Held(vehicle) | Input::AgentLost(vehicle) | Input::AgentBack(vehicle) => has(vehicle),
             Input::Ordered { vehicle, given_at: at, .. } | Input::Reported { vehicle, fix_at: at, .. } => {
                 has(vehicle) && (SimTime(-SimTime::NEVER.0)..=SimTime::NEVER).contains(&at)
             }
@@ -127,9 +118,9 @@ impl From<Input> for InputRecord {
                 InputRecord { at_ns: given_at, ..record }
             }
             Input::Pictured => record(3, None, &[]),
-            Input::Held { vehicle } => record(4, Some(vehicle), &[]),
-            Input::AgentLost { vehicle } => record(5, Some(vehicle), &[]),
-            Input::AgentBack { vehicle } => record(6, Some(vehicle), &[]),
+            Input::Held(vehicle) => record(4, Some(vehicle), &[]),
+            Input::AgentLost(vehicle) => record(5, Some(vehicle), &[]),
+            Input::AgentBack(vehicle) => record(6, Some(vehicle), &[]),
             Input::Reported { vehicle, nav, fix_at, valid } => {
                 let numbers = [nav.north_m, nav.east_m, nav.psi_rad, nav.surge_m_s, nav.sway_m_s, nav.yaw_rate_rad_s];
                 InputRecord { at_ns: fix_at, ..record(if valid { 7 } else { 8 }, Some(vehicle), &numbers) }
@@ -152,9 +143,9 @@ impl InputRecord {
             (1, &[heading_rad, speed_m_s]) => ordered(Order::Steer { heading_rad, speed_m_s })?,
             (2, &[port, starboard]) => ordered(Order::Thrust { port, starboard })?,
             (3, []) => Input::Pictured,
-            (4, []) => Input::Held { vehicle: vehicle? },
-            (5, []) => Input::AgentLost { vehicle: vehicle? },
-            (6, []) => Input::AgentBack { vehicle: vehicle? },
+            (4, []) => Input::Held(vehicle?),
+            (5, []) => Input::AgentLost(vehicle?),
+            (6, []) => Input::AgentBack(vehicle?),
             (kind @ 7..=8, &[north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s]) => Input::Reported {
                 vehicle: vehicle?,
                 nav: Nav { north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s },
@@ -173,10 +164,6 @@ impl Message for Inputs {
     const SCHEMA: &'static str = "squall_msgs/msg/Inputs";
     const VERSION: u8 = 2;
     const OLDEST: u8 = Inputs::WITHOUT_GIVEN_AT;
-    const DEFINITION: &'static str = include_str!("../msg/Inputs.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
 }
 
 #[cfg(test)]
@@ -192,9 +179,9 @@ mod tests {
             Input::Ordered { vehicle, order: Order::Hold, given_at: SimTime::ZERO },
             Input::Ordered { vehicle, order: Order::Steer { heading_rad: 0.5, speed_m_s: 2.0 }, given_at: SimTime(7) },
             Input::Ordered { vehicle, order: Order::Thrust { port: -1.0, starboard: 0.25 }, given_at: SimTime(7) },
-            Input::Held { vehicle },
-            Input::AgentLost { vehicle },
-            Input::AgentBack { vehicle },
+            Input::Held(vehicle),
+            Input::AgentLost(vehicle),
+            Input::AgentBack(vehicle),
             Input::Reported { vehicle, nav, fix_at: SimTime(7), valid: true },
             Input::Reported { vehicle, nav, fix_at: SimTime(-7), valid: false },
             Input::EStopped(true),

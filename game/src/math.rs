@@ -64,6 +64,13 @@ pub fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
+/// A number with so many places; −0.0 is a zero to everybody but a text comparison.
+#[must_use]
+pub fn decimal(number: f64, places: usize) -> String {
+    let text = format!("{number:.places$}");
+    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

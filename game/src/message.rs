@@ -144,19 +144,11 @@ impl Frame {
 impl Message for Frame {
     const SCHEMA: &'static str = "squall_msgs/msg/Frame";
     const VERSION: u8 = 3;
-    const DEFINITION: &'static str = include_str!("../msg/Frame.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
 }
 
 impl Message for Orders {
     const SCHEMA: &'static str = "squall_msgs/msg/Orders";
     const VERSION: u8 = 2;
-    const DEFINITION: &'static str = include_str!("../msg/Orders.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
 }
 
 /// What minds tell their team: the values of shared variables, as of one decision.
@@ -195,19 +187,11 @@ pub struct PolicyProposal {
 impl Message for Say {
     const SCHEMA: &'static str = "squall_msgs/msg/Say";
     const VERSION: u8 = 1;
-    const DEFINITION: &'static str = include_str!("../msg/Say.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
 }
 
 impl Message for PolicyProposal {
     const SCHEMA: &'static str = "squall_msgs/msg/PolicyProposal";
     const VERSION: u8 = 1;
-    const DEFINITION: &'static str = include_str!("../msg/PolicyProposal.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
 }
 
 /// What an agent or a gateway asks of the sim before anything else.
@@ -224,22 +208,14 @@ pub struct JoinRequest {
 }
 
 /// What a node that joins does for its vehicles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::Display)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Role {
     /// Decides for them.
     Agent,
     /// Connects real boats.
     Gateway,
-}
-
-impl std::fmt::Display for Role {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Role::Agent => "agent",
-            Role::Gateway => "gateway",
-        })
-    }
 }
 
 /// What the sim answers.

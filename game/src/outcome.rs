@@ -70,39 +70,23 @@ impl EventOutcome {
     /// The event with the scenario's names.
     #[must_use]
     pub fn new(scenario: &Scenario, logged: &Logged) -> EventOutcome {
-        let name = |vehicle: VehicleId| Some(scenario.vehicles[vehicle.index()].name.clone());
-        let team = |team: TeamId| Some(scenario.teams[team.index()].name.clone());
-        let (word, other, whose) = match logged.event {
-            Event::Grabbed { flag, .. } => ("grabbed", None, team(scenario.field.flags[flag.index()].team)),
-            Event::Captured { flag, .. } => ("captured", None, team(scenario.field.flags[flag.index()].team)),
-            Event::FlagReturned { flag, .. } => ("flag_returned", None, team(scenario.field.flags[flag.index()].team)),
-            Event::Tagged { cause: TagCause::Opponent(by), .. } => ("tagged", name(by), None),
-            Event::Tagged { cause: TagCause::Boundary, .. } => ("tagged_by_boundary", None, None),
-            Event::Untagged { .. } => ("untagged", None, None),
-            Event::LeftField { .. } => ("left_field", None, None),
-            Event::ReturnedToField { .. } => ("returned_to_field", None, None),
-            Event::Collided { second, .. } => ("collided", name(second), None),
-            Event::EnteredKeepout { .. } => ("entered_keepout", None, None),
-            Event::Disabled { .. } => ("disabled", None, None),
-            Event::Enabled { .. } => ("enabled", None, None),
-            Event::AgentLost { .. } => ("agent_lost", None, None),
-            Event::AgentBack { .. } => ("agent_back", None, None),
-            Event::Quarantined { .. } => ("quarantined", None, None),
-            Event::NavLost { .. } => ("nav_lost", None, None),
-            Event::NavBack { .. } => ("nav_back", None, None),
-            Event::EStopped => ("e_stopped", None, None),
-            Event::Released => ("released", None, None),
-            Event::Halted => ("halted", None, None),
-            Event::WentOn => ("went_on", None, None),
-            Event::Ended { winner } => ("ended", None, winner.and_then(team)),
+        let name = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].name.clone();
+        let team = |team: TeamId| scenario.teams[team.index()].name.clone();
+        let word = match logged.event {
+            Event::Tagged { cause: TagCause::Boundary, .. } => "tagged_by_boundary",
+            event => event.into(),
+        };
+        let whose = match logged.event {
+            Event::Ended { winner } => winner,
+            event => event.flag().map(|flag| scenario.field.flags[flag.index()].team),
         };
         EventOutcome {
             tick: logged.tick,
             at_s: logged.at.as_s(),
             event: word.to_owned(),
-            vehicle: logged.event.vehicle().and_then(name),
-            other,
-            team: whose,
+            vehicle: logged.event.vehicle().map(name),
+            other: logged.event.other().map(name),
+            team: whose.map(team),
         }
     }
 

@@ -5,6 +5,7 @@
 use crate::event::EventRecord;
 use crate::frame::{Body, Ned, Pose, ned_from_body};
 use crate::id::{FlagId, TeamId, VehicleId};
+use crate::math;
 use crate::stamp::{Message, Stamp};
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
@@ -58,6 +59,12 @@ impl Nav {
     #[must_use]
     pub fn pose(&self) -> Pose {
         Pose { at: self.at(), psi_rad: self.psi_rad }
+    }
+
+    /// Speed over the ground, m/s.
+    #[must_use]
+    pub fn speed_m_s(&self) -> f64 {
+        math::length(self.surge_m_s, self.sway_m_s)
     }
 
     /// Velocity over the ground, m/s.
@@ -142,10 +149,6 @@ pub struct FlagView {
 impl Message for Picture {
     const SCHEMA: &'static str = "squall_msgs/msg/Picture";
     const VERSION: u8 = 2;
-    const DEFINITION: &'static str = include_str!("../msg/Picture.msg");
-    fn stamp(&self) -> &Stamp {
-        &self.stamp
-    }
 }
 
 impl Picture {

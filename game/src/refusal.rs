@@ -6,7 +6,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::ops::{Add, AddAssign};
+use std::ops::Add;
 
 /// Why a message, or a part of it, was not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -117,14 +117,8 @@ impl Add for Refusals {
     type Output = Refusals;
 
     fn add(mut self, other: Refusals) -> Refusals {
-        self += other;
-        self
-    }
-}
-
-impl AddAssign for Refusals {
-    fn add_assign(&mut self, other: Refusals) {
         self.0.iter_mut().zip(other.0).for_each(|(own, more)| *own += more);
+        self
     }
 }
 

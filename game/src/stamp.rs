@@ -11,10 +11,6 @@ pub trait Message {
     const VERSION: u8;
     /// The oldest version that is still read: its layout is the same, but not what all of it means.
     const OLDEST: u8 = Self::VERSION;
-    /// The `.msg` definition.
-    const DEFINITION: &'static str;
-    /// When it holds, and which one it is.
-    fn stamp(&self) -> &Stamp;
 }
 
 /// How every message begins.

@@ -158,7 +158,8 @@ pub fn control(game: &GameName) -> String {
 }
 
 /// What a node is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, strum::Display, strum::EnumString)]
+#[strum(serialize_all = "snake_case")]
 pub enum Part {
     /// The world and the referee.
     Sim,
@@ -168,20 +169,10 @@ pub enum Part {
     Gateway,
 }
 
-impl Part {
-    fn word(self) -> &'static str {
-        match self {
-            Part::Sim => "sim",
-            Part::Agent => "agent",
-            Part::Gateway => "gateway",
-        }
-    }
-}
-
 /// A node that is there (liveliness token).
 #[must_use]
 pub fn alive(game: &GameName, part: Part, node: &str) -> String {
-    format!("squall/{}/alive/{}/{node}", game.0, part.word())
+    format!("squall/{}/alive/{part}/{node}", game.0)
 }
 
 /// All nodes of one kind in a game (liveliness).
@@ -204,12 +195,7 @@ pub fn parse_alive(key: &str) -> Option<(GameName, Part, String)> {
     if words.next()? != "alive" {
         return None;
     }
-    let part = match words.next()? {
-        "sim" => Part::Sim,
-        "agent" => Part::Agent,
-        "gateway" => Part::Gateway,
-        _ => return None,
-    };
+    let part = words.next()?.parse().ok()?;
     Some((game, part, words.next()?.to_owned()))
 }
 

@@ -151,22 +151,22 @@ impl<W: Write + Seek> Writer<W> {
     fn decision(&mut self, decision: &Decision, utc_ns: u64) -> Result<(), RecordError> {
         for picture in &decision.pictures {
             let topic = self.pictures.get(usize::from(picture.team)).cloned().unwrap_or_default();
-            self.put_message(&topic, picture, utc_ns)?;
+            self.put_message(&topic, picture, picture.stamp, utc_ns)?;
         }
         let stamp = Stamp { version: Inputs::VERSION, ..decision.frame.stamp };
         let inputs = decision.inputs.iter().map(|input| (*input).into()).collect();
-        self.put_message(INPUTS, &Inputs { stamp, inputs }, utc_ns)?;
-        self.put_message(FRAME, &*decision.frame, utc_ns)
+        self.put_message(INPUTS, &Inputs { stamp, inputs }, stamp, utc_ns)?;
+        self.put_message(FRAME, &*decision.frame, stamp, utc_ns)
     }
 
     fn put_message<M: Message + Serialize>(
         &mut self,
         topic: &str,
         message: &M,
+        stamp: Stamp,
         utc_ns: u64,
     ) -> Result<(), RecordError> {
-        let at = message.stamp().valid_ns;
-        self.put(topic, M::SCHEMA, at, utc_ns, &codec::encode(message))
+        self.put(topic, M::SCHEMA, stamp.valid_ns, utc_ns, &codec::encode(message))
     }
 
     fn put(&mut self, topic: &str, schema: &str, at: SimTime, utc_ns: u64, bytes: &[u8]) -> Result<(), RecordError> {

@@ -84,7 +84,7 @@ impl Track {
     pub(crate) fn event(&mut self, vehicle: VehicleId, now: SimTime) -> Option<Event> {
         let is_lost = self.is_lost(now);
         let was_lost = std::mem::replace(&mut self.reported_lost, is_lost);
-        (is_lost != was_lost).then_some(if is_lost { Event::NavLost { vehicle } } else { Event::NavBack { vehicle } })
+        (is_lost != was_lost).then_some(if is_lost { Event::NavLost(vehicle) } else { Event::NavBack(vehicle) })
     }
 
     /// Puts the boat's own fix in the place of the estimate that the world holds.
@@ -116,7 +116,7 @@ pub(crate) fn sound(nav: Nav) -> Result<Nav, BadReport> {
     let is_sound = nav.north_m.abs() <= ABSURD_M
         && nav.east_m.abs() <= ABSURD_M
         && nav.psi_rad.abs() <= 1e3
-        && math::length(nav.surge_m_s, nav.sway_m_s) <= ABSURD_M_S
+        && nav.speed_m_s() <= ABSURD_M_S
         && nav.yaw_rate_rad_s.abs() <= ABSURD_RAD_S;
     if is_sound { Ok(Nav { psi_rad: wrap_pi(nav.psi_rad), ..nav }) } else { Err(BadReport::BadNumber) }
 }
@@ -148,7 +148,7 @@ mod tests {
     fn a_boat_goes_on_for_a_second_and_is_lost_after_a_second_and_a_half() {
         let (mut track, vehicle) = (Track::default(), VehicleId(3));
         assert!(track.is_lost(SimTime::ZERO) && track.estimate(SimTime::ZERO).is_none());
-        assert_eq!(track.event(vehicle, SimTime::ZERO), Some(Event::NavLost { vehicle }));
+        assert_eq!(track.event(vehicle, SimTime::ZERO), Some(Event::NavLost(vehicle)));
         assert_eq!(track.event(vehicle, SimTime::ZERO), None);
         track.update(Nav { surge_m_s: 2.0, ..Nav::default() }, SimTime::from_s(10.0));
         for (now_s, want_m, want_m_s, is_lost) in
@@ -159,7 +159,7 @@ mod tests {
             assert!((pose.at.north - want_m).abs() < 1e-12, "{now_s}: {pose:?}");
             assert_eq!((nu.surge, track.is_lost(now)), (want_m_s, is_lost), "{now_s}");
         }
-        assert_eq!(track.event(vehicle, SimTime::from_s(11.0)), Some(Event::NavBack { vehicle }));
+        assert_eq!(track.event(vehicle, SimTime::from_s(11.0)), Some(Event::NavBack(vehicle)));
         assert!(!track.is_lost(SimTime::from_s(11.5)) && track.is_lost(SimTime(11_500_000_001)));
     }
 

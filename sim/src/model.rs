@@ -246,7 +246,6 @@ impl Model {
     /// What is true of a boat.
     pub(crate) fn truth(&self, vehicle: usize, boat: &BoatState, rotation: Rotation, sea: &SeaNow<'_>) -> Truth {
         let kind = self.kinds[vehicle];
-        let attitude = self.attitude(vehicle, boat, rotation, sea);
         let thrust_share = match &self.drives[kind] {
             Drive::Thrusters(thruster, ..) => {
                 0.5 * (boat.port.newton.abs() + boat.starboard.newton.abs()) / thruster.newton_max
@@ -257,11 +256,7 @@ impl Model {
             pose: boat.pose,
             nu: boat.nu,
             nu_dot: Planar::default().plus(1.0 / self.dt_s, boat.nu_change),
-            roll_rad: attitude.roll_rad,
-            pitch_rad: attitude.pitch_rad,
-            roll_rate_rad_s: attitude.roll_rad_s,
-            pitch_rate_rad_s: attitude.pitch_rad_s,
-            heave_acceleration_m_s2: -attitude.heave_up_m_s2,
+            attitude: self.attitude(vehicle, boat, rotation, sea),
             thrust_share,
         }
     }

@@ -252,30 +252,13 @@ fn with_sign(magnitude: f64x4, sign: f64x4) -> f64x4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::boat::Hull;
+    use std::path::Path;
 
+    /// The shipped Otter in salt water.
     fn model() -> HullModel {
-        let hull = Hull {
-            mass_kg: 80.0,
-            yaw_inertia_kg_m2: 16.0125,
-            x_g_m: 0.153_125,
-            added_surge_kg: 5.2815,
-            added_sway_kg: 82.5,
-            added_yaw_kg_m2: 24.0324,
-            added_sway_yaw_kg_m: 0.0,
-            surge_linear_kg_s: 77.5544,
-            surge_quadratic_kg_m: 0.0,
-            sway_linear_kg_s: 162.5,
-            sway_lift_kg_m: 0.0,
-            yaw_linear_kg_m2_s: 40.0449,
-            yaw_quadratic_kg_m2: 400.449,
-            yaw_lift_kg_m: 0.0,
-            crossflow_coefficient: 1.004_21,
-            crossflow_draught_m: 0.195_122,
-            crossflow_length_m: 2.1,
-            munk_factor: 1.0,
-        };
-        HullModel::new(&hull, 1025.0)
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/otter.toml");
+        let boat = game::scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
+        HullModel::new(&boat.hull, 1025.0)
     }
 
     fn adrift(nu_r: Planar) -> Forcing {

@@ -3,7 +3,7 @@
 use crate::sensor::imu::ImuReading;
 use crate::sighting::Sightings;
 use crate::world::World;
-use game::event::{Event, Logged, TagCause};
+use game::event::{Event, Logged};
 use game::message::{Frame, Message, SeaView, Stamp, VehicleTruth};
 use game::picture::{Contact, FlagView, Imu, Nav, OwnBoat, Picture, number_of_flag};
 use game::rules::Standing;
@@ -167,14 +167,7 @@ impl Scene<'_> {
 /// Whether an event is about one of the team's boats or its flag, or ends the game.
 fn concerns(scenario: &Scenario, team: TeamId, event: Event) -> bool {
     let ours = |vehicle: VehicleId| scenario.vehicles[vehicle.index()].team == team;
-    let second = match event {
-        Event::Tagged { cause: TagCause::Opponent(by), .. } => ours(by),
-        Event::Collided { second, .. } => ours(second),
-        Event::Grabbed { flag, .. } | Event::Captured { flag, .. } | Event::FlagReturned { flag, .. } => {
-            scenario.field.flags[flag.index()].team == team
-        }
-        Event::Ended { .. } => true,
-        _ => false,
-    };
-    second || event.vehicle().is_some_and(ours)
+    let is_own_flag = event.flag().is_some_and(|flag| scenario.field.flags[flag.index()].team == team);
+    let is_own_boat = [event.vehicle(), event.other()].into_iter().flatten().any(ours);
+    is_own_flag || is_own_boat || matches!(event, Event::Ended { .. })
 }

@@ -197,7 +197,7 @@ fn a_boat_whose_numbers_go_bad_is_taken_out_and_the_others_sail_on() {
     let of_victim = contest.events().iter().map(|logged| logged.event).filter(|event| event.vehicle() == Some(victim));
     let want = [
         Event::Grabbed { vehicle: victim, flag },
-        Event::Quarantined { vehicle: victim },
+        Event::Quarantined(victim),
         Event::FlagReturned { vehicle: victim, flag },
     ];
     assert_eq!(of_victim.collect::<Vec<_>>(), want);

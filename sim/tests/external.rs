@@ -61,7 +61,7 @@ fn a_real_boat_that_is_reported_at_the_flag_grabs_it() {
     sail(&mut contest, 50.0, 135.0, 3.0);
     assert!(events(&contest).contains(&Event::Grabbed { vehicle: REAL, flag: FlagId(1) }), "{:?}", events(&contest));
     assert_eq!(contest.frame(&mut EventCursor::default()).vehicles[0].carrying, 1);
-    assert!(!events(&contest).contains(&Event::NavLost { vehicle: REAL }));
+    assert!(!events(&contest).contains(&Event::NavLost(REAL)));
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn a_real_boat_pushes_a_simulated_one_out_of_its_way() {
 fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
     let mut contest = afloat(&game("", "link = { delay_s = 5 }"));
     advance(&mut contest, 3);
-    assert_eq!(events(&contest), [Event::NavLost { vehicle: REAL }], "it was never reported");
+    assert_eq!(events(&contest), [Event::NavLost(REAL)], "it was never reported");
     assert!(!contest.has_position(REAL) && contest.has_position(OTHER));
     let start_position = contest.world().state().boats[0].pose;
     let unknown = *contest.pictures()[0].own(REAL).expect("its own boat");
@@ -166,8 +166,8 @@ fn between_reports_a_real_boat_goes_on_as_it_did_and_then_it_is_lost() {
         contest.advance();
     }
     assert_eq!(contest.world().state().boats[0].nu, sim::hull::Planar::default(), "it lies where it was");
-    let lost = Event::NavLost { vehicle: REAL };
-    let back = Event::NavBack { vehicle: REAL };
+    let lost = Event::NavLost(REAL);
+    let back = Event::NavBack(REAL);
     assert_eq!(events(&contest), [lost, back, lost]);
     report(&mut contest, fix);
     contest.advance();
@@ -193,7 +193,7 @@ fn reports_that_cannot_be_relied_on_change_nothing_and_bad_ones_are_refused() {
     assert_eq!(contest.report(REAL, nav(50.0, 40.0, 0.0, 1.0), SimTime::NEVER, true), Ok(()));
     assert!(contest.world().state().boats[0].pose.at.distance(Ned::from_xy(50.0, 39.9)) < 1e-9);
     advance(&mut contest, 40);
-    let quarantined = Event::Quarantined { vehicle: REAL };
+    let quarantined = Event::Quarantined(REAL);
     assert!(!events(&contest).contains(&quarantined));
 }
 
@@ -212,7 +212,7 @@ fn a_real_boat_has_no_physics_and_no_sensors_of_ours() {
     assert_eq!((truth.nav.east_m, truth.nav.north_m), (22.0, 40.0), "nobody sets it back, and no wind drives it");
     let unknown = [truth.heave_m, truth.roll_rad, truth.pitch_rad, truth.port_newton, truth.starboard_newton];
     assert_eq!(unknown, [0.0; 5]);
-    assert!(events(&contest).contains(&Event::EnteredKeepout { vehicle: REAL }), "the referee has seen it");
+    assert!(events(&contest).contains(&Event::EnteredKeepout(REAL)), "the referee has seen it");
 }
 
 #[test]

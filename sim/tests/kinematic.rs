@@ -124,68 +124,20 @@ fn it_takes_thrust_and_rudder_from_outside_as_the_reference_does() {
     }
 }
 
-/// What Pyquaticus measures of a boat: each manoeuvre's numbers, and the place to which they are printed.
-struct Reference {
-    name: &'static str,
-    /// Time to 63.2, 90 and 99 % of the highest speed (NaN: never), s; speed reached, m/s; distance in 60 s, m.
-    accelerate: [(f64, f64); 5],
-    /// To half speed: time to 90 % of it, s; peak, m/s.
-    half: [(f64, f64); 2],
-    /// By 90° at full speed: time to 45°, to 88.2°, last time more than 2° off, s; lowest speed, m/s.
-    turn_90: [(f64, f64); 4],
-    /// By 180° at full speed: time to 90°, 135° and 175°, s; largest offset to the side, m.
-    turn_180: [(f64, f64); 4],
-    /// By 90° at half speed: time to 45° and 88.2°, s.
-    turn_90_half: [(f64, f64); 2],
-    /// From full and from half speed: time to 5 % of the speed it had, s; way to standstill, m.
-    stop: [(f64, f64); 4],
-    /// With the heading always 90° off: yaw rate, °/s; speed, m/s; radius, m.
-    held: [(f64, f64); 3],
-}
-
-const NEVER: (f64, f64) = (f64::NAN, 0.1);
-
-fn references() -> [Reference; 3] {
-    [
-        Reference {
-            name: "heron",
-            accelerate: [(4.6, 0.1), (12.2, 0.1), (25.7, 0.1), (2.0, 0.1), (110.2, 0.1)],
-            half: [(9.0, 0.1), (1.00, 0.01)],
-            turn_90: [(1.1, 0.1), (6.2, 0.1), (5.9, 0.1), (1.68, 0.01)],
-            turn_180: [(1.1, 0.1), (2.2, 0.1), (5.7, 0.1), (5.1, 0.1)],
-            turn_90_half: [(2.0, 0.1), (10.6, 0.1)],
-            stop: [(12.9, 0.1), (9.8, 0.1), (11.7, 0.1), (3.9, 0.1)],
-            held: [(97.2, 0.1), (0.62, 0.01), (0.37, 0.01)],
-        },
-        Reference {
-            name: "surveyor",
-            accelerate: [(25.3, 0.1), (36.0, 0.1), (39.6, 0.1), (3.0, 0.1), (120.1, 0.1)],
-            half: [(18.1, 0.1), (2.09, 0.01)],
-            turn_90: [(4.6, 0.1), (26.1, 0.1), (25.3, 0.1), (2.28, 0.01)],
-            turn_180: [(5.0, 0.1), (9.6, 0.1), (24.2, 0.1), (29.8, 0.1)],
-            turn_90_half: [(8.0, 0.1), (42.2, 0.1)],
-            stop: [(22.8, 0.1), (35.9, 0.1), (11.6, 0.1), (9.1, 0.1)],
-            held: [(20.0, 1.0), (0.45, 0.01), (1.29, 0.01)],
-        },
-        Reference {
-            name: "large_usv",
-            accelerate: [(30.4, 0.1), NEVER, NEVER, (10.5, 0.1), (410.0, 1.0)],
-            half: [(21.6, 0.1), (6.0, 0.1)],
-            turn_90: [(2.8, 0.1), (16.4, 0.1), (15.9, 0.1), (9.5, 0.1)],
-            turn_180: [(2.9, 0.1), (5.9, 0.1), (15.2, 0.1), (76.4, 0.1)],
-            turn_90_half: [(4.9, 0.1), (28.4, 0.1)],
-            stop: [(39.9, 0.1), (220.0, 1.0), (22.8, 0.1), (71.7, 0.1)],
-            held: [(22.1, 0.1), (7.7, 0.1), (20.0, 0.1)],
-        },
-    ]
-}
+const BOATS: [&str; 3] = ["heron", "surveyor", "large_usv"];
 
 /// Compares to the place to which the reference is printed: half of it either way.
-fn compare<const N: usize>(reference: &Reference, what: &str, got: [f64; N], want: [(f64, f64); N]) {
-    for (got, (want, place)) in got.into_iter().zip(want) {
+fn compare(name: &str, what: &str, got: &[f64]) {
+    let begin = format!("{name},{what},");
+    let line = include_str!("kinematic/manoeuvres.csv").lines().find_map(|line| line.strip_prefix(&begin));
+    let references: Vec<&str> = line.unwrap_or_else(|| panic!("no {begin}")).split(',').collect();
+    assert_eq!(references.len(), got.len(), "{begin}");
+    for (reference, got) in references.into_iter().zip(got) {
+        let want: f64 = reference.parse().unwrap_or_else(|e| panic!("{begin}{reference}: {e}"));
+        let half_place = [0.5, 0.05, 0.005][reference.split_once('.').map_or(0, |(_, places)| places.len())];
         // The binary neighbours of a decimal half are on either side of it.
-        let agrees = (got - want).abs() <= 0.5 * place + 1e-9 || got.is_nan() && want.is_nan();
-        assert!(agrees, "{}, {what}: {got}, reference {want}", reference.name);
+        let agrees = (got - want).abs() <= half_place + 1e-9 || got.is_nan() && want.is_nan();
+        assert!(agrees, "{name}, {what}: {got}, reference {reference}");
     }
 }
 
@@ -199,48 +151,41 @@ fn slowest(rows: &[Row]) -> f64 {
 
 #[test]
 fn its_accelerations_have_the_reference_numbers() {
-    for reference in references() {
-        let boat = shipped(reference.name);
+    for name in BOATS {
+        let boat = shipped(name);
         let top_m_s = boat.speed_max_m_s;
         let rows = Afloat::new(&boat).sail(60.0, |_| north(top_m_s));
         let [t63, t90, t99] =
             [0.632, 0.9, 0.99].map(|share| first(&rows, |row| row.state.speed_m_s >= share * top_m_s));
-        let got = [t63, t90, t99, rows[599].state.speed_m_s, rows[599].at.north];
-        compare(&reference, "to full speed", got, reference.accelerate);
+        compare(name, "to full speed", &[t63, t90, t99, rows[599].state.speed_m_s, rows[599].at.north]);
         let rows = Afloat::new(&boat).sail(60.0, |_| north(0.5 * top_m_s));
         let got = [first(&rows, |row| row.state.speed_m_s >= 0.45 * top_m_s), fastest(&rows)];
-        compare(&reference, "to half speed", got, reference.half);
+        compare(name, "to half speed", &got);
     }
 }
 
 #[test]
 fn its_turns_have_the_reference_numbers() {
-    for reference in references() {
-        let boat = shipped(reference.name);
+    for name in BOATS {
+        let boat = shipped(name);
         let (top_m_s, half_m_s) = (boat.speed_max_m_s, 0.5 * boat.speed_max_m_s);
         let past = |rows: &[Row], angle_deg: f64| first(rows, |row| row.state.heading_deg.abs() >= angle_deg);
         let rows = Afloat::under_way(&boat, top_m_s).sail(90.0, |_| steer(90.0, top_m_s));
         let off = rows.iter().rev().find(|row| (row.state.heading_deg - 90.0).abs() > 2.0);
         let settled_s = off.map_or(f64::NAN, |row| row.t_s);
-        let got = [past(&rows, 45.0), past(&rows, 88.2), settled_s, slowest(&rows)];
-        compare(&reference, "90 degrees", got, reference.turn_90);
+        compare(name, "by 90°", &[past(&rows, 45.0), past(&rows, 88.2), settled_s, slowest(&rows)]);
         let rows = Afloat::under_way(&boat, top_m_s).sail(90.0, |_| steer(180.0, top_m_s));
         let aside_m = rows.iter().fold(0.0, |most: f64, row| most.max(row.at.east.abs()));
-        compare(
-            &reference,
-            "180 degrees",
-            [past(&rows, 90.0), past(&rows, 135.0), past(&rows, 175.0), aside_m],
-            reference.turn_180,
-        );
+        compare(name, "by 180°", &[past(&rows, 90.0), past(&rows, 135.0), past(&rows, 175.0), aside_m]);
         let rows = Afloat::under_way(&boat, half_m_s).sail(90.0, |_| steer(90.0, half_m_s));
-        compare(&reference, "90 degrees, half", [past(&rows, 45.0), past(&rows, 88.2)], reference.turn_90_half);
+        compare(name, "by 90° at half speed", &[past(&rows, 45.0), past(&rows, 88.2)]);
     }
 }
 
 #[test]
 fn its_stops_have_the_reference_numbers() {
-    for reference in references() {
-        let boat = shipped(reference.name);
+    for name in BOATS {
+        let boat = shipped(name);
         let stop = |share: f64| {
             let mut afloat = Afloat::under_way(&boat, share * boat.speed_max_m_s);
             let speed_m_s = afloat.state.speed_m_s;
@@ -248,19 +193,18 @@ fn its_stops_have_the_reference_numbers() {
             (first(&rows, |row| row.state.speed_m_s <= 0.05 * speed_m_s), rows[1199].at.north)
         };
         let (full, half) = (stop(1.0), stop(0.5));
-        compare(&reference, "stops", [full.0, full.1, half.0, half.1], reference.stop);
+        compare(name, "stops", &[full.0, full.1, half.0, half.1]);
     }
 }
 
 #[test]
 fn its_tightest_turn_has_the_reference_numbers() {
-    for reference in references() {
-        let boat = shipped(reference.name);
+    for name in BOATS {
+        let boat = shipped(name);
         let top_m_s = boat.speed_max_m_s;
         let mut afloat = Afloat::under_way(&boat, top_m_s);
         afloat.sail(200.0, |state| steer(state.heading_deg + 90.0, top_m_s));
         let (rate_deg_s, speed_m_s) = (afloat.rate_deg_s, afloat.state.speed_m_s);
-        let got = [rate_deg_s, speed_m_s, speed_m_s / rate_deg_s.to_radians()];
-        compare(&reference, "held turn", got, reference.held);
+        compare(name, "held turn", &[rate_deg_s, speed_m_s, speed_m_s / rate_deg_s.to_radians()]);
     }
 }

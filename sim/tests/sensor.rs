@@ -10,6 +10,7 @@ use game::sea::GRAVITY_M_S2;
 use game::{Ned, Order, SimTime, VehicleId};
 use sim::World;
 use sim::hull::Planar;
+use sim::sea::Attitude;
 use sim::sensor::imu::ImuReading;
 use sim::sensor::{Reading, SensorModel, SensorState, Truth};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -105,7 +106,7 @@ fn perfect_sensors_tell_the_truth_bit_for_bit() {
         let truth = Truth {
             pose: Pose { at: Ned::from_xy(0.1 * x, 7.7 - x / 3.0), psi_rad: 0.0173 * x - 1.0 },
             nu: Planar { surge: 0.3 * x, sway: -0.011 * x, yaw: 0.7 - 0.013 * x },
-            roll_rad: 0.01 * x,
+            attitude: Attitude { roll_rad: 0.01 * x, ..Attitude::default() },
             ..Truth::default()
         };
         let now = TICK * i64::from(i);
@@ -372,12 +373,13 @@ fn at_rest_a_gyro_reads_its_bias_and_noise_and_an_accelerometer_the_water_s_push
 #[test]
 fn a_true_reading_follows_the_boat_s_motion() {
     let level = Truth { nu: Planar { surge: 2.0, sway: 1.0, yaw: 0.25 }, ..Truth::default() };
-    let rolled = Truth { roll_rad: FRAC_PI_2 / 3.0, ..Truth::default() };
-    let pitched = Truth { pitch_rad: FRAC_PI_2 / 3.0, ..Truth::default() };
+    let lying = |attitude: Attitude| Truth { attitude, ..Truth::default() };
+    let rolled = lying(Attitude { roll_rad: FRAC_PI_2 / 3.0, ..Attitude::default() });
+    let pitched = lying(Attitude { pitch_rad: FRAC_PI_2 / 3.0, ..Attitude::default() });
     let half = 0.5 * GRAVITY_M_S2;
     let most = 0.75_f64.sqrt() * GRAVITY_M_S2;
     let surging = Truth { nu_dot: Planar { surge: 0.4, sway: -0.2, yaw: 0.0 }, ..Truth::default() };
-    let heaving = Truth { heave_acceleration_m_s2: 1.0, ..Truth::default() };
+    let heaving = lying(Attitude { heave_up_m_s2: -1.0, ..Attitude::default() });
     for (what, truth, want) in [
         // A turn to starboard pushes to starboard with u r, and astern with v r where the boat slides to starboard.
         ("turn", level, [-0.25, 0.5, -GRAVITY_M_S2]),
@@ -392,8 +394,8 @@ fn a_true_reading_follows_the_boat_s_motion() {
             assert!((got[axis] - want[axis]).abs() < 1e-12, "{what}: {got:?}, not {want:?}");
         }
     }
-    let falling = Truth { heave_acceleration_m_s2: GRAVITY_M_S2, roll_rad: 0.4, pitch_rad: -0.3, ..Truth::default() };
-    assert!(ImuReading::of(&falling).accelerometer_m_s2.iter().all(|f| f.abs() < 1e-15), "free fall");
+    let falling = Attitude { heave_up_m_s2: -GRAVITY_M_S2, roll_rad: 0.4, pitch_rad: -0.3, ..Attitude::default() };
+    assert!(ImuReading::of(&lying(falling)).accelerometer_m_s2.iter().all(|f| f.abs() < 1e-15), "free fall");
 }
 
 #[test]
@@ -413,10 +415,13 @@ fn a_gyro_feels_the_turning_of_its_attitude() {
     let truth = Truth {
         pose: Pose { at: Ned::default(), psi_rad: 1.1 },
         nu: Planar { surge: 0.0, sway: 0.0, yaw: 0.3 },
-        roll_rad: 0.4,
-        pitch_rad: -0.25,
-        roll_rate_rad_s: 0.7,
-        pitch_rate_rad_s: -0.5,
+        attitude: Attitude {
+            roll_rad: 0.4,
+            pitch_rad: -0.25,
+            roll_rad_s: 0.7,
+            pitch_rad_s: -0.5,
+            ..Attitude::default()
+        },
         ..Truth::default()
     };
     const STEP_S: f64 = 1e-5;

@@ -167,8 +167,8 @@ fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Drawn<B> {
         .y_labels(10)
         .light_line_style(TRANSPARENT)
         .bold_line_style(RGBColor(232, 232, 232))
-        .x_label_formatter(&|x| arena::trial::decimal(*x, 0))
-        .y_label_formatter(&|y| arena::trial::decimal(*y, 0))
+        .x_label_formatter(&|x| game::math::decimal(*x, 0))
+        .y_label_formatter(&|y| game::math::decimal(*y, 0))
         .draw()
 }
 

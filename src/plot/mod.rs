@@ -335,7 +335,7 @@ fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
 fn label(number: f64, width: f64) -> String {
     // There are up to nine labels at steps of 1, 2 or 5.
     let places = (0..6).find(|places| width >= 5.0 * [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5][*places]).unwrap_or(6);
-    arena::trial::decimal(number, places)
+    ::game::math::decimal(number, places)
 }
 
 /// Gives the plotting library the letters that it measures texts by and draws into pictures.

@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_played_again_is_refused_with_the_reason() {
-        let nobody = Input::Held { vehicle: VehicleId(200) };
+        let nobody = Input::Held(VehicleId(200));
         assert_eq!(refused(&with(nobody)), "an input at 0.5 s is not understood");
         let gap = recorded(|decision| Some(decision).filter(|decision| ![5, 6].contains(&decision.frame.stamp.seq)));
         assert_eq!(refused(&gap), "decisions 5 to 6 are missing in this recording");

@@ -93,7 +93,7 @@ fn boats<'a>(scenario: &'a Scenario, frame: &'a Frame) -> impl Iterator<Item = S
     let boats = scenario.vehicles.iter().zip(&frame.vehicles).take(SHOWN);
     boats.map(|(vehicle, boat)| {
         let nav = &boat.nav;
-        let speed_m_s = game::math::length(nav.surge_m_s, nav.sway_m_s);
+        let speed_m_s = nav.speed_m_s();
         let colour = COLOURS[vehicle.team.index() % COLOURS.len()];
         format!(
             "{colour}{:<14}{PLAIN} x {:>7.1}  y {:>7.1}  {:>5.1}°  {:>4.2} m/s  {}",

@@ -1,19 +1,16 @@
 //! Attractor: draws the boat to a place, the more the nearer it is.
 
-use super::logic::BehaviourLogic;
 use super::nearest::nearness;
-use super::output::BehaviourOutput;
 use super::steering::toward;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use game::strategy::Attractor;
 
-pub(super) struct AttractorBehaviour(pub(super) Attractor);
-
-impl BehaviourLogic for AttractorBehaviour {
+impl BehaviourLogic for Attractor {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let Some(point) = situation.locate(&self.0.to) else { return };
+        let Some(point) = situation.locate(&self.to) else { return };
         let share =
-            nearness(situation.at.distance(point.at), self.0.inner_m.value(situation), self.0.outer_m.value(situation));
-        output.add_share(share, None, &toward(situation, point.at, self.0.speed_m_s.value(situation)));
+            nearness(situation.at.distance(point.at), self.inner_m.value(situation), self.outer_m.value(situation));
+        output.add_share(share, None, &toward(situation, point.at, self.speed_m_s.value(situation)));
     }
 }

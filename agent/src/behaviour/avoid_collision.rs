@@ -1,27 +1,23 @@
 //! Collision avoidance: keeps clear of other boats by the closest point of approach, with a function for each.
 
-use super::logic::BehaviourLogic;
 use super::nearest::{Nearest, is_meant, nearness};
-use super::output::BehaviourOutput;
 use super::steering::keep_clear;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::{MovingPoint, Situation};
 use game::strategy::{AvoidCollision, Grade};
 
-pub(super) struct AvoidCollisionBehaviour(pub(super) AvoidCollision);
-
-impl BehaviourLogic for AvoidCollisionBehaviour {
+impl BehaviourLogic for AvoidCollision {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let task = &self.0;
-        let (inner_m, outer_m) = (task.inner_m.value(situation), task.outer_m.value(situation));
-        let (min_m, max_m) = (task.cpa_min_m.value(situation), task.cpa_max_m.value(situation));
-        let horizon_s = task.time_on_leg_s.value(situation);
+        let (inner_m, outer_m) = (self.inner_m.value(situation), self.outer_m.value(situation));
+        let (min_m, max_m) = (self.cpa_min_m.value(situation), self.cpa_max_m.value(situation));
+        let horizon_s = self.time_on_leg_s.value(situation);
         let near = situation.others.iter().enumerate().map(|(i, other)| (situation.at.distance(other.at), i));
-        let meant = |i: usize| is_meant(task.contacts, situation, &situation.others[i]);
+        let meant = |i: usize| is_meant(self.contacts, situation, &situation.others[i]);
         for (distance_m, i) in Nearest::of(near.filter(|(distance_m, i)| *distance_m < outer_m && meant(*i))).iter() {
             let other = &situation.others[i];
             let disc = MovingPoint { at: other.at, velocity: other.velocity };
             let function = keep_clear(situation, disc, 0.0, (min_m, max_m), horizon_s);
-            let share = graded(task.grade, nearness(distance_m, inner_m, outer_m));
+            let share = graded(self.grade, nearness(distance_m, inner_m, outer_m));
             output.add_share(share, Some(other.vehicle), &function);
         }
     }

@@ -1,9 +1,8 @@
 //! Obstacle avoidance: keeps clear of what stands in the water.
 
-use super::logic::BehaviourLogic;
 use super::nearest::{Nearest, nearness};
-use super::output::BehaviourOutput;
 use super::steering::{CPA_MIN_UTILITY, keep_clear, lag};
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::Objective;
 use crate::situation::{MovingPoint, Situation};
 use game::Ned;

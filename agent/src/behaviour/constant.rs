@@ -1,7 +1,6 @@
 //! Constant heading and constant speed.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use game::angle::rad_from_compass_deg;
@@ -10,28 +9,24 @@ use game::strategy::{ConstantHeading, ConstantSpeed};
 /// How much less the edge of a peak is worth than its summit.
 const SUMMIT_DELTA: f64 = 25.0;
 
-pub(super) struct ConstantHeadingBehaviour(pub(super) ConstantHeading);
-
-impl BehaviourLogic for ConstantHeadingBehaviour {
+impl BehaviourLogic for ConstantHeading {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         output.add(&Objective::Course(Peak {
-            summit: rad_from_compass_deg(self.0.heading_deg.value(situation)),
-            peak_width: self.0.peak_width_deg.value(situation).to_radians(),
-            base_width: self.0.base_width_deg.value(situation).to_radians(),
+            summit: rad_from_compass_deg(self.heading_deg.value(situation)),
+            peak_width: self.peak_width_deg.value(situation).to_radians(),
+            base_width: self.base_width_deg.value(situation).to_radians(),
             summit_delta: SUMMIT_DELTA,
             height: 100.0,
         }));
     }
 }
 
-pub(super) struct ConstantSpeedBehaviour(pub(super) ConstantSpeed);
-
-impl BehaviourLogic for ConstantSpeedBehaviour {
+impl BehaviourLogic for ConstantSpeed {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         output.add(&Objective::Speed(Peak {
-            summit: self.0.speed_m_s.value(situation).min(situation.model.speed_max_m_s),
-            peak_width: self.0.peak_width_m_s.value(situation),
-            base_width: self.0.base_width_m_s.value(situation),
+            summit: self.speed_m_s.value(situation).min(situation.model.speed_max_m_s),
+            peak_width: self.peak_width_m_s.value(situation),
+            base_width: self.base_width_m_s.value(situation),
             summit_delta: SUMMIT_DELTA,
             height: 100.0,
         }));

@@ -1,27 +1,24 @@
 //! Cut range: closes in on a boat, by rate of closure now and closest point of approach later.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Approach, Closest, Closing, Objective};
 use crate::situation::Situation;
 use game::strategy::CutRange;
 
-pub(super) struct CutRangeBehaviour(pub(super) CutRange);
-
-impl BehaviourLogic for CutRangeBehaviour {
+impl BehaviourLogic for CutRange {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let Some(contact) = situation.boat(self.0.contact).copied() else { return };
+        let Some(contact) = situation.boat(self.contact).copied() else { return };
         let line = contact.at - situation.at;
-        let (distance_m, giveup_m) = (line.length(), self.0.giveup_m.value(situation));
+        let (distance_m, giveup_m) = (line.length(), self.giveup_m.value(situation));
         if giveup_m > 0.0 && distance_m > giveup_m {
             return;
         }
-        let patience = self.0.patience.value(situation) / 100.0;
+        let patience = self.patience.value(situation) / 100.0;
         let closing = Closing { offset: line, velocity: contact.velocity };
         let closest = Closest {
             offset: line,
             velocity: contact.velocity,
-            horizon_s: self.0.time_on_leg_s.value(situation),
+            horizon_s: self.time_on_leg_s.value(situation),
             min_m: 0.0,
             max_m: distance_m.max(1.0),
             touch_m: 0.0,

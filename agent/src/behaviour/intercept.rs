@@ -1,22 +1,19 @@
 //! Intercept: steers for the point where a boat can be met soonest (lead pursuit).
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
 use super::steering::toward;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::{MovingPoint, Situation};
 use game::Ned;
 use game::strategy::Intercept;
 
-pub(super) struct InterceptBehaviour(pub(super) Intercept);
-
-impl BehaviourLogic for InterceptBehaviour {
+impl BehaviourLogic for Intercept {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let Some(contact) = situation.boat(self.0.contact).copied() else { return };
-        let giveup_m = self.0.giveup_m.value(situation);
+        let Some(contact) = situation.boat(self.contact).copied() else { return };
+        let giveup_m = self.giveup_m.value(situation);
         if giveup_m > 0.0 && situation.at.distance(contact.at) > giveup_m {
             return;
         }
-        let speed_m_s = self.0.speed_m_s.value(situation).min(situation.model.speed_max_m_s);
+        let speed_m_s = self.speed_m_s.value(situation).min(situation.model.speed_max_m_s);
         let meeting =
             meeting_point(situation.at, speed_m_s, MovingPoint { at: contact.at, velocity: contact.velocity });
         output.add_share(1.0, Some(contact.vehicle), &toward(situation, meeting, speed_m_s));

@@ -1,7 +1,6 @@
 //! Memory turn limit: discourages turns away from the mean heading of the last while.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use game::strategy::MemoryTurnLimit;

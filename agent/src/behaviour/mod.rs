@@ -8,7 +8,6 @@ mod constant;
 mod cut_range;
 mod full_stop;
 mod intercept;
-mod logic;
 mod loiter;
 mod max_speed;
 mod memory_turn_limit;
@@ -23,10 +22,19 @@ mod timer;
 mod trail;
 mod waypoint;
 
-pub(crate) use logic::BehaviourLogic;
 pub(crate) use output::{BehaviourOutput, Functions};
 
+use crate::situation::Situation;
 use game::strategy::Task;
+
+/// What a behaviour does while it runs; when it runs is the helm's matter.
+pub(crate) trait BehaviourLogic: Send {
+    /// It begins to run: forgets what was.
+    fn begin(&mut self, _situation: &Situation) {}
+
+    /// Produces the objective functions of this decision.
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>);
+}
 
 /// The logic of a behaviour with this task.
 pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
@@ -34,20 +42,20 @@ pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
         Task::Waypoint(task) => Box::new(waypoint::WaypointBehaviour::new(task)),
         Task::Loiter(task) => Box::new(loiter::LoiterBehaviour::new(task)),
         Task::StationKeep(task) => Box::new(station_keep::StationKeepBehaviour::new(task)),
-        Task::CutRange(task) => Box::new(cut_range::CutRangeBehaviour(task)),
-        Task::Trail(task) => Box::new(trail::TrailBehaviour(task)),
-        Task::Intercept(task) => Box::new(intercept::InterceptBehaviour(task)),
-        Task::AvoidCollision(task) => Box::new(avoid_collision::AvoidCollisionBehaviour(task)),
+        Task::CutRange(task) => Box::new(task),
+        Task::Trail(task) => Box::new(task),
+        Task::Intercept(task) => Box::new(task),
+        Task::AvoidCollision(task) => Box::new(task),
         Task::AvoidObstacle(task) => Box::new(avoid_obstacle::AvoidObstacleBehaviour::new(task)),
         Task::OpRegion(task) => Box::new(op_region::OpRegionBehaviour::new(task)),
-        Task::MaxSpeed(task) => Box::new(max_speed::MaxSpeedBehaviour(task)),
-        Task::ConstantHeading(task) => Box::new(constant::ConstantHeadingBehaviour(task)),
-        Task::ConstantSpeed(task) => Box::new(constant::ConstantSpeedBehaviour(task)),
+        Task::MaxSpeed(task) => Box::new(task),
+        Task::ConstantHeading(task) => Box::new(task),
+        Task::ConstantSpeed(task) => Box::new(task),
         Task::MemoryTurnLimit(task) => Box::new(memory_turn_limit::MemoryTurnLimitBehaviour::new(task)),
-        Task::Timer(_) => Box::new(timer::TimerBehaviour),
-        Task::FullStop(_) => Box::new(full_stop::FullStopBehaviour),
-        Task::Shield(task) => Box::new(shield::ShieldBehaviour(task)),
-        Task::Attractor(task) => Box::new(attractor::AttractorBehaviour(task)),
-        Task::Policy(task) => Box::new(policy::PolicyBehaviour(task)),
+        Task::Timer(task) => Box::new(task),
+        Task::FullStop(task) => Box::new(task),
+        Task::Shield(task) => Box::new(task),
+        Task::Attractor(task) => Box::new(task),
+        Task::Policy(task) => Box::new(task),
     }
 }

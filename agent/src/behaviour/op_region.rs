@@ -1,8 +1,7 @@
 //! Operation region: keeps the boat on the field, and brings it back slowly if it got out.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
 use super::steering::{REACTION_S, TURN_RAD_S};
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use game::angle::wrap_pi;

@@ -1,7 +1,6 @@
 //! Policy: lets somebody outside of the helm propose course and speed, weighed with everything else.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
 use crate::situation::Situation;
 use game::strategy::Policy;
@@ -9,24 +8,22 @@ use game::strategy::Policy;
 /// From the peak of the proposed speed down to nothing, m/s.
 const SPEED_BASE_M_S: f64 = 1.0;
 
-pub(super) struct PolicyBehaviour(pub(super) Policy);
-
-impl BehaviourLogic for PolicyBehaviour {
+impl BehaviourLogic for Policy {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
         let Some(proposal) = situation.proposed else { return };
-        if (situation.now - proposal.at).as_s() > self.0.ttl_s.value(situation) {
+        if (situation.now - proposal.at).as_s() > self.ttl_s.value(situation) {
             return;
         }
         output.add(&Objective::Coupled {
             course: Peak {
                 summit: proposal.course_rad,
-                peak_width: self.0.peak_width_deg.value(situation).to_radians(),
-                base_width: self.0.base_width_deg.value(situation).to_radians(),
+                peak_width: self.peak_width_deg.value(situation).to_radians(),
+                base_width: self.base_width_deg.value(situation).to_radians(),
                 summit_delta: 10.0,
                 height: 100.0,
             },
             speed: Peak::tent(proposal.speed_m_s.clamp(0.0, situation.model.speed_max_m_s), SPEED_BASE_M_S),
-            course_share: self.0.course_share.value(situation),
+            course_share: self.course_share.value(situation),
         });
     }
 }

@@ -1,27 +1,24 @@
 //! Shield: keeps between what it guards and the nearest enemy.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
 use super::steering::steer;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use game::strategy::Shield;
 
 /// Extra speed for each metre off the station, 1/s.
 const CATCH_UP_PER_S: f64 = 0.5;
 
-pub(super) struct ShieldBehaviour(pub(super) Shield);
-
-impl BehaviourLogic for ShieldBehaviour {
+impl BehaviourLogic for Shield {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let Some(guarded) = situation.locate(&self.0.guarded) else { return };
-        let Some(enemy) = situation.boat(self.0.against).copied() else { return };
+        let Some(guarded) = situation.locate(&self.guarded) else { return };
+        let Some(enemy) = situation.boat(self.against).copied() else { return };
         let line = enemy.at - guarded.at;
         let range_m = line.length();
-        let ahead_m = self.0.distance_m.value(situation).min(0.5 * range_m);
+        let ahead_m = self.distance_m.value(situation).min(0.5 * range_m);
         let station = if range_m > 1e-6 { guarded.at + line.scaled(ahead_m / range_m) } else { guarded.at };
         let distance_m = situation.at.distance(station);
-        let (guarded_m_s, fastest_m_s) = (guarded.velocity.length(), self.0.speed_m_s.value(situation));
-        let (course_rad, speed_m_s) = if distance_m > self.0.radius_m.value(situation) {
+        let (guarded_m_s, fastest_m_s) = (guarded.velocity.length(), self.speed_m_s.value(situation));
+        let (course_rad, speed_m_s) = if distance_m > self.radius_m.value(situation) {
             (situation.at.bearing_rad(station), guarded_m_s + CATCH_UP_PER_S * distance_m)
         } else if guarded_m_s > 0.1 {
             // On station: as what it guards, bow to the enemy where that lies still.

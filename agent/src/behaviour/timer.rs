@@ -1,12 +1,10 @@
 //! Timer: runs for a while and wants nothing.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
+use game::strategy::Timer;
 
 /// Runs until its duration is over, which the helm sees to.
-pub(super) struct TimerBehaviour;
-
-impl BehaviourLogic for TimerBehaviour {
+impl BehaviourLogic for Timer {
     fn run(&mut self, _situation: &Situation, _output: &mut BehaviourOutput<'_>) {}
 }

@@ -1,8 +1,7 @@
 //! Trail: keeps a place relative to a boat that moves.
 
-use super::logic::BehaviourLogic;
-use super::output::BehaviourOutput;
 use super::steering::steer;
+use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use game::strategy::Trail;
 use game::{Ned, math};
@@ -10,18 +9,16 @@ use game::{Ned, math};
 /// Extra speed for each metre off the place, 1/s.
 const CATCH_UP_PER_S: f64 = 0.2;
 
-pub(super) struct TrailBehaviour(pub(super) Trail);
-
-impl BehaviourLogic for TrailBehaviour {
+impl BehaviourLogic for Trail {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let Some(contact) = situation.boat(self.0.contact).copied() else { return };
-        let direction_rad = contact.psi_rad + self.0.angle_deg.value(situation).to_radians();
+        let Some(contact) = situation.boat(self.contact).copied() else { return };
+        let direction_rad = contact.psi_rad + self.angle_deg.value(situation).to_radians();
         let (east, north) = math::sin_cos(direction_rad);
-        let place = contact.at + Ned { north, east }.scaled(self.0.range_m.value(situation));
+        let place = contact.at + Ned { north, east }.scaled(self.range_m.value(situation));
         let contact_m_s = contact.velocity.length();
         let distance_m = situation.at.distance(place);
-        let fastest_m_s = self.0.speed_m_s.value(situation);
-        let (course_rad, speed_m_s) = if distance_m <= self.0.radius_m.value(situation) {
+        let fastest_m_s = self.speed_m_s.value(situation);
+        let (course_rad, speed_m_s) = if distance_m <= self.radius_m.value(situation) {
             (contact.psi_rad, contact_m_s)
         } else {
             (situation.at.bearing_rad(place), contact_m_s + CATCH_UP_PER_S * distance_m)

@@ -242,20 +242,18 @@ fn is_due(rule: &Rule, situation: &Situation, picture: &Picture) -> bool {
 
 /// The boats that do or suffer this, if the event is it.
 fn happening(event: Event, what: What) -> [Option<VehicleId>; 2] {
-    use game::event::TagCause;
-    let one = match (what, event) {
-        (What::Collides, Event::Collided { first, second, .. }) => return [Some(first), Some(second)],
-        (What::Grabs, Event::Grabbed { vehicle, .. })
-        | (What::Captures, Event::Captured { vehicle, .. })
-        | (What::LosesFlag, Event::FlagReturned { vehicle, .. })
-        | (What::IsTagged, Event::Tagged { vehicle, .. })
-        | (What::IsUntagged, Event::Untagged { vehicle })
-        | (What::LeavesField, Event::LeftField { vehicle })
-        | (What::ReturnsToField, Event::ReturnedToField { vehicle })
-        | (What::Tags, Event::Tagged { cause: TagCause::Opponent(vehicle), .. }) => Some(vehicle),
-        _ => None,
-    };
-    [one, None]
+    match (what, event) {
+        (What::Collides, Event::Collided { .. }) => [event.vehicle(), event.other()],
+        (What::Tags, Event::Tagged { .. }) => [event.other(), None],
+        (What::Grabs, Event::Grabbed { .. })
+        | (What::Captures, Event::Captured { .. })
+        | (What::LosesFlag, Event::FlagReturned { .. })
+        | (What::IsTagged, Event::Tagged { .. })
+        | (What::IsUntagged, Event::Untagged(_))
+        | (What::LeavesField, Event::LeftField(_))
+        | (What::ReturnsToField, Event::ReturnedToField(_)) => [event.vehicle(), None],
+        _ => [None, None],
+    }
 }
 
 fn who(situation: &Situation, vehicle: VehicleId) -> Who {

@@ -24,13 +24,6 @@ pub struct Grid {
     speed_m_s: Vec<f32x8>,
 }
 
-impl Default for Grid {
-    /// Every degree, and 36 speeds up to 3.5 m/s.
-    fn default() -> Grid {
-        Grid::new(360, 36, 3.5)
-    }
-}
-
 impl Grid {
     /// A grid of so many courses and speeds, the fastest in m/s.
     ///

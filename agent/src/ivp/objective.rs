@@ -123,7 +123,7 @@ impl Objective<'_> {
     /// Utility of course alone.
     fn of_course(&self, grid: &Grid, k: usize) -> f32 {
         match self {
-            Objective::Course(peak) | Objective::Coupled { course: peak, .. } => peak.of_course(grid, k),
+            Objective::Course(peak) | Objective::Coupled { course: peak, .. } => peak.courses(grid)(k),
             _ => 0.0,
         }
     }

@@ -36,20 +36,14 @@ impl Peak {
         Peak { summit, base_width, height: 100.0, ..Peak::default() }
     }
 
-    /// Utility of course `k`; angles go round.
-    #[must_use]
-    pub fn of_course(&self, grid: &Grid, k: usize) -> f32 {
-        self.courses(grid)(k)
-    }
-
     /// Utility of speed `j`.
     #[must_use]
     pub fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
         self.at(grid.speed_m_s(j) - self.summit)
     }
 
-    /// Utility by course, with what is the same for all courses done once.
-    pub(super) fn courses(&self, grid: &Grid) -> impl Fn(usize) -> f32 {
+    /// Utility by course, with what is the same for all courses done once; angles go round.
+    pub fn courses(&self, grid: &Grid) -> impl Fn(usize) -> f32 {
         let (summit, tick_rad) = (grid.ticks_of(self.summit), grid.tick_rad());
         move |k| {
             let distance_rad = grid.ticks_between(summit, k) as f64 * tick_rad;

@@ -1,9 +1,9 @@
 //! The loop of an agent process: pictures come in, its minds decide, messages to mates and orders go out.
 
+use super::Settings;
 use super::error::NodeError;
 use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
-use super::settings::Settings;
 use super::talk::Talk;
 use crate::{MindRunner, mind_by, mind_of};
 use bus::{Bus, Declaration, Delivery, Latest, Patience, Publisher, SimState, SimWatch};
@@ -216,7 +216,7 @@ mod tests {
 
     /// A picture in which boat `seq` left the field.
     fn picture(seq: u64) -> Picture {
-        let event = Event::LeftField { vehicle: VehicleId(seq as u16) };
+        let event = Event::LeftField(VehicleId(seq as u16));
         let events = vec![EventRecord::from(Logged { tick: seq, at: SimTime::ZERO, event })];
         Picture { stamp: Stamp { seq, ..Stamp::default() }, events, ..Picture::default() }
     }

@@ -7,57 +7,7 @@ use game::helm::{HelmReport, RunState};
 use game::message::{EventRecord, Word};
 use game::{SimTime, VehicleId};
 
-const PROGRAM: &str = r#"
-[variables]
-laps = { initial = 0, shared = true }
-phase = { values = ["go", "rest"], shared = true }
-alarmed = false
-
-[[rule]]
-on = "mate is_tagged"
-set = { alarmed = true }
-
-[[rule]]
-when = "time_s >= 100"
-set = { alarmed = false, laps = "laps + 10" }
-
-[[mode]]
-name = "tagged"
-when = "tagged"
-
-[[mode]]
-name = "away"
-when = "!own_side"
-
-[[mode]]
-name = "alarm"
-in = "away"
-when = "alarmed"
-set = { phase = "rest" }
-
-[[mode]]
-name = "roam"
-in = "away"
-
-[[mode]]
-name = "home"
-
-[behaviour.drive]
-kind = "waypoint"
-in = ["away", "home"]
-when = "laps < 3"
-points = [[0, 0], [10, 0]]
-capture_radius_m = 2
-on_run = { phase = "go" }
-on_reach = { laps = "laps + 1" }
-perpetual = true
-
-[behaviour.rest]
-kind = "station_keep"
-in = ["home"]
-duration_s = 1
-weight = "mates(laps > 1 && phase == 'rest') * 100 + 1"
-"#;
+const PROGRAM: &str = include_str!("mode.toml");
 
 fn variable(report: &HelmReport, name: &str) -> String {
     report.variables.iter().find(|variable| variable.name == name).expect("such a variable").value.clone()

@@ -6,36 +6,13 @@ use game::picture::{Contact, FlagView, Nav, OwnBoat, Picture};
 use game::{Ned, Order, Scenario, SimTime, TeamId, VehicleId};
 use std::path::Path;
 
-/// The game of the tests: two against two on a field of 160 m by 80 m about the datum, blue in the west.
-const GAME: &str = r#"
-base = "SCENARIOS/games/pav01_vs_pav01.toml"
-field = "field.toml"
-[[team]]
-name = "blue"
-strategy = "strategy.toml"
-[[team]]
-name = "red"
-strategy = "strategy.toml"
-"#;
-
-const FIELD: &str = r#"
-datum = { lat_deg = 41.3, lon_deg = -74.0 }
-corner = [-80, -40]
-along_deg = 90
-width_m = 160
-depth_m = 80
-[[obstacle]]
-circle = { centre = [0, 30], radius_m = 2 }
-[[obstacle]]
-circle = { centre = [0, -30], radius_m = 2 }
-"#;
-
-/// The scenario in which all boats follow the program `strategy`.
+/// The scenario in which all boats follow the program `strategy`: two against two on the tests' field.
 pub(crate) fn scenario(strategy: &str) -> Scenario {
     let folder = tempfile::tempdir().expect("a folder for files");
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let text = |text: &str| text.replace("SCENARIOS", &scenarios.display().to_string());
-    for (name, content) in [("game.toml", GAME), ("field.toml", FIELD), ("strategy.toml", strategy)] {
+    let (game, field) = (include_str!("game.toml"), include_str!("field.toml"));
+    for (name, content) in [("game.toml", game), ("field.toml", field), ("strategy.toml", strategy)] {
         std::fs::write(folder.path().join(name), text(content)).expect("a file in it");
     }
     game::scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"))

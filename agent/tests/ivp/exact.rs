@@ -48,7 +48,7 @@ fn the_solver_finds_what_a_search_of_the_whole_grid_finds() {
 
 #[test]
 fn the_solver_finds_the_best_of_a_full_grid_among_contacts() {
-    let grid = Grid::default();
+    let grid = Grid::new(360, 36, 3.5);
     for seed in 0..60 {
         let mut stream = Stream::new(seed, "ivp/contacts");
         let summit = stream.between(0.0, 6.0);
@@ -106,7 +106,7 @@ fn a_problem_that_was_cleared_is_as_new() {
 
 #[test]
 fn without_functions_the_boat_goes_on_as_it_does() {
-    let grid = Grid::default();
+    let grid = Grid::new(360, 36, 3.5);
     let preference = Preference { course_rad: 1.0, speed_m_s: 1.23, keep: None };
     let got = Problem::new(grid.clone()).solve(preference);
     assert_eq!((got.decision, got.value), (decision(57, 12), 0.0));

@@ -207,9 +207,9 @@ fn input(record: &InputRecord, scenario: &Scenario) -> Cells {
         // It is the word of the order.
         Some(Input::Ordered { .. }) => cells.remove("order").unwrap_or_default(),
         Some(Input::Pictured) => "pictured".to_owned(),
-        Some(Input::Held { .. }) => "held".to_owned(),
-        Some(Input::AgentLost { .. }) => "agent_lost".to_owned(),
-        Some(Input::AgentBack { .. }) => "agent_back".to_owned(),
+        Some(Input::Held(_)) => "held".to_owned(),
+        Some(Input::AgentLost(_)) => "agent_lost".to_owned(),
+        Some(Input::AgentBack(_)) => "agent_back".to_owned(),
         Some(Input::Reported { valid, .. }) => if valid { "reported" } else { "reported_invalid" }.to_owned(),
         Some(Input::EStopped(on)) => if on { "e_stopped" } else { "released" }.to_owned(),
         Some(Input::Halted(on)) => if on { "halted" } else { "went_on" }.to_owned(),

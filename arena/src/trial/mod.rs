@@ -19,7 +19,7 @@ pub use manoeuvre::{Manoeuvre, Plan, Sailed, sail, turned_rad};
 pub use measure::{Measure, measures};
 pub use orders::{LONGEST_S, Orders};
 pub use replay::{ROW, Unsound, replay, ticks_per_row};
-pub use sample::{COLUMNS, Sample, decimal, write_csv};
+pub use sample::{COLUMNS, Sample, write_csv};
 pub use sheet::{Mistake, Sheet};
 pub use trial_boat::{Start, TrialBoat};
 pub use water::{open_field, set_mean_current, still_sea};

@@ -3,6 +3,7 @@
 use super::command::Command;
 use game::Ned;
 use game::angle::compass_deg_from_rad;
+use game::math::decimal;
 use sim::hull::Planar;
 
 /// The columns of a trial's file, in order.
@@ -74,11 +75,4 @@ pub fn write_csv(samples: &[Sample], with_orders: bool, out: impl std::io::Write
 /// A number with as many places as matter: a micrometre is far below anything that is known about a boat.
 fn text(number: f64, is_time: bool) -> String {
     decimal(number, if is_time { 3 } else { 9 })
-}
-
-/// A number with so many places; −0.0 is a zero to everybody but a text comparison.
-#[must_use]
-pub fn decimal(number: f64, places: usize) -> String {
-    let text = format!("{number:.places$}");
-    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
 }

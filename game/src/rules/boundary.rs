@@ -17,8 +17,8 @@ impl Referee {
             let vehicle = VehicleId::at(i);
             let outside = !self.field.contains(at(i));
             match (boat.outside, outside) {
-                (false, true) => events.push(Event::LeftField { vehicle }),
-                (true, false) => events.push(Event::ReturnedToField { vehicle }),
+                (false, true) => events.push(Event::LeftField(vehicle)),
+                (true, false) => events.push(Event::ReturnedToField(vehicle)),
                 _ => {}
             }
             boat.outside = outside;

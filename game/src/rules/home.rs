@@ -20,7 +20,7 @@ impl Referee {
             };
             if freed && boat.tagged && boat.in_play && boat.tagged_at != standing.now {
                 boat.tagged = false;
-                events.push(Event::Untagged { vehicle: VehicleId::at(i) });
+                events.push(Event::Untagged(VehicleId::at(i)));
             }
         }
     }

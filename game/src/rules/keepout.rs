@@ -30,7 +30,7 @@ impl Referee {
             let inside = self.own_flags_home(standing, self.team_of[i]).any(is_inside);
             let boat = &mut standing.vehicles[i];
             if inside && !boat.in_keepout && boat.in_play {
-                events.push(Event::EnteredKeepout { vehicle: VehicleId::at(i) });
+                events.push(Event::EnteredKeepout(VehicleId::at(i)));
             }
             boat.in_keepout = inside;
         }

@@ -46,8 +46,8 @@ impl Referee {
             let vehicle = VehicleId::at(i);
             let disabled = (*from..*until).contains(&standing.now);
             match (boat.disabled, disabled) {
-                (false, true) => events.push(Event::Disabled { vehicle }),
-                (true, false) => events.push(Event::Enabled { vehicle }),
+                (false, true) => events.push(Event::Disabled(vehicle)),
+                (true, false) => events.push(Event::Enabled(vehicle)),
                 _ => {}
             }
             boat.disabled = disabled;

@@ -40,16 +40,16 @@ impl Mirror {
                     *by = self.vehicle(*by);
                 }
             }
-            Event::Untagged { vehicle }
-            | Event::LeftField { vehicle }
-            | Event::ReturnedToField { vehicle }
-            | Event::EnteredKeepout { vehicle }
-            | Event::Disabled { vehicle }
-            | Event::Enabled { vehicle } => *vehicle = self.vehicle(*vehicle),
+            Event::Untagged(vehicle)
+            | Event::LeftField(vehicle)
+            | Event::ReturnedToField(vehicle)
+            | Event::EnteredKeepout(vehicle)
+            | Event::Disabled(vehicle)
+            | Event::Enabled(vehicle) => *vehicle = self.vehicle(*vehicle),
             Event::Collided { first, second } => (*first, *second) = self.pair(*first, *second),
             Event::Ended { winner } => *winner = winner.map(|team| TeamId(1 - team.0)),
-            Event::AgentLost { .. } | Event::AgentBack { .. } | Event::Quarantined { .. } => {}
-            Event::NavLost { .. } | Event::NavBack { .. } => {}
+            Event::AgentLost(_) | Event::AgentBack(_) | Event::Quarantined(_) => {}
+            Event::NavLost(_) | Event::NavBack(_) => {}
             Event::EStopped | Event::Released | Event::Halted | Event::WentOn => {}
         }
         event

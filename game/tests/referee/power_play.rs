@@ -7,7 +7,7 @@ use game::stream::Stream;
 use game::{Event, SimTime, VehicleId};
 
 fn disabled(vehicle: u16) -> Event {
-    Event::Disabled { vehicle: VehicleId(vehicle) }
+    Event::Disabled(VehicleId(vehicle))
 }
 
 /// The drawn windows in order of time, with the vehicle: from, until, vehicle.
@@ -61,6 +61,6 @@ fn a_boat_out_of_action_holds_and_neither_tags_nor_grabs_but_can_be_tagged() {
     assert_eq!(scene.put(2, 115.0, 5.0).put(0, 5.0, 5.0).look(), [freed(0)]);
     scene.now = SimTime::ZERO;
     assert_eq!(scene.put(0, 140.0, 40.0).wait(19.9).look(), []);
-    assert_eq!(scene.look(), [Event::Enabled { vehicle: VehicleId(0) }, grabbed(0, 1)]);
+    assert_eq!(scene.look(), [Event::Enabled(VehicleId(0)), grabbed(0, 1)]);
     assert_eq!(scene.directive(0), Directive::Free { speed_factor: 1.0 });
 }

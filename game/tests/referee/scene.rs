@@ -111,7 +111,7 @@ pub(crate) fn tagged(vehicle: u16, by: u16) -> Event {
 }
 
 pub(crate) fn freed(vehicle: u16) -> Event {
-    Event::Untagged { vehicle: VehicleId(vehicle) }
+    Event::Untagged(VehicleId(vehicle))
 }
 
 pub(crate) fn grabbed(vehicle: u16, flag: u8) -> Event {

@@ -163,7 +163,7 @@ fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: 
             assert_eq!(before.flags[flag.index()].carrier, Some(vehicle));
             assert!(after.vehicles[vehicle.index()].tagged);
         }
-        Event::Untagged { vehicle } => assert!(before.vehicles[vehicle.index()].tagged && field.contains(at(vehicle))),
+        Event::Untagged(vehicle) => assert!(before.vehicles[vehicle.index()].tagged && field.contains(at(vehicle))),
         _ => {}
     }
 }

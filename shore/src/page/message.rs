@@ -138,7 +138,7 @@ impl PageMessage<'_> {
             x: nav.east_m,
             y: nav.north_m,
             heading_deg: nav.psi_rad.to_degrees().rem_euclid(360.0),
-            speed_m_s: game::math::length(nav.surge_m_s, nav.sway_m_s),
+            speed_m_s: nav.speed_m_s(),
             fix_age_s: seconds(SimTime(at.0.saturating_sub(boat.fix_ns.0))),
             at_s: seconds(at),
         }

@@ -169,7 +169,7 @@ fn meet(file: &str) -> (Sim, Page, Client) {
 }
 
 fn tagged(tick: u64) -> Logged {
-    Logged { tick, at: SimTime(50_000_000 * tick as i64), event: Event::Untagged { vehicle: BLUE_ONE } }
+    Logged { tick, at: SimTime(50_000_000 * tick as i64), event: Event::Untagged(BLUE_ONE) }
 }
 
 #[test]

@@ -74,7 +74,7 @@ pub(crate) fn recorded(frames: u64) -> Arc<Recorded> {
     };
     let decision = |seq: u64| {
         let mut frame = frame(&scenario, seq);
-        let untagged = Event::Untagged { vehicle: VehicleId(0) };
+        let untagged = Event::Untagged(VehicleId(0));
         let logged = Logged { tick: 2 * seq, at: frame.stamp.valid_ns, event: untagged };
         frame.events.extend((seq == 10).then(|| EventRecord::from(logged)));
         let pictures = if seq == 0 { vec![picture(0), picture(1)] } else { vec![] };

@@ -204,9 +204,9 @@ impl Contest {
         match input {
             Input::Pictured => drop(self.pictures()),
             Input::Ordered { vehicle, order, given_at } => drop(self.order(vehicle, order, given_at)),
-            Input::Held { vehicle } => self.hold(vehicle),
-            Input::AgentLost { vehicle } => self.lose_agent(vehicle),
-            Input::AgentBack { vehicle } => self.regain_agent(vehicle),
+            Input::Held(vehicle) => self.hold(vehicle),
+            Input::AgentLost(vehicle) => self.lose_agent(vehicle),
+            Input::AgentBack(vehicle) => self.regain_agent(vehicle),
             Input::Reported { vehicle, nav, fix_at, valid } => drop(self.report(vehicle, nav, fix_at, valid)),
             Input::EStopped(stopped) => self.e_stop(stopped),
             Input::Halted(halted) => self.halt(halted),
@@ -292,18 +292,18 @@ impl Contest {
     /// already.
     pub fn lose_agent(&mut self, vehicle: VehicleId) {
         if !std::mem::replace(&mut self.state.agent_lost[vehicle.index()], true) {
-            self.note(Input::AgentLost { vehicle });
+            self.note(Input::AgentLost(vehicle));
             self.hold_now(vehicle.index());
-            self.log(Event::AgentLost { vehicle });
+            self.log(Event::AgentLost(vehicle));
         }
     }
 
     /// A vehicle's agent is there again: what was sent before does not arrive. Does nothing if it was not lost.
     pub fn regain_agent(&mut self, vehicle: VehicleId) {
         if std::mem::replace(&mut self.state.agent_lost[vehicle.index()], false) {
-            self.note(Input::AgentBack { vehicle });
+            self.note(Input::AgentBack(vehicle));
             self.recall_orders(vehicle.index());
-            self.log(Event::AgentBack { vehicle });
+            self.log(Event::AgentBack(vehicle));
         }
     }
 
@@ -352,7 +352,7 @@ impl Contest {
         let standing = &mut state.standing;
         events.clear();
         for vehicle in world.step(&commands) {
-            events.push(Event::Quarantined { vehicle: *vehicle });
+            events.push(Event::Quarantined(*vehicle));
             referee.retire(standing, *vehicle, events);
         }
         let (boats, now) = (&world.state().boats, world.state().now);

@@ -79,7 +79,7 @@ impl Contest {
     /// Makes a vehicle hold at once, whatever it was ordered: nothing of it goes over the air, and orders under way do not
     /// arrive any more.
     pub fn hold(&mut self, vehicle: VehicleId) {
-        self.note(Input::Held { vehicle });
+        self.note(Input::Held(vehicle));
         self.hold_now(vehicle.index());
     }
 

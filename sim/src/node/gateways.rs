@@ -1,29 +1,15 @@
 //! Reports of gateways: which are accepted, and from whom. No network and no clock in here.
 
 use super::membership::Membership;
+use game::SimTime;
 use game::external::NavReport;
-use game::picture::Nav;
 use game::refusal::{Refusal, Refusals};
-use game::{SimTime, VehicleId};
 
 /// A fix is never taken to be older than this, a day: longer than any game.
 const OLDEST: SimTime = SimTime(86_400_000_000_000);
 
-/// A report that may be taken in.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sighted {
-    /// Which boat.
-    pub vehicle: VehicleId,
-    /// Where it was.
-    pub nav: Nav,
-    /// When, in the time of the game.
-    pub fix_at: SimTime,
-    /// Whether that can be relied on.
-    pub valid: bool,
-}
-
-/// Takes a report that came at `now`, in the time of the game.
-pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refusals: &mut Refusals) -> Option<Sighted> {
+/// Takes a report that came at `now`, in the time of the game: when its fix was, if it may be taken in.
+pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refusals: &mut Refusals) -> Option<SimTime> {
     let (vehicle, seq) = (report.vehicle, report.stamp.seq);
     let mut own = gateways.vehicles_of(report.ticket).peekable();
     let refusal = if own.peek().is_none() {
@@ -38,8 +24,7 @@ pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refus
         drop(own);
         gateways.note_taken(vehicle, seq);
         gateways.welcome_back(report.ticket);
-        let fix_at = now - SimTime(report.age_ns).min(OLDEST);
-        return Some(Sighted { vehicle, nav: report.nav, fix_at, valid: report.valid });
+        return Some(now - SimTime(report.age_ns).min(OLDEST));
     };
     refusals.count(refusal);
     None
@@ -49,7 +34,9 @@ pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refus
 mod tests {
     use super::*;
     use crate::node::membership::tests::{membership, request};
+    use game::VehicleId;
     use game::message::{Message, Role, Stamp};
+    use game::picture::Nav;
 
     const NOW: SimTime = SimTime(100);
 
@@ -68,11 +55,9 @@ mod tests {
     #[test]
     fn a_report_of_an_own_boat_is_taken_with_the_time_of_its_fix() {
         let (mut gateways, mut refusals) = (gateways(&["red_one", "blue_one"]), Refusals::default());
-        let want = Sighted { vehicle: VehicleId(2), nav: Nav::default(), fix_at: SimTime(70), valid: true };
-        assert_eq!(accept(&mut gateways, &report(7, 0, 2), NOW, &mut refusals), Some(want));
+        assert_eq!(accept(&mut gateways, &report(7, 0, 2), NOW, &mut refusals), Some(SimTime(70)));
         let long_ago = NavReport { age_ns: i64::MAX, valid: false, ..report(7, 1, 2) };
-        let want = Sighted { fix_at: NOW - OLDEST, valid: false, ..want };
-        assert_eq!(accept(&mut gateways, &long_ago, NOW, &mut refusals), Some(want));
+        assert_eq!(accept(&mut gateways, &long_ago, NOW, &mut refusals), Some(NOW - OLDEST));
         assert_eq!(refusals.total(), 0);
     }
 

@@ -31,7 +31,7 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
             due = clock::now();
         }
         due += period;
-        lose_silent(server);
+        server.lose_silent();
         server.contest.advance();
         server.pacing.played();
         server.report_progress(tell)?;
@@ -44,10 +44,4 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
 fn period(server: &GameServer<'_>) -> Duration {
     let decision_s = server.contest.scenario().decision().as_s();
     Duration::from_secs_f64(decision_s / server.pacing.speed().unwrap_or(1.0))
-}
-
-/// Agents that are silent for longer than patience are lost.
-fn lose_silent(server: &mut GameServer<'_>) {
-    let patience_s = server.contest.scenario().patience_s;
-    server.lose_silent(Duration::from_secs_f64(patience_s));
 }

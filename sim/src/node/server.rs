@@ -287,8 +287,9 @@ impl<'w> GameServer<'w> {
         self.lose_agents(vehicles);
     }
 
-    /// Gives up on agents that have not been heard for this long.
-    pub(super) fn lose_silent(&mut self, patience: Duration) {
+    /// Gives up on agents that have not been heard for as long as the scenario's patience.
+    pub(super) fn lose_silent(&mut self) {
+        let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
             if clock::since(self.heard[i]) > patience {
                 let vehicles = self.agents.lose_holder_of(VehicleId::at(i));
@@ -411,8 +412,8 @@ impl<'w> GameServer<'w> {
             self.record_message(topic, Some(NavReport::SCHEMA), bytes.to_vec());
         }
         let now = self.moment();
-        let Some(sighted) = gateways::accept(&mut self.gateways, &report, now, &mut self.refusals) else { return };
-        let taken = self.contest.report(sighted.vehicle, sighted.nav, sighted.fix_at, sighted.valid);
+        let Some(fix_at) = gateways::accept(&mut self.gateways, &report, now, &mut self.refusals) else { return };
+        let taken = self.contest.report(report.vehicle, report.nav, fix_at, report.valid);
         self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
     }
 

@@ -48,14 +48,14 @@ impl ImuReading {
     /// What is true.
     #[must_use]
     pub fn of(truth: &Truth) -> ImuReading {
-        let (sin_roll, cos_roll) = math::sin_cos(truth.roll_rad);
-        let (sin_pitch, cos_pitch) = math::sin_cos(truth.pitch_rad);
-        let (nu, nu_dot) = (truth.nu, truth.nu_dot);
-        let (roll_rate, pitch_rate, yaw_rate) = (truth.roll_rate_rad_s, truth.pitch_rate_rad_s, nu.yaw);
+        let Truth { nu, nu_dot, attitude, .. } = *truth;
+        let (sin_roll, cos_roll) = math::sin_cos(attitude.roll_rad);
+        let (sin_pitch, cos_pitch) = math::sin_cos(attitude.pitch_rad);
+        let (roll_rate, pitch_rate, yaw_rate) = (attitude.roll_rad_s, attitude.pitch_rad_s, nu.yaw);
         // a − g along the heading, across it and down, as the boat turns.
         let ahead = nu_dot.surge - nu.sway * yaw_rate;
         let starboard = nu_dot.sway + nu.surge * yaw_rate;
-        let down = truth.heave_acceleration_m_s2 - GRAVITY_M_S2;
+        let down = -attitude.heave_up_m_s2 - GRAVITY_M_S2;
         let pitched = sin_pitch * ahead + cos_pitch * down;
         ImuReading {
             gyro_rad_s: [

@@ -10,6 +10,7 @@ pub mod gps;
 pub mod imu;
 
 use crate::hull::Planar;
+use crate::sea::Attitude;
 use compass::{CompassModel, CompassState};
 use game::boat::Sensors;
 use game::frame::{Ned, Pose, Rotation, body_from_ned};
@@ -29,16 +30,8 @@ pub struct Truth {
     pub nu: Planar,
     /// The rate at which `nu` changes, as numbers: the boat's turning is added by the accelerometers.
     pub nu_dot: Planar,
-    /// Roll, starboard side down, rad.
-    pub roll_rad: f64,
-    /// Pitch, bow up, rad.
-    pub pitch_rad: f64,
-    /// The rate at which roll changes, rad/s.
-    pub roll_rate_rad_s: f64,
-    /// The rate at which pitch changes, rad/s.
-    pub pitch_rate_rad_s: f64,
-    /// Acceleration down, m/s².
-    pub heave_acceleration_m_s2: f64,
+    /// How it lies in the waves.
+    pub attitude: Attitude,
     /// The thrusters' current as a share of that at full thrust of both.
     pub thrust_share: f64,
 }

@@ -31,29 +31,11 @@ pub(crate) fn written(toml: &str) -> Scenario {
 
 /// One boat of this kind a side, idle, on open salt water, blue at its half point.
 pub(crate) fn alone(boat: &str, sea: &str) -> Scenario {
-    written(&format!(
-        r#"
-field = "../fields/open_800x400.toml"
-rules = "../rules/aquaticus_2023.toml"
-sea = "../seas/{sea}.toml"
-boat = "../boats/{boat}.toml"
-[[team]]
-name = "blue"
-strategy = "../strategies/idle.toml"
-[[team]]
-name = "red"
-strategy = "../strategies/idle.toml"
-[[vehicle]]
-name = "blue_one"
-team = "blue"
-at = "CH"
-heading_deg = 0
-[[vehicle]]
-name = "red_one"
-team = "red"
-at = "CF"
-"#
-    ))
+    written(
+        &include_str!("alone.toml")
+            .replace("SEA.toml", &format!("{sea}.toml"))
+            .replace("BOAT.toml", &format!("{boat}.toml")),
+    )
 }
 
 /// As [`alone`], in still fresh water with these obstacles in it.
