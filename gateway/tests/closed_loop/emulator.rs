@@ -1,9 +1,11 @@
-//! The emulated boat alone, with the bytes of real back seats: as strict and as tolerant as the real one.
+//! The emulated boat alone: what it does not follow, and what it sends. The rest is in `scenarios/emulator.txt`.
 
-use crate::rig::{Rig, emulated, plan, with_checksum};
+use crate::rig::{Rig, emulated, plan};
+use crate::script::{play, played};
+use crate::tamper::with_checksum;
 use game::{Order, SimTime};
 use gateway::emulator::{self, Emulator, Extra, Port};
-use gateway::nmea::{Operator, Sentence};
+use gateway::nmea::Sentence;
 
 fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
     let mut plan = emulated(plan("surveyor.toml", false).field.plan.datum, 0.0);
@@ -11,44 +13,15 @@ fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
     Emulator::new(plan)
 }
 
-fn send(boat: &mut Emulator, body: &str) -> (char, Order) {
+fn send(boat: &mut Emulator, body: &str) {
     boat.take(SimTime::ZERO, Port::Secondary, with_checksum(body).as_bytes());
     // It has to know where it is to do anything.
     let own = game::picture::OwnBoat::new(game::VehicleId(0), game::picture::Nav::default());
     boat.observe(SimTime::ZERO, &own);
-    (boat.command().mode.letter(), boat.order(SimTime::ZERO))
 }
 
 fn thrust(port: f64, starboard: f64) -> Order {
     Order::Thrust { port, starboard }
-}
-
-#[test]
-fn commands_of_real_back_seats_are_followed() {
-    let mut boat = boat(|_| ());
-    for (body, mode, order) in [
-        ("PSEAC,L,0,0,0,", 'L', Order::Hold),
-        ("PSEAC,T,0,20,-10,", 'T', thrust(0.1, 0.3)),
-        ("PSEAC,T,90,40,14.16667,,", 'T', thrust(0.541_666_7, 0.258_333_3)),
-        ("PSEAC,T,,20,-10,THR_ON", 'T', thrust(0.1, 0.3)),
-        ("PSEAC,T,0,100,100,", 'T', thrust(1.0, 0.0)),
-        ("PSEAC,T,0,-300,0,", 'T', thrust(-1.0, -1.0)),
-        ("PSEAC,L,0,0,,,", 'L', Order::Hold),
-        ("PSEAC,G,90,1.943844,,,", 'G', Order::Steer { heading_rad: 90_f64.to_radians(), speed_m_s: 1.0 }),
-        ("PSEAC,C,270,40,,", 'C', Order::Steer { heading_rad: -90_f64.to_radians(), speed_m_s: 1.5 }),
-        ("PSEAC,R,,,,", 'R', Order::Hold),
-        ("PSEAC,D,0,0,0,", 'D', Order::Hold),
-    ] {
-        let (got_mode, got) = send(&mut boat, body);
-        assert_eq!(got_mode, mode, "{body}");
-        let numbers = |order: Order| match order {
-            Order::Hold => (0, 0.0, 0.0),
-            Order::Steer { heading_rad, speed_m_s } => (1, heading_rad, speed_m_s),
-            Order::Thrust { port, starboard } => (2, port, starboard),
-        };
-        let (got, want) = (numbers(got), numbers(order));
-        assert!(got.0 == want.0 && (got.1 - want.1).abs() < 1e-6 && (got.2 - want.2).abs() < 1e-6, "{body}: {got:?}");
-    }
 }
 
 #[test]
@@ -67,13 +40,6 @@ fn invalid_commands_change_nothing() {
 }
 
 #[test]
-fn with_whole_numbers_only_a_fraction_leaves_the_set_point_before() {
-    let mut boat = boat(|plan| plan.integers = true);
-    assert_eq!(send(&mut boat, "PSEAC,T,0,20,-10,").1, thrust(0.1, 0.3));
-    assert_eq!(send(&mut boat, "PSEAC,T,90,40,14.16667,,").1, thrust(0.3, 0.5));
-}
-
-#[test]
 fn without_a_watchdog_it_goes_on_for_ever_and_with_one_it_does_not() {
     for (watchdog_s, order) in [(None, thrust(0.2, 0.2)), (Some(2.0), Order::Hold)] {
         let mut boat = boat(|plan| plan.watchdog_s = watchdog_s);
@@ -84,23 +50,8 @@ fn without_a_watchdog_it_goes_on_for_ever_and_with_one_it_does_not() {
 }
 
 #[test]
-fn only_the_operator_in_control_is_followed() {
-    let mut boat = boat(|_| ());
-    send(&mut boat, "PSEAC,T,0,20,0,");
-    boat.take(SimTime::ZERO, Port::Primary, with_checksum("PSEAC,C,90,20,0,").as_bytes());
-    assert_eq!((boat.operator(), boat.command().mode.letter()), (Operator::Primary, 'C'));
-    assert_eq!(send(&mut boat, "PSEAC,T,0,50,0,").0, 'C', "the back seat is not in control");
-    assert_eq!(boat.counters(), (2, 1));
-    boat.take(SimTime::ZERO, Port::Primary, with_checksum("PSEAC,L,0,0,0,OP2_ON").as_bytes());
-    assert_eq!((boat.operator(), boat.command().mode.letter()), (Operator::Secondary, 'L'));
-    assert_eq!(send(&mut boat, "PSEAC,T,0,50,0,").0, 'T');
-}
-
-#[test]
 fn telemetry_is_what_the_strictest_known_reader_takes_even_in_standby() {
-    let mut rig = Rig::new("surveyor.toml", None);
-    rig.run(1.0);
-    assert_eq!(rig.mode(), 'L');
+    let rig = played("boat\nrun 1\nexpect mode = L");
     let mut burst = vec![];
     rig.emulator.telemetry(rig.now, &mut burst);
     let text = String::from_utf8(burst).expect("text");
@@ -124,17 +75,14 @@ fn telemetry_is_what_the_strictest_known_reader_takes_even_in_standby() {
 
 #[test]
 fn a_receiver_without_a_new_fix_reports_quality_0() {
-    let mut rig = Rig::new("surveyor.toml", None);
-    rig.run(1.0);
-    rig.frozen = true;
-    rig.run(0.5);
+    let mut rig = played("boat\nrun 1\nfixes frozen\nrun 0.5");
     let quality = |rig: &Rig| {
         let mut burst = vec![];
         rig.emulator.telemetry(rig.now, &mut burst);
         String::from_utf8(burst).expect("text").lines().next().expect("GGA").split(',').nth(6).map(str::to_owned)
     };
     assert_eq!(quality(&rig).as_deref(), Some("2"));
-    rig.run(1.0);
+    play(&mut rig, "run 1");
     assert_eq!(quality(&rig).as_deref(), Some("0"));
 }
 

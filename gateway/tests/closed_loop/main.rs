@@ -1,10 +1,12 @@
 //! The gateway and the emulated boat in a closed loop in memory: the test controls time and injects faults.
+//!
+//! Most of it is text: `scenarios/README.md`.
 
 mod emulator;
-mod faults;
-mod link_faults;
-mod missions;
-mod nominal;
 mod oracle;
+mod random;
+mod rate;
 mod recording;
 mod rig;
+mod script;
+mod tamper;

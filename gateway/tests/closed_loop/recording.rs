@@ -1,7 +1,6 @@
 //! What is recorded plays again just so, whole or cut.
 
-use crate::rig::{Rig, steer};
-use game::external::OperatorCommand;
+use crate::script::played;
 use game::{SimTime, VehicleId};
 use gateway::bridge::Event;
 use gateway::record::{StepEncoder, opening};
@@ -9,23 +8,13 @@ use gateway::replay::{Replay, replay};
 use recording::{Bag, Facts, Kind, Opening, RecordingError, Writer};
 use std::io::Cursor;
 
-/// A recording of a trip with orders of odd numbers, a trip, a mission and a cut of the link.
+/// A drive by orders of odd numbers, a failsafe, a cut of the link, and armed again.
+const DRIVE: &str = "boat\norder steer 33.333333333333336 1.1\nrun 1\noperator arm\nrun 5\norder none\nrun 3
+order steer 200 0.7\nrun 1\nlink down\nrun 1\nlink up\nrun 2\noperator arm\nrun 2";
+
+/// A recording of a drive.
 fn recording(end_well: bool) -> (Vec<u8>, usize, usize) {
-    let mut rig = Rig::new("surveyor.toml", None);
-    rig.order = Some(steer(100.0 / 3.0, 1.1));
-    rig.run(1.0);
-    rig.operate(OperatorCommand::Arm);
-    rig.run(5.0);
-    rig.order = None;
-    rig.run(3.0);
-    rig.order = Some(steer(200.0, 0.7));
-    rig.run(1.0);
-    rig.link(false);
-    rig.run(1.0);
-    rig.link(true);
-    rig.run(2.0);
-    rig.operate(OperatorCommand::Arm);
-    rig.run(2.0);
+    let rig = played(DRIVE);
     let opening = opening(&crate::rig::plan("surveyor.toml", false), 1_700_000_000_000_000_000, "c0ffee");
     let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("memory");
     let mut encoder = StepEncoder::new("blue_one", VehicleId(0));

@@ -1,13 +1,14 @@
 //! The test rig: a boat with simple dynamics, its emulated front seat, the gateway, and a link with injectable faults.
 
 use crate::oracle::Oracle;
+use crate::tamper::{Tamper, with_checksum};
 use game::external::OperatorCommand;
 use game::frame::{LatLon, Ned, Rotation};
 use game::picture::{Imu, Nav, OwnBoat};
 use game::{Order, SimTime, VehicleId};
 use gateway::bridge::{Bridge, Event, FleetCommand, Input, NavOut, Output, Plan};
 use gateway::emulator::{self, Emulator, Port};
-use gateway::nmea::{Date, Operator, Sentence, TimeOfDay};
+use gateway::nmea::{Date, TimeOfDay};
 use std::path::Path;
 
 const STEP_S: f64 = 0.01;
@@ -22,14 +23,13 @@ pub(crate) struct Boat {
     pub(crate) turn_rad_s: f64,
 }
 
-/// What the link does to bytes from the boat.
-pub(crate) type Tamper = Box<dyn FnMut(SimTime, Vec<u8>) -> Vec<Vec<u8>>>;
-
 pub(crate) struct Rig {
     pub(crate) now: SimTime,
     steps: u64,
     pub(crate) boat: Boat,
     pub(crate) emulator: Emulator,
+    /// What its thrusters are ordered.
+    pub(crate) boat_order: Order,
     pub(crate) bridge: Bridge,
     pub(crate) oracle: Oracle,
     /// Whether bytes go through: to the boat, and from it.
@@ -41,12 +41,22 @@ pub(crate) struct Rig {
     pub(crate) hangs: bool,
     given: SimTime,
     pub(crate) others: Option<Vec<Ned>>,
+    /// A receiver that measures nothing new.
     pub(crate) frozen: bool,
+    /// The place that the receiver reports as new again and again.
+    pub(crate) pinned: Option<Ned>,
     pub(crate) offset: Ned,
     pub(crate) events: Vec<(SimTime, Event)>,
     pub(crate) navs: Vec<(SimTime, NavOut)>,
     pub(crate) sent: Vec<(SimTime, Vec<u8>)>,
+    /// Why the last command was refused, if it was.
     pub(crate) refused: Option<String>,
+    /// The last log message of the emulated boat.
+    pub(crate) remark: String,
+    /// How long the last wait took, s.
+    pub(crate) after_s: f64,
+    /// Where the boat was and what had been counted at the last mark.
+    pub(crate) marked: (Ned, Vec<(String, u64)>),
     /// All inputs of the gateway, and its outputs.
     pub(crate) turns: Vec<(SimTime, Input, Output)>,
 }
@@ -78,46 +88,17 @@ pub(crate) fn emulated(datum: LatLon, declination_rad: f64) -> emulator::Plan {
     }
 }
 
-/// The sentence of a body.
-pub(crate) fn with_checksum(body: &str) -> String {
-    format!("${body}*{:02X}\r\n", body.bytes().fold(0, |a, b| a ^ b))
-}
-
-/// A link that changes sentences from the boat, with right checksums.
-pub(crate) fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Option<Tamper> {
-    let mut line = move |line: &str| {
-        let body = change(line);
-        with_checksum(body.trim_start_matches('$').split('*').next().unwrap_or_default())
-    };
-    Some(Box::new(move |_, bytes| {
-        let text = String::from_utf8_lossy(&bytes).into_owned();
-        vec![text.lines().map(&mut line).collect::<String>().into_bytes()]
-    }))
-}
-
-/// The same for fixes alone.
-pub(crate) fn refixed(change: fn(&str) -> String) -> Option<Tamper> {
-    rewritten(move |line| if line.starts_with("$GPGGA") { change(line) } else { line.to_owned() })
-}
-
-pub(crate) fn steer(heading_deg: f64, speed_m_s: f64) -> Order {
-    Order::Steer { heading_rad: heading_deg.to_radians(), speed_m_s }
-}
-
 impl Rig {
-    pub(crate) fn new(file: &str, watchdog_s: Option<f64>) -> Rig {
-        Rig::of(plan(file, false), watchdog_s)
-    }
-
-    pub(crate) fn of(plan: Plan, watchdog_s: Option<f64>) -> Rig {
-        let emulator = emulator::Plan { watchdog_s, ..emulated(plan.field.plan.datum, plan.declination_rad) };
+    pub(crate) fn of(plan: Plan, watchdog_s: Option<f64>, integers: bool) -> Rig {
+        let emulator = emulator::Plan { watchdog_s, integers, ..emulated(plan.field.plan.datum, plan.declination_rad) };
         let mut rig = Rig {
             now: SimTime::ZERO,
             steps: 0,
             boat: Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() },
             emulator: Emulator::new(emulator),
+            boat_order: Order::Hold,
+            oracle: Oracle { armed: plan.arms_itself, ..Oracle::new() },
             bridge: Bridge::new(plan),
-            oracle: Oracle::new(),
             open: (true, true),
             tamper: None,
             order: None,
@@ -125,31 +106,19 @@ impl Rig {
             given: SimTime::ZERO,
             others: None,
             frozen: false,
+            pinned: None,
             offset: Ned::default(),
             events: vec![],
             navs: vec![],
             sent: vec![],
             refused: None,
+            remark: String::new(),
+            after_s: 0.0,
+            marked: (Ned::default(), vec![]),
             turns: vec![],
         };
         rig.link(true);
         rig
-    }
-
-    /// A rig in which the boat sails east at 1.5 m/s, ten seconds on.
-    pub(crate) fn under_way(file: &str, watchdog_s: Option<f64>) -> Rig {
-        let mut rig = Rig::new(file, watchdog_s);
-        rig.order = Some(steer(90.0, 1.5));
-        rig.run(1.0);
-        rig.operate(OperatorCommand::Arm);
-        assert_eq!((rig.state().as_str(), rig.refused.take()), ("armed", None));
-        rig.run(9.0);
-        assert!(rig.boat.speed_m_s > 1.2, "{:?}", rig.boat);
-        rig
-    }
-
-    pub(crate) fn state(&self) -> String {
-        self.bridge.state().to_string()
     }
 
     pub(crate) fn put(&mut self, input: &Input) {
@@ -158,11 +127,14 @@ impl Rig {
             Input::Order(order, given) if order.check().is_ok() && *given > self.given => {
                 (self.oracle.ordered, self.given) = (self.now, *given);
             }
-            Input::Fleet(command) => self.oracle.stopped = *command == FleetCommand::EStop,
-            Input::Operator(OperatorCommand::EStop) => self.oracle.stopped = true,
-            Input::Operator(OperatorCommand::Release) => self.oracle.stopped = false,
+            Input::Fleet(command) => self.oracle.stops[1] = *command == FleetCommand::EStop,
+            Input::Operator(OperatorCommand::EStop) => self.oracle.stops[0] = true,
+            Input::Operator(OperatorCommand::Release) => self.oracle.stops[0] = false,
             Input::Operator(OperatorCommand::Arm) => self.oracle.armed = true,
             _ => {}
+        }
+        if matches!(input, Input::Operator(_) | Input::Fleet(_)) {
+            self.refused = None;
         }
         self.bridge.take(self.now, input, &mut out);
         self.turns.push((self.now, input.clone(), out.clone()));
@@ -188,15 +160,13 @@ impl Rig {
         }
     }
 
-    pub(crate) fn operate(&mut self, command: OperatorCommand) {
-        self.put(&Input::Operator(command));
-    }
-
     pub(crate) fn link(&mut self, up: bool) {
+        if self.oracle.link_up == up {
+            return;
+        }
         self.oracle.link_up = up;
         if up {
-            (self.oracle.fixed, self.oracle.headed, self.oracle.granted) =
-                (SimTime::LONG_AGO, SimTime::LONG_AGO, SimTime::LONG_AGO);
+            self.oracle.forget();
         }
         self.put(if up { &Input::LinkUp } else { &Input::LinkDown });
     }
@@ -215,7 +185,7 @@ impl Rig {
             assert!(
                 passed_s < limit_s,
                 "not so after {limit_s} s: {}, {:?}, {:?}",
-                self.state(),
+                self.bridge.state(),
                 self.boat,
                 self.events
             );
@@ -239,11 +209,13 @@ impl Rig {
             }
         }
         self.put(&Input::Tick);
+        self.remark = self.emulator.take_remark().unwrap_or_else(|| std::mem::take(&mut self.remark));
     }
 
     /// Thrust and speed with a lag of two seconds, difference and turn with one of half a second.
     fn move_boat(&mut self) {
-        let (speed_m_s, turn_rad_s) = match self.emulator.order(self.now) {
+        self.boat_order = self.emulator.order(self.now);
+        let (speed_m_s, turn_rad_s) = match self.boat_order {
             Order::Hold => (0.0, 0.0),
             Order::Thrust { port, starboard } => (1.6 * (port + starboard), 1.5 * (port - starboard)),
             Order::Steer { heading_rad, speed_m_s } => {
@@ -260,7 +232,7 @@ impl Rig {
 
     /// The boat's sensors measure, and it sends telemetry.
     fn send_telemetry(&mut self) {
-        let place = self.boat.at + self.offset;
+        let place = self.pinned.unwrap_or(self.boat.at + self.offset);
         let nav = Nav {
             north_m: place.north,
             east_m: place.east,
@@ -277,50 +249,42 @@ impl Rig {
         let mut bytes = vec![];
         self.emulator.telemetry(self.now, &mut bytes);
         let pieces = match &mut self.tamper {
-            Some(tamper) => tamper(self.now, bytes),
+            Some(tamper) => tamper(bytes),
             None => vec![bytes],
         };
         if self.open.1 && self.oracle.link_up {
             for piece in pieces {
-                self.note(&piece);
+                self.oracle.note(self.now, &piece);
                 self.put(&Input::Bytes(piece));
             }
         }
     }
 
-    /// What the oracle sees in bytes from the boat: whole sentences within one piece, by their text.
-    fn note(&mut self, piece: &[u8]) {
-        let text = String::from_utf8_lossy(piece);
-        for line in text.split("\r\n").filter_map(|line| line.split('$').next_back()) {
-            let Some((body, sum)) = line.split_once('*') else { continue };
-            let xor = body.bytes().fold(0, |a, b| a ^ b);
-            if u8::from_str_radix(sum, 16) != Ok(xor) {
-                continue;
-            }
-            match Sentence::parse(body) {
-                Ok(Sentence::Gga(gga)) if gga.quality > 0 && gga.at.is_some() => self.oracle.fixed = self.now,
-                Ok(Sentence::Attitude(attitude)) if attitude.heading_deg.is_some() => self.oracle.headed = self.now,
-                Ok(Sentence::ControlState(state)) => {
-                    self.oracle.other_operator = state.operator != Some(Operator::Secondary);
-                    if !self.oracle.other_operator {
-                        self.oracle.granted = self.now;
-                    }
-                }
-                _ => {}
-            }
+    /// Telemetry that was held up, all of it in one packet.
+    pub(crate) fn deliver_late(&mut self, bytes: usize) {
+        let mut late = Vec::new();
+        while late.len() < bytes {
+            self.emulator.telemetry(self.now, &mut late);
         }
+        self.put(&Input::Bytes(late));
     }
 
-    /// The letter of the mode that the boat is in.
-    pub(crate) fn mode(&self) -> char {
-        self.emulator.command().mode.letter()
+    /// A back seat or an operator sends this body.
+    pub(crate) fn send(&mut self, port: Port, body: &str) {
+        self.emulator.take(self.now, port, with_checksum(body).as_bytes());
+        self.boat_order = self.emulator.order(self.now);
     }
 
-    pub(crate) fn is_at_rest(&self) -> bool {
-        self.boat.speed_m_s.abs() < 0.05
+    /// What the gateway counted, and the commands that the boat followed and ignored.
+    pub(crate) fn counts(&self) -> Vec<(String, u64)> {
+        let (followed, ignored) = self.emulator.counters();
+        let boat = [("followed".to_owned(), followed), ("ignored".to_owned(), ignored)];
+        self.bridge.status(self.now).counts.into_iter().chain(boat).collect()
     }
 
-    pub(crate) fn has_event(&self, words: &str) -> bool {
-        self.events.iter().any(|(_, event)| format!("{event:?}").contains(words))
+    /// From here on places, sentences, reports and events are counted anew.
+    pub(crate) fn mark(&mut self) {
+        self.marked = (self.boat.at, self.counts());
+        (self.sent, self.navs, self.events) = (vec![], vec![], vec![]);
     }
 }

@@ -1,0 +1,41 @@
+//! Random scenarios, in which anything may happen in any order: the oracle looks at every sentence.
+
+use crate::script::{play, played};
+use proptest::prelude::*;
+use proptest::sample::select;
+
+fn lines() -> impl Strategy<Value = Vec<String>> {
+    let of = |lines: &[&str]| select(lines.iter().map(|line| (*line).to_owned()).collect::<Vec<_>>());
+    let orders =
+        ["none", "hold", "steer NaN 1", "thrust -0.5 0.7", "steer 200 2"].map(|order| format!("order {order}"));
+    let commands = ["disarm", "e_stop", "release", "station_keep", "go_to_erp", "arm", "arm"];
+    let one = prop_oneof![
+        4 => (1..40_u8).prop_map(|tenths| format!("run {}", 0.1 * f64::from(tenths))),
+        2 => select([&orders[..], &["agent-hangs".to_owned()]].concat()),
+        4 => select(commands.map(|command| format!("operator {command}")).to_vec()),
+        1 => of(&["link up", "link down"]),
+        1 => of(&["open both", "open to-boat", "open from-boat", "open neither"]),
+        1 => of(&["tamper none", "tamper all-lost", "tamper second-half-lost", "tamper xor 8"]),
+        1 => any::<u8>().prop_map(|far_m| format!("jump {far_m} 0")),
+        1 => of(&["fixes live", "fixes frozen"]),
+        1 => of(&["control Secondary", "control Secondary", "control Primary", "control Rc"]),
+        1 => of(&["volts 20", "volts 25"]),
+        1 => of(&["other 0 0", "other none"]),
+        1 => of(&["fleet e_stop", "fleet release"]),
+    ];
+    proptest::collection::vec(one, 1..60)
+}
+
+/// When everything is quiet again, the boat can be set going.
+const QUIET: &str = "open both\ntamper none\nother none\nfixes live\nvolts 25\ncontrol Secondary\nlink up\norder hold
+appear 60 40\noperator release\nfleet release\nrun 12\noperator arm\nexpect refused =\nexpect state = armed";
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn whatever_happens_nothing_forbidden_is_sent(watchdog in any::<bool>(), lines in lines()) {
+        let mut rig = played(if watchdog { "under-way watchdog 2" } else { "under-way" });
+        lines.iter().map(String::as_str).chain(QUIET.lines()).for_each(|line| play(&mut rig, line));
+    }
+}

@@ -1,0 +1,87 @@
+//! What a link may do to the bytes from a boat, by name.
+
+/// Makes packets of a burst of telemetry.
+pub(crate) type Tamper = Box<dyn FnMut(Vec<u8>) -> Vec<Vec<u8>>>;
+
+/// The sentence of a body.
+pub(crate) fn with_checksum(body: &str) -> String {
+    format!("${body}*{:02X}\r\n", body.bytes().fold(0, |a, b| a ^ b))
+}
+
+/// The tampering of this name, with its parameters; `none` leaves the bytes alone.
+pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {
+    Some(match words {
+        ["none"] => return None,
+        ["all-lost"] => Box::new(|_| vec![]),
+        ["second-half-lost"] => Box::new(|bytes| vec![bytes[..bytes.len() / 2].to_vec()]),
+        ["single-bytes"] => Box::new(|bytes| bytes.into_iter().map(|byte| vec![byte]).collect()),
+        ["xor", mask] => {
+            let mask: u8 = mask.parse().expect("a byte");
+            Box::new(move |bytes| vec![bytes.iter().map(|byte| byte ^ mask).collect()])
+        }
+        ["noise"] => noise(),
+        ["first-fix-again"] => first_fix_again(),
+        ["replace", pairs @ ..] => rewritten(replacing(pairs)),
+        ["replace-not-checksum", pairs @ ..] => {
+            let replaced = replacing(pairs);
+            Box::new(move |bytes| vec![replaced(&String::from_utf8_lossy(&bytes)).into_bytes()])
+        }
+        ["position", lat, north, lon, east] => {
+            let place = [lat, north, lon, east].map(|field| (*field).to_owned());
+            refixed(move |fields| fields[2..6].clone_from_slice(&place))
+        }
+        ["whole-seconds"] => refixed(|fields| fields[1].replace_range(6.., ".00")),
+        other => panic!("no tampering is {other:?}"),
+    })
+}
+
+/// Replaces the first of each pair of words by the second.
+fn replacing(pairs: &[&str]) -> impl Fn(&str) -> String + use<> {
+    let pairs: Vec<[String; 2]> = pairs.chunks(2).map(|two| [two[0].to_owned(), two[1].to_owned()]).collect();
+    move |text| pairs.iter().fold(text.to_owned(), |text, [from, to]| text.replace(from, to))
+}
+
+/// Changes the body of each sentence, with right checksums.
+fn rewritten(mut change: impl FnMut(&str) -> String + 'static) -> Tamper {
+    let mut line = move |line: &str| {
+        let body = line.trim_start_matches('$').split('*').next().unwrap_or_default();
+        with_checksum(&change(body))
+    };
+    Box::new(move |bytes| vec![String::from_utf8_lossy(&bytes).lines().map(&mut line).collect::<String>().into_bytes()])
+}
+
+/// Changes the fields of fixes alone.
+fn refixed(change: impl Fn(&mut Vec<String>) + 'static) -> Tamper {
+    rewritten(move |body| {
+        let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
+        if fields[0] == "GPGGA" {
+            change(&mut fields);
+        }
+        fields.join(",")
+    })
+}
+
+/// A receiver that repeats its first fix, time and all, and still calls it good.
+fn first_fix_again() -> Tamper {
+    let mut first = None;
+    Box::new(move |bytes| {
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let (fix, rest) = text.split_once('\n').expect("several sentences");
+        let fix = first.get_or_insert_with(|| fix.to_owned());
+        vec![format!("{fix}\n{rest}").into_bytes()]
+    })
+}
+
+/// Garbage between and within sentences.
+fn noise() -> Tamper {
+    let mut count = 0_u8;
+    Box::new(move |bytes| {
+        let noise: Vec<u8> = (0..200)
+            .map(|i: u8| {
+                count = count.wrapping_mul(97).wrapping_add(i);
+                count
+            })
+            .collect();
+        vec![[&noise, &b"\r\n"[..], &bytes, b"\x00\xff$PGRMCE*0E\x8e$PSRF100,", b"\r\n"].concat()]
+    })
+}
