@@ -20,7 +20,7 @@ pub(super) enum Field<'a> {
     /// The address of a maker's own sentence.
     Address(&'static str),
     /// The address of a standard sentence: its talker and its kind.
-    Standard(Talker, &'static str),
+    Standard(&'a mut Talker, &'static str),
     /// Always written so; ignored when it is read.
     Constant(&'static str),
     /// A unit: always written, and refused when it is another one.

@@ -6,6 +6,8 @@
 //! the strictest known reader accepts, and never has a non-finite number in it.
 
 mod date_time;
+#[cfg(test)]
+mod fields;
 mod framer;
 mod layout;
 mod mode;
@@ -115,7 +117,7 @@ impl Sentence {
     pub fn parse(body: &str) -> Result<Sentence, ParseError> {
         let reader = Reader::of(body);
         let address = reader.address();
-        let blank = Sentence::blank(address).or_else(|| Sentence::blank_standard(address));
+        let blank = Sentence::blank(address);
         let mut sentence = blank.ok_or_else(|| ParseError::Unknown { address: address.to_owned() })?;
         reader.read(sentence.layout())?;
         Ok(sentence)
@@ -134,33 +136,25 @@ impl Sentence {
         Writer::write(rounded.layout(), out);
     }
 
-    /// A sentence of a Surveyor's own without content.
+    /// The sentence of an address, without content: a Surveyor's own, or one of the standard with two characters of talker.
     fn blank(address: &str) -> Option<Sentence> {
-        Some(match address {
-            "PSEAC" => Sentence::Command(Command::default()),
-            "PSEAA" => Sentence::Attitude(Attitude::default()),
-            "PSEAB" => Sentence::Battery(Battery::default()),
-            "PSEAD" => Sentence::ControlState(ControlState::default()),
-            "PSEAG" => Sentence::BoatError(BoatError::default()),
-            "PSEAR" => Sentence::MissionSettings(MissionSettings::default()),
-            "OIWPL" => Sentence::Waypoint(Waypoint::default()),
-            _ => return None,
-        })
-    }
-
-    /// A sentence of the standard without content: two characters of talker, three of kind.
-    fn blank_standard(address: &str) -> Option<Sentence> {
-        let (talker, kind) = Talker::split(address)?;
-        Some(match kind {
-            "GGA" => Sentence::Gga(Gga { talker, ..Gga::default() }),
-            "RMC" => Sentence::Rmc(Rmc { talker, ..Rmc::default() }),
-            "VTG" => Sentence::Vtg(Vtg { talker, ..Vtg::default() }),
-            "HDT" => Sentence::Hdt(Hdt { talker, ..Hdt::default() }),
-            "HDG" => Sentence::Hdg(Hdg { talker, ..Hdg::default() }),
-            "ZDA" => Sentence::Zda(Zda { talker, ..Zda::default() }),
-            "GLL" => Sentence::Gll(Gll { talker, ..Gll::default() }),
-            "MWV" => Sentence::Mwv(Mwv { talker, ..Mwv::default() }),
-            "VHW" => Sentence::Vhw(Vhw { talker, ..Vhw::default() }),
+        Some(match (address, Talker::split(address).map_or("", |(_, kind)| kind)) {
+            ("PSEAC", _) => Sentence::Command(Command::default()),
+            ("PSEAA", _) => Sentence::Attitude(Attitude::default()),
+            ("PSEAB", _) => Sentence::Battery(Battery::default()),
+            ("PSEAD", _) => Sentence::ControlState(ControlState::default()),
+            ("PSEAG", _) => Sentence::BoatError(BoatError::default()),
+            ("PSEAR", _) => Sentence::MissionSettings(MissionSettings::default()),
+            ("OIWPL", _) => Sentence::Waypoint(Waypoint::default()),
+            (_, "GGA") => Sentence::Gga(Gga::default()),
+            (_, "RMC") => Sentence::Rmc(Rmc::default()),
+            (_, "VTG") => Sentence::Vtg(Vtg::default()),
+            (_, "HDT") => Sentence::Hdt(Hdt::default()),
+            (_, "HDG") => Sentence::Hdg(Hdg::default()),
+            (_, "ZDA") => Sentence::Zda(Zda::default()),
+            (_, "GLL") => Sentence::Gll(Gll::default()),
+            (_, "MWV") => Sentence::Mwv(Mwv::default()),
+            (_, "VHW") => Sentence::Vhw(Vhw::default()),
             _ => return None,
         })
     }

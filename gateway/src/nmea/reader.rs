@@ -7,6 +7,7 @@ use super::mode::Mode;
 use super::number::number;
 use super::operator::Operator;
 use super::position::{Axis, LATITUDE, LONGITUDE};
+use super::talker::Talker;
 use super::wind::{KNOT_KM_H, SpeedUnit, WindReference};
 use game::LatLon;
 use std::str::FromStr;
@@ -41,7 +42,8 @@ impl<'a> Reader<'a> {
 
     fn read_field(&mut self, field: Field<'_>) -> Result<(), ParseError> {
         match field {
-            Field::Address(_) | Field::Standard(..) => {}
+            Field::Address(_) => {}
+            Field::Standard(talker, _) => *talker = Talker::split(self.address).map_or(*talker, |(talker, _)| talker),
             Field::Constant(_) => self.at += 1,
             Field::Unit(letter) => self.unit(letter)?,
             Field::Optional(is_there, _) => {

@@ -32,7 +32,7 @@ impl Gga {
     /// dropped one empty one from the end, and with a station has no position at all.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
-            Field::Standard(self.talker, "GGA"),
+            Field::Standard(&mut self.talker, "GGA"),
             Field::Time(&mut self.time),
             Field::Position(&mut self.at, 5),
             Field::Quality(&mut self.quality),
@@ -73,7 +73,7 @@ impl Rmc {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let mode = fix_mode(self.valid);
         let fields = vec![
-            Field::Standard(self.talker, "RMC"),
+            Field::Standard(&mut self.talker, "RMC"),
             Field::Time(&mut self.time),
             Field::Valid(&mut self.valid),
             Field::Position(&mut self.at, 5),
@@ -114,7 +114,7 @@ impl Vtg {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let mode = fix_mode(self.speed_kn.or(self.speed_km_h).is_some());
         let fields = vec![
-            Field::Standard(self.talker, "VTG"),
+            Field::Standard(&mut self.talker, "VTG"),
             Field::Number(&mut self.course_true_deg, COMPASS),
             Field::Unit("T"),
             Field::Number(&mut self.course_magnetic_deg, COMPASS),
@@ -141,7 +141,7 @@ pub struct Hdt {
 impl Hdt {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let heading = Field::Number(&mut self.heading_deg, COMPASS);
-        Layout { fields_min: 1, fields: vec![Field::Standard(self.talker, "HDT"), heading, Field::Unit("T")] }
+        Layout { fields_min: 1, fields: vec![Field::Standard(&mut self.talker, "HDT"), heading, Field::Unit("T")] }
     }
 }
 
@@ -161,7 +161,7 @@ pub struct Hdg {
 impl Hdg {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
-            Field::Standard(self.talker, "HDG"),
+            Field::Standard(&mut self.talker, "HDG"),
             Field::Number(&mut self.heading_deg, COMPASS),
             Field::East(&mut self.deviation_deg),
             Field::East(&mut self.variation_deg),
@@ -185,7 +185,7 @@ impl Zda {
     /// With the local zone as UTC.
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
-            Field::Standard(self.talker, "ZDA"),
+            Field::Standard(&mut self.talker, "ZDA"),
             Field::Time(&mut self.time),
             Field::DayMonthYear(&mut self.date),
             Field::Constant("00"),
@@ -212,7 +212,7 @@ impl Gll {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let mode = fix_mode(self.valid);
         let fields = vec![
-            Field::Standard(self.talker, "GLL"),
+            Field::Standard(&mut self.talker, "GLL"),
             Field::Position(&mut self.at, 5),
             Field::Time(&mut self.time),
             Field::Valid(&mut self.valid),
@@ -242,7 +242,7 @@ pub struct Mwv {
 impl Mwv {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
-            Field::Standard(self.talker, "MWV"),
+            Field::Standard(&mut self.talker, "MWV"),
             Field::Number(&mut self.angle_deg, COMPASS),
             Field::WindReference(&mut self.reference),
             Field::WindSpeed(&mut self.speed_m_s, &mut self.unit),
@@ -268,7 +268,7 @@ pub struct Vhw {
 impl Vhw {
     pub(super) fn layout(&mut self) -> Layout<'_> {
         let fields = vec![
-            Field::Standard(self.talker, "VHW"),
+            Field::Standard(&mut self.talker, "VHW"),
             Field::Number(&mut self.heading_true_deg, COMPASS),
             Field::Unit("T"),
             Field::Number(&mut self.heading_magnetic_deg, COMPASS),
