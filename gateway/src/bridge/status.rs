@@ -2,7 +2,7 @@
 
 use super::{Bridge, command_encoder};
 use crate::nmea::Operator;
-use crate::supervisor::State;
+use crate::supervisor::{Cause, State};
 use game::SimTime;
 use game::external::GatewayStatus;
 
@@ -19,7 +19,7 @@ impl Bridge {
             at_s: now.as_s(),
             link: if self.link_up { "up" } else { "down" }.to_owned(),
             state: self.state_in_words(),
-            missing: self.conditions.missing().iter().map(ToString::to_string).collect(),
+            missing: self.conditions.missing().into_iter().map(Cause::missing).collect(),
             failsafes: self.failsafes.clone(),
             mode: self.control.mode().map(|mode| mode.letter()),
             operator: self.control.operator().map(name_of),

@@ -1,10 +1,10 @@
-//! The cause of a failsafe, and what is missing for arming, with their texts for operators.
+//! The cause of a failsafe or of a refusal to arm, with its texts for operators.
 
-use super::{Control, State, Task};
+use super::{State, Task};
 use std::fmt;
 use thiserror::Error;
 
-/// The cause of a failsafe.
+/// The cause of a failsafe; for a boat that is not driven, of a refusal to arm.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Cause {
     /// No order came for longer than its time to live.
@@ -65,27 +65,22 @@ pub enum NavFault {
     Frozen(f64),
 }
 
-/// What is missing for arming.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum Missing {
-    /// The link is down.
-    #[error("the link to the boat")]
-    Link,
-    /// The boat does not report that we command it.
-    #[error("secondary control: {}", commander(*.0))]
-    Control(Control),
-    /// Navigation is not sound.
-    #[error("navigation: {0}")]
-    Nav(NavFault),
-    /// It is outside of the geofence.
-    #[error("a position inside of the geofence, and room to stop")]
-    Inside,
-    /// The battery is low.
-    #[error("a charged battery")]
-    Battery,
-    /// There is no fresh order.
-    #[error("a fresh order")]
-    Order,
+impl Cause {
+    /// What is missing for arming while this is so, in words.
+    #[must_use]
+    pub fn missing(self) -> String {
+        match self {
+            Cause::LinkLost => "the link to the boat".to_owned(),
+            Cause::TakenOver(by) => format!("secondary control: {} commands the boat", operator(by)),
+            Cause::ControlUnknown | Cause::Disobeyed(_) => {
+                "secondary control: the boat does not report that we command it".to_owned()
+            }
+            Cause::Nav(fault) => format!("navigation: {fault}"),
+            Cause::Geofence => "a position inside of the geofence, and room to stop".to_owned(),
+            Cause::BatteryLow => "a charged battery".to_owned(),
+            Cause::OrderStale => "a fresh order".to_owned(),
+        }
+    }
 }
 
 /// PSEAD's number of the operator in words.
@@ -96,14 +91,6 @@ fn operator(number: u8) -> String {
         5 => "the remote control".to_owned(),
         6 => "the obstacle avoidance".to_owned(),
         other => format!("operator {other}"),
-    }
-}
-
-/// Who commands a boat that we do not.
-fn commander(control: Control) -> String {
-    match control {
-        Control::Other(by) => format!("{} commands the boat", operator(by)),
-        _ => "the boat does not report that we command it".to_owned(),
     }
 }
 

@@ -25,7 +25,7 @@
 
 mod cause;
 
-pub use cause::{Cause, Missing, NavFault};
+pub use cause::{Cause, NavFault};
 
 use game::gateway::LowBattery;
 use thiserror::Error;
@@ -142,8 +142,8 @@ pub enum Action {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Refusal {
     /// These things are missing.
-    #[error("missing: {}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
-    NotReady(Vec<Missing>),
+    #[error("missing: {}", .0.iter().map(|cause| cause.missing()).collect::<Vec<_>>().join("; "))]
+    NotReady(Vec<Cause>),
     /// An E-stop is in force.
     #[error("an E-stop is in force")]
     EStopped,
@@ -222,7 +222,7 @@ impl Supervisor {
         None
     }
 
-    fn enter(&mut self, state: State, missing: Vec<Missing>) -> Option<Refusal> {
+    fn enter(&mut self, state: State, missing: Vec<Cause>) -> Option<Refusal> {
         if missing.is_empty() {
             self.state = state;
             return None;
@@ -278,55 +278,44 @@ impl Supervisor {
 }
 
 impl Conditions {
-    /// The failsafe of an armed boat, the gravest first.
-    #[must_use]
-    pub fn failsafe(&self) -> Option<Cause> {
-        self.fitness_failsafe().or((!self.order_fresh).then_some(Cause::OrderStale))
-    }
-
-    /// The same for a delegated boat, which needs no order.
-    fn fitness_failsafe(&self) -> Option<Cause> {
+    /// What speaks against driving the boat, the gravest first.
+    fn causes(&self) -> impl Iterator<Item = Cause> {
         let control = match self.control {
             Control::Granted => None,
             Control::Unknown => Some(Cause::ControlUnknown),
             Control::Other(operator) => Some(Cause::TakenOver(operator)),
             Control::Disobeys(mode) => Some(Cause::Disobeyed(mode)),
         };
-        (!self.link)
-            .then_some(Cause::LinkLost)
-            .or(control)
-            .or(self.nav.map(Cause::Nav))
-            .or((!self.inside).then_some(Cause::Geofence))
-            .or(self.battery_low.then_some(Cause::BatteryLow))
+        let link = (!self.link).then_some(Cause::LinkLost);
+        // Without navigation nobody knows.
+        let geofence = (!self.inside && self.nav.is_none()).then_some(Cause::Geofence);
+        let battery = self.battery_low.then_some(Cause::BatteryLow);
+        let order = (!self.order_fresh).then_some(Cause::OrderStale);
+        [link, control, self.nav.map(Cause::Nav), geofence, battery, order].into_iter().flatten()
+    }
+
+    /// The failsafe of an armed boat.
+    #[must_use]
+    pub fn failsafe(&self) -> Option<Cause> {
+        self.causes().next()
+    }
+
+    /// The same for a delegated boat, which needs no order.
+    fn fitness_failsafe(&self) -> Option<Cause> {
+        self.causes().find(|cause| *cause != Cause::OrderStale)
     }
 
     /// Everything that is missing for arming.
     #[must_use]
-    pub fn missing(&self) -> Vec<Missing> {
-        let mut missing = self.unfit();
-        missing.extend((!self.order_fresh).then_some(Missing::Order));
-        missing
+    pub fn missing(&self) -> Vec<Cause> {
+        // The mode of a boat that is not commanded means nothing.
+        self.causes().filter(|cause| !matches!(cause, Cause::Disobeyed(_))).collect()
     }
 
     /// Everything that is missing for delegating to the boat's own controller.
     #[must_use]
-    pub fn unfit(&self) -> Vec<Missing> {
-        let control = match self.control {
-            // The mode of a boat that is not commanded means nothing.
-            Control::Granted | Control::Disobeys(_) => None,
-            Control::Unknown | Control::Other(_) => Some(Missing::Control(self.control)),
-        };
-        let nav = self.nav.map(Missing::Nav);
-        let geofence = (!self.inside && self.nav.is_none()).then_some(Missing::Inside);
-        let battery = self.battery_low.then_some(Missing::Battery);
-        (!self.link)
-            .then_some(Missing::Link)
-            .into_iter()
-            .chain(control)
-            .chain(nav)
-            .chain(geofence)
-            .chain(battery)
-            .collect()
+    pub fn unfit(&self) -> Vec<Cause> {
+        self.missing().into_iter().filter(|cause| *cause != Cause::OrderStale).collect()
     }
 }
 
