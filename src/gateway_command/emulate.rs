@@ -108,8 +108,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         // The parent process may have asked for any free port.
         NodeEvent::Listening { what, reach } => screen::print(&format!("{what} at {reach}\n")),
-        NodeEvent::Remark { at_s, text } => log.line(at_s, text),
-        NodeEvent::Looking { .. } | NodeEvent::Event { .. } | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
+        NodeEvent::Event { at_s, event } => log.event(at_s, event),
+        NodeEvent::Looking { .. } | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
     };
     gateway::node::emulate(&settings, &mut notify).with_context(|| format!("the emulator of {}", args.vehicle))?;
     Ok(ExitCode::SUCCESS)

@@ -18,15 +18,12 @@ impl Log {
         Log { live: std::io::stdout().is_terminal(), quiet, status: String::new() }
     }
 
-    pub(super) fn event(&mut self, at_s: f64, event: &Event) {
-        self.line(at_s, &text_of(event));
-    }
-
     /// A line that stays.
-    pub(super) fn line(&mut self, at_s: f64, text: &str) {
+    pub(super) fn event(&mut self, at_s: f64, event: &Event) {
         if self.quiet {
             return;
         }
+        let text = text_of(event);
         let clear = if self.live { "\r\x1b[K" } else { "" };
         let status = if self.live { self.status.as_str() } else { "" };
         screen::print(&format!("{clear}{at_s:>8.1} s  {text}\n{status}"));

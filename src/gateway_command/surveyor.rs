@@ -84,7 +84,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         NodeEvent::Looking { .. } | NodeEvent::Listening { .. } => {}
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
-        NodeEvent::Remark { at_s, text } => log.line(at_s, text),
         NodeEvent::Status(status) => log.status(status),
         NodeEvent::Ended(status) => screen::print(&format!("\n{}", full(status))),
     };

@@ -370,16 +370,15 @@ impl Bridge {
             Action::Standby => command_encoder::standby(),
             Action::Zero => command_encoder::of_set_point(SetPoint::ZERO),
             Action::Task(task) => {
+                let command = command_encoder::of_task(task);
+                let is_reported = self.control.mode() == Some(command.mode);
                 // Sent again, it would begin anew.
-                let is_reported = self.control.mode() == Some(command_encoder::of_task(task).mode);
-                let is_sent = self.last_sent.as_ref().is_some_and(|(at, last)| {
-                    last.mode == command_encoder::of_task(task).mode
-                        && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
-                });
-                if is_sent {
+                if self.last_sent.as_ref().is_some_and(|(at, last)| {
+                    last.mode == command.mode && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
+                }) {
                     return;
                 }
-                command_encoder::of_task(task)
+                command
             }
             Action::Follow => match self.follow(now) {
                 Some(set_point) => command_encoder::of_set_point(set_point),

@@ -1,6 +1,7 @@
 //! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives by the boat's own sentences.
 
 use super::{NodeError, NodeEvent, declination_rad, pace_factor};
+use crate::bridge::Event;
 use crate::emulator::{Emulator, Extra, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
@@ -176,16 +177,14 @@ impl EmulatorNode {
         while !stop.load(Ordering::Relaxed) {
             incoming.wait(POLL, Incoming::is_something);
             let Incoming { bytes, remarks, picture, .. } = incoming.visit(std::mem::take);
-            for text in &remarks {
-                notify(NodeEvent::Remark { at_s: self.now.as_s(), text });
-            }
+            remarks.into_iter().for_each(|text| self.remark(text, notify));
             for (port, bytes) in &bytes {
                 let now = self.now;
                 self.emulator().take(now, *port, bytes);
             }
             self.report_operator(notify);
             if let Some(text) = self.emulator().take_remark() {
-                notify(NodeEvent::Remark { at_s: self.now.as_s(), text: &text });
+                self.remark(text, notify);
             }
             let picture = picture.and_then(|bytes| codec::decode::<Picture>(&bytes).ok());
             if let Some(picture) = picture {
@@ -214,9 +213,12 @@ impl EmulatorNode {
         let operator = self.emulator().operator();
         if operator != self.operator {
             self.operator = operator;
-            let text = format!("{:?} commands the boat", self.operator);
-            notify(NodeEvent::Remark { at_s: self.now.as_s(), text: &text });
+            self.remark(format!("{operator:?} commands the boat"), notify);
         }
+    }
+
+    fn remark(&self, text: String, notify: &mut dyn FnMut(NodeEvent<'_>)) {
+        notify(NodeEvent::Event { at_s: self.now.as_s(), event: &Event::Remark(text) });
     }
 
     /// Answers a picture with the boat's order, and sends telemetry.

@@ -53,7 +53,7 @@ const WRITING_MAX: usize = 64;
 const REMARK_AGAIN: Duration = Duration::from_secs(10);
 
 /// The loop of a gateway, with everything it drives.
-pub(super) struct GatewayLoop {
+pub(super) struct GatewayLoop<'a> {
     pub(super) bridge: Bridge,
     pub(super) link: Link,
     pub(super) clock: Clock,
@@ -71,6 +71,7 @@ pub(super) struct GatewayLoop {
     pub(super) recorder: Option<Recorder>,
     pub(super) encoder: StepEncoder,
     pub(super) counters: Counters,
+    pub(super) notify: &'a mut dyn FnMut(NodeEvent<'_>),
 }
 
 /// What the loop keeps track of.
@@ -110,23 +111,23 @@ impl Counters {
     }
 }
 
-impl GatewayLoop {
+impl GatewayLoop<'_> {
     /// Runs until it is told to stop.
-    pub(super) fn run(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    pub(super) fn run(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
             if self.e_stop.swap(false, Ordering::Relaxed) {
-                self.step(Input::Fleet(FleetCommand::EStop), None, notify)?;
+                self.step(Input::Fleet(FleetCommand::EStop), None)?;
             }
             let due = self.bridge.due(self.clock.now());
             match self.inbox.take(self.clock.until(due)) {
-                Some(call) => self.take(call, notify)?,
-                None => self.step(Input::Tick, None, notify)?,
+                Some(call) => self.take(call)?,
+                None => self.step(Input::Tick, None)?,
             }
             if clock::now() >= self.counters.status_at {
                 self.counters.status_at = clock::now() + STATUS_EVERY;
                 let status = self.full_status();
                 self.status.send_json(serde_json::to_vec(&status).expect("a status is JSON"))?;
-                notify(NodeEvent::Status(&status));
+                (self.notify)(NodeEvent::Status(&status));
             }
         }
         Ok(())
@@ -147,50 +148,50 @@ impl GatewayLoop {
         status
     }
 
-    fn take(&mut self, call: Call, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    fn take(&mut self, call: Call) -> Result<(), NodeError> {
         match call {
-            Call::Link(event) => self.take_link(event, notify),
-            Call::Order => self.take_order(notify),
-            Call::Frame(bytes) => self.take_frame(&bytes, notify),
-            Call::Operate(query) => self.operate(query, notify),
-            Call::Release => self.step(Input::Fleet(FleetCommand::Release), None, notify),
+            Call::Link(event) => self.take_link(event),
+            Call::Order => self.take_order(),
+            Call::Frame(bytes) => self.take_frame(&bytes),
+            Call::Operate(query) => self.operate(query),
+            Call::Release => self.step(Input::Fleet(FleetCommand::Release), None),
             // It only wakes the loop.
             Call::EStop => Ok(()),
             Call::Joined(ticket, vehicles) if vehicles == [self.vehicle] => {
                 self.counters.ticket = Some(ticket);
-                self.remark("joined: the sim takes reports of the boat", notify);
-                self.step(Input::Joined, None, notify)
+                self.remark("joined: the sim takes reports of the boat");
+                self.step(Input::Joined, None)
             }
             Call::Joined(..) => {
                 Err(NodeError::Refused("the sim let another boat in than the one that asked".to_owned()))
             }
             Call::SimGone => {
                 self.counters.ticket = None;
-                self.remark("the sim is gone: waiting for the next", notify);
+                self.remark("the sim is gone: waiting for the next");
                 Ok(())
             }
             Call::Remark(text) => {
-                self.remark(&text, notify);
+                self.remark(&text);
                 Ok(())
             }
         }
     }
 
-    fn take_link(&mut self, event: LinkEvent, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    fn take_link(&mut self, event: LinkEvent) -> Result<(), NodeError> {
         match event {
             LinkEvent::Up { name, .. } => {
-                self.remark(&format!("connected to {name}"), notify);
-                self.step(Input::LinkUp, None, notify)
+                self.remark(&format!("connected to {name}"));
+                self.step(Input::LinkUp, None)
             }
-            LinkEvent::Bytes { at, bytes, .. } => self.step(Input::Bytes(bytes), Some(at), notify),
+            LinkEvent::Bytes { at, bytes, .. } => self.step(Input::Bytes(bytes), Some(at)),
             LinkEvent::Down { reason, .. } => {
                 self.counters.link.clone_from(&reason);
-                self.remark(&format!("the link is down: {reason}"), notify);
-                self.step(Input::LinkDown, None, notify)
+                self.remark(&format!("the link is down: {reason}"));
+                self.step(Input::LinkDown, None)
             }
             LinkEvent::Failed { reason, retry_in } => {
                 self.counters.link = reason.clone();
-                self.remark(&format!("{reason}: trying again in {:.1} s", retry_in.as_secs_f64()), notify);
+                self.remark(&format!("{reason}: trying again in {:.1} s", retry_in.as_secs_f64()));
                 Ok(())
             }
             LinkEvent::Written { tag, at } => {
@@ -204,63 +205,53 @@ impl GatewayLoop {
         }
     }
 
-    fn take_order(&mut self, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    fn take_order(&mut self) -> Result<(), NodeError> {
         let taken = self.latest_order.lock().take();
         let Some((message, came)) = taken else { return Ok(()) };
         self.counters.game_now = message.stamp.valid_ns;
         if message.order.vehicle != self.vehicle {
-            return self.step(Input::BadOrder, None, notify);
+            return self.step(Input::BadOrder, None);
         }
         let sound = message.order.order().and_then(|order: Order| order.check().ok());
         match sound {
             Some(order) => {
                 self.counters.order_came = Some(came);
-                self.step(Input::Order(order, message.given_ns), None, notify)
+                self.step(Input::Order(order, message.given_ns), None)
             }
-            None => self.step(Input::BadOrder, None, notify),
+            None => self.step(Input::BadOrder, None),
         }
     }
 
-    fn take_frame(&mut self, bytes: &[u8], notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    fn take_frame(&mut self, bytes: &[u8]) -> Result<(), NodeError> {
         let Ok(frame) = codec::decode::<Frame>(bytes) else { return Ok(()) };
         let place = |vehicle: &VehicleId| frame.vehicles.get(vehicle.index()).map(|truth| truth.nav.at());
         let others: Vec<Ned> = self.others.iter().filter_map(place).collect();
-        self.step(Input::Others(others), None, notify)
+        self.step(Input::Others(others), None)
     }
 
-    fn operate(&mut self, query: Query, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    fn operate(&mut self, query: Query) -> Result<(), NodeError> {
         let refused = match serde_json::from_slice::<OperatorCommand>(&query.payload) {
             Ok(OperatorCommand::Status) => None,
             Ok(command) => {
-                self.remark(&format!("operator command: {command:?}"), notify);
-                self.step_core(Input::Operator(command), None, notify)?
+                self.remark(&format!("operator command: {command:?}"));
+                self.step_core(Input::Operator(command), None)?
             }
             Err(e) => Some(format!("the command is not understood: {e}")),
         };
         if let Some(reason) = &refused {
-            self.remark(&format!("refused: {reason}"), notify);
+            self.remark(&format!("refused: {reason}"));
         }
         let reply = OperatorReply { refused, status: self.full_status() };
         query.answer(serde_json::to_vec(&reply).expect("a reply is JSON"));
         Ok(())
     }
 
-    fn step(
-        &mut self,
-        input: Input,
-        read: Option<Instant>,
-        notify: &mut dyn FnMut(NodeEvent<'_>),
-    ) -> Result<(), NodeError> {
-        self.step_core(input, read, notify).map(drop)
+    fn step(&mut self, input: Input, read: Option<Instant>) -> Result<(), NodeError> {
+        self.step_core(input, read).map(drop)
     }
 
     /// One step of the core; returns why a request was refused. `read` is when the bytes were read from the link.
-    fn step_core(
-        &mut self,
-        input: Input,
-        read: Option<Instant>,
-        notify: &mut dyn FnMut(NodeEvent<'_>),
-    ) -> Result<Option<String>, NodeError> {
+    fn step_core(&mut self, input: Input, read: Option<Instant>) -> Result<Option<String>, NodeError> {
         let now = self.clock.now();
         let mut out = Output::default();
         self.bridge.take(now, &input, &mut out);
@@ -281,7 +272,7 @@ impl GatewayLoop {
             }
         }
         for event in &out.events {
-            notify(NodeEvent::Event { at_s: now.as_s(), event });
+            (self.notify)(NodeEvent::Event { at_s: now.as_s(), event });
         }
         self.record_step(now, &input, &out)?;
         Ok(out.refused)
@@ -314,21 +305,22 @@ impl GatewayLoop {
     }
 
     /// Logs a message, unless it was logged just now.
-    fn remark(&mut self, text: &str, notify: &mut dyn FnMut(NodeEvent<'_>)) {
+    fn remark(&mut self, text: &str) {
         let now = clock::now();
         let (at, last) = &self.counters.remarked;
         if last == text && now.saturating_duration_since(*at) < REMARK_AGAIN {
             return;
         }
         self.counters.remarked = (now, text.to_owned());
+        let (at, event) = (self.clock.now(), Event::Remark(text.to_owned()));
+        (self.notify)(NodeEvent::Event { at_s: at.as_s(), event: &event });
         if let Some(recorder) = &self.recorder {
-            recorder.record(StepEncoder::event(self.clock.now(), Event::Remark(text.to_owned())));
+            recorder.record(StepEncoder::event(at, event));
         }
-        notify(NodeEvent::Remark { at_s: self.clock.now().as_s(), text });
     }
 }
 
-impl Drop for GatewayLoop {
+impl Drop for GatewayLoop<'_> {
     /// However a gateway ends, except by a kill or a power cut: the boat is sent the shutdown message, three times, before
     /// the link closes.
     fn drop(&mut self) {

@@ -77,13 +77,6 @@ pub enum NodeEvent<'a> {
         /// What.
         event: &'a Event,
     },
-    /// A log message of the shell.
-    Remark {
-        /// Time since it began, s.
-        at_s: f64,
-        /// What.
-        text: &'a str,
-    },
     /// The status, twice a second.
     Status(&'a GatewayStatus),
     /// It has ended, with this status.
@@ -190,9 +183,10 @@ pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Resu
         recorder,
         encoder: StepEncoder::new(&settings.vehicle, vehicle),
         counters: Counters::new(),
+        notify: &mut *notify,
     };
     let join = Join::begin(&bus, &game, &settings.vehicle, inputs.calls)?;
-    let result = gateway_loop.run(&settings.stop, notify);
+    let result = gateway_loop.run(&settings.stop);
     let status = gateway_loop.full_status();
     // The boat is stopped before the network closes.
     drop(gateway_loop);
