@@ -1,80 +1,46 @@
 //! The four rule books the referee must be able to apply, and what scenes cannot tell of them.
 
 use crate::scene::Scene;
-use game::link::Sharing;
-use game::rules::{CaptureAt, Points, Rules, TagChoice, TaggedBoat, UntagAt, UntagOn};
+use game::rules::Rules;
 use game::{Ned, SimTime, VehicleId};
+use std::path::Path;
+use std::sync::LazyLock;
+
+/// The shipped rule books, but boats may be set down side by side.
+static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
+    let folder = tempfile::tempdir().expect("a folder for files");
+    ["aquaticus_2023", "pyquaticus", "mctf_2025", "mctf_2026"].map(|name| {
+        let (base, rules) = ("games/pav01_vs_pav01.toml", format!("rules/{name}.toml"));
+        let text = format!("base = {:?}\nrules = {:?}\n", scenarios.join(base), scenarios.join(rules));
+        std::fs::write(folder.path().join("game.toml"), text).expect("a file in it");
+        let scenario = game::scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"));
+        Rules { collision_distance_m: 0.5, ..scenario.rules }
+    })
+});
+
+pub(crate) fn all() -> [Rules; 4] {
+    SHIPPED.clone()
+}
 
 /// The paper's rules: grab 1, capture 2 at the own flag, tags cool down for 10 s.
 pub(crate) fn aquaticus_2023() -> Rules {
-    Rules {
-        name: "aquaticus_2023".into(),
-        points: Points { grab: 1, capture: 2, tag: 0 },
-        grab_radius_m: 10.0,
-        tag_radius_m: 10.0,
-        untag_radius_m: 10.0,
-        capture_radius_m: 10.0,
-        // Small, so that scenes may set boats down side by side.
-        collision_distance_m: 0.5,
-        capture_at: CaptureAt::OwnFlag,
-        capture_needs_own_flag: false,
-        untag_at: UntagAt::OwnFlag,
-        untag_on: UntagOn::Entering,
-        tag_cooldown: SimTime::from_s(10.0),
-        tag_choice: TagChoice::Nearest,
-        boundary_tags: true,
-        tagged_boat: TaggedBoat::DrivesItself,
-        tagged_speed_factor: 1.0,
-        outside_speed_factor: 1.0,
-        sharing: Sharing::default(),
-        flag_keepout_m: 0.0,
-        win_score: None,
-        time_limit: SimTime::from_s(600.0),
-        power_play: SimTime::ZERO,
-    }
+    SHIPPED[0].clone()
 }
 
 /// Pyquaticus: captures only, at the scrimmage line; tags cool down for 60 s.
 pub(crate) fn pyquaticus() -> Rules {
-    Rules {
-        name: "pyquaticus".into(),
-        points: Points { grab: 0, capture: 1, tag: 0 },
-        capture_at: CaptureAt::OwnSide,
-        untag_on: UntagOn::Inside,
-        tag_cooldown: SimTime::from_s(60.0),
-        tag_choice: TagChoice::First,
-        tagged_boat: TaggedBoat::IsDriven,
-        outside_speed_factor: 0.5,
-        sharing: Sharing::default(),
-        flag_keepout_m: 5.0,
-        win_score: Some(20),
-        ..aquaticus_2023()
-    }
+    SHIPPED[1].clone()
 }
 
 /// The 2025 competition: Pyquaticus, sailed with other boats.
 pub(crate) fn mctf_2025() -> Rules {
-    Rules { name: "mctf_2025".into(), ..pyquaticus() }
+    SHIPPED[2].clone()
 }
 
 /// The 2026 competition: corners instead of flags, no keep-out, power play.
 pub(crate) fn mctf_2026() -> Rules {
-    Rules {
-        name: "mctf_2026".into(),
-        capture_at: CaptureAt::OwnCorners,
-        capture_radius_m: 20.0,
-        untag_at: UntagAt::OwnCorners,
-        untag_radius_m: 20.0,
-        tagged_speed_factor: 0.5,
-        sharing: Sharing::default(),
-        flag_keepout_m: 0.0,
-        power_play: SimTime::from_s(120.0),
-        ..mctf_2025()
-    }
-}
-
-pub(crate) fn all() -> [Rules; 4] {
-    [aquaticus_2023(), pyquaticus(), mctf_2025(), mctf_2026()]
+    SHIPPED[3].clone()
 }
 
 #[test]

@@ -250,7 +250,7 @@ fn the_walks_lead_to_everything_that_can_happen() {
             let walk = Walk { rules: rules.clone(), boats: 4, extra_flags: seed % 2 == 0, seed };
             play(&walk, |_, _, _, _, events| {
                 for event in events {
-                    let name = format!("{event:?}").split([' ', '{']).next().map(str::to_owned);
+                    let name = format!("{event:?}").split([' ', '(']).next().map(str::to_owned);
                     *counts.entry(format!("{book} {}", name.unwrap_or_default())).or_default() += 1;
                 }
             });
