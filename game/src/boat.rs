@@ -7,7 +7,7 @@
 //! description gives that unit, and `x-field` names the field.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A kind of boat.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,9 +45,10 @@ pub enum Drive {
     Kinematic(Kinematic),
 }
 
-/// What stands for a number that a file leaves out, until the check of the file estimates it.
-pub(crate) fn unstated() -> f64 {
-    f64::NAN
+/// A number, or NaN for one that a file leaves out, until the check of the file estimates it. Where a scenario is read
+/// again, all numbers must be there.
+pub(crate) fn number_or_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
 impl Boat {
@@ -67,16 +68,16 @@ impl Boat {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Windage {
     /// Area from ahead, m². Default 0.36 beam².
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000), extend("x-estimated" = true))]
     pub frontal_area_m2: f64,
     /// Area from the side, m². Default 0.16 L².
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 5000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 5000), extend("x-estimated" = true))]
     pub lateral_area_m2: f64,
     /// Height at which the wind is taken, m. Default 0.25 L.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0.05, max = 100))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0.05, max = 100), extend("x-estimated" = true))]
     pub height_m: f64,
     /// C_x.
     #[schemars(range(min = 0, max = 2), extend("default" = 0.6))]
@@ -296,45 +297,45 @@ pub struct Hull {
     #[schemars(range(min = 0.1, max = 1000000))]
     pub mass_kg: f64,
     /// Moment of inertia about midships, kg m². Default m (L/4)² + m x_g².
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0.0001, max = 1000000000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0.0001, max = 1000000000), extend("x-estimated" = true))]
     pub yaw_inertia_kg_m2: f64,
     /// Centre of gravity ahead of midships, m, within the hull.
     #[schemars(range(min = -50, max = 50), extend("default" = 0))]
     pub x_g_m: f64,
     /// Added mass in surge A11, kg. Default 2.7 ρ (m/ρ)^(5/3) / L² with ρ = 1000 (Söding).
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000), extend("x-estimated" = true))]
     pub added_surge_kg: f64,
     /// Added mass in sway A22, kg. Default m.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 10000000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 10000000), extend("x-estimated" = true))]
     pub added_sway_kg: f64,
     /// Added moment of inertia in yaw A66, kg m². Default the moment of inertia.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000000000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000000), extend("x-estimated" = true))]
     pub added_yaw_kg_m2: f64,
     /// Added coupling of sway and yaw A26, kg m.
     #[schemars(range(min = -1000000, max = 1000000), extend("default" = 0))]
     pub added_sway_yaw_kg_m: f64,
     /// Linear resistance in surge -X_u, kg/s. Default what makes both thrusters full ahead give the autopilot's
     /// speed_max_m_s, with the quadratic part as given (0 if that alone is more).
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000), extend("x-estimated" = true))]
     pub surge_linear_kg_s: f64,
     /// Quadratic resistance in surge -X_|u|u, kg/m.
     #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
     pub surge_quadratic_kg_m: f64,
     /// Linear resistance in sway -Y_v, kg/s. Default (m + A22) / 1 s.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 10000000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 10000000), extend("x-estimated" = true))]
     pub sway_linear_kg_s: f64,
     /// Lift-like resistance in sway -Y_|u|v, kg/m.
     #[schemars(range(min = 0, max = 1000000), extend("default" = 0))]
     pub sway_lift_kg_m: f64,
     /// Linear resistance in yaw -N_r, kg m²/s. Default (inertia + A66) / 1 s.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 1000000000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 1000000000), extend("x-estimated" = true))]
     pub yaw_linear_kg_m2_s: f64,
     /// Quadratic resistance in yaw -N_|r|r, kg m².
     #[schemars(range(min = 0, max = 1000000000), extend("default" = 0))]
@@ -346,12 +347,12 @@ pub struct Hull {
     #[schemars(range(min = 0, max = 3), extend("default" = 0))]
     pub crossflow_coefficient: f64,
     /// Draught that meets the cross-flow, m. Required with a coefficient, else 0.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 20))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 20), extend("x-estimated" = true))]
     pub crossflow_draught_m: f64,
     /// Length that meets the cross-flow, m. Default L.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0, max = 200))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0, max = 200), extend("x-estimated" = true))]
     pub crossflow_length_m: f64,
     /// Share of the Munk moment (A22 - A11) u v that acts, where 1 is the bare hull in ideal flow.
     #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
@@ -477,15 +478,15 @@ pub struct Propeller {
     #[schemars(range(min = 0.00000001, max = 1000))]
     pub k_ahead: f64,
     /// k turning astern, N s²/rad². Default k_ahead.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0.00000001, max = 1000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0.00000001, max = 1000), extend("x-estimated" = true))]
     pub k_astern: f64,
     /// Shaft speed at full ahead, rad/s.
     #[schemars(range(min = 0.1, max = 10000))]
     pub n_max_rad_s: f64,
     /// Shaft speed at full astern, rad/s, a positive number. Default n_max_rad_s.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default, range(min = 0.1, max = 10000))]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", range(min = 0.1, max = 10000), extend("x-estimated" = true))]
     pub n_min_rad_s: f64,
 }
 

@@ -9,7 +9,7 @@
 //!              along ▶
 //! ```
 
-use crate::boat::unstated;
+use crate::boat::number_or_nan;
 use crate::frame::{LatLon, Ned};
 use crate::id::TeamId;
 use schemars::JsonSchema;
@@ -37,8 +37,8 @@ pub struct Plan {
     #[schemars(range(min = 10, max = 20000))]
     pub depth_m: f64,
     /// Distance of the flags from the ends, m: more than 0 and less than half the width. Default width / 8.
-    #[serde(default = "unstated")]
-    #[schemars(with = "Option<f64>", !default)]
+    #[serde(deserialize_with = "number_or_nan")]
+    #[schemars(with = "Option<f64>", extend("x-estimated" = true))]
     pub flag_inset_m: f64,
     /// Flags beyond the one each team has by default.
     #[serde(default)]

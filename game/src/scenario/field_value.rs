@@ -9,11 +9,16 @@ use serde_json::{Map, Value, json};
 
 /// The mark of a key that has another name or another unit than its field.
 const FIELD: &str = "x-field";
+/// The mark of a number that is estimated where a file leaves it out.
+const ESTIMATED: &str = "x-estimated";
 
 /// A table's values by its fields, from its values by their keys.
 pub(super) fn by_fields(mut values: Map<String, Value>, properties: &Value) -> Value {
-    let marked = properties.as_object().into_iter().flatten();
-    let marked = marked.filter_map(|(key, about)| Some((key, about.get(FIELD)?.as_str()?)));
+    let keys = || properties.as_object().into_iter().flatten();
+    for (key, _) in keys().filter(|(_, about)| about.get(ESTIMATED).is_some()) {
+        values.entry(key).or_insert(Value::Null);
+    }
+    let marked = keys().filter_map(|(key, about)| Some((key, about.get(FIELD)?.as_str()?)));
     let moved: Vec<_> = marked.filter_map(|(key, field)| Some((key, field, values.remove(key)?))).collect();
     let mut table = Value::Object(values);
     for (key, field, value) in moved {

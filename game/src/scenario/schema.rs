@@ -15,6 +15,7 @@
 //! * Choices are enums with `rename_all = "snake_case"` and a doc comment for each choice.
 //! * `extend("x-expected" = "…")` says in messages what is expected, where the type alone would not.
 //! * `rename` with `extend("x-field" = "…")` gives the key another name, and with it another unit, than the field has.
+//! * `extend("x-estimated" = true)` leaves the value of a number that is left out to the check of the file.
 //! * `extend("x-drawn" = true)` allows distributions in place of all numbers in a table.
 //!
 //! [`declared`] is the schema in this form, by which files are read (see `validate`); [`schema`] is the one for editors.
