@@ -5,7 +5,7 @@ use super::draw::{Drawing, Drawn, Recipe};
 use super::kind::Kind;
 use super::overrides::Overrides;
 use super::problem::Problems;
-use super::read::{self, Declared, Document};
+use super::read::{self, Document};
 use super::tree::Node;
 use super::{Scenario, Tournament, check};
 use crate::boat::Boat;
@@ -13,6 +13,7 @@ use crate::field::Field;
 use crate::gateway::Gateway;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
+use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -44,8 +45,8 @@ pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problem
 }
 
 fn game_of(mut diagnostics: Diagnostics, path: &Path) -> Result<Scenario, Problems> {
-    let value =
-        read::document(&mut diagnostics, path, None).and_then(|document| check::game(&mut diagnostics, &document));
+    let value = read::document(&mut diagnostics, Kind::Game, path, None)
+        .and_then(|document| check::game(&mut diagnostics, &document));
     let mut scenario = diagnostics.close(value)?;
     scenario.drawn = std::mem::take(&mut diagnostics.drawn);
     if !scenario.drawn.is_empty() {
@@ -81,7 +82,7 @@ impl Scenario {
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn load_field(path: &Path) -> Result<Field, Problems> {
-    one(path, check::field, 1).map(|(field, _)| field)
+    one(Kind::Field, path, check::field, 1).map(|(field, _)| field)
 }
 
 /// Reads and checks the boat file at `path`. Where it gives distributions, the numbers are those of seed 1.
@@ -97,7 +98,7 @@ pub fn load_boat(path: &Path) -> Result<Boat, Problems> {
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems> {
-    one(path, check::boat, seed)
+    one(Kind::Boat, path, check::boat, seed)
 }
 
 /// Reads and checks the sea file at `path`, and draws its numbers with this seed: those of a game of that seed.
@@ -105,7 +106,7 @@ pub fn draw_boat(path: &Path, seed: u64) -> Result<(Boat, Vec<Drawn>), Problems>
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn draw_sea(path: &Path, seed: u64) -> Result<(Sea, Vec<Drawn>), Problems> {
-    one(path, check::sea, seed)
+    one(Kind::Sea, path, check::sea, seed)
 }
 
 /// Reads and checks the strategy file at `path` and the files of the roles that it deals.
@@ -123,7 +124,7 @@ pub fn load_strategy(path: &Path) -> Result<Strategy, Problems> {
 /// # Errors
 /// Everything that is wrong in any of them.
 pub fn load_tournament(path: &Path) -> Result<Tournament, Problems> {
-    one(path, check::tournament, 1).map(|(tournament, _)| tournament)
+    one(Kind::Tournament, path, check::tournament, 1).map(|(tournament, _)| tournament)
 }
 
 /// Reads and checks the gateway file at `path`.
@@ -131,7 +132,7 @@ pub fn load_tournament(path: &Path) -> Result<Tournament, Problems> {
 /// # Errors
 /// Everything that is wrong in it and its bases.
 pub fn load_gateway(path: &Path) -> Result<Gateway, Problems> {
-    one(path, check::gateway, 1).map(|(gateway, _)| gateway)
+    one(Kind::Gateway, path, check::gateway, 1).map(|(gateway, _)| gateway)
 }
 
 /// The gateway of a file that says nothing.
@@ -143,7 +144,7 @@ pub fn default_gateway() -> Gateway {
     let path = Path::new("default.toml");
     let mut diagnostics = Diagnostics::new(Drawing::Least);
     diagnostics.files = Some(vec![(path.to_owned(), String::new())]);
-    let document = read::document(&mut diagnostics, path, None);
+    let document = read::document(&mut diagnostics, Kind::Gateway, path, None);
     document.and_then(|document| check::gateway(&mut diagnostics, &document)).expect("every key has a default")
 }
 
@@ -160,7 +161,7 @@ pub fn check_file(path: &Path) -> Result<Kind, Problems> {
     match kind {
         Kind::Game => load(path).map(drop),
         Kind::Field => load_field(path).map(drop),
-        Kind::Rules => one(path, check::rules, 1).map(drop),
+        Kind::Rules => one(Kind::Rules, path, check::rules, 1).map(drop),
         Kind::Boat => load_boat(path).map(drop),
         Kind::Sea => draw_sea(path, 1).map(drop),
         Kind::Strategy => load_strategy(path).map(drop),
@@ -171,7 +172,8 @@ pub fn check_file(path: &Path) -> Result<Kind, Problems> {
 }
 
 /// A file of one kind, and what was drawn for it.
-fn one<R: Declared, T>(
+fn one<R: DeserializeOwned, T>(
+    kind: Kind,
     path: &Path,
     check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
     seed: u64,
@@ -179,7 +181,7 @@ fn one<R: Declared, T>(
     let read = |drawing: Drawing| {
         let mut diagnostics = Diagnostics::new(drawing);
         let value =
-            read::document(&mut diagnostics, path, None).and_then(|document| check(&mut diagnostics, &document));
+            read::document(&mut diagnostics, kind, path, None).and_then(|document| check(&mut diagnostics, &document));
         diagnostics.close(value).map(|value| (value, std::mem::take(&mut diagnostics.drawn)))
     };
     let (value, drawn) = read(Drawing::Least)?;

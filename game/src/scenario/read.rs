@@ -11,14 +11,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
 
-/// A kind of file.
-pub(super) trait Declared: DeserializeOwned {
-    /// Which kind it is.
-    const KIND: Kind;
-    /// Keys that count only in the file itself, not in its bases.
-    const OWN: &'static [&'static str] = &[];
-}
-
 /// A file, laid over its bases and read by its schema.
 #[derive(Debug)]
 pub(super) struct Document<T> {
@@ -61,29 +53,34 @@ impl<T> Document<T> {
 const LARGEST_BYTES: u64 = 4 << 20;
 /// Bases of bases of bases.
 const LONGEST_CHAIN: usize = 16;
+/// Keys that count only in a strategy file itself, not in its bases.
+const OWN: &[&str] = &["unsafe_i_know", "unsafe_because"];
 
-/// Reads the file at `path` with its bases. Problems with finding it stand at `asked_at`, the reference.
-pub(super) fn document<T: Declared>(
+/// Reads the file of a kind at `path` with its bases. Problems with finding it stand at `asked_at`, the reference.
+pub(super) fn document<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
+    kind: Kind,
     path: &Path,
     asked_at: Option<usize>,
 ) -> Option<Document<T>> {
-    document_of(diagnostics, path, asked_at, T::KIND.name())
+    document_of(diagnostics, kind, path, asked_at, kind.name())
 }
 
 /// The same, for an owner who draws numbers of its own.
-pub(super) fn document_of<T: Declared>(
+pub(super) fn document_of<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
+    kind: Kind,
     path: &Path,
     asked_at: Option<usize>,
     owner: &str,
 ) -> Option<Document<T>> {
     let faults = diagnostics.faults();
-    let tree = tree(diagnostics, path, asked_at, T::OWN)?;
+    let own = if kind == Kind::Strategy { OWN } else { &[] };
+    let tree = tree(diagnostics, path, asked_at, own)?;
     let start = tree.at;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     diagnostics.is_name(start, "the file's name", &name);
-    let (mut value, wrong) = validated(diagnostics, &tree, declared(T::KIND), owner);
+    let (mut value, wrong) = validated(diagnostics, &tree, declared(kind), owner);
     value["name"] = name.clone().into();
     match serde_json::from_value(value) {
         Ok(raw) => Some(Document { name, raw, faults, tree, wrong }),

@@ -7,12 +7,13 @@ use crate::field::Field;
 use crate::id::TeamId;
 use crate::scenario::diagnostics::{Diagnostics, is_name};
 use crate::scenario::raw;
-use crate::scenario::read::{self, Declared, Document};
+use crate::scenario::read::{self, Document};
 use crate::scenario::source::tidied;
 use crate::scenario::{Kind, Scenario, Source, StartPosition, Team, Vehicle};
 use crate::sea::Sea;
 use crate::strategy::Strategy;
 use crate::time::SimTime;
+use serde::de::DeserializeOwned;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -101,8 +102,8 @@ struct Fleet<'a> {
 /// Checks a game.
 pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Scenario> {
     let raw = &document.raw;
-    let field = referenced(diagnostics, document, "field", &raw.field.0, super::field);
-    let rules = referenced(diagnostics, document, "rules", &raw.rules.0, super::rules);
+    let field = referenced(diagnostics, document, Kind::Field, &raw.field.0, super::field);
+    let rules = referenced(diagnostics, document, Kind::Rules, &raw.rules.0, super::rules);
     let sea = sea(diagnostics, document);
     let (tick, ticks_per_decision) = clock(diagnostics, document);
     check_teams(diagnostics, document);
@@ -110,7 +111,7 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
         document,
         field: field.as_ref(),
         boats: FileCache::new(|diagnostics, path, place, owner| {
-            let document = read::document_of(diagnostics, path, place, owner)?;
+            let document = read::document_of(diagnostics, Kind::Boat, path, place, owner)?;
             super::boat(diagnostics, &document)
         }),
         strategies: FileCache::new(super::strategy_file),
@@ -164,29 +165,29 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
 /// The game's sea, or the one that takes its place.
 fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<Sea> {
     if let Some(path) = diagnostics.overrides.sea.clone() {
-        let document = read::document(diagnostics, &path, None)?;
+        let document = read::document(diagnostics, Kind::Sea, &path, None)?;
         return super::sea(diagnostics, &document);
     }
     match &document.raw.sea {
-        Some(given) => referenced(diagnostics, document, "sea", &given.0, super::sea),
+        Some(given) => referenced(diagnostics, document, Kind::Sea, &given.0, super::sea),
         None => Some(Sea::at_rest()),
     }
 }
 
-/// Checks the file that `key` names.
-pub(super) fn referenced<D, R: Declared, T>(
+/// Checks the file of this kind that the key of the same name refers to.
+pub(super) fn referenced<D, R: DeserializeOwned, T>(
     diagnostics: &mut Diagnostics,
     document: &Document<D>,
-    key: &str,
+    kind: Kind,
     given: impl AsRef<Path>,
     check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
 ) -> Option<T> {
-    if !document.is_sound(key) {
+    if !document.is_sound(kind.name()) {
         return None;
     }
-    let place = document.at(key);
+    let place = document.at(kind.name());
     let path = diagnostics.sources.resolve(place, given);
-    let document = read::document(diagnostics, &path, Some(place))?;
+    let document = read::document(diagnostics, kind, &path, Some(place))?;
     check(diagnostics, &document)
 }
 

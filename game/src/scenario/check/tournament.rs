@@ -1,9 +1,9 @@
 //! A tournament file and all the files it names, checked.
 
 use super::game::{FileCache, referenced};
-use crate::scenario::Tournament;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::read::Document;
+use crate::scenario::{Kind, Tournament};
 use std::collections::BTreeSet;
 
 /// Checks a tournament.
@@ -12,10 +12,10 @@ pub(in crate::scenario) fn tournament(
     document: &Document<Tournament>,
 ) -> Option<Tournament> {
     let mut tournament = document.raw.clone();
-    referenced(diagnostics, document, "game", &tournament.game, super::game);
+    referenced(diagnostics, document, Kind::Game, &tournament.game, super::game);
     tournament.game = diagnostics.sources.resolve(document.at("game"), &tournament.game);
     if let Some(sea) = &mut tournament.sea {
-        referenced(diagnostics, document, "sea", &*sea, super::sea);
+        referenced(diagnostics, document, Kind::Sea, &*sea, super::sea);
         *sea = diagnostics.sources.resolve(document.at("sea"), &*sea);
     }
     let mut strategies = FileCache::new(super::strategy_file);

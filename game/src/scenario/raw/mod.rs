@@ -17,10 +17,6 @@ pub(super) use sea::{Current, Gusts, Sea, Spectrum, Spreading, Waves, Wind};
 pub(super) use strategy::{Common, Rule, Strategy, Value, Values, Variable, VariableTable};
 
 use super::diagnostics::NAME_PATTERN;
-use super::read::Declared;
-use super::{Kind, Tournament};
-use crate::gateway::Gateway;
-use crate::rules::Rules;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -43,32 +39,4 @@ pub(super) enum Position {
     At(#[schemars(inner(range(min = -1000000, max = 1000000)))] [f64; 2]),
     /// A named point of the own team.
     Point(String),
-}
-
-impl Declared for Game {
-    const KIND: Kind = Kind::Game;
-}
-
-impl Declared for Field {
-    const KIND: Kind = Kind::Field;
-}
-
-impl Declared for Rules {
-    const KIND: Kind = Kind::Rules;
-}
-
-impl Declared for Boat {
-    const KIND: Kind = Kind::Boat;
-}
-
-impl Declared for Sea {
-    const KIND: Kind = Kind::Sea;
-}
-
-impl Declared for Tournament {
-    const KIND: Kind = Kind::Tournament;
-}
-
-impl Declared for Gateway {
-    const KIND: Kind = Kind::Gateway;
 }

@@ -1,8 +1,6 @@
 //! A strategy file as typed.
 
 use super::{FilePath, Name};
-use crate::scenario::kind::Kind;
-use crate::scenario::read::Declared;
 use crate::strategy::{Assignment, Helm, Parameter, Task};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -43,11 +41,6 @@ pub(crate) struct Strategy {
     /// What gives values to variables at every decision, in order.
     #[schemars(length(max = 1000))]
     pub(crate) rule: Vec<Rule>,
-}
-
-impl Declared for Strategy {
-    const KIND: Kind = Kind::Strategy;
-    const OWN: &'static [&'static str] = &["unsafe_i_know", "unsafe_because"];
 }
 
 /// Values given to variables, by their names.

@@ -11,6 +11,7 @@ mod safety;
 mod scope;
 mod variable;
 
+use crate::scenario::Kind;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
 use crate::scenario::read::{self, Document};
@@ -24,7 +25,7 @@ pub(in crate::scenario) fn strategy_file(
     asked_at: Option<usize>,
     _: &str,
 ) -> Option<Strategy> {
-    let document = read::document(diagnostics, path, asked_at)?;
+    let document = read::document(diagnostics, Kind::Strategy, path, asked_at)?;
     strategy(diagnostics, &document)
 }
 
@@ -75,7 +76,7 @@ fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, give
 }
 
 fn one_role(diagnostics: &mut Diagnostics, at: usize, role: &str, path: &Path) -> Option<Program> {
-    let document = read::document::<raw::Strategy>(diagnostics, path, Some(at))?;
+    let document = read::document::<raw::Strategy>(diagnostics, Kind::Strategy, path, Some(at))?;
     if document.raw.roles.is_some() {
         let message = format!("roles names {role:?}, which deals roles itself, expected the file of one program");
         diagnostics.note(at, message);
