@@ -58,9 +58,8 @@ impl TeamMessages {
         let holds = |from: &&MateVariables| {
             let mut complete = true;
             condition.walk(&mut |part| {
-                if let Expression::Variable(index) = part {
-                    complete &= from.values.get(usize::from(*index)).is_some_and(Option::is_some);
-                }
+                let is_known = |index| from.values.get(usize::from(index)).is_some_and(Option::is_some);
+                complete &= part.as_variable().is_none_or(is_known);
             });
             complete && condition.is_true(&Mate { from, own })
         };

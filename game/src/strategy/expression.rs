@@ -109,6 +109,12 @@ impl Values for Nothing {
 }
 
 impl Expression {
+    /// True or false.
+    #[must_use]
+    pub fn truth(is: bool) -> Expression {
+        Expression::Constant(truth(is))
+    }
+
     /// The value; one that is no number becomes 0.
     #[must_use]
     pub fn value(&self, values: &impl Values) -> f64 {
@@ -120,7 +126,12 @@ impl Expression {
             Expression::Mates(condition) => values.mates(condition),
             Expression::Not(inner) => truth(!inner.is_true(values)),
             Expression::Minus(inner) => -inner.value(values),
-            Expression::Join(join, sides) => join.value(&sides.0, &sides.1, values),
+            Expression::Join(join, sides) => match (join, sides.0.value(values)) {
+                // One side may decide alone.
+                (Join::And, 0.0) => 0.0,
+                (Join::Or, left) if left != 0.0 => 1.0,
+                (_, left) => join.of(left, sides.1.value(values)),
+            },
             Expression::Choose(parts) => {
                 let (condition, then, otherwise) = &**parts;
                 if condition.is_true(values) { then.value(values) } else { otherwise.value(values) }
@@ -139,13 +150,21 @@ impl Expression {
     #[must_use]
     pub fn constant(&self) -> Option<f64> {
         let mut asks = false;
-        self.walk(&mut |part| {
-            asks |= matches!(
-                part,
-                Expression::Variable(_) | Expression::Fact(_) | Expression::Measure(..) | Expression::Mates(_)
-            );
-        });
+        self.walk(&mut |part| asks |= part.asks());
         (!asks).then(|| self.value(&Nothing))
+    }
+
+    /// Whether it is itself a question about the game or a variable.
+    #[must_use]
+    pub fn asks(&self) -> bool {
+        use Expression::{Fact, Mates, Measure, Variable};
+        matches!(self, Variable(_) | Fact(_) | Measure(..) | Mates(_))
+    }
+
+    /// The variable that it is, if it is one.
+    #[must_use]
+    pub fn as_variable(&self) -> Option<u16> {
+        if let Expression::Variable(index) = self { Some(*index) } else { None }
     }
 
     /// Calls `visit` with this expression and everything in it.
@@ -153,15 +172,8 @@ impl Expression {
         visit(self);
         match self {
             Expression::Mates(inner) | Expression::Not(inner) | Expression::Minus(inner) => inner.walk(visit),
-            Expression::Join(_, sides) => {
-                sides.0.walk(visit);
-                sides.1.walk(visit);
-            }
-            Expression::Choose(parts) => {
-                parts.0.walk(visit);
-                parts.1.walk(visit);
-                parts.2.walk(visit);
-            }
+            Expression::Join(_, sides) => [&sides.0, &sides.1].into_iter().for_each(|side| side.walk(visit)),
+            Expression::Choose(parts) => [&parts.0, &parts.1, &parts.2].into_iter().for_each(|part| part.walk(visit)),
             Expression::Constant(_) | Expression::Variable(_) | Expression::Fact(_) | Expression::Measure(..) => {}
         }
     }
@@ -172,27 +184,6 @@ impl Join {
     #[must_use]
     pub fn is_truth(self) -> bool {
         !matches!(self, Join::Plus | Join::Minus | Join::Times | Join::Over | Join::Least | Join::Greatest)
-    }
-
-    /// The comparison that says the same with its sides swapped.
-    #[must_use]
-    pub fn swapped(self) -> Join {
-        match self {
-            Join::Less => Join::More,
-            Join::AtMost => Join::AtLeast,
-            Join::More => Join::Less,
-            Join::AtLeast => Join::AtMost,
-            other => other,
-        }
-    }
-
-    fn value(self, left: &Expression, right: &Expression, values: &impl Values) -> f64 {
-        match self {
-            Join::And => return truth(left.is_true(values) && right.is_true(values)),
-            Join::Or => return truth(left.is_true(values) || right.is_true(values)),
-            _ => {}
-        }
-        self.of(left.value(values), right.value(values))
     }
 
     /// Two values joined.

@@ -14,6 +14,14 @@ pub enum Kind {
     Text(Vec<String>),
 }
 
+impl Kind {
+    /// A truth, or else a number.
+    #[must_use]
+    pub fn of(is_truth: bool) -> Kind {
+        if is_truth { Kind::Truth } else { Kind::Number }
+    }
+}
+
 /// Something that is known of the game, as the own boat knows it.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage,

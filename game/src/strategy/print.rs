@@ -19,14 +19,13 @@ impl Program {
     /// What kind of value an expression of this program has.
     #[must_use]
     pub fn kind_of(&self, expression: &Expression) -> Kind {
-        let truth = |is_truth: bool| if is_truth { Kind::Truth } else { Kind::Number };
         match expression {
             Expression::Constant(_) | Expression::Mates(_) | Expression::Minus(_) => Kind::Number,
             Expression::Variable(index) => self.variables[usize::from(*index)].kind.clone(),
-            Expression::Fact(fact) => truth(fact.is_truth()),
-            Expression::Measure(measure, _) => truth(measure.is_truth()),
+            Expression::Fact(fact) => Kind::of(fact.is_truth()),
+            Expression::Measure(measure, _) => Kind::of(measure.is_truth()),
             Expression::Not(_) => Kind::Truth,
-            Expression::Join(join, _) => truth(join.is_truth()),
+            Expression::Join(join, _) => Kind::of(join.is_truth()),
             Expression::Choose(parts) => match self.kind_of(&parts.1) {
                 Kind::Number => self.kind_of(&parts.2),
                 kind => kind,

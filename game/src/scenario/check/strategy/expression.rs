@@ -12,37 +12,8 @@ const RESERVED: &str = "as break const continue else false for function if impor
 /// What stands for a call and is no measure.
 pub(super) const CALLS: [&str; 3] = ["min", "max", "mates"];
 
-/// What an expression must be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wanted {
-    Truth,
-    Number,
-}
-
-/// What a part is.
-enum Type {
-    Truth,
-    Number,
-    /// A variable that has one of these texts.
-    Text(Vec<String>),
-    /// A text as such.
-    Quote(String),
-}
-
-impl Type {
-    fn of(is_truth: bool) -> Type {
-        if is_truth { Type::Truth } else { Type::Number }
-    }
-
-    fn in_words(&self) -> String {
-        match self {
-            Type::Truth => "true or false".to_owned(),
-            Type::Number => "a number".to_owned(),
-            Type::Text(_) => "a text".to_owned(),
-            Type::Quote(text) => format!("the text {text:?}"),
-        }
-    }
-}
+/// A part of an expression, and of which kind it is. A text that is a constant has itself for its only value.
+type Read = (Expression, Kind);
 
 /// Reads an expression that was parsed.
 pub(super) struct Reader<'a, 'b> {
@@ -51,101 +22,95 @@ pub(super) struct Reader<'a, 'b> {
     parsed: &'a Parsed,
     /// Within `mates(...)`, where only shared variables are known.
     among_mates: bool,
+    depth: usize,
 }
 
 impl<'a, 'b> Reader<'a, 'b> {
     /// For the expression that is given for `key`.
     pub(super) fn new(scope: &'a mut Scope<'b>, key: &'a str, parsed: &'a Parsed) -> Reader<'a, 'b> {
-        Reader { scope, key, parsed, among_mates: false }
+        Reader { scope, key, parsed, among_mates: false, depth: 0 }
     }
 
-    /// The expression, which must be of type `wanted`; what is wrong with it is noted.
-    pub(super) fn expression(&mut self, wanted: Wanted) -> Option<Expression> {
-        self.of_type(&self.parsed.root, wanted, 0)
+    /// The expression, which must be a truth or a number as `wanted`; what is wrong with it is noted.
+    pub(super) fn expression(&mut self, wanted: &Kind) -> Option<Expression> {
+        self.of_kind(&self.parsed.root, wanted)
     }
 
-    fn note(&mut self, part: &IdedExpr, message: &str) {
+    /// Notes what is wrong with a part.
+    fn refuse<T>(&mut self, part: &IdedExpr, message: &str) -> Option<T> {
         let message = format!("{} {message}", self.key);
         self.scope.diagnostics.note(self.parsed.place(part), message);
+        None
     }
 
-    fn of_type(&mut self, part: &IdedExpr, wanted: Wanted, depth: usize) -> Option<Expression> {
-        let (expression, found) = self.any(part, depth)?;
-        match (wanted, &found) {
-            (Wanted::Truth, Type::Truth) | (Wanted::Number, Type::Number) => Some(expression),
-            _ => {
-                let wanted = match wanted {
-                    Wanted::Truth => "true or false, such as a comparison",
-                    Wanted::Number => "a number",
-                };
-                self.note(part, &format!("has {} here, expected {wanted}", found.in_words()));
-                None
-            }
+    fn of_kind(&mut self, part: &IdedExpr, wanted: &Kind) -> Option<Expression> {
+        let (expression, found) = self.any(part)?;
+        if found == *wanted {
+            return Some(expression);
         }
+        let wanted = if *wanted == Kind::Truth { "true or false, such as a comparison" } else { "a number" };
+        self.refuse(part, &format!("has {} here, expected {wanted}", in_words(&expression, &found)))
     }
 
-    fn any(&mut self, part: &IdedExpr, depth: usize) -> Option<(Expression, Type)> {
-        if depth > DEEPEST {
-            self.note(part, &format!("is nested too deeply here, expected at most {DEEPEST} levels"));
-            return None;
+    fn any(&mut self, part: &IdedExpr) -> Option<Read> {
+        if self.depth > DEEPEST {
+            return self.refuse(part, &format!("is nested too deeply here, expected at most {DEEPEST} levels"));
         }
         match &part.expr {
             Expr::Literal(literal) => self.literal(part, literal),
             Expr::Ident(name) => self.name(part, name),
-            Expr::Call(call) if call.target.is_none() => self.call(part, call, depth + 1),
-            Expr::Call(call) => self.refused(part, &format!("the method {}()", call.func_name)),
-            Expr::Select(select) if select.test => self.refused(part, "has()"),
-            Expr::Select(select) => self.refused(part, &format!("the field .{}", select.field)),
-            Expr::List(_) => self.refused(part, "a list"),
-            Expr::Map(_) | Expr::Struct(_) => self.refused(part, "a map"),
-            Expr::Comprehension(_) => self.refused(part, "a macro"),
-            Expr::Unspecified => self.refused(part, "nothing"),
+            Expr::Call(call) if call.target.is_none() => {
+                self.depth += 1;
+                let read = self.call(part, call);
+                self.depth -= 1;
+                read
+            }
+            Expr::Call(call) => self.not_allowed(part, &format!("the method {}()", call.func_name)),
+            Expr::Select(select) if select.test => self.not_allowed(part, "has()"),
+            Expr::Select(select) => self.not_allowed(part, &format!("the field .{}", select.field)),
+            Expr::List(_) => self.not_allowed(part, "a list"),
+            Expr::Map(_) | Expr::Struct(_) => self.not_allowed(part, "a map"),
+            Expr::Comprehension(_) => self.not_allowed(part, "a macro"),
+            Expr::Unspecified => self.not_allowed(part, "nothing"),
         }
     }
 
-    fn refused<T>(&mut self, part: &IdedExpr, what: &str) -> Option<T> {
+    fn not_allowed<T>(&mut self, part: &IdedExpr, what: &str) -> Option<T> {
         let allowed = "numbers, texts, true, false, names, ! - + * / < <= > >= == != && || ?:, min(), max(), \
                        mates() and the measures distance(), closing(), known(), on_own_side()";
-        self.note(part, &format!("has {what} here, expected only {allowed}"));
-        None
+        self.refuse(part, &format!("has {what} here, expected only {allowed}"))
     }
 
-    fn literal(&mut self, part: &IdedExpr, literal: &LiteralValue) -> Option<(Expression, Type)> {
-        let number = |value: f64| Some((Expression::Constant(value), Type::Number));
+    fn literal(&mut self, part: &IdedExpr, literal: &LiteralValue) -> Option<Read> {
+        let number = |value: f64| Some((Expression::Constant(value), Kind::Number));
         match literal {
-            LiteralValue::Boolean(is) => Some((Expression::Constant(f64::from(u8::from(*is.inner()))), Type::Truth)),
+            LiteralValue::Boolean(is) => Some((Expression::truth(*is.inner()), Kind::Truth)),
             LiteralValue::Double(value) => number(*value.inner()),
             LiteralValue::Int(value) => number(*value.inner() as f64),
             LiteralValue::UInt(value) => number(*value.inner() as f64),
-            LiteralValue::String(text) => Some((Expression::Constant(0.0), Type::Quote(text.inner().to_owned()))),
-            LiteralValue::Bytes(_) => self.refused(part, "a string of bytes"),
-            LiteralValue::Null => self.refused(part, "null"),
+            LiteralValue::String(text) => Some((Expression::Constant(0.0), Kind::Text(vec![text.inner().to_owned()]))),
+            LiteralValue::Bytes(_) => self.not_allowed(part, "a string of bytes"),
+            LiteralValue::Null => self.not_allowed(part, "null"),
         }
     }
 
-    fn name(&mut self, part: &IdedExpr, name: &str) -> Option<(Expression, Type)> {
+    fn name(&mut self, part: &IdedExpr, name: &str) -> Option<Read> {
         let variables = self.scope.variables;
-        if let Some(index) = variables.iter().position(|variable| variable.name == name) {
-            let variable = &variables[index];
+        if let Some((index, variable)) = self.scope.variable(name) {
             if self.among_mates && !variable.shared {
-                return self.refused_to_mates(part, name, "not shared");
+                return self.refuse_to_mates(part, name, "not shared");
             }
-            let kind = match &variable.kind {
-                Kind::Truth => Type::Truth,
-                Kind::Number => Type::Number,
-                Kind::Text(values) => Type::Text(values.clone()),
-            };
-            return Some((Expression::Variable(index as u16), kind));
+            return Some((Expression::Variable(index), variable.kind.clone()));
         }
         if let Some(fact) = Fact::by_name(name) {
             if self.among_mates {
-                return self.refused_to_mates(part, name, "a fact");
+                return self.refuse_to_mates(part, name, "a fact");
             }
-            return Some((Expression::Fact(fact), Type::of(fact.is_truth())));
+            return Some((Expression::Fact(fact), Kind::of(fact.is_truth())));
         }
         if Place::by_name(name).is_some() {
-            self.note(part, &format!("has the place {name} here, expected it in a measure, as in distance({name})"));
-            return None;
+            let message = format!("has the place {name} here, expected it in a measure, as in distance({name})");
+            return self.refuse(part, &message);
         }
         let mut known: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
         let listed = if known.is_empty() { String::new() } else { format!(" ({})", known.join(", ")) };
@@ -155,65 +120,65 @@ impl<'a, 'b> Reader<'a, 'b> {
              such as distance(own_flag){}",
             did_you_mean(name, &known)
         );
-        self.note(part, &message);
-        None
+        self.refuse(part, &message)
     }
 
-    fn refused_to_mates<T>(&mut self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
-        self.note(part, &format!("asks mates for {name}, which is {what}, expected a shared variable"));
-        None
+    fn refuse_to_mates<T>(&mut self, part: &IdedExpr, name: &str, what: &str) -> Option<T> {
+        self.refuse(part, &format!("asks mates for {name}, which is {what}, expected a shared variable"))
     }
 
-    fn call(&mut self, part: &IdedExpr, call: &CallExpr, depth: usize) -> Option<(Expression, Type)> {
+    fn call(&mut self, part: &IdedExpr, call: &CallExpr) -> Option<Read> {
         // CEL calls an infix operator by its sign between underscores.
         let name = call.func_name.as_str();
         let sign = name.trim_matches('_');
         let join = Join::by_name(sign).filter(|_| CALLS.contains(&sign) == (sign == name));
         match (join, name, call.args.as_slice()) {
-            (Some(join @ (Join::Equal | Join::Unequal)), _, [a, b]) => self.equality(part, join, a, b, depth),
+            (Some(join @ (Join::Equal | Join::Unequal)), _, [a, b]) => self.equality(part, join, a, b),
             (Some(join), _, [a, b]) => {
-                let wanted = if matches!(join, Join::And | Join::Or) { Wanted::Truth } else { Wanted::Number };
-                let (a, b) = (self.of_type(a, wanted, depth), self.of_type(b, wanted, depth));
-                Some((Expression::Join(join, Box::new((a?, b?))), Type::of(join.is_truth())))
+                let wanted = Kind::of(matches!(join, Join::And | Join::Or));
+                let (a, b) = (self.of_kind(a, &wanted), self.of_kind(b, &wanted));
+                Some((Expression::Join(join, Box::new((a?, b?))), Kind::of(join.is_truth())))
             }
             (_, operators::LOGICAL_NOT, [a]) => {
-                self.of_type(a, Wanted::Truth, depth).map(|inner| (Expression::Not(Box::new(inner)), Type::Truth))
+                Some((Expression::Not(Box::new(self.of_kind(a, &Kind::Truth)?)), Kind::Truth))
             }
             (_, operators::NEGATE, [a]) => {
-                self.of_type(a, Wanted::Number, depth).map(|inner| (Expression::Minus(Box::new(inner)), Type::Number))
+                Some((Expression::Minus(Box::new(self.of_kind(a, &Kind::Number)?)), Kind::Number))
             }
-            (_, operators::CONDITIONAL, [condition, then, otherwise]) => self.choice(condition, then, otherwise, depth),
-            (_, operators::MODULO, _) => self.refused(part, "%"),
-            (_, operators::IN, _) => self.refused(part, "in"),
-            (_, operators::INDEX, _) => self.refused(part, "an index [...]"),
-            (_, "mates", [condition]) => self.mates(part, condition, depth).map(|mates| (mates, Type::Number)),
-            (_, name, arguments) => self.function(part, name, arguments),
+            (_, operators::CONDITIONAL, [condition, then, otherwise]) => self.choice(condition, then, otherwise),
+            (_, operators::MODULO, _) => self.not_allowed(part, "%"),
+            (_, operators::IN, _) => self.not_allowed(part, "in"),
+            (_, operators::INDEX, _) => self.not_allowed(part, "an index [...]"),
+            (_, "mates", [_]) if self.among_mates => {
+                self.refuse(part, "has mates() within mates(), expected shared variables")
+            }
+            (_, "mates", [condition]) => {
+                self.among_mates = true;
+                let condition = self.of_kind(condition, &Kind::Truth);
+                self.among_mates = false;
+                Some((Expression::Mates(Box::new(condition?)), Kind::Number))
+            }
+            (_, name, arguments) => self.measure(part, name, arguments),
         }
     }
 
     /// A measure, or what is none.
-    fn function(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<(Expression, Type)> {
-        if let Some(measure) = Measure::by_name(name) {
-            let [place] = arguments else {
-                let message = format!("gives {} things to {name}(), expected one place or boat", arguments.len());
-                self.note(part, &message);
-                return None;
-            };
-            if self.among_mates {
-                return self.refused_to_mates(part, &format!("{name}()"), "a measure");
+    fn measure(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<Read> {
+        let given = format!("gives {} things to {name}(), expected", arguments.len());
+        match (Measure::by_name(name), arguments) {
+            (Some(_), [_]) if self.among_mates => self.refuse_to_mates(part, &format!("{name}()"), "a measure"),
+            (Some(measure), [place]) => {
+                Some((Expression::Measure(measure, self.place(place, name)?), Kind::of(measure.is_truth())))
             }
-            let place = self.place(place, name)?;
-            return Some((Expression::Measure(measure, place), Type::of(measure.is_truth())));
+            (Some(_), _) => self.refuse(part, &format!("{given} one place or boat")),
+            _ if name == "mates" => self.refuse(part, &format!("{given} one condition, or none as in mates > 0")),
+            _ if CALLS.contains(&name) => self.refuse(part, &format!("{given} two numbers")),
+            _ => {
+                let known = [&CALLS[..], &Measure::names()].concat();
+                let (all, guess) = (known.join("(), "), did_you_mean(name, &known));
+                self.refuse(part, &format!("calls {name}(), expected one of {all}(){guess}"))
+            }
         }
-        if CALLS.contains(&name) {
-            let wanted = if name == "mates" { "one condition, or none as in mates > 0" } else { "two numbers" };
-            self.note(part, &format!("gives {} things to {name}(), expected {wanted}", arguments.len()));
-            return None;
-        }
-        let known = [&CALLS[..], &Measure::names()].concat();
-        let message = format!("calls {name}(), expected one of {}(){}", known.join("(), "), did_you_mean(name, &known));
-        self.note(part, &message);
-        None
     }
 
     fn place(&mut self, part: &IdedExpr, measure: &str) -> Option<Place> {
@@ -221,101 +186,68 @@ impl<'a, 'b> Reader<'a, 'b> {
             Expr::Ident(name) => name.as_str(),
             Expr::Literal(LiteralValue::String(name)) => name.inner(),
             _ => {
-                self.note(part, &format!("has a value in {measure}(), expected the name of a place or boat"));
-                return None;
+                return self.refuse(part, &format!("has a value in {measure}(), expected the name of a place or boat"));
             }
         };
-        let place = Place::by_name(name);
-        if place.is_none() {
+        Place::by_name(name).or_else(|| {
             let known = Place::names();
             let guess = did_you_mean(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
             let expected = Place::names_in_short();
-            self.note(part, &format!("asks for the {measure} of {name:?}, expected {expected}{guess}"));
-        }
-        place
+            self.refuse(part, &format!("asks for the {measure} of {name:?}, expected {expected}{guess}"))
+        })
     }
 
-    fn mates(&mut self, part: &IdedExpr, condition: &IdedExpr, depth: usize) -> Option<Expression> {
-        if self.among_mates {
-            self.note(part, "has mates() within mates(), expected shared variables");
-            return None;
-        }
-        self.among_mates = true;
-        let condition = self.of_type(condition, Wanted::Truth, depth);
-        self.among_mates = false;
-        condition.map(|condition| Expression::Mates(Box::new(condition)))
-    }
-
-    fn equality(
-        &mut self,
-        part: &IdedExpr,
-        join: Join,
-        a: &IdedExpr,
-        b: &IdedExpr,
-        depth: usize,
-    ) -> Option<(Expression, Type)> {
-        let (left, right) = (self.any(a, depth), self.any(b, depth));
-        let ((left, left_type), (right, right_type)) = (left?, right?);
-        let joined = |left, right| Some((Expression::Join(join, Box::new((left, right))), Type::Truth));
-        match (&left_type, &right_type) {
-            (Type::Truth, Type::Truth) | (Type::Number, Type::Number) => joined(left, right),
-            (Type::Text(values), Type::Quote(text)) => joined(left, self.text(a, b, values, text)?),
-            (Type::Quote(text), Type::Text(values)) => joined(self.text(b, a, values, text)?, right),
-            (Type::Text(_) | Type::Quote(_), Type::Text(_) | Type::Quote(_)) => {
-                self.note(part, "compares two texts, expected a text variable and one of its values");
-                None
+    fn equality(&mut self, part: &IdedExpr, join: Join, a: &IdedExpr, b: &IdedExpr) -> Option<Read> {
+        let (left, right) = (self.any(a), self.any(b));
+        let ((left, left_kind), (right, right_kind)) = (left?, right?);
+        let is_variable = |side: &Expression| side.as_variable().is_some();
+        let sides = match (&left_kind, &right_kind) {
+            (Kind::Text(values), Kind::Text(text)) if is_variable(&left) && !is_variable(&right) => {
+                (left, self.text(a, b, values, &text[0])?)
             }
+            (Kind::Text(text), Kind::Text(values)) if is_variable(&right) && !is_variable(&left) => {
+                (self.text(b, a, values, &text[0])?, right)
+            }
+            (Kind::Text(_), Kind::Text(_)) => {
+                return self.refuse(part, "compares two texts, expected a text variable and one of its values");
+            }
+            _ if left_kind == right_kind => (left, right),
             _ => {
-                let message = format!(
-                    "compares {} with {}, expected two of one kind",
-                    left_type.in_words(),
-                    right_type.in_words()
-                );
-                self.note(part, &message);
-                None
+                let (left, right) = (in_words(&left, &left_kind), in_words(&right, &right_kind));
+                return self.refuse(part, &format!("compares {left} with {right}, expected two of one kind"));
             }
-        }
+        };
+        Some((Expression::Join(join, Box::new(sides)), Kind::Truth))
     }
 
     /// The place of `text` among the values of a variable.
     fn text(&mut self, variable: &IdedExpr, part: &IdedExpr, values: &[String], text: &str) -> Option<Expression> {
-        let place = values.iter().position(|value| value == text);
-        if place.is_none() {
-            let name = match &variable.expr {
-                Expr::Ident(name) => name.as_str(),
-                _ => "a text",
-            };
-            let message = format!("compares {name} with {text:?}, {}", values_allowed(values, text));
-            self.note(part, &message);
-        }
-        place.map(|place| Expression::Constant(place as f64))
+        let name = if let Expr::Ident(name) = &variable.expr { name } else { "a text" };
+        let wrong = |allowed| self.refuse(part, &format!("compares {name} with {text:?}, {allowed}"));
+        text_value(values, text).map_or_else(wrong, Some)
     }
 
-    fn choice(
-        &mut self,
-        condition: &IdedExpr,
-        then: &IdedExpr,
-        otherwise: &IdedExpr,
-        depth: usize,
-    ) -> Option<(Expression, Type)> {
-        let condition = self.of_type(condition, Wanted::Truth, depth);
-        let first = self.any(then, depth);
-        let wanted = match first.as_ref().map(|first| &first.1) {
-            Some(Type::Truth) => Wanted::Truth,
-            Some(Type::Number) => Wanted::Number,
-            Some(other) => {
-                let message = format!("has {} here, expected a number, or true or false", other.in_words());
-                self.note(then, &message);
-                return None;
-            }
-            None => {
-                self.any(otherwise, depth);
-                return None;
-            }
+    fn choice(&mut self, condition: &IdedExpr, then: &IdedExpr, otherwise: &IdedExpr) -> Option<Read> {
+        let condition = self.of_kind(condition, &Kind::Truth);
+        let Some((first, kind)) = self.any(then) else {
+            self.any(otherwise);
+            return None;
         };
-        let second = self.of_type(otherwise, wanted, depth);
-        let (first, kind) = first?;
+        if let Kind::Text(_) = kind {
+            let found = in_words(&first, &kind);
+            return self.refuse(then, &format!("has {found} here, expected a number, or true or false"));
+        }
+        let second = self.of_kind(otherwise, &kind);
         Some((Expression::Choose(Box::new((condition?, first, second?))), kind))
+    }
+}
+
+fn in_words(expression: &Expression, kind: &Kind) -> String {
+    match kind {
+        Kind::Truth => "true or false".to_owned(),
+        Kind::Number => "a number".to_owned(),
+        Kind::Text(_) if expression.as_variable().is_some() => "a text".to_owned(),
+        Kind::Text(text) => format!("the text {:?}", text[0]),
     }
 }
 
@@ -324,8 +256,12 @@ pub(super) fn is_reserved(name: &str) -> bool {
     RESERVED.split(' ').any(|word| word == name)
 }
 
-/// Which texts are allowed, and which may have been meant by `text`.
-pub(super) fn values_allowed(values: &[String], text: &str) -> String {
-    let values: Vec<&str> = values.iter().map(String::as_str).collect();
-    format!("expected one of {}{}", values.join(", "), did_you_mean(text, &values))
+/// A text as a value of a variable that may have `values`, or else what is allowed and may have been meant.
+pub(super) fn text_value(values: &[String], text: &str) -> Result<Expression, String> {
+    let known: Vec<&str> = values.iter().map(String::as_str).collect();
+    let place = known.iter().position(|value| *value == text);
+    place.map(|place| Expression::Constant(place as f64)).ok_or_else(|| {
+        let guess = did_you_mean(text, &known);
+        format!("expected one of {}{guess}", known.join(", "))
+    })
 }

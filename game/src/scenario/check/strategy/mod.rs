@@ -3,7 +3,6 @@
 mod behaviour;
 mod cel;
 mod expression;
-mod formula;
 mod mode;
 mod program;
 mod reachability;

@@ -1,29 +1,44 @@
 //! Modes that can never be: decided over everything that their conditions can tell apart.
+//!
+//! A term is a fact, a variable, a measure or a count of mates. A number that is compared with constants has one value
+//! for each of them and for each gap between them. What cannot be had so, such as a comparison of two numbers, is a
+//! term of its own that may hold or not: more cases than there are, never fewer.
 
-use super::formula::{Formula, Formulas, given_to};
 use super::scope::Scope;
-use crate::strategy::{Expression, Program};
-use std::collections::BTreeSet;
+use crate::strategy::{Expression, Fact, Join, Kind, Measure, Program};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Of one mode no more cases than this are looked at; it is then taken to be possible.
 const MOST_CASES: usize = 200_000;
 /// Of a program no more steps than this are made; modes that are left are taken to be possible.
 const MOST_STEPS: usize = 50_000_000;
+/// Of a program with more terms than this all modes are taken to be possible.
+const MOST_TERMS: usize = u16::MAX as usize;
 
 /// Notes every mode whose conditions can never choose it. Parts of such a mode have had their say with it.
 pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
-    let formulas = Formulas::of(program);
-    let mut search = Search { formulas: &formulas, values: vec![None; formulas.values.len()], cases: 0, steps: 0 };
+    let mut terms = Terms { program, index: BTreeMap::new(), values: vec![] };
+    let conditions: Vec<Option<Expression>> =
+        program.modes.iter().map(|mode| mode.when.as_ref().map(|when| terms.formula(when))).collect();
+    let laws = laws().map(|law| terms.formula(&law));
+    if terms.values.len() > MOST_TERMS {
+        return;
+    }
+    for values in &mut terms.values {
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+    }
+    let tried = vec![None; terms.values.len()];
+    let mut search = Search { laws: &laws, values: terms.values, tried, cases: 0, steps: 0 };
     let mut never = vec![false; program.modes.len()];
     for (i, mode) in program.modes.iter().enumerate() {
         never[i] = mode.parent.is_some_and(|parent| never[parent]);
-        if never[i] || search.is_possible(&wanted(program, &formulas, i, true)) {
+        if never[i] || search.is_possible(&wanted(program, &conditions, i)) {
             continue;
         }
         never[i] = true;
         let before: Vec<&str> = before(program, i).map(|other| program.modes[other].name.as_str()).collect();
-        let alone = wanted(program, &formulas, i, false);
-        let why = if !alone.is_empty() && !search.is_possible(&alone) {
+        let why = if conditions[i].as_ref().is_some_and(|when| !search.is_possible(&[(when, true)])) {
             format!("its when never holds{}", only_ever(program, i))
         } else if before.is_empty() {
             "its when never holds in the modes that it is in".to_owned()
@@ -38,7 +53,7 @@ pub(super) fn check(scope: &mut Scope<'_>, program: &Program) {
 fn only_ever(program: &Program, mode: usize) -> String {
     let mut asked = BTreeSet::new();
     let when = program.modes[mode].when.iter();
-    when.for_each(|when| when.walk(&mut |part| asked.extend(Some(part).and_then(variable))));
+    when.for_each(|when| when.walk(&mut |part| asked.extend(part.as_variable())));
     let mut words = String::new();
     for index in asked {
         let Some(values) = given_to(program, index) else { continue };
@@ -50,68 +65,206 @@ fn only_ever(program: &Program, mode: usize) -> String {
     words
 }
 
-fn variable(part: &Expression) -> Option<u16> {
-    if let Expression::Variable(index) = part { Some(*index) } else { None }
-}
-
 /// The parts of the same mode that are asked before this one.
 fn before(program: &Program, mode: usize) -> impl Iterator<Item = usize> {
     (0..mode).filter(move |other| program.modes[*other].parent == program.modes[mode].parent)
 }
 
-/// What must hold, and what must not, for a mode to be; alone, only its own condition.
-fn wanted<'a>(program: &Program, formulas: &'a Formulas, mode: usize, in_place: bool) -> Vec<(&'a Formula, bool)> {
-    let condition = |mode: usize| formulas.of_modes[mode].as_ref();
-    let mut wanted: Vec<(&Formula, bool)> = condition(mode).map(|when| (when, true)).into_iter().collect();
-    let mut at = Some(mode).filter(|_| in_place);
+/// What must hold, and what must not, for a mode to be.
+fn wanted<'a>(program: &Program, conditions: &'a [Option<Expression>], mode: usize) -> Vec<(&'a Expression, bool)> {
+    let condition = |mode: usize| conditions[mode].as_ref();
+    let mut wanted = vec![];
+    let mut at = Some(mode);
     while let Some(mode) = at {
+        wanted.extend(condition(mode).map(|when| (when, true)));
         wanted.extend(before(program, mode).filter_map(condition).map(|when| (when, false)));
         at = program.modes[mode].parent;
-        wanted.extend(at.and_then(condition).map(|when| (when, true)));
     }
-    wanted.extend(formulas.laws.iter().map(|law| (law, true)));
     wanted
+}
+
+/// Facts that say something about each other.
+fn laws() -> [Expression; 3] {
+    let fact = Expression::Fact;
+    let join = |join, a, b| Expression::Join(join, Box::new((a, b)));
+    let implies = |a, b| join(Join::Or, Expression::Not(Box::new(a)), b);
+    let some_in_zone = join(Join::More, fact(Fact::EnemiesInZone), Expression::Constant(0.0));
+    [
+        join(Join::Equal, fact(Fact::EnemyInZone), some_in_zone),
+        implies(fact(Fact::HasFlag), fact(Fact::EnemyFlagTaken)),
+        implies(fact(Fact::MateHasFlag), fact(Fact::EnemyFlagTaken)),
+    ]
+}
+
+/// The terms of a program's conditions.
+struct Terms<'a> {
+    program: &'a Program,
+    /// By how they print.
+    index: BTreeMap<String, usize>,
+    /// For each term, one value for everything that can be told apart.
+    values: Vec<Vec<f64>>,
+}
+
+impl Terms<'_> {
+    /// A condition in which terms stand as variables, by their index here; those that are new are added.
+    fn formula(&mut self, condition: &Expression) -> Expression {
+        if let Some(value) = condition.constant() {
+            return Expression::Constant(value);
+        }
+        match condition {
+            Expression::Not(inner) => Expression::Not(Box::new(self.formula(inner))),
+            Expression::Join(join, sides) if self.joins_truths(*join, sides) => {
+                Expression::Join(*join, Box::new((self.formula(&sides.0), self.formula(&sides.1))))
+            }
+            Expression::Join(join, sides) => match (sides.0.constant(), sides.1.constant()) {
+                (None, Some(value)) if sides.0.asks() => {
+                    Expression::Join(*join, Box::new((self.compared(&sides.0, value), Expression::Constant(value))))
+                }
+                (Some(value), None) if sides.1.asks() => {
+                    Expression::Join(*join, Box::new((Expression::Constant(value), self.compared(&sides.1, value))))
+                }
+                _ => self.term(condition),
+            },
+            Expression::Choose(parts) => {
+                let (condition, then, otherwise) = &**parts;
+                Expression::Choose(Box::new((self.formula(condition), self.formula(then), self.formula(otherwise))))
+            }
+            _ => self.term(condition),
+        }
+    }
+
+    /// Whether two truths are joined; of a constant alone nobody can say what it is.
+    fn joins_truths(&self, join: Join, sides: &(Expression, Expression)) -> bool {
+        let is_truth = |side| self.program.kind_of(side) == Kind::Truth;
+        matches!(join, Join::And | Join::Or) || is_truth(&sides.0) || is_truth(&sides.1)
+    }
+
+    fn term(&mut self, term: &Expression) -> Expression {
+        let next = self.values.len();
+        let index = *self.index.entry(format!("{term:?}")).or_insert(next);
+        if index == next {
+            self.values.push(self.values_of(term).0);
+        }
+        Expression::Variable(index as u16)
+    }
+
+    /// A term beside a constant.
+    fn compared(&mut self, term: &Expression, constant: f64) -> Expression {
+        let (values, is_whole) = self.values_of(term);
+        let variable = self.term(term);
+        if let (Some(is_whole), Some(index)) = (is_whole, variable.as_variable()) {
+            let above = constant.next_up().max(if is_whole { constant.floor() + 1.0 } else { f64::NEG_INFINITY });
+            let is_possible = |value: &f64| *value >= values[0] && (!is_whole || value.fract() == 0.0);
+            self.values[usize::from(index)].extend([constant, above].into_iter().filter(is_possible));
+        }
+        variable
+    }
+
+    /// The values that a term may have. Of a number that is the least, and it is told whether it is whole.
+    fn values_of(&self, term: &Expression) -> (Vec<f64>, Option<bool>) {
+        let number = |least, is_whole| (vec![least], Some(is_whole));
+        match term {
+            Expression::Fact(fact) if !fact.is_truth() => number(0.0, fact.is_whole()),
+            Expression::Measure(Measure::Closing, _) => number(f64::NEG_INFINITY, false),
+            Expression::Measure(Measure::Distance, _) => number(0.0, false),
+            Expression::Mates(_) => number(0.0, true),
+            Expression::Variable(index) => {
+                match (given_to(self.program, *index), &self.program.variables[usize::from(*index)].kind) {
+                    (Some(values), _) => (values, None),
+                    (None, Kind::Number) => number(f64::NEG_INFINITY, false),
+                    (None, Kind::Truth) => (vec![0.0, 1.0], None),
+                    (None, Kind::Text(texts)) => ((0..texts.len()).map(|text| text as f64).collect(), None),
+                }
+            }
+            _ => (vec![0.0, 1.0], None),
+        }
+    }
+}
+
+/// The values that a variable ever has, if only constants are given to it.
+fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
+    let entered = program.modes.iter().flat_map(|mode| &mode.enter);
+    let ruled = program.rules.iter().flat_map(|rule| &rule.set);
+    let set = entered.chain(ruled).map(|(variable, value)| (*variable, value));
+    let posts = program.behaviours.iter().flat_map(|behaviour| &behaviour.posts);
+    let set = set.chain(posts.map(|post| (post.variable, &post.value)));
+    let mut values = vec![program.variables[usize::from(variable)].initial];
+    for (_, value) in set.filter(|(index, _)| *index == variable) {
+        values.push(value.constant()?);
+    }
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    Some(values)
 }
 
 /// A search through the cases that conditions can tell apart.
 struct Search<'a> {
-    formulas: &'a Formulas,
+    laws: &'a [Expression],
+    /// For each term, the values that it may have.
+    values: Vec<Vec<f64>>,
     /// For each term, the value that is tried.
-    values: Vec<Option<f64>>,
+    tried: Vec<Option<f64>>,
     cases: usize,
     steps: usize,
 }
 
 impl Search<'_> {
     /// Whether there is a case in which all that is wanted holds; `true` as well where there are too many.
-    fn is_possible(&mut self, wanted: &[(&Formula, bool)]) -> bool {
+    fn is_possible(&mut self, wanted: &[(&Expression, bool)]) -> bool {
+        let laws = self.laws.iter().map(|law| (law, true));
         self.cases = 0;
-        self.values.fill(None);
-        self.is_possible_from(wanted)
+        self.tried.fill(None);
+        self.is_possible_from(&wanted.iter().copied().chain(laws).collect::<Vec<_>>())
     }
 
-    fn is_possible_from(&mut self, wanted: &[(&Formula, bool)]) -> bool {
+    fn is_possible_from(&mut self, wanted: &[(&Expression, bool)]) -> bool {
         self.cases += 1;
         if self.cases > MOST_CASES || self.steps > MOST_STEPS {
             return true;
         }
         let mut open = None;
         for (formula, must) in wanted {
-            match formula.holds(&self.values, &mut self.steps) {
-                Some(holds) if holds != *must => return false,
-                Some(_) => {}
-                None => open = open.or(Some(*formula)),
+            match self.value(formula) {
+                Ok(value) if (value != 0.0) != *must => return false,
+                Ok(_) => {}
+                Err(term) => open = open.or(Some(term)),
             }
         }
-        let Some(open) = open else { return true };
-        let term = open.open_term(&self.values).expect("a formula that is open has an open term");
-        for value in &self.formulas.values[term] {
-            self.values[term] = Some(*value);
+        let Some(term) = open else { return true };
+        for i in 0..self.values[term].len() {
+            self.tried[term] = Some(self.values[term][i]);
             if self.is_possible_from(wanted) {
                 return true;
             }
         }
-        self.values[term] = None;
+        self.tried[term] = None;
         false
+    }
+
+    /// The value of a formula, if those that are tried decide it, or else a term to try. Counts its steps.
+    fn value(&mut self, formula: &Expression) -> Result<f64, usize> {
+        self.steps += 1;
+        match formula {
+            Expression::Constant(value) => Ok(*value),
+            Expression::Variable(term) => self.tried[usize::from(*term)].ok_or(usize::from(*term)),
+            Expression::Not(inner) => self.value(inner).map(|value| f64::from(u8::from(value == 0.0))),
+            Expression::Join(join, sides) => {
+                let (a, b) = (self.value(&sides.0), self.value(&sides.1));
+                match join {
+                    // One side may decide alone.
+                    Join::And if [a, b].contains(&Ok(0.0)) => Ok(0.0),
+                    Join::Or if [a, b].contains(&Ok(1.0)) => Ok(1.0),
+                    _ => Ok(join.of(a?, b?)),
+                }
+            }
+            Expression::Choose(parts) => match self.value(&parts.0) {
+                Ok(holds) => self.value(if holds == 0.0 { &parts.2 } else { &parts.1 }),
+                Err(open) => {
+                    let (then, otherwise) = (self.value(&parts.1), self.value(&parts.2));
+                    then.ok().filter(|_| then == otherwise).ok_or(open)
+                }
+            },
+            _ => unreachable!("terms stand as variables"),
+        }
     }
 }

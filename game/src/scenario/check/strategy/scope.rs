@@ -1,11 +1,11 @@
 //! What the parts of a program are checked with: the file, the variables, and where mistakes are noted.
 
 use super::cel;
-use super::expression::{Reader, Wanted};
+use super::expression::Reader;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
 use crate::scenario::read::Document;
-use crate::strategy::{Expression, Parameter, Program, Variable};
+use crate::strategy::{Expression, Kind, Parameter, Program, Variable};
 use serde_json::Value as Json;
 
 /// A program file that is being checked. Values in it are named by their paths, as in `mode.1.when`.
@@ -15,11 +15,23 @@ pub(super) struct Scope<'a> {
     pub(super) variables: &'a [Variable],
 }
 
-impl Scope<'_> {
+impl<'a> Scope<'a> {
+    /// The variable called `name`, and its index.
+    pub(super) fn variable(&self, name: &str) -> Option<(u16, &'a Variable)> {
+        let index = self.variables.iter().position(|variable| variable.name == name)?;
+        Some((index as u16, &self.variables[index]))
+    }
+
     /// Notes that the value at `path` is wrong; the message is about its key.
     pub(super) fn note(&mut self, path: &str, message: &str) {
         let message = format!("{} {message}", key_of(path));
         self.diagnostics.note(self.document.at(path), message);
+    }
+
+    /// The same, for who can do nothing without the value.
+    pub(super) fn refuse<T>(&mut self, path: &str, message: &str) -> Option<T> {
+        self.note(path, message);
+        None
     }
 
     /// Notes that there is no value at `path`, unless there was one of another type.
@@ -39,11 +51,11 @@ impl Scope<'_> {
 
     /// The condition at `path`, if it is one.
     pub(super) fn condition(&mut self, path: &str, text: Option<&String>) -> Option<Expression> {
-        self.expression(path, text?, Wanted::Truth)
+        self.expression(path, text?, &Kind::Truth)
     }
 
     /// The expression at `path`, if it is one of the type that is wanted.
-    pub(super) fn expression(&mut self, path: &str, text: &str, wanted: Wanted) -> Option<Expression> {
+    pub(super) fn expression(&mut self, path: &str, text: &str, wanted: &Kind) -> Option<Expression> {
         // In the place of a value that is wrong stands another, which nobody typed.
         let given = self.document.is_sound(path).then_some(text)?;
         let parsed = cel::parse(self.diagnostics, key_of(path), self.document.at(path), given)?;
@@ -54,12 +66,11 @@ impl Scope<'_> {
     pub(super) fn parameter(&mut self, path: &str, given: &Json, about: &Json) -> Option<Parameter> {
         let range = (about["minimum"].as_f64()?, about["maximum"].as_f64()?);
         let expression = match given.as_str() {
-            Some(text) => self.expression(path, text, Wanted::Number)?,
+            Some(text) => self.expression(path, text, &Kind::Number)?,
             None => Expression::Constant(given.as_f64()?),
         };
         if let Some(value) = expression.constant().filter(|value| !(range.0..=range.1).contains(value)) {
-            self.note(path, &format!("is {value}, expected {} to {}", range.0, range.1));
-            return None;
+            return self.refuse(path, &format!("is {value}, expected {} to {}", range.0, range.1));
         }
         Some(Parameter { expression, range })
     }

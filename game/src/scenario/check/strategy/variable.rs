@@ -1,6 +1,6 @@
 //! Variables of a strategy, checked, and values that are given to them.
 
-use super::expression::{CALLS, Wanted, is_reserved, values_allowed};
+use super::expression::{CALLS, is_reserved, text_value};
 use super::scope::Scope;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::guess::did_you_mean;
@@ -49,69 +49,56 @@ fn is_free(scope: &mut Scope<'_>, path: &str, name: &str) -> bool {
     if !scope.diagnostics.is_name(at, "variable", name) {
         return false;
     }
-    let taken = if name.starts_with(|c: char| c.is_ascii_digit()) {
-        "begins with a digit"
-    } else if is_reserved(name) {
-        "is a word that CEL reserves"
-    } else if Fact::by_name(name).is_some() {
-        "is a fact"
-    } else if Place::by_name(name).is_some() {
-        "is a place or a boat"
-    } else if CALLS.contains(&name) || Measure::by_name(name).is_some() {
-        "is a call"
-    } else {
-        return true;
-    };
-    scope.diagnostics.note(at, format!("variable is {name:?}, which {taken}, expected another name"));
-    false
+    let taken = [
+        (name.starts_with(|c: char| c.is_ascii_digit()), "begins with a digit"),
+        (is_reserved(name), "is a word that CEL reserves"),
+        (Fact::by_name(name).is_some(), "is a fact"),
+        (Place::by_name(name).is_some(), "is a place or a boat"),
+        (CALLS.contains(&name) || Measure::by_name(name).is_some(), "is a call"),
+    ];
+    let taken = taken.into_iter().find(|(is_so, _)| *is_so);
+    if let Some((_, taken)) = taken {
+        scope.diagnostics.note(at, format!("variable is {name:?}, which {taken}, expected another name"));
+    }
+    taken.is_none()
 }
 
 /// What a variable can be, and what it is at first.
 fn kind_of(scope: &mut Scope<'_>, path: &str, table: &raw::VariableTable) -> Option<(Kind, f64)> {
     let initial_path = format!("{path}.initial");
-    let Some(values) = &table.values else {
-        return match &table.initial {
-            Some(raw::Value::Truth(is)) => Some((Kind::Truth, f64::from(u8::from(*is)))),
-            Some(raw::Value::Number(number)) => Some((Kind::Number, *number)),
-            Some(raw::Value::Text(text)) => {
-                scope.note(
-                    &initial_path,
-                    &format!("is the string {text:?}, expected its values as well: values = [...]"),
-                );
-                None
-            }
-            None => {
-                if scope.document.is_sound(&initial_path) {
-                    let expected = "the texts it may have, or initial, a number or a truth";
-                    scope.note_missing(&format!("{path}.values"), expected);
-                }
-                None
-            }
-        };
-    };
-    let texts: Vec<String> = values.iter().map(|value| value.0.clone()).collect();
+    let texts: Vec<String> = table.values.iter().flatten().map(|value| value.0.clone()).collect();
     for (i, text) in texts.iter().enumerate().filter(|(i, text)| !text.is_empty() && texts[..*i].contains(text)) {
         scope.note(&format!("{path}.values.{i}"), &format!("has {text:?} again, expected different ones"));
     }
-    let initial = match &table.initial {
-        None => 0,
-        Some(raw::Value::Text(text)) => text_of(scope, &initial_path, &texts, text)?,
-        Some(other) => {
-            let found = in_words(other);
-            scope.note(&initial_path, &format!("is {found}, expected one of {}", texts.join(", ")));
-            return None;
+    let has_values = table.values.is_some();
+    match &table.initial {
+        None if has_values => Some((Kind::Text(texts), 0.0)),
+        None => {
+            if scope.document.is_sound(&initial_path) {
+                let expected = "the texts it may have, or initial, a number or a truth";
+                scope.note_missing(&format!("{path}.values"), expected);
+            }
+            None
         }
-    };
-    Some((Kind::Text(texts), initial as f64))
+        Some(raw::Value::Truth(is)) if !has_values => Some((Kind::Truth, f64::from(u8::from(*is)))),
+        Some(raw::Value::Number(number)) if !has_values => Some((Kind::Number, *number)),
+        Some(raw::Value::Text(text)) if has_values => {
+            let initial = text_at(scope, &initial_path, &texts, text)?.constant()?;
+            Some((Kind::Text(texts), initial))
+        }
+        Some(raw::Value::Text(text)) => {
+            scope.refuse(&initial_path, &format!("is the string {text:?}, expected its values as well: values = [...]"))
+        }
+        Some(other) => {
+            scope.refuse(&initial_path, &format!("is {}, expected one of {}", in_words(other), texts.join(", ")))
+        }
+    }
 }
 
-/// Which of a variable's values a text is.
-fn text_of(scope: &mut Scope<'_>, path: &str, values: &[String], text: &str) -> Option<usize> {
-    let index = values.iter().position(|value| value == text);
-    if index.is_none() {
-        scope.note(path, &format!("is {text:?}, {}", values_allowed(values, text)));
-    }
-    index
+/// The text at `path` as a value of a variable that may have `values`.
+fn text_at(scope: &mut Scope<'_>, path: &str, values: &[String], text: &str) -> Option<Expression> {
+    let wrong = |allowed| scope.refuse(path, &format!("is {text:?}, {allowed}"));
+    text_value(values, text).map_or_else(wrong, Some)
 }
 
 fn in_words(given: &raw::Value) -> String {
@@ -124,44 +111,31 @@ fn in_words(given: &raw::Value) -> String {
 
 /// Checks the values that are given to variables at `path`.
 pub(super) fn set(scope: &mut Scope<'_>, path: &str, given: &raw::Values) -> Vec<(u16, Expression)> {
-    let mut set = vec![];
-    for (name, value) in given {
-        let path = format!("{path}.{name}");
-        match scope.variables.iter().position(|variable| variable.name == *name) {
-            Some(index) => set.extend(assigned(scope, &path, index, value).map(|value| (index as u16, value))),
-            None => unknown(scope, &path, name),
-        }
-    }
-    set
+    given.iter().filter_map(|(name, value)| assigned(scope, &format!("{path}.{name}"), name, value)).collect()
 }
 
-fn unknown(scope: &mut Scope<'_>, path: &str, name: &str) {
-    let known: Vec<&str> = scope.variables.iter().map(|variable| variable.name.as_str()).collect();
-    let expected = match known.as_slice() {
-        [] => "a name from [variables], which has none".to_owned(),
-        _ => format!("one of the variables {}{}", known.join(", "), did_you_mean(name, &known)),
+fn assigned(scope: &mut Scope<'_>, path: &str, name: &str, given: &raw::Value) -> Option<(u16, Expression)> {
+    let Some((index, variable)) = scope.variable(name) else {
+        let known: Vec<&str> = scope.variables.iter().map(|variable| variable.name.as_str()).collect();
+        let expected = match known.as_slice() {
+            [] => "a name from [variables], which has none".to_owned(),
+            _ => format!("one of the variables {}{}", known.join(", "), did_you_mean(name, &known)),
+        };
+        return scope.refuse(path, &format!("is unknown, expected {expected}"));
     };
-    scope.note(path, &format!("is unknown, expected {expected}"));
-}
-
-fn assigned(scope: &mut Scope<'_>, path: &str, variable: usize, given: &raw::Value) -> Option<Expression> {
-    let kind = &scope.variables[variable].kind;
-    match (kind, given) {
-        (Kind::Text(values), raw::Value::Text(text)) => {
-            text_of(scope, path, values, text).map(|index| Expression::Constant(index as f64))
-        }
-        (Kind::Truth, raw::Value::Truth(is)) => Some(Expression::Constant(f64::from(u8::from(*is)))),
-        (Kind::Number, raw::Value::Number(number)) => Some(Expression::Constant(*number)),
-        (Kind::Truth, raw::Value::Text(text)) => scope.expression(path, text, Wanted::Truth),
-        (Kind::Number, raw::Value::Text(text)) => scope.expression(path, text, Wanted::Number),
+    let value = match (&variable.kind, given) {
+        (Kind::Text(values), raw::Value::Text(text)) => text_at(scope, path, values, text)?,
+        (Kind::Truth, raw::Value::Truth(is)) => Expression::truth(*is),
+        (Kind::Number, raw::Value::Number(number)) => Expression::Constant(*number),
+        (kind, raw::Value::Text(text)) => scope.expression(path, text, kind)?,
         (kind, other) => {
             let expected = match kind {
                 Kind::Text(values) => format!("one of {}", values.join(", ")),
                 Kind::Truth => "true, false or an expression".to_owned(),
                 Kind::Number => "a finite number or an expression".to_owned(),
             };
-            scope.note(path, &format!("is {}, expected {expected}", in_words(other)));
-            None
+            return scope.refuse(path, &format!("is {}, expected {expected}", in_words(other)));
         }
-    }
+    };
+    Some((index, value))
 }
