@@ -1,26 +1,38 @@
 //! Behaviours: what a boat's helm weighs against each other, and when.
 
 use super::{Expression, Parameter, Task};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
-/// A behaviour of a strategy.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A behaviour of a strategy. In a file it has a key for each [`Moment`] and for each of its task's as well.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Behaviour {
     /// Its name, unique in the program.
+    #[schemars(skip)]
     pub name: String,
-    /// Whether it may run in each mode, by mode; for parents as for leaves.
+    /// The modes in which it may run; a mode means it and all its parts. Default all modes.
+    #[schemars(rename = "in", with = "Option<Vec<String>>")]
+    #[schemars(length(min = 1), extend("x-expected" = "at least one mode"))]
     pub modes: Vec<bool>,
-    /// It runs only while this holds.
+    /// It runs only while this expression is true. Default always.
+    #[schemars(with = "Option<String>")]
     pub when: Option<Expression>,
-    /// Its priority weight, 0 to 1000.
+    /// How much it counts against others; no more than the op_region and the avoid_collision on guard have. Those and
+    /// avoid_obstacle have 300 by default.
+    #[schemars(range(min = 0, max = 1000), extend("default" = 100))]
     pub weight: Parameter,
-    /// It is complete after running for this long, s.
+    /// It is complete after running for this long, s. Default never.
+    #[schemars(range(min = 0, max = 86400))]
     pub duration_s: Option<Parameter>,
     /// Whether it starts again after it was complete.
+    #[schemars(extend("default" = false))]
     pub perpetual: bool,
     /// What it posts, and when.
+    #[schemars(skip)]
     pub posts: Vec<Post>,
     /// What it does.
+    #[schemars(skip)]
     pub task: Task,
 }
 
@@ -35,8 +47,9 @@ pub struct Post {
     pub value: Expression,
 }
 
-/// A moment of a behaviour's life.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A moment of a behaviour's life. It is called by the key for what is posted then, such as `on_run`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
+#[strum(serialize_all = "snake_case", prefix = "on_")]
 pub enum Moment {
     /// It begins to run.
     Run,

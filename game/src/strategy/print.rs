@@ -121,8 +121,7 @@ fn constant(value: f64, kind: &Kind) -> (String, Precedence) {
 
 impl Place {
     /// The place as it would be typed.
-    #[must_use]
-    pub fn text(&self) -> String {
+    fn text(&self) -> String {
         match self {
             Place::At(at) => format!("[{}, {}]", at.east, at.north),
             Place::Point(name) => name.clone(),

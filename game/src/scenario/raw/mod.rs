@@ -14,7 +14,7 @@ pub(super) use boat::{Boat, SettingAndThrust, Thruster};
 pub(super) use field::{Circle, Field, Flag, Obstacle, Side};
 pub(super) use game::{Fleet, Game, Spawn, Team, Vehicle};
 pub(super) use sea::{Current, Gusts, Sea, Spectrum, Spreading, Waves, Wind};
-pub(super) use strategy::{Common, Rule, Strategy, Value, Values, Variable, VariableTable};
+pub(super) use strategy::{Rule, Strategy, Value, Values, Variable, VariableTable};
 
 use super::diagnostics::NAME_PATTERN;
 use schemars::JsonSchema;

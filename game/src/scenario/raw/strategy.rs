@@ -1,7 +1,7 @@
 //! A strategy file as typed.
 
 use super::{FilePath, Name};
-use crate::strategy::{Assignment, Helm, Parameter, Task};
+use crate::strategy::{self, Assignment, Helm, Moment, Named, Task};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
@@ -106,47 +106,7 @@ pub(crate) struct Rule {
     pub(crate) set: Values,
 }
 
-/// What every behaviour may say.
-#[derive(Debug, Deserialize, JsonSchema)]
-pub(crate) struct Common {
-    /// The modes in which it may run; a mode means it and all its parts. Default all modes.
-    #[schemars(length(min = 1), extend("x-expected" = "at least one mode"))]
-    pub(crate) r#in: Option<Vec<String>>,
-    /// It runs only while this expression is true. Default always.
-    pub(crate) when: Option<String>,
-    /// How much it counts against others; no more than the op_region and the avoid_collision on guard have. Those and
-    /// avoid_obstacle have 300 by default.
-    #[schemars(with = "Parameter", range(min = 0, max = 1000), extend("default" = 100))]
-    #[expect(dead_code, reason = "read as a parameter, by its schema")]
-    pub(crate) weight: Json,
-    /// It is complete after running for this long, s. Default never.
-    #[schemars(with = "Option<Parameter>", range(min = 0, max = 86400))]
-    #[expect(dead_code, reason = "read as a parameter, by its schema")]
-    pub(crate) duration_s: Option<Json>,
-    /// Whether it starts again after it was complete.
-    #[schemars(extend("default" = false))]
-    pub(crate) perpetual: bool,
-    /// Values given to variables when it begins to run.
-    #[schemars(extend("default" = {}))]
-    pub(crate) on_run: Values,
-    /// Values given to variables when it stops running.
-    #[schemars(extend("default" = {}))]
-    pub(crate) on_idle: Values,
-    /// Values given to variables when it begins to influence the helm.
-    #[schemars(extend("default" = {}))]
-    pub(crate) on_active: Values,
-    /// Values given to variables when it stops doing so.
-    #[schemars(extend("default" = {}))]
-    pub(crate) on_inactive: Values,
-    /// Values given to variables when it reaches one of its points, or its time.
-    #[schemars(extend("default" = {}))]
-    pub(crate) on_reach: Values,
-    /// Values given to variables when it is complete.
-    #[schemars(extend("default" = {}))]
-    pub(crate) on_complete: Values,
-}
-
-/// A behaviour: the keys of [`Common`], and those of its kind, which [`Task`] declares.
+/// A behaviour: the keys of [`strategy::Behaviour`], one for each [`Moment`], and those of its kind, which [`Task`] declares.
 #[derive(Debug, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Behaviour(pub(crate) Json);
@@ -159,7 +119,14 @@ impl JsonSchema for Behaviour {
         "Behaviour".into()
     }
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let common = Common::json_schema(generator).to_value();
+        let mut common = strategy::Behaviour::json_schema(generator).to_value();
+        for moment in Moment::all() {
+            let mut values = generator.subschema_for::<Values>().to_value();
+            let when = moment.meaning().replacen("It", "it", 1);
+            values["description"] = format!("Values given to variables when {when}").into();
+            values["default"] = json!({});
+            common["properties"][moment.name()] = values;
+        }
         let tasks = Task::json_schema(generator).to_value();
         let tasks = tasks["oneOf"].as_array().into_iter().flatten().filter_map(|task| task["properties"].as_object());
         let mut kinds = vec![];

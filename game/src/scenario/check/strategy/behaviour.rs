@@ -5,9 +5,10 @@ use super::variable::set;
 use crate::frame::Ned;
 use crate::scenario::Kind;
 use crate::scenario::guess::did_you_mean;
-use crate::scenario::raw::Common;
+use crate::scenario::raw;
 use crate::scenario::schema::declared;
 use crate::strategy::{Behaviour, Boat, Mode, Moment, Named, Parameter, Place, Post, Task};
+use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 
 /// The most behaviours of a program.
@@ -32,10 +33,9 @@ pub(super) fn behaviours(scope: &mut Scope<'_>, modes: Option<&[Mode]>) -> Vec<B
 fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> Option<Behaviour> {
     let path = format!("behaviour.{name}");
     scope.diagnostics.is_name(scope.document.at(&path), "behaviour", name);
-    let common: Common = serde_json::from_value(given.clone()).ok()?;
-    let modes = modes.map(|modes| in_modes(scope, &path, modes, common.r#in.as_deref())).unwrap_or_default();
-    let when = scope.condition(&format!("{path}.when"), common.when.as_ref());
-    let posts = posts(scope, &path, &common);
+    let modes = modes.map(|modes| in_modes(scope, &path, modes, given["in"].as_array())).unwrap_or_default();
+    let when = scope.condition(&format!("{path}.when"), given["when"].as_str());
+    let posts = posts(scope, &path, given);
     let mut kinds = declared(Kind::Strategy)["definitions"].as_object()?.iter();
     let (variant, about) = kinds.find(|(_, about)| about["properties"]["kind"]["const"] == given["kind"])?;
     let mut keys = checked_table(scope, &path, given.as_object()?, about);
@@ -47,7 +47,16 @@ fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) 
     let weight = parameter(&keys, "weight")?;
     let duration_s = parameter(&keys, "duration_s");
     let task: Task = serde_json::from_value(json!({ variant: keys })).ok()?;
-    Some(Behaviour { name: name.to_owned(), modes, when, weight, duration_s, perpetual: common.perpetual, posts, task })
+    Some(Behaviour {
+        name: name.to_owned(),
+        modes,
+        when,
+        weight,
+        duration_s,
+        perpetual: given["perpetual"].as_bool()?,
+        posts,
+        task,
+    })
 }
 
 /// The keys of a table with their values as the checked types have them; those that are wrong are noted and left out.
@@ -98,15 +107,13 @@ fn check_order(scope: &mut Scope<'_>, path: &str, keys: &Map<String, Json>) {
 
 /// The shape that a loiter goes round, by whichever of its keys is given.
 fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Json> {
-    let (polygon, ellipse) = (format!("{path}.polygon"), format!("{path}.ellipse"));
-    match (scope.document.has(&polygon), scope.document.has(&ellipse)) {
-        (true, false) => keys.remove("polygon").map(|corners| json!({ "Corners": corners })),
-        (false, true) => keys.remove("ellipse").map(|ellipse| json!({ "Ellipse": ellipse })),
-        (true, true) => {
-            scope.note(&ellipse, "is given with polygon, expected one of them");
-            None
-        }
-        (false, false) => {
+    let given = ["polygon", "ellipse"].map(|key| scope.document.has(&format!("{path}.{key}")));
+    let ellipse = format!("{path}.ellipse");
+    match given {
+        [true, false] => keys.remove("polygon").map(|corners| json!({ "Corners": corners })),
+        [false, true] => keys.remove("ellipse").map(|ellipse| json!({ "Ellipse": ellipse })),
+        [true, true] => scope.refuse(&ellipse, "is given with polygon, expected one of them"),
+        [false, false] => {
             scope.note_missing(&ellipse, "it or polygon");
             None
         }
@@ -114,11 +121,12 @@ fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
 }
 
 /// The modes in which a behaviour may run, by mode.
-fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&[String]>) -> Vec<bool> {
+fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&Vec<Json>>) -> Vec<bool> {
     let Some(given) = given else { return vec![true; modes.len()] };
     let mut allowed = vec![false; modes.len()];
-    for (i, name) in given.iter().enumerate().filter(|(_, name)| !name.is_empty()) {
-        match modes.iter().position(|mode| mode.name == *name) {
+    let given = given.iter().map(|name| name.as_str().unwrap_or_default());
+    for (i, name) in given.enumerate().filter(|(_, name)| !name.is_empty()) {
+        match modes.iter().position(|mode| mode.name == name) {
             Some(mode) => allowed[mode] = true,
             None => {
                 let names: Vec<&str> = modes.iter().map(|mode| mode.name.as_str()).collect();
@@ -135,19 +143,12 @@ fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&[S
     allowed
 }
 
-fn posts(scope: &mut Scope<'_>, path: &str, common: &Common) -> Vec<Post> {
-    let moments = [
-        (Moment::Run, "on_run", &common.on_run),
-        (Moment::Idle, "on_idle", &common.on_idle),
-        (Moment::Active, "on_active", &common.on_active),
-        (Moment::Inactive, "on_inactive", &common.on_inactive),
-        (Moment::Reach, "on_reach", &common.on_reach),
-        (Moment::Complete, "on_complete", &common.on_complete),
-    ];
+fn posts(scope: &mut Scope<'_>, path: &str, given: &Json) -> Vec<Post> {
     let mut posts = vec![];
-    for (at, key, given) in moments {
-        let set = set(scope, &format!("{path}.{key}"), given);
-        posts.extend(set.into_iter().map(|(variable, value)| Post { at, variable, value }));
+    for at in Moment::all() {
+        let values = raw::Values::deserialize(&given[at.name()]).unwrap_or_default();
+        let set = set(scope, &format!("{path}.{}", at.name()), &values);
+        posts.extend(set.into_iter().map(|(variable, value)| Post { at: *at, variable, value }));
     }
     posts
 }

@@ -115,40 +115,25 @@ fn offsets(source: &str, start: usize, value: &str) -> Vec<usize> {
     }
     let mut offsets = vec![];
     for c in value.chars() {
-        let rest = source.get(at..).unwrap_or_default();
-        let (skipped, written) = match rest.strip_prefix('\\') {
-            Some(escape) if has_escapes => escaped(escape),
-            _ if rest.starts_with("\r\n") && c == '\n' => (0, 2),
-            _ => (0, c.len_utf8()),
-        };
-        at += skipped;
+        let mut rest = source.get(at..).unwrap_or_default();
+        // A backslash at the end of a line stands for nothing, as does the white space after it.
+        let continued = |escape: &&str| has_escapes && escape.starts_with(char::is_whitespace);
+        while let Some(escape) = rest.strip_prefix('\\').filter(continued) {
+            rest = escape.trim_start();
+        }
+        at = source.len() - rest.len();
         offsets.extend(std::iter::repeat_n(start + at, c.len_utf8()));
-        at += written;
+        at += match rest.as_bytes() {
+            [b'\\', b'u', ..] if has_escapes => 6,
+            [b'\\', b'U', ..] if has_escapes => 10,
+            [b'\\', b'x', ..] if has_escapes => 4,
+            [b'\\', ..] if has_escapes => 2,
+            [b'\r', b'\n', ..] if c == '\n' => 2,
+            _ => c.len_utf8(),
+        };
     }
     offsets.push(start + at);
     offsets
-}
-
-/// How many bytes are left out, and how many then stand for one character, where a backslash precedes `escape`.
-fn escaped(escape: &str) -> (usize, usize) {
-    match escape.chars().next() {
-        Some('u') => (0, 6),
-        Some('U') => (0, 10),
-        Some('x') => (0, 4),
-        Some(c) if c.is_whitespace() => {
-            let left = escape.trim_start();
-            let skipped = 1 + escape.len() - left.len();
-            match left.strip_prefix('\\') {
-                Some(next) => {
-                    let (more, written) = escaped(next);
-                    (skipped + more, written)
-                }
-                None => (skipped, left.chars().next().map_or(0, char::len_utf8)),
-            }
-        }
-        Some(_) => (0, 2),
-        None => (0, 1),
-    }
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
 use crate::scenario::read::{self, Document};
 use crate::strategy::{Program, Strategy};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Reads and checks the strategy file at `path`, which is referred to from a place; it has no numbers that are drawn.
@@ -60,16 +61,13 @@ fn refuse_program(diagnostics: &mut Diagnostics, document: &Document<raw::Strate
 
 /// The programs of the roles that a file names; a file named twice is read once.
 fn roles(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>, given: &[raw::FilePath]) -> Vec<Program> {
-    let mut read: Vec<(PathBuf, Option<Program>)> = vec![];
+    let mut read: BTreeMap<PathBuf, Option<Program>> = BTreeMap::new();
     let mut roles = vec![];
     for (i, role) in given.iter().enumerate().filter(|(_, role)| !role.0.is_empty()) {
         let at = document.at(&format!("roles.{i}"));
         let path = diagnostics.sources.resolve(at, &role.0);
-        if !read.iter().any(|(known, _)| *known == path) {
-            let program = one_role(diagnostics, at, &role.0, &path);
-            read.push((path.clone(), program));
-        }
-        roles.extend(read.iter().find(|(known, _)| *known == path).and_then(|(_, program)| program.clone()));
+        let program = read.entry(path.clone()).or_insert_with(|| one_role(diagnostics, at, &role.0, &path));
+        roles.extend(program.clone());
     }
     roles
 }

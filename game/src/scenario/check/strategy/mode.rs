@@ -29,7 +29,7 @@ pub(super) fn modes(scope: &mut Scope<'_>) -> Option<Vec<Mode>> {
     check_conditions(scope, &modes);
     let is_tree = scope.document.is_sound("mode") && scope.diagnostics.faults() == faults;
     for (i, mode) in given.iter().enumerate() {
-        modes[i].when = scope.condition(&format!("mode.{i}.when"), mode.when.as_ref());
+        modes[i].when = scope.condition(&format!("mode.{i}.when"), mode.when.as_deref());
     }
     is_tree.then_some(modes)
 }

@@ -70,7 +70,7 @@ fn rule(scope: &mut Scope<'_>, rule: usize, given: &raw::Rule) -> Rule {
     }
     Rule {
         on: given.on.as_ref().and_then(|on| trigger(scope, &path("on"), on)),
-        when: scope.condition(&path("when"), given.when.as_ref()),
+        when: scope.condition(&path("when"), given.when.as_deref()),
         set: set(scope, &path("set"), &given.set),
     }
 }

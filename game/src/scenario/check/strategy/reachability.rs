@@ -116,15 +116,12 @@ impl Terms<'_> {
             Expression::Join(join, sides) if self.joins_truths(*join, sides) => {
                 Expression::Join(*join, Box::new((self.formula(&sides.0), self.formula(&sides.1))))
             }
-            Expression::Join(join, sides) => match (sides.0.constant(), sides.1.constant()) {
-                (None, Some(value)) if sides.0.asks() => {
-                    Expression::Join(*join, Box::new((self.compared(&sides.0, value), Expression::Constant(value))))
+            Expression::Join(join, sides) => {
+                match (self.compared(&sides.0, &sides.1), self.compared(&sides.1, &sides.0)) {
+                    (Some(left), Some(right)) => Expression::Join(*join, Box::new((left, right))),
+                    _ => self.term(condition),
                 }
-                (Some(value), None) if sides.1.asks() => {
-                    Expression::Join(*join, Box::new((Expression::Constant(value), self.compared(&sides.1, value))))
-                }
-                _ => self.term(condition),
-            },
+            }
             Expression::Choose(parts) => {
                 let (condition, then, otherwise) = &**parts;
                 Expression::Choose(Box::new((self.formula(condition), self.formula(then), self.formula(otherwise))))
@@ -140,24 +137,27 @@ impl Terms<'_> {
     }
 
     fn term(&mut self, term: &Expression) -> Expression {
-        let next = self.values.len();
-        let index = *self.index.entry(format!("{term:?}")).or_insert(next);
-        if index == next {
+        let index = *self.index.entry(format!("{term:?}")).or_insert(self.values.len());
+        if index == self.values.len() {
             self.values.push(self.values_of(term).0);
         }
         Expression::Variable(index as u16)
     }
 
-    /// A term beside a constant.
-    fn compared(&mut self, term: &Expression, constant: f64) -> Expression {
-        let (values, is_whole) = self.values_of(term);
-        let variable = self.term(term);
-        if let (Some(is_whole), Some(index)) = (is_whole, variable.as_variable()) {
+    /// One side of a comparison of a term with a constant, if it is one.
+    fn compared(&mut self, side: &Expression, other: &Expression) -> Option<Expression> {
+        if let Some(constant) = side.constant() {
+            return Some(Expression::Constant(constant));
+        }
+        let constant = other.constant().filter(|_| side.asks())?;
+        let variable = self.term(side);
+        if let (values, Some(is_whole)) = self.values_of(side) {
             let above = constant.next_up().max(if is_whole { constant.floor() + 1.0 } else { f64::NEG_INFINITY });
             let is_possible = |value: &f64| *value >= values[0] && (!is_whole || value.fract() == 0.0);
-            self.values[usize::from(index)].extend([constant, above].into_iter().filter(is_possible));
+            let index = usize::from(variable.as_variable()?);
+            self.values[index].extend([constant, above].into_iter().filter(is_possible));
         }
-        variable
+        Some(variable)
     }
 
     /// The values that a term may have. Of a number that is the least, and it is told whether it is whole.

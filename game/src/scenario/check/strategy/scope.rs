@@ -50,7 +50,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The condition at `path`, if it is one.
-    pub(super) fn condition(&mut self, path: &str, text: Option<&String>) -> Option<Expression> {
+    pub(super) fn condition(&mut self, path: &str, text: Option<&str>) -> Option<Expression> {
         self.expression(path, text?, &Kind::Truth)
     }
 
