@@ -277,7 +277,7 @@ impl Values for Situation {
     }
 
     fn mates(&self, condition: &Expression) -> f64 {
-        self.team_messages.count(self, condition)
+        self.team_messages.count(condition)
     }
 }
 

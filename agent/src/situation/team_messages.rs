@@ -2,7 +2,7 @@
 
 use game::VehicleId;
 use game::message::Word;
-use game::strategy::{Expression, Fact, Kind, Measure, Place, Program, Values, Variable};
+use game::strategy::{Expression, Kind, Program, Values, Variable};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// What one mate sent last.
@@ -53,15 +53,14 @@ impl TeamMessages {
     }
 
     /// How many mates there are for which `condition` holds; one that has not sent all that it asks for does not count.
-    /// `own` is what the own boat knows.
-    pub(crate) fn count(&self, own: &impl Values, condition: &Expression) -> f64 {
+    pub(crate) fn count(&self, condition: &Expression) -> f64 {
         let holds = |from: &&MateVariables| {
             let mut complete = true;
             condition.walk(&mut |part| {
                 let is_known = |index| from.values.get(usize::from(index)).is_some_and(Option::is_some);
                 complete &= part.as_variable().is_none_or(is_known);
             });
-            complete && condition.is_true(&Mate { from, own })
+            complete && condition.is_true(*from)
         };
         self.mates.iter().filter(holds).count() as f64
     }
@@ -77,23 +76,9 @@ fn key_of(variable: &Variable) -> u64 {
     xxh3_64(format!("{} {kind}", variable.name).as_bytes())
 }
 
-/// A mate's variables in the own situation.
-struct Mate<'a, V> {
-    from: &'a MateVariables,
-    own: &'a V,
-}
-
-impl<V: Values> Values for Mate<'_, V> {
-    fn fact(&self, fact: Fact) -> f64 {
-        self.own.fact(fact)
-    }
+/// Of mates nothing is known but their shared variables.
+impl Values for MateVariables {
     fn variable(&self, index: u16) -> f64 {
-        self.from.values.get(usize::from(index)).copied().flatten().unwrap_or(0.0)
-    }
-    fn measure(&self, measure: Measure, place: &Place) -> f64 {
-        self.own.measure(measure, place)
-    }
-    fn mates(&self, _condition: &Expression) -> f64 {
-        0.0
+        self.values.get(usize::from(index)).copied().flatten().unwrap_or(0.0)
     }
 }

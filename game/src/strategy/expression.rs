@@ -78,35 +78,28 @@ pub enum Join {
     Greatest,
 }
 
-/// What expressions are evaluated against.
+/// What expressions are evaluated against. What is not answered is 0.
 pub trait Values {
     /// The value of a fact.
-    fn fact(&self, fact: Fact) -> f64;
+    fn fact(&self, _fact: Fact) -> f64 {
+        0.0
+    }
     /// The value of a variable.
-    fn variable(&self, index: u16) -> f64;
+    fn variable(&self, _index: u16) -> f64 {
+        0.0
+    }
     /// What is asked about a place.
-    fn measure(&self, measure: Measure, place: &Place) -> f64;
+    fn measure(&self, _measure: Measure, _place: &Place) -> f64 {
+        0.0
+    }
     /// How many mates there are for which `condition` holds.
-    fn mates(&self, condition: &Expression) -> f64;
+    fn mates(&self, _condition: &Expression) -> f64 {
+        0.0
+    }
 }
 
 /// What constants are evaluated against.
-struct Nothing;
-
-impl Values for Nothing {
-    fn fact(&self, _: Fact) -> f64 {
-        0.0
-    }
-    fn variable(&self, _: u16) -> f64 {
-        0.0
-    }
-    fn measure(&self, _: Measure, _: &Place) -> f64 {
-        0.0
-    }
-    fn mates(&self, _: &Expression) -> f64 {
-        0.0
-    }
-}
+impl Values for () {}
 
 impl Expression {
     /// True or false.
@@ -151,7 +144,7 @@ impl Expression {
     pub fn constant(&self) -> Option<f64> {
         let mut asks = false;
         self.walk(&mut |part| asks |= part.asks());
-        (!asks).then(|| self.value(&Nothing))
+        (!asks).then(|| self.value(&()))
     }
 
     /// Whether it is itself a question about the game or a variable.

@@ -15,8 +15,12 @@ pub(super) const CALLS: [&str; 3] = ["min", "max", "mates"];
 /// A part of an expression, and of which kind it is. A text that is a constant has itself for its only value.
 type Read = (Expression, Kind);
 
-/// Reads an expression that was parsed.
-pub(super) struct Reader<'a, 'b> {
+/// The expression that was parsed for `key`, which must be a truth or a number as `wanted`; what is wrong is noted.
+pub(super) fn read(scope: &mut Scope<'_>, key: &str, parsed: &Parsed, wanted: &Kind) -> Option<Expression> {
+    Reader { scope, key, parsed, among_mates: false, depth: 0 }.of_kind(&parsed.root, wanted)
+}
+
+struct Reader<'a, 'b> {
     scope: &'a mut Scope<'b>,
     key: &'a str,
     parsed: &'a Parsed,
@@ -25,17 +29,7 @@ pub(super) struct Reader<'a, 'b> {
     depth: usize,
 }
 
-impl<'a, 'b> Reader<'a, 'b> {
-    /// For the expression that is given for `key`.
-    pub(super) fn new(scope: &'a mut Scope<'b>, key: &'a str, parsed: &'a Parsed) -> Reader<'a, 'b> {
-        Reader { scope, key, parsed, among_mates: false, depth: 0 }
-    }
-
-    /// The expression, which must be a truth or a number as `wanted`; what is wrong with it is noted.
-    pub(super) fn expression(&mut self, wanted: &Kind) -> Option<Expression> {
-        self.of_kind(&self.parsed.root, wanted)
-    }
-
+impl Reader<'_, '_> {
     /// Notes what is wrong with a part.
     fn refuse<T>(&mut self, part: &IdedExpr, message: &str) -> Option<T> {
         let message = format!("{} {message}", self.key);

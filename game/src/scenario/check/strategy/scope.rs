@@ -1,7 +1,6 @@
 //! What the parts of a program are checked with: the file, the variables, and where mistakes are noted.
 
-use super::cel;
-use super::expression::Reader;
+use super::{cel, expression};
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
 use crate::scenario::read::Document;
@@ -59,7 +58,7 @@ impl<'a> Scope<'a> {
         // In the place of a value that is wrong stands another, which nobody typed.
         let given = self.document.is_sound(path).then_some(text)?;
         let parsed = cel::parse(self.diagnostics, key_of(path), self.document.at(path), given)?;
-        Reader::new(self, key_of(path), &parsed).expression(wanted)
+        expression::read(self, key_of(path), &parsed, wanted)
     }
 
     /// The number or expression at `path`, within the range that the schema `about` gives.
