@@ -3,7 +3,6 @@
 use super::{Decided, HelmMind};
 use game::angle::compass_deg_from_rad;
 use game::helm::{BehaviourReport, FunctionReport, HelmReport, VariableReport};
-use game::strategy::Kind;
 
 impl HelmMind {
     pub(super) fn reported(&self) -> HelmReport {
@@ -28,15 +27,9 @@ impl HelmMind {
                 run_state: instance.run.state,
                 weight: instance.weight,
             });
-        let variables =
-            self.program.variables.iter().zip(&self.situation.variables).map(|(variable, value)| VariableReport {
-                name: variable.name.clone(),
-                value: match &variable.kind {
-                    Kind::Truth => (*value != 0.0).to_string(),
-                    Kind::Number => value.to_string(),
-                    Kind::Text(values) => values.get(*value as usize).cloned().unwrap_or_default(),
-                },
-            });
+        let variables = self.program.variables.iter().zip(&self.situation.variables).map(|(variable, value)| {
+            VariableReport { name: variable.name.clone(), value: variable.kind.text_of(*value) }
+        });
         HelmReport {
             vehicle: self.situation.model.me,
             at: self.situation.now,

@@ -20,6 +20,16 @@ impl Kind {
     pub fn of(is_truth: bool) -> Kind {
         if is_truth { Kind::Truth } else { Kind::Number }
     }
+
+    /// A value of this kind, as people write it.
+    #[must_use]
+    pub fn text_of(&self, value: f64) -> String {
+        match self {
+            Kind::Truth => (value != 0.0).to_string(),
+            Kind::Number => value.to_string(),
+            Kind::Text(texts) => texts.get(value as usize).cloned().unwrap_or_default(),
+        }
+    }
 }
 
 /// Something that is known of the game, as the own boat knows it.

@@ -54,7 +54,11 @@ impl Program {
     /// An expression where a value of `kind` stands and everything looser than `around` needs brackets.
     fn text(&self, expression: &Expression, kind: &Kind, around: Precedence) -> String {
         let (text, binds) = match expression {
-            Expression::Constant(value) => constant(*value, kind),
+            Expression::Constant(value) => match kind {
+                Kind::Text(_) => (format!("'{}'", kind.text_of(*value)), Precedence::Atom),
+                Kind::Number if *value < 0.0 => (kind.text_of(*value), Precedence::Sign),
+                _ => (kind.text_of(*value), Precedence::Atom),
+            },
             Expression::Variable(index) => (self.variables[usize::from(*index)].name.clone(), Precedence::Atom),
             Expression::Fact(fact) => (fact.name().to_owned(), Precedence::Atom),
             Expression::Measure(measure, place) => (format!("{}({})", measure.name(), place.text()), Precedence::Atom),
@@ -104,18 +108,6 @@ impl Program {
             _ => (binds, Precedence::Sign),
         };
         (format!("{} {sign} {}", self.text(left, &kind, at_left), self.text(right, &kind, at_right)), binds)
-    }
-}
-
-fn constant(value: f64, kind: &Kind) -> (String, Precedence) {
-    match kind {
-        Kind::Truth => ((if value == 0.0 { "false" } else { "true" }).to_owned(), Precedence::Atom),
-        Kind::Text(values) => {
-            let text = values.get(value as usize).map_or("", String::as_str);
-            (format!("'{text}'"), Precedence::Atom)
-        }
-        Kind::Number if value < 0.0 => (value.to_string(), Precedence::Sign),
-        Kind::Number => (value.to_string(), Precedence::Atom),
     }
 }
 
