@@ -33,7 +33,8 @@ pub(super) fn behaviours(scope: &mut Scope<'_>, modes: Option<&[Mode]>) -> Vec<B
 fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) -> Option<Behaviour> {
     let path = format!("behaviour.{name}");
     scope.diagnostics.is_name(scope.document.at(&path), "behaviour", name);
-    let modes = modes.map(|modes| in_modes(scope, &path, modes, given["in"].as_array())).unwrap_or_default();
+    let modes =
+        modes.map(|modes| in_modes(scope, &path, modes, given["in"].as_array().map(Vec::as_slice))).unwrap_or_default();
     let when = scope.condition(&format!("{path}.when"), given["when"].as_str());
     let posts = posts(scope, &path, given);
     let mut kinds = declared(Kind::Strategy)["definitions"].as_object()?.iter();
@@ -121,7 +122,7 @@ fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
 }
 
 /// The modes in which a behaviour may run, by mode.
-fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&Vec<Json>>) -> Vec<bool> {
+fn in_modes(scope: &mut Scope<'_>, path: &str, modes: &[Mode], given: Option<&[Json]>) -> Vec<bool> {
     let Some(given) = given else { return vec![true; modes.len()] };
     let mut allowed = vec![false; modes.len()];
     let given = given.iter().map(|name| name.as_str().unwrap_or_default());
