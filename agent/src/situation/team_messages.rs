@@ -57,7 +57,7 @@ impl TeamMessages {
         let holds = |from: &&MateVariables| {
             let mut complete = true;
             condition.walk(&mut |part| {
-                let is_known = |index| from.values.get(usize::from(index)).is_some_and(Option::is_some);
+                let is_known = |index: u16| from.values.get(usize::from(index)).is_some_and(Option::is_some);
                 complete &= part.as_variable().is_none_or(is_known);
             });
             complete && condition.is_true(*from)
