@@ -16,7 +16,10 @@ pub struct Gateway {
     /// Whose heading and speed loops steer.
     #[schemars(extend("default" = "thrust"))]
     pub drive: Drive,
-    /// East of true north, degrees. Default by the World Magnetic Model, at the field and today.
+    /// East of true north, rad. Default by the World Magnetic Model, at the field and today.
+    #[schemars(
+        description = "East of true north, degrees. Default by the World Magnetic Model, at the field and today."
+    )]
     #[schemars(rename = "declination_deg", range(min = -180, max = 180), extend("x-field" = "declination_rad"))]
     pub declination_rad: Option<f64>,
     /// What the boat's headings count from.
@@ -191,11 +194,13 @@ pub struct Loops {
     /// Integral time of the speed loop, s.
     #[schemars(range(min = 0.1, max = 1000), extend("default" = 5))]
     pub speed_integral_s: f64,
-    /// Thrust difference for a heading error, per cent per degree.
+    /// Thrust difference for a heading error, per cent per rad.
+    #[schemars(description = "Thrust difference for a heading error, per cent per degree.")]
     #[schemars(rename = "heading_pct_per_deg", range(min = 0, max = 100))]
     #[schemars(extend("x-field" = "heading_pct_per_rad", "default" = 0.9))]
     pub heading_pct_per_rad: f64,
-    /// Thrust difference against a rate of turn, per cent per degree a second.
+    /// Thrust difference against a rate of turn, per cent per rad/s.
+    #[schemars(description = "Thrust difference against a rate of turn, per cent per degree a second.")]
     #[schemars(rename = "turn_pct_per_deg_s", range(min = 0, max = 100))]
     #[schemars(extend("x-field" = "turn_pct_per_rad_s", "default" = 1.4))]
     pub turn_pct_per_rad_s: f64,

@@ -29,6 +29,7 @@ pub mod rules;
 pub mod run_state;
 pub mod scenario;
 pub mod sea;
+pub mod sensor;
 pub mod stamp;
 pub mod strategy;
 pub mod stream;

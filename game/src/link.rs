@@ -53,7 +53,8 @@ pub struct Sharing {
     /// A boat is seen by whoever is nearer than this, m. Default from everywhere.
     #[schemars(range(min = 1, max = 1000000))]
     pub range_m: Option<f64>,
-    /// Full angle of view about the bow, degrees.
+    /// Full angle of view about the bow, rad.
+    #[schemars(description = "Full angle of view about the bow, degrees.")]
     #[schemars(rename = "view_deg", with = "f64", range(min = 1, max = 360))]
     #[schemars(extend("x-field" = "view_rad", "default" = 360))]
     pub view_rad: Option<f64>,

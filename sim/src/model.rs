@@ -13,8 +13,9 @@ use crate::state::BoatState;
 use crate::thruster::ThrusterModel;
 use crate::world::WorldPlan;
 use game::angle::wrap_pi;
-use game::boat::{self, Sensors};
+use game::boat;
 use game::frame::{self, Ned, Rotation};
+use game::sensor::Sensors;
 use game::{Order, Pose, SimTime};
 
 /// A world's constants.

@@ -3,10 +3,10 @@
 mod common;
 
 use common::{assert_memory, five_errors, mean_of};
-use game::boat::{Compass, Gps, Imu, Jump, Outage, Sensors};
 use game::frame::{Body, Pose, Rotation, body_from_ned, ned_from_body};
 use game::math;
 use game::sea::GRAVITY_M_S2;
+use game::sensor::{Compass, Gps, Imu, Jump, Outage, Sensors};
 use game::{Ned, Order, SimTime, VehicleId};
 use sim::World;
 use sim::hull::Planar;

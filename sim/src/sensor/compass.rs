@@ -11,8 +11,8 @@
 use super::{Truth, whole_ticks};
 use game::SimTime;
 use game::angle::wrap_pi;
-use game::boat::Compass;
 use game::math;
+use game::sensor::Compass;
 use game::stream::Noise;
 use serde::{Deserialize, Serialize};
 

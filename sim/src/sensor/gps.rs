@@ -7,8 +7,8 @@
 use super::{GaussMarkovStep, Truth, whole_ticks};
 use crate::two_state::TwoStateChain;
 use game::SimTime;
-use game::boat::{Gps, Outage};
 use game::frame::Ned;
+use game::sensor::{Gps, Outage};
 use game::stream::Noise;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;

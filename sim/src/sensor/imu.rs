@@ -11,9 +11,9 @@
 
 use super::{GaussMarkovStep, Truth};
 use game::SimTime;
-use game::boat::Imu;
 use game::math;
 use game::sea::GRAVITY_M_S2;
+use game::sensor::Imu;
 use game::stream::Noise;
 use serde::{Deserialize, Serialize};
 

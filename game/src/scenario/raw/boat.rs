@@ -1,6 +1,7 @@
 //! A boat file as typed.
 
-use crate::boat::{Autopilot, Flaws, Hull, Kinematic, Propeller, Sensors, Windage};
+use crate::boat::{Autopilot, Flaws, Hull, Kinematic, Propeller, Windage};
+use crate::sensor::Sensors;
 use schemars::JsonSchema;
 use serde::Deserialize;
 

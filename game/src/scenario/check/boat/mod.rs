@@ -5,10 +5,11 @@ mod thruster;
 
 pub(super) use kinematic::check_thrust_map;
 
-use crate::boat::{Boat, Drive, Gps, Propeller, ThrustCurve};
+use crate::boat::{Boat, Drive, Propeller, ThrustCurve};
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::raw;
 use crate::scenario::read::Document;
+use crate::sensor::Gps;
 use kinematic::check_kinematic;
 
 /// The physics takes explicit steps of the game's tick: motions that die out faster than this many times
