@@ -1,10 +1,12 @@
 //! The processes that `run` starts: none of them outlives it.
 
 use anyhow::{Context, Result};
-use bus::clock;
+use bus::token::TOKEN_VARIABLE;
+use bus::{Token, clock};
 use std::fmt::Display;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::LazyLock;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Duration;
 
@@ -15,8 +17,18 @@ pub(crate) fn squall(args: &[&str]) -> Result<Command> {
     if std::env::var_os("ZENOH_RUNTIME").is_none() {
         command.env("ZENOH_RUNTIME", bus::RUNTIME);
     }
+    command.env(TOKEN_VARIABLE, token().hex());
     command.args(args).arg("--for-parent");
     Ok(command)
+}
+
+/// The token of the games that children of this process serve and join: a new one, unless one is given.
+pub(crate) fn token() -> &'static Token {
+    static TOKEN: LazyLock<Token> = LazyLock::new(|| {
+        let given = std::env::var(TOKEN_VARIABLE).ok().and_then(|text| text.parse().ok());
+        given.unwrap_or_else(Token::random)
+    });
+    &TOKEN
 }
 
 /// Adds an option, if it has a value.

@@ -1,7 +1,8 @@
 //! Command line arguments for where nodes meet.
 
-use anyhow::{Result, anyhow, bail};
-use bus::Net;
+use anyhow::{Context, Result, anyhow, bail};
+use bus::token::TOKEN_VARIABLE;
+use bus::{Net, Token};
 use game::topic::GameName;
 use std::path::PathBuf;
 
@@ -14,9 +15,37 @@ pub(crate) struct HubArgs {
     /// Be found by multicast on the local network (listens on all interfaces unless --listen says otherwise)
     #[arg(long)]
     lan: bool,
+    /// Lets other machines in although nothing protects the game from strangers on that network
+    #[arg(long)]
+    insecure: bool,
     /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
+    #[command(flatten)]
+    token: TokenArgs,
+}
+
+/// The token of a game.
+#[derive(clap::Args, Clone, Debug)]
+struct TokenArgs {
+    /// A file with the game's token, as `squall sim` shows it [default: from SQUALL_TOKEN, or of the game on this machine]
+    #[arg(long, value_name = "FILE")]
+    token_file: Option<PathBuf>,
+}
+
+impl TokenArgs {
+    /// The token that is given.
+    fn token(&self) -> Result<Option<Token>> {
+        let (text, place) = match (&self.token_file, std::env::var(TOKEN_VARIABLE)) {
+            (Some(file), _) => {
+                let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+                (text, file.display().to_string())
+            }
+            (None, Ok(text)) => (text, TOKEN_VARIABLE.to_owned()),
+            (None, Err(_)) => return Ok(None),
+        };
+        text.parse().map(Some).with_context(|| place)
+    }
 }
 
 /// How to reach a hub.
@@ -34,6 +63,8 @@ pub(crate) struct LeafArgs {
     /// The game's name [default: the only one there]
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     pub(crate) game: Option<GameName>,
+    #[command(flatten)]
+    token: TokenArgs,
 }
 
 impl HubArgs {
@@ -46,7 +77,16 @@ impl HubArgs {
             let port = bus::free_port(true).map_err(|e| anyhow!("no free port to listen on: {e}"))?;
             listen.push(format!("tcp/127.0.0.1:{port}"));
         }
-        Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone() })
+        if let Some(open) = listen.iter().find(|endpoint| !bus::is_loopback(endpoint))
+            && !self.insecure
+        {
+            bail!(
+                "{open} can be reached from other machines, and whoever reaches it can join the game and see all of it: \
+                 say --insecure if nobody else is on that network, or listen on 127.0.0.1 and use a VPN or an SSH tunnel"
+            );
+        }
+        let token = Some(self.token.token()?.unwrap_or_else(Token::random));
+        Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone(), token })
     }
 }
 
@@ -54,22 +94,26 @@ impl LeafArgs {
     /// Where to connect: as asked for, or where this machine's local registry says.
     pub(crate) fn net(&self) -> Result<Net> {
         let mut connect = self.connect.clone();
+        let is_named = |entry: &bus::Entry| self.game.as_ref().is_none_or(|game| game.as_str() == entry.game);
+        let mut known: Vec<bus::Entry> = bus::local_registry().into_iter().filter(is_named).collect();
         if connect.is_empty() && !self.lan {
-            connect.push(self.local_endpoint()?);
+            connect.push(local_endpoint(&known)?);
         }
-        Ok(Net { listen: vec![], connect, lan: self.lan, config_file: self.zenoh_config.clone() })
+        known.retain(|entry| connect.contains(&entry.endpoint));
+        let shown = || known.first().and_then(|entry| entry.token.as_ref()?.parse().ok());
+        let token = self.token.token()?.or_else(shown);
+        Ok(Net { listen: vec![], connect, lan: self.lan, config_file: self.zenoh_config.clone(), token })
     }
+}
 
-    fn local_endpoint(&self) -> Result<String> {
-        let wanted = |entry: &bus::Entry| self.game.as_ref().is_none_or(|game| game.as_str() == entry.game);
-        let entries: Vec<bus::Entry> = bus::local_registry().into_iter().filter(wanted).collect();
-        match entries.as_slice() {
-            [] => Ok(format!("tcp/127.0.0.1:{}", bus::DEFAULT_PORT)),
-            [entry] => Ok(entry.endpoint.clone()),
-            several => {
-                let names: Vec<&str> = several.iter().map(|entry| entry.game.as_str()).collect();
-                bail!("several games run on this machine: choose with --game among {}", names.join(", "))
-            }
+/// Where the game of this machine listens.
+fn local_endpoint(games: &[bus::Entry]) -> Result<String> {
+    match games {
+        [] => Ok(format!("tcp/127.0.0.1:{}", bus::DEFAULT_PORT)),
+        [entry] => Ok(entry.endpoint.clone()),
+        several => {
+            let names: Vec<&str> = several.iter().map(|entry| entry.game.as_str()).collect();
+            bail!("several games run on this machine: choose with --game among {}", names.join(", "))
         }
     }
 }
@@ -80,4 +124,9 @@ pub(crate) fn unique_game_name(scenario: &str) -> Result<GameName> {
     let bits = RandomState::new().build_hasher().finish() & 0xff_ffff;
     let stem: String = scenario.chars().take(40).collect();
     GameName::new(&format!("{stem}-{bits:06x}")).map_err(|e| anyhow!(e))
+}
+
+/// What people on other machines, or other users of this one, need for joining and controlling a game.
+pub(crate) fn token_text(token: &Token) -> String {
+    format!("its token, for agents and operators elsewhere: {TOKEN_VARIABLE}={}", token.hex())
 }

@@ -3,7 +3,7 @@
 use crate::child_process::{self, ChildProcess, option};
 use crate::game_args::GameArgs;
 use crate::hardware_loop::{HardwareLoop, LoopArgs};
-use crate::net_args::unique_game_name;
+use crate::net_args::{token_text, unique_game_name};
 use crate::page_args::PageArgs;
 use crate::record_args::{self, RecordArgs};
 use crate::screen::{self, Screen};
@@ -199,8 +199,10 @@ fn follow(
         match messages.recv_timeout(Duration::from_millis(100)) {
             Ok(message) => {
                 screen.show(&message);
-                if let ProgressMessage::Done(report) = message {
-                    return Ok(Some(*report));
+                match message {
+                    ProgressMessage::Open { .. } => screen.line(&token_text(child_process::token())),
+                    ProgressMessage::Done(report) => return Ok(Some(*report)),
+                    _ => {}
                 }
             }
             Err(RecvTimeoutError::Disconnected) => return Ok(None),

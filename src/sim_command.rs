@@ -1,12 +1,13 @@
 //! `squall sim`: serves one game.
 
 use crate::game_args::GameArgs;
-use crate::net_args::{HubArgs, unique_game_name};
+use crate::net_args::{HubArgs, token_text, unique_game_name};
 use crate::record_args;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::water_args::within;
 use anyhow::{Context, Result};
+use bus::Token;
 use game::topic::GameName;
 use sim::node::{GameRecorder, ProgressMessage, Settings};
 use std::path::PathBuf;
@@ -62,9 +63,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             .with_context(|| format!("cannot record into {}", path.display()))
     };
     let mut recorder = args.record.as_ref().map(record).transpose()?;
+    let net = args.hub.net()?;
+    let token = net.token.clone();
     let settings = Settings {
         game,
-        net: args.hub.net()?,
+        net,
         pace: args.play.pace,
         join_limit: Duration::from_secs_f64(args.play.join_s),
         speed: args.play.speed,
@@ -72,11 +75,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), &mut |message| {
         if let ProgressMessage::Open { game, endpoint } = &message {
-            let entry = bus::Entry { game: game.clone(), endpoint: endpoint.clone(), pid: std::process::id() };
+            let (game, endpoint) = (game.clone(), endpoint.clone());
+            let entry = bus::Entry { game, endpoint, pid: std::process::id(), token: token.as_ref().map(Token::hex) };
             // Where it cannot be registered, others must be told where the game is; nothing else is lost.
             registration = bus::register(&entry).ok();
         }
         show(&message);
+        if let (ProgressMessage::Open { .. }, Some(token), false) = (&message, &token, args.for_parent) {
+            screen::print(&(token_text(token) + "\n"));
+        }
     })?;
     drop(registration);
     if let Some(problem) = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report))) {

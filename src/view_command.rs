@@ -31,9 +31,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let place = Box::new(move || leaf.net().map_err(|e| format!("{e:#}")));
     // Who started us starts the game as well.
     let is_told = !args.for_parent;
-    let tell = Box::new(move |missing: &str| {
+    let tell = Box::new(move |problem: &str| {
         if is_told {
-            screen::remark(&format!("no game to show: {missing}"));
+            screen::remark(problem);
         }
     });
     let live = LiveView::open(place, args.leaf.game.clone(), tell).context("cannot look for games")?;

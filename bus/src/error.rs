@@ -23,6 +23,29 @@ pub enum BusError {
         /// What zenoh says.
         reason: String,
     },
+    /// A request has an answer that is none.
+    #[error("the answer at {key} is {reason}")]
+    Request {
+        /// The key.
+        key: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The sim says no, for this reason.
+    #[error("the sim refuses: {0}")]
+    Refused(String),
+    /// The sim says nothing.
+    #[error("the sim does not answer")]
+    Silent,
+    /// The game asks for its token.
+    #[error(
+        "the game asks for its token, which `squall sim` showed when it began: give it by --token-file FILE, or in the \
+         environment as SQUALL_TOKEN"
+    )]
+    NeedsToken,
+    /// The game does not know this token.
+    #[error("the token is not that of this game: `squall sim` showed it when it began")]
+    WrongToken,
     /// Something could not be declared or sent.
     #[error("cannot {doing} {key}: {reason}")]
     Use {

@@ -48,7 +48,11 @@ pub enum NotFound {
 
 impl From<BusError> for Missing {
     fn from(error: BusError) -> Missing {
-        Missing::Yet(error.to_string())
+        match error {
+            BusError::NeedsToken | BusError::WrongToken => Missing::Forever(Refusal::Refused(error.to_string())),
+            BusError::Request { .. } => Missing::Forever(Refusal::Version(error.to_string())),
+            other => Missing::Yet(other.to_string()),
+        }
     }
 }
 
@@ -156,13 +160,10 @@ fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
 pub fn join(bus: &Bus, game: &GameName, role: Role, vehicles: &[String]) -> Result<(u64, Vec<VehicleId>), Missing> {
     let (version, node) = (game::VERSION.to_owned(), bus.id());
     let request = JoinRequest { version, role, node, vehicles: vehicles.to_vec() };
-    let request = serde_json::to_vec(&request).expect("a request is JSON");
-    let answer = bus.ask(&topic::join(game), request, ANSWER)?;
-    let bytes = answer.ok_or_else(|| Missing::Yet("the sim does not answer the join request".to_owned()))?;
-    match serde_json::from_slice(&bytes) {
-        Ok(JoinReply::Granted { ticket, vehicles }) => Ok((ticket, vehicles)),
-        Ok(JoinReply::Busy { vehicle }) => Err(Missing::Yet(format!("{vehicle} has another {role}"))),
-        Ok(JoinReply::Refused { reason }) => Err(Missing::Forever(Refusal::Refused(reason))),
-        Err(e) => Err(Missing::Forever(Refusal::Version(format!("the sim's answer is not understood: {e}")))),
+    match bus.request(&topic::join(game), &request, ANSWER)? {
+        None => Err(Missing::Yet("the sim does not answer the join request".to_owned())),
+        Some(JoinReply::Granted { ticket, vehicles }) => Ok((ticket, vehicles)),
+        Some(JoinReply::Busy { vehicle }) => Err(Missing::Yet(format!("{vehicle} has another {role}"))),
+        Some(JoinReply::Refused { reason }) => Err(Missing::Forever(Refusal::Refused(reason))),
     }
 }

@@ -6,7 +6,9 @@
 //!
 //! Everything here is blocking or calls back; callbacks run on zenoh's threads and must only hand over.
 
+mod access;
 pub mod clock;
+mod control;
 mod error;
 pub mod game_search;
 mod inbox;
@@ -15,16 +17,19 @@ mod local_registry;
 mod net;
 mod session;
 mod sim_liveness;
+pub mod token;
 mod watched;
 
+pub use control::control;
 pub use error::BusError;
 pub use game_search::ANSWER;
 pub use inbox::{Inbox, InboxSender, inbox};
 pub use latest::Latest;
 pub use local_registry::{Entry, Registration, list as local_registry, register};
-pub use net::{DEFAULT_PORT, Net, free_port};
+pub use net::{DEFAULT_PORT, Net, free_port, is_loopback};
 pub use session::{Bus, Declaration, Delivery, Publisher, Query};
 pub use sim_liveness::{Patience, SimState, SimWatch};
+pub use token::Token;
 pub use watched::Watched;
 
 /// A value of the environment variable `ZENOH_RUNTIME` for a process that is one node: two threads in place of zenoh's pools,

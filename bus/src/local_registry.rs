@@ -4,6 +4,8 @@
 
 use serde::{Deserialize, Serialize};
 use std::fs;
+use std::io::Write;
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 
 /// Where a game on this machine can be reached.
@@ -15,28 +17,44 @@ pub struct Entry {
     pub endpoint: String,
     /// The sim's process.
     pub pid: u32,
+    /// The game's token, for whoever may read the file: the same user.
+    pub token: Option<String>,
 }
 
 /// An entry that lasts as long as this is kept.
 pub struct Registration(PathBuf);
 
 fn folder() -> PathBuf {
-    let user = std::env::var("USER").unwrap_or_else(|_| "anyone".to_owned());
     match std::env::var_os("XDG_RUNTIME_DIR") {
         Some(dir) => Path::new(&dir).join("squall"),
-        None => std::env::temp_dir().join(format!("squall-{user}")),
+        None => std::env::temp_dir().join(format!("squall-{}", rustix::process::geteuid().as_raw())),
     }
+}
+
+/// Whether nobody but this user can have put something into the folder, or can read what is there.
+fn is_private(folder: &Path) -> bool {
+    fs::symlink_metadata(folder).is_ok_and(|about| {
+        about.is_dir() && about.uid() == rustix::process::geteuid().as_raw() && about.mode() & 0o077 == 0
+    })
 }
 
 /// Enters a game.
 ///
 /// # Errors
-/// If the file cannot be written.
+/// If the file cannot be written, or others can read what is in its folder.
 pub fn register(entry: &Entry) -> std::io::Result<Registration> {
-    let folder = folder();
-    fs::create_dir_all(&folder)?;
+    register_in(&folder(), entry)
+}
+
+fn register_in(folder: &Path, entry: &Entry) -> std::io::Result<Registration> {
+    fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
+    if !is_private(folder) {
+        let problem = format!("{} is open to others, expected a folder of mode 700 of this user", folder.display());
+        return Err(std::io::Error::other(problem));
+    }
     let path = folder.join(format!("{}-{}.json", entry.game, entry.pid));
-    fs::write(&path, serde_json::to_vec(entry)?)?;
+    let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&path)?;
+    file.write_all(&serde_json::to_vec(entry)?)?;
     Ok(Registration(path))
 }
 
@@ -50,7 +68,13 @@ impl Drop for Registration {
 /// All entries whose process still runs, by game; entries of dead processes are removed.
 #[must_use]
 pub fn list() -> Vec<Entry> {
-    let files = fs::read_dir(folder()).into_iter().flatten().flatten().map(|file| file.path());
+    list_in(&folder())
+}
+
+fn list_in(folder: &Path) -> Vec<Entry> {
+    // Where others can write, they could send us to a game of theirs.
+    let files = is_private(folder).then(|| fs::read_dir(folder).ok()).flatten();
+    let files = files.into_iter().flatten().flatten().map(|file| file.path());
     let mut entries: Vec<Entry> = files.filter_map(|path| live_entry(&path)).collect();
     entries.sort_by(|a, b| (&a.game, a.pid).cmp(&(&b.game, b.pid)));
     entries
@@ -65,4 +89,30 @@ fn live_entry(path: &Path) -> Option<Entry> {
         return None;
     }
     Some(entry)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt;
+
+    #[test]
+    fn an_entry_is_for_this_user_alone() {
+        let dir = std::env::temp_dir().join(format!("squall-registry-test-{}", std::process::id()));
+        let entry = Entry {
+            game: "pav01".to_owned(),
+            endpoint: "tcp/127.0.0.1:7447".to_owned(),
+            pid: std::process::id(),
+            token: Some("secret".to_owned()),
+        };
+        let registration = register_in(&dir, &entry).expect("a folder");
+        let mode = fs::metadata(&registration.0).expect("a file").mode();
+        assert_eq!(mode & 0o777, 0o600, "{mode:o}");
+        assert_eq!(list_in(&dir), std::slice::from_ref(&entry));
+        fs::set_permissions(&dir, fs::Permissions::from_mode(0o777)).expect("it is ours");
+        assert_eq!(list_in(&dir), [], "anybody could have written it");
+        assert!(register_in(&dir, &entry).is_err(), "anybody could read it");
+        drop(registration);
+        fs::remove_dir(&dir).expect("it is empty");
+    }
 }

@@ -1,8 +1,9 @@
 //! Where a node listens, whom it connects to, and whether it scouts.
 
-use crate::BusError;
 use crate::session::reason;
-use std::net::TcpListener;
+use crate::{BusError, Token, access};
+use game::topic::GameName;
+use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
 use zenoh::Config;
 
@@ -20,6 +21,8 @@ pub struct Net {
     pub lan: bool,
     /// A zenoh configuration (JSON5) to begin with: access control, interfaces, buffers and the like.
     pub config_file: Option<PathBuf>,
+    /// The game's token, where it is known.
+    pub token: Option<Token>,
 }
 
 impl Net {
@@ -30,9 +33,13 @@ impl Net {
         Some(first.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:"))
     }
 
-    /// The zenoh configuration of a hub.
-    pub(crate) fn hub(&self) -> Result<Config, BusError> {
+    /// The zenoh configuration of the hub of a game.
+    pub(crate) fn hub(&self, game: &GameName) -> Result<Config, BusError> {
         let mut config = self.base()?;
+        // A file that has rules of its own knows better.
+        if config.get_json("access_control/enabled").ok().as_deref() != Some("true") {
+            set(&mut config, "access_control", &access::control(game).to_string())?;
+        }
         set(&mut config, "mode", "\"router\"")?;
         set(&mut config, "listen/endpoints", &list(&self.listen))?;
         set(&mut config, "connect/endpoints", &list(&self.connect))?;
@@ -76,6 +83,17 @@ fn list(endpoints: &[String]) -> String {
     serde_json::to_string(endpoints).expect("a list of strings is JSON")
 }
 
+/// Whether an endpoint, for example `tcp/127.0.0.1:7447`, can be reached from this machine only.
+#[must_use]
+pub fn is_loopback(endpoint: &str) -> bool {
+    let address = endpoint.split_once('/').map_or(endpoint, |(_, address)| address);
+    let address = address.split(['?', '#']).next().unwrap_or(address);
+    match address.parse::<SocketAddr>() {
+        Ok(address) => address.ip().is_loopback(),
+        Err(_) => address.rsplit_once(':').is_some_and(|(host, _)| host == "localhost"),
+    }
+}
+
 /// A loopback TCP port that was free a moment ago: the default port if it is, any other if not.
 ///
 /// # Errors
@@ -84,4 +102,29 @@ pub fn free_port(prefer_default: bool) -> std::io::Result<u16> {
     let wanted = if prefer_default { DEFAULT_PORT } else { 0 };
     let listener = TcpListener::bind(("127.0.0.1", wanted)).or_else(|_| TcpListener::bind(("127.0.0.1", 0)))?;
     Ok(listener.local_addr()?.port())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_loopback_is_this_machine_only() {
+        for (endpoint, is_ours) in [
+            ("tcp/127.0.0.1:7447", true),
+            ("tcp/127.3.2.1:7447", true),
+            ("tcp/[::1]:7447", true),
+            ("tcp/localhost:7447", true),
+            ("tcp/127.0.0.1:7447#iface=lo", true),
+            ("tcp/0.0.0.0:7447", false),
+            ("tcp/[::]:7447", false),
+            ("tcp/192.168.1.5:7447", false),
+            ("udp/localhost.example:7447", false),
+            ("tcp/boat.local:7447", false),
+            ("tcp/7447", false),
+            ("", false),
+        ] {
+            assert_eq!(is_loopback(endpoint), is_ours, "{endpoint}");
+        }
+    }
 }

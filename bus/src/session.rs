@@ -1,9 +1,12 @@
 //! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
+use crate::token::{self, Answered, Token};
 use crate::{BusError, Net};
 use game::codec;
 use game::message::Message;
+use game::topic::GameName;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -28,6 +31,7 @@ pub struct Declaration(#[expect(dead_code, reason = "kept for its drop")] Box<dy
 #[derive(Clone)]
 pub struct Bus {
     session: Session,
+    token: Option<Token>,
 }
 
 /// Sends messages on one key.
@@ -58,9 +62,9 @@ impl Bus {
     ///
     /// # Errors
     /// [`BusError`] if it cannot listen where it should.
-    pub fn hub(net: &Net) -> Result<Bus, BusError> {
+    pub fn hub(net: &Net, game: &GameName) -> Result<Bus, BusError> {
         let what = format!("to listen on {}", net.listen.join(", "));
-        open(net.hub()?, what)
+        open(net.hub(game)?, net.token.clone(), what)
     }
 
     /// Connects to a hub.
@@ -69,7 +73,7 @@ impl Bus {
     /// [`BusError`] if nobody listens there now.
     pub fn leaf(net: &Net) -> Result<Bus, BusError> {
         let what = format!("to connect to {}", net.connect.join(", "));
-        open(net.leaf()?, what)
+        open(net.leaf()?, net.token.clone(), what)
     }
 
     /// This session's own identifier, unique on the network.
@@ -156,6 +160,32 @@ impl Bus {
         Ok(sound.next().map(|sample| sample.payload().to_bytes().into_owned()))
     }
 
+    /// Asks at `key` for something that may need the game's token, and proves that this node knows it if asked to; gives the
+    /// first answer that comes within `limit`, of each of two questions.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed, if a token is needed and there is none or another one, or if the answer is not
+    /// understood.
+    pub fn request<B: Serialize, T: DeserializeOwned>(
+        &self,
+        key: &str,
+        body: &B,
+        limit: Duration,
+    ) -> Result<Option<T>, BusError> {
+        let refused = |reason| BusError::Request { key: key.to_owned(), reason };
+        let mut payload = token::first(body);
+        for _ in 0..2 {
+            let Some(answer) = self.ask(key, payload, limit)? else { return Ok(None) };
+            let token = self.token.as_ref();
+            match token::read(token, key, body, &answer).map_err(|e| refused(format!("not understood: {e}")))? {
+                Answered::Answer(answer) => return Ok(Some(answer)),
+                Answered::Again(again) => payload = again,
+                Answered::NeedsToken => return Err(BusError::NeedsToken),
+            }
+        }
+        Err(BusError::WrongToken)
+    }
+
     /// Shows that this node is there, under `key`, until dropped or dead.
     ///
     /// # Errors
@@ -201,9 +231,9 @@ impl Bus {
     }
 }
 
-fn open(config: zenoh::Config, what: String) -> Result<Bus, BusError> {
+fn open(config: zenoh::Config, token: Option<Token>, what: String) -> Result<Bus, BusError> {
     match zenoh::open(config).wait() {
-        Ok(session) => Ok(Bus { session }),
+        Ok(session) => Ok(Bus { session, token }),
         Err(e) => Err(BusError::Open { what, reason: reason(&e) }),
     }
 }
@@ -255,6 +285,12 @@ impl Publisher {
 }
 
 impl Query {
+    /// The key that was asked.
+    #[must_use]
+    pub fn key(&self) -> &str {
+        self.query.key_expr().as_str()
+    }
+
     /// Answers with bytes that are JSON.
     pub fn answer(self, json: Vec<u8>) {
         let key = self.query.key_expr().clone();

@@ -89,6 +89,14 @@ pub enum OperatorCommand {
     Mission(Mission),
 }
 
+impl OperatorCommand {
+    /// Whether only who knows the game's token may give it: everybody may look and stop.
+    #[must_use]
+    pub fn needs_token(&self) -> bool {
+        !matches!(self, OperatorCommand::Status | OperatorCommand::Disarm | OperatorCommand::EStop)
+    }
+}
+
 /// A mission that a boat sails by itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mission {

@@ -265,7 +265,16 @@ pub enum Control {
     Release,
 }
 
+/// What the sim answers to a [`Control`] that is asked of it: why it was refused, if it was.
+pub type ControlReply = Result<(), String>;
+
 impl Control {
+    /// Whether it stops boats, or the game's clock for them: that anybody may do.
+    #[must_use]
+    pub fn stops(self) -> bool {
+        matches!(self, Control::EStop | Control::Halt)
+    }
+
     /// The speeds that may be asked for, simulated seconds a second.
     pub const SPEEDS: RangeInclusive<f64> = 0.01..=1000.0;
 }

@@ -30,6 +30,12 @@ impl GameName {
     }
 }
 
+/// All topics of a game that match `pattern`, in which `*` stands for one word and `**` for any number of them.
+#[must_use]
+pub fn matching(game: &GameName, pattern: &str) -> String {
+    format!("squall/{}/{pattern}", game.0)
+}
+
 /// A topic of a game by the name that recordings have for it; what comes from several is one of theirs.
 #[must_use]
 pub fn recorded(game: &GameName, name: &str) -> String {
@@ -151,10 +157,16 @@ pub fn scenario(game: &GameName) -> String {
     format!("squall/{}/scenario", game.0)
 }
 
-/// Orders from the shore (publish).
+/// Where the game is controlled: what stops boats is published by anybody, everything else is asked of the sim (query).
 #[must_use]
 pub fn control(game: &GameName) -> String {
     format!("squall/{}/control", game.0)
+}
+
+/// That an E-stop is over, from the sim (publish).
+#[must_use]
+pub fn released(game: &GameName) -> String {
+    format!("squall/{}/released", game.0)
 }
 
 /// What a node is.

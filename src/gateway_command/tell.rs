@@ -5,7 +5,6 @@ use crate::net_args::LeafArgs;
 use crate::observer::Observer;
 use crate::screen;
 use anyhow::{Context, Result, anyhow, bail};
-use bus::Delivery;
 use clap::ValueEnum;
 use game::external::{Mission, OperatorCommand, OperatorReply};
 use game::message::Control;
@@ -85,10 +84,8 @@ fn tell(observer: &Observer, args: &Args, command: &OperatorCommand) -> Result<E
 }
 
 fn ask(observer: &Observer, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
-    let question = serde_json::to_vec(command).context("a command is JSON")?;
-    let answer = observer.bus.ask(&topic::operate(&observer.game, vehicle), question, bus::ANSWER)?;
-    let bytes = answer.with_context(|| format!("no gateway of {vehicle} answers"))?;
-    serde_json::from_slice(&bytes).context("the gateway is of another version of Squall")
+    let answer = observer.bus.request(&topic::operate(&observer.game, vehicle), command, bus::ANSWER)?;
+    answer.with_context(|| format!("no gateway of {vehicle} answers"))
 }
 
 /// Sends a command to all boats and the sim at once; then prints the status of every real boat.
@@ -100,8 +97,7 @@ fn tell_all(observer: &Observer, command: CommandArg) -> Result<ExitCode> {
         _ => bail!("only estop, release and status go to all; tell each boat by its name"),
     };
     if let Some(control) = control {
-        let line = observer.bus.publisher(topic::control(&observer.game), Delivery::Wait)?;
-        line.send_json(serde_json::to_vec(&control).context("a command is JSON")?)?;
+        bus::control(&observer.bus, &observer.game, control)?;
     }
     let scenario = &observer.info.scenario;
     let mut silent = Vec::new();

@@ -31,9 +31,7 @@ struct Gateway {
 fn join(bus: &Bus, name: &GameName, vehicle: &str) -> JoinReply {
     let (version, vehicles) = (game::VERSION.to_owned(), vec![vehicle.to_owned()]);
     let request = JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles };
-    let request = serde_json::to_vec(&request).expect("JSON");
-    let answer = bus.ask(&topic::join(name), request, LIMIT).expect("the hub is there").expect("an answer");
-    serde_json::from_slice(&answer).expect("a reply")
+    bus.request(&topic::join(name), &request, LIMIT).expect("the hub is there").expect("an answer")
 }
 
 impl Gateway {

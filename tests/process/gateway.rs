@@ -142,9 +142,8 @@ impl Loop {
     fn ask(&self, command: &OperatorCommand) -> OperatorReply {
         let bus = self.sim.bus();
         let key = topic::operate(&self.sim.name(), "blue_one");
-        let question = serde_json::to_vec(command).expect("JSON");
-        let answer = bus.ask(&key, question, Duration::from_secs(10)).expect("the hub is there");
-        serde_json::from_slice(&answer.expect("the gateway answers")).expect("a reply")
+        let answer = bus.request(&key, command, Duration::from_secs(10)).expect("the hub is there");
+        answer.expect("the gateway answers")
     }
 
     fn status(&self) -> GatewayStatus {

@@ -1,6 +1,7 @@
 //! Two machines: network namespaces joined by a cable, which is cut for a while.
 
-use crate::support::{FOUR, Process, Sim, stderr};
+use crate::support::{FOUR, Process, Sim, stderr, token};
+use bus::token::TOKEN_VARIABLE;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -45,7 +46,7 @@ impl Hosts {
     fn squall(&self, host: usize) -> Command {
         let mut command = Command::new("ip");
         command.args(["netns", "exec", &self.names[host], env!("CARGO_BIN_EXE_squall")]);
-        command.current_dir(env!("CARGO_MANIFEST_DIR"));
+        command.current_dir(env!("CARGO_MANIFEST_DIR")).env(TOKEN_VARIABLE, token().hex());
         command
     }
 
@@ -75,7 +76,7 @@ fn two_machines_play_a_game_and_survive_a_cable_that_is_cut() {
             return;
         }
     };
-    let args = ["--game", "two-hosts", "--listen", "tcp/10.77.0.1:7447"];
+    let args = ["--game", "two-hosts", "--listen", "tcp/10.77.0.1:7447", "--insecure"];
     let sim = Sim::start_with(hosts.squall(0), "impatient", &args);
     let mut blue = hosts.agent(0, "two-hosts", &FOUR[..2]);
     let mut red = hosts.agent(1, "two-hosts", &FOUR[2..]);

@@ -19,9 +19,7 @@ struct Rogue {
 }
 
 fn join(bus: &Bus, game: &GameName, request: &JoinRequest) -> JoinReply {
-    let request = serde_json::to_vec(request).expect("JSON");
-    let answer = bus.ask(&topic::join(game), request, Duration::from_secs(10)).expect("a session");
-    serde_json::from_slice(&answer.expect("the sim answers")).expect("a reply")
+    bus.request(&topic::join(game), request, Duration::from_secs(10)).expect("a session").expect("the sim answers")
 }
 
 fn request(vehicles: &[&str]) -> JoinRequest {

@@ -1,21 +1,21 @@
 //! People on shore control a game: they pause it, step it, slow it down, and make boats hold.
 
 use crate::support::{FOUR, LIMIT, Sim, newest, own, result_of};
-use bus::{Bus, Declaration, Delivery, Publisher, Watched};
+use bus::{Bus, Declaration, Watched};
 use game::message::{Control, Frame};
 use game::run_state::{Phase, RunState};
-use game::topic;
+use game::topic::{self, GameName};
 use game::{codec, math};
 use serde_json::Value;
 use std::sync::Arc;
 
 /// An operator on shore.
 struct Shore {
-    control: Publisher,
+    bus: Bus,
+    name: GameName,
     run: Arc<Watched<RunState>>,
     frame: Arc<Watched<Frame>>,
     _standing: [Declaration; 2],
-    _bus: Bus,
 }
 
 impl Shore {
@@ -23,12 +23,12 @@ impl Shore {
         let (bus, name) = (sim.bus(), sim.name());
         let (run, runs) = newest(&bus, topic::run(&name), |bytes| serde_json::from_slice(bytes).expect("a state"));
         let (frame, frames) = newest(&bus, topic::frame(&name), |bytes| codec::decode(bytes).expect("a frame"));
-        let control = bus.publisher(topic::control(&name), Delivery::Wait).expect("the hub is there");
-        Shore { control, run, frame, _standing: [runs, frames], _bus: bus }
+        Shore { bus, name, run, frame, _standing: [runs, frames] }
     }
 
     fn ask(&self, control: Control) {
-        self.control.send_json(serde_json::to_vec(&control).expect("JSON")).expect("the hub is there");
+        // Some of what is asked here is refused.
+        drop(bus::control(&self.bus, &self.name, control));
     }
 
     fn wait_for_run(&self, what: &str, is_it: impl Fn(&RunState) -> bool) -> RunState {

@@ -1,6 +1,7 @@
 //! Starting the program, reading what it reports, waiting with a limit.
 
-use bus::{Bus, Declaration, Net, Watched};
+use bus::token::TOKEN_VARIABLE;
+use bus::{Bus, Declaration, Net, Token, Watched};
 use game::message::GameInfo;
 use game::topic::{self, GameName};
 use serde_json::Value;
@@ -17,8 +18,13 @@ pub(crate) const LIMIT: Duration = Duration::from_secs(60);
 /// The program, in the folder of the project.
 pub(crate) fn squall(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
-    command.current_dir(env!("CARGO_MANIFEST_DIR")).args(args);
+    command.current_dir(env!("CARGO_MANIFEST_DIR")).args(args).env(TOKEN_VARIABLE, token().hex());
     command
+}
+
+/// The token of all games of the tests.
+pub(crate) fn token() -> Token {
+    "0123456789abcdef".repeat(4).parse().expect("64 digits")
 }
 
 /// Runs the program to its end.
@@ -290,7 +296,8 @@ impl Sim {
 
     /// A session of our own at its hub.
     pub(crate) fn bus(&self) -> Bus {
-        Bus::leaf(&Net { connect: vec![self.endpoint.clone()], ..Net::default() }).expect("the hub is there")
+        let net = Net { connect: vec![self.endpoint.clone()], token: Some(token()), ..Net::default() };
+        Bus::leaf(&net).expect("the hub is there")
     }
 }
 

@@ -6,6 +6,7 @@ use super::{NodeError, NodeEvent};
 use crate::bridge::{Bridge, Event, FleetCommand, Input, NavOut, Output};
 use crate::link::{Link, LinkEvent};
 use crate::record::StepEncoder;
+use bus::token::{self, Checked, Guard};
 use bus::{Inbox, InboxSender, Publisher, Query, clock};
 use game::codec;
 use game::external::{ExternalOrder, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply};
@@ -72,6 +73,7 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) encoder: StepEncoder,
     pub(super) counters: Counters,
     pub(super) notify: &'a mut dyn FnMut(NodeEvent<'_>),
+    pub(super) guard: Guard,
 }
 
 /// What the loop keeps track of.
@@ -230,19 +232,23 @@ impl GatewayLoop<'_> {
     }
 
     fn operate(&mut self, query: Query) -> Result<(), NodeError> {
-        let refused = match serde_json::from_slice::<OperatorCommand>(&query.payload) {
-            Ok(OperatorCommand::Status) => None,
-            Ok(command) => {
+        let refused = match self.guard.check(query.key(), &query.payload, OperatorCommand::needs_token) {
+            Checked::Granted(OperatorCommand::Status) => None,
+            Checked::Granted(command) => {
                 self.remark(&format!("operator command: {command:?}"));
                 self.step_core(Input::Operator(command), None)?
             }
-            Err(e) => Some(format!("the command is not understood: {e}")),
+            Checked::Challenged(challenge) => {
+                query.answer(challenge);
+                return Ok(());
+            }
+            Checked::Garbage(e) => Some(format!("the command is not understood: {e}")),
         };
         if let Some(reason) = &refused {
             self.remark(&format!("refused: {reason}"));
         }
         let reply = OperatorReply { refused, status: self.full_status() };
-        query.answer(serde_json::to_vec(&reply).expect("a reply is JSON"));
+        query.answer(token::answer(&reply));
         Ok(())
     }
 

@@ -17,6 +17,7 @@ use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use crate::nmea::date_and_time;
 use crate::record::{self, StepEncoder};
 use bus::game_search::{self, GameSearch, NotFound};
+use bus::token::Guard;
 use bus::{Bus, BusError, Declaration, Delivery, Net, inbox};
 use clock::Clock;
 use game::external::GatewayStatus;
@@ -184,6 +185,7 @@ pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Resu
         encoder: StepEncoder::new(&settings.vehicle, vehicle),
         counters: Counters::new(),
         notify: &mut *notify,
+        guard: Guard::new(settings.net.token.clone()),
     };
     let join = Join::begin(&bus, &game, &settings.vehicle, inputs.calls)?;
     let result = gateway_loop.run(&settings.stop);
@@ -214,21 +216,20 @@ fn subscribe(
             orders.put(Call::Order);
         }
     };
-    let (queries, controls, frames) = (inputs.calls.clone(), inputs.calls.clone(), inputs.calls.clone());
+    let [queries, controls, releases, frames] = std::array::from_fn(|_| inputs.calls.clone());
     let e_stop = Arc::clone(&inputs.e_stop);
     let name = &scenario.vehicles[vehicle.index()].name;
     let mut subscriptions = vec![
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
         bus.answer(topic::operate(game, name), move |query| queries.put(Call::Operate(query)))?,
-        bus.subscribe(topic::control(game), move |bytes| match serde_json::from_slice(bytes) {
-            Ok(Control::EStop) => {
+        bus.subscribe(topic::control(game), move |bytes| {
+            // Everything else reaches the boat as an order, if at all.
+            if let Ok(Control::EStop) = serde_json::from_slice(bytes) {
                 e_stop.store(true, Ordering::Relaxed);
                 controls.put(Call::EStop);
             }
-            Ok(Control::Release) => controls.put(Call::Release),
-            // Everything else reaches the boat as an order, if at all.
-            Ok(_) | Err(_) => {}
         })?,
+        bus.subscribe(topic::released(game), move |_| releases.put(Call::Release))?,
     ];
     // Frames are published only where somebody subscribes.
     let real = scenario.vehicles.iter().filter(|vehicle| vehicle.source == Source::External).count();

@@ -3,12 +3,13 @@
 use super::client::Client;
 use super::source::{frame, own_boat, report, scenario, seq_of};
 use super::{open_viewer, visit};
+use bus::token::{self, Checked, Guard};
 use bus::{Bus, Declaration, Delivery, Net, Publisher, Watched};
 use game::codec;
 use game::event::{Event, Logged};
 use game::external::GatewayStatus;
 use game::helm::{HelmQuestion, HelmReport};
-use game::message::{Control, EventRecord, GameInfo, Message, PolicyProposal, Stamp};
+use game::message::{Control, ControlReply, EventRecord, GameInfo, Message, PolicyProposal, Stamp};
 use game::outcome::EventOutcome;
 use game::picture::Picture;
 use game::run_state::{Phase, RunState};
@@ -79,8 +80,8 @@ impl Sim {
 
     fn paced(port: u16, name: &str, scenario: Scenario, pace: &str) -> Sim {
         let net = Net { listen: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
-        let bus = Bus::hub(&net).expect("the port is free");
         let game = GameName::new(name).expect("a good name");
+        let bus = Bus::hub(&net, &game).expect("the port is free");
         let publisher = |key: String| bus.publisher(key, Delivery::Wait).expect("it publishes");
         let (frames, run) = (publisher(topic::frame(&game)), publisher(topic::run(&game)));
         let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
@@ -92,7 +93,7 @@ impl Sim {
             bus.answer(key, move |question| question.answer(answer.clone())).expect("it answers")
         };
         let sent = Arc::clone(&events);
-        let heard = Arc::clone(&controls);
+        let [heard, asked] = [Arc::clone(&controls), Arc::clone(&controls)];
         let proposed = Arc::clone(&proposals);
         let standing = vec![
             fixed(topic::scenario(&game), json(&info)),
@@ -109,6 +110,14 @@ impl Sim {
                 heard.visit(|all| all.push(serde_json::from_slice(bytes).expect("a control")));
             })
             .expect("it listens"),
+            bus.answer(topic::control(&game), move |query| {
+                let Checked::Granted(control) = Guard::default().check(query.key(), &query.payload, |_| true) else {
+                    panic!("a control")
+                };
+                asked.visit(|all| all.push(control));
+                query.answer(token::answer(&ControlReply::Ok(())));
+            })
+            .expect("it answers"),
             bus.subscribe(topic::recorded(&game, "policy/*"), move |bytes| {
                 proposed.visit(|all| all.push(codec::decode(bytes).expect("a proposal")));
             })

@@ -9,11 +9,14 @@ use super::recorder::GameRecorder;
 use super::subscriptions::{self, Incoming};
 use super::{NodeError, Pace, ProgressMessage, Reporter, Settings};
 use crate::contest::Contest;
+use bus::token::{self, Checked, Guard};
 use bus::{Bus, Declaration, Delivery, Inbox, Publisher, Query, clock, inbox};
 use game::codec;
 use game::event::EventCursor;
 use game::external::{ExternalOrder, NavReport};
-use game::message::{Control, Frame, GameInfo, JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
+use game::message::{
+    Control, ControlReply, Frame, GameInfo, JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder,
+};
 use game::refusal::{Refusal, Refusals};
 use game::run_state::{Phase, RunState};
 use game::topic::{self, Part};
@@ -52,6 +55,9 @@ pub(super) struct GameServer<'w> {
     /// The frame that was built last.
     frame: Option<Arc<Frame>>,
     run: Publisher,
+    /// Says that an E-stop is over.
+    released: Publisher,
+    guard: Guard,
     /// Whether somebody asked for something since the state of the run was sent.
     is_news: bool,
     /// When the state of the run was recorded last.
@@ -82,7 +88,7 @@ impl<'w> GameServer<'w> {
         settings: &Settings,
         recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
-        let bus = Bus::hub(&settings.net)?;
+        let bus = Bus::hub(&settings.net, &settings.game)?;
         let (inbox_sender, inbox) = inbox(INBOX);
         let game = &settings.game;
         if recorder.is_some() {
@@ -115,6 +121,8 @@ impl<'w> GameServer<'w> {
             shown: EventCursor::default(),
             frame: None,
             run: bus.publisher(topic::run(game), Delivery::Drop)?,
+            released: bus.publisher(topic::released(game), Delivery::Wait)?,
+            guard: Guard::new(settings.net.token.clone()),
             is_news: false,
             run_recorded: clock::now(),
             overruns: 0,
@@ -275,7 +283,12 @@ impl<'w> GameServer<'w> {
                     let vehicles = self.agents.gone(&agent);
                     self.lose_agents(vehicles);
                 }
-                Incoming::Control(bytes) => self.control(&bytes),
+                Incoming::Stop(bytes) => match serde_json::from_slice::<Control>(&bytes) {
+                    Ok(control) if control.stops() => self.control(control).unwrap_or_default(),
+                    Ok(_) => self.refusals.count(Refusal::OutOfPlace),
+                    Err(_) => self.refusals.count(Refusal::Garbage),
+                },
+                Incoming::Control(query) => self.asked_to_control(query),
             }
             next = self.inbox.take_now();
         }
@@ -426,12 +439,13 @@ impl<'w> GameServer<'w> {
     }
 
     fn join(&mut self, query: Query) {
-        let reply = match serde_json::from_slice::<JoinRequest>(&query.payload) {
-            Ok(request) if request.role == Role::Gateway => self.gateways.join(&request, new_ticket()),
-            Ok(request) => self.join_agent(&request),
-            Err(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
+        let reply = match self.guard.check::<JoinRequest>(query.key(), &query.payload, |_| true) {
+            Checked::Granted(request) if request.role == Role::Gateway => self.gateways.join(&request, new_ticket()),
+            Checked::Granted(request) => self.join_agent(&request),
+            Checked::Challenged(challenge) => return query.answer(challenge),
+            Checked::Garbage(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
         };
-        query.answer(serde_json::to_vec(&reply).expect("a reply is JSON"));
+        query.answer(token::answer(&reply));
     }
 
     fn join_agent(&mut self, request: &JoinRequest) -> JoinReply {
@@ -446,21 +460,43 @@ impl<'w> GameServer<'w> {
         reply
     }
 
-    fn control(&mut self, bytes: &[u8]) {
-        let Ok(control) = serde_json::from_slice(bytes) else { return self.refusals.count(Refusal::Garbage) };
+    fn asked_to_control(&mut self, query: Query) {
+        let reply: ControlReply =
+            match self.guard.check(query.key(), &query.payload, |control: &Control| !control.stops()) {
+                Checked::Granted(control) => self.control(control),
+                Checked::Challenged(challenge) => return query.answer(challenge),
+                Checked::Garbage(e) => {
+                    self.refusals.count(Refusal::Garbage);
+                    Err(format!("the request is not understood: {e}"))
+                }
+            };
+        query.answer(token::answer(&reply));
+    }
+
+    fn control(&mut self, control: Control) -> ControlReply {
+        let mut reply = Ok(());
         match control {
             Control::Stop => self.stop.store(true, Ordering::Relaxed),
             Control::EStop => self.contest.e_stop(true),
-            Control::Release => self.contest.e_stop(false),
+            Control::Release => {
+                self.contest.e_stop(false);
+                // That the session is closed shows at the next picture.
+                drop(self.released.send_json(b"true".to_vec()));
+            }
             Control::Halt => self.contest.halt(true),
             Control::GoOn => self.contest.halt(false),
-            pacing => self.refusals.add(Refusal::OutOfPlace, u64::from(!self.pacing.change(pacing))),
+            pacing if self.pacing.change(pacing) => {}
+            _ => {
+                self.refusals.count(Refusal::OutOfPlace);
+                reply = Err("this game, as it is paced and stands now, cannot do that".to_owned());
+            }
         }
         self.is_news = true;
         // An object, since all JSON in a recording is.
         let json = serde_json::json!({"control": control}).to_string();
         self.record_message("control", None, json.into_bytes());
         (0..self.external_orders.len()).for_each(|i| self.pass_on_now(self.external_orders[i].0));
+        reply
     }
 
     /// Waits for as long as somebody has paused the game: agents and boats are kept, and messages are read.

@@ -15,7 +15,9 @@ pub(super) enum Incoming {
     /// For the recorder only: the topic's place in the list, and the message.
     RecordedMessage(usize, Vec<u8>),
     Gone(Part, String),
-    Control(Vec<u8>),
+    /// Published: it stops boats, or is refused.
+    Stop(Vec<u8>),
+    Control(Query),
 }
 
 /// Opens everything that comes in; `recorded` are the topics that are subscribed to only for the recorder.
@@ -41,7 +43,8 @@ pub(super) fn open(
     };
     let mut declarations = vec![
         bus.subscribe(topic::all_orders(game), on(Incoming::Orders))?,
-        bus.subscribe(topic::control(game), on(Incoming::Control))?,
+        bus.subscribe(topic::control(game), on(Incoming::Stop))?,
+        bus.answer(topic::control(game), asked(Incoming::Control))?,
         bus.subscribe(topic::all_nav(game), on(Incoming::Nav))?,
         bus.watch_alive(topic::all_alive(game, Part::Agent), watch.clone())?,
         bus.watch_alive(topic::all_alive(game, Part::Gateway), watch)?,

@@ -2,13 +2,13 @@
 
 use super::live_state::LiveGame;
 use super::query_thread::QueryThread;
-use super::{Command, Place, SharedState};
+use super::{Command, Place, SharedState, Tell};
 use bus::clock;
 use bus::game_search::{self, Missing};
 use bus::{Bus, BusError, Declaration, Delivery, Patience, Publisher, SimState, SimWatch, Watched};
 use game::codec;
 use game::external::GatewayStatus;
-use game::message::{Frame, Message, PolicyProposal, Stamp};
+use game::message::{Control, Frame, Message, PolicyProposal, Stamp};
 use game::picture::Picture;
 use game::run_state::RunState;
 use game::topic::{self, GameName};
@@ -17,7 +17,7 @@ use game::{TeamId, VehicleId};
 use parking_lot::Mutex;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use std::sync::mpsc::Receiver;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
 /// How often to look again for a game that is not there.
@@ -26,6 +26,8 @@ const LOOK_AGAIN: Duration = Duration::from_millis(250);
 const ROUND: Duration = Duration::from_millis(50);
 /// After so many attempts the session may be what is wrong.
 const ATTEMPTS: u64 = 20;
+/// Requests to the sim that may wait.
+const REQUESTS: usize = 16;
 /// How long to wait for an answer.
 const ANSWER: Duration = Duration::from_secs(2);
 /// How long a sim's token may take to appear, and to find back: a sim is not gone because its link was cut for a moment.
@@ -39,7 +41,8 @@ pub(super) struct GameWatcher {
     pub(super) place: Place,
     pub(super) game: Option<GameName>,
     pub(super) commands: Receiver<Command>,
-    pub(super) tell: Box<dyn Fn(&str) + Send>,
+    /// Where a person reads what went wrong.
+    pub(super) tell: Tell,
 }
 
 /// A session in a game.
@@ -71,7 +74,7 @@ impl GameWatcher {
                     // What will never be there may yet be replaced by something else.
                     let reason = missing.to_string();
                     if reason != said {
-                        (self.tell)(&reason);
+                        (self.tell)(&format!("no game to show: {reason}"));
                         said = reason;
                     }
                     attempts += 1;
@@ -101,11 +104,15 @@ impl GameWatcher {
     fn run_until_gone(&self, mut session: GameSession) {
         let left = Watched::new(false);
         let queries = QueryThread { shared: &self.shared, bus: session.bus.clone(), game: Arc::clone(&session.game) };
+        let (requests, requested) = sync_channel(REQUESTS);
+        let (bus, game, tell) = (session.bus.clone(), session.game.name.clone(), &self.tell);
         std::thread::scope(|scope| {
             scope.spawn(|| queries.ask(&left));
+            // The sim may take its time to answer, and a stop must not wait for that.
+            scope.spawn(|| requested.into_iter().for_each(|control| request(tell, &bus, &game, control)));
             while !self.shared.is_closing() && session.sim.state_by_token() == SimState::Alive {
                 if let Ok(command) = self.commands.recv_timeout(ROUND) {
-                    session.send(command);
+                    session.send(command, &requests);
                 }
                 session.steer(&self.shared);
                 session.expire_steering(&self.shared);
@@ -114,8 +121,16 @@ impl GameWatcher {
             self.shared.state.lock().end();
             self.shared.news.send_replace(());
             left.visit(|left| *left = true);
+            drop(requests);
         });
         session.bus.close();
+    }
+}
+
+/// Asks the sim for something that it may refuse.
+fn request(tell: &Tell, bus: &Bus, game: &GameName, control: Control) {
+    if let Err(error) = bus::control(bus, game, control) {
+        tell(&format!("{control:?} was asked for on the page: {error}"));
     }
 }
 
@@ -140,13 +155,15 @@ impl GameSession {
         Ok(GameSession { bus, game, control, policies, pictures, sim, _standing: standing })
     }
 
-    /// Publishes a command of a page. What cannot be sent now is lost with the session.
-    fn send(&self, command: Command) {
+    /// Passes on a command of a page. What cannot be sent now is lost with the session.
+    fn send(&self, command: Command, requests: &SyncSender<Control>) {
         match command {
-            Command::Control(control) => {
+            Command::Control(control) if control.stops() => {
                 let json = serde_json::to_vec(&control).unwrap_or_default();
                 drop(self.control.send_json(json));
             }
+            // A page that asks for more than is answered has to ask again.
+            Command::Control(control) => drop(requests.try_send(control)),
             // It is seen to in every round; this only begins one.
             Command::Steer => {}
         }
@@ -262,7 +279,6 @@ impl Subscriptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::message::Control;
     use std::sync::atomic::Ordering;
     use std::sync::mpsc::sync_channel;
 

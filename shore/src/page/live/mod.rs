@@ -29,6 +29,9 @@ const COMMANDS_MAX: usize = 64;
 /// Where a game can be reached, or why that is not known: asked anew for every search, since the next may be elsewhere.
 pub type Place = Box<dyn Fn() -> Result<Net, String> + Send>;
 
+/// Shows a person what went wrong, in a sentence.
+pub type Tell = Box<dyn Fn(&str) + Send + Sync>;
+
 /// A game on the network, shown to pages.
 pub struct LiveView {
     shared: Arc<SharedState>,
@@ -55,11 +58,11 @@ enum Command {
 
 impl LiveView {
     /// Looks for a game at `place`, this one or the only one there is, for as long as the view is kept. `tell` gets what is missing
-    /// meanwhile, whenever that changes.
+    /// meanwhile, whenever that changes, and what the sim refuses.
     ///
     /// # Errors
     /// If the system has no thread to give.
-    pub fn open(place: Place, game: Option<GameName>, tell: Box<dyn Fn(&str) + Send>) -> std::io::Result<LiveView> {
+    pub fn open(place: Place, game: Option<GameName>, tell: Tell) -> std::io::Result<LiveView> {
         let (commands, to_do) = sync_channel(COMMANDS_MAX);
         let shared = Arc::new(SharedState::new(commands));
         let watcher = GameWatcher { shared: Arc::clone(&shared), place, game, commands: to_do, tell };

@@ -1,0 +1,305 @@
+//! The token of a game: who knows it may join, control and operate.
+//!
+//! It never travels. Whoever is asked for something that needs it answers with a challenge, a number used once; the request comes
+//! again with the HMAC-SHA256 (RFC 2104, FIPS 180-4), under the token, of the challenge, the key and the request.
+
+use crate::clock;
+use hmac::{Hmac, KeyInit, Mac};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use sha2::Sha256;
+use std::collections::VecDeque;
+use std::fmt::Write as _;
+use std::str::FromStr;
+use std::time::{Duration, Instant};
+use thiserror::Error;
+
+/// The environment variable that holds the token for the commands of a game.
+pub const TOKEN_VARIABLE: &str = "SQUALL_TOKEN";
+/// A challenge is good for so long.
+const GOOD_FOR: Duration = Duration::from_secs(10);
+/// Challenges that are open at once; the oldest go first.
+const OPEN_MAX: usize = 1024;
+
+/// A game's secret: 256 random bits.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Token([u8; 32]);
+
+/// Why a text is no token.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("a game's token is 64 hexadecimal digits, as `squall sim` shows it; this has {0} characters, or others")]
+pub struct NotAToken(usize);
+
+impl Token {
+    /// A new one.
+    ///
+    /// # Panics
+    /// If the operating system has no randomness to give.
+    #[must_use]
+    pub fn random() -> Token {
+        Token(random())
+    }
+
+    /// Its 64 hexadecimal digits: whoever reads them may do everything.
+    #[must_use]
+    pub fn hex(&self) -> String {
+        hex(&self.0)
+    }
+
+    fn mac(&self, challenge: &str, key: &str, body: &[u8]) -> Hmac<Sha256> {
+        let mut mac = Hmac::<Sha256>::new_from_slice(&self.0).expect("a key of any length will do");
+        for part in [challenge.as_bytes(), key.as_bytes(), body] {
+            // With its length, so that no two lists of parts look alike.
+            mac.update(&(part.len() as u64).to_le_bytes());
+            mac.update(part);
+        }
+        mac
+    }
+
+    fn prove(&self, challenge: String, key: &str, body: &[u8]) -> Proof {
+        let mac = hex(&self.mac(&challenge, key, body).finalize().into_bytes());
+        Proof { challenge, mac }
+    }
+
+    fn is_proven(&self, proof: &Proof, key: &str, body: &[u8]) -> bool {
+        let given = bytes_of(&proof.mac);
+        // In constant time.
+        given.is_some_and(|given| self.mac(&proof.challenge, key, body).verify_slice(&given).is_ok())
+    }
+}
+
+impl FromStr for Token {
+    type Err = NotAToken;
+
+    fn from_str(text: &str) -> Result<Token, NotAToken> {
+        let bytes = bytes_of(text.trim()).and_then(|bytes| bytes.try_into().ok());
+        bytes.map(Token).ok_or(NotAToken(text.trim().chars().count()))
+    }
+}
+
+/// Not what it is: it must not end in a log.
+impl std::fmt::Debug for Token {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Token(…)")
+    }
+}
+
+/// That whoever sends this knows the token.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Proof {
+    challenge: String,
+    mac: String,
+}
+
+/// A request as it travels: JSON.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Request<T> {
+    body: T,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    proof: Option<Proof>,
+}
+
+/// An answer as it travels: JSON.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Answer<T> {
+    Challenge(String),
+    Answer(T),
+}
+
+/// A request with no proof yet.
+pub(crate) fn first<T: Serialize>(body: &T) -> Vec<u8> {
+    json(&Request { body, proof: None })
+}
+
+/// What an answer means.
+pub(crate) enum Answered<T> {
+    Answer(T),
+    /// Ask again with this.
+    Again(Vec<u8>),
+    /// It needs a token, and there is none.
+    NeedsToken,
+}
+
+/// Reads an answer to a request on `key`.
+pub(crate) fn read<B: Serialize, T: DeserializeOwned>(
+    token: Option<&Token>,
+    key: &str,
+    body: &B,
+    answer: &[u8],
+) -> serde_json::Result<Answered<T>> {
+    Ok(match (serde_json::from_slice(answer)?, token) {
+        (Answer::Answer(answer), _) => Answered::Answer(answer),
+        (Answer::Challenge(challenge), Some(token)) => {
+            let proof = Some(token.prove(challenge, key, &json(body)));
+            Answered::Again(json(&Request { body, proof }))
+        }
+        (Answer::Challenge(_), None) => Answered::NeedsToken,
+    })
+}
+
+/// An answer to a request that was let through.
+pub fn answer<T: Serialize>(answer: &T) -> Vec<u8> {
+    json(&Answer::Answer(answer))
+}
+
+/// What becomes of a request.
+#[derive(Debug)]
+pub enum Checked<T> {
+    /// It may be done.
+    Granted(T),
+    /// The answer to it: a challenge.
+    Challenged(Vec<u8>),
+    /// It is no request of this kind.
+    Garbage(serde_json::Error),
+}
+
+/// Lets requests through whose sender knows the token. It lives where requests are answered.
+#[derive(Debug, Default)]
+pub struct Guard {
+    token: Option<Token>,
+    open: VecDeque<(String, Instant)>,
+}
+
+impl Guard {
+    /// One for this token; without one everything is let through.
+    #[must_use]
+    pub fn new(token: Option<Token>) -> Guard {
+        Guard { token, open: VecDeque::new() }
+    }
+
+    /// Checks a request on `key`, where it needs a proof.
+    pub fn check<T: Serialize + DeserializeOwned>(
+        &mut self,
+        key: &str,
+        payload: &[u8],
+        needs_proof: impl Fn(&T) -> bool,
+    ) -> Checked<T> {
+        let Request { body, proof } = match serde_json::from_slice::<Request<T>>(payload) {
+            Ok(request) => request,
+            Err(error) => return Checked::Garbage(error),
+        };
+        let Some(token) = self.token.as_ref().filter(|_| needs_proof(&body)) else { return Checked::Granted(body) };
+        let now = clock::now();
+        self.open.retain(|(_, since)| now.saturating_duration_since(*since) < GOOD_FOR);
+        if let Some(proof) = proof
+            && let Some(i) = self.open.iter().position(|(challenge, _)| *challenge == proof.challenge)
+        {
+            self.open.remove(i);
+            if token.is_proven(&proof, key, &json(&body)) {
+                return Checked::Granted(body);
+            }
+        }
+        let challenge = hex(&random::<16>());
+        self.open.push_back((challenge.clone(), now));
+        let surplus = self.open.len().saturating_sub(OPEN_MAX);
+        self.open.drain(..surplus);
+        Checked::Challenged(json(&Answer::<()>::Challenge(challenge)))
+    }
+}
+
+fn random<const N: usize>() -> [u8; N] {
+    let mut bytes = [0; N];
+    getrandom::fill(&mut bytes).expect("the operating system has randomness");
+    bytes
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        write!(text, "{byte:02x}").expect("a text can be written to");
+        text
+    })
+}
+
+fn bytes_of(hex: &str) -> Option<Vec<u8>> {
+    let digits: Option<Vec<u8>> = hex.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect();
+    let digits = digits.filter(|digits| digits.len().is_multiple_of(2))?;
+    Some(digits.chunks(2).map(|pair| pair[0] << 4 | pair[1]).collect())
+}
+
+fn json<T: Serialize>(value: &T) -> Vec<u8> {
+    serde_json::to_vec(value).expect("a request is JSON")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KEY: &str = "squall/g/join";
+
+    fn guard(token: &Token) -> Guard {
+        Guard::new(Some(token.clone()))
+    }
+
+    fn check(guard: &mut Guard, key: &str, payload: &[u8]) -> Checked<String> {
+        guard.check(key, payload, |_| true)
+    }
+
+    /// What a node with this token sends when it was challenged.
+    fn proven(guard: &mut Guard, token: &Token, body: &str) -> Vec<u8> {
+        let Checked::Challenged(challenge) = check(guard, KEY, &first(&body)) else { panic!("it needs a proof") };
+        match read::<_, String>(Some(token), KEY, &body, &challenge).expect("an answer") {
+            Answered::Again(again) => again,
+            Answered::Answer(_) | Answered::NeedsToken => panic!("it was challenged"),
+        }
+    }
+
+    fn is_granted(checked: Checked<String>, body: &str) -> bool {
+        matches!(checked, Checked::Granted(granted) if granted == body)
+    }
+
+    #[test]
+    fn who_knows_the_token_is_let_through_once_for_each_challenge() {
+        let token = Token::random();
+        let mut guard = guard(&token);
+        let again = proven(&mut guard, &token, "blue_one");
+        assert!(is_granted(check(&mut guard, KEY, &again), "blue_one"));
+        assert!(matches!(check(&mut guard, KEY, &again), Checked::Challenged(_)), "a replay");
+    }
+
+    #[test]
+    fn others_are_not() {
+        let token = Token::random();
+        let mut guard = guard(&token);
+        let foreign = proven(&mut guard, &Token::random(), "blue_one");
+        assert!(matches!(check(&mut guard, KEY, &foreign), Checked::Challenged(_)), "another token");
+        let good = proven(&mut guard, &token, "blue_one");
+        assert!(matches!(check(&mut guard, "squall/g/control", &good), Checked::Challenged(_)), "another key");
+        let good = String::from_utf8(proven(&mut guard, &token, "blue_one")).expect("JSON");
+        let other = good.replace("blue_one", "blue_two");
+        assert!(matches!(check(&mut guard, KEY, other.as_bytes()), Checked::Challenged(_)), "another request");
+        let unasked = Request { body: "x", proof: Some(token.prove("00".repeat(16), KEY, &json(&"x"))) };
+        assert!(matches!(check(&mut guard, KEY, &json(&unasked)), Checked::Challenged(_)), "a challenge of its own");
+        assert!(matches!(check(&mut guard, KEY, b"{}"), Checked::Garbage(_)));
+        assert!(matches!(read::<_, String>(None, KEY, &"x", br#"{"challenge":"ab"}"#), Ok(Answered::NeedsToken)));
+    }
+
+    #[test]
+    fn what_needs_no_proof_gets_through_without() {
+        let mut guard = guard(&Token::random());
+        assert!(is_granted(guard.check(KEY, &first(&"stop"), |body| body != "stop"), "stop"));
+        assert!(is_granted(check(&mut Guard::default(), KEY, &first(&"x")), "x"), "there is no token");
+    }
+
+    #[test]
+    fn challenges_of_many_strangers_do_not_pile_up() {
+        let mut guard = guard(&Token::random());
+        (0..3 * OPEN_MAX).for_each(|_| drop(check(&mut guard, KEY, &first(&"x"))));
+        assert_eq!(guard.open.len(), OPEN_MAX);
+    }
+
+    #[test]
+    fn a_token_is_read_as_it_is_shown_and_never_logged() {
+        let token = Token::random();
+        assert_eq!(format!("{}\n", token.hex()).parse(), Ok(token.clone()));
+        assert_eq!(format!("{token:?}"), "Token(…)");
+        for bad in ["", "12", &"g".repeat(64), &"0".repeat(63), &"0".repeat(66)] {
+            assert_eq!(bad.parse::<Token>(), Err(NotAToken(bad.len())), "{bad}");
+        }
+        // RFC 4231, test case 1, of the MAC itself.
+        let mut mac = Hmac::<Sha256>::new_from_slice(&[0x0b; 20]).expect("a key");
+        mac.update(b"Hi There");
+        let want = "b0344c61d8db38535ca8afceaf0bf12b881dc200c9833da726e9376c2e32cff7";
+        assert_eq!(hex(&mac.finalize().into_bytes()), want);
+    }
+}

@@ -1,0 +1,9 @@
+//! What somebody can do who reaches a game's port and keeps to no rule of ours: he speaks zenoh by its own API.
+#![allow(clippy::disallowed_methods, reason = "processes are waited for by the clock, with a limit")]
+
+mod intruder;
+mod network;
+#[path = "../process/support.rs"]
+#[allow(dead_code, unreachable_pub, reason = "shared with the tests of whole games")]
+mod support;
+mod token;

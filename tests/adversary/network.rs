@@ -1,0 +1,139 @@
+//! What zenoh's access control keeps an intruder from: hearing, forging and taking the place of the sim.
+
+use crate::intruder::Intruder;
+use crate::support::{LIMIT, Sim, wait_until};
+use bus::{Latest, SimState, SimWatch};
+use game::message::{Frame, Message, Stamp};
+use game::run_state::{Phase, RunState};
+use game::topic;
+use game::{Picture, TeamId, codec};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+use zenoh::Wait;
+
+/// Long enough for what was sent to arrive many times over.
+const A_WHILE: Duration = Duration::from_secs(2);
+
+#[test]
+fn nobody_but_the_sim_hears_orders_and_navigation() {
+    let (sim, _agents) = Sim::start_with_agents("patient", &[]);
+    let intruder = Intruder::at(&sim);
+    let secret = ["order/*", "order/**", "nav/*", "**", "*/*"].map(|topic| (topic, intruder.listen(topic)));
+    let everything = intruder.listen_anywhere("**");
+    let open = intruder.listen("picture/*");
+    wait_until("what everybody may hear is heard", || open.keys().len() > 20);
+    // What comes for one subscription of a session is heard by all of its subscriptions that match.
+    let is_secret = |key: &String| !key.starts_with(&intruder.topic("picture/"));
+    for (topic, heard) in secret.iter().map(|(topic, heard)| (*topic, heard)).chain([("everything", &everything)]) {
+        assert_eq!(heard.keys().into_iter().find(is_secret), None, "by {topic}");
+    }
+    sim.stop();
+}
+
+#[test]
+fn forged_messages_of_the_sim_reach_nobody() {
+    let (sim, mut agents) = Sim::start_with_agents("patient", &[]);
+    let observer = sim.bus();
+    let (name, scenario) = (sim.name(), sim.info(&observer).scenario);
+    let forged = Arc::new(AtomicUsize::new(0));
+    let count = |is_forged: fn(&[u8]) -> bool| {
+        let forged = Arc::clone(&forged);
+        move |bytes: &[u8]| {
+            forged.fetch_add(usize::from(is_forged(bytes)), Ordering::Relaxed);
+        }
+    };
+    let heard = [
+        observer.subscribe(topic::frame(&name), count(|bytes| codec::decode::<Frame>(bytes).is_ok_and(|f| f.over))),
+        observer.subscribe(
+            topic::picture(&name, &scenario, TeamId(0)),
+            count(|bytes| codec::decode::<Picture>(bytes).is_ok_and(|picture| picture.over)),
+        ),
+        observer.subscribe(
+            topic::run(&name),
+            count(|bytes| serde_json::from_slice::<RunState>(bytes).is_ok_and(|run| run.phase == Phase::Over)),
+        ),
+    ];
+    heard.iter().for_each(|declared| assert!(declared.is_ok()));
+
+    let intruder = Intruder::at(&sim);
+    let frame = Frame { over: true, stamp: Stamp { version: Frame::VERSION, ..Stamp::default() }, ..Frame::default() };
+    let picture = |seq| {
+        let stamp = Stamp { version: Picture::VERSION, seq, ..Stamp::default() };
+        codec::encode(&Picture { over: true, stamp, ..Picture::default() })
+    };
+    let run = serde_json::to_vec(&RunState { phase: Phase::Over, ..RunState::default() }).expect("JSON");
+    for seq in 0..500 {
+        // By its own name, and by expressions that mean it among others.
+        for key in ["frame", "fram*", "*"] {
+            intruder
+                .session
+                .put(intruder.topic(&key.replace("fram*", "*")), codec::encode(&frame))
+                .wait()
+                .expect("open");
+        }
+        for key in ["picture/blue", "picture/red", "picture/*", "*/*", "**"] {
+            intruder.publish(key, picture(seq));
+        }
+        intruder.publish("run", run.clone());
+    }
+    intruder.session.put("**", picture(9)).wait().expect("open");
+    // Whoever believed it has left by now.
+    sim.play_on(1.0);
+    std::thread::sleep(A_WHILE);
+    for agent in &mut agents {
+        assert!(agent.0.try_wait().expect("it can be asked").is_none(), "an agent has left the game");
+    }
+    assert_eq!(forged.load(Ordering::Relaxed), 0);
+    let report = sim.stop();
+    assert_eq!(report["agents_lost"].as_u64().unwrap_or_default(), 0);
+}
+
+#[test]
+fn nobody_passes_for_the_sim() {
+    let (sim, mut agents) = Sim::start_with_agents("patient", &[]);
+    let observer = sim.bus();
+    let intruder = Intruder::at(&sim);
+    let watch = SimWatch::open(&observer, &sim.name(), bus::Patience::of_player(LIMIT)).expect("a session");
+    // A token beside the sim's, and answers in its place.
+    let token = intruder.session.liveliness().declare_token(intruder.topic("alive/sim/zz")).wait();
+    let answers: Vec<_> = ["scenario", "join", "events", "water", "*", "**"]
+        .map(|rest| {
+            let queryable = intruder.session.declare_queryable(intruder.topic(rest)).callback(|query| {
+                let key = query.key_expr().clone();
+                drop(query.reply(key, "forged").wait());
+            });
+            queryable.wait().expect("the session is open")
+        })
+        .into();
+    std::thread::sleep(A_WHILE);
+    assert_eq!(watch.state(), SimState::Alive);
+    let asker = Intruder::at(&sim);
+    for rest in ["scenario", "events", "water", "join"] {
+        let answers = asker.ask(rest, "");
+        assert_eq!(answers.len(), 1, "{rest}");
+        assert!(answers[0] != b"forged", "{rest}");
+    }
+    for agent in &mut agents {
+        assert!(agent.0.try_wait().expect("it can be asked").is_none(), "an agent has left the game");
+    }
+    drop((token, answers));
+    sim.stop();
+}
+
+#[test]
+fn who_plays_is_open_to_all_and_who_watches_hears_the_game() {
+    let (sim, _agents) = Sim::start_with_agents("patient", &[]);
+    let observer = sim.bus();
+    let frames = Arc::new(Latest::new(1));
+    let latest = Arc::clone(&frames);
+    let heard = observer.subscribe(topic::frame(&sim.name()), move |bytes| {
+        latest.put(0, codec::decode::<Frame>(bytes).expect("a frame"));
+    });
+    assert!(heard.is_ok());
+    let frame = frames.take(LIMIT).pop().flatten().expect("a frame");
+    assert_eq!(frame.vehicles.len(), 4);
+    let keys = observer.who_is_alive(&topic::everyone_alive(), bus::ANSWER).expect("a session");
+    assert_eq!(keys.len(), 5, "{keys:?}");
+    sim.stop();
+}
