@@ -1,6 +1,6 @@
 //! Controlling a game from outside of it.
 
-use crate::{ANSWER, Bus, BusError, Delivery};
+use crate::{ANSWER, Bus, BusError, Priority};
 use game::message::{Control, ControlReply};
 use game::topic::{self, GameName};
 
@@ -15,7 +15,7 @@ use game::topic::{self, GameName};
 pub fn control(bus: &Bus, game: &GameName, control: Control) -> Result<(), BusError> {
     let key = topic::control(game);
     if control.stops() {
-        let publisher = bus.publisher(key, Delivery::Wait)?;
+        let publisher = bus.publisher(key, Priority::Urgent)?;
         return publisher.send_json(serde_json::to_vec(&control).expect("a control is JSON"));
     }
     let reply: Option<ControlReply> = bus.request(&key, &control, ANSWER)?;

@@ -13,6 +13,7 @@ mod error;
 pub mod game_search;
 mod inbox;
 mod latest;
+mod linger;
 mod local_registry;
 mod net;
 mod session;
@@ -27,13 +28,14 @@ pub use inbox::{Inbox, InboxSender, inbox};
 pub use latest::Latest;
 pub use local_registry::{Entry, Registration, list as local_registry, register};
 pub use net::{DEFAULT_PORT, Net, free_port, is_loopback};
-pub use session::{Bus, Declaration, Delivery, Publisher, Query};
+pub use session::{Bus, Declaration, Priority, Publisher, Query};
 pub use sim_liveness::{Patience, SimState, SimWatch};
 pub use token::Token;
 pub use watched::Watched;
 
-/// A value of the environment variable `ZENOH_RUNTIME` for a process that is one node: two threads in place of zenoh's pools,
+/// A value of the environment variable `ZENOH_RUNTIME` for a process that is one node: few threads in place of zenoh's pools,
 /// which takes a quarter to a half off a lockstep round trip. What is received has one to itself: a hub that passes
-/// something large on waits in it for the sender to make room, which must then have another thread to run in.
+/// something large on waits in it for the sender to make room, which must then have another thread to run in. So have links
+/// that somebody begins to open: one that is never finished is closed with its linger time on.
 pub const RUNTIME: &str =
-    "(rx:(worker_threads:1),acc:(handover:app),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";
+    "(rx:(worker_threads:1),acc:(worker_threads:1),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";

@@ -10,6 +10,22 @@ use zenoh::Config;
 /// The port a hub takes when it is free and none is asked for.
 pub const DEFAULT_PORT: u16 = 7447;
 
+/// What zenoh does with a link. Only its own messages, such as declarations, wait for a congested one (in us), and not for
+/// long; a link that cannot take even those is closed. A batch has up to 64 kB: answers of a megabyte, and as many urgent
+/// messages as anybody can ask for at once, find room. A message that is put together from fragments has a limit.
+const LINKS: [(&str, &str); 5] = [
+    ("transport/link/tx/queue/congestion_control/drop/wait_before_drop", "0"),
+    ("transport/link/tx/queue/congestion_control/block/wait_before_close", "100000"),
+    ("transport/link/tx/queue/size/real_time", "16"),
+    ("transport/link/tx/queue/size/data_low", "16"),
+    ("transport/link/rx/max_message_size", "16777216"),
+];
+
+/// What comes in from other nodes is dropped where it would have to wait for a link that it goes out on. An answer goes by
+/// its question.
+const NEVER_WAIT: &str =
+    r#"[{messages: ["put", "delete", "query"], flows: ["ingress"], overwrite: {congestion_control: "drop"}}]"#;
+
 /// How a node meets the others.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Net {
@@ -45,6 +61,8 @@ impl Net {
         set(&mut config, "connect/endpoints", &list(&self.connect))?;
         // Our messages carry simulated time; a hybrid clock in every sample would only cost.
         set(&mut config, "timestamping/enabled", "false")?;
+        // Whatever a node asks for, what it sends through the hub waits for nobody: the others would wait with it.
+        set(&mut config, "qos/network", NEVER_WAIT)?;
         Ok(config)
     }
 
@@ -67,6 +85,9 @@ impl Net {
         };
         set(&mut config, "scouting/multicast/enabled", if self.lan { "true" } else { "false" })?;
         set(&mut config, "scouting/gossip/enabled", "false")?;
+        for (key, value) in LINKS {
+            set(&mut config, key, value)?;
+        }
         Ok(config)
     }
 }

@@ -1,7 +1,7 @@
 //! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
 use crate::token::{self, Answered, Token};
-use crate::{BusError, Net};
+use crate::{BusError, Net, linger};
 use game::codec;
 use game::message::Message;
 use game::topic::GameName;
@@ -11,17 +11,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use zenoh::bytes::Encoding;
-use zenoh::qos::CongestionControl;
+use zenoh::qos::{self, CongestionControl};
 use zenoh::sample::{Locality, SampleKind};
 use zenoh::{Session, Wait};
 
-/// How hard a message is delivered.
+/// Which messages go first. None waits for a link: what a congested link cannot take at once is dropped, and who needs to be
+/// heard says it again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Delivery {
-    /// The sender waits for a congested link (for up to some seconds).
-    Wait,
-    /// A message that a congested link cannot take at once is dropped.
-    Drop,
+pub enum Priority {
+    /// What stops boats: before everything else, and at once.
+    Urgent,
+    /// Everything that is sent at every decision.
+    Normal,
 }
 
 /// Something declared that lasts as long as this is kept.
@@ -86,12 +87,12 @@ impl Bus {
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
-    pub fn publisher(&self, key: String, delivery: Delivery) -> Result<Publisher, BusError> {
-        let congestion = match delivery {
-            Delivery::Wait => CongestionControl::Block,
-            Delivery::Drop => CongestionControl::Drop,
+    pub fn publisher(&self, key: String, priority: Priority) -> Result<Publisher, BusError> {
+        let builder = self.session.declare_publisher(key.clone()).congestion_control(CongestionControl::Drop);
+        let builder = match priority {
+            Priority::Urgent => builder.priority(qos::Priority::RealTime).express(true),
+            Priority::Normal => builder.priority(qos::Priority::Data),
         };
-        let builder = self.session.declare_publisher(key.clone()).congestion_control(congestion);
         let publisher = builder.wait().map_err(failed("publish on", &key))?;
         let is_heard = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&is_heard);
@@ -149,19 +150,32 @@ impl Bus {
         Ok(Declaration(Box::new(queryable.map_err(failed("answer at", &key))?)))
     }
 
-    /// Asks at `key`; gives the first answer that comes within `limit`.
+    /// Asks at `key`; gives the first answer that comes within `limit`. Answers go behind everything else, and one that a
+    /// congested link cannot take is dropped.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Result<Option<Vec<u8>>, BusError> {
-        let replies = self.session.get(key).payload(payload).timeout(limit).wait().map_err(failed("ask at", key))?;
+        self.ask_at(qos::Priority::DataLow, key, payload, limit)
+    }
+
+    fn ask_at(
+        &self,
+        priority: qos::Priority,
+        key: &str,
+        payload: Vec<u8>,
+        limit: Duration,
+    ) -> Result<Option<Vec<u8>>, BusError> {
+        let query = self.session.get(key).payload(payload).timeout(limit);
+        let query = query.congestion_control(CongestionControl::Drop).priority(priority).express(true);
+        let replies = query.wait().map_err(failed("ask at", key))?;
         let answers = std::iter::from_fn(|| replies.recv().ok());
         let mut sound = answers.filter_map(|reply| reply.into_result().ok());
         Ok(sound.next().map(|sample| sample.payload().to_bytes().into_owned()))
     }
 
     /// Asks at `key` for something that may need the game's token, and proves that this node knows it if asked to; gives the
-    /// first answer that comes within `limit`, of each of two questions.
+    /// first answer that comes within `limit`, of each of two questions. They go before everything else: some of them command boats.
     ///
     /// # Errors
     /// [`BusError`] if the session is closed, if a token is needed and there is none or another one, or if the answer is not
@@ -175,7 +189,7 @@ impl Bus {
         let refused = |reason| BusError::Request { key: key.to_owned(), reason };
         let mut payload = token::first(body);
         for _ in 0..2 {
-            let Some(answer) = self.ask(key, payload, limit)? else { return Ok(None) };
+            let Some(answer) = self.ask_at(qos::Priority::RealTime, key, payload, limit)? else { return Ok(None) };
             let token = self.token.as_ref();
             match token::read(token, key, body, &answer).map_err(|e| refused(format!("not understood: {e}")))? {
                 Answered::Answer(answer) => return Ok(Some(answer)),
@@ -232,10 +246,8 @@ impl Bus {
 }
 
 fn open(config: zenoh::Config, token: Option<Token>, what: String) -> Result<Bus, BusError> {
-    match zenoh::open(config).wait() {
-        Ok(session) => Ok(Bus { session, token }),
-        Err(e) => Err(BusError::Open { what, reason: reason(&e) }),
-    }
+    let session = zenoh::open(config).wait().and_then(|session| linger::disable(&session).map(|()| session));
+    session.map(|session| Bus { session, token }).map_err(|e| BusError::Open { what, reason: reason(&e) })
 }
 
 impl Publisher {

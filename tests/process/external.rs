@@ -1,7 +1,7 @@
 //! Real boats: a gateway of the test's own brings one, sails it by the orders that come, and falls silent.
 
 use crate::support::{LIMIT, Sim, own, refusal_of, result_of, wait_until};
-use bus::{Bus, Declaration, Delivery, Publisher};
+use bus::{Bus, Declaration, Priority, Publisher};
 use game::angle::rad_from_compass_deg;
 use game::external::{ExternalOrder, NavReport};
 use game::message::{JoinReply, JoinRequest, Message, Role, Stamp};
@@ -11,12 +11,12 @@ use game::{Order, VehicleId, codec};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-const ME: VehicleId = VehicleId(0);
+pub(crate) const ME: VehicleId = VehicleId(0);
 /// Simulated seconds a second.
-const FACTOR: f64 = 4.0;
+pub(crate) const FACTOR: f64 = 4.0;
 
 /// A gateway with a boat that follows commands at once.
-struct Gateway {
+pub(crate) struct Gateway {
     bus: Bus,
     name: GameName,
     alive: Vec<Declaration>,
@@ -35,7 +35,7 @@ fn join(bus: &Bus, name: &GameName, vehicle: &str) -> JoinReply {
 }
 
 impl Gateway {
-    fn joined(sim: &Sim) -> Gateway {
+    pub(crate) fn joined(sim: &Sim) -> Gateway {
         let (bus, name) = (sim.bus(), sim.name());
         let scenario = sim.info(&bus).scenario;
         let orders = Arc::new(Mutex::new(Vec::new()));
@@ -45,7 +45,7 @@ impl Gateway {
             bus.subscribe(topic::external_order(&name, &scenario, ME), take).expect("the hub is there"),
             bus.show_alive(topic::alive(&name, Part::Gateway, &bus.id())).expect("the hub is there"),
         ];
-        let nav = bus.publisher(topic::nav(&name, &scenario, ME), Delivery::Drop).expect("the hub is there");
+        let nav = bus.publisher(topic::nav(&name, &scenario, ME), Priority::Normal).expect("the hub is there");
         let JoinReply::Granted { ticket, vehicles } = join(&bus, &name, "blue_one") else { panic!("the boat is free") };
         assert_eq!(vehicles, [ME]);
         let at = Nav { north_m: 40.0, east_m: 52.0, psi_rad: rad_from_compass_deg(90.0), ..Nav::default() };
@@ -65,7 +65,7 @@ impl Gateway {
     }
 
     /// Follows the last order, and reports.
-    fn sail(&mut self) {
+    pub(crate) fn sail(&mut self) {
         let passed_s = self.moved.elapsed().as_secs_f64() * FACTOR;
         self.moved = Instant::now();
         let order = self.newest().and_then(|newest| newest.order.order());

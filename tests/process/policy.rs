@@ -1,7 +1,7 @@
 //! Policies outside of the helm: another program proposes, the helm weighs it against keeping inside of the field.
 
 use crate::support::{Sim, own};
-use bus::{Bus, Declaration, Delivery};
+use bus::{Bus, Declaration, Priority};
 use game::message::{Frame, GameInfo, Message, PolicyProposal, Stamp};
 use game::topic::{self, GameName};
 use game::{Picture, TeamId, VehicleId, codec};
@@ -13,7 +13,7 @@ const ME: VehicleId = VehicleId(0);
 /// A policy as another program would be: it sees the picture and wants to drive north in a zigzag, whatever happens. Now
 /// and then it is slow.
 fn drive_north(bus: &Bus, name: &GameName, info: &GameInfo) -> Declaration {
-    let publisher = bus.publisher(topic::policy(name, &info.scenario, ME), Delivery::Wait).expect("the hub is there");
+    let publisher = bus.publisher(topic::policy(name, &info.scenario, ME), Priority::Normal).expect("the hub is there");
     let answer = move |bytes: &[u8]| {
         let picture: Picture = codec::decode(bytes).expect("a picture");
         let stamp = Stamp { version: PolicyProposal::VERSION, ..picture.stamp };

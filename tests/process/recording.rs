@@ -1,7 +1,7 @@
 //! Recordings as people make them: of whole games, of games that were killed, of real boats; and games played again.
 
 use crate::support::{FOUR, Sim, own, refusal_of, result_of, run, temporary, wait_until};
-use bus::Delivery;
+use bus::Priority;
 use game::VehicleId;
 use game::external::LinkBytes;
 use game::message::{Message, PolicyProposal, Stamp};
@@ -83,7 +83,7 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     let scenario = game::scenario::load(Path::new(&own("long"))).unwrap_or_else(|e| panic!("{e}"));
     // A recording begins with the game.
     sim.play_on(1.0);
-    let publisher = |key| bus.publisher(key, Delivery::Wait).expect("a session");
+    let publisher = |key| bus.publisher(key, Priority::Normal).expect("a session");
     publisher(topic::control(&game)).send_json(b"\"halt\"".to_vec()).expect("a session");
     let proposals = publisher(topic::policy(&game, &scenario, VehicleId(0)));
     let stamp = Stamp { version: PolicyProposal::VERSION, ..Stamp::default() };

@@ -1,7 +1,7 @@
 //! Agents that send what they should not: refused with a counted reason, the game unharmed.
 
 use crate::support::{FOUR, Sim};
-use bus::{Bus, Delivery, Latest, Publisher};
+use bus::{Bus, Latest, Priority, Publisher};
 use game::codec;
 use game::message::{JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
 use game::topic::{self, GameName};
@@ -38,7 +38,7 @@ impl Rogue {
         let JoinReply::Granted { ticket, .. } = join(&bus, &game, &request(&["red_two"])) else {
             panic!("the boat is free")
         };
-        let orders = bus.publisher(topic::orders(&game, "rogue"), Delivery::Wait).expect("a session");
+        let orders = bus.publisher(topic::orders(&game, "rogue"), Priority::Normal).expect("a session");
         Rogue { _bus: bus, pictures, orders, ticket, _standing: standing.expect("a session") }
     }
 

@@ -6,7 +6,7 @@ use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
 use super::talk::Talk;
 use crate::{MindRunner, mind_by, mind_of};
-use bus::{Bus, Declaration, Delivery, Latest, Patience, Publisher, SimState, SimWatch};
+use bus::{Bus, Declaration, Latest, Patience, Priority, Publisher, SimState, SimWatch};
 use game::codec::{self, DecodeError};
 use game::message::GameInfo;
 use game::refusal::Refusals;
@@ -63,7 +63,7 @@ impl AgentLoop {
             talk: Talk::open(bus, game, scenario, &runner, limit(MESSAGES_LATE))?,
             policies: PolicyInbox::open(bus, game, scenario, &runner, limit(settings.policy_wait))?,
             helm_queries: None,
-            orders: bus.publisher(topic::orders(game, &bus.id()), Delivery::Wait)?,
+            orders: bus.publisher(topic::orders(game, &bus.id()), Priority::Normal)?,
             subscriptions: Subscriptions::open(bus, game, scenario, &runner, settings.silence)?,
             runner,
             ticket: 0,

@@ -3,7 +3,7 @@
 use super::error::NodeError;
 use super::team_inbox::TeamInbox;
 use crate::MindRunner;
-use bus::{Bus, Declaration, Delivery, Publisher, Watched};
+use bus::{Bus, Declaration, Priority, Publisher, Watched};
 use game::message::{Message, Say, Stamp, Word};
 use game::refusal::{Refusal, Refusals};
 use game::topic::{self, GameName};
@@ -51,7 +51,7 @@ impl Talk {
             let inbox = Arc::clone(&team_inbox);
             let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.take(team, bytes));
             declarations.push(bus.subscribe_remote(topic::all_say(game, scenario, team), take)?);
-            let publisher = bus.publisher(topic::say(game, scenario, team, &bus.id()), Delivery::Wait)?;
+            let publisher = bus.publisher(topic::say(game, scenario, team, &bus.id()), Priority::Normal)?;
             outgoing.push(Outgoing { team, publisher, last: None });
         }
         Ok(Talk { outgoing, team_inbox, teams, patience, words: Vec::new(), _declarations: declarations })

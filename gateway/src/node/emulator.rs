@@ -8,7 +8,7 @@ use crate::nmea::Operator;
 use crate::nmea::date_and_time;
 use agent::{Mind, MindRunner};
 use bus::game_search::{self, GameSearch};
-use bus::{Delivery, Net, Patience, Publisher, SimState, SimWatch, Watched};
+use bus::{Net, Patience, Priority, Publisher, SimState, SimWatch, Watched};
 use game::message::Role;
 use game::topic::{self, GameName, Part};
 use game::{Order, Picture, SimTime, VehicleId, codec};
@@ -103,7 +103,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
         sim,
         now: SimTime::ZERO,
         links: [Some(back_seat), primary],
-        orders: bus.publisher(topic::orders(&game, &bus.id()), Delivery::Wait)?,
+        orders: bus.publisher(topic::orders(&game, &bus.id()), Priority::Normal)?,
         operator: Operator::Secondary,
         sent: 0,
     };

@@ -18,7 +18,7 @@ use crate::nmea::date_and_time;
 use crate::record::{self, StepEncoder};
 use bus::game_search::{self, GameSearch, NotFound};
 use bus::token::Guard;
-use bus::{Bus, BusError, Declaration, Delivery, Net, inbox};
+use bus::{Bus, BusError, Declaration, Net, Priority, inbox};
 use clock::Clock;
 use game::external::GatewayStatus;
 use game::frame::LatLon;
@@ -176,9 +176,9 @@ pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Resu
         inbox,
         latest_order: inputs.latest_order,
         e_stop: inputs.e_stop,
-        nav: bus.publisher(topic::nav(&game, &info.scenario, vehicle), Delivery::Drop)?,
-        status: bus.publisher(topic::status(&game, &settings.vehicle), Delivery::Drop)?,
-        link_bytes: bus.publisher(topic::link(&game, &settings.vehicle), Delivery::Drop)?,
+        nav: bus.publisher(topic::nav(&game, &info.scenario, vehicle), Priority::Normal)?,
+        status: bus.publisher(topic::status(&game, &settings.vehicle), Priority::Normal)?,
+        link_bytes: bus.publisher(topic::link(&game, &settings.vehicle), Priority::Normal)?,
         vehicle,
         others: others.map(|(i, _)| VehicleId::at(i)).filter(|other| *other != vehicle).collect(),
         recorder,

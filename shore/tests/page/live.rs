@@ -4,7 +4,7 @@ use super::client::Client;
 use super::source::{frame, own_boat, report, scenario, seq_of};
 use super::{open_viewer, visit};
 use bus::token::{self, Checked, Guard};
-use bus::{Bus, Declaration, Delivery, Net, Publisher, Watched};
+use bus::{Bus, Declaration, Net, Priority, Publisher, Watched};
 use game::codec;
 use game::event::{Event, Logged};
 use game::external::GatewayStatus;
@@ -82,7 +82,7 @@ impl Sim {
         let net = Net { listen: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
         let game = GameName::new(name).expect("a good name");
         let bus = Bus::hub(&net, &game).expect("the port is free");
-        let publisher = |key: String| bus.publisher(key, Delivery::Wait).expect("it publishes");
+        let publisher = |key: String| bus.publisher(key, Priority::Normal).expect("it publishes");
         let (frames, run) = (publisher(topic::frame(&game)), publisher(topic::run(&game)));
         let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
         let events = Arc::new(Watched::new(vec![]));
@@ -341,7 +341,7 @@ fn gateways_tell_and_real_boats_keep_their_pace() {
     let external = sim.scenario.vehicles.iter().find(|v| v.source == game::scenario::Source::External);
     let name = external.expect("a real boat").name.clone();
     let game = GameName::new("pond").expect("a good name");
-    let gateway = sim.bus.publisher(topic::status(&game, &name), Delivery::Wait).expect("it publishes");
+    let gateway = sim.bus.publisher(topic::status(&game, &name), Priority::Normal).expect("it publishes");
     let status = GatewayStatus { vehicle: name.clone(), state: "armed".to_owned(), ..GatewayStatus::default() };
     gateway.send_json(json(&status)).expect("it is open");
     let sent = client.until("status", |_| true);

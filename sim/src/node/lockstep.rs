@@ -55,17 +55,17 @@ fn keep_speed(
 fn gather(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMessage)) -> Result<(), NodeError> {
     let tick = server.contest.decision();
     let patience = Duration::from_secs_f64(server.contest.scenario().patience_s);
-    // The clock is only looked at when somebody is slow.
-    let mut waiting: Option<(Instant, Instant)> = None;
+    // Patience goes by the time that the sim is at work.
+    let since = server.time.worked();
+    let mut sent = clock::now();
     while !server.agents.all_answered(tick) && !server.is_stopped() {
-        let (since, sent) = *waiting.get_or_insert_with(|| (clock::now(), clock::now()));
         server.listen(Duration::from_millis(50));
-        if clock::since(since) >= patience {
+        if server.time.worked().saturating_sub(since) >= patience {
             server.give_up(tick);
         } else if clock::since(sent) >= SEND_AGAIN {
             server.send_pictures()?;
             server.report_progress(tell)?;
-            waiting = Some((since, clock::now()));
+            sent = clock::now();
         }
     }
     // Whoever joined or left meanwhile, in a game that waits for nobody.

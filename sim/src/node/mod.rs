@@ -4,6 +4,7 @@
 //! [`Contest`], [`membership`], [`agents`] and [`gateways`]; here are the sockets and the clocks.
 
 pub mod agents;
+mod control_inbox;
 pub mod gateways;
 mod lockstep;
 pub mod membership;
@@ -14,6 +15,7 @@ mod realtime;
 mod recorder;
 mod server;
 mod subscriptions;
+mod working_time;
 
 pub use progress::{Progress, ProgressMessage, Reporter};
 pub use recorder::GameRecorder;

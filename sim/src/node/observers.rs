@@ -19,10 +19,13 @@ pub(super) fn water_json(contest: &Contest) -> Vec<u8> {
     serde_json::to_vec(&water(contest)).expect("waves are JSON")
 }
 
-/// The event history so far, as JSON.
+/// Events in an answer: no link takes more than a megabyte at once, and nobody waits for it.
+const EVENTS_MAX: usize = 5000;
+
+/// The event history so far, as JSON; of a long one the end.
 pub(super) fn events_json(contest: &Contest) -> Vec<u8> {
-    let scenario = contest.scenario();
-    let events = contest.events().iter().map(|logged| EventOutcome::new(scenario, logged));
+    let (scenario, all) = (contest.scenario(), contest.events());
+    let events = all[all.len().saturating_sub(EVENTS_MAX)..].iter().map(|logged| EventOutcome::new(scenario, logged));
     serde_json::to_vec(&events.collect::<Vec<_>>()).expect("events are JSON")
 }
 

@@ -3,15 +3,17 @@
 mod incoming;
 
 use super::agents::Timing;
+use super::control_inbox::ControlInbox;
 use super::membership::Membership;
 use super::observers::{self, RecordedTopic};
 use super::pacing::Pacing;
 use super::recorder::GameRecorder;
-use super::subscriptions::{self, Incoming};
+use super::subscriptions::{self, Inboxes, Incoming, Question};
+use super::working_time::WorkingTime;
 use super::{NodeError, Pace, ProgressMessage, Reporter, Settings};
 use crate::contest::Contest;
 use bus::token::Guard;
-use bus::{Bus, Declaration, Delivery, Inbox, Publisher, clock, inbox};
+use bus::{Bus, Declaration, Inbox, Priority, Publisher, Query, Watched, clock, inbox};
 use game::codec;
 use game::event::EventCursor;
 use game::external::ExternalOrder;
@@ -27,6 +29,8 @@ use std::time::{Duration, Instant};
 
 /// Messages that may wait to be read.
 const INBOX: usize = 8192;
+/// Questions that may wait to be answered.
+const QUESTIONS: usize = 64;
 /// How often progress is reported.
 const REPORT_EVERY: Duration = Duration::from_millis(100);
 /// How often the state of the run is recorded, where nothing has changed.
@@ -42,6 +46,10 @@ pub(super) struct GameServer<'w> {
     pub(super) agents: Membership,
     gateways: Membership,
     timing: Timing,
+    controls: Arc<ControlInbox<Query>>,
+    /// What was refused before it came to an inbox.
+    garbage: Arc<Watched<Refusals>>,
+    questions: Inbox<(Question, Query)>,
     inbox: Inbox<Incoming>,
     bus: Bus,
     pictures: Vec<Publisher>,
@@ -69,8 +77,9 @@ pub(super) struct GameServer<'w> {
     game_info: Vec<u8>,
     stop: Arc<AtomicBool>,
     refusals: Refusals,
-    /// When each vehicle's agent was last heard.
-    heard: Vec<Instant>,
+    /// When each vehicle's agent was last heard, by the time at work.
+    heard: Vec<Duration>,
+    pub(super) time: WorkingTime,
     pub(super) reporter: Reporter,
     last_report: (Instant, SimTime),
     /// When the open decision was opened, once the game runs.
@@ -87,22 +96,24 @@ impl<'w> GameServer<'w> {
         recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
         let bus = Bus::hub(&settings.net, &settings.game)?;
-        let (inbox_sender, inbox) = inbox(INBOX);
+        let (others, incoming) = inbox(INBOX);
+        let (questions_sender, questions) = inbox(QUESTIONS);
+        let (controls, garbage) = (Arc::new(ControlInbox::default()), Arc::new(Watched::default()));
+        let (to_controls, to_garbage) = (Arc::clone(&controls), Arc::clone(&garbage));
+        let inboxes = Inboxes { controls: to_controls, questions: questions_sender, others, garbage: to_garbage };
         let game = &settings.game;
         if recorder.is_some() {
             contest.keep_inputs();
         }
         let scenario = contest.scenario();
         let recorded_topics = if recorder.is_some() { observers::recorded_topics(scenario) } else { vec![] };
-        let declarations = subscriptions::open(&bus, game, &inbox_sender, &recorded_topics)?;
+        let declarations = subscriptions::open(&bus, game, &inboxes, &recorded_topics)?;
         let is_lockstep = settings.pace == Pace::Lockstep;
         let timing = if is_lockstep { Timing::Lockstep } else { Timing::Realtime };
         let speed = if let Pace::Realtime { factor } = settings.pace { Some(factor) } else { settings.speed };
-        let delivery = if is_lockstep { Delivery::Wait } else { Delivery::Drop };
         let teams = (0..scenario.teams.len()).map(|team| topic::picture(game, scenario, TeamId(team as u8)));
-        let pictures: Result<Vec<Publisher>, _> = teams.map(|key| bus.publisher(key, delivery)).collect();
-        // A gateway that does not keep up must not stop the game, and gets the next order soon.
-        let to_boat = |v| Ok((v, bus.publisher(topic::external_order(game, scenario, v), Delivery::Drop)?));
+        let pictures: Result<Vec<Publisher>, _> = teams.map(|key| bus.publisher(key, Priority::Normal)).collect();
+        let to_boat = |v| Ok((v, bus.publisher(topic::external_order(game, scenario, v), Priority::Urgent)?));
         let external_orders: Vec<_> = scenario.externals().map(to_boat).collect::<Result<_, NodeError>>()?;
         let is_real = !external_orders.is_empty();
         let game_info =
@@ -111,15 +122,19 @@ impl<'w> GameServer<'w> {
             agents: Membership::new(scenario, Role::Agent),
             gateways: Membership::new(scenario, Role::Gateway),
             timing,
-            inbox,
+            controls,
+            garbage,
+            questions,
+            inbox: incoming,
+            time: WorkingTime::new(clock::now()),
             pictures: pictures?,
             asked: None,
             external_orders,
-            frames: bus.publisher(topic::frame(game), Delivery::Drop)?,
+            frames: bus.publisher(topic::frame(game), Priority::Normal)?,
             shown: EventCursor::default(),
             frame: None,
-            run: bus.publisher(topic::run(game), Delivery::Drop)?,
-            released: bus.publisher(topic::released(game), Delivery::Wait)?,
+            run: bus.publisher(topic::run(game), Priority::Normal)?,
+            released: bus.publisher(topic::released(game), Priority::Urgent)?,
             guard: Guard::new(settings.net.token.clone()),
             is_news: false,
             run_recorded: clock::now(),
@@ -130,7 +145,7 @@ impl<'w> GameServer<'w> {
             game_info: serde_json::to_vec(&game_info).expect("a scenario is JSON"),
             stop: Arc::clone(&settings.stop),
             refusals: Refusals::default(),
-            heard: vec![clock::now(); scenario.vehicles.len()],
+            heard: vec![Duration::ZERO; scenario.vehicles.len()],
             reporter: Reporter::default(),
             last_report: (clock::now(), SimTime::ZERO),
             opened: None,
@@ -170,7 +185,7 @@ impl<'w> GameServer<'w> {
             self.listen(Duration::from_millis(100));
         }
         self.last_report = (clock::now(), SimTime::ZERO);
-        self.heard.fill(clock::now());
+        self.heard.fill(self.time.worked());
         Ok(())
     }
 
@@ -267,7 +282,7 @@ impl<'w> GameServer<'w> {
     pub(super) fn lose_silent(&mut self) {
         let patience = Duration::from_secs_f64(self.contest.scenario().patience_s);
         for i in 0..self.heard.len() {
-            if clock::since(self.heard[i]) > patience {
+            if self.time.worked().saturating_sub(self.heard[i]) > patience {
                 let vehicles = self.agents.lose_holder_of(VehicleId::at(i));
                 self.lose_agents(vehicles);
             }
@@ -289,7 +304,9 @@ impl<'w> GameServer<'w> {
 
     /// Everything that was refused so far.
     pub(super) fn refusals(&self) -> Refusals {
-        self.refusals + Refusals::from([(Refusal::Flood, self.inbox.dropped())])
+        let dropped = self.inbox.dropped() + self.questions.dropped();
+        let before = self.garbage.visit(|garbage| *garbage) + self.controls.refusals();
+        self.refusals + before + Refusals::from([(Refusal::Flood, dropped)])
     }
 
     /// Reports progress, if it is time again.
@@ -383,7 +400,7 @@ impl<'w> GameServer<'w> {
             }
         }
         // Whoever was silent meanwhile had nothing to answer.
-        self.heard.fill(clock::now());
+        self.heard.fill(self.time.worked());
         Ok(())
     }
 }

@@ -1,62 +1,111 @@
-//! What a sim subscribes to and answers: everything that comes in goes to its inbox.
+//! What a sim subscribes to and answers: commands, questions and everything else go to an inbox each.
 
+use super::control_inbox::ControlInbox;
 use super::observers::RecordedTopic;
-use bus::{Bus, BusError, Declaration, InboxSender, Query};
+use bus::{Bus, BusError, Declaration, InboxSender, Query, Watched};
+use game::external::NavReport;
+use game::message::{Message, Orders};
+use game::refusal::Refusals;
 use game::topic::{self, GameName, Part};
+use serde::de::DeserializeOwned;
+use std::sync::Arc;
 
 /// What comes in from the network.
 pub(super) enum Incoming {
-    Orders(Vec<u8>),
-    Nav(Vec<u8>),
+    Orders(Orders),
+    /// The report, and its bytes for the recorder.
+    Nav(NavReport, Vec<u8>),
     Join(Query),
-    Scenario(Query),
-    Events(Query),
-    Water(Query),
     /// For the recorder only: the topic's place in the list, and the message.
     RecordedMessage(usize, Vec<u8>),
     Gone(Part, String),
-    /// Published: it stops boats, or is refused.
-    Stop(Vec<u8>),
-    Control(Query),
+    /// A command or a question waits in an inbox of its own; this makes the sim look there.
+    Look,
+}
+
+/// What observers want to know.
+pub(super) enum Question {
+    Scenario,
+    Events,
+    Water,
+}
+
+/// The inboxes of a sim, for callbacks.
+pub(super) struct Inboxes {
+    pub(super) controls: Arc<ControlInbox<Query>>,
+    pub(super) questions: InboxSender<(Question, Query)>,
+    pub(super) others: InboxSender<Incoming>,
+    /// What is not understood comes to no inbox, where it would take the room of what is.
+    pub(super) garbage: Arc<Watched<Refusals>>,
+}
+
+impl Inboxes {
+    /// A callback for messages of one kind.
+    fn take<M: Message + DeserializeOwned + 'static>(
+        &self,
+        incoming: fn(M, &[u8]) -> Incoming,
+    ) -> impl Fn(&[u8]) + Send + Sync + use<M> {
+        let (others, garbage) = (self.others.clone(), Arc::clone(&self.garbage));
+        move |bytes: &[u8]| {
+            if let Some(message) = garbage.visit(|garbage| garbage.decode::<M>(bytes)) {
+                others.put(incoming(message, bytes));
+            }
+        }
+    }
+
+    /// A callback for questions of one kind.
+    fn ask(&self, question: fn() -> Question) -> impl Fn(Query) + Send + Sync + use<> {
+        let (questions, others) = (self.questions.clone(), self.others.clone());
+        move |query| {
+            questions.put((question(), query));
+            others.put(Incoming::Look);
+        }
+    }
 }
 
 /// Opens everything that comes in; `recorded` are the topics that are subscribed to only for the recorder.
 pub(super) fn open(
     bus: &Bus,
     game: &GameName,
-    inbox_sender: &InboxSender<Incoming>,
+    inboxes: &Inboxes,
     recorded: &[RecordedTopic],
 ) -> Result<Vec<Declaration>, BusError> {
-    let on = |incoming: fn(Vec<u8>) -> Incoming| {
-        let inbox_sender = inbox_sender.clone();
-        move |bytes: &[u8]| inbox_sender.put(incoming(bytes.to_vec()))
-    };
-    let asked = |incoming: fn(Query) -> Incoming| {
-        let inbox_sender = inbox_sender.clone();
-        move |query| inbox_sender.put(incoming(query))
-    };
-    let gone = inbox_sender.clone();
+    let others = || inboxes.others.clone();
+    let (gone, joins) = (others(), others());
     let watch = move |key: &str, alive: bool| {
         if let (Some((_, part, node)), false) = (topic::parse_alive(key), alive) {
             gone.put(Incoming::Gone(part, node));
         }
     };
+    // Where there is no room for a look, the sim is at work, and looks before each message.
+    let (stops, look) = (Arc::clone(&inboxes.controls), others());
+    let stop = move |bytes: &[u8]| {
+        if stops.put_stop(bytes) {
+            look.put(Incoming::Look);
+        }
+    };
+    let (controls, look) = (Arc::clone(&inboxes.controls), others());
+    let control = move |query| {
+        if controls.put_query(query) {
+            look.put(Incoming::Look);
+        }
+    };
     let mut declarations = vec![
-        bus.subscribe(topic::all_orders(game), on(Incoming::Orders))?,
-        bus.subscribe(topic::control(game), on(Incoming::Stop))?,
-        bus.answer(topic::control(game), asked(Incoming::Control))?,
-        bus.subscribe(topic::all_nav(game), on(Incoming::Nav))?,
+        bus.subscribe(topic::all_orders(game), inboxes.take(|orders, _| Incoming::Orders(orders)))?,
+        bus.subscribe(topic::control(game), stop)?,
+        bus.answer(topic::control(game), control)?,
+        bus.subscribe(topic::all_nav(game), inboxes.take(|report, bytes| Incoming::Nav(report, bytes.to_vec())))?,
         bus.watch_alive(topic::all_alive(game, Part::Agent), watch.clone())?,
         bus.watch_alive(topic::all_alive(game, Part::Gateway), watch)?,
-        bus.answer(topic::scenario(game), asked(Incoming::Scenario))?,
-        bus.answer(topic::events(game), asked(Incoming::Events))?,
-        bus.answer(topic::water(game), asked(Incoming::Water))?,
-        bus.answer(topic::join(game), asked(Incoming::Join))?,
+        bus.answer(topic::scenario(game), inboxes.ask(|| Question::Scenario))?,
+        bus.answer(topic::events(game), inboxes.ask(|| Question::Events))?,
+        bus.answer(topic::water(game), inboxes.ask(|| Question::Water))?,
+        bus.answer(topic::join(game), move |query| joins.put(Incoming::Join(query)))?,
         bus.show_alive(topic::alive(game, Part::Sim, &bus.id()))?,
     ];
     for (i, RecordedTopic { topic, .. }) in recorded.iter().enumerate() {
-        let inbox_sender = inbox_sender.clone();
-        let take = move |bytes: &[u8]| inbox_sender.put(Incoming::RecordedMessage(i, bytes.to_vec()));
+        let others = others();
+        let take = move |bytes: &[u8]| others.put(Incoming::RecordedMessage(i, bytes.to_vec()));
         declarations.push(bus.subscribe(topic::recorded(game, topic), take)?);
     }
     Ok(declarations)

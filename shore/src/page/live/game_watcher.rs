@@ -5,7 +5,7 @@ use super::query_thread::QueryThread;
 use super::{Command, Place, SharedState, Tell};
 use bus::clock;
 use bus::game_search::{self, Missing};
-use bus::{Bus, BusError, Declaration, Delivery, Patience, Publisher, SimState, SimWatch, Watched};
+use bus::{Bus, BusError, Declaration, Patience, Priority, Publisher, SimState, SimWatch, Watched};
 use game::codec;
 use game::external::GatewayStatus;
 use game::message::{Control, Frame, Message, PolicyProposal, Stamp};
@@ -139,7 +139,7 @@ impl GameSession {
     fn begin(shared: &Arc<SharedState>, bus: Bus, game: LiveGame) -> Result<GameSession, BusError> {
         let game = Arc::new(game);
         let sim = SimWatch::open(&bus, &game.name, PATIENCE)?;
-        let control = bus.publisher(topic::control(&game.name), Delivery::Wait)?;
+        let control = bus.publisher(topic::control(&game.name), Priority::Urgent)?;
         let generation = {
             let mut state = shared.state.lock();
             state.begin(Arc::clone(&game));
@@ -179,7 +179,7 @@ impl GameSession {
         for (vehicle, (course_rad, speed_m_s)) in steering {
             if !self.policies.contains_key(&vehicle) {
                 let key = topic::policy(&self.game.name, self.game.scenario(), vehicle);
-                let Ok(publisher) = self.bus.publisher(key, Delivery::Drop) else { continue };
+                let Ok(publisher) = self.bus.publisher(key, Priority::Normal) else { continue };
                 self.policies.insert(vehicle, publisher);
             }
             if let Some(publisher) = self.policies.get(&vehicle) {

@@ -2,8 +2,9 @@
 
 use super::GameServer;
 use crate::node::agents::{self, Accepted};
+use crate::node::control_inbox::Command;
 use crate::node::observers::{self, RecordedTopic};
-use crate::node::subscriptions::Incoming;
+use crate::node::subscriptions::{Incoming, Question};
 use crate::node::{Pace, gateways};
 use bus::token::{self, Checked};
 use bus::{Query, clock};
@@ -16,65 +17,97 @@ use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
+/// Messages that are read before the game goes on.
+const MESSAGES_MAX: usize = 1024;
+/// Questions that are answered before the game goes on.
+const ANSWERS_MAX: usize = 4;
+
 impl GameServer<'_> {
-    /// Takes in what comes, waiting up to `limit` for the first of it.
+    /// Takes in what comes, waiting up to `limit` for the first of it. Commands come first.
     pub(in crate::node) fn listen(&mut self, limit: Duration) {
+        self.time.pass(clock::now(), Duration::ZERO);
         let mut next = self.inbox.take(limit);
-        while let Some(incoming) = next {
-            match incoming {
-                Incoming::Orders(bytes) => self.take_orders(&bytes),
-                Incoming::Nav(bytes) => self.take_nav(&bytes),
-                Incoming::Join(query) => self.join(query),
-                Incoming::Scenario(query) => query.answer(self.game_info.clone()),
-                Incoming::Events(query) => query.answer(observers::events_json(&self.contest)),
-                Incoming::Water(query) => query.answer(observers::water_json(&self.contest)),
-                Incoming::RecordedMessage(i, bytes) => {
-                    let RecordedTopic { topic, schema, is_sound } = &self.recorded_topics[i];
-                    if is_sound(&bytes) {
-                        self.record_message(topic.clone(), *schema, bytes);
-                    } else {
-                        self.refusals.count(Refusal::Garbage);
-                    }
-                }
-                Incoming::Gone(Part::Gateway, gateway) => drop(self.gateways.gone(&gateway)),
-                Incoming::Gone(_, agent) => {
-                    let vehicles = self.agents.gone(&agent);
-                    self.lose_agents(vehicles);
-                }
-                Incoming::Stop(bytes) => match serde_json::from_slice::<Control>(&bytes) {
-                    Ok(control) if control.stops() => self.control(control).unwrap_or_default(),
-                    Ok(_) => self.refusals.count(Refusal::OutOfPlace),
-                    Err(_) => self.refusals.count(Refusal::Garbage),
-                },
-                Incoming::Control(query) => self.asked_to_control(query),
-            }
+        self.time.pass(clock::now(), limit);
+        self.obey();
+        self.answer();
+        // Messages may come faster than they are read: the game goes on all the same.
+        for _ in 0..MESSAGES_MAX {
+            self.obey();
+            let Some(incoming) = next else { return };
+            self.take_in(incoming);
             next = self.inbox.take_now();
+        }
+        next.into_iter().for_each(|incoming| self.take_in(incoming));
+    }
+
+    /// Answers some of the questions that wait: they are work, and whoever asks can wait or ask again.
+    fn answer(&mut self) {
+        let questions: Vec<(Question, Query)> =
+            std::iter::from_fn(|| self.questions.take_now()).take(ANSWERS_MAX).collect();
+        for (question, query) in questions {
+            query.answer(match question {
+                Question::Scenario => self.game_info.clone(),
+                Question::Events => observers::events_json(&self.contest),
+                Question::Water => observers::water_json(&self.contest),
+            });
         }
     }
 
-    fn take_orders(&mut self, bytes: &[u8]) {
-        let Some(message) = self.refusals.decode::<Orders>(bytes) else { return };
+    /// Follows the commands that wait.
+    fn obey(&mut self) {
+        while let Some(command) = self.controls.take() {
+            match command {
+                Command::Stop(control) => self.control(control).unwrap_or_default(),
+                Command::Ask(query) => self.asked_to_control(query),
+            }
+        }
+    }
+
+    fn take_in(&mut self, incoming: Incoming) {
+        match incoming {
+            Incoming::Orders(message) => self.take_orders(&message),
+            Incoming::Nav(report, bytes) => self.take_nav(&report, bytes),
+            Incoming::Join(query) => self.join(query),
+            Incoming::RecordedMessage(i, bytes) => {
+                let RecordedTopic { topic, schema, is_sound } = &self.recorded_topics[i];
+                if is_sound(&bytes) {
+                    self.record_message(topic.clone(), *schema, bytes);
+                } else {
+                    self.refusals.count(Refusal::Garbage);
+                }
+            }
+            Incoming::Gone(Part::Gateway, gateway) => drop(self.gateways.gone(&gateway)),
+            // Its link was given up while the sim did nothing: patience tells whether it comes back.
+            Incoming::Gone(..) if self.time.is_recovering() => {}
+            Incoming::Gone(_, agent) => {
+                let vehicles = self.agents.gone(&agent);
+                self.lose_agents(vehicles);
+            }
+            Incoming::Look => {}
+        }
+    }
+
+    fn take_orders(&mut self, message: &Orders) {
         let open = (self.contest.decision(), self.timing);
-        let Accepted { orders, back } = agents::accept(&mut self.agents, &message, open, &mut self.refusals);
+        let Accepted { orders, back } = agents::accept(&mut self.agents, message, open, &mut self.refusals);
         back.into_iter().for_each(|vehicle| self.contest.regain_agent(vehicle));
         for (vehicle, order) in orders {
             let taken = self.contest.order(vehicle, order, message.stamp.valid_ns);
             self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
-            self.heard[vehicle.index()] = clock::now();
+            self.heard[vehicle.index()] = self.time.worked();
             self.pass_on_now(vehicle);
         }
     }
 
-    fn take_nav(&mut self, bytes: &[u8]) {
-        let Some(report) = self.refusals.decode::<NavReport>(bytes) else { return };
+    fn take_nav(&mut self, report: &NavReport, bytes: Vec<u8>) {
         if self.recorder.is_some()
             && let Some(vehicle) = self.contest.scenario().vehicles.get(report.vehicle.index())
         {
             let topic = format!("nav/{}", vehicle.name);
-            self.record_message(topic, Some(NavReport::SCHEMA), bytes.to_vec());
+            self.record_message(topic, Some(NavReport::SCHEMA), bytes);
         }
         let now = self.moment();
-        let Some(fix_at) = gateways::accept(&mut self.gateways, &report, now, &mut self.refusals) else { return };
+        let Some(fix_at) = gateways::accept(&mut self.gateways, report, now, &mut self.refusals) else { return };
         let taken = self.contest.report(report.vehicle, report.nav, fix_at, report.valid);
         self.refusals.add(Refusal::BadNumber, u64::from(taken.is_err()));
     }
@@ -103,7 +136,7 @@ impl GameServer<'_> {
             for vehicle in vehicles {
                 self.contest.hold(*vehicle);
                 self.contest.regain_agent(*vehicle);
-                self.heard[vehicle.index()] = clock::now();
+                self.heard[vehicle.index()] = self.time.worked();
             }
         }
         reply

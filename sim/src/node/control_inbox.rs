@@ -1,0 +1,143 @@
+//! Commands of operators on their way into the game: before everything else that comes in, and no stop is ever lost.
+
+use bus::Watched;
+use game::message::Control;
+use game::refusal::{Refusal, Refusals};
+use std::collections::VecDeque;
+
+/// Commands that may wait to be read: more than people give between two looks of the sim.
+const WAITING_MAX: usize = 64;
+
+/// A command of an operator; `Q` is a query, to be answered.
+#[derive(Debug, PartialEq)]
+pub(super) enum Command<Q> {
+    /// Published by anybody: it stops boats.
+    Stop(Control),
+    /// Asked of the sim.
+    Ask(Q),
+}
+
+/// The commands that wait for the game.
+pub(super) struct ControlInbox<Q>(Watched<Waiting<Q>>);
+
+/// What waits, and what was refused.
+struct Waiting<Q> {
+    commands: VecDeque<Command<Q>>,
+    refusals: Refusals,
+}
+
+impl<Q> Default for ControlInbox<Q> {
+    fn default() -> ControlInbox<Q> {
+        ControlInbox(Watched::new(Waiting { commands: VecDeque::new(), refusals: Refusals::default() }))
+    }
+}
+
+impl<Q> ControlInbox<Q> {
+    /// Takes in what was published. Says whether there is something to look for.
+    pub(super) fn put_stop(&self, bytes: &[u8]) -> bool {
+        let control = serde_json::from_slice::<Control>(bytes);
+        self.0.visit(|waiting| match control {
+            Ok(control) if control.stops() => {
+                waiting.put_stop(control);
+                true
+            }
+            Ok(_) => {
+                waiting.refusals.count(Refusal::OutOfPlace);
+                false
+            }
+            Err(_) => {
+                waiting.refusals.count(Refusal::Garbage);
+                false
+            }
+        })
+    }
+
+    /// Takes in what is asked of the sim, if there is room. Says whether there was.
+    pub(super) fn put_query(&self, query: Q) -> bool {
+        self.0.visit(|waiting| {
+            let has_room = waiting.commands.len() < WAITING_MAX;
+            if has_room {
+                waiting.commands.push_back(Command::Ask(query));
+            } else {
+                waiting.refusals.count(Refusal::Flood);
+            }
+            has_room
+        })
+    }
+
+    /// The command that came first.
+    pub(super) fn take(&self) -> Option<Command<Q>> {
+        self.0.visit(|waiting| waiting.commands.pop_front())
+    }
+
+    /// What was refused so far.
+    pub(super) fn refusals(&self) -> Refusals {
+        self.0.visit(|waiting| waiting.refusals)
+    }
+}
+
+impl<Q> Waiting<Q> {
+    /// The same stop twice in a row is one. Where too much waits, a stop takes the place of all that is none.
+    fn put_stop(&mut self, stop: Control) {
+        let is_stop = |command: &Command<Q>, stop| matches!(command, Command::Stop(waiting) if *waiting == stop);
+        if self.commands.back().is_some_and(|last| is_stop(last, stop)) {
+            return;
+        }
+        if self.commands.len() >= WAITING_MAX {
+            let stops = [Control::EStop, Control::Halt];
+            let waiting = stops.map(|stop| self.commands.iter().any(|command| is_stop(command, stop)));
+            let before = self.commands.len();
+            self.commands.clear();
+            let kept = stops.into_iter().zip(waiting).filter(|(_, waits)| *waits);
+            self.commands.extend(kept.map(|(stop, _)| Command::Stop(stop)));
+            self.refusals.add(Refusal::Flood, (before - self.commands.len()) as u64);
+        }
+        self.commands.push_back(Command::Stop(stop));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn put(inbox: &ControlInbox<u32>, control: Control) -> bool {
+        inbox.put_stop(&serde_json::to_vec(&control).expect("JSON"))
+    }
+
+    fn all(inbox: &ControlInbox<u32>) -> Vec<Command<u32>> {
+        std::iter::from_fn(|| inbox.take()).collect()
+    }
+
+    #[test]
+    fn commands_are_taken_in_their_order_and_only_stops_are_taken_from_anybody() {
+        let inbox = ControlInbox::default();
+        assert!(put(&inbox, Control::EStop) && put(&inbox, Control::EStop) && inbox.put_query(1));
+        assert!(put(&inbox, Control::EStop) && put(&inbox, Control::Halt) && inbox.put_query(1));
+        assert!(!put(&inbox, Control::Release) && !put(&inbox, Control::Stop), "those are asked for");
+        assert!(!inbox.put_stop(b"ahoy") && !inbox.put_stop(b"\"e_stop"));
+        let [e_stop, halt] = [Control::EStop, Control::Halt].map(Command::Stop);
+        assert_eq!(all(&inbox), [Command::Stop(Control::EStop), Command::Ask(1), e_stop, halt, Command::Ask(1)]);
+        assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Garbage, 2), (Refusal::OutOfPlace, 2)]));
+    }
+
+    #[test]
+    fn no_flood_keeps_a_stop_out() {
+        let inbox = ControlInbox::default();
+        assert!(put(&inbox, Control::Halt));
+        (1..1000).for_each(|i| assert_eq!(inbox.put_query(i), (i as usize) < WAITING_MAX));
+        assert!(put(&inbox, Control::EStop));
+        assert_eq!(all(&inbox), [Command::Stop(Control::Halt), Command::Stop(Control::EStop)]);
+        assert_eq!(inbox.refusals(), Refusals::from([(Refusal::Flood, 999)]));
+        // Not even one of stops, whatever is asked between them: what ends a stop is not left behind it.
+        for i in 0..1000 {
+            put(&inbox, if i % 2 == 0 { Control::EStop } else { Control::Halt });
+            inbox.put_query(i);
+        }
+        let left = all(&inbox);
+        assert!(left.len() <= WAITING_MAX && left.contains(&Command::Stop(Control::EStop)));
+        assert_eq!(
+            left.iter().rev().find(|command| matches!(command, Command::Stop(_))),
+            Some(&Command::Stop(Control::Halt))
+        );
+    }
+}
