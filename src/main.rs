@@ -16,6 +16,7 @@ mod observer;
 mod output_file;
 mod page_args;
 mod plot;
+mod printer;
 mod record_args;
 mod recording_file;
 mod replay_command;

@@ -2,6 +2,7 @@
 
 use crate::game_args::GameArgs;
 use crate::net_args::{HubArgs, token_text, unique_game_name};
+use crate::printer::Printer;
 use crate::record_args;
 use crate::screen::{self, Screen};
 use crate::stop;
@@ -49,14 +50,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         Some(game) => game.clone(),
         None => unique_game_name(&scenario.name)?,
     };
-    let mut screen = Screen::new();
-    let mut show = |message: &ProgressMessage| {
-        if args.for_parent {
+    let (mut screen, for_parent) = (Screen::new(), args.for_parent);
+    let printer = Printer::start(move |message| {
+        if for_parent {
             screen::print(&(serde_json::to_string(message).expect("a message is JSON") + "\n"));
         } else {
             screen.show(message);
         }
-    };
+    });
     let mut registration = None;
     let record = |path: &PathBuf| {
         GameRecorder::on_network(path.clone(), game.as_str(), &args.play.pace.to_string(), env!("SQUALL_COMMIT"))
@@ -80,10 +81,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             // Where it cannot be registered, others must be told where the game is; nothing else is lost.
             registration = bus::register(&entry).ok();
         }
-        show(&message);
         if let (ProgressMessage::Open { .. }, Some(token), false) = (&message, &token, args.for_parent) {
             screen::print(&(token_text(token) + "\n"));
         }
+        printer.print(message);
     })?;
     drop(registration);
     if let Some(problem) = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report))) {
@@ -91,6 +92,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     args.play.write_result(&report)?;
     let cut_short = report.run.cut_short;
-    show(&ProgressMessage::Done(Box::new(report)));
+    printer.end(ProgressMessage::Done(Box::new(report)));
     Ok(if cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
 }
