@@ -3,17 +3,17 @@
 //! Water with one boat, its emulator, a proxy that can be cut, the gateway, the game and its agents. The boat is watched
 //! in the water itself, by the truth about its thrusters.
 
+use crate::proxy::{PASS, Proxy, REFUSE, SWALLOW};
 use crate::support::{LIMIT, Process, Sim, newest, result_of, run, stderr, stdout, temporary, wait_until, wait_within};
 use bus::{Bus, Declaration, Watched};
 use game::codec;
 use game::external::{GatewayStatus, OperatorCommand, OperatorReply};
 use game::message::Frame;
 use game::topic;
-use std::io::{Read, Write};
-use std::net::{Shutdown, TcpListener, TcpStream};
+use std::io::Write;
+use std::net::TcpStream;
 use std::process::Stdio;
-use std::sync::atomic::{AtomicU8, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What is allowed on a busy machine beyond the time that is stated.
@@ -23,67 +23,6 @@ const SLACK: Duration = Duration::from_millis(1500);
 /// this after 3.5 + 1.1 s.
 const STILL_NEWTON: f64 = 0.5;
 const LAG: Duration = Duration::from_millis(4600);
-
-/// A link that can be cut: passes, swallows everything both ways, or refuses.
-struct Proxy {
-    port: u16,
-    state: Arc<AtomicU8>,
-    open: Arc<Mutex<Vec<TcpStream>>>,
-}
-
-const PASS: u8 = 0;
-const SWALLOW: u8 = 1;
-const REFUSE: u8 = 2;
-
-impl Proxy {
-    fn start(to: String) -> Proxy {
-        let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
-        let port = listener.local_addr().expect("bound").port();
-        let (state, open) = (Arc::new(AtomicU8::new(PASS)), Arc::new(Mutex::new(Vec::new())));
-        let (now, streams) = (Arc::clone(&state), Arc::clone(&open));
-        std::thread::spawn(move || {
-            for inner in listener.incoming().map_while(Result::ok) {
-                if now.load(Ordering::Relaxed) == REFUSE {
-                    continue;
-                }
-                let Ok(outer) = TcpStream::connect(&to) else { continue };
-                for (from, into) in [(&inner, &outer), (&outer, &inner)] {
-                    let (from, into) = (from.try_clone().expect("a stream"), into.try_clone().expect("a stream"));
-                    let now = Arc::clone(&now);
-                    std::thread::spawn(move || pass(from, into, &now));
-                }
-                streams.lock().expect("whole").extend([inner, outer]);
-            }
-        });
-        Proxy { port, state, open }
-    }
-
-    fn set(&self, state: u8) {
-        self.state.store(state, Ordering::Relaxed);
-    }
-
-    fn cut(&self) {
-        for stream in self.open.lock().expect("whole").drain(..) {
-            let _ = stream.shutdown(Shutdown::Both);
-        }
-    }
-}
-
-/// Carries bytes one way. A connection that has begun to swallow never gives back what it swallowed.
-fn pass(mut from: TcpStream, mut into: TcpStream, state: &AtomicU8) {
-    let mut buffer = [0; 4096];
-    let mut swallowing = false;
-    while let Ok(count) = from.read(&mut buffer) {
-        swallowing |= state.load(Ordering::Relaxed) == SWALLOW;
-        if count == 0 {
-            break;
-        }
-        if !swallowing && into.write_all(&buffer[..count]).is_err() {
-            break;
-        }
-    }
-    let _ = into.shutdown(Shutdown::Both);
-}
 
 /// All of it.
 struct Loop {

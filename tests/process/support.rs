@@ -227,6 +227,12 @@ impl Sim {
         }
     }
 
+    /// The newest progress that it has reported, or the next.
+    pub(crate) fn newest_progress(&self) -> Value {
+        let newest = self.messages.try_iter().filter(|message| message["kind"] == "progress").last();
+        newest.unwrap_or_else(|| self.wait_for_kind("progress"))
+    }
+
     /// The next message of this kind.
     pub(crate) fn wait_for_kind(&self, kind: &str) -> Value {
         self.wait_for(|message| message["kind"] == kind)

@@ -1,0 +1,280 @@
+//! Faults of the network: links that are cut, nodes that are stopped, floods. Whoever is not concerned does not notice.
+
+use crate::external::{FACTOR, Gateway, ME};
+use crate::proxy::{Proxy, STALL};
+use crate::support::{
+    FOUR, LIMIT, Process, Sim, agent, free_endpoint, newest, own, result_of, squall, token, wait_until,
+};
+use bus::{Bus, Net, Priority};
+use game::external::ExternalOrder;
+use game::message::{Control, Frame};
+use game::topic::{self, GameName};
+use game::{Order, SimTime, codec};
+use std::process::{Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+/// zenoh gives up a silent link after ten seconds, and would wait for ten more when it closes it.
+const AFTERMATH: Duration = Duration::from_secs(25);
+/// A game that reports no progress for this long stands still. It reports ten times a second; the rest is room for a busy
+/// machine.
+const STANDSTILL: Duration = Duration::from_millis(1500);
+/// Twice: as fast as can be, and by the clock, where nobody is waited for.
+const PACES: [&str; 2] = ["lockstep", "200x"];
+
+/// A game with an agent for each boat, in a sim with as few threads as those of `squall run`.
+fn game(pace: &str) -> (Sim, Vec<Process>) {
+    let sim = sim_with_few_threads("impatient", pace);
+    let agents = FOUR.iter().map(|name| sim.agent(&[name])).collect();
+    sim.wait_for_kind("started");
+    (sim, agents)
+}
+
+fn sim_with_few_threads(name: &str, pace: &str) -> Sim {
+    let mut program = squall(&[]);
+    program.env("ZENOH_RUNTIME", bus::RUNTIME);
+    Sim::start_with(program, name, &["--listen", &free_endpoint(), "--pace", pace])
+}
+
+/// An observer of the game at this endpoint.
+fn observer(endpoint: &str, game: &str) -> Process {
+    let mut command = squall(&["watch", "--connect", endpoint, "--game", game, "--rate", "30"]);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    Process::start(command)
+}
+
+/// The game goes on without standing still, and loses no agents any more.
+fn expect_undisturbed(sim: &Sim, what: &str) {
+    let start = Instant::now();
+    let mut since = start;
+    while start.elapsed() < AFTERMATH {
+        let message = sim.wait_for(|_| true);
+        let still = since.elapsed();
+        assert!(still < STANDSTILL, "{what}: the game stands still for {still:?}");
+        if message["kind"] == "progress" {
+            since = Instant::now();
+        }
+        assert!(message["event"] != "agent_lost", "{what}: {message} after {:?}", start.elapsed());
+    }
+}
+
+/// Does the same at both paces, at once.
+fn at_both_paces(check: fn(&str)) {
+    std::thread::scope(|scope| {
+        for pace in PACES {
+            scope.spawn(move || check(pace));
+        }
+    });
+}
+
+#[test]
+fn an_observer_whose_link_is_cut_holds_up_nobody() {
+    at_both_paces(|pace| {
+        let (sim, _agents) = game(pace);
+        let proxy = Proxy::start(sim.endpoint.replace("tcp/", ""));
+        let _watch = observer(&format!("tcp/127.0.0.1:{}", proxy.port), &sim.game);
+        sim.play_on(20.0);
+        proxy.set(STALL);
+        expect_undisturbed(&sim, pace);
+        sim.stop();
+    });
+}
+
+#[test]
+fn an_observer_that_is_stopped_holds_up_nobody() {
+    at_both_paces(|pace| {
+        let (sim, _agents) = game(pace);
+        let watch = observer(&sim.endpoint, &sim.game);
+        sim.play_on(20.0);
+        watch.signal("STOP");
+        expect_undisturbed(&sim, pace);
+        sim.stop();
+    });
+}
+
+#[test]
+fn an_agent_that_hangs_costs_its_own_patience_once_and_nothing_after_it() {
+    at_both_paces(|pace| {
+        let (sim, agents) = game(pace);
+        sim.play_on(20.0);
+        agents[1].signal("STOP");
+        sim.wait_for_event("agent_lost", FOUR[1]);
+        expect_undisturbed(&sim, pace);
+        sim.stop();
+    });
+}
+
+#[test]
+fn an_agent_whose_link_is_cut_costs_its_own_patience_once_and_nothing_after_it() {
+    at_both_paces(|pace| {
+        let sim = sim_with_few_threads("impatient", pace);
+        let proxy = Proxy::start(sim.endpoint.replace("tcp/", ""));
+        let _agents: Vec<Process> = FOUR[1..].iter().map(|name| sim.agent(&[name])).collect();
+        let _cut = agent(&format!("tcp/127.0.0.1:{}", proxy.port), &sim.game, &FOUR[..1]);
+        sim.wait_for_kind("started");
+        sim.play_on(20.0);
+        proxy.set(STALL);
+        sim.wait_for_event("agent_lost", FOUR[0]);
+        expect_undisturbed(&sim, pace);
+        sim.stop();
+    });
+}
+
+#[test]
+fn a_sim_that_was_suspended_blames_nobody_and_plays_the_same_game() {
+    let want = result_of(&[&own("impatient_120s"), "--in-process"])["digest"].clone();
+    let sim = Sim::start("impatient_120s", &["--speed", "20x"]);
+    let mut agents = FOUR.map(|name| sim.agent(&[name]));
+    sim.wait_for_kind("started");
+    sim.play_on(2.0);
+    suspend(&sim);
+    let done = sim.wait_for_kind("done");
+    assert_eq!(done["outcome"]["digest"], want, "{}", done["outcome"]["events"]);
+    assert!(agents.iter_mut().all(|agent| agent.wait().success()), "they leave in peace");
+}
+
+#[test]
+fn a_sim_that_was_suspended_in_real_time_blames_nobody() {
+    let (sim, _agents) = game("4x");
+    sim.play_on(2.0);
+    suspend(&sim);
+    let start = Instant::now();
+    while start.elapsed() < AFTERMATH {
+        let message = sim.wait_for(|_| true);
+        assert!(message["event"] != "agent_lost", "{message} after {:?}", start.elapsed());
+    }
+    sim.stop();
+}
+
+/// Longer than zenoh's ten seconds, after which both ends give up a link.
+fn suspend(sim: &Sim) {
+    sim.process.signal("STOP");
+    std::thread::sleep(Duration::from_secs(15));
+    sim.process.signal("CONT");
+}
+
+#[test]
+fn a_sim_whose_output_nobody_reads_plays_on() {
+    let endpoint = free_endpoint();
+    let mut command = squall(&["sim", &own("long"), "--for-parent", "--game", "unread", "--listen", &endpoint]);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    let _sim = Process::start(command);
+    let _agent = agent(&endpoint, "unread", &FOUR);
+    let name = GameName::new("unread").expect("a name");
+    let net = Net { connect: vec![endpoint], token: Some(token()), ..Net::default() };
+    let mut bus = None;
+    wait_until("the hub is there", || {
+        bus = Bus::leaf(&net).ok();
+        bus.is_some()
+    });
+    let bus = bus.expect("it is there");
+    let read = |bytes: &[u8]| codec::decode::<Frame>(bytes).expect("a frame").stamp.valid_ns;
+    let (now, _frames) = newest(&bus, topic::frame(&name), read);
+    let play_on = || {
+        let from = now.visit(|now| *now);
+        assert!(now.wait(LIMIT, |now| *now > from + SimTime::from_s(5.0)), "it stands still at {} s", from.as_s());
+    };
+    play_on();
+    // Whatever an operator asks for is reported at once: more than a pipe of 64 kB takes.
+    for i in 0..2000 {
+        let speed = Control::Speed(Some(if i % 2 == 0 { 900.0 } else { 1000.0 }));
+        bus::control(&bus, &name, speed).expect("it goes at that speed");
+    }
+    play_on();
+    play_on();
+}
+
+/// Tries of an E-stop; more of them if the environment says so.
+fn tries() -> usize {
+    std::env::var("SQUALL_TRIES").ok().and_then(|text| text.parse().ok()).unwrap_or(100)
+}
+
+/// Waits until the boat is ordered to hold, or not to, and gives the moment. It sails on meanwhile.
+fn ordered(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway, hold: bool) -> Instant {
+    let start = Instant::now();
+    loop {
+        assert!(start.elapsed() < LIMIT, "never ordered: hold {hold}");
+        gateway.sail();
+        let mut recent = orders.recv_timeout(Duration::from_millis(10)).into_iter().chain(orders.try_iter());
+        if let Some((at, _)) = recent.find(|(_, is_hold)| *is_hold == hold) {
+            return at;
+        }
+    }
+}
+
+/// Waits until the boat is driven again, and nothing else is on its way to it.
+fn driven(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway) {
+    loop {
+        ordered(orders, gateway, false);
+        if orders.try_iter().all(|(_, is_hold)| !is_hold) {
+            return;
+        }
+    }
+}
+
+#[test]
+fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
+    let sim = sim_with_few_threads("real_attacker", &format!("{FACTOR}x"));
+    let _agents = [sim.agent(&["blue_one"]), sim.agent(&["red_one"])];
+    let mut gateway = Gateway::joined(&sim);
+    let (bus, operator, name) = (sim.bus(), sim.bus(), sim.name());
+    let (sender, orders) = channel();
+    let take = move |bytes: &[u8]| {
+        let order: ExternalOrder = codec::decode(bytes).expect("an order");
+        let _ = sender.send((Instant::now(), order.order.order() == Some(Order::Hold)));
+    };
+    let key = topic::external_order(&name, &sim.info(&bus).scenario, ME);
+    let _orders = bus.subscribe(key, take).expect("the hub is there");
+    let stop = operator.publisher(topic::control(&name), Priority::Urgent).expect("the hub is there");
+    ordered(&orders, &mut gateway, false);
+    let _flood = flood(&sim);
+    let refused = |sim: &Sim| sim.newest_progress()["refused"].as_u64().expect("a number");
+    let before = refused(&sim);
+    wait_until("the flood has come", || refused(&sim) > before + 10_000);
+    let (start, before) = (Instant::now(), refused(&sim));
+    let mut took_ms: Vec<f64> = Vec::new();
+    for _ in 0..tries() {
+        driven(&orders, &mut gateway);
+        let sent = Instant::now();
+        stop.send_json(b"\"e_stop\"".to_vec()).expect("a session");
+        took_ms.push(ordered(&orders, &mut gateway, true).duration_since(sent).as_secs_f64() * 1e3);
+        bus::control(&operator, &name, Control::Release).expect("it goes on");
+    }
+    let rate = (refused(&sim) - before) as f64 / start.elapsed().as_secs_f64();
+    took_ms.sort_by(f64::total_cmp);
+    let at = |share: f64| took_ms[((took_ms.len() - 1) as f64 * share) as usize];
+    let distribution = format!(
+        "{} E-stops under {rate:.0} refused messages a second: median {:.1} ms, 99 % {:.1} ms, longest {:.1} ms",
+        took_ms.len(),
+        at(0.5),
+        at(0.99),
+        at(1.0)
+    );
+    eprintln!("{distribution}");
+    assert!(at(1.0) < 200.0, "{distribution}");
+    sim.stop();
+}
+
+/// A process that publishes garbage for a game, as fast as it can.
+fn flood(sim: &Sim) -> Process {
+    let mut command = Command::new(std::env::current_exe().expect("this program"));
+    command.args(["--ignored", "--exact", "network::floods_a_game"]);
+    command.env(FLOODED, format!("{} {}", sim.endpoint, sim.game)).stdout(Stdio::null()).stderr(Stdio::null());
+    Process::start(command)
+}
+
+/// The variable that says which game is to be flooded.
+const FLOODED: &str = "SQUALL_FLOODED_GAME";
+
+#[test]
+#[ignore = "the other end of a test, in a process of its own"]
+fn floods_a_game() {
+    let flooded = std::env::var(FLOODED).unwrap_or_default();
+    let Some((endpoint, game)) = flooded.split_once(' ') else { return };
+    let name = GameName::new(game).expect("a name");
+    let bus = Bus::leaf(&Net { connect: vec![endpoint.to_owned()], ..Net::default() }).expect("the hub is there");
+    let keys = [topic::orders(&name, "stranger"), topic::control(&name)];
+    let publishers = keys.map(|key| bus.publisher(key, Priority::Normal).expect("the hub is there"));
+    // Until it is killed, or the game is gone.
+    while publishers.iter().all(|publisher| publisher.send_raw(vec![0xaa; 16]).is_ok()) {}
+}
