@@ -1,12 +1,14 @@
 //! The token of a game: who knows it may join, control and operate.
 //!
 //! It never travels. Whoever is asked for something that needs it answers with a challenge, a number used once; the request comes
-//! again with the HMAC-SHA256 (RFC 2104, FIPS 180-4), under the token, of the challenge, the key and the request.
+//! again with the HMAC-SHA256 (RFC 2104, FIPS 180-4), under the token, of the challenge, the key and the request as it is sent:
+//! each with its length before it, as 64 bits, little-endian.
 
 use crate::clock;
 use hmac::{Hmac, KeyInit, Mac};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::value::{RawValue, to_raw_value};
 use sha2::Sha256;
 use std::collections::VecDeque;
 use std::fmt::Write as _;
@@ -91,10 +93,10 @@ struct Proof {
     mac: String,
 }
 
-/// A request as it travels: JSON.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Request<T> {
-    body: T,
+/// A request as it travels: JSON, the body as its sender spelled it.
+#[derive(Debug, Serialize, Deserialize)]
+struct Request {
+    body: Box<RawValue>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     proof: Option<Proof>,
 }
@@ -109,7 +111,7 @@ enum Answer<T> {
 
 /// A request with no proof yet.
 pub(crate) fn first<T: Serialize>(body: &T) -> Vec<u8> {
-    json(&Request { body, proof: None })
+    json(&Request { body: spelled(body), proof: None })
 }
 
 /// What an answer means.
@@ -131,7 +133,8 @@ pub(crate) fn read<B: Serialize, T: DeserializeOwned>(
     Ok(match (serde_json::from_slice(answer)?, token) {
         (Answer::Answer(answer), _) => Answered::Answer(answer),
         (Answer::Challenge(challenge), Some(token)) => {
-            let proof = Some(token.prove(challenge, key, &json(body)));
+            let body = spelled(body);
+            let proof = Some(token.prove(challenge, key, body.get().as_bytes()));
             Answered::Again(json(&Request { body, proof }))
         }
         (Answer::Challenge(_), None) => Answered::NeedsToken,
@@ -169,25 +172,31 @@ impl Guard {
     }
 
     /// Checks a request on `key`, where it needs a proof.
-    pub fn check<T: Serialize + DeserializeOwned>(
+    pub fn check<T: DeserializeOwned>(
         &mut self,
         key: &str,
         payload: &[u8],
         needs_proof: impl Fn(&T) -> bool,
     ) -> Checked<T> {
-        let Request { body, proof } = match serde_json::from_slice::<Request<T>>(payload) {
-            Ok(request) => request,
+        let read = |payload| {
+            let Request { body, proof } = serde_json::from_slice(payload)?;
+            Ok((serde_json::from_str::<T>(body.get())?, body, proof))
+        };
+        let (request, body, proof) = match read(payload) {
+            Ok(read) => read,
             Err(error) => return Checked::Garbage(error),
         };
-        let Some(token) = self.token.as_ref().filter(|_| needs_proof(&body)) else { return Checked::Granted(body) };
+        let Some(token) = self.token.as_ref().filter(|_| needs_proof(&request)) else {
+            return Checked::Granted(request);
+        };
         let now = clock::now();
         self.open.retain(|(_, since)| now.saturating_duration_since(*since) < GOOD_FOR);
         if let Some(proof) = proof
             && let Some(i) = self.open.iter().position(|(challenge, _)| *challenge == proof.challenge)
         {
             self.open.remove(i);
-            if token.is_proven(&proof, key, &json(&body)) {
-                return Checked::Granted(body);
+            if token.is_proven(&proof, key, body.get().as_bytes()) {
+                return Checked::Granted(request);
             }
         }
         let challenge = hex(&random::<16>());
@@ -215,6 +224,10 @@ fn bytes_of(hex: &str) -> Option<Vec<u8>> {
     let digits: Option<Vec<u8>> = hex.chars().map(|c| c.to_digit(16).map(|digit| digit as u8)).collect();
     let digits = digits.filter(|digits| digits.len().is_multiple_of(2))?;
     Some(digits.chunks(2).map(|pair| pair[0] << 4 | pair[1]).collect())
+}
+
+fn spelled<T: Serialize>(body: &T) -> Box<RawValue> {
+    to_raw_value(body).expect("a request is JSON")
 }
 
 fn json<T: Serialize>(value: &T) -> Vec<u8> {
@@ -268,10 +281,23 @@ mod tests {
         let good = String::from_utf8(proven(&mut guard, &token, "blue_one")).expect("JSON");
         let other = good.replace("blue_one", "blue_two");
         assert!(matches!(check(&mut guard, KEY, other.as_bytes()), Checked::Challenged(_)), "another request");
-        let unasked = Request { body: "x", proof: Some(token.prove("00".repeat(16), KEY, &json(&"x"))) };
+        let unasked = Request { body: spelled(&"x"), proof: Some(token.prove("00".repeat(16), KEY, br#""x""#)) };
         assert!(matches!(check(&mut guard, KEY, &json(&unasked)), Checked::Challenged(_)), "a challenge of its own");
         assert!(matches!(check(&mut guard, KEY, b"{}"), Checked::Garbage(_)));
         assert!(matches!(read::<_, String>(None, KEY, &"x", br#"{"challenge":"ab"}"#), Ok(Answered::NeedsToken)));
+    }
+
+    #[test]
+    fn a_request_counts_as_it_is_spelled() {
+        let token = Token::random();
+        let mut guard = guard(&token);
+        let Checked::Challenged(challenge) = check(&mut guard, KEY, br#"{ "body": "a\u0062" }"#) else {
+            panic!("a proof")
+        };
+        let Ok(Answer::<()>::Challenge(challenge)) = serde_json::from_slice(&challenge) else { panic!("a challenge") };
+        let Proof { challenge, mac } = token.prove(challenge, KEY, br#""a\u0062""#);
+        let again = format!(r#"{{"proof": {{"mac": "{mac}", "challenge": "{challenge}"}}, "body":  "a\u0062" }}"#);
+        assert!(is_granted(check(&mut guard, KEY, again.as_bytes()), "ab"));
     }
 
     #[test]
@@ -296,6 +322,10 @@ mod tests {
         for bad in ["", "12", &"g".repeat(64), &"0".repeat(63), &"0".repeat(66)] {
             assert_eq!(bad.parse::<Token>(), Err(NotAToken(bad.len())), "{bad}");
         }
+        // By Python's `hmac`, as in docs/agents.md.
+        let token: Token = "0123456789abcdef".repeat(4).parse().expect("64 digits");
+        let proof = token.prove("4f0c".repeat(8), KEY, br#"{"vehicles": ["blue_one"]}"#);
+        assert_eq!(proof.mac, "241a6209f58ecc6e28bc77c90017740c48dfff3a390cbc607f02f9e62554f3ad");
         // RFC 4231, test case 1, of the MAC itself.
         let mut mac = Hmac::<Sha256>::new_from_slice(&[0x0b; 20]).expect("a key");
         mac.update(b"Hi There");
