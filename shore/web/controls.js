@@ -127,7 +127,9 @@ export class Controls {
     if (this.eStopped) {
       this.asks.estop.ask('Release the E-stop? Real boats must then be armed again.', 'Yes, release', () => this.control('release'), true);
     } else {
-      this.asks.estop.ask('Stop every boat now?', 'Yes, E-stop', () => this.control('e_stop'));
+      // At once: a question may be the second too many, and to stop does no harm that releasing does not mend.
+      closeAsk();
+      this.control('e_stop');
     }
   }
 
@@ -173,7 +175,7 @@ export class Controls {
     this.button('pause', live ? (this.paused ? 'Go on' : 'Pause') : this.paused ? 'Play' : 'Pause', act && going, 'Pause or go on (space)');
     this.button('step', live ? 'Step' : 'Step +', act && going, 'One decision, then stand (s)');
     this.button('halt', this.stopped ? 'Go on' : 'Halt all', act && !this.eStopped, 'All boats hold, or go on (h)');
-    this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act, 'Stop every boat now (e)');
+    this.button('estop', this.eStopped ? 'Release E-stop' : 'E-stop', act, this.eStopped ? 'Release the E-stop (e)' : 'Stop every boat now (e)');
     this.button('stop', 'End game', act && phase !== 'over' && phase !== 'gone', 'End the game now');
     byId('estop').classList.toggle('released', this.eStopped);
     this.tellSpeed(live ? state?.speed : player?.speed, act, live && state?.can_speed === false, !live || state?.pace === 'lockstep');

@@ -14,7 +14,7 @@ const HELP = [
   ['The chart', [['+  −', 'zoom'], ['arrows', 'move the chart'], ['f  0', 'fit the field'], ['[  ]', 'choose the boat before or after'],
     ['o', 'follow the boat'], ['Escape', 'close, let go, or select no boat'], ['1 to 4', 'boats, details, events, game']]],
   ['The game', [['space', 'pause or go on'], ['s', 'pause, and one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or let them go on'],
-    ['e', 'E-stop, or release it; Enter says yes']]],
+    ['e', 'E-stop at once, or ask to release it']]],
   ['Driving', [['d', 'steer a boat that can be steered'], ['arrows, w a s d', 'course and speed'], ['Escape', 'let go'],
     ['gamepad', PAD]]],
   ['A replay', [['n  p', 'next event, event before'], [KINDS.map(([, key]) => key).join('  '),
