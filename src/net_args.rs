@@ -91,6 +91,21 @@ impl HubArgs {
 }
 
 impl LeafArgs {
+    /// The token that is given.
+    pub(crate) fn token(&self) -> Result<Option<Token>> {
+        self.token.token()
+    }
+
+    /// The gateways of this machine that may be meant. Where a game elsewhere is asked for, those that were told its name.
+    pub(crate) fn local_gateways(&self) -> Vec<bus::GatewayEntry> {
+        let is_elsewhere = self.lan || !self.connect.is_empty();
+        let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {
+            (Some(wanted), Some(game)) => wanted.as_str() == game,
+            _ => !is_elsewhere,
+        };
+        bus::local_gateways().into_iter().filter(is_meant).collect()
+    }
+
     /// Where to connect: as asked for, or where this machine's local registry says.
     pub(crate) fn net(&self) -> Result<Net> {
         let mut connect = self.connect.clone();

@@ -11,6 +11,7 @@ pub mod clock;
 mod control;
 mod error;
 pub mod game_search;
+mod gateway_port;
 mod inbox;
 mod latest;
 mod linger;
@@ -24,9 +25,12 @@ mod watched;
 pub use control::control;
 pub use error::BusError;
 pub use game_search::ANSWER;
+pub use gateway_port::{GATEWAY_PORT_KEY, ask_gateway};
 pub use inbox::{Inbox, InboxSender, inbox};
 pub use latest::Latest;
-pub use local_registry::{Entry, Registration, list as local_registry, register};
+pub use local_registry::{
+    Entry, GatewayEntry, Registration, gateways as local_gateways, list as local_registry, register, register_gateway,
+};
 pub use net::{DEFAULT_PORT, Net, free_port, is_loopback};
 pub use session::{Bus, Declaration, Priority, Publisher, Query};
 pub use sim_liveness::{Patience, SimState, SimWatch};

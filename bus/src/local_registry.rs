@@ -1,10 +1,12 @@
-//! The games that run on this machine: a small file each, so that `list` and `watch` find them unasked.
+//! The games and gateways that run on this machine: a small file each, so that `list`, `watch` and `tell` find them unasked.
 //!
 //! It is only a convenience: a node that is told where to connect never looks here.
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::Write;
+use std::net::SocketAddr;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 
@@ -20,6 +22,25 @@ pub struct Entry {
     /// The game's token, for whoever may read the file: the same user.
     pub token: Option<String>,
 }
+
+/// Where a gateway on this machine takes operator commands.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GatewayEntry {
+    /// The boat.
+    pub vehicle: String,
+    /// The game that it was told to join; without a name, the only one there is.
+    pub game: Option<String>,
+    /// Its control port.
+    pub control: SocketAddr,
+    /// The gateway's process.
+    pub pid: u32,
+    /// The game's token, for whoever may read the file: the same user.
+    pub token: Option<String>,
+}
+
+/// The endings of the files: one for each kind of entry.
+const GAMES: &str = "json";
+const GATEWAYS: &str = "gateway";
 
 /// An entry that lasts as long as this is kept.
 pub struct Registration(PathBuf);
@@ -43,16 +64,25 @@ fn is_private(folder: &Path) -> bool {
 /// # Errors
 /// If the file cannot be written, or others can read what is in its folder.
 pub fn register(entry: &Entry) -> std::io::Result<Registration> {
-    register_in(&folder(), entry)
+    register_in(&folder(), &format!("{}-{}.{GAMES}", entry.game, entry.pid), entry)
 }
 
-fn register_in(folder: &Path, entry: &Entry) -> std::io::Result<Registration> {
+/// Enters a gateway.
+///
+/// # Errors
+/// As [`register`].
+pub fn register_gateway(entry: &GatewayEntry) -> std::io::Result<Registration> {
+    // The boat's name is not known to be fit for a file's; a process has one gateway.
+    register_in(&folder(), &format!("{}.{GATEWAYS}", entry.pid), entry)
+}
+
+fn register_in<E: Serialize>(folder: &Path, name: &str, entry: &E) -> std::io::Result<Registration> {
     fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
     if !is_private(folder) {
         let problem = format!("{} is open to others, expected a folder of mode 700 of this user", folder.display());
         return Err(std::io::Error::other(problem));
     }
-    let path = folder.join(format!("{}-{}.json", entry.game, entry.pid));
+    let path = folder.join(name);
     let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&path)?;
     file.write_all(&serde_json::to_vec(entry)?)?;
     Ok(Registration(path))
@@ -68,27 +98,43 @@ impl Drop for Registration {
 /// All entries whose process still runs, by game; entries of dead processes are removed.
 #[must_use]
 pub fn list() -> Vec<Entry> {
-    list_in(&folder())
-}
-
-fn list_in(folder: &Path) -> Vec<Entry> {
-    // Where others can write, they could send us to a game of theirs.
-    let files = is_private(folder).then(|| fs::read_dir(folder).ok()).flatten();
-    let files = files.into_iter().flatten().flatten().map(|file| file.path());
-    let mut entries: Vec<Entry> = files.filter_map(|path| live_entry(&path)).collect();
+    let mut entries: Vec<Entry> = list_in(&folder(), GAMES);
     entries.sort_by(|a, b| (&a.game, a.pid).cmp(&(&b.game, b.pid)));
     entries
 }
 
-fn live_entry(path: &Path) -> Option<Entry> {
-    let entry: Entry = serde_json::from_slice(&fs::read(path).ok()?).ok()?;
+/// All gateways whose process still runs, by boat; entries of dead processes are removed.
+#[must_use]
+pub fn gateways() -> Vec<GatewayEntry> {
+    let mut entries: Vec<GatewayEntry> = list_in(&folder(), GATEWAYS);
+    entries.sort_by(|a, b| (&a.vehicle, a.pid).cmp(&(&b.vehicle, b.pid)));
+    entries
+}
+
+fn list_in<E: DeserializeOwned>(folder: &Path, kind: &str) -> Vec<E> {
+    // Where others can write, they could send us to a game of theirs.
+    let files = is_private(folder).then(|| fs::read_dir(folder).ok()).flatten();
+    let files = files.into_iter().flatten().flatten().map(|file| file.path());
+    let files = files.filter(|path| path.extension().is_some_and(|ending| ending == kind));
+    files.filter_map(|path| live_entry(&path)).collect()
+}
+
+/// What every entry has.
+#[derive(Deserialize)]
+struct Process {
+    pid: u32,
+}
+
+fn live_entry<E: DeserializeOwned>(path: &Path) -> Option<E> {
+    let json = fs::read(path).ok()?;
+    let Process { pid } = serde_json::from_slice(&json).ok()?;
     // Where there is no /proc we cannot tell, and believe the file.
-    let dead = Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{}", entry.pid)).exists();
+    let dead = Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{pid}")).exists();
     if dead {
         drop(fs::remove_file(path));
         return None;
     }
-    Some(entry)
+    serde_json::from_slice(&json).ok()
 }
 
 #[cfg(test)]
@@ -105,14 +151,26 @@ mod tests {
             pid: std::process::id(),
             token: Some("secret".to_owned()),
         };
-        let registration = register_in(&dir, &entry).expect("a folder");
+        let registration = register_in(&dir, "a.json", &entry).expect("a folder");
+        let gateway = GatewayEntry {
+            vehicle: "../blue_one".to_owned(),
+            game: None,
+            control: "127.0.0.1:7001".parse().expect("an address"),
+            pid: std::process::id(),
+            token: None,
+        };
+        let dead = GatewayEntry { pid: u32::MAX, ..gateway.clone() };
+        let gateways = [("b.gateway", &gateway), ("c.gateway", &dead)];
+        let gateways = gateways.map(|(name, entry)| register_in(&dir, name, entry).expect("a folder"));
         let mode = fs::metadata(&registration.0).expect("a file").mode();
         assert_eq!(mode & 0o777, 0o600, "{mode:o}");
-        assert_eq!(list_in(&dir), std::slice::from_ref(&entry));
+        assert_eq!(list_in::<Entry>(&dir, GAMES), std::slice::from_ref(&entry));
+        assert_eq!(list_in::<GatewayEntry>(&dir, GATEWAYS), std::slice::from_ref(&gateway), "one of two runs");
+        assert!(!gateways[1].0.exists(), "it is dead");
         fs::set_permissions(&dir, fs::Permissions::from_mode(0o777)).expect("it is ours");
-        assert_eq!(list_in(&dir), [], "anybody could have written it");
-        assert!(register_in(&dir, &entry).is_err(), "anybody could read it");
-        drop(registration);
+        assert_eq!(list_in::<Entry>(&dir, GAMES), [], "anybody could have written it");
+        assert!(register_in(&dir, "a.json", &entry).is_err(), "anybody could read it");
+        drop((registration, gateways));
         fs::remove_dir(&dir).expect("it is empty");
     }
 }

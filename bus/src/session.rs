@@ -1,6 +1,6 @@
 //! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
-use crate::token::{self, Answered, Token};
+use crate::token::{self, Token};
 use crate::{BusError, Net, linger};
 use game::codec;
 use game::message::Message;
@@ -186,18 +186,8 @@ impl Bus {
         body: &B,
         limit: Duration,
     ) -> Result<Option<T>, BusError> {
-        let refused = |reason| BusError::Request { key: key.to_owned(), reason };
-        let mut payload = token::first(body);
-        for _ in 0..2 {
-            let Some(answer) = self.ask_at(qos::Priority::RealTime, key, payload, limit)? else { return Ok(None) };
-            let token = self.token.as_ref();
-            match token::read(token, key, body, &answer).map_err(|e| refused(format!("not understood: {e}")))? {
-                Answered::Answer(answer) => return Ok(Some(answer)),
-                Answered::Again(again) => payload = again,
-                Answered::NeedsToken => return Err(BusError::NeedsToken),
-            }
-        }
-        Err(BusError::WrongToken)
+        let ask = |payload| self.ask_at(qos::Priority::RealTime, key, payload, limit);
+        token::request(self.token.as_ref(), key, body, ask)
     }
 
     /// Shows that this node is there, under `key`, until dropped or dead.

@@ -4,7 +4,7 @@
 //! again with the HMAC-SHA256 (RFC 2104, FIPS 180-4), under the token, of the challenge, the key and the request as it is sent:
 //! each with its length before it, as 64 bits, little-endian.
 
-use crate::clock;
+use crate::{BusError, clock};
 use hmac::{Hmac, KeyInit, Mac};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -110,12 +110,33 @@ enum Answer<T> {
 }
 
 /// A request with no proof yet.
-pub(crate) fn first<T: Serialize>(body: &T) -> Vec<u8> {
+fn first<T: Serialize>(body: &T) -> Vec<u8> {
     json(&Request { body: spelled(body), proof: None })
 }
 
+/// Asks on `key`, by `ask`, for something that may need the token, and proves that it is known if asked to; gives the answer,
+/// or nothing if none comes.
+pub(crate) fn request<B: Serialize, T: DeserializeOwned>(
+    token: Option<&Token>,
+    key: &str,
+    body: &B,
+    mut ask: impl FnMut(Vec<u8>) -> Result<Option<Vec<u8>>, BusError>,
+) -> Result<Option<T>, BusError> {
+    let refused = |reason| BusError::Request { key: key.to_owned(), reason };
+    let mut payload = first(body);
+    for _ in 0..2 {
+        let Some(answer) = ask(payload)? else { return Ok(None) };
+        match read(token, key, body, &answer).map_err(|e| refused(format!("not understood: {e}")))? {
+            Answered::Answer(answer) => return Ok(Some(answer)),
+            Answered::Again(again) => payload = again,
+            Answered::NeedsToken => return Err(BusError::NeedsToken),
+        }
+    }
+    Err(BusError::WrongToken)
+}
+
 /// What an answer means.
-pub(crate) enum Answered<T> {
+enum Answered<T> {
     Answer(T),
     /// Ask again with this.
     Again(Vec<u8>),
@@ -124,7 +145,7 @@ pub(crate) enum Answered<T> {
 }
 
 /// Reads an answer to a request on `key`.
-pub(crate) fn read<B: Serialize, T: DeserializeOwned>(
+fn read<B: Serialize, T: DeserializeOwned>(
     token: Option<&Token>,
     key: &str,
     body: &B,

@@ -97,6 +97,42 @@ impl OperatorCommand {
     }
 }
 
+/// A command to all boats at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FleetCommand {
+    /// Stop, and stay stopped.
+    EStop,
+    /// The stop is over.
+    Release,
+}
+
+/// What is asked at the control port of a gateway.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GatewayCommand {
+    /// A command for one boat.
+    Boat {
+        /// Its name: another boat's gateway refuses.
+        name: String,
+        /// The command.
+        command: OperatorCommand,
+    },
+    /// A command for all boats, whichever this gateway's is.
+    Fleet(FleetCommand),
+}
+
+impl GatewayCommand {
+    /// Whether only who knows the game's token may give it.
+    #[must_use]
+    pub fn needs_token(&self) -> bool {
+        match self {
+            GatewayCommand::Boat { command, .. } => command.needs_token(),
+            GatewayCommand::Fleet(command) => *command != FleetCommand::EStop,
+        }
+    }
+}
+
 /// A mission that a boat sails by itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mission {
@@ -122,6 +158,9 @@ pub struct OperatorReply {
 pub struct GatewayStatus {
     /// The boat.
     pub vehicle: String,
+    /// Where its control port listens, an address and a port; earlier versions have none.
+    #[serde(default)]
+    pub control: Option<String>,
     /// Time since the gateway began, s.
     pub at_s: f64,
     /// The link to the boat: `up`, or why it is not.

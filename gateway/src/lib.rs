@@ -6,6 +6,7 @@
 pub mod bridge;
 pub mod declination;
 pub mod emulator;
+pub mod game_clock;
 pub mod geodesy;
 pub mod geofence;
 pub mod link;

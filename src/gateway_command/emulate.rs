@@ -109,7 +109,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         // The parent process may have asked for any free port.
         NodeEvent::Listening { what, reach } => screen::print(&format!("{what} at {reach}\n")),
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
-        NodeEvent::Looking { .. } | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
+        NodeEvent::Looking { .. } | NodeEvent::ControlPort(_) | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
     };
     gateway::node::emulate(&settings, &mut notify).with_context(|| format!("the emulator of {}", args.vehicle))?;
     Ok(ExitCode::SUCCESS)

@@ -3,6 +3,7 @@
 mod check;
 mod emulate;
 mod log_line;
+mod mission_file;
 mod replay;
 mod surveyor;
 mod tell;

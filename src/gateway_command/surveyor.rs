@@ -6,9 +6,11 @@ use crate::screen;
 use crate::sim_command::seconds;
 use crate::stop;
 use anyhow::{Context, Result, anyhow};
+use bus::Token;
 use gateway::link::LinkAddress;
 use gateway::node::{NodeEvent, Settings};
 use recording::utc;
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -22,6 +24,9 @@ pub(crate) struct Args {
     /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL")]
     link: String,
+    /// Where it takes operator commands with or without a game: an address of this machine and a port, 0 for any
+    #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:0", value_parser = control_address)]
+    control_listen: SocketAddr,
     /// How it is driven and stopped: a gateway file [default: a Surveyor with careful limits]
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
@@ -63,11 +68,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let (Some(path), false) = (&record, args.for_parent) {
         screen::remark(&format!("recording to {}", path.display()));
     }
+    let net = args.leaf.net()?;
+    let token = net.token.as_ref().map(Token::hex);
+    let game = args.leaf.game.as_ref().map(|game| game.as_str().to_owned());
     let settings = Settings {
         game: args.leaf.game.clone(),
-        net: args.leaf.net()?,
+        net,
         vehicle: args.vehicle.clone(),
         link,
+        control: args.control_listen,
         silence: Duration::from_secs_f64(args.silence_s),
         gateway,
         arms_itself: args.arm,
@@ -77,18 +86,38 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         wait: Duration::from_secs_f64(args.wait_s),
         stop: stop.clone(),
     };
-    let mut log = Log::new(args.for_parent);
+    let (mut log, mut registration) = (Log::new(args.for_parent), None);
     let mut notify = |event: NodeEvent<'_>| match event {
         NodeEvent::Looking { reason } if !args.for_parent => {
             screen::remark(&format!("{}: looking for the game: {reason}", args.vehicle));
         }
         NodeEvent::Looking { .. } | NodeEvent::Listening { .. } => {}
+        NodeEvent::ControlPort(control) => {
+            let (vehicle, pid) = (args.vehicle.clone(), std::process::id());
+            let entry = bus::GatewayEntry { vehicle, game: game.clone(), control, pid, token: token.clone() };
+            // Where it cannot be registered, operators must be told where it is; nothing else is lost.
+            registration = bus::register_gateway(&entry).ok();
+            if !args.for_parent {
+                screen::remark(&format!("operators reach this gateway at {control}, with or without a game"));
+            }
+        }
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
         NodeEvent::Status(status) => log.status(status),
         NodeEvent::Ended(status) => screen::print(&format!("\n{}", full(status))),
     };
     gateway::node::serve(&settings, &mut notify).with_context(|| format!("the gateway of {}", args.vehicle))?;
+    drop(registration);
     Ok(ExitCode::SUCCESS)
+}
+
+/// Where the control port may listen. Others are told this address, so it must be one.
+fn control_address(text: &str) -> Result<SocketAddr, String> {
+    let address: SocketAddr =
+        text.parse().map_err(|_| "expected an address and a port, as 127.0.0.1:8100".to_owned())?;
+    if address.ip().is_unspecified() {
+        return Err(format!("others are told this address, and {} is none: name one of this machine's", address.ip()));
+    }
+    Ok(address)
 }
 
 /// Where to record.

@@ -1,21 +1,31 @@
 //! `squall gateway tell`: an operator command to a boat's gateway.
+//!
+//! It goes straight to the gateway's control port where that is known, and over the network of the game otherwise; to all boats
+//! it goes both ways at once.
 
 use super::log_line::full;
+use super::mission_file;
 use crate::net_args::LeafArgs;
 use crate::observer::Observer;
 use crate::screen;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Error, Result, anyhow, bail};
+use bus::{Bus, BusError, Token, ask_gateway};
 use clap::ValueEnum;
-use game::external::{Mission, OperatorCommand, OperatorReply};
+use game::external::{FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
 use game::message::Control;
-use game::scenario::Source;
-use game::topic;
-use gateway::nmea::{Framer, Sentence};
-use std::path::{Path, PathBuf};
+use game::topic::{self, GameName};
+use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::time::Duration;
 
 /// All boats at once.
 const ALL: &str = "all";
+/// How long a gateway's control port may take to answer.
+const PORT_ANSWER: Duration = Duration::from_secs(3);
+/// How long to wait for the next answer of all.
+const NEXT_ANSWER: Duration = Duration::from_secs(10);
 
 /// Whom, and what.
 #[derive(clap::Args)]
@@ -26,6 +36,9 @@ pub(crate) struct Args {
     command: CommandArg,
     /// For mission: a .sea file, its lines as the boat receives them (PSEAR, then OIWPL; index 0 is the recovery point)
     file: Option<PathBuf>,
+    /// The gateway's control port, as it shows it [default: those of this machine's gateways, or by way of the game]
+    #[arg(long, value_name = "HOST:PORT")]
+    gateway: Option<SocketAddr>,
     #[command(flatten)]
     leaf: LeafArgs,
 }
@@ -52,16 +65,21 @@ enum CommandArg {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let command = command_of(args)?;
-    let observer = Observer::connect(&args.leaf)?;
-    let result = if args.vehicle == ALL { tell_all(&observer, args.command) } else { tell(&observer, args, &command) };
-    observer.bus.close();
-    result
+    if args.vehicle == ALL {
+        return tell_all(args);
+    }
+    let reply = tell(args, &command)?;
+    screen::print(&full(&reply.status));
+    match reply.refused {
+        None => Ok(ExitCode::SUCCESS),
+        Some(reason) => Err(anyhow!("{} refuses: {reason}", args.vehicle)),
+    }
 }
 
 fn command_of(args: &Args) -> Result<OperatorCommand> {
     Ok(match (args.command, &args.file) {
         (CommandArg::Mission, None) => bail!("mission needs a .sea file"),
-        (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission(path)?),
+        (CommandArg::Mission, Some(path)) => OperatorCommand::Mission(mission_file::read(path)?),
         (_, Some(path)) => bail!("{} is given, and only mission takes a file", path.display()),
         (CommandArg::Status, None) => OperatorCommand::Status,
         (CommandArg::Arm, None) => OperatorCommand::Arm,
@@ -73,81 +91,157 @@ fn command_of(args: &Args) -> Result<OperatorCommand> {
     })
 }
 
-fn tell(observer: &Observer, args: &Args, command: &OperatorCommand) -> Result<ExitCode> {
-    observer.vehicle(&args.vehicle)?;
-    let reply = ask(observer, &args.vehicle, command)?;
-    screen::print(&full(&reply.status));
-    match reply.refused {
-        None => Ok(ExitCode::SUCCESS),
-        Some(reason) => Err(anyhow!("{} refuses: {reason}", args.vehicle)),
+/// A control port, and the token of the game of its gateway.
+struct Port {
+    /// The boat, where it is known.
+    vehicle: Option<String>,
+    at: SocketAddr,
+    token: Option<Token>,
+}
+
+impl Port {
+    fn ask(&self, command: &GatewayCommand) -> Result<OperatorReply, BusError> {
+        ask_gateway(self.at, self.token.as_ref(), command, PORT_ANSWER)
     }
 }
 
-fn ask(observer: &Observer, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
-    let answer = observer.bus.request(&topic::operate(&observer.game, vehicle), command, bus::ANSWER)?;
+/// The control ports that are known.
+fn ports(args: &Args) -> Result<Vec<Port>> {
+    let given = args.leaf.token()?;
+    let mut ports: Vec<Port> = Vec::new();
+    for entry in args.leaf.local_gateways() {
+        let token = given.clone().or_else(|| entry.token?.parse().ok());
+        ports.push(Port { vehicle: Some(entry.vehicle), at: entry.control, token });
+    }
+    if let Some(at) = args.gateway
+        && !ports.iter().any(|port| port.at == at)
+    {
+        // The game on this machine, if there is one.
+        let token = given.or_else(|| args.leaf.net().ok()?.token);
+        ports.push(Port { vehicle: None, at, token });
+    }
+    Ok(ports)
+}
+
+fn tell(args: &Args, command: &OperatorCommand) -> Result<OperatorReply> {
+    let is_meant = |port: &Port| match args.gateway {
+        Some(at) => port.at == at,
+        None => port.vehicle.as_ref() == Some(&args.vehicle),
+    };
+    let mut ports = ports(args)?;
+    ports.retain(is_meant);
+    match ports.as_slice() {
+        [] => {}
+        [port] => {
+            let command = GatewayCommand::Boat { name: args.vehicle.clone(), command: command.clone() };
+            match port.ask(&command) {
+                // It may be ending; the one that comes after it is found by way of the game.
+                Err(error @ BusError::Use { .. }) if args.gateway.is_none() => screen::remark(&error.to_string()),
+                reply => return Ok(reply?),
+            }
+        }
+        several => {
+            let at: Vec<String> = several.iter().map(|port| port.at.to_string()).collect();
+            bail!(
+                "several gateways on this machine are for {}: choose with --gateway among {}",
+                args.vehicle,
+                at.join(", ")
+            );
+        }
+    }
+    let observer = Observer::connect(&args.leaf)?;
+    observer.vehicle(&args.vehicle)?;
+    let reply = ask(&observer.bus, &observer.game, &args.vehicle, command);
+    observer.bus.close();
+    reply
+}
+
+fn ask(bus: &Bus, game: &GameName, vehicle: &str, command: &OperatorCommand) -> Result<OperatorReply> {
+    let answer = bus.request(&topic::operate(game, vehicle), command, bus::ANSWER)?;
     answer.with_context(|| format!("no gateway of {vehicle} answers"))
 }
 
-/// Sends a command to all boats and the sim at once; then prints the status of every real boat.
-fn tell_all(observer: &Observer, command: CommandArg) -> Result<ExitCode> {
-    let control = match command {
-        CommandArg::Status => None,
-        CommandArg::Estop => Some(Control::EStop),
-        CommandArg::Release => Some(Control::Release),
-        _ => bail!("only estop, release and status go to all; tell each boat by its name"),
-    };
-    if let Some(control) = control {
-        bus::control(&observer.bus, &observer.game, control)?;
-    }
-    let scenario = &observer.info.scenario;
-    let mut silent = Vec::new();
-    for vehicle in scenario.vehicles.iter().filter(|vehicle| vehicle.source == Source::External) {
-        match ask(observer, &vehicle.name, &OperatorCommand::Status) {
-            Ok(reply) => screen::print(&full(&reply.status)),
-            Err(_) => silent.push(vehicle.name.as_str()),
-        }
-    }
-    if silent.is_empty() {
-        return Ok(ExitCode::SUCCESS);
-    }
-    Err(anyhow!("no gateway answers of {}", silent.join(", ")))
+/// What came of a part of a command to all.
+enum Outcome {
+    /// The game was told, and with it all boats in it.
+    Told,
+    /// There is no game to tell.
+    NoGame(Error),
+    Reply(Box<OperatorReply>),
+    Failed(Error),
 }
 
-/// The mission in a `.sea` file.
-fn mission(path: &Path) -> Result<Mission> {
-    let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
-    let (mut throttle_pct, mut places, mut wrong) = (None, Vec::new(), None);
-    let mut framer = Framer::new();
-    framer.push(&[bytes.as_slice(), b"\r\n"].concat(), &mut |body| match Sentence::parse(body) {
-        Ok(Sentence::MissionSettings(settings)) => throttle_pct = Some(settings.throttle_pct),
-        Ok(Sentence::Waypoint(waypoint)) => places.push((waypoint.index, [waypoint.at.lat_deg, waypoint.at.lon_deg])),
-        Ok(Sentence::Command(_)) => {}
-        Ok(_) => wrong = Some(format!("{body:?} has no place in a mission")),
-        Err(e) => wrong = Some(e.to_string()),
-    });
-    let counts = framer.counts();
-    let unread = counts.bad_checksum + counts.broken + counts.overlong + counts.garbage;
-    if unread > 0 {
-        wrong = Some(format!(
-            "{} wrong checksums, {} lines that are no sentences",
-            counts.bad_checksum,
-            unread - counts.bad_checksum
-        ));
+/// Sends a command to all boats: over the game's network and straight to every gateway that is known, at once. None waits for
+/// another, and the status of every real boat is printed as it comes.
+fn tell_all(args: &Args) -> Result<ExitCode> {
+    let (control, fleet) = match args.command {
+        CommandArg::Status => (None, None),
+        CommandArg::Estop => (Some(Control::EStop), Some(FleetCommand::EStop)),
+        CommandArg::Release => (Some(Control::Release), Some(FleetCommand::Release)),
+        _ => bail!("only estop, release and status go to all; tell each boat by its name"),
+    };
+    let ports = ports(args)?;
+    let known: Vec<String> = ports.iter().filter_map(|port| port.vehicle.clone()).collect();
+    let (sender, outcomes) = channel();
+    for port in ports {
+        let sender = sender.clone();
+        std::thread::spawn(move || {
+            let name = port.vehicle.clone().unwrap_or_default();
+            let status = GatewayCommand::Boat { name, command: OperatorCommand::Status };
+            let reply = port.ask(&fleet.map_or(status, GatewayCommand::Fleet));
+            drop(
+                sender.send(reply.map_or_else(|e| Outcome::Failed(e.into()), |reply| Outcome::Reply(Box::new(reply)))),
+            );
+        });
     }
-    places.sort_by_key(|(index, _)| *index);
-    let in_order = places.iter().enumerate().all(|(i, (index, _))| usize::from(*index) == i);
-    if let Some(wrong) = wrong {
-        bail!("{}: {wrong}", path.display());
+    let leaf = args.leaf.clone();
+    std::thread::spawn(move || tell_game(&leaf, control, &known, &sender));
+    let (mut is_done, mut no_game, mut failed) = (false, None, Vec::new());
+    loop {
+        match outcomes.recv_timeout(NEXT_ANSWER) {
+            Ok(Outcome::Told) => is_done = true,
+            Ok(Outcome::NoGame(error)) => no_game = Some(error),
+            Ok(Outcome::Failed(error)) => failed.push(format!("{error:#}")),
+            Ok(Outcome::Reply(reply)) => {
+                is_done = true;
+                screen::print(&full(&reply.status));
+                failed.extend(reply.refused.map(|reason| format!("{} refuses: {reason}", reply.status.vehicle)));
+            }
+            Err(RecvTimeoutError::Disconnected) => break,
+            Err(RecvTimeoutError::Timeout) => {
+                failed.push("not everybody answers".to_owned());
+                break;
+            }
+        }
     }
-    if !in_order || places.len() < 2 {
-        bail!(
-            "{}: waypoints {:?}, expected 0 (the recovery point), 1 and so on",
-            path.display(),
-            places.iter().map(|(i, _)| i).collect::<Vec<_>>()
-        );
+    match no_game {
+        Some(error) if is_done => screen::remark(&format!("only gateways were told, and no game: {error:#}")),
+        Some(error) => failed.push(format!("{error:#}")),
+        None => {}
     }
-    let throttle_pct = throttle_pct.with_context(|| format!("{}: no PSEAR line with the throttle", path.display()))?;
-    let mut places = places.into_iter().map(|(_, place)| place);
-    let erp = places.next().context("a recovery point is there")?;
-    Ok(Mission { throttle_pct, erp, waypoints: places.collect() })
+    if failed.is_empty() { Ok(ExitCode::SUCCESS) } else { Err(anyhow!(failed.join("; "))) }
+}
+
+/// Tells the game, then asks for the status of the real boats in it but for `known` ones.
+fn tell_game(leaf: &LeafArgs, control: Option<Control>, known: &[String], outcomes: &Sender<Outcome>) {
+    // Nobody listens any more when the time is up.
+    let say = |outcome| drop(outcomes.send(outcome));
+    let observer = match Observer::connect(leaf) {
+        Ok(observer) => observer,
+        Err(error) => return say(Outcome::NoGame(error)),
+    };
+    if let Some(control) = control {
+        match bus::control(&observer.bus, &observer.game, control) {
+            Ok(()) => say(Outcome::Told),
+            Err(error) => say(Outcome::Failed(error.into())),
+        }
+    }
+    let scenario = &observer.info.scenario;
+    for vehicle in scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()].name) {
+        if !known.contains(vehicle) {
+            let reply = ask(&observer.bus, &observer.game, vehicle, &OperatorCommand::Status);
+            say(reply.map_or_else(Outcome::Failed, |reply| Outcome::Reply(Box::new(reply))));
+        }
+    }
+    observer.bus.close();
 }

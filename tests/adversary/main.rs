@@ -1,6 +1,12 @@
 //! What somebody can do who reaches a game's port and keeps to no rule of ours: he speaks zenoh by its own API.
-#![allow(clippy::disallowed_methods, reason = "processes are waited for by the clock, with a limit")]
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stderr,
+    reason = "processes are waited for by the clock, with a limit; what is measured is printed"
+)]
 
+mod boat;
+mod control_port;
 mod intruder;
 mod network;
 #[path = "../process/support.rs"]

@@ -1,6 +1,6 @@
 //! The interface of a bridge: its inputs and outputs.
 
-use game::external::OperatorCommand;
+use game::external::{FleetCommand, OperatorCommand};
 use game::frame::Ned;
 use game::gateway::{CompassFrame, Gateway};
 use game::picture::Nav;
@@ -52,6 +52,8 @@ pub enum Input {
     Order(Order, SimTime),
     /// An order that could not be read.
     BadOrder,
+    /// An order from a time that the game has not come to.
+    OrderAhead,
     /// Positions of the other real boats.
     Others(Vec<Ned>),
     /// An operator's command for this boat.
@@ -60,16 +62,6 @@ pub enum Input {
     Fleet(FleetCommand),
     /// Time passes.
     Tick,
-}
-
-/// A command to all boats at once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FleetCommand {
-    /// Stop, and stay stopped.
-    EStop,
-    /// The stop is over.
-    Release,
 }
 
 /// What an input results in.

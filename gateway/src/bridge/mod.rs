@@ -15,10 +15,10 @@ use crate::nav_estimate::NavEstimator;
 use crate::nmea::{Command, Framer, Mode, ParseError, Sentence, TimeOfDay};
 use crate::set_point::{SetPoint, SetPointMapper};
 use crate::supervisor::{Action, Conditions, Control, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task};
-pub use interface::{Event, FleetCommand, Input, NavOut, Output, Plan};
+pub use interface::{Event, Input, NavOut, Output, Plan};
 
 use control::ControlLog;
-use game::external::{FailsafeReport, Mission, OperatorCommand};
+use game::external::{FailsafeReport, FleetCommand, Mission, OperatorCommand};
 use game::frame::Ned;
 use game::gateway::Gateway;
 use game::{Order, SimTime};
@@ -57,6 +57,7 @@ struct Counters {
     orders: u64,
     bad_orders: u64,
     old_orders: u64,
+    orders_ahead: u64,
     sent: u64,
 }
 
@@ -150,6 +151,7 @@ impl Bridge {
             Input::Joined => self.order = None,
             Input::Order(order, given) => self.take_order(now, *order, *given),
             Input::BadOrder => self.counters.bad_orders += 1,
+            Input::OrderAhead => self.counters.orders_ahead += 1,
             Input::Others(places) => self.others = (now, places.clone()),
             Input::Operator(OperatorCommand::Mission(mission)) => request = self.take_mission(now, mission, out),
             Input::Operator(command) => request = request_from(command),

@@ -8,7 +8,7 @@ use game::external::GatewayStatus;
 
 impl Bridge {
     /// The status now, with what was missing at the last step. It changes nothing, so that how often it is queried makes
-    /// no difference to a replay. What only the shell knows (the link's name, latencies) is left to the shell.
+    /// no difference to a replay. What only the shell knows (the link's name, the control port, latencies) is left to the shell.
     #[must_use]
     pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self.estimator.nav(now);
@@ -16,6 +16,7 @@ impl Bridge {
             self.last_sent.as_ref().map(|(_, command)| command_encoder::bytes_of(std::slice::from_ref(command)));
         GatewayStatus {
             vehicle: self.plan.vehicle.clone(),
+            control: None,
             at_s: now.as_s(),
             link: if self.link_up { "up" } else { "down" }.to_owned(),
             state: self.state_in_words(),
@@ -54,6 +55,7 @@ impl Bridge {
             ("orders", counters.orders),
             ("bad orders", counters.bad_orders),
             ("old orders", counters.old_orders),
+            ("orders ahead of the game", counters.orders_ahead),
             ("commands out", counters.sent),
         ];
         let unknown = counters.unknown.iter().map(|(name, count)| (format!("unknown {name}"), *count));

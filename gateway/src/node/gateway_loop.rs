@@ -2,47 +2,27 @@
 
 use super::clock::Clock;
 use super::latency::Latency;
+use super::loop_input::{Call, LoopOutput};
 use super::{NodeError, NodeEvent};
-use crate::bridge::{Bridge, Event, FleetCommand, Input, NavOut, Output};
+use crate::bridge::{Bridge, Event, Input, NavOut, Output};
+use crate::game_clock::GameClock;
 use crate::link::{Link, LinkEvent};
 use crate::record::StepEncoder;
+use crate::supervisor::Scope;
 use bus::token::{self, Checked, Guard};
-use bus::{Inbox, InboxSender, Publisher, Query, clock};
+use bus::{Publisher, Query, clock};
 use game::codec;
-use game::external::{ExternalOrder, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply};
+use game::external::{
+    FleetCommand, GatewayCommand, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply,
+};
 use game::frame::Ned;
 use game::message::{Frame, Message, Stamp};
 use game::{Order, SimTime, VehicleId};
-use parking_lot::Mutex;
 use recording::{Entry, Recorder};
 use std::collections::VecDeque;
-use std::sync::Arc;
+use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-
-/// What wakes the loop.
-pub(super) enum Call {
-    Link(LinkEvent),
-    /// There is a new order in `latest_order`.
-    Order,
-    Frame(Vec<u8>),
-    Operate(Query),
-    EStop,
-    Release,
-    Joined(u64, Vec<VehicleId>),
-    SimGone,
-    Remark(String),
-}
-
-/// The latest order, and when it came. However many come, only the latest waits.
-pub(super) type LatestOrder = Arc<Mutex<Option<(ExternalOrder, Instant)>>>;
-
-/// Where the callbacks of subscriptions put their input for the loop.
-pub(super) struct LoopInputs {
-    pub(super) calls: InboxSender<Call>,
-    pub(super) latest_order: LatestOrder,
-    pub(super) e_stop: Arc<AtomicBool>,
-}
 
 /// How often the status is published, and shown.
 const STATUS_EVERY: Duration = Duration::from_millis(500);
@@ -58,10 +38,8 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) bridge: Bridge,
     pub(super) link: Link,
     pub(super) clock: Clock,
-    pub(super) inbox: Inbox<Call>,
-    pub(super) latest_order: LatestOrder,
-    /// Set as soon as an E-stop for all boats comes in: it must not wait behind anything else, nor be dropped.
-    pub(super) e_stop: Arc<AtomicBool>,
+    pub(super) input: LoopOutput,
+    pub(super) game_clock: GameClock,
     pub(super) nav: Publisher,
     pub(super) status: Publisher,
     /// Every byte of the link, for recorders.
@@ -74,6 +52,8 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) counters: Counters,
     pub(super) notify: &'a mut dyn FnMut(NodeEvent<'_>),
     pub(super) guard: Guard,
+    /// The control port.
+    pub(super) control: SocketAddr,
 }
 
 /// What the loop keeps track of.
@@ -117,11 +97,9 @@ impl GatewayLoop<'_> {
     /// Runs until it is told to stop.
     pub(super) fn run(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
         while !stop.load(Ordering::Relaxed) {
-            if self.e_stop.swap(false, Ordering::Relaxed) {
-                self.step(Input::Fleet(FleetCommand::EStop), None)?;
-            }
+            self.take_requests()?;
             let due = self.bridge.due(self.clock.now());
-            match self.inbox.take(self.clock.until(due)) {
+            match self.input.calls.take(self.clock.until(due)) {
                 Some(call) => self.take(call)?,
                 None => self.step(Input::Tick, None)?,
             }
@@ -135,9 +113,32 @@ impl GatewayLoop<'_> {
         Ok(())
     }
 
+    /// E-stops before everything else, then at most one request at the control port and one at the hub.
+    fn take_requests(&mut self) -> Result<(), NodeError> {
+        if self.input.take_stop(Scope::Fleet) {
+            self.step(Input::Fleet(FleetCommand::EStop), None)?;
+        }
+        if self.input.take_stop(Scope::Boat) {
+            self.step(Input::Operator(OperatorCommand::EStop), None)?;
+        }
+        if let Some((command, reply)) = self.input.port_requests.take_now() {
+            let refused = match command {
+                GatewayCommand::Boat { command, .. } => self.execute(command)?,
+                GatewayCommand::Fleet(command) => self.step_core(Input::Fleet(command), None)?,
+            };
+            // Whoever asked may be gone.
+            drop(reply.try_send(OperatorReply { refused, status: self.full_status() }));
+        }
+        match self.input.queries.take_now() {
+            Some(query) => self.operate(query),
+            None => Ok(()),
+        }
+    }
+
     /// The status of core and shell.
     pub(super) fn full_status(&self) -> GatewayStatus {
         let mut status = self.bridge.status(self.clock.now());
+        status.control = Some(self.control.to_string());
         if status.link != "up" {
             status.link.clone_from(&self.counters.link);
         }
@@ -145,7 +146,7 @@ impl GatewayLoop<'_> {
             [self.counters.sentence_to_topic.summary_us(), self.counters.order_to_sentence.summary_us()];
         let lost = self.recorder.as_ref().map_or(0, |recorder| recorder.state().dropped);
         let more = [("nav reports", self.counters.reports), ("displaced writes", self.link.displaced())];
-        let rest = [("calls dropped", self.inbox.dropped()), ("messages not recorded", lost)];
+        let rest = [("calls dropped", self.input.calls.dropped()), ("messages not recorded", lost)];
         status.counts.extend(more.into_iter().chain(rest).map(|(name, count)| (name.to_owned(), count)));
         status
     }
@@ -155,12 +156,12 @@ impl GatewayLoop<'_> {
             Call::Link(event) => self.take_link(event),
             Call::Order => self.take_order(),
             Call::Frame(bytes) => self.take_frame(&bytes),
-            Call::Operate(query) => self.operate(query),
             Call::Release => self.step(Input::Fleet(FleetCommand::Release), None),
-            // It only wakes the loop.
-            Call::EStop => Ok(()),
+            // What it is about was read before.
+            Call::Look => Ok(()),
             Call::Joined(ticket, vehicles) if vehicles == [self.vehicle] => {
                 self.counters.ticket = Some(ticket);
+                self.game_clock.forget();
                 self.remark("joined: the sim takes reports of the boat");
                 self.step(Input::Joined, None)
             }
@@ -208,8 +209,11 @@ impl GatewayLoop<'_> {
     }
 
     fn take_order(&mut self) -> Result<(), NodeError> {
-        let taken = self.latest_order.lock().take();
+        let taken = self.input.latest_order.lock().take();
         let Some((message, came)) = taken else { return Ok(()) };
+        if !self.game_clock.take(self.clock.at(came), &message) {
+            return self.step(Input::OrderAhead, None);
+        }
         self.counters.game_now = message.stamp.valid_ns;
         if message.order.vehicle != self.vehicle {
             return self.step(Input::BadOrder, None);
@@ -233,23 +237,29 @@ impl GatewayLoop<'_> {
 
     fn operate(&mut self, query: Query) -> Result<(), NodeError> {
         let refused = match self.guard.check(query.key(), &query.payload, OperatorCommand::needs_token) {
-            Checked::Granted(OperatorCommand::Status) => None,
-            Checked::Granted(command) => {
-                self.remark(&format!("operator command: {command:?}"));
-                self.step_core(Input::Operator(command), None)?
-            }
+            Checked::Granted(command) => self.execute(command)?,
             Checked::Challenged(challenge) => {
                 query.answer(challenge);
                 return Ok(());
             }
             Checked::Garbage(e) => Some(format!("the command is not understood: {e}")),
         };
-        if let Some(reason) = &refused {
-            self.remark(&format!("refused: {reason}"));
-        }
         let reply = OperatorReply { refused, status: self.full_status() };
         query.answer(token::answer(&reply));
         Ok(())
+    }
+
+    /// Carries out a command; returns why it is refused.
+    fn execute(&mut self, command: OperatorCommand) -> Result<Option<String>, NodeError> {
+        if command == OperatorCommand::Status {
+            return Ok(None);
+        }
+        self.remark(&format!("operator command: {command:?}"));
+        let refused = self.step_core(Input::Operator(command), None)?;
+        if let Some(reason) = &refused {
+            self.remark(&format!("refused: {reason}"));
+        }
+        Ok(refused)
     }
 
     fn step(&mut self, input: Input, read: Option<Instant>) -> Result<(), NodeError> {

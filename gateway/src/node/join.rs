@@ -1,6 +1,6 @@
 //! Keeps the gateway in the game: joins whenever a sim is there, for as long as the gateway runs.
 
-use super::gateway_loop::Call;
+use super::loop_input::Call;
 use bus::game_search::{self, GameSearch, NotFound};
 use bus::{Bus, BusError, InboxSender, Patience, SimWatch};
 use game::message::Role;

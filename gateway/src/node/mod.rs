@@ -4,35 +4,42 @@
 //! [`crate::emulator`]; here are the sockets, the clocks and the threads.
 
 mod clock;
+mod control_port;
 mod emulator;
 mod gateway_loop;
 mod join;
 mod latency;
+mod loop_input;
 
 pub use emulator::{EmulatorSettings, emulate};
 
 use crate::bridge::{Bridge, Event, Plan};
 use crate::declination::{DeclinationError, declination_deg};
+use crate::game_clock::GameClock;
 use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use crate::nmea::date_and_time;
 use crate::record::{self, StepEncoder};
+use crate::supervisor::Scope;
 use bus::game_search::{self, GameSearch, NotFound};
-use bus::token::Guard;
-use bus::{Bus, BusError, Declaration, Net, Priority, inbox};
+use bus::token::{Checked, Guard};
+use bus::{Bus, BusError, Declaration, Net, Priority};
 use clock::Clock;
-use game::external::GatewayStatus;
+use control_port::ControlPort;
+use game::external::{GatewayStatus, OperatorCommand};
 use game::frame::LatLon;
 use game::gateway::Gateway;
 use game::message::{Control, GameInfo, Role};
 use game::scenario::{Source, UnknownVehicle};
 use game::topic::{self, GameName, Part};
-use game::{VehicleId, codec};
-use gateway_loop::{Call, Counters, GatewayLoop, LatestOrder, LoopInputs};
+use game::{SimTime, VehicleId, codec};
+use gateway_loop::{Counters, GatewayLoop};
 use join::Join;
+use loop_input::{Call, LoopInput, loop_input};
 use recording::{NewFile, RecordError, Recorder, utc};
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use thiserror::Error;
 
@@ -46,6 +53,8 @@ pub struct Settings {
     pub vehicle: String,
     /// The address of the boat.
     pub link: LinkAddress,
+    /// Where the control port listens; port 0 is any that is free.
+    pub control: SocketAddr,
     /// After this long without a byte the boat counts as gone.
     pub silence: Duration,
     /// How it is driven and stopped.
@@ -82,6 +91,8 @@ pub enum NodeEvent<'a> {
     Status(&'a GatewayStatus),
     /// It has ended, with this status.
     Ended(&'a GatewayStatus),
+    /// The control port is open.
+    ControlPort(SocketAddr),
     /// Others can connect here.
     Listening {
         /// Which port this is.
@@ -103,6 +114,14 @@ pub enum NodeError {
     /// The link cannot be opened.
     #[error(transparent)]
     Link(#[from] LinkError),
+    /// The control port cannot be opened.
+    #[error("the control port {listen}: {source}")]
+    ControlPort {
+        /// Where it was to listen.
+        listen: SocketAddr,
+        /// Why.
+        source: std::io::Error,
+    },
     /// The recording cannot be written.
     #[error("{path}: {source}")]
     Record {
@@ -128,113 +147,126 @@ pub enum NodeError {
     SimReplaced,
 }
 
-/// The most calls that wait for the gateway loop.
-const INBOX: usize = 4096;
-
 /// Connects a real boat with a game until it is told to stop. However it ends, the boat is sent standby.
 ///
 /// # Errors
 /// [`NodeError`] if there is no such game or boat, or if the network, the link or the recording cannot work. A boat or a
 /// sim that goes away is none: the gateway waits for it.
 pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    let (input, output) = loop_input();
+    // Before everything that can take its time.
+    let port = ControlPort::open(settings.control, &settings.vehicle, settings.net.token.clone(), input.clone())?;
+    notify(NodeEvent::ControlPort(port.address));
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut looking = |reason: &str| notify(NodeEvent::Looking { reason });
     let (bus, game, info) = search.game(&mut looking, &settings.net, settings.game.as_ref())?;
     let vehicle = external_vehicle(&info, &settings.vehicle)?;
     let factor = pace_factor(&info.pace, settings.at_game_pace)?;
+    let plan = plan(settings, &info, vehicle)?;
+    let recorder = recorder(settings, &plan)?;
+    let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;
+    // Nothing is sent to a boat that another gateway has. The thread that keeps it joined asks again, and gets it again.
+    let names = [settings.vehicle.clone()];
+    let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
+    search.until(&mut say, || game_search::join(&bus, &game, Role::Gateway, &names))?;
+    let subscriptions = subscribe(&bus, &game, &info, vehicle, &input)?;
+    let link_settings = LinkSettings { silence: Some(settings.silence), ..LinkSettings::default() };
+    let calls = input.calls.clone();
+    let link = Link::open(&settings.link, link_settings, move |event: LinkEvent| calls.put(Call::Link(event)))?;
+    let others = info.scenario.externals().filter(|other| *other != vehicle).collect();
+    let mut gateway_loop = GatewayLoop {
+        game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),
+        bridge: Bridge::new(plan),
+        link,
+        clock: Clock::start(factor),
+        input: output,
+        nav: bus.publisher(topic::nav(&game, &info.scenario, vehicle), Priority::Normal)?,
+        status: bus.publisher(topic::status(&game, &settings.vehicle), Priority::Normal)?,
+        link_bytes: bus.publisher(topic::link(&game, &settings.vehicle), Priority::Normal)?,
+        vehicle,
+        others,
+        recorder,
+        encoder: StepEncoder::new(&settings.vehicle, vehicle),
+        counters: Counters::new(),
+        notify: &mut *notify,
+        guard: Guard::new(settings.net.token.clone()),
+        control: port.address,
+    };
+    let join = Join::begin(&bus, &game, &settings.vehicle, input.calls)?;
+    port.begin();
+    let result = gateway_loop.run(&settings.stop);
+    let status = gateway_loop.full_status();
+    // The boat is stopped before the network closes.
+    drop(gateway_loop);
+    drop((port, join, subscriptions));
+    notify(NodeEvent::Ended(&status));
+    bus.close();
+    result
+}
+
+/// What the core is made for.
+fn plan(settings: &Settings, info: &GameInfo, vehicle: VehicleId) -> Result<Plan, NodeError> {
     let field = info.scenario.field.clone();
     let declination_rad = declination_rad(settings.gateway.declination_rad, field.plan.datum)?;
-    let plan = Plan {
+    Ok(Plan {
         vehicle: settings.vehicle.clone(),
         gateway: settings.gateway.clone(),
         field,
         length_m: info.scenario.boat_of(vehicle).length_m,
         declination_rad,
         arms_itself: settings.arms_itself,
-    };
-    let opening = record::opening(&plan, utc::now_ns(), settings.commit);
-    let recorder = settings.record.as_ref().map(|path| {
-        let begun = NewFile::create(path).and_then(|file| Recorder::begin(file, &opening));
-        begun.map_err(|source| NodeError::Record { path: path.clone(), source })
-    });
-    let recorder = recorder.transpose()?;
-    let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;
-    // Nothing is sent to a boat that another gateway has. The thread that keeps it joined asks again, and gets it again.
-    let names = [settings.vehicle.clone()];
-    let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
-    search.until(&mut say, || game_search::join(&bus, &game, Role::Gateway, &names))?;
-    let (calls, inbox) = inbox(INBOX);
-    let inputs = LoopInputs { calls: calls.clone(), latest_order: LatestOrder::default(), e_stop: Arc::default() };
-    let subscriptions = subscribe(&bus, &game, &info, vehicle, &inputs)?;
-    let link_settings = LinkSettings { silence: Some(settings.silence), ..LinkSettings::default() };
-    let link = Link::open(&settings.link, link_settings, move |event: LinkEvent| calls.put(Call::Link(event)))?;
-    let others = info.scenario.vehicles.iter().enumerate().filter(|(_, other)| other.source == Source::External);
-    let mut gateway_loop = GatewayLoop {
-        bridge: Bridge::new(plan),
-        link,
-        clock: Clock::start(factor),
-        inbox,
-        latest_order: inputs.latest_order,
-        e_stop: inputs.e_stop,
-        nav: bus.publisher(topic::nav(&game, &info.scenario, vehicle), Priority::Normal)?,
-        status: bus.publisher(topic::status(&game, &settings.vehicle), Priority::Normal)?,
-        link_bytes: bus.publisher(topic::link(&game, &settings.vehicle), Priority::Normal)?,
-        vehicle,
-        others: others.map(|(i, _)| VehicleId::at(i)).filter(|other| *other != vehicle).collect(),
-        recorder,
-        encoder: StepEncoder::new(&settings.vehicle, vehicle),
-        counters: Counters::new(),
-        notify: &mut *notify,
-        guard: Guard::new(settings.net.token.clone()),
-    };
-    let join = Join::begin(&bus, &game, &settings.vehicle, inputs.calls)?;
-    let result = gateway_loop.run(&settings.stop);
-    let status = gateway_loop.full_status();
-    // The boat is stopped before the network closes.
-    drop(gateway_loop);
-    drop((join, subscriptions));
-    notify(NodeEvent::Ended(&status));
-    bus.close();
-    result
+    })
 }
 
-/// Subscribes to what comes from the sim and from operators: orders into `latest_order`, the rest into the loop's inbox.
+/// The recording, if there is to be one.
+fn recorder(settings: &Settings, plan: &Plan) -> Result<Option<Recorder>, NodeError> {
+    let Some(path) = &settings.record else { return Ok(None) };
+    let opening = record::opening(plan, utc::now_ns(), settings.commit);
+    let begun = NewFile::create(path).and_then(|file| Recorder::begin(file, &opening));
+    begun.map(Some).map_err(|source| NodeError::Record { path: path.clone(), source })
+}
+
+/// Subscribes to what comes from the sim and from operators.
 fn subscribe(
     bus: &Bus,
     game: &GameName,
     info: &GameInfo,
     vehicle: VehicleId,
-    inputs: &LoopInputs,
+    input: &LoopInput,
 ) -> Result<Vec<Declaration>, BusError> {
     let scenario = &info.scenario;
-    let (latest_order, orders) = (Arc::clone(&inputs.latest_order), inputs.calls.clone());
+    let [orders, queries, controls, releases, frames] = std::array::from_fn(|_| input.clone());
     let take_order = move |bytes: &[u8]| {
         let Ok(order) = codec::decode(bytes) else { return };
-        let mut latest_order = latest_order.lock();
+        let mut latest_order = orders.latest_order.lock();
         // A call that still waits will find the newest.
         if latest_order.replace((order, bus::clock::now())).is_none() {
-            orders.put(Call::Order);
+            orders.calls.put(Call::Order);
         }
     };
-    let [queries, controls, releases, frames] = std::array::from_fn(|_| inputs.calls.clone());
-    let e_stop = Arc::clone(&inputs.e_stop);
     let name = &scenario.vehicles[vehicle.index()].name;
     let mut subscriptions = vec![
         bus.subscribe(topic::external_order(game, scenario, vehicle), take_order)?,
-        bus.answer(topic::operate(game, name), move |query| queries.put(Call::Operate(query)))?,
+        bus.answer(topic::operate(game, name), move |query| {
+            // It is read again, to be answered, behind others.
+            let command = Guard::default().check(query.key(), &query.payload, OperatorCommand::needs_token);
+            if matches!(command, Checked::Granted(OperatorCommand::EStop)) {
+                queries.stop(Scope::Boat);
+            }
+            queries.query(query);
+        })?,
         bus.subscribe(topic::control(game), move |bytes| {
             // Everything else reaches the boat as an order, if at all.
             if let Ok(Control::EStop) = serde_json::from_slice(bytes) {
-                e_stop.store(true, Ordering::Relaxed);
-                controls.put(Call::EStop);
+                controls.stop(Scope::Fleet);
             }
         })?,
-        bus.subscribe(topic::released(game), move |_| releases.put(Call::Release))?,
+        bus.subscribe(topic::released(game), move |_| releases.calls.put(Call::Release))?,
     ];
     // Frames are published only where somebody subscribes.
-    let real = scenario.vehicles.iter().filter(|vehicle| vehicle.source == Source::External).count();
-    if real > 1 {
-        subscriptions.push(bus.subscribe(topic::frame(game), move |bytes| frames.put(Call::Frame(bytes.to_vec())))?);
+    if scenario.externals().nth(1).is_some() {
+        let take_frame = move |bytes: &[u8]| frames.calls.put(Call::Frame(bytes.to_vec()));
+        subscriptions.push(bus.subscribe(topic::frame(game), take_frame)?);
     }
     Ok(subscriptions)
 }

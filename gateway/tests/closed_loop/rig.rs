@@ -2,11 +2,11 @@
 
 use crate::oracle::Oracle;
 use crate::tamper::{Tamper, with_checksum};
-use game::external::OperatorCommand;
+use game::external::{FleetCommand, OperatorCommand};
 use game::frame::{LatLon, Ned, Rotation};
 use game::picture::{Imu, Nav, OwnBoat};
 use game::{Order, SimTime, VehicleId};
-use gateway::bridge::{Bridge, Event, FleetCommand, Input, NavOut, Output, Plan};
+use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan};
 use gateway::emulator::{self, Emulator, Port};
 use gateway::nmea::{Date, TimeOfDay};
 use std::path::Path;

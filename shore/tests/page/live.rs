@@ -7,7 +7,7 @@ use bus::token::{self, Checked, Guard};
 use bus::{Bus, Declaration, Net, Priority, Publisher, Watched};
 use game::codec;
 use game::event::{Event, Logged};
-use game::external::GatewayStatus;
+use game::external::{GatewayStatus, OperatorReply};
 use game::helm::{HelmQuestion, HelmReport};
 use game::message::{Control, ControlReply, EventRecord, GameInfo, Message, PolicyProposal, Stamp};
 use game::outcome::EventOutcome;
@@ -20,6 +20,8 @@ use game::{Scenario, SimTime, TeamId, VehicleId};
 use serde_json::json;
 use shore::page::live::LiveView;
 use shore::page::{Page, View};
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpListener;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -350,6 +352,43 @@ fn gateways_tell_and_real_boats_keep_their_pace() {
     client.until("refused", |refused| refused["what"] == "speed");
     client.until("state", |state| state["can_speed"] == false);
     sim.close();
+}
+
+#[test]
+fn an_e_stop_goes_straight_to_gateways_too_with_a_game_and_after_it() {
+    let (sim, _page, mut client) = meet("mixed_2v2.toml");
+    let gateway = TcpListener::bind("127.0.0.1:0").expect("a free port");
+    let control = Some(gateway.local_addr().expect("bound").to_string());
+    let externals: Vec<String> =
+        sim.scenario.externals().map(|at| sim.scenario.vehicles[at.index()].name.clone()).collect();
+    for (vehicle, control) in externals.iter().zip([control, Some("localhost:99999".to_owned())]) {
+        let game = GameName::new("pond").expect("a good name");
+        let publisher = sim.bus.publisher(topic::status(&game, vehicle), Priority::Normal).expect("it publishes");
+        let status = GatewayStatus { vehicle: vehicle.clone(), control, ..GatewayStatus::default() };
+        publisher.send_json(json(&status)).expect("it is open");
+        client.until("status", |status| status["vehicle"] == vehicle.as_str());
+    }
+    let is_stopped = |client: &mut Client| {
+        client.send(r#"{"do":"control","what":"e_stop"}"#);
+        let (stream, _) = gateway.accept().expect("it is bound");
+        let mut line = String::new();
+        BufReader::new(&stream).read_line(&mut line).expect("a request");
+        assert_eq!(line, "{\"body\":{\"fleet\":\"e_stop\"}}\n");
+        let reply = OperatorReply { refused: None, status: GatewayStatus::default() };
+        (&stream).write_all(&[token::answer(&reply), b"\n".to_vec()].concat()).expect("it listens");
+    };
+    is_stopped(&mut client);
+    assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::EStop)), "and the game is told");
+    // What else is asked waits its turn.
+    for _ in 0..200 {
+        client.send(r#"{"do":"control","what":"pause"}"#);
+    }
+    is_stopped(&mut client);
+    sim.close();
+    client.until("state", |state| state["phase"] == "gone");
+    is_stopped(&mut client);
+    client.send(r#"{"do":"control","what":"halt"}"#);
+    client.until("refused", |refused| refused["what"] == "control" && refused["reason"] == "there is no game now");
 }
 
 #[test]

@@ -41,15 +41,12 @@ pub(super) struct GameWatcher {
     pub(super) place: Place,
     pub(super) game: Option<GameName>,
     pub(super) commands: Receiver<Command>,
-    /// Where a person reads what went wrong.
-    pub(super) tell: Tell,
 }
 
 /// A session in a game.
 struct GameSession {
     bus: Bus,
     game: Arc<LiveGame>,
-    control: Publisher,
     policies: BTreeMap<VehicleId, Publisher>,
     pictures: BTreeMap<TeamId, Declaration>,
     sim: SimWatch,
@@ -74,7 +71,7 @@ impl GameWatcher {
                     // What will never be there may yet be replaced by something else.
                     let reason = missing.to_string();
                     if reason != said {
-                        (self.tell)(&format!("no game to show: {reason}"));
+                        (self.shared.tell)(&format!("no game to show: {reason}"));
                         said = reason;
                     }
                     attempts += 1;
@@ -105,14 +102,14 @@ impl GameWatcher {
         let left = Watched::new(false);
         let queries = QueryThread { shared: &self.shared, bus: session.bus.clone(), game: Arc::clone(&session.game) };
         let (requests, requested) = sync_channel(REQUESTS);
-        let (bus, game, tell) = (session.bus.clone(), session.game.name.clone(), &self.tell);
+        let (bus, game, tell) = (session.bus.clone(), session.game.name.clone(), &self.shared.tell);
         std::thread::scope(|scope| {
             scope.spawn(|| queries.ask(&left));
             // The sim may take its time to answer, and a stop must not wait for that.
             scope.spawn(|| requested.into_iter().for_each(|control| request(tell, &bus, &game, control)));
             while !self.shared.is_closing() && session.sim.state_by_token() == SimState::Alive {
                 if let Ok(command) = self.commands.recv_timeout(ROUND) {
-                    session.send(command, &requests);
+                    GameSession::send(command, &requests);
                 }
                 session.steer(&self.shared);
                 session.expire_steering(&self.shared);
@@ -139,10 +136,10 @@ impl GameSession {
     fn begin(shared: &Arc<SharedState>, bus: Bus, game: LiveGame) -> Result<GameSession, BusError> {
         let game = Arc::new(game);
         let sim = SimWatch::open(&bus, &game.name, PATIENCE)?;
-        let control = bus.publisher(topic::control(&game.name), Priority::Urgent)?;
         let generation = {
             let mut state = shared.state.lock();
             state.begin(Arc::clone(&game));
+            state.bus = Some(bus.clone());
             state.generation
         };
         shared.news.send_replace(());
@@ -152,16 +149,12 @@ impl GameSession {
             standing.push(subscriptions.clone().status(&bus, &game, vehicle)?);
         }
         let (policies, pictures) = (BTreeMap::new(), BTreeMap::new());
-        Ok(GameSession { bus, game, control, policies, pictures, sim, _standing: standing })
+        Ok(GameSession { bus, game, policies, pictures, sim, _standing: standing })
     }
 
     /// Passes on a command of a page. What cannot be sent now is lost with the session.
-    fn send(&self, command: Command, requests: &SyncSender<Control>) {
+    fn send(command: Command, requests: &SyncSender<Control>) {
         match command {
-            Command::Control(control) if control.stops() => {
-                let json = serde_json::to_vec(&control).unwrap_or_default();
-                drop(self.control.send_json(json));
-            }
             // A page that asks for more than is answered has to ask again.
             Command::Control(control) => drop(requests.try_send(control)),
             // It is seen to in every round; this only begins one.
@@ -285,7 +278,7 @@ mod tests {
     #[test]
     fn what_was_asked_of_one_game_is_forgotten_before_the_next_is_looked_for() {
         let (commands, to_do) = sync_channel(1);
-        let shared = Arc::new(SharedState::new(commands.clone()));
+        let shared = Arc::new(SharedState::new(commands.clone(), Box::new(|_| ())));
         commands.send(Command::Control(Control::Stop)).unwrap();
         let (found, finds) = sync_channel(1);
         let searched = Arc::clone(&shared);
@@ -295,8 +288,7 @@ mod tests {
             searched.is_closing.store(true, Ordering::Relaxed);
             Err("there is no network".to_owned())
         };
-        let (place, tell) = (Box::new(place), Box::new(|_: &str| ()));
-        GameWatcher { shared, place, game: None, commands: to_do, tell }.run();
+        GameWatcher { shared, place: Box::new(place), game: None, commands: to_do }.run();
         assert!(finds.recv().unwrap());
     }
 }

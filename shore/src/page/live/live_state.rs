@@ -4,6 +4,7 @@ use super::event_log::EventLog;
 use super::frame_buffer::FrameBuffer;
 use super::steering::SteeringLocks;
 use crate::page::chart::chart;
+use bus::Bus;
 use game::external::GatewayStatus;
 use game::message::{Frame, GameInfo};
 use game::outcome::EventOutcome;
@@ -46,6 +47,8 @@ pub(super) type Latest<T> = BTreeMap<VehicleId, Arc<T>>;
 pub(super) struct LiveState {
     /// The game; also after it has gone.
     pub(super) game: Option<Arc<LiveGame>>,
+    /// Where it can be reached, as long as it is there.
+    pub(super) bus: Option<Bus>,
     /// Counts the games.
     pub(super) generation: u64,
     /// Whether the game is gone.
@@ -114,7 +117,7 @@ impl LiveState {
 
     /// The game is gone.
     pub(super) fn end(&mut self) {
-        (self.is_gone, self.run_news) = (true, self.run_news + 1);
+        (self.is_gone, self.run_news, self.bus) = (true, self.run_news + 1, None);
         self.steering_locks = SteeringLocks::default();
         self.steering.clear();
     }

@@ -1,7 +1,8 @@
 //! A running game, shown to pages that may also control it.
 //!
 //! One thread finds the game, subscribes to it, and finds it again when it is gone (`game_watcher`). Another queries what is
-//! not published (`query_thread`). Both write the state that all viewers read (`live_state`).
+//! not published (`query_thread`). Both write the state that all viewers read (`live_state`). Stops have threads of their own
+//! (`stopping`).
 
 mod event_log;
 mod frame_buffer;
@@ -9,6 +10,7 @@ mod game_watcher;
 mod live_state;
 mod query_thread;
 mod steering;
+mod stopping;
 mod viewer;
 
 use super::view::{Access, Changes, View, Viewer};
@@ -21,6 +23,7 @@ use parking_lot::Mutex;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
+use stopping::Stopping;
 use viewer::PageViewer;
 
 /// The most commands that wait for the network.
@@ -43,6 +46,9 @@ struct SharedState {
     state: Mutex<LiveState>,
     news: Changes,
     commands: SyncSender<Command>,
+    stopping: Stopping,
+    /// Where a person reads what went wrong.
+    tell: Tell,
     pages: AtomicU64,
     is_closing: AtomicBool,
 }
@@ -50,7 +56,7 @@ struct SharedState {
 /// A command to the game.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Command {
-    /// For all of it.
+    /// For all of it, and nothing that stops boats.
     Control(Control),
     /// For steered boats; the set-points are in the state.
     Steer,
@@ -64,8 +70,8 @@ impl LiveView {
     /// If the system has no thread to give.
     pub fn open(place: Place, game: Option<GameName>, tell: Tell) -> std::io::Result<LiveView> {
         let (commands, to_do) = sync_channel(COMMANDS_MAX);
-        let shared = Arc::new(SharedState::new(commands));
-        let watcher = GameWatcher { shared: Arc::clone(&shared), place, game, commands: to_do, tell };
+        let shared = Arc::new(SharedState::new(commands, tell));
+        let watcher = GameWatcher { shared: Arc::clone(&shared), place, game, commands: to_do };
         std::thread::Builder::new().name("page-live".to_owned()).spawn(move || watcher.run())?;
         Ok(LiveView { shared })
     }
@@ -91,11 +97,13 @@ impl View for LiveView {
 
 impl SharedState {
     /// With an empty state.
-    fn new(commands: SyncSender<Command>) -> SharedState {
+    fn new(commands: SyncSender<Command>, tell: Tell) -> SharedState {
         SharedState {
             state: Mutex::default(),
             news: Changes::default(),
             commands,
+            stopping: Stopping::default(),
+            tell,
             pages: AtomicU64::new(1),
             is_closing: AtomicBool::new(false),
         }

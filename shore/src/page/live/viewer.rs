@@ -1,7 +1,7 @@
 //! One page's view of a running game.
 
 use super::live_state::{HelmMessage, Latest, LiveGame, LiveState};
-use super::{Command, SharedState};
+use super::{Command, SharedState, stopping};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
 use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
@@ -50,6 +50,9 @@ impl PageViewer {
 
     /// Passes on a command to this game. The state stays locked meanwhile, so that the next game does not get it.
     fn control(&self, state: &LiveState, control: Control) -> Result<(), String> {
+        if control.stops() {
+            return stopping::stop(&self.shared, state, control);
+        }
         state.on()?;
         self.send(Command::Control(control))
     }
@@ -286,7 +289,7 @@ mod tests {
 
     #[test]
     fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
-        let shared = Arc::new(SharedState::new(sync_channel(1).0));
+        let shared = Arc::new(SharedState::new(sync_channel(1).0, Box::new(|_| ())));
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
         let (scenario, now) = (game::scenario::load(&file).unwrap(), clock::now());
         let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };

@@ -1,0 +1,64 @@
+//! Asking a gateway at its own control port, with or without a game: lines of JSON over TCP, each a request or an answer as on
+//! the network (`token`).
+
+use crate::{BusError, Token, clock, token};
+use game::external::{GatewayCommand, OperatorReply};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::time::{Duration, Instant};
+
+/// The key of requests at control ports, in proofs.
+pub const GATEWAY_PORT_KEY: &str = "gateway control port";
+/// The longest answer, bytes.
+const ANSWER_BYTES_MAX: u64 = 1 << 20;
+/// How often to try: a port under attack may drop a connection before it has read from it.
+const ATTEMPTS: usize = 3;
+
+/// Asks the gateway whose control port is `at`, within `limit`.
+///
+/// # Errors
+/// [`BusError`] if it cannot be reached or does not answer, or if it asks for a token that is not known.
+pub fn ask_gateway(
+    at: SocketAddr,
+    token: Option<&Token>,
+    command: &GatewayCommand,
+    limit: Duration,
+) -> Result<OperatorReply, BusError> {
+    let deadline = clock::now() + limit;
+    // What only some may do is done once, even if the answer to it was lost: another release would be of another stop.
+    let attempts = if command.needs_token() { 1 } else { ATTEMPTS };
+    let mut result = ask_once(at, token, command, deadline);
+    for _ in 1..attempts {
+        if !matches!(result, Err(BusError::Use { .. })) {
+            break;
+        }
+        result = ask_once(at, token, command, deadline);
+    }
+    result
+}
+
+fn ask_once(
+    at: SocketAddr,
+    token: Option<&Token>,
+    command: &GatewayCommand,
+    deadline: Instant,
+) -> Result<OperatorReply, BusError> {
+    let failed =
+        |e: std::io::Error| BusError::Use { doing: "ask the gateway at", key: at.to_string(), reason: e.to_string() };
+    // No time at all is an error of its own.
+    let left = || deadline.saturating_duration_since(clock::now()).max(Duration::from_millis(1));
+    let stream = TcpStream::connect_timeout(&at, left()).map_err(failed)?;
+    stream.set_nodelay(true).map_err(failed)?;
+    let mut reader = BufReader::new(&stream);
+    let mut exchange = |mut payload: Vec<u8>| -> std::io::Result<Option<Vec<u8>>> {
+        payload.push(b'\n');
+        stream.set_write_timeout(Some(left()))?;
+        (&stream).write_all(&payload)?;
+        stream.set_read_timeout(Some(left()))?;
+        let mut line = Vec::new();
+        reader.by_ref().take(ANSWER_BYTES_MAX).read_until(b'\n', &mut line)?;
+        if line.is_empty() { Err(std::io::ErrorKind::ConnectionAborted.into()) } else { Ok(Some(line)) }
+    };
+    let reply = token::request(token, GATEWAY_PORT_KEY, command, |payload| exchange(payload).map_err(failed))?;
+    reply.ok_or(BusError::Silent)
+}

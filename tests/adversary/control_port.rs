@@ -1,0 +1,186 @@
+//! An E-stop through the gateway's control port, on the boat's wire in time whatever befalls the game; and orders that are
+//! ahead of it.
+//!
+//! `SQUALL_TRIES=1000` measures it, and prints the distribution.
+
+use crate::boat::Boat;
+use crate::intruder::Intruder;
+use crate::support::{LIMIT, Process, Sim, stderr, temporary, token, wait_until};
+use bus::ask_gateway;
+use game::external::{ExternalOrder, FleetCommand, GatewayCommand, OperatorCommand, OperatorReply};
+use game::message::{Message, Stamp, VehicleOrder};
+use game::{Order, SimTime, VehicleId, codec};
+use gateway::nmea::Mode;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// From the request to the standby sentence on the wire.
+const PROMISED: Duration = Duration::from_millis(200);
+
+/// A game, the gateway of its real boat, and the boat.
+struct Rig {
+    sim: Sim,
+    _agents: Process,
+    _gateway: Process,
+    boat: Boat,
+    control: SocketAddr,
+}
+
+impl Rig {
+    fn start(sim_args: &[&str]) -> Rig {
+        let sim = Sim::start("real_attacker", &[&["--pace", "realtime"], sim_args].concat());
+        let boat = Boat::start(sim.info(&sim.bus()).scenario.field.plan.datum);
+        let control = SocketAddr::from(([127, 0, 0, 1], bus::free_port(false).expect("a free port")));
+        let address = control.to_string();
+        let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--control-listen", &address];
+        let gateway = sim.quiet(&[&args[..], &["--link", &boat.link]].concat());
+        let agents = sim.agent(&["blue_one", "red_one"]);
+        let rig = Rig { sim, _agents: agents, _gateway: gateway, boat, control };
+        let is_up = |rig: &Rig| {
+            let status = GatewayCommand::Boat { name: "blue_one".to_owned(), command: OperatorCommand::Status };
+            ask_gateway(rig.control, None, &status, LIMIT).is_ok_and(|reply| reply.status.link == "up")
+        };
+        wait_until("the boat is there", || is_up(&rig));
+        rig
+    }
+
+    fn ask(&self, command: GatewayCommand) -> OperatorReply {
+        ask_gateway(self.control, Some(&token()), &command, LIMIT).expect("the gateway answers")
+    }
+
+    fn tell(&self, command: OperatorCommand) -> OperatorReply {
+        self.ask(GatewayCommand::Boat { name: "blue_one".to_owned(), command })
+    }
+
+    /// The boat keeps its station by itself, and is sent nothing: what comes next is meant.
+    fn delegate(&self) {
+        self.ask(GatewayCommand::Fleet(FleetCommand::Release));
+        wait_until("it is fit", || {
+            self.tell(OperatorCommand::Release);
+            self.tell(OperatorCommand::StationKeep).refused.is_none()
+        });
+        self.boat.next(&Mode::StationKeep, LIMIT);
+    }
+
+    /// From an E-stop to standby.
+    fn stops_after(&self, stop: impl FnOnce()) -> Duration {
+        self.delegate();
+        let asked = Instant::now();
+        stop();
+        self.boat.next(&Mode::Standby, LIMIT).saturating_duration_since(asked)
+    }
+
+    /// Many times, of the boat and of the fleet by turns.
+    fn measure(&self, what: &str) {
+        let tries: usize = std::env::var("SQUALL_TRIES").map_or(30, |text| text.parse().expect("a number"));
+        let one = |i: usize| {
+            let boat = GatewayCommand::Boat { name: "blue_one".to_owned(), command: OperatorCommand::EStop };
+            let command = if i.is_multiple_of(2) { boat } else { GatewayCommand::Fleet(FleetCommand::EStop) };
+            self.stops_after(|| {
+                let reply = ask_gateway(self.control, None, &command, LIMIT).expect("the gateway answers");
+                assert!(reply.refused.is_none() && reply.status.state.contains("e-stopped"), "{reply:?}");
+            })
+        };
+        let mut took: Vec<Duration> = (0..tries).map(one).collect();
+        took.sort();
+        let at = |share: f64| took[((tries - 1) as f64 * share).round() as usize];
+        let late = took.iter().filter(|took| **took > PROMISED).count();
+        eprintln!(
+            "E-stop to standby on the wire, {what}: {tries} tries, min {:.2?}, median {:.2?}, p99 {:.2?}, max {:.2?}",
+            at(0.0),
+            at(0.5),
+            at(0.99),
+            at(1.0)
+        );
+        assert_eq!(late, 0, "{what}: later than {PROMISED:?}");
+    }
+}
+
+/// Sends garbage to the game's port, from two threads, until dropped.
+struct Flood {
+    stop: Arc<AtomicBool>,
+    sent: Arc<AtomicU64>,
+    start: Instant,
+    threads: Vec<std::thread::JoinHandle<()>>,
+}
+
+impl Flood {
+    fn begin(sim: &Sim) -> Flood {
+        let (stop, sent) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
+        let threads = ["control", "order/x"].map(|topic| {
+            let (intruder, stop, sent) = (Intruder::at(sim), Arc::clone(&stop), Arc::clone(&sent));
+            std::thread::spawn(move || {
+                while !stop.load(Ordering::Relaxed) {
+                    intruder.publish(topic, "garbage");
+                    sent.fetch_add(1, Ordering::Relaxed);
+                }
+            })
+        });
+        Flood { stop, sent, start: Instant::now(), threads: threads.into() }
+    }
+
+    fn end(self) {
+        let rate = self.sent.load(Ordering::Relaxed) as f64 / self.start.elapsed().as_secs_f64();
+        eprintln!("garbage: {rate:.0} messages a second");
+        self.stop.store(true, Ordering::Relaxed);
+        self.threads.into_iter().for_each(|thread| thread.join().expect("it sends"));
+    }
+}
+
+#[test]
+fn an_e_stop_is_on_the_wire_in_time_whatever_befalls_the_game() {
+    let mut rig = Rig::start(&[]);
+    rig.measure("undisturbed");
+    let flood = Flood::begin(&rig.sim);
+    rig.measure("under a flood of garbage");
+    flood.end();
+    rig.sim.process.signal("STOP");
+    rig.measure("with a suspended sim");
+    // As people do it, by the registry of this machine: nothing of the game answers.
+    rig.delegate();
+    for (vehicle, words) in [("blue_one", "an E-stop of this boat"), ("all", "of this boat and of the fleet")] {
+        let mut tell = crate::support::squall(&["gateway", "tell", vehicle, "estop", "--game", &rig.sim.game]);
+        let output = tell.output().expect("the program starts");
+        assert!(output.status.success() || vehicle == "all", "{}", stderr(&output));
+        assert!(String::from_utf8_lossy(&output.stdout).contains(words), "{output:?}");
+    }
+    rig.sim.process.signal("CONT");
+    rig.sim.process.kill();
+    rig.measure("without a sim");
+}
+
+#[test]
+fn orders_ahead_of_the_game_are_refused_and_those_of_the_sim_are_obeyed_all_the_same() {
+    // A hub that lets everybody do everything, which ours does not.
+    let dir = temporary();
+    let file = dir.path().join("open.json5");
+    let rules =
+        r#"{ access_control: { enabled: true, default_permission: "allow", rules: [], subjects: [], policies: [] } }"#;
+    std::fs::write(&file, rules).expect("a temporary file");
+    let rig = Rig::start(&["--zenoh-config", &file.display().to_string()]);
+    let count = |name: &str| {
+        let counts = rig.tell(OperatorCommand::Status).status.counts;
+        counts.iter().find(|(counted, _)| counted == name).map_or(0, |(_, count)| *count)
+    };
+    wait_until("orders come", || count("orders") > 5);
+    let intruder = Intruder::at(&rig.sim);
+    let hour = SimTime::from_s(3600.0);
+    for (stamp, given) in [(hour, hour), (SimTime::ZERO, hour), (SimTime(i64::MAX), SimTime(i64::MAX))] {
+        let before = count("orders ahead of the game");
+        let forged = ExternalOrder {
+            stamp: Stamp { valid_ns: stamp, version: ExternalOrder::VERSION, seq: 1 },
+            given_ns: given,
+            order: VehicleOrder::new(VehicleId(0), Order::Thrust { port: 1.0, starboard: 1.0 }),
+        };
+        wait_until("it is refused and counted", || {
+            intruder.publish("external/blue_one", codec::encode(&forged));
+            count("orders ahead of the game") > before
+        });
+        let (sound, old) = (count("orders"), count("old orders"));
+        wait_until("the sim's are obeyed", || count("orders") > sound + 10);
+        assert_eq!(count("old orders"), old, "{stamp}");
+    }
+    rig.sim.stop();
+}
