@@ -289,7 +289,7 @@ mod tests {
 
     #[test]
     fn garbage_is_told_so_and_a_request_without_end_is_cut_off() {
-        let (port, ..) = port();
+        let (port, _, output) = port();
         let said = |bytes: &[u8]| {
             let mut stream = TcpStream::connect(port.address).expect("the port is open");
             drop(stream.write_all(bytes));
@@ -297,7 +297,9 @@ mod tests {
             drop(stream.read_to_string(&mut said));
             said
         };
-        assert!(said(b"GET / HTTP/1.1\r\n").contains("not understood"));
+        // A browser can be made to send this, by any page.
+        let post = b"POST / HTTP/1.1\r\n\r\n{\"body\":{\"fleet\":\"e_stop\"}}\n";
+        assert!(said(post).contains("not understood") && !output.take_stop(Scope::Fleet));
         assert!(said(&[b'['; 1000].iter().chain(b"\n").copied().collect::<Vec<u8>>()).contains("not understood"));
         assert_eq!(said(&vec![b'x'; 10 * REQUEST_MAX as usize]), "");
     }
