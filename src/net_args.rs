@@ -96,9 +96,10 @@ impl LeafArgs {
         self.token.token()
     }
 
-    /// The gateways of this machine that may be meant. Where a game elsewhere is asked for, those that were told its name.
-    pub(crate) fn local_gateways(&self) -> Vec<bus::GatewayEntry> {
-        let is_elsewhere = self.lan || !self.connect.is_empty();
+    /// The gateways of this machine that may be meant. Where a game elsewhere is asked for, those that were told its name;
+    /// but a command that stops boats is meant for one gateway too many rather than for one too few.
+    pub(crate) fn local_gateways(&self, stops: bool) -> Vec<bus::GatewayEntry> {
+        let is_elsewhere = !stops && (self.lan || !self.connect.is_empty());
         let is_meant = |entry: &bus::GatewayEntry| match (&self.game, &entry.game) {
             (Some(wanted), Some(game)) => wanted.as_str() == game,
             _ => !is_elsewhere,

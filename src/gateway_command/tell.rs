@@ -109,7 +109,8 @@ impl Port {
 fn ports(args: &Args) -> Result<Vec<Port>> {
     let given = args.leaf.token()?;
     let mut ports: Vec<Port> = Vec::new();
-    for entry in args.leaf.local_gateways() {
+    let stops_all = args.vehicle == ALL && args.command == CommandArg::Estop;
+    for entry in args.leaf.local_gateways(stops_all) {
         let token = given.clone().or_else(|| entry.token?.parse().ok());
         ports.push(Port { vehicle: Some(entry.vehicle), at: entry.control, token });
     }
