@@ -1,6 +1,7 @@
 //! A zenoh session that is none of ours.
 
 use crate::support::Sim;
+use game::topic::{self, GameName};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use zenoh::bytes::ZBytes;
@@ -9,7 +10,7 @@ use zenoh::{Config, Session, Wait};
 /// Who reaches the port, and knows every topic.
 pub(crate) struct Intruder {
     pub(crate) session: Session,
-    game: String,
+    game: GameName,
 }
 
 /// What an intruder has heard: the keys.
@@ -28,11 +29,11 @@ impl Intruder {
         ] {
             config.insert_json5(key, &value).expect("a setting of zenoh");
         }
-        Intruder { session: zenoh::open(config).wait().expect("the port is open"), game: sim.game.clone() }
+        Intruder { session: zenoh::open(config).wait().expect("the port is open"), game: sim.name() }
     }
 
     pub(crate) fn topic(&self, rest: &str) -> String {
-        format!("squall/{}/{rest}", self.game)
+        topic::matching(&self.game, rest)
     }
 
     /// Listens to a topic, with wildcards or not.

@@ -89,9 +89,11 @@ fn bus_in_shells(tree: &Tree) -> Breaches {
 }
 
 fn zenoh_in_bus(tree: &Tree) -> Breaches {
-    let elsewhere = |path: &str| !path.starts_with("bus/src/") && !path.starts_with("benches/");
+    // Whoever breaks in does so by zenoh's own interface.
+    let allowed = ["bus/src/", "benches/", "tests/adversary/"];
+    let elsewhere = |path: &str| !allowed.iter().any(|folder| path.starts_with(folder));
     let word = joined(["zen", "oh::"]);
-    tree.find(elsewhere, |line| names(line, &word), "zenoh is named; allowed in bus/src and benches")
+    tree.find(elsewhere, |line| names(line, &word), "zenoh is named; allowed in bus/src, benches and tests/adversary")
 }
 
 fn keys_in_topic(tree: &Tree) -> Breaches {
