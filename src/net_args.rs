@@ -3,6 +3,7 @@
 use anyhow::{Context, Result, anyhow, bail};
 use bus::token::TOKEN_VARIABLE;
 use bus::{Net, Token};
+use game::input_file;
 use game::topic::GameName;
 use std::path::PathBuf;
 
@@ -33,12 +34,16 @@ struct TokenArgs {
     token_file: Option<PathBuf>,
 }
 
+/// A token file is a line of text; what is longer is another file, bytes.
+const TOKEN_FILE_MAX: u64 = 4096;
+
 impl TokenArgs {
     /// The token that is given.
     fn token(&self) -> Result<Option<Token>> {
         let (text, place) = match (&self.token_file, std::env::var(TOKEN_VARIABLE)) {
             (Some(file), _) => {
-                let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+                let text = input_file::read_text(file, TOKEN_FILE_MAX)
+                    .with_context(|| format!("cannot read {}", file.display()))?;
                 (text, file.display().to_string())
             }
             (None, Ok(text)) => (text, TOKEN_VARIABLE.to_owned()),

@@ -1,6 +1,7 @@
 //! The terminal: events as lines, how the game stands as one line that is written over.
 
 use crate::result_table;
+use game::printable;
 use sim::node::{Progress, ProgressMessage};
 use std::io::{IsTerminal, Write};
 
@@ -85,7 +86,7 @@ impl Screen {
 
     fn clear(&mut self) {
         if self.live && !self.status.is_empty() {
-            print("\r\x1b[K");
+            overwrite("");
         }
     }
 }
@@ -103,13 +104,27 @@ fn waiting(agents: &[String], gateways: &[String]) -> Option<String> {
     (!parts.is_empty()).then(|| format!("waiting for {}", parts.join(" and ")))
 }
 
-/// Prints text as it is. A reader that went away is no reason to stop a game.
+/// Prints text. A reader that went away is no reason to stop a game.
 pub(crate) fn print(text: &str) {
     is_read(text);
 }
 
-/// Prints text as it is, and says whether anybody still reads.
+/// Prints text, and says whether anybody still reads. Nothing in it steers the terminal.
 pub(crate) fn is_read(text: &str) -> bool {
+    is_written(&printable::text(text))
+}
+
+/// Prints over the line that was printed last without an end.
+pub(crate) fn overwrite(text: &str) {
+    is_written(&format!("\r\x1b[K{}", printable::text(text)));
+}
+
+/// Shows a page, which may have colours, instead of all that was on the terminal, and says whether anybody still looks.
+pub(crate) fn is_seen(page: &str) -> bool {
+    is_written(&format!("\x1b[H\x1b[J{}", printable::coloured(page)))
+}
+
+fn is_written(text: &str) -> bool {
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_ok()
 }
@@ -127,5 +142,5 @@ pub(crate) fn complain(text: &str) {
 
 /// Prints something to standard error, where it does not mix with results.
 pub(crate) fn remark(text: &str) {
-    drop(writeln!(std::io::stderr(), "{text}"));
+    drop(writeln!(std::io::stderr(), "{}", printable::message(text)));
 }

@@ -202,7 +202,7 @@ fn replay(args: &Args, path: &Path, boat: &Boat, trial_boat: &mut TrialBoat) -> 
 
 /// A CSV file with named columns.
 pub(crate) fn read_sheet(path: &Path) -> Result<Sheet> {
-    let file = File::open(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let file = game::input_file::open(path).with_context(|| format!("cannot read {}", path.display()))?;
     Ok(Sheet::read(&path.display().to_string(), file)?)
 }
 

@@ -87,12 +87,12 @@ fn watch_field(Observer { bus, game, info }: &Observer, pause: Duration, stop: &
         let Some(frame) = frame else { bail!("game {} is gone", game.as_str()) };
         let rates = meter.read(frame.stamp.valid_ns, count);
         let events: Vec<String> = events.iter().map(|logged| sentence(&info.scenario, logged)).collect();
-        let text = if live {
-            format!("\x1b[H\x1b[J{}", chart::page(info, game, &frame, &events, &rates))
+        let is_read = if live {
+            screen::is_seen(&chart::page(info, game, &frame, &events, &rates))
         } else {
-            chart::line(&info.scenario, &frame, &rates)
+            screen::is_read(&chart::line(&info.scenario, &frame, &rates))
         };
-        if !screen::is_read(&text) || frame.over {
+        if !is_read || frame.over {
             break;
         }
         clock::rest(pause);

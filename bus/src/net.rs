@@ -26,6 +26,9 @@ const LINKS: [(&str, &str); 5] = [
 const NEVER_WAIT: &str =
     r#"[{messages: ["put", "delete", "query"], flows: ["ingress"], overwrite: {congestion_control: "drop"}}]"#;
 
+/// The longest zenoh configuration, bytes.
+const CONFIG_MAX: u64 = 1 << 20;
+
 /// How a node meets the others.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Net {
@@ -80,8 +83,12 @@ impl Net {
     fn base(&self) -> Result<Config, BusError> {
         let mut config = match &self.config_file {
             None => Config::default(),
-            Some(path) => Config::from_file(path)
-                .map_err(|e| BusError::Open { what: path.display().to_string(), reason: reason(&e) })?,
+            Some(path) => {
+                let refused = |reason| BusError::Open { what: path.display().to_string(), reason };
+                // The library would read whatever it is.
+                game::input_file::read(path, CONFIG_MAX).map_err(|e| refused(e.to_string()))?;
+                Config::from_file(path).map_err(|e| refused(reason(&e)))?
+            }
         };
         set(&mut config, "scouting/multicast/enabled", if self.lan { "true" } else { "false" })?;
         set(&mut config, "scouting/gossip/enabled", "false")?;

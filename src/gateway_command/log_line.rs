@@ -24,16 +24,19 @@ impl Log {
             return;
         }
         let text = text_of(event);
-        let clear = if self.live { "\r\x1b[K" } else { "" };
-        let status = if self.live { self.status.as_str() } else { "" };
-        screen::print(&format!("{clear}{at_s:>8.1} s  {text}\n{status}"));
+        let line = format!("{at_s:>8.1} s  {text}\n");
+        if self.live {
+            screen::overwrite(&(line + &self.status));
+        } else {
+            screen::print(&line);
+        }
     }
 
     /// A line that the next one overwrites; only on a terminal.
     pub(super) fn status(&mut self, status: &GatewayStatus) {
         if self.live && !self.quiet {
             self.status = brief(status);
-            screen::print(&format!("\r\x1b[K{}", self.status));
+            screen::overwrite(&self.status);
         }
     }
 }

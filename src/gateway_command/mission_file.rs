@@ -5,9 +5,12 @@ use game::external::Mission;
 use gateway::nmea::{Framer, Sentence};
 use std::path::Path;
 
+/// The longest mission file, bytes: many times what a boat takes.
+const BYTES_MAX: u64 = 1 << 20;
+
 /// The mission in a `.sea` file.
 pub(super) fn read(path: &Path) -> Result<Mission> {
-    let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let bytes = game::input_file::read(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))?;
     let (mut throttle_pct, mut places, mut wrong) = (None, Vec::new(), None);
     let mut framer = Framer::new();
     framer.push(&[bytes.as_slice(), b"\r\n"].concat(), &mut |body| match Sentence::parse(body) {

@@ -24,12 +24,12 @@ pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &Ato
             Some(report) => {
                 heard = clock::now();
                 // Where nothing can be written over, a decision is printed once.
-                let text = match live {
-                    true => format!("\x1b[H\x1b[J{}", helm_text::page(scenario, &report)),
-                    false if last.replace(report.at) == Some(report.at) => String::new(),
-                    false => helm_text::line(scenario, &report),
+                let is_read = match live {
+                    true => screen::is_seen(&helm_text::page(scenario, &report)),
+                    false if last.replace(report.at) == Some(report.at) => true,
+                    false => screen::is_read(&helm_text::line(scenario, &report)),
                 };
-                if !screen::is_read(&text) {
+                if !is_read {
                     return Ok(());
                 }
             }

@@ -6,6 +6,9 @@ use thiserror::Error;
 /// Most rows a file may have: a day at 50 a second, and more.
 const ROWS_MAX: usize = 5_000_000;
 
+/// Most bytes.
+const BYTES_MAX: u64 = 512 << 20;
+
 /// A file with named columns.
 #[derive(Clone, Debug)]
 pub struct Sheet {
@@ -33,11 +36,12 @@ impl Sheet {
     ///
     /// # Errors
     /// Where it is no CSV, has no rows, or has two columns of one name.
-    pub fn read(file: &str, mut input: impl Read) -> Result<Sheet, Mistake> {
+    pub fn read(file: &str, input: impl Read) -> Result<Sheet, Mistake> {
         let mut bytes = vec![];
-        if let Err(error) = input.read_to_end(&mut bytes) {
-            let message = format!("cannot be read: {error}");
-            return Err(Mistake { file: file.to_owned(), line: None, message });
+        let whole = |message| Mistake { file: file.to_owned(), line: None, message };
+        let length = input.take(BYTES_MAX + 1).read_to_end(&mut bytes);
+        if length.map_err(|error| whole(format!("cannot be read: {error}")))? as u64 > BYTES_MAX {
+            return Err(whole(format!("longer than {BYTES_MAX} bytes")));
         }
         let wrong = |error: csv::Error| Mistake {
             file: file.to_owned(),

@@ -1,5 +1,6 @@
 //! What is wrong with a scenario file, and where.
 
+use crate::printable;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -18,7 +19,9 @@ pub struct Problem {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}: {}", self.path.display(), self.line, self.column, self.message)
+        let [path, message] =
+            [self.path.display().to_string(), self.message.clone()].map(|text| printable::line(&text));
+        write!(f, "{path}:{}:{}: {message}", self.line, self.column)
     }
 }
 

@@ -161,15 +161,7 @@ fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
         let kept = files.iter().find(|(kept, _)| kept == path);
         return kept.map(|(_, text)| text.clone().into_bytes()).ok_or_else(|| "is not among the files kept".into());
     }
-    let unreadable = |error: std::io::Error| format!("cannot be read ({error}), expected a file");
-    let about = std::fs::metadata(path).map_err(unreadable)?;
-    if !about.is_file() {
-        return Err("is not a file, expected one".into());
-    }
-    if about.len() > LARGEST_BYTES {
-        return Err(format!("is {} bytes long, expected at most {LARGEST_BYTES}", about.len()));
-    }
-    std::fs::read(path).map_err(unreadable)
+    crate::input_file::read(path, LARGEST_BYTES).map_err(|error| format!("cannot be read ({error}), expected a file"))
 }
 
 /// The tree of a text that begins at `start`, as far as its syntax is good; what is not is noted.

@@ -1,0 +1,70 @@
+//! A file that somebody names, read up to a limit. Only files: a pipe may never end, and a device is no place for data.
+
+use std::fs::{File, Metadata};
+use std::io::{Error, ErrorKind, Read};
+use std::path::Path;
+
+/// Opens a file to read it.
+///
+/// # Errors
+/// What the system says, or that it is no file.
+pub fn open(path: &Path) -> Result<File, Error> {
+    // A pipe is not even opened: that waits for whoever writes.
+    is_file(&std::fs::metadata(path)?)?;
+    let file = File::open(path)?;
+    is_file(&file.metadata()?)?;
+    Ok(file)
+}
+
+/// Reads a file of at most so many bytes. What its size is said to be does not count: files of `/proc` have none.
+///
+/// # Errors
+/// What the system says, that it is no file, or that it is longer.
+pub fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, Error> {
+    let mut bytes = vec![];
+    let length = open(path)?.take(bytes_max.saturating_add(1)).read_to_end(&mut bytes)?;
+    if length as u64 > bytes_max {
+        return Err(Error::new(ErrorKind::FileTooLarge, format!("it is longer than {bytes_max} bytes")));
+    }
+    Ok(bytes)
+}
+
+/// The same, of a text.
+///
+/// # Errors
+/// As above, or that it is not UTF-8.
+pub fn read_text(path: &Path, bytes_max: u64) -> Result<String, Error> {
+    String::from_utf8(read(path, bytes_max)?).map_err(|_| Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
+}
+
+fn is_file(metadata: &Metadata) -> Result<(), Error> {
+    let not_a_file = || Error::new(ErrorKind::InvalidInput, "it is not a file");
+    metadata.is_file().then_some(()).ok_or_else(not_a_file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_read_to_a_limit_and_nothing_else_is() {
+        let dir = tempfile::tempdir().expect("a directory");
+        let file = dir.path().join("file");
+        std::fs::write(&file, "12345").expect("it is written");
+        assert_eq!(read(&file, 5).expect("it is short enough"), b"12345");
+        let refused = |path: &Path, most| read(path, most).expect_err("it is refused").to_string();
+        assert_eq!(refused(&file, 4), "it is longer than 4 bytes");
+        assert_eq!(refused(dir.path(), 4), "it is not a file");
+        assert!(refused(&dir.path().join("none"), 4).contains("No such file"));
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn what_has_no_end_is_not_read() {
+        // Both say that they have no bytes.
+        assert_eq!(std::fs::metadata("/proc/self/pagemap").expect("it is there").len(), 0);
+        let endless = read(Path::new("/proc/self/pagemap"), 1000).expect_err("it is refused");
+        assert_eq!(endless.kind(), ErrorKind::FileTooLarge);
+        assert_eq!(read(Path::new("/dev/zero"), 10).expect_err("it is refused").kind(), ErrorKind::InvalidInput);
+    }
+}
