@@ -70,7 +70,7 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
         }
         let asks_for_more = args.events || args.json.is_some() || !wants_page;
         anyhow::ensure!(!asks_for_more, "{} is of a gateway, not of a game: only --csv is known of it", file.display());
-        screen::print(&page::gateway(&bag).with_context(|| format!("cannot read {}", file.display()))?);
+        screen::print(&page::gateway(&bag));
         return Ok(());
     }
     let recording = Recording::of_bag(bag).with_context(|| format!("cannot look at {}", file.display()))?;
@@ -80,7 +80,11 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     if !(wants_page || args.events || args.json.is_some() || args.plot.is_some() || args.alog.is_some()) {
         return Ok(());
     }
-    let (summary, series) = Summary::of(&recording).with_context(|| format!("cannot read {}", file.display()))?;
+    let (summary, series) = Summary::of(&recording);
+    let shows_damage = wants_page && !args.events;
+    if let (Some(remark), false) = (summary.damaged.remark(), shows_damage) {
+        screen::remark(&remark);
+    }
     if args.events {
         screen::print(&page::events(&summary));
     } else if wants_page {
@@ -102,16 +106,21 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
 }
 
 fn csv(args: &Args, file: &Path, source: (&Bag, Option<&Scenario>), topic: &str) -> Result<()> {
-    export::csv(source, topic, args.out.as_deref())
-        .with_context(|| format!("cannot make a table of {}", file.display()))
+    let damaged = export::csv(source, topic, args.out.as_deref())
+        .with_context(|| format!("cannot make a table of {}", file.display()))?;
+    damaged.remark().iter().for_each(|remark| screen::remark(remark));
+    Ok(())
 }
 
 fn compare(args: &Args, files: &[PathBuf]) -> Result<()> {
     let [a, b] = files else { anyhow::bail!("--compare takes two recordings") };
     let recordings = [recording_file::open(a, "look at")?, recording_file::open(b, "look at")?];
-    let series =
-        |i: usize| GameSeries::of(&recordings[i]).with_context(|| format!("cannot read {}", files[i].display()));
-    let series = [series(0)?, series(1)?];
+    let series = recordings.each_ref().map(GameSeries::of);
+    for (file, series) in files.iter().zip(&series) {
+        if let Some(remark) = series.damaged.remark() {
+            screen::remark(&format!("{}: {remark}", file.display()));
+        }
+    }
     let headers = recordings.each_ref().map(Recording::header);
     let comparison = Comparison::of(headers, series.each_ref(), args.tolerance_s)
         .with_context(|| format!("cannot compare {} with {}", a.display(), b.display()))?;

@@ -1,8 +1,9 @@
 //! Gateways: what went over their links, and what stopped their boats.
 
-use crate::link_line::Lines;
+use crate::damaged::Damaged;
+use crate::link_line::{Line, Lines};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
-use recording::{Bag, Recording, RecordingError};
+use recording::{Bag, Recording};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -20,6 +21,8 @@ pub struct Gateway {
     pub from_boat: Traffic,
     /// What went to the boat.
     pub to_boat: Traffic,
+    /// What could not be read of it.
+    pub damaged: Damaged,
 }
 
 /// What went one way over a link.
@@ -32,10 +35,7 @@ pub struct Traffic {
 }
 
 /// The gateways of a game, in the order of their boats.
-///
-/// # Errors
-/// [`RecordingError::Damaged`] names the first message that is not what it should be.
-pub(crate) fn gateways(recording: &Recording) -> Result<Vec<Gateway>, RecordingError> {
+pub(crate) fn gateways(recording: &Recording) -> Vec<Gateway> {
     let topics = recording.bag().topics();
     let is_known = |name: &str| ["link", "status"].iter().any(|what| topics.contains_key(&*format!("{what}/{name}")));
     let boats = recording.scenario().vehicles.iter().map(|vehicle| vehicle.name.as_str());
@@ -43,15 +43,13 @@ pub(crate) fn gateways(recording: &Recording) -> Result<Vec<Gateway>, RecordingE
 }
 
 /// What a recording tells of a boat's gateway: a game's, or the gateway's own.
-///
-/// # Errors
-/// [`RecordingError::Damaged`] names the first message that is not what it should be.
-pub fn gateway_of(bag: &Bag, boat: &str) -> Result<Gateway, RecordingError> {
+#[must_use]
+pub fn gateway_of(bag: &Bag, boat: &str) -> Gateway {
     let mut gateway = Gateway { boat: boat.to_owned(), ..Gateway::default() };
-    traffic(bag, &mut gateway)?;
+    traffic(bag, &mut gateway);
     // Each status holds the failsafes so far, and a gateway that was started anew begins again: every one is taken once.
     for message in bag.on(&format!("status/{boat}")) {
-        let Ok(status) = message.read_json::<GatewayStatus>() else { continue };
+        let Some(status) = gateway.damaged.sound(message.read_json::<GatewayStatus>()) else { continue };
         for failsafe in status.failsafes {
             if !gateway.failsafes.contains(&failsafe) {
                 gateway.failsafes.push(failsafe);
@@ -61,27 +59,30 @@ pub fn gateway_of(bag: &Bag, boat: &str) -> Result<Gateway, RecordingError> {
     }
     // The gateway's own recording holds the changes of its state.
     for message in bag.on("event") {
-        let event: Value = message.read_json()?;
+        let Some(event) = gateway.damaged.sound(message.read_json::<Value>()) else { continue };
         if let Some(state) = event["event"]["state"]["to"].as_str() {
             gateway.state = Some(state.to_owned());
         }
     }
-    Ok(gateway)
+    gateway
 }
 
-fn traffic(bag: &Bag, gateway: &mut Gateway) -> Result<(), RecordingError> {
+fn traffic(bag: &Bag, gateway: &mut Gateway) {
     let mut lines = Lines::default();
-    let mut found = vec![];
     for message in bag.on(&format!("link/{}", gateway.boat)) {
-        let bytes: LinkBytes = message.read()?;
-        let way = if bytes.outward { &mut gateway.to_boat } else { &mut gateway.from_boat };
-        way.bytes += bytes.data.len() as u64;
-        found.extend(lines.take(&bytes));
+        let Some(bytes) = gateway.damaged.sound(message.read::<LinkBytes>()) else { continue };
+        gateway.way(bytes.outward).bytes += bytes.data.len() as u64;
+        lines.take(&bytes).iter().for_each(|line| gateway.count(line));
     }
-    found.extend(lines.rest());
-    for line in found {
-        let way = if line.outward { &mut gateway.to_boat } else { &mut gateway.from_boat };
-        *way.sentences.entry(line.kind().to_owned()).or_insert(0) += 1;
+    lines.rest().iter().for_each(|line| gateway.count(line));
+}
+
+impl Gateway {
+    fn way(&mut self, outward: bool) -> &mut Traffic {
+        if outward { &mut self.to_boat } else { &mut self.from_boat }
     }
-    Ok(())
+
+    fn count(&mut self, line: &Line) {
+        *self.way(line.outward).sentences.entry(line.kind().to_owned()).or_insert(0) += 1;
+    }
 }

@@ -7,6 +7,7 @@
 
 pub mod alog;
 mod compare;
+mod damaged;
 mod gateway;
 mod link_line;
 #[cfg(test)]
@@ -19,6 +20,7 @@ pub mod table;
 mod track;
 
 pub use compare::{Comparison, EventDifference, Incomparable, Pair};
+pub use damaged::Damaged;
 pub use gateway::{Gateway, Traffic, gateway_of};
 pub use link_line::{Line, Lines};
 pub use response::{Response, SETTLED_S};

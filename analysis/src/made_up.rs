@@ -12,7 +12,7 @@ pub(crate) fn game(span_s: f64, at: impl Fn(f64) -> Sample) -> GameSeries {
     let boat = BoatSeries { name: "blue_one".to_owned(), samples, ..BoatSeries::default() };
     let score = vec![vec![0, 0]; times_s.len()];
     let teams = vec!["blue".to_owned(), "red".to_owned()];
-    GameSeries { boats: vec![boat], teams, score, times_s, events: vec![] }
+    GameSeries { boats: vec![boat], teams, score, times_s, ..GameSeries::default() }
 }
 
 /// A boat that sails clockwise about the datum, once in 100 s.

@@ -1,5 +1,6 @@
 //! A recorded game as time series: at every decision each boat's true and estimated position, and its order.
 
+use crate::damaged::Damaged;
 use game::event::Logged;
 use game::input::{Input, Inputs};
 use game::message::{Frame, VehicleTruth};
@@ -22,6 +23,8 @@ pub struct GameSeries {
     pub score: Vec<Vec<u32>>,
     /// The events in the frames.
     pub events: Vec<Logged>,
+    /// What could not be read of it.
+    pub damaged: Damaged,
 }
 
 /// A boat as time series.
@@ -85,23 +88,22 @@ impl BoatSeries {
 }
 
 impl GameSeries {
-    /// The series of a recording, in one pass.
-    ///
-    /// # Errors
-    /// [`RecordingError::Damaged`] names the first message that is not what it should be.
-    pub fn of(recording: &Recording) -> Result<GameSeries, RecordingError> {
+    /// The series of a recording, in one pass. Messages that are not what they should be are left out, and counted.
+    #[must_use]
+    pub fn of(recording: &Recording) -> GameSeries {
         let scenario = recording.scenario();
         let pictures: Vec<String> = scenario.teams.iter().map(|team| picture(&team.name)).collect();
         let mut builder = Builder::new(scenario, recording.frame_count());
         for message in recording.bag().messages() {
-            match message.topic {
-                FRAME => builder.frame(&message)?,
-                INPUTS => builder.inputs(&message)?,
-                topic if pictures.iter().any(|picture| picture == topic) => builder.picture(&message)?,
-                _ => {}
-            }
+            let taken = match message.topic {
+                FRAME => builder.frame(&message),
+                INPUTS => builder.inputs(&message),
+                topic if pictures.iter().any(|picture| picture == topic) => builder.picture(&message),
+                _ => Ok(()),
+            };
+            builder.series.damaged.sound(taken);
         }
-        Ok(builder.series)
+        builder.series
     }
 
     /// The time between the first sample and the last, s.

@@ -1,10 +1,11 @@
 //! A recorded game on one page.
 
+use crate::damaged::Damaged;
 use crate::gateway::{Gateway, gateways};
 use crate::series::GameSeries;
 use crate::statistics::{BoatStatistics, statistics};
 use game::outcome::EventOutcome;
-use recording::{Bag, Recording, RecordingError};
+use recording::{Bag, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -33,6 +34,8 @@ pub struct Summary {
     pub is_cut: bool,
     /// Messages that are missing, since the disk was too slow for them; none where the file ends abruptly.
     pub dropped: Option<u64>,
+    /// Messages that are damaged, and left out of everything else.
+    pub damaged: Damaged,
     /// Size of the file, bytes.
     pub bytes: u64,
     /// Points by team, at the end of the file.
@@ -64,17 +67,15 @@ pub struct Topic {
 
 impl Summary {
     /// The summary of a recording, and the series that it was made of.
-    ///
-    /// # Errors
-    /// [`RecordingError::Damaged`] names the first message that is not what it should be.
-    pub fn of(recording: &Recording) -> Result<(Summary, GameSeries), RecordingError> {
-        let series = GameSeries::of(recording)?;
+    #[must_use]
+    pub fn of(recording: &Recording) -> (Summary, GameSeries) {
+        let series = GameSeries::of(recording);
+        let gateways = gateways(recording);
         let header = recording.header();
         let scenario = recording.scenario();
         let ending = recording.ending();
         let last = series.score.last().cloned().unwrap_or_default();
-        let utc_ns = || recording.bag().messages().map(|message| message.utc_ns);
-        let wall_ns = utc_ns().max().unwrap_or(0).saturating_sub(utc_ns().min().unwrap_or(0));
+        let wall_ns = recording.bag().span_utc_ns();
         let summary = Summary {
             game: header.game.clone(),
             scenario: scenario.name.clone(),
@@ -87,16 +88,17 @@ impl Summary {
             wall_s: wall_ns as f64 * 1e-9,
             is_cut: recording.is_cut(),
             dropped: ending.map(|ending| ending.dropped),
-            bytes: recording.bag().size() as u64,
+            bytes: recording.bag().size(),
             score: series.teams.iter().cloned().zip(last).collect(),
             winner: ending.and_then(|ending| ending.outcome.winner.clone()),
             digest: ending.map(|ending| ending.outcome.digest.clone()),
             events: series.named_events(scenario),
             boats: statistics(&series),
-            gateways: gateways(recording)?,
+            damaged: gateways.iter().fold(series.damaged.clone(), |all, gateway| all.and(&gateway.damaged)),
+            gateways,
             topics: topics(recording.bag()),
         };
-        Ok((summary, series))
+        (summary, series)
     }
 }
 

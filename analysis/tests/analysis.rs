@@ -108,7 +108,7 @@ fn recording() -> Recording {
 
 #[test]
 fn a_summary_has_the_figures_of_the_game() {
-    let (summary, series) = Summary::of(&recording()).expect("it is whole");
+    let (summary, series) = Summary::of(&recording());
     assert_eq!((summary.game.as_str(), summary.seed, summary.commit.as_str()), ("pav01-1", 1, "c0ffee"));
     assert!((summary.duration_s - 0.3).abs() < 1e-9 && (summary.wall_s - 3.0).abs() < 1e-9);
     assert_eq!((summary.is_cut, summary.dropped, summary.winner.as_deref()), (false, Some(3), Some("blue")));
@@ -134,7 +134,7 @@ fn a_summary_has_the_figures_of_the_game() {
 
 #[test]
 fn a_gateway_is_known_by_its_bytes_and_failsafes() {
-    let (summary, _) = Summary::of(&recording()).expect("it is whole");
+    let (summary, _) = Summary::of(&recording());
     let [gateway] = summary.gateways.as_slice() else { panic!("{:?}", summary.gateways) };
     assert_eq!((gateway.boat.as_str(), gateway.state.as_deref()), ("blue_one", Some("armed")));
     assert_eq!((gateway.from_boat.bytes, gateway.to_boat.bytes), (26, 15));
@@ -204,7 +204,7 @@ fn an_unknown_topic_is_refused_with_those_there_are() {
 #[test]
 fn the_log_of_a_vehicle_is_what_moos_tools_read() {
     let recording = recording();
-    let series = GameSeries::of(&recording).expect("it is whole");
+    let series = GameSeries::of(&recording);
     let log = alog::vehicle(recording.header(), &series, 0).expect("a boat");
     assert!(log.starts_with(include_str!("blue_one.alog")), "{log}");
     assert!(log.contains("\n0.10000         DESIRED_HEADING      squall          0.0000\n"), "{log}");
@@ -216,7 +216,7 @@ fn the_log_of_a_vehicle_is_what_moos_tools_read() {
 #[test]
 fn the_log_of_the_shoreside_has_reports_and_what_happened() {
     let recording = recording();
-    let series = GameSeries::of(&recording).expect("it is whole");
+    let series = GameSeries::of(&recording);
     let log = alog::shoreside(recording.header(), &series);
     let length_m = recording.scenario().boat_of(VehicleId(0)).length_m;
     let report = format!(
@@ -252,14 +252,14 @@ fn an_order_ends_with_the_mind_that_gave_it() {
     let series = GameSeries::of(
         &Recording::of(writer.end(ending().facts()).expect("it ends").into_inner()).expect("a recording"),
     );
-    let orders: Vec<Order> = series.expect("it is whole").boats[0].samples.iter().map(|moment| moment.order).collect();
+    let orders: Vec<Order> = series.boats[0].samples.iter().map(|moment| moment.order).collect();
     assert_eq!(orders, [Order::Hold, Order::Steer { heading_rad: 0.0, speed_m_s: 2.5 }, Order::Hold]);
 }
 
 #[test]
 fn a_game_differs_in_nothing_from_itself() {
     let recording = recording();
-    let series = GameSeries::of(&recording).expect("it is whole");
+    let series = GameSeries::of(&recording);
     let same = Comparison::of([recording.header(); 2], [&series; 2], 0.0).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((same.boats.len(), same.notes.len()), (4, 0));
     for pair in &same.boats {
@@ -278,7 +278,7 @@ fn games_that_differ_say_in_what_and_strangers_are_refused() {
     other.info.scenario.seed = 7;
     other.info.scenario.vehicles[3].name = "red_three".to_owned();
     let b = Recording::of(bytes_of(&other, 3)).unwrap_or_else(|e| panic!("{e}"));
-    let series = [&a, &b].map(|recording| GameSeries::of(recording).expect("it is whole"));
+    let series = [&a, &b].map(GameSeries::of);
     let compare = |header: &Header, b: &GameSeries| Comparison::of([a.header(), header], [&series[0], b], 1.0);
     let found = compare(b.header(), &series[1]).unwrap_or_else(|e| panic!("{e}"));
     let notes = found.notes.join("\n");

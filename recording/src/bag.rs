@@ -2,11 +2,12 @@
 
 use crate::json_string;
 use crate::records::{Extent, for_each_record};
+use crate::source::Source;
 use crate::{BEGAN, CHECKSUM, Facts, Kind, RESULT, VERSION, checksum};
 use game::SimTime;
 use game::codec::{self, DecodeError};
 use game::message::Message;
-use mcap::records::{MessageHeader, Record};
+use mcap::records::Record;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -24,6 +25,9 @@ pub enum RecordingError {
         /// What the system says.
         reason: std::io::Error,
     },
+    /// It cannot be read any more.
+    #[error("the recording cannot be read on: {0}")]
+    Unread(#[from] std::io::Error),
     /// It is no recording of Squall.
     #[error("not a recording of a game or a gateway: {0}")]
     Foreign(String),
@@ -72,13 +76,13 @@ impl RecordingError {
 /// A recording of any kind.
 #[derive(Debug)]
 pub struct Bag {
-    bytes: Vec<u8>,
+    source: Source,
     kind: Kind,
     facts: Facts,
     began_utc_ns: u64,
     result: Option<Facts>,
     is_cut: bool,
-    damage: Vec<Range<usize>>,
+    damage: Vec<Range<u64>>,
     channels: BTreeMap<u16, Channel>,
     index: Vec<IndexEntry>,
 }
@@ -97,13 +101,15 @@ struct Channel {
 struct IndexEntry {
     channel: u16,
     number: u32,
-    at: SimTime,
+    /// The time of the recording's own clock, ns.
+    log_ns: u64,
     utc_ns: u64,
-    place: Range<usize>,
+    from: u64,
+    length: u32,
 }
 
 /// A message of a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordedMessage<'a> {
     /// The topic.
     pub topic: &'a str,
@@ -115,8 +121,8 @@ pub struct RecordedMessage<'a> {
     pub at: SimTime,
     /// UTC when it was recorded, ns since 1970.
     pub utc_ns: u64,
-    /// The message.
-    pub bytes: &'a [u8],
+    /// The message; nothing, which no message is, where the file cannot be read any more.
+    pub bytes: Vec<u8>,
 }
 
 impl RecordedMessage<'_> {
@@ -126,7 +132,7 @@ impl RecordedMessage<'_> {
     /// [`RecordingError::Damaged`] if it is something else.
     pub fn read<M: Message + DeserializeOwned>(&self) -> Result<M, RecordingError> {
         let damaged = |reason| RecordingError::Damaged { topic: self.topic.to_owned(), number: self.number, reason };
-        codec::decode(self.bytes).map_err(damaged)
+        codec::decode(&self.bytes).map_err(damaged)
     }
 
     /// The JSON, as what it is.
@@ -135,7 +141,7 @@ impl RecordedMessage<'_> {
     /// [`RecordingError::Json`] if it is something else.
     pub fn read_json<T: DeserializeOwned>(&self) -> Result<T, RecordingError> {
         let strange = |reason| RecordingError::Json { topic: self.topic.to_owned(), number: self.number, reason };
-        serde_json::from_slice(self.bytes).map_err(strange)
+        serde_json::from_slice(&self.bytes).map_err(strange)
     }
 }
 
@@ -146,7 +152,7 @@ impl Bag {
     /// [`RecordingError`] if it cannot be read, is none, or is of another version.
     pub fn open(path: &Path) -> Result<Bag, RecordingError> {
         let file = |reason| RecordingError::File { path: path.to_owned(), reason };
-        Bag::of(std::fs::read(path).map_err(file)?)
+        Bag::of_source(Source::open(path).map_err(file)?)
     }
 
     /// Opens the recording that these bytes are.
@@ -154,22 +160,18 @@ impl Bag {
     /// # Errors
     /// [`RecordingError`] if they are none, or of another version.
     pub fn of(bytes: Vec<u8>) -> Result<Bag, RecordingError> {
+        Bag::of_source(Source::of(bytes))
+    }
+
+    fn of_source(source: Source) -> Result<Bag, RecordingError> {
         let mut found = Found::default();
-        let Extent { is_cut, damage } =
-            for_each_record(&bytes, |record, place| found.take(record, place)).map_err(RecordingError::Foreign)?;
+        let Extent { is_cut, damage } = for_each_record(&source, |record, place| found.take(record, place))?;
         let (kind, facts) = found.header()?;
         let began_utc_ns = facts.get(BEGAN).map_or("", String::as_str).parse();
         let began_utc_ns = began_utc_ns.map_err(|e| RecordingError::not_understood("beginning", e))?;
-        let indexed = |(message, place): (MessageHeader, Range<usize>)| IndexEntry {
-            channel: message.channel_id,
-            number: message.sequence,
-            at: SimTime(i64::try_from(message.log_time.saturating_sub(began_utc_ns)).unwrap_or(i64::MAX)),
-            utc_ns: message.publish_time,
-            place,
-        };
-        let index = found.messages.into_iter().map(indexed).collect();
         let result = found.metadata.remove(RESULT);
-        Ok(Bag { kind, facts, began_utc_ns, result, is_cut, damage, channels: found.channels, index, bytes })
+        let Found { channels, index, .. } = found;
+        Ok(Bag { source, kind, facts, began_utc_ns, result, is_cut, damage, channels, index })
     }
 
     /// What it is a recording of.
@@ -204,14 +206,14 @@ impl Bag {
 
     /// Which of its bytes are not what was written, as far as checksums tell: what stands there may be wrong or missing.
     #[must_use]
-    pub fn damage(&self) -> &[Range<usize>] {
+    pub fn damage(&self) -> &[Range<u64>] {
         &self.damage
     }
 
     /// Its size, bytes.
     #[must_use]
-    pub fn size(&self) -> usize {
-        self.bytes.len()
+    pub fn size(&self) -> u64 {
+        self.source.length()
     }
 
     /// All messages, in the order in which they were recorded.
@@ -236,25 +238,35 @@ impl Bag {
     /// If there are fewer.
     #[must_use]
     pub fn message(&self, place: usize) -> RecordedMessage<'_> {
-        let IndexEntry { channel, number, at, utc_ns, place } = &self.index[place];
-        let channel = self.channels.get(channel);
+        let IndexEntry { channel, number, log_ns, utc_ns, from, length } = self.index[place];
+        let channel = self.channels.get(&channel);
+        let bytes = self.source.read(from..from + u64::from(length)).unwrap_or_default();
         let is_json = channel.is_some_and(|channel| channel.is_json);
-        let place = if is_json { json_string::place_in(&self.bytes, place.clone()) } else { place.clone() };
         RecordedMessage {
             topic: channel.map_or("", |channel| &channel.topic),
             schema: channel.and_then(|channel| channel.schema.as_deref()),
-            number: *number,
-            at: *at,
-            utc_ns: *utc_ns,
-            bytes: &self.bytes[place],
+            number,
+            at: SimTime(i64::try_from(log_ns.saturating_sub(self.began_utc_ns)).unwrap_or(i64::MAX)),
+            utc_ns,
+            bytes: if is_json { json_string::text_of(bytes) } else { bytes },
         }
+    }
+
+    /// From the first message to the last by the clock, ns.
+    #[must_use]
+    pub fn span_utc_ns(&self) -> u64 {
+        let times = || self.index.iter().map(|entry| entry.utc_ns);
+        times().max().unwrap_or(0).saturating_sub(times().min().unwrap_or(0))
     }
 
     /// The topics that there are messages on, with their numbers of messages, by name.
     #[must_use]
     pub fn topics(&self) -> BTreeMap<&str, usize> {
         let mut topics = BTreeMap::new();
-        self.messages().for_each(|message| *topics.entry(message.topic).or_insert(0) += 1);
+        for entry in &self.index {
+            let topic = self.channels.get(&entry.channel).map_or("", |channel| channel.topic.as_str());
+            *topics.entry(topic).or_insert(0) += 1;
+        }
         topics
     }
 }
@@ -264,12 +276,13 @@ impl Bag {
 struct Found {
     schemas: BTreeMap<u16, (String, String)>,
     channels: BTreeMap<u16, Channel>,
-    messages: Vec<(MessageHeader, Range<usize>)>,
+    index: Vec<IndexEntry>,
     metadata: BTreeMap<String, Facts>,
 }
 
 impl Found {
-    fn take(&mut self, record: Record<'_>, place: Range<usize>) -> Result<(), String> {
+    /// Takes a record, of a message with the place of its bytes.
+    fn take(&mut self, record: Record<'_>, place: Range<u64>) {
         match record {
             Record::Schema { header, .. } => {
                 self.schemas.insert(header.id, (header.name, header.encoding));
@@ -281,14 +294,18 @@ impl Found {
                 let schema = schema.filter(|_| !is_json);
                 self.channels.insert(channel.id, Channel { topic: channel.topic, schema, is_json });
             }
-            Record::Message { header, data } => {
-                let data = place.end - data.len()..place.end;
-                self.messages.push((header, data));
-            }
+            Record::Message { header, .. } => self.index.push(IndexEntry {
+                channel: header.channel_id,
+                number: header.sequence,
+                log_ns: header.log_time,
+                utc_ns: header.publish_time,
+                from: place.start,
+                // A record is read only if it is shorter.
+                length: u32::try_from(place.end - place.start).unwrap_or(u32::MAX),
+            }),
             Record::Metadata(metadata) => drop(self.metadata.insert(metadata.name, metadata.metadata)),
             _ => {}
         }
-        Ok(())
     }
 
     /// The header, once it is known that this program can believe it.

@@ -30,6 +30,7 @@ mod game_recording;
 mod json_string;
 mod recorder;
 mod records;
+mod source;
 pub mod utc;
 mod writer;
 

@@ -81,8 +81,10 @@ impl Recorder {
     /// # Panics
     /// Never: a new file is used once.
     pub fn begin(mut file: NewFile, opening: &Opening) -> Result<Recorder, RecordError> {
-        let open = file.file.take().expect("a new file is used once");
-        Recorder::over(BufWriter::with_capacity(1 << 16, open), file.path.clone(), opening, WAITING_BYTES)
+        let open = file.file.as_ref().expect("a new file is there until it is used").try_clone()?;
+        let begun = Recorder::over(BufWriter::with_capacity(1 << 16, open), file.path.clone(), opening, WAITING_BYTES)?;
+        file.file = None;
+        Ok(begun)
     }
 
     fn over<W: Write + Seek + Send + 'static>(
@@ -207,7 +209,7 @@ mod tests {
     use crate::{Bag, Decision, FRAME, INPUTS, Kind};
     use game::SimTime;
     use game::message::{Frame, Message, Stamp};
-    use std::io::{Cursor, SeekFrom};
+    use std::io::{Cursor, ErrorKind, SeekFrom};
     use std::sync::Mutex;
 
     /// A disk that takes nothing while somebody else has it.
@@ -229,11 +231,43 @@ mod tests {
         }
     }
 
+    /// A disk with room for so many bytes.
+    struct Full(Cursor<Vec<u8>>, usize);
+
+    impl Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            let room = self.1.saturating_sub(self.0.get_ref().len());
+            if room == 0 { Err(ErrorKind::StorageFull.into()) } else { self.0.write(&bytes[..bytes.len().min(room)]) }
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+
+    impl Seek for Full {
+        fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+            self.0.seek(to)
+        }
+    }
+
+    fn opening() -> Opening {
+        Opening { kind: Kind::Game, began_utc_ns: 0, facts: Facts::new(), more: vec![], teams: vec![] }
+    }
+
+    #[test]
+    fn a_full_disk_is_told_and_everything_after_it_counted() {
+        let full = |room| Recorder::over(Full(Cursor::default(), room), PathBuf::new(), &opening(), WAITING_BYTES);
+        assert!(full(100).is_err_and(|e| e.to_string().contains("no storage space")), "not even the beginning fits");
+        let recorder = full(20_000).expect("it begins");
+        (0..2000).for_each(|_| recorder.record(Entry::Decision(Box::default())));
+        let state = recorder.end(Facts::new());
+        assert!(state.failed.is_some_and(|reason| reason.contains("no storage space")), "{:?}", state.dropped);
+    }
+
     #[test]
     fn a_disk_that_does_not_keep_up_costs_the_newest_and_the_game_does_not_wait() {
         let disk = Disk::default();
-        let opening = Opening { kind: Kind::Game, began_utc_ns: 0, facts: Facts::new(), more: vec![], teams: vec![] };
-        let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening, 100_000).expect("it begins");
+        let recorder = Recorder::over(disk.clone(), PathBuf::new(), &opening(), 100_000).expect("it begins");
         let stuck = disk.0.lock().expect("nobody panics");
         let mut recorded = 0;
         while recorder.state().dropped < 3 {

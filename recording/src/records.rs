@@ -3,14 +3,20 @@
 //! The library's own readers hold a chunk to be one piece: of one that was cut nothing would be left. Our chunks are not
 //! compressed, so the records in it can be read as far as they go.
 
+use crate::RecordingError;
+use crate::source::Source;
 use mcap::records::{Record, op};
 use std::fmt::Display;
 use std::ops::Range;
 
 /// Opcode and length before every record.
-const PREFIX: usize = 9;
+const PREFIX: u64 = 9;
 /// In a chunk, before its checksum: times of the first and the last message, and size.
-const CHUNK_CRC_AT: usize = 3 * 8;
+const CHUNK_CRC_AT: u64 = 3 * 8;
+/// What stands before the bytes of a message: channel, number, and two times.
+const MESSAGE_HEADER: u64 = 2 + 4 + 8 + 8;
+/// The longest record that is read: more than a message on the network may have, and than any scenario.
+const RECORD_MAX: u64 = 64 << 20;
 
 /// How far a file goes, and what of it can be relied on.
 #[derive(Debug)]
@@ -18,41 +24,43 @@ pub(crate) struct Extent {
     /// Whether the rest of the file is missing.
     pub(crate) is_cut: bool,
     /// The bytes that are not what was written, by the checksum of their chunk; if no chunk is to blame, all of them.
-    pub(crate) damage: Vec<Range<usize>>,
+    pub(crate) damage: Vec<Range<u64>>,
 }
 
-/// Calls `take` with every schema, channel, message and metadata, and the place of its body in `bytes`, those in chunks
-/// included. Of a damaged chunk the records are given up to the first that makes no sense.
+/// Calls `take` with every schema, channel, message and metadata, those in chunks included. Of a message it gets the header
+/// alone, and the place of its bytes. Of a damaged chunk the records are given up to the first that makes no sense.
 pub(crate) fn for_each_record(
-    bytes: &[u8],
-    mut take: impl FnMut(Record<'_>, Range<usize>) -> Result<(), String>,
-) -> Result<Extent, String> {
-    if bytes.len() < mcap::MAGIC.len() || !bytes.starts_with(mcap::MAGIC) {
-        return Err("it does not begin as MCAP files do".to_owned());
+    source: &Source,
+    mut take: impl FnMut(Record<'_>, Range<u64>),
+) -> Result<Extent, RecordingError> {
+    const MAGIC: usize = mcap::MAGIC.len();
+    if source.array::<MAGIC>(0)?.is_none_or(|magic| magic != *mcap::MAGIC) {
+        return Err(RecordingError::Foreign("it does not begin as MCAP files do".to_owned()));
     }
-    let mut place = mcap::MAGIC.len();
+    let end = source.length();
+    let mut place = MAGIC as u64;
     let mut is_cut = true;
     let mut damage = Vec::new();
-    while let Some((opcode, body)) = record_at(bytes, place, bytes.len()) {
+    while let Some((opcode, body)) = record_at(source, place, end)? {
         if opcode == op::CHUNK {
-            let inner = chunk_records(bytes, &body)?;
-            let is_whole = body.end <= bytes.len();
-            let is_damaged = is_whole && !agrees(bytes, body.start + CHUNK_CRC_AT, inner.clone());
+            let inner = chunk_records(source, &body)?;
+            let is_whole = body.end <= end;
+            let is_damaged = is_whole && !agrees(source, body.start + CHUNK_CRC_AT, inner.clone())?;
             if is_damaged {
                 damage.push(inner.clone());
             }
-            match records_in(bytes, inner, &mut take) {
-                Err(_) if is_damaged => {}
+            match records_in(source, inner, &mut take) {
+                Err(RecordingError::Foreign(_)) if is_damaged => {}
                 other => other?,
             }
-        } else if body.end <= bytes.len() {
+        } else if body.end <= end {
             if opcode == op::DATA_END {
                 is_cut = false;
-                if damage.is_empty() && !agrees(bytes, body.start, 0..place) {
+                if damage.is_empty() && !agrees(source, body.start, 0..place)? {
                     damage.push(0..place);
                 }
             }
-            give(bytes, opcode, body.clone(), &mut take)?;
+            give(source, opcode, body.clone(), &mut take)?;
         }
         place = body.end;
         if !is_cut {
@@ -63,41 +71,41 @@ pub(crate) fn for_each_record(
 }
 
 /// Whether the checksum (CRC-32) that stands there is that of the bytes in `place`; 0 says that there is none.
-fn agrees(bytes: &[u8], checksum_at: usize, place: Range<usize>) -> bool {
-    let written =
-        bytes.get(checksum_at..).and_then(|rest| rest.first_chunk()).map_or(0, |crc| u32::from_le_bytes(*crc));
-    written == 0 || written == crc32fast::hash(&bytes[place])
+fn agrees(source: &Source, checksum_at: u64, place: Range<u64>) -> Result<bool, RecordingError> {
+    let written = source.array(checksum_at)?.map_or(0, u32::from_le_bytes);
+    Ok(written == 0 || written == source.checksum(place)?)
 }
 
 /// Opcode and body of the record there; the body may reach beyond what is there.
-fn record_at(bytes: &[u8], place: usize, end: usize) -> Option<(u8, Range<usize>)> {
-    let prefix = bytes.get(place..place.checked_add(PREFIX)?).filter(|_| place + PREFIX <= end)?;
-    let length = usize::try_from(u64::from_le_bytes(prefix[1..].try_into().ok()?)).ok()?;
-    let from = place + PREFIX;
-    Some((prefix[0], from..from.checked_add(length)?))
+fn record_at(source: &Source, place: u64, end: u64) -> Result<Option<(u8, Range<u64>)>, RecordingError> {
+    let Some(from) = place.checked_add(PREFIX).filter(|from| *from <= end) else { return Ok(None) };
+    let (opcode, length) = (source.array::<1>(place)?, source.array(place + 1)?.map(u64::from_le_bytes));
+    let body = length.and_then(|length| from.checked_add(length)).map(|end| from..end);
+    Ok(opcode.map(|[opcode]| opcode).zip(body))
 }
 
 fn records_in(
-    bytes: &[u8],
-    inner: Range<usize>,
-    take: &mut impl FnMut(Record<'_>, Range<usize>) -> Result<(), String>,
-) -> Result<(), String> {
+    source: &Source,
+    inner: Range<u64>,
+    take: &mut impl FnMut(Record<'_>, Range<u64>),
+) -> Result<(), RecordingError> {
     let mut place = inner.start;
-    while let Some((opcode, body)) = record_at(bytes, place, inner.end).filter(|(_, body)| body.end <= inner.end) {
+    while let Some((opcode, body)) = record_at(source, place, inner.end)?.filter(|(_, body)| body.end <= inner.end) {
         place = body.end;
-        give(bytes, opcode, body, take)?;
+        give(source, opcode, body, take)?;
     }
     Ok(())
 }
 
 fn give(
-    bytes: &[u8],
+    source: &Source,
     opcode: u8,
-    body: Range<usize>,
-    take: &mut impl FnMut(Record<'_>, Range<usize>) -> Result<(), String>,
-) -> Result<(), String> {
-    let damaged = |reason: &dyn Display| format!("the record at byte {} is damaged: {reason}", body.start);
-    let content = &bytes[body.clone()];
+    body: Range<u64>,
+    take: &mut impl FnMut(Record<'_>, Range<u64>),
+) -> Result<(), RecordingError> {
+    let damaged = |reason: &dyn Display| {
+        RecordingError::Foreign(format!("the record at byte {} is damaged: {reason}", body.start))
+    };
     // What texts are in it, after how many bytes, and whether a list of texts follows. Other kinds are of no interest.
     let (fixed, texts, has_list) = match opcode {
         op::SCHEMA => (2, 3, false),
@@ -106,12 +114,19 @@ fn give(
         op::METADATA => (0, 1, true),
         _ => return Ok(()),
     };
+    let length = body.end - body.start;
+    if length > RECORD_MAX {
+        return Err(damaged(&format_args!("it is {length} bytes long, expected at most {RECORD_MAX}")));
+    }
+    let bytes_from = if opcode == op::MESSAGE { body.end.min(body.start + MESSAGE_HEADER) } else { body.end };
+    let content = source.read(body.start..bytes_from)?;
     // The library makes room for as much as a length says before it looks whether that is there.
-    if texts_of(content, fixed, texts, has_list).is_none() {
+    if texts_of(&content, fixed, texts, has_list).is_none() {
         return Err(damaged(&"a text in it is longer than the record"));
     }
-    let record = mcap::parse_record(opcode, content).map_err(|e| damaged(&e))?;
-    take(record, body)
+    let record = mcap::parse_record(opcode, &content).map_err(|e| damaged(&e))?;
+    take(record, bytes_from..body.end);
+    Ok(())
 }
 
 /// Whether so many texts are in there, as long as they say; nothing if not.
@@ -134,20 +149,21 @@ fn text(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
 }
 
 /// The place of the records in a chunk, as far as they are there.
-fn chunk_records(bytes: &[u8], body: &Range<usize>) -> Result<Range<usize>, String> {
+fn chunk_records(source: &Source, body: &Range<u64>) -> Result<Range<u64>, RecordingError> {
     // The checksum is of what follows the name of the compression.
-    const NUMBERS: usize = CHUNK_CRC_AT + 4;
-    let nothing = Ok(bytes.len()..bytes.len());
-    let number = |from: usize, size: usize| bytes.get(from..from + size);
-    let Some(name_length) = number(body.start + NUMBERS, 4) else { return nothing };
-    let name_length = u32::from_le_bytes(name_length.try_into().map_err(|_| "unreachable")?) as usize;
+    const NUMBERS: u64 = CHUNK_CRC_AT + 4;
+    /// What of a name is told.
+    const NAME_MAX: u64 = 40;
+    let end = source.length();
+    let name_length = source.array(body.start + NUMBERS)?.map(|length| u64::from(u32::from_le_bytes(length)));
     let name_at = body.start + NUMBERS + 4;
-    let Some(name) = number(name_at, name_length) else { return nothing };
-    if !name.is_empty() {
-        let name = String::from_utf8_lossy(name);
-        return Err(format!("it is compressed ({name}); recordings of Squall are not"));
+    let Some(name_length) = name_length.filter(|length| name_at + length <= end) else { return Ok(end..end) };
+    if name_length > 0 {
+        let name = source.read(name_at..name_at + name_length.min(NAME_MAX))?;
+        let name = String::from_utf8_lossy(&name);
+        return Err(RecordingError::Foreign(format!("it is compressed ({name}); recordings of Squall are not")));
     }
     let from = name_at + name_length + 8;
-    let end = body.end.min(bytes.len());
+    let end = body.end.min(end);
     Ok(from.min(end)..end)
 }

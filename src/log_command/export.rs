@@ -1,18 +1,19 @@
 //! A recording, or a topic of it, as files for other programs.
 
 use crate::output_file;
-use analysis::{GameSeries, alog, table};
+use analysis::{Damaged, GameSeries, alog, table};
 use anyhow::{Context, Result};
-use game::Scenario;
+use game::{Scenario, printable};
 use recording::{Bag, Recording};
-use std::io::{BufWriter, ErrorKind, Write};
+use std::borrow::Cow;
+use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
 /// A recording, and the scenario of its game.
 type Source<'a> = (&'a Bag, Option<&'a Scenario>);
 
 /// Writes a topic as CSV, into a file or to whoever reads.
-pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Result<()> {
+pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Result<Damaged> {
     // An unknown topic leaves no empty file behind.
     table::check(source.0, topic)?;
     let trying = |path: &Path| format!("cannot write {}", path.display());
@@ -20,21 +21,33 @@ pub(super) fn csv(source: Source<'_>, topic: &str, file: Option<&Path>) -> Resul
         Some(path) => Box::new(std::fs::File::create(path).with_context(|| trying(path))?),
         None => Box::new(std::io::stdout().lock()),
     };
-    match (rows(source, topic, &mut csv::Writer::from_writer(BufWriter::new(sink))), file) {
+    let is_shown = file.is_none() && std::io::stdout().is_terminal();
+    match (rows(source, topic, is_shown, &mut csv::Writer::from_writer(BufWriter::new(sink))), file) {
         // Who has read enough goes away: that is nothing to complain about.
-        (Err(table::TableError::Sink(e)), None) if e.kind() == ErrorKind::BrokenPipe => Ok(()),
+        (Err(table::TableError::Sink(e)), None) if e.kind() == ErrorKind::BrokenPipe => Ok(Damaged::default()),
         (Err(table::TableError::Sink(e)), Some(path)) => Err(e).with_context(|| trying(path)),
         (done, _) => Ok(done?),
     }
 }
 
-fn rows<W: Write>(source: Source<'_>, topic: &str, csv: &mut csv::Writer<W>) -> Result<(), table::TableError> {
+/// Writes the rows; those that a person sees are spelt so that they do not steer the terminal.
+fn rows<W: Write>(
+    source: Source<'_>,
+    topic: &str,
+    is_shown: bool,
+    csv: &mut csv::Writer<W>,
+) -> Result<Damaged, table::TableError> {
     let io = |e: csv::Error| match e.into_kind() {
         csv::ErrorKind::Io(e) => e,
         other => std::io::Error::other(format!("{other:?}")),
     };
-    table::write(source.0, source.1, topic, &mut |cells| csv.write_record(cells).map_err(io))?;
-    Ok(csv.flush()?)
+    let damaged = table::write(source.0, source.1, topic, &mut |cells| {
+        let cells =
+            cells.iter().map(|cell| if is_shown { printable::text(cell) } else { Cow::Borrowed(cell.as_str()) });
+        csv.write_record(cells.map(Cow::into_owned)).map_err(io)
+    })?;
+    csv.flush()?;
+    Ok(damaged)
 }
 
 /// Writes MOOS logs: into a folder those of the shoreside and of all boats, into a file that of the shoreside. Says how

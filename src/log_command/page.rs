@@ -1,8 +1,8 @@
 //! The summary of a recorded game as text.
 
 use crate::screen::line;
-use analysis::{BoatStatistics, Gateway, Summary, Topic, Traffic};
-use recording::{Bag, RecordingError, utc};
+use analysis::{BoatStatistics, Damaged, Gateway, Summary, Topic, Traffic};
+use recording::{Bag, utc};
 use std::collections::BTreeMap;
 
 /// The whole page.
@@ -19,8 +19,9 @@ pub(super) fn text(summary: &Summary) -> String {
 }
 
 /// The page of a gateway's own recording.
-pub(super) fn gateway(bag: &Bag) -> Result<String, RecordingError> {
+pub(super) fn gateway(bag: &Bag) -> String {
     let [boat, version, commit] = ["vehicle", "version", "commit"].map(|key| bag.fact(key));
+    let gateway = analysis::gateway_of(bag, boat);
     let mut text = format!("the gateway of {boat}\n");
     line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(bag.began_utc_ns())));
     let duration_s = bag.messages().map(|message| message.at).max().unwrap_or_default().as_s();
@@ -28,10 +29,17 @@ pub(super) fn gateway(bag: &Bag) -> Result<String, RecordingError> {
     if bag.is_cut() {
         line(&mut text, format_args!("the file ends before the gateway did: what follows holds up to there"));
     }
-    text += &gateway_text(&analysis::gateway_of(bag, boat)?);
+    damaged(&mut text, &gateway.damaged);
+    text += &gateway_text(&gateway);
     text += &topics(&analysis::topics(bag));
     line(&mut text, format_args!("\nsquall gateway replay plays it through the codec and the supervisor again"));
-    Ok(text)
+    text
+}
+
+fn damaged(text: &mut String, damaged: &Damaged) {
+    if let Some(remark) = damaged.remark() {
+        line(text, format_args!("{remark}"));
+    }
 }
 
 /// What happened, one a line.
@@ -51,6 +59,7 @@ fn head(summary: &Summary) -> String {
     if let Some(dropped) = summary.dropped.filter(|dropped| *dropped > 0) {
         line(&mut text, format_args!("{dropped} messages are missing: the disk was too slow"));
     }
+    damaged(&mut text, &summary.damaged);
     let score: Vec<String> = summary.score.iter().map(|(team, points)| format!("{team} {points}")).collect();
     let end = match (&summary.winner, summary.is_cut) {
         (Some(team), _) => format!("{team} wins"),

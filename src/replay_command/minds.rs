@@ -15,8 +15,8 @@ use std::sync::Arc;
 pub(super) struct Minds {
     recording: Arc<Recording>,
     teams: Vec<Team>,
-    /// The orders of each decision, as recorded, by vehicle.
-    orders: BTreeMap<u64, Vec<(VehicleId, Order)>>,
+    /// The places of the inputs that came of each decision.
+    inputs: BTreeMap<u64, usize>,
     /// What was proposed for each vehicle, and when it came.
     proposals: BTreeMap<VehicleId, Vec<(SimTime, PolicyProposal)>>,
 }
@@ -32,23 +32,26 @@ impl Minds {
     pub(super) fn new(recording: Arc<Recording>) -> Minds {
         let scenario = recording.scenario();
         let teams = (0..scenario.teams.len()).map(|team| Team::new(&recording, TeamId(team as u8))).collect();
-        let mut orders = BTreeMap::new();
         // Inputs stand with the frame that came of them, one decision later.
-        let inputs = recording.bag().on(INPUTS).filter_map(|message| message.read::<Inputs>().ok());
-        for Inputs { stamp, inputs } in inputs {
-            let ordered = inputs.iter().filter_map(|record| match record.input() {
-                Some(Input::Ordered { vehicle, order, .. }) => Some((vehicle, order)),
-                _ => None,
-            });
-            orders.insert(stamp.seq.saturating_sub(1), ordered.collect());
-        }
+        let decision =
+            |place| Some((recording.bag().message(place).read::<Inputs>().ok()?.stamp.seq.saturating_sub(1), place));
+        let inputs = recording.bag().places(INPUTS).filter_map(decision).collect();
         let proposals = (0..scenario.vehicles.len()).map(VehicleId::at).filter_map(|vehicle| {
             let topic = format!("policy/{}", scenario.vehicles[vehicle.index()].name);
             let messages = recording.bag().on(&topic);
             let proposals: Vec<_> = messages.filter_map(|message| Some((message.at, message.read().ok()?))).collect();
             (!proposals.is_empty()).then_some((vehicle, proposals))
         });
-        Minds { teams, orders, proposals: proposals.collect(), recording: Arc::clone(&recording) }
+        Minds { teams, inputs, proposals: proposals.collect(), recording: Arc::clone(&recording) }
+    }
+
+    /// The order for the vehicle at this decision, as recorded.
+    fn recorded(&self, vehicle: VehicleId, decision: u64) -> Option<Order> {
+        let inputs: Inputs = self.recording.bag().message(*self.inputs.get(&decision)?).read().ok()?;
+        inputs.inputs.iter().rev().find_map(|record| match record.input() {
+            Some(Input::Ordered { vehicle: of, order, .. }) if of == vehicle => Some(order),
+            _ => None,
+        })
     }
 
     /// What the vehicle's mind orders when it decides again, if it can.
@@ -101,12 +104,11 @@ impl Helms for Minds {
         };
         let index = self.recording.scenario().team_of(vehicle).index();
         let mind = self.teams[index].runner.mind(vehicle);
-        let recorded = self.orders.get(&decision).and_then(|orders| orders.iter().rev().find(|(v, _)| *v == vehicle));
         HelmAnswer {
             report: mind.and_then(Mind::report),
             reason: None,
             computed: true,
-            agrees: recorded.map(|(_, recorded)| *recorded == order),
+            agrees: self.recorded(vehicle, decision).map(|recorded| recorded == order),
         }
     }
 }

@@ -17,6 +17,7 @@
 mod cells;
 mod message;
 
+use crate::damaged::Damaged;
 use cells::Cells;
 use game::external::LinkBytes;
 use game::message::{Frame, Message};
@@ -52,9 +53,6 @@ pub enum TableError {
         /// What they are.
         schema: String,
     },
-    /// The recording is damaged.
-    #[error(transparent)]
-    Recording(#[from] RecordingError),
     /// The rows are not taken.
     #[error(transparent)]
     Sink(#[from] std::io::Error),
@@ -84,11 +82,12 @@ pub fn check(bag: &Bag, topic: &str) -> Result<(), TableError> {
     }
 }
 
-/// Gives the table of a topic, row by row. `scenario` is that of the game, where it is a game's recording.
+/// Gives the table of a topic, row by row, and says what was left out. `scenario` is that of the game, where it is a game's
+/// recording.
 ///
 /// # Errors
 /// [`TableError`] if there is no such topic, it is damaged, or the rows are not taken.
-pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sink<'_>) -> Result<(), TableError> {
+pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     check(bag, topic)?;
     let schema = bag.on(topic).next().and_then(|message| message.schema);
     match (topic, schema, scenario) {
@@ -98,38 +97,42 @@ pub fn write(bag: &Bag, scenario: Option<&Scenario>, topic: &str, sink: &mut Sin
         (_, Some(schema), Some(scenario)) if let Some(columns) = message::columns(schema, scenario) => {
             let columns: Vec<String> = std::iter::once("t_s".to_owned()).chain(columns).collect();
             sink(&columns)?;
+            let mut damaged = Damaged::default();
             for message in bag.on(topic) {
-                for cells in message::rows(&message, scenario)? {
+                for cells in damaged.sound(message::rows(&message, scenario)).unwrap_or_default() {
                     sink(&cells::in_order(cells, message.at, &columns))?;
                 }
             }
-            Ok(())
+            Ok(damaged)
         }
         (_, Some(schema), _) => Err(TableError::Strange { topic: topic.to_owned(), schema: schema.to_owned() }),
     }
 }
 
 /// JSON laid flat: a column for every path that occurs in any message of the topic.
-fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<(), TableError> {
+fn json(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     let cells_of = |message: &RecordedMessage<'_>| -> Result<Cells, RecordingError> {
         let leaves = cells::flat(&message.read_json::<Value>()?);
         Ok(leaves.into_iter().map(|(path, leaf)| (path, cells::text(&leaf))).collect())
     };
     // Which columns there are is known only when all is read; the messages are few.
     let mut paths = BTreeSet::new();
+    let mut damaged = Damaged::default();
     for message in bag.on(topic) {
-        paths.extend(cells_of(&message)?.into_keys());
+        paths.extend(damaged.sound(cells_of(&message)).unwrap_or_default().into_keys());
     }
     let columns: Vec<String> = std::iter::once("t_s".to_owned()).chain(paths).collect();
     sink(&columns)?;
     for message in bag.on(topic) {
-        sink(&cells::in_order(cells_of(&message)?, message.at, &columns))?;
+        if let Ok(cells) = cells_of(&message) {
+            sink(&cells::in_order(cells, message.at, &columns))?;
+        }
     }
-    Ok(())
+    Ok(damaged)
 }
 
 /// A row for each line on a link.
-fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<(), TableError> {
+fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     sink(&["t_s", "direction", "text"].map(str::to_owned))?;
     let mut lines = crate::link_line::Lines::default();
     let mut last = SimTime::ZERO;
@@ -137,17 +140,22 @@ fn link(bag: &Bag, topic: &str, sink: &mut Sink<'_>) -> Result<(), TableError> {
         let direction = if line.outward { "to_boat" } else { "from_boat" };
         sink(&[cells::time(at), direction.to_owned(), line.text])
     };
+    let mut damaged = Damaged::default();
     for message in bag.on(topic) {
         last = message.at;
-        lines.take(&message.read::<LinkBytes>()?).into_iter().try_for_each(|line| put(last, line))?;
+        let Some(bytes) = damaged.sound(message.read::<LinkBytes>()) else { continue };
+        lines.take(&bytes).into_iter().try_for_each(|line| put(last, line))?;
     }
-    Ok(lines.rest().into_iter().try_for_each(|line| put(last, line))?)
+    lines.rest().into_iter().try_for_each(|line| put(last, line))?;
+    Ok(damaged)
 }
 
-fn events(bag: &Bag, scenario: &Scenario, sink: &mut Sink<'_>) -> Result<(), TableError> {
+fn events(bag: &Bag, scenario: &Scenario, sink: &mut Sink<'_>) -> Result<Damaged, TableError> {
     sink(&["t_s", "tick", "event", "vehicle", "other", "team", "sentence"].map(str::to_owned))?;
+    let mut damaged = Damaged::default();
     for message in bag.on(FRAME) {
-        for logged in message.read::<Frame>()?.logged(scenario) {
+        let Some(frame) = damaged.sound(message.read::<Frame>()) else { continue };
+        for logged in frame.logged(scenario) {
             let event = EventOutcome::new(scenario, &logged);
             let sentence = event.sentence();
             let EventOutcome { tick, at_s, event, vehicle, other, team } = event;
@@ -155,5 +163,5 @@ fn events(bag: &Bag, scenario: &Scenario, sink: &mut Sink<'_>) -> Result<(), Tab
             sink(&[cells::time(SimTime::from_s(at_s)), tick.to_string(), event, vehicle, other, team, sentence])?;
         }
     }
-    Ok(())
+    Ok(damaged)
 }

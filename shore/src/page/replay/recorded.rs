@@ -72,7 +72,7 @@ impl Recorded {
     }
 
     fn status_at(&self, place: usize) -> Option<GatewayStatus> {
-        serde_json::from_slice(self.recording.bag().message(place).bytes).ok()
+        serde_json::from_slice(&self.recording.bag().message(place).bytes).ok()
     }
     /// What the recording says of its game.
     pub(super) fn header(&self) -> &Header {
@@ -96,7 +96,7 @@ impl Recorded {
     }
 
     /// A frame, as CDR.
-    pub(super) fn frame_bytes(&self, frame: usize) -> &[u8] {
+    pub(super) fn frame_bytes(&self, frame: usize) -> Vec<u8> {
         self.recording.frame(frame).bytes
     }
 

@@ -156,8 +156,8 @@ impl PageViewer {
 
     /// The decision that a frame is of.
     fn decision(&self, frame: usize) -> Option<u64> {
-        let bytes = self.shared.source.frame_bytes(frame).get(DECISION)?;
-        Some(u64::from_le_bytes(bytes.try_into().ok()?))
+        let bytes = self.shared.source.frame_bytes(frame);
+        Some(u64::from_le_bytes(bytes.get(DECISION)?.try_into().ok()?))
     }
 
     /// Whether something else is shown than what was requested for last.
@@ -207,10 +207,10 @@ impl PageViewer {
             return None;
         }
         if let Some(past) = self.past.pop_front() {
-            return Some(Outgoing::past(self.shared.source.frame_bytes(past)));
+            return Some(Outgoing::past(&self.shared.source.frame_bytes(past)));
         }
         self.shown = Some(frame);
-        Some(Outgoing::now(self.shared.source.frame_bytes(frame)))
+        Some(Outgoing::now(&self.shared.source.frame_bytes(frame)))
     }
 }
 
