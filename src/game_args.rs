@@ -76,6 +76,11 @@ impl GameArgs {
         Ok(command)
     }
 
+    /// Whether the result can be written where it is asked for.
+    pub(crate) fn check_result_file(&self) -> Result<()> {
+        self.json.as_ref().map_or(Ok(()), |path| output_file::check(path, "the result"))
+    }
+
     /// Writes the result of the game to a file, if it is asked for.
     pub(crate) fn write_result(&self, report: &Report) -> Result<()> {
         let Some(path) = &self.json else { return Ok(()) };

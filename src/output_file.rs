@@ -2,11 +2,27 @@
 
 use anyhow::{Context, Result};
 use serde::Serialize;
+use std::fs::OpenOptions;
 use std::path::Path;
 
 /// Writes a file; `what` stands in the error.
 pub(crate) fn write(path: &Path, what: &str, bytes: impl AsRef<[u8]>) -> Result<()> {
     std::fs::write(path, bytes).with_context(|| format!("cannot write {what} to {}", path.display()))
+}
+
+/// Whether a file can be written, to be asked before hours of games; it is as before then.
+pub(crate) fn check(path: &Path, what: &str) -> Result<()> {
+    let is_new = match std::fs::metadata(path) {
+        // A pipe would be waited for.
+        Ok(metadata) if !metadata.is_file() && !metadata.is_dir() => return Ok(()),
+        found => found.is_err(),
+    };
+    let file = OpenOptions::new().append(true).create(true).open(path);
+    file.with_context(|| format!("cannot write {what} to {}", path.display()))?;
+    if is_new {
+        std::fs::remove_file(path).with_context(|| format!("cannot remove {}", path.display()))?;
+    }
+    Ok(())
 }
 
 /// Writes a value as JSON that people can read.

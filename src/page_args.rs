@@ -26,14 +26,19 @@ pub(crate) struct PageArgs {
 }
 
 impl PageArgs {
+    /// Whether the page can be served, to be asked before a game begins.
+    pub(crate) fn check(&self) -> Result<()> {
+        let any = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+        Ok(Page::check(&self.settings(self.listen.unwrap_or(any), &Arc::default()))?)
+    }
+
+    fn settings(&self, listen: SocketAddr, stop: &Arc<AtomicBool>) -> PageSettings {
+        PageSettings { listen, token: self.token.clone(), hosts: self.host.clone(), stop: Arc::clone(stop) }
+    }
+
     /// Serves a page that shows nothing yet.
     pub(crate) fn open(&self, stop: &Arc<AtomicBool>) -> Result<Page> {
-        let at = |listen| PageSettings {
-            listen,
-            token: self.token.clone(),
-            hosts: self.host.clone(),
-            stop: Arc::clone(stop),
-        };
+        let at = |listen| self.settings(listen, stop);
         let usual = SocketAddr::from((Ipv4Addr::LOCALHOST, PORT));
         let page = match (self.listen, Page::open(at(self.listen.unwrap_or(usual)))) {
             // Another page is there already.

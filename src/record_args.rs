@@ -27,7 +27,10 @@ impl RecordArgs {
         output_file::make_folder(&self.record).context("nowhere to record")?;
         let stem = format!("{}_{}_{seed}", utc::file_stamp(utc::now_ns()), scenario.name);
         let names = std::iter::once(format!("{stem}.mcap")).chain((2..).map(|n| format!("{stem}_{n}.mcap")));
-        Ok(names.map(|name| self.record.join(name)).find(|path| !path.exists()))
+        let file = names.map(|name| self.record.join(name)).find(|path| !path.exists());
+        // Made by whoever records, and not before; whether it can be is told before the game.
+        file.as_deref().map_or(Ok(()), |path| output_file::check(path, "the recording"))?;
+        Ok(file)
     }
 }
 
@@ -35,6 +38,7 @@ impl RecordArgs {
 pub(crate) fn problem(state: &RecordingState) -> Option<String> {
     let file = &state.file;
     match &state.failed {
+        Some(reason) if state.bytes == 0 => Some(format!("nothing is recorded in {file}: {reason}")),
         Some(reason) => Some(format!("the recording {file} is not complete: {reason}")),
         None if state.dropped > 0 => {
             Some(format!("the recording {file} lacks {} messages: the disk was too slow", state.dropped))

@@ -54,6 +54,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if args.page.is_given() && !args.view {
         bail!("--listen, --token and --host say how the page is served: they need --view");
     }
+    args.play.check_result_file()?;
+    if args.view {
+        args.page.check()?;
+    }
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
     let file = args.record.file(&scenario, args.play.seed(&scenario))?;
@@ -64,11 +68,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let file = file.filter(|file| file.exists());
     if let Some(file) = &file {
-        screen.line(&format!("recorded; look at it with: squall replay {}", file.display()));
+        let is_whole = report.as_ref().is_some_and(|report| report.run.recording_problem.is_none());
+        let recorded = if is_whole { "recorded" } else { "recorded in part" };
+        screen.line(&format!("{recorded}; look at it with: squall replay {}", file.display()));
     }
     let Some(report) = report else { return Ok(stop::interrupted()) };
-    args.play.write_result(&report)?;
+    let unwritten = args.play.write_result(&report).err().map(|error| format!("{error:#}"));
+    let problems: Vec<String> = unwritten.into_iter().chain(report.run.recording_problem.clone()).collect();
     if let Some(mut page) = page {
+        problems.iter().for_each(|problem| screen::remark(problem));
         screen.line("the game is over; the page stays until Ctrl-C");
         // The sim has ended, so that the recording is whole.
         if let (Some(file), false) = (&file, stop::is_set_soon(&stop))
@@ -78,6 +86,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         while page.ended().is_none() && !stop::is_set_soon(&stop) {}
         page.stop();
+    }
+    if !problems.is_empty() {
+        bail!(problems.join("; "));
     }
     Ok(if report.run.cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
 }
@@ -122,10 +133,8 @@ fn play_here(
         cut_short: stop.load(Ordering::Relaxed),
         ..Run::default()
     };
-    let report = Report { outcome, run };
-    if let Some(problem) = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report))) {
-        screen::remark(&problem);
-    }
+    let mut report = Report { outcome, run };
+    report.run.recording_problem = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report)));
     reporter.rest(&report.outcome, &mut |message| screen.show(&message));
     screen.show(&ProgressMessage::Done(Box::new(report.clone())));
     Ok(report)
@@ -143,14 +152,14 @@ fn play_across_processes(
     let endpoint = format!("tcp/127.0.0.1:{port}");
     let mut sim = start_sim(args, &game, &endpoint, file)?;
     let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
-    let page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
+    let mut page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
     let names: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
     let mut agents = Vec::new();
     for names in names.chunks(usize::from(args.agents_per_process)) {
         agents.push(start_agent(names, &game, &endpoint)?);
     }
     let hardware_loop = args.hardware_loop.start(&args.play, scenario, (&game, &endpoint))?;
-    let report = follow(&messages, &mut sim, stop, screen)?;
+    let report = follow(&messages, (&mut sim, page.as_mut()), stop, screen)?;
     let mut problems = hardware_loop.map(HardwareLoop::end).unwrap_or_default();
     let mut everybody = agents;
     everybody.push(sim);
@@ -187,10 +196,11 @@ fn start_agent(names: &[&str], game: &str, endpoint: &str) -> Result<ChildProces
     ChildProcess::start(&format!("the agent of {}", names.join(", ")), command, Stdio::null())
 }
 
-/// Shows what the sim reports until it has reported the result, or has ended.
+/// Shows what the sim reports until it has reported the result, or has ended. Without the page that was asked for no game
+/// begins.
 fn follow(
     messages: &Receiver<ProgressMessage>,
-    sim: &mut ChildProcess,
+    (sim, mut page): (&mut ChildProcess, Option<&mut ChildProcess>),
     stop: &AtomicBool,
     screen: &mut Screen,
 ) -> Result<Option<Report>> {
@@ -201,12 +211,17 @@ fn follow(
                 screen.show(&message);
                 match message {
                     ProgressMessage::Open { .. } => screen.line(&token_text(child_process::token())),
+                    ProgressMessage::Started => page = None,
                     ProgressMessage::Done(report) => return Ok(Some(*report)),
                     _ => {}
                 }
             }
             Err(RecvTimeoutError::Disconnected) => return Ok(None),
             Err(RecvTimeoutError::Timeout) => {}
+        }
+        // Its last words stand above.
+        if let Some(problem) = page.as_mut().and_then(|page| page.ended()).flatten() {
+            bail!(problem);
         }
         if stop.load(Ordering::Relaxed) {
             sim.ask_to_stop();

@@ -7,7 +7,7 @@ use crate::record_args;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::water_args::within;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use bus::Token;
 use game::topic::GameName;
 use sim::node::{GameRecorder, ProgressMessage, Settings};
@@ -45,6 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let scenario = args.play.load()?;
     let seed = args.play.seed(&scenario);
     let scenario = if args.afloat.is_empty() { scenario } else { sim::afloat(&scenario, seed, &args.afloat)? };
+    args.play.check_result_file()?;
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let game = match &args.game {
         Some(game) => game.clone(),
@@ -74,7 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         speed: args.play.speed,
         stop: stop.clone(),
     };
-    let report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), &mut |message| {
+    let mut report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), &mut |message| {
         if let ProgressMessage::Open { game, endpoint } = &message {
             let (game, endpoint) = (game.clone(), endpoint.clone());
             let entry = bus::Entry { game, endpoint, pid: std::process::id(), token: token.as_ref().map(Token::hex) };
@@ -87,11 +88,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         printer.print(message);
     })?;
     drop(registration);
-    if let Some(problem) = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report))) {
-        screen::remark(&problem);
-    }
-    args.play.write_result(&report)?;
-    let cut_short = report.run.cut_short;
+    report.run.recording_problem = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report)));
+    let written = args.play.write_result(&report);
+    let (cut_short, problem) = (report.run.cut_short, report.run.recording_problem.clone());
     printer.end(ProgressMessage::Done(Box::new(report)));
+    written?;
+    // A parent knows from the report, and says so itself.
+    if let (Some(problem), false) = (problem, args.for_parent) {
+        bail!(problem);
+    }
     Ok(if cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
 }

@@ -38,8 +38,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let plan = planned(args)?;
     // Better now than after hours of games.
     for path in args.json.iter().chain(&args.csv) {
-        let file = std::fs::OpenOptions::new().append(true).create(true).open(path);
-        file.with_context(|| format!("cannot write the report to {}", path.display()))?;
+        output_file::check(path, "the report")?;
     }
     let stop = stop::on_ctrl_c()?;
     let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);

@@ -1,6 +1,6 @@
 //! Recordings as people make them: of whole games, of games that were killed, of real boats; and games played again.
 
-use crate::support::{FOUR, Sim, own, refusal_of, result_of, run, temporary, wait_until};
+use crate::support::{FOUR, Sim, own, refusal_of, result_of, run, stdout, temporary, wait_until};
 use bus::Priority;
 use game::VehicleId;
 use game::external::LinkBytes;
@@ -98,7 +98,7 @@ fn what_is_heard_is_written_down_if_it_is_sound() {
     assert!(matches!(proposals.as_slice(), [Ok(said)] if *said == proposal), "{proposals:?}");
     let json = |topic: &str| {
         let last = recording.bag().on(topic).last().unwrap_or_else(|| panic!("nothing on {topic}"));
-        serde_json::from_slice::<serde_json::Value>(last.bytes).expect("JSON")
+        serde_json::from_slice::<serde_json::Value>(&last.bytes).expect("JSON")
     };
     assert_eq!(json("control"), serde_json::json!({"control": "halt"}));
     assert_eq!(json("run")["phase"], "over");
@@ -129,6 +129,78 @@ fn what_is_no_recording_is_refused_with_the_reason() {
         let said = refusal_of(args);
         assert!(said.contains(part), "{args:?}: {said}");
     }
+}
+
+/// Runs the program where no file may be longer than one or two MiB, as the shell counts: a disk that is full.
+#[cfg(unix)]
+fn run_on_a_full_disk(args: &[&str]) -> (bool, String) {
+    let mut shell = std::process::Command::new("sh");
+    let limited = "trap '' XFSZ; ulimit -f 2048; exec \"$0\" \"$@\"";
+    shell.current_dir(env!("CARGO_MANIFEST_DIR")).args(["-c", limited, env!("CARGO_BIN_EXE_squall")]).args(args);
+    let output = shell.output().expect("a shell");
+    (output.status.success(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+#[cfg(unix)]
+fn a_recording_that_the_disk_has_no_room_for_is_told_in_the_end() {
+    for how in [&["--in-process"][..], &["--agents-per-process", "2"]] {
+        let dir = temporary();
+        let folder = dir.path().display().to_string();
+        let args = [&["run", "scenarios/games/attack_1v1.toml", "--record", &folder], how].concat();
+        let (is_good, said) = run_on_a_full_disk(&args);
+        let last = said.lines().last().unwrap_or_default();
+        assert!(!is_good && last.starts_with("squall: the recording ") && last.contains("too large"), "{said}");
+        assert!(opened(&only_recording(dir.path())).is_cut(), "what there was room for is there");
+    }
+    let dir = temporary();
+    let file = dir.path().join("game.mcap").display().to_string();
+    let args = ["sim", "scenarios/games/attack_1v1.toml", "--record", &file, "--join-s", "0"];
+    let (is_good, said) = run_on_a_full_disk(&args);
+    assert!(!is_good && said.lines().last().is_some_and(|last| last.contains("is not complete")), "{said}");
+}
+
+#[test]
+fn what_cannot_be_written_or_shown_is_refused_before_the_game() {
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let taken = taken.local_addr().expect("it is bound").to_string();
+    // So long that nobody waits for it.
+    let game = &*own("long");
+    for (args, part) in [
+        (&["run", game, "--no-record", "--json", "/nope/x"][..], "cannot write the result to /nope/x"),
+        (&["run", game, "--in-process", "--no-record", "--json", "/nope/x"], "cannot write the result to /nope/x"),
+        (&["sim", game, "--json", "/nope/x"], "cannot write the result to /nope/x"),
+        (&["run", game, "--record", "/proc"], "cannot write the recording to /proc/"),
+        (&["run", game, "--in-process", "--record", "/proc"], "cannot write the recording to /proc/"),
+        (&["run", game, "--no-record", "--view", "--listen", &taken], "the page cannot listen on"),
+    ] {
+        let said = refusal_of(args);
+        assert!(said.contains(part) && !said.contains("every boat has an agent"), "{args:?}: {said}");
+    }
+}
+
+#[test]
+fn a_damaged_message_costs_itself_alone() {
+    let dir = temporary();
+    let folder = dir.path().display().to_string();
+    result_of(&["scenarios/games/attack_1v1.toml", "--in-process", "--record", &folder]);
+    let path = only_recording(dir.path());
+    let all = stdout(&run(&["log", "--events", &path.display().to_string()]));
+    let frame = opened(&path).frame(7).bytes;
+    let mut bytes = std::fs::read(&path).expect("it is there");
+    let place = bytes.windows(frame.len()).position(|window| window == frame).expect("it is in it");
+    // The encapsulation of a message says that it is CDR.
+    bytes[place] = 0xff;
+    std::fs::write(&path, bytes).expect("it is written");
+    let output = run(&["log", &path.display().to_string()]);
+    let told = stdout(&output);
+    assert!(
+        output.status.success() && told.contains("1 message is damaged and left out; message 7 of frame"),
+        "{told}"
+    );
+    assert!(told.contains(&all), "everything else is told as before");
+    let csv = stdout(&run(&["log", &path.display().to_string(), "--csv", "frame"]));
+    assert_eq!(csv.lines().count(), opened(&path).frame_count(), "a line of names, and a line less");
 }
 
 #[test]

@@ -7,6 +7,7 @@
 mod access;
 mod asset;
 mod chart;
+mod connections;
 pub mod live;
 mod message;
 pub mod replay;
@@ -23,7 +24,7 @@ pub use rose::{HelmAnswer, is_sound};
 pub use view::{Access, Budget, Changes, Outgoing, View, Viewer};
 
 use access::AccessControl;
-use std::net::SocketAddr;
+use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -88,25 +89,21 @@ const LOOK_AGAIN: Duration = Duration::from_millis(50);
 const GOODBYE: Duration = Duration::from_millis(200);
 
 impl Page {
+    /// Whether it could be opened.
+    ///
+    /// # Errors
+    /// [`PageError`] if it cannot listen there, or should not.
+    pub fn check(settings: &PageSettings) -> Result<(), PageError> {
+        listener(settings).map(drop)
+    }
+
     /// Listens, and serves pages that have no view yet.
     ///
     /// # Errors
     /// [`PageError`] if it cannot listen there, or should not.
     pub fn open(settings: PageSettings) -> Result<Page, PageError> {
-        let PageSettings { listen, token, hosts, stop } = settings;
-        if token.as_ref().is_some_and(String::is_empty) {
-            return Err(PageError::EmptyToken);
-        }
-        if !listen.ip().is_loopback() && token.is_none() {
-            return Err(PageError::Open(listen));
-        }
-        if let (Some(host), None) = (hosts.first(), &token) {
-            return Err(PageError::Named(host.clone()));
-        }
-        let at = |source| PageError::Listen { address: listen, source };
-        let listener = std::net::TcpListener::bind(listen).map_err(at)?;
-        listener.set_nonblocking(true).map_err(at)?;
-        let address = listener.local_addr().map_err(at)?;
+        let (listener, address) = listener(&settings)?;
+        let PageSettings { token, hosts, stop, .. } = settings;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(PageError::Begin)?;
         let (shown, to_show) = watch::channel(None);
         let ended = Arc::new(AtomicBool::new(false));
@@ -138,6 +135,24 @@ impl Page {
             shown.send_replace(Some(show));
         }
     }
+}
+
+/// Where pages come in, and under which address.
+fn listener(PageSettings { listen, token, hosts, .. }: &PageSettings) -> Result<(TcpListener, SocketAddr), PageError> {
+    if token.as_ref().is_some_and(String::is_empty) {
+        return Err(PageError::EmptyToken);
+    }
+    if !listen.ip().is_loopback() && token.is_none() {
+        return Err(PageError::Open(*listen));
+    }
+    if let (Some(host), None) = (hosts.first(), token) {
+        return Err(PageError::Named(host.clone()));
+    }
+    let at = |source| PageError::Listen { address: *listen, source };
+    let listener = TcpListener::bind(listen).map_err(at)?;
+    listener.set_nonblocking(true).map_err(at)?;
+    let address = listener.local_addr().map_err(at)?;
+    Ok((listener, address))
 }
 
 impl Drop for Page {

@@ -83,6 +83,9 @@ pub struct Run {
     pub overruns: u64,
     /// Whether it was ended before its end.
     pub cut_short: bool,
+    /// What is wrong with the recording, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recording_problem: Option<String>,
 }
 
 /// Why a game could not be served.
@@ -156,6 +159,13 @@ pub fn serve(
     std::mem::take(&mut server.reporter).rest(&outcome, tell);
     server.shut_down()?;
     let overruns = server.overruns;
-    let run = Run { pace: settings.pace.to_string(), wall_s, refused: server.refusals(), overruns, cut_short };
+    let run = Run {
+        pace: settings.pace.to_string(),
+        wall_s,
+        refused: server.refusals(),
+        overruns,
+        cut_short,
+        ..Run::default()
+    };
     Ok(Report { outcome, run })
 }
