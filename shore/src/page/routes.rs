@@ -2,6 +2,7 @@
 
 use super::access::AccessControl;
 use super::asset;
+use super::connections::{Connections, Place};
 use super::socket::{self, RECEIVED_MAX, Shown};
 use super::view::Access;
 use axum::Router;
@@ -28,7 +29,7 @@ use tokio_io_timeout::TimeoutStream;
 const PAGES_MAX: usize = 64;
 /// Connections reserved for pages with the token, so that observers cannot shut out operators.
 const OPERATORS_MAX: usize = 8;
-/// The most connections at a time that are no websockets yet; more wait to be accepted.
+/// The most connections at a time that are no websockets yet.
 const CONNECTIONS_MAX: usize = 192;
 /// A connection on which nothing arrives for so long is closed. Websockets are pinged more often.
 const SILENCE: Duration = Duration::from_secs(60);
@@ -78,19 +79,22 @@ pub(super) async fn serve(
         .fallback(file)
         .layer(middleware::from_fn_with_state(app.clone(), check))
         .with_state(app);
-    let free = permits(CONNECTIONS_MAX);
+    let connections = Connections::new(CONNECTIONS_MAX);
     let accept_all = async {
         loop {
-            let place = Arc::clone(&free).acquire_owned().await;
-            let Ok((stream, _)) = listener.accept().await else {
+            let Ok((stream, from)) = listener.accept().await else {
                 sleep(AGAIN).await;
                 continue;
             };
-            let served = serve_connection(stream, site.clone());
-            tokio::spawn(async {
-                // An error ends the connection of one browser only.
-                drop(served.await);
-                drop(place);
+            let (place, closed) = connections.admit(from.ip());
+            let served = serve_connection(stream, site.clone(), place);
+            tokio::spawn(async move {
+                tokio::select! {
+                    // An error ends the connection of one browser only.
+                    ended = served => drop(ended),
+                    // Somebody else needs the place; an error is that of a place that is free again.
+                    Ok(()) = closed => {}
+                }
             });
         }
     };
@@ -102,12 +106,21 @@ pub(super) async fn serve(
 }
 
 /// Serves one connection. `axum::serve` would wait for ever for a request that never ends.
-async fn serve_connection(stream: TcpStream, site: Router) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
+async fn serve_connection(
+    stream: TcpStream,
+    site: Router,
+    place: Place,
+) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     // A frame is one small write; waiting for more only makes it late.
     drop(stream.set_nodelay(true));
     let mut stream = TimeoutStream::new(stream);
     stream.set_read_timeout(Some(SILENCE));
     stream.set_write_timeout(Some(DEAF));
+    let place = Arc::new(place);
+    let site = site.layer(middleware::from_fn(move |request: Request, next: Next| {
+        place.touch();
+        next.run(request)
+    }));
     let mut server = Builder::new(TokioExecutor::new()).http1_only();
     server.http1().timer(TokioTimer::new()).header_read_timeout(REQUEST);
     server.serve_connection_with_upgrades(TokioIo::new(Box::pin(stream)), TowerToHyperService::new(site)).await

@@ -1,6 +1,6 @@
 //! A game on a network, seen by pages: a made-up sim, and the real way to it.
 
-use super::client::Client;
+use super::client::{Client, get};
 use super::source::{frame, own_boat, report, scenario, seq_of};
 use super::{open_viewer, visit};
 use bus::token::{self, Checked, Guard};
@@ -22,6 +22,7 @@ use shore::page::live::LiveView;
 use shore::page::{Page, View};
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpListener;
+use std::net::TcpStream;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -256,6 +257,24 @@ fn what_pages_ask_of_a_game_reaches_it_if_they_have_rights() {
     master.send(r#"{"do":"control","what":"halt"}"#);
     assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::Halt)));
     sim.controls.visit(|all| assert!(!all.contains(&Control::Stop)));
+    sim.close();
+}
+
+#[test]
+fn idle_connections_keep_no_page_out_and_its_e_stop_goes_through() {
+    let port = port();
+    let sim = Sim::open(port, "pond", steered("pav01_vs_pav01.toml"));
+    let page = super::page(live(port, None), None, &[]);
+    let idle: Vec<TcpStream> = (0..300).map(|_| TcpStream::connect(page.address()).expect("it listens")).collect();
+    // A browser gets the page and its parts first, then opens the websocket.
+    let (status, _) = get(page.address(), "/", &page.address().to_string());
+    assert_eq!(status, 200);
+    let mut client = open_viewer(&page);
+    assert_eq!(client.text()["kind"], "hello");
+    sim.wait_for_subscribers();
+    client.send(r#"{"do":"control","what":"e_stop"}"#);
+    assert!(sim.controls.wait(LIMIT, |all| all.last() == Some(&Control::EStop)));
+    drop(idle);
     sim.close();
 }
 
