@@ -1,13 +1,14 @@
 //! The wall clock of everything that runs on the network: for pacing, and for waits that have a limit. The core is told the
 //! time and never reads a clock.
 
+use crate::simulated;
 use std::time::{Duration, Instant};
 
-/// This moment.
+/// This moment; in a simulated network, that of virtual time.
 #[must_use]
 #[expect(clippy::disallowed_methods, reason = "the one place where nodes read the clock")]
 pub fn now() -> Instant {
-    Instant::now()
+    simulated::now().unwrap_or_else(Instant::now)
 }
 
 /// How long ago `start` was.
@@ -19,5 +20,9 @@ pub fn since(start: Instant) -> Duration {
 /// Waits where there is no condition to wait for: between two attempts, or two pictures for a person.
 #[expect(clippy::disallowed_methods, reason = "the one place where nodes wait for time to pass")]
 pub fn rest(time: Duration) {
-    std::thread::sleep(time);
+    if simulated::is_inside() {
+        simulated::wait_until(0, now().checked_add(time));
+    } else {
+        std::thread::sleep(time);
+    }
 }

@@ -1,59 +1,67 @@
-//! A bounded queue from zenoh's threads to a node's own.
+//! A bounded queue from the network's threads to a node's own.
 
+use crate::Watched;
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
-/// The sending side, for callbacks. Never blocks: what does not fit is dropped and counted.
-pub struct InboxSender<T> {
-    sender: SyncSender<T>,
-    dropped: Arc<AtomicU64>,
+/// What both sides share.
+struct Queue<T> {
+    items: Watched<VecDeque<T>>,
+    capacity: usize,
+    dropped: AtomicU64,
 }
+
+/// The sending side, for callbacks. Never blocks: what does not fit is dropped and counted.
+pub struct InboxSender<T>(Arc<Queue<T>>);
 
 impl<T> Clone for InboxSender<T> {
     fn clone(&self) -> InboxSender<T> {
-        InboxSender { sender: self.sender.clone(), dropped: Arc::clone(&self.dropped) }
+        InboxSender(Arc::clone(&self.0))
     }
 }
 
 /// The receiving side.
-pub struct Inbox<T> {
-    receiver: Receiver<T>,
-    dropped: Arc<AtomicU64>,
-}
+pub struct Inbox<T>(Arc<Queue<T>>);
 
 /// A queue for `capacity` items.
 #[must_use]
 pub fn inbox<T>(capacity: usize) -> (InboxSender<T>, Inbox<T>) {
-    let (sender, receiver) = sync_channel(capacity);
-    let dropped = Arc::new(AtomicU64::new(0));
-    (InboxSender { sender, dropped: Arc::clone(&dropped) }, Inbox { receiver, dropped })
+    let queue = Arc::new(Queue { items: Watched::new(VecDeque::new()), capacity, dropped: AtomicU64::new(0) });
+    (InboxSender(Arc::clone(&queue)), Inbox(queue))
 }
 
 impl<T> InboxSender<T> {
     /// Hands `item` over.
     pub fn put(&self, item: T) {
-        if let Err(TrySendError::Full(_)) = self.sender.try_send(item) {
-            self.dropped.fetch_add(1, Ordering::Relaxed);
-        }
+        let Queue { items, capacity, dropped } = &*self.0;
+        let surplus = items.visit(|items| {
+            if items.len() >= *capacity {
+                return Some(item);
+            }
+            items.push_back(item);
+            None
+        });
+        dropped.fetch_add(u64::from(surplus.is_some()), Ordering::Relaxed);
     }
 }
 
 impl<T> Inbox<T> {
     /// The next item, if one comes within `limit`.
     pub fn take(&self, limit: Duration) -> Option<T> {
-        self.receiver.recv_timeout(limit).ok()
+        self.0.items.wait(limit, |items| !items.is_empty());
+        self.take_now()
     }
 
     /// The next item, if one is there.
     pub fn take_now(&self) -> Option<T> {
-        self.receiver.try_recv().ok()
+        self.0.items.visit(VecDeque::pop_front)
     }
 
     /// How many items did not fit so far.
     #[must_use]
     pub fn dropped(&self) -> u64 {
-        self.dropped.load(Ordering::Relaxed)
+        self.0.dropped.load(Ordering::Relaxed)
     }
 }

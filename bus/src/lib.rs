@@ -9,6 +9,7 @@
 mod access;
 pub mod clock;
 mod control;
+mod entropy;
 mod error;
 pub mod game_search;
 mod gateway_port;
@@ -19,10 +20,13 @@ mod local_registry;
 mod net;
 mod session;
 mod sim_liveness;
+pub mod simulated;
+mod thread;
 pub mod token;
 mod watched;
 
 pub use control::control;
+pub use entropy::{random_bytes, random_number};
 pub use error::BusError;
 pub use game_search::ANSWER;
 pub use gateway_port::{GATEWAY_PORT_KEY, ask_gateway};
@@ -34,6 +38,7 @@ pub use local_registry::{
 pub use net::{DEFAULT_PORT, Net, free_port, is_loopback};
 pub use session::{Bus, Declaration, Priority, Publisher, Query};
 pub use sim_liveness::{Patience, SimState, SimWatch};
+pub use thread::NodeThread;
 pub use token::Token;
 pub use watched::Watched;
 

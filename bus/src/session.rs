@@ -1,5 +1,6 @@
 //! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
+use crate::simulated::{self, SimulatedPublisher, SimulatedQuery, SimulatedSession};
 use crate::token::{self, Token};
 use crate::{BusError, Net, linger};
 use game::codec;
@@ -31,21 +32,35 @@ pub struct Declaration(#[expect(dead_code, reason = "kept for its drop")] Box<dy
 /// A node's session.
 #[derive(Clone)]
 pub struct Bus {
-    session: Session,
+    network: Network,
     token: Option<Token>,
 }
 
+/// The network that a session is on.
+#[derive(Clone)]
+enum Network {
+    Zenoh(Session),
+    Simulated(SimulatedSession),
+}
+
 /// Sends messages on one key.
-pub struct Publisher {
-    publisher: zenoh::pubsub::Publisher<'static>,
-    is_heard: Arc<AtomicBool>,
+pub struct Publisher(Sender);
+
+enum Sender {
+    Zenoh { publisher: zenoh::pubsub::Publisher<'static>, is_heard: Arc<AtomicBool> },
+    Simulated(SimulatedPublisher),
 }
 
 /// A query of another node, to be answered once.
 pub struct Query {
-    query: zenoh::query::Query,
+    asker: Asker,
     /// What came with it.
     pub payload: Vec<u8>,
+}
+
+enum Asker {
+    Zenoh(zenoh::query::Query),
+    Simulated(SimulatedQuery),
 }
 
 fn failed(doing: &'static str, key: &str) -> impl FnOnce(zenoh::Error) -> BusError {
@@ -65,6 +80,9 @@ impl Bus {
     /// [`BusError`] if it cannot listen where it should.
     pub fn hub(net: &Net, game: &GameName) -> Result<Bus, BusError> {
         let what = format!("to listen on {}", net.listen.join(", "));
+        if simulated::is_inside() {
+            return simulated(SimulatedSession::hub(net), net, what);
+        }
         open(net.hub(game)?, net.token.clone(), what)
     }
 
@@ -74,13 +92,19 @@ impl Bus {
     /// [`BusError`] if nobody listens there now.
     pub fn leaf(net: &Net) -> Result<Bus, BusError> {
         let what = format!("to connect to {}", net.connect.join(", "));
+        if simulated::is_inside() {
+            return simulated(SimulatedSession::leaf(net), net, what);
+        }
         open(net.leaf()?, net.token.clone(), what)
     }
 
     /// This session's own identifier, unique on the network.
     #[must_use]
     pub fn id(&self) -> String {
-        self.session.zid().to_string()
+        match &self.network {
+            Network::Zenoh(session) => session.zid().to_string(),
+            Network::Simulated(session) => session.id(),
+        }
     }
 
     /// Prepares to publish on `key`.
@@ -88,7 +112,11 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn publisher(&self, key: String, priority: Priority) -> Result<Publisher, BusError> {
-        let builder = self.session.declare_publisher(key.clone()).congestion_control(CongestionControl::Drop);
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => return Ok(Publisher(Sender::Simulated(session.publisher(&key)))),
+        };
+        let builder = session.declare_publisher(key.clone()).congestion_control(CongestionControl::Drop);
         let builder = match priority {
             Priority::Urgent => builder.priority(qos::Priority::RealTime).express(true),
             Priority::Normal => builder.priority(qos::Priority::Data),
@@ -98,7 +126,7 @@ impl Bus {
         let flag = Arc::clone(&is_heard);
         let listener = publisher.matching_listener().callback(move |now| flag.store(now.matching(), Ordering::Relaxed));
         listener.background().wait().map_err(failed("publish on", &key))?;
-        Ok(Publisher { publisher, is_heard })
+        Ok(Publisher(Sender::Zenoh { publisher, is_heard }))
     }
 
     /// Calls `take` with the bytes of everything published on `key`.
@@ -131,8 +159,14 @@ impl Bus {
         key: String,
         take: impl Fn(&[u8]) + Send + Sync + 'static,
     ) -> Result<Declaration, BusError> {
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => {
+                return Ok(Declaration(Box::new(session.subscribe(key, take, origin == Locality::Any))));
+            }
+        };
         let callback = move |sample: zenoh::sample::Sample| take(&sample.payload().to_bytes());
-        let builder = self.session.declare_subscriber(key.clone()).allowed_origin(origin);
+        let builder = session.declare_subscriber(key.clone()).allowed_origin(origin);
         let subscriber = builder.callback(callback).wait();
         Ok(Declaration(Box::new(subscriber.map_err(failed("subscribe to", &key))?)))
     }
@@ -142,11 +176,21 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn answer(&self, key: String, take: impl Fn(Query) + Send + Sync + 'static) -> Result<Declaration, BusError> {
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => {
+                let callback = move |mut query: SimulatedQuery| {
+                    let payload = std::mem::take(&mut query.payload);
+                    take(Query { asker: Asker::Simulated(query), payload });
+                };
+                return Ok(Declaration(Box::new(session.answer(key, callback))));
+            }
+        };
         let callback = move |query: zenoh::query::Query| {
             let payload = query.payload().map(|bytes| bytes.to_bytes().into_owned()).unwrap_or_default();
-            take(Query { query, payload });
+            take(Query { asker: Asker::Zenoh(query), payload });
         };
-        let queryable = self.session.declare_queryable(key.clone()).callback(callback).wait();
+        let queryable = session.declare_queryable(key.clone()).callback(callback).wait();
         Ok(Declaration(Box::new(queryable.map_err(failed("answer at", &key))?)))
     }
 
@@ -166,7 +210,11 @@ impl Bus {
         payload: Vec<u8>,
         limit: Duration,
     ) -> Result<Option<Vec<u8>>, BusError> {
-        let query = self.session.get(key).payload(payload).timeout(limit);
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => return Ok(session.ask(key, payload, limit)),
+        };
+        let query = session.get(key).payload(payload).timeout(limit);
         let query = query.congestion_control(CongestionControl::Drop).priority(priority).express(true);
         let replies = query.wait().map_err(failed("ask at", key))?;
         let answers = std::iter::from_fn(|| replies.recv().ok());
@@ -195,7 +243,11 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn show_alive(&self, key: String) -> Result<Declaration, BusError> {
-        let token = self.session.liveliness().declare_token(key.clone()).wait();
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => return Ok(Declaration(Box::new(session.show_alive(key)))),
+        };
+        let token = session.liveliness().declare_token(key.clone()).wait();
         Ok(Declaration(Box::new(token.map_err(failed("be alive as", &key))?)))
     }
 
@@ -208,10 +260,14 @@ impl Bus {
         key: String,
         take: impl Fn(&str, bool) + Send + Sync + 'static,
     ) -> Result<Declaration, BusError> {
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => return Ok(Declaration(Box::new(session.watch_alive(key, take)))),
+        };
         let callback = move |sample: zenoh::sample::Sample| {
             take(sample.key_expr().as_str(), sample.kind() == SampleKind::Put);
         };
-        let watch = self.session.liveliness().declare_subscriber(key.clone()).history(true).callback(callback);
+        let watch = session.liveliness().declare_subscriber(key.clone()).history(true).callback(callback);
         Ok(Declaration(Box::new(watch.wait().map_err(failed("watch", &key))?)))
     }
 
@@ -220,7 +276,11 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if the session is closed.
     pub fn who_is_alive(&self, key: &str, limit: Duration) -> Result<Vec<String>, BusError> {
-        let replies = self.session.liveliness().get(key).timeout(limit).wait().map_err(failed("look for", key))?;
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => return Ok(session.who_is_alive(key, limit)),
+        };
+        let replies = session.liveliness().get(key).timeout(limit).wait().map_err(failed("look for", key))?;
         let tokens = std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
         let mut keys: Vec<String> = tokens.map(|sample| sample.key_expr().as_str().to_owned()).collect();
         keys.sort();
@@ -230,21 +290,33 @@ impl Bus {
 
     /// Closes the session, so that the others need not find out.
     pub fn close(&self) {
-        // A session that cannot be closed is as gone as one that can.
-        drop(self.session.close().wait());
+        match &self.network {
+            // A session that cannot be closed is as gone as one that can.
+            Network::Zenoh(session) => drop(session.close().wait()),
+            Network::Simulated(session) => session.close(),
+        }
     }
 }
 
 fn open(config: zenoh::Config, token: Option<Token>, what: String) -> Result<Bus, BusError> {
     let session = zenoh::open(config).wait().and_then(|session| linger::disable(&session).map(|()| session));
-    session.map(|session| Bus { session, token }).map_err(|e| BusError::Open { what, reason: reason(&e) })
+    let bus = session.map(|session| Bus { network: Network::Zenoh(session), token });
+    bus.map_err(|e| BusError::Open { what, reason: reason(&e) })
+}
+
+fn simulated(session: Result<SimulatedSession, String>, net: &Net, what: String) -> Result<Bus, BusError> {
+    let session = session.map_err(|reason| BusError::Open { what, reason })?;
+    Ok(Bus { network: Network::Simulated(session), token: net.token.clone() })
 }
 
 impl Publisher {
     /// Whether anybody listens; a message that nobody hears need not be made.
     #[must_use]
     pub fn is_heard(&self) -> bool {
-        self.is_heard.load(Ordering::Relaxed)
+        match &self.0 {
+            Sender::Zenoh { is_heard, .. } => is_heard.load(Ordering::Relaxed),
+            Sender::Simulated(publisher) => publisher.is_heard(),
+        }
     }
 
     /// Sends a per-tick message as CDR, with its name and version in the encoding.
@@ -281,8 +353,16 @@ impl Publisher {
     }
 
     fn put(&self, bytes: Vec<u8>, encoding: Encoding) -> Result<(), BusError> {
-        let sent = self.publisher.put(bytes).encoding(encoding).wait();
-        sent.map_err(failed("send on", self.publisher.key_expr().as_str()))
+        match &self.0 {
+            Sender::Zenoh { publisher, .. } => {
+                let sent = publisher.put(bytes).encoding(encoding).wait();
+                sent.map_err(failed("send on", publisher.key_expr().as_str()))
+            }
+            Sender::Simulated(publisher) => {
+                publisher.put(bytes);
+                Ok(())
+            }
+        }
     }
 }
 
@@ -290,13 +370,21 @@ impl Query {
     /// The key that was asked.
     #[must_use]
     pub fn key(&self) -> &str {
-        self.query.key_expr().as_str()
+        match &self.asker {
+            Asker::Zenoh(query) => query.key_expr().as_str(),
+            Asker::Simulated(query) => query.key(),
+        }
     }
 
     /// Answers with bytes that are JSON.
     pub fn answer(self, json: Vec<u8>) {
-        let key = self.query.key_expr().clone();
-        // Whoever asked may be gone by now; then nobody misses the answer.
-        drop(self.query.reply(key, json).encoding(Encoding::APPLICATION_JSON).wait());
+        match self.asker {
+            Asker::Zenoh(query) => {
+                let key = query.key_expr().clone();
+                // Whoever asked may be gone by now; then nobody misses the answer.
+                drop(query.reply(key, json).encoding(Encoding::APPLICATION_JSON).wait());
+            }
+            Asker::Simulated(query) => query.answer(json),
+        }
     }
 }

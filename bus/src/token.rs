@@ -4,7 +4,7 @@
 //! again with the HMAC-SHA256 (RFC 2104, FIPS 180-4), under the token, of the challenge, the key and the request as it is sent:
 //! each with its length before it, as 64 bits, little-endian.
 
-use crate::{BusError, clock};
+use crate::{BusError, clock, random_bytes};
 use hmac::{Hmac, KeyInit, Mac};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -39,7 +39,7 @@ impl Token {
     /// If the operating system has no randomness to give.
     #[must_use]
     pub fn random() -> Token {
-        Token(random())
+        Token(random_bytes())
     }
 
     /// Its 64 hexadecimal digits: whoever reads them may do everything.
@@ -220,18 +220,12 @@ impl Guard {
                 return Checked::Granted(request);
             }
         }
-        let challenge = hex(&random::<16>());
+        let challenge = hex(&random_bytes::<16>());
         self.open.push_back((challenge.clone(), now));
         let surplus = self.open.len().saturating_sub(OPEN_MAX);
         self.open.drain(..surplus);
         Checked::Challenged(json(&Answer::<()>::Challenge(challenge)))
     }
-}
-
-fn random<const N: usize>() -> [u8; N] {
-    let mut bytes = [0; N];
-    getrandom::fill(&mut bytes).expect("the operating system has randomness");
-    bytes
 }
 
 fn hex(bytes: &[u8]) -> String {

@@ -1,5 +1,6 @@
 //! A value that callbacks change, and that a node reads, or waits on until something holds for it.
 
+use crate::{clock, simulated};
 use parking_lot::{Condvar, Mutex};
 use std::time::Duration;
 
@@ -21,13 +22,29 @@ impl<T> Watched<T> {
     pub fn visit<R>(&self, visit: impl FnOnce(&mut T) -> R) -> R {
         let result = visit(&mut self.state.lock());
         self.changed.notify_all();
+        simulated::wake(self.address());
         result
     }
 
     /// Waits up to `limit` until `holds`, and returns whether it does.
     pub fn wait(&self, limit: Duration, mut holds: impl FnMut(&T) -> bool) -> bool {
+        if simulated::is_inside() {
+            let deadline = clock::now().checked_add(limit);
+            // The value stays unlocked while others run.
+            while !holds(&self.state.lock()) {
+                if !simulated::wait_until(self.address(), deadline) {
+                    return holds(&self.state.lock());
+                }
+            }
+            return true;
+        }
         let mut state = self.state.lock();
         !self.changed.wait_while_for(&mut state, |state| !holds(state), limit).timed_out()
+    }
+
+    /// By which a simulated network knows what is waited for.
+    fn address(&self) -> usize {
+        std::ptr::from_ref(self).addr()
     }
 }
 

@@ -2,12 +2,11 @@
 
 use super::loop_input::Call;
 use bus::game_search::{self, GameSearch, NotFound};
-use bus::{Bus, BusError, InboxSender, Patience, SimWatch};
+use bus::{Bus, BusError, InboxSender, NodeThread, Patience, SimWatch};
 use game::message::Role;
 use game::topic::GameName;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// How often a thread that sees no change looks whether it is to end.
@@ -16,7 +15,7 @@ const LOOK: Duration = Duration::from_millis(100);
 /// The thread that joins.
 pub(super) struct Join {
     stop: Arc<AtomicBool>,
-    thread: Option<JoinHandle<()>>,
+    _thread: NodeThread,
 }
 
 impl Join {
@@ -26,16 +25,15 @@ impl Join {
         let sim = SimWatch::open(bus, game, Patience::of_player(Duration::MAX))?;
         let stop = Arc::new(AtomicBool::new(false));
         let (bus, game, vehicles, ended) = (bus.clone(), game.clone(), [vehicle.to_owned()], Arc::clone(&stop));
-        let thread = std::thread::spawn(move || keep_joined(&bus, &game, &vehicles, &sim, &ended, &calls));
-        Ok(Join { stop, thread: Some(thread) })
+        let thread = NodeThread::start(move || keep_joined(&bus, &game, &vehicles, &sim, &ended, &calls));
+        Ok(Join { stop, _thread: thread })
     }
 }
 
 impl Drop for Join {
     fn drop(&mut self) {
+        // The thread is waited for when the fields are dropped.
         self.stop.store(true, Ordering::Relaxed);
-        // A thread that panicked has nothing to give back.
-        self.thread.take().map(JoinHandle::join).into_iter().for_each(drop);
     }
 }
 

@@ -7,13 +7,12 @@ use crate::node::observers::{self, RecordedTopic};
 use crate::node::subscriptions::{Incoming, Question};
 use crate::node::{Pace, gateways};
 use bus::token::{self, Checked};
-use bus::{Query, clock};
+use bus::{Query, clock, random_number};
 use game::SimTime;
 use game::external::NavReport;
 use game::message::{Control, ControlReply, JoinReply, JoinRequest, Message, Orders, Role};
 use game::refusal::Refusal;
 use game::topic::Part;
-use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -122,7 +121,7 @@ impl GameServer<'_> {
 
     fn join(&mut self, query: Query) {
         let reply = match self.guard.check::<JoinRequest>(query.key(), &query.payload, |_| true) {
-            Checked::Granted(request) if request.role == Role::Gateway => self.gateways.join(&request, new_ticket()),
+            Checked::Granted(request) if request.role == Role::Gateway => self.gateways.join(&request, random_number()),
             Checked::Granted(request) => self.join_agent(&request),
             Checked::Challenged(challenge) => return query.answer(challenge),
             Checked::Garbage(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
@@ -131,7 +130,7 @@ impl GameServer<'_> {
     }
 
     fn join_agent(&mut self, request: &JoinRequest) -> JoinReply {
-        let reply = self.agents.join(request, new_ticket());
+        let reply = self.agents.join(request, random_number());
         if let JoinReply::Granted { vehicles, .. } = &reply {
             for vehicle in vehicles {
                 self.contest.hold(*vehicle);
@@ -180,9 +179,4 @@ impl GameServer<'_> {
         (0..self.external_orders.len()).for_each(|i| self.pass_on_now(self.external_orders[i].0));
         reply
     }
-}
-
-/// A number nobody can guess: the standard library's hasher is keyed by the operating system's randomness.
-fn new_ticket() -> u64 {
-    RandomState::new().build_hasher().finish()
 }

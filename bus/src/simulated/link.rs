@@ -1,0 +1,273 @@
+//! The link of a leaf to its hub: it takes time, keeps the order, and is closed when either side is silent for the lease.
+
+use super::event::{Event, nanos};
+use super::routing::{Kind, Packet};
+use super::scheduler::Call;
+use super::state::{SessionState, State};
+use super::{Conditions, Damage};
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// How long what waited behind a cut takes to be sent again, at most.
+const SENT_AGAIN: Duration = Duration::from_millis(200);
+/// The shortest time between two attempts to connect.
+const RETRY_LEAST: Duration = Duration::from_millis(100);
+
+/// A link, open until both of its ends are closed.
+pub(super) struct Link {
+    /// The sessions at its ends.
+    pub(super) leaf: usize,
+    pub(super) hub: usize,
+    pub(super) leaf_open: bool,
+    pub(super) hub_open: bool,
+    /// What the leaf has declared, as far as the hub knows.
+    pub(super) known: BTreeMap<u64, (Kind, String)>,
+    down: Direction,
+    up: Direction,
+    /// Since when nothing goes over it.
+    silent_since_ns: Option<u64>,
+}
+
+/// What is on its way in one direction, oldest first, each with the time of its arrival.
+#[derive(Default)]
+struct Direction {
+    queue: VecDeque<(u64, Packet)>,
+    /// Whether an arrival is due, and its number: an older one does not count any more.
+    is_due: bool,
+    arrival: u64,
+    last_ns: u64,
+}
+
+impl Link {
+    fn direction(&mut self, up: bool) -> &mut Direction {
+        if up { &mut self.up } else { &mut self.down }
+    }
+}
+
+impl State {
+    /// Opens a link, and tells the hub what the leaf has declared.
+    pub(super) fn connect(&mut self, leaf: usize, hub: usize) {
+        let link = self.links.len();
+        let (down, up, known) = (Direction::default(), Direction::default(), BTreeMap::new());
+        self.links.push(Link { leaf, hub, leaf_open: true, hub_open: true, known, down, up, silent_since_ns: None });
+        self.sessions[leaf].link = Some(link);
+        self.note("connects", self.sessions[leaf].node, "", &[]);
+        let declared = &self.sessions[leaf].declared;
+        let declares: Vec<Packet> = declared.iter().map(|(id, declared)| declared.packet(*id)).collect();
+        declares.into_iter().for_each(|packet| self.send(link, true, packet));
+    }
+
+    /// The hub that a leaf can reach now.
+    pub(super) fn reachable_hub(&self, leaf: usize) -> Option<usize> {
+        let (node, endpoints) = (self.sessions[leaf].node, &self.sessions[leaf].endpoints);
+        let hub = self.sessions.iter().position(|other| {
+            other.is_hub && other.is_open && other.endpoints.iter().any(|endpoint| endpoints.contains(endpoint))
+        })?;
+        let there = &self.nodes[self.sessions[hub].node];
+        (!self.nodes[node].is_cut && !there.is_cut && !there.is_suspended).then_some(hub)
+    }
+
+    /// Puts something on its way.
+    pub(super) fn send(&mut self, link: usize, up: bool, packet: Packet) {
+        let is_open = if up { self.links[link].leaf_open } else { self.links[link].hub_open };
+        let packet = match packet {
+            _ if !is_open => return,
+            Packet::Publish { key, bytes } => {
+                let is_full =
+                    self.is_stopped(link, up) && self.links[link].direction(up).queue.len() >= self.conditions.queue;
+                if is_full || (self.conditions.loss > 0.0 && self.stream.unit() < self.conditions.loss) {
+                    let node = self.sessions[self.links[link].leaf].node;
+                    return self.note(if up { "loses ->" } else { "loses <-" }, node, &key, &bytes);
+                }
+                let bytes = self.damaged(bytes);
+                Packet::Publish { key, bytes }
+            }
+            other => other,
+        };
+        self.put(link, up, packet);
+    }
+
+    /// Puts something on its way, whether or not its sender is still there.
+    fn put(&mut self, link: usize, up: bool, packet: Packet) {
+        let Conditions { delay, jitter, .. } = self.conditions;
+        let wait = delay + self.draw(jitter);
+        let arrival_ns = self.now_ns + nanos(wait);
+        let direction = self.links[link].direction(up);
+        let arrival_ns = arrival_ns.max(direction.last_ns);
+        direction.last_ns = arrival_ns;
+        direction.queue.push_back((arrival_ns, packet));
+        if !direction.is_due {
+            self.expect(link, up, arrival_ns);
+        }
+    }
+
+    fn damaged(&mut self, bytes: Arc<[u8]>) -> Arc<[u8]> {
+        let (share, damage) = self.conditions.damaged;
+        if bytes.is_empty() || share <= 0.0 || self.stream.unit() >= share {
+            return bytes;
+        }
+        let mut bytes = bytes.to_vec();
+        let place = self.stream.below(bytes.len() as u64) as usize;
+        match damage {
+            Damage::Truncated => bytes.truncate(place),
+            Damage::BitFlip => bytes[place] ^= 1 << self.stream.below(8),
+            Damage::Noise => bytes.iter_mut().for_each(|byte| *byte = self.stream.below(256) as u8),
+        }
+        bytes.into()
+    }
+
+    fn expect(&mut self, link: usize, up: bool, at_ns: u64) {
+        let direction = self.links[link].direction(up);
+        direction.arrival += 1;
+        direction.is_due = true;
+        let arrival = direction.arrival;
+        self.at(at_ns, Event::Arrive { link, up, arrival });
+    }
+
+    /// Whether nothing arrives in this direction now.
+    fn is_stopped(&self, link: usize, up: bool) -> bool {
+        let [leaf, hub] = [self.links[link].leaf, self.links[link].hub].map(|end| &self.nodes[self.sessions[end].node]);
+        let receiver = if up { hub } else { leaf };
+        leaf.is_cut || hub.is_cut || receiver.is_suspended
+    }
+
+    /// What has travelled long enough arrives.
+    pub(super) fn arrive(&mut self, link: usize, up: bool, arrival: u64) -> Vec<Call> {
+        let is_stopped = self.is_stopped(link, up);
+        let direction = self.links[link].direction(up);
+        if direction.arrival != arrival {
+            return vec![];
+        }
+        direction.is_due = false;
+        if is_stopped {
+            return vec![];
+        }
+        let Some((_, packet)) = direction.queue.pop_front() else { return vec![] };
+        if let Some((next_ns, _)) = direction.queue.front() {
+            let next_ns = *next_ns;
+            self.expect(link, up, next_ns);
+        }
+        if up { self.take_at_hub(link, packet) } else { self.take_at_leaf(link, packet) }
+    }
+
+    fn links_of(&self, node: usize) -> Vec<usize> {
+        let touches = |link: &Link| {
+            (link.leaf_open || link.hub_open)
+                && [link.leaf, link.hub].iter().any(|end| self.sessions[*end].node == node)
+        };
+        (0..self.links.len()).filter(|i| touches(&self.links[*i])).collect()
+    }
+
+    /// From now on one side of these links hears nothing.
+    pub(super) fn begin_silence(&mut self, node: usize) {
+        for link in self.links_of(node) {
+            if self.links[link].silent_since_ns.is_some() {
+                continue;
+            }
+            let since_ns = self.now_ns;
+            self.links[link].silent_since_ns = Some(since_ns);
+            for at_hub in [false, true] {
+                // The last sign was up to a quarter of the lease ago.
+                let wait = self.conditions.lease.mul_f64(1.0 - 0.25 * self.stream.unit());
+                self.after(wait, Event::LeaseOver { link, at_hub, since_ns });
+            }
+        }
+    }
+
+    pub(super) fn lease_over(&mut self, link: usize, at_hub: bool, since_ns: u64) -> Vec<Call> {
+        let Link { leaf, hub, silent_since_ns, .. } = self.links[link];
+        let own = self.sessions[if at_hub { hub } else { leaf }].node;
+        if silent_since_ns != Some(since_ns) || self.nodes[own].is_suspended {
+            return vec![];
+        }
+        self.close_end(link, at_hub)
+    }
+
+    /// Both sides hear each other again: what was on its way goes on, and who has closed tells the other.
+    pub(super) fn end_silence(&mut self, node: usize) {
+        for link in self.links_of(node) {
+            let Link { leaf, hub, leaf_open, hub_open, .. } = self.links[link];
+            let is_silent = [leaf, hub].iter().any(|end| {
+                let node = &self.nodes[self.sessions[*end].node];
+                node.is_cut || node.is_suspended
+            });
+            if !is_silent {
+                self.links[link].silent_since_ns = None;
+            }
+            for up in [false, true] {
+                let (from, to) = if up { (leaf_open, hub_open) } else { (hub_open, leaf_open) };
+                if !from && to && !is_silent {
+                    self.put(link, up, Packet::Close);
+                }
+                let wait = self.draw(SENT_AGAIN);
+                if !self.is_stopped(link, up) && !self.links[link].direction(up).queue.is_empty() {
+                    self.expect(link, up, self.now_ns + nanos(wait));
+                }
+            }
+        }
+    }
+
+    /// One end of a link closes: what came over it is gone.
+    pub(super) fn close_end(&mut self, link: usize, at_hub: bool) -> Vec<Call> {
+        let Link { leaf, leaf_open, hub_open, .. } = self.links[link];
+        if at_hub {
+            if !hub_open {
+                return vec![];
+            }
+            self.links[link].hub_open = false;
+            self.note("is closed by the hub", self.sessions[leaf].node, "", &[]);
+            return self.forget(link);
+        }
+        if !leaf_open {
+            return vec![];
+        }
+        self.links[link].leaf_open = false;
+        self.note("loses its link", self.sessions[leaf].node, "", &[]);
+        self.sessions[leaf].link = None;
+        if self.sessions[leaf].is_open {
+            self.try_again(leaf);
+        }
+        self.forget_tokens(leaf)
+    }
+
+    fn try_again(&mut self, session: usize) {
+        let wait = RETRY_LEAST + self.draw(self.conditions.retry);
+        self.after(wait, Event::Reconnect { session });
+    }
+
+    pub(super) fn reconnect(&mut self, session: usize) -> Vec<Call> {
+        let SessionState { is_open, link, node, .. } = self.sessions[session];
+        if is_open && link.is_none() {
+            let hub = self.reachable_hub(session).filter(|_| !self.nodes[node].is_suspended);
+            match hub {
+                Some(hub) => self.connect(session, hub),
+                None => self.try_again(session),
+            }
+        }
+        vec![]
+    }
+
+    /// A session closes, or its process ends: the others hear of it after what was sent before.
+    pub(super) fn close(&mut self, session: usize) {
+        if !std::mem::replace(&mut self.sessions[session].is_open, false) {
+            return;
+        }
+        let declared = std::mem::take(&mut self.sessions[session].declared);
+        self.to_drop.extend(declared.into_values());
+        if let Some(link) = self.sessions[session].link.take() {
+            self.links[link].leaf_open = false;
+            self.put(link, true, Packet::Close);
+        }
+        if !self.sessions[session].is_hub {
+            return;
+        }
+        for link in 0..self.links.len() {
+            if self.links[link].hub == session && self.links[link].hub_open {
+                self.links[link].hub_open = false;
+                self.links[link].known.clear();
+                self.put(link, false, Packet::Close);
+            }
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! A simulated network in virtual time, for tests: the unchanged node code runs over it deterministically, faults included.
+//!
+//! Nodes are threads of this process that block only in this crate. Exactly one of them runs at a time; when all wait,
+//! virtual time jumps to the next event. Which of several goes on, how long a message takes and what is lost is drawn from
+//! one seed: the same seed and the same nodes give the same trace. [`SimulatedNetwork`] is where a test begins; inside of a
+//! node [`crate::Bus`], [`crate::clock`] and everything that waits use it without being told.
+
+mod event;
+mod link;
+mod routing;
+mod run;
+mod scheduler;
+mod session;
+mod state;
+
+pub use run::{Conditions, Damage, Fault, NodeEnd, Published, Run, SimulatedNetwork, Verdict};
+
+pub(crate) use scheduler::{is_inside, now, random_number, spawn, wait_until, wake};
+pub(crate) use session::{SimulatedPublisher, SimulatedQuery, SimulatedSession};

@@ -1,0 +1,424 @@
+//! What travels over links, and where the hub sends it.
+
+use super::Published;
+use super::event::Event;
+use super::scheduler::{Call, current};
+use super::session::SimulatedQuery;
+use super::state::State;
+use crate::Watched;
+use std::collections::BTreeSet;
+use std::fmt;
+use std::sync::Arc;
+use std::time::Duration;
+use zenoh::key_expr::keyexpr;
+
+/// What a session can declare, as the hub knows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Subscriber,
+    Queryable,
+    Token,
+    Watch,
+}
+
+/// What is called with the bytes of a message, with a query, and with a token that has come or gone.
+pub(super) type TakeBytes = Arc<dyn Fn(&[u8]) + Send + Sync>;
+pub(super) type TakeQuery = Arc<dyn Fn(SimulatedQuery) + Send + Sync>;
+pub(super) type TakeToken = Arc<dyn Fn(&str, bool) + Send + Sync>;
+
+/// Something that a session has declared, with what to call.
+pub(super) struct Declared {
+    pub(super) key: String,
+    pub(super) what: What,
+}
+
+pub(super) enum What {
+    Subscriber {
+        take: TakeBytes,
+        hears_own: bool,
+    },
+    Queryable(TakeQuery),
+    Token,
+    /// With the tokens that are known to be there.
+    Watch(TakeToken, BTreeSet<String>),
+}
+
+impl Declared {
+    pub(super) fn packet(&self, id: u64) -> Packet {
+        let kind = match self.what {
+            What::Subscriber { .. } => Kind::Subscriber,
+            What::Queryable(_) => Kind::Queryable,
+            What::Token => Kind::Token,
+            What::Watch(..) => Kind::Watch,
+        };
+        Packet::Declare { id, kind, key: self.key.clone() }
+    }
+}
+
+/// What travels over a link.
+#[derive(Clone, Debug)]
+pub(super) enum Packet {
+    Publish {
+        key: Arc<str>,
+        bytes: Arc<[u8]>,
+    },
+    Declare {
+        id: u64,
+        kind: Kind,
+        key: String,
+    },
+    Undeclare {
+        id: u64,
+    },
+    /// To the hub.
+    Ask {
+        query: u64,
+        key: String,
+        asked: Asked,
+    },
+    /// To the leaf that has declared the queryable.
+    Query {
+        query: u64,
+        id: u64,
+        key: String,
+        payload: Vec<u8>,
+    },
+    /// An answer, or that no more will come.
+    Answer {
+        query: u64,
+        answer: Option<Vec<u8>>,
+    },
+    Token {
+        key: String,
+        is_there: bool,
+    },
+    Close,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub(super) enum Asked {
+    Payload(Vec<u8>),
+    /// Which tokens are there, as a list in JSON.
+    Tokens,
+}
+
+/// Something that a session takes from itself.
+#[derive(Clone, Debug)]
+pub(super) enum Local {
+    Publish { key: Arc<str>, bytes: Arc<[u8]> },
+    Token { watch: u64, key: String },
+}
+
+/// A query that has not been answered to the end.
+pub(super) struct PendingQuery {
+    pub(super) asker: usize,
+    /// How many may still answer.
+    pub(super) open: usize,
+    pub(super) answers: Arc<Watched<Answers>>,
+}
+
+/// What has come of a query.
+#[derive(Default)]
+pub(crate) struct Answers {
+    pub(crate) first: Option<Vec<u8>>,
+    pub(crate) is_complete: bool,
+}
+
+impl fmt::Debug for Declared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.key)
+    }
+}
+
+/// Whether two key expressions have a key in common.
+fn meets(one: &str, other: &str) -> bool {
+    one == other || matches!((keyexpr::new(one), keyexpr::new(other)), (Ok(one), Ok(other)) if one.intersects(other))
+}
+
+impl State {
+    /// The other ends of the links of a hub, on which something of this kind and key is declared.
+    fn declared_beyond(&self, hub: usize, kind: Kind, key: &str, but: Option<usize>) -> Vec<(usize, u64)> {
+        let mut found = Vec::new();
+        for (i, link) in self.links.iter().enumerate() {
+            if link.hub != hub || !link.hub_open || Some(i) == but {
+                continue;
+            }
+            let known = link.known.iter().filter(|(_, (of, at))| *of == kind && meets(at, key));
+            found.extend(known.map(|(id, _)| (i, *id)));
+        }
+        found
+    }
+
+    /// What the subscribers of this session are called with.
+    fn calls_of_subscribers(&self, session: usize, key: &str, bytes: &Arc<[u8]>, is_own: bool) -> Vec<Call> {
+        let mut calls: Vec<Call> = Vec::new();
+        for declared in self.sessions[session].declared.values() {
+            if let What::Subscriber { take, hears_own } = &declared.what
+                && (!is_own || *hears_own)
+                && meets(&declared.key, key)
+            {
+                let (take, bytes) = (Arc::clone(take), Arc::clone(bytes));
+                calls.push(Box::new(move || take(&bytes)));
+            }
+        }
+        calls
+    }
+
+    /// A session publishes.
+    pub(super) fn publish(&mut self, session: usize, key: &Arc<str>, bytes: &Arc<[u8]>) {
+        let hears_own = |what: &What| matches!(what, What::Subscriber { hears_own: true, .. });
+        let own = &self.sessions[session].declared;
+        if own.values().any(|declared| hears_own(&declared.what) && meets(&declared.key, key)) {
+            let local = Local::Publish { key: Arc::clone(key), bytes: Arc::clone(bytes) };
+            self.at(self.now_ns, Event::Local { session, local });
+        }
+        if self.sessions[session].is_hub {
+            self.report_published(session, key, bytes);
+            self.forward(session, key, bytes, None);
+        } else if let Some(link) = self.sessions[session].link {
+            self.send(link, true, Packet::Publish { key: Arc::clone(key), bytes: Arc::clone(bytes) });
+        }
+    }
+
+    /// Sends it to all leaves that have subscribed.
+    fn forward(&mut self, hub: usize, key: &Arc<str>, bytes: &Arc<[u8]>, from: Option<usize>) {
+        let mut to = self.declared_beyond(hub, Kind::Subscriber, key, from);
+        to.dedup_by_key(|(link, _)| *link);
+        for (link, _) in to {
+            self.send(link, false, Packet::Publish { key: Arc::clone(key), bytes: Arc::clone(bytes) });
+        }
+    }
+
+    fn report_published(&mut self, session: usize, key: &str, bytes: &[u8]) {
+        let node = self.sessions[session].node;
+        self.note("publishes", node, key, bytes);
+        if let Some(on_publish) = &mut self.on_publish {
+            let at = Duration::from_nanos(self.now_ns);
+            on_publish(Published { at, node: &self.nodes[node].name, key, bytes });
+        }
+    }
+
+    /// Whether anybody would hear what is published on a key.
+    pub(super) fn is_heard(&self, session: usize, key: &str) -> bool {
+        // A leaf cannot know.
+        !self.sessions[session].is_hub
+            || self.on_publish.is_some()
+            || !self.declared_beyond(session, Kind::Subscriber, key, None).is_empty()
+    }
+
+    /// Something reaches the hub.
+    pub(super) fn take_at_hub(&mut self, link: usize, packet: Packet) -> Vec<Call> {
+        if !self.links[link].hub_open {
+            return vec![];
+        }
+        let (leaf, hub) = (self.links[link].leaf, self.links[link].hub);
+        match packet {
+            Packet::Publish { key, bytes } => {
+                self.report_published(leaf, &key, &bytes);
+                self.forward(hub, &key, &bytes, Some(link));
+                self.calls_of_subscribers(hub, &key, &bytes, false)
+            }
+            Packet::Declare { id, kind, key } => {
+                self.links[link].known.insert(id, (kind, key.clone()));
+                match kind {
+                    Kind::Token => self.announce(hub, &key, true, Some(link)),
+                    Kind::Watch => {
+                        let there = self.tokens(hub, &key, Some(link));
+                        there.into_iter().for_each(|key| self.send(link, false, Packet::Token { key, is_there: true }));
+                        vec![]
+                    }
+                    Kind::Subscriber | Kind::Queryable => vec![],
+                }
+            }
+            Packet::Undeclare { id } => match self.links[link].known.remove(&id) {
+                Some((Kind::Token, key)) => self.announce(hub, &key, false, Some(link)),
+                _ => vec![],
+            },
+            Packet::Ask { query, key, asked } => self.route(hub, query, &key, asked, Some(link)),
+            Packet::Answer { query, answer } => self.answer_at_hub(hub, query, answer),
+            Packet::Close => self.close_end(link, true),
+            Packet::Query { .. } | Packet::Token { .. } => vec![],
+        }
+    }
+
+    /// Something reaches a leaf.
+    pub(super) fn take_at_leaf(&mut self, link: usize, packet: Packet) -> Vec<Call> {
+        if !self.links[link].leaf_open {
+            return vec![];
+        }
+        let leaf = self.links[link].leaf;
+        match packet {
+            Packet::Publish { key, bytes } => {
+                self.note("takes", self.sessions[leaf].node, &key, &bytes);
+                self.calls_of_subscribers(leaf, &key, &bytes, false)
+            }
+            Packet::Query { query, id, key, payload } => match self.sessions[leaf].declared.get(&id) {
+                Some(Declared { what: What::Queryable(take), .. }) => vec![asking(take, leaf, query, key, payload)],
+                _ => {
+                    self.send(link, true, Packet::Answer { query, answer: None });
+                    vec![]
+                }
+            },
+            Packet::Answer { query, answer } => self.answered(query, answer),
+            Packet::Token { key, is_there } => self.take_token(leaf, &key, is_there),
+            Packet::Close => self.close_end(link, false),
+            Packet::Declare { .. } | Packet::Undeclare { .. } | Packet::Ask { .. } => vec![],
+        }
+    }
+
+    /// The tokens under a key that a hub knows.
+    fn tokens(&self, hub: usize, key: &str, but: Option<usize>) -> Vec<String> {
+        let own = self.sessions[hub].declared.values().filter(|declared| matches!(declared.what, What::Token));
+        let mut keys: Vec<String> = own.map(|declared| declared.key.clone()).filter(|at| meets(at, key)).collect();
+        let beyond = self.declared_beyond(hub, Kind::Token, key, but);
+        keys.extend(beyond.iter().map(|(link, id)| self.links[*link].known[id].1.clone()));
+        keys
+    }
+
+    /// A token has come to the hub or is gone: everybody who watches is told.
+    pub(super) fn announce(&mut self, hub: usize, key: &str, is_there: bool, from: Option<usize>) -> Vec<Call> {
+        // A leaf that came back may be known by its old link still.
+        if !is_there && self.tokens(hub, key, None).iter().any(|there| there == key) {
+            return vec![];
+        }
+        let mut to = self.declared_beyond(hub, Kind::Watch, key, from);
+        to.dedup_by_key(|(link, _)| *link);
+        for (link, _) in to {
+            self.send(link, false, Packet::Token { key: key.to_owned(), is_there });
+        }
+        if from.is_some() { self.take_token(hub, key, is_there) } else { vec![] }
+    }
+
+    /// A session hears of a token.
+    fn take_token(&mut self, session: usize, key: &str, is_there: bool) -> Vec<Call> {
+        let node = self.sessions[session].node;
+        self.note(if is_there { "sees" } else { "misses" }, node, key, &[]);
+        let mut calls: Vec<Call> = Vec::new();
+        for declared in self.sessions[session].declared.values_mut() {
+            if let What::Watch(take, known) = &mut declared.what
+                && meets(&declared.key, key)
+                && (if is_there { known.insert(key.to_owned()) } else { known.remove(key) })
+            {
+                let (take, key) = (Arc::clone(take), key.to_owned());
+                calls.push(Box::new(move || take(&key, is_there)));
+            }
+        }
+        calls
+    }
+
+    /// A leaf has lost its link, and with it everything that it knew to be there.
+    pub(super) fn forget_tokens(&mut self, leaf: usize) -> Vec<Call> {
+        let watches = self.sessions[leaf].declared.values().filter_map(|declared| match &declared.what {
+            What::Watch(_, known) => Some(known),
+            _ => None,
+        });
+        let known: BTreeSet<String> = watches.flatten().cloned().collect();
+        known.iter().flat_map(|key| self.take_token(leaf, key, false)).collect()
+    }
+
+    /// The hub forgets what came over a link.
+    pub(super) fn forget(&mut self, link: usize) -> Vec<Call> {
+        let hub = self.links[link].hub;
+        let known = std::mem::take(&mut self.links[link].known);
+        let tokens = known.into_values().filter(|(kind, _)| *kind == Kind::Token);
+        tokens.flat_map(|(_, key)| self.announce(hub, &key, false, Some(link))).collect()
+    }
+
+    pub(super) fn take_local(&mut self, session: usize, local: &Local) -> Vec<Call> {
+        match local {
+            Local::Publish { key, bytes } => self.calls_of_subscribers(session, key, bytes, true),
+            Local::Token { watch, key } => {
+                let declared = self.sessions[session].declared.get_mut(watch);
+                let Some(Declared { what: What::Watch(take, known), .. }) = declared else { return vec![] };
+                if !known.insert(key.clone()) {
+                    return vec![];
+                }
+                let (take, key) = (Arc::clone(take), key.clone());
+                vec![Box::new(move || take(&key, true))]
+            }
+        }
+    }
+
+    /// A watch at a hub begins with what is there.
+    pub(super) fn begin_watch(&mut self, session: usize, watch: u64, key: &str) {
+        for key in self.tokens(session, key, None) {
+            self.at(self.now_ns, Event::Local { session, local: Local::Token { watch, key } });
+        }
+    }
+
+    /// A hub passes a query on to all who answer at its key.
+    pub(super) fn route(&mut self, hub: usize, query: u64, key: &str, asked: Asked, from: Option<usize>) -> Vec<Call> {
+        let payload = match asked {
+            Asked::Payload(payload) => payload,
+            Asked::Tokens => {
+                let tokens = serde_json::to_vec(&self.tokens(hub, key, None)).expect("a list of strings is JSON");
+                return self.answer_back(hub, query, Some(tokens));
+            }
+        };
+        let beyond = self.declared_beyond(hub, Kind::Queryable, key, from);
+        let mut calls: Vec<Call> = Vec::new();
+        for declared in self.sessions[hub].declared.values() {
+            if let What::Queryable(take) = &declared.what
+                && meets(&declared.key, key)
+            {
+                calls.push(asking(take, hub, query, key.to_owned(), payload.clone()));
+            }
+        }
+        let open = calls.len() + beyond.len();
+        if let Some(pending) = self.queries.get_mut(&query) {
+            pending.open = open;
+        }
+        if open == 0 {
+            return self.answer_back(hub, query, None);
+        }
+        for (link, id) in beyond {
+            self.send(link, false, Packet::Query { query, id, key: key.to_owned(), payload: payload.clone() });
+        }
+        calls
+    }
+
+    /// Somebody who was asked has answered, or will not any more.
+    pub(super) fn answer_at_hub(&mut self, hub: usize, query: u64, answer: Option<Vec<u8>>) -> Vec<Call> {
+        let Some(pending) = self.queries.get_mut(&query) else { return vec![] };
+        if answer.is_none() {
+            pending.open = pending.open.saturating_sub(1);
+            if pending.open > 0 {
+                return vec![];
+            }
+        }
+        self.answer_back(hub, query, answer)
+    }
+
+    fn answer_back(&mut self, hub: usize, query: u64, answer: Option<Vec<u8>>) -> Vec<Call> {
+        let Some(asker) = self.queries.get(&query).map(|pending| pending.asker) else { return vec![] };
+        if asker == hub {
+            return self.answered(query, answer);
+        }
+        if let Some(link) = self.links.iter().rposition(|link| link.leaf == asker && link.hub == hub && link.hub_open) {
+            self.send(link, false, Packet::Answer { query, answer });
+        }
+        vec![]
+    }
+
+    /// Whoever asked is answered.
+    fn answered(&mut self, query: u64, answer: Option<Vec<u8>>) -> Vec<Call> {
+        let Some(pending) = self.queries.get(&query) else { return vec![] };
+        let answers = Arc::clone(&pending.answers);
+        vec![Box::new(move || {
+            answers.visit(|answers| match answer {
+                Some(answer) => answers.first = answers.first.take().or(Some(answer)),
+                None => answers.is_complete = true,
+            });
+        })]
+    }
+}
+
+/// Calls a queryable.
+fn asking(take: &TakeQuery, session: usize, query: u64, key: String, payload: Vec<u8>) -> Call {
+    let take = Arc::clone(take);
+    Box::new(move || {
+        let current = current().expect("events happen in threads of the simulation");
+        take(SimulatedQuery::new(current.world, session, query, (key, payload)));
+    })
+}

@@ -1,0 +1,205 @@
+//! A simulation from outside: its nodes, its conditions, its faults, and how it ended.
+
+use super::event::{Event, nanos};
+use super::scheduler::World;
+use super::state::{Node, State};
+use crate::clock;
+use game::stream::Stream;
+use std::collections::{BTreeMap, BinaryHeap};
+use std::hash::{DefaultHasher, Hasher};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// How the network is while it works.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conditions {
+    /// Every message takes at least this long over a link.
+    pub delay: Duration,
+    /// And up to this much longer. Over one link messages keep their order.
+    pub jitter: Duration,
+    /// The share of published messages that a congested link drops.
+    pub loss: f64,
+    /// The share of published messages that arrive damaged, and how.
+    pub damaged: (f64, Damage),
+    /// After this long without a sign of the other side a link is closed.
+    pub lease: Duration,
+    /// How long a leaf without a link waits between two attempts to connect, at most.
+    pub retry: Duration,
+    /// Messages that a link keeps while it is cut; more are dropped.
+    pub queue: usize,
+    /// A node that publishes is held up for at most this long, now and then: it computes, or others do.
+    pub pause: Duration,
+}
+
+/// How messages are damaged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Damage {
+    /// Cut short: whoever checks lengths notices.
+    Truncated,
+    /// One bit is another.
+    BitFlip,
+    /// Random bytes.
+    Noise,
+}
+
+/// What goes wrong. Nodes are numbered in the order in which they were added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// Nothing goes between this node and the others for this long.
+    Cut {
+        /// Which.
+        node: usize,
+        /// How long.
+        time: Duration,
+    },
+    /// The process is stopped (`SIGSTOP`) and goes on after this time.
+    Suspend {
+        /// Which.
+        node: usize,
+        /// How long.
+        time: Duration,
+    },
+    /// The process dies.
+    Kill {
+        /// Which.
+        node: usize,
+        /// How long after its end it is started again, if at all.
+        restart: Option<Duration>,
+    },
+}
+
+/// A message as the hub sees it: what it publishes, and what reaches it.
+#[derive(Clone, Copy, Debug)]
+pub struct Published<'a> {
+    /// When.
+    pub at: Duration,
+    /// Who published it.
+    pub node: &'a str,
+    /// On which key.
+    pub key: &'a str,
+    /// What.
+    pub bytes: &'a [u8],
+}
+
+/// How a simulation ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// All nodes came to their end.
+    Ended,
+    /// These nodes waited for something that could not come.
+    Deadlock(Vec<String>),
+    /// These nodes were still there at the limit.
+    OutOfTime(Vec<String>),
+    /// A node panicked.
+    Panic(String),
+}
+
+/// The end of a node.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NodeEnd {
+    /// Which.
+    pub node: String,
+    /// When.
+    pub at: Duration,
+    /// Whether a fault was the reason.
+    pub was_killed: bool,
+}
+
+/// What came of a simulation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Run {
+    /// How it ended.
+    pub verdict: Verdict,
+    /// How long it took, in virtual time.
+    pub time: Duration,
+    /// A hash over everything that happened: the same for the same seed and nodes.
+    pub trace: u64,
+    /// What happened, line by line, where that was asked for.
+    pub lines: Vec<String>,
+    /// The ends of nodes, in order.
+    pub ends: Vec<NodeEnd>,
+}
+
+/// A simulated network, and the nodes on it.
+pub struct SimulatedNetwork(Arc<World>);
+
+impl SimulatedNetwork {
+    /// A network on which everything that is drawn follows from `seed`.
+    #[must_use]
+    pub fn new(seed: u64, conditions: Conditions) -> SimulatedNetwork {
+        let state = State {
+            conditions,
+            stream: Stream::new(seed, "network"),
+            now_ns: 0,
+            limit_ns: 0,
+            order: 0,
+            events: BinaryHeap::new(),
+            starts_due: 0,
+            nodes: vec![],
+            threads: vec![],
+            ready: vec![],
+            sessions: vec![],
+            links: vec![],
+            queries: BTreeMap::new(),
+            to_drop: vec![],
+            number: 0,
+            on_publish: None,
+            verdict: Verdict::Ended,
+            ends: vec![],
+            hash: DefaultHasher::new(),
+            lines: None,
+        };
+        SimulatedNetwork(World::new(clock::now(), state))
+    }
+
+    /// Adds a node, which begins with `body` at this time, and again whenever it is started again. Gives its number.
+    pub fn node(&self, at: Duration, name: &str, body: impl Fn() + Send + Sync + 'static) -> usize {
+        let mut state = self.0.state.lock();
+        let node = state.nodes.len();
+        state.nodes.push(Node {
+            name: name.to_owned(),
+            body: Arc::new(body),
+            is_running: false,
+            is_suspended: false,
+            is_cut: false,
+            cuts: 0,
+            suspensions: 0,
+            main_thread: None,
+            starts_again: None,
+        });
+        state.starts_due += 1;
+        state.at(nanos(at), Event::Start { node });
+        node
+    }
+
+    /// Something goes wrong at this time.
+    pub fn fault(&self, at: Duration, fault: Fault) {
+        self.0.state.lock().at(nanos(at), Event::Fault(fault));
+    }
+
+    /// Calls `see` with everything that the hub publishes, and with everything published that reaches it. It must not use
+    /// the network.
+    pub fn on_publish(&self, see: impl FnMut(Published<'_>) + Send + 'static) {
+        self.0.state.lock().on_publish = Some(Box::new(see));
+    }
+
+    /// Keeps what happens line by line.
+    pub fn keep_lines(&self) {
+        self.0.state.lock().lines = Some(vec![]);
+    }
+
+    /// Runs until all nodes have ended, or virtual time is up.
+    #[must_use]
+    pub fn run(self, limit: Duration) -> Run {
+        self.0.state.lock().limit_ns = nanos(limit);
+        self.0.run();
+        let mut state = self.0.state.lock();
+        Run {
+            verdict: state.verdict.clone(),
+            time: Duration::from_nanos(state.now_ns),
+            trace: state.hash.finish(),
+            lines: state.lines.take().unwrap_or_default(),
+            ends: std::mem::take(&mut state.ends),
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Which thread runs: exactly one at a time. It hands over where it waits; when all wait, the next event happens.
+
+use super::state::{Node, State, Status, Thread};
+use parking_lot::Mutex;
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// The number of the thread that runs the whole simulation: it only waits for the end.
+const MAIN: usize = usize::MAX;
+
+thread_local! {
+    /// Where this thread is, if it is in a simulation.
+    static CURRENT: RefCell<Option<Current>> = const { RefCell::new(None) };
+    /// Whether this thread is calling somebody back because of an event.
+    static IN_CALLBACK: Cell<bool> = const { Cell::new(false) };
+}
+
+/// A thread of a node in a simulation.
+#[derive(Clone)]
+pub(super) struct Current {
+    pub(super) world: Arc<World>,
+    pub(super) node: usize,
+    thread: usize,
+}
+
+/// With this a thread of a node that is killed unwinds.
+struct Killed;
+
+/// One simulation.
+pub(super) struct World {
+    start: Instant,
+    /// Virtual time, ns; changed only with the state locked.
+    now_ns: AtomicU64,
+    running: AtomicUsize,
+    pub(super) state: Mutex<State>,
+    main: thread::Thread,
+}
+
+/// What is called when an event happens, with no lock held.
+pub(super) type Call = Box<dyn FnOnce() + Send>;
+
+/// The simulation that this thread is in.
+pub(super) fn current() -> Option<Current> {
+    CURRENT.with_borrow(Clone::clone)
+}
+
+/// Whether this thread is in a simulation.
+pub(crate) fn is_inside() -> bool {
+    CURRENT.with_borrow(Option::is_some)
+}
+
+/// Whether this thread is calling somebody back because of an event: then it must not wait.
+pub(super) fn is_in_callback() -> bool {
+    IN_CALLBACK.get()
+}
+
+/// This moment in virtual time, inside of a simulation.
+pub(crate) fn now() -> Option<Instant> {
+    CURRENT.with_borrow(|current| current.as_ref().map(|current| current.world.now()))
+}
+
+/// A number that follows from the seed, inside of a simulation.
+pub(crate) fn random_number() -> Option<u64> {
+    CURRENT.with_borrow(|current| current.as_ref().map(|current| current.world.state.lock().stream.bits()))
+}
+
+/// Something at this address has changed: whoever waits for it looks again.
+pub(crate) fn wake(address: usize) {
+    CURRENT.with_borrow(|current| {
+        if let Some(current) = current {
+            current.world.state.lock().wake(address);
+        }
+    });
+}
+
+/// Waits until something at this address changes, at most until `deadline`; none is for ever. Says whether there is time
+/// left. Does not wait in a thread that unwinds.
+pub(crate) fn wait_until(address: usize, deadline: Option<Instant>) -> bool {
+    let Some(current) = current() else { return false };
+    let world = &current.world;
+    if thread::panicking() {
+        return false;
+    }
+    assert!(!is_in_callback(), "callbacks must only hand over");
+    let deadline_ns = deadline.map(|deadline| world.ns_at(deadline));
+    world.state.lock().block(current.thread, address, deadline_ns);
+    world.pass_on(current.thread);
+    if world.state.lock().threads[current.thread].is_killed {
+        resume_unwind(Box::new(Killed));
+    }
+    deadline.is_none_or(|deadline| world.now() < deadline)
+}
+
+/// Starts another thread of the same node, inside of a simulation; a thread of its own elsewhere.
+pub(crate) fn spawn(body: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
+    match current() {
+        Some(Current { world, node, .. }) => {
+            world.spawn(node, Box::new(body));
+            None
+        }
+        None => Some(thread::spawn(body)),
+    }
+}
+
+impl World {
+    pub(super) fn new(start: Instant, state: State) -> Arc<World> {
+        let (now_ns, running, state) = (AtomicU64::new(0), AtomicUsize::new(MAIN), Mutex::new(state));
+        Arc::new(World { start, now_ns, running, state, main: thread::current() })
+    }
+
+    pub(super) fn now(&self) -> Instant {
+        self.start + Duration::from_nanos(self.now_ns.load(Ordering::Relaxed))
+    }
+
+    fn ns_at(&self, moment: Instant) -> u64 {
+        u64::try_from(moment.saturating_duration_since(self.start).as_nanos()).unwrap_or(u64::MAX)
+    }
+
+    /// Adds a thread to a node; it runs when its turn comes.
+    pub(super) fn spawn(self: &Arc<World>, node: usize, body: Box<dyn FnOnce() + Send>) -> usize {
+        let mut state = self.state.lock();
+        let thread = state.threads.len();
+        let current = Current { world: Arc::clone(self), node, thread };
+        let handle = thread::spawn(move || current.run(body));
+        state.threads.push(Thread { node, handle: Some(handle), status: Status::Ready, is_killed: false, waits: 0 });
+        thread
+    }
+
+    /// Lets others run until it is this thread's turn again.
+    fn pass_on(self: &Arc<World>, me: usize) {
+        let next = self.next();
+        if next == me {
+            return;
+        }
+        self.hand_to(next);
+        self.await_turn(me);
+    }
+
+    fn hand_to(&self, next: usize) {
+        let handle = match next {
+            MAIN => self.main.clone(),
+            next => {
+                let state = self.state.lock();
+                let handle = state.threads[next].handle.as_ref();
+                handle.expect("a thread that runs has not been joined").thread().clone()
+            }
+        };
+        self.running.store(next, Ordering::Release);
+        handle.unpark();
+    }
+
+    fn await_turn(&self, me: usize) {
+        while self.running.load(Ordering::Acquire) != me {
+            thread::park();
+        }
+    }
+
+    /// The thread whose turn it is: events happen until there is one.
+    fn next(self: &Arc<World>) -> usize {
+        loop {
+            let mut state = self.state.lock();
+            if let Some(thread) = state.draw_ready() {
+                return thread;
+            }
+            if state.is_over() {
+                return MAIN;
+            }
+            let calls = state.step(self);
+            self.now_ns.store(state.now_ns, Ordering::Relaxed);
+            let to_drop = std::mem::take(&mut state.to_drop);
+            drop(state);
+            drop(to_drop);
+            IN_CALLBACK.set(true);
+            calls.into_iter().for_each(|call| call());
+            IN_CALLBACK.set(false);
+        }
+    }
+
+    /// Runs until no thread is left.
+    pub(super) fn run(self: &Arc<World>) {
+        self.pass_on(MAIN);
+        let handles: Vec<_> = self.state.lock().threads.iter_mut().filter_map(|thread| thread.handle.take()).collect();
+        for handle in handles {
+            handle.join().unwrap_or_default();
+        }
+        let to_drop = std::mem::take(&mut self.state.lock().to_drop);
+        drop(to_drop);
+    }
+}
+
+impl Current {
+    /// The life of a thread of a node.
+    fn run(self, body: Box<dyn FnOnce() + Send>) {
+        let (world, node, thread) = (Arc::clone(&self.world), self.node, self.thread);
+        CURRENT.set(Some(self));
+        world.await_turn(thread);
+        let is_killed = world.state.lock().threads[thread].is_killed;
+        let ended = if is_killed { Ok(()) } else { catch_unwind(AssertUnwindSafe(body)) };
+        let panic = ended.err().filter(|payload| !payload.is::<Killed>()).map(|payload| text_of(&*payload));
+        world.state.lock().thread_ended(thread, node, panic);
+        let next = world.next();
+        CURRENT.set(None);
+        world.hand_to(next);
+    }
+}
+
+fn text_of(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_else(|| "it panicked".to_owned())
+}
+
+impl State {
+    /// Draws which of the threads that can go on does so.
+    fn draw_ready(&mut self) -> Option<usize> {
+        let is_ready = |thread: &Thread, nodes: &[Node]| {
+            thread.status == Status::Ready && (thread.is_killed || !nodes[thread.node].is_suspended)
+        };
+        let nodes = &self.nodes;
+        let mut ready = std::mem::take(&mut self.ready);
+        ready.clear();
+        ready.extend((0..self.threads.len()).filter(|i| is_ready(&self.threads[*i], nodes)));
+        let drawn = match ready.as_slice() {
+            [] => None,
+            [one] => Some(*one),
+            several => Some(several[self.stream.below(several.len() as u64) as usize]),
+        };
+        self.ready = ready;
+        drawn
+    }
+
+    fn wake(&mut self, address: usize) {
+        for thread in &mut self.threads {
+            if matches!(thread.status, Status::Waits { address: at, .. } if at == address) {
+                thread.status = Status::Ready;
+            }
+        }
+    }
+
+    fn block(&mut self, thread: usize, address: usize, deadline_ns: Option<u64>) {
+        let waits = &mut self.threads[thread].waits;
+        *waits += 1;
+        let wait = *waits;
+        self.threads[thread].status = Status::Waits { address, wait };
+        if let Some(at_ns) = deadline_ns {
+            self.at(at_ns, super::event::Event::Wake { thread, wait });
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! A session on the simulated network: what [`crate::Bus`] does there.
+
+use super::routing::{Answers, Asked, Declared, Packet, PendingQuery, What};
+use super::scheduler::{Call, World, current, is_in_callback, wait_until};
+use super::state::{SessionState, State};
+use crate::{Net, Watched};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// One in so many messages is held up before it is sent.
+const PAUSES: u64 = 8;
+/// How long an attempt to connect to nobody takes.
+const CONNECT: Duration = Duration::from_secs(1);
+
+/// A session of a simulated node.
+#[derive(Clone)]
+pub(crate) struct SimulatedSession {
+    world: Arc<World>,
+    session: usize,
+    id: String,
+}
+
+/// Sends on one key.
+pub(crate) struct SimulatedPublisher {
+    session: SimulatedSession,
+    key: Arc<str>,
+}
+
+/// Takes a declaration back when it is dropped.
+pub(crate) struct Undeclare {
+    session: SimulatedSession,
+    id: u64,
+}
+
+/// A query to be answered once.
+pub(crate) struct SimulatedQuery {
+    world: Arc<World>,
+    session: usize,
+    query: u64,
+    key: String,
+    pub(crate) payload: Vec<u8>,
+}
+
+impl SimulatedSession {
+    /// Opens a hub, inside of a simulation. Says so if another one listens there.
+    pub(crate) fn hub(net: &Net) -> Result<SimulatedSession, String> {
+        let session = SimulatedSession::new(&net.listen, true)?;
+        let state = session.world.state.lock();
+        let listens = |(i, other): (usize, &SessionState)| {
+            i != session.session
+                && other.is_hub
+                && other.is_open
+                && other.endpoints.iter().any(|at| net.listen.contains(at))
+        };
+        let is_taken = state.sessions.iter().enumerate().any(listens);
+        drop(state);
+        if is_taken {
+            session.close();
+            return Err("the address is in use".to_owned());
+        }
+        Ok(session)
+    }
+
+    /// Connects to a hub, inside of a simulation.
+    pub(crate) fn leaf(net: &Net) -> Result<SimulatedSession, String> {
+        let session = SimulatedSession::new(&net.connect, false)?;
+        let delay = session.world.state.lock().conditions.delay;
+        wait_until(0, session.world.now().checked_add(2 * delay));
+        let mut state = session.world.state.lock();
+        let hub = state.reachable_hub(session.session);
+        if let Some(hub) = hub {
+            state.connect(session.session, hub);
+        }
+        drop(state);
+        if hub.is_none() {
+            session.close();
+            wait_until(0, session.world.now().checked_add(CONNECT));
+            return Err("nobody listens there".to_owned());
+        }
+        Ok(session)
+    }
+
+    fn new(endpoints: &[String], is_hub: bool) -> Result<SimulatedSession, String> {
+        let current = current().ok_or("not inside of a simulation")?;
+        let world = current.world;
+        let mut state = world.state.lock();
+        let id = format!("{:016x}", state.stream.bits());
+        let session = state.sessions.len();
+        let (endpoints, declared) = (endpoints.to_vec(), BTreeMap::new());
+        state.sessions.push(SessionState {
+            node: current.node,
+            is_open: true,
+            endpoints,
+            link: None,
+            is_hub,
+            declared,
+        });
+        drop(state);
+        Ok(SimulatedSession { world, session, id })
+    }
+
+    pub(crate) fn id(&self) -> String {
+        self.id.clone()
+    }
+
+    pub(crate) fn publisher(&self, key: &str) -> SimulatedPublisher {
+        SimulatedPublisher { session: self.clone(), key: key.into() }
+    }
+
+    pub(crate) fn subscribe(
+        &self,
+        key: String,
+        take: impl Fn(&[u8]) + Send + Sync + 'static,
+        hears_own: bool,
+    ) -> Undeclare {
+        self.declare(key, What::Subscriber { take: Arc::new(take), hears_own })
+    }
+
+    pub(crate) fn answer(&self, key: String, take: impl Fn(SimulatedQuery) + Send + Sync + 'static) -> Undeclare {
+        self.declare(key, What::Queryable(Arc::new(take)))
+    }
+
+    pub(crate) fn show_alive(&self, key: String) -> Undeclare {
+        self.declare(key, What::Token)
+    }
+
+    pub(crate) fn watch_alive(&self, key: String, take: impl Fn(&str, bool) + Send + Sync + 'static) -> Undeclare {
+        self.declare(key, What::Watch(Arc::new(take), Default::default()))
+    }
+
+    fn declare(&self, key: String, what: What) -> Undeclare {
+        let mut state = self.world.state.lock();
+        state.number += 1;
+        let id = state.number;
+        let declared = Declared { key: key.clone(), what };
+        let packet = declared.packet(id);
+        let own = &mut state.sessions[self.session];
+        let (is_hub, link) = (own.is_hub, own.link);
+        let mut calls = vec![];
+        if own.is_open {
+            own.declared.insert(id, declared);
+        }
+        match packet {
+            Packet::Declare { kind: super::routing::Kind::Watch, .. } if is_hub => {
+                state.begin_watch(self.session, id, &key)
+            }
+            Packet::Declare { kind: super::routing::Kind::Token, .. } if is_hub => {
+                calls = state.announce(self.session, &key, true, None);
+            }
+            packet => link.into_iter().for_each(|link| state.send(link, true, packet.clone())),
+        }
+        drop(state);
+        calls.into_iter().for_each(|call| call());
+        Undeclare { session: self.clone(), id }
+    }
+
+    pub(crate) fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Option<Vec<u8>> {
+        self.query(key, Asked::Payload(payload), limit)
+    }
+
+    pub(crate) fn who_is_alive(&self, key: &str, limit: Duration) -> Vec<String> {
+        let tokens = self.query(key, Asked::Tokens, limit);
+        tokens.and_then(|json| serde_json::from_slice(&json).ok()).unwrap_or_default()
+    }
+
+    fn query(&self, key: &str, asked: Asked, limit: Duration) -> Option<Vec<u8>> {
+        let answers = Arc::new(Watched::new(Answers::default()));
+        let mut state = self.world.state.lock();
+        state.number += 1;
+        let query = state.number;
+        let SessionState { is_hub, link, .. } = state.sessions[self.session];
+        let pending = PendingQuery { asker: self.session, open: 0, answers: Arc::clone(&answers) };
+        state.queries.insert(query, pending);
+        let mut calls: Vec<Call> = vec![];
+        match (is_hub, link) {
+            (true, _) => calls = state.route(self.session, query, key, asked, None),
+            (false, Some(link)) => state.send(link, true, Packet::Ask { query, key: key.to_owned(), asked }),
+            (false, None) => {
+                state.queries.remove(&query);
+                return None;
+            }
+        }
+        drop(state);
+        calls.into_iter().for_each(|call| call());
+        answers.wait(limit, |answers| answers.first.is_some() || answers.is_complete);
+        drop(self.world.state.lock().queries.remove(&query));
+        answers.visit(|answers| answers.first.take())
+    }
+
+    pub(crate) fn close(&self) {
+        self.world.state.lock().close(self.session);
+    }
+}
+
+impl SimulatedPublisher {
+    pub(crate) fn is_heard(&self) -> bool {
+        self.session.world.state.lock().is_heard(self.session.session, &self.key)
+    }
+
+    pub(crate) fn put(&self, bytes: Vec<u8>) {
+        self.pause_now_and_then();
+        self.session.world.state.lock().publish(self.session.session, &self.key, &bytes.into());
+    }
+
+    /// Now and then computing takes its time.
+    fn pause_now_and_then(&self) {
+        if is_in_callback() {
+            return;
+        }
+        let mut state = self.session.world.state.lock();
+        let pause = state.conditions.pause;
+        let is_held_up = !pause.is_zero() && state.stream.below(PAUSES) == 0;
+        let time = if is_held_up { state.draw(pause) } else { Duration::ZERO };
+        drop(state);
+        if is_held_up {
+            wait_until(0, self.session.world.now().checked_add(time));
+        }
+    }
+}
+
+impl Drop for Undeclare {
+    fn drop(&mut self) {
+        let mut state = self.session.world.state.lock();
+        let SessionState { is_hub, link, .. } = state.sessions[self.session.session];
+        let removed = state.sessions[self.session.session].declared.remove(&self.id);
+        let mut calls: Vec<Call> = vec![];
+        match (&removed, link) {
+            (Some(Declared { key, what: What::Token }), _) if is_hub => {
+                calls = state.announce(self.session.session, key, false, None);
+            }
+            (Some(_), Some(link)) => state.send(link, true, Packet::Undeclare { id: self.id }),
+            _ => {}
+        }
+        drop(state);
+        calls.into_iter().for_each(|call| call());
+        // What a subscriber holds may itself use the network when it goes.
+        drop(removed);
+    }
+}
+
+impl SimulatedQuery {
+    pub(super) fn new(
+        world: Arc<World>,
+        session: usize,
+        query: u64,
+        (key, payload): (String, Vec<u8>),
+    ) -> SimulatedQuery {
+        SimulatedQuery { world, session, query, key, payload }
+    }
+
+    /// The key that was asked.
+    pub(crate) fn key(&self) -> &str {
+        &self.key
+    }
+
+    pub(crate) fn answer(&self, answer: Vec<u8>) {
+        self.send(Some(answer));
+    }
+
+    fn send(&self, answer: Option<Vec<u8>>) {
+        let mut state = self.world.state.lock();
+        let calls = state.answer_from(self.session, self.query, answer);
+        drop(state);
+        calls.into_iter().for_each(|call| call());
+    }
+}
+
+impl Drop for SimulatedQuery {
+    fn drop(&mut self) {
+        self.send(None);
+    }
+}
+
+impl State {
+    fn answer_from(&mut self, session: usize, query: u64, answer: Option<Vec<u8>>) -> Vec<Call> {
+        let SessionState { is_open, is_hub, link, .. } = self.sessions[session];
+        match link {
+            _ if !is_open => vec![],
+            _ if is_hub => self.answer_at_hub(session, query, answer),
+            Some(link) => {
+                self.send(link, true, Packet::Answer { query, answer });
+                vec![]
+            }
+            None => vec![],
+        }
+    }
+}

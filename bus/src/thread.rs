@@ -1,0 +1,42 @@
+//! Threads of a node beside its first one.
+
+use crate::{Watched, simulated};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+/// A thread that is waited for when this is dropped. What it does must end then.
+pub struct NodeThread {
+    is_done: Arc<Watched<bool>>,
+    handle: Option<JoinHandle<()>>,
+}
+
+/// Says that a thread is done, however it ends.
+struct Done(Arc<Watched<bool>>);
+
+impl Drop for Done {
+    fn drop(&mut self) {
+        self.0.visit(|is_done| *is_done = true);
+    }
+}
+
+impl NodeThread {
+    /// Starts a thread.
+    #[must_use]
+    pub fn start(body: impl FnOnce() + Send + 'static) -> NodeThread {
+        let is_done = Arc::new(Watched::new(false));
+        let done = Done(Arc::clone(&is_done));
+        let handle = simulated::spawn(move || {
+            let _done = done;
+            body();
+        });
+        NodeThread { is_done, handle }
+    }
+}
+
+impl Drop for NodeThread {
+    fn drop(&mut self) {
+        self.is_done.wait(std::time::Duration::MAX, |is_done| *is_done);
+        // A thread that panicked has nothing to give back.
+        self.handle.take().map(JoinHandle::join).into_iter().for_each(drop);
+    }
+}

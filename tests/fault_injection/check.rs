@@ -1,0 +1,161 @@
+//! What must hold of every game, whatever goes wrong.
+
+use crate::plan::{FIRST_AGENT, Plan, SIM};
+use crate::play::Played;
+use bus::simulated::{Fault, Verdict};
+use game::outcome::Outcome;
+use game::refusal::Refusal;
+use parking_lot::Mutex;
+use sim::node::{Pace, Report};
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// Sending again, and what the network takes, where nothing is lost on purpose; and where it is.
+const SENT_AGAIN: Duration = Duration::from_millis(1000);
+const SENT_OFTEN: Duration = Duration::from_millis(2000);
+/// How late what must happen within patience may show.
+const SHOWS: Duration = Duration::from_millis(1500);
+/// After the last fault, everybody is back within the lease of the network, patience, and this.
+const BACK: Duration = Duration::from_secs(8);
+/// After the end of the game everybody has left: who never found it looks for a minute.
+const LEFT: Duration = Duration::from_secs(75);
+
+/// What is wrong with a game; nothing if all is well.
+pub(crate) fn faults_of(plan: &Plan, played: &Played) -> Vec<String> {
+    let mut wrong = played.monitor.wrong.clone();
+    if played.run.verdict != Verdict::Ended {
+        wrong.push(format!("{:?} after {:?}", played.run.verdict, played.run.time));
+        return wrong;
+    }
+    match &played.sim {
+        Some(Ok(report)) => {
+            wrong.extend(check_digest(plan, played, report));
+            wrong.extend(unjust_losses(plan, played, &report.outcome));
+            wrong.extend(check_presence(plan, played));
+        }
+        Some(Err(e)) => wrong.push(format!("the sim ends with {e}")),
+        None if plan.kills(SIM) => {}
+        None => wrong.push("the sim has no result".to_owned()),
+    }
+    wrong.extend(check_ends(plan, played));
+    wrong
+}
+
+impl Plan {
+    fn kills(&self, node: usize) -> bool {
+        self.faults.iter().any(|(_, fault)| matches!(fault, Fault::Kill { node: who, .. } if *who == node))
+    }
+
+    fn agent_of(&self, boat: usize) -> usize {
+        let has = |boats: &Vec<usize>| boats.contains(&boat);
+        FIRST_AGENT + self.agents.iter().position(has).expect("every boat has an agent")
+    }
+}
+
+/// The results of undisturbed games in one process, by game, seed and length.
+static UNDISTURBED: Mutex<BTreeMap<(usize, u64, u32), String>> = Mutex::new(BTreeMap::new());
+
+fn undisturbed(plan: &Plan) -> String {
+    let key = (plan.game, plan.game_seed, plan.duration_s);
+    if let Some(known) = UNDISTURBED.lock().get(&key) {
+        return known.clone();
+    }
+    let scenario = plan.scenario();
+    let outcome = arena::play(&scenario, agent::minds_of(&scenario), plan.game_seed).unwrap_or_else(|e| panic!("{e}"));
+    UNDISTURBED.lock().insert(key, outcome.digest.clone());
+    outcome.digest
+}
+
+fn has_lost_agents(outcome: &Outcome) -> bool {
+    outcome.events.iter().any(|event| event.event == "agent_lost")
+}
+
+/// In lockstep it is the game that is played without a network, unless somebody was lost.
+fn check_digest(plan: &Plan, played: &Played, report: &Report) -> Option<String> {
+    let words_lost = plan.talks() && played.refused.of(Refusal::TeamMessageMissing) > 0;
+    let is_other = plan.forges() || has_lost_agents(&report.outcome) || words_lost || report.run.cut_short;
+    if plan.pace != Pace::Lockstep || is_other {
+        return None;
+    }
+    let want = undisturbed(plan);
+    let got = &report.outcome.digest;
+    (*got != want).then(|| format!("digest {got} is not that of the undisturbed game, {want}"))
+}
+
+/// Nobody loses an agent that was there.
+fn unjust_losses(plan: &Plan, played: &Played, outcome: &Outcome) -> Vec<String> {
+    if plan.forges() {
+        return vec![];
+    }
+    let is_lossy = plan.conditions.loss > 0.0 || plan.conditions.damaged.0 > 0.0;
+    let margin = if is_lossy { SENT_OFTEN } else { SENT_AGAIN };
+    let enough = plan.patience().saturating_sub(margin);
+    // Time that the sim itself loses is nobody's fault; where it is cut off, all the others are.
+    let is_excused = |node: usize| {
+        let absent = if node == SIM { plan.longest_cut(node) } else { plan.longest_absence(node) };
+        absent > Duration::ZERO && absent >= enough
+    };
+    let lost = outcome.events.iter().filter(|event| event.event == "agent_lost");
+    let mut wrong = Vec::new();
+    for event in lost {
+        let name = event.vehicle.clone().unwrap_or_default();
+        let boat = played.scenario.vehicle_by_name(&name).expect("a boat of the game").index();
+        if !is_excused(plan.agent_of(boat)) && !is_excused(SIM) {
+            wrong.push(format!("{name} lost its agent at {} s of the game, which was there", event.at_s));
+        }
+    }
+    wrong
+}
+
+/// An agent that is killed is missed within patience, and all are there again after the faults.
+fn check_presence(plan: &Plan, played: &Played) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let Some((first_frame, last_frame)) = played.monitor.frames else { return wrong };
+    let sim_is_well = plan.longest_absence(SIM).is_zero();
+    let all_are_back = plan.faults_end().max(first_frame) + plan.conditions.lease + plan.patience() + BACK;
+    for (boat, lost) in played.monitor.lost.iter().enumerate() {
+        let node = plan.agent_of(boat);
+        let died = plan.faults.iter().find_map(|(at, fault)| match fault {
+            Fault::Kill { node: who, restart: None } if *who == node => Some(*at),
+            _ => None,
+        });
+        match died {
+            Some(died) => {
+                let due = died + plan.patience() + SHOWS;
+                let is_in_time = lost.is_some_and(|(first, _)| first <= due);
+                if sim_is_well && died > first_frame && last_frame > due && !is_in_time {
+                    wrong.push(format!("boat {boat} lost its agent at {died:?}, and was seen without it at {lost:?}"));
+                }
+            }
+            None => {
+                let late = lost.filter(|(_, last)| *last > all_are_back);
+                if let Some((_, last)) = late.filter(|_| !plan.forges()) {
+                    wrong.push(format!(
+                        "boat {boat} has no agent at {last:?}, faults were over at {:?}",
+                        plan.faults_end()
+                    ));
+                }
+            }
+        }
+    }
+    wrong
+}
+
+/// Nobody gives up while the game is played, and everybody leaves when it is over.
+fn check_ends(plan: &Plan, played: &Played) -> Vec<String> {
+    let mut wrong = Vec::new();
+    let ended = |name: &str| played.run.ends.iter().rfind(|end| end.node == name).map(|end| end.at);
+    let Some(sim_ended) = ended("sim") else { return vec!["the sim never ends".to_owned()] };
+    if played.run.time > sim_ended.max(plan.faults_end()) + LEFT {
+        wrong.push(format!("the sim ended at {sim_ended:?}, the last node at {:?}", played.run.time));
+    }
+    for (agent, result) in &played.agents {
+        let Err(reason) = result else { continue };
+        let end = played.run.ends.iter().find(|end| end.node == format!("agent {agent}") && !end.was_killed);
+        let is_early = end.is_some_and(|end| end.at < sim_ended);
+        if is_early && !plan.forges() {
+            wrong.push(format!("agent {agent} gives up during the game: {reason}"));
+        }
+    }
+    wrong
+}

@@ -1,0 +1,107 @@
+//! Fault injection: whole games between the real nodes, over a simulated network in virtual time, with drawn faults.
+//!
+//! Every game follows from one number. `SQUALL_FAULT_SEED=7 cargo test --release --test fault_injection -- --nocapture`
+//! plays game 7 again and shows what happened in it; `SQUALL_FAULT_GAMES=100000` plays so many, from
+//! `SQUALL_FAULT_FROM` on.
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stdout,
+    reason = "how many games a minute are played is measured by the clock, and shown"
+)]
+
+mod check;
+#[path = "../../gateway/tests/closed_loop/oracle.rs"]
+mod oracle;
+mod plan;
+mod play;
+mod real_boat;
+#[path = "../../gateway/tests/closed_loop/rig.rs"]
+#[allow(dead_code, reason = "the tests of the gateway use all of it")]
+mod rig;
+#[path = "../../gateway/tests/closed_loop/tamper.rs"]
+#[allow(dead_code, reason = "the tests of the gateway use all of it")]
+mod tamper;
+mod wire_monitor;
+
+use check::faults_of;
+use plan::Plan;
+use play::{Played, play};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// Games that are played where nothing else is asked for.
+const GAMES: u64 = 400;
+/// After so many failures the rest is not played.
+const FAILURES: usize = 5;
+
+fn number(variable: &str) -> Option<u64> {
+    let text = std::env::var(variable).ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("{variable} is {text:?}, expected a whole number")))
+}
+
+/// What is wrong with the game of a seed.
+fn failure(seed: u64) -> Option<String> {
+    let plan = Plan::drawn(seed);
+    let wrong = faults_of(&plan, &play(&plan, false));
+    let again = format!("SQUALL_FAULT_SEED={seed} cargo test --release --test fault_injection -- --nocapture");
+    (!wrong.is_empty()).then(|| format!("seed {seed}:\n  {}\n  again: {again}", wrong.join("\n  ")))
+}
+
+/// Plays one game and shows everything.
+fn show(seed: u64) {
+    let plan = Plan::drawn(seed);
+    let played = play(&plan, true);
+    let Played { run, sim, agents, .. } = &played;
+    run.lines.iter().for_each(|line| println!("{line}"));
+    println!(
+        "{plan:#?}\n{:#?}\nagents: {agents:?}\nends: {:#?}",
+        sim.as_ref().map(|sim| sim.as_ref().map(|r| &r.run)),
+        run.ends
+    );
+    if let Some(Ok(report)) = sim {
+        report.outcome.events.iter().for_each(|event| println!("{event:?}"));
+    }
+    let wrong = faults_of(&plan, &played);
+    assert!(wrong.is_empty(), "seed {seed}: {wrong:#?}");
+}
+
+#[test]
+fn whatever_the_network_does_games_keep_their_promises() {
+    if let Some(seed) = number("SQUALL_FAULT_SEED") {
+        return show(seed);
+    }
+    let games = number("SQUALL_FAULT_GAMES").unwrap_or(GAMES);
+    let from = number("SQUALL_FAULT_FROM").unwrap_or(0);
+    let (next, start) = (AtomicU64::new(from), Instant::now());
+    let failures = parking_lot::Mutex::new(Vec::new());
+    let work = || {
+        while failures.lock().len() < FAILURES {
+            let seed = next.fetch_add(1, Ordering::Relaxed);
+            if seed >= from + games {
+                break;
+            }
+            if let Some(failure) = failure(seed) {
+                failures.lock().push(failure);
+            }
+        }
+    };
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| (0..workers).for_each(|_| drop(scope.spawn(work))));
+    let took_s = start.elapsed().as_secs_f64();
+    let played = next.load(Ordering::Relaxed).min(from + games) - from;
+    println!("{played} games in {took_s:.1} s: {:.0} a minute on {workers} cores", 60.0 * played as f64 / took_s);
+    let failures = failures.into_inner();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn the_same_seed_is_the_same_run_to_the_last_message() {
+    for seed in 0..12 {
+        let plan = Plan::drawn(seed);
+        let [one, other] = [(); 2].map(|()| play(&plan, true).run);
+        assert_eq!(one.lines, other.lines, "seed {seed}");
+        assert_eq!(one, other, "seed {seed}");
+    }
+    let [one, other] = [1, 2].map(|seed| play(&Plan::drawn(seed), false).run.trace);
+    assert_ne!(one, other);
+}

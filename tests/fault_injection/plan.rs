@@ -1,0 +1,207 @@
+//! The plan of one game: what is played, over which network, and what goes wrong. All of it is drawn from one seed.
+
+use bus::simulated::{Conditions, Damage, Fault};
+use game::stream::Stream;
+use sim::node::Pace;
+use std::time::Duration;
+
+/// The games that are played, in the folder `games`.
+pub(crate) const GAMES: [&str; 5] = ["point_boats", "surveyors", "duel", "talking", "real_boat"];
+
+/// The numbers of the first nodes; agents come after these, and the gateway where there is a real boat.
+pub(crate) const SIM: usize = 0;
+pub(crate) const OBSERVER: usize = 1;
+pub(crate) const FIRST_AGENT: usize = 2;
+
+/// After this long without a sign of the other side zenoh closes a link.
+const LEASE: Duration = Duration::from_secs(10);
+
+/// One game.
+#[derive(Clone, Debug)]
+pub(crate) struct Plan {
+    pub(crate) seed: u64,
+    /// Which of [`GAMES`].
+    pub(crate) game: usize,
+    /// Which game of the file.
+    pub(crate) game_seed: u64,
+    pub(crate) duration_s: u32,
+    pub(crate) pace: Pace,
+    /// In lockstep: no faster than this.
+    pub(crate) speed: Option<f64>,
+    pub(crate) patience_s: f64,
+    /// Vehicles by agent process.
+    pub(crate) agents: Vec<Vec<usize>>,
+    pub(crate) conditions: Conditions,
+    /// What goes wrong, and when.
+    pub(crate) faults: Vec<(Duration, Fault)>,
+}
+
+fn ms(stream: &mut Stream, from: u64, to: u64) -> Duration {
+    Duration::from_millis(from + stream.below(to - from + 1))
+}
+
+fn one<T: Copy>(stream: &mut Stream, of: &[T]) -> T {
+    of[stream.below(of.len() as u64) as usize]
+}
+
+impl Plan {
+    /// The plan that a seed stands for.
+    pub(crate) fn drawn(seed: u64) -> Plan {
+        let stream = &mut Stream::new(seed, "plan");
+        let game = stream.below(GAMES.len() as u64) as usize;
+        let boats = if matches!(GAMES[game], "duel" | "real_boat") { 2 } else { 4 };
+        let agents = drawn_agents(stream, boats);
+        let pace = match stream.below(5) {
+            // A real boat has a pace of its own.
+            _ if GAMES[game] == "real_boat" => Pace::Realtime { factor: 1.0 },
+            0..3 => Pace::Lockstep,
+            _ => Pace::Realtime { factor: one(stream, &[1.0, 2.0, 4.0]) },
+        };
+        let mut plan = Plan {
+            seed,
+            game,
+            game_seed: 1 + stream.below(4),
+            duration_s: one(stream, &[3, 6, 20]),
+            pace,
+            speed: one(stream, &[None, None, Some(4.0), Some(1.0)]),
+            patience_s: one(stream, &[2.0, 3.0, 5.0]),
+            conditions: drawn_conditions(stream),
+            faults: vec![],
+            agents,
+        };
+        let faults = stream.below(6);
+        plan.faults = (0..faults).map(|_| plan.drawn_fault(stream)).collect();
+        plan
+    }
+
+    /// Something that goes wrong while the game is likely to be played.
+    fn drawn_fault(&self, stream: &mut Stream) -> (Duration, Fault) {
+        let expected_s = match (self.pace, self.speed) {
+            (Pace::Realtime { factor }, _) => f64::from(self.duration_s) / factor,
+            (Pace::Lockstep, Some(speed)) => f64::from(self.duration_s) / speed,
+            (Pace::Lockstep, None) => 1.0,
+        };
+        let at = Duration::from_secs_f64(stream.between(0.0, 1.0 + expected_s));
+        let node = match stream.below(10) {
+            0 => SIM,
+            1 => OBSERVER,
+            2..4 if self.has_real_boat() => self.gateway(),
+            _ => FIRST_AGENT + stream.below(self.agents.len() as u64) as usize,
+        };
+        let time = match stream.below(10) {
+            0..7 => ms(stream, 20, 1200),
+            7..9 => ms(stream, 1200, 4000),
+            _ => ms(stream, 4000, 14_000),
+        };
+        let restart = Some(ms(stream, 0, 3000)).filter(|_| stream.below(4) > 0);
+        let fault = match stream.below(10) {
+            0..5 => Fault::Cut { node, time },
+            // The gateway and its boat are one node here, and a boat does not stand still in time.
+            5..10 if node == self.gateway() => Fault::Cut { node, time },
+            5..8 => Fault::Suspend { node, time },
+            // A sim that dies ends the game; once in a while is enough.
+            _ if node == SIM && stream.below(4) > 0 => Fault::Suspend { node, time },
+            _ if node == SIM => Fault::Kill { node, restart: None },
+            _ => Fault::Kill { node, restart },
+        };
+        (at, fault)
+    }
+
+    pub(crate) fn has_real_boat(&self) -> bool {
+        GAMES[self.game] == "real_boat"
+    }
+
+    /// The number of the gateway's node.
+    fn gateway(&self) -> usize {
+        FIRST_AGENT + self.agents.len()
+    }
+
+    /// Whether minds talk: those to whom a message of a mate does not get through may decide otherwise.
+    pub(crate) fn talks(&self) -> bool {
+        GAMES[self.game] == "talking"
+    }
+
+    /// Whether damage may make another valid message of one.
+    pub(crate) fn forges(&self) -> bool {
+        self.conditions.damaged.0 > 0.0 && self.conditions.damaged.1 != Damage::Truncated
+    }
+
+    pub(crate) fn patience(&self) -> Duration {
+        Duration::from_secs_f64(self.patience_s)
+    }
+
+    /// When the last fault is over, and what was killed has been started again.
+    pub(crate) fn faults_end(&self) -> Duration {
+        let ends = self.faults.iter().map(|(at, fault)| match fault {
+            Fault::Cut { time, .. } | Fault::Suspend { time, .. } => *at + *time,
+            Fault::Kill { restart, .. } => *at + restart.unwrap_or_default(),
+        });
+        ends.max().unwrap_or_default()
+    }
+
+    /// The longest time without a break in which `node` was cut off or suspended; for ever if it was killed.
+    pub(crate) fn longest_absence(&self, node: usize) -> Duration {
+        self.longest(node, |fault| !matches!(fault, Fault::Kill { .. }))
+    }
+
+    /// The same of cuts alone.
+    pub(crate) fn longest_cut(&self, node: usize) -> Duration {
+        self.longest(node, |fault| matches!(fault, Fault::Cut { .. }))
+    }
+
+    fn longest(&self, node: usize, counts: impl Fn(&Fault) -> bool) -> Duration {
+        let mut spans: Vec<(Duration, Duration)> = Vec::new();
+        for (at, fault) in &self.faults {
+            match fault {
+                Fault::Kill { node: who, .. } if *who == node => return Duration::MAX,
+                Fault::Cut { node: who, time } | Fault::Suspend { node: who, time }
+                    if *who == node && counts(fault) =>
+                {
+                    spans.push((*at, *at + *time));
+                }
+                _ => {}
+            }
+        }
+        spans.sort();
+        let (mut longest, mut open) = (Duration::ZERO, (Duration::ZERO, Duration::ZERO));
+        for (from, to) in spans {
+            // What follows soon adds up: the answer may not have got through in between.
+            open = if from <= open.1 + GAP { (open.0, open.1.max(to)) } else { (from, to) };
+            longest = longest.max(open.1 - open.0);
+        }
+        longest
+    }
+}
+
+/// Two absences with no more than this between them count as one.
+const GAP: Duration = Duration::from_millis(1500);
+
+/// Which boats share a process.
+fn drawn_agents(stream: &mut Stream, boats: usize) -> Vec<Vec<usize>> {
+    let mut agents: Vec<Vec<usize>> = Vec::new();
+    let mut order: Vec<usize> = (0..boats).collect();
+    stream.shuffle(&mut order);
+    for boat in order {
+        if !agents.is_empty() && stream.below(3) == 0 {
+            let agent = stream.below(agents.len() as u64) as usize;
+            agents[agent].push(boat);
+        } else {
+            agents.push(vec![boat]);
+        }
+    }
+    agents
+}
+
+fn drawn_conditions(stream: &mut Stream) -> Conditions {
+    let damage = one(stream, &[Damage::Truncated, Damage::Truncated, Damage::BitFlip, Damage::Noise]);
+    Conditions {
+        delay: Duration::from_micros(50 + stream.below(5000)),
+        jitter: Duration::from_micros(one(stream, &[100, 2000, 60_000])),
+        loss: one(stream, &[0.0, 0.0, 0.01, 0.03]),
+        damaged: (one(stream, &[0.0, 0.0, 0.0, 0.02]), damage),
+        lease: LEASE,
+        retry: ms(stream, 200, 2000),
+        queue: one(stream, &[4, 64, 1024]),
+        pause: one(stream, &[Duration::ZERO, Duration::from_millis(2), Duration::from_millis(20)]),
+    }
+}

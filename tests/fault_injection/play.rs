@@ -1,0 +1,161 @@
+//! Plays one plan: the sim, its agents and an observer as they run in processes of their own, on a simulated network.
+
+use crate::plan::{GAMES, Plan};
+use crate::real_boat;
+use crate::wire_monitor::WireMonitor;
+use agent::node::News;
+use bus::game_search::GameSearch;
+use bus::simulated::{Run, SimulatedNetwork};
+use bus::{Net, Patience, SimState, SimWatch, Watched};
+use game::message::Frame;
+use game::refusal::Refusals;
+use game::scenario::Scenario;
+use game::topic::{self, GameName};
+use game::{SimTime, codec};
+use parking_lot::Mutex;
+use sim::node::{Report, Settings};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
+use std::time::Duration;
+
+/// Virtual time that no game may take.
+pub(crate) const LIMIT: Duration = Duration::from_secs(300);
+/// How long the sim waits for agents.
+const JOIN: Duration = Duration::from_secs(30);
+/// How long agents look for the game.
+pub(crate) const WAIT: Duration = Duration::from_secs(60);
+/// After this long without a picture agents give up.
+const SILENCE: Duration = Duration::from_secs(40);
+
+/// What came of a game.
+pub(crate) struct Played {
+    pub(crate) scenario: Scenario,
+    pub(crate) run: Run,
+    /// How the sim ended; nothing if it was killed.
+    pub(crate) sim: Option<Result<Report, String>>,
+    /// How agents ended that were not killed: which node, and how.
+    pub(crate) agents: Vec<(usize, Result<(), String>)>,
+    /// What agents refused.
+    pub(crate) refused: Refusals,
+    pub(crate) monitor: WireMonitor,
+}
+
+#[derive(Default)]
+struct Results {
+    sim: Option<Result<Report, String>>,
+    agents: Vec<(usize, Result<(), String>)>,
+    refused: Refusals,
+}
+
+/// The scenarios, read once.
+static SCENARIOS: LazyLock<Vec<Scenario>> = LazyLock::new(|| {
+    let games = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fault_injection/games");
+    let read =
+        |game: &&str| game::scenario::load(&games.join(format!("{game}.toml"))).unwrap_or_else(|e| panic!("{e}"));
+    GAMES.iter().map(read).collect()
+});
+
+impl Plan {
+    /// The scenario that is played.
+    pub(crate) fn scenario(&self) -> Scenario {
+        let drawn = SCENARIOS[self.game].of_seed(self.game_seed);
+        let mut scenario = drawn.unwrap_or_else(|e| panic!("{e}"));
+        scenario.rules.time_limit = SimTime::from_s(f64::from(self.duration_s));
+        scenario.patience_s = self.patience_s;
+        scenario
+    }
+}
+
+pub(crate) fn name() -> GameName {
+    GameName::new("test").expect("a good name")
+}
+
+pub(crate) fn net(listens: bool) -> Net {
+    let endpoint = vec!["tcp/127.0.0.1:7447".to_owned()];
+    let (listen, connect) = if listens { (endpoint, vec![]) } else { (vec![], endpoint) };
+    let token = Some("5c".repeat(32).parse().expect("a token"));
+    Net { listen, connect, token, ..Net::default() }
+}
+
+/// Plays a game; `keeps_lines` keeps what happened line by line.
+pub(crate) fn play(plan: &Plan, keeps_lines: bool) -> Played {
+    let scenario = plan.scenario();
+    let network = SimulatedNetwork::new(plan.seed, plan.conditions.clone());
+    let results = Arc::new(Mutex::new(Results::default()));
+    let monitor = Arc::new(Mutex::new(WireMonitor::new(&scenario, plan)));
+    if keeps_lines {
+        network.keep_lines();
+    }
+    let seen = Arc::clone(&monitor);
+    network.on_publish(move |published| seen.lock().see(published));
+    add_sim(&network, plan, &scenario, &results);
+    network.node(Duration::from_millis(100), "observer", observe);
+    for (i, boats) in plan.agents.iter().enumerate() {
+        let names = boats.iter().map(|boat| scenario.vehicles[*boat].name.clone()).collect();
+        add_agent(&network, i, names, &results);
+    }
+    if plan.has_real_boat() {
+        network.node(Duration::from_millis(200), "gateway", real_boat::bring);
+    }
+    plan.faults.iter().for_each(|(at, fault)| network.fault(*at, *fault));
+    let run = network.run(LIMIT);
+    let Results { sim, agents, refused } = std::mem::take(&mut *results.lock());
+    let monitor = monitor.lock().clone();
+    Played { scenario, run, sim, agents, refused, monitor }
+}
+
+fn add_sim(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, results: &Arc<Mutex<Results>>) {
+    let (scenario, results) = (scenario.clone(), Arc::clone(results));
+    let (pace, speed, game_seed) = (plan.pace, plan.speed, plan.game_seed);
+    network.node(Duration::ZERO, "sim", move || {
+        let stop = Arc::new(AtomicBool::new(false));
+        let settings = Settings { game: name(), net: net(true), pace, join_limit: JOIN, speed, stop };
+        let served = sim::node::serve(&scenario, game_seed, &settings, None, &mut |_| {});
+        results.lock().sim = Some(served.map_err(|e| e.to_string()));
+    });
+}
+
+fn add_agent(network: &SimulatedNetwork, i: usize, vehicles: Vec<String>, results: &Arc<Mutex<Results>>) {
+    let results = Arc::clone(results);
+    network.node(Duration::from_millis(20 * i as u64), &format!("agent {i}"), move || {
+        let settings = agent::node::Settings {
+            game: None,
+            net: net(false),
+            vehicles: vehicles.clone(),
+            wait: WAIT,
+            silence: SILENCE,
+            strategy: None,
+            policy_wait: Duration::ZERO,
+            stop: Arc::new(AtomicBool::new(false)),
+        };
+        let mut refused = Refusals::default();
+        let served = agent::node::serve(&settings, &mut |news| {
+            if let News::Left { refused: all } = news {
+                refused = all;
+            }
+        });
+        let mut results = results.lock();
+        let before = results.refused;
+        results.refused = before + refused;
+        results.agents.push((i, served.map_err(|e| e.to_string())));
+    });
+}
+
+/// An observer of frames, until the game is over or the sim is gone.
+fn observe() {
+    let stop = AtomicBool::new(false);
+    let Ok((bus, game, _)) = GameSearch::new(WAIT, &stop).game(&mut |_| {}, &net(false), None) else { return };
+    let is_over = Arc::new(Watched::new(false));
+    let over = Arc::clone(&is_over);
+    let take = move |bytes: &[u8]| {
+        let ends = codec::decode::<Frame>(bytes).is_ok_and(|frame| frame.over);
+        over.visit(|over| *over |= ends);
+    };
+    let Ok(_frames) = bus.subscribe(topic::frame(&game), take) else { return };
+    let Ok(sim) = SimWatch::open(&bus, &game, Patience::of_player(Duration::from_secs(10))) else { return };
+    while !stop.load(Ordering::Relaxed) && sim.state_by_token() == SimState::Alive {
+        stop.store(is_over.wait(Duration::from_millis(500), |over| *over), Ordering::Relaxed);
+    }
+    bus.close();
+}
