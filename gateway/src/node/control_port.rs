@@ -248,12 +248,13 @@ mod tests {
     #[test]
     fn before_there_is_a_link_everybody_may_stop_and_look_and_nobody_arms() {
         let (port, token, output) = port();
-        let ask = |token, command| ask_gateway(port.address, token, &command, LIMIT);
+        let ask = |token: Option<&Token>, command| ask_gateway(port.address, token, &command, LIMIT);
+        let other = Token::random();
         let status = ask(None, boat(OperatorCommand::Status)).expect("a reply");
         assert_eq!((status.refused, status.status.vehicle.as_str()), (None, "blue_one"));
         for command in [boat(OperatorCommand::Arm), GatewayCommand::Fleet(FleetCommand::Release)] {
             assert!(matches!(ask(None, command.clone()), Err(BusError::NeedsToken)));
-            assert!(matches!(ask(Some(&Token::random()), command.clone()), Err(BusError::WrongToken)));
+            assert!(matches!(ask(Some(&other), command.clone()), Err(BusError::WrongToken)));
             assert!(ask(Some(&token), command).expect("a reply").refused.expect("refused").contains("no link"));
         }
         assert!(!output.take_stop(Scope::Boat) && !output.take_stop(Scope::Fleet));
