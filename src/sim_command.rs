@@ -51,12 +51,17 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         Some(game) => game.clone(),
         None => unique_game_name(&scenario.name)?,
     };
-    let (mut screen, for_parent) = (Screen::new(), args.for_parent);
+    let net = args.hub.net()?;
+    let token = net.token.clone();
+    let (mut screen, for_parent, shown) = (Screen::new(), args.for_parent, token.clone());
     let printer = Printer::start(move |message| {
         if for_parent {
             screen::print(&(serde_json::to_string(message).expect("a message is JSON") + "\n"));
         } else {
             screen.show(message);
+            if let (ProgressMessage::Open { .. }, Some(token)) = (message, &shown) {
+                screen.line(&token_text(token));
+            }
         }
     });
     let mut registration = None;
@@ -65,8 +70,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             .with_context(|| format!("cannot record into {}", path.display()))
     };
     let mut recorder = args.record.as_ref().map(record).transpose()?;
-    let net = args.hub.net()?;
-    let token = net.token.clone();
     let settings = Settings {
         game,
         net,
@@ -81,9 +84,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             let entry = bus::Entry { game, endpoint, pid: std::process::id(), token: token.as_ref().map(Token::hex) };
             // Where it cannot be registered, others must be told where the game is; nothing else is lost.
             registration = bus::register(&entry).ok();
-        }
-        if let (ProgressMessage::Open { .. }, Some(token), false) = (&message, &token, args.for_parent) {
-            screen::print(&(token_text(token) + "\n"));
         }
         printer.print(message);
     })?;

@@ -9,8 +9,8 @@ use std::time::Duration;
 
 const DELAY: Duration = Duration::from_millis(10);
 const LIMIT: Duration = Duration::from_secs(7200);
-const KEY: &str = "squall/test/number";
-const TOKEN: &str = "squall/test/alive/agent/a";
+const KEY: &str = "game/test/number";
+const TOKEN: &str = "game/test/alive/agent/a";
 
 fn conditions() -> Conditions {
     Conditions {
@@ -44,8 +44,8 @@ fn add_hub(network: &SimulatedNetwork, time: Duration, log: &Log) -> usize {
         let heard =
             bus.subscribe(KEY.to_owned(), move |bytes| note(&numbers, String::from_utf8_lossy(bytes).into_owned()));
         let seen =
-            bus.watch_alive("squall/*/alive/**".to_owned(), move |_, there| note(&tokens, format!("there: {there}")));
-        let _kept = (heard.expect("open"), seen.expect("open"), bus.show_alive("squall/test/alive/sim/s".to_owned()));
+            bus.watch_alive("game/*/alive/**".to_owned(), move |_, there| note(&tokens, format!("there: {there}")));
+        let _kept = (heard.expect("open"), seen.expect("open"), bus.show_alive("game/test/alive/sim/s".to_owned()));
         clock::rest(time);
         bus.close();
     })

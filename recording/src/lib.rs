@@ -97,10 +97,20 @@ fn checksum(facts: &Facts) -> String {
 /// Why something cannot be recorded.
 #[derive(Debug, Error)]
 pub enum RecordError {
-    /// The file does not take it.
+    /// It does not fit the format.
     #[error("the recording cannot be written: {0}")]
-    Mcap(#[from] mcap::McapError),
-    /// There is no such file, or it must not be written.
+    Mcap(mcap::McapError),
+    /// There is no such file, it must not be written, or there is no room for it.
     #[error("the recording cannot be written: {0}")]
     File(#[from] std::io::Error),
+}
+
+impl From<mcap::McapError> for RecordError {
+    fn from(error: mcap::McapError) -> RecordError {
+        match error {
+            // What the system says is what helps.
+            mcap::McapError::Io(error) => error.into(),
+            other => RecordError::Mcap(other),
+        }
+    }
 }

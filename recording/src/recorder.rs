@@ -257,7 +257,7 @@ mod tests {
     #[test]
     fn a_full_disk_is_told_and_everything_after_it_counted() {
         let full = |room| Recorder::over(Full(Cursor::default(), room), PathBuf::new(), &opening(), WAITING_BYTES);
-        assert!(full(100).is_err_and(|e| e.to_string().contains("no storage space")), "not even the beginning fits");
+        assert!(full(4).is_err_and(|e| e.to_string().contains("no storage space")), "not even the beginning fits");
         let recorder = full(20_000).expect("it begins");
         (0..2000).for_each(|_| recorder.record(Entry::Decision(Box::default())));
         let state = recorder.end(Facts::new());
