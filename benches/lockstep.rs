@@ -2,8 +2,8 @@
 //!
 //! The ping does what transport alone costs: a hub publishes one message a team to N leaf processes and waits until
 //! each has answered; same topology, same bytes out and back, no game. Everything is repeated in turn, so that both
-//! sides see the same machine; medians are printed, and beside them what the same game takes in one process. Boats of
-//! the strategy *idle* lie still: what is left of the game is its messages.
+//! sides see the same machine; medians are printed, and beside them what keys cost (TLS, and rules by certificate), and what the
+//! same game takes in one process. Boats of the strategy *idle* lie still: what is left of the game is its messages.
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a benchmark reads the clock and prints")]
 
 use std::path::Path;
@@ -32,17 +32,23 @@ fn main() {
     if !args.iter().any(|arg| arg == "--bench") {
         return;
     }
-    if std::env::var_os("ZENOH_RUNTIME").is_none() {
+    if std::env::var_os(bus::RUNTIME_VARIABLE).is_none() {
         // The bare hub, too, is to run as the sim does.
         let mut again = Command::new(std::env::current_exe().expect("this program"));
-        let status = again.args(&args[1..]).env("ZENOH_RUNTIME", bus::RUNTIME).status().expect("it starts again");
+        let status = again.args(&args[1..]).env(bus::RUNTIME_VARIABLE, bus::RUNTIME).status().expect("it starts again");
         std::process::exit(status.code().unwrap_or(1));
     }
     println!("lockstep over zenoh, median of {ROUNDS} runs of {RUN_S} s each");
     println!(
-        "| agent processes | vehicles | strategy | ticks/s | bare zenoh/s | time over bare | in one process, ticks/s |"
+        "| agent processes | vehicles | strategy | ticks/s | bare zenoh/s | time over bare | with keys, ticks/s | time over \
+         without keys | in one process, ticks/s |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|");
+    let keys = tempfile::tempdir().expect("a temporary directory");
+    let parts = ["sim", "team-blue", "team-red"].map(|part| part.parse().expect("a part"));
+    let hosts = ["127.0.0.1".to_owned()];
+    bus::keys::make(keys.path(), &parts, &hosts, Duration::from_secs(3600)).expect("keys");
+    let with_keys = ["--keys", keys.path().to_str().expect("UTF-8")];
     for case in [
         Case { processes: 4, vehicles: 4, strategy: "pav01" },
         Case { processes: 16, vehicles: 16, strategy: "pav01" },
@@ -50,12 +56,21 @@ fn main() {
         Case { processes: 4, vehicles: 64, strategy: "idle" },
         Case { processes: 4, vehicles: 64, strategy: "pav01" },
     ] {
-        let rounds: Vec<[f64; 3]> =
-            (0..ROUNDS).map(|_| [squall(&case, false), bare(&case), squall(&case, true)]).collect();
-        let ratio = median(rounds.iter().map(|r| r[1] / r[0]));
-        let [ticks, pings, alone] = [0, 1, 2].map(|i| median(rounds.iter().map(|r| r[i])));
+        let each = (case.vehicles / case.processes).to_string();
+        let apart = ["--agents-per-process", &each];
+        let round = |_| {
+            let keyed = squall(&case, &[&apart[..], &with_keys].concat());
+            [squall(&case, &apart), bare(&case), keyed, squall(&case, &["--in-process"])]
+        };
+        let rounds: Vec<[f64; 4]> = (0..ROUNDS).map(round).collect();
+        let over_bare = median(rounds.iter().map(|r| r[1] / r[0]));
+        let for_keys = median(rounds.iter().map(|r| r[0] / r[2]));
+        let [ticks, pings, keyed, alone] = [0, 1, 2, 3].map(|i| median(rounds.iter().map(|r| r[i])));
         let Case { processes, vehicles, strategy } = case;
-        println!("| {processes} | {vehicles} | {strategy} | {ticks:.0} | {pings:.0} | {ratio:.2} | {alone:.0} |");
+        println!(
+            "| {processes} | {vehicles} | {strategy} | {ticks:.0} | {pings:.0} | {over_bare:.2} | {keyed:.0} | {for_keys:.2} | \
+             {alone:.0} |"
+        );
     }
 }
 
@@ -65,8 +80,8 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// A game of this many boats, by `squall run`: decisions a second.
-fn squall(case: &Case, in_process: bool) -> f64 {
+/// A game of this many boats, by `squall run` with these options: decisions a second.
+fn squall(case: &Case, options: &[&str]) -> f64 {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let dir = tempfile::tempdir().expect("a temporary directory");
     let (game, json) = (dir.path().join("bench.toml"), dir.path().join("result.json"));
@@ -93,11 +108,7 @@ fn squall(case: &Case, in_process: bool) -> f64 {
         std::fs::write(&game, text(duration_s)).expect("a file");
         let mut command = Command::new(env!("CARGO_BIN_EXE_squall"));
         command.args(["run", &game.display().to_string(), "--no-record", "--json", &json.display().to_string()]);
-        if in_process {
-            command.arg("--in-process");
-        } else {
-            command.args(["--agents-per-process", &(case.vehicles / case.processes).to_string()]);
-        }
+        command.args(options);
         let output = command.output().expect("squall runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let result = std::fs::read_to_string(&json).expect("a result");
@@ -211,6 +222,6 @@ fn bare(case: &Case) -> f64 {
 fn start_leaf(endpoint: &str, size: usize, i: usize) -> Child {
     let mut command = Command::new(std::env::current_exe().expect("this program"));
     command.args(["--echo", endpoint, &size.to_string(), &format!("leaf{i}")]);
-    command.env("ZENOH_RUNTIME", bus::RUNTIME).stdout(Stdio::null());
+    command.env(bus::RUNTIME_VARIABLE, bus::RUNTIME).stdout(Stdio::null());
     command.spawn().expect("a leaf starts")
 }

@@ -48,7 +48,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let strategy = args.strategy.as_deref().map(load_strategy).transpose()?;
     let settings = Settings {
         game: args.leaf.game.clone(),
-        net: args.leaf.net()?,
+        place: args.leaf.place()?,
         vehicles: args.vehicle.clone(),
         wait: Duration::from_secs_f64(args.wait_s),
         silence: Duration::from_secs_f64(args.silence_s),

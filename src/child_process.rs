@@ -1,21 +1,41 @@
 //! The processes that `run` starts: none of them outlives it.
 
 use anyhow::{Context, Result};
+use bus::keys::Identity;
 use bus::token::TOKEN_VARIABLE;
 use bus::{Token, clock};
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::LazyLock;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Duration;
 
+/// Begins this program again with the threads that a process with keys must have, if it is given keys and has others.
+///
+/// # Errors
+/// If it cannot be begun.
+pub(crate) fn with_threads_for_keys() -> Result<()> {
+    let is_keys = |word: OsString| word.to_str().is_some_and(|word| word == "--keys" || word.starts_with("--keys="));
+    if std::env::args_os().skip(1).any(is_keys) {
+        bus::restart_for_keys()?;
+    }
+    Ok(())
+}
+
 /// This program with other arguments, to be started as a child.
 pub(crate) fn squall(args: &[&str]) -> Result<Command> {
+    squall_with(bus::RUNTIME, args)
+}
+
+/// The same, with these threads of zenoh.
+pub(crate) fn squall_with(runtime: &str, args: &[&str]) -> Result<Command> {
     let program = std::env::current_exe().context("cannot find this program's own file")?;
     let mut command = Command::new(program);
-    if std::env::var_os("ZENOH_RUNTIME").is_none() {
-        command.env("ZENOH_RUNTIME", bus::RUNTIME);
+    if std::env::var_os(bus::RUNTIME_VARIABLE).is_none() {
+        command.env(bus::RUNTIME_VARIABLE, runtime);
     }
     command.env(TOKEN_VARIABLE, token().hex());
     command.args(args).arg("--for-parent");
@@ -29,6 +49,13 @@ pub(crate) fn token() -> &'static Token {
         given.unwrap_or_else(Token::random)
     });
     &TOKEN
+}
+
+/// Gives a command the keys of this part out of a folder of them, if there is one. It needs no token then.
+pub(crate) fn give_keys(command: &mut Command, folder: Option<&Path>, identity: &Identity) {
+    if let Some(folder) = folder {
+        command.env_remove(TOKEN_VARIABLE).arg("--keys").arg(folder.join(identity.to_string()));
+    }
 }
 
 /// Adds an option, if it has a value.

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// A game, from the command line.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
     /// The game file
     scenario: PathBuf,
@@ -32,6 +32,9 @@ pub(crate) struct GameArgs {
     /// The same for a team of any name; may be given again for another
     #[arg(long, value_name = "TEAM=FILE", value_parser = team_and_file)]
     strategy: Vec<(String, String)>,
+    /// Each team follows the strategy of the other
+    #[arg(long)]
+    pub(crate) exchange_strategies: bool,
     /// Plays external boats as simulated ones: a rehearsal
     #[arg(long)]
     rehearse: bool,
@@ -63,13 +66,15 @@ impl GameArgs {
 
     /// A process that serves this game, or something of it, under a name.
     pub(crate) fn sim(&self, name: &str, endpoint: &str) -> Result<Command> {
-        let mut command = child_process::squall(&["sim", "--game", name, "--listen", endpoint])?;
+        let runtime = if self.pace == Pace::Lockstep { bus::RUNTIME } else { bus::HUB_RUNTIME };
+        let mut command = child_process::squall_with(runtime, &["sim", "--game", name, "--listen", endpoint])?;
         command.arg(&self.scenario);
         let overrides = self.overrides()?;
         option(&mut command, "--sea", overrides.sea.as_ref().map(|sea| sea.display()));
         for (team, path) in &overrides.strategies {
             option(&mut command, "--strategy", Some(format!("{team}={}", path.display())));
         }
+        command.args(overrides.exchange_strategies.then_some("--exchange-strategies"));
         command.args(overrides.simulate_all.then_some("--rehearse"));
         option(&mut command, "--pace", Some(self.pace));
         option(&mut command, "--seed", self.seed);
@@ -83,15 +88,24 @@ impl GameArgs {
 
     /// Writes the result of the game to a file, if it is asked for.
     pub(crate) fn write_result(&self, report: &Report) -> Result<()> {
+        self.json.as_ref().map_or(Ok(()), |path| output_file::write_json(path, "the result", &result_of(report)?))
+    }
+
+    /// Writes the results of several games to a file, if it is asked for.
+    pub(crate) fn write_results(&self, reports: &[Report], sum: &serde_json::Value) -> Result<()> {
         let Some(path) = &self.json else { return Ok(()) };
-        let mut value = serde_json::to_value(&report.outcome).context("the result is not JSON")?;
-        value["run"] = serde_json::to_value(&report.run).context("the result is not JSON")?;
-        output_file::write_json(path, "the result", &value)
+        let games = reports.iter().map(result_of).collect::<Result<Vec<_>>>()?;
+        output_file::write_json(path, "the results", &serde_json::json!({ "games": games, "sum": sum }))
     }
 
     /// What takes the place of what the game file says.
     fn overrides(&self) -> Result<Overrides> {
-        let mut overrides = Overrides { sea: self.sea.clone(), simulate_all: self.rehearse, ..Overrides::default() };
+        let mut overrides = Overrides {
+            sea: self.sea.clone(),
+            exchange_strategies: self.exchange_strategies,
+            simulate_all: self.rehearse,
+            ..Overrides::default()
+        };
         let beside = self.scenario.parent().unwrap_or(Path::new(""));
         let folder = || Ok(beside.join("..").join(Kind::Strategy.folder()));
         let named = [("blue", &self.blue), ("red", &self.red)];
@@ -104,6 +118,13 @@ impl GameArgs {
         }
         Ok(overrides)
     }
+}
+
+/// The result of a game, with how it was played.
+fn result_of(report: &Report) -> Result<serde_json::Value> {
+    let mut value = serde_json::to_value(&report.outcome).context("the result is not JSON")?;
+    value["run"] = serde_json::to_value(&report.run).context("the result is not JSON")?;
+    Ok(value)
 }
 
 /// A speed from the command line, as in `10x` or `0.5`.

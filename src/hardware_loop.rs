@@ -5,13 +5,14 @@ use crate::game_args::GameArgs;
 use crate::net_args::unique_game_name;
 use crate::output_file;
 use anyhow::{Context, Result, anyhow, bail};
+use bus::keys::Identity;
 use game::Scenario;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
 
 /// What `run` is asked of it.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(crate) struct LoopArgs {
     /// Emulated boats stand in for the real ones: they float in water of their own, speak the Surveyor's sentences and are
     /// driven through gateways, which tell how they were in the end
@@ -41,6 +42,7 @@ impl LoopArgs {
         args: &GameArgs,
         scenario: &Scenario,
         game: (&str, &str),
+        keys: Option<&Path>,
     ) -> Result<Option<HardwareLoop>> {
         let vehicles = scenario.externals().map(|vehicle| &scenario.vehicles[vehicle.index()]);
         let names: Vec<&str> = vehicles.map(|vehicle| vehicle.name.as_str()).collect();
@@ -72,15 +74,22 @@ impl LoopArgs {
         for vehicle in names {
             let (emulator, link) = start_emulator(vehicle, declination_deg, place)?;
             emulators.push(emulator);
-            gateways.push(self.start_gateway(vehicle, &link, game)?);
+            gateways.push(self.start_gateway(vehicle, &link, game, keys)?);
         }
         gateways.extend(emulators);
         Ok(Some(HardwareLoop { ends: gateways, water }))
     }
 
-    fn start_gateway(&self, name: &str, link: &str, (game, endpoint): (&str, &str)) -> Result<ChildProcess> {
+    fn start_gateway(
+        &self,
+        name: &str,
+        link: &str,
+        (game, endpoint): (&str, &str),
+        keys: Option<&Path>,
+    ) -> Result<ChildProcess> {
         let mut command = child_process::squall(&["gateway", "surveyor", "--game", game, "--connect", endpoint])?;
         command.args(["--vehicle", name, "--link", link, "--arm", "--at-game-pace"]);
+        child_process::give_keys(&mut command, keys, &Identity::Gateway(None));
         option(&mut command, "--config", self.gateway.as_ref().map(|path| path.display()));
         match &self.record_gateways {
             Some(folder) => command.arg("--record").arg(folder.join(format!("{name}.mcap"))),

@@ -1,13 +1,15 @@
-//! `squall list`: which games there are, and who is in them.
+//! `squall list`: which games there are.
 
 use crate::net_args::LeafArgs;
 use crate::screen;
 use anyhow::Result;
-use bus::{Bus, Net};
+use bus::{Bus, BusError, Net, Watched};
 use game::message::GameInfo;
-use game::topic::{self, GameName, Part};
+use game::run_state::{Phase, RunState};
+use game::topic::{self, GameName};
 use std::collections::BTreeMap;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Where to look.
 #[derive(clap::Args)]
@@ -22,18 +24,22 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut places: Vec<Net> = Vec::new();
     if !args.elsewhere {
-        places.extend(
-            bus::local_registry().into_iter().map(|entry| Net { connect: vec![entry.endpoint], ..Net::default() }),
-        );
+        let keys = args.leaf.keys()?;
+        let place = |entry: bus::Entry| Net { connect: vec![entry.endpoint], keys: keys.clone(), ..Net::default() };
+        places.extend(bus::local_registry().into_iter().map(place));
     }
     // Several games on this machine are no error here: all are listed.
     places.extend(args.leaf.net().ok().filter(|net| net.lan || !places.iter().any(|p| p.connect == net.connect)));
     let mut games: BTreeMap<GameName, String> = BTreeMap::new();
     for place in &places {
-        // Where nobody answers there is no game.
-        if let Ok(bus) = Bus::leaf(place) {
-            games.extend(games_at(&bus, place)?);
-            bus.close();
+        match Bus::leaf(place) {
+            Ok(bus) => {
+                games.extend(games_at(&bus, place)?);
+                bus.close();
+            }
+            Err(error @ (BusError::Keys(_) | BusError::NeedsKeys(_))) => screen::remark(&error.to_string()),
+            // Where nobody answers there is no game.
+            Err(_) => {}
         }
     }
     if games.is_empty() {
@@ -45,13 +51,10 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 fn games_at(bus: &Bus, place: &Net) -> Result<BTreeMap<GameName, String>> {
     let keys = bus.who_is_alive(&topic::everyone_alive(), bus::ANSWER)?;
-    let nodes: Vec<(GameName, Part, String)> = keys.iter().filter_map(|key| topic::parse_alive(key)).collect();
     let mut games = BTreeMap::new();
-    for (game, _, sim) in nodes.iter().filter(|(_, part, _)| *part == Part::Sim) {
-        let agents = nodes.iter().filter(|(other, part, _)| other == game && *part == Part::Agent);
+    for (game, sim) in keys.iter().filter_map(|key| topic::parse_alive(key)) {
         let mut text = format!("{}  {}\n  sim {sim}\n", game.as_str(), place.connect.join(" "));
-        agents.for_each(|(_, _, agent)| text.push_str(&format!("  agent {agent}\n")));
-        let answer = bus.ask(&topic::scenario(game), Vec::new(), bus::ANSWER)?;
+        let answer = bus.ask(&topic::scenario(&game), Vec::new(), bus::ANSWER)?;
         if let Some(info) = answer.and_then(|bytes| serde_json::from_slice::<GameInfo>(&bytes).ok()) {
             let scenario = &info.scenario;
             text.push_str(&format!(
@@ -63,7 +66,31 @@ fn games_at(bus: &Bus, place: &Net) -> Result<BTreeMap<GameName, String>> {
                 info.version
             ));
         }
-        games.insert(game.clone(), text);
+        text.extend(run_state(bus, &game)?.map(|state| format!("  {}\n", in_words(&state))));
+        games.insert(game, text);
     }
     Ok(games)
+}
+
+/// How a game stands, as its sim says many times a second.
+fn run_state(bus: &Bus, game: &GameName) -> Result<Option<RunState>> {
+    let newest = Arc::new(Watched::new(None));
+    let told = Arc::clone(&newest);
+    let take = move |bytes: &[u8]| told.visit(|newest| *newest = serde_json::from_slice(bytes).ok());
+    let _subscription = bus.subscribe(topic::run(game), take)?;
+    newest.wait(bus::ANSWER, Option::is_some);
+    Ok(newest.visit(Option::take))
+}
+
+fn in_words(state: &RunState) -> String {
+    let phase = match state.phase {
+        Phase::Waiting => "waiting",
+        Phase::Playing => "playing",
+        Phase::Paused => "paused",
+        Phase::Over => "over",
+    };
+    let missing = [("agents", &state.minds), ("gateways", &state.gateways)];
+    let missing = missing.into_iter().filter(|(_, names)| !names.is_empty());
+    let missing: String = missing.map(|(what, names)| format!(", for the {what} of {}", names.join(", "))).collect();
+    format!("{phase} at {:.0} s{missing}", state.now_s)
 }

@@ -6,25 +6,26 @@ use crate::{output_file, recording_file, screen};
 use analysis::{Comparison, GameSeries, Summary};
 use anyhow::{Context, Result};
 use game::Scenario;
-use recording::{Bag, Kind, Recording};
+use recording::{Bag, Damaged, Kind, Recording};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 mod difference;
 mod export;
 mod page;
+mod quality;
 
 /// Which recording, and what of it.
 #[derive(clap::Args)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Args {
     /// The recording
-    #[arg(required_unless_present = "compare")]
+    #[arg(required_unless_present_any = ["compare", "quality"])]
     file: Option<PathBuf>,
     /// Prints what happened and nothing else
     #[arg(long)]
     events: bool,
-    /// Writes everything that the summary, or the comparison, says into this file
+    /// Writes everything that the summary, the comparison or the quality says into this file
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Prints a topic as CSV; `events` is one as well
@@ -43,6 +44,10 @@ pub(crate) struct Args {
     /// Lays two recordings side by side, for example a game on the water and its simulation
     #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["file", "events"])]
     compare: Option<Vec<PathBuf>>,
+    /// Says how sensibly boats play, in all these recordings together: chatter, standing still, edges, contacts, orbits
+    #[arg(long, num_args = 1.., value_name = "GAME")]
+    #[arg(conflicts_with_all = ["file", "events", "csv", "plot", "alog", "compare"])]
+    quality: Option<Vec<PathBuf>>,
     /// Events of two recordings that are nearer than this are the same, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
     tolerance_s: f64,
@@ -53,10 +58,11 @@ Topics are in the summary. Tables have one row a message, except: pictures one a
 a word, link one a sentence.";
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
-    match (&args.compare, &args.file) {
-        (Some(files), _) => compare(args, files)?,
-        (None, Some(file)) => look_at(args, file)?,
-        (None, None) => anyhow::bail!("neither a recording nor --compare"),
+    match (&args.compare, &args.quality, &args.file) {
+        (Some(files), ..) => compare(args, files)?,
+        (None, Some(files), _) => quality::print(files, args.json.as_deref())?,
+        (None, None, Some(file)) => look_at(args, file)?,
+        (None, None, None) => anyhow::bail!("neither a recording nor --compare nor --quality"),
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -77,14 +83,33 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     if let Some(topic) = &args.csv {
         csv(args, file, (recording.bag(), Some(recording.scenario())), topic)?;
     }
-    if !(wants_page || args.events || args.json.is_some() || args.plot.is_some() || args.alog.is_some()) {
-        return Ok(());
+    // Every reading finds the same damage.
+    let mut remarks = vec![];
+    if wants_page || args.events || args.json.is_some() {
+        let damaged = summary(args, &recording, wants_page)?;
+        let is_shown = wants_page && !args.events;
+        remarks.extend(damaged.remark().filter(|_| !is_shown));
     }
-    let (summary, series) = Summary::of(&recording);
-    let shows_damage = wants_page && !args.events;
-    if let (Some(remark), false) = (summary.damaged.remark(), shows_damage) {
-        screen::remark(&remark);
+    if let Some(dir) = &args.plot {
+        output_file::make_folder(dir)?;
+        let series = GameSeries::of(&recording);
+        remarks.extend(series.damaged.remark().filter(|remark| !remarks.contains(remark)));
+        remarks.extend(series.remark());
+        let files = plot::write(dir, recording.header(), &series)?;
+        screen::remark(&format!("{files} plots in {}, each as SVG and PNG", dir.display()));
     }
+    if let Some(path) = &args.alog {
+        let (files, damaged) = export::alog(&recording, path)?;
+        screen::remark(&format!("{files} MOOS log{} in {}", if files == 1 { "" } else { "s" }, path.display()));
+        remarks.extend(damaged.remark().filter(|remark| !remarks.contains(remark)));
+    }
+    remarks.iter().for_each(|remark| screen::remark(remark));
+    Ok(())
+}
+
+/// Prints the summary, or what happened, and writes all of it as JSON.
+fn summary(args: &Args, recording: &Recording, wants_page: bool) -> Result<Damaged> {
+    let summary = Summary::of(recording);
     if args.events {
         screen::print(&page::events(&summary));
     } else if wants_page {
@@ -93,16 +118,7 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     if let Some(path) = &args.json {
         output_file::write_json(path, "the summary", &summary)?;
     }
-    if let Some(dir) = &args.plot {
-        output_file::make_folder(dir)?;
-        let files = plot::write(dir, recording.header(), &series)?;
-        screen::remark(&format!("{files} plots in {}, each as SVG and PNG", dir.display()));
-    }
-    if let Some(path) = &args.alog {
-        let files = export::alog(&recording, &series, path)?;
-        screen::remark(&format!("{files} MOOS log{} in {}", if files == 1 { "" } else { "s" }, path.display()));
-    }
-    Ok(())
+    Ok(summary.damaged)
 }
 
 fn csv(args: &Args, file: &Path, source: (&Bag, Option<&Scenario>), topic: &str) -> Result<()> {

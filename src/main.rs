@@ -1,6 +1,7 @@
 //! `squall`: one program, a table of subcommands.
 
 mod agent_command;
+mod both_sides;
 mod check_command;
 mod child_process;
 mod game_args;
@@ -9,6 +10,7 @@ mod hardware_loop;
 mod helm_command;
 mod helm_text;
 mod identify_command;
+mod keys_command;
 mod list_command;
 mod log_command;
 mod net_args;
@@ -71,7 +73,9 @@ enum Command {
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
     Gateway(gateway_command::Args),
-    /// Lists the games on the network and who is in them.
+    /// Makes keys for a network with strangers in it: encrypted links, and certificates that say who may do what.
+    Keys(keys_command::Args),
+    /// Lists the games on the network and how they stand.
     List(list_command::Args),
     /// Says what a sea means for a boat, and draws it.
     Sea(sea_command::Args),
@@ -88,7 +92,14 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    let cli = Cli::parse();
+    // `run` only hands keys on: what it starts without keys must not have the threads of those with keys.
+    let is_run = matches!(cli.command, Command::Run(_));
+    if !is_run && let Err(error) = child_process::with_threads_for_keys() {
+        screen::complain(&format!("{error:#}"));
+        return ExitCode::FAILURE;
+    }
+    let done = match cli.command {
         Command::Run(args) => run_command::run(&args),
         Command::Tournament(args) => tournament_command::run(&args),
         Command::Sim(args) => sim_command::run(&args),
@@ -99,6 +110,7 @@ fn main() -> ExitCode {
         Command::Log(args) => log_command::run(&args),
         Command::Helm(args) => helm_command::run(&args),
         Command::Gateway(args) => gateway_command::run(&args),
+        Command::Keys(args) => keys_command::run(&args),
         Command::List(args) => list_command::run(&args),
         Command::Sea(args) => sea_command::run(&args),
         Command::Trial(args) => trial_command::run(&args),

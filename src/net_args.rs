@@ -1,11 +1,13 @@
 //! Command line arguments for where nodes meet.
 
 use anyhow::{Context, Result, anyhow, bail};
+use bus::keys::Bundle;
 use bus::token::TOKEN_VARIABLE;
-use bus::{Net, Token};
+use bus::{Net, Place, Token};
 use game::input_file;
 use game::topic::GameName;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// How a hub can be reached.
 #[derive(clap::Args, Clone, Debug)]
@@ -23,7 +25,23 @@ pub(crate) struct HubArgs {
     #[arg(long, value_name = "FILE")]
     zenoh_config: Option<PathBuf>,
     #[command(flatten)]
+    keys: KeysArgs,
+    #[command(flatten)]
     token: TokenArgs,
+}
+
+/// The keys of a game.
+#[derive(clap::Args, Clone, Debug)]
+struct KeysArgs {
+    /// The keys of this node, of a game with keys: a folder that `squall keys new` has made
+    #[arg(long, value_name = "FOLDER")]
+    keys: Option<PathBuf>,
+}
+
+impl KeysArgs {
+    fn load(&self) -> Result<Option<Arc<Bundle>>> {
+        Ok(self.keys.as_deref().map(Bundle::load).transpose()?.map(Arc::new))
+    }
 }
 
 /// The token of a game.
@@ -69,6 +87,8 @@ pub(crate) struct LeafArgs {
     #[arg(long, value_name = "NAME", value_parser = GameName::new)]
     pub(crate) game: Option<GameName>,
     #[command(flatten)]
+    keys: KeysArgs,
+    #[command(flatten)]
     token: TokenArgs,
 }
 
@@ -82,16 +102,17 @@ impl HubArgs {
             let port = bus::free_port(true).map_err(|e| anyhow!("no free port to listen on: {e}"))?;
             listen.push(format!("tcp/127.0.0.1:{port}"));
         }
-        if let Some(open) = listen.iter().find(|endpoint| !bus::is_loopback(endpoint))
-            && !self.insecure
-        {
-            bail!(
-                "{open} can be reached from other machines, and whoever reaches it can join the game and see all of it: \
-                 say --insecure if nobody else is on that network, or listen on 127.0.0.1 and use a VPN or an SSH tunnel"
-            );
+        let keys = self.keys.load()?;
+        match (&keys, listen.iter().find(|endpoint| !bus::is_loopback(endpoint))) {
+            (None, Some(open)) if !self.insecure => bail!(
+                "{open} can be reached from other machines, and whoever reaches it can see all of the game and stop it: make \
+                 keys with `squall keys new` and serve it with --keys, or say --insecure if nobody else is on that network"
+            ),
+            _ => {}
         }
-        let token = Some(self.token.token()?.unwrap_or_else(Token::random));
-        Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone(), token })
+        // With keys, certificates say who may do what.
+        let token = self.token.token()?.or_else(|| keys.is_none().then(Token::random));
+        Ok(Net { listen, connect: vec![], lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
     }
 }
 
@@ -99,6 +120,11 @@ impl LeafArgs {
     /// The token that is given.
     pub(crate) fn token(&self) -> Result<Option<Token>> {
         self.token.token()
+    }
+
+    /// The keys that are given.
+    pub(crate) fn keys(&self) -> Result<Option<Arc<Bundle>>> {
+        self.keys.load()
     }
 
     /// The gateways of this machine that may be meant. Where a game elsewhere is asked for, those that were told its name;
@@ -114,8 +140,20 @@ impl LeafArgs {
 
     /// Where to connect: as asked for, or where this machine's local registry says.
     pub(crate) fn net(&self) -> Result<Net> {
+        self.net_of(None, self.keys()?)
+    }
+
+    /// The same, for nodes that outlive a game, or come before it.
+    pub(crate) fn place(&self) -> Result<Place> {
+        let (leaf, keys) = (self.clone(), self.keys()?);
+        Ok(Place::new(move |game| leaf.net_of(game, keys.clone()).map_err(|e| format!("{e:#}"))))
+    }
+
+    /// Where this game is, or else that which is asked for.
+    fn net_of(&self, game: Option<&GameName>, keys: Option<Arc<Bundle>>) -> Result<Net> {
+        let game = game.or(self.game.as_ref());
         let mut connect = self.connect.clone();
-        let is_named = |entry: &bus::Entry| self.game.as_ref().is_none_or(|game| game.as_str() == entry.game);
+        let is_named = |entry: &bus::Entry| game.is_none_or(|game| game.as_str() == entry.game);
         let mut known: Vec<bus::Entry> = bus::local_registry().into_iter().filter(is_named).collect();
         if connect.is_empty() && !self.lan {
             connect.push(local_endpoint(&known)?);
@@ -123,7 +161,7 @@ impl LeafArgs {
         known.retain(|entry| connect.contains(&entry.endpoint));
         let shown = || known.first().and_then(|entry| entry.token.as_ref()?.parse().ok());
         let token = self.token.token()?.or_else(shown);
-        Ok(Net { listen: vec![], connect, lan: self.lan, config_file: self.zenoh_config.clone(), token })
+        Ok(Net { listen: vec![], connect, lan: self.lan, config_file: self.zenoh_config.clone(), token, keys })
     }
 }
 

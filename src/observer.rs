@@ -7,7 +7,7 @@ use bus::game_search;
 use game::VehicleId;
 use game::helm::{HelmQuestion, HelmReport};
 use game::message::GameInfo;
-use game::topic::{self, GameName, Part};
+use game::topic::{self, GameName};
 use shore::page::is_sound;
 
 /// A session in a game that runs.
@@ -47,6 +47,6 @@ impl Observer {
 
     /// Whether the game's sim is still there.
     pub(crate) fn is_on(&self) -> Result<bool> {
-        Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game, Part::Sim), bus::ANSWER)?.is_empty())
+        Ok(!self.bus.who_is_alive(&topic::all_alive(&self.game), bus::ANSWER)?.is_empty())
     }
 }

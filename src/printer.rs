@@ -1,7 +1,6 @@
-//! A thread that prints what a game reports: the game does not wait for a terminal that is held, or for a pipe that nobody
-//! reads.
+//! A thread that prints what a node reports: neither a game nor a gateway waits for a terminal that is held, or for a pipe that
+//! nobody reads.
 
-use sim::node::ProgressMessage;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
@@ -9,27 +8,27 @@ use std::thread::JoinHandle;
 const WAITING_MAX: usize = 1024;
 
 /// Prints in a thread of its own.
-pub(crate) struct Printer {
-    messages: SyncSender<ProgressMessage>,
+pub(crate) struct Printer<M> {
+    messages: SyncSender<M>,
     thread: JoinHandle<()>,
 }
 
-impl Printer {
+impl<M: Send + 'static> Printer<M> {
     /// Begins to print what comes, by `print`.
-    pub(crate) fn start(mut print: impl FnMut(&ProgressMessage) + Send + 'static) -> Printer {
-        let (messages, waiting) = sync_channel::<ProgressMessage>(WAITING_MAX);
+    pub(crate) fn start(mut print: impl FnMut(&M) + Send + 'static) -> Printer<M> {
+        let (messages, waiting) = sync_channel::<M>(WAITING_MAX);
         let thread = std::thread::spawn(move || waiting.iter().for_each(|message| print(&message)));
         Printer { messages, thread }
     }
 
     /// Prints a message, if there is room for it.
-    pub(crate) fn print(&self, message: ProgressMessage) {
-        // All events are in the result too.
+    pub(crate) fn print(&self, message: M) {
+        // All events are in the result of a game too, and in the recording of a gateway.
         drop(self.messages.try_send(message));
     }
 
     /// Prints the last message, after all that wait.
-    pub(crate) fn end(self, message: ProgressMessage) {
+    pub(crate) fn end(self, message: M) {
         // The thread takes messages for as long as this is there; if it panics, it has said so.
         drop(self.messages.send(message));
         drop(self.messages);

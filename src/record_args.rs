@@ -8,7 +8,7 @@ use recording::utc;
 use std::path::PathBuf;
 
 /// Whether and where `run` records.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(crate) struct RecordArgs {
     /// Records the game into this folder
     #[arg(long, value_name = "DIR", default_value = "runs")]

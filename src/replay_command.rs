@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 mod check;
-mod minds;
+pub(crate) mod minds;
 
 /// Which recording, and what to do with it.
 #[derive(clap::Args)]
@@ -49,9 +49,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 /// A recording as a page shows it.
 pub(crate) fn show(file: &Path) -> Result<ReplayView> {
     let recording = Arc::new(open(file)?);
-    let film = Recorded::new(Arc::clone(&recording), file.display().to_string())
-        .with_context(|| format!("cannot replay {}", file.display()))?;
-    Ok(ReplayView::new(Arc::new(film), Some(Box::new(Minds::new(recording)))))
+    let recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());
+    recorded.damaged().remark().iter().for_each(|remark| screen::remark(remark));
+    Ok(ReplayView::new(Arc::new(recorded), Some(Box::new(Minds::new(recording)))))
 }
 
 fn open(file: &Path) -> Result<Recording> {

@@ -33,6 +33,12 @@ pub(crate) fn text(report: &Report) -> String {
         outcome.duration_s / run.wall_s.max(1e-9)
     );
     text += &format!("{}  seed {}  digest {}\n", outcome.scenario, outcome.seed, outcome.digest);
+    if !outcome.random {
+        text += "nothing in this game is random: it is the same for every seed\n";
+    }
+    if outcome.ends_differ {
+        text += "wind, waves or current favour one end of the field: --both-sides plays the game from both\n";
+    }
     if run.overruns > 0 {
         text += &format!("{} decision ticks began late: the pace was not kept\n", run.overruns);
     }

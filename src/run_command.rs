@@ -1,5 +1,6 @@
 //! `squall run`: a whole game from one command.
 
+use crate::both_sides::BothSides;
 use crate::child_process::{self, ChildProcess, option};
 use crate::game_args::GameArgs;
 use crate::hardware_loop::{HardwareLoop, LoopArgs};
@@ -9,12 +10,14 @@ use crate::record_args::{self, RecordArgs};
 use crate::screen::{self, Screen};
 use crate::stop;
 use anyhow::{Context, Result, anyhow, bail};
-use bus::clock;
+use bus::keys::{Bundle, Identity};
+use bus::{Token, clock};
 use game::Scenario;
 use game::event::EventCursor;
+use game::scenario::Vehicle;
 use sim::Contest;
 use sim::node::{GameRecorder, Pace, ProgressMessage, Report, Reporter, Run};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,7 +25,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
 /// What to play, and how.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     play: GameArgs,
@@ -33,12 +36,18 @@ pub(crate) struct Args {
     view: bool,
     #[command(flatten)]
     page: PageArgs,
+    /// Plays the game twice, the second time with the strategies exchanged, and adds up the points
+    #[arg(long, conflicts_with_all = ["view", "exchange_strategies"])]
+    both_sides: bool,
     /// Plays in this process, without a network: the same game, byte for byte
     #[arg(long, conflicts_with_all = ["pace", "speed", "agents_per_process"])]
     in_process: bool,
     /// For how many boats one agent process decides
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     agents_per_process: u16,
+    /// Plays with the keys in this folder, as `squall keys new` makes them: links are encrypted, and all show certificates
+    #[arg(long, value_name = "FOLDER", conflicts_with = "in_process")]
+    keys: Option<PathBuf>,
     #[command(flatten)]
     hardware_loop: LoopArgs,
 }
@@ -55,23 +64,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         bail!("--listen, --token and --host say how the page is served: they need --view");
     }
     args.play.check_result_file()?;
+    check_keys(args, &scenario)?;
     if args.view {
         args.page.check()?;
     }
     let stop = stop::on_ctrl_c()?;
     let mut screen = Screen::new();
-    let file = args.record.file(&scenario, args.play.seed(&scenario))?;
-    let (report, page) = if args.in_process {
-        (Some(play_here(args, &scenario, file.as_deref(), (&stop, &mut screen))?), None)
-    } else {
-        play_across_processes(args, &scenario, file.as_deref(), (&stop, &mut screen))?
-    };
-    let file = file.filter(|file| file.exists());
-    if let Some(file) = &file {
-        let is_whole = report.as_ref().is_some_and(|report| report.run.recording_problem.is_none());
-        let recorded = if is_whole { "recorded" } else { "recorded in part" };
-        screen.line(&format!("{recorded}; look at it with: squall replay {}", file.display()));
+    if args.both_sides {
+        return both_sides(args, &scenario, (&stop, &mut screen));
     }
+    let (file, report, page) = play(args, &scenario, (&stop, &mut screen))?;
     let Some(report) = report else { return Ok(stop::interrupted()) };
     let unwritten = args.play.write_result(&report).err().map(|error| format!("{error:#}"));
     let problems: Vec<String> = unwritten.into_iter().chain(report.run.recording_problem.clone()).collect();
@@ -91,6 +93,56 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         bail!(problems.join("; "));
     }
     Ok(if report.run.cut_short { stop::interrupted() } else { ExitCode::SUCCESS })
+}
+
+/// The game, and where it is recorded.
+fn play(
+    args: &Args,
+    scenario: &Scenario,
+    (stop, screen): (&AtomicBool, &mut Screen),
+) -> Result<(Option<PathBuf>, Option<Report>, Option<ChildProcess>)> {
+    let file = args.record.file(scenario, args.play.seed(scenario))?;
+    let (report, page) = if args.in_process {
+        (Some(play_here(args, scenario, file.as_deref(), (stop, &mut *screen))?), None)
+    } else {
+        play_across_processes(args, scenario, file.as_deref(), (stop, &mut *screen))?
+    };
+    let file = file.filter(|file| file.exists());
+    if let Some(file) = &file {
+        let is_whole = report.as_ref().is_some_and(|report| report.run.recording_problem.is_none());
+        let recorded = if is_whole { "recorded" } else { "recorded in part" };
+        screen.line(&format!("{recorded}; look at it with: squall replay {}", file.display()));
+    }
+    Ok((file, report, page))
+}
+
+/// The game as it is, and with the strategies exchanged.
+fn both_sides(args: &Args, scenario: &Scenario, (stop, screen): (&AtomicBool, &mut Screen)) -> Result<ExitCode> {
+    let mut exchanged_args = args.clone();
+    exchanged_args.play.exchange_strategies = true;
+    let exchanged = exchanged_args.play.load()?;
+    let sides = BothSides::new(scenario, &exchanged)?;
+    let mut reports = vec![];
+    for (args, scenario) in [(args, scenario), (&exchanged_args, &exchanged)] {
+        let (_, report, _) = play(args, scenario, (stop, &mut *screen))?;
+        let Some(report) = report.filter(|report| !report.run.cut_short) else { return Ok(stop::interrupted()) };
+        reports.push(report);
+    }
+    screen.line(&sides.text(&reports));
+    args.play.write_results(&reports, &sides.sum(&reports))?;
+    let problems: Vec<String> = reports.into_iter().filter_map(|report| report.run.recording_problem).collect();
+    if problems.is_empty() { Ok(ExitCode::SUCCESS) } else { bail!(problems.join("; ")) }
+}
+
+/// Whether the keys of all parts of the game are there.
+fn check_keys(args: &Args, scenario: &Scenario) -> Result<()> {
+    let Some(folder) = &args.keys else { return Ok(()) };
+    let mut parts = vec![Identity::Sim];
+    parts.extend(scenario.teams.iter().map(|team| Identity::Team(team.name.clone())));
+    parts.extend(args.view.then_some(Identity::Operator));
+    parts.extend(scenario.externals().next().map(|_| Identity::Gateway(None)));
+    parts.iter().try_for_each(|part| Bundle::load(&folder.join(part.to_string())).map(drop))?;
+    Ok(())
 }
 
 /// The game in this process.
@@ -153,13 +205,10 @@ fn play_across_processes(
     let mut sim = start_sim(args, &game, &endpoint, file)?;
     let messages = sim.lines(|line| serde_json::from_str(line).ok())?;
     let mut page = if args.view { Some(start_page(args, &game, &endpoint)?) } else { None };
-    let names: Vec<&str> = scenario.vehicles.iter().map(|vehicle| vehicle.name.as_str()).collect();
-    let mut agents = Vec::new();
-    for names in names.chunks(usize::from(args.agents_per_process)) {
-        agents.push(start_agent(names, &game, &endpoint)?);
-    }
-    let hardware_loop = args.hardware_loop.start(&args.play, scenario, (&game, &endpoint))?;
-    let report = follow(&messages, (&mut sim, page.as_mut()), stop, screen)?;
+    let agents = start_agents(args, scenario, &game, &endpoint)?;
+    let hardware_loop = args.hardware_loop.start(&args.play, scenario, (&game, &endpoint), args.keys.as_deref())?;
+    let token = args.keys.is_none().then(child_process::token);
+    let report = follow(&messages, (&mut sim, page.as_mut(), token), stop, screen)?;
     let mut problems = hardware_loop.map(HardwareLoop::end).unwrap_or_default();
     let mut everybody = agents;
     everybody.push(sim);
@@ -177,6 +226,8 @@ fn play_across_processes(
 
 fn start_page(args: &Args, game: &str, endpoint: &str) -> Result<ChildProcess> {
     let mut command = child_process::squall(&["view", "--game", game, "--connect", endpoint])?;
+    // Whoever looks at it may do what the page's own token allows.
+    child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Operator);
     command.args(args.page.words());
     ChildProcess::start("the page", command, Stdio::inherit())
 }
@@ -186,21 +237,35 @@ fn start_sim(args: &Args, game: &str, endpoint: &str, file: Option<&Path>) -> Re
     let speed = args.play.speed.or((args.view && args.play.pace == Pace::Lockstep).then_some(SPEED_TO_WATCH));
     option(&mut command, "--join-s", Some(args.play.join_s));
     option(&mut command, "--speed", speed);
+    child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Sim);
     option(&mut command, "--record", file.map(Path::display));
     ChildProcess::start("the sim", command, Stdio::piped())
 }
 
-fn start_agent(names: &[&str], game: &str, endpoint: &str) -> Result<ChildProcess> {
-    let mut command = child_process::squall(&["agent", "--game", game, "--connect", endpoint])?;
-    command.arg("--vehicle").args(names);
-    ChildProcess::start(&format!("the agent of {}", names.join(", ")), command, Stdio::null())
+/// Starts the agent processes. With keys, each is of one team.
+fn start_agents(args: &Args, scenario: &Scenario, game: &str, endpoint: &str) -> Result<Vec<ChildProcess>> {
+    let mut vehicles: Vec<&Vehicle> = scenario.vehicles.iter().collect();
+    let is_together = |one: &&Vehicle, other: &&Vehicle| args.keys.is_none() || one.team == other.team;
+    if args.keys.is_some() {
+        vehicles.sort_by_key(|vehicle| vehicle.team);
+    }
+    let crews = vehicles.chunk_by(is_together).flat_map(|crew| crew.chunks(usize::from(args.agents_per_process)));
+    let start = |crew: &[&Vehicle]| {
+        let names: Vec<&str> = crew.iter().map(|vehicle| vehicle.name.as_str()).collect();
+        let mut command = child_process::squall(&["agent", "--game", game, "--connect", endpoint])?;
+        let team = scenario.teams[crew[0].team.index()].name.clone();
+        child_process::give_keys(&mut command, args.keys.as_deref(), &Identity::Team(team));
+        command.arg("--vehicle").args(&names);
+        ChildProcess::start(&format!("the agent of {}", names.join(", ")), command, Stdio::null())
+    };
+    crews.map(start).collect()
 }
 
 /// Shows what the sim reports until it has reported the result, or has ended. Without the page that was asked for no game
 /// begins.
 fn follow(
     messages: &Receiver<ProgressMessage>,
-    (sim, mut page): (&mut ChildProcess, Option<&mut ChildProcess>),
+    (sim, mut page, token): (&mut ChildProcess, Option<&mut ChildProcess>, Option<&Token>),
     stop: &AtomicBool,
     screen: &mut Screen,
 ) -> Result<Option<Report>> {
@@ -210,7 +275,7 @@ fn follow(
             Ok(message) => {
                 screen.show(&message);
                 match message {
-                    ProgressMessage::Open { .. } => screen.line(&token_text(child_process::token())),
+                    ProgressMessage::Open { .. } => token.into_iter().for_each(|token| screen.line(&token_text(token))),
                     ProgressMessage::Started => page = None,
                     ProgressMessage::Done(report) => return Ok(Some(*report)),
                     _ => {}

@@ -64,7 +64,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             }
         }
     });
-    let mut registration = None;
+    let entry = bus::Entry {
+        game: game.as_str().to_owned(),
+        endpoint: net.local_endpoint().unwrap_or_default(),
+        pid: std::process::id(),
+        token: token.as_ref().map(Token::hex),
+    };
     let record = |path: &PathBuf| {
         GameRecorder::on_network(path.clone(), game.as_str(), &args.play.pace.to_string(), env!("SQUALL_COMMIT"))
             .with_context(|| format!("cannot record into {}", path.display()))
@@ -78,15 +83,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         speed: args.play.speed,
         stop: stop.clone(),
     };
-    let mut report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), &mut |message| {
-        if let ProgressMessage::Open { game, endpoint } = &message {
-            let (game, endpoint) = (game.clone(), endpoint.clone());
-            let entry = bus::Entry { game, endpoint, pid: std::process::id(), token: token.as_ref().map(Token::hex) };
-            // Where it cannot be registered, others must be told where the game is; nothing else is lost.
-            registration = bus::register(&entry).ok();
-        }
-        printer.print(message);
-    })?;
+    // Before the sim answers anybody: whoever finds the game finds its token. Where it cannot be registered, others must be told
+    // where the game is; nothing else is lost.
+    let registration = bus::register(&entry).ok();
+    let tell = &mut |message| printer.print(message);
+    let mut report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), tell)?;
     drop(registration);
     report.run.recording_problem = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report)));
     let written = args.play.write_result(&report);

@@ -2,12 +2,20 @@
 
 use crate::tournament_progress::Progress;
 use crate::{output_file, screen, stop, tournament_table};
+use agent::MindRunner;
+use analysis::Step;
+use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result};
-use arena::tournament::{Plan, Report, play};
+use arena::tournament::{Observer, Plan, Record, Report, play, play_observed};
+use game::Scenario;
+use game::event::EventCursor;
 use game::scenario::{Tournament, load_tournament};
+use serde::Serialize;
+use sim::Contest;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 /// Which tournament, and how.
 #[derive(clap::Args)]
@@ -32,6 +40,18 @@ pub(crate) struct Args {
     /// Puts every game with its digest into the JSON file
     #[arg(long, requires = "json")]
     matches: bool,
+    /// Says as well how sensibly boats play: chatter, standing still, edges, contacts, orbits
+    #[arg(long)]
+    quality: bool,
+}
+
+/// What `--json` writes.
+#[derive(Serialize)]
+struct Whole<'a> {
+    #[serde(flatten)]
+    report: &'a Report,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    quality: Option<&'a Quality>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -43,7 +63,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
     let mut progress = Progress::new(plan.games() as u64);
-    let records = play(&plan, jobs, &stop, |_| progress.played());
+    let (records, quality) = if args.quality {
+        let (records, quality) = play_judged(&plan, jobs, &stop, |_| progress.played());
+        (records, Some(quality))
+    } else {
+        (play(&plan, jobs, &stop, |_| progress.played()), None)
+    };
     let rate = progress.done(jobs.get().min(plan.games()));
 
     let mut report = Report::new(&plan, &records);
@@ -53,17 +78,43 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         report.matches.clear();
     }
     if let Some(path) = &args.json {
-        output_file::write_json(path, "the report", &report)?;
+        output_file::write_json(path, "the report", &Whole { report: &report, quality: quality.as_ref() })?;
     }
     if let Some(path) = &args.csv {
         output_file::write(path, "the report", tournament_table::csv(&report))?;
     }
     screen::print(&tournament_table::text(&report));
+    if let Some(quality) = quality {
+        screen::print(&format!("\n{quality}"));
+    }
     Ok(match (report.games_unplayed > 0, report.failures.is_empty()) {
         (true, _) => stop::interrupted(),
         (false, true) => ExitCode::SUCCESS,
         (false, false) => ExitCode::FAILURE,
     })
+}
+
+/// Plays the games of a plan and judges how sensibly boats play in them.
+fn play_judged(
+    plan: &Plan,
+    jobs: NonZeroUsize,
+    stop: &AtomicBool,
+    watch: impl FnMut(&Record),
+) -> (Vec<Record>, Quality) {
+    let observer = Observer {
+        begin: |scenario: &Scenario| (GameQuality::new(scenario), EventCursor::default()),
+        see: |(quality, cursor): &mut (GameQuality, EventCursor), contest: &Contest, runner: &MindRunner| {
+            let minds: Vec<_> = runner.minds().map(|(_, mind)| mind.report().map(MindState::from)).collect();
+            let orders = runner.orders().map(|(_, order)| order);
+            quality.add(&Step::of_frame(contest.scenario(), &contest.frame(cursor), orders), &minds);
+        },
+    };
+    let (mut records, mut sum) = (vec![], Quality::default());
+    for (record, seen) in play_observed(plan, jobs, stop, &observer, watch) {
+        seen.into_iter().for_each(|(quality, _)| sum.merge(&quality.end()));
+        records.push(record);
+    }
+    (records, sum)
 }
 
 fn planned(args: &Args) -> Result<Plan> {

@@ -27,8 +27,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let recordings = args.for_parent.then(|| stop::with_parent(&stop));
     let page = args.page.open(&stop)?;
-    let leaf = args.leaf.clone();
-    let place = Box::new(move || leaf.net().map_err(|e| format!("{e:#}")));
     // Who started us starts the game as well.
     let is_told = !args.for_parent;
     let tell = Box::new(move |problem: &str| {
@@ -36,7 +34,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             screen::remark(problem);
         }
     });
-    let live = LiveView::open(place, args.leaf.game.clone(), tell).context("cannot look for games")?;
+    let live = LiveView::open(args.leaf.place()?, args.leaf.game.clone(), tell).context("cannot look for games")?;
     page.show(Arc::new(live));
     Screen::new().line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));
     while !stop::is_set_soon(&stop) {

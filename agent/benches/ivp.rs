@@ -80,7 +80,7 @@ fn best_of_all(grid: &Grid, functions: &[(f64, Objective)]) -> (f64, usize, usiz
     let mut best = (f64::NEG_INFINITY, 0, 0);
     for k in 0..grid.courses() {
         let (north, east) = grid.direction(k);
-        let of_course = f64::from(course.courses(grid)(k));
+        let of_course = f64::from(course.of_course(grid, k));
         for (j, of_speed) in speeds.iter().enumerate() {
             let own = Ned { north: north.into(), east: east.into() }.scaled(grid.speed_m_s(j));
             let waypoint = functions[0].0 * (of_course * course_share + of_speed * (1.0 - course_share));

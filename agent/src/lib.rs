@@ -9,6 +9,7 @@ pub mod ivp;
 mod mind;
 #[cfg(feature = "net")]
 pub mod node;
+mod own_motion;
 pub mod roles;
 mod runner;
 mod situation;

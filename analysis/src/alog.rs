@@ -8,155 +8,207 @@
 //! | file | variables |
 //! |---|---|
 //! | shoreside | `NODE_REPORT` of every boat (the truth), `AQUATICUS_GAME_ALL`, `<TEAM>_SCORES`, `<TEAM>_FLAG_GRABBED`, `HAS_FLAG_<BOAT>`, `TAGGED_<BOAT>`, `ONFIELD_<BOAT>`, `FLAG_RESET`, `SQUALL_EVENT` |
-//! | a vehicle | `NAV_X`, `NAV_Y`, `NAV_HEADING`, `NAV_SPEED` (what it estimated), the same as `NAV_GT_…` (the truth), `DESIRED_HEADING`, `DESIRED_SPEED`, `DESIRED_THRUST_L` and `_R`, `HAS_FLAG`, `TAGGED`, `NODE_REPORT_LOCAL` |
+//! | a vehicle | `NAV_X`, `NAV_Y`, `NAV_HEADING`, `NAV_SPEED` (what it estimated), the same as `NAV_GT_…` (the truth), `DESIRED_HEADING`, `DESIRED_TURN`, `DESIRED_SPEED`, `DESIRED_THRUST_L` and `_R`, `HAS_FLAG`, `TAGGED`, `NODE_REPORT_LOCAL` |
 
-use crate::series::{BoatSeries, GameSeries, Sample};
+use crate::step::{Sample, Step, for_each_step};
 use game::angle::compass_deg_from_rad;
 use game::math::decimal;
 use game::outcome::EventOutcome;
 use game::picture::Nav;
 use game::{Order, Scenario};
-use recording::Header;
-use recording::utc;
-use std::fmt::Write;
+use recording::{Damaged, Header, Recording, utc};
+use std::io::{self, BufWriter, Write};
 
 /// Node reports come this often, s: as the reporter of that test-bed has it by default.
 const REPORT_S: f64 = 0.5;
+/// The community of the shoreside.
+const SHORESIDE: &str = "shoreside";
 /// The program that all rows are from.
 const SOURCE: &str = "squall";
 
+/// So many files are open at a time: of more boats the recording is read again.
+const FILES_MAX: usize = 100;
+
+/// Opens the file of the shoreside, which is named so, or of a boat.
+pub type Open<'a> = dyn FnMut(&str) -> io::Result<Box<dyn Write>> + 'a;
+
 /// A log in the making.
 struct Log {
-    text: String,
+    file: BufWriter<Box<dyn Write>>,
     start_utc_s: f64,
 }
 
-/// The files of a game: the shoreside first, then the vehicles in their order.
-#[must_use]
-pub fn names(series: &GameSeries) -> Vec<String> {
-    let shoreside = "shoreside".to_owned();
-    std::iter::once(shoreside).chain(series.boats.iter().map(|boat| boat.name.clone())).collect()
+/// The log of the shoreside in the making.
+struct Shoreside {
+    log: Log,
+    points: Vec<Option<u32>>,
+    reported: Every,
+    has_begun: bool,
 }
 
-/// The log of the shoreside.
-#[must_use]
-pub fn shoreside(header: &Header, series: &GameSeries) -> String {
-    let scenario = &header.info.scenario;
-    let mut log = Log::new(header, "shoreside");
-    let mut events = series.named_events(scenario).into_iter().peekable();
-    let mut points: Vec<Option<u32>> = vec![None; series.teams.len()];
-    let mut reported = Every::new(REPORT_S);
-    for (i, time_s) in series.times_s.iter().copied().enumerate() {
-        if i == 0 {
-            log.row(time_s, "AQUATICUS_GAME_ALL", "play");
-        }
-        // An event is told with the frame after it; its own time comes first.
-        while let Some(event) = events.next_if(|event| event.at_s <= time_s) {
-            happened(&mut log, scenario, &event);
-        }
-        for ((team, now), before) in series.teams.iter().zip(&series.score[i]).zip(&mut points) {
-            if before.replace(*now) != Some(*now) {
-                log.row(time_s, &format!("{}_SCORES", team.to_uppercase()), &now.to_string());
-            }
-        }
-        if reported.is_due(time_s) {
-            for (place, boat) in series.boats.iter().enumerate() {
-                let sample = &boat.samples[i];
-                let report = log.node_report(time_s, (series, scenario), (place, sample, &sample.truth));
-                log.row(time_s, "NODE_REPORT", &report);
-            }
-        }
+/// The log of a vehicle in the making.
+struct Vehicle {
+    log: Log,
+    place: usize,
+    reported: Every,
+    before: Option<Sample>,
+}
+
+/// Writes the log of the shoreside, and then those of the vehicles in their order, if they are wanted; says how many, and what of
+/// the recording could not be read.
+///
+/// # Errors
+/// As `open`, or as the files that it gives.
+pub fn write(recording: &Recording, wants_vehicles: bool, open: &mut Open<'_>) -> io::Result<(usize, Damaged)> {
+    let header = recording.header();
+    let boats = if wants_vehicles { recording.scenario().vehicles.len() } else { 0 };
+    let mut shoreside = Some(Shoreside::begin(header, open)?);
+    let (mut next, mut damaged) = (0, Damaged::default());
+    // The first pass is made even where no vehicle is wanted.
+    while shoreside.is_some() || next < boats {
+        let end = boats.min(next + FILES_MAX);
+        let vehicles: io::Result<Vec<Vehicle>> = (next..end).map(|place| Vehicle::begin(header, place, open)).collect();
+        damaged = pass(recording, shoreside.take(), vehicles?)?;
+        next = end;
     }
-    log.text
+    Ok((1 + boats, damaged))
 }
 
-/// The log of the vehicle with this place among all; none if there are fewer.
-#[must_use]
-pub fn vehicle(header: &Header, series: &GameSeries, place: usize) -> Option<String> {
-    let boat = series.boats.get(place)?;
-    let mut log = Log::new(header, &boat.name);
-    let mut reported = Every::new(REPORT_S);
-    let mut before: Option<&Sample> = None;
-    for (time_s, sample) in series.times_s.iter().copied().zip(&boat.samples) {
+/// Writes these logs in one reading of the recording.
+fn pass(recording: &Recording, mut shoreside: Option<Shoreside>, mut vehicles: Vec<Vehicle>) -> io::Result<Damaged> {
+    let scenario = recording.scenario();
+    let mut written = Ok(());
+    let damaged = for_each_step(recording, |step| {
+        if written.is_ok() {
+            written = shoreside.iter_mut().try_for_each(|log| log.add(scenario, &step));
+        }
+        if written.is_ok() {
+            written = vehicles.iter_mut().try_for_each(|log| log.add(scenario, &step));
+        }
+    });
+    written?;
+    let mut logs = shoreside.into_iter().map(|log| log.log).chain(vehicles.into_iter().map(|log| log.log));
+    logs.try_for_each(|mut log| log.file.flush())?;
+    Ok(damaged)
+}
+
+impl Shoreside {
+    fn begin(header: &Header, open: &mut Open<'_>) -> io::Result<Shoreside> {
+        let log = Log::begin(header, SHORESIDE, open)?;
+        let points = vec![None; header.info.scenario.teams.len()];
+        Ok(Shoreside { log, points, reported: Every::new(REPORT_S), has_begun: false })
+    }
+
+    fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
+        let (log, time_s) = (&mut self.log, step.time_s);
+        // An event is told with the frame after it; its own time comes first, but for the beginning of the game.
+        if !std::mem::replace(&mut self.has_begun, true) {
+            log.row(time_s, "AQUATICUS_GAME_ALL", "play")?;
+        }
+        for logged in &step.events {
+            happened(log, scenario, &EventOutcome::new(scenario, logged))?;
+        }
+        for ((team, now), before) in scenario.teams.iter().zip(&step.score).zip(&mut self.points) {
+            if before.replace(*now) != Some(*now) {
+                log.row(time_s, &format!("{}_SCORES", team.name.to_uppercase()), &now.to_string())?;
+            }
+        }
+        if self.reported.is_due(time_s) {
+            for (place, sample) in step.samples.iter().enumerate() {
+                let report = log.node_report(time_s, scenario, (place, sample, &sample.truth));
+                log.row(time_s, "NODE_REPORT", &report)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Vehicle {
+    fn begin(header: &Header, place: usize, open: &mut Open<'_>) -> io::Result<Vehicle> {
+        let log = Log::begin(header, &header.info.scenario.vehicles[place].name, open)?;
+        Ok(Vehicle { log, place, reported: Every::new(REPORT_S), before: None })
+    }
+
+    fn add(&mut self, scenario: &Scenario, step: &Step) -> io::Result<()> {
+        let (log, time_s) = (&mut self.log, step.time_s);
+        let Some(sample) = step.samples.get(self.place) else { return Ok(()) };
         let estimated = sample.estimated.unwrap_or(sample.truth);
-        log.nav(time_s, "NAV_", &estimated);
-        log.nav(time_s, "NAV_GT_", &sample.truth);
-        log.desired(time_s, sample.order);
+        log.nav(time_s, "NAV_", &estimated)?;
+        log.nav(time_s, "NAV_GT_", &sample.truth)?;
+        log.desired(time_s, sample.order)?;
+        let before = self.before.replace(*sample);
         for (name, is, was) in [
             ("HAS_FLAG", sample.carrying, before.map(|before| before.carrying)),
             ("TAGGED", sample.tagged, before.map(|before| before.tagged)),
         ] {
             if was != Some(is) {
-                log.row(time_s, name, if is { "true" } else { "false" });
+                log.row(time_s, name, if is { "true" } else { "false" })?;
             }
         }
-        if reported.is_due(time_s) {
-            let report = log.node_report(time_s, (series, &header.info.scenario), (place, sample, &estimated));
-            log.row(time_s, "NODE_REPORT_LOCAL", &report);
+        if self.reported.is_due(time_s) {
+            let report = log.node_report(time_s, scenario, (self.place, sample, &estimated));
+            log.row(time_s, "NODE_REPORT_LOCAL", &report)?;
         }
-        before = Some(sample);
+        Ok(())
     }
-    Some(log.text)
 }
 
 impl Log {
-    fn new(header: &Header, community: &str) -> Log {
+    fn begin(header: &Header, community: &str, open: &mut Open<'_>) -> io::Result<Log> {
         let line = "%".repeat(59);
         let start_utc_s = header.began_utc_ns as f64 * 1e-9;
         let opened = utc::ctime(header.began_utc_ns);
-        let text = format!(
-            "{line}\n%% LOG FILE:       {community}.alog\n%% FILE OPENED ON  {opened}\n%% LOGSTART        {start_utc_s:>20.2}\n{line}\n"
-        );
-        Log { text, start_utc_s }
+        let mut file = BufWriter::new(open(community)?);
+        writeln!(file, "{line}\n%% LOG FILE:       {community}.alog\n%% FILE OPENED ON  {opened}")?;
+        writeln!(file, "%% LOGSTART        {start_utc_s:>20.2}\n{line}")?;
+        Ok(Log { file, start_utc_s })
     }
 
-    fn row(&mut self, at_s: f64, variable: &str, value: &str) {
+    fn row(&mut self, at_s: f64, variable: &str, value: &str) -> io::Result<()> {
         let value: String = value.split_whitespace().collect::<Vec<_>>().join("_");
-        writeln!(self.text, "{at_s:<15.5} {variable:<20} {SOURCE:<15} {value}").expect("a String takes all text");
+        writeln!(self.file, "{at_s:<15.5} {variable:<20} {SOURCE:<15} {value}")
     }
 
-    fn number(&mut self, at_s: f64, variable: &str, value: f64) {
-        self.row(at_s, variable, &decimal(value, 4));
+    fn number(&mut self, at_s: f64, variable: &str, value: f64) -> io::Result<()> {
+        self.row(at_s, variable, &decimal(value, 4))
     }
 
-    fn nav(&mut self, at_s: f64, prefix: &str, nav: &Nav) {
-        for (name, value) in [
+    fn nav(&mut self, at_s: f64, prefix: &str, nav: &Nav) -> io::Result<()> {
+        let numbers = [
             ("X", nav.east_m),
             ("Y", nav.north_m),
             ("HEADING", compass_deg_from_rad(nav.psi_rad)),
             ("SPEED", nav.speed_m_s()),
-        ] {
-            self.number(at_s, &format!("{prefix}{name}"), value);
-        }
+        ];
+        numbers.into_iter().try_for_each(|(name, value)| self.number(at_s, &format!("{prefix}{name}"), value))
     }
 
-    fn desired(&mut self, at_s: f64, order: Order) {
+    fn desired(&mut self, at_s: f64, order: Order) -> io::Result<()> {
         match order {
             Order::Hold => self.number(at_s, "DESIRED_SPEED", 0.0),
             Order::Steer { heading_rad, speed_m_s } => {
-                self.number(at_s, "DESIRED_HEADING", compass_deg_from_rad(heading_rad));
-                self.number(at_s, "DESIRED_SPEED", speed_m_s);
+                self.number(at_s, "DESIRED_HEADING", compass_deg_from_rad(heading_rad))?;
+                self.number(at_s, "DESIRED_SPEED", speed_m_s)
+            }
+            Order::Turn { by_rad, speed_m_s } => {
+                self.number(at_s, "DESIRED_TURN", by_rad.to_degrees())?;
+                self.number(at_s, "DESIRED_SPEED", speed_m_s)
             }
             Order::Thrust { port, starboard } => {
-                self.number(at_s, "DESIRED_THRUST_L", 100.0 * port);
-                self.number(at_s, "DESIRED_THRUST_R", 100.0 * starboard);
+                self.number(at_s, "DESIRED_THRUST_L", 100.0 * port)?;
+                self.number(at_s, "DESIRED_THRUST_R", 100.0 * starboard)
             }
         }
     }
 
     /// A node report: `key=value` with commas between, `TIME` in UTC seconds. `TYPE` is a shape for viewers to draw.
-    fn node_report(
-        &self,
-        at_s: f64,
-        (series, scenario): (&GameSeries, &Scenario),
-        (place, sample, nav): (usize, &Sample, &Nav),
-    ) -> String {
-        let boat: &BoatSeries = &series.boats[place];
-        let group = series.teams.get(boat.team).map_or("", String::as_str);
+    fn node_report(&self, at_s: f64, scenario: &Scenario, (place, sample, nav): (usize, &Sample, &Nav)) -> String {
+        let vehicle = &scenario.vehicles[place];
+        let group = scenario.teams.get(vehicle.team.index()).map_or("", |team| team.name.as_str());
         let length_m = scenario.boat_of(game::VehicleId::at(place)).length_m;
         format!(
             "NAME={},TYPE=kayak,TIME={:.2},X={},Y={},SPD={},HDG={},DEPTH=0,LENGTH={length_m},MODE={},GROUP={group}",
-            boat.name,
+            vehicle.name,
             self.start_utc_s + at_s,
             decimal(nav.east_m, 2),
             decimal(nav.north_m, 2),
@@ -169,7 +221,7 @@ impl Log {
 
 /// What happened, under the names that the referees of the Aquaticus test-bed have for it, and all of it once more as
 /// `SQUALL_EVENT`.
-fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) {
+fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) -> io::Result<()> {
     let at_s = event.at_s;
     let boat = event.vehicle.as_deref().unwrap_or_default();
     let of_boat = |name: &str| format!("{name}_{}", boat.to_uppercase());
@@ -177,25 +229,25 @@ fn happened(log: &mut Log, scenario: &Scenario, event: &EventOutcome) {
     let grabbed = format!("{}_FLAG_GRABBED", team.to_uppercase());
     match event.event.as_str() {
         "grabbed" => {
-            log.row(at_s, &of_boat("HAS_FLAG"), "true");
-            log.row(at_s, &grabbed, "true");
+            log.row(at_s, &of_boat("HAS_FLAG"), "true")?;
+            log.row(at_s, &grabbed, "true")?;
         }
         "captured" | "flag_returned" => {
-            log.row(at_s, &of_boat("HAS_FLAG"), "false");
-            log.row(at_s, &grabbed, "false");
-            log.row(at_s, "FLAG_RESET", &format!("label={team}"));
+            log.row(at_s, &of_boat("HAS_FLAG"), "false")?;
+            log.row(at_s, &grabbed, "false")?;
+            log.row(at_s, "FLAG_RESET", &format!("label={team}"))?;
         }
-        "tagged" | "tagged_by_boundary" => log.row(at_s, &of_boat("TAGGED"), "true"),
-        "untagged" => log.row(at_s, &of_boat("TAGGED"), "false"),
-        "left_field" => log.row(at_s, &of_boat("ONFIELD"), "false"),
-        "returned_to_field" => log.row(at_s, &of_boat("ONFIELD"), "true"),
-        "ended" => log.row(at_s, "AQUATICUS_GAME_ALL", "stop"),
+        "tagged" | "tagged_by_boundary" => log.row(at_s, &of_boat("TAGGED"), "true")?,
+        "untagged" => log.row(at_s, &of_boat("TAGGED"), "false")?,
+        "left_field" => log.row(at_s, &of_boat("ONFIELD"), "false")?,
+        "returned_to_field" => log.row(at_s, &of_boat("ONFIELD"), "true")?,
+        "ended" => log.row(at_s, "AQUATICUS_GAME_ALL", "stop")?,
         _ => {}
     }
     let named = [("vname", &event.vehicle), ("other", &event.other), ("team", &event.team)];
     let named = named.into_iter().filter_map(|(key, name)| Some(format!(",{key}={}", name.as_ref()?)));
     let text = format!("event={}{},game={}", event.event, named.collect::<String>(), scenario.name);
-    log.row(at_s, "SQUALL_EVENT", &text);
+    log.row(at_s, "SQUALL_EVENT", &text)
 }
 
 /// What a boat is about; a viewer shows it beside the boat.

@@ -165,6 +165,9 @@ fn notes(heads: [&Header; 2], [a, b]: [&GameSeries; 2]) -> Vec<String> {
     if one.field.plan.name == other.field.plan.name && one.field.plan != other.field.plan {
         notes.push(format!("the field {} is laid out differently", one.field.plan.name));
     }
+    for (name, series) in [("A", a), ("B", b)] {
+        notes.extend(series.remark().map(|remark| format!("{name}: {remark}")));
+    }
     if (a.span_s() - b.span_s()).abs() > 0.05 {
         notes.push(format!("A lasts {:.1} s, B {:.1} s: compared until the shorter ends", a.span_s(), b.span_s()));
     }

@@ -1,9 +1,8 @@
 //! Gateways: what went over their links, and what stopped their boats.
 
-use crate::damaged::Damaged;
 use crate::link_line::{Line, Lines};
 use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
-use recording::{Bag, Recording};
+use recording::{Bag, Damaged, Recording};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;

@@ -1,6 +1,7 @@
 //! Made-up games whose statistics are known in closed form.
 
-use crate::series::{BoatSeries, GameSeries, Sample};
+use crate::series::{BoatSeries, GameSeries};
+use crate::step::Sample;
 use game::math;
 use game::picture::Nav;
 use std::f64::consts::TAU;

@@ -1,6 +1,7 @@
 //! How a boat answers to its orders: how late, how much, and where it goes by itself.
 
-use crate::series::{BoatSeries, GameSeries, Sample};
+use crate::series::{BoatSeries, GameSeries};
+use crate::step::Sample;
 use game::angle::wrap_pi;
 use game::frame::{Rotation, body_from_ned};
 use game::{Ned, Order};

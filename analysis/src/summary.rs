@@ -1,11 +1,10 @@
 //! A recorded game on one page.
 
-use crate::damaged::Damaged;
 use crate::gateway::{Gateway, gateways};
-use crate::series::GameSeries;
-use crate::statistics::{BoatStatistics, statistics};
+use crate::statistics::{BoatStatistics, StatisticsBuilder};
+use crate::step::for_each_step;
 use game::outcome::EventOutcome;
-use recording::{Bag, Recording};
+use recording::{Bag, Damaged, Recording};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -66,17 +65,23 @@ pub struct Topic {
 }
 
 impl Summary {
-    /// The summary of a recording, and the series that it was made of.
+    /// The summary of a recording, in memory that does not grow with its length but for what happened.
     #[must_use]
-    pub fn of(recording: &Recording) -> (Summary, GameSeries) {
-        let series = GameSeries::of(recording);
+    pub fn of(recording: &Recording) -> Summary {
+        let scenario = recording.scenario();
+        let mut statistics = StatisticsBuilder::new(scenario);
+        let (mut times_s, mut score, mut events) = (None, vec![], vec![]);
+        let damaged = for_each_step(recording, |step| {
+            statistics.add(&step);
+            times_s = Some((times_s.map_or(step.time_s, |(first_s, _)| first_s), step.time_s));
+            events.extend(step.events.iter().map(|logged| EventOutcome::new(scenario, logged)));
+            score = step.score;
+        });
         let gateways = gateways(recording);
         let header = recording.header();
-        let scenario = recording.scenario();
         let ending = recording.ending();
-        let last = series.score.last().cloned().unwrap_or_default();
         let wall_ns = recording.bag().span_utc_ns();
-        let summary = Summary {
+        Summary {
             game: header.game.clone(),
             scenario: scenario.name.clone(),
             seed: scenario.seed,
@@ -84,21 +89,20 @@ impl Summary {
             commit: header.commit.clone(),
             pace: header.info.pace.clone(),
             began_utc_ns: header.began_utc_ns,
-            duration_s: series.span_s(),
+            duration_s: times_s.map_or(0.0, |(first_s, last_s)| last_s - first_s),
             wall_s: wall_ns as f64 * 1e-9,
             is_cut: recording.is_cut(),
             dropped: ending.map(|ending| ending.dropped),
             bytes: recording.bag().size(),
-            score: series.teams.iter().cloned().zip(last).collect(),
+            score: scenario.teams.iter().map(|team| team.name.clone()).zip(score).collect(),
             winner: ending.and_then(|ending| ending.outcome.winner.clone()),
             digest: ending.map(|ending| ending.outcome.digest.clone()),
-            events: series.named_events(scenario),
-            boats: statistics(&series),
-            damaged: gateways.iter().fold(series.damaged.clone(), |all, gateway| all.and(&gateway.damaged)),
+            events,
+            boats: statistics.end(),
+            damaged: gateways.iter().fold(damaged, |all, gateway| all.and(&gateway.damaged)),
             gateways,
             topics: topics(recording.bag()),
-        };
-        (summary, series)
+        }
     }
 }
 

@@ -108,7 +108,7 @@ fn recording() -> Recording {
 
 #[test]
 fn a_summary_has_the_figures_of_the_game() {
-    let (summary, series) = Summary::of(&recording());
+    let (summary, series) = (Summary::of(&recording()), GameSeries::of(&recording()));
     assert_eq!((summary.game.as_str(), summary.seed, summary.commit.as_str()), ("pav01-1", 1, "c0ffee"));
     assert!((summary.duration_s - 0.3).abs() < 1e-9 && (summary.wall_s - 3.0).abs() < 1e-9);
     assert_eq!((summary.is_cut, summary.dropped, summary.winner.as_deref()), (false, Some(3), Some("blue")));
@@ -133,8 +133,24 @@ fn a_summary_has_the_figures_of_the_game() {
 }
 
 #[test]
+fn a_long_game_is_thinned_out_evenly_with_its_end_and_all_its_events() {
+    let recording = Recording::of(bytes_of(&header(), 12)).expect("a recording");
+    let whole = GameSeries::of(&recording);
+    assert_eq!((whole.every, whole.times_s.len(), whole.remark()), (1, 12, None));
+    // Of 48 samples of four boats no more than 20: every third decision, and the last.
+    let thinned = GameSeries::of_at_most(&recording, 20);
+    let kept = [0, 3, 6, 9, 11];
+    assert_eq!((thinned.every, &thinned.times_s), (3, &kept.map(|i| whole.times_s[i]).to_vec()));
+    assert!(thinned.remark().is_some_and(|remark| remark.contains("one decision of 3")), "{:?}", thinned.remark());
+    assert_eq!((&thinned.events, thinned.score.len()), (&whole.events, kept.len()));
+    for (boat, all) in thinned.boats.iter().zip(&whole.boats) {
+        assert_eq!(boat.samples, kept.map(|i| all.samples[i]), "{}", boat.name);
+    }
+}
+
+#[test]
 fn a_gateway_is_known_by_its_bytes_and_failsafes() {
-    let (summary, _) = Summary::of(&recording());
+    let summary = Summary::of(&recording());
     let [gateway] = summary.gateways.as_slice() else { panic!("{:?}", summary.gateways) };
     assert_eq!((gateway.boat.as_str(), gateway.state.as_deref()), ("blue_one", Some("armed")));
     assert_eq!((gateway.from_boat.bytes, gateway.to_boat.bytes), (26, 15));
@@ -201,23 +217,38 @@ fn an_unknown_topic_is_refused_with_those_there_are() {
     assert!(refused.contains("no topic \"picture/green\"") && refused.contains("events, frame, inputs, link/blue_one"));
 }
 
+/// The logs of a recording, with their names.
+fn logs(recording: &Recording, wants_vehicles: bool) -> Vec<(String, String)> {
+    let dir = tempfile::tempdir().expect("a temporary directory");
+    let mut names = vec![];
+    let written = alog::write(recording, wants_vehicles, &mut |name| {
+        names.push(name.to_owned());
+        Ok(Box::new(std::fs::File::create(dir.path().join(name))?))
+    });
+    assert_eq!(written.expect("they are written").0, names.len());
+    names
+        .into_iter()
+        .map(|name| (name.clone(), std::fs::read_to_string(dir.path().join(name)).expect("text")))
+        .collect()
+}
+
 #[test]
 fn the_log_of_a_vehicle_is_what_moos_tools_read() {
     let recording = recording();
-    let series = GameSeries::of(&recording);
-    let log = alog::vehicle(recording.header(), &series, 0).expect("a boat");
+    let logs = logs(&recording, true);
+    let log = &logs[1].1;
     assert!(log.starts_with(include_str!("blue_one.alog")), "{log}");
     assert!(log.contains("\n0.10000         DESIRED_HEADING      squall          0.0000\n"), "{log}");
     assert!(log.contains("\n0.20000         HAS_FLAG             squall          true\n"), "{log}");
-    assert_eq!(alog::vehicle(recording.header(), &series, 4), None);
-    assert_eq!(alog::names(&series), ["shoreside", "blue_one", "blue_two", "red_one", "red_two"]);
+    let names: Vec<&str> = logs.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["shoreside", "blue_one", "blue_two", "red_one", "red_two"]);
 }
 
 #[test]
 fn the_log_of_the_shoreside_has_reports_and_what_happened() {
     let recording = recording();
-    let series = GameSeries::of(&recording);
-    let log = alog::shoreside(recording.header(), &series);
+    let logs = logs(&recording, false);
+    let [(_, log)] = &logs[..] else { panic!("one log") };
     let length_m = recording.scenario().boat_of(VehicleId(0)).length_m;
     let report = format!(
         "NAME=blue_one,TYPE=kayak,TIME=1700000000.00,X=0.00,Y=10.00,SPD=2.00,HDG=0.00,DEPTH=0,LENGTH={length_m},MODE=PLAYING,GROUP=blue"

@@ -1,15 +1,20 @@
 //! How safe the mandatory behaviours make games of random strategies: how often boats leave the field, and how often
 //! hulls touch.
 //!
-//! `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S]`, by default 10,000 games of 120 s in
-//! calm water. Every boat has a random strategy over `safety.toml`: places on the field and up to 20 m beyond it,
+//! `cargo run --release -p squall-arena --example safety -- [GAMES] [SEA] [DURATION_S] [BOAT] [TRACKED_SEED]`, by default
+//! 10,000 games of 120 s in calm water between boats of the kind `surveyor_m1_8`. With the seed of a game, plays that one alone and prints the track of every boat before
+//! it leaves the field or touches another. Every boat has a random strategy over `safety.toml`: places on the field and up to 20 m beyond it,
 //! pursuits, stations, headings, at any speed. The same seeds are the same games.
 
+use agent::MindRunner;
+use analysis::HullRectangle;
+use game::angle::compass_deg_from_rad;
 use game::event::EventCursor;
 use game::outcome::Outcome;
 use game::stream::Stream;
-use game::{Event, Ned, Pose, Scenario, VehicleId};
+use game::{Event, Order, Scenario, VehicleId};
 use sim::Contest;
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -56,6 +61,12 @@ fn main() {
     let number = |i: usize, default: u64| args.get(i).and_then(|arg| arg.parse().ok()).unwrap_or(default);
     let (games, duration_s) = (number(0, 10_000), number(2, 120));
     let sea = args.get(1).map_or("calm", String::as_str);
+    let boat = args.get(3).map_or("surveyor_m1_8", String::as_str);
+    if let Some(seed) = args.get(4).and_then(|arg| arg.parse().ok()) {
+        let folder = tempfile::tempdir().expect("a folder for strategies");
+        play(&scenario(folder.path(), (sea, boat), duration_s, seed), seed, &mut Tracks::shown());
+        return;
+    }
     let next = AtomicU64::new(1);
     let jobs = std::thread::available_parallelism().map_or(1, usize::from);
     let mut total = Tally::default();
@@ -68,7 +79,7 @@ fn main() {
                 if seed > games {
                     return tally;
                 }
-                tally.add(play(&scenario(folder.path(), sea, duration_s, seed), seed));
+                tally.add(play(&scenario(folder.path(), (sea, boat), duration_s, seed), seed, &mut Tracks::default()));
             }
         };
         let workers: Vec<_> = (0..jobs).map(|_| scope.spawn(work)).collect();
@@ -76,14 +87,14 @@ fn main() {
             total.add(worker.join().expect("a worker ends"));
         }
     });
-    print_summary(&total, sea, duration_s);
+    print_summary(&total, (sea, boat), duration_s);
 }
 
 #[expect(clippy::print_stdout, reason = "this is a program")]
-fn print_summary(total: &Tally, sea: &str, duration_s: u64) {
+fn print_summary(total: &Tally, (sea, boat): (&str, &str), duration_s: u64) {
     let share = |n: u64| 100.0 * n as f64 / total.games as f64;
     let hourly = |n: u64| n as f64 / total.boat_hours;
-    println!("{} games of {duration_s} s, sea {sea}, {:.0} boat-hours", total.games, total.boat_hours);
+    println!("{} games of {duration_s} s, sea {sea}, {boat}, {:.0} boat-hours", total.games, total.boat_hours);
     println!(
         "left the field: {} times, {:.3} a boat-hour, in {:.2} % of games",
         total.left,
@@ -107,11 +118,11 @@ fn print_summary(total: &Tally, sea: &str, duration_s: u64) {
 }
 
 /// A game between random strategies.
-fn scenario(folder: &Path, sea: &str, duration_s: u64, seed: u64) -> Scenario {
+fn scenario(folder: &Path, (sea, boat): (&str, &str), duration_s: u64, seed: u64) -> Scenario {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let mut stream = Stream::new(seed, "safety");
     let mut game = format!(
-        "base = \"{0}/games/surveyor_2v2.toml\"\nsea = \"{0}/seas/{sea}.toml\"\nboat = \"{0}/boats/surveyor_m1_8.toml\"\nduration_s = {duration_s}\n",
+        "base = \"{0}/games/surveyor_2v2.toml\"\nsea = \"{0}/seas/{sea}.toml\"\nboat = \"{0}/boats/{boat}.toml\"\nduration_s = {duration_s}\n",
         scenarios.display()
     );
     for team in ["blue", "red"] {
@@ -179,8 +190,78 @@ fn behaviour(stream: &mut Stream) -> String {
     }
 }
 
+/// The last seconds of every boat, for who wants to know why it left.
+#[derive(Default)]
+struct Tracks {
+    shown: bool,
+    /// By boat, the newest last.
+    lines: Vec<VecDeque<String>>,
+}
+
+impl Tracks {
+    /// How many decisions are remembered.
+    const COUNT: usize = 120;
+    /// One in so many is printed.
+    const EVERY: usize = 5;
+
+    fn shown() -> Tracks {
+        Tracks { shown: true, ..Tracks::default() }
+    }
+
+    fn note(&mut self, contest: &Contest, runner: &MindRunner) {
+        if !self.shown {
+            return;
+        }
+        let scenario = contest.scenario();
+        self.lines.resize(scenario.vehicles.len(), VecDeque::new());
+        for (i, lines) in self.lines.iter_mut().enumerate() {
+            let vehicle = VehicleId::at(i);
+            let boat = &contest.world().state().boats[i];
+            let (x, y) = scenario.field.along_across(boat.pose.at);
+            let order = match contest.effective_command(vehicle) {
+                Order::Steer { heading_rad, speed_m_s } => {
+                    format!("{:4.0} deg {speed_m_s:4.2} m/s", compass_deg_from_rad(heading_rad))
+                }
+                other => format!("{other:?}"),
+            };
+            let report = runner.mind(vehicle).and_then(|mind| mind.report());
+            let functions = report.map(|report| report.functions).unwrap_or_default();
+            let weighed: Vec<String> = functions.iter().map(|f| format!("{} {:.0}", f.behaviour, f.weight)).collect();
+            let line = format!(
+                "{:6.1} s boat {i} at {x:6.1} {y:6.1} m, heads {:4.0} deg, {:5.2} ahead {:5.2} starboard {:5.2} rad/s; thrust {:4.0} {:4.0} N; ordered {order}; {}",
+                contest.now().as_s(),
+                compass_deg_from_rad(boat.pose.psi_rad),
+                boat.nu.surge,
+                boat.nu.sway,
+                boat.nu.yaw,
+                boat.port.newton,
+                boat.starboard.newton,
+                weighed.join(", ")
+            );
+            lines.push_back(line);
+            if lines.len() > Tracks::COUNT {
+                lines.pop_front();
+            }
+        }
+    }
+
+    #[expect(clippy::print_stdout, reason = "this is a program")]
+    fn print(&self, i: usize, what: &str) {
+        let Some(lines) = self.lines.get(i) else { return };
+        println!("boat {i} {what}");
+        lines
+            .iter()
+            .rev()
+            .step_by(Tracks::EVERY)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .rev()
+            .for_each(|line| println!("{line}"));
+    }
+}
+
 /// Plays a game and counts.
-fn play(scenario: &Scenario, seed: u64) -> Tally {
+fn play(scenario: &Scenario, seed: u64, tracks: &mut Tracks) -> Tally {
     let mut contest = Contest::new(scenario, seed).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
     let scenario = contest.scenario().clone();
     let mut runner = arena::runner_of(agent::minds_of(&scenario));
@@ -190,15 +271,23 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
     let mut cursor = EventCursor::default();
     while !contest.is_over() {
         arena::decide(&mut contest, &mut runner);
+        tracks.note(&contest, &runner);
         contest.advance();
         let now_s = contest.now().as_s();
         let pose = |i: usize| contest.world().state().boats[i].pose;
         for a in 0..count {
             for b in a + 1..count {
                 let (one, other) = (VehicleId::at(a), VehicleId::at(b));
-                let sizes = [scenario.boat_of(one), scenario.boat_of(other)].map(|boat| (boat.length_m, boat.beam_m));
-                let touch = overlap((pose(a), sizes[0]), (pose(b), sizes[1]));
-                tally.touched += u64::from(touch && !touching[a * count + b]);
+                let hull = |vehicle: VehicleId| {
+                    let boat = scenario.boat_of(vehicle);
+                    HullRectangle { pose: pose(vehicle.index()), length_m: boat.length_m, beam_m: boat.beam_m }
+                };
+                let touch = hull(one).overlaps(&hull(other));
+                if touch && !touching[a * count + b] {
+                    tally.touched += 1;
+                    tracks.print(a, "touches");
+                    tracks.print(b, "touches");
+                }
                 touching[a * count + b] = touch;
                 if touch {
                     (touched_s[a], touched_s[b]) = (now_s, now_s);
@@ -209,6 +298,7 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
             if let Event::LeftField(vehicle) = logged.event {
                 let i = vehicle.index();
                 tally.left += 1;
+                tracks.print(i, "leaves the field");
                 let crowded = (0..count).any(|j| j != i && pose(i).at.distance(pose(j).at) < CROWD_M);
                 if now_s - touched_s[i] <= PUSH_REMEMBERED_S {
                     tally.left_pushed += 1;
@@ -224,16 +314,4 @@ fn play(scenario: &Scenario, seed: u64) -> Tally {
     tally.games_left = u64::from(tally.left > 0);
     tally.games_touched = u64::from(tally.touched > 0);
     tally
-}
-
-/// Whether two hulls, as the rectangles round them, overlap: no side of either separates them.
-fn overlap(one: (Pose, (f64, f64)), other: (Pose, (f64, f64))) -> bool {
-    let axes = |pose: Pose| [pose.rotation().ahead(), pose.rotation().starboard()];
-    let line = other.0.at - one.0.at;
-    let half = |(pose, (length_m, beam_m)): (Pose, (f64, f64)), axis: Ned| {
-        let [ahead, starboard] = axes(pose);
-        0.5 * (length_m * ahead.dot(axis).abs() + beam_m * starboard.dot(axis).abs())
-    };
-    let both = axes(one.0).into_iter().chain(axes(other.0));
-    both.into_iter().all(|axis| line.dot(axis).abs() < half(one, axis) + half(other, axis))
 }

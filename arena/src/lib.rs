@@ -37,11 +37,28 @@ pub fn play_watched(
     seed: u64,
     mut watch: impl FnMut(&mut Contest) -> bool,
 ) -> Result<Outcome, NoStart> {
+    play_observed(scenario, minds, seed, |contest, _| watch(contest))
+}
+
+/// As [`play_watched`], and shows with the contest the minds that have led there.
+///
+/// # Errors
+/// [`NoStart`] where the boats do not fit into their spawn area, randomised numbers do not go together, or boats are
+/// real ones.
+///
+/// # Panics
+/// If there is not one mind for each vehicle.
+pub fn play_observed(
+    scenario: &Scenario,
+    minds: Vec<Box<dyn Mind>>,
+    seed: u64,
+    mut observe: impl FnMut(&mut Contest, &MindRunner) -> bool,
+) -> Result<Outcome, NoStart> {
     assert_eq!(minds.len(), scenario.vehicles.len(), "one mind a vehicle");
     scenario.has_no_real_boats()?;
     let mut contest = Contest::new(scenario, seed)?;
     let mut runner = runner_of(minds);
-    while watch(&mut contest) && !contest.is_over() {
+    while observe(&mut contest, &runner) && !contest.is_over() {
         decide(&mut contest, &mut runner);
         contest.advance();
     }

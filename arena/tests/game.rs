@@ -102,14 +102,10 @@ fn the_shipped_games_are_what_they_say_and_no_boat_is_quarantined() {
         (sum(|counts| counts.grabs), sum(|counts| counts.captures), sum(|counts| counts.tags))
     };
     assert_eq!(sums("attack_1v1.toml", 1), (3, 3, 0), "nothing stops the attacker");
-    // Among eight boats that keep clear of each other Pav01 attackers grab flags, and all are tagged on their way home.
     // The seed draws something in the first of them only.
-    for (game, seeds, gets_home) in
-        [("pav01_3v3.toml", 5, true), ("pav01_4v4.toml", 1, false), ("harbour_2v2.toml", 1, true)]
-    {
+    for (game, seeds) in [("pav01_3v3.toml", 5), ("pav01_4v4.toml", 1), ("harbour_2v2.toml", 1)] {
         let (grabs, captures, tags) = sums(game, seeds);
-        let as_told = (captures > 0) == gets_home;
-        assert!(grabs > 0 && as_told && tags > 0, "{game}: {grabs} grabs, {captures} captures, {tags} tags");
+        assert!(grabs > 0 && captures > 0 && tags > 0, "{game}: {grabs} grabs, {captures} captures, {tags} tags");
     }
     let (.., tags) = sums("pav01_popolopen.toml", 1);
     assert!(tags > 0);

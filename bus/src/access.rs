@@ -2,66 +2,194 @@
 //!
 //! Everything is denied that no rule allows. The rules bind whoever is linked with the hub, not the hub's own session: so what
 //! only the sim may do (publish pictures, answer the queries that are its own, be alive as the sim, hear orders and
-//! navigation) needs no rule at all.
+//! navigation) needs no rule at all. Without keys, all others have the same rights; with keys each has those of its part.
+//!
+//! What the hub sends on has a topic that is spelled out here, none that others can make up: zenoh 1.10 panics, and the sim with
+//! it, where it has to send a key of more than 65535 bytes.
 
+use crate::keys::Identity;
+use game::Scenario;
+use game::scenario::Vehicle;
 use game::topic::{self, GameName};
 use serde_json::{Value, json};
 
-/// Messages of these kinds, in these directions (as seen from the hub), on topics that match.
-struct Rule {
-    messages: &'static [&'static str],
-    flows: &'static [&'static str],
-    topics: &'static [&'static str],
+/// What somebody may do, by patterns of topics. `{team}` stands for each of its teams, `{boat}` for each of its boats; only what the
+/// sim alone hears may have wildcards.
+struct Rights {
+    publishes: &'static [&'static str],
+    hears: &'static [&'static str],
+    asks: &'static [&'static str],
+    answers: &'static [&'static str],
 }
 
-/// What everybody may publish.
-const PUBLISHED: &[&str] = &["order/*", "say/*/*", "policy/*", "nav/*", "link/*", "status/*", "control"];
-/// What everybody may hear.
-const HEARD: &[&str] =
-    &["frame", "picture/*", "say/*/*", "policy/*", "external/*", "run", "control", "released", "status/*", "link/*"];
-/// What everybody may ask.
-const ASKED: &[&str] = &["scenario", "events", "water", "join", "control", "helm/*", "operate/*"];
-/// What agents and gateways answer.
-const ANSWERED: &[&str] = &["helm/*", "operate/*"];
+/// Anybody who reaches a hub without keys.
+const ANYBODY: Rights = Rights {
+    publishes: &["order/**", "say/{team}", "policy/{boat}", "nav/{boat}", "link/{boat}", "status/{boat}", "control"],
+    hears: &[
+        "frame",
+        "picture/{team}",
+        "say/{team}",
+        "policy/{boat}",
+        "external/{boat}",
+        "run",
+        "control",
+        "released",
+        "status/{boat}",
+        "link/{boat}",
+    ],
+    asks: &[
+        "scenario",
+        "events",
+        "water",
+        "join/agent",
+        "join/agent/{team}",
+        "join/gateway",
+        "join/gateway/{boat}",
+        "control",
+        "helm/{boat}",
+        "operate/{boat}",
+    ],
+    answers: &["helm/{boat}", "operate/{boat}"],
+};
+/// The agents of a team, and policies that propose to them: no truth, and nothing of other teams.
+const TEAM: Rights = Rights {
+    publishes: &["order/{team}/*", "say/{team}", "policy/{boat}", "control"],
+    hears: &["picture/{team}", "say/{team}", "policy/{boat}", "run", "control", "released"],
+    asks: &["scenario", "join/agent/{team}"],
+    answers: &["helm/{boat}"],
+};
+const GATEWAY: Rights = Rights {
+    publishes: &["nav/{boat}", "link/{boat}", "status/{boat}", "control"],
+    hears: &["external/{boat}", "frame", "run", "control", "released"],
+    asks: &["scenario", "join/gateway/{boat}"],
+    answers: &["operate/{boat}"],
+};
+const OBSERVER: Rights =
+    Rights { publishes: &["control"], asks: &["scenario", "events", "water", "helm/{boat}"], answers: &[], ..ANYBODY };
+const OPERATOR: Rights = Rights {
+    publishes: &["control", "policy/{boat}"],
+    asks: &["scenario", "events", "water", "helm/{boat}", "control", "operate/{boat}"],
+    ..OBSERVER
+};
 
-const RULES: &[Rule] = &[
-    Rule { messages: &["put"], flows: &["ingress"], topics: PUBLISHED },
-    Rule { messages: &["put"], flows: &["egress"], topics: HEARD },
-    Rule { messages: &["declare_subscriber"], flows: &["ingress"], topics: HEARD },
-    Rule { messages: &["query"], flows: &["ingress"], topics: ASKED },
-    Rule { messages: &["reply"], flows: &["egress"], topics: ASKED },
-    Rule { messages: &["declare_queryable", "reply"], flows: &["ingress"], topics: ANSWERED },
-    Rule { messages: &["query"], flows: &["egress"], topics: ANSWERED },
-    // That somebody subscribes or answers here is no secret: publishers must know it.
-    Rule { messages: &["declare_subscriber", "declare_queryable"], flows: &["egress"], topics: &["**"] },
-    Rule { messages: &["liveliness_token"], flows: &["ingress"], topics: &["alive/agent/*", "alive/gateway/*"] },
-    Rule { messages: &["liveliness_token"], flows: &["egress"], topics: &["alive/*/*"] },
-    Rule {
-        messages: &["liveliness_query", "declare_liveliness_subscriber"],
-        flows: &["ingress", "egress"],
-        topics: &["alive/*/*"],
-    },
-];
+fn rights(identity: &Identity) -> &'static Rights {
+    match identity {
+        // It opens the hub: nobody is linked as the sim.
+        Identity::Sim => &Rights { publishes: &[], hears: &[], asks: &[], answers: &[] },
+        Identity::Team(_) => &TEAM,
+        Identity::Gateway(_) => &GATEWAY,
+        Identity::Observer => &OBSERVER,
+        Identity::Operator => &OPERATOR,
+    }
+}
 
-/// zenoh's setting `access_control` for the hub of a game.
-pub(crate) fn control(game: &GameName) -> Value {
-    let rules = RULES.iter().enumerate().map(|(i, rule)| {
-        let topics = rule.topics.iter().map(|pattern| topic::matching(game, pattern));
-        let mut keys: Vec<String> = topics.collect();
-        if rule.messages.contains(&"liveliness_query") {
-            // Whoever does not know the game's name looks for all games.
-            keys.push(topic::everyone_alive());
+/// Whether somebody may ask at `key` at all: no answer comes where it may not.
+pub(crate) fn may_ask(identity: &Identity, key: &str) -> bool {
+    let kind = key.split('/').nth(2);
+    rights(identity).asks.iter().any(|pattern| pattern.split('/').next() == kind)
+}
+
+/// The rules for whoever has the rights, for its teams and boats.
+struct Subject {
+    id: String,
+    rights: &'static Rights,
+    teams: Vec<String>,
+    boats: Vec<String>,
+}
+
+impl Subject {
+    /// Topics of these patterns.
+    fn keys(&self, game: &GameName, patterns: &[&str]) -> Vec<String> {
+        let spelled_out = |pattern: &&str| -> Vec<String> {
+            if pattern.contains("{team}") {
+                self.teams.iter().map(|team| pattern.replace("{team}", team)).collect()
+            } else if pattern.contains("{boat}") {
+                self.boats.iter().map(|boat| pattern.replace("{boat}", boat)).collect()
+            } else {
+                vec![(*pattern).to_owned()]
+            }
+        };
+        patterns.iter().flat_map(spelled_out).map(|topic| topic::matching(game, &topic)).collect()
+    }
+
+    /// The rules: messages of these kinds, in these directions (as seen from the hub), on these topics.
+    fn rules(&self, game: &GameName) -> Vec<Value> {
+        let Rights { publishes, hears, asks, answers } = self.rights;
+        // Whoever does not know the game's name looks for all games.
+        let tokens = vec![topic::all_alive(game), topic::everyone_alive()];
+        let rules: [(&[&str], &[&str], Vec<String>); 10] = [
+            (&["put"], &["ingress"], self.keys(game, publishes)),
+            (&["put"], &["egress"], self.keys(game, hears)),
+            (&["declare_subscriber"], &["ingress"], self.keys(game, hears)),
+            (&["query"], &["ingress"], self.keys(game, asks)),
+            (&["reply"], &["egress"], self.keys(game, asks)),
+            (&["declare_queryable", "reply"], &["ingress"], self.keys(game, answers)),
+            (&["query"], &["egress"], self.keys(game, answers)),
+            // That somebody subscribes or answers here is no secret: publishers must know it.
+            (&["declare_subscriber", "declare_queryable"], &["egress"], vec![topic::matching(game, "**")]),
+            (&["liveliness_token"], &["egress"], vec![topic::all_alive(game)]),
+            (&["liveliness_query", "declare_liveliness_subscriber"], &["ingress", "egress"], tokens),
+        ];
+        let mut json = Vec::new();
+        for (messages, flows, keys) in rules {
+            if !keys.is_empty() {
+                let id = format!("{} {}", self.id, json.len());
+                json.push(json!({
+                    "id": id, "permission": "allow", "key_exprs": keys, "messages": messages, "flows": flows,
+                }));
+            }
         }
-        json!({
-            "id": i.to_string(), "permission": "allow", "key_exprs": keys,
-            "messages": rule.messages, "flows": rule.flows,
-        })
-    });
-    let rules: Vec<Value> = rules.collect();
-    let ids: Vec<String> = (0..rules.len()).map(|i| i.to_string()).collect();
+        json
+    }
+}
+
+/// Those whom a game knows, with or without keys.
+fn subjects(scenario: &Scenario, has_keys: bool) -> Vec<Subject> {
+    let names = |boats: Vec<&Vehicle>| -> Vec<String> { boats.into_iter().map(|boat| boat.name.clone()).collect() };
+    let teams: Vec<String> = scenario.teams.iter().map(|team| team.name.clone()).collect();
+    let boats = names(scenario.vehicles.iter().collect());
+    let subject = |identity: Identity, teams: &[String], boats: &[String]| Subject {
+        id: identity.to_string(),
+        rights: rights(&identity),
+        teams: teams.to_vec(),
+        boats: boats.to_vec(),
+    };
+    if !has_keys {
+        return vec![Subject { id: "anybody".to_owned(), rights: &ANYBODY, teams, boats }];
+    }
+    let mut subjects: Vec<Subject> =
+        [Identity::Observer, Identity::Operator].map(|identity| subject(identity, &teams, &boats)).into();
+    for (i, team) in teams.iter().enumerate() {
+        let own = names(scenario.vehicles.iter().filter(|boat| boat.team.index() == i).collect());
+        subjects.push(subject(Identity::Team(team.clone()), std::slice::from_ref(team), &own));
+    }
+    let externals = names(scenario.externals().map(|boat| &scenario.vehicles[boat.index()]).collect());
+    for boat in &externals {
+        subjects.push(subject(Identity::Gateway(Some(boat.clone())), &[], std::slice::from_ref(boat)));
+    }
+    subjects.push(subject(Identity::Gateway(None), &[], &externals));
+    subjects
+}
+
+/// zenoh's setting `access_control` for the hub of a game, with or without keys.
+pub(crate) fn control(game: &GameName, scenario: &Scenario, has_keys: bool) -> Value {
+    let all = subjects(scenario, has_keys);
+    let (mut rules, mut policies) = (Vec::new(), Vec::new());
+    for subject in &all {
+        let own = subject.rules(game);
+        let ids: Vec<&Value> = own.iter().map(|rule| &rule["id"]).collect();
+        policies.push(json!({ "rules": ids, "subjects": [&subject.id] }));
+        rules.extend(own);
+    }
+    let subject = |subject: &Subject| {
+        if has_keys {
+            json!({ "id": &subject.id, "cert_common_names": [&subject.id] })
+        } else {
+            json!({ "id": &subject.id })
+        }
+    };
     json!({
         "enabled": true, "default_permission": "deny", "rules": rules,
-        "subjects": [{ "id": "everybody" }],
-        "policies": [{ "rules": ids, "subjects": ["everybody"] }],
+        "subjects": all.iter().map(subject).collect::<Vec<Value>>(), "policies": policies,
     })
 }

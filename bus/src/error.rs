@@ -1,5 +1,7 @@
 //! What can go wrong between nodes.
 
+use crate::keys::Identity;
+use crate::runtime::KEYS_RUNTIME;
 use thiserror::Error;
 
 /// What can go wrong between nodes.
@@ -46,6 +48,21 @@ pub enum BusError {
     /// The game does not know this token.
     #[error("the token is not that of this game: `squall sim` showed it when it began")]
     WrongToken,
+    /// The keys are not those that are needed here, or the other side's are not.
+    #[error("{0}")]
+    Keys(String),
+    /// A session with keys in a process in which zenoh has other threads than one: its TLS links are not safe there.
+    #[error("a node with keys needs the environment variable ZENOH_RUNTIME = {KEYS_RUNTIME} from its start; {0}")]
+    Threads(String),
+    /// The game has keys, and none were given.
+    #[error("{0} speaks TLS: the game has keys, give yours by --keys FOLDER (see `squall keys`)")]
+    NeedsKeys(String),
+    /// Who shows this certificate may not ask for this.
+    #[error("{identity} may not do this: its keys do not allow it, take those of an operator")]
+    NotAllowed {
+        /// Whose keys they are.
+        identity: Identity,
+    },
     /// Something could not be declared or sent.
     #[error("cannot {doing} {key}: {reason}")]
     Use {

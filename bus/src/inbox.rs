@@ -35,7 +35,13 @@ pub fn inbox<T>(capacity: usize) -> (InboxSender<T>, Inbox<T>) {
 impl<T> InboxSender<T> {
     /// Hands `item` over.
     pub fn put(&self, item: T) {
-        let Queue { items, capacity, dropped } = &*self.0;
+        let is_dropped = !self.offer(item);
+        self.0.dropped.fetch_add(u64::from(is_dropped), Ordering::Relaxed);
+    }
+
+    /// Hands `item` over if there is room for it, and says whether there was.
+    pub fn offer(&self, item: T) -> bool {
+        let Queue { items, capacity, .. } = &*self.0;
         let surplus = items.visit(|items| {
             if items.len() >= *capacity {
                 return Some(item);
@@ -43,7 +49,7 @@ impl<T> InboxSender<T> {
             items.push_back(item);
             None
         });
-        dropped.fetch_add(u64::from(surplus.is_some()), Ordering::Relaxed);
+        surplus.is_none()
     }
 }
 

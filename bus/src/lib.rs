@@ -8,16 +8,20 @@
 
 mod access;
 pub mod clock;
+mod connections;
 mod control;
 mod entropy;
 mod error;
 pub mod game_search;
 mod gateway_port;
 mod inbox;
+pub mod keys;
 mod latest;
 mod linger;
 mod local_registry;
 mod net;
+mod place;
+mod runtime;
 mod session;
 mod sim_liveness;
 pub mod simulated;
@@ -25,6 +29,7 @@ mod thread;
 pub mod token;
 mod watched;
 
+pub use connections::{Connections, Slot};
 pub use control::control;
 pub use entropy::{random_bytes, random_number};
 pub use error::BusError;
@@ -36,15 +41,10 @@ pub use local_registry::{
     Entry, GatewayEntry, Registration, gateways as local_gateways, list as local_registry, register, register_gateway,
 };
 pub use net::{DEFAULT_PORT, Net, free_port, is_loopback};
+pub use place::{Place, PlacedSession};
+pub use runtime::{HUB_RUNTIME, RUNTIME, RUNTIME_VARIABLE, restart_for_keys};
 pub use session::{Bus, Declaration, Priority, Publisher, Query};
 pub use sim_liveness::{Patience, SimState, SimWatch};
-pub use thread::NodeThread;
-pub use token::Token;
+pub use thread::{NodeThread, start_thread};
+pub use token::{CurrentToken, Token};
 pub use watched::Watched;
-
-/// A value of the environment variable `ZENOH_RUNTIME` for a process that is one node: few threads in place of zenoh's pools,
-/// which takes a quarter to a half off a lockstep round trip. What is received has one to itself: a hub that passes
-/// something large on waits in it for the sender to make room, which must then have another thread to run in. So have links
-/// that somebody begins to open: one that is never finished is closed with its linger time on.
-pub const RUNTIME: &str =
-    "(rx:(worker_threads:1),acc:(worker_threads:1),tx:(handover:app),net:(handover:app),app:(worker_threads:1))";

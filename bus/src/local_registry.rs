@@ -82,10 +82,27 @@ fn register_in<E: Serialize>(folder: &Path, name: &str, entry: &E) -> std::io::R
         let problem = format!("{} is open to others, expected a folder of mode 700 of this user", folder.display());
         return Err(std::io::Error::other(problem));
     }
-    let path = folder.join(name);
-    let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&path)?;
-    file.write_all(&serde_json::to_vec(entry)?)?;
-    Ok(Registration(path))
+    let registration = Registration(folder.join(name));
+    registration.write(entry)?;
+    Ok(registration)
+}
+
+impl Registration {
+    /// From now on the gateway is entered like this.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn update(&self, entry: &GatewayEntry) -> std::io::Result<()> {
+        self.write(entry)
+    }
+
+    /// Whoever reads meanwhile finds the entry of before.
+    fn write<E: Serialize>(&self, entry: &E) -> std::io::Result<()> {
+        let unfinished = self.0.with_added_extension("new");
+        let mut file = fs::OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(&unfinished)?;
+        file.write_all(&serde_json::to_vec(entry)?)?;
+        fs::rename(&unfinished, &self.0)
+    }
 }
 
 impl Drop for Registration {
@@ -170,6 +187,9 @@ mod tests {
         assert_eq!(list_in::<Entry>(&dir, GAMES), std::slice::from_ref(&entry));
         assert_eq!(list_in::<GatewayEntry>(&dir, GATEWAYS), std::slice::from_ref(&gateway), "one of two runs");
         assert!(!gateways[1].0.exists(), "it is dead");
+        let renewed = GatewayEntry { token: Some("another".to_owned()), ..gateway };
+        gateways[0].update(&renewed).expect("it is ours");
+        assert_eq!(list_in::<GatewayEntry>(&dir, GATEWAYS), [renewed]);
         fs::set_permissions(&dir, fs::Permissions::from_mode(0o777)).expect("it is ours");
         assert_eq!(list_in::<Entry>(&dir, GAMES), [], "anybody could have written it");
         assert!(register_in(&dir, "a.json", &entry).is_err(), "anybody could read it");

@@ -1,10 +1,15 @@
 //! Where a node listens, whom it connects to, and whether it scouts.
 
+use crate::keys::{Bundle, Identity};
+use crate::runtime::check_threads_for_keys;
 use crate::session::reason;
 use crate::{BusError, Token, access};
-use game::topic::GameName;
+use game::Scenario;
+use game::topic::{self, GameName};
+use serde_json::json;
 use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
+use std::sync::Arc;
 use zenoh::Config;
 
 /// The port a hub takes when it is free and none is asked for.
@@ -26,6 +31,15 @@ const LINKS: [(&str, &str); 5] = [
 const NEVER_WAIT: &str =
     r#"[{messages: ["put", "delete", "query"], flows: ["ingress"], overwrite: {congestion_control: "drop"}}]"#;
 
+/// What a hub takes of others: a helm report fits into a message of 2 MB, a join request into a question of 64 kB, the orders
+/// for a thousand boats into 256 kB. Who connects has this long to say who it is.
+const MESSAGE_MAX: usize = 1 << 21;
+const QUESTION_MAX: usize = 1 << 16;
+const PUBLISHED_MAX: usize = 1 << 18;
+const ACCEPT_MS: usize = 5000;
+/// Nodes that are linked with a hub, and as many that are about to be: if the process may have four times as many files open.
+const NODES_MAX: usize = 1000;
+
 /// The longest zenoh configuration, bytes.
 const CONFIG_MAX: u64 = 1 << 20;
 
@@ -42,39 +56,52 @@ pub struct Net {
     pub config_file: Option<PathBuf>,
     /// The game's token, where it is known.
     pub token: Option<Token>,
+    /// The keys of this node, in a game with keys: its links are encrypted, and both sides show certificates. The process must
+    /// have called [`restart_for_keys`](crate::restart_for_keys) first.
+    pub keys: Option<Arc<Bundle>>,
 }
 
 impl Net {
     /// The endpoint at which nodes on the same machine reach a hub that listens here.
     #[must_use]
     pub fn local_endpoint(&self) -> Option<String> {
-        let first = self.listen.first()?;
+        let first = self.endpoints(&self.listen).into_iter().next()?;
         Some(first.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:"))
     }
 
     /// The zenoh configuration of the hub of a game.
-    pub(crate) fn hub(&self, game: &GameName) -> Result<Config, BusError> {
+    pub(crate) fn hub(&self, game: &GameName, scenario: &Scenario) -> Result<Config, BusError> {
+        if let Some(keys) = self.keys.as_ref().filter(|keys| *keys.identity() != Identity::Sim) {
+            let reason = format!("a sim is served with the keys of sim, these are those of {}", keys.identity());
+            return Err(BusError::Keys(format!("{}: {reason}", keys.folder().display())));
+        }
         let mut config = self.base()?;
         // A file that has rules of its own knows better.
         if config.get_json("access_control/enabled").ok().as_deref() != Some("true") {
-            set(&mut config, "access_control", &access::control(game).to_string())?;
+            set(&mut config, "access_control", &access::control(game, scenario, self.keys.is_some()).to_string())?;
         }
         set(&mut config, "mode", "\"router\"")?;
-        set(&mut config, "listen/endpoints", &list(&self.listen))?;
-        set(&mut config, "connect/endpoints", &list(&self.connect))?;
+        set(&mut config, "listen/endpoints", &self.list(&self.listen))?;
+        set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
         // Our messages carry simulated time; a hybrid clock in every sample would only cost.
         set(&mut config, "timestamping/enabled", "false")?;
         // Whatever a node asks for, what it sends through the hub waits for nobody: the others would wait with it.
         set(&mut config, "qos/network", NEVER_WAIT)?;
+        limit_strangers(&mut config, game)?;
         Ok(config)
     }
 
     /// The zenoh configuration of a leaf. It keeps trying to connect, and connects again after a cut.
     pub(crate) fn leaf(&self) -> Result<Config, BusError> {
+        if let Some(keys) = self.keys.as_ref().filter(|keys| *keys.identity() == Identity::Sim) {
+            let reason =
+                "the keys of sim only serve games: take those of a team, a gateway, an observer or an operator";
+            return Err(BusError::Keys(format!("{}: {reason}", keys.folder().display())));
+        }
         let mut config = self.base()?;
         set(&mut config, "mode", "\"client\"")?;
         // Without an endpoint, a leaf on a local network scouts for a hub.
-        set(&mut config, "connect/endpoints", &list(&self.connect))?;
+        set(&mut config, "connect/endpoints", &self.list(&self.connect))?;
         set(&mut config, "connect/timeout_ms", "0")?;
         set(&mut config, "connect/exit_on_failure", "true")?;
         Ok(config)
@@ -95,8 +122,52 @@ impl Net {
         for (key, value) in LINKS {
             set(&mut config, key, value)?;
         }
+        if let Some(keys) = &self.keys {
+            check_threads_for_keys()?;
+            let [authority, certificate, key] = keys.files();
+            let tls = json!({
+                "root_ca_certificate": authority, "enable_mtls": true, "verify_name_on_connect": true,
+                "listen_certificate": certificate, "listen_private_key": key,
+                "connect_certificate": certificate, "connect_private_key": key,
+            });
+            set(&mut config, "transport/link/tls", &tls.to_string())?;
+            // Nor by an endpoint that was learnt from others is anything spoken but TLS.
+            set(&mut config, "transport/link/protocols", r#"["tls"]"#)?;
+        }
         Ok(config)
     }
+
+    /// Endpoints as zenoh is told them: with keys, TCP is TLS.
+    pub(crate) fn endpoints(&self, endpoints: &[String]) -> Vec<String> {
+        let told = |endpoint: &String| match endpoint.strip_prefix("tcp/") {
+            Some(address) if self.keys.is_some() => format!("tls/{address}"),
+            _ => endpoint.clone(),
+        };
+        endpoints.iter().map(told).collect()
+    }
+
+    fn list(&self, endpoints: &[String]) -> String {
+        serde_json::to_string(&self.endpoints(endpoints)).expect("a list of strings is JSON")
+    }
+}
+
+/// Keeps within bounds what nodes that are linked with a hub, or try to be, can make it hold.
+fn limit_strangers(config: &mut Config, game: &GameName) -> Result<(), BusError> {
+    let files = rustix::process::getrlimit(rustix::process::Resource::Nofile).current;
+    let nodes = files.map_or(NODES_MAX, |files| NODES_MAX.min(files as usize / 4));
+    let all = topic::matching(game, "**");
+    let smaller = |messages: &[&str], size: usize| json!({ "messages": messages, "flows": ["ingress"], "key_exprs": [&all], "size_limit": size });
+    let filters = json!([smaller(&["put", "delete"], PUBLISHED_MAX), smaller(&["query"], QUESTION_MAX)]);
+    for (key, value) in [
+        ("transport/unicast/max_sessions", nodes.to_string()),
+        ("transport/unicast/accept_pending", nodes.to_string()),
+        ("transport/unicast/accept_timeout", ACCEPT_MS.to_string()),
+        ("transport/link/rx/max_message_size", MESSAGE_MAX.to_string()),
+        ("low_pass_filter", filters.to_string()),
+    ] {
+        set(config, key, &value)?;
+    }
+    Ok(())
 }
 
 fn set(config: &mut Config, key: &str, value: &str) -> Result<(), BusError> {
@@ -107,15 +178,16 @@ fn set(config: &mut Config, key: &str, value: &str) -> Result<(), BusError> {
     })
 }
 
-fn list(endpoints: &[String]) -> String {
-    serde_json::to_string(endpoints).expect("a list of strings is JSON")
+/// Host and port of an endpoint, for example `127.0.0.1:7447` of `tcp/127.0.0.1:7447#iface=lo`.
+pub(crate) fn address(endpoint: &str) -> &str {
+    let address = endpoint.split_once('/').map_or(endpoint, |(_, address)| address);
+    address.split(['?', '#']).next().unwrap_or(address)
 }
 
 /// Whether an endpoint, for example `tcp/127.0.0.1:7447`, can be reached from this machine only.
 #[must_use]
 pub fn is_loopback(endpoint: &str) -> bool {
-    let address = endpoint.split_once('/').map_or(endpoint, |(_, address)| address);
-    let address = address.split(['?', '#']).next().unwrap_or(address);
+    let address = address(endpoint);
     match address.parse::<SocketAddr>() {
         Ok(address) => address.ip().is_loopback(),
         Err(_) => address.rsplit_once(':').is_some_and(|(host, _)| host == "localhost"),

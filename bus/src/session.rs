@@ -1,8 +1,10 @@
 //! A node's session on the network: publish, subscribe, queries, liveliness tokens.
 
+use crate::keys::{self, Bundle};
 use crate::simulated::{self, SimulatedPublisher, SimulatedQuery, SimulatedSession};
 use crate::token::{self, Token};
-use crate::{BusError, Net, linger};
+use crate::{BusError, Net, access, linger};
+use game::Scenario;
 use game::codec;
 use game::message::Message;
 use game::topic::GameName;
@@ -34,6 +36,7 @@ pub struct Declaration(#[expect(dead_code, reason = "kept for its drop")] Box<dy
 pub struct Bus {
     network: Network,
     token: Option<Token>,
+    keys: Option<Arc<Bundle>>,
 }
 
 /// The network that a session is on.
@@ -78,12 +81,16 @@ impl Bus {
     ///
     /// # Errors
     /// [`BusError`] if it cannot listen where it should.
-    pub fn hub(net: &Net, game: &GameName) -> Result<Bus, BusError> {
-        let what = format!("to listen on {}", net.listen.join(", "));
+    pub fn hub(net: &Net, game: &GameName, scenario: &Scenario) -> Result<Bus, BusError> {
+        let what = format!("to listen on {}", net.endpoints(&net.listen).join(", "));
         if simulated::is_inside() {
             return simulated(SimulatedSession::hub(net), net, what);
         }
-        open(net.hub(game)?, net.token.clone(), what)
+        open(net.hub(game, scenario)?, net, what)
+    }
+
+    fn of(network: Network, net: &Net) -> Bus {
+        Bus { network, token: net.token.clone(), keys: net.keys.clone() }
     }
 
     /// Connects to a hub.
@@ -91,11 +98,31 @@ impl Bus {
     /// # Errors
     /// [`BusError`] if nobody listens there now.
     pub fn leaf(net: &Net) -> Result<Bus, BusError> {
-        let what = format!("to connect to {}", net.connect.join(", "));
+        let endpoints = net.endpoints(&net.connect);
+        let what = format!("to connect to {}", endpoints.join(", "));
         if simulated::is_inside() {
             return simulated(SimulatedSession::leaf(net), net, what);
         }
-        open(net.leaf()?, net.token.clone(), what)
+        open(net.leaf()?, net, what).map_err(|error| {
+            // zenoh does not say why.
+            let of_keys = endpoints.iter().find_map(|endpoint| match &net.keys {
+                Some(keys) => keys::refusal(endpoint, keys),
+                None => keys::is_tls(endpoint).then(|| BusError::NeedsKeys(endpoint.clone())),
+            });
+            of_keys.unwrap_or(error)
+        })
+    }
+
+    /// The keys of this node, in a game with keys.
+    #[must_use]
+    pub fn keys(&self) -> Option<&Bundle> {
+        self.keys.as_deref()
+    }
+
+    /// The same session, for a node that knows this token.
+    #[must_use]
+    pub fn with_token(self, token: Option<Token>) -> Bus {
+        Bus { token, ..self }
     }
 
     /// This session's own identifier, unique on the network.
@@ -226,14 +253,17 @@ impl Bus {
     /// first answer that comes within `limit`, of each of two questions. They go before everything else: some of them command boats.
     ///
     /// # Errors
-    /// [`BusError`] if the session is closed, if a token is needed and there is none or another one, or if the answer is not
-    /// understood.
+    /// [`BusError`] if the session is closed, if a token is needed and there is none or another one, if the keys of this node are
+    /// not of somebody who may ask this, or if the answer is not understood.
     pub fn request<B: Serialize, T: DeserializeOwned>(
         &self,
         key: &str,
         body: &B,
         limit: Duration,
     ) -> Result<Option<T>, BusError> {
+        if let Some(keys) = self.keys().filter(|keys| !access::may_ask(keys.identity(), key)) {
+            return Err(BusError::NotAllowed { identity: keys.identity().clone() });
+        }
         let ask = |payload| self.ask_at(qos::Priority::RealTime, key, payload, limit);
         token::request(self.token.as_ref(), key, body, ask)
     }
@@ -271,6 +301,24 @@ impl Bus {
         Ok(Declaration(Box::new(watch.wait().map_err(failed("watch", &key))?)))
     }
 
+    /// Calls `take` with the identifier of every node whose link to this hub is gone.
+    ///
+    /// # Errors
+    /// [`BusError`] if the session is closed.
+    pub fn watch_links(&self, take: impl Fn(String) + Send + Sync + 'static) -> Result<Declaration, BusError> {
+        let session = match &self.network {
+            Network::Zenoh(session) => session,
+            Network::Simulated(session) => return Ok(Declaration(Box::new(session.watch_links(take)))),
+        };
+        let callback = move |event: zenoh::session::TransportEvent| {
+            if event.kind() == SampleKind::Delete {
+                take(event.transport().zid().to_string());
+            }
+        };
+        let listener = session.info().transport_events_listener().callback(callback).wait();
+        Ok(Declaration(Box::new(listener.map_err(failed("watch", "the links"))?)))
+    }
+
     /// The keys of all nodes under `key` that are there now.
     ///
     /// # Errors
@@ -298,15 +346,15 @@ impl Bus {
     }
 }
 
-fn open(config: zenoh::Config, token: Option<Token>, what: String) -> Result<Bus, BusError> {
+fn open(config: zenoh::Config, net: &Net, what: String) -> Result<Bus, BusError> {
     let session = zenoh::open(config).wait().and_then(|session| linger::disable(&session).map(|()| session));
-    let bus = session.map(|session| Bus { network: Network::Zenoh(session), token });
+    let bus = session.map(|session| Bus::of(Network::Zenoh(session), net));
     bus.map_err(|e| BusError::Open { what, reason: reason(&e) })
 }
 
 fn simulated(session: Result<SimulatedSession, String>, net: &Net, what: String) -> Result<Bus, BusError> {
     let session = session.map_err(|reason| BusError::Open { what, reason })?;
-    Ok(Bus { network: Network::Simulated(session), token: net.token.clone() })
+    Ok(Bus::of(Network::Simulated(session), net))
 }
 
 impl Publisher {

@@ -4,7 +4,7 @@
 //! the link to it is cut, it falls silent first, and its token goes when the network gives the link up.
 
 use crate::{Bus, BusError, Declaration, Watched, clock};
-use game::topic::{self, GameName, Part};
+use game::topic::{self, GameName};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -16,13 +16,16 @@ pub struct Patience {
     pub silence: Duration,
     /// Where it was heard until its token went: the link may only have been opened anew.
     pub missing: Duration,
+    /// Where it was never heard, and its token went: it has died, or the link is cut.
+    pub unheard: Duration,
 }
 
 impl Patience {
-    /// That of whoever plays in the game: it waits this long for a silent sim, and for one without a token five seconds.
+    /// That of whoever plays in the game: it waits this long for a silent sim, and five seconds for one that was heard until its
+    /// token went.
     #[must_use]
     pub fn of_player(silence: Duration) -> Patience {
-        Patience { silence, missing: Duration::from_secs(5) }
+        Patience { silence, missing: Duration::from_secs(5), unheard: silence }
     }
 }
 
@@ -42,6 +45,8 @@ pub enum SimState {
 struct SimLiveness {
     patience: Patience,
     heard_at: Instant,
+    /// Whether it was ever heard. Before its game begins it may say nothing for any time: its token stands for it.
+    is_heard: bool,
     /// When its token was first missed.
     missed_at: Option<Instant>,
     /// The sim that we go by: the first that was seen, by the key of its token.
@@ -54,7 +59,11 @@ struct SimLiveness {
 impl SimLiveness {
     fn new(patience: Patience, now: Instant) -> SimLiveness {
         let (ours, tokens) = (None, BTreeSet::new());
-        SimLiveness { patience, heard_at: now, missed_at: None, ours, tokens, is_replaced: false }
+        SimLiveness { patience, heard_at: now, is_heard: false, missed_at: None, ours, tokens, is_replaced: false }
+    }
+
+    fn hear(&mut self, now: Instant) {
+        (self.heard_at, self.is_heard) = (now, true);
     }
 
     /// A token has come or gone.
@@ -83,10 +92,14 @@ impl SimLiveness {
         if self.is_replaced {
             return SimState::Replaced;
         }
+        if !self.is_heard && self.is_there() == Some(true) {
+            self.heard_at = now;
+        }
         self.missed_at = if self.is_there() == Some(false) { self.missed_at.or(Some(now)) } else { None };
-        let Patience { silence, missing } = self.patience;
+        let Patience { silence, missing, unheard } = self.patience;
         let is_cut_off = |missed: Instant| missed.saturating_duration_since(self.heard_at) > missing;
         let limit = match self.missed_at {
+            Some(_) if !self.is_heard => silence.min(unheard),
             Some(missed) if !is_cut_off(missed) => silence.min(missing),
             Some(_) | None => silence,
         };
@@ -110,28 +123,19 @@ impl SimWatch {
         let liveness = Arc::new(Watched::new(SimLiveness::new(patience, clock::now())));
         let told = Arc::clone(&liveness);
         let take = move |key: &str, is_there: bool| told.visit(|liveness| liveness.take_token(key, is_there));
-        let tokens = bus.watch_alive(topic::all_alive(game, Part::Sim), take)?;
+        let tokens = bus.watch_alive(topic::all_alive(game), take)?;
         Ok(SimWatch { liveness, _tokens: tokens })
     }
 
     /// The sim was heard just now.
     pub fn hears(&self) {
-        self.liveness.visit(|liveness| liveness.heard_at = clock::now());
+        self.liveness.visit(|liveness| liveness.hear(clock::now()));
     }
 
-    /// How it is with the sim now.
+    /// How it is with the sim now. Whoever hears nothing of it goes by its token.
     #[must_use]
     pub fn state(&self) -> SimState {
         self.liveness.visit(|liveness| liveness.state(clock::now()))
-    }
-
-    /// How it is with the sim now, for whoever hears nothing of it but its token.
-    #[must_use]
-    pub fn state_by_token(&self) -> SimState {
-        if self.liveness.visit(|liveness| liveness.is_there()) == Some(true) {
-            self.hears();
-        }
-        self.state()
     }
 
     /// Waits up to `limit` for a sim, and goes by that one from then on. Says whether one is there.
@@ -161,7 +165,7 @@ mod tests {
         (0..300).find(|s| {
             let now = start + Duration::from_secs(*s);
             if is_heard(*s) {
-                sim.heard_at = now;
+                sim.hear(now);
             }
             sim.take_token("a", is_there(*s));
             matches!(sim.state(now), SimState::Dead(_))
@@ -178,6 +182,14 @@ mod tests {
     #[test]
     fn a_sim_that_hangs_is_missed_after_the_silence_allowed() {
         assert_eq!(died(SILENCE, |s| s <= 20, |_| true), Some(81));
+    }
+
+    #[test]
+    fn a_game_that_does_not_begin_is_waited_for_as_long_as_the_sim_is_there() {
+        assert_eq!(died(2, |_| false, |s| s <= 200), Some(203));
+        assert_eq!(died(SILENCE, |_| false, |s| !(100..140).contains(&s)), None, "the link is cut, and opened anew");
+        assert_eq!(died(2, |s| s > 100, |_| true), None, "it begins late");
+        assert_eq!(died(2, |s| (100..=120).contains(&s), |_| true), Some(123), "it hangs in the game");
     }
 
     #[test]
@@ -218,7 +230,8 @@ mod tests {
     #[test]
     fn by_its_token_alone_a_sim_is_gone_when_it_is_not_the_same_or_not_there_for_a_while() {
         let start = clock::now();
-        let patience = Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1) };
+        let second = Duration::from_secs(1);
+        let patience = Patience { silence: Duration::from_secs(5), missing: second, unheard: second };
         let mut sim = SimLiveness::new(patience, start);
         for (at_s, token, want, what) in [
             (4.0, None, true, "it has time to appear"),
@@ -230,9 +243,6 @@ mod tests {
         ] {
             let now = start + Duration::from_secs_f64(at_s);
             token.into_iter().for_each(|is_there| sim.take_token("a", is_there));
-            if sim.is_there() == Some(true) {
-                sim.heard_at = now;
-            }
             assert_eq!(sim.state(now) == SimState::Alive, want, "{at_s} s: {what}");
         }
         let never = SimLiveness::new(patience, start).state(start + Duration::from_secs(6));

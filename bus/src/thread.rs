@@ -4,6 +4,18 @@ use crate::{Watched, simulated};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
+/// Starts a thread that nobody waits for.
+///
+/// # Errors
+/// If the system has no thread to give.
+pub fn start_thread(name: &str, body: impl FnOnce() + Send + 'static) -> std::io::Result<()> {
+    if simulated::is_inside() {
+        drop(simulated::spawn(body));
+        return Ok(());
+    }
+    std::thread::Builder::new().name(name.to_owned()).spawn(body).map(drop)
+}
+
 /// A thread that is waited for when this is dropped. What it does must end then.
 pub struct NodeThread {
     is_done: Arc<Watched<bool>>,

@@ -6,6 +6,7 @@
 
 use crate::{BusError, clock, random_bytes};
 use hmac::{Hmac, KeyInit, Mac};
+use parking_lot::Mutex;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::value::{RawValue, to_raw_value};
@@ -13,6 +14,7 @@ use sha2::Sha256;
 use std::collections::VecDeque;
 use std::fmt::Write as _;
 use std::str::FromStr;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
@@ -86,6 +88,28 @@ impl std::fmt::Debug for Token {
     }
 }
 
+/// The token that a node goes by now, where it can change while the node runs. Whoever has a copy sees the change.
+#[derive(Clone, Debug, Default)]
+pub struct CurrentToken(Arc<Mutex<Option<Token>>>);
+
+impl CurrentToken {
+    /// The token, if there is one now.
+    #[must_use]
+    pub fn get(&self) -> Option<Token> {
+        self.0.lock().clone()
+    }
+
+    pub(crate) fn set(&self, token: Option<Token>) {
+        *self.0.lock() = token;
+    }
+}
+
+impl From<Option<Token>> for CurrentToken {
+    fn from(token: Option<Token>) -> CurrentToken {
+        CurrentToken(Arc::new(Mutex::new(token)))
+    }
+}
+
 /// That whoever sends this knows the token.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Proof {
@@ -116,7 +140,10 @@ fn first<T: Serialize>(body: &T) -> Vec<u8> {
 
 /// Asks on `key`, by `ask`, for something that may need the token, and proves that it is known if asked to; gives the answer,
 /// or nothing if none comes.
-pub(crate) fn request<B: Serialize, T: DeserializeOwned>(
+///
+/// # Errors
+/// What `ask` says, or [`BusError`] if a token is needed and there is none or another one, or if the answer is not understood.
+pub fn request<B: Serialize, T: DeserializeOwned>(
     token: Option<&Token>,
     key: &str,
     body: &B,
@@ -181,15 +208,15 @@ pub enum Checked<T> {
 /// Lets requests through whose sender knows the token. It lives where requests are answered.
 #[derive(Debug, Default)]
 pub struct Guard {
-    token: Option<Token>,
+    token: CurrentToken,
     open: VecDeque<(String, Instant)>,
 }
 
 impl Guard {
     /// One for this token; without one everything is let through.
     #[must_use]
-    pub fn new(token: Option<Token>) -> Guard {
-        Guard { token, open: VecDeque::new() }
+    pub fn new(token: impl Into<CurrentToken>) -> Guard {
+        Guard { token: token.into(), open: VecDeque::new() }
     }
 
     /// Checks a request on `key`, where it needs a proof.
@@ -207,7 +234,7 @@ impl Guard {
             Ok(read) => read,
             Err(error) => return Checked::Garbage(error),
         };
-        let Some(token) = self.token.as_ref().filter(|_| needs_proof(&request)) else {
+        let Some(token) = self.token.get().filter(|_| needs_proof(&request)) else {
             return Checked::Granted(request);
         };
         let now = clock::now();
@@ -320,6 +347,20 @@ mod tests {
         let mut guard = guard(&Token::random());
         assert!(is_granted(guard.check(KEY, &first(&"stop"), |body| body != "stop"), "stop"));
         assert!(is_granted(check(&mut Guard::default(), KEY, &first(&"x")), "x"), "there is no token");
+    }
+
+    #[test]
+    fn a_guard_goes_by_the_token_of_now() {
+        let (first, second) = (Token::random(), Token::random());
+        let current = CurrentToken::default();
+        let mut guard = Guard::new(current.clone());
+        for token in [&first, &second] {
+            current.set(Some(token.clone()));
+            let again = proven(&mut guard, token, "x");
+            assert!(is_granted(check(&mut guard, KEY, &again), "x"));
+        }
+        let outdated = proven(&mut guard, &first, "x");
+        assert!(matches!(check(&mut guard, KEY, &outdated), Checked::Challenged(_)), "the token of the game before");
     }
 
     #[test]

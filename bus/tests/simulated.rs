@@ -2,8 +2,10 @@
 
 use bus::simulated::{Conditions, Damage, Fault, Run, SimulatedNetwork, Verdict};
 use bus::{Bus, Net, Priority, Watched, clock, inbox};
+use game::Scenario;
 use game::topic::GameName;
 use parking_lot::Mutex;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -30,6 +32,11 @@ fn net() -> Net {
     Net { listen: endpoint.clone(), connect: endpoint, ..Net::default() }
 }
 
+fn scenario() -> Scenario {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+    game::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// What a node saw, in order, with the second of virtual time.
 type Log = Arc<Mutex<Vec<(f64, String)>>>;
 
@@ -39,7 +46,7 @@ fn add_hub(network: &SimulatedNetwork, time: Duration, log: &Log) -> usize {
     network.node(Duration::ZERO, "hub", move || {
         let start = clock::now();
         let note = move |log: &Log, text: String| log.lock().push((clock::since(start).as_secs_f64(), text));
-        let bus = Bus::hub(&net(), &GameName::new("test").expect("a name")).expect("the address is free");
+        let bus = Bus::hub(&net(), &GameName::new("test").expect("a name"), &scenario()).expect("the address is free");
         let (numbers, tokens) = (Arc::clone(&log), Arc::clone(&log));
         let heard =
             bus.subscribe(KEY.to_owned(), move |bytes| note(&numbers, String::from_utf8_lossy(bytes).into_owned()));

@@ -27,8 +27,22 @@ pub struct Boat {
     pub windage: Windage,
     /// What drives it.
     pub drive: Drive,
+    /// What it does when it holds. Older recordings are without it.
+    #[serde(default)]
+    pub hold: Hold,
     /// What it knows of itself.
     pub sensors: Sensors,
+}
+
+/// What a boat does when it holds: without an order, out of action, or told so by its mind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Hold {
+    /// Its thrusters are at zero: it lies in the water and drifts.
+    #[default]
+    Drifts,
+    /// Its front seat keeps it where it began to hold. When people ashore stop boats, it drifts all the same.
+    KeepsStation,
 }
 
 /// What drives a boat.

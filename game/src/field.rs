@@ -285,6 +285,19 @@ impl Field {
         if team.index() == 0 { self.plan.along_deg } else { self.plan.along_deg + 180.0 }
     }
 
+    /// Where a boat of `team` at `at` steers for a corner of its own end: the nearer of the two points that lie `inset_m`
+    /// inside of both edges. The corners themselves are on the boundary: whoever makes for one from outside follows the
+    /// edge on the wrong side of it.
+    #[must_use]
+    pub fn inside_own_corner(&self, team: TeamId, at: Ned, inset_m: f64) -> Option<Ned> {
+        // Clockwise: the field lies to starboard of the way from the first corner to the second.
+        let [first, second] = *self.own_corners.get(team.index())?;
+        let ahead = (second - first).scaled(inset_m / first.distance(second));
+        let inward = Ned { north: -ahead.east, east: ahead.north };
+        let (first, second) = (first + ahead + inward, second - ahead + inward);
+        Some(if at.distance_squared(first) <= at.distance_squared(second) { first } else { second })
+    }
+
     /// The named point of `team`: a column (`PP P C S SS`, port to starboard) and a row (`B` back,
     /// `F` flag line, `H` half of the own side, `M` between there and the centre, `C` centre line,
     /// then `MX HX FX BX` on the other side), seen from the own end.
@@ -396,6 +409,24 @@ mod tests {
         assert_near(popolopen.corners[1], 150.28, 69.65);
         assert_near(popolopen.corners[2], 205.0, 220.0);
         assert_near(popolopen.corners[3], 280.18, 192.64);
+    }
+
+    #[test]
+    fn boats_steer_for_points_inside_of_their_own_corners() {
+        // The points for which the competition of 2026 steers: 10 m from both edges.
+        let field = Field::new(plan((0.0, 0.0), 90.0, 160.0, 80.0, 20.0));
+        for (team, from, want) in [
+            (0, (40.0, 81.0), (10.0, 70.0)),
+            (0, (-3.0, 20.0), (10.0, 10.0)),
+            (1, (90.0, 60.0), (150.0, 70.0)),
+            (1, (165.0, -5.0), (150.0, 10.0)),
+        ] {
+            let got = field.inside_own_corner(TeamId(team), Ned::from_xy(from.0, from.1), 10.0);
+            assert_eq!(got, Some(Ned::from_xy(want.0, want.1)), "team {team} from {from:?}");
+        }
+        let aslant = Field::new(plan((225.4522, 42.2876), 20.0, 160.0, 80.0, 20.0));
+        let got = aslant.inside_own_corner(TeamId(1), aslant.at(150.0, 90.0), 10.0).expect("it has corners");
+        assert!(got.distance(aslant.at(150.0, 70.0)) < 1e-9, "{got:?}");
     }
 
     #[test]

@@ -34,6 +34,15 @@ pub struct Pose {
     pub psi_rad: f64,
 }
 
+/// How a boat moved in the last tick: its midships before and after it.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg {
+    /// Where it was.
+    pub from: Ned,
+    /// Where it is.
+    pub to: Ned,
+}
+
 /// A heading as its sine and cosine: the rotation between a boat's own frame and the field's.
 ///
 /// Worked out once a tick and boat; what turns vectors then needs no sine or cosine of its own.

@@ -15,10 +15,17 @@ pub struct HelmReport {
     pub program: String,
     /// The mode, with those that it is a part of: `defending:loitering`.
     pub mode: String,
-    /// The chosen course, compass degrees; none if the boat holds.
+    /// The chosen heading, compass degrees; none if the boat holds. With the drift it makes the course.
     pub course_deg: Option<f64>,
-    /// The chosen speed, m/s; none if the boat holds.
+    /// The chosen speed through the water, m/s; none if the boat holds.
     pub speed_m_s: Option<f64>,
+    /// By how much the boat lies beside the heading that it is told, as the helm sees it, degrees clockwise: the order is so
+    /// much less than the heading chosen. Recordings of earlier versions have none, nor the drift.
+    #[serde(default)]
+    pub heading_offset_deg: f64,
+    /// The drift as the helm sees it.
+    #[serde(default)]
+    pub drift: DriftReport,
     /// Why the boat holds, if it does.
     pub hold: Option<String>,
     /// The weighted sum of utilities at the decision.
@@ -35,6 +42,17 @@ pub struct HelmReport {
     pub variables: Vec<VariableReport>,
     /// The objective functions of the decision.
     pub functions: Vec<FunctionReport>,
+}
+
+/// What wind, waves and current add to a boat's way through the water, as its helm sees it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DriftReport {
+    /// Towards north, m/s.
+    pub north_m_s: f64,
+    /// Towards east, m/s.
+    pub east_m_s: f64,
+    /// Standard deviation of the velocity about that, m/s.
+    pub spread_m_s: f64,
 }
 
 impl HelmReport {

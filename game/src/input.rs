@@ -114,6 +114,7 @@ impl From<Input> for InputRecord {
                     Order::Hold => record(0, Some(vehicle), &[]),
                     Order::Steer { heading_rad, speed_m_s } => record(1, Some(vehicle), &[heading_rad, speed_m_s]),
                     Order::Thrust { port, starboard } => record(2, Some(vehicle), &[port, starboard]),
+                    Order::Turn { by_rad, speed_m_s } => record(14, Some(vehicle), &[by_rad, speed_m_s]),
                 };
                 InputRecord { at_ns: given_at, ..record }
             }
@@ -155,6 +156,7 @@ impl InputRecord {
             (kind @ 9..=10, []) => Input::EStopped(kind == 9),
             (kind @ 11..=12, []) => Input::Halted(kind == 11),
             (13, []) => Input::Played,
+            (14, &[by_rad, speed_m_s]) => ordered(Order::Turn { by_rad, speed_m_s })?,
             _ => return None,
         })
     }
@@ -179,6 +181,7 @@ mod tests {
             Input::Ordered { vehicle, order: Order::Hold, given_at: SimTime::ZERO },
             Input::Ordered { vehicle, order: Order::Steer { heading_rad: 0.5, speed_m_s: 2.0 }, given_at: SimTime(7) },
             Input::Ordered { vehicle, order: Order::Thrust { port: -1.0, starboard: 0.25 }, given_at: SimTime(7) },
+            Input::Ordered { vehicle, order: Order::Turn { by_rad: -3.0, speed_m_s: 2.0 }, given_at: SimTime(7) },
             Input::Held(vehicle),
             Input::AgentLost(vehicle),
             Input::AgentBack(vehicle),
@@ -194,7 +197,7 @@ mod tests {
             assert_eq!(record.input(), Some(input), "{record:?}");
             assert_eq!(InputRecord { numbers: vec![0.0; 9], ..record }.input(), None, "{input:?}");
         }
-        assert_eq!(InputRecord { kind: 14, ..InputRecord::default() }.input(), None);
+        assert_eq!(InputRecord { kind: 15, ..InputRecord::default() }.input(), None);
         assert_eq!(InputRecord { kind: 4, vehicle: -1, ..InputRecord::default() }.input(), None);
     }
 }

@@ -42,7 +42,7 @@ pub mod water;
 pub use boat::Boat;
 pub use event::Event;
 pub use field::Field;
-pub use frame::{Body, LatLon, Ned, Pose, Rotation};
+pub use frame::{Body, LatLon, Leg, Ned, Pose, Rotation};
 pub use id::{FlagId, TeamId, VehicleId};
 pub use order::Order;
 pub use outcome::Outcome;

@@ -12,6 +12,7 @@ use crate::id::VehicleId;
 use crate::order::Order;
 use crate::picture::{FlagView, Nav};
 use crate::scenario::Scenario;
+use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
@@ -98,11 +99,11 @@ pub struct Orders {
 pub struct VehicleOrder {
     /// The boat.
     pub vehicle: VehicleId,
-    /// 0 hold, 1 steer, 2 thrust.
+    /// 0 hold, 1 steer, 2 thrust, 3 turn.
     pub kind: u8,
-    /// To steer: the heading, rad clockwise from north.
+    /// To steer: the heading, rad clockwise from north. To turn: by how much, rad clockwise.
     pub heading_rad: f64,
-    /// To steer: the speed ahead, m/s.
+    /// To steer and to turn: the speed ahead, m/s.
     pub speed_m_s: f64,
     /// Thrust of the port thruster, -1 to 1.
     pub port: f64,
@@ -119,6 +120,7 @@ impl VehicleOrder {
             Order::Hold => hold,
             Order::Steer { heading_rad, speed_m_s } => VehicleOrder { kind: 1, heading_rad, speed_m_s, ..hold },
             Order::Thrust { port, starboard } => VehicleOrder { kind: 2, port, starboard, ..hold },
+            Order::Turn { by_rad, speed_m_s } => VehicleOrder { kind: 3, heading_rad: by_rad, speed_m_s, ..hold },
         }
     }
 
@@ -129,6 +131,7 @@ impl VehicleOrder {
             0 => Some(Order::Hold),
             1 => Some(Order::Steer { heading_rad: self.heading_rad, speed_m_s: self.speed_m_s }),
             2 => Some(Order::Thrust { port: self.port, starboard: self.starboard }),
+            3 => Some(Order::Turn { by_rad: self.heading_rad, speed_m_s: self.speed_m_s }),
             _ => None,
         }
     }
@@ -227,6 +230,8 @@ pub enum JoinReply {
         ticket: u64,
         /// The vehicles, in the order asked for.
         vehicles: Vec<VehicleId>,
+        /// Time of the game: what was made before it was not made for this node.
+        now_ns: SimTime,
     },
     /// Not now: somebody else has the vehicle. Asking again later may help.
     Busy {

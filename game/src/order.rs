@@ -23,6 +23,14 @@ pub enum Order {
         /// Starboard thruster.
         starboard: f64,
     },
+    /// The front seat's own loops turn, and go on turning: at every tick as if the heading ordered were this far from the
+    /// one the boat has.
+    Turn {
+        /// By how much, radians clockwise, -pi to pi: half a turn to either side is two different orders.
+        by_rad: f64,
+        /// Desired speed ahead over the ground, m/s; never negative.
+        speed_m_s: f64,
+    },
 }
 
 /// Why an order cannot be followed.
@@ -32,7 +40,7 @@ pub enum BadOrder {
     #[error("a number is not finite")]
     NotFinite,
     /// A number is outside of what the order allows.
-    #[error("a number is out of range (speed 0 to 100 m/s, thrust -1 to 1)")]
+    #[error("a number is out of range (speed 0 to 100 m/s, turn -pi to pi rad, thrust -1 to 1)")]
     OutOfRange,
 }
 
@@ -46,6 +54,9 @@ impl Order {
             Order::Hold => return Ok(self),
             Order::Steer { heading_rad, speed_m_s } => {
                 (heading_rad, speed_m_s, (0.0..=100.0).contains(&speed_m_s) && heading_rad.abs() <= 1e3)
+            }
+            Order::Turn { by_rad, speed_m_s } => {
+                (by_rad, speed_m_s, (0.0..=100.0).contains(&speed_m_s) && by_rad.abs() <= std::f64::consts::PI)
             }
             Order::Thrust { port, starboard } => (port, starboard, port.abs() <= 1.0 && starboard.abs() <= 1.0),
         };
@@ -63,11 +74,17 @@ mod tests {
     #[test]
     fn only_orders_with_sound_numbers_pass() {
         let steer = |heading_rad, speed_m_s| Order::Steer { heading_rad, speed_m_s };
+        let turn = |by_rad, speed_m_s| Order::Turn { by_rad, speed_m_s };
         let thrust = |port, starboard| Order::Thrust { port, starboard };
         for (order, want) in [
             (Order::Hold, Ok(())),
             (steer(1.0, 2.0), Ok(())),
             (thrust(-1.0, 1.0), Ok(())),
+            (turn(std::f64::consts::PI, 2.0), Ok(())),
+            (turn(-std::f64::consts::PI, 2.0), Ok(())),
+            (turn(3.2, 2.0), Err(BadOrder::OutOfRange)),
+            (turn(0.0, -0.1), Err(BadOrder::OutOfRange)),
+            (turn(f64::NAN, 2.0), Err(BadOrder::NotFinite)),
             (steer(f64::NAN, 2.0), Err(BadOrder::NotFinite)),
             (steer(1.0, f64::INFINITY), Err(BadOrder::NotFinite)),
             (steer(1.0, -0.1), Err(BadOrder::OutOfRange)),

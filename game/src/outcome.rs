@@ -25,6 +25,12 @@ pub struct Outcome {
     /// Numbers that were drawn for this game, under their names, in the units of the files.
     #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
     pub drawn: BTreeMap<String, f64>,
+    /// Whether anything in it depended on the seed.
+    #[serde(default)]
+    pub random: bool,
+    /// Whether wind, waves or current favoured one end of the field: then one game alone does not say who is better.
+    #[serde(default)]
+    pub ends_differ: bool,
     /// The winning team's name; none is a draw or a game cut short.
     pub winner: Option<String>,
     /// The team of each boat.
@@ -162,6 +168,8 @@ impl Outcome {
             duration_s: (scenario.tick * played.ticks as i64).as_s(),
             ticks: played.ticks,
             drawn: scenario.drawn.iter().map(|drawn| (drawn.parameter.clone(), drawn.value)).collect(),
+            random: scenario.is_random(),
+            ends_differ: !scenario.sea.is_at_rest(),
             winner: winner.map(|team| scenario.teams[team.index()].name.clone()),
             boats: scenario.vehicles.iter().map(team_of).collect(),
             score: Standings {

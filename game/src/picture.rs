@@ -152,6 +152,30 @@ impl Message for Picture {
 }
 
 impl Picture {
+    /// No number in a picture is larger than this, in the units of the message. The helm's functions take ten times as much: sums
+    /// and differences of a few such numbers.
+    const NUMBER_MAX: f64 = 1e6;
+
+    /// Takes out the boats of which a number is none, or out of all bounds, and gives how many there were: a mind is to decide on
+    /// the others.
+    pub fn remove_bad_numbers(&mut self) -> u64 {
+        let count = |picture: &Picture| picture.own.len() + picture.contacts.len();
+        let before = count(self);
+        let is_sound = |numbers: &[f64]| numbers.iter().all(|number| number.abs() <= Picture::NUMBER_MAX);
+        self.own.retain(|OwnBoat { nav, imu, .. }| {
+            let Nav { north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s } = *nav;
+            let Imu { roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s: gyro_rad_s, .. } = *imu;
+            is_sound(&[north_m, east_m, psi_rad, surge_m_s, sway_m_s, yaw_rate_rad_s])
+                && is_sound(&[roll_rate_rad_s, pitch_rate_rad_s, gyro_rad_s])
+                && is_sound(&[imu.ahead_m_s2, imu.starboard_m_s2, imu.down_m_s2])
+        });
+        self.contacts.retain(|contact| {
+            let Contact { north_m, east_m, psi_rad, velocity_north_m_s, velocity_east_m_s, .. } = *contact;
+            is_sound(&[north_m, east_m, psi_rad, velocity_north_m_s, velocity_east_m_s])
+        });
+        (before - count(self)) as u64
+    }
+
     /// The own boat `vehicle`, if it is of this team.
     #[must_use]
     pub fn own(&self, vehicle: VehicleId) -> Option<&OwnBoat> {
@@ -187,4 +211,38 @@ impl OwnBoat {
 #[must_use]
 pub fn number_of_flag(flag: Option<FlagId>) -> i16 {
     flag.map_or(-1, |flag| i16::from(flag.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boats_with_bad_numbers_are_taken_out_and_counted_and_the_others_stay() {
+        let contact = Contact {
+            vehicle: VehicleId(2),
+            team: TeamId(1),
+            seen_ns: SimTime::ZERO,
+            north_m: 1.0,
+            east_m: -2.0,
+            psi_rad: 3.0,
+            velocity_north_m_s: 0.0,
+            velocity_east_m_s: -1e6,
+            tagged: false,
+            carrying: -1,
+        };
+        let own = OwnBoat::new(VehicleId(0), Nav::default());
+        let good = Picture { own: vec![own], contacts: vec![contact], ..Picture::default() };
+        let mut picture = good.clone();
+        assert_eq!((picture.remove_bad_numbers(), &picture), (0, &good));
+        for bad in [f64::NAN, f64::INFINITY, -1.1e6] {
+            let nav = Nav { yaw_rate_rad_s: bad, ..Nav::default() };
+            let imu = Imu { down_m_s2: bad, ..Imu::default() };
+            picture.own.extend([OwnBoat { nav, ..own }, OwnBoat { imu, ..own }]);
+            picture
+                .contacts
+                .extend([Contact { psi_rad: bad, ..contact }, Contact { velocity_east_m_s: bad, ..contact }]);
+        }
+        assert_eq!((picture.remove_bad_numbers(), &picture), (12, &good));
+    }
 }

@@ -6,7 +6,8 @@ use std::ops::{Add, Mul, Sub};
 
 /// A moment or a span of simulated time in nanoseconds.
 ///
-/// Integers, so that ten thousand ticks of 50 ms are exactly 500 s on every machine.
+/// Integers, so that ten thousand ticks of 50 ms are exactly 500 s on every machine. Sums stop at the ends, 292 years from the
+/// start: times come from files and from others, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct SimTime(pub i64);
@@ -36,26 +37,46 @@ impl SimTime {
 impl Add for SimTime {
     type Output = SimTime;
     fn add(self, other: SimTime) -> SimTime {
-        SimTime(self.0 + other.0)
+        SimTime(self.0.saturating_add(other.0))
     }
 }
 
 impl Sub for SimTime {
     type Output = SimTime;
     fn sub(self, other: SimTime) -> SimTime {
-        SimTime(self.0 - other.0)
+        SimTime(self.0.saturating_sub(other.0))
     }
 }
 
 impl Mul<i64> for SimTime {
     type Output = SimTime;
     fn mul(self, count: i64) -> SimTime {
-        SimTime(self.0 * count)
+        SimTime(self.0.saturating_mul(count))
     }
 }
 
 impl fmt::Display for SimTime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:.1} s", self.as_s())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_stop_at_the_ends() {
+        let (first, last, second) = (SimTime(i64::MIN), SimTime(i64::MAX), SimTime(1_000_000_000));
+        for (got, want) in [
+            (last + second, last),
+            (first - second, first),
+            (second - first, last),
+            (last * -2, first),
+            (second * 500, SimTime::from_s(500.0)),
+            (second - second, SimTime::ZERO),
+        ] {
+            assert_eq!(got, want);
+        }
     }
 }

@@ -3,6 +3,7 @@
 //! All keys begin with `squall/<game>/`, so that games on one network never meet.
 
 use crate::id::{TeamId, VehicleId};
+use crate::message::Role;
 use crate::scenario::Scenario;
 
 /// A game's name on the network: small letters, digits, `_` and `-`.
@@ -36,13 +37,6 @@ pub fn matching(game: &GameName, pattern: &str) -> String {
     format!("squall/{}/{pattern}", game.0)
 }
 
-/// A topic of a game by the name that recordings have for it; what comes from several is one of theirs.
-#[must_use]
-pub fn recorded(game: &GameName, name: &str) -> String {
-    let several = if name.starts_with("say/") { "/*" } else { "" };
-    format!("squall/{}/{name}{several}", game.0)
-}
-
 /// The truth for observers (publish).
 #[must_use]
 pub fn frame(game: &GameName) -> String {
@@ -55,28 +49,25 @@ pub fn picture(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
     format!("squall/{}/picture/{}", game.0, scenario.teams[team.index()].name)
 }
 
-/// An agent's orders (publish).
+/// The orders of an agent that plays for these teams (publish).
 #[must_use]
-pub fn orders(game: &GameName, agent: &str) -> String {
-    format!("squall/{}/order/{agent}", game.0)
+pub fn orders(game: &GameName, scenario: &Scenario, teams: &[TeamId], agent: &str) -> String {
+    match teams {
+        [team] => format!("squall/{}/order/{}/{agent}", game.0, scenario.teams[team.index()].name),
+        _ => format!("squall/{}/order/{agent}", game.0),
+    }
 }
 
 /// All agents' orders (subscribe).
 #[must_use]
 pub fn all_orders(game: &GameName) -> String {
-    orders(game, "*")
+    format!("squall/{}/order/**", game.0)
 }
 
-/// What the minds of one agent process tell their team (publish).
+/// What the minds of a team tell each other (publish, subscribe).
 #[must_use]
-pub fn say(game: &GameName, scenario: &Scenario, team: TeamId, agent: &str) -> String {
-    format!("squall/{}/say/{}/{agent}", game.0, scenario.teams[team.index()].name)
-}
-
-/// What all minds of a team tell each other (subscribe).
-#[must_use]
-pub fn all_say(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
-    say(game, scenario, team, "*")
+pub fn say(game: &GameName, scenario: &Scenario, team: TeamId) -> String {
+    format!("squall/{}/say/{}", game.0, scenario.teams[team.index()].name)
 }
 
 /// What a policy outside proposes for a boat (publish).
@@ -145,10 +136,28 @@ pub fn water(game: &GameName) -> String {
     format!("squall/{}/water", game.0)
 }
 
-/// Where agents and gateways ask to join (query).
+/// Where a node asks to join in this role with these vehicles (query): agents at the place of their team, gateways at that of
+/// their boat. Who names vehicles of several teams, several boats, or what is no vehicle, has no place of its own.
 #[must_use]
-pub fn join(game: &GameName) -> String {
-    format!("squall/{}/join", game.0)
+pub fn join(game: &GameName, scenario: &Scenario, role: Role, vehicles: &[String]) -> String {
+    let known = vehicles.iter().map(|name| scenario.vehicle_by_name(name));
+    let place = match (role, known.collect::<Option<Vec<VehicleId>>>().as_deref()) {
+        (Role::Agent, Some([first, others @ ..])) => {
+            let team = scenario.team_of(*first);
+            let is_of_team = others.iter().all(|other| scenario.team_of(*other) == team);
+            is_of_team.then(|| &scenario.teams[team.index()].name)
+        }
+        (Role::Gateway, Some([boat])) => Some(&scenario.vehicles[boat.index()].name),
+        _ => None,
+    };
+    let place = place.map(|name| format!("/{name}")).unwrap_or_default();
+    format!("squall/{}/join/{role}{place}", game.0)
+}
+
+/// Where all nodes ask to join (query).
+#[must_use]
+pub fn all_join(game: &GameName) -> String {
+    format!("squall/{}/join/**", game.0)
 }
 
 /// What the game is (query).
@@ -169,46 +178,29 @@ pub fn released(game: &GameName) -> String {
     format!("squall/{}/released", game.0)
 }
 
-/// What a node is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, strum::Display, strum::EnumString)]
-#[strum(serialize_all = "snake_case")]
-pub enum Part {
-    /// The world and the referee.
-    Sim,
-    /// Minds.
-    Agent,
-    /// The way to a real boat.
-    Gateway,
-}
-
-/// A node that is there (liveliness token).
+/// That the sim of a game is there (liveliness token).
 #[must_use]
-pub fn alive(game: &GameName, part: Part, node: &str) -> String {
-    format!("squall/{}/alive/{part}/{node}", game.0)
+pub fn alive(game: &GameName, sim: &str) -> String {
+    format!("squall/{}/alive/sim/{sim}", game.0)
 }
 
-/// All nodes of one kind in a game (liveliness).
+/// All sims of a game (liveliness).
 #[must_use]
-pub fn all_alive(game: &GameName, part: Part) -> String {
-    alive(game, part, "*")
+pub fn all_alive(game: &GameName) -> String {
+    alive(game, "*")
 }
 
-/// All nodes of all games (liveliness).
+/// The sims of all games (liveliness).
 #[must_use]
 pub fn everyone_alive() -> String {
-    "squall/*/alive/*/*".to_owned()
+    "squall/*/alive/sim/*".to_owned()
 }
 
-/// The game, part and node that an [`alive`] key names.
+/// The game and the sim that an [`alive`] key names.
 #[must_use]
-pub fn parse_alive(key: &str) -> Option<(GameName, Part, String)> {
-    let mut words = key.strip_prefix("squall/")?.split('/');
-    let game = GameName::new(words.next()?).ok()?;
-    if words.next()? != "alive" {
-        return None;
-    }
-    let part = words.next()?.parse().ok()?;
-    Some((game, part, words.next()?.to_owned()))
+pub fn parse_alive(key: &str) -> Option<(GameName, String)> {
+    let (game, sim) = key.strip_prefix("squall/")?.split_once("/alive/sim/")?;
+    Some((GameName::new(game).ok()?, sim.to_owned()))
 }
 
 #[cfg(test)]
@@ -216,9 +208,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_token_says_who_is_alive_where() {
+    fn a_token_says_which_sim_is_alive() {
         let game = GameName::new("pav01-3f").expect("a good name");
-        assert_eq!(parse_alive(&alive(&game, Part::Agent, "a7")), Some((game, Part::Agent, "a7".into())));
+        assert_eq!(parse_alive(&alive(&game, "a7")), Some((game, "a7".into())));
         for other in ["squall/x/alive/sim", "squall/x/frame", "other/x/alive/sim/a", "squall/x/alive/cat/a"] {
             assert_eq!(parse_alive(other), None, "{other}");
         }
@@ -231,14 +223,26 @@ mod tests {
         let scenario = crate::scenario::load(&file).unwrap_or_else(|e| panic!("{e}"));
         let (red, two) = (TeamId(1), VehicleId(1));
         for (key, want) in [
-            (say(&game, &scenario, red, "a7"), "squall/pav01/say/red/a7"),
-            (all_say(&game, &scenario, red), "squall/pav01/say/red/*"),
+            (say(&game, &scenario, red), "squall/pav01/say/red"),
             (policy(&game, &scenario, two), "squall/pav01/policy/blue_two"),
             (helm(&game, &scenario, two), "squall/pav01/helm/blue_two"),
             (nav(&game, &scenario, two), "squall/pav01/nav/blue_two"),
             (external_order(&game, &scenario, two), "squall/pav01/external/blue_two"),
+            (orders(&game, &scenario, &[red], "a7"), "squall/pav01/order/red/a7"),
+            (orders(&game, &scenario, &[TeamId(0), red], "a7"), "squall/pav01/order/a7"),
         ] {
             assert_eq!(key, want);
+        }
+        for (role, vehicles, want) in [
+            (Role::Agent, &["red_one", "red_two"][..], "squall/pav01/join/agent/red"),
+            (Role::Agent, &["red_one", "blue_two"], "squall/pav01/join/agent"),
+            (Role::Agent, &["red_one", "nobody"], "squall/pav01/join/agent"),
+            (Role::Agent, &[], "squall/pav01/join/agent"),
+            (Role::Gateway, &["red_one"], "squall/pav01/join/gateway/red_one"),
+            (Role::Gateway, &["red_one", "red_two"], "squall/pav01/join/gateway"),
+        ] {
+            let vehicles: Vec<String> = vehicles.iter().map(|name| (*name).to_owned()).collect();
+            assert_eq!(join(&game, &scenario, role, &vehicles), want);
         }
     }
 

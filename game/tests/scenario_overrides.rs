@@ -126,3 +126,19 @@ fn an_unknown_team_and_a_file_that_is_not_there_are_explained() {
         assert!(problems.contains(want), "{want}\n{problems}");
     }
 }
+
+#[test]
+fn teams_that_exchange_their_strategies_follow_each_others() {
+    let game = shipped("games/strategy_4_vs_3.toml");
+    let exchanged = |overrides: Overrides| load_with(&game, &Overrides { exchange_strategies: true, ..overrides });
+    assert_eq!(followed(&load(&game).unwrap()), ["strategy_4", "strategy_4", "strategy_3", "strategy_3"]);
+    let there = exchanged(Overrides::default()).unwrap();
+    assert_eq!(followed(&there), ["strategy_3", "strategy_3", "strategy_4", "strategy_4"]);
+    // They are exchanged in games of other seeds too, and so are those that take the place of a team's own.
+    assert_eq!(followed(&there.of_seed(9).unwrap()), followed(&there));
+    let idle = instead(&[("blue", shipped("strategies/idle.toml"))]);
+    assert_eq!(followed(&exchanged(idle).unwrap()), ["strategy_3", "strategy_3", "idle", "idle"]);
+    let person = Overrides { exchange_strategies: true, ..Overrides::default() };
+    let refused = load_with(&shipped("games/person_2v2.toml"), &person).unwrap_err().to_string();
+    assert!(refused.contains("strategy is teleop, expected none here: the teams exchange theirs"), "{refused}");
+}

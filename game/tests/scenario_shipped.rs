@@ -114,6 +114,19 @@ fn published_fields_come_out_where_they_were_sailed() {
 }
 
 #[test]
+fn every_rule_book_has_a_game_and_newcomers_begin_with_a_random_one() {
+    let played: Vec<String> = files(Kind::Game).iter().map(|path| scenario::load(path).unwrap().rules.name).collect();
+    for book in files(Kind::Rules) {
+        assert!(played.contains(&stem(&book)), "no game is played by {}", book.display());
+    }
+    let readme = std::fs::read_to_string(shipped("../README.md")).unwrap();
+    let (_, rest) = readme.split_once("run scenarios/games/").unwrap();
+    let first = rest.split_once(".toml").unwrap().0;
+    assert!(game(first).is_random(), "{first} is the same game for every seed");
+    assert!(!game("pav01_vs_pav01").is_random());
+}
+
+#[test]
 fn a_scenario_survives_json_exactly() {
     for path in files(Kind::Game) {
         let before = scenario::load(&path).unwrap();

@@ -70,7 +70,6 @@ impl SetPointMapper {
 
     /// The set-point for a sound order.
     pub fn map(&mut self, now: SimTime, order: Order, nav: &Nav) -> SetPoint {
-        let step_s = self.last.map_or(0.0, |(at, ..)| (now - at).as_s().clamp(0.0, STEP_MAX_S));
         let (thrust, difference) = match order {
             Order::Hold => {
                 self.integral_pct = 0.0;
@@ -81,22 +80,36 @@ impl SetPointMapper {
                 (50.0 * (port + starboard), 50.0 * (port - starboard))
             }
             Order::Steer { heading_rad, speed_m_s } => {
-                let speed_m_s = speed_m_s.min(self.limits.speed_max_m_s);
-                if self.drive == Drive::Speed {
-                    let heading_deg = compass_deg_from_rad(heading_rad - self.compass_to_true_rad);
-                    return SetPoint::Speed { heading_deg, speed_m_s };
-                }
-                self.steer(step_s, heading_rad, speed_m_s, nav)
+                let turn_rad = wrap_pi(heading_rad - nav.psi_rad);
+                return self.steered(now, (heading_rad, turn_rad, speed_m_s), nav);
+            }
+            // A boat that steers by itself gets the heading, and takes half a turn to the side that it likes.
+            Order::Turn { by_rad, speed_m_s } => {
+                return self.steered(now, (nav.psi_rad + by_rad, by_rad, speed_m_s), nav);
             }
         };
-        self.within_limits(now, step_s, thrust, difference)
+        self.within_limits(now, thrust, difference)
+    }
+
+    /// The set-point for a heading, which is so far clockwise from the boat's, and a speed.
+    fn steered(&mut self, now: SimTime, (heading_rad, turn_rad, speed_m_s): (f64, f64, f64), nav: &Nav) -> SetPoint {
+        let speed_m_s = speed_m_s.min(self.limits.speed_max_m_s);
+        if self.drive == Drive::Speed {
+            let heading_deg = compass_deg_from_rad(heading_rad - self.compass_to_true_rad);
+            return SetPoint::Speed { heading_deg, speed_m_s };
+        }
+        let (thrust, difference) = self.steer(self.step_s(now), turn_rad, speed_m_s, nav);
+        self.within_limits(now, thrust, difference)
+    }
+
+    fn step_s(&self, now: SimTime) -> f64 {
+        self.last.map_or(0.0, |(at, ..)| (now - at).as_s().clamp(0.0, STEP_MAX_S))
     }
 
     /// Our own loops: thrust by the map and by the speed error, difference by the heading error, which comes first.
-    fn steer(&mut self, step_s: f64, heading_rad: f64, speed_m_s: f64, nav: &Nav) -> (f64, f64) {
+    fn steer(&mut self, step_s: f64, turn_rad: f64, speed_m_s: f64, nav: &Nav) -> (f64, f64) {
         let Loops { speed_pct_per_m_s, speed_integral_s, heading_pct_per_rad, turn_pct_per_rad_s, .. } = self.loops;
-        let error_rad = wrap_pi(heading_rad - nav.psi_rad);
-        let difference = heading_pct_per_rad * error_rad - turn_pct_per_rad_s * nav.yaw_rate_rad_s;
+        let difference = heading_pct_per_rad * turn_rad - turn_pct_per_rad_s * nav.yaw_rate_rad_s;
         let difference = difference.clamp(-self.limits.difference_max_pct, self.limits.difference_max_pct);
         let error_m_s = speed_m_s - nav.surge_m_s;
         let asked = thrust_for(&self.loops.thrust_map, speed_m_s) + speed_pct_per_m_s * error_m_s + self.integral_pct;
@@ -108,11 +121,11 @@ impl SetPointMapper {
         (asked.clamp(-room, room), difference)
     }
 
-    fn within_limits(&mut self, now: SimTime, step_s: f64, thrust: f64, difference: f64) -> SetPoint {
+    fn within_limits(&mut self, now: SimTime, thrust: f64, difference: f64) -> SetPoint {
         let Limits { thrust_max_pct, difference_max_pct, slew_pct_s, .. } = self.limits;
         let (_, thrust_before, difference_before) = self.last.unwrap_or((now, 0.0, 0.0));
         // The first set-point may grow as much as in a tenth of a second.
-        let growth = slew_pct_s * if self.last.is_some() { step_s } else { 0.1 };
+        let growth = slew_pct_s * if self.last.is_some() { self.step_s(now) } else { 0.1 };
         let difference_pct =
             slewed(difference_before, difference.clamp(-difference_max_pct, difference_max_pct), growth);
         let room = (100.0 - difference_pct.abs()).min(thrust_max_pct);
@@ -156,6 +169,21 @@ mod tests {
     fn thrust_of(set_point: SetPoint) -> (f64, f64) {
         let SetPoint::Thrust { thrust_pct, difference_pct } = set_point else { panic!("{set_point:?}") };
         (thrust_pct, difference_pct)
+    }
+
+    #[test]
+    fn half_a_turn_to_either_side_is_thrust_to_that_side() {
+        let nav = Nav { surge_m_s: 1.0, psi_rad: 1.0, ..Nav::default() };
+        for side in [1.0, -1.0] {
+            let mut mapper = SetPointMapper::new(&gateway("thrust"), 0.0);
+            let order = Order::Turn { by_rad: side * std::f64::consts::PI, speed_m_s: 1.0 };
+            let (_, difference) = thrust_of(mapper.map(at(0.0), order, &nav));
+            assert!(side * difference > 1.0, "{side}: {difference} %");
+        }
+        let mut mapper = SetPointMapper::new(&gateway("speed"), 0.0);
+        let set_point = mapper.map(at(0.0), Order::Turn { by_rad: 0.5, speed_m_s: 1.0 }, &nav);
+        let SetPoint::Speed { heading_deg, .. } = set_point else { panic!("{set_point:?}") };
+        assert!((heading_deg - 1.5_f64.to_degrees()).abs() < 1e-9, "{heading_deg}");
     }
 
     #[test]

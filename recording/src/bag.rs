@@ -1,13 +1,13 @@
 //! A recording of any kind, opened: its header, and its messages one by one, also where the file ends abruptly.
 
+use crate::index::{Index, IndexEntry};
 use crate::json_string;
-use crate::records::{Extent, for_each_record};
+use crate::records::{Extent, Record, for_each_record};
 use crate::source::Source;
 use crate::{BEGAN, CHECKSUM, Facts, Kind, RESULT, VERSION, checksum};
 use game::SimTime;
 use game::codec::{self, DecodeError};
 use game::message::Message;
-use mcap::records::Record;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -84,7 +84,7 @@ pub struct Bag {
     is_cut: bool,
     damage: Vec<Range<u64>>,
     channels: BTreeMap<u16, Channel>,
-    index: Vec<IndexEntry>,
+    index: Index,
 }
 
 #[derive(Debug)]
@@ -94,18 +94,6 @@ struct Channel {
     schema: Option<String>,
     /// Whether the message is JSON as the text of a string.
     is_json: bool,
-}
-
-/// Where a message is.
-#[derive(Debug)]
-struct IndexEntry {
-    channel: u16,
-    number: u32,
-    /// The time of the recording's own clock, ns.
-    log_ns: u64,
-    utc_ns: u64,
-    from: u64,
-    length: u32,
 }
 
 /// A message of a recording.
@@ -165,7 +153,8 @@ impl Bag {
 
     fn of_source(source: Source) -> Result<Bag, RecordingError> {
         let mut found = Found::default();
-        let Extent { is_cut, damage } = for_each_record(&source, |record, place| found.take(record, place))?;
+        let Extent { is_cut, damage } =
+            for_each_record(&source, |record, place, chunk| found.take(record, &place, chunk))?;
         let (kind, facts) = found.header()?;
         let began_utc_ns = facts.get(BEGAN).map_or("", String::as_str).parse();
         let began_utc_ns = began_utc_ns.map_err(|e| RecordingError::not_understood("beginning", e))?;
@@ -218,7 +207,7 @@ impl Bag {
 
     /// All messages, in the order in which they were recorded.
     pub fn messages(&self) -> impl ExactSizeIterator<Item = RecordedMessage<'_>> {
-        (0..self.index.len()).map(|place| self.message(place))
+        (0..self.index.count()).map(|place| self.message(place))
     }
 
     /// The messages of one topic.
@@ -229,7 +218,10 @@ impl Bag {
     /// The places of the messages of one topic, for [`Bag::message`].
     pub fn places(&self, topic: &str) -> impl Iterator<Item = usize> {
         let wanted = self.channels.iter().find(|(_, channel)| channel.topic == topic).map(|(id, _)| *id);
-        (0..self.index.len()).filter(move |place| Some(self.index[*place].channel) == wanted)
+        let is_wanted = move |place: &usize| {
+            wanted.is_some() && self.index.entry(&self.source, *place).map(|entry| entry.channel) == wanted
+        };
+        (0..self.index.count()).filter(is_wanted)
     }
 
     /// The message at a place.
@@ -238,9 +230,11 @@ impl Bag {
     /// If there are fewer.
     #[must_use]
     pub fn message(&self, place: usize) -> RecordedMessage<'_> {
-        let IndexEntry { channel, number, log_ns, utc_ns, from, length } = self.index[place];
-        let channel = self.channels.get(&channel);
-        let bytes = self.source.read(from..from + u64::from(length)).unwrap_or_default();
+        let entry = self.index.entry(&self.source, place);
+        let channel = entry.and_then(|entry| self.channels.get(&entry.channel));
+        let read = |entry: IndexEntry| self.source.read(entry.from..entry.from + u64::from(entry.length)).ok();
+        let bytes = entry.and_then(read).unwrap_or_default();
+        let (number, log_ns, utc_ns) = entry.map_or((0, 0, 0), |entry| (entry.number, entry.log_ns, entry.utc_ns));
         let is_json = channel.is_some_and(|channel| channel.is_json);
         RecordedMessage {
             topic: channel.map_or("", |channel| &channel.topic),
@@ -255,17 +249,16 @@ impl Bag {
     /// From the first message to the last by the clock, ns.
     #[must_use]
     pub fn span_utc_ns(&self) -> u64 {
-        let times = || self.index.iter().map(|entry| entry.utc_ns);
-        times().max().unwrap_or(0).saturating_sub(times().min().unwrap_or(0))
+        self.index.span_utc_ns()
     }
 
     /// The topics that there are messages on, with their numbers of messages, by name.
     #[must_use]
     pub fn topics(&self) -> BTreeMap<&str, usize> {
         let mut topics = BTreeMap::new();
-        for entry in &self.index {
-            let topic = self.channels.get(&entry.channel).map_or("", |channel| channel.topic.as_str());
-            *topics.entry(topic).or_insert(0) += 1;
+        for (channel, count) in self.index.counts() {
+            let topic = self.channels.get(channel).map_or("", |channel| channel.topic.as_str());
+            *topics.entry(topic).or_insert(0) += count;
         }
         topics
     }
@@ -276,13 +269,14 @@ impl Bag {
 struct Found {
     schemas: BTreeMap<u16, (String, String)>,
     channels: BTreeMap<u16, Channel>,
-    index: Vec<IndexEntry>,
+    index: Index,
     metadata: BTreeMap<String, Facts>,
 }
 
 impl Found {
-    /// Takes a record, of a message with the place of its bytes.
-    fn take(&mut self, record: Record<'_>, place: Range<u64>) {
+    /// Takes a record, of a message with the place of its bytes, and where its chunk begins.
+    fn take(&mut self, record: Record<'_>, place: &Range<u64>, chunk: u64) {
+        self.index.add(&record, place, chunk);
         match record {
             Record::Schema { header, .. } => {
                 self.schemas.insert(header.id, (header.name, header.encoding));
@@ -294,15 +288,6 @@ impl Found {
                 let schema = schema.filter(|_| !is_json);
                 self.channels.insert(channel.id, Channel { topic: channel.topic, schema, is_json });
             }
-            Record::Message { header, .. } => self.index.push(IndexEntry {
-                channel: header.channel_id,
-                number: header.sequence,
-                log_ns: header.log_time,
-                utc_ns: header.publish_time,
-                from: place.start,
-                // A record is read only if it is shorter.
-                length: u32::try_from(place.end - place.start).unwrap_or(u32::MAX),
-            }),
             Record::Metadata(metadata) => drop(self.metadata.insert(metadata.name, metadata.metadata)),
             _ => {}
         }

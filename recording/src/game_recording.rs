@@ -7,6 +7,7 @@ use game::water::Water;
 use game::{Outcome, Scenario};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// The topic of the truth.
 pub const FRAME: &str = "frame";
@@ -117,8 +118,8 @@ pub struct Recording {
     bag: Bag,
     header: Header,
     ending: Option<Ending>,
-    /// The places of the frames.
-    frames: Vec<usize>,
+    /// The places of the frames, once somebody asks for one.
+    frames: OnceLock<Vec<usize>>,
 }
 
 impl Recording {
@@ -148,8 +149,7 @@ impl Recording {
         }
         let header = Header::of(&bag)?;
         let ending = bag.result().and_then(Ending::of);
-        let frames = bag.places(FRAME).collect();
-        Ok(Recording { header, ending, frames, bag })
+        Ok(Recording { header, ending, frames: OnceLock::new(), bag })
     }
 
     /// The file and its messages.
@@ -185,7 +185,7 @@ impl Recording {
     /// How many frames there are.
     #[must_use]
     pub fn frame_count(&self) -> usize {
-        self.frames.len()
+        self.bag.topics().get(FRAME).copied().unwrap_or(0)
     }
 
     /// A frame, as recorded.
@@ -194,7 +194,7 @@ impl Recording {
     /// If there are fewer.
     #[must_use]
     pub fn frame(&self, i: usize) -> RecordedMessage<'_> {
-        self.bag.message(self.frames[i])
+        self.bag.message(self.frames.get_or_init(|| self.bag.places(FRAME).collect())[i])
     }
 
     /// All frames.
@@ -202,6 +202,6 @@ impl Recording {
     /// # Errors
     /// [`RecordingError::Damaged`] names the first that is none.
     pub fn frames(&self) -> impl ExactSizeIterator<Item = Result<Frame, RecordingError>> {
-        (0..self.frames.len()).map(|i| self.frame(i).read())
+        (0..self.frame_count()).map(|i| self.frame(i).read())
     }
 }

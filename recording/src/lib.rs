@@ -26,7 +26,9 @@
 //! parameters) and, unless the file ends abruptly, `result` (digest, outcome, run, how many messages were dropped).
 
 mod bag;
+mod damaged;
 mod game_recording;
+mod index;
 mod json_string;
 mod recorder;
 mod records;
@@ -35,6 +37,7 @@ pub mod utc;
 mod writer;
 
 pub use bag::{Bag, RecordedMessage, RecordingError};
+pub use damaged::Damaged;
 pub use game_recording::{Ending, FRAME, Header, INPUTS, Recording, picture};
 pub use recorder::{NewFile, Recorder};
 pub use writer::{Decision, Entry, Opening, Writer};

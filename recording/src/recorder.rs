@@ -12,8 +12,9 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// What was recorded is handed to the system this often.
-const FLUSH: Duration = Duration::from_millis(250);
+/// What was recorded is handed to the system this often. Each time a chunk is closed, of which the index that ends the file keeps some
+/// 500 bytes in memory: four times a second that was 5 MB an hour.
+const FLUSH: Duration = Duration::from_secs(1);
 /// So long the thread lets entries gather: to be woken for each would cost the game more than the writing does.
 const GATHER: Duration = Duration::from_millis(20);
 /// Memory that entries may take up that wait for the disk, bytes.

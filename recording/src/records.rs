@@ -5,7 +5,8 @@
 
 use crate::RecordingError;
 use crate::source::Source;
-use mcap::records::{Record, op};
+pub(crate) use mcap::records::Record;
+use mcap::records::op;
 use std::fmt::Display;
 use std::ops::Range;
 
@@ -15,6 +16,8 @@ const PREFIX: u64 = 9;
 const CHUNK_CRC_AT: u64 = 3 * 8;
 /// What stands before the bytes of a message: channel, number, and two times.
 const MESSAGE_HEADER: u64 = 2 + 4 + 8 + 8;
+/// And what stands before that.
+pub(crate) const MESSAGE_PREFIX: u64 = PREFIX + MESSAGE_HEADER;
 /// The longest record that is read: more than a message on the network may have, and than any scenario.
 const RECORD_MAX: u64 = 64 << 20;
 
@@ -28,10 +31,10 @@ pub(crate) struct Extent {
 }
 
 /// Calls `take` with every schema, channel, message and metadata, those in chunks included. Of a message it gets the header
-/// alone, and the place of its bytes. Of a damaged chunk the records are given up to the first that makes no sense.
+/// alone, and the place of its bytes; of all of them the beginning of their chunk, or 0. Of a damaged chunk the records are given up to the first that makes no sense.
 pub(crate) fn for_each_record(
     source: &Source,
-    mut take: impl FnMut(Record<'_>, Range<u64>),
+    mut take: impl FnMut(Record<'_>, Range<u64>, u64),
 ) -> Result<Extent, RecordingError> {
     const MAGIC: usize = mcap::MAGIC.len();
     if source.array::<MAGIC>(0)?.is_none_or(|magic| magic != *mcap::MAGIC) {
@@ -49,7 +52,8 @@ pub(crate) fn for_each_record(
             if is_damaged {
                 damage.push(inner.clone());
             }
-            match records_in(source, inner, &mut take) {
+            let chunk = inner.start;
+            match records_in(source, inner, &mut |record, place| take(record, place, chunk)) {
                 Err(RecordingError::Foreign(_)) if is_damaged => {}
                 other => other?,
             }
@@ -60,7 +64,7 @@ pub(crate) fn for_each_record(
                     damage.push(0..place);
                 }
             }
-            give(source, opcode, body.clone(), &mut take)?;
+            give(source, opcode, body.clone(), &mut |record, place| take(record, place, 0))?;
         }
         place = body.end;
         if !is_cut {
@@ -84,7 +88,8 @@ fn record_at(source: &Source, place: u64, end: u64) -> Result<Option<(u8, Range<
     Ok(opcode.map(|[opcode]| opcode).zip(body))
 }
 
-fn records_in(
+/// Calls `take` with the records in there, which is within a chunk, or without chunks.
+pub(crate) fn records_in(
     source: &Source,
     inner: Range<u64>,
     take: &mut impl FnMut(Record<'_>, Range<u64>),

@@ -1,9 +1,9 @@
 //! The bytes of a recording, read piece by piece: of a file of any length no more than a buffer is in memory.
 
+use parking_lot::Mutex;
 use std::io::{BufReader, Cursor, Error, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
 
 /// What is read ahead, bytes. A chunk has many times that.
 const BUFFER: usize = 64 << 10;
@@ -90,7 +90,7 @@ impl Source {
     }
 
     fn fill(&self, at: u64, bytes: &mut [u8]) -> Result<(), Error> {
-        self.reader.lock().unwrap_or_else(PoisonError::into_inner).fill(at, bytes)
+        self.reader.lock().fill(at, bytes)
     }
 }
 

@@ -112,6 +112,36 @@ fn all_of(recording: &Recording) -> Vec<(String, u32, Vec<u8>)> {
 }
 
 #[test]
+fn any_message_of_many_is_found_in_any_order() {
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &header().opening()).expect("it begins");
+    for seq in 0..900 {
+        writer.write(&Entry::Decision(Box::new(decision(seq, seq as f64))), seq).expect("it is written");
+        // A chunk of a thousand messages, then small ones, then one of more than a thousand.
+        if (300..500).contains(&seq) {
+            writer.flush().expect("it is flushed");
+        }
+    }
+    let bytes = writer.end(ending().facts()).expect("it ends").into_inner();
+    let recording = Recording::of(bytes.clone()).unwrap_or_else(|e| panic!("{e}"));
+    let want: Vec<(String, u32, Vec<u8>)> = mcap::MessageStream::new(&bytes)
+        .expect("it is MCAP")
+        .map(|message| message.expect("a message"))
+        .map(|message| (message.channel.topic.clone(), message.sequence, message.data.to_vec()))
+        .collect();
+    assert_eq!((want.len(), recording.bag().span_utc_ns()), (4 * 900 - 2, 899));
+    assert!(all_of(&recording) == want, "one after the other they are not those that the library reads");
+    // 1013 has no factor in common with their number, so that each comes once.
+    for i in 0..want.len() {
+        let place = i * 1013 % want.len();
+        let message = recording.bag().message(place);
+        assert_eq!((message.topic, message.number, &message.bytes), (&*want[place].0, want[place].1, &want[place].2));
+    }
+    for seq in [899, 0, 450, 451, 2] {
+        assert_eq!(recording.frame(seq).at, SimTime(seq as i64 * 100_000_000));
+    }
+}
+
+#[test]
 fn a_file_cut_at_any_byte_opens_up_to_the_cut() {
     let whole = recorded(&[1.0, 2.0, 3.0, 4.0]);
     let all = all_of(&Recording::of(whole.clone()).unwrap_or_else(|e| panic!("{e}")));

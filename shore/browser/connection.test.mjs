@@ -75,9 +75,7 @@ test('a page that is loaded again, or whose server is, goes on by itself', async
   await sight.until('the game is gone', () => squall.state.phase === 'gone' && /gone/.test(document.getElementById('over').textContent));
   assert(await sight.get(() => squall.connected));
   assert.equal(view.code, undefined, 'the server stays');
-  const next = new Program(t, 'sim', file, '--speed', '5x', '--game', name, '--listen', endpoint);
-  // Its token is another one, and is there when it says so.
-  await next.hears(/game \S+ at/);
+  new Program(t, 'sim', file, '--speed', '5x', '--game', name, '--listen', endpoint);
   new Program(t, 'agent', ...place, '--vehicle', 'blue_one', 'blue_two', 'red_one', 'red_two');
   await sight.until('the next game is shown', () => squall.state?.phase === 'playing' && squall.t_s > 1 && document.getElementById('over').hidden);
   await until('the server still serves', async () => (await fetch(`http://${listen}/`)).ok);

@@ -4,6 +4,10 @@
 const WAITS_S = [0.3, 0.6, 1, 2, 3, 5];
 /** While nobody looks at the page frames are acknowledged this often, s. */
 const HIDDEN_ACK_S = 1;
+/** The server has closed the connection with this code, since it needed the room for another page. */
+const DISPLACED = 1013;
+/** A page that was displaced comes back after so long, and takes the room of another, s. */
+const DISPLACED_WAIT_S = 30;
 /** A connection that has not opened after this time is given up, s. */
 const OPEN_S = 8;
 /** One on which nothing comes for so long, though something should, is dead, s. NoRecorder else says so for minutes. */
@@ -20,7 +24,7 @@ function token() {
 }
 
 export class Link {
-  /** `on` has `lost(unheard)`, where `unheard` is whether something asked for may not have arrived, `message(object)` and `frame(kind, buffer)`. */
+  /** `on` has `lost(unheard, displaced)`: whether something asked for may not have arrived, and whether another page has the room; `message(object)` and `frame(kind, buffer)`. */
   constructor(on) {
     this.on = on;
     this.connected = false;
@@ -61,7 +65,7 @@ export class Link {
       this.heard_ms = performance.now();
     };
     socket.onmessage = (event) => this.take(event.data);
-    socket.onclose = () => this.again();
+    socket.onclose = (event) => this.again(event.code === DISPLACED);
   }
 
   /** Heeds the socket no longer, whatever comes of it. */
@@ -78,13 +82,13 @@ export class Link {
   }
 
   /** Tries again, after ever longer waits. */
-  again() {
+  again(displaced = false) {
     const { unheard } = this;
     this.drop();
-    const wait_s = WAITS_S[Math.min(this.tries, WAITS_S.length - 1)];
+    const wait_s = displaced ? DISPLACED_WAIT_S : WAITS_S[Math.min(this.tries, WAITS_S.length - 1)];
     this.tries += 1;
     this.retry = setTimeout(() => this.start(), wait_s * 1000);
-    this.on.lost(unheard);
+    this.on.lost(unheard, displaced);
   }
 
   /** Connects anew at once. */

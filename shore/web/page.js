@@ -57,7 +57,7 @@ class Page {
     this.view = new View();
     const send = (message) => this.send(message);
     this.link = new Link({
-      lost: (unheard) => this.lost(unheard),
+      lost: (unheard, displaced) => this.lost(unheard, displaced),
       message: (message) => this.take(message),
       frame: (kind, buffer) => this.game.takeFrame(kind, buffer, performance.now()),
     });
@@ -124,11 +124,13 @@ class Page {
     notice('No connection. The server did not hear this.');
   }
 
-  lost(unheard) {
+  lost(unheard, displaced) {
     this.drive.letGo();
     if (unheard) notice('The connection broke before the server answered. It may not have heard what was asked last.');
     document.body.classList.add('lost');
-    write(byId('connection'), 'Connection lost. Trying again.');
+    write(byId('connection'), displaced
+      ? 'Too many pages look: another one has the place of this. It tries again in half a minute.'
+      : 'Connection lost. Trying again.');
     show(byId('connection'), true);
   }
 

@@ -6,7 +6,6 @@
 
 use crate::hull::{HullModel, Planar};
 use crate::thruster::ThrusterModel;
-use game::angle::wrap_pi;
 use game::boat::Autopilot;
 
 /// The loops of one kind of boat.
@@ -40,22 +39,22 @@ impl AutopilotModel {
         }
     }
 
-    /// Settings for the port and starboard thruster that steer `heading_rad` at `speed_m_s`.
+    /// Settings for the port and starboard thruster that turn the boat by `turn_rad`, clockwise, and give it `speed_m_s`.
     ///
     /// `integral_newton` is the speed loop's memory.
     #[inline]
     pub fn steer(
         &self,
         boat: (&HullModel, &ThrusterModel),
-        (psi_rad, nu): (f64, Planar),
-        (heading_rad, speed_m_s): (f64, f64),
+        nu: Planar,
+        (turn_rad, speed_m_s): (f64, f64),
         integral_newton: &mut f64,
     ) -> [f64; 2] {
         let (hull, thruster) = boat;
         let wanted_m_s = speed_m_s.min(self.speed_max_m_s);
         let error_m_s = wanted_m_s - nu.surge;
         let surge = hull.surge_resistance_newton(wanted_m_s) + self.surge_per_m_s * error_m_s + *integral_newton;
-        let yaw = self.yaw_per_rad * wrap_pi(heading_rad - psi_rad) - self.yaw_per_rad_s * nu.yaw;
+        let yaw = self.yaw_per_rad * turn_rad - self.yaw_per_rad_s * nu.yaw;
 
         // Yaw first: what is left of the range goes to surge.
         let reach = 0.5 * (thruster.newton_max - thruster.newton_min);

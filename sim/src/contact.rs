@@ -16,7 +16,8 @@ use game::math;
 use game::near::Pair;
 use rapier2d_f64::parry::query;
 use rapier2d_f64::prelude::{
-    ColliderBuilder, MassProperties, PhysicsWorld, Pose, RigidBodyBuilder, RigidBodyHandle, Rot2, SharedShape, Vector,
+    ColliderBuilder, Group, InteractionGroups, InteractionTestMode, MassProperties, PhysicsWorld, Pose,
+    RigidBodyBuilder, RigidBodyHandle, Rot2, SharedShape, Vector,
 };
 
 /// Two hulls close with at most this speed, m/s. What they close in a tick is how far ahead rapier looks for
@@ -30,6 +31,9 @@ const WALL_M: f64 = 10.0;
 const RESTITUTION: f64 = 0.1;
 const FRICTION: f64 = 0.2;
 
+/// Rapier's group of the hulls; what is fixed is in all groups.
+const HULLS: Group = Group::GROUP_1;
+
 /// The solid shapes of a game.
 #[derive(Clone)]
 pub struct ContactModel {
@@ -37,6 +41,8 @@ pub struct ContactModel {
     hulls: Vec<HullShape>,
     /// Obstacles and walls.
     fixed: Vec<Fixed>,
+    /// Whether hulls touch each other.
+    hulls_are_solid: bool,
     dt_s: f64,
     look_ahead_m: f64,
     /// Hulls nearer than this are handed to rapier, m.
@@ -114,9 +120,15 @@ struct Entry {
 }
 
 impl ContactModel {
-    /// The shapes of these kinds of boat (length and beam, m) on this field.
+    /// The shapes of these kinds of boat (length and beam, m) on this field. Hulls that are not solid pass through each
+    /// other.
     #[must_use]
-    pub fn new(hulls: impl Iterator<Item = (f64, f64)>, field: &Field, dt_s: f64) -> ContactModel {
+    pub fn new(
+        hulls: impl Iterator<Item = (f64, f64)>,
+        field: &Field,
+        hulls_are_solid: bool,
+        dt_s: f64,
+    ) -> ContactModel {
         let hull = |(length_m, beam_m): (f64, f64)| {
             let radius = 0.5 * beam_m.min(length_m);
             let capsule = SharedShape::capsule_x(0.5 * length_m - radius, radius);
@@ -130,7 +142,8 @@ impl ContactModel {
             }
         }
         let look_ahead_m = CLOSING_MAX_M_S * dt_s;
-        ContactModel { hulls: hulls.map(hull).collect(), fixed, dt_s, look_ahead_m, close_m: look_ahead_m + SPARE_M }
+        let (hulls, close_m) = (hulls.map(hull).collect(), look_ahead_m + SPARE_M);
+        ContactModel { hulls, fixed, hulls_are_solid, dt_s, look_ahead_m, close_m }
     }
 
     /// Hands hulls nearer than `close_m` to rapier; it may be more than is needed, and must then change nothing.
@@ -161,7 +174,7 @@ impl ContactModel {
     /// Boats that are close to another hull or something fixed.
     fn touches(&self, displacements: &[Displacement], near: &[Pair]) -> Vec<Touch> {
         let mut touches = Vec::new();
-        for pair in near {
+        for pair in near.iter().filter(|_| self.hulls_are_solid) {
             let (a, b) = (usize::from(pair.a), usize::from(pair.b));
             let (kind_a, kind_b) = (displacements[a].kind, displacements[b].kind);
             let reach_m = self.hulls[kind_a].half_length_m + self.hulls[kind_b].half_length_m + self.close_m;
@@ -225,6 +238,12 @@ impl ContactModel {
         }
     }
 
+    /// What hulls touch: what is fixed, and each other if they are solid.
+    fn met_by_hulls(&self) -> InteractionGroups {
+        let met = if self.hulls_are_solid { Group::ALL } else { Group::ALL - HULLS };
+        InteractionGroups::new(HULLS, met, InteractionTestMode::And)
+    }
+
     /// Puts a boat into rapier's world with the mass it has in the direction of the push.
     fn enter(
         &self,
@@ -253,7 +272,8 @@ impl ContactModel {
         let collider = ColliderBuilder::new(self.hulls[displacement.kind].capsule.clone())
             .density(0.0)
             .friction(FRICTION)
-            .restitution(RESTITUTION);
+            .restitution(RESTITUTION)
+            .collision_groups(self.met_by_hulls());
         let (body, _) = world.insert(body, collider);
         Entry { boat: touch.boat, body, mass_kg, velocity, spin_rad_s }
     }

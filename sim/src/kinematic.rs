@@ -104,6 +104,15 @@ impl KinematicState {
         self.heading_deg.to_radians()
     }
 
+    /// Loses the way that it makes along the unit vector `out`, to either side, and points where the rest of it goes. One
+    /// that is left with none came head on: it points to starboard of the way in.
+    pub fn slide_across(&mut self, out: Ned) {
+        let along = Ned { north: -out.east, east: out.north };
+        let way_m_s = Rotation::from_heading(self.psi_rad()).ahead().scaled(self.speed_m_s).dot(along);
+        let ahead = along.scaled(if way_m_s > 0.0 { 1.0 } else { -1.0 });
+        self.divert(math::atan2(ahead.east, ahead.north), way_m_s.abs());
+    }
+
     /// Takes up a heading and a speed that came from outside, from contact for example. The loops keep their memory.
     pub fn divert(&mut self, psi_rad: f64, speed_m_s: f64) {
         self.heading_deg = wrap_180(psi_rad.to_degrees());
@@ -159,6 +168,7 @@ impl KinematicModel {
             Order::Steer { heading_rad, speed_m_s } => {
                 (speed_m_s.min(boat.speed_max_m_s), wrap_180(heading_rad.to_degrees() - state.heading_deg))
             }
+            Order::Turn { by_rad, speed_m_s } => (speed_m_s.min(boat.speed_max_m_s), by_rad.to_degrees()),
             Order::Hold => (0.0, 0.0),
         };
         let thrust = if boat.speed_factor > 0.0 {

@@ -84,7 +84,7 @@ impl Model {
             sensed: sensed.collect(),
             fleet: Fleet::new(plan.vehicles.iter().map(|vehicle| &hulls[vehicle.kind])),
             sea: SeaModel::new(plan.sea, plan.kinds, plan.field, plan.tick, plan.seed),
-            contact: ContactModel::new(shapes, plan.field, dt_s),
+            contact: ContactModel::new(shapes, plan.field, plan.boats_are_solid, dt_s),
             pairs_within_m: plan.pairs_within_m,
             kinds: plan.vehicles.iter().map(|vehicle| vehicle.kind).collect(),
             hulls,
@@ -284,8 +284,11 @@ fn settings(
 ) -> [f64; 2] {
     match command {
         Order::Steer { heading_rad, speed_m_s } => {
-            let at = (boat.pose.psi_rad + heading_error_rad, boat.nu);
-            autopilot.steer((hull, thruster), at, (heading_rad, speed_m_s), &mut boat.speed_integral_newton)
+            let turn_rad = wrap_pi(heading_rad - (boat.pose.psi_rad + heading_error_rad));
+            autopilot.steer((hull, thruster), boat.nu, (turn_rad, speed_m_s), &mut boat.speed_integral_newton)
+        }
+        Order::Turn { by_rad, speed_m_s } => {
+            autopilot.steer((hull, thruster), boat.nu, (by_rad, speed_m_s), &mut boat.speed_integral_newton)
         }
         Order::Thrust { port, starboard } => [thruster.setting_of_share(port), thruster.setting_of_share(starboard)],
         Order::Hold => [0.0, 0.0],

@@ -8,14 +8,18 @@ use crate::sea::{Attitude, SeaNow};
 use crate::sensor::{Reading, Truth};
 use crate::spawn::{self, NoStart};
 use crate::state::{BoatState, State};
-use game::frame::{self, Ned, Rotation};
+use game::frame::{self, Leg, Ned, Rotation};
 use game::near::{Near, Pair};
+use game::rules::Contact;
 use game::scenario::Source;
 use game::sea::Sea;
 use game::{Boat, Field, Order, Pose, Scenario, SimTime, VehicleId, math};
 
 /// No boat is faster than this over the ground, m/s; one that is has bad numbers.
 const ABSURD_M_S: f64 = 1_000.0;
+
+/// Pyquaticus sets boats back by this much more than the radius, m.
+const POINT_BOAT_SPARE_M: f64 = 0.1;
 
 /// Boats in water.
 #[derive(Clone)]
@@ -40,6 +44,8 @@ pub struct WorldPlan<'a> {
     pub vehicles: Vec<VehiclePlan<'a>>,
     /// The time between two readings of the sensors.
     pub sensor_period: SimTime,
+    /// Whether boats bump into each other; if not they pass through each other, and bump into walls and obstacles alone.
+    pub boats_are_solid: bool,
     /// [`World::pairs`] lists all boats that are nearer to each other than this, m, and more.
     pub pairs_within_m: f64,
     /// Chooses the randomness of the sea and of the sensors.
@@ -118,6 +124,7 @@ impl World {
             kinds: &scenario.boats,
             vehicles: vehicles.collect(),
             sensor_period: scenario.decision(),
+            boats_are_solid: scenario.rules.contact == Contact::Solid,
             pairs_within_m: scenario.rules.reach_m(),
             seed,
         }))
@@ -157,7 +164,8 @@ impl World {
     }
 
     /// Sets boats back onto the circle (centre, radius in m) that they must stay out of, if there is one for a vehicle at
-    /// its place; they lose their way inward. A real boat is where it is.
+    /// its place. A hull loses its way inward. A point boat does as in Pyquaticus: it is back where it came in, and goes
+    /// along the circle with what is left of its way. A real boat is where it is.
     pub fn set_back(&mut self, circle: impl Fn(VehicleId, Ned) -> Option<(Ned, f64)>) {
         let World { model, state, work } = self;
         let mut moved = false;
@@ -168,13 +176,25 @@ impl World {
             if distance_m >= radius_m || distance_m == 0.0 {
                 continue;
             }
+            moved = true;
+            if let Some((place, _)) = model.point(i) {
+                let came_from = work.displacements.get(i).map_or(boat.pose.at, |displacement| displacement.from.at);
+                boat.pose.at = way_back((came_from, boat.pose.at), centre, radius_m + POINT_BOAT_SPARE_M);
+                let point = &mut state.points[place];
+                let drift = boat.nu.in_ned(work.rotations[i]) - work.rotations[i].ahead().scaled(point.speed_m_s);
+                point.slide_across((boat.pose.at - centre).scaled(1.0 / boat.pose.at.distance(centre)));
+                boat.pose.psi_rad = point.psi_rad();
+                work.rotations[i] = boat.pose.rotation();
+                let drift = frame::body_from_ned(work.rotations[i], drift);
+                (boat.nu.surge, boat.nu.sway) = (point.speed_m_s + drift.ahead, drift.starboard);
+                continue;
+            }
             let out = from_centre.scaled(1.0 / distance_m);
             boat.pose.at = centre + out.scaled(radius_m);
             let out_in_body = frame::body_from_ned(work.rotations[i], out);
             let inward_m_s = (out_in_body.ahead * boat.nu.surge + out_in_body.starboard * boat.nu.sway).min(0.0);
             boat.nu.surge -= inward_m_s * out_in_body.ahead;
             boat.nu.sway -= inward_m_s * out_in_body.starboard;
-            moved = true;
         }
         if moved {
             self.find_pairs();
@@ -205,6 +225,14 @@ impl World {
         let boat = &mut self.state.boats[vehicle.index()];
         (boat.pose, boat.nu) = (pose, nu);
         self.refresh();
+    }
+
+    /// How a vehicle moved in the last tick.
+    #[must_use]
+    pub fn leg(&self, vehicle: VehicleId) -> Leg {
+        let to = self.state.boats[vehicle.index()].pose.at;
+        let from = self.work.displacements.get(vehicle.index()).map_or(to, |displacement| displacement.from.at);
+        Leg { from, to }
     }
 
     /// Boats that are near each other, in the order of [`game::near::Near`]: all that may touch, and all within
@@ -320,6 +348,16 @@ impl World {
             }
         }
     }
+}
+
+/// Where a boat inside of a circle has come in on its straight way, found by going back along it; straight out if it has
+/// not moved.
+fn way_back((from, to): (Ned, Ned), centre: Ned, radius_m: f64) -> Ned {
+    let back = if from == to { to - centre } else { from - to };
+    let back = back.scaled(1.0 / back.length());
+    let from_centre = to - centre;
+    let beside = from_centre.dot(back);
+    to + back.scaled((beside * beside + radius_m * radius_m - from_centre.dot(from_centre)).max(0.0).sqrt() - beside)
 }
 
 #[inline]

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{alone, order};
+use game::boat::Hold;
 use game::input::{Input, InputRecord, Inputs};
 use game::link::{Link, Loss};
 use game::message::{Message, Stamp};
@@ -94,4 +95,21 @@ fn a_game_with_silent_agents_is_played_again_from_its_recording() {
         old.world().state().boats[0].pose.at.east > contest.world().state().boats[0].pose.at.east,
         "a late order is in force for longer"
     );
+}
+
+#[test]
+fn a_boat_that_keeps_its_station_stays_where_it_began_to_hold_until_people_stop_it() {
+    let drift_m = |hold: Hold, e_stopped: bool| {
+        let mut scenario = alone("surveyor_m1_8", "gale");
+        scenario.boats.iter_mut().for_each(|boat| boat.hold = hold);
+        let mut contest = started(&scenario);
+        contest.e_stop(e_stopped);
+        let start = contest.world().state().boats[0].pose.at;
+        (0..1200).for_each(|_| contest.advance());
+        contest.world().state().boats[0].pose.at.distance(start)
+    };
+    assert!(drift_m(Hold::Drifts, false) > 30.0, "a gale drifts a boat that lies still");
+    let kept_m = drift_m(Hold::KeepsStation, false);
+    assert!(kept_m < 8.0, "{kept_m} m off its station");
+    assert!(drift_m(Hold::KeepsStation, true) > 30.0, "stopped by people it lies still");
 }

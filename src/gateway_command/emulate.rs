@@ -2,7 +2,6 @@
 
 use super::log_line::Log;
 use crate::net_args::LeafArgs;
-use crate::screen;
 use crate::sim_command::seconds;
 use crate::stop;
 use anyhow::{Context, Result, anyhow};
@@ -89,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let settings = EmulatorSettings {
         game: args.leaf.game.clone(),
-        net: args.leaf.net()?,
+        place: args.leaf.place()?,
         vehicle: args.vehicle.clone(),
         listen,
         primary,
@@ -101,16 +100,16 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         silence: Duration::from_secs_f64(args.silence_s),
         stop,
     };
-    let mut log = Log::new(args.for_parent);
+    let log = Log::new(args.for_parent);
     let mut notify = |event: NodeEvent<'_>| match event {
-        NodeEvent::Looking { reason } if !args.for_parent => {
-            screen::remark(&format!("{}: looking for the game: {reason}", args.vehicle));
-        }
+        NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
         // The parent process may have asked for any free port.
-        NodeEvent::Listening { what, reach } => screen::print(&format!("{what} at {reach}\n")),
+        NodeEvent::Listening { what, reach } => log.print(format!("{what} at {reach}\n")),
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
-        NodeEvent::Looking { .. } | NodeEvent::ControlPort(_) | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
+        NodeEvent::ControlPort { .. } | NodeEvent::Status(_) | NodeEvent::Ended(_) => {}
     };
-    gateway::node::emulate(&settings, &mut notify).with_context(|| format!("the emulator of {}", args.vehicle))?;
+    let emulated = gateway::node::emulate(&settings, &mut notify);
+    log.end(String::new());
+    emulated.with_context(|| format!("the emulator of {}", args.vehicle))?;
     Ok(ExitCode::SUCCESS)
 }

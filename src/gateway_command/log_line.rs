@@ -1,43 +1,73 @@
 //! The log of a gateway on the terminal: events line by line, the status as one line that is overwritten.
 
+use crate::printer::Printer;
 use crate::screen;
 use game::external::GatewayStatus;
 use gateway::bridge::Event;
 use std::io::IsTerminal;
 
-/// Prints a gateway's log.
+/// Prints a gateway's log. The gateway waits for none of it.
 pub(super) struct Log {
-    live: bool,
-    quiet: bool,
-    status: String,
+    is_live: bool,
+    is_quiet: bool,
+    printer: Printer<Line>,
+}
+
+enum Line {
+    /// It stays.
+    Lasting(String),
+    /// The next one overwrites it.
+    Status(String),
+    /// To standard error.
+    Remark(String),
 }
 
 impl Log {
     /// A log; a quiet one prints errors only.
-    pub(super) fn new(quiet: bool) -> Log {
-        Log { live: std::io::stdout().is_terminal(), quiet, status: String::new() }
+    pub(super) fn new(is_quiet: bool) -> Log {
+        let is_live = std::io::stdout().is_terminal();
+        let mut status = String::new();
+        let printer = Printer::start(move |line| match line {
+            Line::Lasting(line) if is_live => screen::overwrite(&format!("{line}{status}")),
+            Line::Lasting(line) => screen::print(line),
+            Line::Status(line) => {
+                status.clone_from(line);
+                screen::overwrite(line);
+            }
+            Line::Remark(text) => screen::remark(text),
+        });
+        Log { is_live, is_quiet, printer }
     }
 
     /// A line that stays.
-    pub(super) fn event(&mut self, at_s: f64, event: &Event) {
-        if self.quiet {
-            return;
-        }
-        let text = text_of(event);
-        let line = format!("{at_s:>8.1} s  {text}\n");
-        if self.live {
-            screen::overwrite(&(line + &self.status));
-        } else {
-            screen::print(&line);
+    pub(super) fn event(&self, at_s: f64, event: &Event) {
+        if !self.is_quiet {
+            self.print(format!("{at_s:>8.1} s  {}\n", text_of(event)));
         }
     }
 
     /// A line that the next one overwrites; only on a terminal.
-    pub(super) fn status(&mut self, status: &GatewayStatus) {
-        if self.live && !self.quiet {
-            self.status = brief(status);
-            screen::overwrite(&self.status);
+    pub(super) fn status(&self, status: &GatewayStatus) {
+        if self.is_live && !self.is_quiet {
+            self.printer.print(Line::Status(brief(status)));
         }
+    }
+
+    /// Something that is not of the log.
+    pub(super) fn remark(&self, text: String) {
+        if !self.is_quiet {
+            self.printer.print(Line::Remark(text));
+        }
+    }
+
+    /// Lines that stay, of a quiet log too.
+    pub(super) fn print(&self, lines: String) {
+        self.printer.print(Line::Lasting(lines));
+    }
+
+    /// Prints the last lines, after all that wait.
+    pub(super) fn end(self, lines: String) {
+        self.printer.end(Line::Lasting(lines));
     }
 }
 

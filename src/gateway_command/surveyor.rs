@@ -2,13 +2,12 @@
 
 use super::log_line::{Log, full};
 use crate::net_args::LeafArgs;
-use crate::screen;
 use crate::sim_command::seconds;
 use crate::stop;
 use anyhow::{Context, Result, anyhow};
-use bus::Token;
+use bus::{Registration, Token};
 use gateway::link::LinkAddress;
-use gateway::node::{NodeEvent, Settings};
+use gateway::node::{NodeEvent, Outside, Settings};
 use recording::utc;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
@@ -65,19 +64,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let record = recording(args)?;
-    if let (Some(path), false) = (&record, args.for_parent) {
-        screen::remark(&format!("recording to {}", path.display()));
+    let log = Log::new(args.for_parent);
+    if let Some(path) = &record {
+        log.remark(format!("recording to {}", path.display()));
     }
-    let net = args.leaf.net()?;
-    let token = net.token.as_ref().map(Token::hex);
     let game = args.leaf.game.as_ref().map(|game| game.as_str().to_owned());
     let settings = Settings {
         game: args.leaf.game.clone(),
-        net,
+        place: args.leaf.place()?,
         vehicle: args.vehicle.clone(),
-        link,
-        control: args.control_listen,
-        silence: Duration::from_secs_f64(args.silence_s),
         gateway,
         arms_itself: args.arm,
         at_game_pace: args.at_game_pace,
@@ -86,27 +81,31 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         wait: Duration::from_secs_f64(args.wait_s),
         stop: stop.clone(),
     };
-    let (mut log, mut registration) = (Log::new(args.for_parent), None);
+    let silence = Duration::from_secs_f64(args.silence_s);
+    let outside = Outside { link, silence, control: args.control_listen };
+    let (mut last, mut registration) = (String::new(), None::<Registration>);
     let mut notify = |event: NodeEvent<'_>| match event {
-        NodeEvent::Looking { reason } if !args.for_parent => {
-            screen::remark(&format!("{}: looking for the game: {reason}", args.vehicle));
-        }
-        NodeEvent::Looking { .. } | NodeEvent::Listening { .. } => {}
-        NodeEvent::ControlPort(control) => {
-            let (vehicle, pid) = (args.vehicle.clone(), std::process::id());
-            let entry = bus::GatewayEntry { vehicle, game: game.clone(), control, pid, token: token.clone() };
+        NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
+        NodeEvent::Listening { .. } => {}
+        NodeEvent::ControlPort { address: control, token } => {
+            let (vehicle, pid, token) = (args.vehicle.clone(), std::process::id(), token.as_ref().map(Token::hex));
+            let entry = bus::GatewayEntry { vehicle, game: game.clone(), control, pid, token };
             // Where it cannot be registered, operators must be told where it is; nothing else is lost.
-            registration = bus::register_gateway(&entry).ok();
-            if !args.for_parent {
-                screen::remark(&format!("operators reach this gateway at {control}, with or without a game"));
+            if let Some(registration) = &registration {
+                drop(registration.update(&entry));
+                return;
             }
+            registration = bus::register_gateway(&entry).ok();
+            log.remark(format!("operators reach this gateway at {control}, with or without a game"));
         }
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
         NodeEvent::Status(status) => log.status(status),
-        NodeEvent::Ended(status) => screen::print(&format!("\n{}", full(status))),
+        NodeEvent::Ended(status) => last = format!("\n{}", full(status)),
     };
-    gateway::node::serve(&settings, &mut notify).with_context(|| format!("the gateway of {}", args.vehicle))?;
+    let served = gateway::node::serve(&settings, &outside, &mut notify);
     drop(registration);
+    log.end(last);
+    served.with_context(|| format!("the gateway of {}", args.vehicle))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,10 +1,10 @@
 //! A recording, or a topic of it, as files for other programs.
 
 use crate::output_file;
-use analysis::{Damaged, GameSeries, alog, table};
+use analysis::{alog, table};
 use anyhow::{Context, Result};
 use game::{Scenario, printable};
-use recording::{Bag, Recording};
+use recording::{Bag, Damaged, Recording};
 use std::borrow::Cow;
 use std::io::{BufWriter, ErrorKind, IsTerminal, Write};
 use std::path::Path;
@@ -51,21 +51,18 @@ fn rows<W: Write>(
 }
 
 /// Writes MOOS logs: into a folder those of the shoreside and of all boats, into a file that of the shoreside. Says how
-/// many.
-pub(super) fn alog(recording: &Recording, series: &GameSeries, path: &Path) -> Result<usize> {
-    let header = recording.header();
-    if path.extension().is_some_and(|ending| ending == "alog") && !path.is_dir() {
-        output_file::write(path, "the log", alog::shoreside(header, series))?;
-        return Ok(1);
+/// many, and what could not be read.
+pub(super) fn alog(recording: &Recording, path: &Path) -> Result<(usize, Damaged)> {
+    let is_alone = path.extension().is_some_and(|ending| ending == "alog") && !path.is_dir();
+    if !is_alone {
+        output_file::make_folder(path)?;
     }
-    output_file::make_folder(path)?;
-    let names = alog::names(series);
-    for (i, name) in names.iter().enumerate() {
-        let text = match i.checked_sub(1) {
-            Some(place) => alog::vehicle(header, series, place).unwrap_or_default(),
-            None => alog::shoreside(header, series),
-        };
-        output_file::write(&path.join(format!("{name}.alog")), "the log", text)?;
-    }
-    Ok(names.len())
+    let mut last = path.to_owned();
+    let written = alog::write(recording, !is_alone, &mut |name| {
+        if !is_alone {
+            last = path.join(format!("{name}.alog"));
+        }
+        Ok(Box::new(std::fs::File::create(&last)?))
+    });
+    written.with_context(|| format!("cannot write the log to {}", last.display()))
 }

@@ -1,8 +1,8 @@
 //! The summary of a recorded game as text.
 
 use crate::screen::line;
-use analysis::{BoatStatistics, Damaged, Gateway, Summary, Topic, Traffic};
-use recording::{Bag, utc};
+use analysis::{BoatStatistics, Gateway, Summary, Topic, Traffic};
+use recording::{Bag, Damaged, utc};
 use std::collections::BTreeMap;
 
 /// The whole page.

@@ -136,13 +136,13 @@ fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page<Pa
     let ordered = |points| Line { colour: Some(ORDERED), ..Line::of("ordered", points) };
     let sailed = |points| Line { colour: Some(colour::of_team(boat.team)), ..Line::of("sailed", points) };
     let speed = |sample: &Sample| match sample.order {
-        Order::Steer { speed_m_s, .. } => Some(speed_m_s),
+        Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => Some(speed_m_s),
         Order::Hold => Some(0.0),
         Order::Thrust { .. } => None,
     };
     let heading = |sample: &Sample| match sample.order {
         Order::Steer { heading_rad, .. } => Some(compass_deg_from_rad(heading_rad)),
-        Order::Hold | Order::Thrust { .. } => None,
+        Order::Hold | Order::Turn { .. } | Order::Thrust { .. } => None,
     };
     let speeds = vec![ordered(series(&speed)), sailed(series(&|sample| Some(sample.truth.surge_m_s)))];
     let headings = vec![

@@ -1,6 +1,7 @@
 //! Helm reports of a recorded game: minds are shown the recorded pictures again, and decide the same.
 
 use agent::{Mind, MindRunner, mind_of};
+use game::helm::HelmReport;
 use game::input::{Input, Inputs};
 use game::message::PolicyProposal;
 use game::picture::Picture;
@@ -12,7 +13,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The minds of a recorded game.
-pub(super) struct Minds {
+pub(crate) struct Minds {
     recording: Arc<Recording>,
     teams: Vec<Team>,
     /// The places of the inputs that came of each decision.
@@ -29,7 +30,7 @@ struct Team {
 }
 
 impl Minds {
-    pub(super) fn new(recording: Arc<Recording>) -> Minds {
+    pub(crate) fn new(recording: Arc<Recording>) -> Minds {
         let scenario = recording.scenario();
         let teams = (0..scenario.teams.len()).map(|team| Team::new(&recording, TeamId(team as u8))).collect();
         // Inputs stand with the frame that came of them, one decision later.
@@ -43,6 +44,13 @@ impl Minds {
             (!proposals.is_empty()).then_some((vehicle, proposals))
         });
         Minds { teams, inputs, proposals: proposals.collect(), recording: Arc::clone(&recording) }
+    }
+
+    /// What the vehicle's mind tells of itself when it decides again, and what it orders, if it can.
+    pub(crate) fn report_of(&mut self, vehicle: VehicleId, decision: u64) -> Option<(HelmReport, Order)> {
+        let order = self.decide(vehicle, decision)?;
+        let team = &self.teams[self.recording.scenario().team_of(vehicle).index()];
+        Some((team.runner.mind(vehicle).and_then(Mind::report)?, order))
     }
 
     /// The order for the vehicle at this decision, as recorded.

@@ -2,10 +2,18 @@
 
 use crate::support::Sim;
 use game::topic::{self, GameName};
+use serde_json::{Value, json};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use zenoh::bytes::ZBytes;
 use zenoh::{Config, Session, Wait};
+
+/// A game that somebody can reach.
+#[derive(Clone, Debug)]
+pub(crate) struct Target {
+    pub(crate) endpoint: String,
+    pub(crate) game: GameName,
+}
 
 /// Who reaches the port, and knows every topic.
 pub(crate) struct Intruder {
@@ -19,17 +27,51 @@ pub(crate) struct Heard {
     _subscriber: zenoh::pubsub::Subscriber<()>,
 }
 
-impl Intruder {
-    pub(crate) fn at(sim: &Sim) -> Intruder {
+impl Target {
+    pub(crate) fn of(sim: &Sim) -> Target {
+        Target { endpoint: sim.endpoint.clone(), game: sim.name() }
+    }
+
+    /// Where it listens, for whoever does not speak zenoh.
+    pub(crate) fn address(&self) -> &str {
+        self.endpoint.strip_prefix("tcp/").expect("it listens on TCP")
+    }
+
+    pub(crate) fn topic(&self, rest: &str) -> String {
+        topic::matching(&self.game, rest)
+    }
+
+    /// Opens a session in a mode of zenoh's; none where the hub lets nobody in.
+    pub(crate) fn open(&self, mode: &str) -> Option<Intruder> {
+        self.open_with(mode, &json!({}))
+    }
+
+    /// The same with these settings for TLS.
+    pub(crate) fn open_with(&self, mode: &str, tls: &Value) -> Option<Intruder> {
         let mut config = Config::default();
         for (key, value) in [
-            ("mode", "\"client\"".to_owned()),
-            ("connect/endpoints", format!("[{:?}]", sim.endpoint)),
+            ("mode", format!("{mode:?}")),
+            ("connect/endpoints", format!("[{:?}]", self.endpoint)),
+            ("connect/timeout_ms", "0".to_owned()),
+            ("connect/exit_on_failure", "true".to_owned()),
+            ("listen/endpoints", "[]".to_owned()),
             ("scouting/multicast/enabled", "false".to_owned()),
+            ("transport/link/tls", tls.to_string()),
         ] {
             config.insert_json5(key, &value).expect("a setting of zenoh");
         }
-        Intruder { session: zenoh::open(config).wait().expect("the port is open"), game: sim.name() }
+        let session = zenoh::open(config).wait().ok()?;
+        Some(Intruder { session, game: self.game.clone() })
+    }
+}
+
+impl Intruder {
+    pub(crate) fn at(sim: &Sim) -> Intruder {
+        Intruder::of(&Target::of(sim))
+    }
+
+    pub(crate) fn of(target: &Target) -> Intruder {
+        target.open("client").expect("the port is open")
     }
 
     pub(crate) fn topic(&self, rest: &str) -> String {
@@ -56,10 +98,28 @@ impl Intruder {
 
     /// The answers to a query.
     pub(crate) fn ask(&self, rest: &str, payload: impl Into<ZBytes>) -> Vec<Vec<u8>> {
-        let replies = self.session.get(self.topic(rest)).payload(payload).timeout(Duration::from_secs(5)).wait();
+        self.ask_at(&self.topic(rest), payload)
+    }
+
+    pub(crate) fn ask_at(&self, key: &str, payload: impl Into<ZBytes>) -> Vec<Vec<u8>> {
+        let replies = self.session.get(key).payload(payload).timeout(Duration::from_secs(5)).wait();
         let replies = replies.expect("the session is open");
         let sound = std::iter::from_fn(|| replies.recv().ok()).filter_map(|reply| reply.into_result().ok());
         sound.map(|sample| sample.payload().to_bytes().into_owned()).collect()
+    }
+
+    /// Asks, and waits for no answer.
+    pub(crate) fn ask_in_vain(&self, rest: &str, payload: impl Into<ZBytes>) {
+        drop(self.session.get(self.topic(rest)).payload(payload).wait().expect("the session is open"));
+    }
+
+    /// Answers a topic with something false, for as long as this is kept.
+    pub(crate) fn answer(&self, rest: &str) -> zenoh::query::Queryable<()> {
+        let queryable = self.session.declare_queryable(self.topic(rest)).callback(|query| {
+            let key = query.key_expr().clone();
+            drop(query.reply(key, "forged").wait());
+        });
+        queryable.wait().expect("the session is open")
     }
 }
 

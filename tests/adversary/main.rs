@@ -5,11 +5,19 @@
     reason = "processes are waited for by the clock, with a limit; what is measured is printed"
 )]
 
+mod another_machine;
+mod attack;
 mod boat;
 mod control_port;
+mod disturbed_game;
+mod fake_sim;
 mod intruder;
 mod network;
 #[path = "../process/support.rs"]
 #[allow(dead_code, unreachable_pub, reason = "shared with the tests of whole games")]
 mod support;
+mod take_over;
 mod token;
+#[path = "../process/two_hosts.rs"]
+#[allow(dead_code, reason = "shared with the tests of whole games")]
+mod two_hosts;

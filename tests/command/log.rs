@@ -143,6 +143,8 @@ fn mistakes_are_explained() {
         (&[recording, "--csv", "whales"], "there is no topic \"whales\" in this recording; there are events, frame"),
         (&["--compare", recording, "nowhere.mcap"], "cannot look at nowhere.mcap"),
         (&["--compare", recording], "2 values"),
+        (&["--quality", recording, "nowhere.mcap"], "cannot look at nowhere.mcap"),
+        (&["--quality"], "a value is required"),
         (&[], "FILE"),
         (&[recording, "--plot", toml], "cannot make the folder"),
     ] {

@@ -140,6 +140,53 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
 }
 
 #[test]
+fn the_quality_of_a_tournament_is_that_of_its_recorded_games() {
+    let dir = tempfile::tempdir().unwrap();
+    let strategies = project().join("scenarios/strategies");
+    let entry =
+        |name: &str| format!("[[entry]]\nname = {name:?}\nstrategy = {:?}\n", strategies.join(format!("{name}.toml")));
+    let tournament = short_tournament(&dir, "");
+    let game = place(&dir, "short.toml");
+    let text =
+        format!("game = \"short.toml\"\nsea = {:?}\ngames = 2\nseed = 5\nself_play = false\n", project().join(SEA));
+    std::fs::write(&tournament, text + &entry("strategy_4") + &entry("pav01")).unwrap();
+    let (report, quality) = (place(&dir, "report.json"), place(&dir, "quality.json"));
+    let said = printed(project(), &["tournament", &tournament, "--quality", "--jobs", "2", "--json", &report]);
+
+    let mut recordings = vec![];
+    for (i, sides) in [["strategy_4", "pav01"], ["pav01", "strategy_4"]].into_iter().enumerate() {
+        let runs = place(&dir, &format!("runs{i}"));
+        let [blue, red] = sides.map(|name| strategies.join(format!("{name}.toml")).display().to_string());
+        printed(
+            project(),
+            &[
+                "run",
+                &game,
+                "--sea",
+                SEA,
+                "--blue",
+                &blue,
+                "--red",
+                &red,
+                "--seed",
+                "5",
+                "--in-process",
+                "--record",
+                &runs,
+            ],
+        );
+        recordings.push(std::fs::read_dir(&runs).unwrap().next().unwrap().unwrap().path().display().to_string());
+    }
+    let told = printed(project(), &["log", "--quality", &recordings[0], &recordings[1], "--json", &quality]);
+    assert!(said.ends_with(&told) && told.starts_with("quality of play in 2 games"), "{said}\n{told}");
+    let quality = json(&quality);
+    assert_eq!(json(&report)["quality"], quality);
+    let roles = &quality["strategies"]["pav01"]["roles"];
+    assert!(roles["easy_defender"]["modes"]["defending"]["time_s"].as_f64().unwrap() > 60.0, "{quality}");
+    assert!(roles["unknown"].is_null() && quality["strategies"]["strategy_4"]["teams"] == 2, "{quality}");
+}
+
+#[test]
 fn an_odd_number_of_games_is_rounded_up_with_a_note() {
     let dir = tempfile::tempdir().unwrap();
     let (tournament, report) = (short_tournament(&dir, "games = 5\nseed = 9"), place(&dir, "report.json"));
@@ -210,4 +257,29 @@ fn run_gives_teams_other_strategies_in_one_process_and_across_processes() {
         assert_eq!(digest(args), other, "{args:?}");
     }
     assert_eq!(digest(&["--blue", "easy_attackers", "--red", "idle", "--in-process"]), own);
+}
+
+#[test]
+fn a_game_from_both_sides_is_the_two_games_of_the_tournament_and_their_sum() {
+    let dir = tempfile::tempdir().unwrap();
+    let result = place(&dir, "result.json");
+    let game = "scenarios/games/attack_1v1.toml";
+    let run = |args: &[&str]| {
+        let text =
+            printed(project(), &[&["run", game, "--no-record", "--in-process"], args, &["--json", &result]].concat());
+        (text, json(&result))
+    };
+    let (text, both) = run(&["--both-sides"]);
+    assert!(text.contains("from both sides: easy_attackers (first as blue) "), "{text}");
+    // A tournament exchanges the strategies of the two teams in the same way.
+    let (_, first) = run(&[]);
+    let (_, second) = run(&["--blue", "idle", "--red", "easy_attackers"]);
+    assert_eq!([&both["games"][0]["digest"], &both["games"][1]["digest"]], [&first["digest"], &second["digest"]]);
+    let points = |game: &Value, team: &str| game["score"]["teams"][team].as_u64().unwrap();
+    for (i, (team, other)) in [("blue", "red"), ("red", "blue")].into_iter().enumerate() {
+        assert_eq!(both["sum"][i]["score"].as_u64().unwrap(), points(&first, team) + points(&second, other), "{team}");
+    }
+    assert!(points(&first, "blue") > 0, "somebody scores");
+    assert!(text.contains("nothing in this game is random") && first["random"] == false, "{text}");
+    assert!(!text.contains("--both-sides plays") && first["ends_differ"] == false, "{text}");
 }

@@ -46,13 +46,20 @@ impl Plan {
         self.faults.iter().any(|(_, fault)| matches!(fault, Fault::Kill { node: who, .. } if *who == node))
     }
 
+    /// When the real boat must be there again whatever has befallen it; nothing if there is none, or nobody who brings it.
+    pub(crate) fn real_boat_is_back(&self) -> Option<Duration> {
+        let is_gone = |(_, fault): &(Duration, Fault)| matches!(fault, Fault::Kill { node, restart: None } if [SIM, self.gateway()].contains(node));
+        let comes = self.has_real_boat() && !self.faults.iter().any(is_gone);
+        comes.then(|| self.faults_end() + self.conditions.lease + BACK)
+    }
+
     fn agent_of(&self, boat: usize) -> usize {
         let has = |boats: &Vec<usize>| boats.contains(&boat);
         FIRST_AGENT + self.agents.iter().position(has).expect("every boat has an agent")
     }
 }
 
-/// The results of undisturbed games in one process, by game, seed and length.
+/// The results of undisturbed games in one process, by game, seed and length: orders that are answered in time never expire.
 static UNDISTURBED: Mutex<BTreeMap<(usize, u64, u32), String>> = Mutex::new(BTreeMap::new());
 
 fn undisturbed(plan: &Plan) -> String {

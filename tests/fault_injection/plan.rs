@@ -8,7 +8,7 @@ use std::time::Duration;
 /// The games that are played, in the folder `games`.
 pub(crate) const GAMES: [&str; 5] = ["point_boats", "surveyors", "duel", "talking", "real_boat"];
 
-/// The numbers of the first nodes; agents come after these, and the gateway where there is a real boat.
+/// The numbers of the first nodes; agents come after these, and where there is a real boat its gateway, an operator and itself.
 pub(crate) const SIM: usize = 0;
 pub(crate) const OBSERVER: usize = 1;
 pub(crate) const FIRST_AGENT: usize = 2;
@@ -29,9 +29,14 @@ pub(crate) struct Plan {
     /// In lockstep: no faster than this.
     pub(crate) speed: Option<f64>,
     pub(crate) patience_s: f64,
+    /// How long an order is good for, where it is not as long as in the game's file: longer than patience, so that a boat holds
+    /// because its agent is lost and not because its order has expired.
+    pub(crate) order_ttl_s: Option<f64>,
     /// Vehicles by agent process.
     pub(crate) agents: Vec<Vec<usize>>,
     pub(crate) conditions: Conditions,
+    /// When the wire to the real boat is cut.
+    pub(crate) wire_cuts: Vec<(Duration, Duration)>,
     /// What goes wrong, and when.
     pub(crate) faults: Vec<(Duration, Fault)>,
 }
@@ -61,14 +66,20 @@ impl Plan {
             seed,
             game,
             game_seed: 1 + stream.below(4),
-            duration_s: one(stream, &[3, 6, 20]),
+            duration_s: one(stream, if GAMES[game] == "real_boat" { &[6, 20, 40] } else { &[3, 6, 20] }),
             pace,
             speed: one(stream, &[None, None, Some(4.0), Some(1.0)]),
             patience_s: one(stream, &[2.0, 3.0, 5.0]),
+            order_ttl_s: one(stream, &[None, None, Some(30.0)]),
             conditions: drawn_conditions(stream),
             faults: vec![],
+            wire_cuts: vec![],
             agents,
         };
+        if plan.has_real_boat() && stream.below(3) == 0 {
+            let at = ms(stream, 0, 20_000);
+            plan.wire_cuts.push((at, at + ms(stream, 20, 6000)));
+        }
         let faults = stream.below(6);
         plan.faults = (0..faults).map(|_| plan.drawn_fault(stream)).collect();
         plan
@@ -86,6 +97,7 @@ impl Plan {
             0 => SIM,
             1 => OBSERVER,
             2..4 if self.has_real_boat() => self.gateway(),
+            4 if self.has_real_boat() => self.operator() + stream.below(2) as usize,
             _ => FIRST_AGENT + stream.below(self.agents.len() as u64) as usize,
         };
         let time = match stream.below(10) {
@@ -96,9 +108,10 @@ impl Plan {
         let restart = Some(ms(stream, 0, 3000)).filter(|_| stream.below(4) > 0);
         let fault = match stream.below(10) {
             0..5 => Fault::Cut { node, time },
-            // The gateway and its boat are one node here, and a boat does not stand still in time.
-            5..10 if node == self.gateway() => Fault::Cut { node, time },
             5..8 => Fault::Suspend { node, time },
+            // Nobody would end the others.
+            _ if node == self.operator() => Fault::Suspend { node, time },
+            _ if node == self.page() => Fault::Kill { node, restart: None },
             // A sim that dies ends the game; once in a while is enough.
             _ if node == SIM && stream.below(4) > 0 => Fault::Suspend { node, time },
             _ if node == SIM => Fault::Kill { node, restart: None },
@@ -112,8 +125,40 @@ impl Plan {
     }
 
     /// The number of the gateway's node.
-    fn gateway(&self) -> usize {
+    pub(crate) fn gateway(&self) -> usize {
         FIRST_AGENT + self.agents.len()
+    }
+
+    /// The number of the operator's node.
+    pub(crate) fn operator(&self) -> usize {
+        self.gateway() + 1
+    }
+
+    /// The number of the node that shows the game to a page.
+    pub(crate) fn page(&self) -> usize {
+        self.gateway() + 2
+    }
+
+    /// Whether no message is lost or damaged as long as no link is cut.
+    pub(crate) fn is_calm(&self) -> bool {
+        self.conditions.loss == 0.0 && self.conditions.damaged.0 == 0.0
+    }
+
+    /// How long it takes at most, where nothing is wrong, for a message to come over two links, be worked on, and come over
+    /// another one.
+    pub(crate) fn on_its_way(&self) -> Duration {
+        3 * (self.conditions.delay + self.conditions.jitter + self.conditions.pause)
+    }
+
+    /// Whether any of these nodes is cut off, suspended or dead at some time from `from` to `to`.
+    pub(crate) fn is_disturbed(&self, nodes: &[usize], from: Duration, to: Duration) -> bool {
+        self.faults.iter().any(|(at, fault)| {
+            let (node, end) = match fault {
+                Fault::Cut { node, time } | Fault::Suspend { node, time } => (node, *at + *time),
+                Fault::Kill { node, restart } => (node, restart.map_or(Duration::MAX, |restart| *at + restart)),
+            };
+            nodes.contains(node) && *at <= to && end >= from
+        })
     }
 
     /// Whether minds talk: those to whom a message of a mate does not get through may decide otherwise.
@@ -136,7 +181,7 @@ impl Plan {
             Fault::Cut { time, .. } | Fault::Suspend { time, .. } => *at + *time,
             Fault::Kill { restart, .. } => *at + restart.unwrap_or_default(),
         });
-        ends.max().unwrap_or_default()
+        ends.chain(self.wire_cuts.iter().map(|(_, end)| *end)).max().unwrap_or_default()
     }
 
     /// The longest time without a break in which `node` was cut off or suspended; for ever if it was killed.

@@ -1,12 +1,14 @@
 //! Plays one plan: the sim, its agents and an observer as they run in processes of their own, on a simulated network.
 
 use crate::plan::{GAMES, Plan};
-use crate::real_boat;
+use crate::real_boat::{self, Wire};
 use crate::wire_monitor::WireMonitor;
+use crate::{gateway_node, operator, page};
 use agent::node::News;
 use bus::game_search::GameSearch;
 use bus::simulated::{Run, SimulatedNetwork};
 use bus::{Net, Patience, SimState, SimWatch, Watched};
+use game::external::ExternalOrder;
 use game::message::Frame;
 use game::refusal::Refusals;
 use game::scenario::Scenario;
@@ -63,6 +65,7 @@ impl Plan {
         let mut scenario = drawn.unwrap_or_else(|e| panic!("{e}"));
         scenario.rules.time_limit = SimTime::from_s(f64::from(self.duration_s));
         scenario.patience_s = self.patience_s;
+        scenario.order_ttl_s = self.order_ttl_s.unwrap_or(scenario.order_ttl_s);
         scenario
     }
 }
@@ -89,14 +92,15 @@ pub(crate) fn play(plan: &Plan, keeps_lines: bool) -> Played {
     }
     let seen = Arc::clone(&monitor);
     network.on_publish(move |published| seen.lock().see(published));
-    add_sim(&network, plan, &scenario, &results);
+    let over = Arc::new(Watched::new(false));
+    add_sim(&network, plan, &scenario, &results, &over);
     network.node(Duration::from_millis(100), "observer", observe);
     for (i, boats) in plan.agents.iter().enumerate() {
         let names = boats.iter().map(|boat| scenario.vehicles[*boat].name.clone()).collect();
         add_agent(&network, i, names, &results);
     }
     if plan.has_real_boat() {
-        network.node(Duration::from_millis(200), "gateway", real_boat::bring);
+        add_real_boat(&network, plan, &scenario, &over);
     }
     plan.faults.iter().for_each(|(at, fault)| network.fault(*at, *fault));
     let run = network.run(LIMIT);
@@ -105,10 +109,50 @@ pub(crate) fn play(plan: &Plan, keeps_lines: bool) -> Played {
     Played { scenario, run, sim, agents, refused, monitor }
 }
 
-fn add_sim(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, results: &Arc<Mutex<Results>>) {
-    let (scenario, results) = (scenario.clone(), Arc::clone(results));
+/// Says that the game is over, however it ended.
+struct SaysOver(Arc<Watched<bool>>);
+
+impl Drop for SaysOver {
+    fn drop(&mut self) {
+        self.0.visit(|over| *over = true);
+    }
+}
+
+/// The boat, its gateway, and somebody who operates it.
+fn add_real_boat(network: &SimulatedNetwork, plan: &Plan, scenario: &Scenario, over: &Arc<Watched<bool>>) {
+    let vehicle = scenario.externals().next().expect("there is a real boat");
+    let vehicle = scenario.vehicles[vehicle.index()].name.clone();
+    let (wire, stop) = (Arc::new(Wire::new(gateway_node::order_ttl_s(), plan.forges())), Arc::<AtomicBool>::default());
+    let taken = Arc::clone(&wire);
+    network.on_take(move |published| {
+        if published.node == "gateway" && published.key.contains("/external/") {
+            let order = codec::decode::<ExternalOrder>(published.bytes);
+            order.into_iter().for_each(|order| taken.note_order(order.given_ns, published.at));
+        }
+    });
+    let (to_boat, ends, name) = (Arc::clone(&wire), Arc::clone(&stop), vehicle.clone());
+    network.node(Duration::from_millis(200), "gateway", move || gateway_node::connect(&to_boat, &name, &ends));
+    let over_for_page = Arc::clone(over);
+    let (watched, ends, plan_of, over) = (Arc::clone(&wire), Arc::clone(&stop), plan.clone(), Arc::clone(over));
+    let operate = move || operator::operate(&plan_of, &watched, &vehicle, &over, &ends);
+    network.node(operator::BEGINS, "operator", operate);
+    let (watched, plan_of, over) = (Arc::clone(&wire), plan.clone(), Arc::clone(&over_for_page));
+    network.node(page::BEGINS, "page", move || page::look(&plan_of, &watched, &over));
+    let (datum, cuts) = (scenario.field.plan.datum, plan.wire_cuts.clone());
+    network.node(Duration::ZERO, "boat", move || real_boat::sail(&wire, datum, &cuts, &stop));
+}
+
+fn add_sim(
+    network: &SimulatedNetwork,
+    plan: &Plan,
+    scenario: &Scenario,
+    results: &Arc<Mutex<Results>>,
+    over: &Arc<Watched<bool>>,
+) {
+    let (scenario, results, over) = (scenario.clone(), Arc::clone(results), Arc::clone(over));
     let (pace, speed, game_seed) = (plan.pace, plan.speed, plan.game_seed);
     network.node(Duration::ZERO, "sim", move || {
+        let _says_over = SaysOver(Arc::clone(&over));
         let stop = Arc::new(AtomicBool::new(false));
         let settings = Settings { game: name(), net: net(true), pace, join_limit: JOIN, speed, stop };
         let served = sim::node::serve(&scenario, game_seed, &settings, None, &mut |_| {});
@@ -121,7 +165,7 @@ fn add_agent(network: &SimulatedNetwork, i: usize, vehicles: Vec<String>, result
     network.node(Duration::from_millis(20 * i as u64), &format!("agent {i}"), move || {
         let settings = agent::node::Settings {
             game: None,
-            net: net(false),
+            place: net(false).into(),
             vehicles: vehicles.clone(),
             wait: WAIT,
             silence: SILENCE,
@@ -145,7 +189,7 @@ fn add_agent(network: &SimulatedNetwork, i: usize, vehicles: Vec<String>, result
 /// An observer of frames, until the game is over or the sim is gone.
 fn observe() {
     let stop = AtomicBool::new(false);
-    let Ok((bus, game, _)) = GameSearch::new(WAIT, &stop).game(&mut |_| {}, &net(false), None) else { return };
+    let Ok((bus, game, _)) = GameSearch::new(WAIT, &stop).game(&mut |_| {}, &net(false).into(), None) else { return };
     let is_over = Arc::new(Watched::new(false));
     let over = Arc::clone(&is_over);
     let take = move |bytes: &[u8]| {
@@ -154,7 +198,7 @@ fn observe() {
     };
     let Ok(_frames) = bus.subscribe(topic::frame(&game), take) else { return };
     let Ok(sim) = SimWatch::open(&bus, &game, Patience::of_player(Duration::from_secs(10))) else { return };
-    while !stop.load(Ordering::Relaxed) && sim.state_by_token() == SimState::Alive {
+    while !stop.load(Ordering::Relaxed) && sim.state() == SimState::Alive {
         stop.store(is_over.wait(Duration::from_millis(500), |over| *over), Ordering::Relaxed);
     }
     bus.close();

@@ -12,6 +12,8 @@ use std::time::Duration;
 /// A boat that is to hold has stopped its thrusters after this much of the game: they take a fifth of their range a second,
 /// with a lag of 0.25 s.
 const SETTLES_S: f64 = 6.5;
+/// A real boat that has joined is reported at least this often, whatever the pauses.
+const UNREPORTED: Duration = Duration::from_secs(2);
 /// Thrust of a boat that holds, N.
 const RESTS_NEWTON: f64 = 1.0;
 /// After a tag the rules may drive a boat for this long.
@@ -38,6 +40,10 @@ pub(crate) struct WireMonitor {
     pub(crate) lost: Vec<Option<(Duration, Duration)>>,
     /// When the first frame of the game came, and the last.
     pub(crate) frames: Option<(Duration, Duration)>,
+    /// From when on the real boat must be there, if there is one that is not lost for good.
+    is_back: Option<Duration>,
+    /// When it was reported last.
+    reported: Duration,
     /// What must not be.
     pub(crate) wrong: Vec<String>,
 }
@@ -51,6 +57,8 @@ impl WireMonitor {
             expires: plan.pace != Pace::Lockstep && !plan.forges(),
             lost: vec![None; scenario.vehicles.len()],
             frames: None,
+            is_back: plan.real_boat_is_back(),
+            reported: Duration::ZERO,
             wrong: vec![],
         }
     }
@@ -63,6 +71,8 @@ impl WireMonitor {
                     boat.ordered = boat.ordered.max(orders.stamp.valid_ns);
                 }
             }
+        } else if published.key.contains("/nav/") {
+            self.reported = published.at;
         } else if published.key.contains("/external/") {
             let order: ExternalOrder = codec::decode(published.bytes).expect("the sim publishes orders");
             self.check_external_order(&order);
@@ -85,6 +95,10 @@ impl WireMonitor {
     fn check_frame(&mut self, at: Duration, frame: &Frame) {
         let now = frame.stamp.valid_ns;
         self.frames = Some((self.frames.map_or(at, |(first, _)| first), at));
+        if self.is_back.is_some_and(|back| at > back + UNREPORTED && at > self.reported + UNREPORTED) {
+            self.wrong.push(format!("at {at:?} the real boat is not reported since {:?}", self.reported));
+            self.is_back = None;
+        }
         for i in 0..self.boats.len() {
             let truth = &frame.vehicles[i];
             if truth.agent_lost {

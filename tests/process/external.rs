@@ -6,8 +6,8 @@ use game::angle::rad_from_compass_deg;
 use game::external::{ExternalOrder, NavReport};
 use game::message::{JoinReply, JoinRequest, Message, Role, Stamp};
 use game::picture::Nav;
-use game::topic::{self, GameName, Part};
-use game::{Order, VehicleId, codec};
+use game::topic::{self, GameName};
+use game::{Order, Scenario, VehicleId, codec};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
@@ -19,7 +19,8 @@ pub(crate) const FACTOR: f64 = 4.0;
 pub(crate) struct Gateway {
     bus: Bus,
     name: GameName,
-    alive: Vec<Declaration>,
+    scenario: Scenario,
+    _standing: Declaration,
     nav: Publisher,
     orders: Arc<Mutex<Vec<ExternalOrder>>>,
     ticket: u64,
@@ -28,10 +29,11 @@ pub(crate) struct Gateway {
     moved: Instant,
 }
 
-fn join(bus: &Bus, name: &GameName, vehicle: &str) -> JoinReply {
+fn join(bus: &Bus, (name, scenario): (&GameName, &Scenario), vehicle: &str) -> JoinReply {
     let (version, vehicles) = (game::VERSION.to_owned(), vec![vehicle.to_owned()]);
     let request = JoinRequest { version, role: Role::Gateway, node: bus.id(), vehicles };
-    bus.request(&topic::join(name), &request, LIMIT).expect("the hub is there").expect("an answer")
+    let key = topic::join(name, scenario, request.role, &request.vehicles);
+    bus.request(&key, &request, LIMIT).expect("the hub is there").expect("an answer")
 }
 
 impl Gateway {
@@ -41,15 +43,19 @@ impl Gateway {
         let orders = Arc::new(Mutex::new(Vec::new()));
         let inbox = Arc::clone(&orders);
         let take = move |bytes: &[u8]| inbox.lock().expect("whole").push(codec::decode(bytes).expect("an order"));
-        let alive = vec![
-            bus.subscribe(topic::external_order(&name, &scenario, ME), take).expect("the hub is there"),
-            bus.show_alive(topic::alive(&name, Part::Gateway, &bus.id())).expect("the hub is there"),
-        ];
+        let standing = bus.subscribe(topic::external_order(&name, &scenario, ME), take).expect("the hub is there");
         let nav = bus.publisher(topic::nav(&name, &scenario, ME), Priority::Normal).expect("the hub is there");
-        let JoinReply::Granted { ticket, vehicles } = join(&bus, &name, "blue_one") else { panic!("the boat is free") };
+        let JoinReply::Granted { ticket, vehicles, .. } = join(&bus, (&name, &scenario), "blue_one") else {
+            panic!("the boat is free")
+        };
         assert_eq!(vehicles, [ME]);
         let at = Nav { north_m: 40.0, east_m: 52.0, psi_rad: rad_from_compass_deg(90.0), ..Nav::default() };
-        Gateway { bus, name, alive, nav, orders, ticket, seq: 0, at, moved: Instant::now() }
+        Gateway { bus, name, scenario, _standing: standing, nav, orders, ticket, seq: 0, at, moved: Instant::now() }
+    }
+
+    /// The answer to another node that asks for a boat.
+    fn join(&self, other: &Bus, vehicle: &str) -> JoinReply {
+        join(other, (&self.name, &self.scenario), vehicle)
     }
 
     fn newest(&self) -> Option<ExternalOrder> {
@@ -108,8 +114,8 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     let mut gateway = Gateway::joined(&sim);
     let other = sim.bus();
     let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
-    assert_eq!(join(&other, &gateway.name, "blue_one"), busy, "somebody else brings it");
-    let JoinReply::Refused { reason } = join(&other, &gateway.name, "red_one") else { panic!("it is simulated") };
+    assert_eq!(gateway.join(&other, "blue_one"), busy, "somebody else brings it");
+    let JoinReply::Refused { reason } = gateway.join(&other, "red_one") else { panic!("it is simulated") };
     assert!(reason.contains("red_one is simulated"), "{reason}");
 
     gateway.sail_until("its agent takes it towards the flag", |gateway| gateway.at.east_m > 70.0);
@@ -134,10 +140,11 @@ fn a_real_boat_is_driven_by_its_agent_as_far_as_somebody_looks() {
     assert!(gateway.newest().is_some_and(|newest| newest.given_ns == given_ns) && gateway.is_held());
 
     // Its gateway dies: another may join, and the old one's reports are refused.
-    gateway.alive.remove(1);
-    wait_until("the boat is free again", || join(&other, &gateway.name, "blue_one") != busy);
-    gateway.report(gateway.ticket);
     gateway.bus.close();
+    wait_until("the boat is free again", || gateway.join(&other, "blue_one") != busy);
+    let nav = topic::nav(&gateway.name, &gateway.scenario, ME);
+    gateway.nav = other.publisher(nav, Priority::Normal).expect("the hub is there");
+    gateway.report(gateway.ticket);
     sim.play_on(1.0);
     let report = sim.stop();
     assert!(report["run"]["refused"]["ticket"].as_u64() >= Some(1), "{}", report["run"]);

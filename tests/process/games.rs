@@ -126,7 +126,7 @@ fn games_on_this_machine_are_listed_and_can_be_watched() {
     let _agents = sim.agent(&FOUR);
     sim.play_on(1.0);
     let list = stdout(&run(&["list"]));
-    assert!(list.contains(&sim.game) && list.contains("  agent ") && list.contains("4 boats"), "{list}");
+    assert!(list.contains(&sim.game) && list.contains("  playing at ") && list.contains("4 boats"), "{list}");
     let mut command = squall(&["watch", "--game", &sim.game, "--rate", "20"]);
     command.stdout(Stdio::piped());
     let mut watch = Process::start(command);

@@ -32,7 +32,7 @@ fn game(pace: &str) -> (Sim, Vec<Process>) {
 
 fn sim_with_few_threads(name: &str, pace: &str) -> Sim {
     let mut program = squall(&[]);
-    program.env("ZENOH_RUNTIME", bus::RUNTIME);
+    program.env(bus::RUNTIME_VARIABLE, if pace == "lockstep" { bus::RUNTIME } else { bus::HUB_RUNTIME });
     Sim::start_with(program, name, &["--listen", &free_endpoint(), "--pace", pace])
 }
 
@@ -184,6 +184,9 @@ fn a_sim_whose_output_nobody_reads_plays_on() {
     play_on();
 }
 
+/// From an E-stop to the order that goes to the boat.
+const PROMISED_MS: f64 = 200.0;
+
 /// Tries of an E-stop; more of them if the environment says so.
 fn tries() -> usize {
     std::env::var("SQUALL_TRIES").ok().and_then(|text| text.parse().ok()).unwrap_or(100)
@@ -202,13 +205,12 @@ fn ordered(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway, hold: bool
     }
 }
 
-/// Waits until the boat is driven again, and nothing else is on its way to it.
+/// Waits until the boat is driven again and stays so: a hold that comes next is that of an E-stop.
 fn driven(orders: &Receiver<(Instant, bool)>, gateway: &mut Gateway) {
-    loop {
+    let mut driven = 0;
+    while driven < 5 {
         ordered(orders, gateway, false);
-        if orders.try_iter().all(|(_, is_hold)| !is_hold) {
-            return;
-        }
+        driven = if orders.try_iter().all(|(_, is_hold)| !is_hold) { driven + 1 } else { 0 };
     }
 }
 
@@ -227,7 +229,8 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
     let _orders = bus.subscribe(key, take).expect("the hub is there");
     let stop = operator.publisher(topic::control(&name), Priority::Urgent).expect("the hub is there");
     ordered(&orders, &mut gateway, false);
-    let _flood = flood(&sim);
+    // Each holds a thread that receives.
+    let _floods = [flood(&sim), flood(&sim)];
     let refused = |sim: &Sim| sim.newest_progress()["refused"].as_u64().expect("a number");
     let before = refused(&sim);
     wait_until("the flood has come", || refused(&sim) > before + 10_000);
@@ -244,15 +247,15 @@ fn an_e_stop_is_obeyed_at_once_under_a_flood_of_garbage() {
     took_ms.sort_by(f64::total_cmp);
     let at = |share: f64| took_ms[((took_ms.len() - 1) as f64 * share) as usize];
     let distribution = format!(
-        "{} E-stops under {rate:.0} refused messages a second: median {:.1} ms, 99 % {:.1} ms, longest {:.1} ms",
+        "{} E-stops under {rate:.0} refused messages a second: median {:.2} ms, 90 % {:.2} ms, 99 % {:.1} ms, longest {:.1} ms",
         took_ms.len(),
         at(0.5),
+        at(0.9),
         at(0.99),
         at(1.0)
     );
     eprintln!("{distribution}");
-    // Obeyed within 200 ms; the longest may have waited for a processor on a busy machine.
-    assert!(at(0.99) < 200.0 && at(1.0) < 1000.0, "{distribution}");
+    assert!(at(1.0) < PROMISED_MS, "{distribution}");
     sim.stop();
 }
 
@@ -274,7 +277,7 @@ fn floods_a_game() {
     let Some((endpoint, game)) = flooded.split_once(' ') else { return };
     let name = GameName::new(game).expect("a name");
     let bus = Bus::leaf(&Net { connect: vec![endpoint.to_owned()], ..Net::default() }).expect("the hub is there");
-    let keys = [topic::orders(&name, "stranger"), topic::control(&name)];
+    let keys = [topic::matching(&name, "order/stranger"), topic::control(&name)];
     let publishers = keys.map(|key| bus.publisher(key, Priority::Normal).expect("the hub is there"));
     // Until it is killed, or the game is gone.
     while publishers.iter().all(|publisher| publisher.send_raw(vec![0xaa; 16]).is_ok()) {}

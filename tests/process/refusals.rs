@@ -4,7 +4,7 @@ use crate::support::{FOUR, Sim};
 use bus::{Bus, Latest, Priority, Publisher};
 use game::codec;
 use game::message::{JoinReply, JoinRequest, Message, Orders, Role, Stamp, VehicleOrder};
-use game::topic::{self, GameName};
+use game::topic;
 use game::{Order, Picture, TeamId, VehicleId};
 use std::sync::Arc;
 use std::time::Duration;
@@ -18,8 +18,9 @@ struct Rogue {
     _standing: bus::Declaration,
 }
 
-fn join(bus: &Bus, game: &GameName, request: &JoinRequest) -> JoinReply {
-    bus.request(&topic::join(game), request, Duration::from_secs(10)).expect("a session").expect("the sim answers")
+fn join(sim: &Sim, bus: &Bus, request: &JoinRequest) -> JoinReply {
+    let key = topic::join(&sim.name(), &sim.info(bus).scenario, request.role, &request.vehicles);
+    bus.request(&key, request, Duration::from_secs(10)).expect("a session").expect("the sim answers")
 }
 
 fn request(vehicles: &[&str]) -> JoinRequest {
@@ -35,10 +36,12 @@ impl Rogue {
         let slots = Arc::clone(&pictures);
         let key = topic::picture(&game, &sim.info(&bus).scenario, TeamId(1));
         let standing = bus.subscribe(key, move |bytes| slots.put(0, codec::decode(bytes).expect("a picture")));
-        let JoinReply::Granted { ticket, .. } = join(&bus, &game, &request(&["red_two"])) else {
+        let JoinReply::Granted { ticket, .. } = join(sim, &bus, &request(&["red_two"])) else {
             panic!("the boat is free")
         };
-        let orders = bus.publisher(topic::orders(&game, "rogue"), Priority::Normal).expect("a session");
+        let orders = bus
+            .publisher(topic::orders(&game, &sim.info(&bus).scenario, &[TeamId(1)], "rogue"), Priority::Normal)
+            .expect("a session");
         Rogue { _bus: bus, pictures, orders, ticket, _standing: standing.expect("a session") }
     }
 
@@ -108,14 +111,14 @@ fn everything_an_agent_can_get_wrong_is_refused_counted_and_harmless() {
 fn another_version_is_a_clear_refusal() {
     let sim = Sim::start("long", &[]);
     let bus = sim.bus();
-    let game = sim.name();
     let JoinReply::Refused { reason } =
-        join(&bus, &game, &JoinRequest { version: "9.9.9".to_owned(), ..request(&["blue_one"]) })
+        join(&sim, &bus, &JoinRequest { version: "9.9.9".to_owned(), ..request(&["blue_one"]) })
     else {
         panic!("another version is let in")
     };
     assert!(reason.contains("9.9.9") && reason.contains(game::VERSION), "{reason}");
-    let answer = bus.ask(&topic::join(&game), b"{]".to_vec(), Duration::from_secs(10)).expect("a session");
+    let key = topic::join(&sim.name(), &sim.info(&bus).scenario, Role::Agent, &[]);
+    let answer = bus.ask(&key, b"{]".to_vec(), Duration::from_secs(10)).expect("a session");
     let text = String::from_utf8_lossy(&answer.expect("an answer")).into_owned();
     assert!(text.contains("not understood"), "{text}");
     sim.stop();

@@ -36,10 +36,9 @@ fn a_killed_mate_does_not_silence_the_others_and_nonsense_hurts_nobody() {
     let info = sim.info(&bus);
     let (sender, said) = channel();
     let hear = move |bytes: &[u8]| sender.send(codec::decode::<Say>(bytes)).unwrap_or_default();
-    let _standing = bus.subscribe(topic::all_say(&name, &info.scenario, TeamId(0)), hear).expect("the hub is there");
-    let publisher = bus
-        .publisher(topic::say(&name, &info.scenario, TeamId(0), "stranger"), bus::Priority::Normal)
-        .expect("the hub is there");
+    let _standing = bus.subscribe(topic::say(&name, &info.scenario, TeamId(0)), hear).expect("the hub is there");
+    let publisher =
+        bus.publisher(topic::say(&name, &info.scenario, TeamId(0)), bus::Priority::Normal).expect("the hub is there");
     for vehicle in [1, 4, 5, 99] {
         let stamp = Stamp { seq: u64::MAX, version: Say::VERSION, ..Stamp::default() };
         let word = Word { vehicle: VehicleId(vehicle), key: 1, value: f64::NAN };

@@ -4,6 +4,7 @@
 //! of them; the second breaks each in turn, as `breaches.txt` says, so that a rule which has stopped looking is noticed too.
 
 mod rule;
+mod shown_by;
 mod text;
 mod tree;
 

@@ -55,6 +55,12 @@ impl Tree {
         known(path) || known(&format!("{path}.rs"))
     }
 
+    /// The text of a file, also of one that no other rule looks at.
+    pub(crate) fn text(&self, path: &str) -> Option<String> {
+        let read = || (!self.root.as_os_str().is_empty()).then(|| fs::read_to_string(self.root.join(path)).ok())?;
+        self.files.get(path).cloned().or_else(read)
+    }
+
     /// The lines of code, tests left out, in which `wrong` finds something.
     pub(crate) fn find(&self, look: impl Fn(&str) -> bool, wrong: impl Fn(&str) -> bool, said: &str) -> Breaches {
         let mut breaches = Breaches::new();

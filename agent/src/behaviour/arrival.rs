@@ -1,29 +1,60 @@
 //! When a point counts as reached.
 
+use game::Ned;
+use game::angle::wrap_pi;
+use std::f64::consts::TAU;
+
 /// A point draws away when it is this much farther than it once was, m: less may be noise of the position.
 const AWAY_M: f64 = 0.5;
 
-/// A point that is being approached: reached within one radius, or within the other when it draws away again.
+/// A point that is being approached: reached within one radius, or within the other when it draws away again. A boat that has
+/// gone all the way round it cannot turn as sharply as the point asks for: it is reached too, and so is every later one that
+/// comes as near as this one was.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arrival {
     nearest_m: f64,
+    /// The bearing of the point, and how far it has turned, rad.
+    bearing_rad: Option<f64>,
+    turned_rad: f64,
+    /// Points that are no farther than this are reached, since one of them was gone round, m.
+    gone_round_m: f64,
 }
 
 impl Arrival {
     pub(super) fn new() -> Arrival {
-        Arrival { nearest_m: f64::INFINITY }
+        Arrival { nearest_m: f64::INFINITY, bearing_rad: None, turned_rad: 0.0, gone_round_m: 0.0 }
     }
 
-    /// Whether the point, now so far away, is reached.
-    pub(super) fn reaches(&mut self, distance_m: f64, capture_radius_m: f64, slip_radius_m: f64) -> bool {
+    /// The approach of the next point.
+    pub(super) fn next(self) -> Arrival {
+        Arrival { gone_round_m: self.gone_round_m, ..Arrival::new() }
+    }
+
+    /// Whether the point is reached, now that it lies there from the boat.
+    pub(super) fn reaches(&mut self, line: Ned, capture_radius_m: f64, slip_radius_m: f64) -> bool {
+        let (distance_m, bearing_rad) = (line.length(), Ned::default().bearing_rad(line));
+        let before_rad = self.bearing_rad.replace(bearing_rad).unwrap_or(bearing_rad);
+        self.turned_rad += wrap_pi(bearing_rad - before_rad);
+        if self.turned_rad.abs() >= TAU {
+            self.gone_round_m = self.gone_round_m.max(distance_m);
+        }
         self.nearest_m = self.nearest_m.min(distance_m);
-        distance_m <= capture_radius_m || (self.nearest_m <= slip_radius_m && distance_m > self.nearest_m + AWAY_M)
+        distance_m <= capture_radius_m.max(self.gone_round_m)
+            || (self.nearest_m <= slip_radius_m && distance_m > self.nearest_m + AWAY_M)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::Arrival;
+    use game::{Ned, math};
+    use std::f64::consts::TAU;
+
+    /// The line to a point that is so far away in this direction.
+    fn line(distance_m: f64, bearing_rad: f64) -> Ned {
+        let (sin, cos) = math::sin_cos(bearing_rad);
+        Ned { north: distance_m * cos, east: distance_m * sin }
+    }
 
     #[test]
     fn a_point_is_reached_near_by_or_when_it_draws_away_within_the_slip_radius() {
@@ -35,8 +66,26 @@ mod tests {
             ("drawing away too far off", &[20.0, 16.0, 18.0], false),
         ] {
             let mut arrival = Arrival::new();
-            let got = distances_m.iter().fold(false, |_, distance_m| arrival.reaches(*distance_m, 3.0, 15.0));
+            let got =
+                distances_m.iter().fold(false, |_, distance_m| arrival.reaches(line(*distance_m, 1.0), 3.0, 15.0));
             assert_eq!(got, want, "{what}");
         }
+    }
+
+    #[test]
+    fn a_point_that_was_gone_round_is_reached_and_so_are_those_as_near_after_it() {
+        // Round the point at 5 m, 10 degrees a decision, either way: never within the capture radius, never drawing away.
+        for side in [1.0, -1.0] {
+            let mut arrival = Arrival::new();
+            let bearing_rad = |decision: u32| side * TAU * f64::from(decision) / 36.0;
+            let first = (0..100).find(|decision| arrival.reaches(line(5.0, bearing_rad(*decision)), 3.0, 15.0));
+            assert!(first.is_some_and(|decision| (36..=37).contains(&decision)), "{first:?}");
+            arrival = arrival.next();
+            assert!(arrival.reaches(line(4.9, 0.0), 3.0, 15.0), "as near as the one before");
+            assert!(!arrival.next().reaches(line(5.2, 0.0), 3.0, 15.0), "farther off");
+        }
+        // A weaving course does not go round.
+        let mut arrival = Arrival::new();
+        assert!((0..1000).all(|i| !arrival.reaches(line(50.0 - 0.04 * f64::from(i), f64::from(i % 2)), 3.0, 15.0)));
     }
 }

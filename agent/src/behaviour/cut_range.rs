@@ -14,10 +14,12 @@ impl BehaviourLogic for CutRange {
             return;
         }
         let patience = self.patience.value(situation) / 100.0;
-        let closing = Closing { offset: line, velocity: contact.velocity };
+        // Candidates are through the water: so is the contact.
+        let velocity = contact.velocity - situation.motion.drift();
+        let closing = Closing { offset: line, velocity };
         let closest = Closest {
             offset: line,
-            velocity: contact.velocity,
+            velocity,
             horizon_s: self.time_on_leg_s.value(situation),
             min_m: 0.0,
             max_m: distance_m.max(1.0),

@@ -41,7 +41,7 @@ impl LoiterBehaviour {
         let distance = |i: usize| situation.at.distance_squared(self.corners[i]);
         let nearest = (1..count).fold(0, |best, i| if distance(i) < distance(best) { i } else { best });
         self.target = Some(self.after(nearest));
-        self.arrival = Arrival::new();
+        self.arrival = self.arrival.next();
     }
 
     fn after(&self, corner: usize) -> usize {
@@ -52,7 +52,7 @@ impl LoiterBehaviour {
 
 impl BehaviourLogic for LoiterBehaviour {
     fn begin(&mut self, situation: &Situation) {
-        self.target = None;
+        (self.target, self.arrival) = (None, Arrival::new());
         corners_of(&self.task.shape, situation, &mut self.corners);
     }
 
@@ -73,10 +73,10 @@ impl BehaviourLogic for LoiterBehaviour {
             (self.task.capture_radius_m.value(situation), self.task.slip_radius_m.value(situation));
         // On a short way round several corners may be behind the boat at once, but never all of them.
         for _ in 1..self.corners.len() {
-            if !self.arrival.reaches(situation.at.distance(self.corners[target]), capture_m, slip_m) {
+            if !self.arrival.reaches(self.corners[target] - situation.at, capture_m, slip_m) {
                 break;
             }
-            (output.reached, self.arrival) = (true, Arrival::new());
+            (output.reached, self.arrival) = (true, self.arrival.next());
             target = self.after(target);
         }
         self.target = Some(target);

@@ -4,6 +4,7 @@ mod arrival;
 mod attractor;
 mod avoid_collision;
 mod avoid_obstacle;
+mod collision_halt;
 mod constant;
 mod cut_range;
 mod full_stop;
@@ -45,7 +46,7 @@ pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
         Task::CutRange(task) => Box::new(task),
         Task::Trail(task) => Box::new(task),
         Task::Intercept(task) => Box::new(task),
-        Task::AvoidCollision(task) => Box::new(task),
+        Task::AvoidCollision(task) => Box::new(collision_halt::HaltingAvoidance::new(task)),
         Task::AvoidObstacle(task) => Box::new(avoid_obstacle::AvoidObstacleBehaviour::new(task)),
         Task::OpRegion(task) => Box::new(op_region::OpRegionBehaviour::new(task)),
         Task::MaxSpeed(task) => Box::new(task),

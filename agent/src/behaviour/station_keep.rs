@@ -44,10 +44,14 @@ impl BehaviourLogic for StationKeepBehaviour {
         let Some(point) = self.task.at.as_ref().map_or(here, |place| situation.locate(place)) else { return };
         let distance_m = situation.at.distance(point.at);
         let speed_m_s = self.speed_m_s(situation, distance_m).min(situation.model.speed_max_m_s);
-        // At the station itself every course is as good as the present one.
-        let course_rad = if speed_m_s > 0.0 { situation.at.bearing_rad(point.at) } else { situation.own.nav.psi_rad };
+        // At the station itself every heading is as good as the present one.
+        let (heading_rad, speed_m_s) = if speed_m_s > 0.0 {
+            situation.motion.steer(situation.at.bearing_rad(point.at), speed_m_s)
+        } else {
+            (situation.own.nav.psi_rad, 0.0)
+        };
         output.add(&Objective::Coupled {
-            course: Peak::tent(course_rad, PI),
+            course: Peak::tent(heading_rad, PI),
             speed: Peak::tent(speed_m_s, SPEED_BASE_M_S),
             course_share: 0.5,
         });

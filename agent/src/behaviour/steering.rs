@@ -14,19 +14,15 @@ const SPEED_SUMMIT_DELTA: f64 = 20.0;
 /// too near comes no nearer.
 pub(super) const CPA_MIN_UTILITY: f64 = 50.0;
 
-/// How fast a boat is assumed to turn, rad/s. A Surveyor under way does 25 degrees a second.
-pub(super) const TURN_RAD_S: f64 = 0.35;
-/// How long it takes until a decision shows, s.
-pub(super) const REACTION_S: f64 = 0.7;
-
-/// How slow the boat is to follow a decision.
+/// How slow the boat is to follow a decision: its velocity is that through the water, as decisions are.
 pub(super) fn lag(situation: &Situation) -> Lag {
     let (heading_east, heading_north) = math::sin_cos(situation.own.nav.psi_rad);
+    let handling = situation.motion.handling();
     Lag {
-        velocity: situation.velocity,
+        velocity: situation.velocity_through_water(),
         heading: Ned { north: heading_north, east: heading_east },
-        reaction_s: REACTION_S,
-        turn_rad_s: TURN_RAD_S,
+        reaction_s: handling.reaction_s,
+        turn_rad_s: handling.turn_rad_s,
     }
 }
 
@@ -35,12 +31,18 @@ pub(super) fn toward(situation: &Situation, to: Ned, speed_m_s: f64) -> Objectiv
     steer(situation, situation.at.bearing_rad(to), speed_m_s, 0.5)
 }
 
-/// A course, rad, and a speed, with the course's share of the utility; more speed than the boat can is the most that it can.
+/// A course, rad, and a speed over the ground, with the course's share of the utility; more speed than the boat can is the
+/// most that it can.
 pub(super) fn steer(situation: &Situation, course_rad: f64, speed_m_s: f64, course_share: f64) -> Objective<'static> {
-    let summit = speed_m_s.min(situation.model.speed_max_m_s);
+    let (heading_rad, summit) = situation.motion.steer(course_rad, speed_m_s);
+    steer_heading(heading_rad, summit, course_share)
+}
+
+/// A heading, rad, and a speed through the water, with the heading's share of the utility.
+pub(super) fn steer_heading(heading_rad: f64, summit: f64, course_share: f64) -> Objective<'static> {
     let (peak_width, summit_delta) = (0.5 * summit, SPEED_SUMMIT_DELTA);
     Objective::Coupled {
-        course: Peak::tent(angle::wrap_pi(course_rad), PI),
+        course: Peak::tent(angle::wrap_pi(heading_rad), PI),
         speed: Peak { peak_width, summit_delta, ..Peak::tent(summit, SPEED_BASE_M_S) },
         course_share,
     }
@@ -56,7 +58,7 @@ pub(super) fn keep_clear(
 ) -> Objective<'static> {
     Objective::Closest(Closest {
         offset: disc.at - situation.at,
-        velocity: disc.velocity,
+        velocity: disc.velocity - situation.motion.drift(),
         horizon_s,
         min_m: min_m + radius_m,
         max_m: max_m.max(min_m) + radius_m,

@@ -44,12 +44,11 @@ impl BehaviourLogic for WaypointBehaviour {
         let count = self.task.points.len();
         let index = if self.task.reverse { count - 1 - self.reached } else { self.reached };
         let Some(point) = situation.locate(&self.task.points[index]) else { return };
-        let distance_m = situation.at.distance(point.at);
         let (capture_m, slip_m) =
             (self.task.capture_radius_m.value(situation), self.task.slip_radius_m.value(situation));
-        if self.arrival.reaches(distance_m, capture_m, slip_m) {
+        if self.arrival.reaches(point.at - situation.at, capture_m, slip_m) {
             output.reached = true;
-            (self.arrival, self.from) = (Arrival::new(), point.at);
+            (self.arrival, self.from) = (self.arrival.next(), point.at);
             self.reached += 1;
             if self.reached == count {
                 self.reached = 0;

@@ -6,10 +6,12 @@
 
 mod report;
 mod run_state;
+mod steadiness;
 
 use crate::behaviour::{BehaviourLogic, BehaviourOutput, Functions, logic_of};
 use crate::ivp::{Choice, Decision, Grid, Preference};
 use crate::mind::{Mind, Proposal};
+use crate::own_motion::OwnMotion;
 use crate::situation::{GameModel, Situation, TeamMessages};
 use game::helm::HelmReport;
 use game::message::Word;
@@ -17,6 +19,7 @@ use game::scenario::Scenario;
 use game::strategy::{Expression, Moment, Parameter, Program, Proposer, Rule, What, Who};
 use game::{Event, Order, Picture, VehicleId};
 use run_state::BehaviourRun;
+use steadiness::Steadiness;
 
 /// A behaviour of the program.
 struct BehaviourInstance {
@@ -54,10 +57,11 @@ impl HelmMind {
         let model = GameModel::new(scenario, vehicle, program);
         let grid = Grid::new(program.helm.courses, program.helm.speeds, model.speed_max_m_s);
         let team_messages = TeamMessages::new(program, &model.mates);
+        let motion = OwnMotion::new(scenario.boat_of(vehicle), model.speed_max_m_s, program.helm.compensates_drift);
         let instance = |task| BehaviourInstance { run: BehaviourRun::new(), logic: logic_of(task), weight: 0.0 };
         HelmMind {
             instances: program.behaviours.iter().map(|behaviour| instance(&behaviour.task)).collect(),
-            situation: Situation::new(model, program, team_messages),
+            situation: Situation::new(model, motion, program, team_messages),
             mode: None,
             functions: Functions::new(grid),
             posted: Vec::new(),
@@ -148,24 +152,25 @@ impl HelmMind {
             Decided::Steer(choice) => Some(choice.decision),
             Decided::Hold(_) => None,
         };
-        let hysteresis = self.program.helm.hysteresis;
+        let weights: f64 = self.functions.list.iter().map(|function| function.weight).sum();
+        let steadiness = last.and_then(|last| Steadiness::new(problem, last, self.program.helm.hysteresis * weights));
         let nav = &self.situation.own.nav;
-        Decided::Steer(problem.solve(Preference {
-            course_rad: nav.psi_rad,
-            speed_m_s: nav.surge_m_s,
-            keep: last.filter(|_| hysteresis > 0.0).map(|last| (last, hysteresis)),
-        }))
+        let speed_m_s = nav.surge_m_s - self.situation.motion.drift().dot(nav.pose().rotation().ahead());
+        let choice = problem.solve(Preference { course_rad: nav.psi_rad, speed_m_s, keep: None });
+        Decided::Steer(steadiness.map_or(choice, |steadiness| steadiness.without(problem.grid(), choice)))
     }
 
-    fn order(&self) -> Order {
+    fn order(&mut self) -> Order {
         match self.decided {
-            Decided::Hold(_) => Order::Hold,
+            Decided::Hold(_) => {
+                self.situation.motion.hold();
+                Order::Hold
+            }
             Decided::Steer(Choice { decision: Decision { course, speed }, .. }) => {
                 let grid = self.functions.problem.grid();
-                Order::Steer {
-                    heading_rad: game::angle::wrap_pi(grid.course_rad(usize::from(course))),
-                    speed_m_s: grid.speed_m_s(usize::from(speed)),
-                }
+                let (heading_rad, speed_m_s) =
+                    (grid.course_rad(usize::from(course)), grid.speed_m_s(usize::from(speed)));
+                self.situation.motion.order(heading_rad, speed_m_s)
             }
         }
     }
@@ -175,6 +180,7 @@ impl Mind for HelmMind {
     fn decide(&mut self, picture: &Picture) -> Order {
         if !self.situation.take(picture) {
             self.decided = Decided::Hold("the picture does not show the own boat");
+            self.situation.motion.hold();
             self.functions.clear();
             self.instances.iter_mut().for_each(|instance| instance.weight = 0.0);
             return Order::Hold;

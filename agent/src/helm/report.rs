@@ -2,7 +2,7 @@
 
 use super::{Decided, HelmMind};
 use game::angle::compass_deg_from_rad;
-use game::helm::{BehaviourReport, FunctionReport, HelmReport, VariableReport};
+use game::helm::{BehaviourReport, DriftReport, FunctionReport, HelmReport, VariableReport};
 
 impl HelmMind {
     pub(super) fn reported(&self) -> HelmReport {
@@ -30,6 +30,8 @@ impl HelmMind {
         let variables = self.program.variables.iter().zip(&self.situation.variables).map(|(variable, value)| {
             VariableReport { name: variable.name.clone(), value: variable.kind.text_of(*value) }
         });
+        let motion = &self.situation.motion;
+        let drift = motion.drift();
         HelmReport {
             vehicle: self.situation.model.me,
             at: self.situation.now,
@@ -37,6 +39,8 @@ impl HelmMind {
             mode: self.mode.map(|mode| self.program.path(mode)).unwrap_or_default(),
             course_deg: at.map(|(k, _)| compass_deg_from_rad(grid.course_rad(k))),
             speed_m_s: at.map(|(_, j)| grid.speed_m_s(j)),
+            heading_offset_deg: motion.heading_offset_rad().to_degrees(),
+            drift: DriftReport { north_m_s: drift.north, east_m_s: drift.east, spread_m_s: motion.spread_m_s() },
             hold: match self.decided {
                 Decided::Hold(why) => Some(why.to_owned()),
                 Decided::Steer(_) => None,

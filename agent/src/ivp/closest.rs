@@ -12,12 +12,15 @@
 //! A boat does not turn at once: with a [`Lag`] it goes on as it goes for a while, the longer the more it must turn, and only
 //! then as the candidate says. The least distance of both legs counts.
 //!
-//! For a bound over a span of speeds: at any fixed time `t` the distance is convex in `s`, so its largest value is at an
-//! end of the span; and since the closest approach is no farther than the distance at `t`, that is a bound for all of
-//! the span. The other way round, a change of speed by `ds` moves the own ship by no more than `ds` times the horizon.
+//! For a bound over a cell of velocities, whose corners are known: at any fixed time `t` the distance is convex in the own
+//! velocity, so its largest value is at a corner; and since the closest approach is no farther than the distance at `t`, that
+//! is a bound for all of the cell. The other way round, all places that the contact comes to lie within the polygon of where it
+//! is and where each corner takes it until the horizon, and none of that is nearer than its least extent along any direction.
+//! Where courses of a cell differ in how long the boat goes on, that moves the contact by no more than it goes in that time.
 
+use super::cell::Cell;
+use super::fixed::{larger, smaller};
 use game::Ned;
-use wide::f32x8;
 
 /// What one number in single precision may be wrong by, with room to spare, in parts of the lengths that went into it.
 const ROUNDING: f64 = 1e-5;
@@ -125,131 +128,220 @@ impl Closest {
         let own_m_s = lag.velocity.length();
         let lag_m = (reach_m + own_m_s) * (lag.reaction_s + 2.0 * lag.chord_s());
         let scale_m = self.offset.length() + reach_m * self.horizon_s + lag_m;
-        let splat = |x: f64| f32x8::splat(x as f32);
-        let splat_both = |v: Ned| (splat(v.north), splat(v.east));
+        let single = |v: Ned| (v.north as f32, v.east as f32);
+        let present = self.velocity - lag.velocity;
         Some(Ready {
-            offset: splat_both(self.offset),
-            velocity: splat_both(self.velocity),
-            horizon: splat(self.horizon_s),
-            min: splat(self.min_m),
-            slope: splat(slope(100.0 - at_min, width_m)),
-            touch: splat(self.touch_m),
-            inner_slope: splat(slope(at_min, self.min_m - self.touch_m)),
-            at_min: splat(at_min),
+            offset: single(self.offset),
+            velocity: single(self.velocity),
+            horizon: self.horizon_s as f32,
+            min: self.min_m as f32,
+            slope: slope(100.0 - at_min, width_m) as f32,
+            touch: self.touch_m as f32,
+            inner_slope: slope(at_min, self.min_m - self.touch_m) as f32,
+            at_min: at_min as f32,
             seek: self.approach == Approach::Seek,
-            heading: splat_both(lag.heading),
-            reaction: splat(lag.reaction_s),
-            chord: splat(lag.chord_s()),
-            present: splat_both(self.velocity - lag.velocity),
-            margin: splat(ROUNDING * scale_m),
+            heading: single(lag.heading),
+            reaction: lag.reaction_s as f32,
+            chord: lag.chord_s() as f32,
+            present: single(present),
+            present_time: time_of_closest(single(self.offset), single(present)),
+            present_chord: (present.length() * lag.chord_s() * (1.0 + ROUNDING)) as f32,
+            margin: (ROUNDING * scale_m) as f32,
         })
     }
 }
 
+/// A vector: north, east.
+type Vector = (f32, f32);
+
 /// The function in single precision, m and s throughout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ready {
-    offset: (f32x8, f32x8),
-    velocity: (f32x8, f32x8),
-    horizon: f32x8,
-    min: f32x8,
+    offset: Vector,
+    velocity: Vector,
+    horizon: f32,
+    min: f32,
     /// Beyond the least distance, for each m.
-    slope: f32x8,
-    touch: f32x8,
+    slope: f32,
+    touch: f32,
     /// Between there and the least distance.
-    inner_slope: f32x8,
-    at_min: f32x8,
+    inner_slope: f32,
+    at_min: f32,
     seek: bool,
     /// The own ship's, a unit vector.
-    heading: (f32x8, f32x8),
-    reaction: f32x8,
+    heading: Vector,
+    reaction: f32,
     /// For each unit of chord of a turn.
-    chord: f32x8,
+    chord: f32,
     /// How the contact moves past at present.
-    present: (f32x8, f32x8),
-    margin: f32x8,
+    present: Vector,
+    /// When it is nearest if that goes on, s from now.
+    present_time: f32,
+    /// How far it moves past at present for each unit of chord of a turn.
+    present_chord: f32,
+    margin: f32,
 }
 
 /// Where the contact is when the own ship does as decided, and how near it came until then.
 #[derive(Clone, Copy)]
 struct Leg {
-    north: f32x8,
-    east: f32x8,
+    at: Vector,
     /// The square of the least distance, m2.
-    least: f32x8,
+    least: f32,
 }
 
 impl Ready {
-    /// Utilities of eight candidates.
-    #[inline(always)]
-    pub(super) fn utility(&self, north: f32x8, east: f32x8, speed: f32x8) -> f32x8 {
-        let leg = self.going_on(north, east);
-        let w = self.passing(north, east, speed);
-        let square = square((leg.north, leg.east), w, Ready::time((leg.north, leg.east), w, self.horizon));
-        self.worth(square.fast_min(leg.least).sqrt())
+    /// Whether it is to come close.
+    pub(super) fn seeks(&self) -> bool {
+        self.seek
     }
 
-    /// What no speed from `slow` to `fast` exceeds, on each of eight courses.
-    #[inline]
-    pub(super) fn bound(&self, north: f32x8, east: f32x8, slow: f32x8, fast: f32x8) -> f32x8 {
-        let half = f32x8::splat(0.5);
-        let leg = self.going_on(north, east);
-        let p = (leg.north, leg.east);
-        let w = self.passing(north, east, (slow + fast) * half);
-        let t = Ready::time(p, w, self.horizon);
-        if self.seek {
-            let least = square(p, w, t).sqrt() - (fast - slow) * half * self.horizon;
-            return self.worth(least.fast_min(leg.least.sqrt()) - self.margin);
-        }
-        // The ends of the span at the same time.
-        let (slow, fast) = (self.passing(north, east, slow), self.passing(north, east, fast));
-        let most = square(p, slow, t).fast_max(square(p, fast, t)).fast_min(leg.least);
-        self.worth(most.sqrt() + self.margin)
+    /// Utility of a course, a unit vector, at a speed.
+    pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
+        let velocity = (speed * north, speed * east);
+        let chord = self.turn().chord(north, east);
+        if self.seek { self.utility_seek(chord, velocity) } else { self.utility_avoid(chord, velocity) }
+    }
+
+    /// The turn to a course.
+    pub(super) fn turn(&self) -> Turn {
+        Turn { heading: self.heading }
+    }
+
+    /// Utility of a velocity after a turn with this chord, of a function that keeps away.
+    #[inline(always)]
+    pub(super) fn utility_avoid(&self, chord: f32, velocity: Vector) -> f32 {
+        self.worth_far(self.distance(chord, velocity))
+    }
+
+    /// Utility of a velocity after a turn with this chord, of a function that comes close.
+    #[inline(always)]
+    pub(super) fn utility_seek(&self, chord: f32, velocity: Vector) -> f32 {
+        self.worth_near(self.distance(chord, velocity))
+    }
+
+    /// The least distance, m.
+    #[inline(always)]
+    fn distance(&self, chord: f32, velocity: Vector) -> f32 {
+        let (leg, w) = (self.going_on(chord), self.passing(velocity));
+        let square = square(leg.at, w, time(leg.at, w, self.horizon));
+        smaller(square, leg.least).sqrt()
+    }
+
+    /// What nothing within a cell exceeds, of a function that keeps away. The chord is that of the turn to its middle course.
+    #[inline(always)]
+    pub(super) fn bound_avoid(&self, chord: f32, cell: &Cell) -> f32 {
+        let leg = self.going_on(chord);
+        let t = time(leg.at, self.passing(cell.middle()), self.horizon);
+        let [a, b, c, d] = cell.corners();
+        let (a, b) = (square(leg.at, self.passing(a), t), square(leg.at, self.passing(b), t));
+        let (c, d) = (square(leg.at, self.passing(c), t), square(leg.at, self.passing(d), t));
+        let most = smaller(larger(larger(a, b), larger(c, d)), leg.least);
+        self.worth_far(most.sqrt() + cell.chord * self.present_chord + self.margin)
+    }
+
+    /// Whether all within a cell is worth everything, of a function that keeps away.
+    #[inline(always)]
+    pub(super) fn is_clear(&self, chord: f32, cell: &Cell) -> bool {
+        self.worth_far(self.least_distance(chord, cell)) >= 100.0
+    }
+
+    /// What nothing within a cell exceeds, of a function that comes close.
+    #[inline(always)]
+    pub(super) fn bound_seek(&self, chord: f32, cell: &Cell) -> f32 {
+        self.worth_near(self.least_distance(chord, cell))
+    }
+
+    /// Nothing within a cell comes nearer, m.
+    #[inline(always)]
+    fn least_distance(&self, chord: f32, cell: &Cell) -> f32 {
+        let leg = self.going_on(chord);
+        let w = self.passing(cell.middle());
+        let t = time(leg.at, w, self.horizon);
+        let nearest = (leg.at.0 + w.0 * t, leg.at.1 + w.1 * t);
+        let scale = 1.0 / larger((nearest.0 * nearest.0 + nearest.1 * nearest.1).sqrt(), 1e-6);
+        let [a, b, c, d] = cell.corners();
+        let (a, b) = (dot(self.passing(a), nearest), dot(self.passing(b), nearest));
+        let (c, d) = (dot(self.passing(c), nearest), dot(self.passing(d), nearest));
+        let slowest = smaller(smaller(smaller(a, b), smaller(c, d)), 0.0);
+        let least = smaller((dot(leg.at, nearest) + slowest * self.horizon) * scale, leg.least.sqrt());
+        least - cell.chord * self.present_chord - self.margin
     }
 
     /// The way until the own ship does as decided.
     #[inline(always)]
-    fn going_on(&self, north: f32x8, east: f32x8) -> Leg {
-        let cosine = self.heading.0 * north + self.heading.1 * east;
-        let chord = (f32x8::splat(2.0) - f32x8::splat(2.0) * cosine).fast_max(f32x8::ZERO).sqrt();
+    fn going_on(&self, chord: f32) -> Leg {
         let lag = self.reaction + self.chord * chord;
         let p = self.offset;
-        let least = square(p, self.present, Ready::time(p, self.present, lag));
-        Leg { north: p.0 + self.present.0 * lag, east: p.1 + self.present.1 * lag, least }
+        let least = square(p, self.present, within(self.present_time, lag));
+        Leg { at: (p.0 + self.present.0 * lag, p.1 + self.present.1 * lag), least }
     }
 
-    /// How the contact moves past, m/s.
+    /// How the contact moves past at an own velocity, m/s.
     #[inline(always)]
-    fn passing(&self, north: f32x8, east: f32x8, speed: f32x8) -> (f32x8, f32x8) {
-        (self.velocity.0 - speed * north, self.velocity.1 - speed * east)
+    fn passing(&self, own: Vector) -> Vector {
+        (self.velocity.0 - own.0, self.velocity.1 - own.1)
     }
 
-    /// The time of the closest point of approach, up to a longest one, s.
+    /// Utility of a distance to a contact that is to be near.
     #[inline(always)]
-    fn time(p: (f32x8, f32x8), w: (f32x8, f32x8), longest: f32x8) -> f32x8 {
-        let dot = p.0 * w.0 + p.1 * w.1;
-        // With hardly any motion past each other any time will do.
-        let square = (w.0 * w.0 + w.1 * w.1).fast_max(f32x8::splat(1e-20));
-        (-dot / square).fast_max(f32x8::ZERO).fast_min(longest)
-    }
-
-    /// Utility of a distance.
-    #[inline(always)]
-    fn worth(&self, distance: f32x8) -> f32x8 {
-        let full = f32x8::splat(100.0);
+    fn worth_near(&self, distance: f32) -> f32 {
         let rise = (distance - self.min) * self.slope;
-        if self.seek {
-            (full - rise).fast_max(f32x8::ZERO).fast_min(full)
-        } else {
-            let inside = ((distance - self.touch) * self.inner_slope).fast_max(f32x8::ZERO).fast_min(self.at_min);
-            distance.simd_gt(self.min).select((self.at_min + rise).fast_min(full), inside)
-        }
+        smaller(larger(100.0 - rise, 0.0), 100.0)
     }
+
+    /// Utility of a distance to a contact that is to be far.
+    #[inline(always)]
+    fn worth_far(&self, distance: f32) -> f32 {
+        let rise = (distance - self.min) * self.slope;
+        let inside = smaller(larger((distance - self.touch) * self.inner_slope, 0.0), self.at_min);
+        let outside = smaller(self.at_min + rise, 100.0);
+        if distance > self.min { outside } else { inside }
+    }
+}
+
+/// A turn of the own ship, which is the same for all contacts.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Turn {
+    heading: Vector,
+}
+
+impl Turn {
+    /// How far it is to a course, a unit vector, as a chord of the unit circle.
+    #[inline(always)]
+    pub(super) fn chord(self, north: f32, east: f32) -> f32 {
+        let cosine = self.heading.0 * north + self.heading.1 * east;
+        larger(2.0 - 2.0 * cosine, 0.0).sqrt()
+    }
+}
+
+/// The time of the closest point of approach, up to a longest one, s.
+#[inline(always)]
+fn time(p: Vector, w: Vector, longest: f32) -> f32 {
+    within(time_of_closest(p, w), longest)
+}
+
+/// The time of the closest point of approach, s, also if that was before.
+#[inline(always)]
+fn time_of_closest(p: Vector, w: Vector) -> f32 {
+    // With hardly any motion past each other any time will do.
+    -dot(p, w) / larger(dot(w, w), 1e-20)
+}
+
+/// A time held within 0 and a longest one, s.
+#[inline(always)]
+fn within(time: f32, longest: f32) -> f32 {
+    smaller(larger(time, 0.0), longest)
+}
+
+#[inline(always)]
+fn dot(a: Vector, b: Vector) -> f32 {
+    a.0 * b.0 + a.1 * b.1
 }
 
 /// The square of the distance at a time, m2, from a place with a velocity.
 #[inline(always)]
-fn square(p: (f32x8, f32x8), w: (f32x8, f32x8), t: f32x8) -> f32x8 {
+fn square(p: Vector, w: Vector, t: f32) -> f32 {
     let (north, east) = (p.0 + w.0 * t, p.1 + w.1 * t);
     north * north + east * east
 }

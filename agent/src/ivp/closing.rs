@@ -1,7 +1,8 @@
 //! How fast the own ship comes nearer to a point or a contact, or draws away from it.
 
+use super::cell::Cell;
+use super::fixed::{larger, smaller};
 use game::Ned;
-use wide::f32x8;
 
 /// Utility of the rate of closure: linear from 0, opening as fast as own ship and contact could, to 100, closing as fast
 /// as they could.
@@ -31,12 +32,11 @@ impl Closing {
         let contact_m_s = self.velocity.length();
         let towards_m_s = -(sight_north * self.velocity.north + sight_east * self.velocity.east);
         let slope = 50.0 / (speed_max_m_s + contact_m_s);
-        let splat = |x: f64| f32x8::splat(x as f32);
         Some(Ready {
-            north: splat(sight_north),
-            east: splat(sight_east),
-            slope: splat(slope),
-            rest: splat(50.0 + slope * towards_m_s),
+            north: sight_north as f32,
+            east: sight_east as f32,
+            slope: slope as f32,
+            rest: (50.0 + slope * towards_m_s) as f32,
         })
     }
 }
@@ -45,26 +45,31 @@ impl Closing {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ready {
     /// The line of sight, a unit vector.
-    north: f32x8,
-    east: f32x8,
+    north: f32,
+    east: f32,
     /// Utility for each m/s along it.
-    slope: f32x8,
+    slope: f32,
     /// Utility at rest.
-    rest: f32x8,
+    rest: f32,
 }
 
+/// What rounding may take from a bound, in points of utility, with room to spare.
+const ROUNDING: f32 = 1e-3;
+
 impl Ready {
-    /// Utilities of eight candidates.
+    /// Utility of a course, a unit vector, at a speed.
     #[inline(always)]
-    pub(super) fn utility(&self, north: f32x8, east: f32x8, speed: f32x8) -> f32x8 {
+    pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         let along = (self.north * north + self.east * east) * self.slope;
-        (self.rest + along * speed).fast_max(f32x8::ZERO).fast_min(f32x8::splat(100.0))
+        smaller(larger(self.rest + along * speed, 0.0), 100.0)
     }
 
-    /// What no speed from `slow` to `fast` exceeds, on each of eight courses: on one course utility only rises or only
-    /// falls with speed, and rounding keeps that order.
-    #[inline]
-    pub(super) fn bound(&self, north: f32x8, east: f32x8, slow: f32x8, fast: f32x8) -> f32x8 {
-        self.utility(north, east, slow).fast_max(self.utility(north, east, fast))
+    /// What nothing within a cell exceeds: utility is linear in velocity, so it is largest at a corner.
+    #[inline(always)]
+    pub(super) fn bound(&self, cell: &Cell) -> f32 {
+        let along = |(north, east): (f32, f32)| (self.north * north + self.east * east) * self.slope;
+        let [a, b, c, d] = cell.corners().map(along);
+        let most = larger(larger(a, b), larger(c, d));
+        smaller(larger(self.rest + most + ROUNDING, 0.0), 100.0)
     }
 }

@@ -1,14 +1,10 @@
 //! The decision grid: the courses and speeds a helm chooses from.
 
 use std::f64::consts::TAU;
-use wide::f32x8;
-
-/// Speeds or courses side by side.
-pub(super) const LANES: usize = 8;
 
 /// Ticks from one course to the next: angles from a course are integers of these, so that a scene that is turned or
-/// mirrored has exactly the same ones.
-const TICKS: i64 = 1 << 16;
+/// mirrored has exactly the same ones. An `f64` holds them exactly.
+const TICKS: f64 = 65_536.0;
 
 /// Courses all round, and speeds from rest to the fastest, both evenly spaced.
 ///
@@ -19,9 +15,8 @@ pub struct Grid {
     courses: usize,
     speeds: usize,
     speed_max_m_s: f64,
-    north: Vec<f32x8>,
-    east: Vec<f32x8>,
-    speed_m_s: Vec<f32x8>,
+    directions: Vec<(f32, f32)>,
+    speed_m_s: Vec<f64>,
 }
 
 impl Grid {
@@ -35,13 +30,9 @@ impl Grid {
         assert!((1..=1 << 16).contains(&courses), "{courses} courses, allowed are 1 to 65536");
         assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, allowed are 2 to 65536");
         assert!(speed_max_m_s.is_finite() && speed_max_m_s > 0.0, "a fastest speed of {speed_max_m_s} m/s");
-        let mut grid = Grid { courses, speeds, speed_max_m_s, north: vec![], east: vec![], speed_m_s: vec![] };
-        let directions: Vec<(f32, f32)> = (0..courses).map(|k| direction(k, courses)).collect();
-        let last = |i: usize, count: usize| i.min(count - 1);
-        grid.north = lanes(courses, |k| directions[last(k, courses)].0);
-        grid.east = lanes(courses, |k| directions[last(k, courses)].1);
-        grid.speed_m_s = lanes(speeds, |j| (last(j, speeds) as f64 * speed_max_m_s / (speeds - 1) as f64) as f32);
-        grid
+        let directions = (0..courses).map(|k| direction(k, courses)).collect();
+        let speed_m_s = (0..speeds).map(|j| j as f64 * speed_max_m_s / (speeds - 1) as f64).collect();
+        Grid { courses, speeds, speed_max_m_s, directions, speed_m_s }
     }
 
     /// The number of courses.
@@ -71,7 +62,7 @@ impl Grid {
     /// Speed `j`, m/s.
     #[must_use]
     pub fn speed_m_s(&self, j: usize) -> f64 {
-        j as f64 * self.speed_max_m_s / (self.speeds - 1) as f64
+        self.speed_m_s[j]
     }
 
     /// The unit vector of course `k`: north, east.
@@ -80,50 +71,42 @@ impl Grid {
     /// components but for order and sign, where the number of courses allows it.
     #[must_use]
     pub fn direction(&self, k: usize) -> (f32, f32) {
-        assert!(k < self.courses, "course {k} of {}", self.courses);
-        (self.north[k / LANES].as_array()[k % LANES], self.east[k / LANES].as_array()[k % LANES])
+        self.directions[k]
     }
 
-    /// Unit vectors of eight courses side by side, the last one repeated at the end: north, east.
-    pub(super) fn directions(&self) -> (&[f32x8], &[f32x8]) {
-        (&self.north, &self.east)
-    }
-
-    /// Speeds in m/s, eight side by side, the last one repeated at the end.
-    pub(super) fn speed_lanes(&self) -> &[f32x8] {
+    /// All speeds, m/s.
+    #[must_use]
+    pub fn speeds_m_s(&self) -> &[f64] {
         &self.speed_m_s
     }
 
     /// Where an angle lies on the circle of ticks, 0 to below `circle`.
-    pub(super) fn ticks_of(&self, angle_rad: f64) -> i64 {
+    pub(super) fn ticks_of(&self, angle_rad: f64) -> f64 {
         let turns = angle_rad / TAU;
         let part = turns - turns.trunc();
-        ((part * self.circle() as f64).round() as i64).rem_euclid(self.circle())
+        ((part * self.circle()).round() as i64).rem_euclid(self.circle() as i64) as f64
     }
 
     /// Ticks from an angle (as ticks) to course `k`, the short way: positive to starboard, and exactly half a turn is
     /// to starboard.
-    pub(super) fn ticks_between(&self, from: i64, k: usize) -> i64 {
+    #[inline(always)]
+    pub(super) fn ticks_between(&self, from: f64, k: usize) -> f64 {
         // Both are below a full turn: no division is needed.
-        let ahead = k as i64 * TICKS - from;
-        let ahead = if ahead < 0 { ahead + self.circle() } else { ahead };
-        if 2 * ahead > self.circle() { ahead - self.circle() } else { ahead }
+        let (circle, ahead) = (self.circle(), f64::from(k as i32) * TICKS - from);
+        let ahead = if ahead < 0.0 { ahead + circle } else { ahead };
+        if 2.0 * ahead > circle { ahead - circle } else { ahead }
     }
 
     /// One tick, rad.
     pub(super) fn tick_rad(&self) -> f64 {
-        TAU / self.circle() as f64
+        TAU / self.circle()
     }
 
     /// Ticks all round.
-    fn circle(&self) -> i64 {
-        self.courses as i64 * TICKS
+    #[inline(always)]
+    pub(super) fn circle(&self) -> f64 {
+        self.courses as f64 * TICKS
     }
-}
-
-/// Numbers by index, eight side by side.
-fn lanes(count: usize, number: impl Fn(usize) -> f32) -> Vec<f32x8> {
-    (0..count.div_ceil(LANES)).map(|i| f32x8::new(std::array::from_fn(|lane| number(LANES * i + lane)))).collect()
 }
 
 /// The unit vector of course `k` of `n`, made of one in the first octant by mirroring.

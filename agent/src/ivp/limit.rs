@@ -18,12 +18,17 @@ impl SpeedLimit {
     /// Utility of speed `j`.
     #[must_use]
     pub fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
-        let beyond_m_s = grid.speed_m_s(j) - self.high_m_s;
-        fixed::utility(match beyond_m_s {
-            unknown if unknown.is_nan() || self.base_m_s.is_nan() => f64::NAN,
-            within if within <= 0.0 => 100.0,
-            near if near < self.base_m_s => 100.0 * (1.0 - near / self.base_m_s),
-            _ => 0.0,
-        })
+        self.at(grid.speed_m_s(j))
+    }
+
+    /// Utility of a speed, m/s.
+    #[inline(always)]
+    pub(super) fn at(&self, speed_m_s: f64) -> f32 {
+        let beyond_m_s = speed_m_s - self.high_m_s;
+        let near = 100.0 * (1.0 - beyond_m_s / self.base_m_s);
+        let beyond = if beyond_m_s < self.base_m_s { near } else { 0.0 };
+        let any = if beyond_m_s <= 0.0 { 100.0 } else { beyond };
+        let is_unknown = beyond_m_s.is_nan() || self.base_m_s.is_nan();
+        fixed::utility(if is_unknown { f64::NAN } else { any })
     }
 }

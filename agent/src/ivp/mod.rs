@@ -16,26 +16,33 @@
 //! functions themselves are cheap to evaluate, so [`Problem`] evaluates them, and its answer is exact on the grid:
 //!
 //! - functions of course only, of speed only, or of one plus the other, are added up in two lists;
-//! - the others are evaluated for eight speeds of a course at a time, side by side, and eights whose bound does not
-//!   reach the best found so far are passed over;
+//! - the others are evaluated for four courses by four speeds at a time, side by side, and those of which a bound does not
+//!   reach the best found so far are passed over, many such together where a bound for all of them does not;
 //! - weight times utility is rounded to [`QUANTUM`] before it is added, so sums are of integers: the order of functions
 //!   cannot matter, and two candidates are equal or they are not.
 //!
 //! Open [`Objective`] first, then [`Problem`].
 
+mod cell;
 mod closest;
 mod closing;
 mod fixed;
 mod grid;
+mod instructions;
+mod lanes;
 mod limit;
 mod objective;
 mod peak;
 mod problem;
+mod search;
+mod sums;
 
 pub use closest::{Approach, Closest, Lag};
 pub use closing::Closing;
 pub use fixed::{FUNCTIONS_MAX, QUANTUM, WEIGHT_MAX};
 pub use grid::Grid;
+pub use instructions::Instructions;
+pub(crate) use instructions::Kernel;
 pub use limit::SpeedLimit;
 pub use objective::Objective;
 pub use peak::Peak;

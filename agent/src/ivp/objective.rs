@@ -3,10 +3,9 @@
 use super::closest::{self, Closest};
 use super::closing::{self, Closing};
 use super::fixed::{self, Weight};
-use super::grid::{Grid, LANES};
+use super::grid::Grid;
 use super::limit::SpeedLimit;
 use super::peak::Peak;
-use wide::f32x8;
 
 /// A utility of 0 to 100 for each course and speed.
 ///
@@ -72,10 +71,9 @@ impl Objective<'_> {
             }
             Parts::Field(field) => {
                 let (north, east) = grid.direction(k);
-                let speed = grid.speed_lanes()[j / LANES];
-                field.utility(f32x8::splat(north), f32x8::splat(east), speed).as_array()[j % LANES]
+                field.utility(north, east, grid.speed_m_s(j) as f32)
             }
-            Parts::Table(table) => fixed::utility(f64::from(table[k * grid.speeds() + j])),
+            Parts::Table(table) => fixed::single(table[k * grid.speeds() + j]),
             Parts::Nothing => 0.0,
         }
     }
@@ -88,9 +86,9 @@ impl Objective<'_> {
         match self {
             Objective::Coupled { .. } => {
                 let (course, speed) = self.weights(weight);
-                course.quanta_of_one(self.of_course(grid, k)) + speed.quanta_of_one(self.of_speed(grid, j))
+                course.quanta(self.of_course(grid, k)) + speed.quanta(self.of_speed(grid, j))
             }
-            _ => weight.quanta_of_one(self.utility(grid, k, j)),
+            _ => weight.quanta(self.utility(grid, k, j)),
         }
     }
 
@@ -109,27 +107,21 @@ impl Objective<'_> {
         (weight.share(share), weight.share(1.0 - share))
     }
 
-    /// Utility of course alone, for eight courses at a time; nothing beyond the last course.
-    pub(super) fn each_course(&self, grid: &Grid, mut take: impl FnMut(usize, f32x8)) {
-        let (Objective::Course(peak) | Objective::Coupled { course: peak, .. }) = self else { return };
-        let (courses, utility) = (grid.courses(), peak.courses(grid));
-        for lanes in 0..courses.div_ceil(LANES) {
-            let first = LANES * lanes;
-            let eight = std::array::from_fn(|lane| if first + lane < courses { utility(first + lane) } else { 0.0 });
-            take(lanes, f32x8::new(eight));
+    /// Its peak in courses, if it has one.
+    pub(super) fn course_peak(&self) -> Option<&Peak> {
+        match self {
+            Objective::Course(peak) | Objective::Coupled { course: peak, .. } => Some(peak),
+            _ => None,
         }
     }
 
     /// Utility of course alone.
     fn of_course(&self, grid: &Grid, k: usize) -> f32 {
-        match self {
-            Objective::Course(peak) | Objective::Coupled { course: peak, .. } => peak.courses(grid)(k),
-            _ => 0.0,
-        }
+        self.course_peak().map_or(0.0, |peak| peak.of_course(grid, k))
     }
 
     /// Utility of speed alone.
-    pub(super) fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
+    fn of_speed(&self, grid: &Grid, j: usize) -> f32 {
         match self {
             Objective::Speed(peak) | Objective::Coupled { speed: peak, .. } => peak.of_speed(grid, j),
             Objective::Limit(limit) => limit.of_speed(grid, j),
@@ -155,10 +147,6 @@ impl Objective<'_> {
 }
 
 /// How a function is evaluated.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "it lives only while a function is added, and a box would be on the heap"
-)]
 pub(super) enum Parts<'a> {
     /// A function of course plus one of speed.
     Separable,
@@ -172,28 +160,17 @@ pub(super) enum Parts<'a> {
 
 /// A formula in course and speed.
 #[derive(Clone, Copy, Debug)]
-#[expect(clippy::large_enum_variant, reason = "kept in a list that is used again; boxes would be allocated anew")]
 pub(super) enum Field {
     Closest(closest::Ready),
     Closing(closing::Ready),
 }
 
 impl Field {
-    /// Utilities of eight candidates.
-    #[inline(always)]
-    pub(super) fn utility(&self, north: f32x8, east: f32x8, speed: f32x8) -> f32x8 {
+    /// Utility of a course, a unit vector, at a speed.
+    pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
         match self {
             Field::Closest(ready) => ready.utility(north, east, speed),
             Field::Closing(ready) => ready.utility(north, east, speed),
-        }
-    }
-
-    /// What no speed from `slow` to `fast` exceeds, on each of eight courses.
-    #[inline]
-    pub(super) fn bound(&self, north: f32x8, east: f32x8, slow: f32x8, fast: f32x8) -> f32x8 {
-        match self {
-            Field::Closest(ready) => ready.bound(north, east, slow, fast),
-            Field::Closing(ready) => ready.bound(north, east, slow, fast),
         }
     }
 }

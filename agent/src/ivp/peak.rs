@@ -42,30 +42,47 @@ impl Peak {
         self.at(grid.speed_m_s(j) - self.summit)
     }
 
-    /// Utility by course, with what is the same for all courses done once; angles go round.
-    pub fn courses(&self, grid: &Grid) -> impl Fn(usize) -> f32 {
-        let (summit, tick_rad) = (grid.ticks_of(self.summit), grid.tick_rad());
-        move |k| {
-            let distance_rad = grid.ticks_between(summit, k) as f64 * tick_rad;
-            // A summit that is not finite must not be taken for one to the north.
-            self.at(if self.summit.is_finite() { distance_rad } else { f64::NAN })
-        }
+    /// Utility of course `k`; angles go round.
+    #[must_use]
+    pub fn of_course(&self, grid: &Grid, k: usize) -> f32 {
+        self.on_courses(grid).at(grid, k)
+    }
+
+    /// The peak as a function of course, with what is the same for all courses done once.
+    pub(super) fn on_courses(&self, grid: &Grid) -> CoursePeak {
+        // A summit that is not finite must not be taken for one to the north.
+        let summit = if self.summit.is_finite() { grid.ticks_of(self.summit) } else { f64::NAN };
+        CoursePeak { peak: *self, summit, tick_rad: grid.tick_rad() }
     }
 
     /// Utility so far away from the summit; 0 for a distance that is not finite.
-    #[inline]
-    fn at(&self, distance: f64) -> f32 {
-        let distance = if distance.is_finite() { distance.abs() } else { f64::NAN };
-        let delta = if self.peak_width > 0.0 { self.summit_delta } else { 0.0 };
-        let shape = if distance.is_nan() {
-            f64::NAN
-        } else if distance <= self.peak_width {
-            if self.peak_width > 0.0 { 100.0 - delta * (distance / self.peak_width) } else { 100.0 }
-        } else if distance < self.peak_width + self.base_width {
-            (100.0 - delta) * (1.0 - (distance - self.peak_width) / self.base_width)
-        } else {
-            0.0
-        };
+    #[inline(always)]
+    pub(super) fn at(&self, distance: f64) -> f32 {
+        let distance = distance.abs();
+        let has_width = self.peak_width > 0.0;
+        let delta = if has_width { self.summit_delta } else { 0.0 };
+        // All of it, whichever is meant: so it can be done for many distances side by side.
+        let within = if has_width { 100.0 - delta * (distance / self.peak_width) } else { 100.0 };
+        let beside = (100.0 - delta) * (1.0 - (distance - self.peak_width) / self.base_width);
+        let outside = if distance < self.peak_width + self.base_width { beside } else { 0.0 };
+        let shape = if distance <= self.peak_width { within } else { outside };
+        let shape = if distance < f64::INFINITY { shape } else { f64::NAN };
         fixed::utility(shape * (self.height / 100.0))
+    }
+}
+
+/// A peak as a function of course.
+pub(super) struct CoursePeak {
+    peak: Peak,
+    /// In ticks.
+    summit: f64,
+    tick_rad: f64,
+}
+
+impl CoursePeak {
+    /// Utility of course `k`.
+    #[inline(always)]
+    pub(super) fn at(&self, grid: &Grid, k: usize) -> f32 {
+        self.peak.at(grid.ticks_between(self.summit, k) * self.tick_rad)
     }
 }

@@ -6,12 +6,13 @@ use super::helm_queries::HelmQueries;
 use super::policy_inbox::PolicyInbox;
 use super::talk::Talk;
 use crate::{MindRunner, mind_by, mind_of};
+use bus::game_search::Joined;
 use bus::{Bus, Declaration, Latest, Patience, Priority, Publisher, SimState, SimWatch};
 use game::codec::{self, DecodeError};
 use game::message::GameInfo;
-use game::refusal::Refusals;
+use game::refusal::{Refusal, Refusals};
 use game::topic::{self, GameName};
-use game::{Picture, Scenario, TeamId, VehicleId};
+use game::{Picture, Scenario, TeamId};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -38,6 +39,8 @@ pub(super) struct AgentLoop {
     ticket: u64,
     /// The newest picture, by team.
     pictures: Vec<Option<Picture>>,
+    /// What was refused of pictures.
+    refusals: Refusals,
 }
 
 impl AgentLoop {
@@ -59,15 +62,18 @@ impl AgentLoop {
         let half_patience = Duration::from_secs_f64(0.5 * scenario.patience_s);
         let is_lockstep = info.pace == "lockstep";
         let limit = |wait: Duration| if is_lockstep { wait.min(half_patience) } else { Duration::ZERO };
+        let subscriptions = Subscriptions::open(bus, game, scenario, &runner, settings.silence)?;
+        let orders = topic::orders(game, scenario, &subscriptions.teams, &bus.id());
         Ok(AgentLoop {
             talk: Talk::open(bus, game, scenario, &runner, limit(MESSAGES_LATE))?,
             policies: PolicyInbox::open(bus, game, scenario, &runner, limit(settings.policy_wait))?,
             helm_queries: None,
-            orders: bus.publisher(topic::orders(game, &bus.id()), Priority::Normal)?,
-            subscriptions: Subscriptions::open(bus, game, scenario, &runner, settings.silence)?,
+            orders: bus.publisher(orders, Priority::Normal)?,
+            subscriptions,
             runner,
             ticket: 0,
             pictures: vec![None; scenario.teams.len()],
+            refusals: Refusals::default(),
         })
     }
 
@@ -77,19 +83,19 @@ impl AgentLoop {
         bus: &Bus,
         game: &GameName,
         scenario: &Scenario,
-        (ticket, vehicles): (u64, Vec<VehicleId>),
+        joined: Joined,
     ) -> Result<(), NodeError> {
-        if !self.runner.minds().map(|(vehicle, _)| vehicle).eq(vehicles) {
+        if !self.runner.minds().map(|(vehicle, _)| vehicle).eq(joined.vehicles) {
             return Err(NodeError::Refused("it granted other boats than those that were asked for".to_owned()));
         }
-        self.ticket = ticket;
+        self.ticket = joined.ticket;
         self.helm_queries = Some(HelmQueries::open(bus, game, scenario, &self.runner)?);
         Ok(())
     }
 
     /// Everything that was refused so far, and what never came.
     pub(super) fn refusals(&self) -> Refusals {
-        self.talk.refusals() + self.policies.refusals()
+        self.refusals + self.talk.refusals() + self.policies.refusals()
     }
 
     /// Decides until the game is over.
@@ -119,12 +125,13 @@ impl AgentLoop {
 
     /// Takes in a picture.
     fn see(&mut self, cell: usize, bytes: &[u8]) -> Result<(), NodeError> {
-        let picture = match codec::decode(bytes) {
+        let mut picture: Picture = match codec::decode(bytes) {
             Ok(picture) => picture,
             Err(e @ DecodeError::Version { .. }) => return Err(NodeError::Version { theirs: e.to_string() }),
             // Damaged on the way; the sim sends it again.
             Err(_) => return Ok(()),
         };
+        self.refusals.add(Refusal::BadNumber, picture.remove_bad_numbers());
         let before = self.pictures[cell].take();
         self.pictures[cell] = Some(with_missed_events(picture, before, self.runner.decided()));
         Ok(())

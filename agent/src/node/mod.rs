@@ -7,17 +7,17 @@ mod error;
 mod helm_queries;
 mod policy_inbox;
 mod talk;
-mod team_inbox;
+pub mod team_inbox;
 
 pub use error::NodeError;
 
 use agent_loop::AgentLoop;
-use bus::Net;
+use bus::Place;
 use bus::game_search::{self, GameSearch};
 use game::message::Role;
 use game::refusal::Refusals;
 use game::strategy::Strategy;
-use game::topic::{self, GameName, Part};
+use game::topic::GameName;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -27,7 +27,7 @@ pub struct Settings {
     /// The game to join; without a name, the only one there is.
     pub game: Option<GameName>,
     /// Where the sim is.
-    pub net: Net,
+    pub place: Place,
     /// The vehicles to decide for, by name.
     pub vehicles: Vec<String>,
     /// How long to look for the sim and to wait until the vehicles are free.
@@ -69,10 +69,11 @@ pub enum News<'a> {
 pub fn serve(settings: &Settings, tell: &mut dyn FnMut(News<'_>)) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut report = |reason: &str| tell(News::Looking { reason });
-    let (bus, game, info) = search.game(&mut report, &settings.net, settings.game.as_ref())?;
-    let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &bus.id()))?;
+    let (bus, game, info) = search.game(&mut report, &settings.place, settings.game.as_ref())?;
     let mut agent = AgentLoop::open(&bus, &game, &info, settings)?;
-    let joined = search.until(&mut report, || game_search::join(&bus, &game, Role::Agent, &settings.vehicles))?;
+    let (place, names) = (&settings.place, &settings.vehicles);
+    let joined =
+        search.until(&mut report, || game_search::join(&bus, place, (&game, &info.scenario), Role::Agent, names))?;
     agent.join(&bus, &game, &info.scenario, joined)?;
     tell(News::Joined { game: game.as_str() });
     let played = agent.play(&settings.stop);

@@ -2,7 +2,7 @@
 
 use super::error::NodeError;
 use super::team_inbox::TeamInbox;
-use crate::MindRunner;
+use crate::{MindRunner, roles};
 use bus::{Bus, Declaration, Priority, Publisher, Watched};
 use game::message::{Message, Say, Stamp, Word};
 use game::refusal::{Refusal, Refusals};
@@ -45,13 +45,16 @@ impl Talk {
         talking.sort_unstable();
         talking.dedup();
         let own: Vec<VehicleId> = runner.minds().map(|(vehicle, _)| vehicle).collect();
-        let team_inbox = Arc::new(Watched::new(TeamInbox::new(teams.iter().copied(), &own)));
+        let talks = |vehicle| roles::role_of(scenario, vehicle).variables.iter().any(|variable| variable.shared);
+        let boats =
+            teams.iter().enumerate().map(|(i, team)| (*team, talking.contains(team) && talks(VehicleId::at(i))));
+        let team_inbox = Arc::new(Watched::new(TeamInbox::new(boats, &own)));
         let (mut outgoing, mut declarations) = (Vec::new(), Vec::new());
         for team in talking {
             let inbox = Arc::clone(&team_inbox);
             let take = move |bytes: &[u8]| inbox.visit(|team_inbox| team_inbox.take(team, bytes));
-            declarations.push(bus.subscribe_remote(topic::all_say(game, scenario, team), take)?);
-            let publisher = bus.publisher(topic::say(game, scenario, team, &bus.id()), Priority::Normal)?;
+            declarations.push(bus.subscribe_remote(topic::say(game, scenario, team), take)?);
+            let publisher = bus.publisher(topic::say(game, scenario, team), Priority::Normal)?;
             outgoing.push(Outgoing { team, publisher, last: None });
         }
         Ok(Talk { outgoing, team_inbox, teams, patience, words: Vec::new(), _declarations: declarations })

@@ -21,32 +21,38 @@ struct Sender {
     team: TeamId,
     /// Whether it is run by another process.
     is_mate: bool,
+    /// Whether it will send at all, as far as its strategy says.
+    talks: bool,
     newest: Option<Sent>,
     before: Option<Sent>,
-    /// After which decision it sent what was delivered last.
-    delivered: Option<u64>,
+    /// The decision at which something of it is to be delivered next, if anything is.
+    awaited_at: Option<u64>,
 }
 
 /// The messages that are under way to a decision.
 #[derive(Clone, Debug)]
-pub(super) struct TeamInbox {
+pub struct TeamInbox {
     /// By vehicle.
     senders: Vec<Sender>,
-    pub(super) refusals: Refusals,
+    /// Whether anything was delivered, be it nothing.
+    has_begun: bool,
+    /// What was not taken in.
+    pub refusals: Refusals,
 }
 
 impl TeamInbox {
-    /// For boats of these teams, by vehicle; `own` are those run here.
-    pub(super) fn new(teams: impl Iterator<Item = TeamId>, own: &[VehicleId]) -> TeamInbox {
-        let sender = |(i, team)| {
+    /// For boats of these teams, by vehicle, and whether each talks; `own` are those run here.
+    pub fn new(boats: impl Iterator<Item = (TeamId, bool)>, own: &[VehicleId]) -> TeamInbox {
+        let sender = |(i, (team, talks))| {
             let is_mate = !own.contains(&VehicleId::at(i));
-            Sender { team, is_mate, newest: None, before: None, delivered: None }
+            Sender { team, is_mate, talks: talks && is_mate, newest: None, before: None, awaited_at: None }
         };
-        TeamInbox { senders: teams.enumerate().map(sender).collect(), refusals: Refusals::default() }
+        let senders = boats.enumerate().map(sender).collect();
+        TeamInbox { senders, has_begun: false, refusals: Refusals::default() }
     }
 
     /// Takes in what came on a team's topic.
-    pub(super) fn take(&mut self, team: TeamId, bytes: &[u8]) {
+    pub fn take(&mut self, team: TeamId, bytes: &[u8]) {
         let Some(say) = self.refusals.decode::<Say>(bytes) else { return };
         for word in say.words {
             let sender = self.senders.get_mut(word.vehicle.index());
@@ -63,14 +69,14 @@ impl TeamInbox {
     }
 
     /// Whether everything is there that is to be delivered at decision `seq`: who sent after the decision before the last
-    /// one is expected to have sent after the last one too.
-    pub(super) fn is_complete(&self, seq: u64) -> bool {
+    /// one is expected to have sent after the last one too, and who talks, after the first.
+    pub fn is_complete(&self, seq: u64) -> bool {
         !self.senders.iter().any(|sender| sender.is_awaited(seq) && !sender.is_past(seq))
     }
 
     /// Adds what is to be delivered at decision `seq`: the newest message of each boat that was sent after an earlier one.
-    /// Gives of how many boats that sent before there is nothing.
-    pub(super) fn deliver(&mut self, seq: u64, words: &mut Vec<Word>) -> u64 {
+    /// Gives of how many boats that were expected to send there is nothing.
+    pub fn deliver(&mut self, seq: u64, words: &mut Vec<Word>) -> u64 {
         let mut missed = 0;
         for sender in &mut self.senders {
             let awaited = sender.is_awaited(seq);
@@ -83,11 +89,15 @@ impl TeamInbox {
             };
             let on_time = sent.as_ref().is_some_and(|sent| sent.seq + 1 == seq);
             missed += u64::from(awaited && !on_time);
+            if !self.has_begun && sender.talks {
+                sender.awaited_at = Some(seq.saturating_add(1));
+            }
             if let Some(sent) = sent {
-                sender.delivered = Some(sent.seq);
+                sender.awaited_at = Some(sent.seq.saturating_add(2));
                 words.extend(sent.words);
             }
         }
+        self.has_begun = true;
         missed
     }
 }
@@ -108,9 +118,9 @@ impl Sender {
         true
     }
 
-    /// Whether it sent after the decision before the last one: it will have sent after the last one as well.
+    /// Whether something of it is to be delivered at decision `seq`.
     fn is_awaited(&self, seq: u64) -> bool {
-        self.delivered.is_some_and(|delivered| delivered + 2 == seq)
+        self.awaited_at == Some(seq)
     }
 
     /// Whether what it sent after the decision before `seq` is there, or can no longer come.
@@ -127,9 +137,9 @@ mod tests {
 
     const BLUE: TeamId = TeamId(0);
 
-    /// Two teams of two; the first boat is run here.
+    /// Two teams of two, of whom nobody knows whether they talk; the first boat is run here.
     fn team_inbox() -> TeamInbox {
-        TeamInbox::new([0, 0, 1, 1].into_iter().map(TeamId), &[VehicleId(0)])
+        TeamInbox::new([0, 0, 1, 1].into_iter().map(|team| (TeamId(team), false)), &[VehicleId(0)])
     }
 
     fn say(seq: u64, words: &[(u16, f64)]) -> Say {
@@ -178,6 +188,23 @@ mod tests {
         // What comes after it shows that it can no longer come itself.
         take(&mut inbox, &say(6, &[(1, 1.0)]));
         assert!(inbox.is_complete(6));
+    }
+
+    #[test]
+    fn the_first_message_of_a_mate_that_talks_is_waited_for_once() {
+        for first in [0, 7] {
+            let mut inbox = TeamInbox::new([0, 0].into_iter().map(|team| (TeamId(team), true)), &[VehicleId(0)]);
+            let mut words = Vec::new();
+            assert!(inbox.is_complete(first));
+            assert_eq!(inbox.deliver(first, &mut words), 0);
+            assert!(!inbox.is_complete(first + 1));
+            let mut lost = inbox.clone();
+            assert_eq!(lost.deliver(first + 1, &mut words), 1, "it was lost");
+            assert!(lost.is_complete(first + 2), "it may be silent");
+            take(&mut inbox, &say(first, &[(1, 10.0)]));
+            assert!(inbox.is_complete(first + 1));
+            assert_eq!(delivered(&mut inbox, first + 1), [10.0]);
+        }
     }
 
     #[test]

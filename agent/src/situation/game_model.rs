@@ -1,6 +1,6 @@
 //! The game as one boat sees it: everything that does not change while it is played.
 
-use game::rules::{CaptureAt, UntagAt};
+use game::rules::{CaptureAt, TaggedBoat, UntagAt, corner_inset_m};
 use game::scenario::Scenario;
 use game::strategy::Program;
 use game::{Field, FlagId, Ned, SimTime, TeamId, VehicleId};
@@ -22,6 +22,9 @@ pub(crate) struct GameModel {
     /// The flags to defend.
     pub(crate) own_flags: Vec<(FlagId, Ned)>,
     pub(crate) untag_radius_m: f64,
+    /// Whether the rules drive a tagged boat home, whatever it is ordered.
+    pub(crate) tagged_is_driven: bool,
+    capture_radius_m: f64,
     pub(crate) time_limit: SimTime,
     /// The highest speed of the helm's decisions, m/s.
     pub(crate) speed_max_m_s: f64,
@@ -56,6 +59,8 @@ impl GameModel {
             targets: flags(false),
             own_flags: flags(true),
             untag_radius_m: scenario.rules.untag_radius_m,
+            tagged_is_driven: scenario.rules.tagged_boat == TaggedBoat::IsDriven,
+            capture_radius_m: scenario.rules.capture_radius_m,
             time_limit: scenario.rules.time_limit,
             speed_max_m_s: program.helm.speed_max_m_s.map_or(own_m_s, |most_m_s| most_m_s.min(own_m_s)),
             capture_at: scenario.rules.capture_at,
@@ -80,15 +85,24 @@ impl GameModel {
     pub(crate) fn capture_place(&self, at: Ned) -> Ned {
         match self.capture_at {
             CaptureAt::OwnFlag | CaptureAt::OwnSide => self.own_flag(),
-            CaptureAt::OwnCorners => self.nearest_corner(at),
+            CaptureAt::OwnCorners => self.inside_own_corner(at, self.capture_radius_m),
         }
     }
 
-    /// Where a tagged boat is freed, from here.
+    /// Where a tagged boat steers to be freed, from here.
     pub(crate) fn untag_place(&self, at: Ned) -> Ned {
         match self.untag_at {
             UntagAt::OwnFlag => self.own_flag(),
-            UntagAt::OwnCorners => self.nearest_corner(at),
+            UntagAt::OwnCorners => self.inside_own_corner(at, self.untag_radius_m),
+        }
+    }
+
+    /// The middle of the circle in which a tagged boat is freed, from here.
+    pub(crate) fn untag_centre(&self, at: Ned) -> Ned {
+        let nearer = |[a, b]: [Ned; 2]| if at.distance_squared(a) <= at.distance_squared(b) { a } else { b };
+        match self.untag_at {
+            UntagAt::OwnFlag => self.own_flag(),
+            UntagAt::OwnCorners => nearer(self.field.own_corners[self.team.index()]),
         }
     }
 
@@ -97,8 +111,8 @@ impl GameModel {
         self.field.zones[self.team.index()].contains(at)
     }
 
-    fn nearest_corner(&self, at: Ned) -> Ned {
-        let [a, b] = self.field.own_corners[self.team.index()];
-        if at.distance_squared(a) <= at.distance_squared(b) { a } else { b }
+    fn inside_own_corner(&self, at: Ned, radius_m: f64) -> Ned {
+        let inside = self.field.inside_own_corner(self.team, at, corner_inset_m(radius_m));
+        inside.expect("a checked field has corners for every team")
     }
 }

@@ -7,6 +7,7 @@ pub(crate) use game_model::GameModel;
 pub(crate) use team_messages::TeamMessages;
 
 use crate::mind::Proposal;
+use crate::own_motion::OwnMotion;
 use game::picture::{Contact, OwnBoat};
 use game::rules::Ability;
 use game::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
@@ -60,6 +61,8 @@ pub(crate) struct Situation {
     pub(crate) at: Ned,
     /// The own velocity over the ground, m/s.
     pub(crate) velocity: Ned,
+    /// How the own boat moves when it is given an order.
+    pub(crate) motion: OwnMotion,
     /// All other boats that are known: mates first, then enemies, each in the scenario's order.
     pub(crate) others: Vec<OtherBoat>,
     pub(crate) variables: Vec<f64>,
@@ -75,7 +78,12 @@ pub(crate) struct Situation {
 }
 
 impl Situation {
-    pub(crate) fn new(model: GameModel, program: &Program, team_messages: TeamMessages) -> Situation {
+    pub(crate) fn new(
+        model: GameModel,
+        motion: OwnMotion,
+        program: &Program,
+        team_messages: TeamMessages,
+    ) -> Situation {
         Situation {
             own: OwnBoat::new(model.me, game::picture::Nav::default()),
             model,
@@ -85,6 +93,7 @@ impl Situation {
             mode_since: SimTime::ZERO,
             at: Ned::default(),
             velocity: Ned::default(),
+            motion,
             others: Vec::new(),
             variables: program.variables.iter().map(|variable| variable.initial).collect(),
             team_messages,
@@ -105,6 +114,7 @@ impl Situation {
         self.own = *own;
         self.at = own.nav.at();
         self.velocity = own.nav.velocity_m_s();
+        self.motion.observe(own, self.step_s, !(own.disabled || own.tagged && self.model.tagged_is_driven));
         self.others.clear();
         for mate in picture.own.iter().filter(|boat| boat.vehicle != self.model.me) {
             let at = mate.nav.at();
@@ -134,12 +144,17 @@ impl Situation {
         }
         self.carriers.clear();
         self.carriers.extend(picture.flags.iter().map(|flag| u16::try_from(flag.carrier).ok().map(VehicleId)));
-        let (ours, all) = (picture.score.get(self.model.team.index()).copied(), picture.score.iter().sum::<u32>());
+        let ours = picture.score.get(self.model.team.index()).copied();
         self.score = f64::from(ours.unwrap_or(0));
-        self.enemy_score = f64::from(all) - self.score;
-        let from_home = self.at.distance(self.model.untag_place(self.at)) / self.model.untag_radius_m;
+        self.enemy_score = picture.score.iter().copied().map(f64::from).sum::<f64>() - self.score;
+        let from_home = self.at.distance(self.model.untag_centre(self.at)) / self.model.untag_radius_m;
         self.leaving = own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
+    }
+
+    /// The own velocity through the water, as far as it is known, m/s.
+    pub(crate) fn velocity_through_water(&self) -> Ned {
+        self.velocity - self.motion.drift()
     }
 
     /// The enemies.

@@ -115,7 +115,8 @@ fn weights_of_avoidance_grow_to_what_is_configured_and_no_further() {
     let weight = |distance_m: f64, grade: &str| {
         let behaviour =
             format!("kind = 'avoid_collision'\nweight = 300\ninner_m = 10\nouter_m = 20\ngrade = '{grade}'");
-        let report = alone_decides(&behaviour, &with_contact(Boat::at(0.0, 0.0), Boat::at(0.0, distance_m)));
+        // Beyond the own side, where nobody is to be tagged.
+        let report = alone_decides(&behaviour, &with_contact(Boat::at(10.0, 0.0), Boat::at(10.0, distance_m)));
         report.functions.iter().find(|f| f.behaviour == "it").map_or(0.0, |f| f.weight)
     };
     for (distance_m, grade, want) in [
@@ -160,7 +161,7 @@ fn obstacles_are_passed() {
 #[test]
 fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
     let program = "[behaviour.go]\nkind = 'waypoint'\npoints = [[300, 0]]\nspeed_m_s = 3\nweight = 50\n\
-        [behaviour.stay]\nkind = 'op_region'\nhalt_m = 20\nexit_s = 1\nentry_s = 1\nrecovery_speed_m_s = 0.5\nweight = 300\n";
+        [behaviour.stay]\nkind = 'op_region'\nhalt_m = 20\nbeyond_halt = 'stops'\nexit_s = 1\nentry_s = 1\nrecovery_speed_m_s = 0.5\nweight = 300\n";
     let mut helm = helm(&without_safety(program));
     let mut see = |at_s: f64, x: f64| decided(&mut helm, &alone(at_s, Boat::at(x, 5.0).going(90.0, 2.0)));
     let deep_inside = see(0.0, 0.0);
@@ -179,6 +180,24 @@ fn the_operation_region_turns_a_boat_back_and_recovers_it_slowly() {
     assert!((in_again.speed_m_s.expect("a speed") - 0.5).abs() < 0.05, "in for a moment is not in yet");
     let in_for_good = see(6.1, 60.0);
     assert!(in_for_good.speed_m_s.expect("a speed") > 1.0, "{:?}", in_for_good.speed_m_s);
+}
+
+#[test]
+fn a_point_within_the_turning_circle_does_not_hold_a_boat_in_an_orbit() {
+    // The boat turns by 0.3 rad/s at most: at 1.5 m/s on a circle of 5 m, about the first point when it begins.
+    let points =
+        "kind = 'waypoint'\npoints = [[0, 0], [60, 0]]\nspeed_m_s = 1.5\ncapture_radius_m = 1\nslip_radius_m = 2";
+    let (mut helm, mut at, mut heading_rad) = (helm(&only(points)), (-5.0_f64, 0.0_f64), 0.0_f64);
+    let mut farthest_m = 0.0_f64;
+    for step in 0..600 {
+        let own = Boat::at(at.0, at.1).going(heading_rad.to_degrees(), 1.5);
+        let course_rad =
+            decided(&mut helm, &alone(f64::from(step) * 0.1, own)).course_deg.expect("a course").to_radians();
+        heading_rad += game::angle::wrap_pi(course_rad - heading_rad).clamp(-0.03, 0.03);
+        at = (at.0 + 0.15 * libm::sin(heading_rad), at.1 + 0.15 * libm::cos(heading_rad));
+        farthest_m = farthest_m.max(libm::hypot(at.0, at.1));
+    }
+    assert!(farthest_m > 25.0, "in a minute it got {farthest_m} m away from the first point");
 }
 
 #[test]
@@ -248,4 +267,32 @@ fn a_full_stop_lies_still_and_lets_safety_have_its_way() {
     let safely = scenario(&format!("base = \"SCENARIOS/strategies/safety.toml\"\n{stop}"));
     let drifting = decided(&mut helm(&safely), &alone(0.0, Boat::at(79.5, 0.0).going(270.0, 0.0)));
     assert!(drifting.speed_m_s.is_some_and(|speed_m_s| speed_m_s > 0.5), "{drifting:?}");
+}
+
+#[test]
+fn a_boat_that_came_too_near_halts_until_it_is_released() {
+    let behaviour = "kind = 'avoid_collision'\nhalt_m = 3\nrelease_m = 10\nrelease_s = 30";
+    let mut helm = helm(&only(behaviour));
+    let mut halts = |at_s: f64, contact_m: f64| {
+        let own = Boat::at(0.0, 0.0).going(0.0, 1.0);
+        let others = [Boat::at(contact_m, 0.0), Boat::at(75.0, -35.0)];
+        decided(&mut helm, &picture(at_s, [own, Boat::at(-70.0, -30.0)], others)).hold.is_some()
+    };
+    for (at_s, contact_m, want) in [
+        (0.0, 3.1, false),
+        (0.1, 2.9, true),
+        (5.0, 9.9, true),
+        // Released by distance.
+        (6.0, 10.1, false),
+        (7.0, 4.0, false),
+        (8.0, 2.0, true),
+        (37.9, 2.0, true),
+        // Released by time: it does not halt again before it has been clear.
+        (38.0, 2.0, false),
+        (39.0, 1.0, false),
+        (40.0, 11.0, false),
+        (41.0, 2.0, true),
+    ] {
+        assert_eq!(halts(at_s, contact_m), want, "at {at_s} s with a boat at {contact_m} m");
+    }
 }

@@ -135,22 +135,39 @@ fn time_is_counted_from_the_first_picture() {
     }
 }
 
+/// North or south: on the own side the one is worth a little more, beyond it the other.
+const TWO_WAYS: &str = "[behaviour.speed]\nkind = \"constant_speed\"\nspeed_m_s = 2\nweight = 10\n\
+    [behaviour.north]\nkind = \"constant_heading\"\nheading_deg = 0\nbase_width_deg = 60\nweight = \"own_side ? 50 : 49\"\n\
+    [behaviour.south]\nkind = \"constant_heading\"\nheading_deg = 180\nbase_width_deg = 60\nweight = \"own_side ? 49 : 50\"\n";
+
 #[test]
-fn a_decision_is_kept_while_it_is_nearly_as_good() {
-    let program = |hysteresis: f64| {
-        without_safety(&format!(
-            "helm = {{ hysteresis = {hysteresis} }}\n\
-             [behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\nspeed_m_s = 2\n"
-        ))
-    };
-    for (hysteresis, want_deg) in [(0.0, 100.0), (0.05, 90.0), (0.01, 100.0)] {
-        let mut helm = helm(&program(hysteresis));
-        assert!((at(&mut helm, 0.0, 0.0).course_deg.expect("a course") - 90.0).abs() < 0.51);
-        // From here the point bears 100 degrees: the old course is worth 10/180 of half of the function less.
-        let from = Boat::at(0.0, 60.0 * 0.176_326_98);
-        let got_deg = decided(&mut helm, &alone(0.1, from)).course_deg.expect("a course");
-        assert!((got_deg - want_deg).abs() < 0.51, "hysteresis {hysteresis}: {got_deg}");
+fn of_two_ways_that_are_nearly_as_good_a_steady_helm_takes_the_one_it_is_on() {
+    for (hysteresis, turns) in [(0.0, 9), (0.01, 9), (0.03, 0)] {
+        let mut helm = helm(&without_safety(&format!("helm = {{ hysteresis = {hysteresis} }}\n{TWO_WAYS}")));
+        let mut course_deg = |i: u32| {
+            let own = Boat::at(if i.is_multiple_of(2) { -1.0 } else { 1.0 }, 0.0);
+            decided(&mut helm, &alone(f64::from(i) * 0.1, own)).course_deg.expect("a course")
+        };
+        let courses: Vec<f64> = (0..10).map(&mut course_deg).collect();
+        let got = courses.windows(2).filter(|pair| (pair[0] - pair[1]).abs() > 90.0).count();
+        assert_eq!(got, turns, "hysteresis {hysteresis}: {courses:?}");
     }
+}
+
+#[test]
+fn a_steady_helm_follows_what_moves_and_turns_round_for_what_is_better() {
+    let go = "[behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\nspeed_m_s = 2\n";
+    let mut mind = helm(&without_safety(&format!("helm = {{ hysteresis = 0.1 }}\n{go}")));
+    assert!((at(&mut mind, 0.0, 0.0).course_deg.expect("a course") - 90.0).abs() < 0.51);
+    // From here the point bears 100 degrees, and from behind it 270.
+    let report = decided(&mut mind, &alone(0.1, Boat::at(0.0, 60.0 * 0.176_326_98)));
+    assert!((report.course_deg.expect("a course") - 100.0).abs() < 0.51, "{report:?}");
+    assert!(
+        (report.value.expect("a value") - 100.0 * 100.0).abs() < 50.0,
+        "what steadiness adds is not told: {report:?}"
+    );
+    let behind = decided(&mut mind, &alone(0.2, Boat::at(75.0, 0.0)));
+    assert!((behind.course_deg.expect("a course") - 270.0).abs() < 0.51, "{behind:?}");
 }
 
 #[test]

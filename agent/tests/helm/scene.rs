@@ -111,11 +111,18 @@ pub(crate) fn decided(helm: &mut HelmMind, picture: &Picture) -> HelmReport {
     let report = helm.report().expect("a helm reports");
     match (order, report.course_deg.zip(report.speed_m_s)) {
         (Order::Steer { heading_rad, speed_m_s }, Some((course_deg, reported_m_s))) => {
-            let off_deg = (heading_rad.to_degrees() - course_deg).rem_euclid(360.0);
-            assert!(off_deg.min(360.0 - off_deg) < 1e-6 && speed_m_s == reported_m_s, "{order:?}, {report:?}");
+            let off_deg = wrap_180(heading_rad.to_degrees() + report.heading_offset_deg - course_deg);
+            // Of nearly half a turn a part is ordered.
+            let psi_deg = picture.own[0].nav.psi_rad.to_degrees();
+            let is_large = wrap_180(course_deg - psi_deg).abs() > 120.0;
+            assert!(is_large || off_deg.abs() < 1e-6 && speed_m_s == reported_m_s, "{order:?}, {report:?}");
         }
         (Order::Hold, None) => assert!(report.hold.is_some(), "{report:?}"),
         _ => panic!("{order:?}, but the report says {report:?}"),
     }
     report
+}
+
+fn wrap_180(angle_deg: f64) -> f64 {
+    game::angle::wrap_pi(angle_deg.to_radians()).to_degrees()
 }

@@ -1,7 +1,7 @@
 //! Random decisions, with functions of every kind and plenty of equal values.
 
-use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Lag, Objective, Peak, Preference};
-use agent::ivp::{Problem, SpeedLimit};
+use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Instructions, Lag, Objective, Peak};
+use agent::ivp::{Preference, Problem, SpeedLimit};
 use game::Ned;
 use game::stream::Stream;
 
@@ -143,13 +143,21 @@ pub(crate) fn preference(stream: &mut Stream, grid: &Grid) -> Preference {
     }
 }
 
-/// The solver's choice.
+/// The solver's choice: with all instructions that this machine has the same.
 pub(crate) fn solved(grid: &Grid, functions: &[(f64, Objective)], preference: Preference) -> Choice {
-    let mut problem = Problem::new(grid.clone());
-    for (weight, objective) in functions {
-        problem.add(*weight, objective);
+    let with = |instructions| {
+        let mut problem = Problem::with_instructions(grid.clone(), instructions);
+        for (weight, objective) in functions {
+            problem.add(*weight, objective);
+        }
+        problem.solve(preference)
+    };
+    let sets = Instructions::of_this_machine();
+    let plainest = with(sets[0]);
+    for set in &sets[1..] {
+        assert_eq!(with(*set), plainest, "{set:?}: {functions:?} {preference:?}");
     }
-    problem.solve(preference)
+    plainest
 }
 
 /// All points of the grid.

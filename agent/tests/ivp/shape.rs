@@ -19,11 +19,11 @@ fn a_peak_falls_to_its_edge_and_then_to_nothing() {
     let peak =
         Peak { summit: deg(350.0), peak_width: deg(10.0), base_width: deg(170.0), summit_delta: 25.0, height: 100.0 };
     for (k, want) in [(350, 100.0), (355, 87.5), (0, 75.0), (340, 75.0), (85, 37.5), (170, 0.0), (171, 75.0 / 170.0)] {
-        near(peak.courses(&grid)(k), want, &format!("course {k}"));
+        near(peak.of_course(&grid, k), want, &format!("course {k}"));
     }
     let low = Peak { height: 20.0, ..Peak::tent(deg(170.0), deg(40.0)) };
     for (k, want) in [(170, 20.0), (180, 15.0), (150, 10.0), (120, 0.0), (0, 0.0)] {
-        near(low.courses(&grid)(k), want, &format!("the low one at {k}"));
+        near(low.of_course(&grid, k), want, &format!("the low one at {k}"));
     }
     let speed = Peak { peak_width: 1.0, summit_delta: 20.0, ..Peak::tent(2.0, 0.5) };
     for (j, want) in [(20, 100.0), (25, 90.0), (30, 80.0), (32, 48.0), (35, 0.0), (5, 0.0), (10, 80.0)] {

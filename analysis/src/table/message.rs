@@ -39,7 +39,7 @@ const SEEN: [&str; 23] = [
     "imu.down_m_s2",
 ];
 /// What an order says.
-const ORDER: [&str; 4] = ["heading_rad", "speed_m_s", "port", "starboard"];
+const ORDER: [&str; 5] = ["heading_rad", "speed_m_s", "port", "starboard", "by_rad"];
 
 /// The columns of the table of such messages, but for the time; none for a schema that there is no table of.
 pub(super) fn columns(schema: &str, scenario: &Scenario) -> Option<Vec<String>> {
@@ -230,6 +230,7 @@ fn order(order: Order) -> Cells {
         Order::Steer { heading_rad, speed_m_s } => {
             ("steer", vec![("heading_rad", heading_rad), ("speed_m_s", speed_m_s)])
         }
+        Order::Turn { by_rad, speed_m_s } => ("turn", vec![("by_rad", by_rad), ("speed_m_s", speed_m_s)]),
         Order::Thrust { port, starboard } => ("thrust", vec![("port", port), ("starboard", starboard)]),
     };
     let mut cells = Cells::new();

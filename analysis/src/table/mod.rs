@@ -17,13 +17,12 @@
 mod cells;
 mod message;
 
-use crate::damaged::Damaged;
 use cells::Cells;
 use game::external::LinkBytes;
 use game::message::{Frame, Message};
 use game::outcome::EventOutcome;
 use game::{Scenario, SimTime};
-use recording::{Bag, FRAME, RecordedMessage, RecordingError};
+use recording::{Bag, Damaged, FRAME, RecordedMessage, RecordingError};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use thiserror::Error;

@@ -10,5 +10,5 @@ mod report;
 
 pub use estimate::Estimate;
 pub use plan::{Match, Plan};
-pub use play::{Game, Record, play};
+pub use play::{Game, Observer, Record, play, play_observed};
 pub use report::{Cell, Failure, MatchRow, Report, Row, Seeds};

@@ -1,9 +1,10 @@
 //! The games of a tournament, played on several threads.
 
 use super::plan::{Match, Plan};
-use crate::play_watched;
+use agent::MindRunner;
 use game::count::Counts;
 use game::{Outcome, Scenario};
+use sim::Contest;
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
@@ -30,51 +31,90 @@ pub struct Game {
     pub digest: String,
 }
 
+/// Who looks on at every game of a tournament, and what it makes of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Observer<B, S> {
+    /// Begins with a game, which has its seed.
+    pub begin: B,
+    /// Looks at it before every decision and at the end, and at the minds that have led there.
+    pub see: S,
+}
+
 /// Plays the games of a plan on `jobs` threads, until all are played or `stop` is set, and shows each to `watch`.
 ///
 /// The records are in the order of the plan, and the same whatever the number of threads. Games that `stop` cut
 /// short are not among them.
-pub fn play(plan: &Plan, jobs: NonZeroUsize, stop: &AtomicBool, mut watch: impl FnMut(&Record)) -> Vec<Record> {
+pub fn play(plan: &Plan, jobs: NonZeroUsize, stop: &AtomicBool, watch: impl FnMut(&Record)) -> Vec<Record> {
+    let nobody = Observer { begin: |_: &Scenario| (), see: |(): &mut (), _: &Contest, _: &MindRunner| () };
+    play_observed(plan, jobs, stop, &nobody, watch).into_iter().map(|(record, _)| record).collect()
+}
+
+/// As [`play`], with somebody who looks on; with each record what came of that, of games that could start.
+pub fn play_observed<T: Send>(
+    plan: &Plan,
+    jobs: NonZeroUsize,
+    stop: &AtomicBool,
+    observer: &Observer<impl Fn(&Scenario) -> T + Sync, impl Fn(&mut T, &Contest, &MindRunner) + Sync>,
+    mut watch: impl FnMut(&Record),
+) -> Vec<(Record, Option<T>)> {
     /// Games that may wait to be shown.
     const QUEUE: usize = 64;
     let next = AtomicUsize::new(0);
-    let mut records: Vec<(usize, Record)> = vec![];
+    let mut records: Vec<(usize, Record, Option<T>)> = vec![];
     std::thread::scope(|scope| {
         let (sender, receiver) = sync_channel(QUEUE);
         for _ in 0..jobs.get().min(plan.games()) {
             let (next, sender) = (&next, sender.clone());
-            scope.spawn(move || work(plan, next, stop, &sender));
+            scope.spawn(move || work(plan, next, stop, observer, &sender));
         }
         drop(sender);
-        for (index, record) in receiver {
+        for (index, record, seen) in receiver {
             watch(&record);
-            records.push((index, record));
+            records.push((index, record, seen));
         }
     });
-    records.sort_unstable_by_key(|(index, _)| *index);
-    records.into_iter().map(|(_, record)| record).collect()
+    records.sort_unstable_by_key(|(index, ..)| *index);
+    records.into_iter().map(|(_, record, seen)| (record, seen)).collect()
 }
 
 /// What one thread does: the next game that nobody has taken, until there is none.
-fn work(plan: &Plan, next: &AtomicUsize, stop: &AtomicBool, sender: &SyncSender<(usize, Record)>) {
+fn work<T>(
+    plan: &Plan,
+    next: &AtomicUsize,
+    stop: &AtomicBool,
+    observer: &Observer<impl Fn(&Scenario) -> T, impl Fn(&mut T, &Contest, &MindRunner)>,
+    sender: &SyncSender<(usize, Record, Option<T>)>,
+) {
     loop {
         let index = next.fetch_add(1, Ordering::Relaxed);
         if index >= plan.games() || stop.load(Ordering::Relaxed) {
             return;
         }
         let (of, scenario) = plan.match_at(index);
-        let result = game_of(scenario, of.seed, stop);
+        let (result, seen) = match game_of(scenario, of.seed, stop, observer) {
+            Ok((game, seen)) => (Ok(game), Some(seen)),
+            Err(why) => (Err(why), None),
+        };
         // A game that was stopped is no game.
-        if stop.load(Ordering::Relaxed) || sender.send((index, Record { of, result })).is_err() {
+        if stop.load(Ordering::Relaxed) || sender.send((index, Record { of, result }, seen)).is_err() {
             return;
         }
     }
 }
 
-fn game_of(scenario: &Scenario, seed: u64, stop: &AtomicBool) -> Result<Game, String> {
+fn game_of<T>(
+    scenario: &Scenario,
+    seed: u64,
+    stop: &AtomicBool,
+    observer: &Observer<impl Fn(&Scenario) -> T, impl Fn(&mut T, &Contest, &MindRunner)>,
+) -> Result<(Game, T), String> {
     let scenario = scenario.of_seed(seed).map_err(|problems| problems.to_string())?;
-    let outcome = play_watched(&scenario, agent::minds_of(&scenario), seed, |_| !stop.load(Ordering::Relaxed));
-    Ok(Game::new(&scenario, &outcome.map_err(|why| why.to_string())?))
+    let mut seen = (observer.begin)(&scenario);
+    let outcome = crate::play_observed(&scenario, agent::minds_of(&scenario), seed, |contest, runner| {
+        (observer.see)(&mut seen, contest, runner);
+        !stop.load(Ordering::Relaxed)
+    });
+    Ok((Game::new(&scenario, &outcome.map_err(|why| why.to_string())?), seen))
 }
 
 impl Game {

@@ -43,12 +43,16 @@ impl Sheet {
         if length.map_err(|error| whole(format!("cannot be read: {error}")))? as u64 > BYTES_MAX {
             return Err(whole(format!("longer than {BYTES_MAX} bytes")));
         }
+        // Of a remark at the end of a file the reader makes a row, unless its line ends.
+        bytes.push(b'\n');
         let wrong = |error: csv::Error| Mistake {
             file: file.to_owned(),
             line: error.position().map(|position| line_of(&bytes, position)),
             message: reason(&error),
         };
-        let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(&bytes[..]);
+        let mut reader = csv::ReaderBuilder::new();
+        let reader = reader.comment(Some(b'#')).trim(csv::Trim::All).flexible(true);
+        let mut reader = reader.from_reader(&bytes[..]);
         let heads: Vec<String> = reader.headers().map_err(wrong)?.iter().map(plain_head).collect();
         let mut sheet = Sheet { file: file.to_owned(), heads, rows: vec![] };
         for (i, head) in sheet.heads.iter().enumerate() {
@@ -59,6 +63,15 @@ impl Sheet {
         for record in reader.records() {
             let record = record.map_err(wrong)?;
             let line = record.position().map_or(0, |position| line_of(&bytes, position));
+            if record.len() == 1 && record[0].is_empty() {
+                // A line of spaces.
+                continue;
+            }
+            if record.len() != sheet.heads.len() {
+                let (found, wanted) = (record.len(), sheet.heads.len());
+                let message = format!("{found} columns, expected {wanted} as in the line of names");
+                return Err(sheet.mistake(Some(line), message));
+            }
             if sheet.rows.len() == ROWS_MAX {
                 return Err(sheet.mistake(Some(line), format!("more than {ROWS_MAX} rows")));
             }
@@ -138,10 +151,11 @@ impl Sheet {
     }
 }
 
-/// The line of a record. The reader says where the one before ended; blank lines and remarks may follow there.
+/// The line of a record. The reader says where the one before ended; blank lines and remarks may follow there. A remark begins
+/// with its line.
 fn line_of(bytes: &[u8], position: &csv::Position) -> u64 {
     let rest = bytes.get(position.byte() as usize..).unwrap_or_default();
-    let lines = rest.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
+    let lines = rest.split(|byte| *byte == b'\n').map(|line| line.strip_suffix(b"\r").unwrap_or(line));
     position.line() + lines.take_while(|line| line.is_empty() || line.starts_with(b"#")).count() as u64
 }
 
@@ -171,9 +185,6 @@ fn short(number: f64) -> String {
 
 fn reason(error: &csv::Error) -> String {
     match error.kind() {
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("{len} columns, expected {expected_len} as in the line of names")
-        }
         csv::ErrorKind::Utf8 { .. } => "not UTF-8 text".to_owned(),
         _ => error.to_string(),
     }
@@ -209,6 +220,8 @@ mod tests {
             ("t_s,a\n", "in.csv: no rows"),
             ("t_s,t_s\n0,1\n", "in.csv:1: two columns t_s"),
             ("t_s,a\n0,1\n1\n", "in.csv:3: 1 columns, expected 2"),
+            ("t_s,a\n0,1\n \n1,2,3\n", "in.csv:4: 3 columns, expected 2"),
+            ("t_s,a\n0,1\n # no remark", "in.csv:3: 1 columns, expected 2"),
             ("x,a\n0,1\n", "in.csv:1: no column t_s among x, a"),
             ("t_s,a\n0,1\nnan,1\n", "in.csv:3: t_s is nan, expected 0 to 100"),
             ("t_s,a\n0,1\n-1,1\n", "in.csv:3: t_s is -1, expected 0 to 100"),
@@ -218,6 +231,21 @@ mod tests {
         ] {
             let error = sheet(text).and_then(|sheet| sheet.times(100.0)).expect_err(text);
             assert!(error.to_string().starts_with(want), "{text:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn lines_of_spaces_count_for_nothing_and_the_last_line_needs_no_end() {
+        for text in [
+            "t_s,a\n0,1\n \t\n2,3\n \n",
+            "t_s,a\n0,1\n2,3\n ",
+            "t_s,a\n0,1\n2,3",
+            "t_s,a\n0,1\n2,3\n# a remark",
+            "t_s,a\n0,1\n2,3\r\n#",
+            "t_s,a\n0,1\n2,\"3\"\n",
+        ] {
+            let times_s = sheet(text).and_then(|sheet| sheet.times(100.0));
+            assert_eq!(times_s, Ok(vec![0.0, 2.0]), "{text:?}");
         }
     }
 

@@ -37,6 +37,7 @@ impl TrialBoat {
     pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> TrialBoat {
         let vehicle = VehiclePlan { name: "boat", kind: 0, start: Pose::default(), is_external: false };
         let mut world = World::new(&WorldPlan {
+            boats_are_solid: true,
             tick,
             sea,
             field: &open_field(),

@@ -25,8 +25,8 @@ pub(super) struct Link {
     pub(super) known: BTreeMap<u64, (Kind, String)>,
     down: Direction,
     up: Direction,
-    /// Since when nothing goes over it.
-    silent_since_ns: Option<u64>,
+    /// Since when nothing comes to its ends, the leaf and the hub.
+    silent_since_ns: [Option<u64>; 2],
 }
 
 /// What is on its way in one direction, oldest first, each with the time of its arrival.
@@ -50,7 +50,16 @@ impl State {
     pub(super) fn connect(&mut self, leaf: usize, hub: usize) {
         let link = self.links.len();
         let (down, up, known) = (Direction::default(), Direction::default(), BTreeMap::new());
-        self.links.push(Link { leaf, hub, leaf_open: true, hub_open: true, known, down, up, silent_since_ns: None });
+        self.links.push(Link {
+            leaf,
+            hub,
+            leaf_open: true,
+            hub_open: true,
+            known,
+            down,
+            up,
+            silent_since_ns: [None; 2],
+        });
         self.sessions[leaf].link = Some(link);
         self.note("connects", self.sessions[leaf].node, "", &[]);
         let declared = &self.sessions[leaf].declared;
@@ -144,6 +153,11 @@ impl State {
             return vec![];
         }
         let Some((_, packet)) = direction.queue.pop_front() else { return vec![] };
+        if self.links[link].silent_since_ns[usize::from(up)].is_some() {
+            // What was on its way is a sign, too.
+            self.begin_lease(link, up, self.conditions.lease);
+        }
+        let direction = self.links[link].direction(up);
         if let Some((next_ns, _)) = direction.queue.front() {
             let next_ns = *next_ns;
             self.expect(link, up, next_ns);
@@ -162,23 +176,27 @@ impl State {
     /// From now on one side of these links hears nothing.
     pub(super) fn begin_silence(&mut self, node: usize) {
         for link in self.links_of(node) {
-            if self.links[link].silent_since_ns.is_some() {
-                continue;
-            }
-            let since_ns = self.now_ns;
-            self.links[link].silent_since_ns = Some(since_ns);
             for at_hub in [false, true] {
-                // The last sign was up to a quarter of the lease ago.
-                let wait = self.conditions.lease.mul_f64(1.0 - 0.25 * self.stream.unit());
-                self.after(wait, Event::LeaseOver { link, at_hub, since_ns });
+                if self.links[link].silent_since_ns[usize::from(at_hub)].is_none() {
+                    // The last sign was up to a quarter of the lease ago.
+                    let wait = self.conditions.lease.mul_f64(1.0 - 0.25 * self.stream.unit());
+                    self.begin_lease(link, at_hub, wait);
+                }
             }
         }
+    }
+
+    /// If an end of a link hears nothing for this long, its lease is over.
+    fn begin_lease(&mut self, link: usize, at_hub: bool, wait: Duration) {
+        let since_ns = self.now_ns;
+        self.links[link].silent_since_ns[usize::from(at_hub)] = Some(since_ns);
+        self.after(wait, Event::LeaseOver { link, at_hub, since_ns });
     }
 
     pub(super) fn lease_over(&mut self, link: usize, at_hub: bool, since_ns: u64) -> Vec<Call> {
         let Link { leaf, hub, silent_since_ns, .. } = self.links[link];
         let own = self.sessions[if at_hub { hub } else { leaf }].node;
-        if silent_since_ns != Some(since_ns) || self.nodes[own].is_suspended {
+        if silent_since_ns[usize::from(at_hub)] != Some(since_ns) || self.nodes[own].is_suspended {
             return vec![];
         }
         self.close_end(link, at_hub)
@@ -193,7 +211,7 @@ impl State {
                 node.is_cut || node.is_suspended
             });
             if !is_silent {
-                self.links[link].silent_since_ns = None;
+                self.links[link].silent_since_ns = [None; 2];
             }
             for up in [false, true] {
                 let (from, to) = if up { (leaf_open, hub_open) } else { (hub_open, leaf_open) };

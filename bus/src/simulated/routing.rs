@@ -250,7 +250,12 @@ impl State {
         let leaf = self.links[link].leaf;
         match packet {
             Packet::Publish { key, bytes } => {
-                self.note("takes", self.sessions[leaf].node, &key, &bytes);
+                let node = self.sessions[leaf].node;
+                self.note("takes", node, &key, &bytes);
+                if let Some(on_take) = &mut self.on_take {
+                    let at = Duration::from_nanos(self.now_ns);
+                    on_take(Published { at, node: &self.nodes[node].name, key: &key, bytes: &bytes });
+                }
                 self.calls_of_subscribers(leaf, &key, &bytes, false)
             }
             Packet::Query { query, id, key, payload } => match self.sessions[leaf].declared.get(&id) {

@@ -73,7 +73,7 @@ pub enum Fault {
 pub struct Published<'a> {
     /// When.
     pub at: Duration,
-    /// Who published it.
+    /// Who published it, or takes it.
     pub node: &'a str,
     /// On which key.
     pub key: &'a str,
@@ -144,6 +144,7 @@ impl SimulatedNetwork {
             to_drop: vec![],
             number: 0,
             on_publish: None,
+            on_take: None,
             verdict: Verdict::Ended,
             ends: vec![],
             hash: DefaultHasher::new(),
@@ -181,6 +182,12 @@ impl SimulatedNetwork {
     /// the network.
     pub fn on_publish(&self, see: impl FnMut(Published<'_>) + Send + 'static) {
         self.0.state.lock().on_publish = Some(Box::new(see));
+    }
+
+    /// Calls `see` with everything published that reaches a leaf, and with the name of that leaf's node. It must not use the
+    /// network.
+    pub fn on_take(&self, see: impl FnMut(Published<'_>) + Send + 'static) {
+        self.0.state.lock().on_take = Some(Box::new(see));
     }
 
     /// Keeps what happens line by line.

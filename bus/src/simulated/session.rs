@@ -10,6 +10,8 @@ use std::time::Duration;
 
 /// One in so many messages is held up before it is sent.
 const PAUSES: u64 = 8;
+/// A leaf is there under this key and its identifier.
+const LINKS: &str = "link/";
 /// How long an attempt to connect to nobody takes.
 const CONNECT: Duration = Duration::from_secs(1);
 
@@ -67,6 +69,7 @@ impl SimulatedSession {
         let session = SimulatedSession::new(&net.connect, false)?;
         let delay = session.world.state.lock().conditions.delay;
         wait_until(0, session.world.now().checked_add(2 * delay));
+        session.insert(format!("{LINKS}{}", session.id), What::Token);
         let mut state = session.world.state.lock();
         let hub = state.reachable_hub(session.session);
         if let Some(hub) = hub {
@@ -129,7 +132,20 @@ impl SimulatedSession {
         self.declare(key, What::Watch(Arc::new(take), Default::default()))
     }
 
+    /// Calls `take` with the identifier of every leaf whose link to this hub is gone.
+    pub(crate) fn watch_links(&self, take: impl Fn(String) + Send + Sync + 'static) -> Undeclare {
+        self.watch_alive(format!("{LINKS}*"), move |key, is_there| {
+            let gone = key.strip_prefix(LINKS).filter(|_| !is_there);
+            gone.map(str::to_owned).into_iter().for_each(&take);
+        })
+    }
+
     fn declare(&self, key: String, what: What) -> Undeclare {
+        Undeclare { session: self.clone(), id: self.insert(key, what) }
+    }
+
+    /// Declares for as long as the session is open.
+    fn insert(&self, key: String, what: What) -> u64 {
         let mut state = self.world.state.lock();
         state.number += 1;
         let id = state.number;
@@ -152,7 +168,7 @@ impl SimulatedSession {
         }
         drop(state);
         calls.into_iter().for_each(|call| call());
-        Undeclare { session: self.clone(), id }
+        id
     }
 
     pub(crate) fn ask(&self, key: &str, payload: Vec<u8>, limit: Duration) -> Option<Vec<u8>> {

@@ -86,6 +86,7 @@ pub(super) struct State {
     /// The last number that was given to a declaration or a query.
     pub(super) number: u64,
     pub(super) on_publish: Option<OnPublish>,
+    pub(super) on_take: Option<OnPublish>,
     pub(super) verdict: Verdict,
     pub(super) ends: Vec<NodeEnd>,
     pub(super) hash: DefaultHasher,

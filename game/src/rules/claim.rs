@@ -1,6 +1,6 @@
 //! Claims: what boats reach for at the same moment, and who gets it.
 
-use super::TagChoice;
+use super::{Resolution, TagChoice};
 use std::cmp::Ordering;
 
 /// Boat `by` reaches for `on` (a boat to tag, a flag to grab).
@@ -17,19 +17,35 @@ impl Claim {
     }
 }
 
-/// Keeps the claims that are granted, in the order of what is claimed.
+/// Keeps the claims that are granted.
 ///
-/// Every boat reaches for one thing, the nearest or the first; of all who reach for the same thing the
-/// nearest gets it. Between equals the lower index decides. Who comes away empty-handed has lost nothing
-/// and may reach for something else at the next look.
-pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice) {
+/// Every boat reaches for one thing, the nearest or the first. At once: of all who reach for the same thing the nearest
+/// gets it, and who comes away empty-handed has lost nothing and may reach for something else at the next look; granted
+/// claims are in the order of what is claimed. In turn: a boat gets what no boat before it has, and reaches for nothing
+/// else; granted claims are in the order of the boats. Between equals the lower index decides.
+pub(super) fn settle(claims: &mut Vec<Claim>, choice: TagChoice, resolution: Resolution) {
     claims.sort_unstable_by(|x, y| {
         let wanted = if choice == TagChoice::Nearest { x.nearer(y) } else { Ordering::Equal };
         x.by.cmp(&y.by).then(wanted).then(x.on.cmp(&y.on))
     });
-    claims.dedup_by_key(|claim| claim.by);
-    claims.sort_unstable_by(|x, y| x.on.cmp(&y.on).then(x.nearer(y)).then(x.by.cmp(&y.by)));
-    claims.dedup_by_key(|claim| claim.on);
+    match resolution {
+        Resolution::AtOnce => {
+            claims.dedup_by_key(|claim| claim.by);
+            claims.sort_unstable_by(|x, y| x.on.cmp(&y.on).then(x.nearer(y)).then(x.by.cmp(&y.by)));
+            claims.dedup_by_key(|claim| claim.on);
+        }
+        Resolution::InTurn => {
+            let mut granted = 0;
+            for i in 0..claims.len() {
+                let claim = claims[i];
+                if claims[..granted].iter().all(|other| other.by != claim.by && other.on != claim.on) {
+                    claims[granted] = claim;
+                    granted += 1;
+                }
+            }
+            claims.truncate(granted);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -38,19 +54,31 @@ mod tests {
 
     #[test]
     fn each_gets_one_thing_and_each_thing_goes_to_the_nearest() {
-        for (name, claims, choice, want) in [
-            ("one reaches for two", vec![(0, 5, 4.0), (0, 6, 1.0)], TagChoice::Nearest, vec![(0, 6)]),
-            ("one takes the first", vec![(0, 6, 1.0), (0, 5, 4.0)], TagChoice::First, vec![(0, 5)]),
-            ("two reach for one", vec![(0, 5, 4.0), (1, 5, 1.0)], TagChoice::Nearest, vec![(1, 5)]),
-            ("two reach for the first", vec![(0, 5, 4.0), (1, 5, 1.0)], TagChoice::First, vec![(1, 5)]),
-            ("equals", vec![(1, 6, 1.0), (1, 5, 1.0), (0, 5, 1.0)], TagChoice::Nearest, vec![(0, 5)]),
-            ("no second choice", vec![(0, 5, 1.0), (1, 5, 2.0), (1, 6, 3.0)], TagChoice::Nearest, vec![(0, 5)]),
-            ("each its own", vec![(1, 5, 1.0), (0, 6, 2.0)], TagChoice::Nearest, vec![(1, 5), (0, 6)]),
-            ("nobody", vec![], TagChoice::Nearest, vec![]),
+        let (near, first) = (TagChoice::Nearest, TagChoice::First);
+        let (at_once, in_turn) = (Resolution::AtOnce, Resolution::InTurn);
+        for (name, claims, choice, resolution, want) in [
+            ("one reaches for two", vec![(0, 5, 4.0), (0, 6, 1.0)], near, at_once, vec![(0, 6)]),
+            ("one takes the first", vec![(0, 6, 1.0), (0, 5, 4.0)], first, at_once, vec![(0, 5)]),
+            ("two reach for one", vec![(0, 5, 4.0), (1, 5, 1.0)], near, at_once, vec![(1, 5)]),
+            ("two reach for the first", vec![(0, 5, 4.0), (1, 5, 1.0)], first, at_once, vec![(1, 5)]),
+            ("equals", vec![(1, 6, 1.0), (1, 5, 1.0), (0, 5, 1.0)], near, at_once, vec![(0, 5)]),
+            ("no second choice", vec![(0, 5, 1.0), (1, 5, 2.0), (1, 6, 3.0)], near, at_once, vec![(0, 5)]),
+            ("each its own", vec![(1, 5, 1.0), (0, 6, 2.0)], near, at_once, vec![(1, 5), (0, 6)]),
+            ("nobody", vec![], near, at_once, vec![]),
+            ("in turn, two reach for one", vec![(0, 5, 4.0), (1, 5, 1.0)], near, in_turn, vec![(0, 5)]),
+            ("in turn, one takes the nearest", vec![(0, 5, 4.0), (0, 6, 1.0)], near, in_turn, vec![(0, 6)]),
+            ("in turn, one takes the first", vec![(0, 6, 1.0), (0, 5, 4.0)], first, in_turn, vec![(0, 5)]),
+            (
+                "in turn, what is left",
+                vec![(1, 5, 1.0), (1, 6, 3.0), (0, 5, 2.0)],
+                first,
+                in_turn,
+                vec![(0, 5), (1, 6)],
+            ),
         ] {
             let claim = |(by, on, distance_squared)| Claim { by, on, distance_squared };
             let mut claims: Vec<Claim> = claims.into_iter().map(claim).collect();
-            settle(&mut claims, choice);
+            settle(&mut claims, choice, resolution);
             assert_eq!(claims.iter().map(|claim| (claim.by, claim.on)).collect::<Vec<_>>(), want, "{name}");
         }
     }

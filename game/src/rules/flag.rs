@@ -1,35 +1,31 @@
 //! Flags: grabbed by coming near, captured by bringing them in, home again when lost.
 
 use super::claim::{Claim, settle};
-use super::{CaptureAt, Notes, Referee, Standing, TagChoice};
+use super::{Acting, CaptureAt, Look, Notes, Referee, Resolution, Standing, TagChoice};
 use crate::event::Event;
-use crate::frame::Ned;
+use crate::frame::{Leg, Ned};
 use crate::id::{FlagId, TeamId, VehicleId};
 
 impl Referee {
-    /// Gives flags to the opponents that are near enough; nobody has to ask, and nobody has two.
+    /// Gives flags to the opponents that are near enough, and ask where they have to; nobody has two.
     ///
-    /// A boat reaches for the nearest flag that can be taken, and of several boats at one flag the nearest
-    /// gets it. Only flags that were home all the time since the last look can be taken.
-    pub(super) fn grab(
-        &self,
-        standing: &mut Standing,
-        notes: &mut Notes,
-        at: &impl Fn(usize) -> Ned,
-        events: &mut Vec<Event>,
-    ) {
+    /// A boat reaches for the nearest flag that can be taken; who of several boats at one flag gets it,
+    /// [`Resolution`] says. Only flags that were home all the time since the last look can be taken, but in turn.
+    pub(super) fn grab(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
         let reach_squared = self.rules.grab_radius_m * self.rules.grab_radius_m;
         notes.claims.clear();
         for (on, (flag, state)) in self.field.flags.iter().zip(&standing.flags).enumerate() {
-            if state.carrier.is_some() || state.moved_at == standing.now {
+            let has_just_come = state.moved_at == standing.now && self.rules.resolution == Resolution::AtOnce;
+            if state.carrier.is_some() || has_just_come {
                 continue;
             }
             for (by, boat) in standing.vehicles.iter().enumerate() {
                 if self.team_of[by] == flag.team || !boat.acts() || boat.carrying.is_some() {
                     continue;
                 }
-                let distance_squared = at(by).distance_squared(flag.home);
-                if distance_squared < reach_squared {
+                let asks = self.rules.tags_and_grabs == Acting::Automatic || look.asks[by].grab;
+                let distance_squared = look.legs[by].to.distance_squared(flag.home);
+                if asks && distance_squared < reach_squared {
                     notes.claims.push(Claim { by: by as u16, on: on as u16, distance_squared });
                 }
             }
@@ -37,7 +33,7 @@ impl Referee {
         if notes.claims.is_empty() {
             return;
         }
-        settle(&mut notes.claims, TagChoice::Nearest);
+        settle(&mut notes.claims, TagChoice::Nearest, self.rules.resolution);
         for claim in &notes.claims {
             let (vehicle, flag) = (VehicleId(claim.by), FlagId(claim.on as u8));
             standing.vehicles[vehicle.index()].carrying = Some(flag);
@@ -53,17 +49,11 @@ impl Referee {
     ///
     /// With `capture_needs_own_flag`, all flags of the carrier's own team must be home after the grabs and
     /// before the captures of this look.
-    pub(super) fn capture(
-        &self,
-        standing: &mut Standing,
-        notes: &mut Notes,
-        at: &impl Fn(usize) -> Ned,
-        events: &mut Vec<Event>,
-    ) {
+    pub(super) fn capture(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
         notes.claims.clear();
         for (on, state) in standing.flags.iter().enumerate() {
             let Some(carrier) = state.carrier.filter(|_| state.moved_at != standing.now) else { continue };
-            let (team, here) = (self.team_of[carrier.index()], at(carrier.index()));
+            let (team, here) = (self.team_of[carrier.index()], look.legs[carrier.index()]);
             let own_flags_home = || self.own_flags(team).all(|(own, _)| standing.flags[own.index()].carrier.is_none());
             if standing.vehicles[carrier.index()].acts()
                 && self.is_capture_place(team, here)
@@ -81,11 +71,11 @@ impl Referee {
         }
     }
 
-    fn is_capture_place(&self, team: TeamId, at: Ned) -> bool {
+    fn is_capture_place(&self, team: TeamId, leg: Leg) -> bool {
         let reach_squared = self.rules.capture_radius_m * self.rules.capture_radius_m;
-        let near = |place: Ned| at.distance_squared(place) < reach_squared;
+        let near = |place: Ned| leg.to.distance_squared(place) < reach_squared;
         match self.rules.capture_at {
-            CaptureAt::OwnSide => self.is_own_side(team, at),
+            CaptureAt::OwnSide => self.is_own_side(team, self.side_place(leg)),
             CaptureAt::OwnFlag => self.own_flags(team).any(|(_, home)| near(home)),
             CaptureAt::OwnCorners => self.own_corners(team).iter().any(|corner| near(*corner)),
         }

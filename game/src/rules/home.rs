@@ -35,13 +35,20 @@ impl Referee {
         }
     }
 
-    /// Where a boat of `team` at `at` goes to be freed: the nearest such place.
+    /// Where a boat of `team` at `at` steers to be freed: the nearest such place.
     pub(super) fn home(&self, team: TeamId, at: Ned) -> Option<Ned> {
         match self.rules.untag_at {
             UntagAt::OwnFlag => nearest(at, self.own_flags(team).map(|(_, home)| home)),
-            UntagAt::OwnCorners => nearest(at, self.own_corners(team).iter().copied()),
+            UntagAt::OwnCorners => self.field.inside_own_corner(team, at, corner_inset_m(self.rules.untag_radius_m)),
         }
     }
+}
+
+/// How far inside of both edges boats steer that must come within `radius_m` of a corner, m. Half of it is 10 m where
+/// the competition of 2026 has 20 m, and leaves 3 tenths of the radius to spare.
+#[must_use]
+pub fn corner_inset_m(radius_m: f64) -> f64 {
+    0.5 * radius_m
 }
 
 /// The one of `places` that is nearest to `at`; the first of equals.

@@ -5,6 +5,7 @@
 //! real water.
 
 mod ability;
+mod ask;
 mod boundary;
 mod claim;
 mod collision;
@@ -19,8 +20,10 @@ mod standing;
 mod tag;
 
 pub use ability::Ability;
+pub use ask::{Asks, asks_of};
 pub use directive::Directive;
-pub use referee::{Notes, Referee};
+pub use home::corner_inset_m;
+pub use referee::{Look, Notes, Referee};
 pub use standing::{FlagStanding, Standing, VehicleStanding};
 
 use crate::count::Counts;
@@ -52,6 +55,10 @@ pub struct Rules {
     /// Two boats closer than this, centre to centre, have collided, m.
     #[schemars(range(min = 0, max = 100), extend("default" = 3))]
     pub collision_distance_m: f64,
+    /// What boats are to each other. Walls and obstacles are solid to all.
+    #[serde(default)]
+    #[schemars(extend("default" = "solid"))]
+    pub contact: Contact,
     /// Where a flag must be brought.
     #[schemars(extend("default" = "own_flag"))]
     pub capture_at: CaptureAt,
@@ -71,6 +78,30 @@ pub struct Rules {
     /// Which of several intruders in reach is tagged.
     #[schemars(extend("default" = "nearest"))]
     pub tag_choice: TagChoice,
+    /// How what happens at one moment is resolved.
+    #[serde(default)]
+    #[schemars(extend("default" = "at_once"))]
+    pub resolution: Resolution,
+    /// Where a boat is judged to be when its side counts: for tags, and for captures on the own side.
+    #[serde(default)]
+    #[schemars(extend("default" = "after_move"))]
+    pub side_judged: SideJudged,
+    /// Whether boats tag and grab by being in reach, or must ask for it.
+    #[serde(default)]
+    #[schemars(extend("default" = "automatic"))]
+    pub tags_and_grabs: Acting,
+    /// Time between the referee's looks at boundary, tags and collisions, s, a multiple of the physics tick; 0 is every
+    /// tick.
+    #[serde(default)]
+    #[schemars(rename = "tag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
+    #[schemars(extend("x-field" = "tag_look_period", "default" = 0))]
+    pub tag_look_period: SimTime,
+    /// Time between the referee's looks at grabs, captures and boats that come home, s, a multiple of the physics tick; 0 is
+    /// every tick.
+    #[serde(default)]
+    #[schemars(rename = "flag_look_period_s", with = "f64", !default, range(min = 0, max = 60))]
+    #[schemars(extend("x-field" = "flag_look_period", "default" = 0))]
+    pub flag_look_period: SimTime,
     /// Whether leaving the field tags a boat.
     #[schemars(extend("default" = true))]
     pub boundary_tags: bool,
@@ -182,6 +213,54 @@ pub enum TagChoice {
     /// The first in the game's list.
     #[serde(alias = "First")]
     First,
+}
+
+/// How what happens at one moment is resolved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Resolution {
+    /// Tags, grabs, captures, each judged from how things stood before it. Of several boats that reach the same intruder or
+    /// flag the nearest has it, and a boat that comes second has nothing at that moment: the order of the list counts
+    /// between equals only.
+    #[default]
+    AtOnce,
+    /// As in Pyquaticus: grabs, tags, captures, and in each the boats in the game's order, each with what those before
+    /// it have left.
+    InTurn,
+}
+
+/// Where a boat is judged to be when its side counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SideJudged {
+    /// Where it is.
+    #[default]
+    AfterMove,
+    /// Where it was before it moved, a physics tick ago: as in Pyquaticus.
+    BeforeMove,
+}
+
+/// How boats come to tag and grab.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Acting {
+    /// Whoever is in reach does.
+    #[default]
+    Automatic,
+    /// Only who asks. A boat asks as long as it is in reach by what its team's picture shows of it and of others: where
+    /// that is wrong or late, so is the request.
+    OnRequest,
+}
+
+/// What boats are to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Contact {
+    /// They bump into each other.
+    #[default]
+    Solid,
+    /// They pass through each other, as in Pyquaticus. That they were too close is noted all the same.
+    Ghost,
 }
 
 /// What a tagged boat does.

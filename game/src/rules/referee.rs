@@ -1,10 +1,10 @@
 //! The referee: looks at all boats once a tick and says what happened.
 
 use super::claim::Claim;
-use super::{Rules, Standing};
+use super::{Asks, Resolution, Rules, SideJudged, Standing};
 use crate::event::Event;
 use crate::field::Field;
-use crate::frame::Ned;
+use crate::frame::{Leg, Ned};
 use crate::id::{FlagId, TeamId, VehicleId};
 use crate::near::Pair;
 use crate::stream::Stream;
@@ -23,6 +23,19 @@ pub struct Referee {
 pub struct Notes {
     pub(super) claims: Vec<Claim>,
     pub(super) touching: Vec<(VehicleId, VehicleId)>,
+}
+
+/// What the referee sees when it looks.
+#[derive(Clone, Copy, Debug)]
+pub struct Look<'a> {
+    /// By vehicle.
+    pub legs: &'a [Leg],
+    /// By vehicle, where the rules want boats to ask: [`Acting::OnRequest`](super::Acting::OnRequest).
+    pub asks: &'a [Asks],
+    /// All pairs within [`Rules::reach_m`] or more, in the order of [`crate::near::Near`].
+    pub near: &'a [Pair],
+    /// Later than the last look.
+    pub now: SimTime,
 }
 
 impl Referee {
@@ -58,38 +71,44 @@ impl Referee {
         standing
     }
 
-    /// Looks at all boats at the moment `now`, later than the last one, and appends what happened.
-    ///
-    /// `at` gives midships by vehicle, `near` all pairs within [`Rules::reach_m`] or more, in the order
-    /// of [`crate::near::Near`].
+    /// Looks at all boats and appends what happened.
     ///
     /// The order of the list below is the order of resolution. Every phase is judged from how things
     /// stood when it began, whatever the order of the boats, so that mirrored teams get mirrored results.
     /// What a boat did or suffered at this look is nothing to build on until the next one: a flag
     /// that was brought home is not grabbed yet, a flag that was grabbed is not captured yet, a boat
-    /// that was tagged is not freed yet.
+    /// that was tagged is not freed yet. [`Resolution::InTurn`] is another order, for comparing games with
+    /// those of Pyquaticus.
     ///
     /// Once the game is over, nothing happens any more.
-    pub fn advance(
-        &self,
-        standing: &mut Standing,
-        notes: &mut Notes,
-        at: &impl Fn(usize) -> Ned,
-        near: &[Pair],
-        now: SimTime,
-        events: &mut Vec<Event>,
-    ) {
+    pub fn advance(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
         if standing.over {
             return;
         }
-        standing.now = now;
+        standing.now = look.now;
+        let at = &|i: usize| look.legs[i].to;
+        let tags = is_due(look.now, self.rules.tag_look_period);
+        let flags = is_due(look.now, self.rules.flag_look_period);
         self.switch_power_plays(standing, events);
-        self.watch_boundary(standing, at, events);
-        self.tag(standing, notes, at, near, events);
-        self.grab(standing, notes, at, events);
-        self.capture(standing, notes, at, events);
-        self.untag(standing, at, events);
-        self.watch_collisions(standing, notes, near, events);
+        if tags {
+            self.watch_boundary(standing, at, events);
+        }
+        if flags && self.rules.resolution == Resolution::InTurn {
+            self.grab(standing, notes, look, events);
+        }
+        if tags {
+            self.tag(standing, notes, look, events);
+        }
+        if flags && self.rules.resolution == Resolution::AtOnce {
+            self.grab(standing, notes, look, events);
+        }
+        if flags {
+            self.capture(standing, notes, look, events);
+            self.untag(standing, at, events);
+        }
+        if tags {
+            self.watch_collisions(standing, notes, look.near, events);
+        }
         self.watch_keepouts(standing, at, events);
         self.end(standing, events);
     }
@@ -105,6 +124,15 @@ impl Referee {
     pub(super) fn teams(&self) -> usize {
         let playing = self.team_of.iter().map(|team| team.index() + 1).max();
         self.field.zones.len().max(playing.unwrap_or(0))
+    }
+
+    /// Where a boat is judged to be when its side counts.
+    #[inline]
+    pub(super) fn side_place(&self, leg: Leg) -> Ned {
+        match self.rules.side_judged {
+            SideJudged::AfterMove => leg.to,
+            SideJudged::BeforeMove => leg.from,
+        }
     }
 
     /// Whether `at` is on `team`'s own side; the scrimmage line is on both.
@@ -125,4 +153,9 @@ impl Referee {
     pub(super) fn own_corners(&self, team: TeamId) -> &[Ned] {
         self.field.own_corners.get(team.index()).map_or(&[], |corners| corners)
     }
+}
+
+/// Whether something is looked at now that is looked at so often; at every look if there is no time between.
+fn is_due(now: SimTime, period: SimTime) -> bool {
+    period <= SimTime::ZERO || now.0 % period.0 == 0
 }

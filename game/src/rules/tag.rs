@@ -1,33 +1,25 @@
 //! Tags: a boat on its own side stops the intruders it can reach.
 
 use super::claim::{Claim, settle};
-use super::{Ability, Notes, Referee, Standing};
+use super::{Ability, Acting, Look, Notes, Referee, Standing};
 use crate::event::{Event, TagCause};
-use crate::frame::Ned;
 use crate::id::VehicleId;
 use crate::near::Pair;
 
 impl Referee {
-    /// Tags intruders. A tag is never asked for: every boat tags as soon as it can.
+    /// Tags intruders. Every boat tags as soon as it can, or asks for it as soon as it believes so.
     ///
-    /// Each tagger reaches for one intruder; an intruder whom several reach is the nearest tagger's. Only
+    /// Each tagger reaches for one intruder; who of several gets the same one, [`super::Resolution`] says. Only
     /// that one has its tag points and its cooldown: a failed or late tag costs nothing.
-    pub(super) fn tag(
-        &self,
-        standing: &mut Standing,
-        notes: &mut Notes,
-        at: &impl Fn(usize) -> Ned,
-        near: &[Pair],
-        events: &mut Vec<Event>,
-    ) {
+    pub(super) fn tag(&self, standing: &mut Standing, notes: &mut Notes, look: &Look<'_>, events: &mut Vec<Event>) {
         let reach_squared = self.rules.tag_radius_m * self.rules.tag_radius_m;
         notes.claims.clear();
-        for &Pair { a, b, distance_squared } in near {
+        for &Pair { a, b, distance_squared } in look.near {
             if distance_squared >= reach_squared {
                 continue;
             }
             for (by, on) in [(a, b), (b, a)] {
-                if self.may_tag(standing, usize::from(by), usize::from(on), at) {
+                if self.may_tag(standing, usize::from(by), usize::from(on), look) {
                     notes.claims.push(Claim { by, on, distance_squared });
                 }
             }
@@ -35,7 +27,7 @@ impl Referee {
         if notes.claims.is_empty() {
             return;
         }
-        settle(&mut notes.claims, self.rules.tag_choice);
+        settle(&mut notes.claims, self.rules.tag_choice, self.rules.resolution);
         for claim in &notes.claims {
             let (tagger, target) = (VehicleId(claim.by), VehicleId(claim.on));
             standing.put_tag(target, TagCause::Opponent(tagger), events);
@@ -50,11 +42,14 @@ impl Referee {
     /// The tagger is on its own side; the intruder is there too and is not on *its* own side. On the
     /// scrimmage line, which is everybody's own side, a boat is therefore safe but can tag, and no boat is
     /// ever both tagger and target.
-    fn may_tag(&self, standing: &Standing, tagger: usize, target: usize, at: &impl Fn(usize) -> Ned) -> bool {
+    fn may_tag(&self, standing: &Standing, tagger: usize, target: usize, look: &Look<'_>) -> bool {
         let (by, on) = (&standing.vehicles[tagger], &standing.vehicles[target]);
         let (own, other) = (self.team_of[tagger], self.team_of[target]);
+        let at = |i: usize| self.side_place(look.legs[i]);
         let able = own != other && by.in_play && Ability::from(by).may_tag(standing.now);
-        able && on.in_play
+        let asks = self.rules.tags_and_grabs == Acting::Automatic || look.asks[tagger].tag;
+        able && asks
+            && on.in_play
             && !on.tagged
             && !on.outside
             && self.is_own_side(own, at(tagger))

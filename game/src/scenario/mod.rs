@@ -5,6 +5,7 @@
 //! `read` finds the files and lays them over their bases, `validate` reads them by their schema, `check` makes of them
 //! what the program believes, and `diagnostics` collects every [`Problem`] on the way.
 
+mod chance;
 mod check;
 mod diagnostics;
 mod draw;

@@ -11,6 +11,9 @@ pub struct Overrides {
     pub sea: Option<PathBuf>,
     /// Strategy files by team name: all boats of that team follow it, those that name one of their own too.
     pub strategies: BTreeMap<String, PathBuf>,
+    /// Each of the two teams follows the strategy of the other; the game must give no boat one of its own.
+    #[serde(default)]
+    pub exchange_strategies: bool,
     /// A rehearsal: every boat is simulated, whatever the game says of its source.
     pub simulate_all: bool,
 }

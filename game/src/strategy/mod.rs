@@ -17,9 +17,9 @@ pub use fact::{Fact, Kind, Measure};
 pub use parameter::Parameter;
 pub use place::{Boat, Mark, Place};
 pub use task::{
-    Attractor, AvoidCollision, AvoidObstacle, ConstantHeading, ConstantSpeed, Contacts, CutRange, Ellipse, FullStop,
-    Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion, Policy, Proposer, Shape, Shield, StationKeep, Task,
-    Timer, Trail, Turn, Waypoint,
+    Attractor, AvoidCollision, AvoidObstacle, BeyondHalt, ConstantHeading, ConstantSpeed, Contacts, CutRange, Ellipse,
+    FullStop, Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion, Policy, Proposer, Shape, Shield,
+    StationKeep, Task, Timer, Trail, Turn, Waypoint,
 };
 
 use serde::{Deserialize, Serialize};
@@ -88,9 +88,13 @@ pub struct Helm {
     /// The highest speed, m/s, but never more than the boat's own. Default the boat's own.
     #[schemars(range(min = 0.1, max = 60))]
     pub speed_max_m_s: Option<f64>,
-    /// The last decision stands while it is worth this share less than the best at most: more would outweigh safety.
+    /// What is near the last decision (30 degrees, 0.75 m/s) is worth this share of all weights more: more would outweigh safety.
     #[schemars(range(min = 0, max = 0.1), extend("default" = 0))]
     pub hysteresis: f64,
+    /// Whether it makes up for the drift and for the lasting error of the heading, as it sees them. Without, course and
+    /// speed over the ground differ from those that behaviours ask for.
+    #[schemars(rename = "compensate_drift", extend("x-field" = "compensates_drift", "default" = true))]
+    pub compensates_drift: bool,
 }
 
 /// A variable.

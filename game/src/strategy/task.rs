@@ -277,6 +277,17 @@ pub struct AvoidCollision {
     /// How the weight falls from the inner to the outer distance.
     #[schemars(extend("default" = "linear"))]
     pub grade: Grade,
+    /// When any boat is nearer than this, the own boat stops, whatever others want, until it is released, m. Default
+    /// never.
+    #[schemars(range(min = 0.1, max = 1000))]
+    pub halt_m: Option<Parameter>,
+    /// It is released when all boats are farther than this, m. Default three times `halt_m`.
+    #[schemars(range(min = 0, max = 1000))]
+    pub release_m: Option<Parameter>,
+    /// It is also released after so long, to sort itself out, and stops again only after it has been clear, s. Default
+    /// never.
+    #[schemars(range(min = 0.1, max = 86_400))]
+    pub release_s: Option<Parameter>,
 }
 
 /// Whose boats are meant.
@@ -336,9 +347,12 @@ pub struct OpRegion {
     /// Nearer than this to the edge, inside, it turns away from courses that lead out, m.
     #[schemars(range(min = 0, max = 1000), extend("default" = 6))]
     pub save_m: Parameter,
-    /// Farther out than this the boat stops, m.
+    /// Farther out than this it does what `beyond_halt` says, m.
     #[schemars(range(min = 0, max = 100_000), extend("default" = 30))]
     pub halt_m: Parameter,
+    /// What a boat does that is so far out.
+    #[schemars(extend("default" = "comes_back"))]
+    pub beyond_halt: BeyondHalt,
     /// How long a boat is out before it counts as out, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 1))]
     pub exit_s: Parameter,
@@ -351,6 +365,16 @@ pub struct OpRegion {
     /// It turns away when a course leads out sooner than this, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 6))]
     pub lookahead_s: Parameter,
+}
+
+/// What a boat does that is farther out than it may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BeyondHalt {
+    /// It comes back as from anywhere else.
+    ComesBack,
+    /// It stops its thrusters, and drifts where wind and current take it, as MOOS-IvP has it: somebody fetches it.
+    Stops,
 }
 
 /// Slows down near other boats.

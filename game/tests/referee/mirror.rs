@@ -2,7 +2,7 @@
 
 use game::event::{Event, TagCause};
 use game::rules::{Standing, VehicleStanding};
-use game::{FlagId, Ned, TeamId, VehicleId};
+use game::{FlagId, Leg, Ned, TeamId, VehicleId};
 
 /// Half a turn about the middle of the field; the teams, which have so many boats each, change places.
 pub(crate) struct Mirror {
@@ -55,8 +55,12 @@ impl Mirror {
         event
     }
 
-    pub(crate) fn fleet(&self, fleet: &[Ned]) -> Vec<Ned> {
-        (0..fleet.len()).map(|i| Mirror::position(fleet[self.vehicle(VehicleId::at(i)).index()])).collect()
+    pub(crate) fn fleet(&self, fleet: &[Leg]) -> Vec<Leg> {
+        let leg = |i| {
+            let Leg { from, to } = fleet[self.vehicle(VehicleId::at(i)).index()];
+            Leg { from: Mirror::position(from), to: Mirror::position(to) }
+        };
+        (0..fleet.len()).map(leg).collect()
     }
 
     pub(crate) fn standing(&self, standing: &Standing) -> Standing {

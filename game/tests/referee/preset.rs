@@ -6,7 +6,7 @@ use game::{Ned, SimTime, VehicleId};
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// The shipped rule books, but boats may be set down side by side.
+/// The shipped rule books, but boats may be set down side by side, and every look is one at everything.
 static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
     let folder = tempfile::tempdir().expect("a folder for files");
@@ -15,7 +15,8 @@ static SHIPPED: LazyLock<[Rules; 4]> = LazyLock::new(|| {
         let text = format!("base = {:?}\nrules = {:?}\n", scenarios.join(base), scenarios.join(rules));
         std::fs::write(folder.path().join("game.toml"), text).expect("a file in it");
         let scenario = game::scenario::load(&folder.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"));
-        Rules { collision_distance_m: 0.5, ..scenario.rules }
+        let looks = Rules { tag_look_period: SimTime::ZERO, flag_look_period: SimTime::ZERO, ..scenario.rules };
+        Rules { collision_distance_m: 0.5, ..looks }
     })
 });
 

@@ -3,16 +3,18 @@
 use game::event::{Event, TagCause};
 use game::field::{Field, Flag, Plan, Walls};
 use game::near::Near;
-use game::rules::{Directive, Notes, Referee, Rules, Standing};
+use game::rules::{Asks, Directive, Look, Notes, Referee, Rules, Standing};
 use game::stream::Stream;
-use game::{FlagId, LatLon, Ned, SimTime, TeamId, VehicleId};
+use game::{FlagId, LatLon, Leg, Ned, SimTime, TeamId, VehicleId};
 
 pub(crate) struct Scene {
     pub(crate) referee: Referee,
     pub(crate) standing: Standing,
     pub(crate) notes: Notes,
     pub(crate) near: Near,
-    pub(crate) fleet: Vec<Ned>,
+    pub(crate) fleet: Vec<Leg>,
+    /// What boats ask for, where they have to.
+    pub(crate) asks: Vec<Asks>,
     pub(crate) now: SimTime,
 }
 
@@ -70,10 +72,11 @@ impl Scene {
         let standing = referee.start(&mut Stream::new(1, "rules"));
         let start_position = |(i, team): (usize, &TeamId)| {
             let before = referee.team_of()[..i].iter().filter(|other| *other == team).count();
-            Ned::from_xy(if team.0 == 0 { 45.0 } else { 115.0 }, 5.0 + 12.0 * before as f64)
+            still(if team.0 == 0 { 45.0 } else { 115.0 }, 5.0 + 12.0 * before as f64)
         };
         let fleet = referee.team_of().iter().enumerate().map(start_position).collect();
-        Scene { standing, fleet, referee, notes: Notes::default(), near: Near::default(), now: SimTime::ZERO }
+        let asks = vec![Asks::default(); referee.team_of().len()];
+        Scene { standing, fleet, asks, referee, notes: Notes::default(), near: Near::default(), now: SimTime::ZERO }
     }
 
     pub(crate) fn name(&self) -> &str {
@@ -81,7 +84,13 @@ impl Scene {
     }
 
     pub(crate) fn put(&mut self, vehicle: usize, x: f64, y: f64) -> &mut Scene {
-        self.fleet[vehicle] = Ned::from_xy(x, y);
+        self.fleet[vehicle] = still(x, y);
+        self
+    }
+
+    /// Moves a boat there from where it is.
+    pub(crate) fn go(&mut self, vehicle: usize, x: f64, y: f64) -> &mut Scene {
+        self.fleet[vehicle].to = Ned::from_xy(x, y);
         self
     }
 
@@ -94,16 +103,23 @@ impl Scene {
     /// One tick later: what happened?
     pub(crate) fn look(&mut self) -> Vec<Event> {
         self.now = self.now + TICK;
-        let at = |i: usize| self.fleet[i];
-        let near = self.near.pairs(at, self.fleet.len(), self.referee.rules().reach_m());
+        let near = self.near.pairs(|i| self.fleet[i].to, self.fleet.len(), self.referee.rules().reach_m());
         let mut events = vec![];
-        self.referee.advance(&mut self.standing, &mut self.notes, &at, near, self.now, &mut events);
+        let look = Look { legs: &self.fleet, asks: &self.asks, near, now: self.now };
+        self.referee.advance(&mut self.standing, &mut self.notes, &look, &mut events);
+        self.fleet.iter_mut().for_each(|leg| leg.from = leg.to);
         events
     }
 
     pub(crate) fn directive(&self, vehicle: usize) -> Directive {
-        self.referee.directive(&self.standing, VehicleId::at(vehicle), self.fleet[vehicle])
+        self.referee.directive(&self.standing, VehicleId::at(vehicle), self.fleet[vehicle].to)
     }
+}
+
+/// A boat that lies there.
+fn still(x: f64, y: f64) -> Leg {
+    let at = Ned::from_xy(x, y);
+    Leg { from: at, to: at }
 }
 
 pub(crate) fn tagged(vehicle: u16, by: u16) -> Event {

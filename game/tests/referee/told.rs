@@ -4,7 +4,8 @@
 //! - `rules BOOK KEY=VALUE …` comes next: a book of `preset.rs`, rules that differ from it (JSON values, times in
 //!   nanoseconds), and `boats=2` for each team (1 if it is left out), `sides=3` (2), `flag=[TEAM,X,Y]` for another flag.
 //! - `0 at 60 40; 1 at 65 40 -> Tagged 1 Opponent 0, …`: boats are set down at x and y in metres, and at the next look
-//!   exactly this happens, in this order; or `nothing`. Boats keep their places until they are set down elsewhere. `wait 10`
+//!   exactly this happens, in this order; or `nothing`. Boats keep their places until they are set down elsewhere. `0 goes 60 40` moves a boat
+//!   there from where it is. `0 asks tag` (or `grab`) is a request from then on. `wait 10`
 //!   lets 10 s pass before the look, `clock 0` sets the time. An event is its name, then its vehicle, flag or team.
 //! - `WHAT is VALUE`: a part of the referee's standing as JSON (`vehicles.0.tagged`, `score`, `flags.1.carrier`; a time may
 //!   be `LONG_AGO`), `directive VEHICLE`, or `keepout VEHICLE X Y` with the circle's x, y and radius.
@@ -79,6 +80,17 @@ fn step(scene: &mut Scene, words: &str) -> Told<()> {
     match words.split(' ').collect::<Vec<_>>()[..] {
         [vehicle, "at", x, y] => {
             scene.put(read(vehicle)?, read(x)?, read(y)?);
+        }
+        [vehicle, "goes", x, y] => {
+            scene.go(read(vehicle)?, read(x)?, read(y)?);
+        }
+        [vehicle, "asks", what] => {
+            let asks = &mut scene.asks[read::<usize>(vehicle)?];
+            match what {
+                "tag" => asks.tag = true,
+                "grab" => asks.grab = true,
+                _ => return Err(format!("nobody asks for {what}")),
+            }
         }
         ["wait", seconds] => {
             scene.wait(read(seconds)?);

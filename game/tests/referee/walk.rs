@@ -5,9 +5,9 @@ use crate::preset;
 use crate::scene::{TICK, field, flag, teams_of};
 use game::event::{Event, TagCause};
 use game::near::{Near, Pair};
-use game::rules::{Notes, Referee, Rules, Standing};
+use game::rules::{Look, Notes, Referee, Resolution, Rules, SideJudged, Standing};
 use game::stream::Stream;
-use game::{FlagId, Ned, SimTime, TeamId, VehicleId};
+use game::{FlagId, Leg, Ned, SimTime, TeamId, VehicleId};
 use proptest::prelude::*;
 
 /// Positions are whole multiples of this, so that the mirror image of a game is exact.
@@ -44,13 +44,14 @@ impl Walk {
         Referee::new(self.rules.clone(), field(extra), teams_of(self.boats, 2))
     }
 
-    /// Where every boat is, look by look. Boats hurry from one interesting place to the next.
-    fn fleets(&self) -> Vec<Vec<Ned>> {
+    /// How every boat moves, look by look. Boats hurry from one interesting place to the next.
+    fn fleets(&self) -> Vec<Vec<Leg>> {
         let mut stream = Stream::new(self.seed, "walk");
         let start_position = |_| Ned::from_xy(80.0, 40.0);
         let mut fleet: Vec<Ned> = (0..2 * self.boats).map(start_position).collect();
         let mut targets: Vec<Ned> = fleet.iter().map(|_| place(&mut stream)).collect();
         let mut look = |_| {
+            let before = fleet.clone();
             for (at, target) in fleet.iter_mut().zip(&mut targets) {
                 let way = *target - *at;
                 at.north += stepwise(way.north, &mut stream);
@@ -59,7 +60,7 @@ impl Walk {
                     *target = place(&mut stream);
                 }
             }
-            fleet.clone()
+            before.into_iter().zip(&fleet).map(|(from, to)| Leg { from, to: *to }).collect()
         };
         (0..LOOKS).map(&mut look).collect()
     }
@@ -88,23 +89,28 @@ fn stepwise(way: f64, stream: &mut Stream) -> f64 {
 }
 
 /// All pairs nearer than half as far again as they need to be.
-fn generous(fleet: &[Ned], reach_m: f64) -> Vec<Pair> {
+fn generous(fleet: &[Leg], reach_m: f64) -> Vec<Pair> {
     let reach_m = 1.5 * reach_m;
     let pairs = (0..fleet.len()).flat_map(|a| (a + 1..fleet.len()).map(move |b| (a, b)));
-    let pairs = pairs.map(|(a, b)| (a as u16, b as u16, fleet[a].distance_squared(fleet[b])));
+    let pairs = pairs.map(|(a, b)| (a as u16, b as u16, fleet[a].to.distance_squared(fleet[b].to)));
     let near = pairs.filter(|(_, _, distance_squared)| *distance_squared < reach_m * reach_m);
     near.map(|(a, b, distance_squared)| Pair { a, b, distance_squared }).collect()
 }
 
+/// A look at boats that need not ask.
+fn look<'a>(legs: &'a [Leg], near: &'a [Pair], now: SimTime) -> Look<'a> {
+    Look { legs, asks: &[], near, now }
+}
+
 /// The game of a walk, with what stood before each look: (before, after, fleet, events).
-fn play(walk: &Walk, mut each: impl FnMut(&Referee, &Standing, &Standing, &[Ned], &[Event])) {
+fn play(walk: &Walk, mut each: impl FnMut(&Referee, &Standing, &Standing, &[Leg], &[Event])) {
     let referee = walk.referee();
     let mut standing = referee.start(&mut Stream::new(walk.seed, "rules"));
     let (mut notes, mut near, mut now) = (Notes::default(), Near::default(), SimTime::ZERO);
     for fleet in walk.fleets() {
         let (before, mut events) = (standing.clone(), vec![]);
-        let pairs = near.pairs(|i| fleet[i], fleet.len(), referee.rules().reach_m());
-        referee.advance(&mut standing, &mut notes, &|i| fleet[i], pairs, now, &mut events);
+        let pairs = near.pairs(|i| fleet[i].to, fleet.len(), referee.rules().reach_m());
+        referee.advance(&mut standing, &mut notes, &look(&fleet, pairs, now), &mut events);
         each(&referee, &before, &standing, &fleet, &events);
         now = now + TICK;
     }
@@ -132,11 +138,16 @@ fn assert_consistent(referee: &Referee, before: &Standing, after: &Standing) {
     assert!(after.vehicles.iter().filter(|boat| boat.disabled).count() <= 1, "two power plays at once");
 }
 
-fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: &[Ned], event: Event) {
+fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: &[Leg], event: Event) {
     let (rules, field) = (referee.rules(), referee.field());
     let team = |vehicle: VehicleId| referee.team_of()[vehicle.index()];
-    let at = |vehicle: VehicleId| fleet[vehicle.index()];
-    let on_own_side = |vehicle| field.zones[team(vehicle).index()].contains(at(vehicle));
+    let at = |vehicle: VehicleId| fleet[vehicle.index()].to;
+    let on_own_side = |vehicle: VehicleId| {
+        let Leg { from, to } = fleet[vehicle.index()];
+        field.zones[team(vehicle).index()].contains(if rules.side_judged == SideJudged::AfterMove { to } else { from })
+    };
+    let in_turn = rules.resolution == Resolution::InTurn;
+    let carrier = |flag: FlagId| before.flags[flag.index()].carrier;
     match event {
         Event::Tagged { vehicle, cause: TagCause::Opponent(by) } => {
             assert_ne!(team(vehicle), team(by));
@@ -150,17 +161,18 @@ fn assert_lawful(referee: &Referee, before: &Standing, after: &Standing, fleet: 
         Event::Tagged { vehicle, cause: TagCause::Boundary } => assert!(!field.contains(at(vehicle))),
         Event::Grabbed { vehicle, flag } => {
             let boat = &after.vehicles[vehicle.index()];
-            assert!(!before.vehicles[vehicle.index()].tagged && !boat.tagged && !boat.disabled);
+            // In turn, a boat may be tagged after it grabbed, and a flag grabbed that the boundary has just brought home.
+            assert!(!before.vehicles[vehicle.index()].tagged && !boat.disabled && (!boat.tagged || in_turn));
             assert!(field.contains(at(vehicle)));
             assert!(at(vehicle).distance(field.flags[flag.index()].home) < rules.grab_radius_m);
-            assert_eq!(before.flags[flag.index()].carrier, None);
+            assert!(carrier(flag).is_none() || in_turn);
         }
         Event::Captured { vehicle, flag } => {
-            assert_eq!(before.flags[flag.index()].carrier, Some(vehicle));
+            assert_eq!(carrier(flag), Some(vehicle));
             assert!(field.contains(at(vehicle)) && on_own_side(vehicle) && !after.vehicles[vehicle.index()].disabled);
         }
         Event::FlagReturned { vehicle, flag } => {
-            assert_eq!(before.flags[flag.index()].carrier, Some(vehicle));
+            assert!(carrier(flag) == Some(vehicle) || in_turn);
             assert!(after.vehicles[vehicle.index()].tagged);
         }
         Event::Untagged(vehicle) => assert!(before.vehicles[vehicle.index()].tagged && field.contains(at(vehicle))),
@@ -213,9 +225,9 @@ proptest! {
         play(&walk, |referee, before, after, fleet, events| {
             let other = reflected.get_or_insert_with(|| mirror.standing(before));
             let fleet = mirror.fleet(fleet);
-            let pairs = near.pairs(|i| fleet[i], fleet.len(), referee.rules().reach_m());
+            let pairs = near.pairs(|i| fleet[i].to, fleet.len(), referee.rules().reach_m());
             let mut got = vec![];
-            referee.advance(other, &mut notes, &|i| fleet[i], pairs, after.now, &mut got);
+            referee.advance(other, &mut notes, &look(&fleet, pairs, after.now), &mut got);
             let want = sorted(events.iter().map(|event| mirror.event(*event)));
             assert_eq!(sorted(got.into_iter()), want, "at {}", after.now);
             assert_eq!(other, &mirror.standing(after), "at {}", after.now);
@@ -229,7 +241,7 @@ proptest! {
             let other = other.get_or_insert_with(|| before.clone());
             let pairs = generous(fleet, referee.rules().reach_m());
             let mut got = vec![];
-            referee.advance(other, &mut Notes::default(), &|i| fleet[i], &pairs, after.now, &mut got);
+            referee.advance(other, &mut Notes::default(), &look(fleet, &pairs, after.now), &mut got);
             assert_eq!(got, events);
             assert_eq!(other, after);
         });

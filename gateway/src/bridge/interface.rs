@@ -54,6 +54,8 @@ pub enum Input {
     BadOrder,
     /// An order from a time that the game has not come to.
     OrderAhead,
+    /// An order from before the boat joined.
+    OldOrder,
     /// Positions of the other real boats.
     Others(Vec<Ned>),
     /// An operator's command for this boat.

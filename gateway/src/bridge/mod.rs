@@ -152,6 +152,7 @@ impl Bridge {
             Input::Order(order, given) => self.take_order(now, *order, *given),
             Input::BadOrder => self.counters.bad_orders += 1,
             Input::OrderAhead => self.counters.orders_ahead += 1,
+            Input::OldOrder => self.counters.old_orders += 1,
             Input::Others(places) => self.others = (now, places.clone()),
             Input::Operator(OperatorCommand::Mission(mission)) => request = self.take_mission(now, mission, out),
             Input::Operator(command) => request = request_from(command),

@@ -146,6 +146,18 @@ pub enum LinkError {
     },
 }
 
+/// The way of a gateway's bytes to its boat.
+pub trait BoatLink {
+    /// Queues bytes; never blocks. What was queued before and has not been begun is displaced.
+    fn send(&self, bytes: Vec<u8>, tag: u64);
+
+    /// How many were displaced so far.
+    fn displaced(&self) -> u64;
+
+    /// Sends a shutdown message, as [`Link::send_and_wait`] does.
+    fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool;
+}
+
 /// A link that reconnects by itself, in threads of its own. Dropped, it closes everything within 200 ms: what
 /// was written still arrives, what was only queued is lost. A shutdown message is sent with
 /// [`Link::send_and_wait`].
@@ -200,6 +212,20 @@ impl Link {
     /// Breaks the connections now; a client connects again after the first wait.
     pub fn reconnect(&self) {
         self.threads.reconnect();
+    }
+}
+
+impl BoatLink for Link {
+    fn send(&self, bytes: Vec<u8>, tag: u64) {
+        Link::send(self, bytes, tag);
+    }
+
+    fn displaced(&self) -> u64 {
+        Link::displaced(self)
+    }
+
+    fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool {
+        Link::send_and_wait(self, bytes, limit)
     }
 }
 

@@ -8,20 +8,18 @@ use super::NodeError;
 use super::loop_input::LoopInput;
 use crate::supervisor::Scope;
 use bus::token::{self, Checked, Guard};
-use bus::{GATEWAY_PORT_KEY, Token, clock};
+use bus::{Connections, CurrentToken, GATEWAY_PORT_KEY, Slot, clock};
 use game::external::{FleetCommand, GatewayCommand, GatewayStatus, OperatorCommand, OperatorReply};
-use parking_lot::Mutex;
 use socket2::SockRef;
-use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::net::{IpAddr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::sync_channel;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// The most connections at once. Of more, that goes which has asked for nothing the longest.
+/// The most connections at once.
 const CONNECTIONS_MAX: usize = 128;
 /// A connection on which nothing comes for so long is closed, and one that does not read.
 const IDLE_MAX: Duration = Duration::from_secs(30);
@@ -38,24 +36,19 @@ pub(super) struct ControlPort {
     server: Arc<Server>,
     thread: Option<JoinHandle<()>>,
     pub(super) address: SocketAddr,
+    /// The token that it asks for.
+    pub(super) token: CurrentToken,
 }
 
 /// What all connections share.
 struct Server {
     vehicle: String,
-    token: Option<Token>,
+    token: CurrentToken,
     input: LoopInput,
     /// Whether the gateway loop runs.
     is_running: AtomicBool,
     is_closing: AtomicBool,
-    connections: Mutex<Connections>,
-}
-
-/// Those that are open, with their numbers; the one that has asked for nothing the longest comes first.
-#[derive(Default)]
-struct Connections {
-    open: VecDeque<(u64, TcpStream)>,
-    accepted: u64,
+    connections: Connections,
 }
 
 impl ControlPort {
@@ -63,7 +56,7 @@ impl ControlPort {
     pub(super) fn open(
         listen: SocketAddr,
         vehicle: &str,
-        token: Option<Token>,
+        token: CurrentToken,
         input: LoopInput,
     ) -> Result<ControlPort, NodeError> {
         let failed = |source| NodeError::ControlPort { listen, source };
@@ -73,16 +66,16 @@ impl ControlPort {
         let address = listener.local_addr().map_err(failed)?;
         let server = Arc::new(Server {
             vehicle: vehicle.to_owned(),
-            token,
+            token: token.clone(),
             input,
             is_running: AtomicBool::new(false),
             is_closing: AtomicBool::new(false),
-            connections: Mutex::default(),
+            connections: Connections::new(CONNECTIONS_MAX),
         });
         let shared = Arc::clone(&server);
         let thread = std::thread::Builder::new().name("control port".to_owned());
         let thread = thread.spawn(move || shared.accept(&listener)).map_err(failed)?;
-        Ok(ControlPort { server, thread: Some(thread), address })
+        Ok(ControlPort { server, thread: Some(thread), address, token })
     }
 
     /// From now on the gateway loop answers.
@@ -96,21 +89,15 @@ impl Drop for ControlPort {
         self.server.is_closing.store(true, Ordering::SeqCst);
         // A thread that panicked has nothing to give back.
         self.thread.take().map(JoinHandle::join).into_iter().for_each(drop);
-        self.server.connections.lock().open.drain(..).for_each(|(_, stream)| close(&stream));
+        self.server.connections.close();
     }
-}
-
-/// The thread that reads from it finds out.
-fn close(stream: &TcpStream) {
-    // It may be closed already.
-    drop(stream.shutdown(Shutdown::Both));
 }
 
 impl Server {
     fn accept(self: &Arc<Self>, listener: &TcpListener) {
         while !self.is_closing.load(Ordering::SeqCst) {
             match listener.accept() {
-                Ok((stream, _)) => self.open(stream),
+                Ok((stream, from)) => self.open(stream, from.ip()),
                 Err(e) if e.kind() == io::ErrorKind::WouldBlock => {}
                 // Too many open files, for example: it may pass.
                 Err(_) => clock::rest(LOOK),
@@ -119,22 +106,18 @@ impl Server {
     }
 
     /// A connection has its thread. One for which there is none finds itself closed.
-    fn open(self: &Arc<Self>, stream: TcpStream) {
+    fn open(self: &Arc<Self>, stream: TcpStream, from: IpAddr) {
         let Ok(other) = stream.try_clone() else { return };
-        let number = self.connections.lock().add(other);
+        // The thread that reads from it finds out; it may be closed already.
+        let slot = self.connections.admit(from, move || drop(other.shutdown(Shutdown::Both)));
         let server = Arc::clone(self);
-        let serve = move || {
-            // However it ended, nobody misses it.
-            drop(server.serve(number, &stream));
-            server.connections.lock().remove(number);
-        };
-        if std::thread::Builder::new().name("control port".to_owned()).spawn(serve).is_err() {
-            self.connections.lock().remove(number);
-        }
+        // However it ends, nobody misses it.
+        let serve = move || drop(server.serve(&slot, &stream));
+        drop(std::thread::Builder::new().name("control port".to_owned()).spawn(serve));
     }
 
     /// Answers requests, line by line, until one is garbage or too long, or none comes.
-    fn serve(&self, number: u64, mut stream: &TcpStream) -> io::Result<()> {
+    fn serve(&self, slot: &Slot, mut stream: &TcpStream) -> io::Result<()> {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(IDLE_MAX))?;
         stream.set_write_timeout(Some(WRITE_MAX))?;
@@ -147,10 +130,12 @@ impl Server {
             if line.pop() != Some(b'\n') {
                 return Ok(());
             }
+            // Before the check: what was checked while no token was known never reaches the loop.
+            let is_running = self.is_running.load(Ordering::SeqCst);
             let (mut answer, is_garbage) = match guard.check(GATEWAY_PORT_KEY, &line, GatewayCommand::needs_token) {
                 Checked::Granted(command) => {
-                    self.connections.lock().renew(number);
-                    (token::answer(&self.execute(command)), false)
+                    slot.touch();
+                    (token::answer(&self.execute(command, is_running)), false)
                 }
                 Checked::Challenged(challenge) => (challenge, false),
                 Checked::Garbage(e) => {
@@ -165,7 +150,7 @@ impl Server {
         }
     }
 
-    fn execute(&self, command: GatewayCommand) -> OperatorReply {
+    fn execute(&self, command: GatewayCommand, is_running: bool) -> OperatorReply {
         let status = || GatewayCommand::Boat { name: self.vehicle.clone(), command: OperatorCommand::Status };
         let (stop, ask) = match command {
             GatewayCommand::Boat { name, .. } if name != self.vehicle => {
@@ -179,7 +164,7 @@ impl Server {
         if let Some(scope) = stop {
             self.input.stop(scope);
         }
-        if !self.is_running.load(Ordering::SeqCst) {
+        if !is_running {
             let is_free = matches!(&ask, GatewayCommand::Boat { command: OperatorCommand::Status, .. });
             let refused = (!is_free).then(|| "there is no link to the boat yet".to_owned());
             return OperatorReply { refused, status: self.status_before() };
@@ -203,34 +188,11 @@ impl Server {
     }
 }
 
-impl Connections {
-    /// Adds one, and closes that which has asked for nothing the longest if there are too many.
-    fn add(&mut self, stream: TcpStream) -> u64 {
-        self.accepted += 1;
-        self.open.push_back((self.accepted, stream));
-        while self.open.len() > CONNECTIONS_MAX {
-            self.open.pop_front().iter().for_each(|(_, stream)| close(stream));
-        }
-        self.accepted
-    }
-
-    fn renew(&mut self, number: u64) {
-        if let Some(connection) = self.remove(number) {
-            self.open.push_back(connection);
-        }
-    }
-
-    fn remove(&mut self, number: u64) -> Option<(u64, TcpStream)> {
-        let at = self.open.iter().position(|(open, _)| *open == number)?;
-        self.open.remove(at)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::loop_input::loop_input;
     use super::*;
-    use bus::{BusError, ask_gateway};
+    use bus::{BusError, Token, ask_gateway};
 
     const LIMIT: Duration = Duration::from_secs(10);
 
@@ -241,7 +203,7 @@ mod tests {
     fn port() -> (ControlPort, Token, super::super::loop_input::LoopOutput) {
         let (input, output) = loop_input();
         let (token, here) = (Token::random(), SocketAddr::from(([127, 0, 0, 1], 0)));
-        let port = ControlPort::open(here, "blue_one", Some(token.clone()), input).expect("a free port");
+        let port = ControlPort::open(here, "blue_one", Some(token.clone()).into(), input).expect("a free port");
         (port, token, output)
     }
 
@@ -284,7 +246,6 @@ mod tests {
             assert_eq!(stopped.expect("a reply").refused, None);
             assert!(output.take_stop(Scope::Fleet));
         }
-        assert!(port.server.connections.lock().open.len() <= CONNECTIONS_MAX);
         drop((idle, garbage));
     }
 

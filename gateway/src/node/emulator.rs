@@ -8,9 +8,9 @@ use crate::nmea::Operator;
 use crate::nmea::date_and_time;
 use agent::{Mind, MindRunner};
 use bus::game_search::{self, GameSearch};
-use bus::{Net, Patience, Priority, Publisher, SimState, SimWatch, Watched};
+use bus::{Patience, Place, Priority, Publisher, SimState, SimWatch, Watched};
 use game::message::Role;
-use game::topic::{self, GameName, Part};
+use game::topic::{self, GameName};
 use game::{Order, Picture, SimTime, VehicleId, codec};
 use recording::utc;
 use std::sync::Arc;
@@ -21,8 +21,8 @@ use std::time::Duration;
 pub struct EmulatorSettings {
     /// The game; without a name, the only one there is.
     pub game: Option<GameName>,
-    /// How the sim is reached.
-    pub net: Net,
+    /// Where the sim is.
+    pub place: Place,
     /// The boat's name in the game.
     pub vehicle: String,
     /// Where the back seat connects.
@@ -66,7 +66,7 @@ struct Incoming {
 pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut looking = |reason: &str| notify(NodeEvent::Looking { reason });
-    let (bus, game, info) = search.game(&mut looking, &settings.net, settings.game.as_ref())?;
+    let (bus, game, info) = search.game(&mut looking, &settings.place, settings.game.as_ref())?;
     let vehicle = info.scenario.vehicle_named(&settings.vehicle)?;
     // A back seat runs in real time.
     pace_factor(&info.pace, true)?;
@@ -81,7 +81,6 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
         began: date_and_time(utc::now_ns()),
     };
     let incoming = Arc::new(Watched::new(Incoming::default()));
-    let _alive = bus.show_alive(topic::alive(&game, Part::Agent, &bus.id()))?;
     let pictures = Arc::clone(&incoming);
     let _subscription = bus.subscribe(topic::picture(&game, scenario, scenario.team_of(vehicle)), move |bytes| {
         pictures.visit(|incoming| incoming.picture = Some(bytes.to_vec()));
@@ -95,15 +94,17 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let names = [settings.vehicle.clone()];
     let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
     let sim = SimWatch::open(&bus, &game, Patience::of_player(settings.silence))?;
-    let (ticket, _) = search.until(&mut say, || game_search::join(&bus, &game, Role::Agent, &names))?;
+    let (place, all) = (&settings.place, (&game, scenario));
+    let joined = search.until(&mut say, || game_search::join(&bus, place, all, Role::Agent, &names))?;
     let boat = EmulatedBoat { vehicle, emulator: Emulator::new(plan) };
     let mut node = EmulatorNode {
         runner: MindRunner::new([(vehicle, Box::new(boat))]),
-        ticket,
+        ticket: joined.ticket,
         sim,
         now: SimTime::ZERO,
         links: [Some(back_seat), primary],
-        orders: bus.publisher(topic::orders(&game, &bus.id()), Priority::Normal)?,
+        orders: bus
+            .publisher(topic::orders(&game, scenario, &[scenario.team_of(vehicle)], &bus.id()), Priority::Normal)?,
         operator: Operator::Secondary,
         sent: 0,
     };

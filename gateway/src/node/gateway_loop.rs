@@ -5,12 +5,12 @@ use super::latency::Latency;
 use super::loop_input::{Call, LoopOutput};
 use super::{NodeError, NodeEvent};
 use crate::bridge::{Bridge, Event, Input, NavOut, Output};
-use crate::game_clock::GameClock;
-use crate::link::{Link, LinkEvent};
+use crate::game_clock::{GameClock, OrderTime};
+use crate::link::{BoatLink, LinkEvent};
 use crate::record::StepEncoder;
 use crate::supervisor::Scope;
 use bus::token::{self, Checked, Guard};
-use bus::{Publisher, Query, clock};
+use bus::{CurrentToken, Publisher, Query, clock};
 use game::codec;
 use game::external::{
     FleetCommand, GatewayCommand, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply,
@@ -30,13 +30,15 @@ const STATUS_EVERY: Duration = Duration::from_millis(500);
 const SHUTDOWN_MAX: Duration = Duration::from_millis(500);
 /// The most sentences with orders whose completion is awaited.
 const WRITING_MAX: usize = 64;
+/// What has waited longer for the loop is too old to go by: it was suspended, or had no processor.
+const WAITED_MAX: Duration = Duration::from_millis(500);
 /// A message that comes again within this time is not repeated.
 const REMARK_AGAIN: Duration = Duration::from_secs(10);
 
 /// The loop of a gateway, with everything it drives.
 pub(super) struct GatewayLoop<'a> {
     pub(super) bridge: Bridge,
-    pub(super) link: Link,
+    pub(super) link: Box<dyn BoatLink>,
     pub(super) clock: Clock,
     pub(super) input: LoopOutput,
     pub(super) game_clock: GameClock,
@@ -52,8 +54,8 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) counters: Counters,
     pub(super) notify: &'a mut dyn FnMut(NodeEvent<'_>),
     pub(super) guard: Guard,
-    /// The control port.
-    pub(super) control: SocketAddr,
+    /// The control port, where there is one, and the token that it asks for.
+    pub(super) port: Option<(SocketAddr, CurrentToken)>,
 }
 
 /// What the loop keeps track of.
@@ -138,7 +140,7 @@ impl GatewayLoop<'_> {
     /// The status of core and shell.
     pub(super) fn full_status(&self) -> GatewayStatus {
         let mut status = self.bridge.status(self.clock.now());
-        status.control = Some(self.control.to_string());
+        status.control = self.port.as_ref().map(|(address, _)| address.to_string());
         if status.link != "up" {
             status.link.clone_from(&self.counters.link);
         }
@@ -159,13 +161,17 @@ impl GatewayLoop<'_> {
             Call::Release => self.step(Input::Fleet(FleetCommand::Release), None),
             // What it is about was read before.
             Call::Look => Ok(()),
-            Call::Joined(ticket, vehicles) if vehicles == [self.vehicle] => {
-                self.counters.ticket = Some(ticket);
-                self.game_clock.forget();
+            Call::Joined(joined) if joined.vehicles == [self.vehicle] => {
+                self.counters.ticket = Some(joined.ticket);
+                self.counters.game_now = joined.now;
+                self.game_clock.join(self.clock.at(joined.asked), joined.now);
+                if let Some((address, token)) = &self.port {
+                    (self.notify)(NodeEvent::ControlPort { address: *address, token: token.get() });
+                }
                 self.remark("joined: the sim takes reports of the boat");
                 self.step(Input::Joined, None)
             }
-            Call::Joined(..) => {
+            Call::Joined(_) => {
                 Err(NodeError::Refused("the sim let another boat in than the one that asked".to_owned()))
             }
             Call::SimGone => {
@@ -185,6 +191,10 @@ impl GatewayLoop<'_> {
             LinkEvent::Up { name, .. } => {
                 self.remark(&format!("connected to {name}"));
                 self.step(Input::LinkUp, None)
+            }
+            LinkEvent::Bytes { at, .. } if clock::since(at) > WAITED_MAX => {
+                self.remark("what the boat sent has waited for too long: it is not used");
+                self.step(Input::Tick, None)
             }
             LinkEvent::Bytes { at, bytes, .. } => self.step(Input::Bytes(bytes), Some(at)),
             LinkEvent::Down { reason, .. } => {
@@ -211,8 +221,13 @@ impl GatewayLoop<'_> {
     fn take_order(&mut self) -> Result<(), NodeError> {
         let taken = self.input.latest_order.lock().take();
         let Some((message, came)) = taken else { return Ok(()) };
-        if !self.game_clock.take(self.clock.at(came), &message) {
-            return self.step(Input::OrderAhead, None);
+        if clock::since(came) > WAITED_MAX {
+            return self.step(Input::OldOrder, None);
+        }
+        match self.game_clock.check(self.clock.at(came), &message) {
+            OrderTime::Ahead => return self.step(Input::OrderAhead, None),
+            OrderTime::BeforeJoining => return self.step(Input::OldOrder, None),
+            OrderTime::Plausible => {}
         }
         self.counters.game_now = message.stamp.valid_ns;
         if message.order.vehicle != self.vehicle {

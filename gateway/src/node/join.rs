@@ -2,7 +2,8 @@
 
 use super::loop_input::Call;
 use bus::game_search::{self, GameSearch, NotFound};
-use bus::{Bus, BusError, InboxSender, NodeThread, Patience, SimWatch};
+use bus::{Bus, BusError, InboxSender, NodeThread, Patience, Place, SimWatch};
+use game::Scenario;
 use game::message::Role;
 use game::topic::GameName;
 use std::sync::Arc;
@@ -20,12 +21,20 @@ pub(super) struct Join {
 
 impl Join {
     /// Begins to ask for this vehicle.
-    pub(super) fn begin(bus: &Bus, game: &GameName, vehicle: &str, calls: InboxSender<Call>) -> Result<Join, BusError> {
+    pub(super) fn begin(
+        bus: &Bus,
+        place: &Place,
+        (game, scenario): (&GameName, &Scenario),
+        vehicle: &str,
+        calls: InboxSender<Call>,
+    ) -> Result<Join, BusError> {
         // Its token is all that counts: a sim that hangs is waited for, and its boat rests when no orders come.
         let sim = SimWatch::open(bus, game, Patience::of_player(Duration::MAX))?;
         let stop = Arc::new(AtomicBool::new(false));
-        let (bus, game, vehicles, ended) = (bus.clone(), game.clone(), [vehicle.to_owned()], Arc::clone(&stop));
-        let thread = NodeThread::start(move || keep_joined(&bus, &game, &vehicles, &sim, &ended, &calls));
+        let (bus, place, game, scenario) = (bus.clone(), place.clone(), game.clone(), scenario.clone());
+        let joining = Joining { bus, place, game, scenario, vehicle: [vehicle.to_owned()] };
+        let ended = Arc::clone(&stop);
+        let thread = NodeThread::start(move || joining.keep_joined(&sim, &ended, &calls));
         Ok(Join { stop, _thread: thread })
     }
 }
@@ -37,28 +46,33 @@ impl Drop for Join {
     }
 }
 
-/// Joins, waits until the sim is gone, and begins again with the next.
-fn keep_joined(
-    bus: &Bus,
-    game: &GameName,
-    vehicles: &[String],
-    sim: &SimWatch,
-    stop: &AtomicBool,
-    calls: &InboxSender<Call>,
-) {
-    while !stop.load(Ordering::Relaxed) {
-        if !sim.find(LOOK) {
-            continue;
+/// What the thread joins, with what, and by which way.
+struct Joining {
+    bus: Bus,
+    place: Place,
+    game: GameName,
+    scenario: Scenario,
+    vehicle: [String; 1],
+}
+
+impl Joining {
+    /// Joins, waits until the sim is gone, and begins again with the next.
+    fn keep_joined(&self, sim: &SimWatch, stop: &AtomicBool, calls: &InboxSender<Call>) {
+        let Joining { bus, place, game, scenario, vehicle } = self;
+        while !stop.load(Ordering::Relaxed) {
+            if !sim.find(LOOK) {
+                continue;
+            }
+            let mut say = |reason: &str| calls.put(Call::Remark(format!("joining: {reason}")));
+            let joined = GameSearch::new(Duration::MAX, stop)
+                .until(&mut say, || game_search::join(bus, place, (game, scenario), Role::Gateway, vehicle));
+            match joined {
+                Ok(joined) => calls.put(Call::Joined(joined)),
+                Err(NotFound::Refused(refusal)) => calls.put(Call::Remark(format!("the sim refuses: {refusal}"))),
+                Err(NotFound::InTime(..)) => return,
+            }
+            while !stop.load(Ordering::Relaxed) && !sim.is_lost(LOOK) {}
+            calls.put(Call::SimGone);
         }
-        let mut say = |reason: &str| calls.put(Call::Remark(format!("joining: {reason}")));
-        let joined = GameSearch::new(Duration::MAX, stop)
-            .until(&mut say, || game_search::join(bus, game, Role::Gateway, vehicles));
-        match joined {
-            Ok((ticket, vehicles)) => calls.put(Call::Joined(ticket, vehicles)),
-            Err(NotFound::Refused(refusal)) => calls.put(Call::Remark(format!("the sim refuses: {refusal}"))),
-            Err(NotFound::InTime(..)) => return,
-        }
-        while !stop.load(Ordering::Relaxed) && !sim.is_lost(LOOK) {}
-        calls.put(Call::SimGone);
     }
 }

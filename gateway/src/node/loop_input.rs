@@ -2,8 +2,8 @@
 
 use crate::link::LinkEvent;
 use crate::supervisor::Scope;
+use bus::game_search::Joined;
 use bus::{Inbox, InboxSender, Query, inbox};
-use game::VehicleId;
 use game::external::{ExternalOrder, GatewayCommand, OperatorReply};
 use parking_lot::Mutex;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ pub(super) enum Call {
     /// There is an E-stop or a request, which are read before calls.
     Look,
     Release,
-    Joined(u64, Vec<VehicleId>),
+    Joined(Joined),
     SimGone,
     Remark(String),
 }

@@ -16,13 +16,13 @@ pub use emulator::{EmulatorSettings, emulate};
 use crate::bridge::{Bridge, Event, Plan};
 use crate::declination::{DeclinationError, declination_deg};
 use crate::game_clock::GameClock;
-use crate::link::{Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
+use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
 use crate::nmea::date_and_time;
 use crate::record::{self, StepEncoder};
 use crate::supervisor::Scope;
 use bus::game_search::{self, GameSearch, NotFound};
 use bus::token::{Checked, Guard};
-use bus::{Bus, BusError, Declaration, Net, Priority};
+use bus::{Bus, BusError, Declaration, Place, Priority, Token};
 use clock::Clock;
 use control_port::ControlPort;
 use game::external::{GatewayStatus, OperatorCommand};
@@ -30,11 +30,11 @@ use game::frame::LatLon;
 use game::gateway::Gateway;
 use game::message::{Control, GameInfo, Role};
 use game::scenario::{Source, UnknownVehicle};
-use game::topic::{self, GameName, Part};
+use game::topic::{self, GameName};
 use game::{SimTime, VehicleId, codec};
 use gateway_loop::{Counters, GatewayLoop};
 use join::Join;
-use loop_input::{Call, LoopInput, loop_input};
+use loop_input::{Call, LoopInput, LoopOutput, loop_input};
 use recording::{NewFile, RecordError, Recorder, utc};
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -47,16 +47,10 @@ use thiserror::Error;
 pub struct Settings {
     /// The game; without a name, the only one there is.
     pub game: Option<GameName>,
-    /// How the sim is reached.
-    pub net: Net,
+    /// Where the sim is.
+    pub place: Place,
     /// The boat's name in the game.
     pub vehicle: String,
-    /// The address of the boat.
-    pub link: LinkAddress,
-    /// Where the control port listens; port 0 is any that is free.
-    pub control: SocketAddr,
-    /// After this long without a byte the boat counts as gone.
-    pub silence: Duration,
     /// How it is driven and stopped.
     pub gateway: Gateway,
     /// Whether it arms by itself, once.
@@ -72,6 +66,19 @@ pub struct Settings {
     /// Set from outside to end.
     pub stop: Arc<AtomicBool>,
 }
+
+/// What a gateway has beside the network of the game: the way to its boat, and a port for operators.
+pub struct Outside {
+    /// The address of the boat.
+    pub link: LinkAddress,
+    /// After this long without a byte the boat counts as gone.
+    pub silence: Duration,
+    /// Where the control port listens; port 0 is any that is free.
+    pub control: SocketAddr,
+}
+
+/// What a link tells its gateway.
+pub type OnLinkEvent = Box<dyn Fn(LinkEvent) + Send + Sync>;
 
 /// What a node reports to the program that runs it.
 pub enum NodeEvent<'a> {
@@ -91,8 +98,13 @@ pub enum NodeEvent<'a> {
     Status(&'a GatewayStatus),
     /// It has ended, with this status.
     Ended(&'a GatewayStatus),
-    /// The control port is open.
-    ControlPort(SocketAddr),
+    /// The control port is open, or asks for another token from now on.
+    ControlPort {
+        /// Where it listens.
+        address: SocketAddr,
+        /// The token that it asks for, if that is known.
+        token: Option<Token>,
+    },
     /// Others can connect here.
     Listening {
         /// Which port this is.
@@ -152,27 +164,58 @@ pub enum NodeError {
 /// # Errors
 /// [`NodeError`] if there is no such game or boat, or if the network, the link or the recording cannot work. A boat or a
 /// sim that goes away is none: the gateway waits for it.
-pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
-    let (input, output) = loop_input();
-    // Before everything that can take its time.
-    let port = ControlPort::open(settings.control, &settings.vehicle, settings.net.token.clone(), input.clone())?;
-    notify(NodeEvent::ControlPort(port.address));
+pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    let input = loop_input();
+    // The control port asks for the token that is known by then, and is there before everything that can take its time.
+    let mut search = GameSearch::new(settings.wait, &settings.stop);
+    let net = search.until(&mut |_| (), || settings.place.net(settings.game.as_ref()))?;
+    // No certificate is shown at the port: where a game has keys and no token, the port has one of its own.
+    let own = net.keys.is_some() && net.token.is_none();
+    let token = if own { Some(Token::random()).into() } else { settings.place.token().clone() };
+    let port = ControlPort::open(outside.control, &settings.vehicle, token, input.0.clone())?;
+    notify(NodeEvent::ControlPort { address: port.address, token: port.token.get() });
+    let open = |on_event: OnLinkEvent| -> Result<Box<dyn BoatLink>, LinkError> {
+        let link_settings = LinkSettings { silence: Some(outside.silence), ..LinkSettings::default() };
+        Ok(Box::new(Link::open(&outside.link, link_settings, on_event)?))
+    };
+    connect(settings, input, Some(port), open, notify)
+}
+
+/// As [`serve`], without a control port and over a link that `open` gives: for networks that are simulated.
+///
+/// # Errors
+/// [`NodeError`], as there.
+pub fn serve_over(
+    settings: &Settings,
+    open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
+    notify: &mut dyn FnMut(NodeEvent<'_>),
+) -> Result<(), NodeError> {
+    connect(settings, loop_input(), None, open, notify)
+}
+
+/// Finds the game, joins it, opens the link, and runs the loop.
+fn connect(
+    settings: &Settings,
+    (input, output): (LoopInput, LoopOutput),
+    port: Option<ControlPort>,
+    open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
+    notify: &mut dyn FnMut(NodeEvent<'_>),
+) -> Result<(), NodeError> {
+    let (place, named) = (&settings.place, settings.game.as_ref());
     let mut search = GameSearch::new(settings.wait, &settings.stop);
     let mut looking = |reason: &str| notify(NodeEvent::Looking { reason });
-    let (bus, game, info) = search.game(&mut looking, &settings.net, settings.game.as_ref())?;
+    let (bus, game, info) = search.game(&mut looking, place, named)?;
     let vehicle = external_vehicle(&info, &settings.vehicle)?;
     let factor = pace_factor(&info.pace, settings.at_game_pace)?;
     let plan = plan(settings, &info, vehicle)?;
     let recorder = recorder(settings, &plan)?;
-    let _alive = bus.show_alive(topic::alive(&game, Part::Gateway, &bus.id()))?;
     // Nothing is sent to a boat that another gateway has. The thread that keeps it joined asks again, and gets it again.
     let names = [settings.vehicle.clone()];
     let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
-    search.until(&mut say, || game_search::join(&bus, &game, Role::Gateway, &names))?;
+    search.until(&mut say, || game_search::join(&bus, place, (&game, &info.scenario), Role::Gateway, &names))?;
     let subscriptions = subscribe(&bus, &game, &info, vehicle, &input)?;
-    let link_settings = LinkSettings { silence: Some(settings.silence), ..LinkSettings::default() };
     let calls = input.calls.clone();
-    let link = Link::open(&settings.link, link_settings, move |event: LinkEvent| calls.put(Call::Link(event)))?;
+    let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
     let others = info.scenario.externals().filter(|other| *other != vehicle).collect();
     let mut gateway_loop = GatewayLoop {
         game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),
@@ -189,11 +232,11 @@ pub fn serve(settings: &Settings, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Resu
         encoder: StepEncoder::new(&settings.vehicle, vehicle),
         counters: Counters::new(),
         notify: &mut *notify,
-        guard: Guard::new(settings.net.token.clone()),
-        control: port.address,
+        guard: Guard::new(place.token().clone()),
+        port: port.as_ref().map(|port| (port.address, port.token.clone())),
     };
-    let join = Join::begin(&bus, &game, &settings.vehicle, input.calls)?;
-    port.begin();
+    let join = Join::begin(&bus, place, (&game, &info.scenario), &settings.vehicle, input.calls)?;
+    port.iter().for_each(ControlPort::begin);
     let result = gateway_loop.run(&settings.stop);
     let status = gateway_loop.full_status();
     // The boat is stopped before the network closes.

@@ -1,6 +1,7 @@
 //! The emulated boat alone: what it does not follow, and what it sends. The rest is in `scenarios/emulator.txt`.
 
-use crate::rig::{Rig, emulated, plan};
+use crate::boat::emulated;
+use crate::rig::{Rig, plan};
 use crate::script::{play, played};
 use crate::tamper::with_checksum;
 use game::{Order, SimTime};

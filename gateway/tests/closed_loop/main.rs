@@ -2,6 +2,7 @@
 //!
 //! Most of it is text: `scenarios/README.md`.
 
+mod boat;
 mod emulator;
 mod oracle;
 mod random;

@@ -1,27 +1,16 @@
 //! The test rig: a boat with simple dynamics, its emulated front seat, the gateway, and a link with injectable faults.
 
+use crate::boat::{Boat, STEP_S, emulated};
 use crate::oracle::Oracle;
 use crate::tamper::{Tamper, with_checksum};
 use game::external::{FleetCommand, OperatorCommand};
-use game::frame::{LatLon, Ned, Rotation};
-use game::picture::{Imu, Nav, OwnBoat};
-use game::{Order, SimTime, VehicleId};
+use game::frame::Ned;
+use game::{Order, SimTime};
 use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan};
 use gateway::emulator::{self, Emulator, Port};
-use gateway::nmea::{Date, TimeOfDay};
 use std::path::Path;
 
-const STEP_S: f64 = 0.01;
 const TELEMETRY_STEPS: u64 = 10;
-
-/// A boat that takes up thrust with a lag.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Boat {
-    pub(crate) at: Ned,
-    pub(crate) psi_rad: f64,
-    pub(crate) speed_m_s: f64,
-    pub(crate) turn_rad_s: f64,
-}
 
 pub(crate) struct Rig {
     pub(crate) now: SimTime,
@@ -73,18 +62,6 @@ pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
         field: game.field,
         declination_rad: (-12.5_f64).to_radians(),
         arms_itself,
-    }
-}
-
-/// The plan of an emulated boat.
-pub(crate) fn emulated(datum: LatLon, declination_rad: f64) -> emulator::Plan {
-    emulator::Plan {
-        datum,
-        declination_rad,
-        watchdog_s: None,
-        integers: false,
-        extra: vec![],
-        began: (Date { year: 2026, month: 11, day: 20 }, TimeOfDay(54_302_000)),
     }
 }
 
@@ -197,7 +174,8 @@ impl Rig {
     fn step(&mut self) {
         self.steps += 1;
         self.now = SimTime::from_s(STEP_S * self.steps as f64);
-        self.move_boat();
+        self.boat_order = self.emulator.order(self.now);
+        self.boat.step(self.boat_order);
         if self.steps.is_multiple_of(TELEMETRY_STEPS) {
             self.send_telemetry();
             if let Some(order) = self.order {
@@ -212,37 +190,10 @@ impl Rig {
         self.remark = self.emulator.take_remark().unwrap_or_else(|| std::mem::take(&mut self.remark));
     }
 
-    /// Thrust and speed with a lag of two seconds, difference and turn with one of half a second.
-    fn move_boat(&mut self) {
-        self.boat_order = self.emulator.order(self.now);
-        let (speed_m_s, turn_rad_s) = match self.boat_order {
-            Order::Hold => (0.0, 0.0),
-            Order::Thrust { port, starboard } => (1.6 * (port + starboard), 1.5 * (port - starboard)),
-            Order::Steer { heading_rad, speed_m_s } => {
-                let error_rad = game::angle::wrap_pi(heading_rad - self.boat.psi_rad);
-                (speed_m_s, error_rad.clamp(-0.5, 0.5))
-            }
-        };
-        let boat = &mut self.boat;
-        boat.speed_m_s += (speed_m_s - boat.speed_m_s) * STEP_S / 2.0;
-        boat.turn_rad_s += (turn_rad_s - boat.turn_rad_s) * STEP_S / 0.5;
-        boat.psi_rad = game::angle::wrap_pi(boat.psi_rad + boat.turn_rad_s * STEP_S);
-        boat.at = boat.at + Rotation::from_heading(boat.psi_rad).ahead().scaled(boat.speed_m_s * STEP_S);
-    }
-
     /// The boat's sensors measure, and it sends telemetry.
     fn send_telemetry(&mut self) {
         let place = self.pinned.unwrap_or(self.boat.at + self.offset);
-        let nav = Nav {
-            north_m: place.north,
-            east_m: place.east,
-            psi_rad: self.boat.psi_rad,
-            surge_m_s: self.boat.speed_m_s,
-            sway_m_s: 0.0,
-            yaw_rate_rad_s: self.boat.turn_rad_s,
-        };
-        let imu = Imu { down_m_s2: -9.8, ..Imu::default() };
-        let own = OwnBoat { fix_ns: self.now, imu, ..OwnBoat::new(VehicleId(0), nav) };
+        let own = self.boat.measured(self.now, place);
         if !self.frozen {
             self.emulator.observe(self.now, &own);
         }

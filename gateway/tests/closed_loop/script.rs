@@ -228,6 +228,7 @@ fn value(rig: &Rig, name: &str) -> String {
         ["boat-order"] => match rig.boat_order {
             Order::Hold => "hold".to_owned(),
             Order::Steer { heading_rad, speed_m_s } => format!("steer {:.3} {speed_m_s:.3}", heading_rad.to_degrees()),
+            Order::Turn { by_rad, speed_m_s } => format!("turn {:.3} {speed_m_s:.3}", by_rad.to_degrees()),
             Order::Thrust { port, starboard } => format!("thrust {port:.3} {starboard:.3}"),
         },
         ["after"] => rig.after_s.to_string(),

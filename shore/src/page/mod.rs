@@ -7,7 +7,6 @@
 mod access;
 mod asset;
 mod chart;
-mod connections;
 pub mod live;
 mod message;
 pub mod replay;
@@ -21,6 +20,7 @@ mod view;
 pub use message::Mode;
 pub use request::PageRequest;
 pub use rose::{HelmAnswer, is_sound};
+pub use session::PageSession;
 pub use view::{Access, Budget, Changes, Outgoing, View, Viewer};
 
 use access::AccessControl;

@@ -124,7 +124,7 @@ fn whole(per_cent: f64) -> u8 {
 pub(super) mod tests {
     use super::*;
     use game::SimTime;
-    use game::helm::FunctionReport;
+    use game::helm::{DriftReport, FunctionReport};
     use proptest::prelude::*;
 
     pub(in super::super) fn scenario() -> Scenario {
@@ -145,6 +145,8 @@ pub(super) mod tests {
             mode: "attacking".into(),
             course_deg: Some(90.0),
             speed_m_s: Some(1.0),
+            heading_offset_deg: 0.0,
+            drift: DriftReport::default(),
             hold: None,
             value: None,
             courses: 2,

@@ -2,32 +2,33 @@
 
 use super::access::AccessControl;
 use super::asset;
-use super::connections::{Connections, Place};
 use super::socket::{self, RECEIVED_MAX, Shown};
 use super::view::Access;
 use axum::Router;
 use axum::body::Body;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::ws::rejection::WebSocketUpgradeRejection;
-use axum::extract::{Request, State};
+use axum::extract::{Extension, Request, State};
 use axum::http::header::{HOST, HeaderMap, HeaderName, ORIGIN};
 use axum::http::{Method, Response, StatusCode, Uri};
 use axum::middleware::{self, Next};
 use axum::routing::get;
+use bus::{Connections, Slot};
 use hyper_util::rt::{TokioExecutor, TokioIo, TokioTimer};
 use hyper_util::server::conn::auto::Builder;
 use hyper_util::service::TowerToHyperService;
 use std::future::Future;
+use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::sync::oneshot;
 use tokio::time::sleep;
 use tokio_io_timeout::TimeoutStream;
 
-/// The most pages at a time.
+/// The most pages at a time, of those without the token.
 const PAGES_MAX: usize = 64;
-/// Connections reserved for pages with the token, so that observers cannot shut out operators.
+/// The most pages with the token: those without it take no room from them.
 const OPERATORS_MAX: usize = 8;
 /// The most connections at a time that are no websockets yet.
 const CONNECTIONS_MAX: usize = 192;
@@ -45,18 +46,26 @@ const REQUEST: Duration = Duration::from_secs(10);
 struct AppState {
     access_control: Arc<AccessControl>,
     shown: Shown,
-    observers: Arc<Semaphore>,
-    operators: Arc<Semaphore>,
+    viewers: Connections,
+    operators: Connections,
 }
 
 impl AppState {
-    /// A permit for a page with this query, and what it may do.
-    fn open_viewer(&self, query: Option<&str>) -> Option<(OwnedSemaphorePermit, Access)> {
+    /// Room for a page from this address with this query, and what it may do.
+    fn admit(&self, from: IpAddr, query: Option<&str>) -> (Room, Access) {
         let access = Access { rights: self.access_control.has_rights(query) };
-        let permit = |of: &Arc<Semaphore>| Arc::clone(of).try_acquire_owned().ok();
-        let own = if access.rights && self.access_control.has_token() { permit(&self.operators) } else { None };
-        Some((own.or_else(|| permit(&self.observers))?, access))
+        let is_operator = access.rights && self.access_control.has_token();
+        (admit(if is_operator { &self.operators } else { &self.viewers }, from), access)
     }
+}
+
+/// Room for a connection, and the word that somebody else needs it.
+pub(super) type Room = (Slot, oneshot::Receiver<()>);
+
+fn admit(connections: &Connections, from: IpAddr) -> Room {
+    let (close, closed) = oneshot::channel();
+    // It may have ended by itself.
+    (connections.admit(from, move || close.send(()).unwrap_or_default()), closed)
 }
 
 /// Answers until the end.
@@ -67,12 +76,11 @@ pub(super) async fn serve(
     end: impl Future<Output = ()>,
 ) -> std::io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
-    let permits = |count| Arc::new(Semaphore::new(count));
     let app = AppState {
         access_control: Arc::new(access_control),
         shown,
-        observers: permits(PAGES_MAX),
-        operators: permits(OPERATORS_MAX),
+        viewers: Connections::new(PAGES_MAX),
+        operators: Connections::new(OPERATORS_MAX),
     };
     let site = Router::new()
         .route("/ws", get(upgrade))
@@ -86,13 +94,13 @@ pub(super) async fn serve(
                 sleep(AGAIN).await;
                 continue;
             };
-            let (place, closed) = connections.admit(from.ip());
-            let served = serve_connection(stream, site.clone(), place);
+            let (slot, closed) = admit(&connections, from.ip());
+            let served = serve_connection(stream, site.clone(), slot, from.ip());
             tokio::spawn(async move {
                 tokio::select! {
                     // An error ends the connection of one browser only.
                     ended = served => drop(ended),
-                    // Somebody else needs the place; an error is that of a place that is free again.
+                    // Somebody else needs the room; an error is that of room that is free again.
                     Ok(()) = closed => {}
                 }
             });
@@ -109,16 +117,18 @@ pub(super) async fn serve(
 async fn serve_connection(
     stream: TcpStream,
     site: Router,
-    place: Place,
+    slot: Slot,
+    from: IpAddr,
 ) -> Result<(), Box<dyn std::error::Error + Send + Sync>> {
     // A frame is one small write; waiting for more only makes it late.
     drop(stream.set_nodelay(true));
     let mut stream = TimeoutStream::new(stream);
     stream.set_read_timeout(Some(SILENCE));
     stream.set_write_timeout(Some(DEAF));
-    let place = Arc::new(place);
-    let site = site.layer(middleware::from_fn(move |request: Request, next: Next| {
-        place.touch();
+    let slot = Arc::new(slot);
+    let site = site.layer(middleware::from_fn(move |mut request: Request, next: Next| {
+        slot.touch();
+        request.extensions_mut().insert(from);
         next.run(request)
     }));
     let mut server = Builder::new(TokioExecutor::new()).http1_only();
@@ -145,6 +155,7 @@ async fn file(method: Method, uri: Uri) -> Response<Body> {
 
 async fn upgrade(
     State(app): State<AppState>,
+    Extension(from): Extension<IpAddr>,
     headers: HeaderMap,
     uri: Uri,
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
@@ -153,11 +164,9 @@ async fn upgrade(
     if let Err(reason) = AccessControl::check_origin(text_of(&headers, &HOST), text_of(&headers, &ORIGIN)) {
         return asset::text(StatusCode::FORBIDDEN, &reason);
     }
-    let Some((place, access)) = app.open_viewer(uri.query()) else {
-        return asset::text(StatusCode::SERVICE_UNAVAILABLE, "Too many pages look already.\n");
-    };
+    let (room, access) = app.admit(from, uri.query());
     let upgrade = upgrade.max_message_size(RECEIVED_MAX).max_frame_size(RECEIVED_MAX);
-    upgrade.on_upgrade(move |socket| socket::serve(socket, app.shown, access, place))
+    upgrade.on_upgrade(move |socket| socket::serve(socket, app.shown, access, room))
 }
 
 /// A header, if it is a text. One that is there and is none is as good as a wrong one.

@@ -14,7 +14,7 @@ const UNCONFIRMED_MAX: usize = 4096;
 const REFUSALS_MAX: usize = 8;
 
 /// The session with one page.
-pub(super) struct PageSession {
+pub struct PageSession {
     viewer: Box<dyn Viewer>,
     access: Access,
     /// Frames sent and not yet drawn.
@@ -29,7 +29,8 @@ pub(super) struct PageSession {
 
 impl PageSession {
     /// Begins to show something to a page.
-    pub(super) fn new(viewer: Box<dyn Viewer>, access: Access) -> PageSession {
+    #[must_use]
+    pub fn new(viewer: Box<dyn Viewer>, access: Access) -> PageSession {
         PageSession { viewer, access, undrawn: 0, unconfirmed: 0, pings: (0, 0), refusals: VecDeque::new() }
     }
 
@@ -39,7 +40,7 @@ impl PageSession {
     }
 
     /// A text message from the page.
-    pub(super) fn receive(&mut self, text: &str, now: Instant) {
+    pub fn receive(&mut self, text: &str, now: Instant) {
         let ask: PageRequest = match serde_json::from_str(text) {
             Ok(ask) => ask,
             Err(e) => return self.refuse("message", format!("not understood: {e}")),
@@ -58,12 +59,12 @@ impl PageSession {
     }
 
     /// A binary message from the page.
-    pub(super) fn receive_binary(&mut self) {
+    pub fn receive_binary(&mut self) {
         self.refuse("message", "not a text".to_owned());
     }
 
     /// The next message to the page, if there is one now.
-    pub(super) fn next_message(&mut self, now: Instant) -> Option<Outgoing> {
+    pub fn next_message(&mut self, now: Instant) -> Option<Outgoing> {
         if let Some((what, reason)) = self.refusals.pop_front() {
             return Some(Outgoing::Text(PageMessage::Refused { what: &what, reason: &reason }.json()));
         }
@@ -87,7 +88,7 @@ impl PageSession {
     }
 
     /// A ping to be sent after the last message, if it is time for one. The page sends it back at once.
-    pub(super) fn ping(&mut self) -> Option<u64> {
+    pub fn ping(&mut self) -> Option<u64> {
         if self.unconfirmed < UNCONFIRMED_MAX {
             return None;
         }
@@ -101,7 +102,7 @@ impl PageSession {
     }
 
     /// A ping comes back: everything sent before it has arrived.
-    pub(super) fn receive_pong(&mut self, ping: u64) {
+    pub fn receive_pong(&mut self, ping: u64) {
         let (made, back) = self.pings;
         self.pings.1 = back.max(ping.min(made));
     }

@@ -1,15 +1,16 @@
 //! A websocket: the network shell around the session of one page.
 
+use super::routes::Room;
 use super::session::PageSession;
 use super::view::{Access, Changes, Outgoing, View};
-use axum::extract::ws::{Message, WebSocket};
-use bus::clock;
+use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
+use bus::{Slot, clock};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
 use std::pin::pin;
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::sync::{OwnedSemaphorePermit, watch};
+use tokio::sync::watch;
 use tokio::time::{Instant, sleep_until, timeout};
 
 /// The longest message from a page, bytes.
@@ -32,51 +33,70 @@ enum End {
     Gone,
     /// The server closes.
     Closed,
+    /// Another page needs the room.
+    Displaced,
 }
 
 /// The two halves of a socket: a page is read while it is slow to accept what is sent.
 struct Socket {
     sink: SplitSink<WebSocket, Message>,
+    incoming: Incoming,
+}
+
+/// What a page sends.
+struct Incoming {
     stream: SplitStream<WebSocket>,
-    /// When the last message of the page came.
+    slot: Slot,
+    /// When its last message came.
     last_received: std::time::Instant,
 }
 
-/// Talks with a page until it goes, or the server does.
-pub(super) async fn serve(socket: WebSocket, mut shown: Shown, access: Access, _permit: OwnedSemaphorePermit) {
+/// Talks with a page until it goes, the server does, or another page needs the room.
+pub(super) async fn serve(socket: WebSocket, shown: Shown, access: Access, (slot, displaced): Room) {
     let (sink, stream) = socket.split();
-    let mut socket = Socket { sink, stream, last_received: clock::now() };
-    let mut session: Option<PageSession> = None;
-    let end = loop {
-        let show = shown.borrow_and_update().clone();
-        let ended = match show {
-            None => socket.wait(&mut shown).await,
-            Some(show) => {
-                let viewer = show.open_viewer(access);
-                let session = match session.take() {
-                    Some(before) => session.insert(before.show(viewer)),
-                    None => session.insert(PageSession::new(viewer, access)),
-                };
-                socket.run(&mut shown, show.news(), session).await
-            }
-        };
-        if let Err(end) = ended {
-            break end;
-        }
+    let mut socket = Socket { sink, incoming: Incoming { stream, slot, last_received: clock::now() } };
+    let end = tokio::select! {
+        end = socket.talk(shown, access) => end,
+        Ok(()) = displaced => End::Displaced,
     };
-    if matches!(end, End::Closed) {
-        // The page may be gone already.
-        drop(timeout(CLOSE_LIMIT, socket.sink.send(Message::Close(None))).await);
-    }
+    let goodbye = match end {
+        End::Gone => return,
+        End::Closed => None,
+        End::Displaced => Some(CloseFrame { code: close_code::AGAIN, reason: "another page needs the room".into() }),
+    };
+    // The page may be gone already.
+    drop(timeout(CLOSE_LIMIT, socket.sink.send(Message::Close(goodbye))).await);
 }
 
 impl Socket {
+    /// Shows one show after the other.
+    async fn talk(&mut self, mut shown: Shown, access: Access) -> End {
+        let mut session: Option<PageSession> = None;
+        loop {
+            let show = shown.borrow_and_update().clone();
+            let ended = match show {
+                None => self.wait(&mut shown).await,
+                Some(show) => {
+                    let viewer = show.open_viewer(access);
+                    let session = match session.take() {
+                        Some(before) => session.insert(before.show(viewer)),
+                        None => session.insert(PageSession::new(viewer, access)),
+                    };
+                    self.run(&mut shown, show.news(), session).await
+                }
+            };
+            if let Err(end) = ended {
+                return end;
+            }
+        }
+    }
+
     /// Waits until there is something to show.
     async fn wait(&mut self, shown: &mut Shown) -> Result<(), End> {
         loop {
             tokio::select! {
                 changed = shown.changed() => return changed.map_err(|_| End::Closed),
-                message = self.stream.next() => if !matches!(message, Some(Ok(_))) {
+                message = self.incoming.stream.next() => if !matches!(message, Some(Ok(_))) {
                     return Err(End::Gone);
                 },
             }
@@ -86,8 +106,8 @@ impl Socket {
     /// Talks about one show, until there is another.
     async fn run(&mut self, shown: &mut Shown, news: &Changes, session: &mut PageSession) -> Result<(), End> {
         let mut news = news.subscribe();
-        self.last_received = clock::now();
-        let mut pinged = self.last_received;
+        self.incoming.last_received = clock::now();
+        let mut pinged = self.incoming.last_received;
         loop {
             while let Some(outgoing) = session.next_message(clock::now()) {
                 self.send(message(outgoing), session).await?;
@@ -104,17 +124,14 @@ impl Socket {
                 .max(now + MIN_INTERVAL);
             let next_send = Instant::from_std(now + MIN_INTERVAL);
             tokio::select! {
-                message = self.stream.next() => {
-                    self.last_received = clock::now();
-                    receive(session, message)?;
-                }
+                received = self.incoming.receive(session) => received?,
                 changed = shown.changed() => return changed.map_err(|_| End::Closed),
                 changed = async { sleep_until(next_send).await; news.changed().await } => changed.map_err(|_| End::Gone)?,
                 () = sleep_until(Instant::from_std(next)) => {}
             }
             let now = clock::now();
             if now.duration_since(pinged) >= PING {
-                if now.duration_since(self.last_received) >= DEAD {
+                if now.duration_since(self.incoming.last_received) >= DEAD {
                     return Err(End::Gone);
                 }
                 pinged = now;
@@ -132,28 +149,34 @@ impl Socket {
         loop {
             tokio::select! {
                 sent = &mut sending => return sent.map_err(|_| End::Gone),
-                message = self.stream.next() => {
-                    self.last_received = clock::now();
-                    receive(session, message)?;
-                }
+                received = self.incoming.receive(session) => received?,
             }
         }
     }
 }
 
-fn receive(session: &mut PageSession, message: Option<Result<Message, axum::Error>>) -> Result<(), End> {
-    match message {
-        Some(Ok(Message::Text(text))) => session.receive(&text, clock::now()),
-        Some(Ok(Message::Binary(_))) => session.receive_binary(),
-        Some(Ok(Message::Pong(number))) => {
-            if let Ok(number) = number[..].try_into() {
-                session.receive_pong(u64::from_be_bytes(number));
+impl Incoming {
+    /// Waits for a message of the page, and takes it.
+    async fn receive(&mut self, session: &mut PageSession) -> Result<(), End> {
+        let message = self.stream.next().await;
+        self.last_received = clock::now();
+        match message {
+            Some(Ok(Message::Text(text))) => {
+                // A page that shows something acknowledges frames: it is not idle.
+                self.slot.touch();
+                session.receive(&text, clock::now());
             }
+            Some(Ok(Message::Binary(_))) => session.receive_binary(),
+            Some(Ok(Message::Pong(number))) => {
+                if let Ok(number) = number[..].try_into() {
+                    session.receive_pong(u64::from_be_bytes(number));
+                }
+            }
+            Some(Ok(Message::Ping(_))) => {}
+            Some(Ok(Message::Close(_)) | Err(_)) | None => return Err(End::Gone),
         }
-        Some(Ok(Message::Ping(_))) => {}
-        Some(Ok(Message::Close(_)) | Err(_)) | None => return Err(End::Gone),
+        Ok(())
     }
-    Ok(())
 }
 
 fn message(outgoing: Outgoing) -> Message {

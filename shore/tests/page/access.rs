@@ -8,6 +8,9 @@ use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::Duration;
 
+/// RFC 6455: try again later.
+const AGAIN: u16 = 1013;
+
 #[test]
 fn the_page_is_served_under_its_own_names_and_sealed() {
     let page = page(show(), Some("a secret"), &["boat.local"]);
@@ -60,29 +63,39 @@ fn with_a_token_only_those_who_show_it_have_rights() {
     }
 }
 
+/// The page goes to another time, and the server has heard it.
+fn seek(client: &mut Client, t_s: f64) {
+    client.send(&format!(r#"{{"do":"seek","t_s":{t_s}}}"#));
+    client.until("player", |player| player["t_s"] == t_s);
+}
+
 #[test]
-fn so_many_may_look_and_no_more() {
+fn of_too_many_pages_the_one_that_idles_longest_makes_room_for_a_newcomer() {
     let page = page(show(), None, &[]);
     let mut clients: Vec<Client> = (0..64).map(|_| open_viewer(&page)).collect();
-    assert_eq!(Client::connect(page.address(), "/ws", &[]).err(), Some(503));
-    assert_eq!(clients[63].text()["kind"], "hello");
-    drop(clients.pop());
-    // The place is free as soon as the server has noticed.
-    let again = (0..1000).find_map(|_| Client::connect(page.address(), "/ws", &[]).ok());
-    assert_eq!(again.expect("a place is free").text()["kind"], "hello");
+    seek(&mut clients[0], 3.0);
+    let mut newcomer = open_viewer(&page);
+    assert_eq!(newcomer.text()["kind"], "hello");
+    assert_eq!(clients[1].close_code(), Some(AGAIN), "it is told why");
+    clients.remove(1);
+    clients.iter_mut().for_each(|client| seek(client, 4.0));
+    seek(&mut newcomer, 4.0);
 }
 
 #[test]
 fn those_who_only_look_keep_nobody_out_who_may_act() {
     let page = page(show(), Some("secret"), &[]);
-    let _onlookers: Vec<Client> = (0..64).map(|_| open_viewer(&page)).collect();
-    assert_eq!(Client::connect(page.address(), "/ws?token=guess", &[]).err(), Some(503));
-    let come = || Client::connect(page.address(), "/ws?token=secret", &[]);
-    let masters: Vec<Client> = (0..8).map(|_| come().expect("there is a place of its own")).collect();
-    assert_eq!(come().err(), Some(503));
-    for mut master in masters {
-        assert_eq!(master.text()["rights"], true);
-    }
+    let come = || Client::connect(page.address(), "/ws?token=secret", &[]).expect("there is room");
+    let mut operators: Vec<Client> = (0..8).map(|_| come()).collect();
+    let onlookers: Vec<Client> = (0..200).map(|_| open_viewer(&page)).collect();
+    operators.iter_mut().for_each(|operator| assert_eq!(operator.text()["rights"], true));
+    operators[1..].iter_mut().for_each(|operator| seek(operator, 3.0));
+    // One more of them takes the room of one of them.
+    let mut another = come();
+    seek(&mut another, 3.0);
+    assert_eq!(operators[0].close_code(), Some(AGAIN));
+    operators[1..].iter_mut().for_each(|operator| seek(operator, 4.0));
+    drop(onlookers);
 }
 
 #[test]

@@ -110,6 +110,17 @@ impl Client {
         std::iter::from_fn(|| self.next_within(QUIET).ok().flatten()).collect()
     }
 
+    /// The code with which the server hangs up, if it does in time and says one.
+    pub(crate) fn close_code(&mut self) -> Option<u16> {
+        loop {
+            match self.next_within(LIMIT) {
+                Ok(Some(Message::Close(said))) => return said.map(|said| said.code.into()),
+                Ok(Some(_)) => {}
+                Ok(None) | Err(_) => return None,
+            }
+        }
+    }
+
     /// Whether the server hangs up in time.
     pub(crate) fn is_hung_up_on(&mut self) -> bool {
         loop {

@@ -14,7 +14,7 @@ use game::outcome::EventOutcome;
 use game::picture::Picture;
 use game::run_state::{Phase, RunState};
 use game::strategy::{Behaviour, Expression, Parameter, Policy, Proposer, Task};
-use game::topic::{self, GameName, Part};
+use game::topic::{self, GameName};
 use game::water::{PlaneWave, Water};
 use game::{Scenario, SimTime, TeamId, VehicleId};
 use serde_json::json;
@@ -84,7 +84,7 @@ impl Sim {
     fn paced(port: u16, name: &str, scenario: Scenario, pace: &str) -> Sim {
         let net = Net { listen: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
         let game = GameName::new(name).expect("a good name");
-        let bus = Bus::hub(&net, &game).expect("the port is free");
+        let bus = Bus::hub(&net, &game, &scenario).expect("the port is free");
         let publisher = |key: String| bus.publisher(key, Priority::Normal).expect("it publishes");
         let (frames, run) = (publisher(topic::frame(&game)), publisher(topic::run(&game)));
         let pictures = publisher(topic::picture(&game, &scenario, TeamId(0)));
@@ -121,11 +121,11 @@ impl Sim {
                 query.answer(token::answer(&ControlReply::Ok(())));
             })
             .expect("it answers"),
-            bus.subscribe(topic::recorded(&game, "policy/*"), move |bytes| {
+            bus.subscribe(topic::matching(&game, "policy/*"), move |bytes| {
                 proposed.visit(|all| all.push(codec::decode(bytes).expect("a proposal")));
             })
             .expect("it listens"),
-            bus.show_alive(topic::alive(&game, Part::Sim, &bus.id())).expect("it is alive"),
+            bus.show_alive(topic::alive(&game, &bus.id())).expect("it is alive"),
         ];
         Sim { bus, port, frames, run, pictures, scenario, events, controls, proposals, _standing: standing }
     }
@@ -165,7 +165,7 @@ fn port() -> u16 {
 fn live(port: u16, game: Option<&str>) -> Arc<dyn View> {
     let net = Net { connect: vec![format!("tcp/127.0.0.1:{port}")], ..Net::default() };
     let game = game.map(|name| GameName::new(name).expect("a good name"));
-    let show = LiveView::open(Box::new(move || Ok(net.clone())), game, Box::new(|_| ()));
+    let show = LiveView::open(net.into(), game, Box::new(|_| ()));
     Arc::new(show.expect("a thread"))
 }
 

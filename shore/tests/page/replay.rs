@@ -1,10 +1,11 @@
 //! A recording, played by pages.
 
-use super::source::{Rememberer, recorded, seq_of, two_minutes};
+use super::source::{Rememberer, bytes_of_recording, recorded, recorded_in, seq_of, two_minutes};
 use super::{open_viewer, page, visit};
 use bus::clock;
 use game::message::Control;
 use proptest::prelude::*;
+use recording::Recording;
 use serde_json::json;
 use shore::page::replay::ReplayView;
 use shore::page::{Access, Budget, Outgoing, PageRequest, View};
@@ -119,6 +120,25 @@ fn what_a_recording_cannot_do_is_refused() {
         client.send(ask);
         assert_eq!(client.until("refused", |_| true)["what"], what, "{ask}");
     }
+}
+
+#[test]
+fn a_frame_that_is_damaged_is_left_out_and_all_others_are_shown() {
+    let mut bytes = bytes_of_recording(4);
+    let frame = Recording::of(bytes.clone()).expect("a recording").frame(1).bytes;
+    let place = bytes.windows(frame.len()).position(|window| window == frame).expect("it is in it");
+    // The encapsulation of a message says that it is CDR.
+    bytes[place] = 0xff;
+    let recorded = recorded_in(bytes);
+    assert_eq!((recorded.damaged().count, recorded.frame_times().len()), (1, 3));
+    let (_page, mut client) = visit(Arc::new(ReplayView::new(recorded, None)));
+    let shown = [0, 1, 2].map(|_| {
+        let seq = seq_of(&client.frame());
+        client.ack();
+        client.send(r#"{"do":"step","by":1}"#);
+        seq
+    });
+    assert_eq!(shown, [0, 2, 3]);
 }
 
 #[test]

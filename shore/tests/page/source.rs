@@ -2,7 +2,7 @@
 
 use game::event::{Event, Logged};
 use game::external::{FailsafeReport, GatewayStatus};
-use game::helm::HelmReport;
+use game::helm::{DriftReport, HelmReport};
 use game::message::{EventRecord, Frame, GameInfo, Message, Stamp, VehicleTruth};
 use game::picture::{FlagView, Nav, OwnBoat, Picture};
 use game::water::Water;
@@ -47,6 +47,8 @@ pub(crate) fn report(vehicle: VehicleId) -> HelmReport {
         mode: "sailing".to_owned(),
         course_deg: Some(90.0),
         speed_m_s: Some(1.0),
+        heading_offset_deg: 0.0,
+        drift: DriftReport::default(),
         hold: None,
         value: None,
         courses: 2,
@@ -66,6 +68,17 @@ pub(crate) fn two_minutes() -> Arc<Recorded> {
 
 /// A recording of so many frames without an end, with an event in the eleventh, one set of pictures, and a failsafe.
 pub(crate) fn recorded(frames: u64) -> Arc<Recorded> {
+    recorded_in(bytes_of_recording(frames))
+}
+
+/// The recording that these bytes are.
+pub(crate) fn recorded_in(bytes: Vec<u8>) -> Arc<Recorded> {
+    let recording = Recording::of(bytes).expect("a recording");
+    Arc::new(Recorded::new(Arc::new(recording), "made_up.mcap".to_owned()))
+}
+
+/// The bytes of such a recording.
+pub(crate) fn bytes_of_recording(frames: u64) -> Vec<u8> {
     let scenario = scenario("pav01_vs_pav01.toml");
     let picture = |team: u8| {
         let boats = (0..scenario.vehicles.len()).map(VehicleId::at);
@@ -97,9 +110,7 @@ pub(crate) fn recorded(frames: u64) -> Arc<Recorded> {
     };
     let mut writer = Writer::begin(Cursor::new(Vec::new()), &header.opening()).expect("it begins");
     (0..frames).map(decision).chain([status]).for_each(|entry| writer.write(&entry, 1).expect("it is written"));
-    let bytes = writer.end(recording::Facts::new()).expect("it ends").into_inner();
-    let recording = Recording::of(bytes).expect("a recording");
-    Arc::new(Recorded::new(Arc::new(recording), "made_up.mcap".to_owned()).expect("its frames are sound"))
+    writer.end(recording::Facts::new()).expect("it ends").into_inner()
 }
 
 /// Helms that remember nothing but which decision they were asked about.

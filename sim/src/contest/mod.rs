@@ -23,10 +23,10 @@ use game::input::Input;
 use game::message::Frame;
 use game::outcome::{Outcome, Played};
 use game::picture::Nav;
-use game::rules::{Notes, Referee};
+use game::rules::{Acting, Asks, Look, Notes, Referee, asks_of};
 use game::scenario::Source;
 use game::stream::Stream;
-use game::{Event, Order, Picture, Scenario, SimTime, VehicleId};
+use game::{Event, Leg, Order, Picture, Scenario, SimTime, VehicleId};
 use state::{ContestState, OrderInForce};
 
 /// A game being played.
@@ -50,6 +50,8 @@ pub struct Contest {
 #[derive(Default)]
 struct Work {
     commands: Vec<Order>,
+    legs: Vec<Leg>,
+    asks: Vec<Asks>,
     notes: Notes,
     events: Vec<Event>,
 }
@@ -74,6 +76,7 @@ impl Contest {
             decision: 0,
             standing,
             orders: vec![OrderInForce::default(); count],
+            stations: vec![None; count],
             agent_lost: vec![false; count],
             e_stopped: false,
             halted: false,
@@ -327,6 +330,7 @@ impl Contest {
     /// Plays until the next decision, or the end of the game.
     pub fn advance(&mut self) {
         self.expire_orders();
+        self.hear_requests();
         for _ in 0..self.scenario.ticks_per_decision {
             if self.is_over() {
                 break;
@@ -343,20 +347,36 @@ impl Contest {
         self.assert_sound();
     }
 
+    /// What boats ask of the referee until the next decision, by the pictures that their teams were shown last.
+    fn hear_requests(&mut self) {
+        let Contest { scenario, state, work: Work { asks, .. }, .. } = self;
+        if scenario.rules.tags_and_grabs == Acting::Automatic {
+            return;
+        }
+        asks.clear();
+        asks.resize(scenario.vehicles.len(), Asks::default());
+        for picture in &state.pictures {
+            asks_of(&scenario.rules, &scenario.field, picture).for_each(|(vehicle, ask)| asks[vehicle.index()] = ask);
+        }
+    }
+
     /// One tick: boats move, the referee looks and has boats set back, sensors are read where a decision is next.
     fn step(&mut self) {
+        self.update_stations();
         let mut commands = std::mem::take(&mut self.work.commands);
         commands.clear();
         commands.extend((0..self.state.orders.len()).map(|i| self.effective_command(VehicleId::at(i))));
-        let Contest { scenario, referee, world, state, work: Work { notes, events, .. }, .. } = self;
+        let Contest { scenario, referee, world, state, work: Work { notes, events, legs, asks, .. }, .. } = self;
         let standing = &mut state.standing;
         events.clear();
         for vehicle in world.step(&commands) {
             events.push(Event::Quarantined(*vehicle));
             referee.retire(standing, *vehicle, events);
         }
-        let (boats, now) = (&world.state().boats, world.state().now);
-        referee.advance(standing, notes, &|i| boats[i].pose.at, world.pairs(), now, events);
+        let now = world.state().now;
+        legs.clear();
+        legs.extend((0..commands.len()).map(|i| world.leg(VehicleId::at(i))));
+        referee.advance(standing, notes, &Look { legs, asks, near: world.pairs(), now }, events);
         world.set_back(|vehicle, at| referee.keepout(standing, vehicle, at));
         let tick = world.state().tick;
         if tick.is_multiple_of(u64::from(scenario.ticks_per_decision)) {

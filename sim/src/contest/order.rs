@@ -2,10 +2,16 @@
 
 use super::Contest;
 use super::state::OrderInForce;
+use game::boat::Hold;
 use game::input::Input;
 use game::order::BadOrder;
 use game::rules::Directive;
-use game::{Order, SimTime, VehicleId};
+use game::{Ned, Order, SimTime, VehicleId};
+
+/// A boat that keeps its station lies still as near to it, m ...
+const STATION_RADIUS_M: f64 = 2.0;
+/// ... and from there comes back the faster the farther off it is, 1/s.
+const STATION_RETURN_PER_S: f64 = 0.5;
 
 impl Contest {
     /// Sends an order to a vehicle: it is in force from when it arrives until the next one does, or until it expires. To a
@@ -54,6 +60,17 @@ impl Contest {
         }
         let at = self.world.state().boats[i].pose.at;
         let speed_max_m_s = self.scenario.boat_of(vehicle).speed_max_m_s();
+        match (self.wanted_command(vehicle), self.state.stations[i]) {
+            (Order::Hold, Some(station)) => keeping_station(at, station, speed_max_m_s),
+            (command, _) => command,
+        }
+    }
+
+    /// What the rules make of a vehicle's order in force.
+    fn wanted_command(&self, vehicle: VehicleId) -> Order {
+        let i = vehicle.index();
+        let at = self.world.state().boats[i].pose.at;
+        let speed_max_m_s = self.scenario.boat_of(vehicle).speed_max_m_s();
         match self.referee.directive(&self.state.standing, vehicle, at) {
             Directive::Hold => Order::Hold,
             Directive::DrivenHome { to, speed_factor } => {
@@ -64,10 +81,26 @@ impl Contest {
                 Order::Steer { heading_rad, speed_m_s } => {
                     Order::Steer { heading_rad, speed_m_s: speed_m_s.min(speed_factor * speed_max_m_s) }
                 }
+                Order::Turn { by_rad, speed_m_s } => {
+                    Order::Turn { by_rad, speed_m_s: speed_m_s.min(speed_factor * speed_max_m_s) }
+                }
                 Order::Thrust { port, starboard } => {
                     Order::Thrust { port: speed_factor * port, starboard: speed_factor * starboard }
                 }
             },
+        }
+    }
+
+    /// Boats that keep their station when they hold begin to do so where they are; others forget theirs.
+    pub(super) fn update_stations(&mut self) {
+        for i in 0..self.state.stations.len() {
+            let vehicle = VehicleId::at(i);
+            let keeps = self.scenario.boat_of(vehicle).hold == Hold::KeepsStation;
+            if keeps && self.state.tracks[i].is_none() && self.wanted_command(vehicle) == Order::Hold {
+                self.state.stations[i].get_or_insert(self.world.state().boats[i].pose.at);
+            } else {
+                self.state.stations[i] = None;
+            }
         }
     }
 
@@ -122,4 +155,14 @@ impl Contest {
             }
         }
     }
+}
+
+/// What keeps a boat at its station: nothing near it, else a course to it.
+fn keeping_station(at: Ned, station: Ned, speed_max_m_s: f64) -> Order {
+    let off_m = at.distance(station);
+    if off_m <= STATION_RADIUS_M {
+        return Order::Hold;
+    }
+    let speed_m_s = (STATION_RETURN_PER_S * off_m).min(speed_max_m_s);
+    Order::Steer { heading_rad: at.bearing_rad(station), speed_m_s }
 }

@@ -6,7 +6,7 @@ use game::count::Tally;
 use game::event::{EventCursor, Logged};
 use game::picture::OwnBoat;
 use game::rules::Standing;
-use game::{Order, Picture, SimTime, VehicleId};
+use game::{Ned, Order, Picture, SimTime, VehicleId};
 use serde::{Deserialize, Serialize};
 
 /// How a game stands: the referee's memory, what the boats were ordered, and what their people know.
@@ -17,6 +17,8 @@ pub(super) struct ContestState {
     pub(super) standing: Standing,
     /// By vehicle.
     pub(super) orders: Vec<OrderInForce>,
+    /// By vehicle: where it began to hold, if it keeps its station there.
+    pub(super) stations: Vec<Option<Ned>>,
     /// Whether each vehicle's agent is lost.
     pub(super) agent_lost: Vec<bool>,
     /// Whether people ashore have stopped all boats for good, or for now.

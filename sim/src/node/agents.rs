@@ -75,7 +75,7 @@ fn orders_for(own: &[VehicleId], message: &Orders, refusals: &mut Refusals) -> V
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::node::membership::tests::{granted, membership, request};
+    use crate::node::membership::tests::{NOW, granted, membership, request};
     use game::message::{Message, Role, Stamp, VehicleOrder};
 
     const PUSH: Order = Order::Thrust { port: 1.0, starboard: 1.0 };
@@ -84,7 +84,7 @@ mod tests {
     fn agents(all: &[&[&str]]) -> Membership {
         let mut agents = membership(Role::Agent, false);
         for (i, vehicles) in all.iter().enumerate() {
-            agents.join(&request(Role::Agent, &format!("agent {i}"), vehicles), i as u64 + 1);
+            agents.join(&request(Role::Agent, &format!("agent {i}"), vehicles), i as u64 + 1, NOW);
         }
         agents
     }
@@ -158,7 +158,7 @@ mod tests {
         assert_eq!((late.back, late.orders.len()), (vec![VehicleId(0)], 0));
         assert!(!agents.all_answered(9), "it is waited for again");
         agents.give_up(9);
-        assert_eq!(agents.join(&request(Role::Agent, "b", &["blue_one"]), 2), granted(2, &[0]));
+        assert_eq!(agents.join(&request(Role::Agent, "b", &["blue_one"]), 2, NOW), granted(2, &[0]));
         assert_eq!(take(&mut agents, &orders(1, 9, &[0]), 9), Accepted::default(), "the vehicle is b's");
         assert!(!agents.all_answered(9), "b is waited for, the other is not");
         take(&mut agents, &orders(2, 9, &[0]), 9);

@@ -33,17 +33,15 @@ pub fn accept(gateways: &mut Membership, report: &NavReport, now: SimTime, refus
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::node::membership::tests::{membership, request};
+    use crate::node::membership::tests::{NOW, membership, request};
     use game::VehicleId;
     use game::message::{Message, Role, Stamp};
     use game::picture::Nav;
 
-    const NOW: SimTime = SimTime(100);
-
     /// A gateway with ticket 7 for these of the real boats blue one (0) and red one (2).
     fn gateways(vehicles: &[&str]) -> Membership {
         let mut gateways = membership(Role::Gateway, true);
-        gateways.join(&request(Role::Gateway, "a", vehicles), 7);
+        gateways.join(&request(Role::Gateway, "a", vehicles), 7, NOW);
         gateways
     }
 

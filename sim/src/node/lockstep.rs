@@ -22,6 +22,10 @@ pub(super) fn play(server: &mut GameServer<'_>, tell: &mut dyn FnMut(ProgressMes
             gather(server, tell)?;
             due = clock::now();
         }
+        // Not everybody has answered: what comes now is not late.
+        if server.is_stopped() {
+            break;
+        }
         server.contest.advance();
         server.pacing.played();
         server.report_progress(tell)?;

@@ -5,7 +5,7 @@
 
 use game::message::{JoinReply, JoinRequest, Role};
 use game::scenario::Source;
-use game::{Scenario, VehicleId};
+use game::{Scenario, SimTime, VehicleId};
 
 /// The nodes that have joined in one role.
 #[derive(Clone, Debug)]
@@ -53,10 +53,10 @@ impl Membership {
         Membership { role, places: places.collect() }
     }
 
-    /// Lets a node join, or not. `ticket` is what it will have to show.
+    /// Lets a node join at this time of the game, or not. `ticket` is what it will have to show.
     ///
     /// A node that asks again for what it has gets it again, with the new ticket: the answer was lost on the way.
-    pub fn join(&mut self, request: &JoinRequest, ticket: u64) -> JoinReply {
+    pub fn join(&mut self, request: &JoinRequest, ticket: u64, now: SimTime) -> JoinReply {
         let role = self.role;
         let refused = |reason: String| JoinReply::Refused { reason };
         if request.version != game::VERSION {
@@ -87,7 +87,7 @@ impl Membership {
             let holder = Holder { node: request.node.clone(), ticket, is_present: true, newest: None };
             self.places[vehicle.index()].holder = Some(holder);
         }
-        JoinReply::Granted { ticket, vehicles }
+        JoinReply::Granted { ticket, vehicles, now_ns: now }
     }
 
     /// Which vehicles nodes can join with, in words.
@@ -113,6 +113,11 @@ impl Membership {
     pub(super) fn vehicles_of(&self, ticket: u64) -> impl Iterator<Item = VehicleId> {
         let holds = move |place: &Place| place.holder.as_ref().is_some_and(|holder| holder.ticket == ticket);
         self.open().filter(move |(_, place)| holds(place)).map(|(vehicle, _)| vehicle)
+    }
+
+    /// The tickets of whoever has a vehicle, or may come back to it.
+    pub(super) fn tickets(&self) -> impl Iterator<Item = u64> {
+        self.places.iter().filter_map(|place| Some(place.holder.as_ref()?.ticket))
     }
 
     /// A message with a ticket shows that somebody is there: the vehicles whose node was lost and is there again.
@@ -187,6 +192,9 @@ pub(super) mod tests {
     use super::*;
     use std::path::Path;
 
+    /// Time of the game at which everybody joins.
+    pub(in super::super) const NOW: SimTime = SimTime(100);
+
     /// A game of blue one, blue two, red one and red two, of which blue one and red one are real boats; or none is.
     pub(in super::super) fn membership(role: Role, is_mixed: bool) -> Membership {
         let name = if is_mixed { "mixed_2v2" } else { "pav01_vs_pav01" };
@@ -200,7 +208,7 @@ pub(super) mod tests {
     }
 
     pub(in super::super) fn granted(ticket: u64, vehicles: &[u16]) -> JoinReply {
-        JoinReply::Granted { ticket, vehicles: vehicles.iter().map(|v| VehicleId(*v)).collect() }
+        JoinReply::Granted { ticket, vehicles: vehicles.iter().map(|v| VehicleId(*v)).collect(), now_ns: NOW }
     }
 
     const ROLES: [Role; 2] = [Role::Agent, Role::Gateway];
@@ -209,7 +217,7 @@ pub(super) mod tests {
     fn who_joins_gets_what_it_names_in_its_order() {
         for role in ROLES {
             let mut all = membership(role, true);
-            assert_eq!(all.join(&request(role, "a", &["red_one", "blue_one"]), 7), granted(7, &[2, 0]));
+            assert_eq!(all.join(&request(role, "a", &["red_one", "blue_one"]), 7, NOW), granted(7, &[2, 0]));
             let vacant: Vec<VehicleId> = all.vacant().collect();
             assert_eq!(vacant, if role == Role::Agent { vec![VehicleId(1), VehicleId(3)] } else { vec![] });
             assert!(all.vehicles_of(7).eq([VehicleId(0), VehicleId(2)]) && all.vehicles_of(8).next().is_none());
@@ -220,13 +228,13 @@ pub(super) mod tests {
     fn a_vehicle_is_free_again_when_its_node_is_gone_and_the_old_ticket_is_void() {
         for role in ROLES {
             let mut all = membership(role, true);
-            all.join(&request(role, "a", &["blue_one"]), 1);
+            all.join(&request(role, "a", &["blue_one"]), 1, NOW);
             let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
-            assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2), busy);
+            assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2, NOW), busy);
             assert!(!all.is_empty() && all.gone("b").is_empty());
             assert_eq!(all.gone("a"), [VehicleId(0)]);
             assert!(all.is_empty() && all.gone("a").is_empty(), "once");
-            assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2), granted(2, &[0]));
+            assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2, NOW), granted(2, &[0]));
             assert!(all.vehicles_of(1).next().is_none() && all.welcome_back(1).is_empty());
         }
     }
@@ -235,14 +243,14 @@ pub(super) mod tests {
     fn a_node_that_speaks_or_asks_again_has_its_vehicle_again() {
         for role in ROLES {
             let mut all = membership(role, true);
-            all.join(&request(role, "a", &["blue_one"]), 1);
+            all.join(&request(role, "a", &["blue_one"]), 1, NOW);
             all.gone("a");
             assert_eq!(all.welcome_back(1), [VehicleId(0)], "nobody has taken it");
             let busy = JoinReply::Busy { vehicle: "blue_one".to_owned() };
-            assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2), busy);
+            assert_eq!(all.join(&request(role, "b", &["blue_one"]), 2, NOW), busy);
             all.note_taken(VehicleId(0), 5);
             assert!(all.has_taken(VehicleId(0), 5) && !all.has_taken(VehicleId(0), 6));
-            assert_eq!(all.join(&request(role, "a", &["blue_one"]), 3), granted(3, &[0]), "the answer was lost");
+            assert_eq!(all.join(&request(role, "a", &["blue_one"]), 3, NOW), granted(3, &[0]), "the answer was lost");
             assert!(all.vehicles_of(1).next().is_none(), "the newer ticket counts");
             assert!(!all.has_taken(VehicleId(0), 0), "and its messages count anew");
         }
@@ -251,8 +259,8 @@ pub(super) mod tests {
     #[test]
     fn who_is_silent_is_given_up_with_all_its_vehicles() {
         let mut all = membership(Role::Agent, false);
-        all.join(&request(Role::Agent, "a", &["blue_one", "red_two"]), 1);
-        all.join(&request(Role::Agent, "b", &["red_one"]), 2);
+        all.join(&request(Role::Agent, "a", &["blue_one", "red_two"]), 1, NOW);
+        all.join(&request(Role::Agent, "b", &["red_one"]), 2, NOW);
         assert!(!all.all_answered(0));
         all.note_taken(VehicleId(2), 0);
         assert_eq!(all.give_up(0), [VehicleId(0), VehicleId(3)]);
@@ -280,11 +288,11 @@ pub(super) mod tests {
             (Role::Gateway, false, &["blue_one"], "or is a rehearsal"),
         ] {
             let mut all = membership(role, is_mixed);
-            let reply = all.join(&request(role, "a", vehicles), 1);
+            let reply = all.join(&request(role, "a", vehicles), 1, NOW);
             let JoinReply::Refused { reason } = reply else { panic!("{role} {vehicles:?} may join") };
             assert!(reason.contains(why), "{reason}");
             let other = JoinRequest { version: "0.0.1".to_owned(), ..request(role, "a", &["blue_one"]) };
-            let reply = all.join(&other, 1);
+            let reply = all.join(&other, 1, NOW);
             assert!(matches!(&reply, JoinReply::Refused { reason } if reason.contains("0.0.1")), "{reply:?}");
             assert!(all.is_empty());
         }

@@ -8,6 +8,7 @@ mod control_inbox;
 pub mod gateways;
 mod lockstep;
 pub mod membership;
+mod message_inbox;
 mod observers;
 mod pacing;
 mod progress;

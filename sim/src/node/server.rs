@@ -5,30 +5,29 @@ mod incoming;
 use super::agents::Timing;
 use super::control_inbox::ControlInbox;
 use super::membership::Membership;
+use super::message_inbox::MessageInbox;
 use super::observers::{self, RecordedTopic};
 use super::pacing::Pacing;
 use super::recorder::GameRecorder;
-use super::subscriptions::{self, Inboxes, Incoming, Question};
+use super::subscriptions::{self, Inboxes, Question};
 use super::working_time::WorkingTime;
 use super::{NodeError, Pace, ProgressMessage, Reporter, Settings};
 use crate::contest::Contest;
 use bus::token::Guard;
-use bus::{Bus, Declaration, Inbox, Priority, Publisher, Query, Watched, clock, inbox};
+use bus::{Bus, Declaration, Inbox, Priority, Publisher, Query, clock, inbox};
 use game::codec;
 use game::event::EventCursor;
 use game::external::ExternalOrder;
 use game::message::{Frame, GameInfo, Message, Role, Stamp, VehicleOrder};
 use game::refusal::{Refusal, Refusals};
 use game::run_state::{Phase, RunState};
-use game::topic;
+use game::topic::{self, GameName};
 use game::{Order, Picture, SimTime, TeamId, VehicleId};
 use recording::Entry;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Messages that may wait to be read.
-const INBOX: usize = 8192;
 /// Questions that may wait to be answered.
 const QUESTIONS: usize = 64;
 /// How often progress is reported.
@@ -47,10 +46,8 @@ pub(super) struct GameServer<'w> {
     gateways: Membership,
     timing: Timing,
     controls: Arc<ControlInbox<Query>>,
-    /// What was refused before it came to an inbox.
-    garbage: Arc<Watched<Refusals>>,
     questions: Inbox<(Question, Query)>,
-    inbox: Inbox<Incoming>,
+    inbox: Arc<MessageInbox>,
     bus: Bus,
     pictures: Vec<Publisher>,
     /// The decision whose pictures were sent last.
@@ -64,6 +61,7 @@ pub(super) struct GameServer<'w> {
     /// Says that an E-stop is over.
     released: Publisher,
     guard: Guard,
+    game: GameName,
     /// Whether somebody asked for something since the state of the run was sent.
     is_news: bool,
     /// When the state of the run was recorded last.
@@ -95,12 +93,11 @@ impl<'w> GameServer<'w> {
         settings: &Settings,
         recorder: Option<&'w mut GameRecorder>,
     ) -> Result<GameServer<'w>, NodeError> {
-        let bus = Bus::hub(&settings.net, &settings.game)?;
-        let (others, incoming) = inbox(INBOX);
+        let bus = Bus::hub(&settings.net, &settings.game, contest.scenario())?;
         let (questions_sender, questions) = inbox(QUESTIONS);
-        let (controls, garbage) = (Arc::new(ControlInbox::default()), Arc::new(Watched::default()));
-        let (to_controls, to_garbage) = (Arc::clone(&controls), Arc::clone(&garbage));
-        let inboxes = Inboxes { controls: to_controls, questions: questions_sender, others, garbage: to_garbage };
+        let (controls, messages) = (Arc::new(ControlInbox::default()), Arc::new(MessageInbox::default()));
+        let (to_controls, others) = (Arc::clone(&controls), Arc::clone(&messages));
+        let inboxes = Inboxes { controls: to_controls, questions: questions_sender, others };
         let game = &settings.game;
         if recorder.is_some() {
             contest.keep_inputs();
@@ -123,9 +120,8 @@ impl<'w> GameServer<'w> {
             gateways: Membership::new(scenario, Role::Gateway),
             timing,
             controls,
-            garbage,
             questions,
-            inbox: incoming,
+            inbox: messages,
             time: WorkingTime::new(clock::now()),
             pictures: pictures?,
             asked: None,
@@ -136,6 +132,7 @@ impl<'w> GameServer<'w> {
             run: bus.publisher(topic::run(game), Priority::Normal)?,
             released: bus.publisher(topic::released(game), Priority::Urgent)?,
             guard: Guard::new(settings.net.token.clone()),
+            game: game.clone(),
             is_news: false,
             run_recorded: clock::now(),
             overruns: 0,
@@ -304,9 +301,8 @@ impl<'w> GameServer<'w> {
 
     /// Everything that was refused so far.
     pub(super) fn refusals(&self) -> Refusals {
-        let dropped = self.inbox.dropped() + self.questions.dropped();
-        let before = self.garbage.visit(|garbage| *garbage) + self.controls.refusals();
-        self.refusals + before + Refusals::from([(Refusal::Flood, dropped)])
+        let dropped = Refusals::from([(Refusal::Flood, self.questions.dropped())]);
+        self.refusals + self.inbox.refusals() + self.controls.refusals() + dropped
     }
 
     /// Reports progress, if it is time again.

@@ -1,12 +1,12 @@
 //! What a sim subscribes to and answers: commands, questions and everything else go to an inbox each.
 
 use super::control_inbox::ControlInbox;
+use super::message_inbox::{MessageInbox, Sender};
 use super::observers::RecordedTopic;
-use bus::{Bus, BusError, Declaration, InboxSender, Query, Watched};
+use bus::{Bus, BusError, Declaration, InboxSender, Query};
 use game::external::NavReport;
 use game::message::{Message, Orders};
-use game::refusal::Refusals;
-use game::topic::{self, GameName, Part};
+use game::topic::{self, GameName};
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
 
@@ -18,9 +18,24 @@ pub(super) enum Incoming {
     Join(Query),
     /// For the recorder only: the topic's place in the list, and the message.
     RecordedMessage(usize, Vec<u8>),
-    Gone(Part, String),
+    /// The link of this node is gone.
+    Gone(String),
     /// A command or a question waits in an inbox of its own; this makes the sim look there.
     Look,
+}
+
+impl Incoming {
+    /// From whom it is.
+    pub(super) fn sender(&self) -> Sender {
+        match self {
+            Incoming::Orders(orders) => Sender::Member(orders.ticket),
+            Incoming::Nav(report, _) => Sender::Member(report.ticket),
+            Incoming::Join(_) => Sender::Joining,
+            Incoming::RecordedMessage(topic, _) => Sender::Recorded(*topic),
+            Incoming::Gone(..) => Sender::Network,
+            Incoming::Look => Sender::Inboxes,
+        }
+    }
 }
 
 /// What observers want to know.
@@ -34,9 +49,7 @@ pub(super) enum Question {
 pub(super) struct Inboxes {
     pub(super) controls: Arc<ControlInbox<Query>>,
     pub(super) questions: InboxSender<(Question, Query)>,
-    pub(super) others: InboxSender<Incoming>,
-    /// What is not understood comes to no inbox, where it would take the room of what is.
-    pub(super) garbage: Arc<Watched<Refusals>>,
+    pub(super) others: Arc<MessageInbox>,
 }
 
 impl Inboxes {
@@ -45,9 +58,9 @@ impl Inboxes {
         &self,
         incoming: fn(M, &[u8]) -> Incoming,
     ) -> impl Fn(&[u8]) + Send + Sync + use<M> {
-        let (others, garbage) = (self.others.clone(), Arc::clone(&self.garbage));
+        let others = Arc::clone(&self.others);
         move |bytes: &[u8]| {
-            if let Some(message) = garbage.visit(|garbage| garbage.decode::<M>(bytes)) {
+            if let Some(message) = others.decode::<M>(bytes) {
                 others.put(incoming(message, bytes));
             }
         }
@@ -55,7 +68,7 @@ impl Inboxes {
 
     /// A callback for questions of one kind.
     fn ask(&self, question: fn() -> Question) -> impl Fn(Query) + Send + Sync + use<> {
-        let (questions, others) = (self.questions.clone(), self.others.clone());
+        let (questions, others) = (self.questions.clone(), Arc::clone(&self.others));
         move |query| {
             questions.put((question(), query));
             others.put(Incoming::Look);
@@ -70,13 +83,8 @@ pub(super) fn open(
     inboxes: &Inboxes,
     recorded: &[RecordedTopic],
 ) -> Result<Vec<Declaration>, BusError> {
-    let others = || inboxes.others.clone();
+    let others = || Arc::clone(&inboxes.others);
     let (gone, joins) = (others(), others());
-    let watch = move |key: &str, alive: bool| {
-        if let (Some((_, part, node)), false) = (topic::parse_alive(key), alive) {
-            gone.put(Incoming::Gone(part, node));
-        }
-    };
     // Where there is no room for a look, the sim is at work, and looks before each message.
     let (stops, look) = (Arc::clone(&inboxes.controls), others());
     let stop = move |bytes: &[u8]| {
@@ -95,18 +103,17 @@ pub(super) fn open(
         bus.subscribe(topic::control(game), stop)?,
         bus.answer(topic::control(game), control)?,
         bus.subscribe(topic::all_nav(game), inboxes.take(|report, bytes| Incoming::Nav(report, bytes.to_vec())))?,
-        bus.watch_alive(topic::all_alive(game, Part::Agent), watch.clone())?,
-        bus.watch_alive(topic::all_alive(game, Part::Gateway), watch)?,
+        bus.watch_links(move |node| gone.put(Incoming::Gone(node)))?,
         bus.answer(topic::scenario(game), inboxes.ask(|| Question::Scenario))?,
         bus.answer(topic::events(game), inboxes.ask(|| Question::Events))?,
         bus.answer(topic::water(game), inboxes.ask(|| Question::Water))?,
-        bus.answer(topic::join(game), move |query| joins.put(Incoming::Join(query)))?,
-        bus.show_alive(topic::alive(game, Part::Sim, &bus.id()))?,
+        bus.answer(topic::all_join(game), move |query| joins.put(Incoming::Join(query)))?,
+        bus.show_alive(topic::alive(game, &bus.id()))?,
     ];
     for (i, RecordedTopic { topic, .. }) in recorded.iter().enumerate() {
         let others = others();
         let take = move |bytes: &[u8]| others.put(Incoming::RecordedMessage(i, bytes.to_vec()));
-        declarations.push(bus.subscribe(topic::recorded(game, topic), take)?);
+        declarations.push(bus.subscribe(topic::matching(game, topic), take)?);
     }
     Ok(declarations)
 }

@@ -5,6 +5,7 @@ use super::start_position;
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::id::TeamId;
+use crate::rules::Rules;
 use crate::scenario::diagnostics::{Diagnostics, is_name};
 use crate::scenario::raw;
 use crate::scenario::read::{self, Document};
@@ -120,6 +121,7 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
     };
     fleet.fill(diagnostics);
     check_tick(diagnostics, document, tick, &fleet.boats.items);
+    check_looks(diagnostics, document, tick, rules.as_ref());
     let Fleet { boats, strategies, entries, .. } = fleet;
     let (field, mut rules, sea) = (field?, rules?, sea?);
     if !document.is_faultless(diagnostics) {
@@ -214,6 +216,19 @@ fn check_tick(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tic
                 boat.name
             );
             diagnostics.note(document.at("tick_s"), message);
+        }
+    }
+}
+
+/// The referee looks at ticks only.
+fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, tick: SimTime, rules: Option<&Rules>) {
+    let Some(rules) = rules else { return };
+    for (key, period) in [("tag_look_period_s", rules.tag_look_period), ("flag_look_period_s", rules.flag_look_period)]
+    {
+        if period.0 % tick.0 != 0 {
+            let (name, period_s, tick_s) = (&rules.name, period.as_s(), tick.as_s());
+            let message = format!("{key} of rules {name} is {period_s}, expected a multiple of tick_s, {tick_s}");
+            diagnostics.note(document.at("rules"), message);
         }
     }
 }
@@ -370,21 +385,36 @@ impl Fleet<'_> {
         team: Option<TeamId>,
     ) -> Option<usize> {
         let path = format!("{path}.strategy");
-        let team_name = team.map(|team| &self.document.raw.team[team.index()].name.0);
-        let is_replaced = team_name.is_some_and(|name| diagnostics.overrides.strategies.contains_key(name));
-        match (given.filter(|_| !is_replaced), team) {
+        let is_replaced = |diagnostics: &Diagnostics, team: Option<TeamId>| {
+            let name = team.map(|team| &self.document.raw.team[team.index()].name.0);
+            name.is_some_and(|name| diagnostics.overrides.strategies.contains_key(name))
+        };
+        let given = given.filter(|_| !is_replaced(diagnostics, team));
+        if let (Some(given), true) = (given, diagnostics.overrides.exchange_strategies) {
+            let message = format!("strategy is {}, expected none here: the teams exchange theirs", given.0);
+            diagnostics.note(self.document.at(&path), message);
+            return None;
+        }
+        let team = team.map(|team| self.whose_strategy(diagnostics, team));
+        let is_replaced = is_replaced(diagnostics, team);
+        let states_one = |team: TeamId| self.document.raw.team[team.index()].strategy.is_some();
+        match (given, team) {
             (Some(given), _) => {
                 self.strategies.index(diagnostics, &strategy_path(&given.0), self.document.at(&path), "")
             }
-            (None, Some(team)) if is_replaced || self.document.raw.team[team.index()].strategy.is_some() => {
-                self.strategy_of_team(diagnostics, team.index())
-            }
+            (None, Some(team)) if is_replaced || states_one(team) => self.strategy_of_team(diagnostics, team.index()),
             (None, Some(_)) => {
                 self.missing(diagnostics, &path, "the path of a strategy file here or for the team");
                 None
             }
             (None, None) => None,
         }
+    }
+
+    /// The team whose strategy the boats of a team follow.
+    fn whose_strategy(&self, diagnostics: &Diagnostics, team: TeamId) -> TeamId {
+        let is_exchanged = diagnostics.overrides.exchange_strategies && self.document.raw.team.len() == 2;
+        if is_exchanged { TeamId(1 - team.0) } else { team }
     }
 
     /// The strategy that a team states, or the one that takes its place.

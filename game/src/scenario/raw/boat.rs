@@ -1,6 +1,6 @@
 //! A boat file as typed.
 
-use crate::boat::{Autopilot, Flaws, Hull, Kinematic, Propeller, Windage};
+use crate::boat::{Autopilot, Flaws, Hold, Hull, Kinematic, Propeller, Windage};
 use crate::sensor::Sensors;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -29,6 +29,9 @@ pub(crate) struct Boat {
     pub(crate) autopilot: Option<Autopilot>,
     /// Instead of thruster and autopilot: the point boat of MOOS, for parity. Waves and wind do nothing to it.
     pub(crate) kinematic: Option<Kinematic>,
+    /// What it does when it holds.
+    #[schemars(extend("default" = "drifts"))]
+    pub(crate) hold: Hold,
     #[serde(flatten)]
     pub(crate) sensors: Sensors,
 }

@@ -2,10 +2,13 @@
 
 use super::live_state::LiveGame;
 use super::query_thread::QueryThread;
-use super::{Command, Place, SharedState, Tell};
+use super::{Command, SharedState};
 use bus::clock;
 use bus::game_search::{self, Missing};
-use bus::{Bus, BusError, Declaration, Patience, Priority, Publisher, SimState, SimWatch, Watched};
+use bus::{
+    Bus, BusError, Declaration, Inbox, InboxSender, NodeThread, Patience, Place, PlacedSession, Priority, Publisher,
+    SimState, SimWatch, Watched, inbox,
+};
 use game::codec;
 use game::external::GatewayStatus;
 use game::message::{Control, Frame, Message, PolicyProposal, Stamp};
@@ -17,7 +20,6 @@ use game::{TeamId, VehicleId};
 use parking_lot::Mutex;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
 /// How often to look again for a game that is not there.
@@ -31,7 +33,8 @@ const REQUESTS: usize = 16;
 /// How long to wait for an answer.
 const ANSWER: Duration = Duration::from_secs(2);
 /// How long a sim's token may take to appear, and to find back: a sim is not gone because its link was cut for a moment.
-const PATIENCE: Patience = Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1) };
+const PATIENCE: Patience =
+    Patience { silence: Duration::from_secs(5), missing: Duration::from_secs(1), unheard: Duration::from_secs(1) };
 /// Estimates are read no more often than this, however fast the game is.
 const PICTURE_AGAIN: Duration = Duration::from_millis(50);
 
@@ -40,7 +43,7 @@ pub(super) struct GameWatcher {
     pub(super) shared: Arc<SharedState>,
     pub(super) place: Place,
     pub(super) game: Option<GameName>,
-    pub(super) commands: Receiver<Command>,
+    pub(super) commands: Inbox<Command>,
 }
 
 /// A session in a game.
@@ -56,16 +59,16 @@ struct GameSession {
 impl GameWatcher {
     /// Shows one game after the other until the view closes.
     pub(super) fn run(self) {
-        let mut bus = None;
+        let mut session = None;
         let (mut said, mut attempts) = (String::new(), 0_u64);
         while !self.shared.is_closing() {
             // What was wanted of a game that is gone is not wanted of the next.
-            while self.commands.try_recv().is_ok() {}
-            match self.find(&mut bus) {
-                Ok(session) => {
+            while self.commands.take_now().is_some() {}
+            match self.find(&mut session) {
+                Ok(found) => {
                     said.clear();
-                    self.run_until_gone(session);
-                    bus = None;
+                    self.run_until_gone(found);
+                    session = None;
                 }
                 Err(missing) => {
                     // What will never be there may yet be replaced by something else.
@@ -76,7 +79,7 @@ impl GameWatcher {
                     }
                     attempts += 1;
                     if attempts % ATTEMPTS == 0 {
-                        bus = None;
+                        session = None;
                     }
                     clock::rest(LOOK_AGAIN);
                 }
@@ -85,12 +88,8 @@ impl GameWatcher {
     }
 
     /// Connects to a game, if there is one. The session stays open for the next attempt.
-    fn find(&self, bus: &mut Option<Bus>) -> Result<GameSession, Missing> {
-        let bus = match bus {
-            Some(bus) => bus.clone(),
-            None => bus.insert(Bus::leaf(&(self.place)().map_err(Missing::Yet)?)?).clone(),
-        };
-        let (name, info) = game_search::choose_game(&bus, self.game.as_ref())?;
+    fn find(&self, session: &mut PlacedSession) -> Result<GameSession, Missing> {
+        let (bus, name, info) = game_search::find_game(&self.place, self.game.as_ref(), session)?;
         // An older sim does not answer; then the water is drawn flat.
         let water = bus.ask(&topic::water(&name), Vec::new(), ANSWER)?;
         let water: Water = water.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
@@ -99,35 +98,39 @@ impl GameWatcher {
 
     /// Serves the game until it is gone.
     fn run_until_gone(&self, mut session: GameSession) {
-        let left = Watched::new(false);
-        let queries = QueryThread { shared: &self.shared, bus: session.bus.clone(), game: Arc::clone(&session.game) };
-        let (requests, requested) = sync_channel(REQUESTS);
-        let (bus, game, tell) = (session.bus.clone(), session.game.name.clone(), &self.shared.tell);
-        std::thread::scope(|scope| {
-            scope.spawn(|| queries.ask(&left));
-            // The sim may take its time to answer, and a stop must not wait for that.
-            scope.spawn(|| requested.into_iter().for_each(|control| request(tell, &bus, &game, control)));
-            while !self.shared.is_closing() && session.sim.state_by_token() == SimState::Alive {
-                if let Ok(command) = self.commands.recv_timeout(ROUND) {
-                    GameSession::send(command, &requests);
-                }
-                session.steer(&self.shared);
-                session.expire_steering(&self.shared);
-                session.update_picture_subscriptions(&self.shared);
+        let left = Arc::new(Watched::new(false));
+        let queries =
+            QueryThread { shared: Arc::clone(&self.shared), bus: session.bus.clone(), game: Arc::clone(&session.game) };
+        let until = Arc::clone(&left);
+        let query_thread = NodeThread::start(move || queries.ask(&until));
+        let (requests, requested) = inbox(REQUESTS);
+        let (shared, bus, game) = (Arc::clone(&self.shared), session.bus.clone(), session.game.name.clone());
+        let until = Arc::clone(&left);
+        // The sim may take its time to answer, and a stop must not wait for that.
+        let request_thread = NodeThread::start(move || request(&shared, &bus, &game, (&requested, &until)));
+        while !self.shared.is_closing() && session.sim.state() == SimState::Alive {
+            if let Some(command) = self.commands.take(ROUND) {
+                GameSession::send(command, &requests);
             }
-            self.shared.state.lock().end();
-            self.shared.news.send_replace(());
-            left.visit(|left| *left = true);
-            drop(requests);
-        });
+            session.steer(&self.shared);
+            session.expire_steering(&self.shared);
+            session.update_picture_subscriptions(&self.shared);
+        }
+        self.shared.state.lock().end();
+        self.shared.news.send_replace(());
+        left.visit(|left| *left = true);
+        drop((query_thread, request_thread));
         session.bus.close();
     }
 }
 
-/// Asks the sim for something that it may refuse.
-fn request(tell: &Tell, bus: &Bus, game: &GameName, control: Control) {
-    if let Err(error) = bus::control(bus, game, control) {
-        tell(&format!("{control:?} was asked for on the page: {error}"));
+/// Asks the sim for what it may refuse, until the game is left.
+fn request(shared: &SharedState, bus: &Bus, game: &GameName, (requested, left): (&Inbox<Control>, &Watched<bool>)) {
+    while !left.visit(|left| *left) {
+        let Some(control) = requested.take(ROUND) else { continue };
+        if let Err(error) = bus::control(bus, game, control) {
+            (shared.tell)(&format!("{control:?} was asked for on the page: {error}"));
+        }
     }
 }
 
@@ -153,10 +156,10 @@ impl GameSession {
     }
 
     /// Passes on a command of a page. What cannot be sent now is lost with the session.
-    fn send(command: Command, requests: &SyncSender<Control>) {
+    fn send(command: Command, requests: &InboxSender<Control>) {
         match command {
             // A page that asks for more than is answered has to ask again.
-            Command::Control(control) => drop(requests.try_send(control)),
+            Command::Control(control) => requests.put(control),
             // It is seen to in every round; this only begins one.
             Command::Steer => {}
         }
@@ -277,18 +280,18 @@ mod tests {
 
     #[test]
     fn what_was_asked_of_one_game_is_forgotten_before_the_next_is_looked_for() {
-        let (commands, to_do) = sync_channel(1);
+        let (commands, to_do) = inbox(1);
         let shared = Arc::new(SharedState::new(commands.clone(), Box::new(|_| ())));
-        commands.send(Command::Control(Control::Stop)).unwrap();
+        assert!(commands.offer(Command::Control(Control::Stop)));
         let (found, finds) = sync_channel(1);
         let searched = Arc::clone(&shared);
-        let place = move || {
+        let place = move |_: Option<&GameName>| {
             // There is room for one command only, and so for none if the one before is still there.
-            found.send(commands.try_send(Command::Steer).is_ok()).unwrap();
+            found.send(commands.offer(Command::Steer)).unwrap();
             searched.is_closing.store(true, Ordering::Relaxed);
             Err("there is no network".to_owned())
         };
-        GameWatcher { shared, place: Box::new(place), game: None, commands: to_do }.run();
+        GameWatcher { shared, place: Place::new(place), game: None, commands: to_do }.run();
         assert!(finds.recv().unwrap());
     }
 }

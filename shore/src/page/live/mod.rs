@@ -14,7 +14,7 @@ mod stopping;
 mod viewer;
 
 use super::view::{Access, Changes, View, Viewer};
-use bus::Net;
+use bus::{InboxSender, Place, inbox, start_thread};
 use game::message::Control;
 use game::topic::GameName;
 use game_watcher::GameWatcher;
@@ -22,15 +22,11 @@ use live_state::LiveState;
 use parking_lot::Mutex;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{SyncSender, sync_channel};
 use stopping::Stopping;
 use viewer::PageViewer;
 
 /// The most commands that wait for the network.
 const COMMANDS_MAX: usize = 64;
-
-/// Where a game can be reached, or why that is not known: asked anew for every search, since the next may be elsewhere.
-pub type Place = Box<dyn Fn() -> Result<Net, String> + Send>;
 
 /// Shows a person what went wrong, in a sentence.
 pub type Tell = Box<dyn Fn(&str) + Send + Sync>;
@@ -45,7 +41,7 @@ struct SharedState {
     /// To be locked for moments only.
     state: Mutex<LiveState>,
     news: Changes,
-    commands: SyncSender<Command>,
+    commands: InboxSender<Command>,
     stopping: Stopping,
     /// Where a person reads what went wrong.
     tell: Tell,
@@ -69,10 +65,10 @@ impl LiveView {
     /// # Errors
     /// If the system has no thread to give.
     pub fn open(place: Place, game: Option<GameName>, tell: Tell) -> std::io::Result<LiveView> {
-        let (commands, to_do) = sync_channel(COMMANDS_MAX);
+        let (commands, to_do) = inbox(COMMANDS_MAX);
         let shared = Arc::new(SharedState::new(commands, tell));
         let watcher = GameWatcher { shared: Arc::clone(&shared), place, game, commands: to_do };
-        std::thread::Builder::new().name("page-live".to_owned()).spawn(move || watcher.run())?;
+        start_thread("page-live", move || watcher.run())?;
         Ok(LiveView { shared })
     }
 }
@@ -97,7 +93,7 @@ impl View for LiveView {
 
 impl SharedState {
     /// With an empty state.
-    fn new(commands: SyncSender<Command>, tell: Tell) -> SharedState {
+    fn new(commands: InboxSender<Command>, tell: Tell) -> SharedState {
         SharedState {
             state: Mutex::default(),
             news: Changes::default(),

@@ -24,8 +24,8 @@ const SHARE: u32 = 5;
 const EVENTS_ANSWER: Duration = Duration::from_secs(3);
 
 /// Asks one game.
-pub(super) struct QueryThread<'a> {
-    pub(super) shared: &'a SharedState,
+pub(super) struct QueryThread {
+    pub(super) shared: Arc<SharedState>,
     pub(super) bus: Bus,
     pub(super) game: Arc<LiveGame>,
 }
@@ -64,7 +64,7 @@ impl QuerySchedule {
     }
 }
 
-impl QueryThread<'_> {
+impl QueryThread {
     /// Asks until the game is left.
     pub(super) fn ask(&self, left: &Watched<bool>) {
         let mut schedule = QuerySchedule::default();

@@ -3,7 +3,7 @@
 
 use super::SharedState;
 use super::live_state::LiveState;
-use bus::ask_gateway;
+use bus::{ask_gateway, start_thread};
 use game::external::{FleetCommand, GatewayCommand};
 use game::message::Control;
 use std::net::SocketAddr;
@@ -52,7 +52,7 @@ fn begin(shared: &Arc<SharedState>, work: impl FnOnce(&SharedState) + Send + 'st
         return Err(format!("{THREADS_MAX} stops are under way"));
     }
     let at_work = Arc::clone(shared);
-    let thread = std::thread::Builder::new().name("page-stop".to_owned()).spawn(move || {
+    let thread = start_thread("page-stop", move || {
         work(&at_work);
         at_work.stopping.0.fetch_sub(1, Ordering::SeqCst);
     });

@@ -58,7 +58,10 @@ impl PageViewer {
     }
 
     fn send(&self, command: Command) -> Result<(), String> {
-        self.shared.commands.try_send(command).map_err(|_| "the network does not keep up: ask again".to_owned())
+        if self.shared.commands.offer(command) {
+            return Ok(());
+        }
+        Err("the network does not keep up: ask again".to_owned())
     }
 
     fn select(&mut self, vehicle: Option<&str>, functions: bool) -> Result<(), String> {
@@ -280,16 +283,15 @@ impl Sent {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bus::clock;
+    use bus::{clock, inbox};
     use game::message::{Frame, GameInfo};
     use game::topic::GameName;
     use game::water::Water;
     use std::path::Path;
-    use std::sync::mpsc::sync_channel;
 
     #[test]
     fn what_is_told_of_the_selected_boat_waits_until_there_is_room() {
-        let shared = Arc::new(SharedState::new(sync_channel(1).0, Box::new(|_| ())));
+        let shared = Arc::new(SharedState::new(inbox(1).0, Box::new(|_| ())));
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
         let (scenario, now) = (game::scenario::load(&file).unwrap(), clock::now());
         let info = GameInfo { version: String::new(), pace: "lockstep".to_owned(), scenario };

@@ -5,7 +5,7 @@ use game::message::GameInfo;
 use game::outcome::EventOutcome;
 use game::picture::{OwnBoat, Picture};
 use game::{SimTime, VehicleId};
-use recording::{Header, Recording, RecordingError, picture};
+use recording::{Damaged, Header, Recording, picture};
 use std::sync::Arc;
 
 /// A recording, ready to be shown.
@@ -13,7 +13,10 @@ pub struct Recorded {
     recording: Arc<Recording>,
     /// The file's name.
     pub(super) file: String,
+    /// Of the frames that are sound: their numbers in the recording, and their times.
+    frames: Vec<usize>,
     times: Vec<SimTime>,
+    damaged: Damaged,
     /// By team, the time and place of every picture.
     pictures: Vec<Vec<(SimTime, usize)>>,
     /// By vehicle, the same of what its gateway sent.
@@ -23,11 +26,9 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// Reads all of it once.
-    ///
-    /// # Errors
-    /// [`RecordingError`] names the first frame that is none.
-    pub fn new(recording: Arc<Recording>, file: String) -> Result<Recorded, RecordingError> {
+    /// Reads all of it once, and leaves out frames that are damaged.
+    #[must_use]
+    pub fn new(recording: Arc<Recording>, file: String) -> Recorded {
         let scenario = recording.scenario();
         let sent = |topic: String| {
             let bag = recording.bag();
@@ -35,15 +36,24 @@ impl Recorded {
         };
         let pictures = scenario.teams.iter().map(|team| sent(picture(&team.name))).collect();
         let statuses = scenario.vehicles.iter().map(|vehicle| sent(format!("status/{}", vehicle.name))).collect();
-        let mut recorded =
-            Recorded { file, times: Vec::new(), pictures, statuses, events: Vec::new(), recording: recording.clone() };
-        for frame in recording.frames() {
-            let frame = frame?;
+        let mut recorded = Recorded {
+            recording: Arc::clone(&recording),
+            file,
+            frames: Vec::new(),
+            times: Vec::new(),
+            damaged: Damaged::default(),
+            pictures,
+            statuses,
+            events: Vec::new(),
+        };
+        for (number, frame) in recording.frames().enumerate() {
+            let Some(frame) = recorded.damaged.sound(frame) else { continue };
+            recorded.frames.push(number);
             recorded.times.push(frame.stamp.valid_ns);
             recorded.events.extend(frame.logged(scenario).map(|logged| EventOutcome::new(scenario, &logged)));
         }
         recorded.add_failsafes();
-        Ok(recorded)
+        recorded
     }
 
     /// Adds the failsafes of gateways to the events, at the time of their first report.
@@ -89,6 +99,12 @@ impl Recorded {
         self.recording.is_cut()
     }
 
+    /// The frames that are left out.
+    #[must_use]
+    pub fn damaged(&self) -> &Damaged {
+        &self.damaged
+    }
+
     /// When the frames are, in order.
     #[must_use]
     pub fn frame_times(&self) -> &[SimTime] {
@@ -97,7 +113,7 @@ impl Recorded {
 
     /// A frame, as CDR.
     pub(super) fn frame_bytes(&self, frame: usize) -> Vec<u8> {
-        self.recording.frame(frame).bytes
+        self.recording.frame(self.frames[frame]).bytes
     }
 
     /// Where a boat's own sensors put it at a frame.

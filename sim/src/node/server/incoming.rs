@@ -12,7 +12,7 @@ use game::SimTime;
 use game::external::NavReport;
 use game::message::{Control, ControlReply, JoinReply, JoinRequest, Message, Orders, Role};
 use game::refusal::Refusal;
-use game::topic::Part;
+use game::topic;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -75,12 +75,13 @@ impl GameServer<'_> {
                     self.refusals.count(Refusal::Garbage);
                 }
             }
-            Incoming::Gone(Part::Gateway, gateway) => drop(self.gateways.gone(&gateway)),
-            // Its link was given up while the sim did nothing: patience tells whether it comes back.
-            Incoming::Gone(..) if self.time.is_recovering() => {}
-            Incoming::Gone(_, agent) => {
-                let vehicles = self.agents.gone(&agent);
-                self.lose_agents(vehicles);
+            Incoming::Gone(node) => {
+                self.gateways.gone(&node);
+                // Links that were given up while the sim did nothing: patience tells whether agents come back.
+                if !self.time.is_recovering() {
+                    let vehicles = self.agents.gone(&node);
+                    self.lose_agents(vehicles);
+                }
             }
             Incoming::Look => {}
         }
@@ -121,16 +122,29 @@ impl GameServer<'_> {
 
     fn join(&mut self, query: Query) {
         let reply = match self.guard.check::<JoinRequest>(query.key(), &query.payload, |_| true) {
-            Checked::Granted(request) if request.role == Role::Gateway => self.gateways.join(&request, random_number()),
-            Checked::Granted(request) => self.join_agent(&request),
+            Checked::Granted(request) => self.join_at(query.key(), &request),
             Checked::Challenged(challenge) => return query.answer(challenge),
             Checked::Garbage(e) => JoinReply::Refused { reason: format!("the request is not understood: {e}") },
         };
+        // Before the node can show its ticket.
+        self.inbox.let_in(self.agents.tickets().chain(self.gateways.tickets()).collect());
         query.answer(token::answer(&reply));
     }
 
+    /// Lets a node join that asks at the place of its team or boat: with keys, access control lets it ask at no other.
+    fn join_at(&mut self, key: &str, request: &JoinRequest) -> JoinReply {
+        let place = topic::join(&self.game, self.contest.scenario(), request.role, &request.vehicles);
+        match request.role {
+            _ if place != key => {
+                JoinReply::Refused { reason: format!("who joins with these vehicles asks at {place}, not at {key}") }
+            }
+            Role::Gateway => self.gateways.join(request, random_number(), self.contest.now()),
+            Role::Agent => self.join_agent(request),
+        }
+    }
+
     fn join_agent(&mut self, request: &JoinRequest) -> JoinReply {
-        let reply = self.agents.join(request, random_number());
+        let reply = self.agents.join(request, random_number(), self.contest.now());
         if let JoinReply::Granted { vehicles, .. } = &reply {
             for vehicle in vehicles {
                 self.contest.hold(*vehicle);

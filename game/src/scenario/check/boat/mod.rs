@@ -48,6 +48,7 @@ pub(in crate::scenario) fn boat(diagnostics: &mut Diagnostics, document: &Docume
         hull: hull.clone(),
         windage: raw.windage.clone(),
         drive: drive?,
+        hold: raw.hold,
         sensors: raw.sensors.clone(),
     };
     estimate_rest(&mut boat);

@@ -1,0 +1,63 @@
+//! The collision halt: a boat that has come too near to another stops, whatever others want, until it is released. As at
+//! the games of 2023, where people then sorted the boats out.
+
+use super::{BehaviourLogic, BehaviourOutput};
+use crate::situation::Situation;
+use game::SimTime;
+use game::strategy::{AvoidCollision, Parameter};
+
+/// Collision avoidance, and the halt where it was not enough.
+pub(super) struct HaltingAvoidance {
+    avoidance: AvoidCollision,
+    halt: Halt,
+}
+
+/// Whether the boat is halted.
+#[derive(Clone, Copy)]
+enum Halt {
+    /// No boat has come too near.
+    Clear,
+    Halted {
+        since: SimTime,
+    },
+    /// Released after its time, with others still near: it halts again only after it has been clear of them.
+    Released,
+}
+
+impl HaltingAvoidance {
+    pub(super) fn new(avoidance: AvoidCollision) -> HaltingAvoidance {
+        HaltingAvoidance { avoidance, halt: Halt::Clear }
+    }
+
+    fn next(&self, situation: &Situation) -> Halt {
+        let value = |parameter: &Option<Parameter>| parameter.as_ref().map(|parameter| parameter.value(situation));
+        let AvoidCollision { halt_m, release_m, release_s, .. } = &self.avoidance;
+        let Some(halt_m) = value(halt_m) else { return Halt::Clear };
+        let (release_m, release_s) = (value(release_m).unwrap_or(3.0 * halt_m), value(release_s));
+        let distances = situation.others.iter().map(|other| situation.at.distance(other.at));
+        let nearest_m = distances.fold(f64::INFINITY, f64::min);
+        let is_clear = nearest_m >= release_m.max(halt_m);
+        match self.halt {
+            Halt::Clear if nearest_m < halt_m => Halt::Halted { since: situation.now },
+            Halt::Halted { .. } | Halt::Released if is_clear => Halt::Clear,
+            Halt::Halted { since } if release_s.is_some_and(|limit_s| (situation.now - since).as_s() >= limit_s) => {
+                Halt::Released
+            }
+            halt => halt,
+        }
+    }
+}
+
+impl BehaviourLogic for HaltingAvoidance {
+    fn begin(&mut self, _situation: &Situation) {
+        self.halt = Halt::Clear;
+    }
+
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        self.avoidance.run(situation, output);
+        self.halt = self.next(situation);
+        if matches!(self.halt, Halt::Halted { .. }) {
+            output.stop();
+        }
+    }
+}

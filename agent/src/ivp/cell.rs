@@ -1,0 +1,271 @@
+//! Cells of the decision grid: neighbouring courses by neighbouring speeds, of which a function gives one bound.
+//!
+//! As velocities these are a piece of a ring, which lies within the polygon of four corners: at the first course and at the
+//! last, at the slowest speed and at so much more than the fastest that the side between those two touches the outer arc.
+
+use super::grid::Grid;
+use super::lanes::{LANES, Lanes, SIDE};
+use std::f64::consts::{FRAC_PI_3, TAU};
+
+/// A ring's piece that is wider than this to either side is taken for a whole disc, rad.
+const WIDEST_RAD: f64 = FRAC_PI_3;
+
+/// What single precision and the root of a small number may be wrong by, as a chord of the unit circle.
+const CHORD_ROUNDING: f32 = 1e-3;
+
+/// A cell.
+#[derive(Clone, Copy)]
+pub(super) struct Cell {
+    first: (f32, f32),
+    last: (f32, f32),
+    /// The course in the middle, a unit vector.
+    pub(super) north: f32,
+    pub(super) east: f32,
+    /// No course of the cell is farther from that one, as a chord of the unit circle.
+    pub(super) chord: f32,
+    slow: f32,
+    fast: f32,
+    mean: f32,
+}
+
+impl Cell {
+    /// Velocities, north and east, m/s: all of the cell's lie within the polygon between them.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [(f32, f32); 4] {
+        let at = |(north, east): (f32, f32), speed: f32| (speed * north, speed * east);
+        [at(self.first, self.slow), at(self.last, self.slow), at(self.first, self.fast), at(self.last, self.fast)]
+    }
+
+    /// A velocity in the middle, m/s.
+    #[inline(always)]
+    pub(super) fn middle(&self) -> (f32, f32) {
+        (self.mean * self.north, self.mean * self.east)
+    }
+}
+
+/// The courses of cells, side by side.
+#[derive(Clone, Debug)]
+pub(super) struct CourseSpans {
+    first_north: Lanes<f32>,
+    first_east: Lanes<f32>,
+    last_north: Lanes<f32>,
+    last_east: Lanes<f32>,
+    /// The courses in the middle, unit vectors.
+    pub(super) north: Lanes<f32>,
+    pub(super) east: Lanes<f32>,
+    chord: f32,
+}
+
+/// The speeds of cells, side by side.
+#[derive(Clone, Debug)]
+pub(super) struct SpeedSpans {
+    slow: Lanes<f32>,
+    fast: Lanes<f32>,
+    mean: Lanes<f32>,
+}
+
+/// How many courses and speeds a cell has, and so its shape.
+#[derive(Clone, Copy)]
+pub(super) struct CellSize {
+    side: usize,
+    /// Half of the angle between its first course and its last; none if it is taken for a disc.
+    half_rad: Option<f64>,
+}
+
+impl CellSize {
+    /// Of so many courses by so many speeds.
+    pub(super) fn new(grid: &Grid, side: usize) -> CellSize {
+        let half_rad = 0.5 * (side - 1) as f64 * TAU / grid.courses() as f64;
+        CellSize { side, half_rad: (half_rad <= WIDEST_RAD).then_some(half_rad) }
+    }
+
+    /// Courses of cells, the numbers of which (counted by courses) are given for each place.
+    pub(super) fn courses(self, grid: &Grid, number: impl Fn(usize) -> usize) -> CourseSpans {
+        let spans: [[f32; 6]; LANES] = std::array::from_fn(|i| self.course(grid, number(i)));
+        let part = |part: usize| Lanes::each(|i| spans[i][part]);
+        let chord = self.half_rad.map_or(2.0, |half_rad| 2.0 * game::math::sin_cos(0.5 * half_rad).0);
+        CourseSpans {
+            first_north: part(0),
+            first_east: part(1),
+            last_north: part(2),
+            last_east: part(3),
+            north: part(4),
+            east: part(5),
+            chord: chord as f32 + CHORD_ROUNDING,
+        }
+    }
+
+    /// Speeds of cells, the numbers of which (counted by speeds) are given for each place.
+    pub(super) fn speeds(self, grid: &Grid, number: impl Fn(usize) -> usize) -> SpeedSpans {
+        let spans: [[f32; 3]; LANES] = std::array::from_fn(|i| self.speed(grid, number(i)));
+        let part = |part: usize| Lanes::each(|i| spans[i][part]);
+        SpeedSpans { slow: part(0), fast: part(1), mean: part(2) }
+    }
+
+    /// First, last and middle course; beyond the grid as its last one.
+    fn course(self, grid: &Grid, number: usize) -> [f32; 6] {
+        let of = |i: usize| (self.side * number + i).min(grid.courses() - 1);
+        let (first, last) = (of(0), of(self.side - 1));
+        if self.half_rad.is_none() {
+            // The square about all speeds, of which `speed` gives half a side.
+            return [1.0, 1.0, 1.0, -1.0, 1.0, 0.0];
+        }
+        let (east, north) = game::math::sin_cos(0.5 * (grid.course_rad(first) + grid.course_rad(last)));
+        let (first, last) = (grid.direction(first), grid.direction(last));
+        [first.0, first.1, last.0, last.1, north as f32, east as f32]
+    }
+
+    /// The slowest, more than the fastest, and the mean speed, m/s; beyond the grid as its last one.
+    fn speed(self, grid: &Grid, number: usize) -> [f32; 3] {
+        let of = |i: usize| grid.speed_m_s((self.side * number + i).min(grid.speeds() - 1));
+        let (slow, fast) = (of(0), of(self.side - 1));
+        let Some(half_rad) = self.half_rad else { return [-fast as f32, fast as f32, 0.0] };
+        let outer = fast / game::math::sin_cos(half_rad).1;
+        [slow as f32, outer as f32, (0.5 * (slow + fast)) as f32]
+    }
+}
+
+/// The cell at a place.
+#[inline(always)]
+pub(super) fn cell(courses: &CourseSpans, speeds: &SpeedSpans, i: usize) -> Cell {
+    Cell {
+        first: (courses.first_north.0[i], courses.first_east.0[i]),
+        last: (courses.last_north.0[i], courses.last_east.0[i]),
+        north: courses.north.0[i],
+        east: courses.east.0[i],
+        chord: courses.chord,
+        slow: speeds.slow.0[i],
+        fast: speeds.fast.0[i],
+        mean: speeds.mean.0[i],
+    }
+}
+
+/// The grid in cells: tiles of [`SIDE`] courses by as many speeds, and sectors of [`SIDE`] tiles by as many.
+#[derive(Clone, Debug)]
+pub(super) struct Cells {
+    /// Sectors one beside the other in courses.
+    pub(super) sector_courses: usize,
+    /// Sectors one beside the other in speeds.
+    pub(super) sector_speeds: usize,
+    /// Of sectors, side by side: all courses with the first speeds come first.
+    pub(super) sectors: Vec<(CourseSpans, SpeedSpans)>,
+    /// Of the tiles of a sector, by its place in courses: all its courses with its first speeds come first.
+    pub(super) tile_courses: Vec<CourseSpans>,
+    /// Of the tiles of a sector, by its place in speeds.
+    pub(super) tile_speeds: Vec<SpeedSpans>,
+    /// Courses of the points of a tile, by the tile's place in courses: north, east.
+    pub(super) points: Vec<(Lanes<f32>, Lanes<f32>)>,
+    /// Speeds of the points of a tile, m/s, by the tile's place in speeds.
+    pub(super) point_speeds: Vec<Lanes<f32>>,
+}
+
+impl Cells {
+    pub(super) fn new(grid: &Grid) -> Cells {
+        let (sector_courses, sector_speeds) = (grid.courses().div_ceil(LANES), grid.speeds().div_ceil(LANES));
+        let (tile, sector) = (CellSize::new(grid, SIDE), CellSize::new(grid, SIDE * SIDE));
+        let chunks = (sector_courses * sector_speeds).div_ceil(LANES);
+        let sectors = |chunk: usize| {
+            let number = move |i: usize| LANES * chunk + i;
+            let courses = sector.courses(grid, |i| number(i) % sector_courses);
+            (courses, sector.speeds(grid, |i| number(i) / sector_courses))
+        };
+        let direction = |tile: usize, i: usize| grid.direction((SIDE * tile + i / SIDE).min(grid.courses() - 1));
+        let speed = |tile: usize, i: usize| grid.speed_m_s((SIDE * tile + i % SIDE).min(grid.speeds() - 1)) as f32;
+        let points = |tile| (Lanes::each(|i| direction(tile, i).0), Lanes::each(|i| direction(tile, i).1));
+        Cells {
+            sectors: (0..chunks).map(sectors).collect(),
+            tile_courses: (0..sector_courses).map(|at| tile.courses(grid, |i| SIDE * at + i % SIDE)).collect(),
+            tile_speeds: (0..sector_speeds).map(|at| tile.speeds(grid, |i| SIDE * at + i / SIDE)).collect(),
+            points: (0..SIDE * sector_courses).map(points).collect(),
+            point_speeds: (0..SIDE * sector_speeds).map(|tile| Lanes::each(|i| speed(tile, i))).collect(),
+            sector_courses,
+            sector_speeds,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::closest::{Approach, Closest, Lag};
+    use super::super::closing::Closing;
+    use super::super::objective::{Field, Objective, Parts};
+    use super::*;
+    use game::Ned;
+    use game::stream::Stream;
+
+    fn within(stream: &mut Stream, most: f64) -> Ned {
+        Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
+    }
+
+    /// A formula of any kind.
+    fn field(stream: &mut Stream, grid: &Grid) -> Field {
+        let fastest_m_s = grid.speed_max_m_s();
+        let range_m = [3.0, 30.0, 400.0][stream.below(3) as usize];
+        let (offset, velocity) = (within(stream, range_m), within(stream, fastest_m_s));
+        let lag = |stream: &mut Stream| Lag {
+            velocity: within(stream, fastest_m_s),
+            heading: Ned::toward_deg(stream.between(0.0, 360.0)),
+            reaction_s: stream.between(0.0, 2.0),
+            turn_rad_s: stream.between(0.1, 2.0),
+        };
+        let objective = match stream.below(5) {
+            0 => Objective::Closing(Closing { offset, velocity }),
+            kind => Objective::Closest(Closest {
+                offset,
+                velocity,
+                horizon_s: [0.0, 8.0, 15.0, 120.0][stream.below(4) as usize],
+                min_m: 0.1 * range_m,
+                max_m: [0.3, 1.5][stream.below(2) as usize] * range_m,
+                touch_m: 0.0,
+                approach: if kind < 3 { Approach::Seek } else { Approach::Avoid { at_min: 50.0 } },
+                lag: (kind % 2 == 0).then(|| lag(stream)),
+            }),
+        };
+        let Parts::Field(field) = objective.parts(grid) else { panic!("{objective:?} is a formula") };
+        field
+    }
+
+    /// What nothing within a cell exceeds, and what nothing falls short of.
+    fn bounds(field: &Field, cell: &Cell) -> (f32, f32) {
+        match field {
+            Field::Closest(ready) => {
+                let chord = ready.turn().chord(cell.north, cell.east);
+                match ready.seeks() {
+                    true => (ready.bound_seek(chord, cell), 0.0),
+                    false if ready.is_clear(chord, cell) => (ready.bound_avoid(chord, cell), 100.0),
+                    false => (ready.bound_avoid(chord, cell), 0.0),
+                }
+            }
+            Field::Closing(ready) => (ready.bound(cell), 0.0),
+        }
+    }
+
+    #[test]
+    fn no_point_of_a_cell_is_outside_of_its_bounds() {
+        let mut clear = 0;
+        for seed in 0..2_000 {
+            let mut stream = Stream::new(seed, "ivp/cell");
+            let courses = [5, 12, 36, 47, 90, 360][stream.below(6) as usize];
+            let grid = Grid::new(courses, [2, 9, 21, 36][stream.below(4) as usize], stream.between(0.5, 8.0));
+            let (cells, field) = (Cells::new(&grid), field(&mut stream, &grid));
+            for (k, j) in (0..courses).flat_map(|k| (0..grid.speeds()).map(move |j| (k, j))) {
+                let (across, along) = (k / LANES, j / LANES);
+                let sector = along * cells.sector_courses + across;
+                let (of_courses, of_speeds) = &cells.sectors[sector / LANES];
+                let tile = SIDE * (j / SIDE % SIDE) + k / SIDE % SIDE;
+                let (north, east) = grid.direction(k);
+                let utility = field.utility(north, east, grid.speed_m_s(j) as f32);
+                for (what, cell) in [
+                    ("sector", cell(of_courses, of_speeds, sector % LANES)),
+                    ("tile", cell(&cells.tile_courses[across], &cells.tile_speeds[along], tile)),
+                ] {
+                    let (most, least) = bounds(&field, &cell);
+                    let is_within = (least..=most).contains(&utility);
+                    assert!(is_within, "seed {seed}, {what} of {k}, {j}: {utility}, {least} to {most}: {field:?}");
+                    clear += u32::from(least > 0.0);
+                }
+            }
+        }
+        assert!(clear > 1000, "{clear} points in cells without a contact near");
+    }
+}

@@ -1,0 +1,71 @@
+//! Numbers side by side, as they lie in the widest registers.
+
+/// How many.
+pub(super) const LANES: usize = 16;
+
+/// Courses of a tile, and speeds of one: a tile is so many courses and so many speeds, and so many tiles by as many are a
+/// sector.
+pub(super) const SIDE: usize = 4;
+
+const _: () = assert!(SIDE * SIDE == LANES);
+
+/// Numbers side by side. Plain loops over all of them become single instructions.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Lanes<T>(pub(super) [T; LANES]);
+
+impl<T: Copy> Lanes<T> {
+    /// The same number in all places.
+    #[inline(always)]
+    pub(super) fn splat(number: T) -> Lanes<T> {
+        Lanes([number; LANES])
+    }
+
+    /// A number for each place. Not for what has to be fast: closures are not always inlined.
+    pub(super) fn each(number: impl FnMut(usize) -> T) -> Lanes<T> {
+        Lanes(std::array::from_fn(number))
+    }
+}
+
+impl Lanes<i32> {
+    /// The largest.
+    #[inline(always)]
+    pub(super) fn most(&self) -> i32 {
+        let mut halves = self.0;
+        let mut width = LANES / 2;
+        while width > 0 {
+            for i in 0..width {
+                halves[i] = larger(halves[i], halves[i + width]);
+            }
+            width /= 2;
+        }
+        halves[0]
+    }
+
+    /// The first place of a number that is there.
+    #[inline(always)]
+    pub(super) fn place_of(&self, number: i32) -> usize {
+        let mut places = 0_u32;
+        for (i, lane) in self.0.iter().enumerate() {
+            places |= u32::from(*lane == number) << i;
+        }
+        places.trailing_zeros() as usize
+    }
+
+    /// The largest of each four neighbours.
+    #[inline(always)]
+    pub(super) fn most_of_fours(&self) -> [i32; SIDE] {
+        let mut fours = [0; SIDE];
+        for (four, most) in fours.iter_mut().enumerate() {
+            let of = SIDE * four;
+            *most = larger(larger(self.0[of], self.0[of + 1]), larger(self.0[of + 2], self.0[of + 3]));
+        }
+        fours
+    }
+}
+
+/// The larger of two numbers.
+#[inline(always)]
+pub(super) fn larger(a: i32, b: i32) -> i32 {
+    if a > b { a } else { b }
+}

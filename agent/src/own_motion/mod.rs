@@ -1,0 +1,276 @@
+//! How the own boat moves when it is given an order: its drift, by how much it lies beside its heading, how it turns.
+//!
+//! Everything is known from the boat's file, its own navigation and its own orders, so that it works on a real boat as in
+//! simulation. Decisions are heading and speed through the water: over the ground a boat makes that plus its drift.
+
+mod drift;
+mod handling;
+mod heading_offset;
+
+pub(crate) use handling::Handling;
+
+use drift::DriftEstimate;
+use game::angle::wrap_pi;
+use game::boat::{Boat, Drive};
+use game::picture::{Nav, OwnBoat};
+use game::{Ned, Order, SimTime, math};
+use handling::SeenTurn;
+use heading_offset::HeadingOffset;
+use std::f64::consts::PI;
+
+/// No larger turn is ordered at once, rad: a front seat turns the shorter way, and of half a turn there is none.
+const TURN_MAX_RAD: f64 = 2.6;
+/// A turn that is as large goes on to the side on which it began, rad.
+const LARGE_TURN_RAD: f64 = 2.2;
+
+/// What a front seat takes speed for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum SpeedReference {
+    /// Ahead over the ground.
+    Ground,
+    /// Through the water: point boats'.
+    Water,
+}
+
+/// How the own boat moves.
+#[derive(Clone, Debug)]
+pub(crate) struct OwnMotion {
+    file: Handling,
+    reference: SpeedReference,
+    speed_max_m_s: f64,
+    /// Whether drift and offset are made up for.
+    compensates: bool,
+    drift: DriftEstimate,
+    offset: HeadingOffset,
+    turn: SeenTurn,
+    /// The heading that was wanted and the one that was ordered for it, rad; none after another order.
+    ordered: Option<(f64, f64)>,
+    fix_at: SimTime,
+    psi_rad: f64,
+    /// The side of a large turn that was ordered last, 1 to starboard and -1 to port; else 0.
+    side: f64,
+}
+
+impl OwnMotion {
+    pub(crate) fn new(boat: &Boat, speed_max_m_s: f64, compensates: bool) -> OwnMotion {
+        let reference = match boat.drive {
+            Drive::Thrusters { .. } => SpeedReference::Ground,
+            Drive::Kinematic(_) => SpeedReference::Water,
+        };
+        OwnMotion {
+            file: Handling::of(boat),
+            reference,
+            speed_max_m_s,
+            compensates,
+            drift: DriftEstimate::default(),
+            offset: HeadingOffset::default(),
+            turn: SeenTurn::default(),
+            ordered: None,
+            fix_at: SimTime::ZERO,
+            psi_rad: 0.0,
+            side: 0.0,
+        }
+    }
+
+    /// Takes in what the boat knows of itself `step_s` after the last time. `obeys` is whether the rules let it do as it was
+    /// ordered.
+    pub(crate) fn observe(&mut self, own: &OwnBoat, step_s: f64, obeys: bool) {
+        self.psi_rad = own.nav.psi_rad;
+        if !self.compensates || step_s <= 0.0 {
+            return;
+        }
+        // A velocity that has been seen already tells nothing new.
+        if own.fix_ns > self.fix_at {
+            self.drift.observe(&own.nav, &self.file, (own.fix_ns - self.fix_at).as_s().min(1.0));
+            self.fix_at = own.fix_ns;
+        }
+        match self.ordered.filter(|_| obeys) {
+            Some((_, ordered_rad)) => {
+                self.offset.observe(ordered_rad, own.nav.psi_rad, &self.file, step_s);
+                let error_rad = wrap_pi(ordered_rad + self.offset.offset_rad() - own.nav.psi_rad);
+                self.turn.observe(error_rad, own.nav.yaw_rate_rad_s, &self.file, step_s);
+            }
+            None => self.offset.forget(),
+        }
+    }
+
+    /// Velocity over the ground less that through the water, m/s.
+    pub(crate) fn drift(&self) -> Ned {
+        if self.compensates { self.drift.drift() } else { Ned::default() }
+    }
+
+    /// What is added to the way that a decision is thought to make, m/s: the drift; where that is not looked for, what the boat
+    /// moves sideways now.
+    pub(crate) fn drift_now(&self, nav: &Nav) -> Ned {
+        if self.compensates { self.drift.drift() } else { nav.pose().rotation().starboard().scaled(nav.sway_m_s) }
+    }
+
+    /// Standard deviation of the velocity about the drift, m/s.
+    pub(crate) fn spread_m_s(&self) -> f64 {
+        if self.compensates { self.drift.spread_m_s() } else { 0.0 }
+    }
+
+    /// By how much it lies beside the heading that it is told, rad clockwise.
+    pub(crate) fn heading_offset_rad(&self) -> f64 {
+        if self.compensates { self.offset.offset_rad() } else { 0.0 }
+    }
+
+    /// How it handles, as it is seen to.
+    pub(crate) fn handling(&self) -> Handling {
+        self.file.turning(self.turn.share(&self.file))
+    }
+
+    /// Heading, rad, and speed through the water that make a course, rad, at a speed over the ground: |U c - d|, no more
+    /// than the boat can. One that cannot make the speed keeps the course; one that cannot keep the course either points as
+    /// far up as it can.
+    pub(crate) fn steer(&self, course_rad: f64, speed_m_s: f64) -> (f64, f64) {
+        let drift = self.drift();
+        if drift == Ned::default() {
+            return (wrap_pi(course_rad), speed_m_s.min(self.speed_max_m_s));
+        }
+        let (east, north) = math::sin_cos(course_rad);
+        let course = Ned { north, east };
+        let along_m_s = drift.dot(course);
+        let across = drift - course.scaled(along_m_s);
+        let room = self.speed_max_m_s * self.speed_max_m_s - across.dot(across);
+        let fastest_m_s = along_m_s + room.max(0.0).sqrt();
+        let way = course.scaled(speed_m_s.min(fastest_m_s)) - drift;
+        let through_m_s = way.length();
+        if through_m_s < 1e-6 {
+            return (wrap_pi(course_rad), 0.0);
+        }
+        (math::atan2(way.east, way.north), through_m_s.min(self.speed_max_m_s))
+    }
+
+    /// The order for a heading, rad, at a speed through the water.
+    pub(crate) fn order(&mut self, heading_rad: f64, speed_m_s: f64) -> Order {
+        let heading_rad = wrap_pi(heading_rad);
+        if !self.compensates {
+            return Order::Steer { heading_rad, speed_m_s };
+        }
+        if let Some((wanted_rad, _)) = self.ordered {
+            self.offset.turn(wrap_pi(heading_rad - wanted_rad));
+        }
+        let ordered_rad = wrap_pi(self.turn_toward(heading_rad) - self.offset.offset_rad());
+        self.ordered = Some((heading_rad, ordered_rad));
+        let ahead_m_s = match self.reference {
+            SpeedReference::Ground => {
+                let (east, north) = math::sin_cos(heading_rad);
+                (speed_m_s + self.drift().dot(Ned { north, east })).clamp(0.0, self.speed_max_m_s)
+            }
+            SpeedReference::Water => speed_m_s,
+        };
+        Order::Steer { heading_rad: ordered_rad, speed_m_s: ahead_m_s }
+    }
+
+    /// The heading to order for a heading: itself, or of a turn of nearly half a turn a part, always to the same side. Otherwise
+    /// the least yaw would turn the boat now one way, now the other.
+    fn turn_toward(&mut self, heading_rad: f64) -> f64 {
+        let turn_rad = wrap_pi(heading_rad - self.psi_rad);
+        if turn_rad.abs() < LARGE_TURN_RAD {
+            self.side = 0.0;
+            return heading_rad;
+        }
+        if self.side == 0.0 {
+            self.side = turn_rad.signum();
+        }
+        let to_side_rad = if turn_rad * self.side > 0.0 { turn_rad.abs() } else { PI };
+        self.psi_rad + self.side * to_side_rad.min(TURN_MAX_RAD)
+    }
+
+    /// Another order was given than to steer.
+    pub(crate) fn hold(&mut self) {
+        (self.ordered, self.side) = (None, 0.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::VehicleId;
+    use game::picture::Nav;
+    use std::path::Path;
+
+    fn motion(boat: &str) -> OwnMotion {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenarios/boats/{boat}.toml"));
+        let boat = game::scenario::load_boat(&file).unwrap_or_else(|e| panic!("{e}"));
+        OwnMotion::new(&boat, boat.speed_max_m_s(), true)
+    }
+
+    /// Shows navigation ten times a second for so long, from `after_s` on.
+    fn show(motion: &mut OwnMotion, after_s: f64, for_s: f64, nav: impl Fn(f64) -> Nav) {
+        for i in 0..(10.0 * for_s) as u32 {
+            let at_s = 0.1 * f64::from(i);
+            let mut own = OwnBoat::new(VehicleId(0), nav(at_s));
+            own.fix_ns = SimTime::from_s(after_s + at_s + 0.1);
+            motion.observe(&own, 0.1, true);
+        }
+    }
+
+    #[test]
+    fn a_course_over_the_ground_is_kept_with_a_crab_angle() {
+        let mut motion = motion("surveyor_m1_8");
+        // Northward with half a metre a second to the east.
+        show(&mut motion, 0.0, 60.0, |_| Nav { surge_m_s: 2.0, sway_m_s: 0.5, ..Nav::default() });
+        assert!(motion.drift().distance(Ned { north: 0.0, east: 0.5 }) < 0.01, "{:?}", motion.drift());
+        let drift_m_s = motion.drift().length();
+        let (heading_rad, speed_m_s) = motion.steer(0.0, 1.5);
+        assert!((heading_rad + libm::asin(drift_m_s / speed_m_s)).abs() < 0.01, "sin of the crab angle is d / V");
+        assert!((speed_m_s - math::length(1.5, drift_m_s)).abs() < 0.01);
+        // More than the boat can over the ground is the most that it can on that course.
+        let (heading_rad, speed_m_s) = motion.steer(0.0, 5.0);
+        assert!((speed_m_s - 3.0).abs() < 1e-9 && (heading_rad + libm::asin(drift_m_s / 3.0)).abs() < 0.01);
+        // To stand still it points against the drift.
+        let (heading_rad, speed_m_s) = motion.steer(0.0, 0.0);
+        assert!((heading_rad + 0.5 * PI).abs() < 0.03 && (speed_m_s - drift_m_s).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_boat_that_lies_beside_its_heading_is_ordered_so_much_less() {
+        let mut motion = motion("surveyor_m1_8");
+        let mut ordered_rad = 0.0;
+        for i in 0..600 {
+            // A lasting moment turns it 0.3 rad to starboard of its order.
+            show(&mut motion, 0.1 * f64::from(i), 0.1, |_| Nav { psi_rad: ordered_rad + 0.3, ..Nav::default() });
+            if let Order::Steer { heading_rad, .. } = motion.order(1.0, 2.0) {
+                ordered_rad = heading_rad;
+            }
+        }
+        assert!((ordered_rad + 0.3 - 1.0).abs() < 0.02, "it lies at {} rad, wanted 1", ordered_rad + 0.3);
+    }
+
+    #[test]
+    fn half_a_turn_goes_on_to_the_side_on_which_it_began() {
+        let mut motion = motion("surveyor_m1_8");
+        let mut sides = vec![];
+        // The heading wavers about the opposite of the one wanted.
+        for (i, psi_rad) in [0.1, -0.1, 0.2, -0.3, 0.1].into_iter().enumerate() {
+            show(&mut motion, i as f64, 0.1, |_| Nav { psi_rad, ..Nav::default() });
+            if let Order::Steer { heading_rad, .. } = motion.order(PI, 2.0) {
+                sides.push(wrap_pi(heading_rad - psi_rad).signum());
+            }
+        }
+        assert_eq!(sides, [1.0; 5]);
+    }
+
+    #[test]
+    fn a_boat_is_known_by_its_file_and_then_by_how_it_turns() {
+        // Reaction, s, and yaw rate, rad/s: what was once taken for all boats, for the one that it was taken of.
+        let surveyor = motion("surveyor_m1_8").handling();
+        assert!((surveyor.reaction_s - 0.7).abs() < 0.1 && (surveyor.turn_rad_s - 0.35).abs() < 0.05, "{surveyor:?}");
+        // The point boat does half of the 0.5 m/s² in its file: from 12 m/s it takes 48 s to stop.
+        let large = motion("large_usv_kinematic").handling();
+        assert!((large.deceleration_m_s2 - 0.25).abs() < 1e-9, "{large:?}");
+        // Half a radian of error sets a rudder of 0.35 % a degree, which at 70 % thrust turns it by 0.12 rad/s.
+        assert!((large.yaw_rate_rad_s(0.5) - 0.1225).abs() < 0.001, "{large:?}");
+        let mut motion = motion("surveyor_m1_8");
+        let before_rad_s = motion.handling().turn_rad_s;
+        for i in 0..200 {
+            motion.order(2.0, 2.0);
+            let nav = Nav { psi_rad: 0.0, yaw_rate_rad_s: 0.4 * before_rad_s, ..Nav::default() };
+            show(&mut motion, 0.1 * f64::from(i), 0.1, |_| nav);
+        }
+        let seen = motion.handling().turn_rad_s / before_rad_s;
+        assert!((0.35..0.65).contains(&seen), "seen to turn at {seen} of what its file says");
+    }
+}

@@ -1,0 +1,182 @@
+//! Encounters: boats that come too near to each other, and what they were to each other then.
+
+use super::{Quality, strategy_name};
+use crate::hull_overlap::HullRectangle;
+use crate::step::{Sample, Step};
+use game::event::{Event, TagCause};
+use game::{Scenario, VehicleId};
+use serde::Serialize;
+
+/// A tagger and the boat that it tagged are that to each other for this long, s.
+const TAG_REMEMBERED_S: f64 = 10.0;
+/// An encounter is over when boats are this much farther apart than what began it, m: one that bounces is one.
+const APART_M: f64 = 1.0;
+
+/// What two boats are to each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// Of one team.
+    Mate,
+    /// Of different teams.
+    Enemy,
+    /// One tagged the other, no longer than 10 s ago.
+    TaggerAndTagged,
+}
+
+/// How often boats came too near to each other, by what they were to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Encounters {
+    /// Boats of one team.
+    pub mate: Nearness,
+    /// Boats of different teams, but for those below.
+    pub enemy: Nearness,
+    /// One tagged the other, no longer than 10 s before.
+    pub tagger_and_tagged: Nearness,
+}
+
+/// How near they came.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Nearness {
+    /// Hulls touched.
+    pub contacts: u64,
+    /// They did not, but boats were nearer than the collision distance of the rules.
+    pub near_misses: u64,
+}
+
+impl Encounters {
+    /// Of boats that are this to each other.
+    #[must_use]
+    pub fn of(&self, relation: Relation) -> Nearness {
+        match relation {
+            Relation::Mate => self.mate,
+            Relation::Enemy => self.enemy,
+            Relation::TaggerAndTagged => self.tagger_and_tagged,
+        }
+    }
+
+    /// All together.
+    #[must_use]
+    pub fn all(&self) -> Nearness {
+        let parts = [self.mate, self.enemy, self.tagger_and_tagged];
+        parts.into_iter().fold(Nearness::default(), |sum, part| Nearness {
+            contacts: sum.contacts + part.contacts,
+            near_misses: sum.near_misses + part.near_misses,
+        })
+    }
+
+    pub(super) fn merge(&mut self, other: &Encounters) {
+        for (sum, part) in [
+            (&mut self.mate, other.mate),
+            (&mut self.enemy, other.enemy),
+            (&mut self.tagger_and_tagged, other.tagger_and_tagged),
+        ] {
+            sum.contacts += part.contacts;
+            sum.near_misses += part.near_misses;
+        }
+    }
+
+    fn count(&mut self, encounter: Encounter) {
+        let nearness = match encounter.relation {
+            Relation::Mate => &mut self.mate,
+            Relation::Enemy => &mut self.enemy,
+            Relation::TaggerAndTagged => &mut self.tagger_and_tagged,
+        };
+        *(if encounter.touched { &mut nearness.contacts } else { &mut nearness.near_misses }) += 1;
+    }
+}
+
+/// An encounter that is going on.
+#[derive(Clone, Copy, Debug)]
+struct Encounter {
+    /// When it began.
+    relation: Relation,
+    touched: bool,
+}
+
+/// Counts the encounters of a game.
+pub(super) struct EncounterCounter {
+    scenario: Scenario,
+    /// By pair: the lower vehicle times their number, plus the higher.
+    open: Vec<Option<Encounter>>,
+    /// By vehicle: who tagged it last, and when, s.
+    tagged_by: Vec<Option<(usize, f64)>>,
+}
+
+impl EncounterCounter {
+    pub(super) fn new(scenario: &Scenario) -> EncounterCounter {
+        let count = scenario.vehicles.len();
+        EncounterCounter { scenario: scenario.clone(), open: vec![None; count * count], tagged_by: vec![None; count] }
+    }
+
+    /// Takes the next step; encounters that are over then are counted.
+    pub(super) fn add(&mut self, step: &Step, quality: &mut Quality) {
+        for logged in &step.events {
+            if let Event::Tagged { vehicle, cause: TagCause::Opponent(by) } = logged.event {
+                self.tagged_by[vehicle.index()] = Some((by.index(), logged.at.as_s()));
+            }
+        }
+        let count = self.tagged_by.len();
+        for b in 0..count {
+            for a in 0..b {
+                self.look_at(step, a, b, quality);
+            }
+        }
+    }
+
+    /// Takes what two boats, the lower vehicle first, are at in a step.
+    fn look_at(&mut self, step: &Step, a: usize, b: usize, quality: &mut Quality) {
+        let near_m = self.scenario.rules.collision_distance_m;
+        let (Some(one), Some(other)) = (step.samples.get(a), step.samples.get(b)) else { return };
+        let distance_m = one.truth.at().distance(other.truth.at());
+        let touched = self.touches((a, one), (b, other), distance_m);
+        let place = a * self.tagged_by.len() + b;
+        if let Some(open) = &mut self.open[place] {
+            open.touched |= touched;
+            if distance_m > near_m + APART_M && !touched {
+                self.close(place, quality);
+            }
+        } else if touched || distance_m < near_m {
+            let relation = self.relation(a, b, step.time_s);
+            self.open[place] = Some(Encounter { relation, touched });
+        }
+    }
+
+    /// The game is over, and so is every encounter.
+    pub(super) fn end(&mut self, quality: &mut Quality) {
+        (0..self.open.len()).for_each(|place| self.close(place, quality));
+    }
+
+    fn close(&mut self, place: usize, quality: &mut Quality) {
+        let Some(encounter) = self.open[place].take() else { return };
+        quality.encounters.count(encounter);
+        let count = self.tagged_by.len();
+        let names = [place / count, place % count].map(|vehicle| strategy_name(&self.scenario, vehicle));
+        let both_count = encounter.relation != Relation::Mate || names[0] != names[1];
+        for name in names.into_iter().take(if both_count { 2 } else { 1 }) {
+            quality.strategies.entry(name.to_owned()).or_default().encounters.count(encounter);
+        }
+    }
+
+    fn touches(&self, (a, one): (usize, &Sample), (b, other): (usize, &Sample), distance_m: f64) -> bool {
+        let hull = |vehicle: usize, sample: &Sample| {
+            let boat = self.scenario.boat_of(VehicleId::at(vehicle));
+            HullRectangle { pose: sample.truth.pose(), length_m: boat.length_m, beam_m: boat.beam_m }
+        };
+        let (one, other) = (hull(a, one), hull(b, other));
+        let reach_m = one.length_m + one.beam_m + other.length_m + other.beam_m;
+        distance_m < reach_m && one.overlaps(&other)
+    }
+
+    fn relation(&self, a: usize, b: usize, now_s: f64) -> Relation {
+        let team_of = |vehicle: usize| self.scenario.team_of(VehicleId::at(vehicle));
+        let tagged_by =
+            |on: usize, by: usize| self.tagged_by[on].is_some_and(|(b, at)| b == by && now_s - at <= TAG_REMEMBERED_S);
+        if team_of(a) == team_of(b) {
+            Relation::Mate
+        } else if tagged_by(a, b) || tagged_by(b, a) {
+            Relation::TaggerAndTagged
+        } else {
+            Relation::Enemy
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! How sensibly boats play: chatter of their orders, standing still, edges, contacts, orbits, and whether anybody attacks.
+//!
+//! [`GameQuality`] takes a game step by step, recorded or while it is played, and makes a [`Quality`] of it; those of
+//! several games add up. Everything is by strategy, role and mode, since these are what can be mended.
+
+mod encounter;
+mod orbit;
+mod text;
+
+pub use encounter::{Encounters, Relation};
+pub use orbit::ORBIT_MIN_S;
+
+use crate::step::{Sample, Step};
+use encounter::EncounterCounter;
+use game::angle::wrap_pi;
+use game::helm::HelmReport;
+use game::{Ned, Order, Scenario, TeamId, VehicleId};
+use orbit::OrbitDetector;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A course that changes by more than this from one order to the next jumps, rad.
+const COURSE_JUMP_RAD: f64 = std::f64::consts::FRAC_PI_4;
+/// A speed that changes by more than this from one order to the next jumps, m/s.
+const SPEED_JUMP_M_S: f64 = 1.0;
+/// A boat that is slower than this over the ground stands still, m/s.
+const STANDING_M_S: f64 = 0.2;
+/// A boat that is nearer to an edge than this, or beyond it, is at the edge, m.
+const EDGE_M: f64 = 3.0;
+
+/// How sensibly boats played, in one game or in many.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Quality {
+    /// How many games.
+    pub games: u64,
+    /// How long they were together, s.
+    pub time_s: f64,
+    /// How often boats came too near to each other; each time counts once.
+    pub encounters: Encounters,
+    /// By strategy.
+    pub strategies: BTreeMap<String, StrategyQuality>,
+}
+
+/// How sensibly the boats of a strategy played.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct StrategyQuality {
+    /// For how many teams these numbers stand: a game of a strategy against itself has two.
+    pub teams: u64,
+    /// How long their games were together, s.
+    pub time_s: f64,
+    /// For how long of that no boat of the team attacked: none carried a flag, and none was free beyond its own side, s.
+    pub nobody_attacks_s: f64,
+    /// How often its boats came too near to others; two mates count once.
+    pub encounters: Encounters,
+    /// By role.
+    pub roles: BTreeMap<String, RoleQuality>,
+}
+
+/// How sensibly the boats of a role played.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct RoleQuality {
+    /// Times that a boat went round the same point at the same radius for longer than [`ORBIT_MIN_S`].
+    pub orbits: u64,
+    /// How long those were together, s.
+    pub orbit_s: f64,
+    /// By mode.
+    pub modes: BTreeMap<String, ModeQuality>,
+}
+
+/// How sensibly boats played in a mode.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ModeQuality {
+    /// For how long boats were in it, s.
+    pub time_s: f64,
+    /// How often one began it.
+    pub begun: u64,
+    /// Courses ordered that were more than 45 degrees from the one before, in the same mode.
+    pub course_jumps: u64,
+    /// Speeds ordered that were more than 1 m/s from the one before, in the same mode.
+    pub speed_jumps: u64,
+    /// For how long boats stood still: below 0.2 m/s over the ground, s.
+    pub standing_s: f64,
+    /// For how long they were within 3 m of an edge or beyond it, s.
+    pub edge_s: f64,
+}
+
+/// Takes a game step by step, and makes its [`Quality`].
+pub struct GameQuality {
+    scenario: Scenario,
+    /// The time of the step before, s.
+    before_s: Option<f64>,
+    boats: Vec<BoatTrack>,
+    encounters: EncounterCounter,
+    quality: Quality,
+}
+
+/// What a boat's mind was at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MindState {
+    /// The role that it plays: the name of its program.
+    pub role: String,
+    /// Its mode.
+    pub mode: String,
+}
+
+impl From<HelmReport> for MindState {
+    fn from(report: HelmReport) -> MindState {
+        MindState { role: report.program, mode: report.mode }
+    }
+}
+
+impl MindState {
+    /// Of a mind that does not tell it.
+    fn unknown() -> MindState {
+        MindState { role: "unknown".to_owned(), mode: "unknown".to_owned() }
+    }
+}
+
+/// What is remembered of a boat.
+#[derive(Default)]
+struct BoatTrack {
+    /// What its mind was at in the step before, and its order then.
+    before: Option<(MindState, Order)>,
+    orbit: OrbitDetector,
+}
+
+impl GameQuality {
+    /// Of a game of which no step was taken yet.
+    #[must_use]
+    pub fn new(scenario: &Scenario) -> GameQuality {
+        let mut quality = Quality { games: 1, ..Quality::default() };
+        for team in (0..scenario.teams.len()).map(|team| TeamId(team as u8)) {
+            for strategy in strategies_of(scenario, team) {
+                quality.strategies.entry(strategy.to_owned()).or_default().teams += 1;
+            }
+        }
+        GameQuality {
+            boats: scenario.vehicles.iter().map(|_| BoatTrack::default()).collect(),
+            encounters: EncounterCounter::new(scenario),
+            before_s: None,
+            scenario: scenario.clone(),
+            quality,
+        }
+    }
+
+    /// Takes the next step, with what each vehicle's mind was at when it gave the order that led there, where that is known.
+    pub fn add(&mut self, step: &Step, minds: &[Option<MindState>]) {
+        self.encounters.add(step, &mut self.quality);
+        // A step stands for the time since the one before, and the first for nothing: no order has led there.
+        let Some(before_s) = self.before_s.replace(step.time_s) else { return };
+        let step_s = step.time_s - before_s;
+        self.quality.time_s += step_s;
+        self.add_attacks(step, step_s);
+        let GameQuality { scenario, boats, quality, .. } = self;
+        for (i, (sample, boat)) in step.samples.iter().zip(boats).enumerate() {
+            let strategy = quality.strategies.entry(strategy_name(scenario, i).to_owned()).or_default();
+            let mind = minds.get(i).cloned().flatten().unwrap_or_else(MindState::unknown);
+            let role = strategy.roles.entry(mind.role.clone()).or_default();
+            let sums = role.modes.entry(mind.mode.clone()).or_default();
+            sums.add(scenario, sample, step_s);
+            sums.compare(boat.before.as_ref(), &mind, sample.order);
+            let orbit = boat.orbit.add(step.time_s, sample.truth.at());
+            role.orbits += u64::from(orbit.begun);
+            role.orbit_s += orbit.lasted_s;
+            boat.before = Some((mind, sample.order));
+        }
+    }
+
+    /// For how long nobody of a team attacks.
+    fn add_attacks(&mut self, step: &Step, step_s: f64) {
+        let GameQuality { scenario, quality, .. } = self;
+        for team in (0..scenario.teams.len()).map(|team| TeamId(team as u8)) {
+            let mut mates =
+                step.samples.iter().enumerate().filter(|(i, _)| scenario.team_of(VehicleId::at(*i)) == team);
+            let is_attacked = mates.any(|(_, sample)| attacks(scenario, team, sample));
+            for name in strategies_of(scenario, team) {
+                let strategy = quality.strategies.entry(name.to_owned()).or_default();
+                strategy.time_s += step_s;
+                strategy.nobody_attacks_s += if is_attacked { 0.0 } else { step_s };
+            }
+        }
+    }
+
+    /// What came of the game.
+    #[must_use]
+    pub fn end(mut self) -> Quality {
+        self.encounters.end(&mut self.quality);
+        self.quality
+    }
+}
+
+impl ModeQuality {
+    /// Adds what a boat did for a step.
+    fn add(&mut self, scenario: &Scenario, sample: &Sample, step_s: f64) {
+        let is_at_edge = inside_m(scenario, sample.truth.at()) < EDGE_M;
+        self.time_s += step_s;
+        self.standing_s += if sample.truth.speed_m_s() < STANDING_M_S { step_s } else { 0.0 };
+        self.edge_s += if is_at_edge { step_s } else { 0.0 };
+    }
+
+    /// Compares a mind's mode and order with those before: another mode has other aims, so that only in the same one a jump
+    /// is one.
+    fn compare(&mut self, before: Option<&(MindState, Order)>, mind: &MindState, order: Order) {
+        let same_mode = before.filter(|(before, _)| before == mind);
+        let Some((_, before)) = same_mode else {
+            self.begun += 1;
+            return;
+        };
+        if let (Order::Steer { heading_rad: old_rad, .. }, Order::Steer { heading_rad, .. }) = (*before, order) {
+            self.course_jumps += u64::from(wrap_pi(heading_rad - old_rad).abs() > COURSE_JUMP_RAD);
+        }
+        let change_m_s = speed_m_s(order).zip(speed_m_s(*before)).map_or(0.0, |(new, old)| (new - old).abs());
+        self.speed_jumps += u64::from(change_m_s > SPEED_JUMP_M_S);
+    }
+
+    fn merge(&mut self, other: &ModeQuality) {
+        self.time_s += other.time_s;
+        self.begun += other.begun;
+        self.course_jumps += other.course_jumps;
+        self.speed_jumps += other.speed_jumps;
+        self.standing_s += other.standing_s;
+        self.edge_s += other.edge_s;
+    }
+}
+
+impl Quality {
+    /// Adds other games to these. Sums of the same games in the same order are the same to the last bit.
+    pub fn merge(&mut self, other: &Quality) {
+        self.games += other.games;
+        self.time_s += other.time_s;
+        self.encounters.merge(&other.encounters);
+        for (name, other) in &other.strategies {
+            self.strategies.entry(name.clone()).or_default().merge(other);
+        }
+    }
+}
+
+impl StrategyQuality {
+    fn merge(&mut self, other: &StrategyQuality) {
+        self.teams += other.teams;
+        self.time_s += other.time_s;
+        self.nobody_attacks_s += other.nobody_attacks_s;
+        self.encounters.merge(&other.encounters);
+        for (name, other) in &other.roles {
+            let role = self.roles.entry(name.clone()).or_default();
+            role.orbits += other.orbits;
+            role.orbit_s += other.orbit_s;
+            for (name, other) in &other.modes {
+                role.modes.entry(name.clone()).or_default().merge(other);
+            }
+        }
+    }
+}
+
+/// The speed of an order, m/s; of thrusts it is not known.
+fn speed_m_s(order: Order) -> Option<f64> {
+    match order {
+        Order::Hold => Some(0.0),
+        Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => Some(speed_m_s),
+        Order::Thrust { .. } => None,
+    }
+}
+
+/// The name of the strategy that a vehicle plays.
+fn strategy_name(scenario: &Scenario, vehicle: usize) -> &str {
+    &scenario.strategy_of(VehicleId::at(vehicle)).name
+}
+
+/// The names of the strategies that boats of a team play, each once.
+fn strategies_of(scenario: &Scenario, team: TeamId) -> Vec<&str> {
+    let vehicles = (0..scenario.vehicles.len()).filter(|i| scenario.team_of(VehicleId::at(*i)) == team);
+    let mut names: Vec<&str> = vehicles.map(|i| strategy_name(scenario, i)).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// Whether a boat attacks: it brings a flag home, or it is beyond its own side and free to act.
+fn attacks(scenario: &Scenario, team: TeamId, sample: &Sample) -> bool {
+    sample.carrying || (sample.is_free && !scenario.field.zones[team.index()].contains(sample.truth.at()))
+}
+
+/// How far inside of the field a place is, m; negative outside.
+fn inside_m(scenario: &Scenario, at: Ned) -> f64 {
+    let plan = &scenario.field.plan;
+    let (x, y) = scenario.field.along_across(at);
+    x.min(plan.width_m - x).min(y).min(plan.depth_m - y)
+}
+
+#[cfg(test)]
+mod tests;

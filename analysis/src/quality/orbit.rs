@@ -1,0 +1,158 @@
+//! Orbits: a boat that goes round the same point at the same radius, again and again.
+//!
+//! The last minute of a track is fitted by a circle (Kåsa's linear least squares: Kåsa, IEEE Transactions on
+//! Instrumentation and Measurement 25, 1976). It is an orbit where every place is near the circle, and the boat went
+//! round at least once in that minute.
+
+use game::Ned;
+use game::angle::wrap_pi;
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+/// An orbit lasts longer than this, s.
+pub const ORBIT_MIN_S: f64 = 60.0;
+/// From one place that is looked at to the next, s.
+const SPACING_S: f64 = 1.0;
+/// How far a place may be off the circle, m, or as a share of its radius: the larger counts. Waves and gusts move a boat
+/// by as much.
+const OFF_M: f64 = 1.0;
+const OFF_SHARE: f64 = 0.15;
+/// A boat that stays within this of a place lies there, m.
+const RADIUS_MIN_M: f64 = 1.0;
+
+/// Finds the orbits of one boat.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OrbitDetector {
+    /// When, s, and where: those of the last minute.
+    places: VecDeque<(f64, Ned)>,
+    is_orbit: bool,
+}
+
+/// What a place adds to the orbits of a boat.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct OrbitPart {
+    /// Whether it is the one by which a track becomes an orbit.
+    pub(super) begun: bool,
+    /// How long an orbit has lasted that was not counted yet, s.
+    pub(super) lasted_s: f64,
+}
+
+impl OrbitDetector {
+    /// Takes the next place of the track.
+    pub(super) fn add(&mut self, time_s: f64, at: Ned) -> OrbitPart {
+        /// What times in seconds may be off by, s.
+        const ROUNDING_S: f64 = 1e-6;
+        let last_s = self.places.back().map_or(f64::NEG_INFINITY, |(last_s, _)| *last_s);
+        if time_s - last_s < SPACING_S - ROUNDING_S {
+            return OrbitPart::default();
+        }
+        self.places.push_back((time_s, at));
+        while self.places.get(1).is_some_and(|(second_s, _)| time_s - second_s >= ORBIT_MIN_S - ROUNDING_S) {
+            self.places.pop_front();
+        }
+        let first_s = self.places.front().map_or(time_s, |(first_s, _)| *first_s);
+        let is_orbit = time_s - first_s >= ORBIT_MIN_S - ROUNDING_S && goes_round(&self.places);
+        let was_orbit = std::mem::replace(&mut self.is_orbit, is_orbit);
+        match (was_orbit, is_orbit) {
+            (_, false) => OrbitPart::default(),
+            (false, true) => OrbitPart { begun: true, lasted_s: time_s - first_s },
+            (true, true) => OrbitPart { begun: false, lasted_s: time_s - last_s },
+        }
+    }
+}
+
+/// Whether a track is on a circle, and goes round it at least once.
+fn goes_round(places: &VecDeque<(f64, Ned)>) -> bool {
+    let Some((centre, radius_m)) = circle(places) else { return false };
+    let off_m = OFF_M.max(OFF_SHARE * radius_m);
+    if radius_m < RADIUS_MIN_M || places.iter().any(|(_, at)| (at.distance(centre) - radius_m).abs() > off_m) {
+        return false;
+    }
+    let bearings = places.iter().map(|(_, at)| centre.bearing_rad(*at));
+    let swept_rad: f64 = bearings.clone().zip(bearings.skip(1)).map(|(from, to)| wrap_pi(to - from)).sum();
+    swept_rad.abs() >= TAU
+}
+
+/// The circle that fits best, as centre and radius, m; none of a straight line.
+///
+/// About the mean of all places the centre solves two linear equations in the second and third moments.
+fn circle(places: &VecDeque<(f64, Ned)>) -> Option<(Ned, f64)> {
+    let share = 1.0 / places.len() as f64;
+    let mean = places.iter().fold(Ned::default(), |sum, (_, at)| sum + *at).scaled(share);
+    let (mut nn, mut ee, mut ne, mut third) = (0.0, 0.0, 0.0, Ned::default());
+    for (_, at) in places {
+        let p = *at - mean;
+        nn += p.north * p.north;
+        ee += p.east * p.east;
+        ne += p.north * p.east;
+        third = third + p.scaled(0.5 * p.dot(p));
+    }
+    let determinant = nn * ee - ne * ne;
+    if determinant <= 1e-9 * (nn + ee) * (nn + ee) {
+        return None;
+    }
+    let north = (third.north * ee - third.east * ne) / determinant;
+    let east = (third.east * nn - third.north * ne) / determinant;
+    let radius_m = (north * north + east * east + (nn + ee) * share).sqrt();
+    radius_m.is_finite().then_some((mean + Ned { north, east }, radius_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::math;
+
+    /// Orbits and their length, s, of a boat that is there at each time, ten times a second.
+    fn orbits(span_s: f64, at: impl Fn(f64) -> Ned) -> (u64, f64) {
+        let mut detector = OrbitDetector::default();
+        let steps = (span_s * 10.0).round() as usize;
+        let parts = (0..=steps).map(|i| i as f64 / 10.0).map(|time_s| detector.add(time_s, at(time_s)));
+        parts.fold((0, 0.0), |(count, lasted_s), part| (count + u64::from(part.begun), lasted_s + part.lasted_s))
+    }
+
+    fn round(radius_m: f64, turn_rad: f64) -> Ned {
+        let (sin, cos) = math::sin_cos(turn_rad);
+        Ned { north: 100.0 + radius_m * cos, east: -50.0 + radius_m * sin }
+    }
+
+    #[test]
+    fn a_circle_is_an_orbit_for_as_long_as_it_lasts() {
+        let is = |got: (u64, f64), count: u64, lasted_s: f64| got.0 == count && (got.1 - lasted_s).abs() < 1e-6;
+        for radius_m in [2.0, 4.0, 15.0] {
+            let got = orbits(200.0, |time_s| round(radius_m, -TAU * time_s / 20.0));
+            assert!(is(got, 1, 200.0), "{radius_m} m: {got:?}");
+        }
+        let short = orbits(59.0, |time_s| round(4.0, TAU * time_s / 20.0));
+        assert!(is(short, 0, 0.0), "less than a minute: {short:?}");
+        // Two rounds of a minute and a half each, with a straight run of 100 s between.
+        let twice = orbits(280.0, |time_s| match time_s {
+            before if before < 90.0 => round(4.0, TAU * before / 20.0),
+            between if between < 190.0 => round(4.0, TAU * 4.5) + Ned { north: -(between - 90.0), east: 0.0 },
+            after => round(4.0, TAU * (after - 180.0) / 20.0) + Ned { north: -100.0, east: 0.0 },
+        });
+        assert!(twice.0 == 2 && (twice.1 - 180.0).abs() < 4.0, "{twice:?}");
+    }
+
+    #[test]
+    fn what_is_no_circle_is_no_orbit() {
+        let straight = |time_s: f64| Ned { north: 1.5 * time_s, east: -time_s };
+        let still = |_: f64| Ned { north: 3.0, east: 4.0 };
+        let ellipse = |time_s: f64| {
+            let at = round(10.0, TAU * time_s / 40.0);
+            Ned { north: 2.0 * at.north, east: at.east }
+        };
+        let slow = |time_s: f64| round(20.0, TAU * time_s / 100.0);
+        let to_and_fro = |time_s: f64| round(10.0, 2.0 * math::sin_cos(TAU * time_s / 30.0).0);
+        let spiral = |time_s: f64| round(2.0 + 0.2 * time_s, TAU * time_s / 20.0);
+        for (what, got) in [
+            ("a straight line", orbits(200.0, straight)),
+            ("lying still", orbits(200.0, still)),
+            ("an ellipse", orbits(200.0, ellipse)),
+            ("less than once round in a minute", orbits(200.0, slow)),
+            ("an arc to and fro", orbits(200.0, to_and_fro)),
+            ("a spiral", orbits(200.0, spiral)),
+        ] {
+            assert_eq!(got.0, 0, "{what}: {got:?}");
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! A recorded game decision by decision: each boat's true and estimated position, and its order.
+
+use game::event::Logged;
+use game::input::{Input, Inputs};
+use game::message::{Frame, VehicleTruth};
+use game::picture::{Nav, Picture};
+use game::{Order, Scenario, SimTime};
+use recording::{Damaged, FRAME, INPUTS, RecordedMessage, Recording, RecordingError, picture};
+
+/// A decision of a game.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Step {
+    /// Its number: the frame's.
+    pub decision: u64,
+    /// When it was, s.
+    pub time_s: f64,
+    /// By vehicle.
+    pub samples: Vec<Sample>,
+    /// Points, by team.
+    pub score: Vec<u32>,
+    /// What had happened since the decision before.
+    pub events: Vec<Logged>,
+}
+
+/// A boat at one decision.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Where it was.
+    pub truth: Nav,
+    /// Where it estimated to be, in the picture of that decision.
+    pub estimated: Option<Nav>,
+    /// The order that led here: the last that it had been sent before.
+    pub order: Order,
+    /// Whether it was free to follow its order: neither stopped nor tagged, off the field, out of action or lost.
+    pub is_free: bool,
+    /// Whether it was tagged.
+    pub tagged: bool,
+    /// Whether it carried a flag.
+    pub carrying: bool,
+    /// Whether it was outside of the field.
+    pub outside: bool,
+    /// Whether its agent was lost.
+    pub agent_lost: bool,
+    /// Whether its navigation was lost.
+    pub nav_lost: bool,
+}
+
+impl Step {
+    /// The decision that a frame shows, with the orders that led there, by vehicle; what boats estimated is not in it.
+    #[must_use]
+    pub fn of_frame(scenario: &Scenario, frame: &Frame, orders: impl Iterator<Item = Order>) -> Step {
+        let truth = |i: usize| frame.vehicles.get(i).copied().unwrap_or_default();
+        Step {
+            decision: frame.stamp.seq,
+            time_s: frame.stamp.valid_ns.as_s(),
+            samples: orders.enumerate().map(|(i, order)| sample(&truth(i), order, frame.stopped)).collect(),
+            events: frame.logged(scenario).collect(),
+            score: frame.score.clone(),
+        }
+    }
+}
+
+/// Gives every decision of a recording, one after the other: one at a time is in memory, however long the game. Messages that
+/// are not what they should be are left out, and counted.
+pub fn for_each_step(recording: &Recording, take: impl FnMut(Step)) -> Damaged {
+    let scenario = recording.scenario();
+    let pictures: Vec<String> = scenario.teams.iter().map(|team| picture(&team.name)).collect();
+    let mut reader = Reader {
+        scenario,
+        take,
+        open: None,
+        now_s: None,
+        orders: vec![(Order::Hold, SimTime::ZERO); scenario.vehicles.len()],
+    };
+    let mut damaged = Damaged::default();
+    for message in recording.bag().messages() {
+        let taken = match message.topic {
+            FRAME => reader.frame(&message),
+            INPUTS => reader.inputs(&message),
+            topic if pictures.iter().any(|picture| picture == topic) => reader.picture(&message),
+            _ => Ok(()),
+        };
+        damaged.sound(taken);
+    }
+    reader.close();
+    damaged
+}
+
+impl Sample {
+    /// The heading, rad, and the speed, m/s, that it steered by order.
+    #[must_use]
+    pub fn steered(&self) -> Option<(f64, f64)> {
+        match self.order {
+            Order::Steer { heading_rad, speed_m_s } if self.is_free => Some((heading_rad, speed_m_s)),
+            _ => None,
+        }
+    }
+
+    /// How far its estimated position was from the true one, m.
+    #[must_use]
+    pub fn nav_error_m(&self) -> Option<f64> {
+        self.estimated.map(|nav| nav.at().distance(self.truth.at()))
+    }
+}
+
+/// Makes decisions of messages as they come.
+struct Reader<'a, T> {
+    scenario: &'a Scenario,
+    take: T,
+    /// The decision whose pictures may still come: they are recorded after its frame, and before the next.
+    open: Option<Step>,
+    /// The time of the last frame, s.
+    now_s: Option<f64>,
+    /// In force, by vehicle, with the time of the picture that each answers.
+    orders: Vec<(Order, SimTime)>,
+}
+
+impl<T: FnMut(Step)> Reader<'_, T> {
+    fn frame(&mut self, message: &RecordedMessage<'_>) -> Result<(), RecordingError> {
+        let frame: Frame = message.read()?;
+        self.close();
+        let step = Step::of_frame(self.scenario, &frame, self.orders.iter().map(|(order, _)| *order));
+        (self.now_s, self.open) = (Some(step.time_s), Some(step));
+        Ok(())
+    }
+
+    /// Gives the open decision.
+    fn close(&mut self) {
+        if let Some(step) = self.open.take() {
+            (self.take)(step);
+        }
+    }
+
+    fn picture(&mut self, message: &RecordedMessage<'_>) -> Result<(), RecordingError> {
+        let picture: Picture = message.read()?;
+        let Some(step) = self.open.as_mut().filter(|step| step.decision == picture.stamp.seq) else { return Ok(()) };
+        for own in &picture.own {
+            if let Some(sample) = step.samples.get_mut(own.vehicle.index()) {
+                sample.estimated = Some(own.nav);
+            }
+        }
+        Ok(())
+    }
+
+    fn inputs(&mut self, message: &RecordedMessage<'_>) -> Result<(), RecordingError> {
+        let inputs: Inputs = message.read()?;
+        for input in inputs.of(self.scenario).flatten() {
+            match input {
+                Input::Ordered { vehicle, order, given_at } => self.orders[vehicle.index()] = (order, given_at),
+                Input::Held(vehicle) | Input::AgentLost(vehicle) => self.orders[vehicle.index()].0 = Order::Hold,
+                Input::Played => self.expire_orders(),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Orders expire by the age of the picture that they answer, when a decision is played.
+    fn expire_orders(&mut self) {
+        let Some(now_s) = self.now_s else { return };
+        for (order, given_at) in &mut self.orders {
+            if now_s - given_at.as_s() > self.scenario.order_ttl_s {
+                *order = Order::Hold;
+            }
+        }
+    }
+}
+
+fn sample(truth: &VehicleTruth, order: Order, stopped: bool) -> Sample {
+    let VehicleTruth { tagged, disabled, outside, agent_lost, quarantined, nav_lost, .. } = *truth;
+    Sample {
+        truth: truth.nav,
+        estimated: None,
+        order,
+        is_free: !(stopped || tagged || disabled || outside || agent_lost || quarantined || nav_lost),
+        tagged,
+        carrying: truth.carrying >= 0,
+        outside,
+        agent_lost,
+        nav_lost,
+    }
+}

@@ -1,0 +1,101 @@
+//! Why a TLS connection does not come about: zenoh only says that it does not.
+
+use super::{Bundle, Identity};
+use crate::BusError;
+use crate::net::address;
+use rustls::crypto::ring;
+use rustls::pki_types::ServerName;
+use rustls::version::TLS13;
+use rustls::{AlertDescription, CertificateError, ClientConfig, ClientConnection, Error, RootCertStore};
+use std::io::{Read, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// How long each step may take: this only explains what has failed before.
+const STEP: Duration = Duration::from_millis(500);
+/// What a TLS server answers to something else: an alert.
+const ALERT: u8 = 0x15;
+
+/// Why the sim at `endpoint` (for example `tls/127.0.0.1:7447`) and these keys do not agree; nothing if nobody is there, or
+/// nothing is wrong.
+pub(crate) fn refusal(endpoint: &str, keys: &Bundle) -> Option<BusError> {
+    let refused = |why: String| BusError::Keys(format!("{endpoint}: {why}"));
+    let address = address(endpoint);
+    let host = address.rsplit_once(':')?.0.trim_start_matches('[').trim_end_matches(']');
+    let mut stream = connect(address)?;
+    let mut tls = match client(host, keys) {
+        Ok(tls) => tls,
+        Err(problem) => return Some(refused(problem)),
+    };
+    // The sim looks at our certificate when the handshake is over for us: its objection comes when we read.
+    let outcome =
+        tls.complete_io(&mut stream).and_then(|_| rustls::Stream::new(&mut tls, &mut stream).read(&mut [0; 1]));
+    let error = outcome.err()?;
+    if let Some(error) = error.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
+        return Some(refused(explained(error, host, keys.identity())));
+    }
+    // A sim that is suspended does not answer either: that may pass.
+    let reason = "who listens there does not speak TLS: the game may be served without keys".to_owned();
+    tls.is_handshaking().then(|| BusError::Open { what: format!("to connect to {endpoint}"), reason })
+}
+
+/// Whether a hub that speaks TLS listens at `endpoint`.
+pub(crate) fn is_tls(endpoint: &str) -> bool {
+    let asked = || {
+        let mut stream = connect(address(endpoint))?;
+        let mut answer = [0; 1];
+        stream.write_all(&[0; 8]).ok()?;
+        stream.read_exact(&mut answer).ok()?;
+        Some(answer[0] == ALERT)
+    };
+    asked() == Some(true)
+}
+
+fn connect(address: &str) -> Option<TcpStream> {
+    let found = address.to_socket_addrs().ok()?.find_map(|at| TcpStream::connect_timeout(&at, STEP).ok())?;
+    found.set_read_timeout(Some(STEP)).ok()?;
+    found.set_write_timeout(Some(STEP)).ok()?;
+    Some(found)
+}
+
+/// Our end of a connection as zenoh makes it.
+fn client(host: &str, keys: &Bundle) -> Result<ClientConnection, String> {
+    let (authority, chain, key) = keys.contents().map_err(|e| e.to_string())?;
+    let mut roots = RootCertStore::empty();
+    roots.add_parsable_certificates(authority);
+    let name = ServerName::try_from(host.to_owned()).map_err(|e| format!("{host:?}: {e}"))?;
+    let config = ClientConfig::builder_with_provider(Arc::new(ring::default_provider()))
+        .with_protocol_versions(&[&TLS13])
+        .and_then(|builder| builder.with_root_certificates(roots).with_client_auth_cert(chain, key));
+    config.and_then(|config| ClientConnection::new(Arc::new(config), name)).map_err(|e| e.to_string())
+}
+
+fn explained(error: &Error, host: &str, identity: &Identity) -> String {
+    match error {
+        Error::InvalidCertificate(
+            CertificateError::NotValidForName | CertificateError::NotValidForNameContext { .. },
+        ) => {
+            format!(
+                "the sim's certificate is not for {host:?}: connect to a name or address that it is for, or make new keys \
+                 with --host {host} ({error})"
+            )
+        }
+        Error::InvalidCertificate(CertificateError::Expired | CertificateError::ExpiredContext { .. }) => {
+            format!("the sim's certificate has expired: make new keys for everybody with `squall keys new` ({error})")
+        }
+        Error::InvalidCertificate(CertificateError::UnknownIssuer | CertificateError::BadSignature) => {
+            "the sim's certificate is of another authority: its keys and these were not made by one `squall keys new`"
+                .to_owned()
+        }
+        Error::InvalidCertificate(_) => format!("the sim's certificate is refused: {error}"),
+        Error::AlertReceived(AlertDescription::CertificateExpired) => {
+            format!("the sim says that the certificate of {identity} has expired: are both clocks right?")
+        }
+        Error::AlertReceived(alert) => format!(
+            "the sim refuses the certificate of {identity} ({alert:?}): its keys and these were not made by one \
+             `squall keys new`"
+        ),
+        other => other.to_string(),
+    }
+}

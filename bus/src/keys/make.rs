@@ -1,0 +1,102 @@
+//! Makes keys: an authority, and a bundle for each part of a game.
+
+use super::{AUTHORITY_FILE, CERTIFICATE_FILE, Identity, KEY_FILE};
+use rcgen::{
+    BasicConstraints, CertificateParams, DnType, ExtendedKeyUsagePurpose, IsCa, Issuer, KeyPair, KeyUsagePurpose,
+};
+use std::fs::{DirBuilder, OpenOptions};
+use std::io::Write;
+use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use thiserror::Error;
+use time::OffsetDateTime;
+
+/// Clocks of boats and laptops may be behind that of the machine that makes the keys.
+const CLOCKS_DIFFER: Duration = Duration::from_secs(24 * 3600);
+
+/// Why keys could not be made.
+#[derive(Debug, Error)]
+pub enum MakeError {
+    /// A file or folder could not be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A host cannot be in a certificate, or the time is out of range.
+    #[error("cannot make a certificate: {0}")]
+    Certificate(#[from] rcgen::Error),
+    /// The certificates would be valid until a time that has no date.
+    #[error("certificates cannot be valid for that long")]
+    TooLong,
+}
+
+/// Makes an authority and a bundle for each identity, in a folder of its name under `folder`; gives the bundles' folders.
+/// `hosts` are the names and addresses at which the sim will be reached.
+///
+/// # Errors
+/// [`MakeError`]; also if a bundle of one of these names is there already.
+pub fn make(
+    folder: &Path,
+    identities: &[Identity],
+    hosts: &[String],
+    valid: Duration,
+) -> Result<Vec<PathBuf>, MakeError> {
+    let now = OffsetDateTime::now_utc();
+    let period = (now - CLOCKS_DIFFER, now.checked_add(valid.try_into().map_err(|_| MakeError::TooLong)?));
+    let (from, Some(until)) = period else { return Err(MakeError::TooLong) };
+    let params = |name: String, hosts: &[String]| -> Result<CertificateParams, rcgen::Error> {
+        let mut params = CertificateParams::new(hosts)?;
+        params.distinguished_name.push(DnType::CommonName, name);
+        (params.not_before, params.not_after) = (from, until);
+        Ok(params)
+    };
+    // Each set has an authority of another name, so that keys of two sets are told apart.
+    let mut authority = params(format!("Squall {:016x}", crate::random_number()), &[])?;
+    authority.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
+    authority.key_usages = vec![KeyUsagePurpose::KeyCertSign];
+    let authority_key = KeyPair::generate()?;
+    let authority_pem = authority.self_signed(&authority_key)?.pem();
+    let issuer = Issuer::new(authority, authority_key);
+    let mut folders = Vec::new();
+    for identity in identities {
+        // The sim only listens, everybody else only connects: nobody else's certificate is good for serving a game.
+        let (usage, hosts) = match identity {
+            Identity::Sim => (ExtendedKeyUsagePurpose::ServerAuth, hosts),
+            _ => (ExtendedKeyUsagePurpose::ClientAuth, &[][..]),
+        };
+        let mut certificate = params(identity.to_string(), hosts)?;
+        certificate.key_usages = vec![KeyUsagePurpose::DigitalSignature];
+        certificate.extended_key_usages = vec![usage];
+        certificate.use_authority_key_identifier_extension = true;
+        let key = KeyPair::generate()?;
+        let certificate = certificate.signed_by(&key, &issuer)?.pem();
+        let place = folder.join(identity.to_string());
+        make_folder(&place)?;
+        write(&place.join(AUTHORITY_FILE), &authority_pem)?;
+        write(&place.join(CERTIFICATE_FILE), &certificate)?;
+        write(&place.join(KEY_FILE), &key.serialize_pem())?;
+        folders.push(place);
+    }
+    Ok(folders)
+}
+
+/// Makes a folder that is not there yet, for its owner only, and those above it.
+fn make_folder(path: &Path) -> Result<(), MakeError> {
+    let failed = |source| MakeError::Write { path: path.to_owned(), source };
+    let mut builder = DirBuilder::new();
+    builder.mode(0o700);
+    if let Some(above) = path.parent() {
+        builder.recursive(true).create(above).map_err(failed)?;
+    }
+    builder.recursive(false).create(path).map_err(failed)
+}
+
+fn write(path: &Path, text: &str) -> Result<(), MakeError> {
+    let file = OpenOptions::new().write(true).create_new(true).mode(0o600).open(path);
+    let written = file.and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(|source| MakeError::Write { path: path.to_owned(), source })
+}

@@ -1,0 +1,12 @@
+//! Changes of real inputs: of bytes that are binary, and of texts that are words and numbers.
+
+pub mod binary;
+pub mod text;
+
+use crate::Dice;
+
+/// How many changes an input gets: mostly few, so that it gets past the first check.
+fn count(dice: &mut Dice) -> usize {
+    let most = *dice.one_of(&[1, 1, 2, 3, 8]);
+    1 + dice.roll(most)
+}

@@ -1,0 +1,112 @@
+//! What a browser sends to a page (JSON in websocket messages), on a recording and on a game: a line is a message, a line that
+//! begins with `~` a pong, one that begins with `!` a binary message.
+
+use super::{Target, texts};
+use crate::played::{self, played};
+use bus::{Place, clock};
+use recording::Recording;
+use serde_json::Value;
+use shore::page::live::LiveView;
+use shore::page::replay::{Recorded, ReplayView};
+use shore::page::{Access, Outgoing, PageRequest, PageSession, View};
+use std::sync::{Arc, LazyLock};
+use std::time::{Duration, Instant};
+
+pub(super) const TARGET: Target = Target { name: "page", seeds, change: texts, check, allocated_max: (16 << 20, 5000) };
+
+/// More messages than a page may be sent at once: a minute of the past in half seconds, events, and what is new.
+const SENT_MAX: usize = 300;
+
+static REPLAY: LazyLock<ReplayView> = LazyLock::new(|| {
+    let recording = Recording::of(played(played::scenario("attack_1v1"), 30).recording(&[])).expect("it is one");
+    replay_of(recording)
+});
+
+/// It looks for a game and never finds one.
+static LIVE: LazyLock<LiveView> = LazyLock::new(|| {
+    let nowhere = Place::new(|_| Err("there is no game".to_owned()));
+    LiveView::open(nowhere, None, Box::new(|_| ())).expect("a thread")
+});
+
+fn seeds() -> Vec<Vec<u8>> {
+    let cases = include_str!("../../../shore/src/page/request_cases.txt");
+    let requests: Vec<&str> = cases.lines().filter_map(|line| line.split_once(" is ")).map(|(text, _)| text).collect();
+    let more = [
+        r#"{"do":"select","vehicle":"blue_one","functions":true}"#,
+        r#"{"do":"seek","t_s":1.5}"#,
+        r#"{"do":"control","what":"resume"}"#,
+        r#"{"do":"control","what":{"speed":4}}"#,
+        r#"{"do":"ack"}"#,
+        "~1",
+        "!",
+        r#"{"do":"step","by":2}"#,
+    ];
+    vec![requests.join("\n").into_bytes(), more.join("\n").into_bytes(), [more, more].concat().join("\n").into_bytes()]
+}
+
+fn check(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    for rights in [false, true] {
+        talk(PageSession::new(REPLAY.open_viewer(Access { rights }), Access { rights }), &text, |_, _| ());
+    }
+    let access = Access { rights: false };
+    talk(PageSession::new(LIVE.open_viewer(access), access), &text, |line, said| {
+        // Who may only look gets nothing done.
+        let acts = serde_json::from_str::<PageRequest>(line).is_ok_and(|ask| ask.acts());
+        let refused = |text: &String| text.starts_with(r#"{"kind":"refused""#) && text.contains("may only look");
+        assert!(!acts || said.iter().any(refused), "{line} was answered with {said:?}");
+    });
+}
+
+/// A recording, shown.
+fn replay_of(recording: Recording) -> ReplayView {
+    ReplayView::new(Arc::new(Recorded::new(Arc::new(recording), "fuzz.mcap".to_owned())), None)
+}
+
+/// Shows a recording to a page that looks around in it.
+pub(super) fn look_around(recording: Recording) {
+    let view = replay_of(recording);
+    let access = Access { rights: false };
+    let seed = String::from_utf8(seeds().swap_remove(1)).expect("a text");
+    talk(PageSession::new(view.open_viewer(access), access), &seed, |_, _| ());
+}
+
+/// Sends the lines to a session. Whatever it says is of a kind, there is an end to it, and no more than two frames are under way.
+fn talk(mut session: PageSession, lines: &str, answered: impl Fn(&str, &[String])) {
+    let (mut now, mut under_way) = (clock::now(), 0_usize);
+    for line in lines.lines() {
+        now += Duration::from_millis(10 * (line.len() as u64 % 50));
+        match (line.strip_prefix('~'), line.starts_with('!')) {
+            (Some(ping), _) => session.receive_pong(ping.parse().unwrap_or(u64::MAX)),
+            (None, true) => session.receive_binary(),
+            (None, false) => session.receive(line, now),
+        }
+        if serde_json::from_str::<PageRequest>(line).is_ok_and(|ask| ask == PageRequest::Ack) {
+            under_way = under_way.saturating_sub(1);
+        }
+        answered(line, &said(&mut session, now, &mut under_way));
+    }
+}
+
+/// What the session says now.
+fn said(session: &mut PageSession, now: Instant, under_way: &mut usize) -> Vec<String> {
+    let mut texts = Vec::new();
+    for _ in 0..SENT_MAX {
+        match session.next_message(now) {
+            None => return texts,
+            Some(Outgoing::Text(text)) => {
+                let value: Value = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{e}: {text:.300}"));
+                assert!(value["kind"].is_string(), "{text:.300}");
+                texts.push(text);
+            }
+            Some(Outgoing::Past(_)) => {}
+            Some(Outgoing::Now(_)) => *under_way += 1,
+        }
+        assert!(*under_way <= 2, "{under_way} frames that are not drawn");
+        // A page of a browser answers at once.
+        if let Some(ping) = session.ping() {
+            session.receive_pong(ping);
+        }
+    }
+    panic!("more than {SENT_MAX} messages at once");
+}

@@ -1,0 +1,256 @@
+//! Recordings of games and of gateways (MCAP): everything that opens, shows, plays again or tells of one answers or refuses.
+
+use super::{Change, Target, check_shown, page};
+use crate::Dice;
+use crate::change::binary;
+use crate::change::text::Pieces;
+use crate::played::{self, mixed, played};
+use analysis::table::{self, TableError};
+use analysis::{Comparison, GameSeries, Summary, alog};
+use game::codec;
+use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
+use game::input::Inputs;
+use game::message::{Message, Stamp};
+use game::{Scenario, SimTime, VehicleId};
+use gateway::bridge::{Bridge, Input, Output, Plan};
+use gateway::record::StepEncoder;
+use recording::{Bag, Entry, FRAME, INPUTS, Kind, Recording, RecordingError, Writer};
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::sync::LazyLock;
+
+pub(super) const TARGET: Target = Target { name: "recording", seeds, change, check, allocated_max: (1 << 30, 2000) };
+
+/// The games that were recorded.
+static SCENARIOS: LazyLock<[Scenario; 2]> = LazyLock::new(|| ["attack_1v1", "pav01_popolopen"].map(played::scenario));
+
+/// What MCAP files begin with.
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+/// The numbers of the kinds of records that are taken apart here.
+const CHUNK: u8 = 6;
+const METADATA: u8 = 12;
+const DATA_END: u8 = 15;
+
+fn seeds() -> Vec<Vec<u8>> {
+    let stamp = Stamp { version: LinkBytes::VERSION, ..Stamp::default() };
+    let data = b"$GPRMC,1*00\r\n$PSEAC,T,0,20,-10,*22\r\n$PSE".to_vec();
+    let link = LinkBytes { stamp, vehicle: VehicleId(0), outward: false, data };
+    let failsafes = vec![FailsafeReport { at_s: 1.0, cause: "link down".to_owned() }];
+    let status = GatewayStatus { failsafes, ..GatewayStatus::default() };
+    let message = |topic: &str, schema, bytes| {
+        let (topic, at) = (topic.to_owned(), SimTime(1_000_000));
+        Entry::Message { topic, schema, bytes, at }
+    };
+    let others = [
+        message("link/blue_one", Some(LinkBytes::SCHEMA), codec::encode(&link)),
+        message("status/blue_one", None, serde_json::to_vec(&status).expect("JSON")),
+        message("control", None, br#"{"control":"halt"}"#.to_vec()),
+    ];
+    vec![
+        played(SCENARIOS[0].clone(), 8).recording(&others),
+        played(SCENARIOS[1].clone(), 3).recording(&[]),
+        gateway_recording(),
+    ]
+}
+
+/// A short recording of a gateway.
+fn gateway_recording() -> Vec<u8> {
+    let (scenario, vehicle) = (mixed(), "blue_one".to_owned());
+    let gateway = game::scenario::default_gateway();
+    let field = scenario.field.clone();
+    let plan = Plan { vehicle, gateway, field, length_m: 2.0, declination_rad: 0.1, arms_itself: true };
+    let began_utc_ns = 1_700_000_000_000_000_000;
+    let opening = gateway::record::opening(&plan, began_utc_ns, "c0ffee");
+    let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("memory");
+    let mut encoder = StepEncoder::new(&plan.vehicle, VehicleId(0));
+    let mut bridge = Bridge::new(plan);
+    let rmc = b"$GPRMC,123519,A,4807.038,N,01131.000,E,002.4,084.4,230394,003.1,W*6A\r\n".to_vec();
+    let inputs = [Input::LinkUp, Input::Bytes(rmc), Input::Joined, Input::Tick, Input::LinkDown];
+    for (i, input) in inputs.iter().enumerate() {
+        let (at, mut out) = (SimTime::from_s(i as f64), Output::default());
+        bridge.take(at, input, &mut out);
+        for entry in encoder.step(at, SimTime::ZERO, input, &out) {
+            writer.write(&entry, began_utc_ns).expect("memory");
+        }
+    }
+    writer.end(BTreeMap::new()).expect("memory").into_inner()
+}
+
+fn check(bytes: &[u8]) {
+    let bag = match Bag::of(bytes.to_vec()) {
+        Ok(bag) => bag,
+        Err(error) => return check_shown(&error),
+    };
+    assert!(bag.messages().len() == bag.topics().values().sum::<usize>());
+    match bag.kind() {
+        Kind::Gateway => match gateway::replay::replay(&bag) {
+            Ok(replay) => drop(analysis::gateway_of(&bag, &replay.plan.vehicle)),
+            Err(error) => check_shown(&error),
+        },
+        Kind::Game => match Recording::of_bag(bag) {
+            Ok(recording) => look_at_all_of(recording, bytes),
+            Err(error) => check_shown(&error),
+        },
+    }
+}
+
+/// Everything that can be made of the recording of a game.
+fn look_at_all_of(recording: Recording, bytes: &[u8]) {
+    let series = GameSeries::of(&recording);
+    serde_json::to_string(&Summary::of(&recording)).expect("a summary is JSON");
+    for topic in table::topics(recording.bag()) {
+        match table::write(recording.bag(), Some(recording.scenario()), &topic, &mut |_| Ok(())) {
+            Ok(_) => {}
+            Err(error @ TableError::Strange { .. }) => check_shown(&error),
+            Err(error) => panic!("{topic}: {error}"),
+        }
+    }
+    alog::write(&recording, true, &mut |_| Ok(Box::new(std::io::sink()))).expect("whoever writes nowhere cannot fail");
+    if let Err(error) = Comparison::of([recording.header(); 2], [&series; 2], 0.0) {
+        check_shown(&error);
+    }
+    play_again(&recording);
+    page::look_around(Recording::of(bytes.to_vec()).expect("it is one"));
+}
+
+/// Plays the game again from what it was given, as `squall replay --check` does.
+fn play_again(recording: &Recording) {
+    // The numbers of a scenario are believed: only what was given is changed here.
+    if !SCENARIOS.contains(recording.scenario()) {
+        return;
+    }
+    let Ok(mut contest) = sim::Contest::new(recording.scenario(), recording.scenario().seed) else { return };
+    let given: Result<Vec<Inputs>, RecordingError> = recording.bag().on(INPUTS).take(10).map(|m| m.read()).collect();
+    for input in given.unwrap_or_default().iter().flat_map(|inputs| inputs.of(recording.scenario())).flatten().take(100)
+    {
+        contest.give(input);
+    }
+    drop(contest.frame(&mut game::event::EventCursor::default()));
+    assert_eq!(recording.bag().places(FRAME).count(), recording.frame_count());
+}
+
+/// A record of an MCAP file: its kind, and its bytes.
+type Record = (u8, Vec<u8>);
+
+/// Changes of single records, and of the file as it lies.
+fn change(seeds: Vec<Vec<u8>>) -> Change {
+    let files: Vec<Vec<Record>> = seeds.iter().map(|seed| records(&seed[MAGIC.len()..])).collect();
+    let pools: Vec<Vec<Vec<u8>>> =
+        files.iter().map(|file| file.iter().map(|(_, body)| body.clone()).collect()).collect();
+    let facts: Vec<Vec<u8>> =
+        files.iter().flatten().filter_map(facts_of).flat_map(|(_, facts)| facts.into_values()).collect();
+    let pieces = Pieces::of(&facts);
+    Box::new(move |dice| {
+        let which = dice.roll(files.len());
+        if dice.roll(4) == 0 {
+            return binary::change(&seeds[which..=which], dice);
+        }
+        let mut file = files[which].clone();
+        for _ in 0..=dice.roll(3) {
+            change_record(&mut file, &pools[which], &pieces, dice);
+        }
+        written(&file)
+    })
+}
+
+fn change_record(file: &mut Vec<Record>, pool: &[Vec<u8>], pieces: &Pieces, dice: &mut Dice) {
+    if file.is_empty() {
+        return;
+    }
+    let headers: Vec<usize> = (0..file.len()).filter(|i| file[*i].0 == METADATA).collect();
+    let at = if headers.is_empty() || dice.roll(2) == 0 { dice.roll(file.len()) } else { *dice.one_of(&headers) };
+    match dice.roll(8) {
+        0 => drop(file.remove(at)),
+        1 => file.insert(at, file[at].clone()),
+        2 => {
+            let other = dice.roll(file.len());
+            file.swap(at, other);
+        }
+        3 => file[at].1 = binary::change(&[file[at].1.clone(), dice.one_of(pool).clone()], dice),
+        _ => match facts_of(&file[at]) {
+            Some((name, mut facts)) if !facts.is_empty() => {
+                let key = facts.keys().nth(dice.roll(facts.len())).cloned().unwrap_or_default();
+                let changed = pieces.change(&[facts[&key].clone()], dice);
+                facts.insert(key, changed);
+                file[at].1 = metadata(&name, &facts);
+            }
+            _ => file[at].1 = binary::change(&[file[at].1.clone()], dice),
+        },
+    }
+}
+
+/// The records of a file, those in chunks one by one.
+fn records(mut bytes: &[u8]) -> Vec<Record> {
+    let mut records = Vec::new();
+    while let Some((opcode, length, rest)) = prefix(bytes) {
+        let Some((body, rest)) = rest.split_at_checked(length) else { break };
+        match opcode {
+            // Two times, a size, a checksum, no compression, and the length of what is in it.
+            CHUNK => records.extend(self::records(body.get(8 + 8 + 8 + 4 + 4 + 8..).unwrap_or_default())),
+            DATA_END => break,
+            _ => records.push((opcode, body.to_vec())),
+        }
+        bytes = rest;
+    }
+    records
+}
+
+fn prefix(bytes: &[u8]) -> Option<(u8, usize, &[u8])> {
+    let (opcode, rest) = bytes.split_first()?;
+    let (length, rest) = rest.split_first_chunk()?;
+    Some((*opcode, usize::try_from(u64::from_le_bytes(*length)).ok()?, rest))
+}
+
+/// The file of these records. The header gets the checksum that belongs to it, everything else has none.
+fn written(records: &[Record]) -> Vec<u8> {
+    let mut bytes = MAGIC.to_vec();
+    let end = (DATA_END, vec![0; 4]);
+    for (opcode, body) in records.iter().chain([&end]) {
+        bytes.push(*opcode);
+        bytes.extend((body.len() as u64).to_le_bytes());
+        bytes.extend(body);
+    }
+    bytes.extend(MAGIC);
+    bytes
+}
+
+/// The name and the facts of a metadata record.
+fn facts_of((opcode, body): &Record) -> Option<(Vec<u8>, BTreeMap<String, Vec<u8>>)> {
+    let (name, rest) = text(body).filter(|_| *opcode == METADATA)?;
+    let (mut list, _) = text(rest)?;
+    let mut facts = BTreeMap::new();
+    while !list.is_empty() {
+        let (key, rest) = text(list)?;
+        let (value, rest) = text(rest)?;
+        facts.insert(String::from_utf8_lossy(key).into_owned(), value.to_vec());
+        list = rest;
+    }
+    Some((name.to_vec(), facts))
+}
+
+fn text(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = bytes.split_first_chunk::<4>()?;
+    rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
+}
+
+fn metadata(name: &[u8], facts: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
+    let with_length = |text: &[u8]| [&(text.len() as u32).to_le_bytes()[..], text].concat();
+    let mut facts = facts.clone();
+    if let Some(checksum) = facts.get_mut("checksum") {
+        *checksum = Vec::new();
+        let sum = checksum_of(&facts);
+        facts.insert("checksum".to_owned(), sum.into_bytes());
+    }
+    let list: Vec<u8> =
+        facts.iter().flat_map(|(key, value)| [with_length(key.as_bytes()), with_length(value)].concat()).collect();
+    [with_length(name), with_length(&list)].concat()
+}
+
+/// The checksum of a header's other facts, as the recorder makes it.
+fn checksum_of(facts: &BTreeMap<String, Vec<u8>>) -> String {
+    let mut hasher = crc32fast::Hasher::new();
+    for (key, value) in facts.iter().filter(|(key, _)| *key != "checksum") {
+        [key.as_bytes(), b"\0", value, b"\0"].iter().for_each(|bytes| hasher.update(bytes));
+    }
+    hasher.finalize().to_string()
+}

@@ -1,0 +1,131 @@
+//! Scenario files of every kind (TOML): a line with the folder of the kind, then the file. What it builds on and refers to are the
+//! files of the tree.
+
+use super::{Target, check_shown, texts};
+use crate::played::scenarios;
+use game::scenario::{self, Kind, Problems};
+use game::{Scenario, VehicleId};
+use gateway::bridge::{Bridge, Plan};
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+use tempfile::TempDir;
+
+/// What is accepted is also played for a moment, and a game of eighty boats is much.
+pub(super) const TARGET: Target =
+    Target { name: "scenario", seeds, change: texts, check, allocated_max: (1 << 30, 10_000) };
+
+/// Copies of the files of the tree, with room for one more.
+static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (path, text) in files() {
+        let path = folder.path().join(path);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        std::fs::write(path, text).expect("a file");
+    }
+    folder
+});
+
+/// The files of the tree, by folder and name.
+fn files() -> Vec<(PathBuf, Vec<u8>)> {
+    let in_folder = |kind: Kind| {
+        let folder = std::fs::read_dir(scenarios().join(kind.folder())).expect("it is there");
+        let mut paths: Vec<PathBuf> = folder.map(|entry| entry.expect("a file").path()).collect();
+        paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+        paths.sort();
+        paths.into_iter().map(move |path| {
+            let text = std::fs::read(&path).expect("a file");
+            (Path::new(kind.folder()).join(path.file_name().expect("a name")), text)
+        })
+    };
+    Kind::ALL.into_iter().flat_map(in_folder).collect()
+}
+
+fn seeds() -> Vec<Vec<u8>> {
+    let broken = include_str!("../../../game/tests/scenario_hostile_values.txt");
+    // A game of a thousand boats costs as much as all others together.
+    let files = files().into_iter().filter(|(path, _)| !path.ends_with("swarm_500v500.toml"));
+    let seed = |(path, text): (PathBuf, Vec<u8>)| {
+        let folder = path.parent().expect("a folder").display().to_string();
+        [folder.as_bytes(), b"\n", &text].concat()
+    };
+    files.map(seed).chain([format!("strategies\n# {broken}").into_bytes()]).collect()
+}
+
+fn check(bytes: &[u8]) {
+    let end = bytes.iter().position(|byte| *byte == b'\n').unwrap_or(0);
+    let (first, text) = bytes.split_at(end);
+    let kind = Kind::ALL.into_iter().find(|kind| kind.folder().as_bytes() == first);
+    let folder = FOLDER.path().join(kind.map_or("games", Kind::folder));
+    let path = folder.join("fuzzed.toml");
+    std::fs::write(&path, text.get(1..).unwrap_or_default()).expect("a file");
+    match scenario::check_file(&path) {
+        Ok(kind) => accepted(kind, &path),
+        Err(problems) => refused(&problems),
+    }
+}
+
+/// Every problem has a place in a file that is there, and can be shown.
+fn refused(problems: &Problems) {
+    assert!(!problems.0.is_empty());
+    for problem in &problems.0 {
+        assert!(problem.path.starts_with(FOLDER.path()), "{}", problem.path.display());
+        let bytes = std::fs::read(&problem.path).unwrap_or_default();
+        let lines = bytes.iter().filter(|byte| **byte == b'\n').count() + 1;
+        assert!((1..=lines).contains(&problem.line) && problem.column > 0, "{problem}");
+        check_shown(problem);
+    }
+}
+
+/// What was accepted can be used for what it is for.
+fn accepted(kind: Kind, path: &Path) {
+    match kind {
+        Kind::Game => playable(&scenario::load(path).expect("it was accepted")),
+        Kind::Strategy => {
+            let strategy = scenario::load_strategy(path).expect("it was accepted");
+            let json = serde_json::to_string(&strategy).expect("JSON");
+            assert_eq!(serde_json::from_str::<game::strategy::Strategy>(&json).expect("JSON"), strategy);
+            for role in &strategy.roles {
+                let conditions = role.modes.iter().filter_map(|mode| mode.when.as_ref());
+                conditions.for_each(|condition| assert!(!role.condition_text(condition).is_empty()));
+            }
+        }
+        Kind::Gateway => {
+            let gateway = scenario::load_gateway(path).expect("it was accepted");
+            let field = scenario::load_field(&scenarios().join("fields/open_800x400.toml")).expect("a field");
+            let vehicle = "blue_one".to_owned();
+            let plan = Plan { vehicle, gateway, field, length_m: 2.0, declination_rad: 0.1, arms_itself: false };
+            drop(Bridge::new(plan));
+        }
+        Kind::Tournament => {
+            let tournament = scenario::load_tournament(path).expect("it was accepted");
+            if let Err(problems) = arena::tournament::Plan::new(&tournament) {
+                check_shown(&problems);
+            }
+        }
+        Kind::Field | Kind::Rules | Kind::Boat | Kind::Sea => {}
+    }
+}
+
+/// A game that was accepted travels as it is, and begins, or says why not; minds play it.
+fn playable(scenario: &Scenario) {
+    let json = serde_json::to_string(scenario).expect("JSON");
+    assert_eq!(serde_json::from_str::<Scenario>(&json).expect("JSON"), *scenario, "it does not travel");
+    assert_eq!(scenario.check_references(), Ok(()));
+    if scenario.vehicles.len() > 40 {
+        return;
+    }
+    let mut contest = match sim::Contest::new(scenario, scenario.seed) {
+        Ok(contest) => contest,
+        Err(error) => return check_shown(&error),
+    };
+    let mut runner = arena::runner_of(agent::minds_of(contest.scenario()));
+    for _ in 0..2 {
+        arena::decide(&mut contest, &mut runner);
+        contest.advance();
+    }
+    let frame = contest.frame(&mut game::event::EventCursor::default());
+    for (i, truth) in frame.vehicles.iter().enumerate() {
+        let name = &scenario.vehicles[VehicleId::at(i).index()].name;
+        assert!(truth.nav.north_m.is_finite() && truth.nav.east_m.is_finite(), "{name} is at {:?}", truth.nav);
+    }
+}

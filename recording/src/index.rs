@@ -1,0 +1,130 @@
+//! Where the messages of a file are: stretches of it, whose messages are looked for again when they are wanted.
+//!
+//! A recording of a day has ten million messages. A place of each would be hundreds of megabytes.
+
+use crate::records::{self, Record};
+use crate::source::Source;
+use parking_lot::Mutex;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The most messages in a stretch.
+const MESSAGES_MAX: usize = 256;
+
+/// A message in a file.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct IndexEntry {
+    pub(crate) channel: u16,
+    pub(crate) number: u32,
+    /// The time of the recording's own clock, ns.
+    pub(crate) log_ns: u64,
+    pub(crate) utc_ns: u64,
+    pub(crate) from: u64,
+    pub(crate) length: u32,
+}
+
+impl IndexEntry {
+    /// The message of a record, with the place of its bytes; none of a record of another kind.
+    fn of(record: &Record<'_>, place: &Range<u64>) -> Option<IndexEntry> {
+        let Record::Message { header, .. } = record else { return None };
+        Some(IndexEntry {
+            channel: header.channel_id,
+            number: header.sequence,
+            log_ns: header.log_time,
+            utc_ns: header.publish_time,
+            from: place.start,
+            // A record is read only if it is shorter.
+            length: u32::try_from(place.end - place.start).unwrap_or(u32::MAX),
+        })
+    }
+}
+
+/// Messages that follow each other in a chunk, or outside of chunks.
+#[derive(Debug)]
+struct Stretch {
+    /// How many messages are before it.
+    first: usize,
+    /// From its first record to the end of its last.
+    place: Range<u64>,
+}
+
+/// Where the messages of a file are.
+#[derive(Debug, Default)]
+pub(crate) struct Index {
+    stretches: Vec<Stretch>,
+    /// How many messages there are.
+    count: usize,
+    /// By channel.
+    counts: BTreeMap<u16, usize>,
+    /// The first and the last time by the clock, ns.
+    span_utc_ns: Option<(u64, u64)>,
+    /// The chunk of the last message that was added, by its beginning.
+    chunk: Option<u64>,
+    /// The stretch that was asked for last, and its messages.
+    recent: Mutex<Option<(usize, Arc<[IndexEntry]>)>>,
+}
+
+impl Index {
+    /// Adds the message of a record, if it is one: the next in the file, in the chunk that begins there.
+    pub(crate) fn add(&mut self, record: &Record<'_>, place: &Range<u64>, chunk: u64) {
+        let Some(entry) = IndexEntry::of(record, place) else { return };
+        let is_full = self.stretches.last().is_none_or(|last| self.count - last.first >= MESSAGES_MAX);
+        if is_full || self.chunk != Some(chunk) {
+            let from = place.start.saturating_sub(records::MESSAGE_PREFIX);
+            self.stretches.push(Stretch { first: self.count, place: from..place.end });
+        }
+        if let Some(last) = self.stretches.last_mut() {
+            last.place.end = place.end;
+        }
+        self.chunk = Some(chunk);
+        self.count += 1;
+        *self.counts.entry(entry.channel).or_default() += 1;
+        let (first, last) = self.span_utc_ns.unwrap_or((entry.utc_ns, entry.utc_ns));
+        self.span_utc_ns = Some((first.min(entry.utc_ns), last.max(entry.utc_ns)));
+    }
+
+    /// How many messages there are.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// How many there are, by channel.
+    pub(crate) fn counts(&self) -> &BTreeMap<u16, usize> {
+        &self.counts
+    }
+
+    /// From the first message to the last by the clock, ns.
+    pub(crate) fn span_utc_ns(&self) -> u64 {
+        self.span_utc_ns.map_or(0, |(first, last)| last - first)
+    }
+
+    /// The message at a place among all; none where the file cannot be read any more.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    pub(crate) fn entry(&self, source: &Source, place: usize) -> Option<IndexEntry> {
+        assert!(place < self.count, "message {place} of {}", self.count);
+        let number = self.stretches.partition_point(|stretch| stretch.first <= place) - 1;
+        let stretch = &self.stretches[number];
+        let mut recent = self.recent.lock();
+        let entries = match &*recent {
+            Some((known, entries)) if *known == number => Arc::clone(entries),
+            _ => {
+                let entries: Arc<[IndexEntry]> = entries_in(source, stretch.place.clone()).into();
+                *recent = Some((number, Arc::clone(&entries)));
+                entries
+            }
+        };
+        entries.get(place - stretch.first).copied()
+    }
+}
+
+/// The messages in a stretch.
+fn entries_in(source: &Source, place: Range<u64>) -> Vec<IndexEntry> {
+    let mut entries = Vec::new();
+    let read = records::records_in(source, place, &mut |record, place| entries.extend(IndexEntry::of(&record, &place)));
+    // It was read before without an error: if it cannot be read any more, those that are missing are none.
+    drop(read);
+    entries
+}

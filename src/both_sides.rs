@@ -1,0 +1,56 @@
+//! A game from both sides: played as it is and with the teams' strategies exchanged, and added up.
+
+use anyhow::{Result, bail};
+use game::Scenario;
+use game::id::TeamId;
+use sim::node::Report;
+
+/// The teams of a game that is played from both sides.
+pub(crate) struct BothSides {
+    /// The teams' names, and the names of the strategies with which they begin.
+    teams: [(String, String); 2],
+}
+
+impl BothSides {
+    /// The teams of a game, and of the same one with the strategies exchanged.
+    pub(crate) fn new(scenario: &Scenario, exchanged: &Scenario) -> Result<BothSides> {
+        scenario.has_no_real_boats()?;
+        let strategies = |scenario: &Scenario| -> Vec<_> {
+            scenario.vehicles.iter().map(|vehicle| scenario.strategies[vehicle.strategy].clone()).collect()
+        };
+        let name = |team: usize| {
+            let first = scenario.vehicles.iter().find(|vehicle| vehicle.team == TeamId(team as u8));
+            first.map_or(String::new(), |vehicle| scenario.strategies[vehicle.strategy].name.clone())
+        };
+        let teams = [0, 1].map(|team| (scenario.teams[team].name.clone(), name(team)));
+        if strategies(scenario) == strategies(exchanged) {
+            bail!("both teams follow {}: with the sides exchanged it is the same game", teams[0].1);
+        }
+        Ok(BothSides { teams })
+    }
+
+    /// The points that each strategy has made in both games: that with which the first team began, and the other.
+    fn points(&self, reports: &[Report]) -> [u32; 2] {
+        let points = |entry: usize| {
+            let of_game =
+                |(game, report): (usize, &Report)| report.outcome.score.teams[&self.teams[(entry + game) % 2].0];
+            reports.iter().enumerate().map(of_game).sum()
+        };
+        [points(0), points(1)]
+    }
+
+    /// Who made how many points, for people.
+    pub(crate) fn text(&self, reports: &[Report]) -> String {
+        let [(first, first_strategy), (second, second_strategy)] = &self.teams;
+        let [points, other_points] = self.points(reports);
+        format!(
+            "\nfrom both sides: {first_strategy} (first as {first}) {points}, {second_strategy} (first as {second}) {other_points}"
+        )
+    }
+
+    /// Who made how many points, for programs.
+    pub(crate) fn sum(&self, reports: &[Report]) -> serde_json::Value {
+        let entry = |((team, strategy), points): (&(String, String), u32)| serde_json::json!({ "first_as": team, "strategy": strategy, "score": points });
+        self.teams.iter().zip(self.points(reports)).map(entry).collect()
+    }
+}

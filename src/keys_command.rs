@@ -1,0 +1,135 @@
+//! `squall keys`: makes and shows the keys of a game.
+
+use crate::screen;
+use anyhow::{Result, bail};
+use bus::keys::{self, Bundle, Identity};
+use std::fmt::Write as _;
+use std::net::UdpSocket;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// What to do with keys.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    command: KeysCommand,
+}
+
+#[derive(clap::Subcommand)]
+enum KeysCommand {
+    /// Makes an authority of its own and a folder of keys for each part of a game.
+    New(NewArgs),
+    /// Says whose keys these are, and how long they are valid.
+    Show(ShowArgs),
+}
+
+#[derive(clap::Args)]
+struct NewArgs {
+    /// The folder to make them in
+    folder: PathBuf,
+    /// Keys for the agents of this team; once for each team
+    #[arg(long = "team", value_name = "NAME")]
+    teams: Vec<String>,
+    /// Keys for the gateway of this boat; without a name, for any gateway
+    #[arg(long = "gateway", value_name = "BOAT", num_args = 0..=1, default_missing_value = "")]
+    gateways: Vec<String>,
+    /// Keys for those who watch, and may stop boats
+    #[arg(long)]
+    observer: bool,
+    /// Keys for those who control the game and operate boats
+    #[arg(long)]
+    operator: bool,
+    /// A name or address at which the sim will be reached, besides localhost [default: this machine's name and address]
+    #[arg(long = "host", value_name = "HOST")]
+    hosts: Vec<String>,
+    /// How long they are valid, days
+    #[arg(long, value_name = "DAYS", default_value_t = 90, value_parser = clap::value_parser!(u32).range(1..=3650))]
+    days: u32,
+}
+
+#[derive(clap::Args)]
+struct ShowArgs {
+    /// Folders of keys
+    #[arg(required = true, value_name = "FOLDER")]
+    folders: Vec<PathBuf>,
+}
+
+const DAY: Duration = Duration::from_secs(24 * 3600);
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    match &args.command {
+        KeysCommand::New(args) => new(args)?,
+        KeysCommand::Show(args) => args.folders.iter().try_for_each(|folder| show(folder))?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn new(args: &NewArgs) -> Result<()> {
+    let mut identities = vec![Identity::Sim];
+    for team in &args.teams {
+        identities.push(named(&format!("team-{team}"))?);
+    }
+    for boat in &args.gateways {
+        identities.push(if boat.is_empty() { Identity::Gateway(None) } else { named(&format!("gateway-{boat}"))? });
+    }
+    identities.extend(args.observer.then_some(Identity::Observer));
+    identities.extend(args.operator.then_some(Identity::Operator));
+    if let [Identity::Sim] = identities[..] {
+        bail!("nobody could join: name the parts of the game by --team, --gateway, --observer, --operator");
+    }
+    identities.sort();
+    identities.dedup();
+    if let Some(there) =
+        identities.iter().map(|identity| args.folder.join(identity.to_string())).find(|path| path.exists())
+    {
+        bail!("{} is there already: new keys take the place of all old ones, so choose a new folder", there.display());
+    }
+    let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "::1"].map(str::to_owned).to_vec();
+    if args.hosts.is_empty() {
+        hosts.extend(own_name());
+        hosts.extend(own_address());
+    }
+    hosts.extend(args.hosts.iter().cloned());
+    let folders = keys::make(&args.folder, &identities, &hosts, args.days * DAY)?;
+    folders.iter().try_for_each(|folder| show(folder))?;
+    screen::print(
+        "\nWho has a folder is who it says: copy each to the machine that needs it, and nowhere else. Give it to any command \
+         by --keys FOLDER.\nNobody can add to this set: for another part, or when a folder is lost, make a new set for all.\n",
+    );
+    Ok(())
+}
+
+fn named(text: &str) -> Result<Identity> {
+    match text.parse() {
+        Ok(identity) => Ok(identity),
+        Err(_) => bail!("{text:?}: a name is 1 to 48 of the characters a-z A-Z 0-9 _ -"),
+    }
+}
+
+fn show(folder: &Path) -> Result<()> {
+    let bundle = Bundle::load(folder)?;
+    let [from, until] = bundle.valid();
+    let mut text = format!("{}: {}, valid from {from} until {until}", folder.display(), bundle.identity());
+    if !bundle.hosts().is_empty() {
+        write!(text, ", reached at {}", bundle.hosts().join(", ")).expect("a text can be written to");
+    }
+    screen::print(&(text + "\n"));
+    Ok(())
+}
+
+/// This machine's name, where the system tells it.
+fn own_name() -> Option<String> {
+    let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok()?.trim().to_owned();
+    let is_host = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '.');
+    (!name.is_empty() && name != "localhost" && is_host).then_some(name)
+}
+
+/// The address of this machine that others see. Nothing is sent: the system only looks up the way.
+fn own_address() -> Option<String> {
+    let socket = UdpSocket::bind(("0.0.0.0", 0)).ok()?;
+    // An address of documentation (RFC 5737), which takes the way to everywhere.
+    socket.connect(("192.0.2.1", 9)).ok()?;
+    let address = socket.local_addr().ok()?.ip();
+    (!address.is_loopback() && !address.is_unspecified()).then(|| address.to_string())
+}

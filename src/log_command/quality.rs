@@ -1,0 +1,40 @@
+//! How sensibly boats played in recorded games.
+
+use crate::replay_command::minds::Minds;
+use crate::{output_file, recording_file, screen};
+use analysis::Step;
+use analysis::quality::{GameQuality, MindState, Quality};
+use anyhow::Result;
+use game::VehicleId;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Prints it of all games together, and writes it as JSON.
+pub(super) fn print(files: &[PathBuf], json: Option<&Path>) -> Result<()> {
+    let mut sum = Quality::default();
+    for file in files {
+        sum.merge(&of_recording(file)?);
+    }
+    screen::print(&sum.to_string());
+    json.map_or(Ok(()), |path| output_file::write_json(path, "the quality", &sum))
+}
+
+fn of_recording(file: &Path) -> Result<Quality> {
+    let recording = Arc::new(recording_file::open(file, "look at")?);
+    let mut minds = Minds::new(Arc::clone(&recording));
+    let mut quality = GameQuality::new(recording.scenario());
+    let damaged = analysis::for_each_step(&recording, |step| {
+        let minds: Vec<_> = (0..step.samples.len()).map(|i| mind_state(&mut minds, &step, i)).collect();
+        quality.add(&step, &minds);
+    });
+    if let Some(remark) = damaged.remark() {
+        screen::remark(&format!("{}: {remark}", file.display()));
+    }
+    Ok(quality.end())
+}
+
+/// What a boat's mind was at when it gave the order that led to a step: known where that is what the scenario's strategy orders.
+fn mind_state(minds: &mut Minds, step: &Step, vehicle: usize) -> Option<MindState> {
+    let (report, order) = minds.report_of(VehicleId::at(vehicle), step.decision.checked_sub(1)?)?;
+    (order == step.samples[vehicle].order).then(|| report.into())
+}

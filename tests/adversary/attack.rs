@@ -1,0 +1,255 @@
+//! Attacks on whatever a game makes its machine hold: memory, descriptors, tables, and the patience of others.
+
+use crate::disturbed_game::DisturbedGame;
+use crate::intruder::{Intruder, Target};
+use crate::support::{FOUR, LIMIT, Process, Sim, wait_until};
+use game::message::Control;
+use serde_json::Value;
+use std::any::Any;
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::time::{Duration, Instant};
+use zenoh::{Config, Wait};
+
+/// What the sim may hold at most, in kB, whatever is sent to it; it is 25 MB undisturbed.
+const MEMORY_MAX_KB: u64 = 400_000;
+
+/// An attack, by name; it stands for as long as what it gives is kept.
+pub(crate) type Attack = (&'static str, fn(&Target) -> Box<dyn Any>);
+
+pub(crate) const ATTACKS: [Attack; 9] = [
+    ("messages of 64 MB, and many of a size that is read", big_messages),
+    ("a million keys", many_keys),
+    ("nested JSON", nested_json),
+    ("long keys", long_keys),
+    ("thousands of declarations of one session", many_declarations),
+    ("a node that passes for a router", router),
+    ("connections that say nothing", silent_connections),
+    ("connections that stop half-way through the handshake", half_handshakes),
+    ("as many sessions as there is room for", sessions),
+];
+
+/// Whatever anybody may publish, and what nobody but the sim hears.
+const PUBLISHED: [&str; 6] = ["control", "order/x", "say/blue", "policy/blue_one", "nav/blue_one", "status/blue_one"];
+const ASKED: [&str; 5] = ["control", "join/agent/blue", "scenario", "events", "water"];
+
+fn big_messages(target: &Target) -> Box<dyn Any> {
+    let intruder = Intruder::of(target);
+    for topic in PUBLISHED {
+        intruder.publish(topic, vec![b'['; 64 << 20]);
+        for _ in 0..100 {
+            intruder.publish(topic, vec![b'['; 1 << 20]);
+        }
+    }
+    for topic in ASKED {
+        intruder.ask_in_vain(topic, vec![b'['; 64 << 20]);
+        (0..100).for_each(|_| intruder.ask_in_vain(topic, vec![b'['; 1 << 20]));
+    }
+    Box::new(intruder)
+}
+
+fn many_keys(target: &Target) -> Box<dyn Any> {
+    let intruder = Intruder::of(target);
+    for i in 0..250_000 {
+        for topic in ["order", "say", "policy", "status"] {
+            intruder.publish(&format!("{topic}/x{i}"), "x");
+        }
+    }
+    Box::new(intruder)
+}
+
+fn nested_json(target: &Target) -> Box<dyn Any> {
+    let intruder = Intruder::of(target);
+    for nested in ["[", "{\"body\":", "{\"body\":{\"vehicles\":[[", "{\"answer\":"] {
+        let payload = nested.repeat(60_000 / nested.len());
+        for _ in 0..200 {
+            PUBLISHED.iter().for_each(|topic| intruder.publish(topic, payload.as_bytes().to_vec()));
+            ASKED.iter().for_each(|topic| intruder.ask_in_vain(topic, payload.as_bytes().to_vec()));
+        }
+    }
+    Box::new(intruder)
+}
+
+/// Keys of up to 80 kB, which is more than zenoh can send at once: the hub learns them in two parts, and is to send the whole.
+fn long_keys(target: &Target) -> Box<dyn Any> {
+    let (intruder, listener) = (Intruder::of(target), Intruder::of(target));
+    let mut kept: Vec<Box<dyn Any>> = Vec::new();
+    for topic in ["say", "policy", "status", "order", "helm", "operate", "join", "alive/agent"] {
+        for pattern in ["*", "*/*", "**"].map(|rest| listener.topic(&format!("{topic}/{rest}"))) {
+            kept.push(Box::new(listener.listen_anywhere(&pattern)));
+            kept.push(Box::new(listener.session.declare_queryable(pattern.clone()).callback(drop).wait().ok()));
+            let liveliness = listener.session.liveliness();
+            kept.push(Box::new(liveliness.declare_subscriber(pattern).callback(drop).wait().ok()));
+        }
+        // From here on the hub knows this by a number.
+        let known = intruder.topic(&format!("{topic}/{}", "k".repeat(40_000)));
+        kept.push(Box::new(intruder.session.declare_subscriber(known).callback(drop).wait().ok()));
+    }
+    // What was declared is sent by another thread.
+    std::thread::sleep(Duration::from_millis(500));
+    for topic in ["say", "policy", "status", "order", "helm", "operate", "join"] {
+        for rest in [10, 25_000, 40_000] {
+            let key = format!("{topic}/{}/{}", "k".repeat(40_000), "l".repeat(rest));
+            intruder.publish(&key, "x");
+            intruder.ask_in_vain(&key, "{}");
+        }
+        let key = format!("{topic}/{}", "m".repeat(65_000));
+        kept.push(Box::new(intruder.session.declare_subscriber(intruder.topic(&key)).callback(drop).wait().ok()));
+        kept.push(Box::new(intruder.session.liveliness().declare_token(intruder.topic(&key)).wait().ok()));
+    }
+    kept.push(Box::new((intruder, listener)));
+    Box::new(kept)
+}
+
+fn many_declarations(target: &Target) -> Box<dyn Any> {
+    let intruder = Intruder::of(target);
+    let session = &intruder.session;
+    let mut kept: Vec<Box<dyn Any>> = Vec::new();
+    for i in 0..500 {
+        for topic in ["say", "picture", "policy", "alive/agent"] {
+            let key = intruder.topic(&format!("{topic}/x{i}"));
+            kept.push(Box::new(session.declare_subscriber(key.clone()).callback(drop).wait().ok()));
+            kept.push(Box::new(session.liveliness().declare_token(key).wait().ok()));
+        }
+        let helm = intruder.topic(&format!("helm/x{i}"));
+        kept.push(Box::new(session.declare_queryable(helm).callback(drop).wait().ok()));
+        // The same again and again, which is allowed.
+        kept.push(Box::new(session.declare_subscriber(intruder.topic("frame")).callback(drop).wait().ok()));
+    }
+    // What holds the session open goes last.
+    kept.push(Box::new(intruder));
+    Box::new(kept)
+}
+
+/// A router hears of what clients only hear if they ask, and may speak for others.
+fn router(target: &Target) -> Box<dyn Any> {
+    let intruder = target.open("router").expect("the port is open");
+    let answers =
+        ["scenario", "join/**", "join", "events", "water", "control", "**"].map(|topic| intruder.answer(topic));
+    let token = intruder.session.liveliness().declare_token(intruder.topic("alive/sim/zz")).wait().ok();
+    let heard = ["**", "order/*", "nav/*"].map(|topic| intruder.listen(topic));
+    for topic in ["frame", "picture/blue", "picture/red", "picture/*", "**", "run", "released", "external/blue_one"] {
+        (0..100).for_each(|_| intruder.publish(topic, "forged"));
+    }
+    Box::new((answers, token, heard, intruder))
+}
+
+fn silent_connections(target: &Target) -> Box<dyn Any> {
+    Box::new(connections(target, &[], 1500))
+}
+
+fn half_handshakes(target: &Target) -> Box<dyn Any> {
+    Box::new(connections(target, &first_words(), 1500))
+}
+
+/// Connections that say this much. Where there are no descriptors left for more, there are fewer.
+pub(crate) fn connections(target: &Target, words: &[u8], count: usize) -> Vec<TcpStream> {
+    let connect = |_| {
+        let mut stream = TcpStream::connect(target.address()).ok()?;
+        stream.write_all(words).ok()?;
+        Some(stream)
+    };
+    (0..count).map_while(connect).collect()
+}
+
+/// What a session says first, as it says it to a listener that does not answer.
+fn first_words() -> Vec<u8> {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
+    let endpoint = format!("tcp/{}", listener.local_addr().expect("bound"));
+    let mut config = Config::default();
+    for (key, value) in [
+        ("mode", "\"client\"".to_owned()),
+        ("connect/endpoints", format!("[{endpoint:?}]")),
+        ("connect/timeout_ms", "1000".to_owned()),
+        ("connect/exit_on_failure", "true".to_owned()),
+        ("scouting/multicast/enabled", "false".to_owned()),
+    ] {
+        config.insert_json5(key, &value).expect("a setting of zenoh");
+    }
+    let session = std::thread::spawn(move || drop(zenoh::open(config).wait()));
+    let (mut stream, _) = listener.accept().expect("it connects");
+    let mut bytes = vec![0; 4096];
+    let count = stream.read(&mut bytes).expect("it speaks");
+    drop((stream, listener));
+    session.join().expect("it gives up");
+    bytes.truncate(count);
+    bytes
+}
+
+fn sessions(target: &Target) -> Box<dyn Any> {
+    let all: Vec<Intruder> = (0..1200).map_while(|_| target.open("client")).collect();
+    assert!((100..1100).contains(&all.len()), "{} sessions", all.len());
+    Box::new(all)
+}
+
+/// A number of `/proc/…/status`, in kB; none where there is no such file.
+fn status_kb(process: &Process, name: &str) -> Option<u64> {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", process.0.id())).ok()?;
+    status.lines().find_map(|line| line.strip_prefix(name)?.split_whitespace().nth(1)?.parse().ok())
+}
+
+#[test]
+fn no_attack_changes_the_game_or_fills_the_memory() {
+    let mut game = DisturbedGame::start();
+    for (what, attack) in ATTACKS {
+        let start = Instant::now();
+        let kept = attack(&Target::of(&game.sim));
+        game.check();
+        drop(kept);
+        let memory = status_kb(&game.sim.process, "VmHWM");
+        eprintln!("{what}: {:.1?}, at most {} kB so far", start.elapsed(), memory.unwrap_or_default());
+        assert!(memory.unwrap_or_default() < MEMORY_MAX_KB, "{what}");
+    }
+    game.ends_as_if_undisturbed();
+}
+
+#[test]
+fn an_e_stop_gets_through_every_attack() {
+    let (sim, _agents) = Sim::start_with_agents("long", &["--pace", "20x"]);
+    // Who operates a game is there before it is attacked.
+    let operator = sim.bus();
+    for (what, attack) in ATTACKS {
+        let kept = attack(&Target::of(&sim));
+        sim.newest_progress();
+        let asked = Instant::now();
+        bus::control(&operator, &sim.name(), Control::EStop).expect("it is published");
+        sim.wait_for_event("e_stopped", Value::Null);
+        let took = asked.elapsed();
+        eprintln!("{what}: boats are stopped after {took:.1?}");
+        assert!(took < Duration::from_secs(1), "{what}: {took:?}");
+        drop(kept);
+        wait_until("it is released", || bus::control(&operator, &sim.name(), Control::Release).is_ok());
+        sim.wait_for_event("released", Value::Null);
+    }
+    sim.stop();
+}
+
+/// Who says nothing has five seconds.
+#[test]
+fn connections_that_say_nothing_keep_agents_out_for_seconds_only() {
+    let sim = Sim::start("patient", &["--join-s", "600"]);
+    let silent = connections(&Target::of(&sim), &[], 1500);
+    let start = Instant::now();
+    let _agents: Vec<Process> = FOUR.iter().map(|name| sim.agent(&[name])).collect();
+    sim.wait_for_kind("started");
+    eprintln!("beside {} silent connections: all have joined after {:.1?}", silent.len(), start.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    sim.stop();
+}
+
+/// Where there is no room, those who are there go on, and others get in when there is room again.
+#[test]
+fn who_waits_for_room_gets_in_when_there_is_some() {
+    let sim = Sim::start("patient", &["--join-s", "600"]);
+    let target = Target::of(&sim);
+    let all: Vec<Intruder> = (0..1200).map_while(|_| target.open("client")).collect();
+    let mut agents: Vec<Process> = FOUR.iter().map(|name| sim.agent(&[name])).collect();
+    std::thread::sleep(Duration::from_secs(2));
+    drop(all);
+    let start = Instant::now();
+    sim.wait_for_kind("started");
+    assert!(start.elapsed() < LIMIT / 2, "{:?}", start.elapsed());
+    sim.play_on(1.0);
+    sim.stop();
+    agents.iter_mut().for_each(|agent| assert!(agent.wait().success()));
+}

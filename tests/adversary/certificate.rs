@@ -1,0 +1,243 @@
+//! A game with keys: who has none, or not the right ones, does nothing at all; who has some does what is his.
+
+use crate::disturbed_game::DisturbedGame;
+use crate::intruder::{Intruder, Target};
+use crate::support::{FOUR, Process, Sim, free_endpoint, squall, temporary, wait_until};
+use bus::keys::{Bundle, Identity, make};
+use bus::token::TOKEN_VARIABLE;
+use bus::{Bus, BusError, Net};
+use game::message::Control;
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::Stdio;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const DAY: Duration = Duration::from_secs(24 * 3600);
+
+/// Keys for everybody, for a sim on this machine.
+fn keys(valid: Duration) -> TempDir {
+    bus::restart_for_keys().expect("the tests start again");
+    let folder = temporary();
+    let named = ["sim", "team-blue", "team-red", "gateway-red_one", "observer", "operator"];
+    let identities: Vec<Identity> = named.iter().map(|name| name.parse().expect("an identity")).collect();
+    make(folder.path(), &identities, &["127.0.0.1".to_owned()], valid).expect("keys");
+    folder
+}
+
+/// A sim with keys, which needs no token.
+fn sim(keys: &TempDir, scenario: &str, args: &[&str]) -> Sim {
+    let mut program = squall(&[]);
+    program.env_remove(TOKEN_VARIABLE);
+    let (endpoint, folder) = (free_endpoint(), keys.path().join("sim").display().to_string());
+    Sim::start_with(program, scenario, &[&["--listen", &endpoint, "--keys", &folder], args].concat())
+}
+
+fn agent(endpoint: &str, sim: &Sim, keys: &Path, vehicles: &[&str]) -> Process {
+    let args = ["agent", "--connect", endpoint, "--game", &sim.game, "--wait-s", "10", "--vehicle"];
+    let mut command = squall(&[&args[..], vehicles].concat());
+    command.env_remove(TOKEN_VARIABLE).arg("--keys").arg(keys).stdout(Stdio::null()).stderr(Stdio::piped());
+    Process::start(command)
+}
+
+/// An agent for the boats of each team.
+fn agents(sim: &Sim, keys: &TempDir) -> Vec<Process> {
+    let team = |name: &str, vehicles| agent(&sim.endpoint, sim, &keys.path().join(name), vehicles);
+    vec![team("team-blue", &FOUR[..2]), team("team-red", &FOUR[2..])]
+}
+
+/// A session of our own program with these keys.
+fn node(sim: &Sim, keys: &TempDir, name: &str) -> Result<Bus, BusError> {
+    let bundle = Arc::new(Bundle::load(&keys.path().join(name)).expect("good keys"));
+    Bus::leaf(&Net { connect: vec![sim.endpoint.clone()], keys: Some(bundle), ..Net::default() })
+}
+
+/// zenoh's settings for TLS: whom to trust, and whose certificate to show.
+fn tls(trusted: &Path, shown: Option<&Path>) -> Value {
+    let mut tls = json!({ "root_ca_certificate": trusted.join("authority.pem"), "verify_name_on_connect": false });
+    for side in ["connect", "listen"] {
+        if let Some(shown) = shown {
+            tls["enable_mtls"] = json!(true);
+            tls[format!("{side}_certificate")] = json!(shown.join("certificate.pem"));
+            tls[format!("{side}_private_key")] = json!(shown.join("key.pem"));
+        }
+    }
+    tls
+}
+
+/// Who keeps to no rule of ours, but has the keys of one of us.
+fn traitor(sim: &Sim, keys: &TempDir, name: &str) -> Intruder {
+    let folder = keys.path().join(name);
+    Target::of(sim).open_with("client", &tls(&folder, Some(&folder))).expect("its keys are good")
+}
+
+#[test]
+fn who_has_no_certificate_of_the_game_gets_no_session() {
+    let (own, foreign) = (keys(DAY), keys(DAY));
+    let sim = sim(&own, "patient", &["--join-s", "600"]);
+    let target = Target::of(&sim);
+    let [trusted, forged] = [&own, &foreign].map(|keys| keys.path().join("operator"));
+    assert!(target.open_with("client", &tls(&trusted, Some(&trusted))).is_some(), "good keys");
+    for mode in ["client", "router"] {
+        assert!(target.open_with(mode, &tls(&trusted, None)).is_none(), "no certificate");
+        assert!(target.open_with(mode, &tls(&trusted, Some(&forged))).is_none(), "of another authority");
+        // The sim's own certificate is for serving.
+        assert!(target.open_with(mode, &tls(&trusted, Some(&own.path().join("sim")))).is_none(), "the sim's");
+        let plain = Target { endpoint: target.endpoint.replace("tls/", "tcp/"), ..target.clone() };
+        assert!(plain.open(mode).is_none(), "without TLS");
+    }
+    let refused = agent(&sim.endpoint, &sim, &foreign.path().join("team-blue"), &FOUR[..1]).refusal();
+    assert!(refused.contains("another authority"), "{refused}");
+    let elsewhere = sim.endpoint.replace("127.0.0.1", "localhost");
+    let refused = agent(&elsewhere, &sim, &own.path().join("team-blue"), &FOUR[..1]).refusal();
+    assert!(refused.contains("--host localhost"), "{refused}");
+    sim.stop();
+}
+
+/// Links that stand are kept: nobody is cut off in the middle of a game.
+#[test]
+fn whose_certificate_has_expired_is_let_in_no_more_and_who_plays_plays_on() {
+    let (valid, start) = (Duration::from_secs(20), Instant::now());
+    let own = keys(valid);
+    let folder = own.path().join("team-blue");
+    let sim = sim(&own, "patient", &[]);
+    let _agents = agents(&sim, &own);
+    sim.wait_for_kind("started");
+    let late = Target::of(&sim);
+    assert!(late.open_with("client", &tls(&folder, Some(&folder))).is_some(), "they are good still");
+    std::thread::sleep((valid + Duration::from_secs(1)).saturating_sub(start.elapsed()));
+    assert!(late.open_with("client", &tls(&folder, Some(&folder))).is_none(), "they have expired");
+    let refused = agent(&sim.endpoint, &sim, &folder, &FOUR[..1]).refusal();
+    assert!(refused.contains("expired"), "{refused}");
+    sim.newest_progress();
+    sim.play_on(5.0);
+    sim.stop();
+}
+
+#[test]
+fn a_red_agent_learns_nothing_of_blue_and_changes_nothing() {
+    let own = keys(DAY);
+    let served = sim(&own, "pav01_600s", &["--speed", "2"]);
+    let playing = agents(&served, &own);
+    served.wait_for_kind("started");
+    let operator = node(&served, &own, "operator").expect("good keys");
+    let red = traitor(&served, &own, "team-red");
+    // Its own session would hear what it publishes.
+    let forger = traitor(&served, &own, "team-red");
+    let mut game = DisturbedGame::of(served, playing, Some(operator));
+    let secret =
+        ["picture/blue", "say/blue", "policy/blue_one", "frame", "order/**", "**"].map(|word| red.listen(word));
+    let open = red.listen("picture/red");
+    let forged = ["join/agent/blue", "scenario", "helm/blue_one", "operate/blue_one"].map(|topic| forger.answer(topic));
+    let words =
+        ["order/blue/x", "order/x", "say/blue", "policy/blue_one", "picture/blue", "frame", "run", "nav/blue_one"];
+    for _ in 0..200 {
+        words.iter().for_each(|word| forger.publish(word, "forged"));
+    }
+    wait_until("its own pictures come", || open.keys().len() > 20);
+    let not_its_own = |key: &String| *key != red.topic("picture/red");
+    assert_eq!(secret.iter().flat_map(|heard| heard.keys()).find(not_its_own), None);
+    let request = |vehicles: Value| {
+        let body = json!({ "version": game::VERSION, "role": "agent", "node": "red", "vehicles": vehicles });
+        json!({ "body": body }).to_string().into_bytes()
+    };
+    for (place, vehicles) in [("join/agent/blue", json!(["blue_one"])), ("join/agent", json!(["blue_one", "red_one"]))]
+    {
+        assert_eq!(red.ask(place, request(vehicles)).len(), 0, "{place}");
+    }
+    // Where it may ask, it may not ask for this.
+    for vehicles in [json!(["blue_one"]), json!(["red_one", "blue_one"]), json!([])] {
+        let answer = red.ask("join/agent/red", request(vehicles.clone()));
+        let answer: Value = serde_json::from_slice(&answer[0]).expect("JSON");
+        assert!(answer["answer"]["Refused"].is_object(), "{vehicles}: {answer}");
+    }
+    for topic in ["control", "events", "water", "helm/blue_one", "operate/blue_one"] {
+        assert_eq!(red.ask(topic, json!({ "body": "stop" }).to_string().into_bytes()).len(), 0, "{topic}");
+    }
+    game.check();
+    drop(forged);
+    game.ends_as_if_undisturbed();
+}
+
+#[test]
+fn an_observer_stops_boats_and_controls_nothing() {
+    let own = keys(DAY);
+    let sim = sim(&own, "long", &["--pace", "20x"]);
+    let _agents = agents(&sim, &own);
+    sim.wait_for_kind("started");
+    let (observer, traitor) = (node(&sim, &own, "observer").expect("good keys"), traitor(&sim, &own, "observer"));
+    for control in ["pause", "stop", "release", "go_on", "step"] {
+        let payload = json!({ "body": control }).to_string();
+        assert_eq!(traitor.ask("control", payload.clone().into_bytes()).len(), 0, "{control}");
+        traitor.publish("control", json!(control).to_string());
+    }
+    let refused = bus::control(&observer, &sim.name(), Control::Stop);
+    assert!(matches!(refused, Err(BusError::NotAllowed { .. })), "{refused:?}");
+    sim.newest_progress();
+    sim.play_on(5.0);
+    bus::control(&observer, &sim.name(), Control::EStop).expect("it may");
+    sim.wait_for_event("e_stopped", Value::Null);
+    assert!(bus::control(&observer, &sim.name(), Control::Release).is_err());
+    let operator = node(&sim, &own, "operator").expect("good keys");
+    bus::control(&operator, &sim.name(), Control::Release).expect("it may");
+    sim.wait_for_event("released", Value::Null);
+    sim.stop();
+}
+
+#[test]
+fn an_agents_certificate_serves_no_game() {
+    let own = keys(DAY);
+    let sim = sim(&own, "patient", &["--join-s", "600"]);
+    let blue = own.path().join("team-blue");
+    let endpoint = free_endpoint();
+    let served = endpoint.replace("tcp/", "tls/");
+    let mut config = zenoh::Config::default();
+    for (key, value) in [
+        ("mode", "\"router\"".to_owned()),
+        ("listen/endpoints", format!("[{served:?}]")),
+        ("scouting/multicast/enabled", "false".to_owned()),
+        ("transport/link/tls", tls(&blue, Some(&blue)).to_string()),
+    ] {
+        config.insert_json5(key, &value).expect("a setting of zenoh");
+    }
+    let session = zenoh::Wait::wait(zenoh::open(config)).expect("the port is free");
+    let shown = zenoh::Wait::wait(session.liveliness().declare_token(Target::of(&sim).topic("alive/sim/fake")));
+    let refused = agent(&endpoint, &sim, &own.path().join("team-red"), &FOUR[2..]).refusal();
+    assert!(refused.contains("the sim's certificate is refused"), "{refused}");
+    drop(shown);
+    sim.stop();
+}
+
+#[test]
+fn a_gateway_speaks_for_its_own_boat_only() {
+    let own = keys(DAY);
+    let sim = sim(&own, "mixed_60s", &["--pace", "realtime", "--join-s", "600"]);
+    let red_one = traitor(&sim, &own, "gateway-red_one");
+    let request = |vehicle: &str| {
+        let body = json!({ "version": game::VERSION, "role": "gateway", "node": "x", "vehicles": [vehicle] });
+        json!({ "body": body }).to_string().into_bytes()
+    };
+    assert_eq!(red_one.ask("join/gateway/blue_one", request("blue_one")).len(), 0);
+    assert_eq!(red_one.ask("join/gateway", request("blue_one")).len(), 0);
+    let answer = |vehicle: &str| -> Value {
+        let answer = red_one.ask("join/gateway/red_one", request(vehicle));
+        serde_json::from_slice(&answer[0]).expect("JSON")
+    };
+    assert!(answer("blue_one")["answer"]["Refused"].is_object());
+    assert!(answer("red_one")["answer"]["Granted"].is_object());
+    // It neither answers for another's boat nor commands it, and hears no order to it.
+    let _forged = red_one.answer("operate/blue_one");
+    // A session hears what it publishes itself.
+    let listener = traitor(&sim, &own, "gateway-red_one");
+    let orders = ["external/blue_one", "**"].map(|word| listener.listen(word));
+    let operator = traitor(&sim, &own, "operator");
+    assert_eq!(operator.ask("operate/blue_one", "{}").len(), 0);
+    let heard = operator.listen("status/blue_one");
+    for _ in 0..50 {
+        ["status/blue_one", "nav/blue_one", "link/blue_one"].iter().for_each(|word| red_one.publish(word, "forged"));
+    }
+    assert_eq!(heard.keys().len(), 0);
+    assert_eq!(orders.iter().flat_map(|heard| heard.keys()).next(), None);
+    sim.stop();
+}

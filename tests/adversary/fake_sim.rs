@@ -1,0 +1,121 @@
+//! Somebody who offers the same game: at the port of the sim, and at one of his own.
+
+use crate::disturbed_game::DisturbedGame;
+use crate::intruder::{Intruder, Target};
+use crate::support::{FOUR, LIMIT, Process, Sim, agent, free_endpoint, squall, token};
+use bus::{Patience, SimState, SimWatch};
+use serde_json::{Value, json};
+use std::sync::{Arc, Mutex};
+use zenoh::{Config, Session, Wait};
+
+/// A router of zenoh's that answers for a game, and notes what it is asked.
+struct FakeSim {
+    _session: Session,
+    asked: Arc<Mutex<Vec<String>>>,
+    _standing: (Vec<zenoh::query::Queryable<()>>, zenoh::liveliness::LivelinessToken),
+}
+
+impl FakeSim {
+    /// It shows the game of the true one, and answers requests with a challenge of its own.
+    fn open(endpoint: &str, true_sim: &Intruder) -> FakeSim {
+        let mut config = Config::default();
+        for (key, value) in [
+            ("mode", "\"router\"".to_owned()),
+            ("listen/endpoints", format!("[{endpoint:?}]")),
+            ("scouting/multicast/enabled", "false".to_owned()),
+        ] {
+            config.insert_json5(key, &value).expect("a setting of zenoh");
+        }
+        let session = zenoh::open(config).wait().expect("the port is free");
+        let asked = Arc::new(Mutex::new(Vec::new()));
+        let challenge = vec![json!({ "challenge": "00".repeat(16) }).to_string().into_bytes()];
+        let scenario = true_sim.ask("scenario", "");
+        let answers = [("scenario", scenario), ("join/agent/blue", challenge.clone()), ("control", challenge)];
+        let queryables = answers.map(|(rest, answer)| {
+            let noted = Arc::clone(&asked);
+            let key = true_sim.topic(rest);
+            let queryable = session.declare_queryable(key).callback(move |query| {
+                let payload = query.payload().map(|bytes| bytes.to_bytes().into_owned()).unwrap_or_default();
+                noted.lock().expect("nobody panics with it").push(String::from_utf8_lossy(&payload).into_owned());
+                let key = query.key_expr().clone();
+                drop(query.reply(key, answer.first().cloned().unwrap_or_default()).wait());
+            });
+            queryable.wait().expect("the session is open")
+        });
+        let token = session.liveliness().declare_token(true_sim.topic("alive/sim/fake")).wait();
+        let token = token.expect("the session is open");
+        FakeSim { _session: session, asked, _standing: (queryables.into(), token) }
+    }
+
+    fn asked(&self) -> Vec<String> {
+        self.asked.lock().expect("nobody panics with it").clone()
+    }
+}
+
+#[test]
+fn a_router_that_joins_the_network_does_not_pass_for_the_sim() {
+    let mut game = DisturbedGame::start();
+    let target = Target::of(&game.sim);
+    let observer = game.sim.bus();
+    let watch = SimWatch::open(&observer, &game.sim.name(), Patience::of_player(LIMIT)).expect("a session");
+    let router = target.open("router").expect("the port is open");
+    let topics = ["scenario", "join", "join/**", "events", "water", "control", "**"];
+    let answers = topics.map(|topic| router.answer(topic));
+    let token = router.session.liveliness().declare_token(router.topic("alive/sim/zz")).wait();
+    let secret = ["**", "order/*", "order/**", "nav/*"].map(|topic| router.listen(topic));
+    for _ in 0..200 {
+        ["frame", "picture/blue", "picture/red", "run", "released"]
+            .iter()
+            .for_each(|topic| router.publish(topic, "forged"));
+    }
+    game.check();
+    let asker = Intruder::of(&target);
+    for topic in ["scenario", "events", "water", "join/agent/blue", "control"] {
+        let answers = asker.ask(topic, json!({ "body": {} }).to_string().into_bytes());
+        assert_eq!(answers.len(), 1, "{topic}");
+        assert!(answers[0] != b"forged", "{topic}");
+    }
+    assert_eq!(watch.state(), SimState::Alive);
+    let is_secret = |key: &String| key.contains("/order/") || key.contains("/nav/");
+    assert_eq!(secret.iter().flat_map(|heard| heard.keys()).find(is_secret), None);
+    drop((answers, token));
+    game.ends_as_if_undisturbed();
+}
+
+/// Without keys an agent cannot know whom it has found. It gives nothing away all the same.
+#[test]
+fn who_is_led_to_a_false_sim_tells_it_nothing_that_opens_the_true_one() {
+    let sim = Sim::start("patient", &["--join-s", "600"]);
+    let intruder = Intruder::at(&sim);
+    let endpoint = free_endpoint();
+    let false_sim = FakeSim::open(&endpoint, &intruder);
+    let mut led_astray = agent(&endpoint, &sim.game, &FOUR[..1]);
+    let refused = led_astray.refusal();
+    assert!(refused.contains("the token is not that of this game"), "{refused}");
+    let asked = false_sim.asked();
+    assert!(asked.iter().any(|payload| payload.contains("mac")), "{asked:?}");
+    assert!(asked.iter().all(|payload| !payload.contains(&token().hex())), "{asked:?}");
+    for payload in asked.iter().filter(|payload| payload.contains("mac")) {
+        let answer = intruder.ask("join/agent/blue", payload.clone().into_bytes());
+        let answer: Value = serde_json::from_slice(&answer[0]).expect("JSON");
+        assert!(answer["challenge"].is_string(), "{answer}");
+    }
+    sim.stop();
+}
+
+#[test]
+fn a_second_sim_of_the_same_name_disturbs_nobody() {
+    let mut game = DisturbedGame::start();
+    let name = game.sim.game.clone();
+    let endpoint = free_endpoint();
+    let second = Sim::start_with(squall(&[]), "patient", &["--game", &name, "--listen", &endpoint, "--join-s", "600"]);
+    assert_eq!(second.game, name);
+    game.check();
+    // Each agent is where it was sent.
+    let _agents: Vec<Process> = FOUR.iter().map(|vehicle| second.agent(&[vehicle])).collect();
+    second.wait_for_kind("started");
+    game.check();
+    second.stop();
+    game.check();
+    game.ends_as_if_undisturbed();
+}

@@ -1,0 +1,15 @@
+//! The same for a game with keys: a test program of its own, since zenoh has other threads in a process with keys.
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stderr,
+    reason = "processes are waited for by the clock, with a limit; what is measured is printed"
+)]
+
+mod certificate;
+#[allow(dead_code, reason = "shared with the games without keys")]
+mod disturbed_game;
+#[allow(dead_code, reason = "shared with the games without keys")]
+mod intruder;
+#[path = "../process/support.rs"]
+#[allow(dead_code, unreachable_pub, reason = "shared with the tests of whole games")]
+mod support;

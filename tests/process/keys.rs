@@ -1,0 +1,144 @@
+//! Games with keys: the same game as without, and who has the wrong keys is told so.
+
+use crate::support::{
+    FOUR, LIMIT, Process, Sim, free_endpoint, game_itself, own, result_of, run, squall, stderr, stdout, temporary,
+    wait_until,
+};
+use bus::token::TOKEN_VARIABLE;
+use bus::{BusError, Token};
+use game::external::{GatewayCommand, OperatorCommand};
+use serde_json::Value;
+use std::net::{SocketAddr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use tempfile::TempDir;
+
+/// Keys for everybody.
+fn keys() -> (TempDir, PathBuf) {
+    let dir = temporary();
+    let folder = dir.path().join("keys");
+    let words = ["--team", "blue", "--team", "red", "--gateway", "--observer", "--operator"];
+    let made = run(&[&["keys", "new", text(&folder)], &words[..]].concat());
+    assert!(made.status.success() && stdout(&made).contains("team-blue, valid from"), "{}", stderr(&made));
+    (dir, folder)
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("UTF-8")
+}
+
+/// The program, which knows no token.
+fn without_token(mut command: Command) -> Command {
+    command.env_remove(TOKEN_VARIABLE);
+    command
+}
+
+#[test]
+fn a_game_with_keys_is_the_game_in_one_process_byte_for_byte() {
+    let (_dir, folder) = keys();
+    let game = own("seeded_3v3");
+    let here = game_itself(result_of(&[&game, "--in-process"]));
+    // Four boats a process would be of two teams: with keys each process is of one.
+    let there = game_itself(result_of(&[&game, "--keys", text(&folder), "--agents-per-process", "4"]));
+    assert_eq!(here, there);
+    std::fs::remove_dir_all(folder.join("team-red")).expect("it was there");
+    let refused = stderr(&run(&["run", &game, "--keys", text(&folder)]));
+    assert!(refused.contains("team-red: no keys are here"), "{refused}");
+}
+
+#[test]
+fn sixteen_agents_with_keys_play_the_game_in_one_process() {
+    let (_dir, folder) = keys();
+    let game = own("eight_a_side");
+    let here = game_itself(result_of(&[&game, "--in-process"]));
+    for _ in 0..2 {
+        assert_eq!(here, game_itself(result_of(&[&game, "--keys", text(&folder)])));
+    }
+}
+
+#[test]
+fn a_real_boat_plays_in_a_game_with_keys() {
+    let (_dir, folder) = keys();
+    let game = [&own("mixed_30s"), "--pace", "10x", "--emulate", "--keys", text(&folder)];
+    let result = result_of(&game);
+    let events = result["events"].as_array().expect("a list");
+    for bad in ["nav_lost", "agent_lost", "quarantined"] {
+        assert!(!events.iter().any(|event| event["event"] == bad), "{bad}: {events:?}");
+    }
+}
+
+#[test]
+fn the_control_port_of_a_gateway_with_keys_has_a_token_of_its_own() {
+    let (_dir, folder) = keys();
+    let of = |part: &str| folder.join(part).display().to_string();
+    let sim = without_token(squall(&[]));
+    let sim = Sim::start_with(sim, "mixed_60s", &["--pace", "1x", "--listen", &free_endpoint(), "--keys", &of("sim")]);
+    let boat = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let link = format!("tcp://{}", boat.local_addr().expect("an address"));
+    let port: SocketAddr = free_endpoint().trim_start_matches("tcp/").parse().expect("an address");
+    let gateway =
+        ["gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--link", &link, "--keys", &of("gateway")];
+    let mut gateway = without_token(sim.squall(&[&gateway[..], &["--control-listen", &port.to_string()]].concat()));
+    gateway.stdout(Stdio::null()).stderr(Stdio::null());
+    let _gateway = Process::start(gateway);
+    let ask = |token: Option<&Token>, command: OperatorCommand| {
+        bus::ask_gateway(port, token, &GatewayCommand::Boat { name: "blue_one".to_owned(), command }, LIMIT)
+    };
+    let is_running = || ask(None, OperatorCommand::Disarm).is_ok_and(|reply| reply.refused.is_none());
+    wait_until("the gateway has joined, and takes stops of anybody", is_running);
+    assert!(matches!(ask(None, OperatorCommand::Arm), Err(BusError::NeedsToken)));
+    assert!(matches!(ask(Some(&Token::random()), OperatorCommand::Arm), Err(BusError::WrongToken)));
+    let registered = || bus::local_gateways().into_iter().find(|entry| entry.control == port);
+    let token = registered().and_then(|entry| entry.token).expect("it is where this user finds it");
+    let reply = ask(Some(&token.parse().expect("a token")), OperatorCommand::Arm).expect("it may");
+    assert!(reply.refused.is_some(), "but the boat says nothing");
+    sim.stop();
+}
+
+#[test]
+fn who_has_the_wrong_keys_is_told_so_and_everybody_with_keys_may_stop_the_boats() {
+    let (_dir, folder) = keys();
+    let (_other_dir, other) = keys();
+    let of = |part: &str| folder.join(part);
+    let sim = Sim::start_with(
+        without_token(squall(&[])),
+        "long",
+        &["--pace", "10x", "--listen", &free_endpoint(), "--keys", text(&of("sim"))],
+    );
+    assert!(sim.endpoint.starts_with("tls/"), "{}", sim.endpoint);
+    let with = |args: &[&str], keys: &Path| without_token(sim.squall(&[args, &["--keys", text(keys)]].concat()));
+    let refusal = |mut command: Command| {
+        let output = command.output().expect("the program starts");
+        assert!(!output.status.success(), "{command:?} works");
+        stderr(&output)
+    };
+    for (text, want) in [
+        (refusal(without_token(sim.squall(&["agent", "--vehicle", "blue_one"]))), "the game has keys"),
+        (refusal(with(&["agent", "--vehicle", "blue_one"], &other.join("team-blue"))), "of another authority"),
+        (
+            refusal(with(&["agent", "--vehicle", "blue_one"], &of("team-red"))),
+            "the keys of team-red are not for the agent of blue_one",
+        ),
+        (refusal(with(&["agent", "--vehicle", "blue_one"], &of("observer"))), "are not for the agent of blue_one"),
+        (refusal(with(&["watch"], &of("sim"))), "only serve games"),
+        (refusal(with(&["watch"], &folder)), "in this one are the bundles gateway, observer, operator, sim"),
+    ] {
+        assert!(text.contains(want), "{text}");
+    }
+    let agents = FOUR.map(|name| {
+        let team = of(&format!("team-{}", name.split('_').next().expect("a team")));
+        let mut command = with(&["agent", "--vehicle", name], &team);
+        command.stdout(Stdio::null());
+        Process::start(command)
+    });
+    sim.wait_for_kind("started");
+    let tell = |what: &str, part: &str| with(&["gateway", "tell", "all", what], &of(part));
+    assert!(tell("estop", "observer").status().expect("the program starts").success());
+    sim.wait_for_event("e_stopped", Value::Null);
+    let refused = refusal(tell("release", "observer"));
+    assert!(refused.contains("observer may not do this"), "{refused}");
+    assert!(tell("release", "operator").status().expect("the program starts").success());
+    sim.wait_for_event("released", Value::Null);
+    sim.stop();
+    drop(agents);
+}

@@ -1,0 +1,40 @@
+"""Whether a figure grew over a run: its slope, and what that comes to over the time that was looked at."""
+
+from dataclasses import dataclass
+from statistics import median
+
+# The slope is the median of the slopes between pairs of samples: so many samples are paired at most.
+PAIRED_MAX = 200
+# The first part of a run fills buffers and caches: what grows there does not go on.
+WARM_UP = 0.2
+# Fewer samples say nothing of a slope.
+SAMPLES_MIN = 5
+
+
+@dataclass
+class Growth:
+    """What a figure was in the beginning and in the end, and what its slope comes to between these."""
+
+    first: float
+    last: float
+    grew: float
+
+
+def growth_of(samples):
+    """The growth of a figure, from pairs of time and value in the order of time; None if they are too few.
+
+    The slope is that of Theil (1950) and Sen (1968): a few odd samples do not turn it, as they would a least-squares line."""
+    warm = samples[int(len(samples) * WARM_UP):]
+    if len(warm) < SAMPLES_MIN:
+        return None
+    step = -(-len(warm) // PAIRED_MAX)
+    kept = warm[::step]
+    slopes = [
+        (value - before) / (at - then)
+        for i, (at, value) in enumerate(kept)
+        for then, before in kept[:i]
+        if at > then
+    ]
+    edge = max(1, len(warm) // 10)
+    first, last = (median(value for _, value in part) for part in (warm[:edge], warm[-edge:]))
+    return Growth(first, last, median(slopes) * (warm[-1][0] - warm[0][0]))
