@@ -37,8 +37,7 @@ const COLLECTIVE: &str = "collective";
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let observer = Observer::connect(&args.leaf)?;
     let vehicle = observer.vehicle(&args.vehicle)?;
-    let report = observer.helm(vehicle, HelmQuestion { functions: true })?;
-    let Some(report) = report else { bail!("{} has no agent", args.vehicle) };
+    let report = observer.helm_of_agent(vehicle, HelmQuestion { functions: true })?;
     let scenario = &observer.info.scenario;
     if report.functions.iter().any(|function| function.utilities.is_empty()) {
         bail!("the helm of {} has not decided since it was asked; ask again", args.vehicle);

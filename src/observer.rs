@@ -2,13 +2,17 @@
 
 use crate::net_args::LeafArgs;
 use anyhow::{Context, Result, bail};
-use bus::Bus;
 use bus::game_search;
+use bus::{Bus, clock};
 use game::VehicleId;
 use game::helm::{HelmQuestion, HelmReport};
 use game::message::GameInfo;
 use game::topic::{self, GameName};
 use shore::page::is_sound;
+use std::time::Duration;
+
+/// A boat of which nothing is heard for this long has no agent.
+pub(crate) const SILENCE: Duration = Duration::from_secs(10);
 
 /// A session in a game that runs.
 pub(crate) struct Observer {
@@ -43,6 +47,22 @@ impl Observer {
             bail!("the answer about the helm of {name} makes no sense");
         }
         Ok(Some(report))
+    }
+
+    /// The helm report of a vehicle that has an agent. An answer that a busy link dropped is asked for again.
+    pub(crate) fn helm_of_agent(&self, vehicle: VehicleId, question: HelmQuestion) -> Result<HelmReport> {
+        let start = clock::now();
+        loop {
+            let asked = clock::now();
+            if let Some(report) = self.helm(vehicle, question)? {
+                return Ok(report);
+            }
+            // Where nobody answers for this boat at all, that is told before the time for an answer is over.
+            let is_answered_for = clock::since(asked) >= bus::ANSWER;
+            if !is_answered_for || clock::since(start) >= SILENCE {
+                bail!("{} has no agent", self.info.scenario.vehicles[vehicle.index()].name);
+            }
+        }
     }
 
     /// Whether the game's sim is still there.

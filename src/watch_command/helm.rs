@@ -1,6 +1,6 @@
 //! One boat's helm, live.
 
-use crate::observer::Observer;
+use crate::observer::{Observer, SILENCE};
 use crate::{helm_text, screen};
 use anyhow::{Result, bail};
 use bus::clock;
@@ -8,9 +8,6 @@ use game::helm::HelmQuestion;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-
-/// A boat of which nothing is heard for this long has no agent.
-const SILENCE: Duration = Duration::from_secs(10);
 
 /// Shows the helm of the vehicle of this name until the game is over, this often.
 pub(super) fn watch(observer: &Observer, name: &str, pause: Duration, stop: &AtomicBool) -> Result<()> {
