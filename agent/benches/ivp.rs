@@ -35,7 +35,7 @@ fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Preference)> 
             };
             functions.push((300.0, Objective::Closest(closest)));
         }
-        (functions, Preference { course_rad, speed_m_s: 2.0, keep: None })
+        (functions, Preference { course_rad, speed_m_s: 2.0 })
     };
     (0..SCENES).map(scene).collect()
 }

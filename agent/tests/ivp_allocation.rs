@@ -2,7 +2,7 @@
 //!
 //! `stats_alloc` counts for us, see `sim/tests/allocation.rs`; one test, since it counts the whole process.
 
-use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem, SpeedLimit};
+use agent::ivp::{Approach, Closest, Grid, Objective, Peak, Preference, Problem, SpeedLimit, Table};
 use game::Ned;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
@@ -15,8 +15,9 @@ const WARM_UP: usize = 1_500;
 
 #[test]
 fn a_decision_takes_nothing_from_the_heap_once_its_lists_have_grown() {
-    let table: Vec<f32> = (0..360 * 36).map(|i| (i % 101) as f32).collect();
-    let mut problem = Problem::new(Grid::new(360, 36, 3.5));
+    let grid = Grid::new(360, 36, 3.5);
+    let table = Table::of(&grid, |k, j| ((36 * k + j) % 101) as f32);
+    let mut problem = Problem::new(grid);
     for decision in 0..3_000 {
         let peak = Peak::tent(decision as f64, 2.0);
         let closest = Closest {

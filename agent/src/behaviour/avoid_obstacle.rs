@@ -3,7 +3,7 @@
 use super::nearest::{Nearest, nearness};
 use super::steering::{CPA_MIN_UTILITY, keep_clear, lag};
 use super::{BehaviourLogic, BehaviourOutput};
-use crate::ivp::Objective;
+use crate::ivp::{Objective, Table};
 use crate::situation::{MovingPoint, Situation};
 use game::Ned;
 use game::field::{Obstacle, distance_to_line, sides};
@@ -14,14 +14,14 @@ pub(super) struct AvoidObstacleBehaviour {
     /// What is known of the obstacles that are polygons, by obstacle; empty before the first decision.
     outlines: Vec<Outline>,
     /// Utilities of all courses and speeds, for obstacles without a closed form.
-    table: Vec<f32>,
+    table: Table,
     /// Where the boat is in the end, by speed, on one course: on a straight line.
     ends: Vec<Ned>,
 }
 
 impl AvoidObstacleBehaviour {
     pub(super) fn new(task: AvoidObstacle) -> AvoidObstacleBehaviour {
-        AvoidObstacleBehaviour { task, outlines: Vec::new(), table: Vec::new(), ends: Vec::new() }
+        AvoidObstacleBehaviour { task, outlines: Vec::new(), table: Table::default(), ends: Vec::new() }
     }
 
     /// Fills the table with what each way is worth by its pass of a polygon: on as it goes while the boat turns, then
@@ -36,7 +36,7 @@ impl AvoidObstacleBehaviour {
     ) {
         let (grid, lag, outline) = (output.grid(), lag(situation), &self.outlines[obstacle]);
         let drift_m = situation.motion.drift().scaled(horizon_s);
-        self.table.clear();
+        self.table.clear(grid);
         for k in 0..grid.courses() {
             let (north, east) = grid.direction(k);
             let course = Ned { north: f64::from(north), east: f64::from(east) };
@@ -46,11 +46,17 @@ impl AvoidObstacleBehaviour {
             let end = |speed_m_s: &f64| start + course.scaled(speed_m_s * horizon_s) + drift_m;
             self.ends.extend(grid.speeds_m_s().iter().map(end));
             let drifting_m = outline.pass_m((start, self.ends[0]), turning_m, max_m);
-            self.table.push(worth(drifting_m, min_m, max_m) as f32);
-            outline.each_pass(&self.ends, drifting_m, max_m, &mut |legs, pass_m| {
+            let mut speed = 0;
+            let mut lower = |speeds: usize, pass_m: f64| {
                 let utility = worth(pass_m, min_m, max_m) as f32;
-                self.table.extend(std::iter::repeat_n(utility, legs));
-            });
+                if utility < 100.0 {
+                    let row = self.table.lowered_mut(k).iter_mut().flat_map(|lanes| &mut lanes.0);
+                    row.skip(speed).take(speeds).for_each(|lowered| *lowered = utility);
+                }
+                speed += speeds;
+            };
+            lower(1, drifting_m);
+            outline.each_pass(&self.ends, drifting_m, max_m, &mut lower);
         }
     }
 }

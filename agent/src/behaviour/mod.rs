@@ -4,6 +4,7 @@ mod arrival;
 mod attractor;
 mod avoid_collision;
 mod avoid_obstacle;
+mod clearance;
 mod collision_halt;
 mod constant;
 mod cut_range;

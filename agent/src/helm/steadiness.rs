@@ -40,6 +40,6 @@ impl Steadiness {
     pub(super) fn without(&self, grid: &Grid, choice: Choice) -> Choice {
         let (course, speed) = (usize::from(choice.decision.course), usize::from(choice.decision.speed));
         let extra = f64::from(self.objective.contribution(grid, self.weight, course, speed)) * crate::ivp::QUANTUM;
-        Choice { value: choice.value - extra, best: choice.best - extra, ..choice }
+        Choice { value: choice.value - extra, ..choice }
     }
 }

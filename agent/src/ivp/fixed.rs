@@ -47,11 +47,6 @@ impl Weight {
         self.0 == 0.0
     }
 
-    /// The weight itself.
-    pub(super) fn value(self) -> f64 {
-        f64::from(self.0) * QUANTUM
-    }
-
     /// A weighted utility (0 to 100) in quanta, rounded to nearest, half to even.
     #[inline(always)]
     pub(super) fn quanta(self, utility: f32) -> i32 {
@@ -79,13 +74,13 @@ pub(super) fn single(utility: f32) -> f32 {
 
 /// The larger of two numbers, as processors compare them: the second where they do not compare.
 #[inline(always)]
-pub(super) fn larger(a: f32, b: f32) -> f32 {
+pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// The smaller of two numbers, as processors compare them: the second where they do not compare.
 #[inline(always)]
-pub(super) fn smaller(a: f32, b: f32) -> f32 {
+pub(crate) fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 

@@ -1,5 +1,6 @@
 //! The decision grid: the courses and speeds a helm chooses from.
 
+use super::lanes::{LANES, Lanes};
 use std::f64::consts::TAU;
 
 /// Ticks from one course to the next: angles from a course are integers of these, so that a scene that is turned or
@@ -17,6 +18,18 @@ pub struct Grid {
     speed_max_m_s: f64,
     directions: Vec<(f32, f32)>,
     speed_m_s: Vec<f64>,
+    side_by_side: Vec<Courses>,
+    speeds_side_by_side: Vec<Lanes<f32>>,
+}
+
+/// Courses side by side; beyond the last one, that one again.
+#[derive(Clone, Debug)]
+pub(crate) struct Courses {
+    /// Rad clockwise from north.
+    pub(crate) rad: Lanes<f64>,
+    /// Unit vectors.
+    pub(crate) north: Lanes<f64>,
+    pub(crate) east: Lanes<f64>,
 }
 
 impl Grid {
@@ -30,9 +43,21 @@ impl Grid {
         assert!((1..=1 << 16).contains(&courses), "{courses} courses, allowed are 1 to 65536");
         assert!((2..=1 << 16).contains(&speeds), "{speeds} speeds, allowed are 2 to 65536");
         assert!(speed_max_m_s.is_finite() && speed_max_m_s > 0.0, "a fastest speed of {speed_max_m_s} m/s");
-        let directions = (0..courses).map(|k| direction(k, courses)).collect();
-        let speed_m_s = (0..speeds).map(|j| j as f64 * speed_max_m_s / (speeds - 1) as f64).collect();
-        Grid { courses, speeds, speed_max_m_s, directions, speed_m_s }
+        let directions: Vec<(f32, f32)> = (0..courses).map(|k| direction(k, courses)).collect();
+        let of = |first: usize, i: usize| (first + i).min(courses - 1);
+        let side_by_side = (0..courses)
+            .step_by(LANES)
+            .map(|first| Courses {
+                rad: Lanes::each(|i| course_rad(of(first, i), courses)),
+                north: Lanes::each(|i| directions[of(first, i)].0.into()),
+                east: Lanes::each(|i| directions[of(first, i)].1.into()),
+            })
+            .collect();
+        let speed_m_s: Vec<f64> = (0..speeds).map(|j| j as f64 * speed_max_m_s / (speeds - 1) as f64).collect();
+        let of = |first: usize, i: usize| (first + i).min(speeds - 1);
+        let speeds_side_by_side =
+            (0..speeds).step_by(LANES).map(|first| Lanes::each(|i| speed_m_s[of(first, i)] as f32)).collect();
+        Grid { courses, speeds, speed_max_m_s, directions, speed_m_s, side_by_side, speeds_side_by_side }
     }
 
     /// The number of courses.
@@ -56,7 +81,7 @@ impl Grid {
     /// Course `k`, rad clockwise from north, 0 to a full turn.
     #[must_use]
     pub fn course_rad(&self, k: usize) -> f64 {
-        k as f64 * TAU / self.courses as f64
+        course_rad(k, self.courses)
     }
 
     /// Speed `j`, m/s.
@@ -72,6 +97,16 @@ impl Grid {
     #[must_use]
     pub fn direction(&self, k: usize) -> (f32, f32) {
         self.directions[k]
+    }
+
+    /// All courses, side by side.
+    pub(crate) fn courses_side_by_side(&self) -> &[Courses] {
+        &self.side_by_side
+    }
+
+    /// All speeds, m/s, side by side; beyond the last one, that one again.
+    pub(crate) fn speeds_side_by_side(&self) -> &[Lanes<f32>] {
+        &self.speeds_side_by_side
     }
 
     /// All speeds, m/s.
@@ -107,6 +142,11 @@ impl Grid {
     pub(super) fn circle(&self) -> f64 {
         self.courses as f64 * TICKS
     }
+}
+
+/// Course `k` of `n`, rad clockwise from north.
+fn course_rad(k: usize, n: usize) -> f64 {
+    k as f64 * TAU / n as f64
 }
 
 /// The unit vector of course `k` of `n`, made of one in the first octant by mirroring.

@@ -1,7 +1,7 @@
 //! Numbers side by side, as they lie in the widest registers.
 
 /// How many.
-pub(super) const LANES: usize = 16;
+pub(crate) const LANES: usize = 16;
 
 /// Courses of a tile, and speeds of one: a tile is so many courses and so many speeds, and so many tiles by as many are a
 /// sector.
@@ -12,12 +12,12 @@ const _: () = assert!(SIDE * SIDE == LANES);
 /// Numbers side by side. Plain loops over all of them become single instructions.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(super) struct Lanes<T>(pub(super) [T; LANES]);
+pub(crate) struct Lanes<T>(pub(crate) [T; LANES]);
 
 impl<T: Copy> Lanes<T> {
     /// The same number in all places.
     #[inline(always)]
-    pub(super) fn splat(number: T) -> Lanes<T> {
+    pub(crate) fn splat(number: T) -> Lanes<T> {
         Lanes([number; LANES])
     }
 

@@ -6,6 +6,7 @@ use super::fixed::{self, Weight};
 use super::grid::Grid;
 use super::limit::SpeedLimit;
 use super::peak::Peak;
+use super::table::Table;
 
 /// A utility of 0 to 100 for each course and speed.
 ///
@@ -32,8 +33,8 @@ pub enum Objective<'a> {
     Closest(Closest),
     /// Rate of closure.
     Closing(Closing),
-    /// Utilities in a table, one row of all speeds for each course.
-    Table(&'a [f32]),
+    /// Utilities in a table.
+    Table(&'a Table),
 }
 
 impl Objective<'_> {
@@ -73,7 +74,7 @@ impl Objective<'_> {
                 let (north, east) = grid.direction(k);
                 field.utility(north, east, grid.speed_m_s(j) as f32)
             }
-            Parts::Table(table) => fixed::single(table[k * grid.speeds() + j]),
+            Parts::Table(table) => fixed::single(table.utility(k, j)),
             Parts::Nothing => 0.0,
         }
     }
@@ -137,8 +138,8 @@ impl Objective<'_> {
             Objective::Closest(closest) => field(closest.ready(fastest_m_s).map(Field::Closest)),
             Objective::Closing(closing) => field(closing.ready(fastest_m_s).map(Field::Closing)),
             Objective::Table(table) => {
-                let points = grid.courses() * grid.speeds();
-                assert!(table.len() == points, "{} utilities, {points} points", table.len());
+                let size = (grid.courses(), grid.speeds());
+                assert!(table.size() == size, "a table of {:?} courses and speeds, not {size:?}", table.size());
                 Parts::Table(table)
             }
             _ => Parts::Separable,
@@ -153,7 +154,7 @@ pub(super) enum Parts<'a> {
     /// A formula in both.
     Field(Field),
     /// Numbers for both.
-    Table(&'a [f32]),
+    Table(&'a Table),
     /// It has a number that is not finite.
     Nothing,
 }

@@ -17,16 +17,13 @@ pub struct Decision {
     pub speed: u16,
 }
 
-/// What decides between candidates that are equally good, or nearly so.
+/// What decides between candidates that are equally good.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Preference {
     /// Present course of the own ship, rad.
     pub course_rad: f64,
     /// Present speed of the own ship, m/s.
     pub speed_m_s: f64,
-    /// An earlier decision, which stays as long as it misses the best by no more than this share (0 to 1) of 100 for each
-    /// point of weight.
-    pub keep: Option<(Decision, f64)>,
 }
 
 /// What was decided.
@@ -34,12 +31,8 @@ pub struct Preference {
 pub struct Choice {
     /// The chosen point.
     pub decision: Decision,
-    /// Its weighted sum.
+    /// Its weighted sum: the largest on the grid.
     pub value: f64,
-    /// The largest weighted sum; more than `value` only when an earlier decision was kept.
-    pub best: f64,
-    /// Whether an earlier decision was kept; it may be the best one itself.
-    pub is_kept: bool,
     /// How many points were evaluated, some twice; the others could not win.
     pub evaluated: usize,
 }
@@ -53,7 +46,6 @@ pub struct Problem {
     sums: Sums,
     bounds: Bounds,
     functions: usize,
-    weight: f64,
     decides_course: bool,
     decides_speed: bool,
     /// What was found last: as things go on it is nearly as good again.
@@ -78,7 +70,6 @@ impl Problem {
             cells,
             instructions,
             functions: 0,
-            weight: 0.0,
             decides_course: false,
             decides_speed: false,
             found: None,
@@ -96,7 +87,6 @@ impl Problem {
     pub fn clear(&mut self) {
         self.sums.clear(&self.grid);
         self.functions = 0;
-        self.weight = 0.0;
         self.decides_course = false;
         self.decides_speed = false;
     }
@@ -109,7 +99,6 @@ impl Problem {
         assert!(self.functions < FUNCTIONS_MAX, "more than {FUNCTIONS_MAX} functions");
         let weight = Weight::new(weight);
         self.functions += 1;
-        self.weight += weight.value();
         if weight.is_zero() {
             return;
         }
@@ -154,8 +143,7 @@ impl Problem {
     /// The best decision: exactly the largest weighted sum on the grid.
     ///
     /// Of equal ones it is the course with the smallest angle from the present one, of two such the one to starboard; on
-    /// that course the speed nearest to the present one, of two such the lower. An earlier decision that is
-    /// nearly as good and is to be kept comes before all of them.
+    /// that course the speed nearest to the present one, of two such the lower.
     pub fn solve(&mut self, preference: Preference) -> Choice {
         let search = Search {
             grid: &self.grid,
@@ -168,25 +156,7 @@ impl Problem {
         let (best, evaluated) = self.instructions.run(search);
         let found = Decision { course: best.course as u16, speed: best.speed as u16 };
         self.found = Some(found);
-        let kept = preference.keep.and_then(|(old, share)| self.kept(old, share, best.value));
-        Choice {
-            decision: kept.map_or(found, |(old, _)| old),
-            value: f64::from(kept.map_or(best.value, |(_, value)| value)) * QUANTUM,
-            best: f64::from(best.value) * QUANTUM,
-            is_kept: kept.is_some(),
-            evaluated,
-        }
-    }
-
-    /// An earlier decision and its value, if it is on the grid and near enough to the best one.
-    fn kept(&self, old: Decision, share: f64, best: i32) -> Option<(Decision, i32)> {
-        let (k, j) = (usize::from(old.course), usize::from(old.speed));
-        if k >= self.grid.courses() || j >= self.grid.speeds() {
-            return None;
-        }
-        let value = self.quanta(k, j);
-        let missed = f64::from(best - value) * QUANTUM;
-        (missed <= share * self.weight * 100.0).then_some((old, value))
+        Choice { decision: found, value: f64::from(best.value) * QUANTUM, evaluated }
     }
 
     /// The weighted sum at one point, in quanta.

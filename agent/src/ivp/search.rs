@@ -205,8 +205,7 @@ impl Sums {
         for i in 0..LANES {
             tiles.0[i] = most_courses[i % SIDE] + most_speeds[i / SIDE];
         }
-        if let Some(table) = self.table() {
-            let rows = &table[LANES * (along * self.courses.len() + across)..][..LANES];
+        if let Some(rows) = self.rows(across, along) {
             // One by one: a loop over them would be done side by side in the wrong direction.
             let (a, b) = (most_of_rows(rows, of_courses, of_speeds, 0), most_of_rows(rows, of_courses, of_speeds, 1));
             let (c, d) = (most_of_rows(rows, of_courses, of_speeds, 2), most_of_rows(rows, of_courses, of_speeds, 3));
@@ -270,8 +269,8 @@ impl Sums {
         for i in 0..LANES {
             sums.0[i] = of_courses[i / SIDE] + of_speeds[i % SIDE];
         }
-        if let Some(table) = self.table() {
-            let rows = &table[speed_tile / SIDE * LANES * self.courses.len() + SIDE * course_tile..][..SIDE];
+        if let Some(rows) = self.rows(course_tile / SIDE, speed_tile / SIDE) {
+            let rows = &rows[SIDE * (course_tile % SIDE)..][..SIDE];
             for i in 0..LANES {
                 sums.0[i] += rows[i / SIDE].0[first_speed + i % SIDE];
             }

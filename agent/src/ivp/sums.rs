@@ -7,6 +7,7 @@ use super::lanes::{LANES, Lanes};
 use super::limit::SpeedLimit;
 use super::objective::{Field, Objective, Parts};
 use super::peak::{CoursePeak, Peak};
+use super::table::Table;
 
 /// Weighted utilities, added up as far as they can be before a point is known. Its lists are used again for the next decision.
 #[derive(Clone, Debug)]
@@ -18,11 +19,10 @@ pub(super) struct Sums {
     /// Formulas in both.
     pub(super) fields: Vec<(Weight, Field)>,
     /// Weighted tables in both, in quanta: rows of as many speeds as stand side by side, one for each place of `courses`, and
-    /// so on for the next speeds. Empty before the first. Beyond the last speed it has utilities of other points: what is
-    /// there counts nothing, since `speeds` has [`NOWHERE`] there.
+    /// so on for the next speeds. Of courses side by side that no table lowers it has anything.
     table: Vec<Lanes<i32>>,
-    /// Whether there is any table in it.
-    has_table: bool,
+    /// By courses side by side: whether a table lowers any.
+    lowered: Vec<bool>,
 }
 
 impl Sums {
@@ -30,14 +30,10 @@ impl Sums {
     pub(super) fn new(grid: &Grid) -> Sums {
         let lists = |count: usize| vec![Lanes::splat(0); count.div_ceil(LANES)];
         let (courses, speeds) = (lists(grid.courses()), lists(grid.speeds()));
+        let lowered = vec![false; courses.len()];
         // Programs have up to one table for each obstacle and a formula for each contact: no list grows later.
-        let mut sums = Sums {
-            courses,
-            speeds,
-            fields: Vec::with_capacity(FUNCTIONS_MAX / 8),
-            table: Vec::new(),
-            has_table: false,
-        };
+        let mut sums =
+            Sums { courses, speeds, fields: Vec::with_capacity(FUNCTIONS_MAX / 8), table: Vec::new(), lowered };
         sums.clear(grid);
         sums
     }
@@ -47,7 +43,7 @@ impl Sums {
         clear_lanes(&mut self.courses, grid.courses());
         clear_lanes(&mut self.speeds, grid.speeds());
         self.fields.clear();
-        self.has_table = false;
+        self.lowered.fill(false);
     }
 
     /// Adds a function.
@@ -56,18 +52,18 @@ impl Sums {
             Parts::Separable => instructions.run(AddSeparable { sums: self, grid, weight, objective }),
             Parts::Field(field) => self.fields.push((weight, field)),
             Parts::Table(table) => {
-                let is_first = !std::mem::replace(&mut self.has_table, true);
                 self.table.resize(self.speeds.len() * LANES * self.courses.len(), Lanes::splat(0));
-                instructions.run(AddTable { sums: self, grid, weight, table, is_first });
+                instructions.run(AddTable { sums: self, grid, weight, table });
             }
             Parts::Nothing => {}
         }
     }
 
-    /// The table, if there is any.
+    /// The rows of a table for courses side by side with speeds side by side, if any lowers one of these courses.
     #[inline(always)]
-    pub(super) fn table(&self) -> Option<&[Lanes<i32>]> {
-        self.has_table.then_some(&self.table)
+    pub(super) fn rows(&self, across: usize, along: usize) -> Option<&[Lanes<i32>]> {
+        let first = LANES * (along * self.courses.len() + across);
+        self.lowered[across].then(|| &self.table[first..][..LANES])
     }
 
     /// The weighted sum at one point, in quanta.
@@ -75,8 +71,7 @@ impl Sums {
         let (north, east) = grid.direction(k);
         let speed = grid.speed_m_s(j) as f32;
         let of_fields: i32 = self.fields.iter().map(|(w, field)| w.quanta(field.utility(north, east, speed))).sum();
-        let rows = LANES * self.courses.len();
-        let of_table = self.table().map_or(0, |table| table[j / LANES * rows + k].0[j % LANES]);
+        let of_table = self.rows(k / LANES, j / LANES).map_or(0, |rows| rows[k % LANES].0[j % LANES]);
         self.courses[k / LANES].0[k % LANES] + self.speeds[j / LANES].0[j % LANES] + of_fields + of_table
     }
 }
@@ -154,9 +149,7 @@ struct AddTable<'a> {
     sums: &'a mut Sums,
     grid: &'a Grid,
     weight: Weight,
-    table: &'a [f32],
-    /// There is none yet: its places need not be read.
-    is_first: bool,
+    table: &'a Table,
 }
 
 impl Kernel for AddTable<'_> {
@@ -164,37 +157,35 @@ impl Kernel for AddTable<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let AddTable { sums, grid, weight, table, is_first } = self;
-        let rows = LANES * sums.courses.len();
-        let speeds = grid.speeds();
-        for (i, first) in (0..speeds).step_by(LANES).enumerate() {
-            for k in 0..grid.courses() {
-                let (sum, at) = (&mut sums.table[i * rows + k], k * speeds + first);
-                if let Some(utilities) = table[at..].first_chunk() {
-                    add_weighted(sum, weight, &Lanes(*utilities), is_first);
-                } else {
-                    let mut utilities = Lanes::splat(0.0);
-                    utilities.0[..speeds - first].copy_from_slice(&table[at..][..speeds - first]);
-                    add_weighted(sum, weight, &utilities, is_first);
+        let AddTable { sums, grid, weight, table } = self;
+        for (across, lowered) in table.lowered().iter().enumerate() {
+            let first = LANES * across;
+            let count = (grid.courses() - first).min(LANES);
+            for (i, sum) in sums.courses[across].0.iter_mut().enumerate().take(count) {
+                *sum += if lowered >> i & 1 == 0 { weight.quanta(100.0) } else { 0 };
+            }
+            if *lowered != 0 && !sums.lowered[across] {
+                sums.lowered[across] = true;
+                for rows in sums.table.chunks_mut(LANES * sums.courses.len()) {
+                    rows[first..][..LANES].fill(Lanes::splat(0));
+                }
+            }
+            for i in (0..count).filter(|i| lowered >> i & 1 == 1) {
+                for (along, utilities) in table.row(first + i).iter().enumerate() {
+                    let row = along * LANES * sums.courses.len() + first + i;
+                    add_weighted(&mut sums.table[row], weight, utilities);
                 }
             }
         }
     }
 }
 
-/// Adds utilities with their weight, or puts them in place of what was there.
+/// Adds utilities with their weight.
 #[inline(always)]
-fn add_weighted(sum: &mut Lanes<i32>, weight: Weight, utilities: &Lanes<f32>, is_first: bool) {
-    let mut quanta = Lanes::splat(0);
+fn add_weighted(sum: &mut Lanes<i32>, weight: Weight, utilities: &Lanes<f32>) {
     for i in 0..LANES {
-        quanta.0[i] = weight.quanta(fixed::single(utilities.0[i]));
+        sum.0[i] += weight.quanta(fixed::single(utilities.0[i]));
     }
-    if !is_first {
-        for i in 0..LANES {
-            quanta.0[i] += sum.0[i];
-        }
-    }
-    *sum = quanta;
 }
 
 /// Nothing on so many places, side by side, and [`NOWHERE`] beyond them.

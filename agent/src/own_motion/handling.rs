@@ -73,9 +73,12 @@ impl Handling {
     }
 
     /// The mean yaw rate of a turn by an angle, rad/s, never negative.
+    #[inline(always)]
     pub(crate) fn mean_turn_rad_s(&self, by_rad: f64) -> f64 {
         let first_rad_s = MEAN_OF_FIRST * self.turn_per_rad_s * by_rad.abs();
-        first_rad_s.clamp(LEAST_OF_MOST * self.turn_rad_s, self.turn_rad_s)
+        let least_rad_s = LEAST_OF_MOST * self.turn_rad_s;
+        let rad_s = if first_rad_s > least_rad_s { first_rad_s } else { least_rad_s };
+        if rad_s < self.turn_rad_s { rad_s } else { self.turn_rad_s }
     }
 }
 

@@ -109,7 +109,7 @@ fn a_problem_that_was_cleared_is_as_new() {
 #[test]
 fn without_functions_the_boat_goes_on_as_it_does() {
     let grid = Grid::new(360, 36, 3.5);
-    let preference = Preference { course_rad: 1.0, speed_m_s: 1.23, keep: None };
+    let preference = Preference { course_rad: 1.0, speed_m_s: 1.23 };
     let got = Problem::new(grid.clone()).solve(preference);
     assert_eq!((got.decision, got.value), (decision(57, 12), 0.0));
 }
@@ -117,33 +117,14 @@ fn without_functions_the_boat_goes_on_as_it_does() {
 #[test]
 fn of_equal_courses_the_one_to_starboard_and_of_equal_speeds_the_lower_is_taken() {
     let grid = Grid::new(4, 3, 2.0);
-    let courses: Vec<f32> = [0.0, 70.0, 0.0, 70.0].into_iter().flat_map(|of_course| [of_course; 3]).collect();
-    let speeds = [60.0, 0.0, 60.0].repeat(4);
+    let courses = agent::ivp::Table::of(&grid, |k, _| [0.0, 70.0, 0.0, 70.0][k]);
+    let speeds = agent::ivp::Table::of(&grid, |_, j| [60.0, 0.0, 60.0][j]);
     for (course_rad, want) in [(0.0, 1), (std::f64::consts::PI, 3), (-0.1, 3), (0.1, 1)] {
-        let preference = Preference { course_rad, speed_m_s: 1.0, keep: None };
+        let preference = Preference { course_rad, speed_m_s: 1.0 };
         let got = solved(&grid, &[(1.0, Objective::Table(&courses)), (2.0, Objective::Table(&speeds))], preference);
         assert_eq!(got.decision, decision(want, 0), "{course_rad} rad");
         assert_eq!(got.value, 190.0);
     }
-}
-
-#[test]
-fn an_earlier_decision_stays_while_it_is_nearly_as_good() {
-    let grid = Grid::new(4, 2, 2.0);
-    let of_course = [90.0, 92.0, 100.0, 10.0];
-    let table: Vec<f32> = of_course.into_iter().flat_map(|of_course| [of_course; 2]).collect();
-    let functions = [(3.0, Objective::Table(&table))];
-    for (old, share, want) in [(0, 0.05, 2), (0, 0.1, 0), (0, 0.11, 0), (1, 0.09, 1), (2, 0.0, 2), (3, 0.5, 2)] {
-        let keep = Some((decision(old, 1), share));
-        let got = solved(&grid, &functions, Preference { course_rad: 0.0, speed_m_s: 0.0, keep });
-        assert_eq!(usize::from(got.decision.course), want, "from {old} with {share}");
-        assert_eq!((got.value, got.best), (3.0 * f64::from(of_course[want]), 300.0));
-        assert_eq!(got.is_kept, want == old, "from {old} with {share}");
-    }
-    let nowhere = Some((decision(9, 9), 1.0));
-    assert!(!solved(&grid, &functions, Preference { keep: nowhere, ..Preference::default() }).is_kept);
-    let nonsense = Some((decision(0, 0), f64::NAN));
-    assert!(!solved(&grid, &functions, Preference { keep: nonsense, ..Preference::default() }).is_kept);
 }
 
 #[test]
@@ -161,7 +142,7 @@ fn as_many_functions_as_there_may_be_do_not_overflow() {
         ..scene::closest(&mut stream, &grid)
     };
     let functions = vec![(1e9, Objective::Closest(far)); FUNCTIONS_MAX];
-    let preference = Preference { course_rad: grid.course_rad(8), speed_m_s: 9.0, keep: None };
+    let preference = Preference { course_rad: grid.course_rad(8), speed_m_s: 9.0 };
     let got = solved(&grid, &functions, preference);
     assert_eq!((got.decision, got.value), (decision(8, 8), FUNCTIONS_MAX as f64 * WEIGHT_MAX * 100.0));
 }
@@ -200,6 +181,7 @@ fn a_problem_tells_what_is_decided() {
     let grid = Grid::new(8, 4, 2.0);
     let peak = Peak::tent(0.0, 1.0);
     let coupled = |course_share| Objective::Coupled { course: peak, speed: peak, course_share };
+    let table = agent::ivp::Table::of(&grid, |_, _| 1.0);
     let cases = [
         (1.0, Objective::Course(peak), (true, false)),
         (1.0, Objective::Speed(peak), (false, true)),
@@ -207,7 +189,7 @@ fn a_problem_tells_what_is_decided() {
         (1.0, coupled(1.0), (true, false)),
         (0.0, coupled(0.5), (false, false)),
         (1.0, Objective::Limit(SpeedLimit { high_m_s: 1.0, base_m_s: 0.5 }), (false, true)),
-        (1.0, Objective::Table(&[1.0; 32]), (true, true)),
+        (1.0, Objective::Table(&table), (true, true)),
     ];
     for (weight, objective, want) in cases {
         let mut problem = Problem::new(grid.clone());
@@ -224,16 +206,17 @@ fn numbers_that_are_not_finite_count_nothing() {
     let closest = scene::closest(&mut stream, &grid);
     let peak = Peak::tent(1.0, 1.0);
     let sound = [(10.0, Objective::Course(peak))];
-    let preference = Preference { course_rad: 1.0, speed_m_s: 1.0, keep: None };
+    let preference = Preference { course_rad: 1.0, speed_m_s: 1.0 };
     let want = solved(&grid, &sound, preference);
     let nan = f64::NAN;
+    let no_numbers = agent::ivp::Table::of(&grid, |_, _| f32::NAN);
     let unsound = [
         (5.0, Objective::Closest(Closest { offset: Ned { north: nan, east: 0.0 }, ..closest })),
         (5.0, Objective::Closest(Closest { horizon_s: f64::INFINITY, ..closest })),
         (5.0, Objective::Course(Peak { summit: nan, ..peak })),
         (5.0, Objective::Speed(Peak { summit: f64::INFINITY, ..peak })),
         (5.0, Objective::Limit(SpeedLimit { high_m_s: nan, base_m_s: 1.0 })),
-        (5.0, Objective::Table(&[f32::NAN; 36 * 9])),
+        (5.0, Objective::Table(&no_numbers)),
         (nan, Objective::Speed(peak)),
         (-3.0, Objective::Speed(peak)),
     ];

@@ -5,19 +5,22 @@ use agent::ivp::{Preference, Problem, SpeedLimit};
 use game::Ned;
 use game::stream::Stream;
 
-/// Utilities of all points of a grid, a row of speeds for each course.
-pub(crate) struct Table(Vec<f32>);
+/// A table.
+pub(crate) struct Table(agent::ivp::Table);
 
 impl Table {
     pub(crate) fn random(stream: &mut Stream, grid: &Grid) -> Table {
-        // Whole tens, so that there are ties.
-        Table((0..grid.courses() * grid.speeds()).map(|_| 10.0 * stream.below(11) as f32).collect())
+        // Whole tens, so that there are ties, and every second course worth everything, or hardly any.
+        let most = [2, 20][stream.below(2) as usize];
+        let is_full: Vec<bool> = (0..grid.courses()).map(|_| stream.below(most) == 0).collect();
+        let tens: Vec<u64> = (0..grid.courses() * grid.speeds()).map(|_| stream.below(11)).collect();
+        let utility = |k: usize, j| if is_full[k] { 100.0 } else { 10.0 * tens[k * grid.speeds() + j] as f32 };
+        Table(agent::ivp::Table::of(grid, utility))
     }
 
     /// The same table with course `k` taken from `from(k)`.
     pub(crate) fn turned(&self, grid: &Grid, from: impl Fn(usize) -> usize) -> Table {
-        let rows = (0..grid.courses()).flat_map(|k| &self.0[from(k) * grid.speeds()..][..grid.speeds()]);
-        Table(rows.copied().collect())
+        Table(agent::ivp::Table::of(grid, |k, j| self.0.utility(from(k), j)))
     }
 
     /// The same function, with its table from here.
@@ -136,11 +139,7 @@ pub(crate) fn within(stream: &mut Stream, most: f64) -> Ned {
 
 /// What the own ship is doing.
 pub(crate) fn preference(stream: &mut Stream, grid: &Grid) -> Preference {
-    Preference {
-        course_rad: stream.between(-7.0, 7.0),
-        speed_m_s: stream.between(-0.1, 1.1) * grid.speed_max_m_s(),
-        keep: None,
-    }
+    Preference { course_rad: stream.between(-7.0, 7.0), speed_m_s: stream.between(-0.1, 1.1) * grid.speed_max_m_s() }
 }
 
 /// The solver's choice: with all instructions that this machine has the same.

@@ -1,0 +1,79 @@
+//! A table: a utility for each course and speed, of functions that have no closed form.
+
+use super::grid::Grid;
+use super::lanes::{LANES, Lanes};
+
+/// Utilities by course and speed. At first all of them are 100: courses that stay so at every speed take no work.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    courses: usize,
+    speeds: usize,
+    /// By course, as many side by side as hold all speeds. What it has of other courses than the lowered ones, and beyond the
+    /// last speed, means nothing.
+    rows: Vec<Lanes<f32>>,
+    /// By courses side by side: the lowered ones, a bit for each.
+    lowered: Vec<u16>,
+}
+
+impl Table {
+    /// The utilities that a function has.
+    pub fn of(grid: &Grid, utility: impl Fn(usize, usize) -> f32) -> Table {
+        let mut table = Table::default();
+        table.clear(grid);
+        for k in (0..grid.courses()).filter(|k| (0..grid.speeds()).any(|j| utility(*k, j) != 100.0)) {
+            for (j, lowered) in
+                table.lowered_mut(k).iter_mut().flat_map(|lanes| &mut lanes.0).enumerate().take(grid.speeds())
+            {
+                *lowered = utility(k, j);
+            }
+        }
+        table
+    }
+
+    /// Makes everything worth 100 again, on a grid.
+    pub fn clear(&mut self, grid: &Grid) {
+        (self.courses, self.speeds) = (grid.courses(), grid.speeds());
+        self.rows.resize(self.courses * self.lanes(), Lanes::splat(100.0));
+        self.lowered.clear();
+        self.lowered.resize(self.courses.div_ceil(LANES), 0);
+    }
+
+    /// The utilities of a course, to be lowered: by speed, side by side.
+    #[inline(always)]
+    pub(crate) fn lowered_mut(&mut self, k: usize) -> &mut [Lanes<f32>] {
+        let lanes = self.lanes();
+        let (row, lowered) = (&mut self.rows[k * lanes..][..lanes], &mut self.lowered[k / LANES]);
+        if *lowered >> (k % LANES) & 1 == 0 {
+            *lowered |= 1 << (k % LANES);
+            row.fill(Lanes::splat(100.0));
+        }
+        row
+    }
+
+    /// Courses and speeds.
+    pub(super) fn size(&self) -> (usize, usize) {
+        (self.courses, self.speeds)
+    }
+
+    /// Which of courses side by side are lowered, a bit for each.
+    pub(super) fn lowered(&self) -> &[u16] {
+        &self.lowered
+    }
+
+    /// The utilities of a lowered course, by speed, side by side.
+    #[inline(always)]
+    pub(super) fn row(&self, k: usize) -> &[Lanes<f32>] {
+        &self.rows[k * self.lanes()..][..self.lanes()]
+    }
+
+    /// The utility of course `k` at speed `j`.
+    #[must_use]
+    pub fn utility(&self, k: usize, j: usize) -> f32 {
+        if self.lowered[k / LANES] >> (k % LANES) & 1 == 0 { 100.0 } else { self.row(k)[j / LANES].0[j % LANES] }
+    }
+
+    /// How many side by side hold all speeds.
+    fn lanes(&self) -> usize {
+        self.speeds.div_ceil(LANES)
+    }
+}
