@@ -1,6 +1,6 @@
 //! Shield: keeps between what it guards and the nearest enemy.
 
-use super::steering::steer;
+use super::steering::{speed_to_turn_onto, steer};
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::situation::Situation;
 use game::strategy::Shield;
@@ -26,7 +26,8 @@ impl BehaviourLogic for Shield {
         } else {
             (situation.at.bearing_rad(enemy.at), guarded_m_s)
         };
-        let objective = steer(situation, course_rad, speed_m_s.min(fastest_m_s), 0.5);
+        let turning_m_s = speed_to_turn_onto(situation, station).max(guarded_m_s);
+        let objective = steer(situation, course_rad, speed_m_s.min(fastest_m_s).min(turning_m_s), 0.5);
         output.add_share(1.0, Some(enemy.vehicle), &objective);
     }
 }

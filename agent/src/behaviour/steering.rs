@@ -3,7 +3,7 @@
 use crate::ivp::{Approach, Closest, Lag, Objective, Peak};
 use crate::situation::{MovingPoint, Situation};
 use game::{Ned, angle, math};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// From the peak of a speed down to nothing, m/s: MOOS-IvP's for waypoints.
 const SPEED_BASE_M_S: f64 = 1.6;
@@ -46,6 +46,14 @@ pub(super) fn steer_heading(heading_rad: f64, summit: f64, course_share: f64) ->
         speed: Peak { peak_width, summit_delta, ..Peak::tent(summit, SPEED_BASE_M_S) },
         course_share,
     }
+}
+
+/// The highest speed at which the boat can turn onto a place, m/s: one that is faster goes round and round it. The circle through
+/// the place that begins along the bow has the diameter of its distance over the sine of its bearing.
+pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
+    let off_bow_rad = angle::wrap_pi(situation.at.bearing_rad(to) - situation.own.nav.psi_rad).abs();
+    let (sin, _) = math::sin_cos(off_bow_rad.min(FRAC_PI_2));
+    0.5 * situation.motion.handling().turn_rad_s * situation.at.distance(to) / sin
 }
 
 /// Keeping clear of a disc: of its edge by `min_m` at least, and by `max_m` at best, for as long as a leg lasts.

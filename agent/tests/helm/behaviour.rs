@@ -77,6 +77,37 @@ fn every_behaviour_alone_decides_as_the_cases_say() {
     assert!(decided >= 30, "only {decided} cases");
 }
 
+/// A boat that turns at this rate at most, rad/s, and takes a second to change its speed, from here for a minute.
+fn driven(behaviour: &str, from: Boat, turn_rad_s: f64, contact: Boat) -> Vec<Boat> {
+    let (mut helm, mut own, mut track) = (helm(&only(behaviour)), from, vec![]);
+    for step in 0..600 {
+        let mut scene = with_contact(own, contact);
+        scene.stamp.valid_ns = SimTime::from_s(0.1 * f64::from(step));
+        let report = decided(&mut helm, &scene);
+        let wanted = report.course_deg.zip(report.speed_m_s).expect("it steers");
+        let off_rad = game::angle::wrap_pi((wanted.0 - own.heading_deg).to_radians());
+        own.heading_deg += off_rad.clamp(-0.1 * turn_rad_s, 0.1 * turn_rad_s).to_degrees();
+        own.speed_m_s += 0.1 * (wanted.1 - own.speed_m_s);
+        let (east, north) = game::math::sin_cos(own.heading_deg.to_radians());
+        (own.x, own.y) = (own.x + 0.1 * own.speed_m_s * east, own.y + 0.1 * own.speed_m_s * north);
+        track.push(own);
+    }
+    track
+}
+
+#[test]
+fn a_shield_settles_at_its_station_from_wherever_it_comes() {
+    const TURN_RAD_S: f64 = 0.35;
+    let shield = "kind = 'shield'\nguarded = 'own_flag'\nagainst = 'opponent'\ndistance_m = 4";
+    // The station is at (-56, 0).
+    for heading_deg in [0.0, 90.0, 200.0, 270.0] {
+        let from = Boat::at(-52.0, -8.0).going(heading_deg, 2.4);
+        let track = driven(shield, from, TURN_RAD_S, Boat::at(40.0, 0.0));
+        let farthest_m = track[300..].iter().map(|own| libm::hypot(own.x + 56.0, own.y)).fold(0.0, f64::max);
+        assert!(farthest_m < 4.0, "it came with heading {heading_deg} and is {farthest_m} m off after half a minute");
+    }
+}
+
 #[test]
 fn a_loiter_goes_round_the_way_it_is_told() {
     // Due north of the centre: clockwise is east from there.
