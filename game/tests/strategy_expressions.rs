@@ -38,6 +38,13 @@ impl Values for Known {
             _ => 0.0,
         }
     }
+    fn between(&self, measure: Measure, from: &Place, to: &Place) -> f64 {
+        match (measure, from, to) {
+            (Measure::Distance, Place::Boat(_), Place::Mark(_)) => 40.0,
+            (Measure::Closing, Place::Boat(_), Place::Mark(_)) => 1.5,
+            _ => 0.0,
+        }
+    }
     fn mates(&self, condition: &Expression) -> f64 {
         if condition.is_true(self) { 2.0 } else { 0.0 }
     }

@@ -2,7 +2,7 @@
 
 use super::steering::steer_heading;
 use super::{BehaviourLogic, BehaviourOutput};
-use crate::situation::{MovingPoint, Situation};
+use crate::situation::{MovingPoint, Situation, meeting_time_s};
 use game::Ned;
 use game::strategy::Intercept;
 
@@ -24,21 +24,8 @@ impl BehaviourLogic for Intercept {
 
 /// Where a boat at `from`, going straight at this speed, meets one that keeps its velocity soonest; where that one is now
 /// if it never does.
-///
-/// The time is the smallest positive root of |line + velocity t| = speed t.
 pub(super) fn meeting_point(from: Ned, speed_m_s: f64, contact: MovingPoint) -> Ned {
-    let line = contact.at - from;
-    let a = contact.velocity.dot(contact.velocity) - speed_m_s * speed_m_s;
-    let half_b = line.dot(contact.velocity);
-    let c = line.dot(line);
-    let time_s = if a.abs() < 1e-9 {
-        (half_b < 0.0).then(|| -0.5 * c / half_b)
-    } else {
-        let under_root = half_b * half_b - a * c;
-        let root = under_root.max(0.0).sqrt();
-        let both = [(-half_b - root) / a, (-half_b + root) / a];
-        both.into_iter().filter(|t| under_root >= 0.0 && *t > 0.0).reduce(f64::min)
-    };
+    let time_s = meeting_time_s(contact.at - from, contact.velocity, speed_m_s);
     contact.at + contact.velocity.scaled(time_s.unwrap_or(0.0))
 }
 

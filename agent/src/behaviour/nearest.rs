@@ -1,7 +1,7 @@
 //! Which of many boats or obstacles a behaviour responds to, and how much: the nearest, the nearer the more.
 
 use crate::situation::{OtherBoat, Situation};
-use game::strategy::{Contacts, NEAREST_MAX};
+use game::strategy::{Boat, Contacts, NEAREST_MAX};
 
 /// How far ahead a boat looks whether it comes to the side on which it can be tagged, s.
 const TAG_FORESIGHT_S: f64 = 5.0;
@@ -49,6 +49,10 @@ pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherB
         Contacts::All => true,
         Contacts::Enemies => other.is_enemy,
         Contacts::Mates => !other.is_enemy,
+        Contacts::Opponent => {
+            let opponent = situation.boat(Boat::Opponent).map(|opponent| opponent.vehicle);
+            opponent == Some(other.vehicle) && is_meant(Contacts::Taggers, situation, other)
+        }
         Contacts::Taggers => {
             // It tags on its own side only; where the own boat is about to be there it counts already.
             let soon = situation.at + situation.velocity.scaled(TAG_FORESIGHT_S);

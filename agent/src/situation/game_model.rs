@@ -26,6 +26,8 @@ pub(crate) struct GameModel {
     pub(crate) tagged_is_driven: bool,
     capture_radius_m: f64,
     pub(crate) time_limit: SimTime,
+    /// The top speed of every boat of the game, m/s, by vehicle.
+    pub(crate) boat_speeds_m_s: Vec<f64>,
     /// The highest speed of the helm's decisions, m/s.
     pub(crate) speed_max_m_s: f64,
     capture_at: CaptureAt,
@@ -49,7 +51,9 @@ impl GameModel {
         let mut points: Vec<(String, Ned)> =
             Field::point_names().into_iter().filter_map(|name| field.point(team, &name).map(|at| (name, at))).collect();
         points.sort_by(|a, b| a.0.cmp(&b.0));
-        let own_m_s = scenario.boat_of(me).speed_max_m_s();
+        let speed_m_s = |i: usize| scenario.boat_of(VehicleId::at(i)).speed_max_m_s();
+        let boat_speeds_m_s: Vec<f64> = (0..scenario.vehicles.len()).map(speed_m_s).collect();
+        let own_m_s = boat_speeds_m_s[me.index()];
         GameModel {
             me,
             team,
@@ -62,6 +66,7 @@ impl GameModel {
             tagged_is_driven: scenario.rules.tagged_boat == TaggedBoat::IsDriven,
             capture_radius_m: scenario.rules.capture_radius_m,
             time_limit: scenario.rules.time_limit,
+            boat_speeds_m_s,
             speed_max_m_s: program.helm.speed_max_m_s.map_or(own_m_s, |most_m_s| most_m_s.min(own_m_s)),
             capture_at: scenario.rules.capture_at,
             untag_at: scenario.rules.untag_at,

@@ -1,9 +1,11 @@
 //! The situation: what a helm knows at this decision, in the terms of strategies.
 
 mod game_model;
+mod interception;
 mod team_messages;
 
 pub(crate) use game_model::GameModel;
+pub(crate) use interception::meeting_time_s;
 pub(crate) use team_messages::TeamMessages;
 
 use crate::mind::Proposal;
@@ -12,6 +14,8 @@ use game::picture::{Contact, OwnBoat};
 use game::rules::Ability;
 use game::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
 use game::{FlagId, Ned, Picture, SimTime, VehicleId};
+use interception::{Interceptor, Intruder, Pair};
+use std::cell::OnceCell;
 
 /// A contact is assumed to go on as it was seen for this long, s; then to slow down ...
 const KEEPS_ON_S: f64 = 15.0;
@@ -36,6 +40,8 @@ pub(crate) struct OtherBoat {
     pub(crate) psi_rad: f64,
     pub(crate) tagged: bool,
     pub(crate) carrying: Option<FlagId>,
+    /// From when on it can tag again, if it is a mate; of enemies nobody knows.
+    tag_ready: SimTime,
     /// Whether it is on the own team's side.
     pub(crate) on_own_side: bool,
 }
@@ -73,6 +79,10 @@ pub(crate) struct Situation {
     carriers: Vec<Option<VehicleId>>,
     score: f64,
     enemy_score: f64,
+    /// Who meets which intruder, from when it is first asked for at a decision.
+    interception: OnceCell<Vec<Pair>>,
+    /// The same as it was last asked for.
+    interception_before: Vec<Pair>,
     /// Tagged inside of its untagging place: it must leave before it can come home.
     leaving: bool,
 }
@@ -101,6 +111,8 @@ impl Situation {
             carriers: Vec::new(),
             score: 0.0,
             enemy_score: 0.0,
+            interception: OnceCell::new(),
+            interception_before: Vec::new(),
             leaving: false,
         }
     }
@@ -126,6 +138,7 @@ impl Situation {
                 psi_rad: mate.nav.psi_rad,
                 tagged: mate.tagged,
                 carrying: mate.carried_flag(),
+                tag_ready: mate.tag_ready_ns,
                 on_own_side: self.model.is_own_side(at),
             });
         }
@@ -139,8 +152,12 @@ impl Situation {
                 psi_rad: contact.psi_rad,
                 tagged: contact.tagged,
                 carrying: u8::try_from(contact.carrying).ok().map(FlagId),
+                tag_ready: SimTime::ZERO,
                 on_own_side: self.model.is_own_side(at),
             });
+        }
+        if let Some(pairs) = self.interception.take() {
+            self.interception_before = pairs;
         }
         self.carriers.clear();
         self.carriers.extend(picture.flags.iter().map(|flag| u16::try_from(flag.carrier).ok().map(VehicleId)));
@@ -180,6 +197,12 @@ impl Situation {
             Boat::NearestEnemy => nearest(self.at, self.enemies().filter(|enemy| !enemy.tagged)),
             Boat::NearestIntruder => nearest(self.at, self.intruders()),
             Boat::NearestAttacker => nearest(home, self.enemies().filter(|enemy| !enemy.tagged)),
+            Boat::NearestDefender => nearest(self.enemy_flag(), self.enemies()),
+            Boat::AssignedIntruder => {
+                let pairs = self.interception.get_or_init(|| self.intercepted());
+                let mine = pairs.iter().find(|pair| pair.interceptor == self.model.me)?;
+                self.enemies().find(|enemy| enemy.vehicle == mine.intruder)
+            }
             Boat::FlagCarrier => nearest(self.at, self.enemies().filter(of_ours)),
             Boat::Opponent => {
                 let enemies = &self.model.enemies;
@@ -189,6 +212,30 @@ impl Situation {
             Boat::NearestMate => nearest(self.at, self.mates()),
             Boat::MateCarrier => nearest(self.at, self.mates().filter(|mate| mate.carrying.is_some())),
         }
+    }
+
+    /// Who meets which intruder.
+    fn intercepted(&self) -> Vec<Pair> {
+        let home = self.model.own_flag();
+        let mut intruders: Vec<Intruder> = self.intruders().map(Intruder::from).collect();
+        intruders.sort_by(|a, b| home.distance_squared(a.at).total_cmp(&home.distance_squared(b.at)));
+        let boat = |vehicle: VehicleId, at: Ned, tag_ready: SimTime| Interceptor {
+            vehicle,
+            at,
+            speed_m_s: self.model.boat_speeds_m_s[vehicle.index()],
+            unready_s: (tag_ready - self.now).as_s().max(0.0),
+        };
+        let is_free = !self.own.tagged && self.own.carried_flag().is_none();
+        let own = is_free.then(|| boat(self.model.me, self.at, self.own.tag_ready_ns));
+        let mates = self.free_mates().map(|mate| boat(mate.vehicle, mate.at, mate.tag_ready));
+        let mut interceptors: Vec<Interceptor> = mates.chain(own).collect();
+        interceptors.sort_by_key(|boat| boat.vehicle);
+        interception::assign(&interceptors, &intruders, &self.interception_before)
+    }
+
+    /// The mates that play and carry no flag.
+    fn free_mates(&self) -> impl Iterator<Item = &OtherBoat> {
+        self.mates().filter(|mate| !mate.tagged && mate.carrying.is_none())
     }
 
     /// Where a place is now.
@@ -232,14 +279,8 @@ impl Situation {
         self.carriers.get(flag.index()).copied().flatten()
     }
 
-    /// How fast the distance to a point shrinks, m/s.
-    fn closing_m_s(&self, point: MovingPoint) -> f64 {
-        let line = point.at - self.at;
-        let distance_m = line.length();
-        if distance_m < 1e-6 {
-            return 0.0;
-        }
-        (self.velocity - point.velocity).dot(line) / distance_m
+    fn own_point(&self) -> MovingPoint {
+        MovingPoint { at: self.at, velocity: self.velocity }
     }
 }
 
@@ -283,17 +324,56 @@ impl Values for Situation {
 
     fn measure(&self, measure: Measure, place: &Place) -> f64 {
         let point = self.locate(place);
+        let truth = |is: bool| f64::from(u8::from(is));
         match measure {
-            Measure::Distance => point.map_or(NOWHERE_M, |point| self.at.distance(point.at)),
-            Measure::Closing => point.map_or(0.0, |point| self.closing_m_s(point)),
-            Measure::Known => f64::from(u8::from(point.is_some())),
-            Measure::OnOwnSide => f64::from(u8::from(point.is_some_and(|point| self.model.is_own_side(point.at)))),
+            Measure::Distance | Measure::Closing => between(measure, Some(self.own_point()), point),
+            Measure::Speed => point.map_or(0.0, |point| point.velocity.length()),
+            Measure::Known => truth(point.is_some()),
+            Measure::OnOwnSide => truth(point.is_some_and(|point| self.model.is_own_side(point.at))),
+            Measure::IsTagged => match place {
+                Place::Boat(boat) => truth(self.boat(*boat).is_some_and(|boat| boat.tagged)),
+                _ => 0.0,
+            },
+            Measure::MatesNearer => point.map_or(0.0, |point| {
+                let own = self.at.distance_squared(point.at);
+                self.free_mates().filter(|mate| mate.at.distance_squared(point.at) < own).count() as f64
+            }),
         }
+    }
+
+    fn between(&self, measure: Measure, from: &Place, to: &Place) -> f64 {
+        between(measure, self.locate(from), self.locate(to))
     }
 
     fn mates(&self, condition: &Expression) -> f64 {
         self.team_messages.count(condition)
     }
+}
+
+impl From<&OtherBoat> for Intruder {
+    fn from(boat: &OtherBoat) -> Intruder {
+        Intruder { vehicle: boat.vehicle, at: boat.at, velocity: boat.velocity }
+    }
+}
+
+/// What is asked of two places, if both are there.
+fn between(measure: Measure, from: Option<MovingPoint>, to: Option<MovingPoint>) -> f64 {
+    let points = from.zip(to);
+    match measure {
+        Measure::Distance => points.map_or(NOWHERE_M, |(from, to)| from.at.distance(to.at)),
+        Measure::Closing => points.map_or(0.0, |(from, to)| closing_m_s(from, to)),
+        _ => 0.0,
+    }
+}
+
+/// How fast the distance between two points shrinks, m/s.
+fn closing_m_s(from: MovingPoint, to: MovingPoint) -> f64 {
+    let line = to.at - from.at;
+    let distance_m = line.length();
+    if distance_m < 1e-6 {
+        return 0.0;
+    }
+    (from.velocity - to.velocity).dot(line) / distance_m
 }
 
 /// The estimated position and velocity of a contact now: it goes on as seen, then slows down and lies still.

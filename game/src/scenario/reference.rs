@@ -92,7 +92,8 @@ fn names(page: &mut String) {
     page.push_str("\n### Measures\n\nOf a place or a boat, by its name.\n\n| call | is a | meaning |\n|---|---|---|\n");
     for measure in Measure::all() {
         let (name, meaning) = (measure.name(), measure.meaning());
-        let _ = writeln!(page, "| `{name}(place)` | {} | {meaning} |", kind(measure.is_truth()));
+        let two = if measure.is_of_two() { format!(" `{name}(place, place)`") } else { String::new() };
+        let _ = writeln!(page, "| `{name}(place)`{two} | {} | {meaning} |", kind(measure.is_truth()));
     }
     page.push_str(
         "\n## Places\n\nA place is `[x, y]`, a named point of the own team such as `CFX`, or one of these.\n",

@@ -19,6 +19,8 @@ pub enum Expression {
     Fact(Fact),
     /// Something about a place or a boat.
     Measure(Measure, Place),
+    /// The same between two of them.
+    Between(Measure, Box<(Place, Place)>),
     /// How many mates there are for which the condition holds, with the mates' own values of shared variables.
     Mates(Box<Expression>),
     /// Not so.
@@ -92,6 +94,10 @@ pub trait Values {
     fn measure(&self, _measure: Measure, _place: &Place) -> f64 {
         0.0
     }
+    /// What is asked of one place as seen from another.
+    fn between(&self, _measure: Measure, _from: &Place, _to: &Place) -> f64 {
+        0.0
+    }
     /// How many mates there are for which `condition` holds.
     fn mates(&self, _condition: &Expression) -> f64 {
         0.0
@@ -116,6 +122,7 @@ impl Expression {
             Expression::Variable(index) => values.variable(*index),
             Expression::Fact(fact) => values.fact(*fact),
             Expression::Measure(measure, place) => values.measure(*measure, place),
+            Expression::Between(measure, places) => values.between(*measure, &places.0, &places.1),
             Expression::Mates(condition) => values.mates(condition),
             Expression::Not(inner) => truth(!inner.is_true(values)),
             Expression::Minus(inner) => -inner.value(values),
@@ -150,8 +157,8 @@ impl Expression {
     /// Whether it is itself a question about the game or a variable.
     #[must_use]
     pub fn asks(&self) -> bool {
-        use Expression::{Fact, Mates, Measure, Variable};
-        matches!(self, Variable(_) | Fact(_) | Measure(..) | Mates(_))
+        use Expression::{Between, Fact, Mates, Measure, Variable};
+        matches!(self, Variable(_) | Fact(_) | Measure(..) | Between(..) | Mates(_))
     }
 
     /// The variable that it is, if it is one.
@@ -167,7 +174,8 @@ impl Expression {
             Expression::Mates(inner) | Expression::Not(inner) | Expression::Minus(inner) => inner.walk(visit),
             Expression::Join(_, sides) => [&sides.0, &sides.1].into_iter().for_each(|side| side.walk(visit)),
             Expression::Choose(parts) => [&parts.0, &parts.1, &parts.2].into_iter().for_each(|part| part.walk(visit)),
-            Expression::Constant(_) | Expression::Variable(_) | Expression::Fact(_) | Expression::Measure(..) => {}
+            Expression::Constant(_) | Expression::Variable(_) | Expression::Fact(_) => {}
+            Expression::Measure(..) | Expression::Between(..) => {}
         }
     }
 }

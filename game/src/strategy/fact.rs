@@ -89,14 +89,21 @@ pub enum Fact {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, VariantArray, IntoStaticStr, EnumMessage)]
 #[strum(serialize_all = "snake_case")]
 pub enum Measure {
-    /// How far it is from the own boat, m; 1e9 if there is no such thing.
+    /// How far it is from the own boat, or the first from the second, m; 1e9 if there is no such thing.
     Distance,
-    /// How fast the distance to it shrinks, m/s; negative while it grows; 0 if there is no such thing.
+    /// How fast that distance shrinks, m/s; negative while it grows; 0 if there is no such thing.
     Closing,
+    /// How fast it goes over the ground, m/s; 0 if there is no such thing.
+    Speed,
     /// Whether there is such a thing now.
     Known,
     /// Whether it is on the own team's side of the field.
     OnOwnSide,
+    /// Whether it is a boat that is tagged.
+    IsTagged,
+    /// How many other boats of the own team are nearer to it than the own boat; those that are tagged or carry a flag do not
+    /// count.
+    MatesNearer,
 }
 
 impl Fact {
@@ -121,7 +128,19 @@ impl Measure {
     /// Whether it is true or false rather than a number.
     #[must_use]
     pub fn is_truth(self) -> bool {
-        matches!(self, Measure::Known | Measure::OnOwnSide)
+        matches!(self, Measure::Known | Measure::OnOwnSide | Measure::IsTagged)
+    }
+
+    /// Whether it counts something, and so is a whole number.
+    #[must_use]
+    pub fn is_whole(self) -> bool {
+        self == Measure::MatesNearer
+    }
+
+    /// Whether it can be asked of two places.
+    #[must_use]
+    pub fn is_of_two(self) -> bool {
+        matches!(self, Measure::Distance | Measure::Closing)
     }
 }
 

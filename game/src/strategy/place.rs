@@ -46,6 +46,11 @@ pub enum Boat {
     NearestIntruder,
     /// Of the enemies that are not tagged, wherever they are, the nearest to the own flag.
     NearestAttacker,
+    /// Of the enemies, tagged ones too, the nearest to the enemy's flag.
+    NearestDefender,
+    /// Of the enemies on the own side that are not tagged, the one that this boat is to meet: each is assigned to the boat of the
+    /// own team that meets it soonest, one boat to one enemy, those nearest to the own flag first.
+    AssignedIntruder,
     /// The enemy that carries a flag of the own team; of several the nearest.
     FlagCarrier,
     /// The enemy assigned to this boat: the one of the same rank, counted round where there are fewer enemies.

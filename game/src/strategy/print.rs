@@ -23,7 +23,7 @@ impl Program {
             Expression::Constant(_) | Expression::Mates(_) | Expression::Minus(_) => Kind::Number,
             Expression::Variable(index) => self.variables[usize::from(*index)].kind.clone(),
             Expression::Fact(fact) => Kind::of(fact.is_truth()),
-            Expression::Measure(measure, _) => Kind::of(measure.is_truth()),
+            Expression::Measure(measure, _) | Expression::Between(measure, _) => Kind::of(measure.is_truth()),
             Expression::Not(_) => Kind::Truth,
             Expression::Join(join, _) => Kind::of(join.is_truth()),
             Expression::Choose(parts) => match self.kind_of(&parts.1) {
@@ -62,6 +62,9 @@ impl Program {
             Expression::Variable(index) => (self.variables[usize::from(*index)].name.clone(), Precedence::Atom),
             Expression::Fact(fact) => (fact.name().to_owned(), Precedence::Atom),
             Expression::Measure(measure, place) => (format!("{}({})", measure.name(), place.text()), Precedence::Atom),
+            Expression::Between(measure, places) => {
+                (format!("{}({}, {})", measure.name(), places.0.text(), places.1.text()), Precedence::Atom)
+            }
             Expression::Mates(condition) => (format!("mates({})", self.condition_text(condition)), Precedence::Atom),
             Expression::Not(inner) => {
                 (format!("!{}", self.text(inner, &Kind::Truth, Precedence::Sign)), Precedence::Sign)

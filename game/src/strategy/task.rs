@@ -300,6 +300,8 @@ pub enum Contacts {
     Enemies,
     /// The enemy's that could tag this boat now: not tagged, and this boat is on their side or near it.
     Taggers,
+    /// Of those the one that is assigned to this boat.
+    Opponent,
     /// The own team's.
     Mates,
 }

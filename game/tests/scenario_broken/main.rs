@@ -53,8 +53,8 @@ const LISTS: [(&str, &str, &str); 10] = [
     ("nearest_enemy, nearest", "mate_carrier", "{boats}"),
     ("own_flag, enemy_flag,", "such as CH", "{places}"),
     ("i, mate, enemy, then", "collides", "{events}"),
-    ("numbers, texts, true,", "on_own_side()", "{CEL that is allowed}"),
-    ("min(), max(),", "on_own_side()", "{calls}"),
+    ("numbers, texts, true,", "mates_nearer()", "{CEL that is allowed}"),
+    ("min(), max(),", "mates_nearer()", "{calls}"),
 ];
 
 /// `line` with the long lists of what is allowed cut short.

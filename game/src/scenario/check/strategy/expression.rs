@@ -70,9 +70,9 @@ impl Reader<'_, '_> {
     }
 
     fn not_allowed<T>(&mut self, part: &IdedExpr, what: &str) -> Option<T> {
-        let allowed = "numbers, texts, true, false, names, ! - + * / < <= > >= == != && || ?:, min(), max(), \
-                       mates() and the measures distance(), closing(), known(), on_own_side()";
-        self.refuse(part, &format!("has {what} here, expected only {allowed}"))
+        let allowed = "numbers, texts, true, false, names, ! - + * / < <= > >= == != && || ?:, min(), max(), mates()";
+        let measures = Measure::names().join("(), ");
+        self.refuse(part, &format!("has {what} here, expected only {allowed} and the measures {measures}()"))
     }
 
     fn literal(&mut self, part: &IdedExpr, literal: &LiteralValue) -> Option<Read> {
@@ -160,9 +160,16 @@ impl Reader<'_, '_> {
     fn measure(&mut self, part: &IdedExpr, name: &str, arguments: &[IdedExpr]) -> Option<Read> {
         let given = format!("gives {} things to {name}(), expected", arguments.len());
         match (Measure::by_name(name), arguments) {
-            (Some(_), [_]) if self.among_mates => self.refuse_to_mates(part, &format!("{name}()"), "a measure"),
+            (Some(_), _) if self.among_mates => self.refuse_to_mates(part, &format!("{name}()"), "a measure"),
             (Some(measure), [place]) => {
                 Some((Expression::Measure(measure, self.place(place, name)?), Kind::of(measure.is_truth())))
+            }
+            (Some(measure), [from, to]) if measure.is_of_two() => {
+                let (from, to) = (self.place(from, name), self.place(to, name));
+                Some((Expression::Between(measure, Box::new((from?, to?))), Kind::of(measure.is_truth())))
+            }
+            (Some(measure), _) if measure.is_of_two() => {
+                self.refuse(part, &format!("{given} one place or boat, or two"))
             }
             (Some(_), _) => self.refuse(part, &format!("{given} one place or boat")),
             _ if name == "mates" => self.refuse(part, &format!("{given} one condition, or none as in mates > 0")),

@@ -165,8 +165,12 @@ impl Terms<'_> {
         let number = |least, is_whole| (vec![least], Some(is_whole));
         match term {
             Expression::Fact(fact) if !fact.is_truth() => number(0.0, fact.is_whole()),
-            Expression::Measure(Measure::Closing, _) => number(f64::NEG_INFINITY, false),
-            Expression::Measure(Measure::Distance, _) => number(0.0, false),
+            Expression::Measure(Measure::Closing, _) | Expression::Between(Measure::Closing, _) => {
+                number(f64::NEG_INFINITY, false)
+            }
+            Expression::Measure(measure, _) | Expression::Between(measure, _) if !measure.is_truth() => {
+                number(0.0, measure.is_whole())
+            }
             Expression::Mates(_) => number(0.0, true),
             Expression::Variable(index) => {
                 match (given_to(self.program, *index), &self.program.variables[usize::from(*index)].kind) {

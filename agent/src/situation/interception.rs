@@ -1,0 +1,139 @@
+//! Interception: which boat of the own team meets which intruder.
+//!
+//! Everybody works it out from what the whole team sees, and so comes to the same result without a word.
+
+use game::{Ned, VehicleId};
+
+/// A pair that was assigned before is thought to meet by this much sooner, s: what is seen is noisy, and two boats that change
+/// intruders with every picture meet neither.
+const KEPT_S: f64 = 3.0;
+
+/// A boat that can be sent to meet an intruder.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Interceptor {
+    pub(super) vehicle: VehicleId,
+    pub(super) at: Ned,
+    /// Its top speed, m/s.
+    pub(super) speed_m_s: f64,
+    /// For how long it cannot tag yet, s.
+    pub(super) unready_s: f64,
+}
+
+/// An enemy that is to be met.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Intruder {
+    pub(super) vehicle: VehicleId,
+    pub(super) at: Ned,
+    /// Its velocity over the ground, m/s.
+    pub(super) velocity: Ned,
+}
+
+/// Who meets whom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Pair {
+    pub(super) interceptor: VehicleId,
+    pub(super) intruder: VehicleId,
+}
+
+/// Gives each intruder, in their order, the boat that is left and meets it soonest; of equally quick ones the first.
+pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], before: &[Pair]) -> Vec<Pair> {
+    let mut left: Vec<&Interceptor> = interceptors.iter().collect();
+    let mut pairs = Vec::with_capacity(intruders.len().min(left.len()));
+    for intruder in intruders {
+        let cost_s = |interceptor: &Interceptor| {
+            let pair = Pair { interceptor: interceptor.vehicle, intruder: intruder.vehicle };
+            let kept_s = if before.contains(&pair) { KEPT_S } else { 0.0 };
+            interceptor.unready_s.max(time_to_meet_s(interceptor, intruder)) - kept_s
+        };
+        let soonest = (0..left.len()).map(|i| (cost_s(left[i]), i)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, i)) = soonest else { break };
+        pairs.push(Pair { interceptor: left.remove(i).vehicle, intruder: intruder.vehicle });
+    }
+    pairs
+}
+
+/// How long until the two can be at the same place, s: until the boat is where the intruder is now if that outruns it.
+fn time_to_meet_s(interceptor: &Interceptor, intruder: &Intruder) -> f64 {
+    let line = intruder.at - interceptor.at;
+    meeting_time_s(line, intruder.velocity, interceptor.speed_m_s)
+        .unwrap_or_else(|| 2.0 * line.length() / interceptor.speed_m_s)
+}
+
+/// When a boat that goes straight at this speed soonest meets one that is `line` away and keeps its velocity, s; none if it never
+/// does.
+///
+/// The time is the smallest positive root of |line + velocity t| = speed t.
+pub(crate) fn meeting_time_s(line: Ned, velocity: Ned, speed_m_s: f64) -> Option<f64> {
+    let a = velocity.dot(velocity) - speed_m_s * speed_m_s;
+    let half_b = line.dot(velocity);
+    let c = line.dot(line);
+    if a.abs() < 1e-9 {
+        return (half_b < 0.0).then(|| -0.5 * c / half_b);
+    }
+    let under_root = half_b * half_b - a * c;
+    let root = under_root.max(0.0).sqrt();
+    let both = [(-half_b - root) / a, (-half_b + root) / a];
+    both.into_iter().filter(|t| under_root >= 0.0 && *t > 0.0).reduce(f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn interceptor(vehicle: u16, east: f64) -> Interceptor {
+        Interceptor { vehicle: VehicleId(vehicle), at: Ned { north: 0.0, east }, speed_m_s: 2.0, unready_s: 0.0 }
+    }
+
+    fn intruder(vehicle: u16, east: f64) -> Intruder {
+        Intruder { vehicle: VehicleId(vehicle), at: Ned { north: 0.0, east }, velocity: Ned::default() }
+    }
+
+    fn numbers(pairs: &[Pair]) -> Vec<(u16, u16)> {
+        pairs.iter().map(|pair| (pair.interceptor.0, pair.intruder.0)).collect()
+    }
+
+    #[test]
+    fn each_intruder_has_the_boat_that_meets_it_soonest_and_no_boat_has_two() {
+        let boats = [interceptor(0, 0.0), interceptor(1, 10.0), interceptor(2, 40.0)];
+        for (intruders, want) in [
+            (vec![], vec![]),
+            (vec![intruder(7, 9.0)], vec![(1, 7)]),
+            (vec![intruder(7, 9.0), intruder(8, 11.0)], vec![(1, 7), (0, 8)]),
+            (vec![intruder(8, 11.0), intruder(7, 9.0)], vec![(1, 8), (0, 7)]),
+            ((5..9).map(|i| intruder(i, 30.0)).collect(), vec![(2, 5), (1, 6), (0, 7)]),
+        ] {
+            assert_eq!(numbers(&assign(&boats, &intruders, &[])), want, "{intruders:?}");
+        }
+        assert!(assign(&[], &[intruder(7, 9.0)], &[]).is_empty());
+    }
+
+    #[test]
+    fn a_boat_that_has_just_tagged_leaves_the_next_one_to_another() {
+        let (quick, mut near) = (interceptor(1, 30.0), interceptor(0, 10.0));
+        let meets = |near| numbers(&assign(&[near, quick], &[intruder(7, 0.0)], &[]));
+        assert_eq!(meets(near), [(0, 7)]);
+        near.unready_s = 20.0;
+        assert_eq!(meets(near), [(1, 7)], "15 s there, but 20 s until it can tag");
+    }
+
+    #[test]
+    fn noise_does_not_change_who_meets_whom_and_what_is_better_does() {
+        let before = [Pair { interceptor: VehicleId(0), intruder: VehicleId(7) }];
+        for (east, want) in [(10.0, 0), (12.0, 0), (15.9, 0), (16.1, 1)] {
+            // The other one lies 10 m off on the other side: every metre more is half a second.
+            let boats = [interceptor(0, east), interceptor(1, -10.0)];
+            let got = numbers(&assign(&boats, &[intruder(7, 0.0)], &before));
+            assert_eq!(got, [(want, 7)], "{east} m");
+        }
+    }
+
+    #[test]
+    fn one_that_comes_on_is_met_sooner_than_one_that_flees() {
+        let boat = interceptor(0, 0.0);
+        let time_s = |velocity| time_to_meet_s(&boat, &Intruder { velocity, ..intruder(7, 30.0) });
+        let going = |east| Ned { north: 0.0, east };
+        assert!((time_s(going(-1.0)) - 10.0).abs() < 1e-9 && (time_s(going(1.0)) - 30.0).abs() < 1e-9);
+        assert!((time_s(going(-2.0)) - 7.5).abs() < 1e-9, "as fast as the boat");
+        assert!((time_s(going(3.0)) - 30.0).abs() < 1e-9, "never: twice the time to where it is now");
+    }
+}

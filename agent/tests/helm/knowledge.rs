@@ -1,0 +1,109 @@
+//! What a boat knows of a scene, in the terms of strategies.
+
+use crate::scene::{Boat, decided, helm, picture, without_safety};
+use agent::HelmMind;
+use game::picture::{OwnBoat, Picture};
+
+/// A helm that works an expression out at every decision.
+fn asking(expression: &str) -> HelmMind {
+    helm(&without_safety(&format!(
+        "[variables]\nanswer = 0\n[[rule]]\nwhen = \"true\"\nset = {{ answer = \"{expression}\" }}\n\
+         [behaviour.stop]\nkind = \"full_stop\"\n"
+    )))
+}
+
+/// What it is in this scene.
+fn answer(helm: &mut HelmMind, picture: &Picture) -> f64 {
+    decided(helm, picture).variables[0].value.parse().expect("a number")
+}
+
+#[test]
+fn measures_are_of_one_place_or_between_two() {
+    let [own, mate] = [Boat::at(-20.0, 0.0).going(90.0, 1.0), Boat::at(-40.0, 0.0)];
+    let enemies = [Boat::at(10.0, 0.0).going(270.0, 2.0), Boat::at(-30.0, 30.0)];
+    let mut scene = picture(0.0, [own, mate], enemies);
+    scene.contacts[1].tagged = true;
+    for (expression, want) in [
+        ("distance(opponent)", 30.0),
+        ("distance(opponent, own_flag)", 70.0),
+        ("distance(own_flag, opponent)", 70.0),
+        ("distance(mate_carrier, own_flag)", 1e9),
+        ("closing(opponent)", 3.0),
+        ("closing(opponent, own_flag)", 2.0),
+        ("closing(own_flag, enemy_flag)", 0.0),
+        ("closing(mate_carrier, own_flag)", 0.0),
+        ("speed(opponent)", 2.0),
+        ("speed(mate_carrier)", 0.0),
+        ("is_tagged(opponent) ? 1 : 0", 0.0),
+        ("is_tagged(nearest_defender) ? 1 : 0", 0.0),
+        ("is_tagged(own_flag) ? 1 : 0", 0.0),
+        ("distance(nearest_defender)", 30.0),
+        ("mates_nearer(own_flag)", 1.0),
+        ("mates_nearer(enemy_flag)", 0.0),
+        ("mates_nearer(mate_carrier)", 0.0),
+    ] {
+        let got = answer(&mut asking(expression), &scene);
+        assert!((got - want).abs() < 1e-9, "{expression} is {got}, wanted {want}");
+    }
+    // A mate that is tagged, or on its way home with a flag, does not count.
+    let changes: [fn(&mut OwnBoat); 2] = [|boat| boat.tagged = true, |boat| boat.carrying = 1];
+    for change in changes {
+        let mut other = scene.clone();
+        change(&mut other.own[1]);
+        assert_eq!(answer(&mut asking("mates_nearer(own_flag)"), &other), 0.0);
+    }
+    // A tagged enemy comes home to play again: it defends too.
+    scene.contacts[1].east_m = 50.0;
+    assert_eq!(answer(&mut asking("is_tagged(nearest_defender) ? 1 : 0"), &scene), 1.0);
+}
+
+#[test]
+fn an_intruder_is_assigned_to_one_boat_and_to_the_same_by_everybody() {
+    let own_x = |x: f64| [Boat::at(x, 0.0), Boat::at(-70.0, 0.0)];
+    let mut mine = asking("known(assigned_intruder) ? distance(assigned_intruder) : -1");
+    let intruders = |x: f64| [Boat::at(x, 0.0), Boat::at(50.0, 0.0)];
+    assert_eq!(answer(&mut mine, &picture(0.0, own_x(-20.0), intruders(10.0))), -1.0, "nobody intrudes");
+    assert_eq!(answer(&mut mine, &picture(0.1, own_x(-20.0), intruders(-10.0))), 10.0);
+    // The mate is nearer by a little, which may be noise; then by much.
+    assert_eq!(answer(&mut mine, &picture(0.2, own_x(-20.0), intruders(-46.0))), 26.0);
+    assert_eq!(answer(&mut mine, &picture(0.3, own_x(-20.0), intruders(-60.0))), -1.0);
+    // The mate has no time: it has just tagged, is tagged, or carries a flag.
+    let busy: [fn(&mut Picture); 3] = [
+        |scene| scene.own[1].tag_ready_ns = game::SimTime::from_s(60.0),
+        |scene| scene.own[1].tagged = true,
+        |scene| scene.own[1].carrying = 1,
+    ];
+    for make_busy in busy {
+        let mut scene = picture(0.4, own_x(-20.0), intruders(-60.0));
+        make_busy(&mut scene);
+        let expression = "known(assigned_intruder) ? distance(assigned_intruder) : -1";
+        assert_eq!(answer(&mut asking(expression), &scene), 40.0);
+    }
+    // Of two intruders the one that is nearer to the flag has the boat that is nearer to it; the other one is left to this boat.
+    let both = [Boat::at(-66.0, 0.0), Boat::at(-64.0, 0.0)];
+    assert_eq!(answer(&mut mine, &picture(0.5, own_x(-20.0), both)), 46.0);
+}
+
+#[test]
+fn a_boat_may_keep_out_of_the_reach_of_its_own_opponent_alone() {
+    let avoids = |contacts: &str, own: Boat| {
+        let program = format!(
+            "[behaviour.avoid]\nkind = \"avoid_collision\"\ncontacts = \"{contacts}\"\n\
+             [behaviour.go]\nkind = \"waypoint\"\npoints = [[60, 0]]\n"
+        );
+        // Boat 2 is the opponent, boat 3 the mate's: both are near, and could tag the boat.
+        let enemies = [own, own].map(|own| Boat { y: own.y + 5.0, ..own });
+        let report =
+            decided(&mut helm(&without_safety(&program)), &picture(0.0, [own, Boat::at(-75.0, -35.0)], enemies));
+        report
+            .functions
+            .iter()
+            .filter(|function| function.behaviour == "avoid")
+            .filter_map(|f| f.contact)
+            .collect::<Vec<_>>()
+    };
+    let beyond = Boat::at(20.0, 0.0);
+    assert_eq!(avoids("taggers", beyond).len(), 2);
+    assert_eq!(avoids("opponent", beyond), [game::VehicleId(2)]);
+    assert!(avoids("opponent", Boat::at(-40.0, 0.0)).is_empty(), "at home it can tag nobody");
+}
