@@ -11,7 +11,11 @@ impl BehaviourLogic for AvoidCollision {
         let (inner_m, outer_m) = (self.inner_m.value(situation), self.outer_m.value(situation));
         let (min_m, max_m) = (self.cpa_min_m.value(situation), self.cpa_max_m.value(situation));
         let horizon_s = self.time_on_leg_s.value(situation);
-        let near = situation.others.iter().enumerate().map(|(i, other)| (situation.at.distance(other.at), i));
+        // Of a large fleet nearly all are far off, which is told without a root; the rest is told exactly below.
+        let far_m2 = outer_m * outer_m * (1.0 + 1e-9);
+        let near = situation.others.iter().enumerate();
+        let near = near.filter(|(_, other)| situation.at.distance_squared(other.at) <= far_m2);
+        let near = near.map(|(i, other)| (situation.at.distance(other.at), i));
         let meant = |i: usize| is_meant(self.contacts, situation, &situation.others[i]);
         for (distance_m, i) in Nearest::of(near.filter(|(distance_m, i)| *distance_m < outer_m && meant(*i))).iter() {
             let other = &situation.others[i];

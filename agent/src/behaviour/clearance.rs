@@ -46,7 +46,9 @@ impl Kernel for Clearance<'_> {
         for (block, courses) in self.grid.courses_side_by_side().iter().enumerate() {
             let turns = Turns::new(&self, courses);
             for edge in &seen[..count] {
-                self.lower(LANES * block, &Ways::new(&self, courses, &turns, edge));
+                if self.may_be_low(courses, &turns, edge) {
+                    self.lower(LANES * block, &Ways::new(&self, courses, &turns, edge));
+                }
             }
         }
     }
@@ -60,6 +62,23 @@ impl Clearance<'_> {
         let start_m = (inside_m - self.handling.reaction_s * self.surge_m_s * cos_from) as f32;
         let drift_m = (self.lookahead_s * self.drift.dot(normal)) as f32;
         Edge { normal, from_rad, sin_from, start_m, drift_m }
+    }
+
+    /// Whether one of the courses may come near to an edge: of those that lead away from it this is soon told.
+    #[inline(always)]
+    fn may_be_low(&self, courses: &Courses, turns: &Turns, edge: &Edge) -> bool {
+        let least_m = self.save_m + f64::from(edge.drift_m).max(0.0) + f64::from(ROUNDING_M);
+        // At the larger of the old and the fastest speed.
+        let out_s = (f64::from(edge.start_m) - least_m) / self.surge_m_s.max(self.grid.speed_max_m_s());
+        let mut may_be_low = false;
+        for i in 0..LANES {
+            let cos_to = courses.north.0[i] * edge.normal.north + courses.east.0[i] * edge.normal.east;
+            let straight_s = turns.straight_s.0[i] * cos_to;
+            // The turn goes out by no more than it is long.
+            let most_s = turns.duration_s.0[i] + if straight_s > 0.0 { straight_s } else { 0.0 };
+            may_be_low |= most_s > out_s;
+        }
+        may_be_low
     }
 
     /// Lowers the utilities of courses side by side.

@@ -57,7 +57,7 @@ pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherB
             // It tags on its own side only; where the own boat is about to be there it counts already.
             let soon = situation.at + situation.velocity.scaled(TAG_FORESIGHT_S);
             let exposed = !situation.model.is_own_side(situation.at) || !situation.model.is_own_side(soon);
-            other.is_enemy && !other.tagged && !other.on_own_side && exposed && !situation.own.tagged
+            other.is_enemy && !other.tagged && !other.intrudes && exposed && !situation.own.tagged
         }
     }
 }

@@ -8,6 +8,9 @@ use game::{Ned, VehicleId};
 /// intruders with every picture meet neither.
 const KEPT_S: f64 = 3.0;
 
+/// What rounding may add to a bound, with room to spare.
+const ROUNDING: f64 = 1.001;
+
 /// A boat that can be sent to meet an intruder.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interceptor {
@@ -45,8 +48,20 @@ pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], befor
             let kept_s = if before.contains(&pair) { KEPT_S } else { 0.0 };
             interceptor.unready_s.max(time_to_meet_s(interceptor, intruder)) - kept_s
         };
-        let soonest = (0..left.len()).map(|i| (cost_s(left[i]), i)).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, i)) = soonest else { break };
+        let intruder_m_s = intruder.velocity.length();
+        let (mut soonest_s, mut soonest) = (f64::INFINITY, None);
+        for (i, interceptor) in left.iter().enumerate() {
+            // With many boats most are too far off to be sooner, even straight towards each other.
+            let reach_m = (interceptor.speed_m_s + intruder_m_s) * (soonest_s + KEPT_S) * ROUNDING;
+            if interceptor.at.distance_squared(intruder.at) > reach_m * reach_m {
+                continue;
+            }
+            let interceptor_s = cost_s(interceptor);
+            if soonest.is_none() || interceptor_s.total_cmp(&soonest_s).is_lt() {
+                (soonest_s, soonest) = (interceptor_s, Some(i));
+            }
+        }
+        let Some(i) = soonest else { break };
         pairs.push(Pair { interceptor: left.remove(i).vehicle, intruder: intruder.vehicle });
     }
     pairs
@@ -124,6 +139,30 @@ mod tests {
             let boats = [interceptor(0, east), interceptor(1, -10.0)];
             let got = numbers(&assign(&boats, &[intruder(7, 0.0)], &before));
             assert_eq!(got, [(want, 7)], "{east} m");
+        }
+    }
+
+    #[test]
+    fn boats_that_are_too_far_off_to_be_sooner_change_nothing() {
+        for seed in 0..500 {
+            let mut stream = game::stream::Stream::new(seed, "interception");
+            let mut place = |most_m: f64| Ned { north: stream.between(0.0, most_m), east: stream.between(0.0, most_m) };
+            let boats: Vec<Interceptor> = (0..20)
+                .map(|i| Interceptor { at: place(300.0), unready_s: place(9.0).north, ..interceptor(i, 0.0) })
+                .collect();
+            let intruders: Vec<Intruder> =
+                (20..30).map(|i| Intruder { at: place(300.0), velocity: place(3.0), ..intruder(i, 0.0) }).collect();
+            let before = [Pair { interceptor: VehicleId(3), intruder: VehicleId(20) }];
+            let (mut left, mut want) = (boats.clone(), Vec::new());
+            for intruder in &intruders {
+                let cost_s = |boat: &Interceptor| {
+                    let is_kept = (boat.vehicle, intruder.vehicle) == (before[0].interceptor, before[0].intruder);
+                    boat.unready_s.max(time_to_meet_s(boat, intruder)) - if is_kept { KEPT_S } else { 0.0 }
+                };
+                let soonest = (0..left.len()).min_by(|a, b| cost_s(&left[*a]).total_cmp(&cost_s(&left[*b])));
+                want.push((left.remove(soonest.expect("20 boats for 10")).vehicle.0, intruder.vehicle.0));
+            }
+            assert_eq!(numbers(&assign(&boats, &intruders, &before)), want, "seed {seed}");
         }
     }
 

@@ -42,8 +42,8 @@ pub(crate) struct OtherBoat {
     pub(crate) carrying: Option<FlagId>,
     /// From when on it can tag again, if it is a mate; of enemies nobody knows.
     tag_ready: SimTime,
-    /// Whether it is on the own team's side.
-    pub(crate) on_own_side: bool,
+    /// Whether it is an enemy on the own team's side.
+    pub(crate) intrudes: bool,
 }
 
 /// A place, and how it moves.
@@ -139,21 +139,22 @@ impl Situation {
                 tagged: mate.tagged,
                 carrying: mate.carried_flag(),
                 tag_ready: mate.tag_ready_ns,
-                on_own_side: self.model.is_own_side(at),
+                intrudes: false,
             });
         }
         for contact in &picture.contacts {
             let (at, velocity) = dead_reckoned(contact, now);
+            let is_enemy = contact.team != self.model.team;
             self.others.push(OtherBoat {
                 vehicle: contact.vehicle,
-                is_enemy: contact.team != self.model.team,
+                is_enemy,
                 at,
                 velocity,
                 psi_rad: contact.psi_rad,
                 tagged: contact.tagged,
                 carrying: u8::try_from(contact.carrying).ok().map(FlagId),
                 tag_ready: SimTime::ZERO,
-                on_own_side: self.model.is_own_side(at),
+                intrudes: is_enemy && self.model.is_own_side(at),
             });
         }
         if let Some(pairs) = self.interception.take() {
@@ -181,7 +182,7 @@ impl Situation {
 
     /// The enemies on the own side that are not tagged.
     fn intruders(&self) -> impl Iterator<Item = &OtherBoat> {
-        self.enemies().filter(|enemy| !enemy.tagged && enemy.on_own_side)
+        self.enemies().filter(|enemy| !enemy.tagged && enemy.intrudes)
     }
 
     /// The mates.
