@@ -19,7 +19,7 @@ impl BehaviourLogic for AvoidCollision {
         let meant = |i: usize| is_meant(self.contacts, situation, &situation.others[i]);
         for (distance_m, i) in Nearest::of(near.filter(|(distance_m, i)| *distance_m < outer_m && meant(*i))).iter() {
             let other = &situation.others[i];
-            let disc = MovingPoint { at: other.at, velocity: other.velocity };
+            let disc = MovingPoint { at: other.at, velocity: other.velocity() };
             let function = keep_clear(situation, disc, 0.0, (min_m, max_m), horizon_s);
             let share = graded(self.grade, nearness(distance_m, inner_m, outer_m));
             output.add_share(share, Some(other.vehicle), &function);

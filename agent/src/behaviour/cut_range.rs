@@ -15,7 +15,7 @@ impl BehaviourLogic for CutRange {
         }
         let patience = self.patience.value(situation) / 100.0;
         // Candidates are through the water: so is the contact.
-        let velocity = contact.velocity - situation.motion.drift();
+        let velocity = contact.velocity() - situation.motion.drift();
         let closing = Closing { offset: line, velocity };
         let closest = Closest {
             offset: line,

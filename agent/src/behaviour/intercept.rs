@@ -15,7 +15,7 @@ impl BehaviourLogic for Intercept {
         }
         let speed_m_s = self.speed_m_s.value(situation).min(situation.model.speed_max_m_s);
         // Both are carried by the same water: seen from it the contact moves with what is left of its velocity.
-        let velocity = contact.velocity - situation.motion.drift();
+        let velocity = contact.velocity() - situation.motion.drift();
         let meeting = meeting_point(situation.at, speed_m_s, MovingPoint { at: contact.at, velocity });
         let heading_rad = situation.at.bearing_rad(meeting);
         output.add_share(1.0, Some(contact.vehicle), &steer_heading(heading_rad, speed_m_s, 0.5));

@@ -97,7 +97,7 @@ impl BehaviourLogic for OpRegionBehaviour {
             edges: &region.edges,
             reach_m,
             heading_rad: nav.psi_rad,
-            surge_m_s: (nav.surge_m_s - region.drift.dot(nav.pose().rotation().ahead())).max(0.0),
+            surge_m_s: (nav.surge_m_s - region.drift.dot(situation.ahead)).max(0.0),
             drift: region.drift,
             handling: region.handling,
             lookahead_s,

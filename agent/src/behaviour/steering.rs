@@ -16,11 +16,10 @@ pub(super) const CPA_MIN_UTILITY: f64 = 50.0;
 
 /// How slow the boat is to follow a decision: its velocity is that through the water, as decisions are.
 pub(super) fn lag(situation: &Situation) -> Lag {
-    let (heading_east, heading_north) = math::sin_cos(situation.own.nav.psi_rad);
     let handling = situation.motion.handling();
     Lag {
         velocity: situation.velocity_through_water(),
-        heading: Ned { north: heading_north, east: heading_east },
+        heading: situation.ahead,
         reaction_s: handling.reaction_s,
         turn_rad_s: handling.turn_rad_s,
     }

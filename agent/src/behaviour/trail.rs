@@ -15,7 +15,7 @@ impl BehaviourLogic for Trail {
         let direction_rad = contact.psi_rad + self.angle_deg.value(situation).to_radians();
         let (east, north) = math::sin_cos(direction_rad);
         let place = contact.at + Ned { north, east }.scaled(self.range_m.value(situation));
-        let contact_m_s = contact.velocity.length();
+        let contact_m_s = contact.velocity().length();
         let distance_m = situation.at.distance(place);
         let fastest_m_s = self.speed_m_s.value(situation);
         let (course_rad, speed_m_s) = if distance_m <= self.radius_m.value(situation) {

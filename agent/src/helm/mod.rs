@@ -155,7 +155,7 @@ impl HelmMind {
         let weights: f64 = self.functions.list.iter().map(|function| function.weight).sum();
         let steadiness = last.and_then(|last| Steadiness::new(problem, last, self.program.helm.hysteresis * weights));
         let nav = &self.situation.own.nav;
-        let speed_m_s = nav.surge_m_s - self.situation.motion.drift().dot(nav.pose().rotation().ahead());
+        let speed_m_s = nav.surge_m_s - self.situation.motion.drift().dot(self.situation.ahead);
         let choice = problem.solve(Preference { course_rad: nav.psi_rad, speed_m_s });
         Decided::Steer(steadiness.map_or(choice, |steadiness| steadiness.without(problem.grid(), choice)))
     }

@@ -137,8 +137,9 @@ impl Search<'_> {
             for (sum, tiles) in sums.0.iter_mut().zip(&lists[LANES * chunk..]) {
                 *sum = tiles.most();
             }
-            *bounds = self.sums.add_bounds(sums, cells, Clear { of_formulas: &[], place: 0 });
-            self.sums.find_clear(cells, &mut clear[formulas * chunk..][..formulas]);
+            let clear = &mut clear[formulas * chunk..][..formulas];
+            self.sums.find_clear(cells, clear);
+            *bounds = self.sums.add_bounds(sums, cells, Clear { of_formulas: clear, sectors: u16::MAX });
         }
     }
 
@@ -146,7 +147,10 @@ impl Search<'_> {
     #[inline(always)]
     fn clear(&self, sector: usize) -> Clear<'_> {
         let formulas = self.sums.fields.len();
-        Clear { of_formulas: &self.bounds.clear[formulas * (sector / LANES)..][..formulas], place: sector % LANES }
+        Clear {
+            of_formulas: &self.bounds.clear[formulas * (sector / LANES)..][..formulas],
+            sectors: 1 << (sector % LANES),
+        }
     }
 
     /// What no point of each tile of a sector exceeds.
@@ -222,8 +226,8 @@ impl Sums {
         tiles
     }
 
-    /// What comes to so much at most in each of these cells without formulas, with them. Of those that `clear` names for this
-    /// place nothing is below the most that they can be.
+    /// What comes to so much at most in each of these cells without formulas, with them. Of those that `clear` names nothing is
+    /// below the most that they can be.
     #[inline(always)]
     fn add_bounds(&self, mut sums: Lanes<i32>, cells: (&CourseSpans, &SpeedSpans), clear: Clear<'_>) -> Lanes<i32> {
         let mut turned = Turned::new();
@@ -302,16 +306,16 @@ impl Sums {
 /// Which formulas are worth everything in all of a sector: those that keep away from what comes near on no way in it.
 #[derive(Clone, Copy)]
 struct Clear<'a> {
-    /// By formula, a bit for each sector side by side; beyond the end none is.
+    /// By formula, a bit for each sector side by side.
     of_formulas: &'a [u16],
-    /// The sector's place.
-    place: usize,
+    /// The bits of the sectors that are meant.
+    sectors: u16,
 }
 
 impl Clear<'_> {
     #[inline(always)]
     fn is_so(self, formula: usize) -> bool {
-        self.of_formulas.get(formula).is_some_and(|bits| bits >> self.place & 1 == 1)
+        self.of_formulas[formula] & self.sectors == self.sectors
     }
 }
 

@@ -43,9 +43,9 @@ pub(super) fn assign(interceptors: &[Interceptor], intruders: &[Intruder], befor
     let mut left: Vec<&Interceptor> = interceptors.iter().collect();
     let mut pairs = Vec::with_capacity(intruders.len().min(left.len()));
     for intruder in intruders {
+        let kept = before.iter().find(|pair| pair.intruder == intruder.vehicle).map(|pair| pair.interceptor);
         let cost_s = |interceptor: &Interceptor| {
-            let pair = Pair { interceptor: interceptor.vehicle, intruder: intruder.vehicle };
-            let kept_s = if before.contains(&pair) { KEPT_S } else { 0.0 };
+            let kept_s = if kept == Some(interceptor.vehicle) { KEPT_S } else { 0.0 };
             interceptor.unready_s.max(time_to_meet_s(interceptor, intruder)) - kept_s
         };
         let intruder_m_s = intruder.velocity.length();

@@ -10,6 +10,7 @@ pub(crate) use team_messages::TeamMessages;
 
 use crate::mind::Proposal;
 use crate::own_motion::OwnMotion;
+use game::frame::{Body, Rotation, ned_from_body};
 use game::picture::{Contact, OwnBoat};
 use game::rules::Ability;
 use game::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
@@ -35,8 +36,7 @@ pub(crate) struct OtherBoat {
     pub(crate) is_enemy: bool,
     /// Its estimated position now.
     pub(crate) at: Ned,
-    /// Its velocity over the ground, m/s.
-    pub(crate) velocity: Ned,
+    velocity: Velocity,
     pub(crate) psi_rad: f64,
     pub(crate) tagged: bool,
     pub(crate) carrying: Option<FlagId>,
@@ -44,6 +44,24 @@ pub(crate) struct OtherBoat {
     tag_ready: SimTime,
     /// Whether it is an enemy on the own team's side.
     pub(crate) intrudes: bool,
+}
+
+/// A velocity over the ground as it is told, m/s: of a large team hardly any is asked for, so nobody turns them all.
+#[derive(Clone, Copy, Debug)]
+enum Velocity {
+    Ned(Ned),
+    /// Along the boat's axes.
+    Body(Body),
+}
+
+impl OtherBoat {
+    /// Its velocity over the ground, m/s.
+    pub(crate) fn velocity(&self) -> Ned {
+        match self.velocity {
+            Velocity::Ned(velocity) => velocity,
+            Velocity::Body(velocity) => ned_from_body(Rotation::from_heading(self.psi_rad), velocity),
+        }
+    }
 }
 
 /// A place, and how it moves.
@@ -65,6 +83,8 @@ pub(crate) struct Situation {
     pub(crate) mode_since: SimTime,
     pub(crate) own: OwnBoat,
     pub(crate) at: Ned,
+    /// The unit vector ahead.
+    pub(crate) ahead: Ned,
     /// The own velocity over the ground, m/s.
     pub(crate) velocity: Ned,
     /// How the own boat moves when it is given an order.
@@ -102,6 +122,7 @@ impl Situation {
             step_s: 0.0,
             mode_since: SimTime::ZERO,
             at: Ned::default(),
+            ahead: Ned::default(),
             velocity: Ned::default(),
             motion,
             others: Vec::new(),
@@ -125,6 +146,7 @@ impl Situation {
         (self.now, self.begun) = (now, true);
         self.own = *own;
         self.at = own.nav.at();
+        self.ahead = own.nav.pose().rotation().ahead();
         self.velocity = own.nav.velocity_m_s();
         self.motion.observe(own, self.step_s, !(own.disabled || own.tagged && self.model.tagged_is_driven));
         self.others.clear();
@@ -134,7 +156,7 @@ impl Situation {
                 vehicle: mate.vehicle,
                 is_enemy: false,
                 at,
-                velocity: mate.nav.velocity_m_s(),
+                velocity: Velocity::Body(Body { ahead: mate.nav.surge_m_s, starboard: mate.nav.sway_m_s }),
                 psi_rad: mate.nav.psi_rad,
                 tagged: mate.tagged,
                 carrying: mate.carried_flag(),
@@ -149,7 +171,7 @@ impl Situation {
                 vehicle: contact.vehicle,
                 is_enemy,
                 at,
-                velocity,
+                velocity: Velocity::Ned(velocity),
                 psi_rad: contact.psi_rad,
                 tagged: contact.tagged,
                 carrying: u8::try_from(contact.carrying).ok().map(FlagId),
@@ -246,7 +268,7 @@ impl Situation {
             Place::At(at) => still(*at),
             Place::Point(name) => self.model.point(name).and_then(still),
             Place::Mark(mark) => still(self.mark(*mark)),
-            Place::Boat(boat) => self.boat(*boat).map(|other| MovingPoint { at: other.at, velocity: other.velocity }),
+            Place::Boat(boat) => self.boat(*boat).map(|other| MovingPoint { at: other.at, velocity: other.velocity() }),
         }
     }
 
@@ -353,7 +375,7 @@ impl Values for Situation {
 
 impl From<&OtherBoat> for Intruder {
     fn from(boat: &OtherBoat) -> Intruder {
-        Intruder { vehicle: boat.vehicle, at: boat.at, velocity: boat.velocity }
+        Intruder { vehicle: boat.vehicle, at: boat.at, velocity: boat.velocity() }
     }
 }
 
