@@ -15,6 +15,7 @@ mod max_speed;
 mod memory_turn_limit;
 mod nearest;
 mod op_region;
+mod outline;
 mod output;
 mod policy;
 mod shield;

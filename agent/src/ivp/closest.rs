@@ -19,7 +19,7 @@
 //! Where courses of a cell differ in how long the boat goes on, that moves the contact by no more than it goes in that time.
 
 use super::cell::Cell;
-use super::fixed::{larger, smaller};
+use super::lanes::{larger, smaller};
 use game::Ned;
 
 /// What one number in single precision may be wrong by, with room to spare, in parts of the lengths that went into it.
@@ -91,6 +91,7 @@ impl Lag {
     };
 
     /// How long it goes on before it is on a course, a unit vector, s.
+    #[inline(always)]
     #[must_use]
     pub fn duration_s(&self, course: Ned) -> f64 {
         let chord = (course - self.heading).length();
@@ -98,6 +99,7 @@ impl Lag {
     }
 
     /// How much longer it goes on for each unit of chord of its turn, s.
+    #[inline(always)]
     fn chord_s(&self) -> f64 {
         0.5 * ANGLE_OF_CHORD / self.turn_rad_s
     }

@@ -1,7 +1,7 @@
 //! How fast the own ship comes nearer to a point or a contact, or draws away from it.
 
 use super::cell::Cell;
-use super::fixed::{larger, smaller};
+use super::lanes::{larger, smaller};
 use game::Ned;
 
 /// Utility of the rate of closure: linear from 0, opening as fast as own ship and contact could, to 100, closing as fast

@@ -1,5 +1,7 @@
 //! Weighted utilities as integers, so that a sum does not depend on its order.
 
+use super::lanes::{larger, smaller};
+
 /// The step to which weight times utility is rounded.
 ///
 /// With it a product counts at most 6.4 million steps, which an `f32` and the sum of [`FUNCTIONS_MAX`] of them in an
@@ -70,18 +72,6 @@ pub(super) fn single(utility: f32) -> f32 {
     debug_assert!(utility.is_finite(), "utility {utility}");
     let within = larger(0.0, smaller(100.0, utility));
     if utility.abs() < f32::INFINITY { within } else { 0.0 }
-}
-
-/// The larger of two numbers, as processors compare them: the second where they do not compare.
-#[inline(always)]
-pub(crate) fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-/// The smaller of two numbers, as processors compare them: the second where they do not compare.
-#[inline(always)]
-pub(crate) fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
 }
 
 #[cfg(test)]

@@ -27,19 +27,27 @@ impl<T: Copy> Lanes<T> {
     }
 }
 
-impl Lanes<i32> {
-    /// The largest.
+impl<T: Copy> Lanes<T> {
+    /// All of them brought to one, two at a time.
     #[inline(always)]
-    pub(super) fn most(&self) -> i32 {
+    pub(crate) fn reduced(&self, of_two: impl Fn(T, T) -> T) -> T {
         let mut halves = self.0;
         let mut width = LANES / 2;
         while width > 0 {
             for i in 0..width {
-                halves[i] = larger(halves[i], halves[i + width]);
+                halves[i] = of_two(halves[i], halves[i + width]);
             }
             width /= 2;
         }
         halves[0]
+    }
+}
+
+impl Lanes<i32> {
+    /// The largest.
+    #[inline(always)]
+    pub(super) fn most(&self) -> i32 {
+        self.reduced(larger)
     }
 
     /// The first place of a number that is there.
@@ -64,8 +72,14 @@ impl Lanes<i32> {
     }
 }
 
-/// The larger of two numbers.
+/// The larger of two numbers, as processors compare them: the second where they do not compare.
 #[inline(always)]
-pub(super) fn larger(a: i32, b: i32) -> i32 {
+pub(crate) fn larger<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
+}
+
+/// The smaller of two numbers, as processors compare them: the second where they do not compare.
+#[inline(always)]
+pub(crate) fn smaller<T: PartialOrd>(a: T, b: T) -> T {
+    if a < b { a } else { b }
 }

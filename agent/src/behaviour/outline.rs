@@ -1,0 +1,463 @@
+//! Outline: how near the boat comes to a polygon on each course, at each speed.
+//!
+//! A boat that is given a decision goes on as it goes while it turns, and then straight. A faster run is a longer one, so its
+//! pass is the smaller of its own and the slower runs'.
+
+use super::steering::CPA_MIN_UTILITY;
+use crate::ivp::{Courses, Grid, Kernel, LANES, Lag, Lanes, Table, larger, smaller};
+use game::Ned;
+use game::field::{is_within, sides};
+
+/// What rounding may take from a bound, m, with room to spare.
+const ROUNDING_M: f64 = 1e-6;
+
+/// A polygon, with what bounds its distance from below.
+pub(super) struct Outline {
+    corners: Vec<Ned>,
+    sides: Vec<Side>,
+    /// Half planes that hold all of it.
+    half_planes: Vec<HalfPlane>,
+    /// Those that the boat is not in.
+    facing: Vec<HalfPlane>,
+    /// Of the run that is being looked at: where it passes each corner.
+    feet: Vec<Foot>,
+    /// Utilities of courses side by side by speed, from the first one that tells on.
+    utilities: Vec<Lanes<f32>>,
+}
+
+/// A side, from a corner to the next.
+#[derive(Clone, Copy)]
+struct Side {
+    corner: Ned,
+    along: Ned,
+    /// One by the square of its length.
+    per_m2: f64,
+}
+
+/// What is no farther out than so much along an outward unit normal, m.
+#[derive(Clone, Copy)]
+struct HalfPlane {
+    normal: Ned,
+    reach_m: f64,
+}
+
+impl HalfPlane {
+    /// How far out of it a place is, m.
+    #[inline(always)]
+    fn out_m(&self, north: f64, east: f64) -> f64 {
+        self.normal.north * north + self.normal.east * east - self.reach_m
+    }
+}
+
+/// Places or velocities, side by side.
+#[derive(Clone, Copy)]
+struct Places {
+    north: Lanes<f64>,
+    east: Lanes<f64>,
+}
+
+impl Places {
+    #[inline(always)]
+    fn splat(place: Ned) -> Places {
+        Places { north: Lanes::splat(place.north), east: Lanes::splat(place.east) }
+    }
+
+    /// Places after so long with a velocity.
+    #[inline(always)]
+    fn after(&self, along: &Places, after_s: &Lanes<f64>) -> Places {
+        let mut places = *self;
+        for i in 0..LANES {
+            places.north.0[i] += along.north.0[i] * after_s.0[i];
+            places.east.0[i] += along.east.0[i] * after_s.0[i];
+        }
+        places
+    }
+}
+
+/// Where straight runs side by side are nearest to a corner.
+struct Foot {
+    /// When, s: it may be before they begin.
+    after_s: Lanes<f64>,
+    /// How near, m²; infinite before they begin.
+    squared_m2: Lanes<f64>,
+}
+
+/// Straight runs side by side.
+struct Runs {
+    from: Places,
+    along: Places,
+    /// When they first cross a side, s; infinite if never.
+    crossing_s: Lanes<f64>,
+}
+
+impl Outline {
+    pub(super) fn new(corners: &[Ned]) -> Outline {
+        let side = |(corner, next): (Ned, Ned)| {
+            let along = next - corner;
+            let squared_m2 = along.dot(along);
+            Side { corner, along, per_m2: if squared_m2 > 0.0 { 1.0 / squared_m2 } else { 0.0 } }
+        };
+        let sides: Vec<Side> = sides(corners).map(side).collect();
+        let mut half_planes: Vec<HalfPlane> = Vec::new();
+        for side in &sides {
+            let unit = side.along.scaled(side.per_m2.sqrt());
+            for out in [1.0, -1.0] {
+                let normal = Ned { north: out * unit.east, east: -out * unit.north };
+                if half_planes.iter().all(|known| known.normal.dot(normal) < 1.0 - 1e-9) {
+                    let reach_m = corners.iter().map(|corner| corner.dot(normal)).fold(f64::NEG_INFINITY, f64::max);
+                    half_planes.push(HalfPlane { normal, reach_m });
+                }
+            }
+        }
+        let (facing, feet, utilities) = (Vec::new(), Vec::new(), Vec::new());
+        Outline { corners: corners.to_vec(), sides, half_planes, facing, feet, utilities }
+    }
+
+    /// The least squared distance to any side, m².
+    #[inline(always)]
+    fn squared_m2(&self, places: &Places) -> Lanes<f64> {
+        let mut least = Lanes::splat(f64::INFINITY);
+        for side in &self.sides {
+            for i in 0..LANES {
+                let (north, east) = (places.north.0[i] - side.corner.north, places.east.0[i] - side.corner.east);
+                let share = (north * side.along.north + east * side.along.east) * side.per_m2;
+                let share = smaller(larger(share, 0.0), 1.0);
+                let (north, east) = (north - share * side.along.north, east - share * side.along.east);
+                least.0[i] = smaller(least.0[i], north * north + east * east);
+            }
+        }
+        least
+    }
+
+    /// Looks at runs: where they pass the corners, and when they cross a side.
+    #[inline(always)]
+    fn runs(&mut self, from: Places, along: Places) -> Runs {
+        let (mut per_m2_s2, mut crossing_s) = (Lanes::splat(0.0), Lanes::splat(f64::INFINITY));
+        for i in 0..LANES {
+            let squared = along.north.0[i] * along.north.0[i] + along.east.0[i] * along.east.0[i];
+            per_m2_s2.0[i] = if squared > 0.0 { 1.0 / squared } else { 0.0 };
+        }
+        self.feet.clear();
+        for side in &self.sides {
+            let mut foot = Foot { after_s: per_m2_s2, squared_m2: per_m2_s2 };
+            for i in 0..LANES {
+                let (run_north, run_east) = (along.north.0[i], along.east.0[i]);
+                let (north, east) = (side.corner.north - from.north.0[i], side.corner.east - from.east.0[i]);
+                let after_s = (north * run_north + east * run_east) * per_m2_s2.0[i];
+                let (off_north, off_east) = (north - after_s * run_north, east - after_s * run_east);
+                let squared_m2 = off_north * off_north + off_east * off_east;
+                foot.after_s.0[i] = after_s;
+                foot.squared_m2.0[i] = if after_s >= 0.0 { squared_m2 } else { f64::INFINITY };
+                // Where the lines cross, by Cramer's rule; parallel ones have their corners.
+                let per = 1.0 / (run_north * side.along.east - run_east * side.along.north);
+                let when_s = (north * side.along.east - east * side.along.north) * per;
+                let share = (north * run_east - east * run_north) * per;
+                let crosses = (share >= 0.0) & (share <= 1.0) & (when_s >= 0.0);
+                crossing_s.0[i] = smaller(if crosses { when_s } else { f64::INFINITY }, crossing_s.0[i]);
+            }
+            self.feet.push(foot);
+        }
+        Runs { from, along, crossing_s }
+    }
+
+    /// The least squared distance of runs so long, or what it was before if that is less, m². What lies between their corners
+    /// and ends is farther off.
+    #[inline(always)]
+    fn passed_m2(&self, runs: &Runs, after_s: &Lanes<f64>, before_m2: &Lanes<f64>) -> Lanes<f64> {
+        let mut least = self.squared_m2(&runs.from.after(&runs.along, after_s));
+        for foot in &self.feet {
+            for i in 0..LANES {
+                let squared_m2 = smaller(foot.squared_m2.0[i], least.0[i]);
+                least.0[i] = if foot.after_s.0[i] <= after_s.0[i] { squared_m2 } else { least.0[i] };
+            }
+        }
+        for i in 0..LANES {
+            let squared_m2 = if runs.crossing_s.0[i] <= after_s.0[i] { 0.0 } else { least.0[i] };
+            least.0[i] = smaller(squared_m2, before_m2.0[i]);
+        }
+        least
+    }
+}
+
+/// Lowers the utilities of a table, which is clear, to what passes of a polygon are worth.
+pub(super) struct Passes<'a> {
+    pub(super) table: &'a mut Table,
+    pub(super) grid: &'a Grid,
+    pub(super) outline: &'a mut Outline,
+    pub(super) at: Ned,
+    /// Over the ground, m/s.
+    pub(super) velocity: Ned,
+    /// What wind and current add to the boat's way, m/s.
+    pub(super) drift: Ned,
+    pub(super) lag: Lag,
+    /// How long the straight run lasts, s.
+    pub(super) horizon_s: f64,
+    /// Passes that are worth half, and everything, m.
+    pub(super) min_m: f64,
+    pub(super) max_m: f64,
+}
+
+impl Kernel for Passes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(mut self) {
+        if is_within(&self.outline.corners, self.at) {
+            for k in 0..self.grid.courses() {
+                self.table.lowered_mut(k).fill(Lanes::splat(0.0));
+            }
+            return;
+        }
+        let at = self.at;
+        let Outline { half_planes, facing, .. } = &mut *self.outline;
+        facing.clear();
+        facing.extend(half_planes.iter().filter(|half_plane| half_plane.out_m(at.north, at.east) > 0.0));
+        for (block, courses) in self.grid.courses_side_by_side().iter().enumerate() {
+            self.pass(LANES * block, courses);
+        }
+    }
+}
+
+impl Passes<'_> {
+    /// Lowers the utilities of courses side by side.
+    #[inline(always)]
+    fn pass(&mut self, first: usize, courses: &Courses) {
+        let along = Places { north: courses.north, east: courses.east };
+        let (duration_s, horizon_s) = (self.turns_s(courses), Lanes::splat(self.horizon_s));
+        let velocity = Places::splat(self.velocity);
+        let start = Places::splat(self.at).after(&velocity, &duration_s);
+        let begin = start.after(&Places::splat(self.drift), &horizon_s);
+        let fastest_m = self.grid.speed_max_m_s() * self.horizon_s;
+        let end = begin.after(&along, &Lanes::splat(fastest_m));
+        let mut before_m2 = Lanes::splat(f64::INFINITY);
+        match self.clear_of(&start, &begin, &end) {
+            Clear::AllTheWay => return,
+            Clear::WhileItTurns => {}
+            Clear::No => {
+                let turning = self.outline.runs(Places::splat(self.at), velocity);
+                let from_m2 = self.outline.squared_m2(&turning.from);
+                before_m2 = self.outline.passed_m2(&turning, &duration_s, &from_m2);
+                let drifting = self.outline.runs(start, Places::splat(self.drift));
+                before_m2 = self.outline.passed_m2(&drifting, &horizon_s, &before_m2);
+            }
+        }
+        let before = self.worth(&before_m2);
+        let least = self.run_straight(begin, along, &before_m2);
+        for i in 0..LANES.min(self.grid.courses() - first) {
+            let last = self.outline.utilities.last().map_or(before.0[i], |last| last.0[i]);
+            if last < 100.0 {
+                let row = self.table.lowered_mut(first + i);
+                row.fill(Lanes::splat(last));
+                let known = std::iter::repeat_n(before.0[i], least);
+                let known = known.chain(self.outline.utilities.iter().map(|by_course| by_course.0[i]));
+                for (j, utility) in known.enumerate() {
+                    row[j / LANES].0[j % LANES] = utility;
+                }
+            }
+        }
+    }
+
+    /// How long the boat goes on as it goes, s.
+    #[inline(always)]
+    fn turns_s(&self, courses: &Courses) -> Lanes<f64> {
+        let mut duration_s = Lanes::splat(0.0);
+        for i in 0..LANES {
+            duration_s.0[i] = self.lag.duration_s(Ned { north: courses.north.0[i], east: courses.east.0[i] });
+        }
+        duration_s
+    }
+
+    /// How far one of the half planes alone tells that ways pass farther off than counts: from here to where the straight run
+    /// starts, begins and ends.
+    #[inline(always)]
+    fn clear_of(&self, start: &Places, begin: &Places, end: &Places) -> Clear {
+        let most_m = self.max_m + ROUNDING_M;
+        let mut clear = Clear::No;
+        for half_plane in &self.outline.facing {
+            let (mut turn_m, mut end_m) = (Lanes::splat(0.0), Lanes::splat(0.0));
+            for i in 0..LANES {
+                let start_m = half_plane.out_m(start.north.0[i], start.east.0[i]);
+                turn_m.0[i] = smaller(start_m, half_plane.out_m(begin.north.0[i], begin.east.0[i]));
+                end_m.0[i] = half_plane.out_m(end.north.0[i], end.east.0[i]);
+            }
+            let least_m = turn_m.reduced(smaller);
+            if smaller(least_m, half_plane.out_m(self.at.north, self.at.east)) > most_m {
+                clear = Clear::WhileItTurns;
+                if end_m.reduced(smaller) > most_m {
+                    return Clear::AllTheWay;
+                }
+            }
+        }
+        clear
+    }
+
+    /// Fills in what straight runs are worth by speed, from the first speed on that makes a difference to the last one; says
+    /// which is the first.
+    #[inline(always)]
+    fn run_straight(&mut self, begin: Places, along: Places, before_m2: &Lanes<f64>) -> usize {
+        let (speeds_m_s, max_m2) = (self.grid.speeds_m_s(), self.max_m * self.max_m);
+        let clear_m = self.clear_m(&begin, &along, smaller(before_m2.reduced(larger), max_m2).sqrt() + ROUNDING_M);
+        let first = speeds_m_s.partition_point(|speed_m_s| speed_m_s * self.horizon_s <= clear_m).max(1);
+        self.outline.utilities.clear();
+        if first >= speeds_m_s.len() {
+            return first;
+        }
+        let runs = self.outline.runs(begin, along);
+        let mut last_m = f64::NEG_INFINITY;
+        for foot in &self.outline.feet {
+            last_m = larger(last_m, foot.after_s.reduced(larger));
+        }
+        for speed_m_s in &speeds_m_s[first..] {
+            let run_m = speed_m_s * self.horizon_s;
+            let least_m2 = self.outline.passed_m2(&runs, &Lanes::splat(run_m), before_m2);
+            self.outline.utilities.push(self.worth(&least_m2));
+            // All corners are behind.
+            if run_m >= last_m {
+                break;
+            }
+        }
+        first
+    }
+
+    /// How far all straight runs go, m, before one may come as near as this.
+    #[inline(always)]
+    fn clear_m(&self, begin: &Places, along: &Places, near_m: f64) -> f64 {
+        let mut most_m = f64::NEG_INFINITY;
+        for half_plane in &self.outline.half_planes {
+            let mut clear_m = Lanes::splat(0.0);
+            for i in 0..LANES {
+                let out_m = half_plane.out_m(begin.north.0[i], begin.east.0[i]) - near_m;
+                let nearing = -(half_plane.normal.north * along.north.0[i] + half_plane.normal.east * along.east.0[i]);
+                let until_m = if nearing > 0.0 { out_m / nearing } else { f64::INFINITY };
+                clear_m.0[i] = if out_m > 0.0 { until_m } else { f64::NEG_INFINITY };
+            }
+            most_m = larger(most_m, clear_m.reduced(smaller));
+        }
+        most_m - ROUNDING_M
+    }
+
+    /// Utility of passes, as for contacts: from nothing at no distance to 100 at the largest.
+    #[inline(always)]
+    fn worth(&self, squared_m2: &Lanes<f64>) -> Lanes<f32> {
+        let low_per_m = CPA_MIN_UTILITY / larger(self.min_m, f64::MIN_POSITIVE);
+        let high_per_m = (100.0 - CPA_MIN_UTILITY) / larger(self.max_m - self.min_m, f64::MIN_POSITIVE);
+        let mut utilities = Lanes::splat(0.0);
+        for i in 0..LANES {
+            let pass_m = squared_m2.0[i].sqrt();
+            let low = low_per_m * pass_m;
+            let high = smaller(CPA_MIN_UTILITY + high_per_m * (pass_m - self.min_m), 100.0);
+            utilities.0[i] = (if pass_m <= self.min_m { low } else { high }) as f32;
+        }
+        utilities
+    }
+}
+
+/// How far ways are clear of a polygon.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Clear {
+    No,
+    WhileItTurns,
+    AllTheWay,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ivp::Instructions;
+    use game::field::distance_to_line;
+    use game::stream::Stream;
+
+    const MIN_M: f64 = 1.0;
+    const MAX_M: f64 = 4.0;
+    const HORIZON_S: f64 = 12.0;
+
+    fn within(stream: &mut Stream, most: f64) -> Ned {
+        Ned { north: stream.between(-most, most), east: stream.between(-most, most) }
+    }
+
+    /// A boat near a polygon of any shape, sides that cross each other and no drift at all included.
+    struct Scene {
+        corners: Vec<Ned>,
+        at: Ned,
+        velocity: Ned,
+        drift: Ned,
+        lag: Lag,
+    }
+
+    impl Scene {
+        fn new(seed: u64) -> Scene {
+            let stream = &mut Stream::new(seed, "obstacle");
+            let velocity = within(stream, 2.0);
+            Scene {
+                corners: (0..3 + seed % 4).map(|_| within(stream, 8.0)).collect(),
+                at: within(stream, [8.0, 40.0][seed as usize % 2]),
+                velocity,
+                drift: within(stream, [0.0, 0.4][seed as usize / 2 % 2]),
+                lag: Lag {
+                    velocity,
+                    heading: Ned::toward_deg(stream.between(0.0, 360.0)),
+                    reaction_s: stream.between(0.0, 2.0),
+                    turn_rad_s: stream.between(0.2, 2.0),
+                },
+            }
+        }
+
+        fn table(&self, grid: &Grid, instructions: Instructions) -> Table {
+            let mut table = Table::default();
+            table.clear(grid);
+            instructions.run(Passes {
+                table: &mut table,
+                grid,
+                outline: &mut Outline::new(&self.corners),
+                at: self.at,
+                velocity: self.velocity,
+                drift: self.drift,
+                lag: self.lag,
+                horizon_s: HORIZON_S,
+                min_m: MIN_M,
+                max_m: MAX_M,
+            });
+            table
+        }
+
+        /// What a course is worth by speed, leg by leg.
+        fn worth(&self, grid: &Grid, k: usize) -> Vec<f64> {
+            let course = Ned { north: grid.direction(k).0.into(), east: grid.direction(k).1.into() };
+            let start = self.at + self.velocity.scaled(self.lag.duration_s(course));
+            let mut pass_m = distance_to_line(&self.corners, (self.at, start));
+            let mut from = start;
+            let leg = |speed_m_s: &f64| {
+                let to = start + self.drift.scaled(HORIZON_S) + course.scaled(speed_m_s * HORIZON_S);
+                pass_m = pass_m.min(distance_to_line(&self.corners, (from, to)));
+                from = to;
+                match pass_m {
+                    _ if pass_m <= MIN_M => CPA_MIN_UTILITY * pass_m / MIN_M,
+                    _ if pass_m >= MAX_M => 100.0,
+                    _ => CPA_MIN_UTILITY + (100.0 - CPA_MIN_UTILITY) * (pass_m - MIN_M) / (MAX_M - MIN_M),
+                }
+            };
+            grid.speeds_m_s().iter().map(leg).collect()
+        }
+    }
+
+    #[test]
+    fn ways_are_worth_what_they_are_leg_by_leg_with_the_same_bits_from_all_instructions() {
+        // The last courses and speeds do not fill their lanes.
+        let grid = Grid::new(45, 20, 2.0);
+        let (mut clear, mut near) = (0, 0);
+        for seed in 0..2_000 {
+            let scene = Scene::new(seed);
+            let tables = Instructions::of_this_machine().into_iter().map(|set| scene.table(&grid, set));
+            let tables: Vec<Table> = tables.collect();
+            for k in 0..grid.courses() {
+                for (j, want) in scene.worth(&grid, k).into_iter().enumerate() {
+                    let got = tables[0].utility(k, j);
+                    assert!((f64::from(got) - want).abs() < 1e-5, "seed {seed}, {k}, {j}: {got}, expected {want}");
+                    assert!(tables.iter().all(|table| table.utility(k, j).to_bits() == got.to_bits()), "seed {seed}");
+                    (clear, near) = (clear + usize::from(want == 100.0), near + usize::from(want < 100.0));
+                }
+            }
+        }
+        assert!(clear > 300_000 && near > 300_000, "{clear} points clear, {near} near");
+    }
+}
