@@ -22,10 +22,9 @@ fn main() {
         games = shipped();
     }
     for path in &games {
-        let mut scenario = game::scenario::load(path).unwrap_or_else(|e| panic!("{e}"));
-        scenario.rules.time_limit = scenario.rules.time_limit.min(SimTime::from_s(duration_s.min(1e6)));
+        let scenario = game::scenario::load(path).unwrap_or_else(|e| panic!("{e}"));
         for seed in 1..=seeds {
-            print_game(path, &scenario, seed);
+            print_game(path, &scenario, seed, SimTime::from_s(duration_s.min(1e6)));
         }
     }
 }
@@ -43,10 +42,12 @@ fn shipped() -> Vec<PathBuf> {
 }
 
 #[expect(clippy::print_stdout, reason = "this is a program")]
-fn print_game(path: &Path, scenario: &Scenario, seed: u64) {
+fn print_game(path: &Path, scenario: &Scenario, seed: u64, until: SimTime) {
     let scenario = Scenario { seed, ..scenario.clone() };
     let begun_s = core_time_s();
-    let outcome = arena::play(&scenario, agent::minds_of(&scenario), seed).unwrap_or_else(|e| panic!("{e}"));
+    let minds = agent::minds_of(&scenario);
+    let outcome = arena::play_watched(&scenario, minds, seed, |contest| contest.now() < until);
+    let outcome = outcome.unwrap_or_else(|e| panic!("{e}"));
     let taken_s = core_time_s() - begun_s;
     println!(
         "{:<20} seed {seed}  {:>5.1} s  {taken_s:>8.3} s of a core  {:>8.1} times real time  {}",

@@ -152,7 +152,7 @@ impl Outline {
                 let per = 1.0 / (run_north * side.along.east - run_east * side.along.north);
                 let when_s = (north * side.along.east - east * side.along.north) * per;
                 let share = (north * run_east - east * run_north) * per;
-                let crosses = (share >= 0.0) & (share <= 1.0) & (when_s >= 0.0);
+                let crosses = (0.0..=1.0).contains(&share) & (when_s >= 0.0);
                 crossing_s.0[i] = smaller(if crosses { when_s } else { f64::INFINITY }, crossing_s.0[i]);
             }
             self.feet.push(foot);

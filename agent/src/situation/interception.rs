@@ -142,6 +142,11 @@ mod tests {
         }
     }
 
+    fn plain_cost_s(boat: &Interceptor, intruder: &Intruder, kept: Pair) -> f64 {
+        let is_kept = kept == Pair { interceptor: boat.vehicle, intruder: intruder.vehicle };
+        boat.unready_s.max(time_to_meet_s(boat, intruder)) - if is_kept { KEPT_S } else { 0.0 }
+    }
+
     #[test]
     fn boats_that_are_too_far_off_to_be_sooner_change_nothing() {
         for seed in 0..500 {
@@ -155,10 +160,7 @@ mod tests {
             let before = [Pair { interceptor: VehicleId(3), intruder: VehicleId(20) }];
             let (mut left, mut want) = (boats.clone(), Vec::new());
             for intruder in &intruders {
-                let cost_s = |boat: &Interceptor| {
-                    let is_kept = (boat.vehicle, intruder.vehicle) == (before[0].interceptor, before[0].intruder);
-                    boat.unready_s.max(time_to_meet_s(boat, intruder)) - if is_kept { KEPT_S } else { 0.0 }
-                };
+                let cost_s = |boat: &Interceptor| plain_cost_s(boat, intruder, before[0]);
                 let soonest = (0..left.len()).min_by(|a, b| cost_s(&left[*a]).total_cmp(&cost_s(&left[*b])));
                 want.push((left.remove(soonest.expect("20 boats for 10")).vehicle.0, intruder.vehicle.0));
             }
