@@ -49,6 +49,7 @@ pub(super) fn is_meant(contacts: Contacts, situation: &Situation, other: &OtherB
         Contacts::All => true,
         Contacts::Enemies => other.is_enemy,
         Contacts::Mates => !other.is_enemy,
+        Contacts::NoTag => !other.is_enemy || other.tagged || situation.own.tagged,
         Contacts::Opponent => {
             let opponent = situation.boat(Boat::Opponent).map(|opponent| opponent.vehicle);
             opponent == Some(other.vehicle) && is_meant(Contacts::Taggers, situation, other)

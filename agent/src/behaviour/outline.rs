@@ -398,6 +398,8 @@ mod tests {
                     heading: Ned::toward_deg(stream.between(0.0, 360.0)),
                     reaction_s: stream.between(0.0, 2.0),
                     turn_rad_s: stream.between(0.2, 2.0),
+                    acceleration_m_s2: 1.0,
+                    deceleration_m_s2: 1.0,
                 },
             }
         }

@@ -22,6 +22,8 @@ pub(super) fn lag(situation: &Situation) -> Lag {
         heading: situation.ahead,
         reaction_s: handling.reaction_s,
         turn_rad_s: handling.turn_rad_s,
+        acceleration_m_s2: handling.acceleration_m_s2,
+        deceleration_m_s2: handling.deceleration_m_s2,
     }
 }
 

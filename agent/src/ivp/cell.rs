@@ -2,6 +2,7 @@
 //!
 //! As velocities these are a piece of a ring, which lies within the polygon of four corners: at the first course and at the
 //! last, at the slowest speed and at so much more than the fastest that the side between those two touches the outer arc.
+//! Where it is wide, the square about all speeds is taken instead.
 
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes, SIDE};
@@ -10,22 +11,23 @@ use std::f64::consts::{FRAC_PI_3, TAU};
 /// A ring's piece that is wider than this to either side is taken for a whole disc, rad.
 const WIDEST_RAD: f64 = FRAC_PI_3;
 
-/// What single precision and the root of a small number may be wrong by, as a chord of the unit circle.
-const CHORD_ROUNDING: f32 = 1e-3;
-
 /// A cell.
 #[derive(Clone, Copy)]
 pub(super) struct Cell {
-    first: (f32, f32),
-    last: (f32, f32),
+    /// Its first and its last course, unit vectors.
+    pub(super) first: (f32, f32),
+    pub(super) last: (f32, f32),
     /// The course in the middle, a unit vector.
     pub(super) north: f32,
     pub(super) east: f32,
-    /// No course of the cell is farther from that one, as a chord of the unit circle.
-    pub(super) chord: f32,
-    slow: f32,
-    fast: f32,
-    mean: f32,
+    /// No course of the cell is farther from that one, rad.
+    pub(super) half: f32,
+    pub(super) slow: f32,
+    pub(super) fast: f32,
+    pub(super) mean: f32,
+    /// By how much the outer corners are farther out than the fastest speed; 1 for a whole disc.
+    stretch: f32,
+    is_disc: bool,
 }
 
 impl Cell {
@@ -33,13 +35,14 @@ impl Cell {
     #[inline(always)]
     pub(super) fn corners(&self) -> [(f32, f32); 4] {
         let at = |(north, east): (f32, f32), speed: f32| (speed * north, speed * east);
-        [at(self.first, self.slow), at(self.last, self.slow), at(self.first, self.fast), at(self.last, self.fast)]
+        let (slow, fast) = (if self.is_disc() { -self.slow } else { self.slow }, self.stretch * self.fast);
+        [at(self.first, slow), at(self.last, slow), at(self.first, fast), at(self.last, fast)]
     }
 
-    /// A velocity in the middle, m/s.
+    /// Whether it is taken for a whole disc.
     #[inline(always)]
-    pub(super) fn middle(&self) -> (f32, f32) {
-        (self.mean * self.north, self.mean * self.east)
+    pub(super) fn is_disc(&self) -> bool {
+        self.is_disc
     }
 }
 
@@ -53,7 +56,9 @@ pub(super) struct CourseSpans {
     /// The courses in the middle, unit vectors.
     pub(super) north: Lanes<f32>,
     pub(super) east: Lanes<f32>,
-    chord: f32,
+    half: f32,
+    stretch: f32,
+    is_disc: bool,
 }
 
 /// The speeds of cells, side by side.
@@ -61,7 +66,7 @@ pub(super) struct CourseSpans {
 pub(super) struct SpeedSpans {
     slow: Lanes<f32>,
     fast: Lanes<f32>,
-    mean: Lanes<f32>,
+    pub(super) mean: Lanes<f32>,
 }
 
 /// How many courses and speeds a cell has, and so its shape.
@@ -83,7 +88,6 @@ impl CellSize {
     pub(super) fn courses(self, grid: &Grid, number: impl Fn(usize) -> usize) -> CourseSpans {
         let spans: [[f32; 6]; LANES] = std::array::from_fn(|i| self.course(grid, number(i)));
         let part = |part: usize| Lanes::each(|i| spans[i][part]);
-        let chord = self.half_rad.map_or(2.0, |half_rad| 2.0 * game::math::sin_cos(0.5 * half_rad).0);
         CourseSpans {
             first_north: part(0),
             first_east: part(1),
@@ -91,7 +95,9 @@ impl CellSize {
             last_east: part(3),
             north: part(4),
             east: part(5),
-            chord: chord as f32 + CHORD_ROUNDING,
+            half: self.half_rad.unwrap_or(std::f64::consts::PI) as f32,
+            stretch: self.half_rad.map_or(1.0, |half_rad| 1.0 / game::math::sin_cos(half_rad).1) as f32,
+            is_disc: self.half_rad.is_none(),
         }
     }
 
@@ -115,13 +121,11 @@ impl CellSize {
         [first.0, first.1, last.0, last.1, north as f32, east as f32]
     }
 
-    /// The slowest, more than the fastest, and the mean speed, m/s; beyond the grid as its last one.
+    /// The slowest, the fastest and the mean speed, m/s; beyond the grid as its last one.
     fn speed(self, grid: &Grid, number: usize) -> [f32; 3] {
-        let of = |i: usize| grid.speed_m_s((self.side * number + i).min(grid.speeds() - 1));
+        let of = |i: usize| grid.speed_m_s((self.side * number + i).min(grid.speeds() - 1)) as f32;
         let (slow, fast) = (of(0), of(self.side - 1));
-        let Some(half_rad) = self.half_rad else { return [-fast as f32, fast as f32, 0.0] };
-        let outer = fast / game::math::sin_cos(half_rad).1;
-        [slow as f32, outer as f32, (0.5 * (slow + fast)) as f32]
+        if self.half_rad.is_some() { [slow, fast, 0.5 * (slow + fast)] } else { [fast, fast, 0.0] }
     }
 }
 
@@ -133,10 +137,12 @@ pub(super) fn cell(courses: &CourseSpans, speeds: &SpeedSpans, i: usize) -> Cell
         last: (courses.last_north.0[i], courses.last_east.0[i]),
         north: courses.north.0[i],
         east: courses.east.0[i],
-        chord: courses.chord,
+        half: courses.half,
         slow: speeds.slow.0[i],
         fast: speeds.fast.0[i],
         mean: speeds.mean.0[i],
+        stretch: courses.stretch,
+        is_disc: courses.is_disc,
     }
 }
 
@@ -186,10 +192,11 @@ impl Cells {
 
 #[cfg(test)]
 mod tests {
-    use super::super::closest::{Approach, Closest, Lag};
+    use super::super::closest::{Approach, Closest};
     use super::super::closing::Closing;
     use super::super::objective::{Field, Objective, Parts};
     use super::*;
+    use crate::ivp::Lag;
     use game::Ned;
     use game::stream::Stream;
 
@@ -207,6 +214,8 @@ mod tests {
             heading: Ned::toward_deg(stream.between(0.0, 360.0)),
             reaction_s: stream.between(0.0, 2.0),
             turn_rad_s: stream.between(0.1, 2.0),
+            acceleration_m_s2: stream.between(0.1, 3.0),
+            deceleration_m_s2: stream.between(0.1, 3.0),
         };
         let objective = match stream.below(5) {
             0 => Objective::Closing(Closing { offset, velocity }),
@@ -229,11 +238,12 @@ mod tests {
     fn bounds(field: &Field, cell: &Cell) -> (f32, f32) {
         match field {
             Field::Closest(ready) => {
-                let chord = ready.turn().chord(cell.north, cell.east);
-                match ready.seeks() {
-                    true => (ready.bound_seek(chord, cell), 0.0),
-                    false if ready.is_clear(chord, cell) => (ready.bound_avoid(chord, cell), 100.0),
-                    false => (ready.bound_avoid(chord, cell), 0.0),
+                let ways = ready.ways(&ready.turning().fan(cell), cell);
+                let (least_m, most_m) = (ready.least(&ways), ready.most(&ways));
+                if ready.seeks() {
+                    (ready.worth_near(least_m), ready.worth_near(most_m))
+                } else {
+                    (ready.worth_far(most_m), ready.worth_far(least_m))
                 }
             }
             Field::Closing(ready) => (ready.bound(cell), 0.0),

@@ -9,17 +9,18 @@
 //!
 //! since the square of the distance is a parabola in `t`.
 //!
-//! A boat does not turn at once: with a [`Lag`] it goes on as it goes for a while, the longer the more it must turn, and only
-//! then as the candidate says. The least distance of both legs counts.
+//! A boat does not turn or brake at once: with a [`Lag`] it goes on as it goes for its reaction time, then straight to where its
+//! [turn](Turning) ends, and then as the candidate says, at the mean [speed](MeanSpeed) until the contact would be met. The least
+//! distance of these three legs counts.
 //!
-//! For a bound over a cell of velocities, whose corners are known: at any fixed time `t` the distance is convex in the own
-//! velocity, so its largest value is at a corner; and since the closest approach is no farther than the distance at `t`, that
-//! is a bound for all of the cell. The other way round, all places that the contact comes to lie within the polygon of where it
-//! is and where each corner takes it until the horizon, and none of that is nearer than its least extent along any direction.
-//! Where courses of a cell differ in how long the boat goes on, that moves the contact by no more than it goes in that time.
+//! For bounds over a cell: its first and last course at its slowest and fastest speed are four ways. At any time each other way
+//! of the cell is between them, but for how much arcs bend between these courses. The distance at that time is convex in the
+//! place, so its largest value is at one of the four; and since the closest approach is no farther than that, it is a bound for
+//! all of the cell. The other way round, nothing on a leg is nearer than the least extent of the four along any direction.
 
 use super::cell::Cell;
 use super::lanes::{larger, smaller};
+use super::turn::{Fan, Lag, MeanSpeed, Turn, Turning, Vector};
 use game::Ned;
 
 /// What one number in single precision may be wrong by, with room to spare, in parts of the lengths that went into it.
@@ -27,6 +28,9 @@ const ROUNDING: f64 = 1e-5;
 
 /// A slope that stands for a step.
 const STEP: f64 = 1e12;
+
+/// A contact that is met sooner than this, or not at all, is taken to be met then, s.
+const MEETING_MIN_S: f64 = 1.0;
 
 /// Whether to keep away or to come close.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +53,7 @@ pub struct Closest {
     pub offset: Ned,
     /// Velocity of the contact, m/s.
     pub velocity: Ned,
-    /// How long the course and speed are kept, s.
+    /// How long the course and speed are kept after the turn, s.
     pub horizon_s: f64,
     /// The least distance to keep, m.
     pub min_m: f64,
@@ -63,48 +67,6 @@ pub struct Closest {
     pub lag: Option<Lag>,
 }
 
-/// How slow the own ship is to follow: it goes on with its present velocity for the reaction time, and for as long again as
-/// half of its turn takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lag {
-    /// Present velocity of the own ship, m/s.
-    pub velocity: Ned,
-    /// Present heading, as a unit vector.
-    pub heading: Ned,
-    /// Until a decision shows at all, s.
-    pub reaction_s: f64,
-    /// How fast it turns, rad/s.
-    pub turn_rad_s: f64,
-}
-
-/// The angle of a turn is close to this many times the chord that it spans on a circle of radius 1: between 1 for small turns
-/// and half of pi for half a turn.
-const ANGLE_OF_CHORD: f64 = 1.15;
-
-impl Lag {
-    /// Of a boat that does as decided at once.
-    const NONE: Lag = Lag {
-        velocity: Ned { north: 0.0, east: 0.0 },
-        heading: Ned { north: 1.0, east: 0.0 },
-        reaction_s: 0.0,
-        turn_rad_s: f64::INFINITY,
-    };
-
-    /// How long it goes on before it is on a course, a unit vector, s.
-    #[inline(always)]
-    #[must_use]
-    pub fn duration_s(&self, course: Ned) -> f64 {
-        let chord = (course - self.heading).length();
-        self.reaction_s + self.chord_s() * chord
-    }
-
-    /// How much longer it goes on for each unit of chord of its turn, s.
-    #[inline(always)]
-    fn chord_s(&self) -> f64 {
-        0.5 * ANGLE_OF_CHORD / self.turn_rad_s
-    }
-}
-
 impl Closest {
     /// The function in single precision; none if a number is not finite or the horizon is negative.
     pub(super) fn ready(&self, speed_max_m_s: f64) -> Option<Ready> {
@@ -112,13 +74,12 @@ impl Closest {
             Approach::Avoid { at_min } => at_min,
             Approach::Seek => 0.0,
         };
-        let lag = self.lag.unwrap_or(Lag::NONE);
-        let vectors = [self.offset, self.velocity, lag.velocity, lag.heading].map(|v| [v.north, v.east]);
-        let limits = [self.horizon_s, self.min_m, self.max_m, self.touch_m, at_min, lag.reaction_s, lag.chord_s()];
+        let lag = self.lag.as_ref();
+        let vectors = [self.offset, self.velocity].map(|v| [v.north, v.east]);
+        let limits = [self.horizon_s, self.min_m, self.max_m, self.touch_m, at_min];
         let sound = vectors.as_flattened().iter().chain(&limits).all(|x| x.is_finite() && x.abs() < 1e7)
             && self.horizon_s >= 0.0
-            && lag.reaction_s >= 0.0
-            && lag.chord_s() >= 0.0;
+            && lag.is_none_or(Lag::is_sound);
         debug_assert!(sound, "{self:?}");
         if !sound {
             return None;
@@ -126,15 +87,20 @@ impl Closest {
         let at_min = at_min.clamp(0.0, 100.0);
         let width_m = self.max_m - self.min_m;
         let slope = |rise: f64, width_m: f64| if width_m > 0.0 { (rise / width_m).min(STEP) } else { STEP };
-        let reach_m = self.velocity.length() + speed_max_m_s;
-        let own_m_s = lag.velocity.length();
-        let lag_m = (reach_m + own_m_s) * (lag.reaction_s + 2.0 * lag.chord_s());
-        let scale_m = self.offset.length() + reach_m * self.horizon_s + lag_m;
+        let contact_m_s = self.velocity.length();
+        let own_m_s = lag.map_or(0.0, |lag| lag.velocity.length()).max(speed_max_m_s);
+        let most_s = self.horizon_s + lag.map_or(0.0, Lag::most_s);
+        let scale_m = self.offset.length() + (contact_m_s + own_m_s) * most_s;
         let single = |v: Ned| (v.north as f32, v.east as f32);
-        let present = self.velocity - lag.velocity;
+        let (reaction_s, own) = lag.map_or((0.0, Ned::default()), |lag| (lag.reaction_s, lag.velocity));
+        let (offset, present) = (single(self.offset), single(self.velocity - own));
+        let reaction = reaction_s as f32;
+        let meeting_s = f64::from(time(offset, present, self.horizon_s as f32)).max(MEETING_MIN_S);
         Some(Ready {
-            offset: single(self.offset),
+            start: (offset.0 + present.0 * reaction, offset.1 + present.1 * reaction),
+            least_before: square(offset, present, time(offset, present, reaction)),
             velocity: single(self.velocity),
+            speed: contact_m_s as f32 * (1.0 + ROUNDING as f32),
             horizon: self.horizon_s as f32,
             min: self.min_m as f32,
             slope: slope(100.0 - at_min, width_m) as f32,
@@ -142,25 +108,23 @@ impl Closest {
             inner_slope: slope(at_min, self.min_m - self.touch_m) as f32,
             at_min: at_min as f32,
             seek: self.approach == Approach::Seek,
-            heading: single(lag.heading),
-            reaction: lag.reaction_s as f32,
-            chord: lag.chord_s() as f32,
-            present: single(present),
-            present_time: time_of_closest(single(self.offset), single(present)),
-            present_chord: (present.length() * lag.chord_s() * (1.0 + ROUNDING)) as f32,
+            turning: Turning::new(lag),
+            mean_speed: MeanSpeed::new(lag, meeting_s),
             margin: (ROUNDING * scale_m) as f32,
+            group: 0,
         })
     }
 }
 
-/// A vector: north, east.
-type Vector = (f32, f32);
-
 /// The function in single precision, m and s throughout.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ready {
-    offset: Vector,
+    /// Where the contact is when a decision shows, and the square of the least distance until then.
+    start: Vector,
+    least_before: f32,
     velocity: Vector,
+    /// The contact's, m/s.
+    speed: f32,
     horizon: f32,
     min: f32,
     /// Beyond the least distance, for each m.
@@ -170,26 +134,34 @@ pub(super) struct Ready {
     inner_slope: f32,
     at_min: f32,
     seek: bool,
-    /// The own ship's, a unit vector.
-    heading: Vector,
-    reaction: f32,
-    /// For each unit of chord of a turn.
-    chord: f32,
-    /// How the contact moves past at present.
-    present: Vector,
-    /// When it is nearest if that goes on, s from now.
-    present_time: f32,
-    /// How far it moves past at present for each unit of chord of a turn.
-    present_chord: f32,
+    /// The own ship's.
+    turning: Turning,
+    mean_speed: MeanSpeed,
+    /// What rounding may take from a bound on a distance.
     margin: f32,
+    /// Those of a search that have the same have the same distances.
+    pub(super) group: usize,
 }
 
-/// Where the contact is when the own ship does as decided, and how near it came until then.
+/// How the contact moves past on the ways of a cell: those to its first and its last course, each at its slowest and its fastest
+/// speed, and one in the middle.
 #[derive(Clone, Copy)]
-struct Leg {
-    at: Vector,
-    /// The square of the least distance, m2.
-    least: f32,
+pub(super) struct Ways {
+    /// Where the contact is after the turns.
+    first: Vector,
+    last: Vector,
+    from_first: [Vector; 2],
+    from_last: [Vector; 2],
+    /// Of the way in the middle: where the contact is after the turn, how it moved until then and which share of that until it
+    /// was nearest, how it moves then, and when it is nearest.
+    middle: Vector,
+    past: Vector,
+    share: f32,
+    w: Vector,
+    t: f32,
+    /// How far ways may be from between these, m, and how much farther each second takes them.
+    off: f32,
+    bend: f32,
 }
 
 impl Ready {
@@ -200,101 +172,105 @@ impl Ready {
 
     /// Utility of a course, a unit vector, at a speed.
     pub(super) fn utility(&self, north: f32, east: f32, speed: f32) -> f32 {
-        let velocity = (speed * north, speed * east);
-        let chord = self.turn().chord(north, east);
-        if self.seek { self.utility_seek(chord, velocity) } else { self.utility_avoid(chord, velocity) }
+        let course = (north, east);
+        let distance = self.distance(&self.turning.to(course), course, speed);
+        if self.seek { self.worth_near(distance) } else { self.worth_far(distance) }
     }
 
-    /// The turn to a course.
-    pub(super) fn turn(&self) -> Turn {
-        Turn { heading: self.heading }
+    /// How the own ship turns.
+    pub(super) fn turning(&self) -> Turning {
+        self.turning
     }
 
-    /// Utility of a velocity after a turn with this chord, of a function that keeps away.
+    /// Whether another function is of the same distances.
+    pub(super) fn has_distances_of(&self, other: &Ready) -> bool {
+        let ways = |ready: &Ready| (ready.start, ready.least_before, ready.velocity, ready.horizon, ready.seek);
+        ways(self) == ways(other) && self.turning == other.turning && self.mean_speed == other.mean_speed
+    }
+
+    /// The least distance on a course, a unit vector, at a speed after the turn to it, m.
     #[inline(always)]
-    pub(super) fn utility_avoid(&self, chord: f32, velocity: Vector) -> f32 {
-        self.worth_far(self.distance(chord, velocity))
+    pub(super) fn distance(&self, turn: &Turn, course: Vector, speed: f32) -> f32 {
+        let (at, speed) = (self.after(turn), self.mean_speed.of(speed));
+        let (past, w) = (minus(at, self.start), self.passing(course, speed));
+        let turning = square(self.start, past, time(self.start, past, 1.0));
+        let straight = square(at, w, time(at, w, self.horizon));
+        smaller(smaller(straight, turning), self.least_before).sqrt()
     }
 
-    /// Utility of a velocity after a turn with this chord, of a function that comes close.
+    /// The ways of a cell.
     #[inline(always)]
-    pub(super) fn utility_seek(&self, chord: f32, velocity: Vector) -> f32 {
-        self.worth_near(self.distance(chord, velocity))
+    pub(super) fn ways(&self, fan: &Fan, cell: &Cell) -> Ways {
+        let (first, last) = (self.after(&fan.first), self.after(&fan.last));
+        let middle = (0.5 * (first.0 + last.0), 0.5 * (first.1 + last.1));
+        let past = minus(middle, self.start);
+        let (slow, fast) = (self.mean_speed.of(cell.slow), self.mean_speed.of(cell.fast));
+        let w = self.passing((cell.north, cell.east), self.mean_speed.of(cell.mean));
+        Ways {
+            first,
+            last,
+            from_first: [self.passing(cell.first, slow), self.passing(cell.first, fast)],
+            from_last: [self.passing(cell.last, slow), self.passing(cell.last, fast)],
+            middle,
+            past,
+            share: time(self.start, past, 1.0),
+            w,
+            t: time(middle, w, self.horizon),
+            off: fan.off + fan.off_s * self.speed + self.margin,
+            bend: 0.5 * cell.half * cell.half * fast,
+        }
     }
 
-    /// The least distance, m.
+    /// What no least distance on ways of a cell exceeds, m.
     #[inline(always)]
-    fn distance(&self, chord: f32, velocity: Vector) -> f32 {
-        let (leg, w) = (self.going_on(chord), self.passing(velocity));
-        let square = square(leg.at, w, time(leg.at, w, self.horizon));
-        smaller(square, leg.least).sqrt()
+    pub(super) fn most(&self, ways: &Ways) -> f32 {
+        let Ways { first, last, t, .. } = *ways;
+        let part = |at| square(self.start, minus(at, self.start), ways.share);
+        let turning = larger(part(first), part(last));
+        let [a, b] = ways.from_first.map(|w| square(first, w, t));
+        let [c, d] = ways.from_last.map(|w| square(last, w, t));
+        let straight = larger(larger(a, b), larger(c, d));
+        smaller(smaller(straight, turning), self.least_before).sqrt() + ways.off + ways.bend * t
     }
 
-    /// What nothing within a cell exceeds, of a function that keeps away. The chord is that of the turn to its middle course.
+    /// What no least distance on ways of a cell falls short of, m.
     #[inline(always)]
-    pub(super) fn bound_avoid(&self, chord: f32, cell: &Cell) -> f32 {
-        let leg = self.going_on(chord);
-        let t = time(leg.at, self.passing(cell.middle()), self.horizon);
-        let [a, b, c, d] = cell.corners();
-        let (a, b) = (square(leg.at, self.passing(a), t), square(leg.at, self.passing(b), t));
-        let (c, d) = (square(leg.at, self.passing(c), t), square(leg.at, self.passing(d), t));
-        let most = smaller(larger(larger(a, b), larger(c, d)), leg.least);
-        self.worth_far(most.sqrt() + cell.chord * self.present_chord + self.margin)
-    }
-
-    /// Whether all within a cell is worth everything, of a function that keeps away.
-    #[inline(always)]
-    pub(super) fn is_clear(&self, chord: f32, cell: &Cell) -> bool {
-        self.worth_far(self.least_distance(chord, cell)) >= 100.0
-    }
-
-    /// What nothing within a cell exceeds, of a function that comes close.
-    #[inline(always)]
-    pub(super) fn bound_seek(&self, chord: f32, cell: &Cell) -> f32 {
-        self.worth_near(self.least_distance(chord, cell))
-    }
-
-    /// Nothing within a cell comes nearer, m.
-    #[inline(always)]
-    fn least_distance(&self, chord: f32, cell: &Cell) -> f32 {
-        let leg = self.going_on(chord);
-        let w = self.passing(cell.middle());
-        let t = time(leg.at, w, self.horizon);
-        let nearest = (leg.at.0 + w.0 * t, leg.at.1 + w.1 * t);
-        let scale = 1.0 / larger((nearest.0 * nearest.0 + nearest.1 * nearest.1).sqrt(), 1e-6);
-        let [a, b, c, d] = cell.corners();
-        let (a, b) = (dot(self.passing(a), nearest), dot(self.passing(b), nearest));
-        let (c, d) = (dot(self.passing(c), nearest), dot(self.passing(d), nearest));
+    pub(super) fn least(&self, ways: &Ways) -> f32 {
+        let nearest = (self.start.0 + ways.share * ways.past.0, self.start.1 + ways.share * ways.past.1);
+        let extent = smaller(dot(ways.first, nearest), dot(ways.last, nearest));
+        let turning = smaller(dot(self.start, nearest), extent) * per_length(nearest);
+        let nearest = (ways.middle.0 + ways.t * ways.w.0, ways.middle.1 + ways.t * ways.w.1);
+        let [a, b] = ways.from_first.map(|w| dot(w, nearest));
+        let [c, d] = ways.from_last.map(|w| dot(w, nearest));
         let slowest = smaller(smaller(smaller(a, b), smaller(c, d)), 0.0);
-        let least = smaller((dot(leg.at, nearest) + slowest * self.horizon) * scale, leg.least.sqrt());
-        least - cell.chord * self.present_chord - self.margin
+        let extent = smaller(dot(ways.first, nearest), dot(ways.last, nearest)) + slowest * self.horizon;
+        let straight = extent * per_length(nearest);
+        smaller(smaller(straight, turning), self.least_before.sqrt()) - ways.off - ways.bend * self.horizon
     }
 
-    /// The way until the own ship does as decided.
+    /// Where the contact is when the own ship is on its course.
     #[inline(always)]
-    fn going_on(&self, chord: f32) -> Leg {
-        let lag = self.reaction + self.chord * chord;
-        let p = self.offset;
-        let least = square(p, self.present, within(self.present_time, lag));
-        Leg { at: (p.0 + self.present.0 * lag, p.1 + self.present.1 * lag), least }
+    fn after(&self, turn: &Turn) -> Vector {
+        let past = (self.velocity.0 * turn.duration - turn.by.0, self.velocity.1 * turn.duration - turn.by.1);
+        (self.start.0 + past.0, self.start.1 + past.1)
     }
 
-    /// How the contact moves past at an own velocity, m/s.
+    /// How the contact moves past the own ship on a course, a unit vector, at a speed, m/s.
     #[inline(always)]
-    fn passing(&self, own: Vector) -> Vector {
-        (self.velocity.0 - own.0, self.velocity.1 - own.1)
+    fn passing(&self, course: Vector, speed: f32) -> Vector {
+        (self.velocity.0 - speed * course.0, self.velocity.1 - speed * course.1)
     }
 
     /// Utility of a distance to a contact that is to be near.
     #[inline(always)]
-    fn worth_near(&self, distance: f32) -> f32 {
+    pub(super) fn worth_near(&self, distance: f32) -> f32 {
         let rise = (distance - self.min) * self.slope;
         smaller(larger(100.0 - rise, 0.0), 100.0)
     }
 
     /// Utility of a distance to a contact that is to be far.
     #[inline(always)]
-    fn worth_far(&self, distance: f32) -> f32 {
+    pub(super) fn worth_far(&self, distance: f32) -> f32 {
         let rise = (distance - self.min) * self.slope;
         let inside = smaller(larger((distance - self.touch) * self.inner_slope, 0.0), self.at_min);
         let outside = smaller(self.at_min + rise, 100.0);
@@ -302,38 +278,23 @@ impl Ready {
     }
 }
 
-/// A turn of the own ship, which is the same for all contacts.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) struct Turn {
-    heading: Vector,
-}
-
-impl Turn {
-    /// How far it is to a course, a unit vector, as a chord of the unit circle.
-    #[inline(always)]
-    pub(super) fn chord(self, north: f32, east: f32) -> f32 {
-        let cosine = self.heading.0 * north + self.heading.1 * east;
-        larger(2.0 - 2.0 * cosine, 0.0).sqrt()
-    }
-}
-
-/// The time of the closest point of approach, up to a longest one, s.
+/// The time of the closest point of approach, within 0 and a longest one, s.
 #[inline(always)]
 fn time(p: Vector, w: Vector, longest: f32) -> f32 {
-    within(time_of_closest(p, w), longest)
-}
-
-/// The time of the closest point of approach, s, also if that was before.
-#[inline(always)]
-fn time_of_closest(p: Vector, w: Vector) -> f32 {
     // With hardly any motion past each other any time will do.
-    -dot(p, w) / larger(dot(w, w), 1e-20)
+    let time = -dot(p, w) / larger(dot(w, w), 1e-20);
+    smaller(larger(time, 0.0), longest)
 }
 
-/// A time held within 0 and a longest one, s.
 #[inline(always)]
-fn within(time: f32, longest: f32) -> f32 {
-    smaller(larger(time, 0.0), longest)
+fn minus(a: Vector, b: Vector) -> Vector {
+    (a.0 - b.0, a.1 - b.1)
+}
+
+/// One by the length of a vector that is not very short.
+#[inline(always)]
+fn per_length(v: Vector) -> f32 {
+    1.0 / larger(dot(v, v).sqrt(), 1e-6)
 }
 
 #[inline(always)]

@@ -1,13 +1,14 @@
 //! The search for the largest sum: sectors whose bound reaches the best point found, their tiles, and the points of those.
 
 use super::cell::{Cells, CourseSpans, SpeedSpans, cell};
-use super::closest::{self, Turn};
 use super::fixed::Weight;
 use super::grid::Grid;
 use super::instructions::Kernel;
 use super::lanes::{LANES, Lanes, SIDE, larger};
+use super::measured::{Bounded, Distances};
 use super::objective::Field;
 use super::sums::Sums;
+use super::{closest, closing};
 use std::cmp::Ordering;
 
 /// A sector, tile or point that is done, or that is not on the grid.
@@ -137,9 +138,7 @@ impl Search<'_> {
             for (sum, tiles) in sums.0.iter_mut().zip(&lists[LANES * chunk..]) {
                 *sum = tiles.most();
             }
-            let clear = &mut clear[formulas * chunk..][..formulas];
-            self.sums.find_clear(cells, clear);
-            *bounds = self.sums.add_bounds(sums, cells, Clear { of_formulas: clear, sectors: u16::MAX });
+            *bounds = self.sums.bound_sectors(sums, cells, &mut clear[formulas * chunk..][..formulas]);
         }
     }
 
@@ -226,41 +225,44 @@ impl Sums {
         tiles
     }
 
-    /// What comes to so much at most in each of these cells without formulas, with them. Of those that `clear` names nothing is
+    /// What comes to so much at most in each of these tiles without formulas, with them. Of those that `clear` names nothing is
     /// below the most that they can be.
     #[inline(always)]
     fn add_bounds(&self, mut sums: Lanes<i32>, cells: (&CourseSpans, &SpeedSpans), clear: Clear<'_>) -> Lanes<i32> {
-        let mut turned = Turned::new();
+        let mut bounded = Bounded::new();
         for (i, (weight, field)) in self.fields.iter().enumerate() {
             match field {
                 _ if clear.is_so(i) => add_full(&mut sums, *weight),
                 Field::Closest(ready) => {
-                    turned.turn(ready.turn(), &cells.0.north, &cells.0.east);
-                    add_closest_bounds(&mut sums, *weight, ready, &turned.chords, cells);
+                    bounded.measure_best(ready, cells);
+                    add_worth(&mut sums, *weight, ready, if ready.seeks() { &bounded.least } else { &bounded.most });
                 }
-                Field::Closing(ready) => {
-                    for i in 0..LANES {
-                        sums.0[i] += weight.quanta(ready.bound(&cell(cells.0, cells.1, i)));
-                    }
-                }
+                Field::Closing(ready) => add_closing_bounds(&mut sums, *weight, ready, cells),
             }
         }
         sums
     }
 
-    /// Which sectors side by side each formula is clear of, a bit for each.
+    /// The same of sectors; fills in which of them each formula is clear of, a bit for each.
     #[inline(always)]
-    fn find_clear(&self, cells: (&CourseSpans, &SpeedSpans), clear: &mut [u16]) {
-        let mut turned = Turned::new();
-        for ((_, field), clear) in self.fields.iter().zip(clear) {
+    fn bound_sectors(&self, mut sums: Lanes<i32>, cells: (&CourseSpans, &SpeedSpans), clear: &mut [u16]) -> Lanes<i32> {
+        let mut bounded = Bounded::new();
+        for ((weight, field), clear) in self.fields.iter().zip(clear) {
             *clear = 0;
-            if let Field::Closest(ready) = field
-                && !ready.seeks()
-            {
-                turned.turn(ready.turn(), &cells.0.north, &cells.0.east);
-                *clear = clear_bits(ready, &turned.chords, cells);
+            match field {
+                Field::Closest(ready) => {
+                    bounded.measure(ready, cells);
+                    if ready.seeks() {
+                        add_worth(&mut sums, *weight, ready, &bounded.least);
+                    } else {
+                        add_worth(&mut sums, *weight, ready, &bounded.most);
+                        *clear = clear_bits(ready, &bounded.least);
+                    }
+                }
+                Field::Closing(ready) => add_closing_bounds(&mut sums, *weight, ready, cells),
             }
         }
+        sums
     }
 
     /// The weighted sums of a tile's points, in quanta.
@@ -280,13 +282,13 @@ impl Sums {
             }
         }
         let ((north, east), speed) = (&cells.points[course_tile], &cells.point_speeds[speed_tile]);
-        let mut turned = Turned::new();
+        let mut measured = Distances::new();
         for (i, (weight, field)) in self.fields.iter().enumerate() {
             match field {
                 _ if clear.is_so(i) => add_full(&mut sums, *weight),
                 Field::Closest(ready) => {
-                    turned.turn(ready.turn(), north, east);
-                    add_closest(&mut sums, *weight, ready, &turned.chords, (north, east, speed));
+                    measured.measure(ready, (north, east, speed));
+                    add_worth(&mut sums, *weight, ready, &measured.distances);
                 }
                 Field::Closing(ready) => {
                     for i in 0..LANES {
@@ -319,35 +321,39 @@ impl Clear<'_> {
     }
 }
 
-/// How far the own ship turns to courses side by side, which is worked out once for all contacts.
-struct Turned {
-    turn: Option<Turn>,
-    chords: Lanes<f32>,
-}
-
-impl Turned {
-    #[inline(always)]
-    fn new() -> Turned {
-        Turned { turn: None, chords: Lanes::splat(0.0) }
-    }
-
-    #[inline(always)]
-    fn turn(&mut self, turn: Turn, north: &Lanes<f32>, east: &Lanes<f32>) {
-        if self.turn != Some(turn) {
-            self.turn = Some(turn);
-            for i in 0..LANES {
-                self.chords.0[i] = turn.chord(north.0[i], east.0[i]);
-            }
+/// Adds what distances are worth.
+#[inline(always)]
+fn add_worth(sums: &mut Lanes<i32>, weight: Weight, ready: &closest::Ready, distances: &Lanes<f32>) {
+    if ready.seeks() {
+        for i in 0..LANES {
+            sums.0[i] += weight.quanta(ready.worth_near(distances.0[i]));
+        }
+    } else {
+        for i in 0..LANES {
+            sums.0[i] += weight.quanta(ready.worth_far(distances.0[i]));
         }
     }
 }
 
-/// Which of cells side by side a function is clear of, a bit for each.
+/// Adds what no rate of closure in cells side by side exceeds.
 #[inline(always)]
-fn clear_bits(ready: &closest::Ready, chords: &Lanes<f32>, cells: (&CourseSpans, &SpeedSpans)) -> u16 {
+fn add_closing_bounds(
+    sums: &mut Lanes<i32>,
+    weight: Weight,
+    ready: &closing::Ready,
+    cells: (&CourseSpans, &SpeedSpans),
+) {
+    for i in 0..LANES {
+        sums.0[i] += weight.quanta(ready.bound(&cell(cells.0, cells.1, i)));
+    }
+}
+
+/// Which of cells side by side a function is clear of, a bit for each: nothing in them comes nearer than this, m.
+#[inline(always)]
+fn clear_bits(ready: &closest::Ready, least: &Lanes<f32>) -> u16 {
     let mut bits = Lanes::splat(0);
     for i in 0..LANES {
-        bits.0[i] = if ready.is_clear(chords.0[i], &cell(cells.0, cells.1, i)) { 1 << i } else { 0 };
+        bits.0[i] = if ready.worth_far(least.0[i]) >= 100.0 { 1 << i } else { 0 };
     }
     bits.0.iter().fold(0, |all, bit| all | bit) as u16
 }
@@ -358,46 +364,6 @@ fn add_full(sums: &mut Lanes<i32>, weight: Weight) {
     let full = weight.quanta(100.0);
     for i in 0..LANES {
         sums.0[i] += full;
-    }
-}
-
-#[inline(always)]
-fn add_closest_bounds(
-    sums: &mut Lanes<i32>,
-    weight: Weight,
-    ready: &closest::Ready,
-    chords: &Lanes<f32>,
-    cells: (&CourseSpans, &SpeedSpans),
-) {
-    if ready.seeks() {
-        for i in 0..LANES {
-            sums.0[i] += weight.quanta(ready.bound_seek(chords.0[i], &cell(cells.0, cells.1, i)));
-        }
-    } else {
-        for i in 0..LANES {
-            sums.0[i] += weight.quanta(ready.bound_avoid(chords.0[i], &cell(cells.0, cells.1, i)));
-        }
-    }
-}
-
-#[inline(always)]
-fn add_closest(
-    sums: &mut Lanes<i32>,
-    weight: Weight,
-    ready: &closest::Ready,
-    chords: &Lanes<f32>,
-    (north, east, speed): (&Lanes<f32>, &Lanes<f32>, &Lanes<f32>),
-) {
-    if ready.seeks() {
-        for i in 0..LANES {
-            let velocity = (speed.0[i] * north.0[i], speed.0[i] * east.0[i]);
-            sums.0[i] += weight.quanta(ready.utility_seek(chords.0[i], velocity));
-        }
-    } else {
-        for i in 0..LANES {
-            let velocity = (speed.0[i] * north.0[i], speed.0[i] * east.0[i]);
-            sums.0[i] += weight.quanta(ready.utility_avoid(chords.0[i], velocity));
-        }
     }
 }
 

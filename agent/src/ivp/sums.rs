@@ -50,13 +50,29 @@ impl Sums {
     pub(super) fn add(&mut self, grid: &Grid, instructions: Instructions, weight: Weight, objective: &Objective) {
         match objective.parts(grid) {
             Parts::Separable => instructions.run(AddSeparable { sums: self, grid, weight, objective }),
-            Parts::Field(field) => self.fields.push((weight, field)),
+            Parts::Field(field) => self.add_field(weight, field),
             Parts::Table(table) => {
                 self.table.resize(self.speeds.len() * LANES * self.courses.len(), Lanes::splat(0));
                 instructions.run(AddTable { sums: self, grid, weight, table });
             }
             Parts::Nothing => {}
         }
+    }
+
+    /// Adds a formula: behind one of the same distances if there is one, since these are then known.
+    fn add_field(&mut self, weight: Weight, mut field: Field) {
+        let mut place = self.fields.len();
+        if let Field::Closest(ready) = &mut field {
+            ready.group = place;
+            for (i, (_, other)) in self.fields.iter().enumerate() {
+                if let Field::Closest(other) = other
+                    && ready.has_distances_of(other)
+                {
+                    (place, ready.group) = (i + 1, other.group);
+                }
+            }
+        }
+        self.fields.insert(place, (weight, field));
     }
 
     /// The rows of a table for courses side by side with speeds side by side, if any lowers one of these courses.

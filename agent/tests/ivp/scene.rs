@@ -125,6 +125,8 @@ fn lag(stream: &mut Stream, grid: &Grid) -> Lag {
         heading: Ned { north: heading_north, east: heading_east },
         reaction_s: stream.between(0.0, 2.0),
         turn_rad_s: stream.between(0.1, 2.0),
+        acceleration_m_s2: stream.between(0.1, 3.0),
+        deceleration_m_s2: stream.between(0.1, 3.0),
     }
 }
 

@@ -56,12 +56,31 @@ fn searched_m(closest: &Closest, grid: &Grid, k: usize, j: usize) -> f64 {
         let times = (0..=TIMES).map(|i| time_s * i as f64 / TIMES as f64);
         times.map(|t| (from + velocity.scaled(t)).length()).fold(f64::INFINITY, f64::min)
     };
-    let decided = closest.velocity - course.scaled(grid.speed_m_s(j));
-    let Some(lag) = closest.lag else { return least(closest.offset, decided, closest.horizon_s) };
+    let speed_m_s = grid.speed_m_s(j);
+    let straight = |speed_m_s: f64| closest.velocity - course.scaled(speed_m_s);
+    let Some(lag) = closest.lag else { return least(closest.offset, straight(speed_m_s), closest.horizon_s) };
     let present = closest.velocity - lag.velocity;
-    let lag_s = lag.reaction_s + 0.5 * 1.15 * (course - lag.heading).length() / lag.turn_rad_s;
-    let then = closest.offset + present.scaled(lag_s);
-    least(closest.offset, present, lag_s).min(least(then, decided, closest.horizon_s))
+    let start = closest.offset + present.scaled(lag.reaction_s);
+    let (ahead_m_s, x) = (lag.velocity.dot(lag.heading).max(0.0), 0.5 * (course - lag.heading).length());
+    let (x2, x4) = (x * x, x * x * x * x);
+    let angle_rad = 2.0 * x * (1.0 + x2 / 6.0 + 0.36 * x4 * x4);
+    let turn_s = angle_rad / lag.turn_rad_s;
+    let middle = course + lag.heading;
+    let chord_m = ahead_m_s / lag.turn_rad_s * 2.0 * x;
+    let then = start + closest.velocity.scaled(turn_s) - middle.scaled(chord_m / middle.length().max(1e-3));
+    // The mean speed until the contact would be met if all went on.
+    let rate_m2_s = present.dot(present);
+    let meeting_s = (-closest.offset.dot(present) / rate_m2_s).clamp(0.0, closest.horizon_s).max(1.0);
+    let change_m_s2 = if speed_m_s > ahead_m_s { lag.acceleration_m_s2 } else { lag.deceleration_m_s2 };
+    let change_s = (speed_m_s - ahead_m_s).abs() / change_m_s2;
+    let mean_m_s = if change_s < meeting_s {
+        speed_m_s - 0.5 * (speed_m_s - ahead_m_s) * change_s / meeting_s
+    } else {
+        ahead_m_s + 0.5 * change_m_s2 * meeting_s * (speed_m_s - ahead_m_s).signum()
+    };
+    least(closest.offset, present, lag.reaction_s)
+        .min(least(start, (then - start).scaled(1.0 / turn_s.max(1e-9)), turn_s))
+        .min(least(then, straight(mean_m_s), closest.horizon_s))
 }
 
 #[test]
@@ -82,6 +101,8 @@ fn the_closest_point_of_approach_is_the_one_a_search_of_times_finds() {
                 heading: Ned { north: 0.6, east: -0.8 },
                 reaction_s: 1.5,
                 turn_rad_s: 0.5,
+                acceleration_m_s2: 0.4,
+                deceleration_m_s2: 0.2,
             }),
         };
         let seek = Closest { approach: Approach::Seek, ..closest };

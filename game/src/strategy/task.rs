@@ -304,6 +304,8 @@ pub enum Contacts {
     Opponent,
     /// The own team's.
     Mates,
+    /// All with whom there can be no tag now: mates, and everybody while this boat is tagged, else enemies that are.
+    NoTag,
 }
 
 /// How a weight falls with distance.

@@ -1,0 +1,138 @@
+//! How near contacts come, side by side: what functions of the same distances share is worked out once.
+
+use super::cell::{CourseSpans, SpeedSpans, cell};
+use super::closest::Ready;
+use super::lanes::{LANES, Lanes};
+use super::turn::{Fan, Turn};
+
+/// Turns to courses side by side.
+struct Turns {
+    duration: Lanes<f32>,
+    by_north: Lanes<f32>,
+    by_east: Lanes<f32>,
+}
+
+impl Turns {
+    #[inline(always)]
+    fn new() -> Turns {
+        Turns { duration: Lanes::splat(0.0), by_north: Lanes::splat(0.0), by_east: Lanes::splat(0.0) }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, turn: &Turn) {
+        self.duration.0[i] = turn.duration;
+        (self.by_north.0[i], self.by_east.0[i]) = turn.by;
+    }
+
+    #[inline(always)]
+    fn at(&self, i: usize) -> Turn {
+        Turn { duration: self.duration.0[i], by: (self.by_north.0[i], self.by_east.0[i]) }
+    }
+}
+
+/// How near contacts come at points side by side: what was worked out last is known.
+pub(super) struct Distances<'a> {
+    known: Option<&'a Ready>,
+    turns: Turns,
+    /// m
+    pub(super) distances: Lanes<f32>,
+}
+
+impl<'a> Distances<'a> {
+    #[inline(always)]
+    pub(super) fn new() -> Distances<'a> {
+        Distances { known: None, turns: Turns::new(), distances: Lanes::splat(0.0) }
+    }
+
+    /// On courses, as unit vectors' parts north and east, at speeds.
+    #[inline(always)]
+    pub(super) fn measure(&mut self, ready: &'a Ready, (north, east, speed): (&Lanes<f32>, &Lanes<f32>, &Lanes<f32>)) {
+        if self.known.is_some_and(|known| ready.group == known.group) {
+            return;
+        }
+        let turning = ready.turning();
+        if self.known.is_none_or(|known| turning != known.turning()) {
+            for i in 0..LANES {
+                self.turns.set(i, &turning.to((north.0[i], east.0[i])));
+            }
+        }
+        self.known = Some(ready);
+        for i in 0..LANES {
+            self.distances.0[i] = ready.distance(&self.turns.at(i), (north.0[i], east.0[i]), speed.0[i]);
+        }
+    }
+}
+
+/// Within what distances contacts come in cells side by side: what was worked out last is known.
+pub(super) struct Bounded<'a> {
+    known: Option<&'a Ready>,
+    first: Turns,
+    last: Turns,
+    off: Lanes<f32>,
+    off_s: Lanes<f32>,
+    /// m
+    pub(super) least: Lanes<f32>,
+    pub(super) most: Lanes<f32>,
+}
+
+impl<'a> Bounded<'a> {
+    #[inline(always)]
+    pub(super) fn new() -> Bounded<'a> {
+        let zeros = Lanes::splat(0.0);
+        let (first, last) = (Turns::new(), Turns::new());
+        Bounded { known: None, first, last, off: zeros, off_s: zeros, least: zeros, most: zeros }
+    }
+
+    /// Both bounds.
+    #[inline(always)]
+    pub(super) fn measure(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) {
+        if self.turn(ready, cells) {
+            for i in 0..LANES {
+                let ways = ready.ways(&self.fan(i), &cell(cells.0, cells.1, i));
+                (self.least.0[i], self.most.0[i]) = (ready.least(&ways), ready.most(&ways));
+            }
+        }
+    }
+
+    /// That at which nothing is worth more.
+    #[inline(always)]
+    pub(super) fn measure_best(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) {
+        if !self.turn(ready, cells) {
+            return;
+        }
+        if ready.seeks() {
+            for i in 0..LANES {
+                self.least.0[i] = ready.least(&ready.ways(&self.fan(i), &cell(cells.0, cells.1, i)));
+            }
+        } else {
+            for i in 0..LANES {
+                self.most.0[i] = ready.most(&ready.ways(&self.fan(i), &cell(cells.0, cells.1, i)));
+            }
+        }
+    }
+
+    /// Works out the turns if they are not known; says whether there is anything to measure.
+    #[inline(always)]
+    fn turn(&mut self, ready: &'a Ready, cells: (&CourseSpans, &SpeedSpans)) -> bool {
+        if self.known.is_some_and(|known| ready.group == known.group) {
+            return false;
+        }
+        let turning = ready.turning();
+        if self.known.is_none_or(|known| turning != known.turning()) {
+            for i in 0..LANES {
+                let fan = turning.fan(&cell(cells.0, cells.1, i));
+                self.first.set(i, &fan.first);
+                self.last.set(i, &fan.last);
+                self.off.0[i] = fan.off;
+                self.off_s.0[i] = fan.off_s;
+            }
+        }
+        self.known = Some(ready);
+        true
+    }
+
+    #[inline(always)]
+    fn fan(&self, i: usize) -> Fan {
+        Fan { first: self.first.at(i), last: self.last.at(i), off: self.off.0[i], off_s: self.off_s.0[i] }
+    }
+}

@@ -1,0 +1,237 @@
+//! How the own ship comes to go as decided: it goes on as it goes for its reaction time, turns the shorter way along an arc at
+//! its present speed, and then goes straight, at a speed that it gains and loses only so fast.
+//!
+//! From the heading `h` to the course `d`, unit vectors with the angle `a` between them, a turn at the yaw rate `r` lasts
+//! `a / r`. With the speed `u` it is an arc of the radius `u / r`, the chord of which ends at
+//!
+//! ```text
+//! (u / r) |d - h| (h + d) / |h + d|           a = 2 asin(x) = 2 x (1 + x^2 / 6 + 0.36 x^8), within 6 %, x = |d - h| / 2
+//! ```
+//!
+//! To the course that leads straight back both ways round are as short, and the arc ends on either side.
+
+use super::cell::Cell;
+use super::lanes::{larger, smaller};
+use game::Ned;
+
+/// A vector: north, east.
+pub(super) type Vector = (f32, f32);
+
+/// How slow the own ship is to do as decided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lag {
+    /// Present velocity of the own ship, m/s.
+    pub velocity: Ned,
+    /// Present heading, as a unit vector.
+    pub heading: Ned,
+    /// Until a decision shows at all, s.
+    pub reaction_s: f64,
+    /// How fast it turns, rad/s.
+    pub turn_rad_s: f64,
+    /// How fast it gains speed, m/s².
+    pub acceleration_m_s2: f64,
+    /// How fast it loses speed, m/s².
+    pub deceleration_m_s2: f64,
+}
+
+/// The angle of a turn is close to this many times the chord that it spans on a circle of radius 1: between 1 for small turns
+/// and half of pi for half a turn.
+const ANGLE_OF_CHORD: f64 = 1.15;
+
+impl Lag {
+    /// Until the own ship is on a course, a unit vector, if it goes on as it goes for half of its turn, s.
+    #[inline(always)]
+    #[must_use]
+    pub fn duration_s(&self, course: Ned) -> f64 {
+        let chord = (course - self.heading).length();
+        self.reaction_s + 0.5 * ANGLE_OF_CHORD / self.turn_rad_s * chord
+    }
+
+    /// Speed ahead, m/s.
+    fn ahead_m_s(&self) -> f64 {
+        self.velocity.dot(self.heading).max(0.0)
+    }
+
+    /// Whether it can be reckoned with.
+    pub(super) fn is_sound(&self) -> bool {
+        let rates = [self.turn_rad_s, self.acceleration_m_s2, self.deceleration_m_s2];
+        let numbers = [self.velocity.north, self.velocity.east, self.heading.north, self.heading.east, self.reaction_s];
+        let sound = |x: &f64| x.is_finite() && x.abs() < 1e7;
+        numbers.iter().all(sound) && self.reaction_s >= 0.0 && rates.iter().all(|rate| sound(rate) && *rate > 1e-4)
+    }
+
+    /// How long it may take until the own ship is on its course, s.
+    pub(super) fn most_s(&self) -> f64 {
+        self.reaction_s + std::f64::consts::PI / self.turn_rad_s
+    }
+}
+
+/// What an angle may be wrong by in single precision, as its cosine is near 1, rad.
+const ROUNDING_RAD: f32 = 1e-3;
+
+/// How the own ship turns, in single precision: the same for all contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turning {
+    heading: Vector,
+    s_per_rad: f32,
+    radius: f32,
+}
+
+/// A turn onto a course.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    /// s
+    pub(super) duration: f32,
+    /// Where it ends, through the water, m.
+    pub(super) by: Vector,
+}
+
+/// Turns onto the courses of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fan {
+    pub(super) first: Turn,
+    pub(super) last: Turn,
+    /// How far the end of any of them may be from the straight line between these two, m.
+    pub(super) off: f32,
+    /// And how far its duration from the mean of theirs that goes with it, s.
+    pub(super) off_s: f32,
+}
+
+impl Turning {
+    /// Of a ship that does as decided at once.
+    const NONE: Turning = Turning { heading: (1.0, 0.0), s_per_rad: 0.0, radius: 0.0 };
+
+    pub(super) fn new(lag: Option<&Lag>) -> Turning {
+        lag.map_or(Turning::NONE, |lag| Turning {
+            heading: (lag.heading.north as f32, lag.heading.east as f32),
+            s_per_rad: (1.0 / lag.turn_rad_s) as f32,
+            radius: (lag.ahead_m_s() / lag.turn_rad_s) as f32,
+        })
+    }
+
+    /// The turn to a course, a unit vector.
+    #[inline(always)]
+    pub(super) fn to(&self, (north, east): Vector) -> Turn {
+        let cosine = self.heading.0 * north + self.heading.1 * east;
+        let x2 = larger(0.5 - 0.5 * cosine, 0.0);
+        let (chord, x4) = (2.0 * x2.sqrt(), x2 * x2);
+        let arc_of_chord = 1.0 + x2 * (1.0 / 6.0) + 0.36 * x4 * x4;
+        let (middle_north, middle_east) = (self.heading.0 + north, self.heading.1 + east);
+        let middle = (middle_north * middle_north + middle_east * middle_east).sqrt();
+        let scale = self.radius * chord / larger(middle, 1e-3);
+        Turn { duration: chord * arc_of_chord * self.s_per_rad, by: (scale * middle_north, scale * middle_east) }
+    }
+
+    /// Turns onto the courses of a cell.
+    ///
+    /// With the course their ends move at the rate of the radius, which itself turns as the course does, and their durations at
+    /// a rate that changes by less than 2.4: what is between two of them is off the straight line by no more than half of
+    /// that times the square of half the cell's angle. At the bow both rates change their sign, and opposite to it the ends jump.
+    #[inline(always)]
+    pub(super) fn fan(&self, cell: &Cell) -> Fan {
+        let (first, last) = (self.to(cell.first), self.to(cell.last));
+        let bend = 0.5 * cell.half * cell.half;
+        let (mut off, mut off_s) = (bend + ROUNDING_RAD, 2.4 * bend + ROUNDING_RAD);
+        let cosine = self.heading.0 * cell.north + self.heading.1 * cell.east;
+        let within = 1.0 - larger(cosine, -cosine) < 0.55 * (cell.half + ROUNDING_RAD) * (cell.half + ROUNDING_RAD);
+        let (at_bow, at_back) = (within & (cosine > 0.0), within & (cosine <= 0.0));
+        off += if at_bow { 1.1 * cell.half } else { 0.0 } + if at_back { 4.0 } else { 0.0 };
+        off_s += if at_bow { 1.3 * cell.half } else { 0.0 } + if at_back { 3.2 } else { 0.0 };
+        let whole = if cell.is_disc() { 1e6 } else { 0.0 };
+        Fan { first, last, off: off * self.radius + whole, off_s: off_s * self.s_per_rad }
+    }
+}
+
+/// The mean speed of the own ship on its straight run until a contact is met: it gains and loses speed only so fast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MeanSpeed {
+    ahead: f32,
+    /// The most that it gains until then, m/s, and one by that.
+    gain: (f32, f32),
+    /// The same of what it loses.
+    loss: (f32, f32),
+}
+
+impl MeanSpeed {
+    /// Any speed at once. A power of two: nothing is rounded.
+    const NONE: MeanSpeed = {
+        let much = (1_u64 << 60) as f32;
+        MeanSpeed { ahead: 0.0, gain: (much, 1.0 / much), loss: (much, 1.0 / much) }
+    };
+
+    /// Until so many seconds from now.
+    pub(super) fn new(lag: Option<&Lag>, until_s: f64) -> MeanSpeed {
+        let change = |m_s2: f64| ((m_s2 * until_s) as f32, (1.0 / (m_s2 * until_s)) as f32);
+        lag.map_or(MeanSpeed::NONE, |lag| MeanSpeed {
+            ahead: lag.ahead_m_s() as f32,
+            gain: change(lag.acceleration_m_s2),
+            loss: change(lag.deceleration_m_s2),
+        })
+    }
+
+    /// Of a ship that is to go at a speed. With the share `y` of the time that the change takes, the mean of the change is
+    /// `y - y^2 / 2` of the most that it could be.
+    #[inline(always)]
+    pub(super) fn of(&self, speed: f32) -> f32 {
+        let (most, per_most) = if speed > self.ahead { self.gain } else { self.loss };
+        let share = smaller(larger((speed - self.ahead) * per_most, -1.0), 1.0);
+        self.ahead + most * (share * (1.0 - 0.5 * share.abs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAG: Lag = Lag {
+        velocity: Ned { north: 0.0, east: 2.0 },
+        heading: Ned { north: 0.0, east: 1.0 },
+        reaction_s: 0.7,
+        turn_rad_s: 0.35,
+        acceleration_m_s2: 1.2,
+        deceleration_m_s2: 0.6,
+    };
+
+    #[test]
+    fn a_turn_ends_where_small_steps_end() {
+        let turning = Turning::new(Some(&LAG));
+        for by_deg in (-175..=175).step_by(5) {
+            let by_rad = f64::from(by_deg).to_radians();
+            let (steps, duration_s) = (10_000, by_rad.abs() / LAG.turn_rad_s);
+            let way_m = LAG.velocity.east * duration_s / f64::from(steps);
+            let course = |share: f64| {
+                let (sin, cos) = game::math::sin_cos(std::f64::consts::FRAC_PI_2 + share * by_rad);
+                Ned { north: cos, east: sin }
+            };
+            let way = |step: i32| course((f64::from(step) + 0.5) / f64::from(steps)).scaled(way_m);
+            let at = (0..steps).map(way).fold(Ned::default(), |at, way| at + way);
+            let to = course(1.0);
+            let turn = turning.to((to.north as f32, to.east as f32));
+            let end = Ned { north: f64::from(turn.by.0), east: f64::from(turn.by.1) };
+            let what = format!("by {by_deg} degrees: {turn:?}, {at:?} after {duration_s} s");
+            assert!((f64::from(turn.duration) - duration_s).abs() <= 0.06 * duration_s + 1e-3, "{what}");
+            assert!(end.distance(at) <= 2e-3, "{what}");
+        }
+    }
+
+    #[test]
+    fn a_mean_speed_is_what_small_steps_say() {
+        for until_s in [1.0, 3.0, 8.0] {
+            let mean = MeanSpeed::new(Some(&LAG), until_s);
+            for wanted in [0.0_f64, 0.7, 1.9, 2.0, 2.4, 3.0, 9.0] {
+                let (steps, mut speed_m_s, mut way_m) = (100_000, 2.0_f64, 0.0);
+                let dt_s = until_s / f64::from(steps);
+                for _ in 0..steps {
+                    let (slower, faster) = (LAG.deceleration_m_s2 * dt_s, LAG.acceleration_m_s2 * dt_s);
+                    speed_m_s = wanted.clamp(speed_m_s - slower, speed_m_s + faster);
+                    way_m += dt_s * speed_m_s;
+                }
+                let got = f64::from(mean.of(wanted as f32));
+                assert!((got - way_m / until_s).abs() < 1e-3, "{wanted} m/s within {until_s} s: {got}");
+            }
+        }
+        for wanted in [0.0_f32, 0.3, 1.0 / 3.0, 7.77] {
+            assert_eq!(MeanSpeed::NONE.of(wanted), wanted);
+        }
+    }
+}
