@@ -177,6 +177,7 @@ fn first_words() -> Vec<u8> {
 }
 
 fn sessions(target: &Target) -> Box<dyn Any> {
+    wait_until("there is room again", || target.open("client").is_some());
     let all: Vec<Intruder> = (0..1200).map_while(|_| target.open("client")).collect();
     assert!((100..1100).contains(&all.len()), "{} sessions", all.len());
     Box::new(all)

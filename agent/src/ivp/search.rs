@@ -1,7 +1,7 @@
 //! The search for the largest sum: sectors whose bound reaches the best point found, their tiles, and the points of those.
 
 use super::cell::{Cells, CourseSpans, SpeedSpans, cell};
-use super::fixed::Weight;
+use super::fixed::{FUNCTIONS_MAX, Weight};
 use super::grid::Grid;
 use super::instructions::Kernel;
 use super::lanes::{LANES, Lanes, SIDE, larger};
@@ -48,7 +48,7 @@ impl Bounds {
         Bounds {
             lists: vec![Lanes::splat(DONE); sectors],
             sectors: vec![Lanes::splat(DONE); chunks],
-            clear: Vec::new(),
+            clear: Vec::with_capacity(chunks * FUNCTIONS_MAX / 8),
         }
     }
 }
