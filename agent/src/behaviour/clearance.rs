@@ -14,7 +14,8 @@ const ROUNDING_M: f32 = 0.01;
 /// Lowers the utilities of a table to what candidates keep of a distance to the edges.
 ///
 /// A candidate is worth as much as it keeps of `save_m`: half of it for the least distance to an edge on the way, half for the
-/// distance at the end of the look-ahead; the worst edge counts.
+/// distance at the end of the look-ahead; the worst edge counts. With the share `x` of the distance that is kept it is worth
+/// `x + bend x (1 - x)` of the half.
 pub(super) struct Clearance<'a> {
     pub(super) table: &'a mut Table,
     pub(super) grid: &'a Grid,
@@ -30,6 +31,9 @@ pub(super) struct Clearance<'a> {
     pub(super) handling: Handling,
     pub(super) lookahead_s: f64,
     pub(super) save_m: f64,
+    /// How much more the first metres from the edge are worth than they would be if all of `save_m` were worth the same, and the
+    /// last ones less: 0 for not at all, 1 for twice as much and nothing.
+    pub(super) bend: f64,
 }
 
 impl Kernel for Clearance<'_> {
@@ -84,7 +88,7 @@ impl Clearance<'_> {
     /// Lowers the utilities of courses side by side.
     #[inline(always)]
     fn lower(&mut self, first: usize, ways: &Ways) {
-        let (per_m, old_m_s) = ((50.0 / self.save_m) as f32, self.surge_m_s as f32);
+        let (worth, old_m_s) = (((50.0 / self.save_m) as f32, self.bend as f32), self.surge_m_s as f32);
         let most_m_s = larger(old_m_s, self.grid.speed_max_m_s() as f32);
         let mut low = ways.low(most_m_s, self.save_m as f32);
         while low != 0 {
@@ -96,7 +100,7 @@ impl Clearance<'_> {
             let (way, speeds) = (ways.at(i), self.grid.speeds_side_by_side());
             for (row, speed_m_s) in self.table.lowered_mut(first + i).iter_mut().zip(speeds) {
                 for i in 0..LANES {
-                    row.0[i] = smaller(row.0[i], way.utility(old_m_s, speed_m_s.0[i], per_m));
+                    row.0[i] = smaller(row.0[i], way.utility(old_m_s, speed_m_s.0[i], worth));
                 }
             }
         }
@@ -247,13 +251,13 @@ struct Way {
 impl Way {
     /// What is kept of the least distance to the edge and of the one in the end.
     #[inline(always)]
-    fn utility(&self, old_m_s: f32, new_m_s: f32, per_m: f32) -> f32 {
+    fn utility(&self, old_m_s: f32, new_m_s: f32, (per_m, bend): (f32, f32)) -> f32 {
         let [out, back, straight] = self.within;
         let farthest_m = self.start_m - self.out_s * held(0.5 * (old_m_s + new_m_s), out);
         let end_m =
             farthest_m - self.drift_m + self.back_s * held(new_m_s, back) - self.straight_s * held(new_m_s, straight);
         let least_m = smaller(farthest_m, end_m);
-        kept(least_m * per_m) + kept(end_m * per_m)
+        kept(least_m * per_m, bend) + kept(end_m * per_m, bend)
     }
 }
 
@@ -335,8 +339,9 @@ fn held(speed_m_s: f32, (slowest, fastest): (f32, f32)) -> f32 {
 
 /// Half of the utility, as far as a distance in parts of it reaches: 0 to 50.
 #[inline(always)]
-fn kept(utility: f32) -> f32 {
-    larger(smaller(utility, 50.0), 0.0)
+fn kept(part: f32, bend: f32) -> f32 {
+    let linear = larger(smaller(part, 50.0), 0.0);
+    linear + bend * linear * (1.0 - 0.02 * linear)
 }
 
 #[cfg(test)]
@@ -404,6 +409,7 @@ mod tests {
                     handling: HANDLING,
                     lookahead_s: 9.0,
                     save_m: 6.0,
+                    bend: 0.4,
                 });
                 let points = (0..grid.courses()).flat_map(|k| (0..grid.speeds()).map(move |j| (k, j)));
                 points.map(|(k, j)| table.utility(k, j).to_bits()).collect::<Vec<u32>>()
@@ -434,7 +440,7 @@ mod tests {
             }
             left_out += 1;
             for j in 0..36 {
-                let utility = ways.at(3).utility(old_m_s as f32, 0.1 * j as f32, 50.0 / save_m);
+                let utility = ways.at(3).utility(old_m_s as f32, 0.1 * j as f32, (50.0 / save_m, 0.4));
                 assert_eq!(utility, 100.0, "seed {seed}, speed {j}");
             }
         }

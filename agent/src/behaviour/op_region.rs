@@ -12,8 +12,9 @@ use std::f64::consts::PI;
 /// How far inside of the edge a boat steers for that comes back, m.
 const WELL_IN_M: f64 = 5.0;
 /// A boat keeps off the edges by so many seconds of the drift's spread more: waves and gusts push it about, and hold up its
-/// turns. In a gale over a lake the spread is 0.5 m/s.
-const GUST_S: f64 = 12.0;
+/// turns. In a gale over a lake the spread is 0.3 to 0.5 m/s. The farthest of these metres count little, or a boat near them
+/// minds a few centimetres of them more than its task, which weighs a twentieth.
+const GUST_S: f64 = 36.0;
 /// From the recovery speed down to nothing, m/s: it comes back as slowly as said.
 const RECOVERY_BASE_M_S: f64 = 0.5;
 
@@ -84,7 +85,8 @@ impl BehaviourLogic for OpRegionBehaviour {
             return;
         }
         let (lookahead_s, save_m) = (self.task.lookahead_s.value(situation), self.task.save_m.value(situation));
-        let save_m = save_m + GUST_S * situation.motion.spread_m_s();
+        let gust_m = GUST_S * situation.motion.spread_m_s();
+        let save_m = (save_m + gust_m).max(0.1);
         let reach_m = region.reach_m(situation, lookahead_s, save_m);
         if inside_m > reach_m {
             return;
@@ -101,7 +103,8 @@ impl BehaviourLogic for OpRegionBehaviour {
             drift: region.drift,
             handling: region.handling,
             lookahead_s,
-            save_m: save_m.max(0.1),
+            save_m,
+            bend: (gust_m / save_m).min(1.0),
         });
         output.add(&Objective::Table(&self.table));
     }
