@@ -30,7 +30,7 @@ fn scenes(contacts: usize) -> Vec<(Vec<(f64, Objective<'static>)>, Preference)> 
                 min_m: 10.0,
                 max_m: 75.0,
                 touch_m: 0.0,
-                approach: Approach::Avoid { at_min: 25.0 },
+                approach: Approach::Avoid { at_min: 25.0, leave_to: None },
                 lag: None,
             };
             functions.push((300.0, Objective::Closest(closest)));

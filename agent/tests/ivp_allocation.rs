@@ -27,7 +27,7 @@ fn a_decision_takes_nothing_from_the_heap_once_its_lists_have_grown() {
             min_m: 5.0,
             max_m: 50.0,
             touch_m: 0.0,
-            approach: Approach::Avoid { at_min: 25.0 },
+            approach: Approach::Avoid { at_min: 25.0, leave_to: None },
             lag: None,
         };
         let heap = Region::new(HEAP);

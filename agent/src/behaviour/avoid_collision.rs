@@ -3,8 +3,15 @@
 use super::nearest::{Nearest, is_meant, nearness};
 use super::steering::keep_clear;
 use super::{BehaviourLogic, BehaviourOutput};
+use crate::ivp::Side;
 use crate::situation::{MovingPoint, Situation};
 use game::strategy::{AvoidCollision, Grade};
+
+/// Boats that pass nearer than this to starboard leave each other to port all the same, m: so that both take the same side where
+/// either would do.
+const PORT_TO_PORT_M: f64 = 2.0;
+/// Boats that move past each other more slowly than this pass on no side, m/s.
+const PASSING_MIN_M_S: f64 = 0.3;
 
 impl BehaviourLogic for AvoidCollision {
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
@@ -17,14 +24,28 @@ impl BehaviourLogic for AvoidCollision {
         let near = near.filter(|(_, other)| situation.at.distance_squared(other.at) <= far_m2);
         let near = near.map(|(i, other)| (situation.at.distance(other.at), i));
         let meant = |i: usize| is_meant(self.contacts, situation, &situation.others[i]);
+        let own = situation.turning_on();
         for (distance_m, i) in Nearest::of(near.filter(|(distance_m, i)| *distance_m < outer_m && meant(*i))).iter() {
             let other = &situation.others[i];
-            let disc = MovingPoint { at: other.at, velocity: other.velocity() };
-            let function = keep_clear(situation, disc, 0.0, (min_m, max_m), horizon_s);
+            let contact = other.turning_on();
+            let leave_to = side(own, contact);
+            let function = keep_clear(situation, contact, 0.0, (min_m, max_m), horizon_s, leave_to);
             let share = graded(self.grade, nearness(distance_m, inner_m, outer_m));
             output.add_share(share, Some(other.vehicle), &function);
         }
     }
+}
+
+/// On which side two boats that come nearer leave each other: on that on which they pass already. Both see it alike, so neither
+/// turns to where the other turns.
+fn side(own: MovingPoint, contact: MovingPoint) -> Option<Side> {
+    let (line, past) = (contact.at - own.at, contact.velocity - own.velocity);
+    let past_m_s = past.length();
+    if past_m_s < PASSING_MIN_M_S || line.dot(past) >= 0.0 {
+        return None;
+    }
+    let to_starboard_m = (line.north * past.east - line.east * past.north) / past_m_s;
+    Some(if to_starboard_m < PORT_TO_PORT_M { Side::Port } else { Side::Starboard })
 }
 
 /// How much of the weight is left: all of it at the inner distance and nearer, never more.
@@ -33,5 +54,42 @@ fn graded(grade: Grade, nearness: f64) -> f64 {
         Grade::Linear => nearness,
         Grade::Quasi => nearness * nearness.sqrt(),
         Grade::Quadratic => nearness * nearness,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::side;
+    use crate::ivp::Side;
+    use crate::situation::MovingPoint;
+    use game::Ned;
+    use game::stream::Stream;
+
+    #[test]
+    fn two_boats_choose_the_same_side() {
+        let mut stream = Stream::new(1, "sides");
+        let mut sides = [0; 3];
+        for _ in 0..2_000 {
+            let mut boat = || {
+                let [north, east, velocity_north, velocity_east] =
+                    [30.0, 30.0, 3.0, 3.0].map(|most| stream.between(-most, most));
+                MovingPoint { at: Ned { north, east }, velocity: Ned { north: velocity_north, east: velocity_east } }
+            };
+            let (one, other) = (boat(), boat());
+            assert_eq!(side(one, other), side(other, one), "{one:?}, {other:?}");
+            sides[side(one, other).map_or(0, |side| 1 + side as usize)] += 1;
+        }
+        assert!(sides.iter().all(|n| *n > 200), "{sides:?}");
+    }
+
+    #[test]
+    fn head_on_boats_leave_each_other_to_port() {
+        let north = MovingPoint { at: Ned::default(), velocity: Ned { north: 2.0, east: 0.0 } };
+        let south = |east| MovingPoint { at: Ned { north: 30.0, east }, velocity: Ned { north: -2.0, east: 0.0 } };
+        assert_eq!(side(north, south(-4.0)), Some(Side::Port));
+        assert_eq!(side(north, south(0.0)), Some(Side::Port));
+        assert_eq!(side(north, south(4.0)), Some(Side::Starboard));
+        let gone = MovingPoint { velocity: Ned { north: 3.0, east: 0.0 }, ..south(4.0) };
+        assert_eq!(side(north, gone), None);
     }
 }

@@ -46,7 +46,8 @@ impl BehaviourLogic for AvoidObstacleBehaviour {
             match &obstacles[i] {
                 Obstacle::Circle { centre, radius_m } => {
                     let disc = MovingPoint { at: *centre, velocity: Ned::default() };
-                    output.add_share(share, None, &keep_clear(situation, disc, *radius_m, (min_m, max_m), horizon_s));
+                    let function = keep_clear(situation, disc, *radius_m, (min_m, max_m), horizon_s, None);
+                    output.add_share(share, None, &function);
                 }
                 Obstacle::Polygon { .. } => {
                     self.table.clear(output.grid());

@@ -1,6 +1,6 @@
 //! Objective functions that several behaviours produce: a course at a speed, and keeping clear of something.
 
-use crate::ivp::{Approach, Closest, Lag, Objective, Peak};
+use crate::ivp::{Approach, Closest, Lag, Objective, Peak, Side};
 use crate::situation::{MovingPoint, Situation};
 use game::{Ned, angle, math};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -57,13 +57,15 @@ pub(super) fn speed_to_turn_onto(situation: &Situation, to: Ned) -> f64 {
     0.5 * situation.motion.handling().turn_rad_s * situation.at.distance(to) / sin
 }
 
-/// Keeping clear of a disc: of its edge by `min_m` at least, and by `max_m` at best, for as long as a leg lasts.
+/// Keeping clear of a disc: of its edge by `min_m` at least, and by `max_m` at best, for as long as a leg lasts, and by more
+/// where it is left on the other side than `leave_to`.
 pub(super) fn keep_clear(
     situation: &Situation,
     disc: MovingPoint,
     radius_m: f64,
     (min_m, max_m): (f64, f64),
     horizon_s: f64,
+    leave_to: Option<Side>,
 ) -> Objective<'static> {
     Objective::Closest(Closest {
         offset: disc.at - situation.at,
@@ -72,7 +74,7 @@ pub(super) fn keep_clear(
         min_m: min_m + radius_m,
         max_m: max_m.max(min_m) + radius_m,
         touch_m: radius_m,
-        approach: Approach::Avoid { at_min: CPA_MIN_UTILITY },
+        approach: Approach::Avoid { at_min: CPA_MIN_UTILITY, leave_to },
         lag: Some(lag(situation)),
     })
 }

@@ -192,7 +192,7 @@ impl Cells {
 
 #[cfg(test)]
 mod tests {
-    use super::super::closest::{Approach, Closest};
+    use super::super::closest::{Approach, Closest, Side};
     use super::super::closing::Closing;
     use super::super::objective::{Field, Objective, Parts};
     use super::*;
@@ -226,7 +226,14 @@ mod tests {
                 min_m: 0.1 * range_m,
                 max_m: [0.3, 1.5][stream.below(2) as usize] * range_m,
                 touch_m: 0.0,
-                approach: if kind < 3 { Approach::Seek } else { Approach::Avoid { at_min: 50.0 } },
+                approach: if kind < 3 {
+                    Approach::Seek
+                } else {
+                    Approach::Avoid {
+                        at_min: 50.0,
+                        leave_to: [None, Some(Side::Port), Some(Side::Starboard)][stream.below(3) as usize],
+                    }
+                },
                 lag: (kind % 2 == 0).then(|| lag(stream)),
             }),
         };

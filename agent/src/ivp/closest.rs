@@ -13,6 +13,9 @@
 //! [turn](Turning) ends, and then as the candidate says, at the mean [speed](MeanSpeed) until the contact would be met. The least
 //! distance of these three legs counts.
 //!
+//! Two boats that keep clear of each other, each to the side that suits it, may choose the same side, and come together. If they
+//! are to leave each other on a [`Side`], the distance of a way on which the line of sight turns to the other side counts as less.
+//!
 //! For bounds over a cell: its first and last course at its slowest and fastest speed are four ways. At any time each other way
 //! of the cell is between them, but for how much arcs bend between these courses. The distance at that time is convex in the
 //! place, so its largest value is at one of the four; and since the closest approach is no farther than that, it is a bound for
@@ -32,6 +35,18 @@ const STEP: f64 = 1e12;
 /// A contact that is met sooner than this, or not at all, is taken to be met then, s.
 const MEETING_MIN_S: f64 = 1.0;
 
+/// A side of a boat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Left, looking ahead: the line of sight to a contact that is left there turns against the clock.
+    Port,
+    /// Right, looking ahead.
+    Starboard,
+}
+
+/// What a distance counts that is kept on the other side than it is to be, in parts of it.
+const OTHER_SIDE: f32 = 0.5;
+
 /// Whether to keep away or to come close.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Approach {
@@ -41,6 +56,8 @@ pub enum Approach {
     Avoid {
         /// Utility at the least distance, 0 to 100.
         at_min: f64,
+        /// On which side the contact is to be left; none if it does not matter.
+        leave_to: Option<Side>,
     },
     /// Closer is better: 100 at or below the least distance, linearly to nothing at the largest.
     Seek,
@@ -70,9 +87,9 @@ pub struct Closest {
 impl Closest {
     /// The function in single precision; none if a number is not finite or the horizon is negative.
     pub(super) fn ready(&self, speed_max_m_s: f64) -> Option<Ready> {
-        let at_min = match self.approach {
-            Approach::Avoid { at_min } => at_min,
-            Approach::Seek => 0.0,
+        let (at_min, leave_to) = match self.approach {
+            Approach::Avoid { at_min, leave_to } => (at_min, leave_to),
+            Approach::Seek => (0.0, None),
         };
         let lag = self.lag.as_ref();
         let vectors = [self.offset, self.velocity].map(|v| [v.north, v.east]);
@@ -95,6 +112,11 @@ impl Closest {
         let (reaction_s, own) = lag.map_or((0.0, Ned::default()), |lag| (lag.reaction_s, lag.velocity));
         let (offset, present) = (single(self.offset), single(self.velocity - own));
         let reaction = reaction_s as f32;
+        let (beside, other_side) = match leave_to {
+            Some(Side::Port) => ((offset.1, -offset.0), OTHER_SIDE),
+            Some(Side::Starboard) => ((-offset.1, offset.0), OTHER_SIDE),
+            None => ((0.0, 0.0), 1.0),
+        };
         let meeting_s = f64::from(time(offset, present, self.horizon_s as f32)).max(MEETING_MIN_S);
         Some(Ready {
             start: (offset.0 + present.0 * reaction, offset.1 + present.1 * reaction),
@@ -110,6 +132,8 @@ impl Closest {
             seek: self.approach == Approach::Seek,
             turning: Turning::new(lag),
             mean_speed: MeanSpeed::new(lag, meeting_s),
+            beside,
+            other_side,
             margin: (ROUNDING * scale_m) as f32,
             group: 0,
         })
@@ -137,6 +161,10 @@ pub(super) struct Ready {
     /// The own ship's.
     turning: Turning,
     mean_speed: MeanSpeed,
+    /// Square to the present line of sight, towards the side on which the contact is to be left, and what distances on the other
+    /// side count.
+    beside: Vector,
+    other_side: f32,
     /// What rounding may take from a bound on a distance.
     margin: f32,
     /// Those of a search that have the same have the same distances.
@@ -185,17 +213,23 @@ impl Ready {
     /// Whether another function is of the same distances.
     pub(super) fn has_distances_of(&self, other: &Ready) -> bool {
         let ways = |ready: &Ready| (ready.start, ready.least_before, ready.velocity, ready.horizon, ready.seek);
-        ways(self) == ways(other) && self.turning == other.turning && self.mean_speed == other.mean_speed
+        let sides = |ready: &Ready| (ready.beside, ready.other_side);
+        ways(self) == ways(other)
+            && sides(self) == sides(other)
+            && self.turning == other.turning
+            && self.mean_speed == other.mean_speed
     }
 
-    /// The least distance on a course, a unit vector, at a speed after the turn to it, m.
+    /// The least distance on a course, a unit vector, at a speed after the turn to it, as far as it counts, m.
     #[inline(always)]
     pub(super) fn distance(&self, turn: &Turn, course: Vector, speed: f32) -> f32 {
         let (at, speed) = (self.after(turn), self.mean_speed.of(speed));
         let (past, w) = (minus(at, self.start), self.passing(course, speed));
         let turning = square(self.start, past, time(self.start, past, 1.0));
-        let straight = square(at, w, time(at, w, self.horizon));
-        smaller(smaller(straight, turning), self.least_before).sqrt()
+        let t = time(at, w, self.horizon);
+        let straight = square(at, w, t);
+        let share = if dot(self.beside, (at.0 + w.0 * t, at.1 + w.1 * t)) < 0.0 { self.other_side } else { 1.0 };
+        smaller(smaller(straight, turning), self.least_before).sqrt() * share
     }
 
     /// The ways of a cell.
@@ -245,7 +279,9 @@ impl Ready {
         let slowest = smaller(smaller(smaller(a, b), smaller(c, d)), 0.0);
         let extent = smaller(dot(ways.first, nearest), dot(ways.last, nearest)) + slowest * self.horizon;
         let straight = extent * per_length(nearest);
-        smaller(smaller(straight, turning), self.least_before.sqrt()) - ways.off - ways.bend * self.horizon
+        let least = smaller(smaller(straight, turning), self.least_before.sqrt()) - ways.off - ways.bend * self.horizon;
+        // As if all of them were on the other side.
+        smaller(least * self.other_side, least)
     }
 
     /// Where the contact is when the own ship is on its course.

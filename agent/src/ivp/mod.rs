@@ -40,7 +40,7 @@ mod sums;
 mod table;
 mod turn;
 
-pub use closest::{Approach, Closest};
+pub use closest::{Approach, Closest, Side};
 pub use closing::Closing;
 pub use fixed::{FUNCTIONS_MAX, QUANTUM, WEIGHT_MAX};
 pub(crate) use grid::Courses;

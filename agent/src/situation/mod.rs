@@ -3,6 +3,7 @@
 mod game_model;
 mod interception;
 mod team_messages;
+mod turn_estimate;
 
 pub(crate) use game_model::GameModel;
 pub(crate) use interception::meeting_time_s;
@@ -17,6 +18,7 @@ use game::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Valu
 use game::{FlagId, Ned, Picture, SimTime, VehicleId};
 use interception::{Interceptor, Intruder, Pair};
 use std::cell::OnceCell;
+use turn_estimate::{TurnEstimate, turning_on};
 
 /// A contact is assumed to go on as it was seen for this long, s; then to slow down ...
 const KEEPS_ON_S: f64 = 15.0;
@@ -38,6 +40,7 @@ pub(crate) struct OtherBoat {
     pub(crate) at: Ned,
     velocity: Velocity,
     pub(crate) psi_rad: f64,
+    yaw_rate_rad_s: f64,
     pub(crate) tagged: bool,
     pub(crate) carrying: Option<FlagId>,
     /// From when on it can tag again, if it is a mate; of enemies nobody knows.
@@ -61,6 +64,11 @@ impl OtherBoat {
             Velocity::Ned(velocity) => velocity,
             Velocity::Body(velocity) => ned_from_body(Rotation::from_heading(self.psi_rad), velocity),
         }
+    }
+
+    /// As it moves when it has turned on for a moment.
+    pub(crate) fn turning_on(&self) -> MovingPoint {
+        turning_on(MovingPoint { at: self.at, velocity: self.velocity() }, self.yaw_rate_rad_s)
     }
 }
 
@@ -91,6 +99,8 @@ pub(crate) struct Situation {
     pub(crate) motion: OwnMotion,
     /// All other boats that are known: mates first, then enemies, each in the scenario's order.
     pub(crate) others: Vec<OtherBoat>,
+    /// How contacts turn, by vehicle.
+    turns: Vec<Option<TurnEstimate>>,
     pub(crate) variables: Vec<f64>,
     pub(crate) team_messages: TeamMessages,
     /// What a policy proposed last.
@@ -126,6 +136,7 @@ impl Situation {
             velocity: Ned::default(),
             motion,
             others: Vec::new(),
+            turns: Vec::new(),
             variables: program.variables.iter().map(|variable| variable.initial).collect(),
             team_messages,
             proposed: None,
@@ -158,6 +169,7 @@ impl Situation {
                 at,
                 velocity: Velocity::Body(Body { ahead: mate.nav.surge_m_s, starboard: mate.nav.sway_m_s }),
                 psi_rad: mate.nav.psi_rad,
+                yaw_rate_rad_s: mate.nav.yaw_rate_rad_s,
                 tagged: mate.tagged,
                 carrying: mate.carried_flag(),
                 tag_ready: mate.tag_ready_ns,
@@ -167,12 +179,17 @@ impl Situation {
         for contact in &picture.contacts {
             let (at, velocity) = dead_reckoned(contact, now);
             let is_enemy = contact.team != self.model.team;
+            let i = contact.vehicle.index();
+            self.turns.resize(self.turns.len().max(i + 1), None);
+            let turn = TurnEstimate::seen(self.turns[i], contact);
+            self.turns[i] = Some(turn);
             self.others.push(OtherBoat {
                 vehicle: contact.vehicle,
                 is_enemy,
                 at,
                 velocity: Velocity::Ned(velocity),
                 psi_rad: contact.psi_rad,
+                yaw_rate_rad_s: turn.yaw_rate_rad_s(now),
                 tagged: contact.tagged,
                 carrying: u8::try_from(contact.carrying).ok().map(FlagId),
                 tag_ready: SimTime::ZERO,
@@ -195,6 +212,11 @@ impl Situation {
     /// The own velocity through the water, as far as it is known, m/s.
     pub(crate) fn velocity_through_water(&self) -> Ned {
         self.velocity - self.motion.drift()
+    }
+
+    /// The own boat as it moves when it has turned on for a moment.
+    pub(crate) fn turning_on(&self) -> MovingPoint {
+        turning_on(MovingPoint { at: self.at, velocity: self.velocity }, self.own.nav.yaw_rate_rad_s)
     }
 
     /// The enemies.

@@ -137,7 +137,7 @@ fn as_many_functions_as_there_may_be_do_not_overflow() {
         min_m: 0.0,
         max_m: 1.0,
         touch_m: 0.0,
-        approach: Approach::Avoid { at_min: 0.0 },
+        approach: Approach::Avoid { at_min: 0.0, leave_to: None },
         lag: None,
         ..scene::closest(&mut stream, &grid)
     };
@@ -159,7 +159,7 @@ fn a_scene_is_pinned_so_that_every_machine_decides_alike() {
             min_m: 10.0,
             max_m: 75.0,
             touch_m: 0.0,
-            approach: Approach::Avoid { at_min: 25.0 },
+            approach: Approach::Avoid { at_min: 25.0, leave_to: None },
             lag: None,
         })
     };

@@ -1,7 +1,7 @@
 //! Random decisions, with functions of every kind and plenty of equal values.
 
 use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Instructions, Lag, Objective, Peak};
-use agent::ivp::{Preference, Problem, SpeedLimit};
+use agent::ivp::{Preference, Problem, Side, SpeedLimit};
 use game::Ned;
 use game::stream::Stream;
 
@@ -112,8 +112,12 @@ pub(crate) fn closest(stream: &mut Stream, grid: &Grid) -> Closest {
         min_m,
         max_m: min_m + [0.0, 0.3, 1.0][stream.below(3) as usize] * range,
         touch_m: 0.0,
-        approach: [Approach::Avoid { at_min: 25.0 }, Approach::Avoid { at_min: 0.0 }, Approach::Seek]
-            [stream.below(3) as usize],
+        approach: match stream.below(4) {
+            0 => Approach::Avoid { at_min: 25.0, leave_to: None },
+            1 => Approach::Avoid { at_min: 0.0, leave_to: Some(Side::Port) },
+            2 => Approach::Avoid { at_min: 25.0, leave_to: Some(Side::Starboard) },
+            _ => Approach::Seek,
+        },
         lag: (stream.below(2) == 0).then(|| lag(stream, grid)),
     }
 }

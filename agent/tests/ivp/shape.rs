@@ -1,7 +1,7 @@
 //! The functions themselves, at points that were worked out by hand or by another way.
 
 use crate::scene::within;
-use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, SpeedLimit};
+use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Side, SpeedLimit};
 use game::Ned;
 use game::stream::Stream;
 
@@ -95,7 +95,7 @@ fn the_closest_point_of_approach_is_the_one_a_search_of_times_finds() {
             min_m: 10.0,
             max_m: 75.0,
             touch_m: 0.0,
-            approach: Approach::Avoid { at_min: 25.0 },
+            approach: Approach::Avoid { at_min: 25.0, leave_to: None },
             lag: (seed % 2 == 0).then(|| Lag {
                 velocity: within(&mut stream, 3.0),
                 heading: Ned { north: 0.6, east: -0.8 },
@@ -114,6 +114,31 @@ fn the_closest_point_of_approach_is_the_one_a_search_of_times_finds() {
             near(Objective::Closest(closest).utility(&grid, k, j), avoid, &what);
             near(Objective::Closest(seek).utility(&grid, k, j), 100.0 - 100.0 * part, &what);
         }
+    }
+}
+
+#[test]
+fn a_contact_on_the_other_side_counts_as_half_as_far() {
+    let grid = Grid::new(36, 8, 4.0);
+    let closest = |north_m: f64, leave_to| {
+        Objective::Closest(Closest {
+            offset: Ned { north: north_m, east: 0.0 },
+            velocity: Ned::default(),
+            horizon_s: 60.0,
+            min_m: 0.0,
+            max_m: 100.0,
+            touch_m: 0.0,
+            approach: Approach::Avoid { at_min: 0.0, leave_to },
+            lag: None,
+        })
+    };
+    // It lies 40 m ahead: 20 degrees to starboard leave it to port.
+    let passes_m = 40.0 * game::math::sin_cos(20_f64.to_radians()).0;
+    for (course, to_port, to_starboard) in [(2, passes_m, 0.5 * passes_m), (34, 0.5 * passes_m, passes_m)] {
+        let utility = |leave_to| closest(40.0, leave_to).utility(&grid, course, 7);
+        near(utility(None), passes_m, &format!("course {course}, either"));
+        near(utility(Some(Side::Port)), to_port, &format!("course {course}, to port"));
+        near(utility(Some(Side::Starboard)), to_starboard, &format!("course {course}, to starboard"));
     }
 }
 

@@ -1,7 +1,7 @@
 //! The same scene turned or mirrored must give the same decision turned or mirrored.
 
 use crate::scene::{self, Table, solved};
-use agent::ivp::{Closest, Closing, Grid, Lag, Objective, Peak, Preference};
+use agent::ivp::{Approach, Closest, Closing, Grid, Lag, Objective, Peak, Preference, Side};
 use game::Ned;
 use game::stream::Stream;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -28,6 +28,19 @@ impl Motion {
             Motion::HalfTurn => angle_rad + PI,
             Motion::QuarterTurn => angle_rad + FRAC_PI_2,
             Motion::Mirror => -angle_rad,
+        }
+    }
+
+    fn approach(self, approach: Approach) -> Approach {
+        let mirrored = |side| match side {
+            Side::Port => Side::Starboard,
+            Side::Starboard => Side::Port,
+        };
+        match (self, approach) {
+            (Motion::Mirror, Approach::Avoid { at_min, leave_to }) => {
+                Approach::Avoid { at_min, leave_to: leave_to.map(mirrored) }
+            }
+            _ => approach,
         }
     }
 
@@ -62,7 +75,7 @@ impl Motion {
                 let turned =
                     |lag: Lag| Lag { velocity: self.vector(lag.velocity), heading: self.vector(lag.heading), ..lag };
                 let (offset, velocity, lag) = (self.vector(c.offset), self.vector(c.velocity), c.lag.map(turned));
-                Objective::Closest(Closest { offset, velocity, lag, ..c })
+                Objective::Closest(Closest { offset, velocity, lag, approach: self.approach(c.approach), ..c })
             }
             Objective::Closing(Closing { offset, velocity }) => {
                 Objective::Closing(Closing { offset: self.vector(offset), velocity: self.vector(velocity) })

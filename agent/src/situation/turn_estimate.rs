@@ -1,0 +1,116 @@
+//! How boats turn, and where that takes them.
+
+use super::MovingPoint;
+use game::angle::wrap_pi;
+use game::picture::Contact;
+use game::{Ned, SimTime, math};
+
+/// A boat is taken to turn on for this long, s.
+const TURNS_ON_S: f64 = 2.0;
+/// It is taken to turn by no more than this, rad.
+const TURN_MAX_RAD: f64 = 1.5;
+/// Over so long the yaw rate of a contact is smoothed, s.
+const SMOOTHED_S: f64 = 0.5;
+
+/// How a contact turns, from the headings that it was seen with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TurnEstimate {
+    seen: SimTime,
+    psi_rad: f64,
+    yaw_rate_rad_s: f64,
+}
+
+impl TurnEstimate {
+    /// With what was seen of a contact now.
+    pub(super) fn seen(before: Option<TurnEstimate>, contact: &Contact) -> TurnEstimate {
+        let (seen, psi_rad) = (contact.seen_ns, contact.psi_rad);
+        let Some(before) = before else { return TurnEstimate { seen, psi_rad, yaw_rate_rad_s: 0.0 } };
+        if seen <= before.seen {
+            return before;
+        }
+        let gone_s = (seen - before.seen).as_s();
+        let now_rad_s = wrap_pi(psi_rad - before.psi_rad) / gone_s;
+        let share = (gone_s / SMOOTHED_S).min(1.0);
+        TurnEstimate {
+            seen,
+            psi_rad,
+            yaw_rate_rad_s: before.yaw_rate_rad_s + share * (now_rad_s - before.yaw_rate_rad_s),
+        }
+    }
+
+    /// The yaw rate, rad/s clockwise: none if the contact has not been seen for longer than it is taken to turn on.
+    pub(super) fn yaw_rate_rad_s(&self, now: SimTime) -> f64 {
+        if (now - self.seen).as_s() > TURNS_ON_S { 0.0 } else { self.yaw_rate_rad_s }
+    }
+}
+
+/// A boat that turns at this yaw rate, rad/s, as one that goes straight: where it will be, and goes then, if it turns on for a
+/// moment.
+pub(super) fn turning_on(boat: MovingPoint, yaw_rate_rad_s: f64) -> MovingPoint {
+    let turn_rad = (yaw_rate_rad_s * TURNS_ON_S).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
+    let half_rad = 0.5 * turn_rad;
+    let (sin, _) = math::sin_cos(half_rad);
+    let chord = if half_rad.abs() > 1e-6 { sin / half_rad } else { 1.0 };
+    let way = rotated(boat.velocity, half_rad).scaled(chord * TURNS_ON_S);
+    let velocity = rotated(boat.velocity, turn_rad);
+    MovingPoint { at: boat.at + way - velocity.scaled(TURNS_ON_S), velocity }
+}
+
+/// Turned clockwise.
+fn rotated(v: Ned, by_rad: f64) -> Ned {
+    let (sin, cos) = math::sin_cos(by_rad);
+    Ned { north: v.north * cos - v.east * sin, east: v.north * sin + v.east * cos }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{TURNS_ON_S, TurnEstimate, turning_on};
+    use crate::situation::MovingPoint;
+    use game::picture::Contact;
+    use game::{Ned, SimTime, TeamId, VehicleId};
+
+    #[test]
+    fn a_boat_on_a_circle_is_where_the_circle_leads() {
+        // 2 m/s north and 0.4 rad/s: a circle of 5 m around (0, 5) east of it.
+        let boat = MovingPoint { at: Ned { north: 10.0, east: 20.0 }, velocity: Ned { north: 2.0, east: 0.0 } };
+        for yaw_rate_rad_s in [0.4, -0.4] {
+            let turned = turning_on(boat, yaw_rate_rad_s);
+            let (sin, cos) = game::math::sin_cos(0.4 * TURNS_ON_S);
+            let side = f64::signum(yaw_rate_rad_s);
+            let want = boat.at + Ned { north: 5.0 * sin, east: side * 5.0 * (1.0 - cos) };
+            let got = turned.at + turned.velocity.scaled(TURNS_ON_S);
+            assert!(got.distance(want) < 1e-9, "{got:?}, {want:?}");
+            let goes = Ned { north: 2.0 * cos, east: side * 2.0 * sin };
+            assert!(turned.velocity.distance(goes) < 1e-9, "{turned:?}");
+        }
+        let straight = turning_on(boat, 0.0);
+        assert!(straight.at.distance(boat.at) < 1e-12 && straight.velocity.distance(boat.velocity) < 1e-12);
+    }
+
+    #[test]
+    fn the_yaw_rate_of_a_contact_is_that_of_its_headings() {
+        let contact = |ms: i64, psi_rad: f64| Contact {
+            vehicle: VehicleId(1),
+            team: TeamId(1),
+            seen_ns: SimTime::from_s(0.001 * ms as f64),
+            north_m: 0.0,
+            east_m: 0.0,
+            psi_rad,
+            velocity_north_m_s: 0.0,
+            velocity_east_m_s: 0.0,
+            tagged: false,
+            carrying: -1,
+        };
+        let mut turn = TurnEstimate::seen(None, &contact(0, 3.0));
+        // Through south, where headings wrap, and twice each.
+        for ms in (100..5_000).step_by(100) {
+            let psi_rad = game::angle::wrap_pi(3.0 + 0.3 * 0.001 * ms as f64);
+            for _ in 0..2 {
+                turn = TurnEstimate::seen(Some(turn), &contact(ms, psi_rad));
+            }
+        }
+        let rate = |ms: i64| turn.yaw_rate_rad_s(SimTime::from_s(0.001 * ms as f64));
+        assert!((rate(4_900) - 0.3).abs() < 1e-3, "{}", rate(4_900));
+        assert_eq!(rate(9_000), 0.0, "it is out of sight");
+    }
+}
