@@ -1,9 +1,10 @@
 //! How boats turn, and where that takes them.
 
 use super::MovingPoint;
+use game::SimTime;
 use game::angle::wrap_pi;
+use game::frame::{Body, Rotation, ned_from_body};
 use game::picture::Contact;
-use game::{Ned, SimTime, math};
 
 /// A boat is taken to turn on for this long, s.
 const TURNS_ON_S: f64 = 2.0;
@@ -49,17 +50,11 @@ impl TurnEstimate {
 pub(super) fn turning_on(boat: MovingPoint, yaw_rate_rad_s: f64) -> MovingPoint {
     let turn_rad = (yaw_rate_rad_s * TURNS_ON_S).clamp(-TURN_MAX_RAD, TURN_MAX_RAD);
     let half_rad = 0.5 * turn_rad;
-    let (sin, _) = math::sin_cos(half_rad);
-    let chord = if half_rad.abs() > 1e-6 { sin / half_rad } else { 1.0 };
-    let way = rotated(boat.velocity, half_rad).scaled(chord * TURNS_ON_S);
-    let velocity = rotated(boat.velocity, turn_rad);
-    MovingPoint { at: boat.at + way - velocity.scaled(TURNS_ON_S), velocity }
-}
-
-/// Turned clockwise.
-fn rotated(v: Ned, by_rad: f64) -> Ned {
-    let (sin, cos) = math::sin_cos(by_rad);
-    Ned { north: v.north * cos - v.east * sin, east: v.north * sin + v.east * cos }
+    let half = Rotation::from_heading(half_rad);
+    let chord = if half_rad.abs() > 1e-6 { half.ahead().east / half_rad } else { 1.0 };
+    let clockwise = |by| ned_from_body(by, Body { ahead: boat.velocity.north, starboard: boat.velocity.east });
+    let velocity = clockwise(Rotation::from_heading(turn_rad));
+    MovingPoint { at: boat.at + clockwise(half).scaled(chord * TURNS_ON_S) - velocity.scaled(TURNS_ON_S), velocity }
 }
 
 #[cfg(test)]
