@@ -3,7 +3,7 @@
 use crate::keys::{Bundle, Identity};
 use crate::runtime::check_threads_for_keys;
 use crate::session::reason;
-use crate::{BusError, Token, access};
+use crate::{BusError, Token, access, random_bytes};
 use game::Scenario;
 use game::topic::{self, GameName};
 use serde_json::json;
@@ -194,14 +194,23 @@ pub fn is_loopback(endpoint: &str) -> bool {
     }
 }
 
+/// Where [`free_port`] looks: registered ports that systems do not give to outgoing connections (Linux begins at 32768, others
+/// at 49152; RFC 6335). A port of theirs can be taken between looking and listening, even by a client that retries to reach
+/// the very port that is to be listened on.
+const FREE_PORTS: std::ops::Range<u16> = 20_000..32_768;
+
 /// A loopback TCP port that was free a moment ago: the default port if it is, any other if not.
 ///
 /// # Errors
-/// If the machine has no free port at all.
+/// If no port that was tried is free.
 pub fn free_port(prefer_default: bool) -> std::io::Result<u16> {
-    let wanted = if prefer_default { DEFAULT_PORT } else { 0 };
-    let listener = TcpListener::bind(("127.0.0.1", wanted)).or_else(|_| TcpListener::bind(("127.0.0.1", 0)))?;
-    Ok(listener.local_addr()?.port())
+    let is_free = |port: u16| TcpListener::bind(("127.0.0.1", port)).and_then(|listener| listener.local_addr());
+    if prefer_default && let Ok(free) = is_free(DEFAULT_PORT) {
+        return Ok(free.port());
+    }
+    let any = || FREE_PORTS.start + u16::from_le_bytes(random_bytes()) % (FREE_PORTS.end - FREE_PORTS.start);
+    let free = (0..100).find_map(|_| is_free(any()).ok()).map_or_else(|| is_free(0), Ok)?;
+    Ok(free.port())
 }
 
 #[cfg(test)]
@@ -226,5 +235,14 @@ mod tests {
         ] {
             assert_eq!(is_loopback(endpoint), is_ours, "{endpoint}");
         }
+    }
+
+    /// A client whose own port is the one it wants to reach is connected to itself, and nobody can listen there.
+    #[test]
+    fn who_retries_to_reach_a_free_port_does_not_take_it() {
+        let port = free_port(false).unwrap();
+        let retries = 2 * usize::from(u16::MAX);
+        assert!((0..retries).all(|_| std::net::TcpStream::connect(("127.0.0.1", port)).is_err()), "{port}");
+        TcpListener::bind(("127.0.0.1", port)).unwrap();
     }
 }

@@ -45,7 +45,8 @@ async function take(sight) {
 }
 
 test('two pages see one game; a boat goes as one of them says, and the other is told who steers', async (t) => {
-  const run = new Program(t, 'run', scenario('games/person_2v2.toml'), '--view', '--pace', 'realtime', '--no-record', '--listen', '127.0.0.1:0');
+  // Against boats that lie still: on a slow machine there is time to sail among those that do not, and safety moves the boat.
+  const run = new Program(t, 'run', scenario('games/person_2v2.toml'), '--red', scenario('strategies/idle.toml'), '--view', '--pace', 'realtime', '--no-record', '--listen', '127.0.0.1:0');
   const url = await run.url();
   // Two browsers, as two people have: a page that is not in front is shown nothing.
   const other = await openAnother(t);
@@ -67,9 +68,9 @@ test('two pages see one game; a boat goes as one of them says, and the other is 
   const course_deg = 90;
   const begun_deg = await mine.get(() => Number(document.getElementById('steering-text').textContent.match(/\d+/)[0]));
   const turn = Math.round((((course_deg - begun_deg + 540) % 360) - 180) / 5);
-  await mine.keys(...Array(Math.abs(turn)).fill(turn < 0 ? 'a' : 'd'), 'w', 'w', 'w', 'w', 'w', 'w');
+  await mine.keys(...Array(Math.abs(turn)).fill(turn < 0 ? 'a' : 'd'), 'w', 'w', 'w', 'w');
   const [ordered_deg, ordered_m_s] = await ordered(mine);
-  assert(Math.abs(ordered_deg - course_deg) <= 3 && ordered_m_s === 1.5, `${ordered_deg}° at ${ordered_m_s} m/s`);
+  assert(Math.abs(ordered_deg - course_deg) <= 3 && ordered_m_s === 1, `${ordered_deg}° at ${ordered_m_s} m/s`);
   const went = await goes(mine, ordered_deg, ordered_m_s);
   const { x, y } = await mine.get((name) => squall.frame.boats.find((boat) => boat.name === name), BOAT);
   await mine.until('it gets on eastward', ([name, x]) => squall.frame.boats.find((boat) => boat.name === name).x > x + 3, [BOAT, x]);
