@@ -1,0 +1,102 @@
+"""The native module. Private: use what `squall` exports."""
+
+from typing import Any, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+class Setup(TypedDict):
+    """What is played. Paths are of scenario files; `squall.VectorEnv` explains the rest."""
+
+    game: str
+    observation: str
+    frames: int
+    action: str
+    helm: str | None
+    decision_s: float | None
+    episode_max_s: float | None
+    starts: int | None
+    team: str | None
+    mates: str | None
+    opponents: list[tuple[float, str | None]]
+    rewards: str | None
+    discount: float
+
+class Scene(TypedDict):
+    """The truth about a game: m along the field from the first team's end, m across it to that team's port."""
+
+    width_m: float
+    depth_m: float
+    boats: NDArray[np.float64]
+    """(boats, 6): along in m, across in m, heading in rad anticlockwise from along, team, tagged, carrying."""
+    flags: NDArray[np.float64]
+    """(flags, 4): home along in m, across in m, team, the boat that carries it or -1."""
+    score: list[int]
+    time_s: float
+
+class VectorEnvironment:
+    """Games side by side. Each begins anew in the step in which it ends.
+
+    A row is a boat that is given actions: game by game, first the boats of the team that learns and then, if any opponent is
+    the policy itself, their enemies.
+
+    The arrays are made once. `step`, `restart` and `restart_games` overwrite them; nothing else does.
+    """
+
+    def __init__(self, setup: Setup, seed: int, games: int, threads: int) -> None:
+        """Begins `games` games: seeds count up from `seed`, game by game and episode by episode.
+
+        Raises ValueError with everything that is wrong with the setup and its files.
+        """
+
+    observations: NDArray[np.float32]
+    """(rows, numbers): what every boat is shown."""
+    final_observations: NDArray[np.float32]
+    """(rows, numbers): what it was shown last in a game that ended in the last step. Other rows are stale."""
+    rewards: NDArray[np.float32]
+    """(rows,)"""
+    counts: NDArray[np.bool_]
+    """(rows,): whether a row's next action counts."""
+    terminated: NDArray[np.bool_]
+    """(rows,): whether its game was over."""
+    truncated: NDArray[np.bool_]
+    """(rows,): whether its game was cut off."""
+    rows: int
+    rows_per_game: int
+    observation_names: list[str]
+    action_count: int | None
+    """How many discrete actions there are; None where actions are continuous."""
+    step_s: float
+    """Simulated time of a step, s."""
+    boat_names: list[str]
+    team_names: list[str]
+
+    def step(self, actions: NDArray[Any]) -> None:
+        """Plays a step of every game, without the interpreter's lock.
+
+        `actions` are (rows,) int64 from 0 to 16, or (rows, 2) float32 from -1 to 1. Raises ValueError, and plays nothing, where
+        they are not.
+        """
+
+    def restart(self, seed: int | None = None) -> None:
+        """Begins all games anew: seeds count up from `seed`, or go on."""
+
+    def restart_games(self, chosen: list[tuple[int, int | None]]) -> None:
+        """Begins some games anew, each with its seed or its next one."""
+
+    def boats(self, game: int) -> list[int | None]:
+        """The boat of each row of a game; None where nobody is given actions."""
+
+    def standing(self, game: int) -> dict[str, int]:
+        """How a game stands: its seed, who plays whom, points and counts."""
+
+    def finished(self) -> list[tuple[int, bool, dict[str, int]]]:
+        """The games that ended in the last step: which, whether they were cut off, how they stood."""
+
+    def digest(self, game: int) -> str:
+        """The digest of a game's state: equal digests, equal games."""
+
+    def scene(self, game: int) -> Scene:
+        """A game as it looks from above."""

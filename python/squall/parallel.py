@@ -1,0 +1,119 @@
+"""One game with every boat an agent, as PettingZoo's `ParallelEnv`."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+from pettingzoo import ParallelEnv
+from typing_extensions import Unpack
+
+from squall.picture import draw
+from squall.setup import Options, action_space, native_environment, needs_no_policy, observation_space
+from squall.vector import seen_by_enemy
+
+Shown = dict[str, NDArray[np.float32]]
+
+
+class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[misc]
+    """A game whose agents are boats, under their names in the game."""
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 10, "name": "squall_v0"}
+
+    def __init__(self, *, seed: int | None, render_mode: str | None, options: Options) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f'render_mode is {render_mode!r}, expected None or "rgb_array"')
+        self.native = native_environment(options, seed=seed, games=1, threads=1)
+        self.render_mode = render_mode
+        names = self.native.boat_names
+        self.possible_agents = [names[boat] for boat in self.native.boats(0) if boat is not None]
+        self.agents: list[str] = []
+        self._per_team = len(names) // 2
+        spaces = observation_space(self.native, options, None), action_space(self.native, None)
+        self.observation_spaces = dict.fromkeys(self.possible_agents, spaces[0])
+        self.action_spaces = {agent: action_space(self.native, None) for agent in self.possible_agents}
+        self._is_new = True
+
+    @property
+    def observation_names(self) -> list[str]:
+        """What the numbers of an observation are called, in their order."""
+        return self.native.observation_names
+
+    def observation_space(self, agent: str) -> gymnasium.Space[Any]:
+        """What an agent is shown; the same object for all."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> gymnasium.Space[Any]:
+        """What an agent may do."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Shown, dict[str, dict[str, Any]]]:
+        """Begins the game of this seed, or the next one."""
+        if seed is not None or not self._is_new:
+            self.native.restart(seed)
+        self.agents, self._is_new = list(self.possible_agents), True
+        return self._by_agent(self.native.observations.copy()), self._infos(self.native.standing(0))
+
+    def step(
+        self, actions: dict[str, Any]
+    ) -> tuple[Shown, dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
+        """Plays a step. Raises ValueError, and plays nothing, where an action is missing or is not of the space."""
+        if not self.agents:
+            raise gymnasium.error.ResetNeeded("the game is over: call reset first")
+        native, agents = self.native, self.possible_agents
+        missing = [agent for agent in agents if agent not in actions]
+        if missing:
+            raise ValueError(f"actions has nothing for {missing}")
+        kind = np.float32 if native.action_count is None else np.int64
+        native.step(np.array([actions[agent] for agent in agents], dtype=kind))
+        terminated, truncated = bool(native.terminated[0]), bool(native.truncated[0])
+        is_over = terminated or truncated
+        shown = native.final_observations if is_over else native.observations
+        infos = self._infos(native.finished()[0][2] if is_over else native.standing(0))
+        rewards = dict(zip(agents, native.rewards.tolist(), strict=True))
+        self._is_new = is_over
+        if is_over:
+            self.agents = []
+        ends = dict.fromkeys(agents, terminated), dict.fromkeys(agents, truncated)
+        return self._by_agent(shown.copy()), rewards, *ends, infos
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """The game from above, (height, width, 3); None without `render_mode`. After its last step it is the next game."""
+        return None if self.render_mode is None else draw(self.native.scene(0))
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+    def _by_agent(self, observations: NDArray[np.float32]) -> Shown:
+        return dict(zip(self.possible_agents, observations, strict=True))
+
+    def _infos(self, standing: dict[str, int]) -> dict[str, dict[str, Any]]:
+        counts = self.native.counts.tolist()
+        views = [standing, seen_by_enemy(standing)] if len(counts) > self._per_team else [standing]
+        infos = [{"counts": is_counted, **views[place // self._per_team]} for place, is_counted in enumerate(counts)]
+        return dict(zip(self.possible_agents, infos, strict=True))
+
+
+def parallel_env(
+    *, seed: int | None = None, render_mode: str | None = None, **options: Unpack[Options]
+) -> SquallParallelEnv:
+    """One game as PettingZoo's `ParallelEnv`.
+
+    With `team`, the boats of the team of that name are agents, with `opponents` as in the other environments; without, all boats
+    are, and `opponents` may not be given. An agent's `info` says how the game stands for its team, as that of `TeamEnv`, and in
+    `counts` whether it does as it is told: a tagged boat sails home. Raises ValueError with everything that is wrong with options
+    and scenario files.
+    """
+    if options.get("team") is not None:
+        needs_no_policy(options, "one team's parallel_env")
+        return SquallParallelEnv(seed=seed, render_mode=render_mode, options=options)
+    if "opponents" in options:
+        raise ValueError("opponents is given, but all boats are agents: say which team's are (`team`)")
+    options["opponents"] = "policy"
+    # With both sides sailed from here it only makes a difference to the order of the agents.
+    options["team"] = native_environment(options, seed=0, games=1, threads=1).team_names[0]
+    return SquallParallelEnv(seed=seed, render_mode=render_mode, options=options)

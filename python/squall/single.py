@@ -1,0 +1,117 @@
+"""One game at a time, as gymnasium's `Env`: for a team, and for a single boat."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+from typing_extensions import Unpack
+
+from squall.picture import draw
+from squall.setup import (
+    File,
+    Options,
+    action_space,
+    actions_for,
+    native_environment,
+    needs_no_policy,
+    observation_space,
+)
+
+
+class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
+    """What both have in common."""
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 (gymnasium's own)
+    observation_space: gymnasium.spaces.Box  # type: ignore[assignment]
+
+    def __init__(
+        self, *, is_team: bool, seed: int | None, mates: File | None, render_mode: str | None, options: Options
+    ) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f'render_mode is {render_mode!r}, expected None or "rgb_array"')
+        needs_no_policy(options, type(self).__name__)
+        self.native = native_environment(options, seed=seed, games=1, threads=1, mates=mates)
+        self.render_mode = render_mode
+        boats = self.native.rows if is_team else None
+        self.observation_space = observation_space(self.native, options, boats)
+        self.action_space = action_space(self.native, boats)
+        self._is_over = False
+        # A game has begun that nobody has asked for yet.
+        self._is_new = True
+
+    @property
+    def observation_names(self) -> list[str]:
+        """What the numbers of a boat's observation are called, in their order."""
+        return self.native.observation_names
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begins the game of this seed, or the next one."""
+        super().reset(seed=seed)
+        if seed is not None or not self._is_new:
+            self.native.restart(seed)
+        self._is_over, self._is_new = False, True
+        return self._shown(self.native.observations), self._info(self.native.standing(0))
+
+    def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Plays a step. Raises ValueError, and plays nothing, for an action that is not of the space."""
+        if self._is_over:
+            raise gymnasium.error.ResetNeeded("the game is over: call reset first")
+        native = self.native
+        native.step(actions_for(native, action))
+        terminated, truncated = bool(native.terminated[0]), bool(native.truncated[0])
+        reward = float(native.rewards.mean())
+        self._is_over = self._is_new = terminated or truncated
+        if self._is_over:
+            shown, standing = native.final_observations, native.finished()[0][2]
+        else:
+            shown, standing = native.observations, native.standing(0)
+        return self._shown(shown), reward, terminated, truncated, self._info(standing)
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """The game from above, (height, width, 3); None without `render_mode`. After its last step it is the next game."""
+        return None if self.render_mode is None else draw(self.native.scene(0))
+
+    def _shown(self, observations: NDArray[np.float32]) -> NDArray[np.float32]:
+        return observations.reshape(self.observation_space.shape).copy()
+
+    def _info(self, standing: dict[str, int]) -> dict[str, Any]:
+        counts = self.native.counts
+        return {"counts": bool(counts[0]) if len(counts) == 1 else counts.copy(), **standing}
+
+
+class TeamEnv(_GameEnv):
+    """One game; an action says what all boats of a team do.
+
+    Observations are (boats, numbers), actions have an entry for each boat, the reward is the mean of the boats'. A strategy plays the
+    other team. `info` says how the game stands: `seed`, `team` (0 is the game's first), `steps`, `score`, `grabs`, `captures`,
+    `tags`, `tagged`, `out_of_bounds`, `collisions`, the same with `enemy_` before it, and `counts`: which boats do as they are told.
+    """
+
+    def __init__(self, *, seed: int | None = None, render_mode: str | None = None, **options: Unpack[Options]) -> None:
+        """Begins the game of a seed (None: any). Raises ValueError with everything that is wrong with options and files."""
+        super().__init__(is_team=True, seed=seed, mates=None, render_mode=render_mode, options=options)
+
+
+class BoatEnv(_GameEnv):
+    """One game; an action says what one boat does.
+
+    A strategy sails its mates, so that there is one agent and nothing else in its world learns. Which boat of the team it is follows
+    from the seed, each by turns. A policy for all boats of a team is better learned with `VectorEnv`, which has a row for each.
+    `info` is that of `TeamEnv`; there `counts` is one truth.
+    """
+
+    def __init__(
+        self,
+        *,
+        mates: File = "pav01",
+        seed: int | None = None,
+        render_mode: str | None = None,
+        **options: Unpack[Options],
+    ) -> None:
+        """Begins the game of a seed (None: any). Raises ValueError with everything that is wrong with options and files."""
+        super().__init__(is_team=False, seed=seed, mates=mates, render_mode=render_mode, options=options)

@@ -1,0 +1,193 @@
+"""Many games at a time, as gymnasium's `VectorEnv`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import gymnasium
+import numpy as np
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+from typing_extensions import Unpack
+
+from squall.picture import draw
+from squall.setup import File, Options, action_space, actions_for, native_environment, observation_space
+
+# gymnasium 1.0 has no such enumeration: its environments reset at the next step, and ours say so in their docstring.
+_SAME_STEP = getattr(getattr(gymnasium.vector, "AutoresetMode", None), "SAME_STEP", "SameStep")
+
+
+class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], NDArray[Any]]):
+    """Games side by side, one environment for each row.
+
+    A row is a boat (`row="boat"`, the default), as policies that are shared by boats need it, or a team (`row="team"`): then an
+    observation is (boats, numbers), an action has one entry for each boat, and the reward is the mean of the boats'. Rows go game by
+    game, first the boats of the team that learns, then, in self-play, the others: `num_envs` is that many. The rows of a game end
+    together.
+
+    A game begins anew in the step in which it ends (`AutoresetMode.SAME_STEP`): that step returns the first observation of the new
+    one, `info["final_obs"]` has the last of the old one, and `info["final_info"]` how that stood.
+
+    `info["counts"]` (num_envs,) says whether a row's next action counts: a tagged boat is sailed home whatever is chosen, and in games
+    against a strategy nobody is asked for the enemies (their rows are 0). A policy learns nothing from samples where it is False;
+    a critic should, or it does not know what being tagged costs.
+    `info["seed"]` (num_envs,) is the seed of the game.
+
+    With `copy=False`, `step` and `reset` return the environment's own arrays, which the next call overwrites.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 (gymnasium's own declaration)
+        "render_modes": ["rgb_array"],
+        "render_fps": 10,
+        "autoreset_mode": _SAME_STEP,
+    }
+
+    def __init__(
+        self,
+        games: int = 1,
+        *,
+        row: Literal["boat", "team"] = "boat",
+        threads: int | None = None,
+        seed: int | None = None,
+        mates: File | None = None,
+        copy: bool = True,
+        render_mode: str | None = None,
+        **options: Unpack[Options],
+    ) -> None:
+        """Begins `games` games on so many threads (None: one for each core), with seeds that count up from `seed` (None: any).
+
+        `mates` is a strategy for all but one boat of a team, as in `BoatEnv`; None: all boats are rows. Results depend on seed and
+        actions alone, not on threads. Raises ValueError with everything that is wrong with options and scenario files.
+        """
+        if row not in ("boat", "team"):
+            raise ValueError(f'row is {row!r}, expected "boat" or "team"')
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f'render_mode is {render_mode!r}, expected None or "rgb_array"')
+        threads = min(games, os.cpu_count() or 1) if threads is None else threads
+        self.native = native_environment(options, seed=seed, games=games, threads=max(threads, 1), mates=mates)
+        self.render_mode, self.copy, self.games = render_mode, copy, games
+        native = self.native
+        self.boats_per_team = 1 if mates is not None else len(native.boat_names) // 2
+        self.boats_per_row = self.boats_per_team if row == "team" else 1
+        self.rows_per_game = native.rows_per_game // self.boats_per_row
+        self.num_envs = games * self.rows_per_game
+        boats = self.boats_per_row if row == "team" else None
+        self.single_observation_space = observation_space(native, options, boats)
+        self.single_action_space = action_space(native, boats)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
+        self._observations = native.observations.reshape(self.observation_space.shape)
+        self._final_observations = native.final_observations.reshape(self.observation_space.shape)
+        self._first_of_row = slice(None, None, self.boats_per_row)
+        self._is_begun = True
+        self._note_seeds()
+
+    @property
+    def observation_names(self) -> list[str]:
+        """What the numbers of a boat's observation are called, in their order."""
+        return self.native.observation_names
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begins games anew.
+
+        An int: their seeds count up from it, as when they were made with it. A sequence: a seed for each game, None for its next
+        one. None: the next ones. `options={"reset_mask": mask}`, (num_envs,) bool, begins those games alone of which a row is True.
+        """
+        mask = (options or {}).get("reset_mask")
+        if mask is None and (seed is None or isinstance(seed, (int, np.integer))):
+            if seed is not None or not self._is_begun:
+                self.native.restart(None if seed is None else int(seed))
+        else:
+            self.native.restart_games(self._chosen(seed, mask))
+        self._is_begun = True
+        self._note_seeds()
+        return self._shown(self._observations), self._info()
+
+    def step(
+        self, actions: NDArray[Any]
+    ) -> tuple[NDArray[np.float32], NDArray[Any], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        """Plays a step of all games with an action for each row. Raises ValueError, and plays nothing, for other actions."""
+        native = self.native
+        native.step(actions_for(native, actions))
+        self._is_begun = False
+        rewards = native.rewards
+        if self.boats_per_row > 1:
+            rewards = rewards.reshape(self.num_envs, self.boats_per_row).mean(axis=1)
+        terminated, truncated = native.terminated[self._first_of_row], native.truncated[self._first_of_row]
+        info = self._info()
+        if terminated.any() or truncated.any():
+            self._add_final(info, terminated | truncated)
+        shown = self._shown
+        return shown(self._observations), shown(rewards), shown(terminated), shown(truncated), info
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """A picture of the game of each row, (height, width, 3); None without `render_mode`."""
+        if self.render_mode is None:
+            return None
+        pictures = [draw(self.native.scene(game)) for game in range(self.games)]
+        return tuple(pictures[env // self.rows_per_game] for env in range(self.num_envs))
+
+    def _shown(self, array: NDArray[Any]) -> NDArray[Any]:
+        return array.copy() if self.copy else array
+
+    def _chosen(self, seed: int | Sequence[int | None] | None, mask: Any) -> list[tuple[int, int | None]]:
+        seeds: list[int | None] = [None] * self.games
+        if isinstance(seed, (int, np.integer)):
+            seeds = [int(seed) + game for game in range(self.games)]
+        elif seed is not None:
+            seeds = [None if one is None else int(one) for one in seed]
+        if len(seeds) != self.games:
+            raise ValueError(f"seed has {len(seeds)} numbers, expected one for each of {self.games} games")
+        rows = np.ones(self.num_envs, dtype=bool) if mask is None else np.asarray(mask, dtype=bool)
+        if rows.shape != (self.num_envs,):
+            raise ValueError(f"reset_mask has the shape {rows.shape}, expected ({self.num_envs},)")
+        chosen = rows.reshape(self.games, self.rows_per_game).any(axis=1)
+        return [(int(game), seeds[game]) for game in np.flatnonzero(chosen)]
+
+    def _note_seeds(self) -> None:
+        seeds = [self.native.standing(game)["seed"] for game in range(self.games)]
+        self._seeds = np.repeat(np.array(seeds, dtype=np.uint64), self.rows_per_game)
+
+    def _info(self) -> dict[str, Any]:
+        counts = self.native.counts
+        if self.boats_per_row > 1:
+            counts = counts.reshape(self.num_envs, self.boats_per_row)
+        everywhere = np.ones(self.num_envs, dtype=bool)
+        return {
+            "counts": self._shown(counts),
+            "_counts": everywhere,
+            "seed": self._shown(self._seeds),
+            "_seed": everywhere,
+        }
+
+    def _add_final(self, info: dict[str, Any], ended: NDArray[np.bool_]) -> None:
+        """Adds `final_obs` and `final_info` as gymnasium's own vector environments do."""
+        observations = np.full(self.num_envs, None, dtype=object)
+        for env in np.flatnonzero(ended):
+            observations[env] = self._final_observations[env].copy()
+        final: dict[str, Any] = {}
+        for game, _, standing in self.native.finished():
+            for place in range(self.rows_per_game):
+                is_enemy = place * self.boats_per_row >= self.boats_per_team
+                for name, number in (seen_by_enemy(standing) if is_enemy else standing).items():
+                    dtype = np.uint64 if name == "seed" else np.int64
+                    array = final.setdefault(name, np.zeros(self.num_envs, dtype=dtype))
+                    array[game * self.rows_per_game + place] = number
+        final.update({f"_{name}": ended.copy() for name in list(final)})
+        info.update(final_obs=observations, _final_obs=ended, final_info=final, _final_info=ended.copy())
+        self._note_seeds()
+        info["seed"] = self._shown(self._seeds)
+
+
+def seen_by_enemy(standing: dict[str, int]) -> dict[str, int]:
+    """How a game stands as the other team sees it."""
+    swapped = dict(standing, team=1 - standing["team"])
+    for name, number in standing.items():
+        if name.startswith("enemy_"):
+            own = name.removeprefix("enemy_")
+            swapped[own], swapped[name] = number, standing[own]
+    return swapped

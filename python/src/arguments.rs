@@ -1,0 +1,61 @@
+//! What Python says is to be played.
+
+use learn::environment::{ActionSpace, RawObservation, RawSetup};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::fmt::Display;
+use std::path::PathBuf;
+
+/// A mapping with a key for each of these: the stub has their meanings.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Arguments {
+    game: PathBuf,
+    observation: String,
+    frames: u8,
+    action: String,
+    helm: Option<PathBuf>,
+    decision_s: Option<f64>,
+    episode_max_s: Option<f64>,
+    starts: Option<u32>,
+    team: Option<String>,
+    mates: Option<PathBuf>,
+    opponents: Vec<(f64, Option<PathBuf>)>,
+    rewards: Option<PathBuf>,
+    discount: f64,
+}
+
+impl Arguments {
+    /// The setup that they say.
+    pub(crate) fn setup(self) -> PyResult<RawSetup> {
+        let observation = match self.observation.as_str() {
+            "pyquaticus" => RawObservation::Pyquaticus,
+            "squall" => RawObservation::Squall { mates: None, enemies: None, frames: self.frames },
+            other => return Err(refused(format!("observation is {other:?}, expected \"squall\" or \"pyquaticus\""))),
+        };
+        let action = match self.action.as_str() {
+            "pyquaticus" => ActionSpace::Pyquaticus,
+            "continuous" => ActionSpace::Continuous,
+            other => return Err(refused(format!("action is {other:?}, expected \"pyquaticus\" or \"continuous\""))),
+        };
+        Ok(RawSetup {
+            game: self.game,
+            observation,
+            action,
+            helm: self.helm,
+            decision_s: self.decision_s,
+            episode_max_s: self.episode_max_s,
+            starts: self.starts,
+            team: self.team,
+            mates: self.mates,
+            opponents: self.opponents,
+            rewards: self.rewards,
+            discount: self.discount,
+        })
+    }
+}
+
+/// An error of ours as Python's `ValueError`, with its whole text.
+pub(crate) fn refused(error: impl Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}

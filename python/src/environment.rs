@@ -1,0 +1,277 @@
+//! Many games at a time for Python: a step without the interpreter's lock, into numpy arrays that stay the same.
+
+use crate::arguments::{Arguments, refused};
+use crate::{scene, standing};
+use learn::environment::{Action, ActionSpace, Games, Rows};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Many games at a time; the stub explains it.
+#[pyclass(module = "squall._native")]
+pub(crate) struct VectorEnvironment {
+    games: Mutex<Games>,
+    actions: Vec<Action>,
+    arrays: Arrays,
+}
+
+/// What a step writes: rows × numbers, or rows.
+struct Arrays {
+    observations: Py<PyArray2<f32>>,
+    final_observations: Py<PyArray2<f32>>,
+    rewards: Py<PyArray1<f32>>,
+    counts: Py<PyArray1<bool>>,
+    terminated: Py<PyArray1<bool>>,
+    truncated: Py<PyArray1<bool>>,
+}
+
+impl Arrays {
+    fn new(py: Python<'_>, rows: usize, numbers: usize) -> Arrays {
+        let table = || PyArray2::zeros(py, [rows, numbers], false).unbind();
+        let flags = || PyArray1::zeros(py, [rows], false).unbind();
+        Arrays {
+            observations: table(),
+            final_observations: table(),
+            rewards: PyArray1::zeros(py, [rows], false).unbind(),
+            counts: flags(),
+            terminated: flags(),
+            truncated: flags(),
+        }
+    }
+
+    /// Lets `work` write, without the interpreter's lock.
+    fn write<T: Send>(&self, py: Python<'_>, work: impl FnOnce(Rows<'_>) -> T + Send) -> PyResult<T> {
+        let mut observations = self.observations.bind(py).try_readwrite()?;
+        let mut final_observations = self.final_observations.bind(py).try_readwrite()?;
+        let mut rewards = self.rewards.bind(py).try_readwrite()?;
+        let mut counts = self.counts.bind(py).try_readwrite()?;
+        let rows = Rows {
+            observations: observations.as_slice_mut()?,
+            final_observations: final_observations.as_slice_mut()?,
+            rewards: rewards.as_slice_mut()?,
+            counts: counts.as_slice_mut()?,
+        };
+        Ok(py.detach(|| work(rows)))
+    }
+
+    /// Notes which games ended in the step.
+    fn end(&self, py: Python<'_>, games: &Games) -> PyResult<()> {
+        let mut terminated = self.terminated.bind(py).try_readwrite()?;
+        let mut truncated = self.truncated.bind(py).try_readwrite()?;
+        let (terminated, truncated) = (terminated.as_slice_mut()?, truncated.as_slice_mut()?);
+        terminated.fill(false);
+        truncated.fill(false);
+        let per_game = games.rows().1;
+        for one in games.finished() {
+            let rows = one.game * per_game..(one.game + 1) * per_game;
+            (if one.cut_off { &mut truncated[rows] } else { &mut terminated[rows] }).fill(true);
+        }
+        Ok(())
+    }
+}
+
+#[pymethods]
+impl VectorEnvironment {
+    #[new]
+    fn new(py: Python<'_>, setup: Arguments, seed: u64, games: usize, threads: usize) -> PyResult<VectorEnvironment> {
+        for (name, number, most) in [("games", games, 1_000_000), ("threads", threads, 1024)] {
+            if !(1..=most).contains(&number) {
+                return Err(refused(format!("{name} is {number}, expected 1 to {most}")));
+            }
+        }
+        let setup = setup.setup()?;
+        let begun = py.detach(|| setup.check().and_then(|setup| Games::new(setup, games, threads, seed)));
+        let games = begun.map_err(refused)?;
+        let arrays = Arrays::new(py, games.rows().0, games.setup().observation_size());
+        let mut environment = VectorEnvironment { games: Mutex::new(games), actions: Vec::new(), arrays };
+        environment.show(py)?;
+        Ok(environment)
+    }
+
+    fn step(&mut self, py: Python<'_>, actions: &Bound<'_, PyAny>) -> PyResult<()> {
+        let VectorEnvironment { games, actions: read, arrays } = self;
+        let games = games.get_mut().unwrap_or_else(PoisonError::into_inner);
+        match games.setup().spaces.action {
+            ActionSpace::Pyquaticus => read_discrete(actions, games.rows().0, read)?,
+            ActionSpace::Continuous => read_continuous(actions, games.rows().0, read)?,
+        }
+        arrays.write(py, |rows| games.step(read, rows))?.map_err(refused)?;
+        arrays.end(py, games)
+    }
+
+    #[pyo3(signature = (seed=None))]
+    fn restart(&mut self, py: Python<'_>, seed: Option<u64>) -> PyResult<()> {
+        let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
+        py.detach(|| games.restart(seed)).map_err(refused)?;
+        self.show(py)
+    }
+
+    fn restart_games(&mut self, py: Python<'_>, chosen: Vec<(usize, Option<u64>)>) -> PyResult<()> {
+        let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
+        for (game, seed) in chosen {
+            check_index(games, game)?;
+            py.detach(|| games.restart_game(game, seed)).map_err(refused)?;
+        }
+        self.show(py)
+    }
+
+    #[getter]
+    fn rows(&self) -> usize {
+        self.games().rows().0
+    }
+
+    #[getter]
+    fn rows_per_game(&self) -> usize {
+        self.games().rows().1
+    }
+
+    #[getter]
+    fn observation_names(&self) -> Vec<String> {
+        self.games().setup().observation_names()
+    }
+
+    #[getter]
+    fn action_count(&self) -> Option<usize> {
+        self.games().setup().spaces.action.count()
+    }
+
+    #[getter]
+    fn step_s(&self) -> f64 {
+        let games = self.games();
+        games.setup().scenario.decision().as_s() * f64::from(games.setup().decisions_per_step)
+    }
+
+    #[getter]
+    fn boat_names(&self) -> Vec<String> {
+        self.games().setup().scenario.vehicles.iter().map(|vehicle| vehicle.name.clone()).collect()
+    }
+
+    #[getter]
+    fn team_names(&self) -> Vec<String> {
+        self.games().setup().scenario.teams.iter().map(|team| team.name.clone()).collect()
+    }
+
+    fn boats(&self, game: usize) -> PyResult<Vec<Option<usize>>> {
+        let games = self.games();
+        check_index(&games, game)?;
+        let boats = games.boats(game);
+        let rows = 0..games.rows().1;
+        Ok(rows.map(|row| boats.get(row).map(|vehicle| vehicle.index())).collect())
+    }
+
+    fn standing<'py>(&self, py: Python<'py>, game: usize) -> PyResult<Bound<'py, PyDict>> {
+        let games = self.games();
+        check_index(&games, game)?;
+        standing::dict(py, &games.standing(game))
+    }
+
+    fn finished<'py>(&self, py: Python<'py>) -> PyResult<Vec<(usize, bool, Bound<'py, PyDict>)>> {
+        let games = self.games();
+        let one = |one: &learn::environment::Finished| Ok((one.game, one.cut_off, standing::dict(py, &one.standing)?));
+        games.finished().iter().map(one).collect()
+    }
+
+    fn digest(&self, game: usize) -> PyResult<String> {
+        let games = self.games();
+        check_index(&games, game)?;
+        Ok(format!("{:032x}", games.contest(game).digest()))
+    }
+
+    fn scene<'py>(&self, py: Python<'py>, game: usize) -> PyResult<Bound<'py, PyDict>> {
+        let games = self.games();
+        check_index(&games, game)?;
+        scene::dict(py, &games, game)
+    }
+
+    #[getter]
+    fn observations(&self, py: Python<'_>) -> Py<PyArray2<f32>> {
+        self.arrays.observations.clone_ref(py)
+    }
+
+    #[getter]
+    fn final_observations(&self, py: Python<'_>) -> Py<PyArray2<f32>> {
+        self.arrays.final_observations.clone_ref(py)
+    }
+
+    #[getter]
+    fn rewards(&self, py: Python<'_>) -> Py<PyArray1<f32>> {
+        self.arrays.rewards.clone_ref(py)
+    }
+
+    #[getter]
+    fn counts(&self, py: Python<'_>) -> Py<PyArray1<bool>> {
+        self.arrays.counts.clone_ref(py)
+    }
+
+    #[getter]
+    fn terminated(&self, py: Python<'_>) -> Py<PyArray1<bool>> {
+        self.arrays.terminated.clone_ref(py)
+    }
+
+    #[getter]
+    fn truncated(&self, py: Python<'_>) -> Py<PyArray1<bool>> {
+        self.arrays.truncated.clone_ref(py)
+    }
+}
+
+impl VectorEnvironment {
+    fn games(&self) -> MutexGuard<'_, Games> {
+        self.games.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn show(&mut self, py: Python<'_>) -> PyResult<()> {
+        let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
+        self.arrays.write(py, |rows| games.show(rows))?;
+        self.arrays.end(py, games)
+    }
+}
+
+fn check_index(games: &Games, game: usize) -> PyResult<()> {
+    let count = games.rows().0 / games.rows().1;
+    if game < count {
+        return Ok(());
+    }
+    Err(PyIndexError::new_err(format!("game is {game}, expected 0 to {}", count - 1)))
+}
+
+/// Reads one index for each row.
+fn read_discrete(actions: &Bound<'_, PyAny>, rows: usize, into: &mut Vec<Action>) -> PyResult<()> {
+    let actions: PyReadonlyArray1<'_, i64> =
+        actions.extract().map_err(|_| refused(format!("actions are no array of int64 with the shape ({rows},)")))?;
+    let count = ActionSpace::Pyquaticus.count().unwrap_or_default();
+    check_rows(actions.shape(), &[rows])?;
+    into.clear();
+    for (row, action) in actions.as_array().iter().enumerate() {
+        let action = usize::try_from(*action).ok().filter(|action| *action < count);
+        let wrong =
+            || refused(format!("the action of row {row} is {}, expected 0 to {}", actions.as_array()[row], count - 1));
+        into.push(Action::Discrete(action.ok_or_else(wrong)?));
+    }
+    Ok(())
+}
+
+/// Reads two numbers for each row.
+fn read_continuous(actions: &Bound<'_, PyAny>, rows: usize, into: &mut Vec<Action>) -> PyResult<()> {
+    let actions: PyReadonlyArray2<'_, f32> = actions
+        .extract()
+        .map_err(|_| refused(format!("actions are no array of float32 with the shape ({rows}, 2)")))?;
+    check_rows(actions.shape(), &[rows, 2])?;
+    into.clear();
+    for (row, action) in actions.as_array().outer_iter().enumerate() {
+        let action = [action[0], action[1]];
+        if !action.iter().all(|number| number.is_finite()) {
+            return Err(refused(format!("the action of row {row} is {action:?}, expected two finite numbers")));
+        }
+        into.push(Action::Continuous(action));
+    }
+    Ok(())
+}
+
+fn check_rows(shape: &[usize], expected: &[usize]) -> PyResult<()> {
+    if shape == expected {
+        return Ok(());
+    }
+    Err(refused(format!("actions have the shape {shape:?}, expected {expected:?}")))
+}

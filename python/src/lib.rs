@@ -1,0 +1,15 @@
+//! The native module of the Python package `squall`: games as environments, whose arrays Python shares.
+
+mod arguments;
+mod environment;
+mod scene;
+mod standing;
+
+use pyo3::prelude::*;
+
+/// `squall._native`: private; `squall` is what to use.
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<environment::VectorEnvironment>()
+}
