@@ -2,8 +2,8 @@
 
 use crate::screen;
 use anyhow::{Result, anyhow, bail};
-use game::scenario::{Kind, check_file, schema};
-use std::path::PathBuf;
+use game::scenario::{Kind, check_file, load, schema};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Which files.
@@ -25,7 +25,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut errors = 0;
     for file in &args.files {
         match check_file(file) {
-            Ok(kind) => screen::print(&format!("{}: a good {kind}\n", file.display())),
+            Ok(kind) => {
+                screen::print(&format!("{}: a good {kind}\n", file.display()));
+                for warning in warnings(file, kind) {
+                    screen::print(&format!("  warning: {warning}\n"));
+                }
+            }
             Err(problems) => {
                 errors += problems.0.len();
                 screen::print(&format!("{problems}\n"));
@@ -37,6 +42,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         1 => bail!("1 error"),
         _ => bail!("{errors} errors"),
     }
+}
+
+/// What a good game asks of its boats that they cannot do.
+fn warnings(file: &Path, kind: Kind) -> Vec<String> {
+    if kind != Kind::Game {
+        return Vec::new();
+    }
+    load(file).map(|scenario| agent::warnings(&scenario)).unwrap_or_default()
 }
 
 pub(crate) fn print_schema(args: &SchemaArgs) -> Result<ExitCode> {

@@ -32,6 +32,7 @@ mod strategy_command;
 mod tournament_command;
 mod tournament_progress;
 mod tournament_table;
+mod train_command;
 mod trial_command;
 mod view_command;
 mod watch_command;
@@ -57,6 +58,8 @@ enum Command {
     Run(run_command::Args),
     /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
     Tournament(tournament_command::Args),
+    /// Trains a policy by playing against itself, strategies and what it was.
+    Train(train_command::Args),
     /// Serves one game to agents and gateways that join it.
     Sim(sim_command::Args),
     /// Decides for one or many boats in a game that a sim serves.
@@ -102,6 +105,7 @@ fn main() -> ExitCode {
     let done = match cli.command {
         Command::Run(args) => run_command::run(&args),
         Command::Tournament(args) => tournament_command::run(&args),
+        Command::Train(args) => train_command::run(&args),
         Command::Sim(args) => sim_command::run(&args),
         Command::Agent(args) => agent_command::run(&args),
         Command::Watch(args) => watch_command::run(&args),

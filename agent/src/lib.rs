@@ -9,14 +9,22 @@ pub mod ivp;
 mod mind;
 #[cfg(feature = "net")]
 pub mod node;
+mod observation;
 mod own_motion;
+mod pilot;
+mod policy;
 pub mod roles;
 mod runner;
 mod situation;
+mod turning_circle;
 
+pub use game::action::{Action, ActionSpace, SetPoint};
+pub use game::observation::ObservationSpace;
 pub use helm::HelmMind;
 pub use mind::{Mind, Proposal};
+pub use pilot::{Pilot, Spaces};
 pub use runner::MindRunner;
+pub use turning_circle::warnings;
 
 use game::VehicleId;
 use game::scenario::Scenario;

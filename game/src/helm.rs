@@ -40,6 +40,9 @@ pub struct HelmReport {
     pub behaviours: Vec<BehaviourReport>,
     /// The variables.
     pub variables: Vec<VariableReport>,
+    /// The trained policies that its behaviours ask.
+    #[serde(default)]
+    pub policies: Vec<PolicyReport>,
     /// The objective functions of the decision.
     pub functions: Vec<FunctionReport>,
 }
@@ -92,6 +95,23 @@ pub enum RunState {
     Active,
     /// It is done.
     Complete,
+}
+
+/// A trained policy at its last decision.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PolicyReport {
+    /// The behaviour that asks it.
+    pub behaviour: String,
+    /// Its file.
+    pub model: String,
+    /// The course that it proposes, compass degrees; none if it proposes nothing.
+    pub course_deg: Option<f64>,
+    /// The speed that it proposes, m/s.
+    pub speed_m_s: Option<f64>,
+    /// Why it proposes nothing, if it does not.
+    pub fault: Option<String>,
+    /// How sure it was of each discrete action; empty where actions are continuous.
+    pub probabilities: Vec<f32>,
 }
 
 /// A variable and its value.

@@ -3,6 +3,7 @@
 //! Read [`scenario::Scenario`] first (what makes a game), then [`rules`] (the referee), then
 //! [`message`] and [`topic`] (what goes over the wire).
 
+pub mod action;
 pub mod angle;
 pub mod boat;
 pub mod codec;
@@ -21,11 +22,14 @@ pub mod math;
 pub mod message;
 pub mod near;
 mod normal;
+pub mod observation;
 pub mod order;
 pub mod outcome;
 pub mod picture;
+pub mod policy;
 pub mod printable;
 pub mod refusal;
+pub mod rewards;
 pub mod ros;
 pub mod rules;
 pub mod run_state;
@@ -37,6 +41,7 @@ pub mod strategy;
 pub mod stream;
 pub mod time;
 pub mod topic;
+pub mod training;
 pub mod water;
 
 pub use boat::Boat;

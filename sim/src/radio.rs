@@ -17,12 +17,14 @@ const MOST_JITTERS: f64 = 37.0;
 const DRAWS: u64 = 5;
 
 /// The links of a game.
+#[derive(Clone)]
 pub(crate) struct Radio {
     model: RadioModel,
     state: RadioState,
 }
 
 /// What is constant about them.
+#[derive(Clone)]
 struct RadioModel {
     link: Link,
     /// When a link is bad.

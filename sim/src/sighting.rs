@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Sightings of a game, by all teams.
+#[derive(Clone)]
 pub(crate) struct Sightings {
     sharing: Sharing,
     /// Decisions between a sighting and its report.

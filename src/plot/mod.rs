@@ -5,6 +5,7 @@ pub(crate) mod field;
 pub(crate) mod game;
 pub(crate) mod polar;
 pub(crate) mod sea;
+pub(crate) mod training;
 pub(crate) mod trial;
 
 use crate::output_file;
@@ -144,11 +145,16 @@ pub(crate) trait Diagram {
 /// What comes of drawing.
 pub(crate) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
+/// Draws as the text of an SVG.
+pub(crate) fn svg(drawing: &impl Drawing) -> anyhow::Result<String> {
+    let mut svg = String::new();
+    draw_on(SVGBackend::with_string(&mut svg, drawing.size()), drawing, Ink::Vector).context("cannot draw")?;
+    Ok(svg)
+}
+
 /// Draws into an SVG file.
 pub(crate) fn write_svg(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
-    let mut svg = String::new();
-    draw_on(SVGBackend::with_string(&mut svg, drawing.size()), drawing, Ink::Vector)
-        .with_context(|| format!("cannot draw {}", path.display()))?;
+    let svg = svg(drawing).with_context(|| path.display().to_string())?;
     output_file::write(path, "the plot", svg)
 }
 

@@ -1,6 +1,6 @@
 //! `squall strategy` from outside: what it shows of good files, and of bad ones.
 
-use crate::program::{project, squall};
+use crate::program::{printed, project, scenario, squall};
 
 /// What `squall strategy` prints of a file with this text.
 fn shown(text: &str, more: &[&str]) -> (bool, String, String) {
@@ -129,4 +129,30 @@ fn the_reference_is_printed_without_a_file() {
     let page = std::fs::read(project().join("scenarios/strategies/REFERENCE.md")).unwrap();
     assert!(output.status.success() && output.stdout == page);
     assert!(!squall(project(), &["strategy"]).status.success());
+}
+
+#[test]
+fn a_check_warns_of_points_within_the_turning_circle_of_the_boat() {
+    let folder = tempfile::tempdir().unwrap();
+    let game = |points: &str| {
+        let strategy = format!(
+            "base = \"{}\"\nabout = \"a square\"\n[[mode]]\nname = \"all\"\n[behaviour.round]\nkind = \"waypoint\"\nrepeat = 9\npoints = {points}\n",
+            scenario("strategies/safety.toml")
+        );
+        std::fs::write(folder.path().join("square.toml"), strategy).unwrap();
+        let base = scenario("games/surveyor_2v2.toml");
+        let game = format!(
+            "base = \"{base}\"\n[[team]]\nname = \"blue\"\nstrategy = \"square.toml\"\n\
+             [[team]]\nname = \"red\"\nstrategy = \"square.toml\"\n"
+        );
+        std::fs::write(folder.path().join("game.toml"), game).unwrap();
+        printed(&folder, &["check", "game.toml"])
+    };
+    let said = game("[[30, 20], [30, 24], [26, 24], [26, 20]]");
+    assert!(
+        said.starts_with("game.toml: a good game\n  warning: square: behaviour \"round\": 4 of 4 points lie"),
+        "{said}"
+    );
+    assert!(said.contains("circle of a surveyor_afloat that comes"), "{said}");
+    assert_eq!(game("[[30, 20], [30, 50], [60, 50], [60, 20]]"), "game.toml: a good game\n");
 }

@@ -8,21 +8,23 @@ use crate::tree::Tree;
 pub(crate) const LINES_MAX: usize = 500;
 
 /// What each crate of ours may depend on, whatever the section. Folders that are planned are in here already.
-const MAY_IMPORT: [(&str, &[&str]); 13] = [
-    ("game", &[]),
+const MAY_IMPORT: [(&str, &[&str]); 15] = [
+    ("onnx", &[]),
+    ("game", &["onnx"]),
     ("bus", &["game"]),
     ("recording", &["game"]),
     ("sim", &["game", "bus", "recording"]),
-    ("agent", &["game", "bus"]),
+    ("agent", &["onnx", "game", "bus"]),
     ("gateway", &["game", "bus", "recording", "agent"]),
     ("gateway/crosscheck", &["game", "gateway"]),
-    ("fuzz", &["game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "shore"]),
+    ("fuzz", &["onnx", "game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "shore"]),
     // `analysis` for examples: what games in one process tell.
     ("arena", &["game", "sim", "agent", "analysis"]),
     ("analysis", &["game", "recording"]),
     ("shore", &["game", "bus", "recording"]),
-    ("python", &["arena"]),
-    ("", &["game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "shore"]),
+    ("learn", &["onnx", "game", "sim", "agent", "arena"]),
+    ("python", &["learn"]),
+    ("", &["onnx", "game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "learn", "shore"]),
 ];
 
 /// Crates whose network shell, `node`, is the only place that may use `bus`; everything else in them is pure.

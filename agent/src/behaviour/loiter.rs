@@ -85,7 +85,7 @@ impl BehaviourLogic for LoiterBehaviour {
 }
 
 /// The corners of a shape, clockwise; none if a place of it is not known.
-fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec<Ned>) {
+pub(crate) fn corners_of(shape: &Shape, situation: &Situation, corners: &mut Vec<Ned>) {
     corners.clear();
     match shape {
         Shape::Corners(places) => {

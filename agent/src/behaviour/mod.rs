@@ -25,18 +25,29 @@ mod timer;
 mod trail;
 mod waypoint;
 
+pub(crate) use loiter::corners_of;
+
 pub(crate) use output::{BehaviourOutput, Functions};
 
+use crate::policy::BoardPolicy;
 use crate::situation::Situation;
 use game::strategy::Task;
 
 /// What a behaviour does while it runs; when it runs is the helm's matter.
 pub(crate) trait BehaviourLogic: Send {
+    /// Takes in the situation of a decision, whether it runs or not.
+    fn look(&mut self, _situation: &Situation) {}
+
     /// It begins to run: forgets what was.
     fn begin(&mut self, _situation: &Situation) {}
 
     /// Produces the objective functions of this decision.
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>);
+
+    /// The trained policy that it asks, if it does.
+    fn policy(&self) -> Option<&BoardPolicy> {
+        None
+    }
 }
 
 /// The logic of a behaviour with this task.
@@ -59,6 +70,6 @@ pub(crate) fn logic_of(task: &Task) -> Box<dyn BehaviourLogic> {
         Task::FullStop(task) => Box::new(task),
         Task::Shield(task) => Box::new(task),
         Task::Attractor(task) => Box::new(task),
-        Task::Policy(task) => Box::new(task),
+        Task::Policy(task) => Box::new(policy::PolicyBehaviour::new(task)),
     }
 }

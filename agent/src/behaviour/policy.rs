@@ -1,31 +1,66 @@
-//! Policy: lets somebody outside of the helm propose course and speed, weighed with everything else.
+//! Policy: lets a model, or somebody outside of the helm, propose course and speed, weighed with everything else.
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
+use crate::policy::BoardPolicy;
 use crate::situation::Situation;
+use game::action::SetPoint;
 use game::strategy::Policy;
 
 /// From the peak of the proposed speed down to nothing, m/s.
 const SPEED_BASE_M_S: f64 = 1.0;
 
-impl BehaviourLogic for Policy {
-    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
-        let Some(proposal) = situation.proposed else { return };
-        if (situation.now - proposal.at).as_s() > self.ttl_s.value(situation) {
-            return;
+/// A policy behaviour.
+pub(super) struct PolicyBehaviour {
+    task: Policy,
+    /// What proposes; none: somebody outside.
+    policy: Option<BoardPolicy>,
+}
+
+impl PolicyBehaviour {
+    pub(super) fn new(mut task: Policy) -> PolicyBehaviour {
+        let policy = task.model.take().map(BoardPolicy::new);
+        PolicyBehaviour { task, policy }
+    }
+
+    /// What is proposed now.
+    fn proposed(&self, situation: &Situation) -> Option<SetPoint> {
+        match &self.policy {
+            Some(policy) => policy.chosen().ok(),
+            None => {
+                let proposal = situation.proposed?;
+                let is_fresh = (situation.now - proposal.at).as_s() <= self.task.ttl_s.value(situation);
+                is_fresh.then_some(SetPoint { course_rad: proposal.course_rad, speed_m_s: proposal.speed_m_s })
+            }
         }
-        let speed_m_s = proposal.speed_m_s.clamp(0.0, situation.model.speed_max_m_s);
-        let (heading_rad, speed_m_s) = situation.motion.steer(proposal.course_rad, speed_m_s);
+    }
+}
+
+impl BehaviourLogic for PolicyBehaviour {
+    fn look(&mut self, situation: &Situation) {
+        if let Some(policy) = &mut self.policy {
+            policy.look(situation);
+        }
+    }
+
+    fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        let Some(SetPoint { course_rad, speed_m_s }) = self.proposed(situation) else { return };
+        let speed_m_s = speed_m_s.clamp(0.0, situation.model.speed_max_m_s);
+        let (heading_rad, speed_m_s) = situation.motion.steer(course_rad, speed_m_s);
         output.add(&Objective::Coupled {
             course: Peak {
                 summit: heading_rad,
-                peak_width: self.peak_width_deg.value(situation).to_radians(),
-                base_width: self.base_width_deg.value(situation).to_radians(),
+                peak_width: self.task.peak_width_deg.value(situation).to_radians(),
+                base_width: self.task.base_width_deg.value(situation).to_radians(),
                 summit_delta: 10.0,
                 height: 100.0,
             },
             speed: Peak::tent(speed_m_s, SPEED_BASE_M_S),
-            course_share: self.course_share.value(situation),
+            course_share: self.task.course_share.value(situation),
         });
+    }
+
+    fn policy(&self) -> Option<&BoardPolicy> {
+        self.policy.as_ref()
     }
 }

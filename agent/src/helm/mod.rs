@@ -70,6 +70,16 @@ impl HelmMind {
         }
     }
 
+    /// Takes in the picture on which it will decide next.
+    pub(crate) fn look_ahead(&mut self, picture: &Picture) {
+        self.situation.look_ahead(picture);
+    }
+
+    /// What it knows.
+    pub(crate) fn situation(&self) -> &Situation {
+        &self.situation
+    }
+
     /// Rules give values to variables, one after the other.
     fn apply_rules(&mut self, picture: &Picture) {
         for rule in &self.program.rules {
@@ -187,6 +197,7 @@ impl Mind for HelmMind {
         }
         self.apply_rules(picture);
         self.choose_mode();
+        self.instances.iter_mut().for_each(|instance| instance.logic.look(&self.situation));
         let stop = self.mode.is_none_or(|mode| self.run_behaviours(mode));
         self.decided = self.solve(stop);
         self.order()

@@ -2,7 +2,7 @@
 
 use super::{Decided, HelmMind};
 use game::angle::compass_deg_from_rad;
-use game::helm::{BehaviourReport, DriftReport, FunctionReport, HelmReport, VariableReport};
+use game::helm::{BehaviourReport, DriftReport, FunctionReport, HelmReport, PolicyReport, VariableReport};
 
 impl HelmMind {
     pub(super) fn reported(&self) -> HelmReport {
@@ -30,6 +30,19 @@ impl HelmMind {
         let variables = self.program.variables.iter().zip(&self.situation.variables).map(|(variable, value)| {
             VariableReport { name: variable.name.clone(), value: variable.kind.text_of(*value) }
         });
+        let named = self.program.behaviours.iter().zip(&self.instances);
+        let policies = named.filter_map(|(behaviour, instance)| Some((behaviour, instance.logic.policy()?)));
+        let policies = policies.map(|(behaviour, policy)| {
+            let chosen = policy.chosen();
+            PolicyReport {
+                behaviour: behaviour.name.clone(),
+                model: policy.model().name.clone(),
+                course_deg: chosen.ok().map(|chosen| compass_deg_from_rad(chosen.course_rad)),
+                speed_m_s: chosen.ok().map(|chosen| chosen.speed_m_s),
+                fault: chosen.err().map(|fault| fault.to_string()),
+                probabilities: policy.probabilities(),
+            }
+        });
         let motion = &self.situation.motion;
         let drift = motion.drift();
         HelmReport {
@@ -51,6 +64,7 @@ impl HelmMind {
             speed_max_m_s: grid.speed_max_m_s(),
             behaviours: behaviours.collect(),
             variables: variables.collect(),
+            policies: policies.collect(),
             functions: functions.collect(),
         }
     }

@@ -44,8 +44,9 @@ pub enum Side {
     Starboard,
 }
 
-/// What a distance counts that is kept on the other side than it is to be, in parts of it.
-const OTHER_SIDE: f32 = 0.5;
+/// What a distance counts that is kept on the other side than it is to be, in parts of it: so little that a boat does not turn
+/// there to get away from a third one.
+const OTHER_SIDE: f32 = 0.2;
 
 /// Whether to keep away or to come close.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -20,6 +20,8 @@ use std::f64::consts::PI;
 
 /// No larger turn is ordered at once, rad: a front seat turns the shorter way, and of half a turn there is none.
 const TURN_MAX_RAD: f64 = 2.6;
+/// A point boat whose thrust follows the order brakes as hard as it can when that is what it loses in so long, s.
+const BRAKES_S: f64 = 1.0;
 /// A turn that is as large goes on to the side on which it began, rad.
 const LARGE_TURN_RAD: f64 = 2.2;
 
@@ -38,6 +40,9 @@ pub(crate) struct OwnMotion {
     file: Handling,
     reference: SpeedReference,
     speed_max_m_s: f64,
+    /// Of a boat that turns by its thrust, and whose thrust is that of the speed ordered: it brakes as hard as it can when it is told to go
+    /// slower than it does by this much, m/s.
+    brakes_by_m_s: Option<f64>,
     /// Whether drift and offset are made up for.
     compensates: bool,
     drift: DriftEstimate,
@@ -47,6 +52,7 @@ pub(crate) struct OwnMotion {
     ordered: Option<(f64, f64)>,
     fix_at: SimTime,
     psi_rad: f64,
+    surge_m_s: f64,
     /// The side of a large turn that was ordered last, 1 to starboard and -1 to port; else 0.
     side: f64,
 }
@@ -57,10 +63,17 @@ impl OwnMotion {
             Drive::Thrusters { .. } => SpeedReference::Ground,
             Drive::Kinematic(_) => SpeedReference::Water,
         };
+        let brakes_by_m_s = match &boat.drive {
+            Drive::Kinematic(point) if point.speed_factor > 0.0 && point.deceleration_max_m_s2 > 0.0 => {
+                Some(BRAKES_S * point.deceleration_max_m_s2)
+            }
+            _ => None,
+        };
         OwnMotion {
             file: Handling::of(boat),
             reference,
             speed_max_m_s,
+            brakes_by_m_s,
             compensates,
             drift: DriftEstimate::default(),
             offset: HeadingOffset::default(),
@@ -68,6 +81,7 @@ impl OwnMotion {
             ordered: None,
             fix_at: SimTime::ZERO,
             psi_rad: 0.0,
+            surge_m_s: 0.0,
             side: 0.0,
         }
     }
@@ -75,7 +89,7 @@ impl OwnMotion {
     /// Takes in what the boat knows of itself `step_s` after the last time. `obeys` is whether the rules let it do as it was
     /// ordered.
     pub(crate) fn observe(&mut self, own: &OwnBoat, step_s: f64, obeys: bool) {
-        self.psi_rad = own.nav.psi_rad;
+        (self.psi_rad, self.surge_m_s) = (own.nav.psi_rad, own.nav.surge_m_s);
         if !self.compensates || step_s <= 0.0 {
             return;
         }
@@ -158,7 +172,8 @@ impl OwnMotion {
                 let (east, north) = math::sin_cos(heading_rad);
                 (speed_m_s + self.drift().dot(Ned { north, east })).clamp(0.0, self.speed_max_m_s)
             }
-            SpeedReference::Water => speed_m_s,
+            // It could not steer while it brakes if it were told at once to go as slowly as it is to.
+            SpeedReference::Water => self.brakes_by_m_s.map_or(speed_m_s, |by| speed_m_s.max(self.surge_m_s - by)),
         };
         Order::Steer { heading_rad: ordered_rad, speed_m_s: ahead_m_s }
     }
@@ -237,6 +252,18 @@ mod tests {
             }
         }
         assert!((ordered_rad + 0.3 - 1.0).abs() < 0.02, "it lies at {} rad, wanted 1", ordered_rad + 0.3);
+    }
+
+    #[test]
+    fn a_boat_that_steers_by_its_thrust_keeps_some_while_it_brakes() {
+        for (boat, speed_m_s, want_m_s) in
+            [("large_usv_kinematic", 0.3, 5.5), ("large_usv_kinematic", 7.0, 7.0), ("surveyor_kinematic", 0.3, 0.3)]
+        {
+            let mut motion = motion(boat);
+            show(&mut motion, 0.0, 1.0, |_| Nav { surge_m_s: 6.0, ..Nav::default() });
+            let Order::Steer { speed_m_s: got_m_s, .. } = motion.order(1.0, speed_m_s) else { panic!("it steers") };
+            assert!((got_m_s - want_m_s).abs() < 1e-9, "{boat} told {speed_m_s} is ordered {got_m_s}");
+        }
     }
 
     #[test]

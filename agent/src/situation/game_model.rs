@@ -5,6 +5,9 @@ use game::scenario::Scenario;
 use game::strategy::Program;
 use game::{Field, FlagId, Ned, SimTime, TeamId, VehicleId};
 
+/// The score at which Pyquaticus ends a game by default.
+const PYQUATICUS_SCORE_MAX: f64 = 20.0;
+
 /// What a helm knows before the game begins.
 #[derive(Clone, Debug)]
 pub(crate) struct GameModel {
@@ -26,6 +29,10 @@ pub(crate) struct GameModel {
     pub(crate) tagged_is_driven: bool,
     capture_radius_m: f64,
     pub(crate) time_limit: SimTime,
+    /// The score that ends the game, or that of Pyquaticus' own games.
+    pub(crate) score_max: f64,
+    /// After a tag nobody tags again for so long.
+    pub(crate) tag_cooldown: SimTime,
     /// The top speed of every boat of the game, m/s, by vehicle.
     pub(crate) boat_speeds_m_s: Vec<f64>,
     /// The highest speed of the helm's decisions, m/s.
@@ -66,6 +73,8 @@ impl GameModel {
             tagged_is_driven: scenario.rules.tagged_boat == TaggedBoat::IsDriven,
             capture_radius_m: scenario.rules.capture_radius_m,
             time_limit: scenario.rules.time_limit,
+            score_max: scenario.rules.win_score.map_or(PYQUATICUS_SCORE_MAX, f64::from),
+            tag_cooldown: scenario.rules.tag_cooldown,
             boat_speeds_m_s,
             speed_max_m_s: program.helm.speed_max_m_s.map_or(own_m_s, |most_m_s| most_m_s.min(own_m_s)),
             capture_at: scenario.rules.capture_at,

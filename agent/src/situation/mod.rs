@@ -11,11 +11,12 @@ pub(crate) use team_messages::TeamMessages;
 
 use crate::mind::Proposal;
 use crate::own_motion::OwnMotion;
+use game::event::{EventRecord, TagCause};
 use game::frame::{Body, Rotation, ned_from_body};
 use game::picture::{Contact, OwnBoat};
 use game::rules::Ability;
 use game::strategy::{Boat, Expression, Fact, Mark, Measure, Place, Program, Values};
-use game::{FlagId, Ned, Picture, SimTime, VehicleId};
+use game::{Event, FlagId, Ned, Picture, SimTime, VehicleId};
 use interception::{Interceptor, Intruder, Pair};
 use std::cell::OnceCell;
 use turn_estimate::{TurnEstimate, turning_on};
@@ -43,8 +44,10 @@ pub(crate) struct OtherBoat {
     yaw_rate_rad_s: f64,
     pub(crate) tagged: bool,
     pub(crate) carrying: Option<FlagId>,
-    /// From when on it can tag again, if it is a mate; of enemies nobody knows.
-    tag_ready: SimTime,
+    /// From when on it can tag again: as mates tell, and of enemies as far as one of the team was tagged by them.
+    pub(crate) tag_ready: SimTime,
+    /// How long ago it was seen, s; mates tell of themselves at every picture.
+    pub(crate) age_s: f64,
     /// Whether it is an enemy on the own team's side.
     pub(crate) intrudes: bool,
 }
@@ -88,6 +91,8 @@ pub(crate) struct Situation {
     pub(crate) step_s: f64,
     /// Whether it has taken in a picture.
     begun: bool,
+    /// Of a picture that was taken in before it is decided on: whether the own boat was in it.
+    is_seen: Option<bool>,
     pub(crate) mode_since: SimTime,
     pub(crate) own: OwnBoat,
     pub(crate) at: Ned,
@@ -101,6 +106,8 @@ pub(crate) struct Situation {
     pub(crate) others: Vec<OtherBoat>,
     /// How contacts turn, by vehicle.
     turns: Vec<Option<TurnEstimate>>,
+    /// From when on those that tagged one of the team can tag again, by vehicle.
+    tag_ready: Vec<SimTime>,
     pub(crate) variables: Vec<f64>,
     pub(crate) team_messages: TeamMessages,
     /// What a policy proposed last.
@@ -129,6 +136,7 @@ impl Situation {
             model,
             now: SimTime::ZERO,
             begun: false,
+            is_seen: None,
             step_s: 0.0,
             mode_since: SimTime::ZERO,
             at: Ned::default(),
@@ -137,6 +145,7 @@ impl Situation {
             motion,
             others: Vec::new(),
             turns: Vec::new(),
+            tag_ready: Vec::new(),
             variables: program.variables.iter().map(|variable| variable.initial).collect(),
             team_messages,
             proposed: None,
@@ -149,8 +158,17 @@ impl Situation {
         }
     }
 
-    /// Takes the newest picture in; `false` if the own boat is not in it.
+    /// Takes in the picture that is decided on next, before it is.
+    pub(crate) fn look_ahead(&mut self, picture: &Picture) {
+        self.is_seen = Some(self.take_now(picture));
+    }
+
+    /// Takes the newest picture in, if that was not done before; `false` if the own boat is not in it.
     pub(crate) fn take(&mut self, picture: &Picture) -> bool {
+        self.is_seen.take().unwrap_or_else(|| self.take_now(picture))
+    }
+
+    fn take_now(&mut self, picture: &Picture) -> bool {
         let Some(own) = picture.own(self.model.me) else { return false };
         let now = picture.stamp.valid_ns;
         self.step_s = if self.begun { (now - self.now).as_s().max(0.0) } else { 0.0 };
@@ -160,6 +178,7 @@ impl Situation {
         self.ahead = own.nav.pose().rotation().ahead();
         self.velocity = own.nav.velocity_m_s();
         self.motion.observe(own, self.step_s, !(own.disabled || own.tagged && self.model.tagged_is_driven));
+        self.note_tags(picture);
         self.others.clear();
         for mate in picture.own.iter().filter(|boat| boat.vehicle != self.model.me) {
             let at = mate.nav.at();
@@ -173,6 +192,7 @@ impl Situation {
                 tagged: mate.tagged,
                 carrying: mate.carried_flag(),
                 tag_ready: mate.tag_ready_ns,
+                age_s: 0.0,
                 intrudes: false,
             });
         }
@@ -192,7 +212,8 @@ impl Situation {
                 yaw_rate_rad_s: turn.yaw_rate_rad_s(now),
                 tagged: contact.tagged,
                 carrying: u8::try_from(contact.carrying).ok().map(FlagId),
-                tag_ready: SimTime::ZERO,
+                tag_ready: self.tag_ready.get(i).copied().unwrap_or_default(),
+                age_s: (now - contact.seen_ns).as_s(),
                 intrudes: is_enemy && self.model.is_own_side(at),
             });
         }
@@ -207,6 +228,17 @@ impl Situation {
         let from_home = self.at.distance(self.model.untag_centre(self.at)) / self.model.untag_radius_m;
         self.leaving = own.tagged && (from_home < WELL_INSIDE || self.leaving && from_home <= WELL_OUTSIDE);
         true
+    }
+
+    /// Enemies that have tagged one of the team cannot tag again for a while.
+    fn note_tags(&mut self, picture: &Picture) {
+        for logged in picture.events.iter().filter_map(EventRecord::logged) {
+            if let Event::Tagged { cause: TagCause::Opponent(by), .. } = logged.event {
+                let i = by.index();
+                self.tag_ready.resize(self.tag_ready.len().max(i + 1), SimTime::ZERO);
+                self.tag_ready[i] = logged.at + self.model.tag_cooldown;
+            }
+        }
     }
 
     /// The own velocity through the water, as far as it is known, m/s.

@@ -118,7 +118,7 @@ fn the_closest_point_of_approach_is_the_one_a_search_of_times_finds() {
 }
 
 #[test]
-fn a_contact_on_the_other_side_counts_as_half_as_far() {
+fn a_contact_on_the_other_side_counts_a_fifth() {
     let grid = Grid::new(36, 8, 4.0);
     let closest = |north_m: f64, leave_to| {
         Objective::Closest(Closest {
@@ -134,7 +134,7 @@ fn a_contact_on_the_other_side_counts_as_half_as_far() {
     };
     // It lies 40 m ahead: 20 degrees to starboard leave it to port.
     let passes_m = 40.0 * game::math::sin_cos(20_f64.to_radians()).0;
-    for (course, to_port, to_starboard) in [(2, passes_m, 0.5 * passes_m), (34, 0.5 * passes_m, passes_m)] {
+    for (course, to_port, to_starboard) in [(2, passes_m, 0.2 * passes_m), (34, 0.2 * passes_m, passes_m)] {
         let utility = |leave_to| closest(40.0, leave_to).utility(&grid, course, 7);
         near(utility(None), passes_m, &format!("course {course}, either"));
         near(utility(Some(Side::Port)), to_port, &format!("course {course}, to port"));

@@ -102,7 +102,7 @@ fn accepted(kind: Kind, path: &Path) {
                 check_shown(&problems);
             }
         }
-        Kind::Field | Kind::Rules | Kind::Boat | Kind::Sea => {}
+        Kind::Field | Kind::Rules | Kind::Boat | Kind::Sea | Kind::Rewards | Kind::Training => {}
     }
 }
 

@@ -4,6 +4,7 @@ use super::draw::{Drawing, Drawn};
 use super::overrides::Overrides;
 use super::problem::{Problem, Problems};
 use super::source::Sources;
+use crate::policy::PolicyModel;
 use std::path::PathBuf;
 
 /// What was read, and what is wrong with it.
@@ -16,6 +17,8 @@ pub(super) struct Diagnostics {
     pub(super) drawn: Vec<Drawn>,
     /// Instead of the file system.
     pub(super) files: Option<Vec<(PathBuf, String)>>,
+    /// Models that were read before.
+    pub(super) models: Vec<PolicyModel>,
     /// The files that take the place of the game's own.
     pub(super) overrides: Overrides,
     problems: Vec<Problem>,
@@ -30,6 +33,7 @@ impl Diagnostics {
             drawing,
             drawn: vec![],
             files: None,
+            models: vec![],
             overrides: Overrides::default(),
             problems: vec![],
             faults: 0,

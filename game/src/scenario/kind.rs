@@ -25,12 +25,26 @@ pub enum Kind {
     Tournament,
     /// The way to a real boat.
     Gateway,
+    /// Rewards for learning.
+    Rewards,
+    /// How a policy is trained.
+    Training,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 8] =
-        [Kind::Game, Kind::Field, Kind::Rules, Kind::Boat, Kind::Sea, Kind::Strategy, Kind::Tournament, Kind::Gateway];
+    pub const ALL: [Kind; 10] = [
+        Kind::Game,
+        Kind::Field,
+        Kind::Rules,
+        Kind::Boat,
+        Kind::Sea,
+        Kind::Strategy,
+        Kind::Tournament,
+        Kind::Gateway,
+        Kind::Rewards,
+        Kind::Training,
+    ];
 
     /// Its name, which is also that of its schema file.
     #[must_use]
@@ -41,7 +55,8 @@ impl Kind {
     /// The folder its files lie in.
     #[must_use]
     pub fn folder(self) -> &'static str {
-        ["games", "fields", "rules", "boats", "seas", "strategies", "tournaments", "gateways"][self as usize]
+        ["games", "fields", "rules", "boats", "seas", "strategies", "tournaments", "gateways", "rewards", "training"]
+            [self as usize]
     }
 
     /// The kind that the folder of `path` says, if it says one.
@@ -77,6 +92,8 @@ mod tests {
             (vec!["roles", "base"], Kind::Strategy),
             (vec!["game", "entry", "sea", "seed"], Kind::Tournament),
             (vec!["order_ttl_s", "fence", "limits"], Kind::Gateway),
+            (vec!["boat", "enemy", "potential"], Kind::Rewards),
+            (vec!["stage", "observation", "seed"], Kind::Training),
             (vec!["base"], Kind::Game),
             (vec![], Kind::Game),
         ] {

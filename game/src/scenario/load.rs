@@ -11,8 +11,10 @@ use super::{Scenario, Tournament, check};
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::gateway::Gateway;
+use crate::rewards::Rewards;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
+use crate::training::Training;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -68,6 +70,7 @@ impl Scenario {
         let mut diagnostics = Diagnostics::new(Drawing::Seed(seed));
         diagnostics.files = Some(recipe.files.clone());
         diagnostics.overrides.clone_from(&recipe.overrides);
+        diagnostics.models = self.strategies.iter().flat_map(Strategy::models).cloned().collect();
         let mut drawn = game_of(diagnostics, &recipe.game)?;
         drawn.seed = seed;
         if let Some(recipe) = &mut drawn.recipe {
@@ -135,6 +138,22 @@ pub fn load_gateway(path: &Path) -> Result<Gateway, Problems> {
     one(Kind::Gateway, path, check::gateway, 1).map(|(gateway, _)| gateway)
 }
 
+/// Reads and checks the rewards file at `path`.
+///
+/// # Errors
+/// Everything that is wrong in it and its bases.
+pub fn load_rewards(path: &Path) -> Result<Rewards, Problems> {
+    one(Kind::Rewards, path, check::rewards, 1).map(|(rewards, _)| rewards)
+}
+
+/// Reads and checks the training file at `path` and every file it names.
+///
+/// # Errors
+/// Everything that is wrong in any of them.
+pub fn load_training(path: &Path) -> Result<Training, Problems> {
+    one(Kind::Training, path, check::training, 1).map(|(training, _)| training)
+}
+
 /// The gateway of a file that says nothing.
 ///
 /// # Panics
@@ -167,6 +186,8 @@ pub fn check_file(path: &Path) -> Result<Kind, Problems> {
         Kind::Strategy => load_strategy(path).map(drop),
         Kind::Tournament => load_tournament(path).map(drop),
         Kind::Gateway => load_gateway(path).map(drop),
+        Kind::Rewards => load_rewards(path).map(drop),
+        Kind::Training => load_training(path).map(drop),
     }?;
     Ok(kind)
 }

@@ -15,7 +15,7 @@ mod kind;
 mod load;
 mod overrides;
 mod problem;
-mod raw;
+pub(crate) mod raw;
 mod read;
 mod real_boats;
 mod reference;
@@ -28,8 +28,8 @@ mod validate;
 pub use draw::{Drawn, Recipe};
 pub use kind::Kind;
 pub use load::{
-    check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_strategy,
-    load_tournament, load_with,
+    check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_rewards,
+    load_strategy, load_tournament, load_training, load_with,
 };
 pub use overrides::Overrides;
 pub use problem::{Problem, Problems};

@@ -6,6 +6,7 @@ use super::schema::declared;
 use super::source::tidied;
 use super::tree::{Node, Value};
 use super::validate::validated;
+use crate::policy::{self, PartialSpec, PolicyModel};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -162,6 +163,18 @@ fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
         return kept.map(|(_, text)| text.clone().into_bytes()).ok_or_else(|| "is not among the files kept".into());
     }
     crate::input_file::read(path, LARGEST_BYTES).map_err(|error| format!("cannot be read ({error}), expected a file"))
+}
+
+/// Reads the file of a model, if that was not done before.
+pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -> Result<PolicyModel, String> {
+    let name = path.display().to_string();
+    let kept = diagnostics.models.iter().find(|model| model.name == name && said.is_part_of(&model.spec));
+    if let Some(kept) = kept {
+        return Ok(kept.clone());
+    }
+    let bytes = crate::input_file::read(path, policy::BYTES_MAX);
+    let bytes = bytes.map_err(|error| format!("it cannot be read ({error}), expected an ONNX file"))?;
+    PolicyModel::read(&name, &bytes, said).map_err(|error| error.to_string())
 }
 
 /// The tree of a text that begins at `start`, as far as its syntax is good; what is not is noted.

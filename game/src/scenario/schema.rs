@@ -23,7 +23,9 @@
 use super::kind::Kind;
 use super::{Tournament, raw};
 use crate::gateway::Gateway;
+use crate::rewards::Rewards;
 use crate::rules::Rules;
+use crate::training::Training;
 use schemars::{JsonSchema, generate::SchemaSettings};
 use serde_json::{Map, Value, json};
 use std::sync::OnceLock;
@@ -40,6 +42,8 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
         Kind::Strategy => generated::<raw::Strategy>(kind),
         Kind::Tournament => generated::<Tournament>(kind),
         Kind::Gateway => generated::<Gateway>(kind),
+        Kind::Rewards => generated::<Rewards>(kind),
+        Kind::Training => generated::<Training>(kind),
     })
 }
 

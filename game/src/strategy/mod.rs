@@ -8,6 +8,7 @@ mod expression;
 mod fact;
 mod parameter;
 mod place;
+mod policy;
 mod print;
 mod task;
 
@@ -16,12 +17,14 @@ pub use expression::{Expression, Join, Values};
 pub use fact::{Fact, Kind, Measure};
 pub use parameter::Parameter;
 pub use place::{Boat, Mark, Place};
+pub use policy::{Policy, Proposer};
 pub use task::{
     Attractor, AvoidCollision, AvoidObstacle, BeyondHalt, ConstantHeading, ConstantSpeed, Contacts, CutRange, Ellipse,
-    FullStop, Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion, Policy, Proposer, Shape, Shield,
-    StationKeep, Task, Timer, Trail, Turn, Waypoint,
+    FullStop, Grade, Intercept, Loiter, MaxSpeed, MemoryTurnLimit, OpRegion, Shape, Shield, StationKeep, Task, Timer,
+    Trail, Turn, Waypoint,
 };
 
+use crate::policy::PolicyModel;
 use serde::{Deserialize, Serialize};
 use strum::{EnumMessage, IntoStaticStr, VariantArray};
 
@@ -172,6 +175,11 @@ pub enum What {
 }
 
 impl Strategy {
+    /// The models that its programs ask.
+    pub fn models(&self) -> impl Iterator<Item = &PolicyModel> {
+        self.roles.iter().flat_map(Program::models)
+    }
+
     /// Whether a person may steer boats that play it.
     #[must_use]
     pub fn is_steered(&self) -> bool {
@@ -180,11 +188,19 @@ impl Strategy {
 }
 
 impl Program {
+    /// The models that it asks.
+    pub fn models(&self) -> impl Iterator<Item = &PolicyModel> {
+        self.behaviours.iter().filter_map(|behaviour| match &behaviour.task {
+            Task::Policy(policy) => policy.model.as_ref(),
+            _ => None,
+        })
+    }
+
     /// Who proposes courses and speeds from outside, if the program lets anybody.
     #[must_use]
     pub fn proposer(&self) -> Option<Proposer> {
         self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
-            Task::Policy(policy) => Some(policy.by),
+            Task::Policy(policy) if policy.model.is_none() => Some(policy.by),
             _ => None,
         })
     }

@@ -4,7 +4,7 @@
 //! is allowed, `default` what it is when left out. By the schema of these types files are checked, editors complete, and
 //! the reference page is written.
 
-use super::{Boat, Parameter, Place};
+use super::{Boat, Parameter, Place, Policy};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::IntoStaticStr;
@@ -447,34 +447,3 @@ pub struct Timer {}
 /// Would like the boat to lie still; safety may move it all the same.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FullStop {}
-
-/// Lets a policy outside of the helm propose course and speed, weighed with everything else.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Policy {
-    /// Who proposes: `program` is waited for in lockstep, `person` (somebody at the page) is not.
-    #[schemars(extend("default" = "program"))]
-    pub by: Proposer,
-    /// A proposal older than this is ignored, s.
-    #[schemars(range(min = 0.01, max = 600), extend("default" = 1))]
-    pub ttl_s: Parameter,
-    /// Half width of the peak at the proposed course, degrees.
-    #[schemars(range(min = 0, max = 180), extend("default" = 10))]
-    pub peak_width_deg: Parameter,
-    /// From there down to nothing, degrees.
-    #[schemars(range(min = 0, max = 180), extend("default" = 60))]
-    pub base_width_deg: Parameter,
-    /// How much course counts against speed.
-    #[schemars(range(min = 0, max = 1), extend("default" = 0.5))]
-    pub course_share: Parameter,
-}
-
-/// Who proposes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Proposer {
-    /// A program: in lockstep it is waited for.
-    #[default]
-    Program,
-    /// A person ashore: nothing waits.
-    Person,
-}

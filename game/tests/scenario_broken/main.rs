@@ -21,7 +21,7 @@ fn files_in(folder: &str) -> Vec<PathBuf> {
 
 /// Paths and texts of the sound files, some of which a case replaces.
 fn sound() -> Vec<(String, String)> {
-    let folders = ["boats", "fields", "games", "rules", "seas", "strategies", "tournaments"];
+    let folders = ["boats", "fields", "games", "rules", "seas", "strategies", "tournaments", "rewards"];
     let files = folders.into_iter().flat_map(|folder| files_in(&format!("sound/{folder}")));
     let file = |path: PathBuf| {
         let name = path.strip_prefix(beside("sound")).unwrap().display().to_string();
@@ -37,6 +37,11 @@ fn problems(asked: &str, files: &[(String, String)]) -> Vec<String> {
         let path = folder.path().join(path);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, text).unwrap();
+    }
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../onnx/tests/network");
+    fs::create_dir(folder.path().join("models")).unwrap();
+    for model in ["sb3_dynamo.onnx", "two_inputs.onnx"] {
+        fs::copy(models.join(model), folder.path().join("models").join(model)).unwrap();
     }
     let Err(found) = scenario::check_file(&folder.path().join(asked)) else { return vec![] };
     let root = format!("{}/", folder.path().display());

@@ -139,6 +139,7 @@ pub(super) mod tests {
 
     pub(in super::super) fn report(functions: Vec<FunctionReport>) -> HelmReport {
         HelmReport {
+            policies: vec![],
             vehicle: VehicleId(0),
             at: SimTime::from_s(1.5),
             program: "pav01".into(),

@@ -49,6 +49,7 @@ fn steered(file: &str) -> Scenario {
     let number = |value| Parameter { expression: Expression::Constant(value), range: (0.0, 1000.0) };
     let mut strategy = scenario.strategies[scenario.vehicles[0].strategy].clone();
     let policy = Policy {
+        model: None,
         by: Proposer::Person,
         ttl_s: number(1.0),
         peak_width_deg: number(10.0),

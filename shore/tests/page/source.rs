@@ -41,6 +41,7 @@ pub(crate) fn own_boat(vehicle: VehicleId) -> OwnBoat {
 
 pub(crate) fn report(vehicle: VehicleId) -> HelmReport {
     HelmReport {
+        policies: vec![],
         vehicle,
         at: SimTime::ZERO,
         program: "made_up".to_owned(),

@@ -28,10 +28,12 @@ use game::scenario::Source;
 use game::stream::Stream;
 use game::{Event, Leg, Order, Picture, Scenario, SimTime, VehicleId};
 use state::{ContestState, OrderInForce};
+use std::sync::Arc;
 
-/// A game being played.
+/// A game being played. A copy of it goes on by itself.
+#[derive(Clone)]
 pub struct Contest {
-    scenario: Scenario,
+    scenario: Arc<Scenario>,
     referee: Referee,
     /// After how long without an order each vehicle's thrusters stop.
     watchdogs: Vec<Option<SimTime>>,
@@ -47,7 +49,7 @@ pub struct Contest {
 }
 
 /// Memory that is used again every tick, and holds nothing from one to the next.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Work {
     commands: Vec<Order>,
     legs: Vec<Leg>,
@@ -97,7 +99,7 @@ impl Contest {
             work: Work::default(),
             scenario_mark: snapshot::mark(&scenario),
             given: None,
-            scenario,
+            scenario: Arc::new(scenario),
         })
     }
 

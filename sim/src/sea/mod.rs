@@ -33,20 +33,21 @@ use game::boat::{Drive, Windage};
 use game::frame::{Body, Ned, Pose, Rotation};
 use game::sea::Sea;
 use game::{Boat, Field, SimTime};
+use std::sync::Arc;
 
 /// Propellers are this share of the length astern of midships.
 const PROPELLER_ASTERN: f64 = 0.4;
 
-/// The sea of a game, and how each kind of boat lies in it.
+/// The sea of a game, and how each kind of boat lies in it. Copies share the tables, which are large.
 #[derive(Clone, Debug)]
 pub struct SeaModel {
     waves: Option<WaveField>,
     wind: Option<WindField>,
     current: CurrentField,
     /// Hulls of different size; kinds of boat that differ in other things share one.
-    shapes: Vec<([f64; 3], Shape)>,
+    shapes: Vec<([f64; 3], Arc<Shape>)>,
     /// Propeller submergence, by size of hull and place of the propellers.
-    submergences: Vec<([f64; 4], Submergence)>,
+    submergences: Vec<([f64; 4], Arc<Submergence>)>,
     kinds: Vec<Kind>,
     /// Half a tick, and as seconds.
     half_tick: SimTime,
@@ -263,9 +264,9 @@ impl SeaNow<'_> {
 }
 
 /// The place of what was made for this size, made now if it is the first of it.
-fn index_of<const N: usize, T>(made: &mut Vec<([f64; N], T)>, size: [f64; N], make: impl FnOnce() -> T) -> usize {
+fn index_of<const N: usize, T>(made: &mut Vec<([f64; N], Arc<T>)>, size: [f64; N], make: impl FnOnce() -> T) -> usize {
     made.iter().position(|(other, _)| *other == size).unwrap_or_else(|| {
-        made.push((size, make()));
+        made.push((size, Arc::new(make())));
         made.len() - 1
     })
 }

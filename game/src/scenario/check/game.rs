@@ -129,6 +129,7 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
     }
     let start_positions = start_position::all(&entries, &field);
     start_position::check_clear(diagnostics, &entries, &start_positions, &boats.items, &field);
+    check_models(diagnostics, &entries, &strategies.items);
     rules.time_limit = raw.duration_s.map_or(rules.time_limit, SimTime::from_s);
     let vehicles = entries.into_iter().zip(start_positions).map(|(entry, start_position)| Vehicle {
         name: entry.name,
@@ -184,10 +185,22 @@ pub(super) fn referenced<D, R: DeserializeOwned, T>(
     given: impl AsRef<Path>,
     check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
 ) -> Option<T> {
-    if !document.is_sound(kind.name()) {
+    referenced_at(diagnostics, document, kind, kind.name(), given, check)
+}
+
+/// Checks the file of this kind that the value at `key` refers to.
+pub(super) fn referenced_at<D, R: DeserializeOwned, T>(
+    diagnostics: &mut Diagnostics,
+    document: &Document<D>,
+    kind: Kind,
+    key: &str,
+    given: impl AsRef<Path>,
+    check: fn(&mut Diagnostics, &Document<R>) -> Option<T>,
+) -> Option<T> {
+    if !document.is_sound(key) {
         return None;
     }
-    let place = document.at(kind.name());
+    let place = document.at(key);
     let path = diagnostics.sources.resolve(place, given);
     let document = read::document(diagnostics, kind, &path, Some(place))?;
     check(diagnostics, &document)
@@ -229,6 +242,24 @@ fn check_looks(diagnostics: &mut Diagnostics, document: &Document<raw::Game>, ti
             let (name, period_s, tick_s) = (&rules.name, period.as_s(), tick.as_s());
             let message = format!("{key} of rules {name} is {period_s}, expected a multiple of tick_s, {tick_s}");
             diagnostics.note(document.at("rules"), message);
+        }
+    }
+}
+
+/// Models are made for teams of one size, unless they leave room for others.
+fn check_models(diagnostics: &mut Diagnostics, entries: &[Entry], strategies: &[Strategy]) {
+    for Entry { name, place, team, strategy, .. } in entries {
+        let mates = entries.iter().filter(|other| other.team == *team).count() - 1;
+        let enemies = entries.len() - 1 - mates;
+        for model in strategies[*strategy].models() {
+            let (takes, size) = (model.input_size(), model.spec.observation.size(mates, enemies));
+            if takes != size {
+                let message = format!(
+                    "the model {} takes {takes} numbers, expected {size}: {name} has {mates} mates and {enemies} enemies",
+                    model.name
+                );
+                diagnostics.note(*place, message);
+            }
         }
     }
 }

@@ -7,20 +7,24 @@ mod boat;
 mod field;
 mod game;
 mod gateway;
+mod rewards;
 mod rules;
 mod sea;
 mod start_position;
 mod strategy;
 mod tournament;
+mod training;
 
 pub(super) use boat::boat;
 pub(super) use field::field;
 pub(super) use game::game;
 pub(super) use gateway::gateway;
+pub(super) use rewards::rewards;
 pub(super) use rules::rules;
 pub(super) use sea::sea;
 pub(super) use strategy::strategy_file;
 pub(super) use tournament::tournament;
+pub(super) use training::training;
 
 #[cfg(doc)]
 use super::diagnostics::Diagnostics;

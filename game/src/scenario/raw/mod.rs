@@ -23,12 +23,12 @@ use serde::Deserialize;
 /// The path of another file, relative to the one it stands in. Empty where it was wrong or missing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[schemars(inline, extend("minLength" = 1, "x-expected" = "the path of a file"))]
-pub(super) struct FilePath(pub(super) String);
+pub(crate) struct FilePath(pub(crate) String);
 
 /// A name. Empty where it was wrong or missing.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[schemars(inline, extend("pattern" = NAME_PATTERN))]
-pub(super) struct Name(pub(super) String);
+pub(crate) struct Name(pub(crate) String);
 
 /// A position, or the name of one.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

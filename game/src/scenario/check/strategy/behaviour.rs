@@ -3,9 +3,11 @@
 use super::scope::Scope;
 use super::variable::set;
 use crate::frame::Ned;
+use crate::policy::{PartialSpec, PolicyModel};
 use crate::scenario::Kind;
 use crate::scenario::guess::did_you_mean;
 use crate::scenario::raw;
+use crate::scenario::read;
 use crate::scenario::schema::declared;
 use crate::strategy::{Behaviour, Boat, Mode, Moment, Named, Parameter, Place, Post, Task};
 use serde::Deserialize;
@@ -45,9 +47,13 @@ fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) 
         let shape = shape(scope, &path, &mut keys)?;
         keys.insert("shape".to_owned(), shape);
     }
+    let model = if variant == "Policy" { model(scope, &path, &mut keys)? } else { None };
     let weight = parameter(&keys, "weight")?;
     let duration_s = parameter(&keys, "duration_s");
-    let task: Task = serde_json::from_value(json!({ variant: keys })).ok()?;
+    let mut task: Task = serde_json::from_value(json!({ variant: keys })).ok()?;
+    if let Task::Policy(policy) = &mut task {
+        policy.model = model;
+    }
     Some(Behaviour {
         name: name.to_owned(),
         modes,
@@ -118,6 +124,40 @@ fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
             scope.note_missing(&ellipse, "it or polygon");
             None
         }
+    }
+}
+
+/// The model that a policy names, if it names one.
+fn model(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Option<PolicyModel>> {
+    let [file, observation, action, period_s] =
+        ["model", "observation", "action", "period_s"].map(|key| keys.remove(key));
+    let given = |key: &str| scope.document.has(&format!("{path}.{key}"));
+    let at = format!("{path}.model");
+    let Some(file) = file.as_ref().and_then(Json::as_str) else {
+        let of_models = ["observation", "action", "period_s"].into_iter().find(|key| given(key));
+        return match of_models {
+            Some(key) => scope.refuse(&format!("{path}.{key}"), "is given without model, expected with it only"),
+            None => Some(None),
+        };
+    };
+    if !["model", "observation", "action", "period_s"]
+        .iter()
+        .all(|key| scope.document.is_sound(&format!("{path}.{key}")))
+    {
+        return None;
+    }
+    if given("by") {
+        return scope.refuse(&format!("{path}.by"), "is given with model, expected one of them");
+    }
+    let said = PartialSpec {
+        observation: observation.and_then(|space| serde_json::from_value(space).ok()),
+        action: action.and_then(|space| serde_json::from_value(space).ok()),
+        period_s: period_s.as_ref().and_then(Json::as_f64),
+    };
+    let path = scope.diagnostics.sources.resolve(scope.document.at(&at), file);
+    match read::model(scope.diagnostics, &path, said) {
+        Ok(model) => Some(Some(model)),
+        Err(why) => scope.refuse(&at, &format!("is {file:?}: {why}")),
     }
 }
 

@@ -1,0 +1,48 @@
+//! Observations: what a boat knows at a decision, as the numbers that a policy is given.
+//!
+//! The same code writes them in training and on the boat. Everything in them comes from the pictures that the boat's agent
+//! receives: its own sensors, its team's radio, the referee's messages. Nothing is the simulator's truth.
+
+mod numbers;
+mod pyquaticus;
+mod squall;
+
+use crate::situation::Situation;
+use game::observation::ObservationSpace;
+use numbers::Numbers;
+
+/// Writes the observations of one boat.
+#[derive(Clone, Debug)]
+pub(crate) struct Observer {
+    space: ObservationSpace,
+    /// The numbers of the last decisions, the newest first.
+    frames: Vec<f32>,
+    begun: bool,
+}
+
+impl Observer {
+    pub(crate) fn new(space: ObservationSpace, situation: &Situation) -> Observer {
+        let size = space.size(situation.model.mates.len(), situation.model.enemies.len());
+        Observer { space, frames: vec![0.0; size], begun: false }
+    }
+
+    /// The observation at this decision of the policy.
+    pub(crate) fn observe(&mut self, situation: &Situation) -> &[f32] {
+        match self.space {
+            ObservationSpace::Pyquaticus => pyquaticus::write(situation, &mut Numbers::new(&mut self.frames)),
+            ObservationSpace::Squall { mates, enemies, frames } => {
+                let size = self.frames.len() / usize::from(frames.max(1));
+                let kept = self.frames.len() - size;
+                self.frames.copy_within(..kept, size);
+                let (newest, older) = self.frames.split_at_mut(size);
+                squall::write(situation, (usize::from(mates), usize::from(enemies)), &mut Numbers::new(newest));
+                if !self.begun {
+                    // Before the first decision everything was as it is then.
+                    older.chunks_exact_mut(size).for_each(|frame| frame.copy_from_slice(newest));
+                }
+            }
+        }
+        self.begun = true;
+        &self.frames
+    }
+}

@@ -1,0 +1,104 @@
+//! The observation space of Pyquaticus (`state_to_obs` of its main branch, 2025): bearings relative to the heading in half turns
+//! clockwise, distances in field diagonals, everything brought to -1 to 1, truths as -1 and 1.
+//!
+//! Of the own boat: the enemies' flag, the own flag, the walls to starboard, behind, to port and ahead as the team looks at the
+//! enemies' end, the scrimmage line, speed, carrying, own side, time since its last tag, tagged, both scores. Then of each other boat,
+//! mates first: bearing, distance, heading relative to the line to the own boat, speed, carrying, own side, time since its last
+//! tag, tagged.
+//!
+//! Pyquaticus shows the truth. Here it is what the boat knows: a boat that is not known lies nowhere, all its numbers are 0; when an
+//! enemy tagged last is known if it tagged one of the team.
+
+use super::numbers::Numbers;
+use crate::situation::{OtherBoat, Situation};
+use game::angle::wrap_pi;
+use game::observation::pyquaticus::OTHER;
+use game::strategy::{Fact, Values};
+use game::{Ned, SimTime};
+use std::f64::consts::PI;
+
+/// Writes all numbers.
+pub(super) fn write(situation: &Situation, out: &mut Numbers<'_>) {
+    let model = &situation.model;
+    let enemy_flag = model.targets.first().map_or(situation.at, |(_, home)| *home);
+    for place in [enemy_flag, model.own_flag()] {
+        toward(situation, place, out);
+    }
+    // Corner 0 is to starboard of the first team's end, and corners go on clockwise: the walls from 3 to 0, 0 to 1, 1 to 2, 2 to 3.
+    let corners = &model.field.corners;
+    for i in [3, 0, 1, 2].map(|i| i + 2 * model.team.index()) {
+        let wall = (corners[i % 4], corners[(i + 1) % 4]);
+        toward(situation, nearest_of(wall, situation.at), out);
+    }
+    let [one, other] = model.field.scrimmage;
+    toward(situation, nearest_of((one, other), situation.at), out);
+    let own = &situation.own;
+    out.push(unit(own.nav.speed_m_s(), fastest_m_s(situation)));
+    truth(own.carried_flag().is_some(), out);
+    truth(is_own_side(situation, situation.at, model.team.index()), out);
+    out.push(since_tag(situation, own.tag_ready_ns));
+    truth(own.tagged, out);
+    for score in [Fact::Score, Fact::EnemyScore] {
+        out.push(unit(situation.fact(score), model.score_max));
+    }
+    for vehicle in model.mates.iter().chain(&model.enemies) {
+        match situation.others.iter().find(|other| other.vehicle == *vehicle) {
+            Some(other) => other_boat(situation, other, out),
+            None => out.skip(OTHER),
+        }
+    }
+}
+
+fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
+    let model = &situation.model;
+    toward(situation, other.at, out);
+    out.push(wrap_pi(other.psi_rad - other.at.bearing_rad(situation.at)) / PI);
+    out.push(unit(other.velocity().length(), fastest_m_s(situation)));
+    truth(other.carrying.is_some(), out);
+    let team = if other.is_enemy { 1 - model.team.index() } else { model.team.index() };
+    truth(is_own_side(situation, other.at, team), out);
+    out.push(since_tag(situation, other.tag_ready));
+    truth(other.tagged, out);
+}
+
+/// Bearing and distance of a place.
+fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
+    let plan = &situation.model.field.plan;
+    let diagonal_m = game::math::length(plan.width_m, plan.depth_m);
+    out.push(wrap_pi(situation.at.bearing_rad(place) - situation.own.nav.psi_rad) / PI);
+    out.push(unit(situation.at.distance(place), diagonal_m));
+}
+
+/// Whether a place is on a team's side of the scrimmage line, on the field or not.
+fn is_own_side(situation: &Situation, at: Ned, team: usize) -> bool {
+    let field = &situation.model.field;
+    let beyond_m = (at - field.middle()).dot(field.along);
+    if team == 0 { beyond_m <= 0.0 } else { beyond_m >= 0.0 }
+}
+
+/// The point of a straight line between two points that is nearest to a place.
+fn nearest_of((a, b): (Ned, Ned), at: Ned) -> Ned {
+    let line = b - a;
+    a + line.scaled(((at - a).dot(line) / line.dot(line)).clamp(0.0, 1.0))
+}
+
+/// The time since the last tag, no more than the cooldown.
+fn since_tag(situation: &Situation, ready: SimTime) -> f64 {
+    let cooldown_s = situation.model.tag_cooldown.as_s();
+    let wait_s = (ready - situation.now).as_s().clamp(0.0, cooldown_s);
+    unit(cooldown_s - wait_s, cooldown_s)
+}
+
+/// The top speed of the fastest boat of the game, m/s.
+fn fastest_m_s(situation: &Situation) -> f64 {
+    situation.model.boat_speeds_m_s.iter().copied().fold(0.0, f64::max)
+}
+
+/// From 0 to the most as from -1 to 1.
+fn unit(number: f64, most: f64) -> f64 {
+    if most > 0.0 { (2.0 * number / most - 1.0).clamp(-1.0, 1.0) } else { 1.0 }
+}
+
+fn truth(is: bool, out: &mut Numbers<'_>) {
+    out.push(if is { 1.0 } else { -1.0 });
+}

@@ -1,0 +1,160 @@
+//! The observation space `squall`: what the own sensors and the radio tell, in a frame that is the same for both teams.
+//!
+//! Places on the field are told ahead of the team, as it looks at the enemies' end, and to its port, from the middle of the field.
+//! Other boats and goals are told along the own boat's axes. Lengths are in hundreds of metres, with how near they are besides: 10 m
+//! by 10 m more than the distance; speeds are in units of 3 m/s; truths are 0 or 1.
+
+use super::numbers::Numbers;
+use crate::situation::{OtherBoat, Situation};
+use game::frame::Rotation;
+use game::observation::squall::OTHER;
+use game::rules::Ability;
+use game::strategy::{Fact, Mark, Place, Values};
+use game::{Ned, math};
+
+/// What lengths are divided by, m.
+const LENGTH_M: f64 = 100.0;
+/// No length counts more than this many times that.
+const LENGTHS_MAX: f64 = 3.0;
+/// Half near, m: the tag radius of the Aquaticus rules.
+const NEAR_M: f64 = 10.0;
+/// What speeds are divided by, m/s: a Surveyor's top speed.
+const SPEED_M_S: f64 = 3.0;
+/// What yaw rates are divided by, rad/s.
+const YAW_RATE_RAD_S: f64 = 0.5;
+/// What ages are divided by, s.
+const AGE_S: f64 = 10.0;
+/// The least distance of an edge or an obstacle that makes no difference, m.
+const FAR_M: f64 = 20.0;
+/// What points are divided by.
+const POINTS: f64 = 10.0;
+
+/// Writes all numbers.
+pub(super) fn write(situation: &Situation, (mates, enemies): (usize, usize), out: &mut Numbers<'_>) {
+    own_boat(situation, out);
+    edges(situation, out);
+    goals(situation, out);
+    game(situation, out);
+    let others = |is_enemy: bool| situation.others.iter().filter(move |other| other.is_enemy == is_enemy);
+    slots(situation, others(false), mates, out);
+    let mut nearest: Vec<&OtherBoat> = others(true).collect();
+    let distance = |other: &OtherBoat| situation.at.distance_squared(other.at);
+    nearest.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    slots(situation, nearest.into_iter(), enemies, out);
+}
+
+/// Ahead of the team, and to its port.
+fn team_axes(situation: &Situation) -> (Ned, Ned) {
+    let field = &situation.model.field;
+    let sign = if situation.model.team.index() == 0 { 1.0 } else { -1.0 };
+    (field.along.scaled(sign), field.across.scaled(sign))
+}
+
+/// 15 numbers: position, heading and motion, what state it is in.
+fn own_boat(situation: &Situation, out: &mut Numbers<'_>) {
+    let (forward, port) = team_axes(situation);
+    let field = &situation.model.field;
+    let from_middle = situation.at - field.middle();
+    out.push(from_middle.dot(forward) / (0.5 * field.plan.width_m));
+    out.push(from_middle.dot(port) / (0.5 * field.plan.depth_m));
+    out.push(situation.ahead.dot(forward));
+    out.push(situation.ahead.dot(port));
+    out.extend(along_axes(situation, situation.velocity).map(|m_s| m_s / SPEED_M_S));
+    out.push(situation.own.nav.yaw_rate_rad_s / YAW_RATE_RAD_S);
+    out.extend(along_axes(situation, situation.motion.drift()).map(|m_s| m_s / SPEED_M_S));
+    out.push(situation.motion.spread_m_s() / SPEED_M_S);
+    out.flag(situation.own.tagged);
+    out.flag(situation.own.carried_flag().is_some());
+    out.flag(situation.own.outside);
+    out.flag(situation.own.disabled);
+    out.flag(Ability::from(&situation.own).may_tag(situation.now));
+}
+
+/// 6 numbers: how near the four edges are, and the nearest obstacle's direction.
+fn edges(situation: &Situation, out: &mut Numbers<'_>) {
+    let (forward, port) = team_axes(situation);
+    let plan = &situation.model.field.plan;
+    let from_middle = situation.at - situation.model.field.middle();
+    for (axis, half_m) in [(forward, 0.5 * plan.width_m), (port, 0.5 * plan.depth_m)] {
+        let along_m = from_middle.dot(axis);
+        out.extend([half_m - along_m, half_m + along_m].map(|m| (1.0 - m / FAR_M).clamp(0.0, 2.0)));
+    }
+    let obstacles = plan.obstacles.iter().map(|obstacle| obstacle.distance(situation.at));
+    let nearest_m = obstacles.fold(f64::INFINITY, f64::min);
+    out.push((1.0 - nearest_m / FAR_M).max(0.0));
+    out.push((situation.own.nav.speed_m_s() / situation.model.speed_max_m_s.max(0.1)).min(2.0));
+}
+
+/// 16 numbers: where the enemies' flag is, the own one, the place to bring a flag or to be untagged, and which of them to go to now.
+fn goals(situation: &Situation, out: &mut Numbers<'_>) {
+    let at = |mark| situation.locate(&Place::Mark(mark)).map_or(situation.at, |point| point.at);
+    let (enemy_flag, capture, untag) = (at(Mark::EnemyFlag), at(Mark::CapturePlace), at(Mark::UntagPlace));
+    let own = &situation.own;
+    let goal = if own.tagged {
+        untag
+    } else if own.carried_flag().is_some() {
+        capture
+    } else {
+        enemy_flag
+    };
+    for place in [enemy_flag, situation.model.own_flag(), untag, goal] {
+        toward(situation, place, out);
+    }
+}
+
+/// 7 numbers: flags, points, time, and which of its team the boat is.
+fn game(situation: &Situation, out: &mut Numbers<'_>) {
+    for fact in [Fact::OwnSide, Fact::FlagTaken, Fact::EnemyFlagTaken, Fact::MateHasFlag] {
+        out.push(situation.fact(fact));
+    }
+    let ahead = situation.fact(Fact::Score) - situation.fact(Fact::EnemyScore);
+    out.push((ahead / POINTS).clamp(-1.0, 1.0));
+    let limit_s = situation.model.time_limit.as_s().max(1.0);
+    out.push((situation.fact(Fact::TimeLeftS) / limit_s).clamp(0.0, 1.0));
+    out.push(situation.model.rank as f64 / (situation.model.mates.len() + 1) as f64);
+}
+
+/// As many others as there are slots; the rest is zeros.
+fn slots<'a>(situation: &Situation, others: impl Iterator<Item = &'a OtherBoat>, count: usize, out: &mut Numbers<'_>) {
+    let mut empty = count;
+    for other in others.take(count) {
+        other_boat(situation, other, out);
+        empty -= 1;
+    }
+    out.skip(empty * OTHER);
+}
+
+/// 16 numbers.
+fn other_boat(situation: &Situation, other: &OtherBoat, out: &mut Numbers<'_>) {
+    out.flag(true);
+    toward(situation, other.at, out);
+    out.extend(along_axes(situation, other.velocity()).map(|m_s| m_s / SPEED_M_S));
+    let heading = Rotation::from_heading(other.psi_rad).ahead();
+    out.extend(along_axes(situation, heading));
+    out.flag(other.tagged);
+    out.flag(other.carrying.is_some());
+    out.flag(other.intrudes);
+    out.flag(situation.model.is_own_side(other.at));
+    let wait_s = (other.tag_ready - situation.now).as_s().max(0.0);
+    out.push((wait_s / situation.model.tag_cooldown.as_s().max(1.0)).min(1.0));
+    out.push((other.age_s / AGE_S).min(1.0));
+    let home = situation.model.own_flag();
+    out.push(NEAR_M / (NEAR_M + other.at.distance(home)));
+}
+
+/// 4 numbers: the direction of a place along the own axes, how far and how near it is.
+fn toward(situation: &Situation, place: Ned, out: &mut Numbers<'_>) {
+    let line = place - situation.at;
+    let [ahead_m, starboard_m] = along_axes(situation, line);
+    let distance_m = math::length(ahead_m, starboard_m);
+    let per_m = if distance_m > 1e-6 { 1.0 / distance_m } else { 0.0 };
+    out.extend([ahead_m * per_m, starboard_m * per_m]);
+    out.push((distance_m / LENGTH_M).min(LENGTHS_MAX));
+    out.push(NEAR_M / (NEAR_M + distance_m));
+}
+
+/// A vector ahead of the own boat and to its starboard.
+fn along_axes(situation: &Situation, vector: Ned) -> [f64; 2] {
+    let ahead = situation.ahead;
+    [vector.dot(ahead), vector.east * ahead.north - vector.north * ahead.east]
+}

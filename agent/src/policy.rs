@@ -1,0 +1,108 @@
+//! A trained policy on board: at each of its decisions it is given an observation, and chooses a course and a speed.
+
+use crate::observation::Observer;
+use crate::situation::Situation;
+use game::action::{Action, ActionSpace, SetPoint};
+use game::policy::PolicyModel;
+use game::{SimTime, math};
+use onnx::Network;
+use thiserror::Error;
+
+/// Why a policy proposes nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub(crate) enum PolicyFault {
+    /// The model was made for teams of another size.
+    #[error("the model takes {expected} numbers, and a boat of this game has {found}: it is for teams of another size")]
+    Size {
+        /// How many numbers the model takes.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// The network gave a number that is none.
+    #[error("the model gave a number that is NaN or infinite")]
+    NotFinite,
+}
+
+/// A policy that decides for one boat.
+pub(crate) struct BoardPolicy {
+    model: PolicyModel,
+    network: Network,
+    /// Made at the first decision.
+    observer: Option<Observer>,
+    /// When it decides next; none: at once.
+    due: Option<SimTime>,
+    chosen: Result<SetPoint, PolicyFault>,
+}
+
+impl BoardPolicy {
+    pub(crate) fn new(model: PolicyModel) -> BoardPolicy {
+        let network = model.network();
+        BoardPolicy { model, network, observer: None, due: None, chosen: Ok(SetPoint::default()) }
+    }
+
+    /// Whether it decides at this time.
+    pub(crate) fn is_due(&self, now: SimTime) -> bool {
+        self.due.is_none_or(|due| now >= due)
+    }
+
+    /// Decides if it is time to.
+    pub(crate) fn look(&mut self, situation: &Situation) {
+        if !self.is_due(situation.now) {
+            return;
+        }
+        let period = SimTime::from_s(self.model.spec.period_s);
+        // From decision to decision, not from picture to picture: lost ones move nothing.
+        let next = self.due.map_or(situation.now, |due| due) + period;
+        self.due = Some(if next > situation.now { next } else { situation.now + period });
+        self.chosen = self.choose(situation);
+    }
+
+    /// What it chose last.
+    pub(crate) fn chosen(&self) -> Result<SetPoint, PolicyFault> {
+        self.chosen
+    }
+
+    fn choose(&mut self, situation: &Situation) -> Result<SetPoint, PolicyFault> {
+        let spec = self.model.spec;
+        let observer = self.observer.get_or_insert_with(|| Observer::new(spec.observation, situation));
+        let observation = observer.observe(situation);
+        if observation.len() != self.model.input_size() {
+            let (expected, found) = (self.model.input_size(), observation.len());
+            return Err(PolicyFault::Size { expected, found });
+        }
+        self.network.evaluate(observation);
+        let action = action_of(spec.action, self.network.output(self.model.output()))?;
+        Ok(spec.action.set_point(action, situation.own.nav.psi_rad, situation.model.speed_max_m_s))
+    }
+
+    /// The model, and how sure it was of each discrete action; empty where actions are continuous.
+    pub(crate) fn probabilities(&self) -> Vec<f32> {
+        let output = self.network.output(self.model.output());
+        if self.model.spec.action.count() != Some(output.len()) {
+            return vec![];
+        }
+        let most = output.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let parts: Vec<f64> = output.iter().map(|logit| math::exp(f64::from(logit - most))).collect();
+        let sum: f64 = parts.iter().sum();
+        parts.iter().map(|part| (part / sum) as f32).collect()
+    }
+
+    /// The model.
+    pub(crate) fn model(&self) -> &PolicyModel {
+        &self.model
+    }
+}
+
+/// The action that a network's output makes: the likeliest of the discrete ones.
+fn action_of(space: ActionSpace, output: &[f32]) -> Result<Action, PolicyFault> {
+    if !output.iter().all(|number| number.is_finite()) {
+        return Err(PolicyFault::NotFinite);
+    }
+    Ok(match (space.count(), output) {
+        // The number of the action itself.
+        (Some(count), [index]) if count > 1 => Action::Discrete(*index as usize),
+        (Some(_), logits) => Action::likeliest(logits),
+        (None, numbers) => Action::Continuous([0, 1].map(|i| numbers.get(i).copied().unwrap_or_default())),
+    })
+}

@@ -1,0 +1,133 @@
+//! Observations of Pyquaticus against those that the program itself gave: states of its own games of two Surveyors and of six,
+//! among them boats that carry, are tagged, or have tagged lately. Commit and names of the numbers are in the files.
+
+use agent::{ActionSpace, ObservationSpace, Pilot, Spaces};
+use game::event::{EventRecord, Logged, TagCause};
+use game::picture::{Contact, FlagView, Nav, OwnBoat};
+use game::{Event, Picture, Scenario, SimTime, TeamId, VehicleId};
+use serde::Deserialize;
+use std::path::Path;
+
+/// Its numbers are in single precision, and six digits of them are kept.
+const TOLERANCE: f32 = 3e-6;
+/// After a tag, s.
+const COOLDOWN_S: f64 = 60.0;
+/// Of every picture, s.
+const NOW_S: f64 = 1000.0;
+
+#[derive(Deserialize)]
+struct Reference {
+    names: Vec<String>,
+    states: Vec<State>,
+}
+
+#[derive(Deserialize)]
+struct State {
+    captures: [u32; 2],
+    boats: Vec<Boat>,
+}
+
+/// x is east and y north, m.
+#[derive(Deserialize)]
+struct Boat {
+    x: f64,
+    y: f64,
+    heading_deg: f64,
+    speed_m_s: f64,
+    has_flag: u8,
+    tagged: u8,
+    since_tag_s: f64,
+    observation: Vec<f32>,
+}
+
+impl Boat {
+    fn nav(&self) -> Nav {
+        let psi_rad = self.heading_deg.to_radians();
+        Nav { north_m: self.y, east_m: self.x, psi_rad, surge_m_s: self.speed_m_s, ..Nav::default() }
+    }
+}
+
+fn scenario(team_size: usize) -> Scenario {
+    let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pyquaticus_2v2.toml");
+    let fleet = |team: &str| {
+        format!(
+            "[[fleet]]\nteam = \"{team}\"\ncount = {team_size}\nspawn = {{ along_m = [5, 75], across_m = [5, 75], gap_m = 4 }}\n"
+        )
+    };
+    let text = format!("base = \"{}\"\nvehicle = []\n{}{}", base.display(), fleet("blue"), fleet("red"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("game.toml");
+    std::fs::write(&path, text).expect("a file");
+    game::scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// What the team of a boat knows in a state.
+fn picture(state: &State, team: usize) -> Picture {
+    let team_size = state.boats.len() / 2;
+    let now = SimTime::from_s(NOW_S);
+    let mut picture = Picture { team: team as u8, score: state.captures.to_vec(), ..Picture::default() };
+    picture.stamp.valid_ns = now;
+    picture.flags = vec![FlagView { carrier: -1 }; 2];
+    for (i, boat) in state.boats.iter().enumerate() {
+        let (vehicle, nav, of) = (VehicleId::at(i), boat.nav(), i / team_size);
+        let carrying = if boat.has_flag == 1 { 1 - of as i16 } else { -1 };
+        if of == team {
+            let tag_ready_ns = SimTime::from_s(NOW_S + COOLDOWN_S - boat.since_tag_s);
+            picture.own.push(OwnBoat {
+                tagged: boat.tagged == 1,
+                carrying,
+                tag_ready_ns,
+                ..OwnBoat::new(vehicle, nav)
+            });
+            continue;
+        }
+        let velocity = nav.velocity_m_s();
+        picture.contacts.push(Contact {
+            vehicle,
+            team: TeamId(of as u8),
+            seen_ns: now,
+            north_m: nav.north_m,
+            east_m: nav.east_m,
+            psi_rad: nav.psi_rad,
+            velocity_north_m_s: velocity.north,
+            velocity_east_m_s: velocity.east,
+            tagged: boat.tagged == 1,
+            carrying,
+        });
+        if boat.since_tag_s < COOLDOWN_S {
+            let tagged = Event::Tagged { vehicle: VehicleId::at(team * team_size), cause: TagCause::Opponent(vehicle) };
+            let at = SimTime::from_s(NOW_S - boat.since_tag_s);
+            picture.events.push(EventRecord::from(Logged { tick: 0, at, event: tagged }));
+        }
+    }
+    picture
+}
+
+#[test]
+fn observations_are_those_of_the_program() {
+    let spaces = Spaces { observation: ObservationSpace::Pyquaticus, action: ActionSpace::Pyquaticus };
+    for file in ["1v1", "3v3"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/pyquaticus/{file}.json"));
+        let reference: Reference = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+        let team_size = reference.states[0].boats.len() / 2;
+        let scenario = scenario(team_size);
+        for (s, state) in reference.states.iter().enumerate() {
+            for (i, boat) in state.boats.iter().enumerate() {
+                let mut pilot = Pilot::direct(&scenario, VehicleId::at(i), spaces);
+                let got = pilot.observe(&picture(state, i / team_size));
+                assert_eq!(got.len(), boat.observation.len());
+                let numbers = got.iter().zip(&boat.observation).zip(&reference.names);
+                numbers.for_each(|((got, want), name)| {
+                    let off = off(name, *got, *want);
+                    assert!(off < TOLERANCE, "{file} state {s} boat {i} {name}: {got}, not {want}");
+                });
+            }
+        }
+    }
+}
+
+/// How far a number is off; half a turn to either side is the same bearing.
+fn off(name: &str, got: f32, want: f32) -> f32 {
+    let off = (got - want).abs();
+    if name.ends_with("bearing") || name.ends_with("heading") { off.min((2.0 - off).abs()) } else { off }
+}

@@ -1,0 +1,112 @@
+//! Actions: what a policy may ask of its boat at a decision.
+
+use crate::angle::wrap_pi;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// What a policy chooses from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ActionSpace {
+    /// The 17 of Pyquaticus: full or half speed, each with eight turns, and a stop.
+    Pyquaticus,
+    /// Two numbers from -1 to 1: the turn from the present heading in half turns clockwise, and the speed, from none to the
+    /// boat's fastest.
+    Continuous,
+}
+
+/// What a policy chose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    /// One of so many.
+    Discrete(usize),
+    /// Numbers from -1 to 1; what is beyond counts as the limit.
+    Continuous([f32; 2]),
+}
+
+impl Action {
+    /// The discrete action with the largest logit, the first of equals.
+    #[must_use]
+    pub fn likeliest(logits: &[f32]) -> Action {
+        Action::Discrete((1..logits.len()).fold(0, |best, i| if logits[i] > logits[best] { i } else { best }))
+    }
+}
+
+/// A course, rad clockwise from north, and a speed, m/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SetPoint {
+    /// Desired course, rad clockwise from north.
+    pub course_rad: f64,
+    /// Desired speed, m/s.
+    pub speed_m_s: f64,
+}
+
+/// How many turns there are at each speed, from half a turn to starboard to nearly half a turn to port.
+const TURNS: usize = 8;
+/// The speeds of the discrete actions, as shares of the fastest.
+const SPEEDS: [f64; 2] = [1.0, 0.5];
+
+impl ActionSpace {
+    /// How many discrete actions there are; none if actions are continuous.
+    #[must_use]
+    pub fn count(self) -> Option<usize> {
+        match self {
+            ActionSpace::Pyquaticus => Some(SPEEDS.len() * TURNS + 1),
+            ActionSpace::Continuous => None,
+        }
+    }
+
+    /// How many outputs a policy has: a logit for each discrete action, or a number for each dimension.
+    #[must_use]
+    pub fn outputs(self) -> usize {
+        self.count().unwrap_or(2)
+    }
+
+    /// The course and the speed that an action asks of a boat with this heading and top speed. An action of another space, or
+    /// one with numbers that are none, is a stop.
+    #[must_use]
+    pub fn set_point(self, action: Action, heading_rad: f64, speed_max_m_s: f64) -> SetPoint {
+        let (turn_rad, share) = match (self, action) {
+            (ActionSpace::Pyquaticus, Action::Discrete(i)) if i < SPEEDS.len() * TURNS => {
+                (PI - (i % TURNS) as f64 * 2.0 * PI / TURNS as f64, SPEEDS[i / TURNS])
+            }
+            (ActionSpace::Continuous, Action::Continuous([turn, speed])) if turn.is_finite() && speed.is_finite() => {
+                let [turn, speed] = [turn, speed].map(|number| f64::from(number).clamp(-1.0, 1.0));
+                (turn * PI, 0.5 * (1.0 + speed))
+            }
+            _ => (0.0, 0.0),
+        };
+        SetPoint { course_rad: wrap_pi(heading_rad + turn_rad), speed_m_s: share * speed_max_m_s }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Action, ActionSpace};
+
+    #[test]
+    fn the_discrete_actions_are_those_of_pyquaticus() {
+        let space = ActionSpace::Pyquaticus;
+        let turns_deg = [180.0, 135.0, 90.0, 45.0, 0.0, -45.0, -90.0, -135.0];
+        let want =
+            [2.0, 1.0].into_iter().flat_map(|speed_m_s| turns_deg.map(|deg| (speed_m_s, deg))).chain([(0.0, 0.0)]);
+        assert_eq!(space.count(), Some(17));
+        for (i, (speed_m_s, turn_deg)) in want.enumerate() {
+            let got = space.set_point(Action::Discrete(i), 1.0, 2.0);
+            let off_rad = crate::angle::wrap_pi(got.course_rad - 1.0 - f64::to_radians(turn_deg));
+            assert!(off_rad.abs() < 1e-12 && (got.speed_m_s - speed_m_s).abs() < 1e-12, "{i}: {got:?}");
+        }
+    }
+
+    #[test]
+    fn continuous_actions_stay_within_their_limits_and_nonsense_stops_the_boat() {
+        let of = |turn, speed| ActionSpace::Continuous.set_point(Action::Continuous([turn, speed]), 0.5, 3.0);
+        assert!((of(0.0, 1.0).course_rad - 0.5).abs() < 1e-12 && of(0.0, 9.0).speed_m_s == 3.0);
+        assert!((of(0.5, 0.0).course_rad - 0.5 - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        assert_eq!(of(0.0, 0.0).speed_m_s, 1.5);
+        assert_eq!(of(f32::NAN, 1.0).speed_m_s, 0.0);
+        assert_eq!(ActionSpace::Pyquaticus.set_point(Action::Discrete(99), 0.5, 3.0).speed_m_s, 0.0);
+        assert_eq!(ActionSpace::Continuous.set_point(Action::Discrete(0), 0.5, 3.0).speed_m_s, 0.0);
+    }
+}

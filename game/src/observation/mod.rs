@@ -1,0 +1,94 @@
+//! Observations: which numbers a policy is given of what its boat knows. `agent` writes them.
+
+pub mod pyquaticus;
+pub mod squall;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Which numbers a policy is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum ObservationSpace {
+    /// Those of Pyquaticus, in its order: 21 of the own boat and 8 of each other one, each from -1 to 1.
+    Pyquaticus,
+    /// Ours: what sensors and radio tell, in a frame that is the same for both teams.
+    Squall {
+        /// How many mates there is room for.
+        #[schemars(range(min = 0, max = 255))]
+        mates: u8,
+        /// How many enemies, the nearest ones.
+        #[schemars(range(min = 0, max = 255))]
+        enemies: u8,
+        /// How many decisions of the policy are given together, the newest first.
+        #[schemars(range(min = 1, max = 255), extend("default" = 1))]
+        frames: u8,
+    },
+}
+
+impl ObservationSpace {
+    /// Counted up when the meaning of one of its numbers changes.
+    #[must_use]
+    pub fn version(self) -> u32 {
+        match self {
+            ObservationSpace::Pyquaticus => pyquaticus::VERSION,
+            ObservationSpace::Squall { .. } => squall::VERSION,
+        }
+    }
+
+    /// How many numbers there are in a game of teams with so many mates and enemies to a boat.
+    #[must_use]
+    pub fn size(self, mates: usize, enemies: usize) -> usize {
+        match self {
+            ObservationSpace::Pyquaticus => pyquaticus::size(mates + enemies),
+            ObservationSpace::Squall { mates, enemies, frames } => {
+                usize::from(frames) * squall::size(usize::from(mates), usize::from(enemies))
+            }
+        }
+    }
+
+    /// What the numbers are called, in their order, in a game of teams with so many mates and enemies to a boat. Older frames say how
+    /// many decisions of the policy ago they were: `t-1.speed`.
+    #[must_use]
+    pub fn names(self, mates: usize, enemies: usize) -> Vec<String> {
+        match self {
+            ObservationSpace::Pyquaticus => pyquaticus::names(mates, enemies),
+            ObservationSpace::Squall { mates, enemies, frames } => {
+                let newest = squall::names(usize::from(mates), usize::from(enemies));
+                let older = (1..frames).flat_map(|ago| newest.iter().map(move |name| format!("t-{ago}.{name}")));
+                newest.iter().cloned().chain(older).collect()
+            }
+        }
+    }
+}
+
+/// The names of the own boat's numbers, and then of each other boat's: `mate_1_speed`, `enemy_2_speed`.
+pub(super) fn names_of(own: &[&str], other: &[&str], (mates, enemies): (usize, usize)) -> Vec<String> {
+    let mates = (1..=mates).map(|i| format!("mate_{i}"));
+    let others = mates.chain((1..=enemies).map(|i| format!("enemy_{i}")));
+    let of_others = others.flat_map(|boat| other.iter().map(move |name| format!("{boat}_{name}")));
+    own.iter().map(|name| (*name).to_owned()).chain(of_others).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ObservationSpace;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_number_has_a_name_of_its_own() {
+        let squall = |frames| ObservationSpace::Squall { mates: 2, enemies: 3, frames };
+        for (space, mates, enemies) in [
+            (ObservationSpace::Pyquaticus, 1, 2),
+            (ObservationSpace::Pyquaticus, 0, 1),
+            (squall(1), 1, 2),
+            (squall(3), 1, 2),
+        ] {
+            let names = space.names(mates, enemies);
+            assert_eq!(names.len(), space.size(mates, enemies), "{space:?}");
+            assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{space:?}: {names:?}");
+        }
+        assert_eq!(squall(2).names(2, 3)[0], "position_ahead");
+        assert_eq!(ObservationSpace::Pyquaticus.names(1, 2)[21], "mate_1_bearing");
+    }
+}

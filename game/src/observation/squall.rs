@@ -1,0 +1,88 @@
+//! What the numbers of the observation space `squall` are called.
+
+use super::names_of;
+
+/// Counted up when the meaning of a number changes: models of another version are refused.
+pub(super) const VERSION: u32 = 1;
+
+/// Of the own boat, its goals and the game.
+const OWN: usize = 44;
+/// Of another boat: whether it is there, where, how it moves, its state.
+pub const OTHER: usize = 16;
+
+/// The numbers of the own boat, its goals and the game.
+const OWN_NAMES: [&str; OWN] = [
+    "position_ahead",
+    "position_port",
+    "heading_ahead",
+    "heading_port",
+    "surge",
+    "sway",
+    "yaw_rate",
+    "drift_ahead",
+    "drift_starboard",
+    "drift_spread",
+    "tagged",
+    "has_flag",
+    "outside",
+    "disabled",
+    "may_tag",
+    "front_edge_near",
+    "rear_edge_near",
+    "port_edge_near",
+    "starboard_edge_near",
+    "obstacle_near",
+    "speed_share",
+    "enemy_flag_ahead",
+    "enemy_flag_starboard",
+    "enemy_flag_distance",
+    "enemy_flag_near",
+    "own_flag_ahead",
+    "own_flag_starboard",
+    "own_flag_distance",
+    "own_flag_near",
+    "home_ahead",
+    "home_starboard",
+    "home_distance",
+    "home_near",
+    "goal_ahead",
+    "goal_starboard",
+    "goal_distance",
+    "goal_near",
+    "on_own_side",
+    "own_flag_taken",
+    "enemy_flag_taken",
+    "mate_has_flag",
+    "score_lead",
+    "time_left",
+    "rank",
+];
+/// Those of another boat.
+const OTHER_NAMES: [&str; OTHER] = [
+    "known",
+    "ahead",
+    "starboard",
+    "distance",
+    "near",
+    "velocity_ahead",
+    "velocity_starboard",
+    "heading_ahead",
+    "heading_starboard",
+    "tagged",
+    "has_flag",
+    "intrudes",
+    "on_own_side",
+    "tag_wait",
+    "age",
+    "near_own_flag",
+];
+
+/// What the numbers of a frame are called, in their order.
+pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
+    names_of(&OWN_NAMES, &OTHER_NAMES, (mates, enemies))
+}
+
+/// How many numbers there are.
+pub(super) fn size(mates: usize, enemies: usize) -> usize {
+    OWN + (mates + enemies) * OTHER
+}

@@ -1,0 +1,225 @@
+//! One game of an environment: steps of the policy, rewards, a new game when one is over.
+
+use super::games::Standing;
+use super::setup::{Control, Player, Setup};
+use agent::{Action, Mind, MindRunner, Pilot};
+use game::count::Tally;
+use game::event::EventCursor;
+use game::picture::OwnBoat;
+use game::rewards::BoatProgress;
+use game::scenario::Scenario;
+use game::stream::Stream;
+use game::{Ned, Picture, TeamId, VehicleId};
+use sim::Contest;
+
+/// Who plays whom in a game.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Side {
+    /// The team of the policy that learns.
+    pub learner: TeamId,
+    /// Which of the setup's opponents plays the other.
+    pub opponent: usize,
+}
+
+/// A game that is being played.
+pub(super) struct Game {
+    seed: u64,
+    side: Side,
+    steps: u32,
+    contest: Contest,
+    runner: MindRunner,
+    /// The boats that are given actions, those of the policy that learns first.
+    pilots: Vec<VehicleId>,
+    read: EventCursor,
+    tally: Tally,
+    /// By vehicle.
+    boats: Vec<BoatProgress>,
+    rewards: Vec<f64>,
+}
+
+/// What became of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ending {
+    /// The game goes on.
+    None,
+    /// The game is over.
+    Over,
+    /// The game would go on, but the episode is as long as it may be.
+    CutOff,
+}
+
+impl Game {
+    /// The game of a seed from its start.
+    pub(super) fn new(setup: &Setup, contest: Contest, seed: u64) -> Game {
+        let side = draw_side(setup, seed);
+        let scenario = contest.scenario();
+        let enemy = TeamId(1 - side.learner.0);
+        let is_self_play = matches!(setup.opponents[side.opponent].1, Player::Policy);
+        let enemies = setup.pilots_of(enemy, seed).filter(|_| is_self_play);
+        let pilots: Vec<VehicleId> = setup.pilots_of(side.learner, seed).chain(enemies).collect();
+        let mind = |vehicle: VehicleId| -> Box<dyn Mind> {
+            let is_learner = scenario.team_of(vehicle) == side.learner;
+            match (is_learner, &setup.opponents[side.opponent].1, &setup.mates) {
+                (false, Player::Strategy(strategy), _) => agent::mind_by(scenario, vehicle, strategy),
+                (_, _, Some(strategy)) if !pilots.contains(&vehicle) => agent::mind_by(scenario, vehicle, strategy),
+                (false, Player::Model(model), _) => Box::new(pilot(setup, scenario, vehicle).by_model(model.clone())),
+                _ => Box::new(pilot(setup, scenario, vehicle)),
+            }
+        };
+        let count = scenario.vehicles.len();
+        let runner = arena::runner_of((0..count).map(|i| mind(VehicleId::at(i))).collect());
+        let mut game = Game {
+            seed,
+            side,
+            steps: 0,
+            runner,
+            pilots,
+            contest,
+            read: EventCursor::default(),
+            tally: Tally::new(count),
+            boats: vec![BoatProgress::default(); count],
+            rewards: vec![0.0; count],
+        };
+        game.contest.pictures();
+        game.look();
+        game
+    }
+
+    /// The boats that are given actions, those of the policy that learns first.
+    pub(super) fn boats_with_actions(&self) -> &[VehicleId] {
+        &self.pilots
+    }
+
+    /// How many boats are given actions.
+    pub(super) fn pilots(&self) -> usize {
+        self.pilots.len()
+    }
+
+    /// The pilot in this place, those of the policy that learns first, and the picture of its team.
+    fn pilot(&mut self, place: usize) -> Option<(&mut Pilot, &Picture)> {
+        let vehicle = self.pilots[place];
+        let pilot = self.runner.mind_mut(vehicle).and_then(Mind::pilot)?;
+        Some((pilot, self.contest.picture_of(vehicle)))
+    }
+
+    /// Gives a boat its action.
+    pub(super) fn act(&mut self, place: usize, action: Action) {
+        if let Some((pilot, _)) = self.pilot(place) {
+            pilot.act(action);
+        }
+    }
+
+    /// Plays a step of the policy.
+    pub(super) fn step(&mut self, setup: &Setup) -> Ending {
+        let Game { contest, runner, .. } = self;
+        for _ in 0..setup.decisions_per_step {
+            if contest.is_over() {
+                break;
+            }
+            arena::decide(contest, runner);
+            contest.advance();
+        }
+        contest.pictures();
+        self.steps += 1;
+        let ending = if self.contest.is_over() {
+            Ending::Over
+        } else if setup.steps_max.is_some_and(|most| self.steps >= most) {
+            Ending::CutOff
+        } else {
+            Ending::None
+        };
+        self.reward(setup, ending);
+        ending
+    }
+
+    /// A boat's reward of the last step.
+    pub(super) fn reward_of(&self, place: usize) -> f64 {
+        self.rewards[self.pilots[place].index()]
+    }
+
+    /// Writes what a boat is shown; whether it will do as it is told then.
+    pub(super) fn observe(&mut self, place: usize, out: &mut [f32]) -> bool {
+        let Some((pilot, picture)) = self.pilot(place) else { return false };
+        out.copy_from_slice(pilot.observe(picture));
+        pilot.obeys()
+    }
+
+    /// How it stands.
+    pub(super) fn standing(&self) -> Standing {
+        let (score, scenario) = (self.contest.score(), self.contest.scenario());
+        let teams = [self.side.learner, TeamId(1 - self.side.learner.0)];
+        let counts = teams.map(|team| self.tally.team(team, |i| scenario.vehicles[i].team));
+        let score = teams.map(|team| score[team.index()]);
+        Standing { seed: self.seed, side: self.side, score, counts, steps: self.steps }
+    }
+
+    /// The game itself.
+    pub(super) fn contest(&self) -> &Contest {
+        &self.contest
+    }
+
+    fn reward(&mut self, setup: &Setup, ending: Ending) {
+        let rewards = &setup.rewards;
+        let carrying: Vec<bool> = self.boats.iter().map(|boat| boat.carrying).collect();
+        let before: Vec<f64> = self.boats.iter().map(|boat| rewards.potential.of(boat)).collect();
+        self.look();
+        let scenario = self.contest.scenario();
+        let step_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
+        for (i, reward) in self.rewards.iter_mut().enumerate() {
+            let after = if ending == Ending::Over { 0.0 } else { rewards.potential.of(&self.boats[i]) };
+            *reward = setup.discount * after - before[i] + rewards.second * step_s;
+        }
+        let events = self.read.read(self.contest.events());
+        rewards.add_events(scenario, events, &carrying, &mut self.rewards);
+        events.iter().for_each(|logged| self.tally.add(logged.event));
+        if ending == Ending::Over {
+            for (i, reward) in self.rewards.iter_mut().enumerate() {
+                *reward += rewards.of_end(self.contest.score(), scenario.team_of(VehicleId::at(i)));
+            }
+        }
+    }
+
+    /// Notes how the boats are, for rewards.
+    fn look(&mut self) {
+        let field = &self.contest.scenario().field;
+        let width_m = field.plan.width_m;
+        for (team, picture) in self.contest.last_pictures().iter().enumerate() {
+            let home = |team: usize| field.flags[team].home;
+            let away = |from: Ned, to: Ned| from.distance(to) / width_m;
+            for boat in &picture.own {
+                let OwnBoat { vehicle, nav, tagged, .. } = *boat;
+                let at = nav.at();
+                self.boats[vehicle.index()] = BoatProgress {
+                    tagged,
+                    carrying: boat.carried_flag().is_some(),
+                    from_flag: away(at, home(1 - team)),
+                    from_home: away(at, home(team)),
+                };
+            }
+        }
+    }
+}
+
+/// A boat that is given actions.
+fn pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
+    match &setup.control {
+        Control::Direct => Pilot::direct(scenario, vehicle, setup.spaces),
+        Control::Helm(strategy) => {
+            let program = agent::roles::role_in(scenario, vehicle, strategy);
+            Pilot::helm(scenario, vehicle, program, setup.spaces)
+        }
+    }
+}
+
+/// Each two games of a kind are from both sides, unless the side is given.
+fn draw_side(setup: &Setup, seed: u64) -> Side {
+    let total: f64 = setup.opponents.iter().map(|(weight, _)| weight.max(0.0)).sum();
+    let mut left = Stream::new(seed, "opponent").between(0.0, total);
+    let chosen = setup.opponents.iter().position(|(weight, _)| {
+        left -= weight.max(0.0);
+        left < 0.0
+    });
+    let last = || setup.opponents.iter().rposition(|(weight, _)| *weight > 0.0).unwrap_or_default();
+    let learner = setup.learner.unwrap_or(TeamId((seed % 2) as u8));
+    Side { learner, opponent: chosen.unwrap_or_else(last) }
+}

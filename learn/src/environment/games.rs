@@ -1,0 +1,291 @@
+//! Many games at a time: one step of all of them on several threads, written into slices of whoever asks.
+
+use super::game::{Ending, Game, Side};
+use super::setup::{Player, Setup, SetupError};
+use super::starts::Starts;
+use agent::Action;
+use game::VehicleId;
+use game::count::Counts;
+use rayon::prelude::*;
+use sim::Contest;
+
+/// How a game stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// The seed of the game: with the setup it names the game.
+    pub seed: u64,
+    /// Who plays whom.
+    pub side: Side,
+    /// Points of the policy that learns, and of its enemies.
+    pub score: [u32; 2],
+    /// What the team of the policy that learns did, and its enemies, how often.
+    pub counts: [Counts; 2],
+    /// Steps of the policy.
+    pub steps: u32,
+}
+
+/// An episode that ended in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finished {
+    /// Which of the games.
+    pub game: usize,
+    /// How it stood in the end.
+    pub standing: Standing,
+    /// Whether it was cut off before the game was over.
+    pub cut_off: bool,
+}
+
+/// What a step shows, a row for each boat that is given actions: game by game, first the boats of the policy that learns and then,
+/// if any opponent is a policy, those of its enemies.
+#[derive(Debug)]
+pub struct Rows<'a> {
+    /// What every boat is shown, rows × numbers.
+    pub observations: &'a mut [f32],
+    /// What boats were shown last before a new game began, rows × numbers. Only the rows of games that end in the step are written.
+    pub final_observations: &'a mut [f32],
+    /// What the step was worth, by row.
+    pub rewards: &'a mut [f32],
+    /// By row, whether its next action counts: not of a tagged boat, nor where a strategy plays the enemies.
+    pub counts: &'a mut [bool],
+}
+
+/// Games that are played side by side; each begins anew when it is over.
+///
+/// What a row shows depends on the setup, the seed and the actions alone, not on the number of threads.
+pub struct Games {
+    setup: Setup,
+    slots: Vec<Slot>,
+    starts: Starts,
+    /// None for one thread, which is the caller's: a game's step is shorter than waking another.
+    pool: Option<rayon::ThreadPool>,
+    rows_per_game: usize,
+    observation_size: usize,
+    finished: Vec<Finished>,
+}
+
+/// A place for one game after the other.
+struct Slot {
+    game: Game,
+    /// The number of its game among all that are played: places count up by as many as there are.
+    number: u64,
+    ended: Option<Finished>,
+    /// Whether its boats have been shown how things stand: observing twice would be two decisions.
+    is_shown: bool,
+}
+
+impl Games {
+    /// Begins so many games, on so many threads. Seeds count up from `seed`, game by game and episode by episode.
+    ///
+    /// # Errors
+    /// [`SetupError`] where nothing can be played.
+    pub fn new(setup: Setup, games: usize, threads: usize, seed: u64) -> Result<Games, SetupError> {
+        setup.check()?;
+        let pool = || rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+        let starts = Starts::new(&setup, seed);
+        let slot = |i: usize| {
+            let game = starts.game(&setup, i as u64)?;
+            Ok(Slot { game, number: i as u64, ended: None, is_shown: false })
+        };
+        let slots: Result<Vec<Slot>, SetupError> = (0..games).map(slot).collect();
+        Ok(Games {
+            slots: slots?,
+            starts,
+            pool: (threads > 1).then(pool),
+            rows_per_game: setup.rows_per_game(),
+            observation_size: setup.observation_size(),
+            setup,
+            finished: Vec::new(),
+        })
+    }
+
+    /// What is played.
+    #[must_use]
+    pub fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    /// One more opponent, with weight 0.
+    pub fn add_opponent(&mut self, player: Player) {
+        self.setup.opponents.push((0.0, player));
+    }
+
+    /// From its next game on, every opponent is drawn by another weight; one without has weight 0.
+    pub fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
+        let mut weights = weights.into_iter();
+        self.setup.opponents.iter_mut().for_each(|(weight, _)| *weight = weights.next().unwrap_or(0.0));
+    }
+
+    /// How many rows there are, and how many of them to a game.
+    #[must_use]
+    pub fn rows(&self) -> (usize, usize) {
+        (self.slots.len() * self.rows_per_game, self.rows_per_game)
+    }
+
+    /// The episodes that ended in the last step, by game.
+    #[must_use]
+    pub fn finished(&self) -> &[Finished] {
+        &self.finished
+    }
+
+    /// A game as it stands.
+    #[must_use]
+    pub fn contest(&self, game: usize) -> &Contest {
+        self.slots[game].game.contest()
+    }
+
+    /// The boats of a game that are given actions, in the order of its rows.
+    #[must_use]
+    pub fn boats(&self, game: usize) -> &[VehicleId] {
+        self.slots[game].game.boats_with_actions()
+    }
+
+    /// How a game stands.
+    #[must_use]
+    pub fn standing(&self, game: usize) -> Standing {
+        self.slots[game].game.standing()
+    }
+
+    /// Shows the games that have begun and were not shown yet; the rows of others stay as they are.
+    ///
+    /// # Panics
+    /// If the slices are not as long as there are rows.
+    pub fn show(&mut self, rows: Rows<'_>) {
+        self.for_each_game(rows, |_, _, _, slot, rows| {
+            if !slot.is_shown {
+                rows.rewards.fill(0.0);
+                slot.show(rows);
+            }
+        });
+    }
+
+    /// Begins all games anew, with the seeds that count up from this one as in [`Games::new`], or with the next ones.
+    /// [`Games::show`] shows them.
+    ///
+    /// # Errors
+    /// [`SetupError::NoStart`] where a game cannot begin.
+    pub fn restart(&mut self, seed: Option<u64>) -> Result<(), SetupError> {
+        if let Some(seed) = seed {
+            self.starts = Starts::new(&self.setup, seed);
+            self.slots.iter_mut().enumerate().for_each(|(i, slot)| slot.number = i as u64);
+        } else {
+            let count = self.slots.len() as u64;
+            self.slots.iter_mut().for_each(|slot| slot.number = slot.number.wrapping_add(count));
+        }
+        self.finished.clear();
+        let Games { slots, starts, setup, pool, .. } = self;
+        let begin = |slot: &mut Slot| slot.begin(setup, starts);
+        let begun: Vec<Result<(), SetupError>> = match pool {
+            Some(pool) => pool.install(|| slots.par_iter_mut().map(begin).collect()),
+            None => slots.iter_mut().map(begin).collect(),
+        };
+        begun.into_iter().collect()
+    }
+
+    /// Begins one game anew: that of this seed, or its next one. Its seeds go on from there, by as many as there are games.
+    /// [`Games::show`] shows it.
+    ///
+    /// # Errors
+    /// [`SetupError::NoStart`] where it cannot begin; [`SetupError::SeedOfStarts`] for a seed where starts come round.
+    pub fn restart_game(&mut self, game: usize, seed: Option<u64>) -> Result<(), SetupError> {
+        let count = self.slots.len() as u64;
+        let slot = &mut self.slots[game];
+        slot.number = match seed {
+            Some(seed) => self.starts.number_of(seed)?,
+            None => slot.number.wrapping_add(count),
+        };
+        self.finished.clear();
+        slot.begin(&self.setup, &self.starts)
+    }
+
+    /// Plays one step of every game with an action for each row.
+    ///
+    /// # Errors
+    /// [`SetupError::NoStart`] where a new game cannot begin.
+    ///
+    /// # Panics
+    /// If there is not one action for each row, or the slices are not as long as there are rows.
+    pub fn step(&mut self, actions: &[Action], rows: Rows<'_>) -> Result<(), SetupError> {
+        assert_eq!(actions.len(), self.rows().0, "one action a row");
+        let (count, per_game) = (self.slots.len() as u64, self.rows_per_game);
+        let begun = self.for_each_game(rows, |setup, starts, i, slot, rows| {
+            if !slot.is_shown {
+                slot.show(rows);
+            }
+            slot.play(setup, i, &actions[i * per_game..(i + 1) * per_game], rows);
+            if slot.ended.is_none() {
+                return Ok(());
+            }
+            rows.final_observations.copy_from_slice(rows.observations);
+            slot.number = slot.number.wrapping_add(count);
+            slot.begin(setup, starts)?;
+            slot.show(rows);
+            Ok(())
+        });
+        self.finished.clear();
+        self.finished.extend(self.slots.iter().filter_map(|slot| slot.ended));
+        begun.into_iter().collect()
+    }
+
+    fn for_each_game<T: Send>(
+        &mut self,
+        rows: Rows<'_>,
+        work: impl Fn(&Setup, &Starts, usize, &mut Slot, &mut Rows<'_>) -> T + Sync,
+    ) -> Vec<T> {
+        let Games { setup, starts, slots, pool, rows_per_game: per_game, observation_size, .. } = self;
+        let (numbers, count) = (*per_game * *observation_size, slots.len());
+        assert!(rows.observations.len() == count * numbers && rows.final_observations.len() == count * numbers);
+        assert!(rows.rewards.len() == count * *per_game && rows.counts.len() == count * *per_game);
+        let games = slots
+            .iter_mut()
+            .zip(rows.observations.chunks_exact_mut(numbers))
+            .zip(rows.final_observations.chunks_exact_mut(numbers))
+            .zip(rows.rewards.chunks_exact_mut(*per_game))
+            .zip(rows.counts.chunks_exact_mut(*per_game))
+            .map(|((((slot, observations), final_observations), rewards), counts)| {
+                (slot, Rows { observations, final_observations, rewards, counts })
+            });
+        let work = |(i, (slot, mut rows)): (usize, (&mut Slot, Rows<'_>))| work(setup, starts, i, slot, &mut rows);
+        match pool {
+            Some(pool) => {
+                let games: Vec<_> = games.enumerate().collect();
+                pool.install(|| games.into_par_iter().map(work).collect())
+            }
+            None => games.enumerate().map(work).collect(),
+        }
+    }
+}
+
+impl Slot {
+    /// Begins the game of its number.
+    fn begin(&mut self, setup: &Setup, starts: &Starts) -> Result<(), SetupError> {
+        self.game = starts.game(setup, self.number)?;
+        self.is_shown = false;
+        Ok(())
+    }
+
+    /// Plays a step and shows what came of it.
+    fn play(&mut self, setup: &Setup, game: usize, actions: &[Action], rows: &mut Rows<'_>) {
+        let pilots = self.game.pilots();
+        actions.iter().take(pilots).enumerate().for_each(|(i, action)| self.game.act(i, *action));
+        let ending = self.game.step(setup);
+        rows.rewards.fill(0.0);
+        rows.rewards[..pilots].iter_mut().enumerate().for_each(|(i, reward)| *reward = self.game.reward_of(i) as f32);
+        self.show(rows);
+        self.ended = (ending != Ending::None).then(|| Finished {
+            game,
+            standing: self.game.standing(),
+            cut_off: ending == Ending::CutOff,
+        });
+    }
+
+    /// Writes what the boats are shown now.
+    fn show(&mut self, rows: &mut Rows<'_>) {
+        let size = rows.observations.len() / rows.rewards.len();
+        self.is_shown = true;
+        rows.observations.fill(0.0);
+        rows.counts.fill(false);
+        for (i, observation) in rows.observations.chunks_exact_mut(size).take(self.game.pilots()).enumerate() {
+            rows.counts[i] = self.game.observe(i, observation);
+        }
+    }
+}

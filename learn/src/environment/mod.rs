@@ -1,0 +1,17 @@
+//! Games as environments for learning: the very referee, sea, boats and minds of a game, with the decisions of some boats made
+//! outside.
+
+mod game;
+mod games;
+mod raw;
+mod setup;
+mod stage;
+mod starts;
+mod vector;
+
+pub use agent::{Action, ActionSpace, ObservationSpace, Spaces};
+pub use game::Side;
+pub use games::{Finished, Games, Rows, Standing};
+pub use raw::{RawObservation, RawSetup};
+pub use setup::{Control, Player, Setup, SetupError};
+pub use vector::VectorEnvironment;

@@ -1,0 +1,196 @@
+//! What is played in an environment: the game, who learns, what a policy sees and may do, and against whom.
+
+use agent::Spaces;
+use game::policy::PolicyModel;
+use game::rewards::Rewards;
+use game::scenario::{Problems, Scenario};
+use game::strategy::{Strategy, Task};
+use game::{TeamId, VehicleId};
+use thiserror::Error;
+
+/// How actions reach a boat.
+#[derive(Clone, Debug)]
+pub enum Control {
+    /// As orders.
+    Direct,
+    /// As proposals to the helms of this strategy, every role of which has a behaviour of the kind `policy`.
+    Helm(Box<Strategy>),
+}
+
+/// Who plays a team in a game.
+#[derive(Clone, Debug)]
+pub enum Player {
+    /// Whoever gives the actions: the policy that learns, or one that it once was.
+    Policy,
+    /// The helms of a strategy.
+    Strategy(Box<Strategy>),
+    /// A policy as it was, through the same control as the one that learns.
+    Model(PolicyModel),
+}
+
+/// What is played.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The game; seeds choose what is random in it.
+    pub scenario: Scenario,
+    /// What policies see and do.
+    pub spaces: Spaces,
+    /// How it reaches the boats.
+    pub control: Control,
+    /// Decisions of the game to one of the policy.
+    pub decisions_per_step: u32,
+    /// An episode ends after so many steps at the latest, though the game would go on; none plays whole games.
+    pub steps_max: Option<u32>,
+    /// There are so many different starts, which come round again: what takes longest of a new game, its sea and its boats, is made once
+    /// for each. None: every game has a start of its own.
+    pub starts: Option<u32>,
+    /// The team that learns; none: the one and the other by turns, seed by seed.
+    pub learner: Option<TeamId>,
+    /// Policies sail one boat of their team, each by turns, and this strategy the others; none: policies sail all.
+    pub mates: Option<Box<Strategy>>,
+    /// The enemies, each with how often it is drawn.
+    pub opponents: Vec<(f64, Player)>,
+    /// What is worth how much.
+    pub rewards: Rewards,
+    /// What a reward a step later is worth, for potentials.
+    pub discount: f64,
+}
+
+/// Why nothing can be played.
+#[derive(Debug, Error)]
+pub enum SetupError {
+    /// Games are between two teams.
+    #[error("the game has {0} teams; an environment is a game between two")]
+    Teams(usize),
+    /// A policy with numbers for equal teams.
+    #[error("the teams have {0} and {1} boats; policies play either side, so they must have as many")]
+    Uneven(usize, usize),
+    /// Nobody to play against.
+    #[error("no opponent is given, or none with a weight above 0")]
+    NoOpponent,
+    /// A strategy that asks no policy.
+    #[error("the role {0:?} has no behaviour of the kind \"policy\": nothing would come of actions")]
+    NoPolicy(String),
+    /// Steps without a decision.
+    #[error("a policy decides every 0 decisions of the game; expected 1 or more")]
+    NoDecisions,
+    /// Nothing to begin with.
+    #[error("there are 0 starts; expected 1 or more, or none for a new one every time")]
+    NoStarts,
+    /// A seed that is not among the starts that come round.
+    #[error("seed is {seed}, expected {first} to {last}: only so many starts come round (`starts`)")]
+    SeedOfStarts {
+        /// What was asked for.
+        seed: u64,
+        /// The first of them.
+        first: u64,
+        /// The last one.
+        last: u64,
+    },
+    /// Something that a person gave is not what it may be.
+    #[error("{field} is {found}, expected {allowed}")]
+    Field {
+        /// What it is called.
+        field: &'static str,
+        /// What it is.
+        found: String,
+        /// What it may be.
+        allowed: String,
+    },
+    /// A file that cannot be used.
+    #[error(transparent)]
+    Files(#[from] Problems),
+    /// A policy whose weights are no numbers any more.
+    #[error("the policy has diverged: {0}")]
+    Diverged(String),
+    /// The game cannot begin.
+    #[error(transparent)]
+    NoStart(#[from] sim::NoStart),
+}
+
+impl Setup {
+    /// What makes it impossible to play, if anything does.
+    ///
+    /// # Errors
+    /// [`SetupError`], the first that was found.
+    pub fn check(&self) -> Result<(), SetupError> {
+        if self.scenario.teams.len() != 2 {
+            return Err(SetupError::Teams(self.scenario.teams.len()));
+        }
+        let [one, other] = [0, 1].map(|team| self.boats_of(TeamId(team)).count());
+        if one != other {
+            return Err(SetupError::Uneven(one, other));
+        }
+        if let Some(team) = self.learner.filter(|team| team.index() > 1) {
+            let (found, allowed) = (team.index().to_string(), "0 or 1".to_owned());
+            return Err(SetupError::Field { field: "learner", found, allowed });
+        }
+        if self.decisions_per_step == 0 {
+            return Err(SetupError::NoDecisions);
+        }
+        if self.starts == Some(0) {
+            return Err(SetupError::NoStarts);
+        }
+        if !self.opponents.iter().any(|(weight, _)| *weight > 0.0) {
+            return Err(SetupError::NoOpponent);
+        }
+        if let Control::Helm(strategy) = &self.control {
+            let asks = |task: &Task| matches!(task, Task::Policy(policy) if policy.model.is_none());
+            let deaf =
+                strategy.roles.iter().find(|role| !role.behaviours.iter().any(|behaviour| asks(&behaviour.task)));
+            if let Some(role) = deaf {
+                return Err(SetupError::NoPolicy(role.name.clone()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether any opponent is a policy.
+    #[must_use]
+    pub fn is_self_play(&self) -> bool {
+        self.opponents.iter().any(|(_, player)| matches!(player, Player::Policy))
+    }
+
+    /// How many rows there are to a game: one for each boat that may be given actions.
+    #[must_use]
+    pub fn rows_per_game(&self) -> usize {
+        let of_team = if self.mates.is_some() { 1 } else { self.team_size() };
+        of_team * if self.is_self_play() { 2 } else { 1 }
+    }
+
+    /// The boats of a team that a policy sails in the game of a seed.
+    pub fn pilots_of(&self, team: TeamId, seed: u64) -> impl Iterator<Item = VehicleId> {
+        // Sides alternate with the seed, and boats with every second one.
+        let one = self.mates.is_some().then(|| (seed / 2) as usize % self.team_size().max(1));
+        self.boats_of(team)
+            .enumerate()
+            .filter(move |(i, _)| one.is_none_or(|one| one == *i))
+            .map(|(_, vehicle)| vehicle)
+    }
+
+    /// The boats of a team, in the scenario's order.
+    pub fn boats_of(&self, team: TeamId) -> impl Iterator<Item = VehicleId> {
+        let boats = (0..self.scenario.vehicles.len()).map(VehicleId::at);
+        boats.filter(move |vehicle| self.scenario.team_of(*vehicle) == team)
+    }
+
+    /// How many boats a team has.
+    #[must_use]
+    pub fn team_size(&self) -> usize {
+        self.boats_of(TeamId(0)).count()
+    }
+
+    /// What the numbers of an observation are called.
+    #[must_use]
+    pub fn observation_names(&self) -> Vec<String> {
+        let boats = self.team_size();
+        self.spaces.observation.names(boats.saturating_sub(1), boats)
+    }
+
+    /// How many numbers an observation has.
+    #[must_use]
+    pub fn observation_size(&self) -> usize {
+        let boats = self.team_size();
+        self.spaces.observation.size(boats.saturating_sub(1), boats)
+    }
+}

@@ -1,0 +1,45 @@
+//! How games of an environment begin: their seeds count up, and come round again if there are only so many starts.
+
+use super::game::Game;
+use super::setup::{Setup, SetupError};
+use sim::Contest;
+use std::sync::OnceLock;
+
+/// How games begin.
+pub(super) struct Starts {
+    seed: u64,
+    /// Of as many games as there are starts, at their start: made when it is first played.
+    made: Vec<OnceLock<Contest>>,
+}
+
+impl Starts {
+    pub(super) fn new(setup: &Setup, seed: u64) -> Starts {
+        let count = setup.starts.unwrap_or_default();
+        Starts { seed, made: (0..count).map(|_| OnceLock::new()).collect() }
+    }
+
+    /// The game with this number.
+    pub(super) fn game(&self, setup: &Setup, number: u64) -> Result<Game, SetupError> {
+        let number = if self.made.is_empty() { number } else { number % self.made.len() as u64 };
+        let seed = self.seed.wrapping_add(number);
+        let place = self.made.get(number as usize);
+        let contest = match place.and_then(OnceLock::get) {
+            Some(contest) => contest.clone(),
+            None => Contest::new(&setup.scenario, seed)?,
+        };
+        if let Some(place) = place {
+            place.get_or_init(|| contest.clone());
+        }
+        Ok(Game::new(setup, contest, seed))
+    }
+
+    /// The number of the game with this seed.
+    pub(super) fn number_of(&self, seed: u64) -> Result<u64, SetupError> {
+        let number = seed.wrapping_sub(self.seed);
+        if !self.made.is_empty() && number >= self.made.len() as u64 {
+            let last = self.seed.wrapping_add(self.made.len() as u64 - 1);
+            return Err(SetupError::SeedOfStarts { seed, first: self.seed, last });
+        }
+        Ok(number)
+    }
+}

@@ -1,0 +1,128 @@
+//! Games with slices of their own, for whoever has none: from actions to observations and rewards.
+
+use super::game::Side;
+use super::games::{Finished, Games, Rows};
+use super::setup::{Player, Setup, SetupError};
+use agent::Action;
+use sim::Contest;
+
+/// [`Games`] that keep what they show last.
+pub struct VectorEnvironment {
+    games: Games,
+    shown: Shown,
+}
+
+/// The memory of [`Rows`].
+struct Shown {
+    observations: Vec<f32>,
+    final_observations: Vec<f32>,
+    rewards: Vec<f32>,
+    counts: Vec<bool>,
+}
+
+impl Shown {
+    fn rows(&mut self) -> Rows<'_> {
+        let Shown { observations, final_observations, rewards, counts } = self;
+        Rows { observations, final_observations, rewards, counts }
+    }
+}
+
+impl VectorEnvironment {
+    /// Begins so many games, on so many threads. Seeds count up from `seed`, game by game and episode by episode.
+    ///
+    /// # Errors
+    /// [`SetupError`] where nothing can be played.
+    pub fn new(setup: Setup, games: usize, threads: usize, seed: u64) -> Result<VectorEnvironment, SetupError> {
+        let mut games = Games::new(setup, games, threads, seed)?;
+        let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
+        let mut shown = Shown {
+            observations: vec![0.0; numbers],
+            final_observations: vec![0.0; numbers],
+            rewards: vec![0.0; rows],
+            counts: vec![false; rows],
+        };
+        games.show(shown.rows());
+        Ok(VectorEnvironment { games, shown })
+    }
+
+    /// What is played.
+    #[must_use]
+    pub fn setup(&self) -> &Setup {
+        self.games.setup()
+    }
+
+    /// One more opponent, with weight 0.
+    pub fn add_opponent(&mut self, player: Player) {
+        self.games.add_opponent(player);
+    }
+
+    /// From its next game on, every opponent is drawn by another weight; one without has weight 0.
+    pub fn set_weights(&mut self, weights: impl IntoIterator<Item = f64>) {
+        self.games.set_weights(weights);
+    }
+
+    /// How many rows there are, and how many of them to a game.
+    #[must_use]
+    pub fn rows(&self) -> (usize, usize) {
+        self.games.rows()
+    }
+
+    /// What every boat is shown, rows × numbers.
+    #[must_use]
+    pub fn observations(&self) -> &[f32] {
+        &self.shown.observations
+    }
+
+    /// What boats were shown last before a new game began, rows × numbers; of games that ended in the last step alone.
+    #[must_use]
+    pub fn final_observations(&self) -> &[f32] {
+        &self.shown.final_observations
+    }
+
+    /// What the last step was worth, by row.
+    #[must_use]
+    pub fn rewards(&self) -> &[f32] {
+        &self.shown.rewards
+    }
+
+    /// By row, whether its next action counts: not of a tagged boat, nor where a strategy plays the enemies.
+    #[must_use]
+    pub fn counts(&self) -> &[bool] {
+        &self.shown.counts
+    }
+
+    /// The episodes that ended in the last step, by game.
+    #[must_use]
+    pub fn finished(&self) -> &[Finished] {
+        self.games.finished()
+    }
+
+    /// How many boats of a game are given actions: its first rows.
+    #[must_use]
+    pub fn boats(&self, game: usize) -> usize {
+        self.games.boats(game).len()
+    }
+
+    /// A game as it stands.
+    #[must_use]
+    pub fn contest(&self, game: usize) -> &Contest {
+        self.games.contest(game)
+    }
+
+    /// Who plays whom in a game.
+    #[must_use]
+    pub fn side(&self, game: usize) -> Side {
+        self.games.standing(game).side
+    }
+
+    /// Plays one step of every game with an action for each row.
+    ///
+    /// # Errors
+    /// [`SetupError::NoStart`] where a new game cannot begin.
+    ///
+    /// # Panics
+    /// If there is not one action for each row.
+    pub fn step(&mut self, actions: &[Action]) -> Result<(), SetupError> {
+        self.games.step(actions, self.shown.rows())
+    }
+}

@@ -1,0 +1,6 @@
+//! Learning: games as environments, and trainers of policies.
+
+pub mod environment;
+pub mod nn;
+pub mod ppo;
+pub mod train;

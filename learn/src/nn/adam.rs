@@ -1,0 +1,59 @@
+//! Adam (Kingma and Ba, ICLR 2015), with the gradient's norm limited.
+
+use serde::{Deserialize, Serialize};
+
+/// How Adam goes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AdamSettings {
+    /// Decay of the mean of gradients.
+    pub beta_1: f32,
+    /// Decay of the mean of their squares.
+    pub beta_2: f32,
+    /// Added to the root of that.
+    pub epsilon: f32,
+    /// A longer gradient is made as long as this; none: as it is.
+    pub norm_max: Option<f32>,
+}
+
+impl Default for AdamSettings {
+    fn default() -> AdamSettings {
+        AdamSettings { beta_1: 0.9, beta_2: 0.999, epsilon: 1e-5, norm_max: Some(0.5) }
+    }
+}
+
+/// The state of an optimiser.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Adam {
+    settings: AdamSettings,
+    /// The powers of both decays.
+    powers: (f32, f32),
+    mean: Vec<f32>,
+    square: Vec<f32>,
+}
+
+impl Adam {
+    /// For so many parameters.
+    #[must_use]
+    pub fn new(parameters: usize, settings: AdamSettings) -> Adam {
+        Adam { settings, powers: (1.0, 1.0), mean: vec![0.0; parameters], square: vec![0.0; parameters] }
+    }
+
+    /// Takes one step against a gradient; gives the gradient's norm before it was limited.
+    pub fn step(&mut self, parameters: &mut [f32], gradient: &[f32], learning_rate: f32) -> f32 {
+        let AdamSettings { beta_1, beta_2, epsilon, norm_max } = self.settings;
+        let norm = gradient.iter().map(|number| f64::from(*number) * f64::from(*number)).sum::<f64>().sqrt() as f32;
+        let scale = norm_max.map_or(1.0, |most| if norm > most { most / norm } else { 1.0 });
+        self.powers = (beta_1 * self.powers.0, beta_2 * self.powers.1);
+        let (left_1, left_2) = (1.0 - self.powers.0, 1.0 - self.powers.1);
+        let rate = learning_rate / left_1;
+        for (((parameter, gradient), mean), square) in
+            parameters.iter_mut().zip(gradient).zip(&mut self.mean).zip(&mut self.square)
+        {
+            let gradient = scale * gradient;
+            *mean = beta_1 * *mean + (1.0 - beta_1) * gradient;
+            *square = beta_2 * *square + (1.0 - beta_2) * gradient * gradient;
+            *parameter -= rate * *mean / ((*square / left_2).sqrt() + epsilon);
+        }
+        norm
+    }
+}

@@ -1,0 +1,34 @@
+//! Networks as ONNX files.
+
+use super::Perceptron;
+use onnx::{Activation, Head, Layer, NetworkError};
+use std::collections::BTreeMap;
+
+impl Perceptron {
+    /// The bytes of an ONNX file with this network, from `observation` to `output`.
+    ///
+    /// # Errors
+    /// [`NetworkError`], if a weight is not finite.
+    pub fn onnx(&self, output: &str, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
+        let layers = self.sizes().len() - 1;
+        let mut layers: Vec<Layer> = (0..layers).map(|i| self.onnx_layer(i)).collect();
+        let last = layers.pop().map(|layer| Head { name: output.to_owned(), layer });
+        let network = onnx::Perceptron {
+            input: "observation".to_owned(),
+            normalisation: None,
+            hidden: layers,
+            activation: Activation::Tanh,
+            heads: last.into_iter().collect(),
+            metadata,
+        };
+        network.onnx()
+    }
+
+    fn onnx_layer(&self, i: usize) -> Layer {
+        let (inputs, outputs) = (self.sizes()[i], self.sizes()[i + 1]);
+        let (weights, biases) = self.layer(i);
+        // Ours stand by input, those of a file by output.
+        let turned = (0..outputs).flat_map(|to| (0..inputs).map(move |from| weights[from * outputs + to]));
+        Layer { inputs, outputs, weights: turned.collect(), biases: biases.to_vec() }
+    }
+}

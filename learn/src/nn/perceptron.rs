@@ -1,0 +1,209 @@
+//! A multilayer perceptron: layers of weights with the hyperbolic tangent between them, none after the last.
+
+use game::stream::Stream;
+use nalgebra::{DMatrixView, DMatrixViewMut};
+use onnx::tanh;
+use serde::{Deserialize, Serialize};
+
+/// A multilayer perceptron.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Perceptron {
+    /// Numbers of a row: of the input, of each hidden layer, of the output.
+    sizes: Vec<usize>,
+    /// Layer by layer: for each input its weight to every output, then the biases.
+    parameters: Vec<f32>,
+}
+
+/// What a forward pass leaves for the backward one: every layer's rows, the input first.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    layers: Vec<Vec<f32>>,
+}
+
+impl Trace {
+    /// The output, rows × numbers.
+    #[must_use]
+    pub fn output(&self) -> &[f32] {
+        self.layers.last().map_or(&[], Vec::as_slice)
+    }
+}
+
+/// Where a layer's numbers stand.
+#[derive(Clone, Copy)]
+struct Layer {
+    inputs: usize,
+    outputs: usize,
+    weights: usize,
+    biases: usize,
+    end: usize,
+}
+
+impl Perceptron {
+    /// Random weights: orthogonal with a gain of √2, and of `output_gain` in the last layer; biases of 0 (as PPO does: Andrychowicz
+    /// and others, ICLR 2021).
+    ///
+    /// # Panics
+    /// With fewer than two sizes, or a size of 0.
+    #[must_use]
+    pub fn new(sizes: &[usize], output_gain: f32, stream: &mut Stream) -> Perceptron {
+        assert!(sizes.len() >= 2 && !sizes.contains(&0), "{sizes:?}");
+        let count = sizes.windows(2).map(|pair| (pair[0] + 1) * pair[1]).sum();
+        let mut network = Perceptron { sizes: sizes.to_vec(), parameters: vec![0.0; count] };
+        let last = sizes.len() - 2;
+        for (i, layer) in network.layers().enumerate().collect::<Vec<_>>() {
+            let gain = if i == last { output_gain } else { std::f32::consts::SQRT_2 };
+            let weights = orthogonal(layer.inputs, layer.outputs, stream);
+            let place = &mut network.parameters[layer.weights..layer.biases];
+            place.iter_mut().zip(weights).for_each(|(place, weight)| *place = gain * weight as f32);
+        }
+        network
+    }
+
+    /// Numbers of a row of each layer, the input first.
+    #[must_use]
+    pub fn sizes(&self) -> &[usize] {
+        &self.sizes
+    }
+
+    /// All weights and biases.
+    #[must_use]
+    pub fn parameters(&self) -> &[f32] {
+        &self.parameters
+    }
+
+    /// The same, to change.
+    pub fn parameters_mut(&mut self) -> &mut [f32] {
+        &mut self.parameters
+    }
+
+    /// The weights of a layer, [inputs × outputs] row by row, and its biases.
+    #[must_use]
+    pub fn layer(&self, i: usize) -> (&[f32], &[f32]) {
+        let layer = self.layers().nth(i).expect("there is such a layer");
+        (&self.parameters[layer.weights..layer.biases], &self.parameters[layer.biases..layer.end])
+    }
+
+    fn layers(&self) -> impl Iterator<Item = Layer> + use<> {
+        let mut end = 0;
+        let sizes = self.sizes.clone();
+        (1..sizes.len()).map(move |i| {
+            let (inputs, outputs, weights) = (sizes[i - 1], sizes[i], end);
+            let biases = weights + inputs * outputs;
+            end = biases + outputs;
+            Layer { inputs, outputs, weights, biases, end }
+        })
+    }
+
+    /// The output for every row of `input`, rows × numbers, and what the backward pass needs, in memory that is used again.
+    pub fn forward(&self, input: &[f32], trace: &mut Trace) {
+        let rows = input.len() / self.sizes[0];
+        debug_assert_eq!(input.len(), rows * self.sizes[0]);
+        trace.layers.resize(self.sizes.len(), Vec::new());
+        trace.layers[0].clear();
+        trace.layers[0].extend_from_slice(input);
+        let last = self.sizes.len() - 2;
+        for (i, layer) in self.layers().enumerate() {
+            let (before, after) = trace.layers.split_at_mut(i + 1);
+            let (before, after) = (&before[i], &mut after[0]);
+            let biases = &self.parameters[layer.biases..layer.end];
+            after.clear();
+            (0..rows).for_each(|_| after.extend_from_slice(biases));
+            // Rows lie one after the other, so that to a library of columns every matrix is its transpose.
+            let weights = columns(&self.parameters[layer.weights..layer.biases], layer.outputs, layer.inputs);
+            columns_mut(after, layer.outputs, rows).gemm(1.0, &weights, &columns(before, layer.inputs, rows), 1.0);
+            if i < last {
+                after.iter_mut().for_each(|number| *number = tanh(*number));
+            }
+        }
+    }
+
+    /// Adds the gradient of a loss by all parameters to `gradient`, given that by every output, rows × numbers, which is used up. Gives
+    /// that by every input where it is asked for.
+    pub fn backward(
+        &self,
+        trace: &Trace,
+        by_output: &mut Vec<f32>,
+        gradient: &mut [f32],
+        by_input: Option<&mut Vec<f32>>,
+    ) {
+        let rows = by_output.len() / self.sizes[self.sizes.len() - 1];
+        let layers: Vec<Layer> = self.layers().collect();
+        let mut by_before = Vec::new();
+        for (i, layer) in layers.iter().enumerate().rev() {
+            let before = &trace.layers[i];
+            let (weights, biases) = gradient[layer.weights..layer.end].split_at_mut(layer.inputs * layer.outputs);
+            for row in by_output.chunks_exact(layer.outputs) {
+                biases.iter_mut().zip(row).for_each(|(sum, number)| *sum += number);
+            }
+            let by = columns(by_output, layer.outputs, rows);
+            let turned = transposed(before, layer.inputs);
+            columns_mut(weights, layer.outputs, layer.inputs).gemm(
+                1.0,
+                &by,
+                &columns(&turned, rows, layer.inputs),
+                1.0,
+            );
+            if i == 0 && by_input.is_none() {
+                break;
+            }
+            by_before.clear();
+            by_before.resize(rows * layer.inputs, 0.0);
+            let weights = &self.parameters[layer.weights..layer.biases];
+            let turned = transposed(weights, layer.outputs);
+            columns_mut(&mut by_before, layer.inputs, rows).gemm(
+                1.0,
+                &columns(&turned, layer.inputs, layer.outputs),
+                &by,
+                0.0,
+            );
+            if i > 0 {
+                // The derivative of the hyperbolic tangent.
+                by_before.iter_mut().zip(before).for_each(|(by, number)| *by *= 1.0 - number * number);
+            }
+            std::mem::swap(by_output, &mut by_before);
+        }
+        if let Some(by_input) = by_input {
+            std::mem::swap(by_input, by_output);
+        }
+    }
+}
+
+/// A matrix whose columns lie one after the other.
+fn columns(numbers: &[f32], height: usize, width: usize) -> DMatrixView<'_, f32> {
+    DMatrixView::from_slice(numbers, height, width)
+}
+
+fn columns_mut(numbers: &mut [f32], height: usize, width: usize) -> DMatrixViewMut<'_, f32> {
+    DMatrixViewMut::from_slice(numbers, height, width)
+}
+
+/// Numbers that lie row by row, column by column.
+fn transposed(numbers: &[f32], width: usize) -> Vec<f32> {
+    let height = numbers.len() / width;
+    let mut turned = vec![0.0; numbers.len()];
+    for (i, row) in numbers.chunks_exact(width).enumerate() {
+        turned[i..].iter_mut().step_by(height).zip(row).for_each(|(place, number)| *place = *number);
+    }
+    turned
+}
+
+/// A random matrix, row by row, whose rows or columns, whichever are shorter in number, are orthonormal: Gram and Schmidt's process
+/// on normal numbers.
+fn orthogonal(rows: usize, columns: usize, stream: &mut Stream) -> Vec<f64> {
+    let (count, length) = (rows.min(columns), rows.max(columns));
+    let mut vectors: Vec<Vec<f64>> = Vec::with_capacity(count);
+    while vectors.len() < count {
+        let mut vector: Vec<f64> = (0..length).map(|_| stream.normal()).collect();
+        for other in &vectors {
+            let along: f64 = vector.iter().zip(other).map(|(a, b)| a * b).sum();
+            vector.iter_mut().zip(other).for_each(|(number, other)| *number -= along * other);
+        }
+        let size = vector.iter().map(|number| number * number).sum::<f64>().sqrt();
+        if size > 1e-6 {
+            vector.iter_mut().for_each(|number| *number /= size);
+            vectors.push(vector);
+        }
+    }
+    let at = |row: usize, column: usize| if rows <= columns { vectors[row][column] } else { vectors[column][row] };
+    (0..rows * columns).map(|i| at(i / columns, i % columns)).collect()
+}

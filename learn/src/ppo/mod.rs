@@ -1,0 +1,336 @@
+//! Proximal policy optimisation (Schulman and others, arXiv 1707.06347): the update of a policy and of what it expects, from what it
+//! did.
+
+mod advantage;
+pub mod choice;
+
+pub use advantage::{Steps, advantages};
+
+use crate::nn::{Adam, AdamSettings, Perceptron, SHARD, Trace};
+use choice::log_probabilities;
+use game::stream::Stream;
+use game::training::Ppo;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// A policy and what it expects, with their optimisers: all that a run goes on from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ActorCritic {
+    /// From an observation to the logit of each action.
+    pub actor: Perceptron,
+    /// From a state, or the observation, to what the rest of the episode is worth, in the units of [`ActorCritic::scale`].
+    pub critic: Perceptron,
+    /// What values are multiplied with: the standard deviation of returns.
+    pub scale: Scale,
+    actor_optimiser: Adam,
+    critic_optimiser: Adam,
+}
+
+/// The size of returns, as seen so far.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scale {
+    count: f64,
+    mean: f64,
+    squares: f64,
+}
+
+impl Scale {
+    /// The standard deviation; 1 before anything was seen.
+    #[must_use]
+    pub fn deviation(&self) -> f32 {
+        if self.count < 2.0 { 1.0 } else { (self.squares / self.count).sqrt().max(1e-3) as f32 }
+    }
+
+    /// Takes returns in; those long ago count less.
+    fn see(&mut self, returns: &[f32]) {
+        const MEMORY: f64 = 1e6;
+        let forget = (MEMORY / (self.count + returns.len() as f64)).min(1.0);
+        (self.count, self.squares) = (self.count * forget, self.squares * forget);
+        for number in returns.iter().copied().map(f64::from) {
+            self.count += 1.0;
+            let off = number - self.mean;
+            self.mean += off / self.count;
+            self.squares += off * (number - self.mean);
+        }
+    }
+}
+
+/// Samples, each slice by sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Batch<'a> {
+    /// What the policy was shown, samples × numbers.
+    pub observations: &'a [f32],
+    /// What the critic was shown, samples × numbers.
+    pub states: &'a [f32],
+    /// What was done.
+    pub actions: &'a [u16],
+    /// The logarithm of its probability then.
+    pub log_probabilities: &'a [f32],
+    /// How much better it came out than was expected.
+    pub advantages: &'a [f32],
+    /// What is to be expected.
+    pub returns: &'a [f32],
+    /// Whether the boat did what was chosen. Of other samples only the critic learns: it has to know what a tagged boat can expect.
+    pub counts: &'a [bool],
+}
+
+/// What an update was like, in the mean over its samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Statistics {
+    /// The loss of the policy.
+    pub policy_loss: f32,
+    /// Half the mean square of what was not expected, in units of the scale.
+    pub value_loss: f32,
+    /// Entropy of the policy, nats.
+    pub entropy: f32,
+    /// How different the policy has become, nats.
+    pub divergence: f32,
+    /// The share of samples that were clipped.
+    pub clipped: f32,
+    /// How many times the samples were gone through.
+    pub epochs: f32,
+}
+
+impl ActorCritic {
+    /// A new policy over this many actions that is shown this many numbers, and a critic that is shown these.
+    #[must_use]
+    pub fn new(observation: usize, state: usize, hidden: &[usize], actions: usize, seed: u64) -> ActorCritic {
+        let sizes = |from: usize, to: usize| [&[from], hidden, &[to]].concat();
+        let actor = Perceptron::new(&sizes(observation, actions), 0.01, &mut Stream::new(seed, "actor"));
+        let critic = Perceptron::new(&sizes(state, 1), 1.0, &mut Stream::new(seed, "critic"));
+        ActorCritic {
+            actor_optimiser: Adam::new(actor.parameters().len(), AdamSettings::default()),
+            critic_optimiser: Adam::new(critic.parameters().len(), AdamSettings::default()),
+            actor,
+            critic,
+            scale: Scale { count: 0.0, mean: 0.0, squares: 0.0 },
+        }
+    }
+
+    /// Learns from samples, on the threads of the pool that it is called in; `stream` shuffles them.
+    ///
+    /// # Panics
+    /// If the slices are not of as many samples as there are actions.
+    pub fn update(&mut self, batch: &Batch<'_>, settings: &Ppo, rate: f32, stream: &mut Stream) -> Statistics {
+        let count = batch.actions.len();
+        let (observation, state) = (self.actor.sizes()[0], self.critic.sizes()[0]);
+        assert!(batch.observations.len() == count * observation && batch.states.len() == count * state);
+        assert!([batch.log_probabilities, batch.advantages, batch.returns].iter().all(|slice| slice.len() == count));
+        assert_eq!(batch.counts.len(), count);
+        self.scale.see(batch.returns);
+        let mut order: Vec<u32> = (0..count as u32).collect();
+        let (mut sums, mut seen, mut values) = (Sums::default(), 0.0, 0.0);
+        'epochs: for _ in 0..settings.epochs {
+            stream.shuffle(&mut order);
+            for minibatch in order.chunks(settings.minibatch) {
+                let part = self.step(batch, minibatch, settings, rate * settings.learning_rate);
+                let samples = minibatch.iter().filter(|i| batch.counts[**i as usize]).count().max(1) as f32;
+                let is_far = part.divergence / samples > settings.divergence_max;
+                sums.add(&part);
+                seen += samples;
+                values += minibatch.len() as f32;
+                if is_far {
+                    break 'epochs;
+                }
+            }
+        }
+        let mean = |sum: f32| sum / f32::max(seen, 1.0);
+        Statistics {
+            policy_loss: mean(sums.policy),
+            value_loss: sums.value / f32::max(values, 1.0),
+            entropy: mean(sums.entropy),
+            divergence: mean(sums.divergence),
+            clipped: mean(sums.clipped),
+            epochs: values / (count.max(1) as f32),
+        }
+    }
+
+    /// One step of both optimisers.
+    fn step(&mut self, batch: &Batch<'_>, minibatch: &[u32], settings: &Ppo, learning_rate: f32) -> Sums {
+        let counted = || minibatch.iter().map(|i| *i as usize).filter(|i| batch.counts[*i]);
+        let samples = (counted().count(), minibatch.len());
+        let advantages = Normal::of(counted().map(|i| batch.advantages[i]));
+        let of_shard = |shard: &[u32]| self.shard(batch, shard, samples, advantages, settings);
+        let shards: Vec<Shard> = minibatch.par_chunks(SHARD).map(of_shard).collect();
+        let mut shards = shards.into_iter();
+        let Some(mut all) = shards.next() else { return Sums::default() };
+        for shard in shards {
+            all.sums.add(&shard.sums);
+            all.actor.iter_mut().zip(&shard.actor).for_each(|(sum, number)| *sum += number);
+            all.critic.iter_mut().zip(&shard.critic).for_each(|(sum, number)| *sum += number);
+        }
+        self.actor_optimiser.step(self.actor.parameters_mut(), &all.actor, learning_rate);
+        self.critic_optimiser.step(self.critic.parameters_mut(), &all.critic, learning_rate);
+        all.sums
+    }
+
+    /// The gradients of a shard's part of the mean loss.
+    fn shard(
+        &self,
+        batch: &Batch<'_>,
+        shard: &[u32],
+        (counted, samples): (usize, usize),
+        advantages: Normal,
+        settings: &Ppo,
+    ) -> Shard {
+        let rows = |from: &[f32], size: usize| -> Vec<f32> {
+            shard.iter().flat_map(|i| &from[*i as usize * size..(*i as usize + 1) * size]).copied().collect()
+        };
+        let (per_counted, per_sample) = (1.0 / counted.max(1) as f32, 1.0 / samples as f32);
+        let mut sums = Sums::default();
+        let mut trace = Trace::default();
+        self.actor.forward(&rows(batch.observations, self.actor.sizes()[0]), &mut trace);
+        let actions = trace.output().len() / shard.len();
+        let mut by_logits = vec![0.0; trace.output().len()];
+        let mut logs = vec![0.0; actions];
+        let of_rows = shard.iter().zip(trace.output().chunks_exact(actions)).zip(by_logits.chunks_exact_mut(actions));
+        for ((i, logits), by) in of_rows {
+            let i = *i as usize;
+            if !batch.counts[i] {
+                continue;
+            }
+            log_probabilities(logits, &mut logs);
+            let advantage = advantages.normalised(batch.advantages[i]);
+            let was = batch.log_probabilities[i];
+            policy_gradient(&logs, usize::from(batch.actions[i]), (was, advantage), settings, by, &mut sums);
+            by.iter_mut().for_each(|number| *number *= per_counted);
+        }
+        let mut actor = vec![0.0; self.actor.parameters().len()];
+        self.actor.backward(&trace, &mut by_logits, &mut actor, None);
+        self.critic.forward(&rows(batch.states, self.critic.sizes()[0]), &mut trace);
+        let deviation = self.scale.deviation();
+        let off = |(i, value): (&u32, &f32)| value - batch.returns[*i as usize] / deviation;
+        let mut by_values: Vec<f32> = shard.iter().zip(trace.output()).map(off).collect();
+        sums.value = by_values.iter().map(|off| 0.5 * off * off).sum();
+        by_values.iter_mut().for_each(|off| *off *= per_sample);
+        let mut critic = vec![0.0; self.critic.parameters().len()];
+        self.critic.backward(&trace, &mut by_values, &mut critic, None);
+        Shard { actor, critic, sums }
+    }
+}
+
+/// What a shard adds.
+struct Shard {
+    actor: Vec<f32>,
+    critic: Vec<f32>,
+    sums: Sums,
+}
+
+/// Sums over samples.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    policy: f32,
+    value: f32,
+    entropy: f32,
+    divergence: f32,
+    clipped: f32,
+}
+
+impl Sums {
+    fn add(&mut self, other: &Sums) {
+        self.policy += other.policy;
+        self.value += other.value;
+        self.entropy += other.entropy;
+        self.divergence += other.divergence;
+        self.clipped += other.clipped;
+    }
+}
+
+/// Mean and standard deviation of a minibatch's advantages.
+#[derive(Clone, Copy)]
+struct Normal {
+    mean: f32,
+    deviation: f32,
+}
+
+impl Normal {
+    fn of(numbers: impl Iterator<Item = f32> + Clone) -> Normal {
+        let count = numbers.clone().count().max(1) as f64;
+        let mean = numbers.clone().map(f64::from).sum::<f64>() / count;
+        let square = numbers.map(|number| (f64::from(number) - mean) * (f64::from(number) - mean)).sum::<f64>() / count;
+        Normal { mean: mean as f32, deviation: square.sqrt() as f32 }
+    }
+
+    fn normalised(self, number: f32) -> f32 {
+        (number - self.mean) / (self.deviation + 1e-8)
+    }
+}
+
+/// The gradient of a sample's loss by its logits: that of the clipped objective less the entropy's worth.
+fn policy_gradient(
+    logs: &[f32],
+    action: usize,
+    (was, advantage): (f32, f32),
+    settings: &Ppo,
+    by: &mut [f32],
+    sums: &mut Sums,
+) {
+    let change = logs[action] - was;
+    let ratio = libm::expf(change);
+    let limited = ratio.clamp(1.0 - settings.clip, 1.0 + settings.clip);
+    let (free, held) = (ratio * advantage, limited * advantage);
+    let entropy = -logs.iter().map(|log| libm::expf(*log) * log).sum::<f32>();
+    // Where the limited one is less, nothing is gained by going on.
+    let by_log = if free <= held { -ratio * advantage } else { 0.0 };
+    for (i, (by, log)) in by.iter_mut().zip(logs).enumerate() {
+        let probability = libm::expf(*log);
+        let is_chosen = if i == action { 1.0 } else { 0.0 };
+        // d log p(action) / d logit, and d entropy / d logit = -p (log p + entropy).
+        *by = by_log * (is_chosen - probability) + settings.entropy * probability * (log + entropy);
+    }
+    sums.policy -= free.min(held);
+    sums.entropy += entropy;
+    // An estimate that is never negative (Schulman, 2020).
+    sums.divergence += (ratio - 1.0) - change;
+    sums.clipped += f32::from(u8::from((ratio - 1.0).abs() > settings.clip));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The loss of a sample, in double precision.
+    fn loss(logits: &[f64], action: usize, was: f64, advantage: f64, settings: &Ppo) -> f64 {
+        let sum: f64 = logits.iter().map(|logit| libm::exp(*logit)).sum();
+        let logs: Vec<f64> = logits.iter().map(|logit| logit - libm::log(sum)).collect();
+        let (ratio, clip) = (libm::exp(logs[action] - was), f64::from(settings.clip));
+        let gain = (ratio * advantage).min(ratio.clamp(1.0 - clip, 1.0 + clip) * advantage);
+        let entropy: f64 = -logs.iter().map(|log| libm::exp(*log) * log).sum::<f64>();
+        -gain - f64::from(settings.entropy) * entropy
+    }
+
+    #[test]
+    fn the_policy_gradient_is_the_slope_of_the_clipped_loss() {
+        const STEP: f64 = 1e-5;
+        const TOLERANCE: f64 = 1e-5;
+        let settings = Ppo { entropy: 0.05, ..Ppo::default() };
+        let logits = [0.3_f64, -1.1, 0.8, 0.1, -0.4];
+        let mut logs = [0.0; 5];
+        log_probabilities(&logits.map(|logit| logit as f32), &mut logs);
+        // Within the limits, beyond them where more would be gained, and beyond them where it must go back.
+        for (change, advantage) in [(0.05, 1.3), (0.05, -0.7), (0.5, 1.0), (-0.5, -1.0), (0.5, -1.0), (-0.5, 1.0)] {
+            let action = 2;
+            let was = logs[action] - change;
+            let (mut by, mut sums) = ([0.0; 5], Sums::default());
+            policy_gradient(&logs, action, (was, advantage), &settings, &mut by, &mut sums);
+            for i in 0..logits.len() {
+                let at = |step: f64| {
+                    let mut logits = logits;
+                    logits[i] += step;
+                    loss(&logits, action, f64::from(was), f64::from(advantage), &settings)
+                };
+                let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
+                assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{change} {advantage} {i}: {}, not {want}", by[i]);
+            }
+        }
+    }
+
+    #[test]
+    fn the_scale_is_the_standard_deviation_of_returns() {
+        let mut scale = Scale { count: 0.0, mean: 0.0, squares: 0.0 };
+        assert_eq!(scale.deviation(), 1.0);
+        scale.see(&[1.0, 2.0, 3.0]);
+        scale.see(&[4.0]);
+        assert!((scale.deviation() - 1.118_034).abs() < 1e-5, "{}", scale.deviation());
+    }
+}

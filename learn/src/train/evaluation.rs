@@ -1,0 +1,69 @@
+//! How good a policy is: games of it against an opponent, from both sides.
+
+use super::{outputs, pool};
+use crate::environment::{Finished, Setup, SetupError, VectorEnvironment};
+use crate::nn::Perceptron;
+use agent::Action;
+use serde::{Deserialize, Serialize};
+
+/// What came of games.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Played {
+    /// How many were won, drawn and lost.
+    pub results: [u32; 3],
+    /// The mean points of a game, those of the policy first.
+    pub points: [f64; 2],
+    /// How often a boat of the policy left the field, in the mean of a game.
+    pub left_field: f64,
+}
+
+impl Played {
+    fn of(games: &[Finished]) -> Played {
+        let mut played = Played::default();
+        let count = games.len().max(1) as f64;
+        for Finished { standing, .. } in games {
+            let [own, theirs] = standing.score;
+            let result = own.cmp(&theirs).reverse() as i8 + 1;
+            played.results[result as usize] += 1;
+            played.points[0] += f64::from(own) / count;
+            played.points[1] += f64::from(theirs) / count;
+            played.left_field += f64::from(standing.counts[0].out_of_bounds) / count;
+        }
+        played
+    }
+
+    /// The share of games that were won, draws counting half.
+    #[must_use]
+    pub fn won(&self) -> f64 {
+        let [won, drawn, lost] = self.results.map(f64::from);
+        (won + 0.5 * drawn) / (won + drawn + lost).max(1.0)
+    }
+}
+
+/// Plays one game of each of so many seeds with the likeliest actions of a policy.
+///
+/// # Errors
+/// [`SetupError`] where nothing can be played.
+pub fn evaluate(
+    actor: &Perceptron,
+    setup: Setup,
+    games: usize,
+    threads: usize,
+    seed: u64,
+) -> Result<Played, SetupError> {
+    let pool = pool(threads);
+    let mut environment = VectorEnvironment::new(setup, games, threads, seed)?;
+    let (rows, _) = environment.rows();
+    let mut ended: Vec<Option<Finished>> = vec![None; games];
+    while ended.iter().any(Option::is_none) {
+        let observations = environment.observations();
+        let logits = pool.install(|| outputs(actor, observations));
+        let actions: Vec<Action> = logits.chunks_exact(logits.len() / rows).map(Action::likeliest).collect();
+        environment.step(&actions)?;
+        for one in environment.finished() {
+            ended[one.game].get_or_insert(*one);
+        }
+    }
+    let ended: Vec<Finished> = ended.into_iter().flatten().collect();
+    Ok(Played::of(&ended))
+}

@@ -1,0 +1,340 @@
+//! Training by PPO: plays with the policy, learns from it, and goes on, stage by stage.
+
+mod evaluation;
+mod league;
+mod rollout;
+mod state;
+
+pub use evaluation::{Played, evaluate};
+pub use state::{Best, Evaluated, StateError};
+
+use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment};
+use crate::nn::{Perceptron, SHARD, Trace};
+use crate::ppo::{ActorCritic, Batch, Statistics};
+use game::policy::PolicySpec;
+use game::scenario;
+use game::stream::Stream;
+use game::training::{Stage, Training};
+use rayon::prelude::*;
+use rollout::Rollout;
+use state::State;
+use std::collections::BTreeMap;
+
+/// The metadata of models that say where they come from.
+const SAMPLES: &str = "squall.samples";
+/// Games of the evaluation have seeds from here on, which training never reaches.
+const EVALUATION_SEED: u64 = 1 << 62;
+/// The environments of a training are this many seeds apart.
+const SEEDS_BITS: u32 = 24;
+/// Games begin anew, so that a training can be taken up again, after so many times their length.
+const LENGTHS: i64 = 4;
+
+/// A training that goes on.
+pub struct Trainer {
+    training: Training,
+    setups: Vec<Setup>,
+    /// The opponents of the evaluation, each with its file's stem.
+    judges: Vec<(String, Setup)>,
+    threads: usize,
+    pool: rayon::ThreadPool,
+    environment: VectorEnvironment,
+    /// Updates from one new beginning of all games to the next, by stage.
+    updates_per_epoch: Vec<u64>,
+    state: State,
+}
+
+/// What an update of the policy was like.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// Samples that the policy has learnt from so far.
+    pub samples: u64,
+    /// The stage.
+    pub stage: usize,
+    /// What the optimisers did.
+    pub statistics: Statistics,
+    /// The mean reward of a step.
+    pub reward: f32,
+    /// The episodes that ended, with the name of who played against the policy.
+    pub finished: Vec<(Finished, String)>,
+    /// How good the policy is now, if it was looked at.
+    pub evaluated: Option<Evaluated>,
+    /// Whether that made it the best one.
+    pub is_best: bool,
+    /// Whether the training can be taken up again from here: see [`Trainer::state`].
+    pub can_be_resumed: bool,
+}
+
+impl Trainer {
+    /// Begins a training on so many threads.
+    ///
+    /// # Errors
+    /// [`SetupError`], if a file cannot be used, or nothing can be played.
+    pub fn new(training: Training, threads: usize) -> Result<Trainer, SetupError> {
+        Trainer::with(training, threads, None)
+    }
+
+    /// Takes a training up again from [`Trainer::state`]: what comes of it is what would have come of it.
+    ///
+    /// # Errors
+    /// [`StateError`], if it is the state of another training, or of another version, or a file cannot be used.
+    pub fn resume(training: Training, threads: usize, state: &[u8]) -> Result<Trainer, StateError> {
+        let state = State::read(state, &training)?;
+        Ok(Trainer::with(training, threads, Some(state))?)
+    }
+
+    fn with(training: Training, threads: usize, state: Option<State>) -> Result<Trainer, SetupError> {
+        let setups: Result<Vec<Setup>, SetupError> =
+            training.stage.iter().map(|stage| Setup::of_stage(&training, stage)).collect();
+        let setups = setups?;
+        let judges = judges(&training, setups.last())?;
+        let size = setups.first().map_or(0, Setup::observation_size);
+        if let Some(other) = setups.iter().map(Setup::observation_size).find(|other| *other != size) {
+            let (found, allowed) = (format!("of {other} numbers"), format!("{size}, as in the first stage"));
+            return Err(SetupError::Field { field: "the observation of a stage", found, allowed });
+        }
+        let Some(actions) = training.action.count() else {
+            let (found, allowed) =
+                ("continuous".to_owned(), "pyquaticus: ppo chooses among discrete actions".to_owned());
+            return Err(SetupError::Field { field: "action", found, allowed });
+        };
+        let state = state.unwrap_or_else(|| {
+            let learner = ActorCritic::new(size, size, &training.network.hidden, actions, training.seed);
+            let mut state = State::new(learner);
+            state.league.begin(setups.first().map_or(0, |setup| setup.opponents.len()));
+            state
+        });
+        let updates_per_epoch = setups.iter().map(|setup| updates_per_epoch(&training, setup)).collect();
+        let environment = environment(&training, &setups, &state, threads)?;
+        let pool = pool(threads);
+        Ok(Trainer { training, setups, judges, threads, pool, environment, updates_per_epoch, state })
+    }
+
+    /// The training.
+    #[must_use]
+    pub fn training(&self) -> &Training {
+        &self.training
+    }
+
+    /// The policy and what it expects, as they are now.
+    #[must_use]
+    pub fn learner(&self) -> &ActorCritic {
+        &self.state.learner
+    }
+
+    /// Samples that the policy has learnt from, and those of all stages.
+    #[must_use]
+    pub fn samples(&self) -> (u64, u64) {
+        (self.state.samples, self.training.stage.iter().map(|stage| stage.samples).sum())
+    }
+
+    /// Everything that was seen of the policy so far.
+    #[must_use]
+    pub fn evaluations(&self) -> &[Evaluated] {
+        &self.state.evaluations
+    }
+
+    /// The best policy so far.
+    #[must_use]
+    pub fn best(&self) -> Option<&Best> {
+        self.state.best.as_ref()
+    }
+
+    /// Whether all stages are over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.state.stage >= self.training.stage.len()
+    }
+
+    /// All that a training is taken up again from, wherever [`Progress::can_be_resumed`].
+    #[must_use]
+    pub fn state(&self) -> Vec<u8> {
+        self.state.write(&self.training)
+    }
+
+    /// The policy as it is now, as an ONNX file.
+    ///
+    /// # Errors
+    /// If a weight is no finite number: the training has failed.
+    pub fn model(&self) -> Result<Vec<u8>, onnx::NetworkError> {
+        let mut metadata = BTreeMap::from(self.spec().metadata());
+        let Training { name, seed, .. } = &self.training;
+        metadata.extend([
+            ("squall.training".to_owned(), name.clone()),
+            ("squall.seed".to_owned(), seed.to_string()),
+            (SAMPLES.to_owned(), self.state.samples.to_string()),
+            ("squall.version".to_owned(), game::VERSION.to_owned()),
+        ]);
+        self.state.learner.actor.onnx("logits", metadata)
+    }
+
+    /// What the policy is given and chooses.
+    #[must_use]
+    pub fn spec(&self) -> PolicySpec {
+        let Training { observation, action, period_s, .. } = self.training;
+        PolicySpec { observation, action, period_s }
+    }
+
+    /// Plays and learns once.
+    ///
+    /// # Errors
+    /// [`SetupError::NoStart`] where a new game cannot begin; [`SetupError::Diverged`] if the policy has become none.
+    ///
+    /// # Panics
+    /// If all stages are over.
+    pub fn update(&mut self) -> Result<Progress, SetupError> {
+        let stage = self.state.stage;
+        let mut stream = Stream::new(self.training.seed.wrapping_add(self.state.updates), "update");
+        let of_stage = &self.training.stage[stage];
+        self.environment.set_weights(self.state.league.weights(of_stage, &self.training.league));
+        let ppo = self.training.ppo;
+        let learner = &self.state.learner;
+        let rollout = Rollout::play(&mut self.environment, &self.pool, learner, ppo.steps, &mut stream)?;
+        let samples = rollout.samples(&ppo);
+        let batch = Batch {
+            observations: &samples.observations,
+            states: &samples.observations,
+            actions: &samples.actions,
+            log_probabilities: &samples.log_probabilities,
+            advantages: &samples.advantages,
+            returns: &samples.returns,
+            counts: &samples.counts,
+        };
+        let (done, all) = self.samples();
+        let rate = 1.0 - (1.0 - ppo.learning_rate_end) * (done as f32 / all.max(1) as f32).min(1.0);
+        let Trainer { pool, state, .. } = self;
+        let statistics = pool.install(|| state.learner.update(&batch, &ppo, rate, &mut stream));
+        let count = samples.counts.iter().filter(|counts| **counts).count() as u64;
+        state.updates += 1;
+        state.updates_of_epoch += 1;
+        state.samples += count;
+        state.samples_of_stage += count;
+        state.league.see(&rollout.finished);
+        let reward = samples.rewards.iter().sum::<f32>() / samples.actions.len().max(1) as f32;
+        let name = |one: Finished| (one, self.opponent_name(stage, one.standing.side.opponent));
+        let finished = rollout.finished.into_iter().map(name).collect();
+        let (evaluated, is_best) = self.after_update()?;
+        let can_be_resumed = self.begin_anew(evaluated.as_ref())?;
+        let samples = self.state.samples;
+        Ok(Progress { samples, stage, statistics, reward, finished, evaluated, is_best, can_be_resumed })
+    }
+
+    /// Who an opponent of a stage is.
+    fn opponent_name(&self, stage: usize, opponent: usize) -> String {
+        match self.environment.setup().opponents.get(opponent) {
+            Some((_, Player::Policy)) => "itself".to_owned(),
+            Some((_, Player::Strategy(strategy))) => strategy.name.clone(),
+            Some((_, Player::Model(model))) => model.name.clone(),
+            None => format!("opponent {opponent} of stage {stage}"),
+        }
+    }
+
+    /// Looks at the policy, and keeps it, if it is time to.
+    fn after_update(&mut self) -> Result<(Option<Evaluated>, bool), SetupError> {
+        let Training { league, evaluation, .. } = &self.training;
+        let plays_past = self.training.stage[self.state.stage].past_selves > 0.0;
+        let diverged = |error: onnx::NetworkError| SetupError::Diverged(error.to_string());
+        if plays_past && self.state.samples >= self.state.league.newest() + league.every_samples {
+            let model = self.model().map_err(diverged)?;
+            let kept = self.state.league.keep(self.state.samples, model, league.most);
+            kept.into_iter().for_each(|model| self.environment.add_opponent(Player::Model(model)));
+        }
+        let last = self.state.evaluations.last().map_or(0, |last| last.samples);
+        let is_last = self.state.samples_of_stage >= self.training.stage[self.state.stage].samples;
+        if !is_last && self.state.samples < last + evaluation.every_samples {
+            return Ok((None, false));
+        }
+        let mut played = vec![];
+        for (name, setup) in &self.judges {
+            let actor = &self.state.learner.actor;
+            let games = evaluation.games.next_multiple_of(2) as usize;
+            played.push((name.clone(), evaluate(actor, setup.clone(), games, self.threads, EVALUATION_SEED)?));
+        }
+        let evaluated = Evaluated { samples: self.state.samples, stage: self.state.stage, played };
+        let won = evaluated.won();
+        let is_best = self.state.best.as_ref().is_none_or(|best| won >= best.won);
+        if is_best {
+            self.state.best = Some(Best { samples: self.state.samples, won, onnx: self.model().map_err(diverged)? });
+        }
+        self.state.evaluations.push(evaluated.clone());
+        Ok((Some(evaluated), is_best))
+    }
+
+    /// Goes on to the next stage, or begins all games anew, if it is time to: then nothing of the games needs to be known.
+    fn begin_anew(&mut self, evaluated: Option<&Evaluated>) -> Result<bool, SetupError> {
+        let state = &mut self.state;
+        let stage: &Stage = &self.training.stage[state.stage];
+        let is_won = stage.until_won.zip(evaluated).is_some_and(|(least, evaluated)| evaluated.won() >= least);
+        let is_over = state.samples_of_stage >= stage.samples || is_won;
+        if !is_over && state.updates_of_epoch < self.updates_per_epoch[state.stage] {
+            return Ok(false);
+        }
+        (state.epoch, state.updates_of_epoch) = (state.epoch + 1, 0);
+        if is_over {
+            (state.stage, state.samples_of_stage) = (state.stage + 1, 0);
+        }
+        match self.setups.get(state.stage) {
+            Some(setup) if is_over => state.league.begin(setup.opponents.len()),
+            Some(_) => state.league.compact(),
+            None => return Ok(true),
+        }
+        self.environment = environment(&self.training, &self.setups, &self.state, self.threads)?;
+        Ok(true)
+    }
+}
+
+/// New games of the stage that a training is in.
+fn environment(
+    training: &Training,
+    setups: &[Setup],
+    state: &State,
+    threads: usize,
+) -> Result<VectorEnvironment, SetupError> {
+    // After the last stage nothing is played any more.
+    let mut setup = setups[state.stage.min(setups.len() - 1)].clone();
+    setup.opponents.extend(state.league.past().map(|model| (0.0, Player::Model(model))));
+    let stage = &training.stage[state.stage.min(setups.len() - 1)];
+    let weights = state.league.weights(stage, &training.league);
+    setup.opponents.iter_mut().zip(weights).for_each(|((weight, _), drawn)| *weight = drawn);
+    let seed = (training.seed << (2 * SEEDS_BITS)).wrapping_add(state.epoch << SEEDS_BITS) % EVALUATION_SEED;
+    VectorEnvironment::new(setup, training.games as usize, threads, seed)
+}
+
+/// The games of the evaluation: those of the last stage against each of its opponents.
+fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setup)>, SetupError> {
+    let mut judges = vec![];
+    for path in &training.evaluation.opponents {
+        let strategy = scenario::load_strategy(path)?;
+        let Some(last) = last else { break };
+        let name = strategy.name.clone();
+        let opponents = vec![(1.0, Player::Strategy(Box::new(strategy)))];
+        judges.push((name, Setup { opponents, starts: None, steps_max: None, ..last.clone() }));
+    }
+    Ok(judges)
+}
+
+fn updates_per_epoch(training: &Training, setup: &Setup) -> u64 {
+    let step = setup.scenario.decision() * i64::from(setup.decisions_per_step);
+    let update = step * training.ppo.steps as i64;
+    let game = setup.steps_max.map_or(setup.scenario.rules.time_limit, |steps| step * i64::from(steps));
+    (LENGTHS * game.0 / update.0.max(1)).max(1) as u64
+}
+
+/// So many threads for the work on networks.
+fn pool(threads: usize) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started")
+}
+
+/// The output of a network for every row of an input, on the threads of the pool that this is called in.
+fn outputs(network: &Perceptron, input: &[f32]) -> Vec<f32> {
+    let sizes = network.sizes();
+    let (from, to) = (sizes[0], sizes[sizes.len() - 1]);
+    let mut out = vec![0.0; input.len() / from * to];
+    input.par_chunks(SHARD * from).zip(out.par_chunks_mut(SHARD * to)).for_each_init(
+        Trace::default,
+        |trace, (rows, out)| {
+            network.forward(rows, trace);
+            out.copy_from_slice(trace.output());
+        },
+    );
+    out
+}

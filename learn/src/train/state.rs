@@ -1,0 +1,125 @@
+//! All that a training is taken up again from.
+
+use super::evaluation::Played;
+use super::league::League;
+use crate::environment::SetupError;
+use crate::ppo::ActorCritic;
+use game::training::Training;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// Where a training stands as games begin anew.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct State {
+    pub(super) learner: ActorCritic,
+    pub(super) updates: u64,
+    /// Since games began anew last.
+    pub(super) updates_of_epoch: u64,
+    /// How often games began anew.
+    pub(super) epoch: u64,
+    pub(super) samples: u64,
+    pub(super) stage: usize,
+    pub(super) samples_of_stage: u64,
+    pub(super) league: League,
+    pub(super) evaluations: Vec<Evaluated>,
+    pub(super) best: Option<Best>,
+}
+
+/// How good a policy was.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Evaluated {
+    /// Samples that it had learnt from.
+    pub samples: u64,
+    /// The stage.
+    pub stage: usize,
+    /// What came of its games, by the name of the opponent.
+    pub played: Vec<(String, Played)>,
+}
+
+impl Evaluated {
+    /// The share of all games that were won, draws counting half.
+    #[must_use]
+    pub fn won(&self) -> f64 {
+        self.played.iter().map(|(_, played)| played.won()).sum::<f64>() / self.played.len().max(1) as f64
+    }
+}
+
+/// The best policy of a training.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Best {
+    /// Samples that it had learnt from.
+    pub samples: u64,
+    /// The share of all games of the evaluation that it won, draws counting half.
+    pub won: f64,
+    /// Its file.
+    pub onnx: Vec<u8>,
+}
+
+/// What a state begins with: whose it is.
+#[derive(PartialEq, Serialize, Deserialize)]
+struct Head {
+    version: String,
+    /// As JSON.
+    training: String,
+}
+
+impl Head {
+    fn of(training: &Training) -> Head {
+        let training = serde_json::to_string(training).expect("numbers and lists can be written");
+        Head { version: game::VERSION.to_owned(), training }
+    }
+}
+
+/// Why a training cannot be taken up again.
+#[derive(Debug, Error)]
+pub enum StateError {
+    /// These are no such bytes.
+    #[error("it is no state of a training, or a damaged one")]
+    Damaged,
+    /// It was made by another version of the program.
+    #[error("it was made by version {found}, expected {}", game::VERSION)]
+    Version {
+        /// That version.
+        found: String,
+    },
+    /// It is the state of another training.
+    #[error("it is the state of another training: the training file has changed since it was written")]
+    Other,
+    /// Nothing can be played.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+}
+
+impl State {
+    pub(super) fn new(learner: ActorCritic) -> State {
+        State {
+            learner,
+            updates: 0,
+            updates_of_epoch: 0,
+            epoch: 0,
+            samples: 0,
+            stage: 0,
+            samples_of_stage: 0,
+            league: League::default(),
+            evaluations: vec![],
+            best: None,
+        }
+    }
+
+    pub(super) fn write(&self, training: &Training) -> Vec<u8> {
+        postcard::to_stdvec(&(Head::of(training), self)).expect("numbers and lists can be written")
+    }
+
+    pub(super) fn read(bytes: &[u8], training: &Training) -> Result<State, StateError> {
+        // The version stands first: of another one nothing else may be as here.
+        let (version, _) = postcard::take_from_bytes::<String>(bytes).map_err(|_| StateError::Damaged)?;
+        if version != game::VERSION {
+            return Err(StateError::Version { found: version });
+        }
+        let (head, state): (Head, State) = postcard::from_bytes(bytes).map_err(|_| StateError::Damaged)?;
+        if head != Head::of(training) {
+            return Err(StateError::Other);
+        }
+        Ok(state)
+    }
+}

@@ -1,0 +1,144 @@
+//! Networks and their training: gradients against differences, the same bits on any number of threads, and that something is learnt.
+
+use game::stream::Stream;
+use game::training::Ppo;
+use learn::nn::{Adam, AdamSettings, Perceptron, Trace};
+use learn::ppo::{ActorCritic, Batch, choice};
+
+#[test]
+fn gradients_are_the_slopes_of_the_output() {
+    const STEP: f32 = 1e-2;
+    // Of numbers of about 1, from differences over such a step in single precision.
+    const TOLERANCE: f32 = 5e-3;
+    let mut stream = Stream::new(3, "gradient");
+    let mut network = Perceptron::new(&[5, 7, 6, 3], 1.0, &mut stream);
+    let input: Vec<f32> = (0..4 * 5).map(|_| stream.normal() as f32).collect();
+    let weights: Vec<f32> = (0..4 * 3).map(|_| stream.normal() as f32).collect();
+    let loss = |network: &Perceptron, input: &[f32]| -> f32 {
+        let mut trace = Trace::default();
+        network.forward(input, &mut trace);
+        trace.output().iter().zip(&weights).map(|(output, weight)| output * weight).sum()
+    };
+    let (mut trace, mut by_input) = (Trace::default(), vec![]);
+    network.forward(&input, &mut trace);
+    let mut gradient = vec![0.0; network.parameters().len()];
+    network.backward(&trace, &mut weights.clone(), &mut gradient, Some(&mut by_input));
+    for (i, slope) in gradient.iter().enumerate() {
+        let mut at = |by: f32| {
+            network.parameters_mut()[i] += by;
+            let loss = loss(&network, &input);
+            network.parameters_mut()[i] -= by;
+            loss
+        };
+        let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
+        assert!((slope - want).abs() < TOLERANCE, "parameter {i}: {slope}, not {want}");
+    }
+    for (i, slope) in by_input.iter().enumerate() {
+        let at = |by: f32| {
+            let mut input = input.clone();
+            input[i] += by;
+            loss(&network, &input)
+        };
+        let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
+        assert!((slope - want).abs() < TOLERANCE, "input {i}: {slope}, not {want}");
+    }
+}
+
+#[test]
+fn first_weights_are_orthogonal_with_their_gain() {
+    let network = Perceptron::new(&[6, 4, 2], 0.01, &mut Stream::new(1, "weights"));
+    for (i, (inputs, outputs), gain) in [(0, (6, 4), 2.0_f32), (1, (4, 2), 1e-4)] {
+        let (weights, biases) = network.layer(i);
+        assert!(biases.iter().all(|bias| *bias == 0.0));
+        for (a, b) in (0..outputs).flat_map(|a| (0..outputs).map(move |b| (a, b))) {
+            let product: f32 = (0..inputs).map(|row| weights[row * outputs + a] * weights[row * outputs + b]).sum();
+            let want = if a == b { gain } else { 0.0 };
+            assert!((product - want).abs() < 1e-5 * gain, "{a} {b}: {product}, not {want}");
+        }
+    }
+}
+
+#[test]
+fn adam_goes_as_its_authors_say() {
+    // The first step goes as far as the learning rate against the sign, the second as worked out by hand.
+    let settings = AdamSettings { epsilon: 0.0, norm_max: None, ..AdamSettings::default() };
+    let (mut adam, mut parameters) = (Adam::new(2, settings), [1.0_f32, -1.0]);
+    let norm = adam.step(&mut parameters, &[3.0, -4.0], 0.1);
+    assert!((norm - 5.0).abs() < 1e-6 && (parameters[0] - 0.9).abs() < 1e-6 && (parameters[1] + 0.9).abs() < 1e-6);
+    adam.step(&mut parameters, &[0.0, -4.0], 0.1);
+    // mean 0.9 * 0.3 = 0.27 of 0.19, square 0.999 * 0.009 = 0.008991 of 0.001999.
+    let want = 0.9 - 0.1 * (0.27 / 0.19) / libm::sqrtf(0.008_991 / 0.001_999);
+    assert!((parameters[0] - want).abs() < 1e-4, "{parameters:?}, not {want}");
+    assert!((parameters[1] + 0.8).abs() < 1e-6, "{parameters:?}");
+    // A gradient that is too long is cut to its length; nothing of the first step changes by that but the norm.
+    let (mut adam, mut parameters) = (Adam::new(1, AdamSettings::default()), [0.0_f32]);
+    assert!((adam.step(&mut parameters, &[1e6], 0.1) - 1e6).abs() < 1.0 && (parameters[0] + 0.1).abs() < 1e-4);
+}
+
+/// Samples of a game of one step: of eight pictures each has an action that is worth 1.
+fn sampled(learner: &ActorCritic, stream: &mut Stream, count: usize) -> (Vec<f32>, Vec<u16>, Vec<f32>, Vec<f32>) {
+    let (mut observations, mut actions, mut logs, mut rewards) = (vec![], vec![], vec![], vec![]);
+    let (mut trace, mut all) = (Trace::default(), [0.0; 4]);
+    for _ in 0..count {
+        let picture = stream.below(8);
+        let observation = [0, 1, 2].map(|bit| if picture >> bit & 1 == 1 { 1.0 } else { -1.0 });
+        learner.actor.forward(&observation, &mut trace);
+        choice::log_probabilities(trace.output(), &mut all);
+        let action = choice::drawn(&all, stream.unit());
+        observations.extend(observation);
+        actions.push(action as u16);
+        logs.push(all[action]);
+        rewards.push(if action as u64 == picture * 3 % 4 { 1.0 } else { 0.0 });
+    }
+    (observations, actions, logs, rewards)
+}
+
+fn trained(updates: usize, threads: usize, mut learner: ActorCritic) -> ActorCritic {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let settings = Ppo { learning_rate: 3e-3, minibatch: 600, divergence_max: 1e9, ..Ppo::default() };
+    for i in 0..updates {
+        let mut stream = Stream::new(i as u64, "samples");
+        let (observations, actions, log_probabilities, rewards) = sampled(&learner, &mut stream, 1500);
+        let counts = vec![true; rewards.len()];
+        let batch = Batch {
+            observations: &observations,
+            states: &observations,
+            actions: &actions,
+            log_probabilities: &log_probabilities,
+            advantages: &rewards,
+            returns: &rewards,
+            counts: &counts,
+        };
+        let statistics = pool.install(|| learner.update(&batch, &settings, 1.0, &mut stream));
+        assert!(statistics.divergence >= 0.0 && statistics.entropy > 0.0, "{statistics:?}");
+    }
+    learner
+}
+
+#[test]
+fn a_policy_learns_which_action_is_worth_most() {
+    let learner = trained(40, 2, ActorCritic::new(3, 3, &[32], 4, 1));
+    let (mut trace, mut value) = (Trace::default(), Trace::default());
+    for picture in 0..8_usize {
+        let observation = [0, 1, 2].map(|bit| if picture >> bit & 1 == 1 { 1.0 } else { -1.0 });
+        learner.actor.forward(&observation, &mut trace);
+        assert_eq!(choice::likeliest(trace.output()), picture * 3 % 4, "picture {picture}: {:?}", trace.output());
+        // It expects what it gets, nearly always 1.
+        learner.critic.forward(&observation, &mut value);
+        let expected = value.output()[0] * learner.scale.deviation();
+        assert!((expected - 1.0).abs() < 0.2, "picture {picture}: {expected}");
+    }
+}
+
+#[test]
+fn training_is_the_same_to_the_bit_on_any_number_of_threads_and_when_it_is_resumed() {
+    let start = ActorCritic::new(3, 3, &[16, 16], 4, 7);
+    let want = trained(4, 1, start.clone());
+    assert_ne!(want, start);
+    for threads in [2, 3] {
+        assert!(trained(4, threads, start.clone()) == want, "{threads} threads");
+    }
+    let saved = serde_json::to_string(&want).expect("JSON");
+    let resumed: ActorCritic = serde_json::from_str(&saved).expect("what was saved");
+    assert!(trained(4, 2, resumed) == trained(4, 1, want));
+}

@@ -1,0 +1,101 @@
+//! Training: something is learnt in a few seconds, and the same by everybody.
+
+use game::scenario;
+use game::training::{Evaluation, Layers, League, Ppo, Stage, Training};
+use learn::train::{Progress, StateError, Trainer};
+use std::path::{Path, PathBuf};
+
+fn file(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(path)
+}
+
+fn first() -> Training {
+    scenario::load_training(&file("training/first.toml")).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+#[test]
+fn a_policy_learns_to_score_against_pav01() {
+    let mut trainer = Trainer::new(first(), 2).unwrap_or_else(|error| panic!("{error}"));
+    let mut seen = vec![];
+    while trainer.samples().0 < 310_000 {
+        let progress = trainer.update().unwrap_or_else(|error| panic!("{error}"));
+        seen.extend(progress.evaluated);
+    }
+    let points: Vec<f64> = seen.iter().map(|evaluated| evaluated.played[0].1.points[0]).collect();
+    assert!(points.last().is_some_and(|points| *points > 3.0), "points a game: {points:?}");
+}
+
+/// Two short stages with everything in them: a helm, a strategy, past policies.
+fn short() -> Training {
+    let stage = |name: &str, game: &str, helm: Option<&str>| Stage {
+        name: name.to_owned(),
+        game: file(game),
+        sea: None,
+        rewards: file("rewards/bold.toml"),
+        helm: helm.map(file),
+        self_play: 1.0,
+        past_selves: 1.0,
+        strategies: 1.0,
+        opponent: vec![game::training::Opponent { strategy: file("strategies/pav01.toml") }],
+        starts: Some(8),
+        episode_max_s: Some(20.0),
+        samples: 4_000,
+        until_won: None,
+    };
+    let network = Layers { hidden: vec![16] };
+    let ppo = Ppo { steps: 32, minibatch: 256, ..Ppo::default() };
+    let league = League { every_samples: 1_000, most: 2, priority: 1.0 };
+    let opponents = vec![file("strategies/pav01.toml")];
+    let evaluation = Evaluation { every_samples: 3_000, games: 2, opponents };
+    let stage = vec![
+        stage("direct", "games/pav01_afloat.toml", None),
+        stage("helm", "games/surveyor_2v2.toml", Some("strategies/policy.toml")),
+    ];
+    Training { games: 8, network, ppo, league, evaluation, stage, ..first() }
+}
+
+fn trained(mut trainer: Trainer, progress: &mut Vec<Progress>) -> Trainer {
+    while !trainer.is_over() {
+        progress.push(trainer.update().unwrap_or_else(|error| panic!("{error}")));
+    }
+    trainer
+}
+
+#[test]
+fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() {
+    let run = |threads| {
+        let mut progress = vec![];
+        let trainer = Trainer::new(short(), threads).unwrap_or_else(|error| panic!("{error}"));
+        let trainer = trained(trainer, &mut progress);
+        (trainer.state(), progress)
+    };
+    let (state, progress) = run(1);
+    let opponents: Vec<&str> = progress.iter().flat_map(|one| &one.finished).map(|(_, name)| name.as_str()).collect();
+    assert!(opponents.contains(&"itself") && opponents.contains(&"pav01"), "{opponents:?}");
+    assert!(opponents.iter().any(|name| name.starts_with("after ")), "{opponents:?}");
+    assert!(run(3) == (state.clone(), progress.clone()));
+
+    // Taken up again wherever that can be.
+    let mut trainer = Trainer::new(short(), 2).unwrap_or_else(|error| panic!("{error}"));
+    let mut taken_up = 0;
+    while !trainer.is_over() {
+        let done = trainer.update().unwrap_or_else(|error| panic!("{error}"));
+        if done.can_be_resumed {
+            trainer = Trainer::resume(short(), 2, &trainer.state()).unwrap_or_else(|error| panic!("{error}"));
+            taken_up += 1;
+        }
+    }
+    assert!(taken_up > 2, "{taken_up}");
+    assert!(trainer.state() == state);
+}
+
+#[test]
+fn a_state_of_another_training_is_refused() {
+    let state = Trainer::new(short(), 1).unwrap_or_else(|error| panic!("{error}")).state();
+    let other = Training { seed: 2, ..short() };
+    assert!(matches!(Trainer::resume(other, 1, &state), Err(StateError::Other)));
+    assert!(matches!(Trainer::resume(short(), 1, &state[..100]), Err(StateError::Damaged)));
+    let mut newer = state.clone();
+    newer[1] = b'9';
+    assert!(matches!(Trainer::resume(short(), 1, &newer), Err(StateError::Version { .. })));
+}

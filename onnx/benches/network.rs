@@ -1,0 +1,57 @@
+//! What one row of a policy costs, for the sizes that policies have.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use onnx::{Activation, Head, Layer, Network, Perceptron};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use std::collections::BTreeMap;
+use std::hint::black_box;
+
+const INPUTS: usize = 45;
+const ACTIONS: usize = 17;
+/// Rows that are taken in turn, so that no branch is learnt by heart.
+const ROWS: usize = 64;
+
+/// A number from `least` to `most`.
+fn between(random: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
+    least + (most - least) * (random.next_u32() >> 8) as f32 / (1 << 24) as f32
+}
+
+fn layer(random: &mut ChaCha8Rng, inputs: usize, outputs: usize) -> Layer {
+    // Sums of about one: an activation is then neither at its end nor at its middle.
+    let most = (3.0 / inputs as f32).sqrt();
+    let weights = (0..inputs * outputs).map(|_| between(random, -most, most)).collect();
+    Layer { inputs, outputs, weights, biases: vec![0.1; outputs] }
+}
+
+fn network(random: &mut ChaCha8Rng, width: usize, activation: Activation) -> Network {
+    let hidden = vec![layer(random, INPUTS, width), layer(random, width, width)];
+    let heads = vec![Head { name: "logits".to_owned(), layer: layer(random, width, ACTIONS) }];
+    let (input, metadata) = ("observation".to_owned(), BTreeMap::new());
+    let policy = Perceptron { input, normalisation: None, hidden, activation, heads, metadata };
+    Network::read(&policy.onnx().expect("sizes that fit")).expect("a network")
+}
+
+fn evaluate(criterion: &mut Criterion) {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let rows: Vec<[f32; INPUTS]> =
+        (0..ROWS).map(|_| std::array::from_fn(|_| between(&mut random, -1.7, 1.7))).collect();
+    let mut group = criterion.benchmark_group("network 45-n-n-17");
+    for (width, activation) in
+        [(128, Activation::Relu), (128, Activation::Tanh), (256, Activation::Relu), (256, Activation::Tanh)]
+    {
+        let mut network = network(&mut random, width, activation);
+        let mut next = 0;
+        group.bench_function(format!("n = {width}, {activation:?}"), |bencher| {
+            bencher.iter(|| {
+                next += 1;
+                network.evaluate(black_box(&rows[next % ROWS]));
+                black_box(network.output(0)[0])
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, evaluate);
+criterion_main!(benches);

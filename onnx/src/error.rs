@@ -1,0 +1,104 @@
+//! Why a file cannot be read as a network, or a network not be written.
+
+use thiserror::Error;
+
+/// Of a name in a message, as many characters: files may have names of any length.
+const NAME_MAX: usize = 80;
+
+/// Why a file cannot be read as a network, or a network not be written. Each text says where, what was found there, and
+/// what is allowed.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum NetworkError {
+    /// There is more of something than the limits allow.
+    #[error("{what}: found {found}, allowed are at most {max}")]
+    TooLarge {
+        /// Of what there is too much.
+        what: String,
+        /// How much of it there is.
+        found: usize,
+        /// How much there may be.
+        max: usize,
+    },
+    /// The bytes are no ONNX file, or are cut or damaged.
+    #[error("not an ONNX file, or a damaged one: byte {byte}: {found}")]
+    NotOnnx {
+        /// Where it was noticed, counted from 0.
+        byte: usize,
+        /// What is wrong there.
+        found: String,
+    },
+    /// The model as a whole is not one that can be evaluated.
+    #[error("the model: found {found}, expected {expected}")]
+    Model {
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        expected: String,
+    },
+    /// A tensor cannot be used.
+    #[error("tensor `{tensor}`: found {found}, expected {expected}")]
+    Tensor {
+        /// Its name.
+        tensor: String,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        expected: String,
+    },
+    /// A tensor's numbers are in a second file.
+    #[error(
+        "tensor `{tensor}`: found a reference to another file, expected its numbers: export the model with \
+         external_data=False"
+    )]
+    ExternalData {
+        /// Its name.
+        tensor: String,
+    },
+    /// An operator that is not evaluated here.
+    #[error("node `{node}`: found the operator {operator}, expected one of {allowed}")]
+    Operator {
+        /// The node's name.
+        node: String,
+        /// Its operator.
+        operator: String,
+        /// The operators that there are.
+        allowed: String,
+    },
+    /// An operator that is evaluated here, but not in this way.
+    #[error("node `{node}` ({operator}): found {found}, expected {expected}")]
+    Node {
+        /// The node's name.
+        node: String,
+        /// Its operator.
+        operator: &'static str,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        expected: String,
+    },
+}
+
+impl NetworkError {
+    pub(super) fn model(found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
+        NetworkError::Model { found: found.into(), expected: expected.into() }
+    }
+
+    pub(super) fn tensor(tensor: &str, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
+        NetworkError::Tensor { tensor: shown(tensor), found: found.into(), expected: expected.into() }
+    }
+}
+
+/// A name from a file, as a message may show it.
+pub(super) fn shown(name: &str) -> String {
+    let head: String = name.chars().take(NAME_MAX).collect();
+    head.escape_debug().to_string() + if head.len() < name.len() { "…" } else { "" }
+}
+
+/// A shape, as a message shows it: `1 x 45`.
+pub(super) fn shape_text(shape: &[usize]) -> String {
+    if shape.is_empty() {
+        return "a single number".to_owned();
+    }
+    let head: Vec<String> = shape.iter().take(16).map(usize::to_string).collect();
+    format!("the shape {}{}", head.join(" x "), if shape.len() > head.len() { " x …" } else { "" })
+}

@@ -1,0 +1,145 @@
+//! What a file may ask of memory and time, checked before anything is made of it.
+//!
+//! The parser makes a struct of some hundred bytes out of two bytes of a file, so its fields are counted first.
+
+use super::NetworkError;
+
+/// The largest file, bytes.
+pub(super) const FILE_BYTES_MAX: usize = 64 << 20;
+/// The most fields in a file, numbers of shapes and attributes among them, weights not.
+pub(super) const FIELDS_MAX: usize = 100_000;
+/// The most weights, as they are laid out for evaluation.
+pub(super) const PARAMETERS_MAX: usize = 10_000_000;
+/// The most numbers that are worked out in an evaluation.
+pub(super) const VALUES_MAX: usize = 1_000_000;
+/// The most multiplications of weights in an evaluation.
+pub(super) const PRODUCTS_MAX: usize = 100_000_000;
+/// The most dimensions of a tensor.
+pub(super) const RANK_MAX: usize = 8;
+
+/// `found`, unless it is more than `max`.
+pub(super) fn at_most(what: &str, found: Option<usize>, max: usize) -> Result<usize, NetworkError> {
+    let found = found.unwrap_or(usize::MAX);
+    if found > max {
+        return Err(NetworkError::TooLarge { what: what.to_owned(), found, max });
+    }
+    Ok(found)
+}
+
+/// The messages in which fields are repeated.
+#[derive(Clone, Copy)]
+enum Kind {
+    Model,
+    Graph,
+    Node,
+    Attribute,
+    Tensor,
+    ValueInfo,
+    Type,
+    TensorType,
+    Shape,
+}
+
+/// What the bytes of a field are.
+enum Content {
+    /// A message with fields of its own.
+    Message(Kind),
+    /// Numbers one after the other, each of at least a byte.
+    Integers,
+    /// Anything that takes hardly more memory than in the file.
+    Plain,
+}
+
+/// What field `number` of a message holds, as in `proto.rs`.
+fn content(kind: Kind, number: u64) -> Content {
+    match (kind, number) {
+        (Kind::Model, 7) => Content::Message(Kind::Graph),
+        (Kind::Graph, 1) => Content::Message(Kind::Node),
+        (Kind::Graph, 5) | (Kind::Attribute, 5) => Content::Message(Kind::Tensor),
+        (Kind::Graph, 11 | 12) => Content::Message(Kind::ValueInfo),
+        (Kind::Node, 5) => Content::Message(Kind::Attribute),
+        (Kind::ValueInfo, 2) => Content::Message(Kind::Type),
+        (Kind::Type, 1) => Content::Message(Kind::TensorType),
+        (Kind::TensorType, 2) => Content::Message(Kind::Shape),
+        (Kind::Attribute, 8) | (Kind::Tensor, 1 | 5 | 7) => Content::Integers,
+        _ => Content::Plain,
+    }
+}
+
+/// Refuses a file that is too long, whose fields are too many, or do not lie inside of one another.
+pub(super) fn check(file: &[u8]) -> Result<(), NetworkError> {
+    at_most("bytes of the file", Some(file.len()), FILE_BYTES_MAX)?;
+    let mut fields = Fields { file, at: 0, count: 0 };
+    fields.walk(Kind::Model, file.len())
+}
+
+/// Fields that are walked through, one after the other.
+struct Fields<'a> {
+    file: &'a [u8],
+    at: usize,
+    count: usize,
+}
+
+impl Fields<'_> {
+    /// Walks through a message that ends at `end`. The tree of messages is a few levels deep, and so is this.
+    fn walk(&mut self, kind: Kind, end: usize) -> Result<(), NetworkError> {
+        while self.at < end {
+            let begin = self.at;
+            let key = self.varint(end)?;
+            self.add(1)?;
+            match key & 7 {
+                0 => _ = self.varint(end)?,
+                1 => self.at = self.end_of(8, end)?,
+                2 => {
+                    let length = self.varint(end)?;
+                    let field_end = self.end_of(length, end)?;
+                    match content(kind, key >> 3) {
+                        Content::Message(inner) => self.walk(inner, field_end)?,
+                        Content::Integers => self.add(field_end - self.at)?,
+                        Content::Plain => {}
+                    }
+                    self.at = field_end;
+                }
+                5 => self.at = self.end_of(4, end)?,
+                wire_type => {
+                    return Err(NetworkError::NotOnnx {
+                        byte: begin,
+                        found: format!("a field of wire type {wire_type}"),
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, count: usize) -> Result<(), NetworkError> {
+        self.count = at_most("fields of the file", self.count.checked_add(count), FIELDS_MAX)?;
+        Ok(())
+    }
+
+    /// The end of a field of so many bytes.
+    fn end_of(&self, length: u64, end: usize) -> Result<usize, NetworkError> {
+        let left = end - self.at;
+        match usize::try_from(length) {
+            Ok(length) if length <= left => Ok(self.at + length),
+            _ => Err(self.wrong(format!("a field of {length} bytes where {left} are left"))),
+        }
+    }
+
+    /// A number of 7 bits a byte, the lowest first, whose last byte has its highest bit unset.
+    fn varint(&mut self, end: usize) -> Result<u64, NetworkError> {
+        let mut number = 0;
+        for (i, byte) in self.file[self.at..end].iter().take(10).enumerate() {
+            number |= u64::from(byte & 0x7f) << (7 * i);
+            if byte & 0x80 == 0 {
+                self.at += i + 1;
+                return Ok(number);
+            }
+        }
+        Err(self.wrong("a number without an end".to_owned()))
+    }
+
+    fn wrong(&self, found: String) -> NetworkError {
+        NetworkError::NotOnnx { byte: self.at, found }
+    }
+}

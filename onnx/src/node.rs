@@ -1,0 +1,98 @@
+//! A node of a graph with its attributes, and what messages say about it.
+
+use super::NetworkError;
+use super::error::shown;
+use super::proto::{AttributeProto, NodeProto};
+
+/// The codes of `AttributeProto.AttributeType` that are read.
+const FLOAT: i32 = 1;
+const INT: i32 = 2;
+const TENSOR: i32 = 4;
+const FLOATS: i32 = 6;
+const INTS: i32 = 7;
+
+/// A node of a graph.
+pub(super) struct Node<'a> {
+    pub(super) proto: &'a NodeProto,
+    /// The operator's name, as the table of operators has it.
+    pub(super) operator: &'static str,
+    /// The version of the operator set by which it is meant.
+    pub(super) version: i64,
+}
+
+impl<'a> Node<'a> {
+    /// What is wrong with the node.
+    pub(super) fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> NetworkError {
+        let (found, expected) = (found.into(), expected.into());
+        NetworkError::Node { node: name(self.proto), operator: self.operator, found, expected }
+    }
+
+    /// The name of input `index`, if the node has it.
+    pub(super) fn input(&self, index: usize) -> Option<&'a str> {
+        self.proto.input.get(index).map(String::as_str).filter(|name| !name.is_empty())
+    }
+
+    /// Refuses attributes that would not be heeded.
+    pub(super) fn check_attributes(&self, known: &[&str]) -> Result<(), NetworkError> {
+        let unknown = self.proto.attribute.iter().find(|attribute| !known.contains(&attribute.name.as_str()));
+        let Some(unknown) = unknown else { return Ok(()) };
+        let expected = if known.is_empty() { "none".to_owned() } else { format!("only {}", known.join(", ")) };
+        Err(self.wrong(format!("the attribute {}", shown(&unknown.name)), expected))
+    }
+
+    pub(super) fn integer(&self, name: &str, default: i64) -> Result<i64, NetworkError> {
+        Ok(self.attribute(name, INT, "an integer")?.map_or(default, |attribute| attribute.i.unwrap_or_default()))
+    }
+
+    pub(super) fn float(&self, name: &str, default: f32) -> Result<f32, NetworkError> {
+        let attribute = self.attribute(name, FLOAT, "a number")?;
+        let number = attribute.map_or(default, |attribute| attribute.f.unwrap_or_default());
+        if !number.is_finite() {
+            return Err(self.wrong(format!("{name} = {number}"), "a finite number"));
+        }
+        Ok(number)
+    }
+
+    pub(super) fn integers(&self, name: &str) -> Result<Option<&'a [i64]>, NetworkError> {
+        Ok(self.attribute(name, INTS, "a list of integers")?.map(|attribute| attribute.ints.as_slice()))
+    }
+
+    pub(super) fn floats(&self, name: &str) -> Result<Option<&'a [f32]>, NetworkError> {
+        Ok(self.attribute(name, FLOATS, "a list of numbers")?.map(|attribute| attribute.floats.as_slice()))
+    }
+
+    /// An attribute that holds a tensor.
+    pub(super) fn tensor(&self, name: &str) -> Result<Option<&'a AttributeProto>, NetworkError> {
+        self.attribute(name, TENSOR, "a tensor")
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.proto.attribute.iter().any(|attribute| attribute.name == name)
+    }
+
+    fn attribute(&self, name: &str, code: i32, expected: &str) -> Result<Option<&'a AttributeProto>, NetworkError> {
+        let attribute = self.proto.attribute.iter().find(|attribute| attribute.name == name);
+        // Files of the first version have no codes.
+        match attribute {
+            Some(other) if other.r#type != code && other.r#type != 0 => {
+                Err(self.wrong(format!("the attribute {name} of type {}", other.r#type), expected))
+            }
+            _ => Ok(attribute),
+        }
+    }
+
+    /// An axis of a tensor with `rank` dimensions; counted from the end if it is negative.
+    pub(super) fn axis(&self, axis: i64, rank: usize) -> Result<usize, NetworkError> {
+        let from_start = if axis < 0 { axis.saturating_add_unsigned(rank as u64) } else { axis };
+        match usize::try_from(from_start) {
+            Ok(axis) if axis < rank => Ok(axis),
+            _ => Err(self.wrong(format!("axis {axis}"), format!("an axis of {rank} dimensions"))),
+        }
+    }
+}
+
+/// A node's name, or that of its output where it has none.
+pub(super) fn name(proto: &NodeProto) -> String {
+    let names = [Some(&proto.name), proto.output.first()];
+    shown(names.into_iter().flatten().find(|name| !name.is_empty()).map_or("unnamed", String::as_str))
+}

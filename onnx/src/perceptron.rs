@@ -1,0 +1,159 @@
+//! A multilayer perceptron, as a trainer makes it, written as an ONNX file.
+
+use super::proto::{
+    AttributeProto, DimensionProto, FLOAT, GraphProto, ModelProto, NodeProto, OperatorSetIdProto,
+    StringStringEntryProto, TensorProto, TensorShapeProto, TensorTypeProto, TypeProto, ValueInfoProto,
+};
+use super::{Network, NetworkError};
+use prost::Message;
+use std::collections::BTreeMap;
+
+/// The version of the format, and of the operators, that files are written in: those of ONNX 1.12, which all runtimes
+/// read.
+const IR_VERSION: i64 = 8;
+const OPERATORS_VERSION: i64 = 17;
+
+/// Dense layers with one activation between them, and one or more outputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Perceptron {
+    /// The input's name.
+    pub input: String,
+    /// What is done with the input first.
+    pub normalisation: Option<Normalisation>,
+    /// The hidden layers, each followed by the activation.
+    pub hidden: Vec<Layer>,
+    /// What follows each hidden layer.
+    pub activation: Activation,
+    /// The outputs, each a layer after the last hidden one, with nothing behind it.
+    pub heads: Vec<Head>,
+    /// What the file says about itself.
+    pub metadata: BTreeMap<String, String>,
+}
+
+/// Each number of the input less its mean, times its scale.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Normalisation {
+    /// What is taken off, for each number of the input.
+    pub mean: Vec<f32>,
+    /// What the rest is multiplied with: one over the standard deviation.
+    pub scale: Vec<f32>,
+}
+
+/// A dense layer: each output is its bias plus the sum of all inputs by their weights.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// How many inputs.
+    pub inputs: usize,
+    /// How many outputs.
+    pub outputs: usize,
+    /// `outputs` rows of `inputs` weights, as PyTorch has them.
+    pub weights: Vec<f32>,
+    /// One for each output.
+    pub biases: Vec<f32>,
+}
+
+/// An output of a perceptron.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Head {
+    /// Its name.
+    pub name: String,
+    /// Its weights.
+    pub layer: Layer,
+}
+
+/// What follows a hidden layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Activation {
+    /// The hyperbolic tangent.
+    Tanh,
+    /// What is above zero, or else zero.
+    Relu,
+}
+
+impl Perceptron {
+    /// The bytes of an ONNX file. The same perceptron gives the same bytes.
+    ///
+    /// # Errors
+    /// If sizes do not fit each other, a number is not finite, or [`Network::read`] would refuse the file for anything
+    /// else.
+    pub fn onnx(&self) -> Result<Vec<u8>, NetworkError> {
+        let first = self.hidden.first().or_else(|| self.heads.first().map(|head| &head.layer));
+        let inputs = first.map_or(0, |layer| layer.inputs);
+        let mut graph = GraphProto { name: "policy".to_owned(), ..GraphProto::default() };
+        graph.input.push(port(&self.input, inputs));
+        let mut last = self.input.clone();
+        if let Some(Normalisation { mean, scale }) = &self.normalisation {
+            graph.initializer.push(tensor("input.mean", &[1, inputs], mean));
+            graph.initializer.push(tensor("input.scale", &[1, inputs], scale));
+            graph.node.push(node("Sub", [&last, "input.mean"], "input.centred"));
+            graph.node.push(node("Mul", ["input.centred", "input.scale"], "input.normalised"));
+            "input.normalised".clone_into(&mut last);
+        }
+        for (i, layer) in self.hidden.iter().enumerate() {
+            let sums = format!("hidden.{i}.sums");
+            dense(&mut graph, &format!("hidden.{i}"), layer, &last, &sums);
+            let operator = match self.activation {
+                Activation::Tanh => "Tanh",
+                Activation::Relu => "Relu",
+            };
+            last = format!("hidden.{i}.output");
+            graph.node.push(node(operator, [&sums], &last));
+        }
+        for (i, head) in self.heads.iter().enumerate() {
+            dense(&mut graph, &format!("head.{i}"), &head.layer, &last, &head.name);
+            graph.output.push(port(&head.name, head.layer.outputs));
+        }
+        let entry =
+            |(key, value): (&String, &String)| StringStringEntryProto { key: key.clone(), value: value.clone() };
+        let model = ModelProto {
+            ir_version: IR_VERSION,
+            producer_name: "squall".to_owned(),
+            graph: Some(graph),
+            opset_import: vec![OperatorSetIdProto { domain: String::new(), version: OPERATORS_VERSION }],
+            metadata_props: self.metadata.iter().map(entry).collect(),
+        };
+        let bytes = model.encode_to_vec();
+        // All that can be wrong with a file is checked in one place.
+        Network::read(&bytes)?;
+        Ok(bytes)
+    }
+}
+
+/// Adds a dense layer to a graph.
+fn dense(graph: &mut GraphProto, name: &str, layer: &Layer, input: &str, output: &str) {
+    let [weight, bias] = ["weight", "bias"].map(|part| format!("{name}.{part}"));
+    graph.initializer.push(tensor(&weight, &[layer.outputs, layer.inputs], &layer.weights));
+    graph.initializer.push(tensor(&bias, &[layer.outputs], &layer.biases));
+    let transposed = AttributeProto { name: "transB".to_owned(), i: Some(1), r#type: 2, ..AttributeProto::default() };
+    let gemm = node("Gemm", [input, &weight, &bias], output);
+    graph.node.push(NodeProto { name: name.to_owned(), attribute: vec![transposed], ..gemm });
+}
+
+fn node<const INPUTS: usize>(operator: &str, inputs: [&str; INPUTS], output: &str) -> NodeProto {
+    NodeProto {
+        input: inputs.map(str::to_owned).to_vec(),
+        output: vec![output.to_owned()],
+        name: output.to_owned(),
+        op_type: operator.to_owned(),
+        ..NodeProto::default()
+    }
+}
+
+fn tensor(name: &str, shape: &[usize], numbers: &[f32]) -> TensorProto {
+    TensorProto {
+        dims: shape.iter().map(|dim| *dim as i64).collect(),
+        data_type: FLOAT,
+        name: name.to_owned(),
+        raw_data: Some(numbers.iter().flat_map(|number| number.to_le_bytes()).collect()),
+        ..TensorProto::default()
+    }
+}
+
+/// An input or output with a row for each of a batch.
+fn port(name: &str, size: usize) -> ValueInfoProto {
+    let batch = DimensionProto { dim_param: Some("batch".to_owned()), ..DimensionProto::default() };
+    let row = DimensionProto { dim_value: Some(size as i64), ..DimensionProto::default() };
+    let shape = Some(TensorShapeProto { dim: vec![batch, row] });
+    let tensor_type = Some(TensorTypeProto { elem_type: FLOAT, shape });
+    ValueInfoProto { name: name.to_owned(), r#type: Some(TypeProto { tensor_type }) }
+}

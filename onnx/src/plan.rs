@@ -1,0 +1,187 @@
+//! The plan of a network: where each number lies, and the steps that work them out.
+
+use super::NetworkError;
+use super::Port;
+use super::error::{shape_text, shown};
+use super::limit::{PARAMETERS_MAX, PRODUCTS_MAX, RANK_MAX, VALUES_MAX, at_most};
+use super::node::Node;
+use super::step::Step;
+use super::tensor::{Numbers, Tensor, product};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// What is constant about a network.
+pub(super) struct Plan {
+    pub(super) inputs: Vec<Port>,
+    pub(super) outputs: Vec<Port>,
+    pub(super) input_size: usize,
+    /// Where the outputs lie.
+    pub(super) places: Vec<Range<usize>>,
+    pub(super) steps: Vec<Step>,
+    pub(super) metadata: BTreeMap<String, String>,
+    pub(super) digest: u128,
+}
+
+/// What a number stands for.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Element {
+    Float,
+    /// An integer, of up to 24 bits, as a float: indices.
+    Integer,
+}
+
+/// Numbers that are worked out, and where they lie.
+#[derive(Clone)]
+pub(super) struct Row {
+    pub(super) place: Range<usize>,
+    pub(super) shape: Vec<usize>,
+    pub(super) element: Element,
+}
+
+/// What a name in the graph stands for.
+#[derive(Clone)]
+pub(super) enum Value {
+    Constant(Tensor),
+    Computed(Row),
+}
+
+/// A plan that is being made, node by node.
+#[derive(Default)]
+pub(super) struct Planner {
+    known: BTreeMap<String, Value>,
+    /// Where constants lie that steps read as they read computed numbers.
+    placed: BTreeMap<String, Range<usize>>,
+    pub(super) values: Vec<f32>,
+    pub(super) steps: Vec<Step>,
+    parameters: usize,
+    products: usize,
+}
+
+impl Planner {
+    /// Gives a name its value. Each name has one.
+    pub(super) fn define(&mut self, name: &str, value: Value) -> Result<(), NetworkError> {
+        if self.known.contains_key(name) {
+            return Err(NetworkError::tensor(name, "a second definition", "each name defined once"));
+        }
+        self.known.insert(name.to_owned(), value);
+        Ok(())
+    }
+
+    /// Input `index` of a node.
+    pub(super) fn value(&self, node: &Node, index: usize) -> Result<Value, NetworkError> {
+        let Some(name) = node.input(index) else {
+            return Err(node.wrong(format!("no input {index}"), "one"));
+        };
+        let value = self.known.get(name).cloned();
+        // Nodes of a valid file come after those whose outputs they use, so this refuses cycles, too.
+        let expected = "an input of the graph, an initializer, or the output of an earlier node";
+        value.ok_or_else(|| node.wrong(format!("the input `{}`, which is none of these", shown(name)), expected))
+    }
+
+    /// Input `index` of a node, as floats that steps can read.
+    pub(super) fn row(&mut self, node: &Node, index: usize) -> Result<Row, NetworkError> {
+        let tensor = match self.value(node, index)? {
+            Value::Computed(Row { element: Element::Integer, .. }) => {
+                return Err(node.wrong(format!("integers as input {index}"), "FLOAT numbers: a Cast before it"));
+            }
+            Value::Computed(row) => return Ok(row),
+            Value::Constant(tensor) => tensor,
+        };
+        let place = self.place(node.input(index).unwrap_or_default(), floats(node, index, &tensor)?)?;
+        Ok(Row { place, shape: tensor.shape, element: Element::Float })
+    }
+
+    /// Where the constant of this name lies among the values.
+    pub(super) fn place(&mut self, name: &str, floats: &[f32]) -> Result<Range<usize>, NetworkError> {
+        if let Some(place) = self.placed.get(name) {
+            return Ok(place.clone());
+        }
+        let place = self.room(Some(floats.len()))?;
+        self.values[place.clone()].copy_from_slice(floats);
+        self.placed.insert(name.to_owned(), place.clone());
+        Ok(place)
+    }
+
+    /// Input `index` of a node, which has to be constant: weights.
+    pub(super) fn constant(&self, node: &Node, index: usize) -> Result<Tensor, NetworkError> {
+        match self.value(node, index)? {
+            Value::Constant(tensor) => Ok(tensor),
+            Value::Computed(_) => {
+                Err(node.wrong(format!("input {index} worked out by the network"), "a constant: an initializer"))
+            }
+        }
+    }
+
+    /// Input `index` of a node as constant integers, if it has that input.
+    pub(super) fn integers(&self, node: &Node, index: usize) -> Result<Option<Vec<i64>>, NetworkError> {
+        if node.input(index).is_none() {
+            return Ok(None);
+        }
+        match &*self.constant(node, index)?.numbers {
+            Numbers::Integers(integers) if integers.len() <= RANK_MAX => Ok(Some(integers.clone())),
+            Numbers::Integers(integers) => {
+                let found = format!("{} integers as input {index}", integers.len());
+                Err(node.wrong(found, format!("at most {RANK_MAX}")))
+            }
+            Numbers::Floats(_) => Err(node.wrong(format!("floats as input {index}"), "INT64 numbers")),
+        }
+    }
+
+    /// Input `index` of a node as a single constant number, if it has that input.
+    pub(super) fn scalar(&self, node: &Node, index: usize) -> Result<Option<f32>, NetworkError> {
+        if node.input(index).is_none() {
+            return Ok(None);
+        }
+        let tensor = self.constant(node, index)?;
+        match floats(node, index, &tensor)? {
+            [number] => Ok(Some(*number)),
+            several => Err(node.wrong(format!("{} numbers as input {index}", several.len()), "a single one")),
+        }
+    }
+
+    /// Room for what a node works out.
+    pub(super) fn new_row(&mut self, shape: Vec<usize>) -> Result<Row, NetworkError> {
+        let place = self.room(product(&shape))?;
+        Ok(Row { place, shape, element: Element::Float })
+    }
+
+    fn room(&mut self, size: Option<usize>) -> Result<Range<usize>, NetworkError> {
+        let start = self.values.len();
+        let end = size.and_then(|size| start.checked_add(size));
+        let end = at_most("numbers in an evaluation", end, VALUES_MAX)?;
+        self.values.resize(end, 0.0);
+        Ok(start..end)
+    }
+
+    /// Notes so many weights, each of which is multiplied with so many numbers.
+    pub(super) fn count_weights(&mut self, weights: Option<usize>, rows: usize) -> Result<(), NetworkError> {
+        let parameters = weights.and_then(|weights| weights.checked_add(self.parameters));
+        self.parameters = at_most("weights", parameters, PARAMETERS_MAX)?;
+        let products = weights.and_then(|weights| weights.checked_mul(rows)?.checked_add(self.products));
+        self.products = at_most("multiplications in an evaluation", products, PRODUCTS_MAX)?;
+        Ok(())
+    }
+
+    /// What a name of an output stands for, as numbers that can be read.
+    pub(super) fn output(&mut self, name: &str) -> Result<Row, NetworkError> {
+        match self.known.get(name).cloned() {
+            Some(Value::Computed(row)) => Ok(row),
+            Some(Value::Constant(Tensor { shape, numbers })) => match &*numbers {
+                Numbers::Floats(floats) => Ok(Row { place: self.place(name, floats)?, shape, element: Element::Float }),
+                Numbers::Integers(_) => Err(NetworkError::tensor(name, "constant integers as an output", "floats")),
+            },
+            None => Err(NetworkError::tensor(name, "an output that no node has", "the output of a node")),
+        }
+    }
+}
+
+/// A constant of a node as floats, of which there is at least one.
+pub(super) fn floats<'a>(node: &Node, index: usize, tensor: &'a Tensor) -> Result<&'a [f32], NetworkError> {
+    match &*tensor.numbers {
+        Numbers::Floats(floats) if !floats.is_empty() => Ok(floats),
+        Numbers::Floats(_) => {
+            Err(node.wrong(format!("{} as input {index}", shape_text(&tensor.shape)), "at least one number"))
+        }
+        Numbers::Integers(_) => Err(node.wrong(format!("integers as input {index}"), "FLOAT numbers")),
+    }
+}

@@ -1,0 +1,189 @@
+//! From the bytes of an ONNX file to the plan of a network.
+
+use super::error::{shape_text, shown};
+use super::limit::{self, PARAMETERS_MAX, RANK_MAX, at_most};
+use super::node::{self, Node};
+use super::operator::OPERATORS;
+use super::plan::{Plan, Planner, Row, Value};
+use super::proto::{self, GraphProto, ModelProto, NodeProto, ValueInfoProto, data_type_name};
+use super::tensor::Tensor;
+use super::{NetworkError, Port};
+use prost::Message;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::{Range, RangeInclusive};
+use xxhash_rust::xxh3::xxh3_128;
+
+/// The versions of the operator set in which the operators mean what they mean here. Before 7, shapes were broadcast by
+/// attributes. The last is that of ONNX 1.23; what later ones change is not known here.
+const VERSIONS: RangeInclusive<i64> = 7..=28;
+
+/// The types that outputs may declare. Indices come out as floats all the same.
+const OUTPUT_TYPES: [i32; 3] = [proto::FLOAT, proto::INT32, proto::INT64];
+
+/// Reads a file: its plan, and the values before the first evaluation.
+pub(super) fn read(file: &[u8]) -> Result<(Plan, Vec<f32>), NetworkError> {
+    limit::check(file)?;
+    let model = ModelProto::decode(file).map_err(|_| NetworkError::NotOnnx {
+        byte: 0,
+        found: "a message whose fields are not those of a ModelProto".to_owned(),
+    })?;
+    let Some(graph) = &model.graph else {
+        return Err(NetworkError::NotOnnx { byte: 0, found: "a message without a graph".to_owned() });
+    };
+    let version = version(&model)?;
+    let mut planner = Planner::default();
+    let inputs = inputs(&mut planner, graph)?;
+    let input_size = planner.values.len();
+    constants(&mut planner, graph)?;
+    for proto in &graph.node {
+        add(&mut planner, proto, version)?;
+    }
+    let (outputs, places) = outputs(&mut planner, graph)?.into_iter().unzip();
+    let Planner { values, steps, .. } = planner;
+    let metadata = metadata(&model)?;
+    Ok((Plan { inputs, outputs, input_size, places, steps, metadata, digest: xxh3_128(file) }, values))
+}
+
+/// The version of ONNX's own operators.
+fn version(model: &ModelProto) -> Result<i64, NetworkError> {
+    let own = model.opset_import.iter().find(|set| is_own(&set.domain));
+    let allowed = format!("version {} to {}", VERSIONS.start(), VERSIONS.end());
+    match own {
+        Some(set) if VERSIONS.contains(&set.version) => Ok(set.version),
+        Some(set) => Err(NetworkError::model(format!("version {} of the operators", set.version), allowed)),
+        None => Err(NetworkError::model("no version of the operators (opset_import)", allowed)),
+    }
+}
+
+/// Whether a domain of operators is that of ONNX itself.
+fn is_own(domain: &str) -> bool {
+    matches!(domain, "" | "ai.onnx")
+}
+
+fn metadata(model: &ModelProto) -> Result<BTreeMap<String, String>, NetworkError> {
+    let mut metadata = BTreeMap::new();
+    for entry in &model.metadata_props {
+        if metadata.insert(entry.key.clone(), entry.value.clone()).is_some() {
+            let found = format!("two entries `{}` in its metadata", shown(&entry.key));
+            return Err(NetworkError::model(found, "one of each key"));
+        }
+    }
+    Ok(metadata)
+}
+
+/// Lays out the inputs of the graph. Files of the first versions list initializers among them.
+fn inputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<Port>, NetworkError> {
+    let constants: BTreeSet<&str> = graph.initializer.iter().map(|tensor| tensor.name.as_str()).collect();
+    let mut ports = vec![];
+    for info in graph.input.iter().filter(|info| !constants.contains(info.name.as_str())) {
+        let Some(shape) = shape(info, &[proto::FLOAT])? else {
+            return Err(NetworkError::tensor(&info.name, "an input without a shape", "a shape"));
+        };
+        let shape: Vec<usize> = shape.into_iter().map(|dim| dim.unwrap_or(1)).collect();
+        if shape.contains(&0) {
+            return Err(NetworkError::tensor(&info.name, shape_text(&shape), "dimensions of 1 or more"));
+        }
+        if shape.len() > 1 && shape[0] != 1 {
+            let expected = "a first dimension (the batch) of 1, or without a number";
+            return Err(NetworkError::tensor(&info.name, shape_text(&shape), expected));
+        }
+        let row = planner.new_row(shape)?;
+        ports.push(Port { name: info.name.clone(), size: row.place.len() });
+        planner.define(&info.name, Value::Computed(row))?;
+    }
+    if ports.is_empty() {
+        return Err(NetworkError::model("no input", "at least one"));
+    }
+    Ok(ports)
+}
+
+/// The dimensions that a file declares, if it does; of the first one it may leave out the number.
+fn shape(info: &ValueInfoProto, allowed: &[i32]) -> Result<Option<Vec<Option<usize>>>, NetworkError> {
+    let wrong = |found: String, expected: &str| Err(NetworkError::tensor(&info.name, found, expected));
+    let Some(tensor) = info.r#type.as_ref().and_then(|r#type| r#type.tensor_type.as_ref()) else {
+        return wrong("something without the type of a tensor".to_owned(), "a tensor of FLOAT numbers");
+    };
+    if !allowed.contains(&tensor.elem_type) {
+        return wrong(data_type_name(tensor.elem_type.into()), "FLOAT numbers");
+    }
+    let Some(shape) = &tensor.shape else { return Ok(None) };
+    if shape.dim.len() > RANK_MAX {
+        return wrong(format!("{} dimensions", shape.dim.len()), &format!("at most {RANK_MAX}"));
+    }
+    let mut dims = vec![];
+    for (i, dim) in shape.dim.iter().enumerate() {
+        match dim.dim_value {
+            Some(number) => match usize::try_from(number) {
+                Ok(number) => dims.push(Some(number)),
+                Err(_) => return wrong(format!("dimension {i} of {number}"), "dimensions of 1 or more"),
+            },
+            None if i == 0 => dims.push(None),
+            None => {
+                let found = format!("dimension {i} without a number (`{}`)", shown(dim.dim_param()));
+                return wrong(found, "a number in each dimension but the first");
+            }
+        }
+    }
+    Ok(Some(dims))
+}
+
+fn constants(planner: &mut Planner, graph: &GraphProto) -> Result<(), NetworkError> {
+    let mut numbers = Some(0_usize);
+    for proto in &graph.initializer {
+        let tensor = Tensor::read(proto, &proto.name)?;
+        numbers = numbers.and_then(|all| all.checked_add(tensor.len()));
+        at_most("numbers of the initializers", numbers, PARAMETERS_MAX)?;
+        planner.define(&proto.name, Value::Constant(tensor))?;
+    }
+    Ok(())
+}
+
+/// Adds what a node does.
+fn add(planner: &mut Planner, proto: &NodeProto, version: i64) -> Result<(), NetworkError> {
+    let known = OPERATORS.iter().find(|operator| operator.name == proto.op_type && is_own(&proto.domain));
+    let Some(operator) = known else {
+        let names: Vec<&str> = OPERATORS.iter().map(|operator| operator.name).collect();
+        let of_domain = if is_own(&proto.domain) { String::new() } else { format!("{}.", shown(&proto.domain)) };
+        return Err(NetworkError::Operator {
+            node: node::name(proto),
+            operator: of_domain + &shown(&proto.op_type),
+            allowed: names.join(", "),
+        });
+    };
+    let node = Node { proto, operator: operator.name, version };
+    node.check_attributes(operator.attributes)?;
+    if !operator.inputs.contains(&proto.input.len()) {
+        let (least, most) = (operator.inputs.start(), operator.inputs.end());
+        return Err(node.wrong(format!("{} inputs", proto.input.len()), format!("{least} to {most}")));
+    }
+    let [output] = proto.output.as_slice() else {
+        return Err(node.wrong(format!("{} outputs", proto.output.len()), "one"));
+    };
+    let value = (operator.plan)(planner, &node)?;
+    planner.define(output, value)
+}
+
+/// The outputs of the graph, and where they lie.
+fn outputs(planner: &mut Planner, graph: &GraphProto) -> Result<Vec<(Port, Range<usize>)>, NetworkError> {
+    let mut names = BTreeSet::new();
+    let mut outputs = vec![];
+    for info in &graph.output {
+        let Row { place, shape: found, .. } = planner.output(&info.name)?;
+        let declared = if info.r#type.is_some() { shape(info, &OUTPUT_TYPES)? } else { None };
+        let fits = |declared: Vec<Option<usize>>| {
+            let same = |(declared, found): (&Option<usize>, &usize)| declared.is_none_or(|dim| dim == *found);
+            declared.len() == found.len() && declared.iter().zip(&found).all(same)
+        };
+        if !declared.is_none_or(fits) {
+            return Err(NetworkError::tensor(&info.name, shape_text(&found), "the shape that the file declares"));
+        }
+        if !names.insert(&info.name) {
+            return Err(NetworkError::tensor(&info.name, "an output named twice", "each output once"));
+        }
+        outputs.push((Port { name: info.name.clone(), size: place.len() }, place));
+    }
+    if outputs.is_empty() {
+        return Err(NetworkError::model("no output", "at least one"));
+    }
+    Ok(outputs)
+}

@@ -1,0 +1,292 @@
+//! Files that are refused, each with its reason.
+
+use super::Network;
+use super::proto::{
+    AttributeProto, DOUBLE, DimensionProto, EXTERNAL, FLOAT, GraphProto, INT64, ModelProto, NodeProto,
+    OperatorSetIdProto, StringStringEntryProto, TensorProto, TensorShapeProto, TensorTypeProto, TypeProto,
+    ValueInfoProto,
+};
+use prost::Message;
+
+/// The codes of `AttributeProto.AttributeType`.
+const OF_FLOAT: i32 = 1;
+const OF_INTEGER: i32 = 2;
+
+fn tensor(name: &str, dims: &[i64], numbers: &[f32]) -> TensorProto {
+    let (name, dims, float_data) = (name.to_owned(), dims.to_vec(), numbers.to_vec());
+    TensorProto { name, dims, data_type: FLOAT, float_data, ..TensorProto::default() }
+}
+
+fn node(operator: &str, inputs: &[&str], output: &str) -> NodeProto {
+    let input = inputs.iter().map(|&name| name.to_owned()).collect();
+    let (name, op_type) = (format!("{output} node"), operator.to_owned());
+    NodeProto { input, output: vec![output.to_owned()], name, op_type, ..NodeProto::default() }
+}
+
+fn integer(name: &str, i: i64) -> AttributeProto {
+    AttributeProto { name: name.to_owned(), i: Some(i), r#type: OF_INTEGER, ..AttributeProto::default() }
+}
+
+/// An input or output; a dimension of 0 is one without a number.
+fn port(name: &str, dims: &[i64]) -> ValueInfoProto {
+    let dim = |dim: &i64| DimensionProto { dim_value: Some(*dim).filter(|dim| *dim != 0), dim_param: None };
+    let shape = Some(TensorShapeProto { dim: dims.iter().map(dim).collect() });
+    let tensor_type = Some(TensorTypeProto { elem_type: FLOAT, shape });
+    ValueInfoProto { name: name.to_owned(), r#type: Some(TypeProto { tensor_type }) }
+}
+
+/// The graph of a model.
+fn graph(model: &mut ModelProto) -> &mut GraphProto {
+    model.graph.as_mut().expect("it has one")
+}
+
+/// Two inputs, three outputs: `y = relu(x w + b)`.
+fn sound() -> ModelProto {
+    let graph = GraphProto {
+        node: vec![node("Gemm", &["x", "w", "b"], "sums"), node("Relu", &["sums"], "y")],
+        initializer: vec![
+            tensor("w", &[2, 3], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+            tensor("b", &[3], &[-100.0, 0.0, 100.0]),
+        ],
+        input: vec![port("x", &[0, 2])],
+        output: vec![port("y", &[0, 3])],
+        ..GraphProto::default()
+    };
+    ModelProto {
+        ir_version: 8,
+        graph: Some(graph),
+        opset_import: vec![OperatorSetIdProto { domain: String::new(), version: 17 }],
+        ..ModelProto::default()
+    }
+}
+
+/// Puts a node between the first layer and the output.
+fn with_node(model: &mut ModelProto, node: NodeProto) {
+    let graph = graph(model);
+    graph.node[1].input[0].clone_from(&node.output[0]);
+    graph.node.insert(1, node);
+}
+
+#[test]
+fn the_sound_model_is_read() {
+    let mut network = Network::read(&sound().encode_to_vec()).expect("it is sound");
+    network.evaluate(&[1.0, 10.0]);
+    assert_eq!(network.output(0), [0.0, 52.0, 163.0]);
+}
+
+type Change = fn(&mut ModelProto);
+
+fn refuse(cases: &[(Change, &str)]) {
+    for (change, want) in cases {
+        let mut model = sound();
+        change(&mut model);
+        match Network::read(&model.encode_to_vec()) {
+            Ok(_) => panic!("read, expected {want:?}"),
+            Err(error) => assert!(error.to_string().contains(want), "{error}\nexpected {want:?}"),
+        }
+    }
+}
+
+#[test]
+fn bytes_that_are_no_model_are_refused() {
+    let sound = sound().encode_to_vec();
+    let too_long = vec![0; (64 << 20) + 1];
+    let cases: [(&[u8], &str); 8] = [
+        (b"", "not an ONNX file, or a damaged one: byte 0: a message without a graph"),
+        (b"\x89HDF\r\n\x1a\n", "not an ONNX file"),
+        (b"PK\x03\x04", "byte 2: a field of wire type 3"),
+        (&sound[..sound.len() - 1], "are left"),
+        (b"\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff\xff", "byte 0: a number without an end"),
+        (b"\x3a\xff\xff\xff\xff\xff\xff\xff\xff\x7f", "a field of 9223372036854775807 bytes where 0 are left"),
+        (b"\x3a\x00", "the model: found no version of the operators"),
+        (&too_long, "bytes of the file: found 67108865, allowed are at most 67108864"),
+    ];
+    for (bytes, want) in cases {
+        let error = Network::read(bytes).expect_err(want).to_string();
+        assert!(error.contains(want), "{error}\nexpected {want:?}");
+    }
+}
+
+#[test]
+fn models_that_cannot_be_evaluated_are_refused() {
+    refuse(&[
+        (
+            |m| m.opset_import.clear(),
+            "the model: found no version of the operators (opset_import), expected version 7 to",
+        ),
+        (|m| m.opset_import[0].version = 6, "the model: found version 6 of the operators, expected version 7 to"),
+        (|m| m.opset_import[0].version = 99, "found version 99"),
+        (|m| graph(m).input.clear(), "the model: found no input, expected at least one"),
+        (|m| graph(m).output.clear(), "the model: found no output, expected at least one"),
+        (|m| graph(m).input[0] = port("x", &[4, 2]), "tensor `x`: found the shape 4 x 2, expected a first dimension"),
+        (|m| graph(m).input[0] = port("x", &[1, 0]), "tensor `x`: found dimension 1 without a number"),
+        (|m| graph(m).input[0] = port("x", &[1, -2]), "tensor `x`: found dimension 1 of -2"),
+        (|m| graph(m).input[0] = port("x", &[1; 9]), "tensor `x`: found 9 dimensions, expected at most 8"),
+        (|m| graph(m).input[0] = port("x", &[1, 1 << 40]), "numbers in an evaluation: found 1099511627776"),
+        (
+            |m| graph(m).input[0] = port("x", &[1, i64::MAX, i64::MAX]),
+            "numbers in an evaluation: found 18446744073709551615",
+        ),
+        (|m| graph(m).input[0].r#type = None, "tensor `x`: found something without the type of a tensor"),
+        (|m| graph(m).output.push(port("z", &[0, 3])), "tensor `z`: found an output that no node has"),
+        (|m| graph(m).output.push(port("y", &[0, 3])), "tensor `y`: found an output named twice"),
+        (
+            |m| graph(m).output[0] = port("y", &[0, 4]),
+            "tensor `y`: found the shape 1 x 3, expected the shape that the file",
+        ),
+        (
+            |m| m.metadata_props = vec![StringStringEntryProto { key: "a\nb".to_owned(), value: String::new() }; 2],
+            "the model: found two entries `a\\nb` in its metadata",
+        ),
+    ]);
+}
+
+#[test]
+fn tensors_that_cannot_be_used_are_refused() {
+    refuse(&[
+        (|m| graph(m).initializer[0].float_data[2] = f32::NAN, "tensor `w`: found a number that is NaN or infinite"),
+        (
+            |m| graph(m).initializer[1].float_data[0] = f32::INFINITY,
+            "tensor `b`: found a number that is NaN or infinite",
+        ),
+        (
+            |m| _ = graph(m).initializer[0].float_data.pop(),
+            "tensor `w`: found 5 numbers, expected 6 for the shape 2 x 3",
+        ),
+        (|m| graph(m).initializer[0].raw_data = Some(vec![0; 25]), "tensor `w`: found 6 numbers, expected 6"),
+        (|m| graph(m).initializer[0].dims[0] = -2, "tensor `w`: found a negative dimension"),
+        (|m| graph(m).initializer[0].dims[0] = i64::MAX, "numbers of tensor `w`: found 18446744073709551615"),
+        (|m| graph(m).initializer[0].dims = vec![1; 9], "tensor `w`: found 9 dimensions, expected at most 8"),
+        (
+            |m| graph(m).initializer[0].data_type = 10,
+            "tensor `w`: found FLOAT16 numbers, expected FLOAT, DOUBLE, INT32",
+        ),
+        (|m| graph(m).initializer[0].data_type = 16, "tensor `w`: found BFLOAT16 numbers"),
+        (|m| graph(m).initializer[0].data_type = 77, "tensor `w`: found element type 77"),
+        (
+            |m| {
+                let doubles = vec![1e39, 1.0, 1.0, 1.0, 1.0, 1.0];
+                let proto = TensorProto { data_type: DOUBLE, double_data: doubles, ..tensor("w", &[2, 3], &[]) };
+                graph(m).initializer[0] = proto;
+            },
+            "tensor `w`: found a number that is NaN or infinite in single precision",
+        ),
+        (
+            |m| graph(m).initializer[0].data_location = EXTERNAL,
+            "tensor `w`: found a reference to another file, expected its numbers: export the model with external_data=False",
+        ),
+        (|m| graph(m).initializer[0].name = "x".repeat(300), "` (Gemm): found the input `w`, which is none of these"),
+        (
+            |m| {
+                let again = graph(m).initializer[0].clone();
+                graph(m).initializer.push(again);
+            },
+            "tensor `w`: found a second definition",
+        ),
+    ]);
+}
+
+#[test]
+fn nodes_that_cannot_be_evaluated_are_refused_by_name() {
+    refuse(&[
+        (
+            |m| graph(m).node[1].op_type = "Conv".to_owned(),
+            "node `y node`: found the operator Conv, expected one of Add,",
+        ),
+        (|m| graph(m).node[1].domain = "com.microsoft".to_owned(), "found the operator com.microsoft.Relu"),
+        (|m| graph(m).node.swap(0, 1), "node `y node` (Relu): found the input `sums`, which is none of these"),
+        (|m| graph(m).node[0].input[0] = "y".to_owned(), "node `sums node` (Gemm): found the input `y`"),
+        (|m| graph(m).node[0].output[0] = "w".to_owned(), "tensor `w`: found a second definition"),
+        (|m| graph(m).node[0].output.push("z".to_owned()), "node `sums node` (Gemm): found 2 outputs, expected one"),
+        (|m| _ = graph(m).node[1].input.pop(), "node `y node` (Relu): found 0 inputs, expected 1 to 1"),
+        (|m| graph(m).node[1].attribute.push(integer("axis", 1)), "(Relu): found the attribute axis, expected none"),
+        (|m| graph(m).node[0].attribute.push(integer("transA", 1)), "(Gemm): found transA = 1, expected transA = 0"),
+        (|m| graph(m).node[0].attribute.push(integer("transB", 1)), "found the shape 1 x 2 before 3 x 2 weights"),
+        (
+            |m| graph(m).node[0].attribute.push(AttributeProto { r#type: OF_FLOAT, ..integer("transB", 1) }),
+            "(Gemm): found the attribute transB of type 1, expected an integer",
+        ),
+        (
+            |m| graph(m).initializer[1] = tensor("b", &[2], &[1.0, 2.0]),
+            "found the shape 2 as input 2, expected one bias, or 3",
+        ),
+        (|m| graph(m).node[0].input[1] = "x".to_owned(), "(Gemm): found input 1 worked out by the network"),
+        (|m| with_node(m, node("Add", &["sums", "x"], "z")), "(Add): found the shape 1 x 3 with the shape 1 x 2"),
+        (|m| with_node(m, node("Concat", &["sums", "x"], "z")), "(Concat): found no axis, expected an axis"),
+        (|m| with_node(m, node("Unsqueeze", &["sums"], "z")), "(Unsqueeze): found no axes"),
+        (
+            |m| with_node(m, node("ArgMax", &["sums"], "z")),
+            "(ArgMax): found axis 0 of the shape 1 x 3, expected the last",
+        ),
+        (
+            |m| with_node(m, node("Clip", &["sums", "b"], "z")),
+            "(Clip): found 3 numbers as input 1, expected a single one",
+        ),
+    ]);
+}
+
+#[test]
+fn arrangements_that_do_not_fit_are_refused() {
+    fn with_integers(model: &mut ModelProto, operator: &str, integers: &[&[i64]]) {
+        let names: Vec<String> = (0..integers.len()).map(|i| format!("integers {i}")).collect();
+        for (name, integers) in names.iter().zip(integers) {
+            let int64_data = integers.to_vec();
+            let dims = &[int64_data.len() as i64];
+            let proto = TensorProto { data_type: INT64, int64_data, ..tensor(name, dims, &[]) };
+            graph(model).initializer.push(proto);
+        }
+        let inputs: Vec<&str> = ["sums"].into_iter().chain(names.iter().map(String::as_str)).collect();
+        with_node(model, node(operator, &inputs, "z"));
+    }
+    refuse(&[
+        (
+            |m| with_integers(m, "Reshape", &[&[1, 4]]),
+            "(Reshape): found the shape 1 x 3 to be (1, 4), expected a shape",
+        ),
+        (|m| with_integers(m, "Reshape", &[&[-1, -1]]), "to be (-1, -1)"),
+        (|m| with_integers(m, "Reshape", &[&[-1, 2]]), "to be (-1, 2)"),
+        (|m| with_integers(m, "Reshape", &[&[0, 0, 0]]), "to be (0, 0, 0)"),
+        (|m| with_integers(m, "Reshape", &[&[i64::MAX, i64::MAX, 4]]), "to be (9223372036854775807"),
+        (|m| with_integers(m, "Reshape", &[&[1; 9]]), "found 9 integers as input 1, expected at most 8"),
+        (|m| with_integers(m, "Squeeze", &[&[1]]), "(Squeeze): found axes of the shape 1 x 3 that are not 1"),
+        (|m| with_integers(m, "Squeeze", &[&[-3]]), "(Squeeze): found axis -3, expected an axis of 2 dimensions"),
+        (|m| with_integers(m, "Unsqueeze", &[&[1, 1]]), "(Unsqueeze): found axis 1 twice"),
+        (|m| with_integers(m, "Unsqueeze", &[&[0, 1, 2, 3, 4, 5, 6]]), "found 9 dimensions of `z`, expected at most 8"),
+        (|m| with_integers(m, "Slice", &[&[0], &[2], &[1], &[-1]]), "(Slice): found step -1 of axis 1, expected 1"),
+        (|m| with_integers(m, "Slice", &[&[2], &[1], &[1]]), "found numbers 2 to 1 of axis 1 of the shape 1 x 3"),
+        (|m| with_integers(m, "Slice", &[&[0], &[2, 3]]), "found 1 starts, 2 ends, 1 axes and 1 steps"),
+        (|m| with_integers(m, "Slice", &[&[i64::MIN], &[i64::MAX], &[i64::MIN]]), "found axis -9223372036854775808"),
+        (
+            |m| with_integers(m, "Slice", &[&[i64::MIN], &[i64::MAX], &[1], &[i64::MAX]]),
+            "the shape that the file declares",
+        ),
+        (|m| with_integers(m, "Add", &[&[1, 2, 3]]), "(Add): found integers as input 1, expected FLOAT numbers"),
+    ]);
+}
+
+/// Ten names for the same weights are ten times the work.
+#[test]
+fn weights_are_counted_wherever_they_are_used() {
+    let mut model = sound();
+    graph(&mut model).initializer.push(tensor("large", &[1000, 1000], &vec![0.5; 1_000_000]));
+    graph(&mut model).initializer.push(tensor("first", &[2, 1000], &vec![0.5; 2_000]));
+    graph(&mut model).node.push(node("MatMul", &["x", "first"], "layer 0"));
+    for i in 0..10 {
+        graph(&mut model).node.push(node("MatMul", &[&format!("layer {i}"), "large"], &format!("layer {}", i + 1)));
+    }
+    let error = Network::read(&model.encode_to_vec()).expect_err("too many").to_string();
+    assert!(error.starts_with("weights: found 10"), "{error}");
+}
+
+#[test]
+fn numbers_that_double_with_each_node_are_refused() {
+    let mut model = sound();
+    let graph = graph(&mut model);
+    for i in 0..40 {
+        let from = if i == 0 { "x".to_owned() } else { format!("double {i}") };
+        let concat = node("Concat", &[&from, &from], &format!("double {}", i + 1));
+        graph.node.push(NodeProto { attribute: vec![integer("axis", 1)], ..concat });
+    }
+    let error = Network::read(&model.encode_to_vec()).expect_err("too many").to_string();
+    assert!(error.starts_with("numbers in an evaluation: found 10"), "{error}");
+}

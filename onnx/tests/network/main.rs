@@ -1,0 +1,144 @@
+//! Networks against ONNX Runtime, and files that were changed.
+//!
+//! `models.py` in this folder says where the models and the numbers come from.
+
+mod change;
+mod perceptron;
+
+use onnx::Network;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// How far from ONNX Runtime a number may be: this much, and this part of it. Both round each sum, in another order.
+const ERROR_MAX: f32 = 1e-5;
+
+const MODELS: [&str; 5] = ["operators", "old_operators", "two_inputs", "sb3_torchscript", "sb3_dynamo"];
+
+#[derive(Deserialize)]
+struct Case {
+    input: Vec<f32>,
+    outputs: BTreeMap<String, Vec<f32>>,
+}
+
+fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/network")
+}
+
+fn file(model: &str) -> Vec<u8> {
+    std::fs::read(folder().join(format!("{model}.onnx"))).expect("the model")
+}
+
+fn cases(model: &str) -> Vec<Case> {
+    let text = std::fs::read(folder().join(format!("{model}.json"))).expect("its numbers");
+    serde_json::from_slice(&text).expect("rows with their outputs")
+}
+
+#[track_caller]
+fn assert_close(got: &[f32], want: &[f32], of: &str) {
+    assert_eq!(got.len(), want.len(), "numbers of {of}");
+    for (i, (got, want)) in got.iter().zip(want).enumerate() {
+        assert!((got - want).abs() <= ERROR_MAX * (1.0 + want.abs()), "{of}, number {i}: {got}, expected {want}");
+    }
+}
+
+#[test]
+fn every_output_is_that_of_onnx_runtime() {
+    for model in MODELS {
+        let mut network = Network::read(&file(model)).unwrap_or_else(|error| panic!("{model}: {error}"));
+        let cases = cases(model);
+        assert!(!cases.is_empty(), "{model}");
+        for (i, case) in cases.iter().enumerate() {
+            network.evaluate(&case.input);
+            assert!(network.is_finite());
+            assert_eq!(network.outputs().len(), case.outputs.len(), "outputs of {model}");
+            for (name, want) in &case.outputs {
+                let got = network.output_named(name).unwrap_or_else(|| panic!("{model}: no {name}"));
+                assert_close(got, want, &format!("{model}, row {i}, {name}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_network_says_what_it_takes_and_gives_and_what_its_file_says() {
+    let network = Network::read(&file("two_inputs")).unwrap();
+    let sizes = |ports: &[onnx::Port]| -> Vec<(String, usize)> {
+        ports.iter().map(|port| (port.name.clone(), port.size)).collect()
+    };
+    assert_eq!(sizes(network.inputs()), [("own".to_owned(), 5), ("boats".to_owned(), 12)]);
+    assert_eq!(sizes(network.outputs()), [("logits".to_owned(), 7), ("value".to_owned(), 1)]);
+    assert_eq!(network.input_size(), 17);
+    let metadata: Vec<(&str, &str)> = network.metadata().iter().map(|(k, v)| (k.as_str(), v.as_str())).collect();
+    assert_eq!(metadata, [("layout", "test"), ("made by", "models.py")]);
+    assert_eq!(network.digest(), xxhash_rust::xxh3::xxh3_128(&file("two_inputs")));
+    assert_eq!(network.output_named("values"), None);
+}
+
+/// The bits that the policy gives for its first row: the same on every machine and with every compiler.
+#[test]
+fn a_network_gives_the_same_bits_everywhere() {
+    let mut digests = vec![];
+    for model in MODELS {
+        let mut network = Network::read(&file(model)).unwrap();
+        let mut bytes = vec![];
+        for case in cases(model) {
+            network.evaluate(&case.input);
+            let numbers = (0..network.outputs().len()).flat_map(|i| network.output(i).to_vec());
+            bytes.extend(numbers.flat_map(f32::to_le_bytes));
+        }
+        digests.push(format!("{model} {:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)));
+    }
+    assert_eq!(digests.join("\n"), include_str!("digests.txt").trim_end());
+}
+
+#[test]
+fn an_evaluation_depends_on_its_row_alone() {
+    for model in MODELS {
+        let cases = cases(model);
+        let mut network = Network::read(&file(model)).unwrap();
+        let fresh = network.clone();
+        let numbers = |network: &Network| -> Vec<u32> {
+            (0..network.outputs().len()).flat_map(|i| network.output(i)).map(|number| number.to_bits()).collect()
+        };
+        for case in &cases {
+            network.evaluate(&case.input);
+            let mut other = fresh.clone();
+            other.evaluate(&case.input);
+            assert_eq!(numbers(&network), numbers(&other), "{model}");
+        }
+    }
+}
+
+#[test]
+fn a_number_that_is_not_finite_comes_out_as_such() {
+    let mut network = Network::read(&file("sb3_dynamo")).unwrap();
+    let mut input = vec![0.0; network.input_size()];
+    network.evaluate(&input);
+    assert!(network.is_finite());
+    input[3] = f32::NAN;
+    network.evaluate(&input);
+    assert!(!network.is_finite());
+    input[3] = 0.0;
+    network.evaluate(&input);
+    assert!(network.is_finite());
+}
+
+#[test]
+fn a_network_can_be_given_to_another_thread() {
+    let mut network = Network::read(&file("sb3_dynamo")).unwrap();
+    let input = vec![0.25; network.input_size()];
+    let mut clone = network.clone();
+    network.evaluate(&input);
+    let thread = std::thread::spawn(move || {
+        clone.evaluate(&input);
+        clone.output(0).to_vec()
+    });
+    assert_eq!(thread.join().unwrap(), network.output(0));
+}
+
+#[test]
+#[should_panic(expected = "numbers of the network's input")]
+fn a_row_of_another_size_is_a_mistake() {
+    Network::read(&file("sb3_dynamo")).unwrap().evaluate(&[0.0; 44]);
+}

@@ -1,0 +1,150 @@
+//! What a training leaves in its folder.
+
+use crate::output_file;
+use crate::plot::training::{Learnt, svg};
+use anyhow::{Context, Result};
+use game::printable;
+use learn::train::{Progress, Trainer};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// What the table of updates begins with.
+const UPDATES: &str = "samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs\n";
+/// What the table of evaluations begins with.
+const EVALUATIONS: &str = "samples,stage,opponent,won,drawn,lost,points,points_against,left_field\n";
+/// What the table of episodes begins with.
+const EPISODES: &str = "samples,stage,seed,team,opponent,points,points_against,steps,cut_off\n";
+
+/// The folder of a training.
+pub(super) struct Files {
+    folder: PathBuf,
+    /// By the file's name.
+    tables: [(&'static str, String); 3],
+    learnt: Vec<Learnt>,
+}
+
+impl Files {
+    /// The folder as it is before a training, or where it is taken up again: what was written of later samples is dropped.
+    pub(super) fn open(folder: &Path, trainer: &Trainer) -> Result<Files> {
+        let (samples, _) = trainer.samples();
+        let tables = [("updates.csv", UPDATES), ("evaluations.csv", EVALUATIONS), ("episodes.csv", EPISODES)];
+        let mut files = Files {
+            folder: folder.to_owned(),
+            tables: tables.map(|(name, head)| (name, head.to_owned())),
+            learnt: vec![],
+        };
+        if samples > 0 {
+            for (name, table) in &mut files.tables {
+                let path = folder.join(*name);
+                let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+                let is_kept = |line: &&str| first_number(line).is_some_and(|number| number <= samples);
+                text.lines().skip(1).filter(is_kept).for_each(|line| {
+                    let _ = writeln!(table, "{line}");
+                });
+            }
+            files.learnt = files.tables[0].1.lines().skip(1).filter_map(learnt).collect();
+        }
+        output_file::make_folder(folder)?;
+        for (name, table) in &files.tables {
+            output_file::write(&folder.join(name), "the training", table)?;
+        }
+        Ok(files)
+    }
+
+    /// The file that a training is taken up again from.
+    pub(super) fn state(folder: &Path) -> PathBuf {
+        folder.join("state.bin")
+    }
+
+    /// Notes an update.
+    pub(super) fn update(&mut self, trainer: &Trainer, progress: &Progress) -> Result<()> {
+        let training = trainer.training();
+        let stage = &training.stage[progress.stage].name;
+        let (samples, statistics) = (progress.samples, progress.statistics);
+        let mut lines = [String::new(), String::new(), String::new()];
+        let _ = writeln!(
+            lines[0],
+            "{samples},{stage},{},{},{},{},{},{},{}",
+            progress.reward,
+            statistics.policy_loss,
+            statistics.value_loss,
+            statistics.entropy,
+            statistics.divergence,
+            statistics.clipped,
+            statistics.epochs
+        );
+        self.learnt.extend(learnt(lines[0].trim_end()));
+        for (name, played) in progress.evaluated.iter().flat_map(|evaluated| &evaluated.played) {
+            let ([won, drawn, lost], [own, theirs]) = (played.results, played.points);
+            let _ = writeln!(
+                lines[1],
+                "{samples},{stage},{name},{won},{drawn},{lost},{own},{theirs},{}",
+                played.left_field
+            );
+        }
+        for (one, opponent) in &progress.finished {
+            let ([own, theirs], side) = (one.standing.score, one.standing.side);
+            let (seed, steps) = (one.standing.seed, one.standing.steps);
+            let _ = writeln!(
+                lines[2],
+                "{samples},{stage},{seed},{},{opponent},{own},{theirs},{steps},{}",
+                side.learner.0, one.cut_off
+            );
+        }
+        for ((name, _), lines) in self.tables.iter().zip(lines) {
+            append(&self.folder.join(name), &lines)?;
+        }
+        if progress.evaluated.is_some() {
+            self.page(trainer)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the state, whole or not at all.
+    pub(super) fn keep_state(&self, state: &[u8]) -> Result<()> {
+        let (path, new) = (Files::state(&self.folder), self.folder.join("state.new"));
+        output_file::write(&new, "the state", state)?;
+        std::fs::rename(&new, &path).with_context(|| format!("cannot write the state to {}", path.display()))
+    }
+
+    /// Writes the policy as it is, and the best one with a strategy that plays it.
+    pub(super) fn models(&self, trainer: &Trainer, is_best: bool) -> Result<()> {
+        let model = trainer.model().context("the policy has become none")?;
+        output_file::write(&self.folder.join("last.onnx"), "the policy", model)?;
+        let Some(best) = trainer.best().filter(|_| is_best) else { return Ok(()) };
+        output_file::write(&self.folder.join("best.onnx"), "the policy", &best.onnx)
+    }
+
+    /// The page with the curves: it needs nothing but itself, and is loaded again by itself.
+    fn page(&self, trainer: &Trainer) -> Result<()> {
+        let (done, all) = trainer.samples();
+        let name = printable::line(&trainer.training().name);
+        let title = format!("{name}: {done} of {all} samples");
+        let curves = svg(&title, &self.learnt, trainer.evaluations())?;
+        let again = if trainer.is_over() { "" } else { "<meta http-equiv=\"refresh\" content=\"10\">" };
+        let page = format!(
+            "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\">{again}<title>{title}</title>\
+             <style>body{{margin:0;display:grid;place-items:center}}svg{{max-width:100%;height:auto}}</style></head>\
+             <body>{curves}</body></html>\n"
+        );
+        output_file::write(&self.folder.join("progress.html"), "the curves", page)
+    }
+}
+
+fn append(path: &Path, text: &str) -> Result<()> {
+    use std::io::Write;
+    let open = || std::fs::OpenOptions::new().append(true).open(path);
+    let written = open().and_then(|mut file| file.write_all(text.as_bytes()));
+    written.with_context(|| format!("cannot write to {}", path.display()))
+}
+
+fn first_number(line: &str) -> Option<u64> {
+    line.split(',').next()?.parse().ok()
+}
+
+/// A line of the table of updates.
+fn learnt(line: &str) -> Option<Learnt> {
+    let cells: Vec<&str> = line.split(',').collect();
+    let number = |i: usize| cells.get(i)?.parse::<f64>().ok();
+    Some(Learnt { samples: first_number(line)?, reward: number(2)?, entropy: number(5)?, value_loss: number(4)? })
+}

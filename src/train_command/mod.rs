@@ -1,0 +1,134 @@
+//! `squall train`: trains a policy as a training file says.
+
+mod files;
+
+use crate::{output_file, screen, stop};
+use anyhow::{Context, Result, bail};
+use files::Files;
+use game::scenario;
+use game::training::Training;
+use indicatif::{ProgressBar, ProgressStyle};
+use learn::train::{Evaluated, Played, Trainer};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+
+/// The largest state, bytes: networks of the largest size, and a league of them.
+const STATE_BYTES_MAX: u64 = 4 << 30;
+
+/// What is trained, and where it goes.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// The training file
+    training: PathBuf,
+    /// The folder for the policy, its curves and all tables [default: runs/train/NAME]
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// Goes on with the training that this folder holds; what comes of it is the same as if it had never stopped
+    #[arg(long)]
+    resume: bool,
+    /// Another seed than the file's: another training
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: Option<u64>,
+    /// Threads; the policy is the same on any number of them [default: one for each core]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZeroUsize>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let mut training = scenario::load_training(&args.training)?;
+    training.seed = args.seed.unwrap_or(training.seed);
+    let folder = args.out.clone().unwrap_or_else(|| Path::new("runs/train").join(&training.name));
+    let jobs = args.jobs.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let stop = stop::on_ctrl_c()?;
+    let mut trainer = begin(args, training, &folder, jobs)?;
+    let mut files = Files::open(&folder, &trainer)?;
+    let bar = bar(&trainer);
+    let size = trainer.model().context("the policy has become none")?.len();
+    say(&bar, &format!("trains {} in {}: a model of {} kB", trainer.training().name, folder.display(), size / 1000));
+    let mut told_stage = None;
+    while !trainer.is_over() {
+        if stop.load(Ordering::Relaxed) {
+            bar.finish_and_clear();
+            let at = files::Files::state(&folder);
+            let from = if at.exists() { "--resume goes on with it" } else { "nothing of it can be resumed yet" };
+            screen::remark(&format!("stopped after {} samples; {from}", trainer.samples().0));
+            return Ok(stop::interrupted());
+        }
+        let progress = trainer.update()?;
+        let stage = &trainer.training().stage[progress.stage].name;
+        if told_stage.replace(progress.stage) != Some(progress.stage) {
+            say(&bar, &format!("stage {stage}"));
+        }
+        bar.set_position(progress.samples);
+        files.update(&trainer, &progress)?;
+        if let Some(evaluated) = &progress.evaluated {
+            files.models(&trainer, progress.is_best)?;
+            say(&bar, &line(evaluated, progress.is_best));
+        }
+        if progress.can_be_resumed {
+            files.keep_state(&trainer.state())?;
+        }
+    }
+    bar.finish_and_clear();
+    finish(&trainer, &folder)
+}
+
+fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<Trainer> {
+    let path = Files::state(folder);
+    if args.resume {
+        let state = game::input_file::read(&path, STATE_BYTES_MAX);
+        let state = state.with_context(|| format!("cannot read {}, which --resume goes on from", path.display()))?;
+        return Trainer::resume(training, jobs, &state).with_context(|| path.display().to_string());
+    }
+    if path.exists() {
+        bail!("{} holds a training: --resume goes on with it, --out puts this one elsewhere", folder.display());
+    }
+    Ok(Trainer::new(training, jobs)?)
+}
+
+fn bar(trainer: &Trainer) -> ProgressBar {
+    let (done, all) = trainer.samples();
+    let style = ProgressStyle::with_template("{wide_bar} {human_pos}/{human_len} samples  {per_sec}  {eta} left");
+    let bar = ProgressBar::new(all).with_style(style.expect("the template is sound").progress_chars("=> "));
+    bar.set_position(done);
+    bar.reset_eta();
+    bar
+}
+
+/// A line above the bar, or by itself where there is none.
+fn say(bar: &ProgressBar, text: &str) {
+    bar.suspend(|| screen::print(&format!("{text}\n")));
+}
+
+/// What an evaluation says, in a line.
+fn line(evaluated: &Evaluated, is_best: bool) -> String {
+    let against = |(name, played): &(String, Played)| {
+        let ([won, drawn, lost], [own, theirs]) = (played.results, played.points);
+        format!("{name} {won}-{drawn}-{lost}, {own:.1} : {theirs:.1}, out {:.1}", played.left_field)
+    };
+    let all: Vec<String> = evaluated.played.iter().map(against).collect();
+    let best = if is_best { "  best" } else { "" };
+    format!(
+        "{:>8.2} M  won {:>3.0} %  {}{best}",
+        evaluated.samples as f64 * 1e-6,
+        100.0 * evaluated.won(),
+        all.join("; ")
+    )
+}
+
+fn finish(trainer: &Trainer, folder: &Path) -> Result<ExitCode> {
+    let Some(best) = trainer.best() else { return Ok(ExitCode::SUCCESS) };
+    let digest = onnx::Network::read(&best.onnx).context("the policy has become none")?.digest();
+    let text = format!(
+        "best after {} samples: won {:.0} %, digest {digest:032x}\n\
+         play it with [behaviour.learned] model = {:?} over strategies/policy.toml\n",
+        best.samples,
+        100.0 * best.won,
+        folder.join("best.onnx").display().to_string()
+    );
+    screen::print(&text);
+    output_file::write(&folder.join("digest.txt"), "the digest", format!("{digest:032x}\n"))?;
+    Ok(ExitCode::SUCCESS)
+}
