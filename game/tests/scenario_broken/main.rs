@@ -156,7 +156,7 @@ fn mates_hear_so_many_variables_and_no_more() {
 #[test]
 fn the_sound_files_are_sound() {
     let sound = sound();
-    assert_eq!(sound.len(), 9);
+    assert_eq!(sound.len(), 10);
     for (path, _) in sound {
         assert_eq!(problems(&path, &[]), [""; 0], "{path}");
     }
