@@ -18,6 +18,7 @@ mod observer;
 mod output_file;
 mod page_args;
 mod plot;
+mod policy_command;
 mod printer;
 mod record_args;
 mod recording_file;
@@ -88,6 +89,8 @@ enum Command {
     Identify(identify_command::Args),
     /// Shows what a strategy file means: its modes, and what may run in each.
     Strategy(strategy_command::Args),
+    /// Tells what a trained policy is, and explains a decision of it in a recorded game.
+    Policy(policy_command::Args),
     /// Checks scenario files and explains every error.
     Check(check_command::Args),
     /// Prints the JSON Schema of a kind of scenario file, for editors.
@@ -120,6 +123,7 @@ fn main() -> ExitCode {
         Command::Trial(args) => trial_command::run(&args),
         Command::Identify(args) => identify_command::run(&args),
         Command::Strategy(args) => strategy_command::run(&args),
+        Command::Policy(args) => policy_command::run(&args),
         Command::Check(args) => check_command::run(&args),
         Command::Schema(args) => check_command::print_schema(&args),
     };

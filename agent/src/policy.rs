@@ -2,9 +2,9 @@
 
 use crate::observation::Observer;
 use crate::situation::Situation;
-use game::action::{Action, ActionSpace, SetPoint};
+use game::SimTime;
+use game::action::{self, Action, ActionSpace, SetPoint};
 use game::policy::PolicyModel;
-use game::{SimTime, math};
 use onnx::Network;
 use thiserror::Error;
 
@@ -82,10 +82,12 @@ impl BoardPolicy {
         if self.model.spec.action.count() != Some(output.len()) {
             return vec![];
         }
-        let most = output.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        let parts: Vec<f64> = output.iter().map(|logit| math::exp(f64::from(logit - most))).collect();
-        let sum: f64 = parts.iter().sum();
-        parts.iter().map(|part| (part / sum) as f32).collect()
+        action::probabilities(output)
+    }
+
+    /// The numbers that it was given last.
+    pub(crate) fn observed(&self) -> &[f32] {
+        self.observer.as_ref().map_or(&[], Observer::observed)
     }
 
     /// The model.

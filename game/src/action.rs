@@ -1,6 +1,7 @@
 //! Actions: what a policy may ask of its boat at a decision.
 
 use crate::angle::wrap_pi;
+use crate::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -31,6 +32,15 @@ impl Action {
     pub fn likeliest(logits: &[f32]) -> Action {
         Action::Discrete((1..logits.len()).fold(0, |best, i| if logits[i] > logits[best] { i } else { best }))
     }
+}
+
+/// The probabilities of the actions with these logits.
+#[must_use]
+pub fn probabilities(logits: &[f32]) -> Vec<f32> {
+    let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let parts: Vec<f64> = logits.iter().map(|logit| math::exp(f64::from(logit - most))).collect();
+    let sum: f64 = parts.iter().sum();
+    parts.iter().map(|part| (part / sum) as f32).collect()
 }
 
 /// A course, rad clockwise from north, and a speed, m/s.

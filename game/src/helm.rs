@@ -112,6 +112,8 @@ pub struct PolicyReport {
     pub fault: Option<String>,
     /// How sure it was of each discrete action; empty where actions are continuous.
     pub probabilities: Vec<f32>,
+    /// The numbers that it was given at its last decision, in the order of its observation space.
+    pub observed: Vec<f32>,
 }
 
 /// A variable and its value.

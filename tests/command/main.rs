@@ -3,6 +3,7 @@
 
 mod log;
 mod memory;
+mod policy;
 mod program;
 mod refusals;
 mod sea;

@@ -41,6 +41,7 @@ impl HelmMind {
                 speed_m_s: chosen.ok().map(|chosen| chosen.speed_m_s),
                 fault: chosen.err().map(|fault| fault.to_string()),
                 probabilities: policy.probabilities(),
+                observed: policy.observed().to_vec(),
             }
         });
         let motion = &self.situation.motion;

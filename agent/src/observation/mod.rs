@@ -45,4 +45,9 @@ impl Observer {
         self.begun = true;
         &self.frames
     }
+
+    /// The observation at the last decision.
+    pub(crate) fn observed(&self) -> &[f32] {
+        &self.frames
+    }
 }

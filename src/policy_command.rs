@@ -1,0 +1,232 @@
+//! `squall policy`: what a trained model is, and why it chose what it chose in a recorded game.
+
+use crate::replay_command::minds::Minds;
+use crate::{helm_text, recording_file, screen};
+use anyhow::{Context, Result, bail};
+use game::action::{self, Action, ActionSpace};
+use game::observation::ObservationSpace;
+use game::policy::{self, PartialSpec, PolicyModel, PolicySpec};
+use game::{Scenario, VehicleId, input_file};
+use onnx::Network;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Which model, and which of its decisions.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// A model, as ONNX
+    file: PathBuf,
+    /// Explains a decision in this recording
+    #[arg(long, value_name = "RECORDING", requires_all = ["vehicle", "at"])]
+    game: Option<PathBuf>,
+    /// Of this boat, which a policy proposes to
+    #[arg(long, value_name = "NAME", requires = "game")]
+    vehicle: Option<String>,
+    /// At this time of the game, seconds
+    #[arg(long, value_name = "SECONDS", requires = "game", allow_negative_numbers = true)]
+    at: Option<f64>,
+    /// Shows so many inputs, those first that the decision depends on most
+    #[arg(long, value_name = "COUNT", default_value_t = 12)]
+    inputs: usize,
+}
+
+/// So many actions are listed.
+const LIKELIEST: usize = 5;
+/// Evaluations that are timed.
+const EVALUATIONS: u32 = 1000;
+/// How the names of our own entries of the metadata begin.
+const OWN: &str = "squall.";
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let bytes = input_file::read(&args.file, policy::BYTES_MAX)
+        .with_context(|| format!("cannot read {}", args.file.display()))?;
+    let name = args.file.display().to_string();
+    let network = Network::read(&bytes).with_context(|| format!("{name} is no model that can be used"))?;
+    let model = PolicyModel::read(&name, &bytes, PartialSpec::default());
+    let spec = model.as_ref().map(|model| model.spec).map_err(ToString::to_string);
+    screen::print(&about(&name, bytes.len(), &network, spec));
+    if let (Some(game), Some(vehicle), Some(at_s)) = (&args.game, &args.vehicle, args.at) {
+        let model = model.with_context(|| format!("{name} does not say what it is given and chooses"))?;
+        screen::print(&explained(&model, game, vehicle, at_s, args.inputs)?);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What a model is.
+fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, String>) -> String {
+    let ports = |ports: &[onnx::Port]| {
+        let ports: Vec<String> = ports.iter().map(|port| format!("{} ({})", port.name, port.size)).collect();
+        ports.join(", ")
+    };
+    let mut text = format!("{name}: {:.0} kB, digest {:032x}\n", bytes as f64 / 1000.0, network.digest());
+    let mut line = |what: &str, value: String| {
+        let _ = writeln!(text, "  {what:<12} {value}");
+    };
+    line("network", format!("{} -> {}", ports(network.inputs()), ports(network.outputs())));
+    line("takes", format!("{:.1} us", evaluation_us(network.clone())));
+    let mut said = vec![];
+    match spec {
+        Ok(spec) => {
+            line("is given", observation_text(spec.observation));
+            line("chooses", action_text(spec.action));
+            line("decides", format!("every {} s", spec.period_s));
+            said.extend(spec.metadata().map(|(key, _)| key));
+        }
+        Err(why) => line("as a policy", format!("a strategy that names it says what it does not: {why}")),
+    }
+    for (key, value) in network.metadata().iter().filter(|(key, _)| !said.contains(key)) {
+        line(key.strip_prefix(OWN).unwrap_or(key), value.clone());
+    }
+    text
+}
+
+/// The median time of an evaluation, us.
+fn evaluation_us(mut network: Network) -> f64 {
+    let input = vec![0.1; network.input_size()];
+    let mut times_us: Vec<f64> = (0..EVALUATIONS)
+        .map(|_| {
+            let begun = Instant::now();
+            network.evaluate(&input);
+            begun.elapsed().as_secs_f64() * 1e6
+        })
+        .collect();
+    times_us.sort_by(f64::total_cmp);
+    times_us[times_us.len() / 2]
+}
+
+fn observation_text(space: ObservationSpace) -> String {
+    match space {
+        ObservationSpace::Pyquaticus => format!("pyquaticus, version {}", space.version()),
+        ObservationSpace::Squall { mates, enemies, frames } => format!(
+            "squall, version {}: {} numbers (mates {mates}, enemies {enemies}, frames {frames})",
+            space.version(),
+            space.size(0, 0)
+        ),
+    }
+}
+
+fn action_text(space: ActionSpace) -> String {
+    match (space, space.count()) {
+        (ActionSpace::Pyquaticus, Some(count)) => format!("pyquaticus: one of {count} turns and speeds"),
+        _ => "continuous: a turn and a speed".to_owned(),
+    }
+}
+
+/// What a model chooses where a boat of a recorded game had to, and which of its inputs that depends on.
+fn explained(model: &PolicyModel, game: &Path, vehicle: &str, at_s: f64, inputs: usize) -> Result<String> {
+    let recording = Arc::new(recording_file::open(game, "look at")?);
+    let scenario = recording.scenario();
+    let of = scenario.vehicle_named(vehicle)?;
+    // Beyond the numbers there are it is a decision that nobody made.
+    let decision = (at_s / scenario.decision().as_s() + 1e-9).floor() as u64;
+    let found = Minds::new(Arc::clone(&recording)).report_of(of, decision).filter(|_| at_s >= 0.0);
+    let Some((report, _)) = found else {
+        bail!("{} has no decision of {vehicle} at {at_s} s", game.display());
+    };
+    let Some(policy) = report.policies.iter().find(|policy| !policy.observed.is_empty()) else {
+        bail!("no policy decides for {vehicle} in {}: its strategy is {}", game.display(), report.program);
+    };
+    if policy.observed.len() != model.input_size() {
+        let (found, expected) = (policy.observed.len(), model.input_size());
+        bail!("the policy of {vehicle} is given {found} numbers, expected {expected}, as {} is", model.name);
+    }
+    let mut text = format!("\n{vehicle} at {:.1} s, mode {}", report.at.as_s(), report.mode);
+    let _ = writeln!(text, "; its helm: {}", helm_text::decision(&report));
+    text += &choices(model, &policy.observed, &names(scenario, of, model.spec.observation), inputs);
+    Ok(text)
+}
+
+/// What the numbers of an observation are called in a game.
+fn names(scenario: &Scenario, of: VehicleId, space: ObservationSpace) -> Vec<String> {
+    let team = scenario.team_of(of);
+    let all = (0..scenario.vehicles.len()).map(VehicleId::at);
+    let mates = all.filter(|other| *other != of && scenario.team_of(*other) == team).count();
+    space.names(mates, scenario.vehicles.len() - 1 - mates)
+}
+
+/// The likeliest actions, and what becomes of the choice without each input.
+fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usize) -> String {
+    let chosen = choice(model, observed);
+    let mut text = String::new();
+    let best = chosen.likeliest().first().copied();
+    for action in chosen.likeliest().into_iter().take(LIKELIEST) {
+        let asks = discrete_text(model.spec.action, action);
+        let _ = writeln!(text, "  {:>5.1} %  {asks}", 100.0 * chosen.numbers[action]);
+    }
+    // An input that is 0 adds nothing to any sum of the network.
+    let mut rows: Vec<(usize, f32, Choice)> = (0..observed.len())
+        .map(|i| {
+            let mut observed = observed.to_vec();
+            observed[i] = 0.0;
+            let without = choice(model, &observed);
+            (i, chosen.distance(&without), without)
+        })
+        .collect();
+    rows.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    rows.truncate(inputs);
+    let what = if best.is_some() { "the first one's probability" } else { "turn and speed" };
+    let _ = writeln!(text, "\n  {what} is {}; with one input at 0:\n", chosen.text(best));
+    let width = rows.iter().map(|row| names[row.0].len()).max().unwrap_or(0).max("input".len());
+    let _ = writeln!(text, "  {:width$}  {:>7}  {:>14}", "input", "value", "then");
+    for (i, _, without) in &rows {
+        let _ = writeln!(text, "  {:width$}  {:>7.3}  {:>14}", names[*i], observed[*i], without.text(best));
+    }
+    text
+}
+
+/// What a model makes of an observation.
+struct Choice {
+    /// The probabilities of discrete actions, or the numbers of a continuous one.
+    numbers: Vec<f32>,
+    is_discrete: bool,
+}
+
+fn choice(model: &PolicyModel, observed: &[f32]) -> Choice {
+    let mut network = model.network();
+    network.evaluate(observed);
+    let output = network.output(model.output());
+    let is_discrete = model.spec.action.count() == Some(output.len());
+    Choice { numbers: if is_discrete { action::probabilities(output) } else { output.to_vec() }, is_discrete }
+}
+
+impl Choice {
+    /// The discrete actions, the likeliest first.
+    fn likeliest(&self) -> Vec<usize> {
+        let mut actions: Vec<usize> = (0..self.numbers.len()).filter(|_| self.is_discrete).collect();
+        actions.sort_by(|a, b| self.numbers[*b].total_cmp(&self.numbers[*a]));
+        actions
+    }
+
+    /// How different another choice is.
+    fn distance(&self, other: &Choice) -> f32 {
+        self.numbers.iter().zip(&other.numbers).map(|(a, b)| (a - b).abs()).sum()
+    }
+
+    /// The probability of one action, or all numbers.
+    fn text(&self, action: Option<usize>) -> String {
+        match action {
+            Some(action) => format!("{:.1} %", 100.0 * self.numbers[action]),
+            None => self.numbers.iter().map(|number| format!("{number:.2}")).collect::<Vec<_>>().join(", "),
+        }
+    }
+}
+
+/// What a discrete action asks of a boat.
+fn discrete_text(space: ActionSpace, action: usize) -> String {
+    let asked = space.set_point(Action::Discrete(action), 0.0, 1.0);
+    let speed = match asked.speed_m_s {
+        0.0 => return "stop".to_owned(),
+        1.0 => "full speed".to_owned(),
+        share => format!("{:.0} % speed", 100.0 * share),
+    };
+    let turn_deg = asked.course_rad.to_degrees().round();
+    match turn_deg {
+        0.0 => format!("{speed}, straight on"),
+        turn if turn.abs() >= 180.0 => format!("{speed}, about"),
+        turn if turn > 0.0 => format!("{speed}, {turn:.0}° to starboard"),
+        turn => format!("{speed}, {:.0}° to port", -turn),
+    }
+}

@@ -1,0 +1,87 @@
+//! `squall policy` from outside: what it tells of a model, and how it explains a choice whose reason is known.
+
+use crate::program::{printed, project, refusal, scenario};
+use game::action::ActionSpace;
+use game::observation::ObservationSpace;
+use game::policy::PolicySpec;
+use onnx::{Activation, Head, Layer, Perceptron};
+use std::collections::BTreeMap;
+
+const SPEC: PolicySpec = PolicySpec {
+    observation: ObservationSpace::Squall { mates: 0, enemies: 1, frames: 1 },
+    action: ActionSpace::Pyquaticus,
+    period_s: 0.5,
+};
+/// Straight on at full speed, the action whose logit is 3 and twice the input [`MATTERS`]; all others' are 0.
+const ACTION: usize = 4;
+const MATTERS: &str = "goal_ahead";
+
+fn model() -> Vec<u8> {
+    let names = SPEC.observation.names(0, 1);
+    let (inputs, outputs) = (names.len(), SPEC.action.outputs());
+    let mut layer = Layer { inputs, outputs, weights: vec![0.0; inputs * outputs], biases: vec![0.0; outputs] };
+    layer.biases[ACTION] = 3.0;
+    layer.weights[ACTION * inputs + names.iter().position(|name| name == MATTERS).unwrap()] = 2.0;
+    let network = Perceptron {
+        input: "observation".to_owned(),
+        normalisation: None,
+        hidden: vec![],
+        activation: Activation::Tanh,
+        heads: vec![Head { name: "logits".to_owned(), layer }],
+        metadata: BTreeMap::from(SPEC.metadata()),
+    };
+    network.onnx().unwrap()
+}
+
+/// The probability of [`ACTION`] in percent.
+fn percent(input: f64) -> f64 {
+    let part = (3.0 + 2.0 * input).exp();
+    100.0 * part / (part + 16.0)
+}
+
+#[test]
+fn a_decision_of_a_recorded_game_is_explained() {
+    let dir = tempfile::tempdir().unwrap();
+    let here = dir.path();
+    std::fs::write(here.join("known.onnx"), model()).unwrap();
+    let base = scenario("strategies/policy.toml");
+    let strategy = format!("base = {base:?}\n[behaviour.learned]\nmodel = \"known.onnx\"\n");
+    std::fs::write(here.join("known.toml"), strategy).unwrap();
+    let game = scenario("games/attack_1v1.toml");
+    printed(here, &["run", &game, "--in-process", "--blue", "known.toml", "--record", "runs"]);
+    let recording = std::fs::read_dir(here.join("runs")).unwrap().next().unwrap().unwrap().path();
+    let recording = recording.display().to_string();
+    let explain = |vehicle: &'static str, at: &'static str| {
+        ["policy", "known.onnx", "--game", &recording, "--vehicle", vehicle, "--at", at, "--inputs", "1"]
+            .map(str::to_owned)
+    };
+    let asked = explain("blue_one", "20.5");
+    let text = printed(here, &asked.each_ref().map(String::as_str));
+    assert!(text.contains("one of 17 turns and speeds") && text.contains("every 0.5 s"), "{text}");
+    let row: Vec<&str> = text.lines().last().unwrap().split_whitespace().collect();
+    let [name, value, then, "%"] = row[..] else { panic!("{text}") };
+    let [value, then] = [value, then].map(|number| number.parse::<f64>().unwrap());
+    assert!(name == MATTERS && value != 0.0 && (then - percent(0.0)).abs() < 0.051, "{text}");
+    let first = text.lines().find(|line| line.contains("full speed, straight on")).unwrap();
+    let is: f64 = first.split_whitespace().next().unwrap().parse().unwrap();
+    assert!((is - percent(value)).abs() < 0.15, "{is} is not {}: {text}", percent(value));
+
+    for (vehicle, at, said) in [
+        ("red_one", "20", "no policy decides for red_one"),
+        ("blue_one", "99999", "no decision of blue_one at 99999 s"),
+        ("blue_one", "-1", "no decision of blue_one at -1 s"),
+        ("nobody", "20", "nobody"),
+    ] {
+        let asked = explain(vehicle, at);
+        let why = refusal(here, &asked.each_ref().map(String::as_str));
+        assert!(why.contains(said), "{why}");
+    }
+}
+
+#[test]
+fn a_model_that_says_nothing_of_itself_is_told_from_a_file_that_is_none() {
+    let text = printed(project(), &["policy", "onnx/tests/network/sb3_dynamo.onnx"]);
+    assert!(text.contains("obs (45) -> logits (17)") && text.contains("a strategy that names it says"), "{text}");
+    let why = refusal(project(), &["policy", "README.md"]);
+    assert!(why.contains("README.md is no model that can be used"), "{why}");
+}
