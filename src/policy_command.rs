@@ -84,6 +84,7 @@ fn about(name: &str, bytes: usize, network: &Network, spec: Result<PolicySpec, S
 }
 
 /// The median time of an evaluation, us.
+#[expect(clippy::disallowed_methods, reason = "it measures this machine")]
 fn evaluation_us(mut network: Network) -> f64 {
     let input = vec![0.1; network.input_size()];
     let mut times_us: Vec<f64> = (0..EVALUATIONS)
