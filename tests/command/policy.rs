@@ -35,7 +35,7 @@ fn model() -> Vec<u8> {
 
 /// The probability of [`ACTION`] in percent.
 fn percent(input: f64) -> f64 {
-    let part = (3.0 + 2.0 * input).exp();
+    let part = game::math::exp(3.0 + 2.0 * input);
     100.0 * part / (part + 16.0)
 }
 
