@@ -14,15 +14,20 @@ fn first() -> Training {
 }
 
 #[test]
-fn a_policy_learns_to_score_against_pav01() {
-    let mut trainer = Trainer::new(first(), 2).unwrap_or_else(|error| panic!("{error}"));
+fn a_policy_learns_to_beat_an_idle_team_and_to_score_against_pav01() {
+    let opponents = ["strategies/pav01.toml", "strategies/idle.toml"].map(file).into();
+    let training = Training { evaluation: Evaluation { every_samples: 100_000, games: 20, opponents }, ..first() };
+    let mut trainer = Trainer::new(training, 2).unwrap_or_else(|error| panic!("{error}"));
     let mut seen = vec![];
     while trainer.samples().0 < 310_000 {
         let progress = trainer.update().unwrap_or_else(|error| panic!("{error}"));
         seen.extend(progress.evaluated);
     }
     let points: Vec<f64> = seen.iter().map(|evaluated| evaluated.played[0].1.points[0]).collect();
-    assert!(points.last().is_some_and(|points| *points > 3.0), "points a game: {points:?}");
+    let [first, .., last] = points[..] else { panic!("{points:?}") };
+    assert!(last > 3.0 && last > first, "points a game against pav01: {points:?}");
+    let idle = seen.last().map_or(0.0, |evaluated| evaluated.played[1].1.won());
+    assert!(idle >= 0.9, "won {idle} of the games against an idle team");
 }
 
 /// Two short stages with everything in them: a helm, a strategy, past policies.

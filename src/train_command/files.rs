@@ -1,5 +1,6 @@
 //! What a training leaves in its folder.
 
+use super::events::Events;
 use crate::output_file;
 use crate::plot::training::{Learnt, svg};
 use anyhow::{Context, Result};
@@ -20,6 +21,7 @@ pub(super) struct Files {
     folder: PathBuf,
     /// By the file's name.
     tables: [(&'static str, String); 3],
+    events: Events,
     learnt: Vec<Learnt>,
 }
 
@@ -28,15 +30,19 @@ impl Files {
     pub(super) fn open(folder: &Path, trainer: &Trainer) -> Result<Files> {
         let (samples, _) = trainer.samples();
         let tables = [("updates.csv", UPDATES), ("evaluations.csv", EVALUATIONS), ("episodes.csv", EPISODES)];
+        output_file::make_folder(folder)?;
         let mut files = Files {
             folder: folder.to_owned(),
             tables: tables.map(|(name, head)| (name, head.to_owned())),
+            events: Events::open(folder, samples)?,
             learnt: vec![],
         };
         if samples > 0 {
             for (name, table) in &mut files.tables {
                 let path = folder.join(*name);
                 let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+                // A line may have been cut off as it was written.
+                let text = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
                 let is_kept = |line: &&str| first_number(line).is_some_and(|number| number <= samples);
                 text.lines().skip(1).filter(is_kept).for_each(|line| {
                     let _ = writeln!(table, "{line}");
@@ -44,7 +50,6 @@ impl Files {
             }
             files.learnt = files.tables[0].1.lines().skip(1).filter_map(learnt).collect();
         }
-        output_file::make_folder(folder)?;
         for (name, table) in &files.tables {
             output_file::write(&folder.join(name), "the training", table)?;
         }
@@ -94,6 +99,7 @@ impl Files {
         for ((name, _), lines) in self.tables.iter().zip(lines) {
             append(&self.folder.join(name), &lines)?;
         }
+        self.events.update(progress)?;
         if progress.evaluated.is_some() {
             self.page(trainer)?;
         }
@@ -131,10 +137,10 @@ impl Files {
     }
 }
 
-fn append(path: &Path, text: &str) -> Result<()> {
+pub(super) fn append(path: &Path, bytes: impl AsRef<[u8]>) -> Result<()> {
     use std::io::Write;
     let open = || std::fs::OpenOptions::new().append(true).open(path);
-    let written = open().and_then(|mut file| file.write_all(text.as_bytes()));
+    let written = open().and_then(|mut file| file.write_all(bytes.as_ref()));
     written.with_context(|| format!("cannot write to {}", path.display()))
 }
 

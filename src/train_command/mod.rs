@@ -1,5 +1,6 @@
 //! `squall train`: trains a policy as a training file says.
 
+mod events;
 mod files;
 
 use crate::{output_file, screen, stop};
@@ -28,6 +29,9 @@ pub(crate) struct Args {
     /// Goes on with the training that this folder holds; what comes of it is the same as if it had never stopped
     #[arg(long)]
     resume: bool,
+    /// Stops after so many samples, as Ctrl-C does
+    #[arg(long, value_name = "SAMPLES")]
+    until: Option<u64>,
     /// Another seed than the file's: another training
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: Option<u64>,
@@ -49,12 +53,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     say(&bar, &format!("trains {} in {}: a model of {} kB", trainer.training().name, folder.display(), size / 1000));
     let mut told_stage = None;
     while !trainer.is_over() {
-        if stop.load(Ordering::Relaxed) {
+        let is_enough = args.until.is_some_and(|until| trainer.samples().0 >= until);
+        if is_enough || stop.load(Ordering::Relaxed) {
             bar.finish_and_clear();
             let at = files::Files::state(&folder);
             let from = if at.exists() { "--resume goes on with it" } else { "nothing of it can be resumed yet" };
             screen::remark(&format!("stopped after {} samples; {from}", trainer.samples().0));
-            return Ok(stop::interrupted());
+            return Ok(if is_enough { ExitCode::SUCCESS } else { stop::interrupted() });
         }
         let progress = trainer.update()?;
         let stage = &trainer.training().stage[progress.stage].name;

@@ -9,5 +9,6 @@ mod refusals;
 mod sea;
 mod strategy;
 mod tournament;
+mod train;
 mod trial;
 mod tutorial;

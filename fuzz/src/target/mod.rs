@@ -3,6 +3,7 @@
 mod address;
 mod keys;
 mod message;
+mod model;
 mod nmea;
 mod page;
 mod recording;
@@ -31,10 +32,11 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
     address::TARGET,
     keys::TARGET,
     message::TARGET,
+    model::TARGET,
     nmea::TARGET,
     page::TARGET,
     recording::TARGET,

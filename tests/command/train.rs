@@ -1,0 +1,89 @@
+//! `squall train` from outside: the same bytes on any number of threads and resumed, and tables that tell all of it.
+
+use crate::program::{printed, refusal, scenario, squall};
+use std::path::Path;
+
+/// Two short stages.
+fn training() -> String {
+    let [game, rewards, idle, pav01] =
+        ["games/pav01_afloat.toml", "rewards/bold.toml", "strategies/idle.toml", "strategies/pav01.toml"].map(scenario);
+    let stage = |name: &str, opponent: &str, samples: u32| {
+        format!(
+            "[[stage]]\nname = {name:?}\ngame = {game:?}\nrewards = {rewards:?}\nopponent = [{{ strategy = {opponent:?} }}]\n\
+             strategies = 1\npast_selves = 1\nstarts = 8\nepisode_max_s = 20\nsamples = {samples}\n"
+        )
+    };
+    format!(
+        "observation = {{ kind = \"squall\", mates = 1, enemies = 2 }}\ngames = 8\n[network]\nhidden = [16]\n\
+         [ppo]\nsteps = 32\nminibatch = 256\n[league]\nevery_samples = 1000\nmost = 2\n\
+         [evaluation]\nevery_samples = 3000\ngames = 2\nopponents = [{pav01:?}]\n{}{}",
+        stage("alone", &idle, 4_000),
+        stage("against", &pav01, 8_000)
+    )
+}
+
+fn read(folder: &Path, name: &str) -> Vec<u8> {
+    std::fs::read(folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+#[test]
+fn a_training_leaves_the_same_files_on_any_number_of_threads() {
+    let dir = tempfile::tempdir().unwrap();
+    let here = dir.path();
+    std::fs::write(here.join("short.toml"), training()).unwrap();
+    let told = printed(here, &["train", "short.toml", "--out", "one", "--jobs", "1"]);
+    assert!(told.contains("stage alone") && told.contains("stage against") && told.contains("best after"), "{told}");
+    printed(here, &["train", "short.toml", "--out", "three", "--jobs", "3"]);
+    let [one, three] = ["one", "three"].map(|folder| here.join(folder));
+    for name in ["best.onnx", "last.onnx", "state.bin", "updates.csv", "evaluations.csv", "episodes.csv", "digest.txt"]
+    {
+        assert!(read(&one, name) == read(&three, name), "{name} depends on the number of threads");
+    }
+
+    // All samples are in the table, and all updates in the events.
+    let updates = String::from_utf8(read(&one, "updates.csv")).unwrap();
+    let last: u64 = updates.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
+    assert!((12_000..14_000).contains(&last), "{updates}");
+    let (events, count) = (read(&one, "events.out.tfevents.squall"), updates.lines().count() - 1);
+    let rewards = events.windows(15).filter(|window| window == b"learning/reward").count();
+    assert_eq!(rewards, count);
+    assert!(events.windows(9).any(|window| window == b"won/pav01"));
+
+    // A training that is over is not begun again, and what it left is a policy.
+    let why = refusal(here, &["train", "short.toml", "--out", "one"]);
+    assert!(why.contains("--resume goes on with it"), "{why}");
+    let text = printed(here, &["policy", "one/best.onnx"]);
+    assert!(text.contains("squall, version") && text.contains("logits (17)"), "{text}");
+}
+
+#[test]
+fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
+    let dir = tempfile::tempdir().unwrap();
+    let here = dir.path();
+    std::fs::write(here.join("short.toml"), training()).unwrap();
+    printed(here, &["train", "short.toml", "--out", "whole"]);
+    // A power cut after the first state: later lines and events are in the files, the state is not.
+    let why = refusal(here, &["train", "short.toml", "--out", "cut", "--resume"]);
+    assert!(why.contains("state.bin"), "{why}");
+    let (mut child, cut) = (
+        crate::program::command(here, &["train", "short.toml", "--out", "cut"])
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap(),
+        here.join("cut"),
+    );
+    while !cut.join("state.bin").exists() && child.try_wait().unwrap().is_none() {
+        std::thread::yield_now();
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(squall(here, &["train", "short.toml", "--out", "cut", "--resume"]).status.success());
+    for name in ["best.onnx", "last.onnx", "state.bin", "updates.csv", "evaluations.csv", "episodes.csv"] {
+        assert!(read(&here.join("whole"), name) == read(&cut, name), "{name} is another after --resume");
+    }
+    let rewards = |folder: &str| {
+        let events = read(&here.join(folder), "events.out.tfevents.squall");
+        events.windows(15).filter(|window| window == b"learning/reward").count()
+    };
+    assert_eq!(rewards("cut"), rewards("whole"));
+}
