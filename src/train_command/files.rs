@@ -22,12 +22,14 @@ pub(super) struct Files {
     /// By the file's name.
     tables: [(&'static str, String); 3],
     events: Events,
+    /// The strategy through whose helm the policy plays, if there is one.
+    base: Option<PathBuf>,
     learnt: Vec<Learnt>,
 }
 
 impl Files {
     /// The folder as it is before a training, or where it is taken up again: what was written of later samples is dropped.
-    pub(super) fn open(folder: &Path, trainer: &Trainer) -> Result<Files> {
+    pub(super) fn open(folder: &Path, base: &Path, trainer: &Trainer) -> Result<Files> {
         let (samples, _) = trainer.samples();
         let tables = [("updates.csv", UPDATES), ("evaluations.csv", EVALUATIONS), ("episodes.csv", EPISODES)];
         output_file::make_folder(folder)?;
@@ -35,6 +37,7 @@ impl Files {
             folder: folder.to_owned(),
             tables: tables.map(|(name, head)| (name, head.to_owned())),
             events: Events::open(folder, samples)?,
+            base: std::fs::canonicalize(base).ok(),
             learnt: vec![],
         };
         if samples > 0 {
@@ -118,7 +121,14 @@ impl Files {
         let model = trainer.model().context("the policy has become none")?;
         output_file::write(&self.folder.join("last.onnx"), "the policy", model)?;
         let Some(best) = trainer.best().filter(|_| is_best) else { return Ok(()) };
-        output_file::write(&self.folder.join("best.onnx"), "the policy", &best.onnx)
+        output_file::write(&self.folder.join("best.onnx"), "the policy", &best.onnx)?;
+        let Some(base) = &self.base else { return Ok(()) };
+        let strategy = format!(
+            "# Plays the policy of the training {}.\nbase = {:?}\n\n[behaviour.learned]\nmodel = \"best.onnx\"\n",
+            printable::line(&trainer.training().name),
+            base.display().to_string()
+        );
+        output_file::write(&self.folder.join("best.toml"), "the strategy", strategy)
     }
 
     /// The page with the curves: it needs nothing but itself, and is loaded again by itself.

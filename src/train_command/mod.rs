@@ -6,7 +6,7 @@ mod files;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result, bail};
 use files::Files;
-use game::scenario;
+use game::scenario::{self, Kind};
 use game::training::Training;
 use indicatif::{ProgressBar, ProgressStyle};
 use learn::train::{Evaluated, Played, Trainer};
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let jobs = args.jobs.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let stop = stop::on_ctrl_c()?;
     let mut trainer = begin(args, training, &folder, jobs)?;
-    let mut files = Files::open(&folder, &trainer)?;
+    let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;
     let bar = bar(&trainer);
     let size = trainer.model().context("the policy has become none")?.len();
     say(&bar, &format!("trains {} in {}: a model of {} kB", trainer.training().name, folder.display(), size / 1000));
@@ -78,6 +78,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     bar.finish_and_clear();
     finish(&trainer, &folder)
+}
+
+/// The strategy through whose helm the policy learns last, or that stands beside the training.
+fn base(file: &Path, training: &Training) -> PathBuf {
+    let helm = training.stage.iter().rev().find_map(|stage| stage.helm.clone());
+    let beside = || file.parent().unwrap_or(Path::new("")).join("..").join(Kind::Strategy.folder()).join("policy.toml");
+    helm.unwrap_or_else(beside)
 }
 
 fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<Trainer> {
@@ -126,13 +133,12 @@ fn line(evaluated: &Evaluated, is_best: bool) -> String {
 fn finish(trainer: &Trainer, folder: &Path) -> Result<ExitCode> {
     let Some(best) = trainer.best() else { return Ok(ExitCode::SUCCESS) };
     let digest = onnx::Network::read(&best.onnx).context("the policy has become none")?.digest();
-    let text = format!(
-        "best after {} samples: won {:.0} %, digest {digest:032x}\n\
-         play it with [behaviour.learned] model = {:?} over strategies/policy.toml\n",
-        best.samples,
-        100.0 * best.won,
-        folder.join("best.onnx").display().to_string()
-    );
+    let (samples, won) = (best.samples, 100.0 * best.won);
+    let mut text = format!("best after {samples} samples: won {won:.0} %, digest {digest:032x}\n");
+    let strategy = folder.join("best.toml");
+    if strategy.exists() {
+        text += &format!("to watch it: squall run GAME --blue {} --view\n", strategy.display());
+    }
     screen::print(&text);
     output_file::write(&folder.join("digest.txt"), "the digest", format!("{digest:032x}\n"))?;
     Ok(ExitCode::SUCCESS)

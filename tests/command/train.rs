@@ -7,6 +7,7 @@ use std::path::Path;
 fn training() -> String {
     let [game, rewards, idle, pav01] =
         ["games/pav01_afloat.toml", "rewards/bold.toml", "strategies/idle.toml", "strategies/pav01.toml"].map(scenario);
+    let policy = scenario("strategies/policy.toml");
     let stage = |name: &str, opponent: &str, samples: u32| {
         format!(
             "[[stage]]\nname = {name:?}\ngame = {game:?}\nrewards = {rewards:?}\nopponent = [{{ strategy = {opponent:?} }}]\n\
@@ -18,7 +19,7 @@ fn training() -> String {
          [ppo]\nsteps = 32\nminibatch = 256\n[league]\nevery_samples = 1000\nmost = 2\n\
          [evaluation]\nevery_samples = 3000\ngames = 2\nopponents = [{pav01:?}]\n{}{}",
         stage("alone", &idle, 4_000),
-        stage("against", &pav01, 8_000)
+        stage("against", &pav01, 8_000) + &format!("helm = {policy:?}\n")
     )
 }
 
@@ -54,6 +55,9 @@ fn a_training_leaves_the_same_files_on_any_number_of_threads() {
     assert!(why.contains("--resume goes on with it"), "{why}");
     let text = printed(here, &["policy", "one/best.onnx"]);
     assert!(text.contains("squall, version") && text.contains("logits (17)"), "{text}");
+    let game = scenario("games/surveyor_2v2.toml");
+    let result = printed(here, &["run", &game, "--in-process", "--blue", "one/best.toml", "--no-record"]);
+    assert!(result.contains("after 600 s"), "{result}");
 }
 
 #[test]
