@@ -1,7 +1,10 @@
 //! A helm report as text: a page, or one line.
 
 use game::Scenario;
-use game::helm::{FunctionReport, HelmReport, RunState};
+use game::helm::{FunctionReport, HelmReport, PolicyReport, RunState};
+
+/// So many actions of a policy are listed, the likeliest ones.
+const ACTIONS: usize = 4;
 
 /// A page: mode, decision, and what every behaviour wants.
 pub(crate) fn page(scenario: &Scenario, report: &HelmReport) -> String {
@@ -16,6 +19,12 @@ pub(crate) fn page(scenario: &Scenario, report: &HelmReport) -> String {
             format!("{what:<w$}  {kind:<k$}  {state:<8}  {weight:>7}  {utility:>7}", w = widths[0], k = widths[1]);
         text += &format!("{}\n", line.trim_end());
     }
+    for policy in &report.policies {
+        text += &format!("\n{} asks {}: {}\n", policy.behaviour, policy.model, proposal(policy));
+        for (asked, share) in policy.words(scenario, report.vehicle).actions.iter().take(ACTIONS) {
+            text += &format!("{:>6.1} %  {asked}\n", 100.0 * share);
+        }
+    }
     if !report.variables.is_empty() {
         let width = report.variables.iter().map(|variable| variable.name.len()).max().unwrap_or(0);
         text.push('\n');
@@ -24,6 +33,15 @@ pub(crate) fn page(scenario: &Scenario, report: &HelmReport) -> String {
         }
     }
     text
+}
+
+/// What a policy proposes, or why it does not.
+fn proposal(policy: &PolicyReport) -> String {
+    match (policy.course_deg, policy.speed_m_s, &policy.fault) {
+        (Some(course_deg), Some(speed_m_s), _) => format!("course {course_deg:.0}°, {speed_m_s:.2} m/s"),
+        (_, _, Some(why)) => why.clone(),
+        _ => "nothing".to_owned(),
+    }
 }
 
 /// One line: mode, decision, and its utility to each function.

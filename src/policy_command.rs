@@ -3,10 +3,10 @@
 use crate::replay_command::minds::Minds;
 use crate::{helm_text, recording_file, screen};
 use anyhow::{Context, Result, bail};
-use game::action::{self, Action, ActionSpace};
+use game::action::{self, ActionSpace};
+use game::input_file;
 use game::observation::ObservationSpace;
 use game::policy::{self, PartialSpec, PolicyModel, PolicySpec};
-use game::{Scenario, VehicleId, input_file};
 use onnx::Network;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -134,18 +134,12 @@ fn explained(model: &PolicyModel, game: &Path, vehicle: &str, at_s: f64, inputs:
         let (found, expected) = (policy.observed.len(), model.input_size());
         bail!("the policy of {vehicle} is given {found} numbers, expected {expected}, as {} is", model.name);
     }
+    let (mates, enemies) = scenario.sides_of(of);
+    let names = model.spec.observation.names(mates, enemies);
     let mut text = format!("\n{vehicle} at {:.1} s, mode {}", report.at.as_s(), report.mode);
     let _ = writeln!(text, "; its helm: {}", helm_text::decision(&report));
-    text += &choices(model, &policy.observed, &names(scenario, of, model.spec.observation), inputs);
+    text += &choices(model, &policy.observed, &names, inputs);
     Ok(text)
-}
-
-/// What the numbers of an observation are called in a game.
-fn names(scenario: &Scenario, of: VehicleId, space: ObservationSpace) -> Vec<String> {
-    let team = scenario.team_of(of);
-    let all = (0..scenario.vehicles.len()).map(VehicleId::at);
-    let mates = all.filter(|other| *other != of && scenario.team_of(*other) == team).count();
-    space.names(mates, scenario.vehicles.len() - 1 - mates)
 }
 
 /// The likeliest actions, and what becomes of the choice without each input.
@@ -154,7 +148,7 @@ fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usiz
     let mut text = String::new();
     let best = chosen.likeliest().first().copied();
     for action in chosen.likeliest().into_iter().take(LIKELIEST) {
-        let asks = discrete_text(model.spec.action, action);
+        let asks = model.spec.action.words(action);
         let _ = writeln!(text, "  {:>5.1} %  {asks}", 100.0 * chosen.numbers[action]);
     }
     // An input that is 0 adds nothing to any sum of the network.
@@ -212,22 +206,5 @@ impl Choice {
             Some(action) => format!("{:.1} %", 100.0 * self.numbers[action]),
             None => self.numbers.iter().map(|number| format!("{number:.2}")).collect::<Vec<_>>().join(", "),
         }
-    }
-}
-
-/// What a discrete action asks of a boat.
-fn discrete_text(space: ActionSpace, action: usize) -> String {
-    let asked = space.set_point(Action::Discrete(action), 0.0, 1.0);
-    let speed = match asked.speed_m_s {
-        0.0 => return "stop".to_owned(),
-        1.0 => "full speed".to_owned(),
-        share => format!("{:.0} % speed", 100.0 * share),
-    };
-    let turn_deg = asked.course_rad.to_degrees().round();
-    match turn_deg {
-        0.0 => format!("{speed}, straight on"),
-        turn if turn.abs() >= 180.0 => format!("{speed}, about"),
-        turn if turn > 0.0 => format!("{speed}, {turn:.0}° to starboard"),
-        turn => format!("{speed}, {:.0}° to port", -turn),
     }
 }

@@ -34,6 +34,25 @@ impl Action {
     }
 }
 
+impl ActionSpace {
+    /// What a discrete action asks of a boat: "50 % speed, 45° to port".
+    #[must_use]
+    pub fn words(self, action: usize) -> String {
+        let asked = self.set_point(Action::Discrete(action), 0.0, 1.0);
+        let speed = match asked.speed_m_s {
+            0.0 => return "stop".to_owned(),
+            1.0 => "full speed".to_owned(),
+            share => format!("{:.0} % speed", 100.0 * share),
+        };
+        match asked.course_rad.to_degrees().round() {
+            0.0 => format!("{speed}, straight on"),
+            turn_deg if turn_deg.abs() >= 180.0 => format!("{speed}, about"),
+            turn_deg if turn_deg > 0.0 => format!("{speed}, {turn_deg:.0}° to starboard"),
+            turn_deg => format!("{speed}, {:.0}° to port", -turn_deg),
+        }
+    }
+}
+
 /// The probabilities of the actions with these logits.
 #[must_use]
 pub fn probabilities(logits: &[f32]) -> Vec<f32> {
@@ -107,6 +126,16 @@ mod tests {
             let off_rad = crate::angle::wrap_pi(got.course_rad - 1.0 - f64::to_radians(turn_deg));
             assert!(off_rad.abs() < 1e-12 && (got.speed_m_s - speed_m_s).abs() < 1e-12, "{i}: {got:?}");
         }
+    }
+
+    #[test]
+    fn an_action_is_told_in_words() {
+        let words = |action| ActionSpace::Pyquaticus.words(action);
+        assert_eq!(
+            [words(0), words(4), words(9)],
+            ["full speed, about", "full speed, straight on", "50 % speed, 135° to starboard"]
+        );
+        assert_eq!([words(6), words(16), words(99)], ["full speed, 90° to port", "stop", "stop"]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What a helm tells of itself to those who ask: its mode, its behaviours, and why it steers as it does.
 
 use crate::id::VehicleId;
+use crate::scenario::Scenario;
 use crate::time::SimTime;
 use serde::{Deserialize, Serialize};
 
@@ -114,6 +115,32 @@ pub struct PolicyReport {
     pub probabilities: Vec<f32>,
     /// The numbers that it was given at its last decision, in the order of its observation space.
     pub observed: Vec<f32>,
+}
+
+impl PolicyReport {
+    /// What its actions ask for with how much certainty, the likeliest first, and what its numbers are called; nothing where the scenario
+    /// does not have the model.
+    #[must_use]
+    pub fn words(&self, scenario: &Scenario, vehicle: VehicleId) -> PolicyWords {
+        let Some(model) = scenario.strategy_of(vehicle).models().find(|model| model.name == self.model) else {
+            return PolicyWords::default();
+        };
+        let mut actions: Vec<(String, f32)> =
+            self.probabilities.iter().enumerate().map(|(i, share)| (model.spec.action.words(i), *share)).collect();
+        actions.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let (mates, enemies) = scenario.sides_of(vehicle);
+        let names = model.spec.observation.names(mates, enemies);
+        PolicyWords { actions, observed: names.into_iter().zip(self.observed.iter().copied()).collect() }
+    }
+}
+
+/// The numbers of a policy's decision with what they are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PolicyWords {
+    /// What discrete actions ask for, and how sure the policy was of each.
+    pub actions: Vec<(String, f32)>,
+    /// What it was given.
+    pub observed: Vec<(String, f32)>,
 }
 
 /// A variable and its value.

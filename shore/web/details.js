@@ -43,11 +43,17 @@ export class Details {
     this.key = make('p', 'rose-key faint', 'Course around, speed outward. Bright is wanted. Ring: chosen. Diamond: the boat now.');
     this.behaviours = make('div', 'behaviours');
     this.behaviours.id = 'behaviours';
+    this.policy = make('dl', 'facts');
+    this.policy.id = 'policy';
+    this.observed = make('dl', 'facts');
+    this.observed.id = 'observed';
+    this.observedBox = make('details', '', '', make('summary', '', 'What it was given'), this.observed);
+    this.policyBox = make('div', '', '', make('h3', '', 'Policy'), this.policy, this.observedBox);
     this.variables = make('dl', 'facts');
     this.variables.id = 'variables';
     this.gateway = make('dl', 'facts');
     this.gateway.id = 'gateway';
-    this.helmBox = make('div', '', '', make('h3', '', 'Why it steers so'), this.chooser, this.canvas, this.key,
+    this.helmBox = make('div', '', '', make('h3', '', 'Why it steers so'), this.chooser, this.canvas, this.key, this.policyBox,
       this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
     this.gatewayBox = make('div', '', '', make('h3', '', 'Gateway'), this.gateway);
     this.body = make('div', 'boat', '', make('div', 'boat-head', '', this.name, this.about), buttons, this.steeringNote, this.matter,
@@ -182,9 +188,23 @@ export class Details {
     this.canvas.setAttribute('aria-label',
       `Rose: chosen course ${bearing(report.course_deg)}, speed ${number(report.speed_m_s, 1)} metres a second`);
     this.tellBehaviours(report);
+    this.tellPolicies(report.policies ?? []);
     const variables = (report.variables ?? []).map((each) => [plain(each.name), String(each.value)]);
     show(this.variableHead, variables.length > 0);
     this.tellPairs(this.variables, variables);
+  }
+
+  tellPolicies(policies) {
+    const pairs = policies.flatMap((policy) => [
+      [plain(policy.behaviour), policy.model],
+      ['Proposes', policy.fault ?? `${bearing(policy.course_deg)} at ${number(policy.speed_m_s, 2, 'm/s')}`],
+      ...(policy.actions ?? []).map(([asked, share]) => [`${number(100 * share, 0)}\u00a0%`, asked]),
+    ]);
+    const observed = policies.flatMap((policy) => policy.observed ?? []);
+    show(this.policyBox, policies.length > 0);
+    show(this.observedBox, observed.length > 0);
+    this.tellPairs(this.policy, pairs);
+    if (this.observedBox.open) this.tellPairs(this.observed, observed.map(([name, value]) => [plain(name), number(value, 3)]));
   }
 
   computedWords(helm) {

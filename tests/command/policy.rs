@@ -2,8 +2,10 @@
 
 use crate::program::{printed, project, refusal, scenario};
 use game::action::ActionSpace;
+use game::helm::{PolicyReport, PolicyWords};
 use game::observation::ObservationSpace;
 use game::policy::PolicySpec;
+use game::scenario::Overrides;
 use onnx::{Activation, Head, Layer, Perceptron};
 use std::collections::BTreeMap;
 
@@ -76,6 +78,36 @@ fn a_decision_of_a_recorded_game_is_explained() {
         let why = refusal(here, &asked.each_ref().map(String::as_str));
         assert!(why.contains(said), "{why}");
     }
+}
+
+#[test]
+fn what_a_helm_reports_of_a_policy_is_told_in_words() {
+    let dir = tempfile::tempdir().unwrap();
+    let here = dir.path();
+    std::fs::write(here.join("known.onnx"), model()).unwrap();
+    let base = scenario("strategies/policy.toml");
+    std::fs::write(here.join("known.toml"), format!("base = {base:?}\n[behaviour.learned]\nmodel = \"known.onnx\"\n"))
+        .unwrap();
+    let strategies = BTreeMap::from([("blue".to_owned(), here.join("known.toml"))]);
+    let overrides = Overrides { strategies, ..Overrides::default() };
+    let game = game::scenario::load_with(scenario("games/attack_1v1.toml").as_ref(), &overrides).unwrap();
+    let blue = game.vehicle_named("blue_one").unwrap();
+    let names = SPEC.observation.names(0, 1);
+    let observed: Vec<f32> = (0..names.len()).map(|i| i as f32).collect();
+    let mut probabilities = vec![0.0; 17];
+    (probabilities[ACTION], probabilities[0]) = (0.75, 0.25);
+    let model = game.strategy_of(blue).models().next().unwrap().name.clone();
+    let (course_deg, speed_m_s, fault) = (Some(0.0), Some(1.0), None);
+    let behaviour = "learned".to_owned();
+    let mut report = PolicyReport { behaviour, model, course_deg, speed_m_s, fault, probabilities, observed };
+    let words = report.words(&game, blue);
+    let [first, second] = [0, 1].map(|i: usize| (words.actions[i].0.as_str(), words.actions[i].1));
+    assert_eq!((first, second), (("full speed, straight on", 0.75), ("full speed, about", 0.25)));
+    let goal = names.iter().position(|name| name == MATTERS).unwrap();
+    assert_eq!(words.observed[goal], (MATTERS.to_owned(), goal as f32));
+    // An agent that names a model that its boat does not have is not believed.
+    report.model = "other.onnx".to_owned();
+    assert_eq!(report.words(&game, blue), PolicyWords::default());
 }
 
 #[test]

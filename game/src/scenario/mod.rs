@@ -141,6 +141,14 @@ impl Scenario {
         self.vehicles[vehicle.index()].team
     }
 
+    /// How many mates and enemies a vehicle has.
+    #[must_use]
+    pub fn sides_of(&self, vehicle: VehicleId) -> (usize, usize) {
+        let team = self.team_of(vehicle);
+        let mates = self.vehicles.iter().filter(|other| other.team == team).count() - 1;
+        (mates, self.vehicles.len() - 1 - mates)
+    }
+
     /// The boat that a vehicle is.
     #[must_use]
     pub fn boat_of(&self, vehicle: VehicleId) -> &Boat {

@@ -1,7 +1,7 @@
 //! The rose: what a helm thinks, as the page draws it, its utilities as whole per cents.
 
 use super::message::PageMessage;
-use game::helm::{BehaviourReport, HelmReport, VariableReport};
+use game::helm::{BehaviourReport, HelmReport, PolicyReport, VariableReport};
 use game::{Scenario, VehicleId};
 use serde::Serialize;
 
@@ -15,12 +15,44 @@ pub(super) struct Helm {
     pub(super) speed_m_s: Option<f64>,
     pub(super) hold: Option<String>,
     pub(super) behaviours: Vec<BehaviourReport>,
+    pub(super) policies: Vec<Policy>,
     pub(super) variables: Vec<VariableReport>,
     pub(super) courses: usize,
     pub(super) speeds: usize,
     pub(super) speed_max_m_s: f64,
     pub(super) functions: Vec<Function>,
     pub(super) collective: Option<Vec<u8>>,
+}
+
+/// A trained policy at its last decision.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Policy {
+    pub(super) behaviour: String,
+    pub(super) model: String,
+    pub(super) course_deg: Option<f64>,
+    pub(super) speed_m_s: Option<f64>,
+    pub(super) fault: Option<String>,
+    pub(super) actions: Vec<(String, f32)>,
+    pub(super) observed: Vec<(String, f32)>,
+}
+
+/// So many actions of a policy are told, the likeliest ones.
+const ACTIONS: usize = 4;
+
+impl Policy {
+    fn new(scenario: &Scenario, vehicle: VehicleId, report: &PolicyReport, has_numbers: bool) -> Policy {
+        let mut words = report.words(scenario, vehicle);
+        words.actions.truncate(ACTIONS);
+        Policy {
+            behaviour: report.behaviour.clone(),
+            model: report.model.clone(),
+            course_deg: report.course_deg,
+            speed_m_s: report.speed_m_s,
+            fault: report.fault.clone(),
+            actions: words.actions,
+            observed: if has_numbers { words.observed } else { vec![] },
+        }
+    }
 }
 
 /// An objective function.
@@ -44,6 +76,7 @@ impl Helm {
             utility: function.utility,
             utilities: if has_utilities { percents(&function.utilities) } else { vec![] },
         };
+        let policy = |policy: &PolicyReport| Policy::new(scenario, report.vehicle, policy, has_utilities);
         Helm {
             at_s: report.at.as_s(),
             program: report.program.clone(),
@@ -52,6 +85,7 @@ impl Helm {
             speed_m_s: report.speed_m_s,
             hold: report.hold.clone(),
             behaviours: report.behaviours.clone(),
+            policies: report.policies.iter().map(policy).collect(),
             variables: report.variables.clone(),
             courses: report.courses,
             speeds: report.speeds,
