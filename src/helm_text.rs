@@ -40,7 +40,7 @@ fn proposal(policy: &PolicyReport) -> String {
     match (policy.course_deg, policy.speed_m_s, &policy.fault) {
         (Some(course_deg), Some(speed_m_s), _) => format!("course {course_deg:.0}°, {speed_m_s:.2} m/s"),
         (_, _, Some(why)) => why.clone(),
-        _ => "nothing".to_owned(),
+        _ => policy.option.clone().unwrap_or_else(|| "nothing".to_owned()),
     }
 }
 

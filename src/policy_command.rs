@@ -112,6 +112,7 @@ fn observation_text(space: ObservationSpace) -> String {
 fn action_text(space: ActionSpace) -> String {
     match (space, space.count()) {
         (ActionSpace::Pyquaticus, Some(count)) => format!("pyquaticus: one of {count} turns and speeds"),
+        (ActionSpace::Options, _) => "options: a value of a strategy's variable".to_owned(),
         _ => "continuous: a turn and a speed".to_owned(),
     }
 }
@@ -148,7 +149,7 @@ fn choices(model: &PolicyModel, observed: &[f32], names: &[String], inputs: usiz
     let mut text = String::new();
     let best = chosen.likeliest().first().copied();
     for action in chosen.likeliest().into_iter().take(LIKELIEST) {
-        let asks = model.spec.action.words(action);
+        let asks = model.words(action);
         let _ = writeln!(text, "  {:>5.1} %  {asks}", 100.0 * chosen.numbers[action]);
     }
     // An input that is 0 adds nothing to any sum of the network.
@@ -183,7 +184,7 @@ fn choice(model: &PolicyModel, observed: &[f32]) -> Choice {
     let mut network = model.network();
     network.evaluate(observed);
     let output = network.output(model.output());
-    let is_discrete = model.spec.action.count() == Some(output.len());
+    let is_discrete = model.actions() == Some(output.len());
     Choice { numbers: if is_discrete { action::probabilities(output) } else { output.to_vec() }, is_discrete }
 }
 

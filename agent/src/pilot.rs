@@ -5,7 +5,7 @@ use crate::helm::HelmMind;
 use crate::mind::{Mind, Proposal};
 use crate::observation::Observer;
 use crate::own_motion::OwnMotion;
-use crate::policy::BoardPolicy;
+use crate::policy::{BoardPolicy, Chosen};
 use crate::roles::role_of;
 use crate::situation::{GameModel, Situation, TeamMessages};
 use game::action::{Action, ActionSpace, SetPoint};
@@ -82,7 +82,19 @@ impl Pilot {
             Control::Helm(helm) => helm.look_ahead(picture),
         }
         policy.look(situation_of(&self.control));
-        self.set_point = policy.chosen().unwrap_or_default();
+        if let Ok(chosen) = policy.chosen() {
+            self.follow(chosen);
+        } else {
+            self.set_point = SetPoint::default();
+        }
+    }
+
+    fn follow(&mut self, chosen: Chosen) {
+        match (chosen, &mut self.control) {
+            (Chosen::SetPoint(set_point), _) => self.set_point = set_point,
+            (Chosen::Option(option), Control::Helm(helm)) => helm.choose(option),
+            (Chosen::Option(_), Control::Direct(_)) => self.set_point = SetPoint::default(),
+        }
     }
 
     /// Takes in the picture on which it will decide next, and gives the observation.
@@ -96,8 +108,7 @@ impl Pilot {
 
     /// Does this from the next decision on.
     pub fn act(&mut self, action: Action) {
-        let situation = situation_of(&self.control);
-        self.set_point = self.actions.set_point(action, situation.own.nav.psi_rad, situation.model.speed_max_m_s);
+        self.follow(Chosen::of(self.actions, action, situation_of(&self.control)));
     }
 
     /// Whether the boat does as it is told: a tagged one sails home, and one out of action lies still.

@@ -32,13 +32,22 @@ pub(crate) struct BoardPolicy {
     observer: Option<Observer>,
     /// When it decides next; none: at once.
     due: Option<SimTime>,
-    chosen: Result<SetPoint, PolicyFault>,
+    chosen: Result<Chosen, PolicyFault>,
+}
+
+/// What a policy chose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Chosen {
+    /// A course and a speed.
+    SetPoint(SetPoint),
+    /// One of the options of the strategy.
+    Option(usize),
 }
 
 impl BoardPolicy {
     pub(crate) fn new(model: PolicyModel) -> BoardPolicy {
         let network = model.network();
-        BoardPolicy { model, network, observer: None, due: None, chosen: Ok(SetPoint::default()) }
+        BoardPolicy { model, network, observer: None, due: None, chosen: Ok(Chosen::SetPoint(SetPoint::default())) }
     }
 
     /// Whether it decides at this time.
@@ -59,11 +68,11 @@ impl BoardPolicy {
     }
 
     /// What it chose last.
-    pub(crate) fn chosen(&self) -> Result<SetPoint, PolicyFault> {
+    pub(crate) fn chosen(&self) -> Result<Chosen, PolicyFault> {
         self.chosen
     }
 
-    fn choose(&mut self, situation: &Situation) -> Result<SetPoint, PolicyFault> {
+    fn choose(&mut self, situation: &Situation) -> Result<Chosen, PolicyFault> {
         let spec = self.model.spec;
         let observer = self.observer.get_or_insert_with(|| Observer::new(spec.observation, situation));
         let observation = observer.observe(situation);
@@ -72,14 +81,14 @@ impl BoardPolicy {
             return Err(PolicyFault::Size { expected, found });
         }
         self.network.evaluate(observation);
-        let action = action_of(spec.action, self.network.output(self.model.output()))?;
-        Ok(spec.action.set_point(action, situation.own.nav.psi_rad, situation.model.speed_max_m_s))
+        let action = action_of(&self.model, self.network.output(self.model.output()))?;
+        Ok(Chosen::of(spec.action, action, situation))
     }
 
     /// The model, and how sure it was of each discrete action; empty where actions are continuous.
     pub(crate) fn probabilities(&self) -> Vec<f32> {
         let output = self.network.output(self.model.output());
-        if self.model.spec.action.count() != Some(output.len()) {
+        if self.model.actions() != Some(output.len()) {
             return vec![];
         }
         action::probabilities(output)
@@ -96,12 +105,25 @@ impl BoardPolicy {
     }
 }
 
+impl Chosen {
+    /// What an action of this space asks for in a situation.
+    pub(crate) fn of(space: ActionSpace, action: Action, situation: &Situation) -> Chosen {
+        match (space, action) {
+            (ActionSpace::Options, Action::Discrete(option)) => Chosen::Option(option),
+            _ => {
+                let (heading_rad, speed_max_m_s) = (situation.own.nav.psi_rad, situation.model.speed_max_m_s);
+                Chosen::SetPoint(space.set_point(action, heading_rad, speed_max_m_s))
+            }
+        }
+    }
+}
+
 /// The action that a network's output makes: the likeliest of the discrete ones.
-fn action_of(space: ActionSpace, output: &[f32]) -> Result<Action, PolicyFault> {
+fn action_of(model: &PolicyModel, output: &[f32]) -> Result<Action, PolicyFault> {
     if !output.iter().all(|number| number.is_finite()) {
         return Err(PolicyFault::NotFinite);
     }
-    Ok(match (space.count(), output) {
+    Ok(match (model.actions(), output) {
         // The number of the action itself.
         (Some(count), [index]) if count > 1 => Action::Discrete(*index as usize),
         (Some(_), logits) => Action::likeliest(logits),

@@ -15,6 +15,8 @@ pub enum ActionSpace {
     /// Two numbers from -1 to 1: the turn from the present heading in half turns clockwise, and the speed, from none to the
     /// boat's fastest.
     Continuous,
+    /// The values of a variable of a strategy, to which its rules and modes answer: what a boat is at, not how it steers.
+    Options,
 }
 
 /// What a policy chose.
@@ -38,6 +40,9 @@ impl ActionSpace {
     /// What a discrete action asks of a boat: "50 % speed, 45° to port".
     #[must_use]
     pub fn words(self, action: usize) -> String {
+        if self == ActionSpace::Options {
+            return format!("option {action}");
+        }
         let asked = self.set_point(Action::Discrete(action), 0.0, 1.0);
         let speed = match asked.speed_m_s {
             0.0 => return "stop".to_owned(),
@@ -77,23 +82,23 @@ const TURNS: usize = 8;
 const SPEEDS: [f64; 2] = [1.0, 0.5];
 
 impl ActionSpace {
-    /// How many discrete actions there are; none if actions are continuous.
+    /// How many discrete actions there are, if the space says it: not for continuous ones, nor for options, which are a strategy's.
     #[must_use]
     pub fn count(self) -> Option<usize> {
         match self {
             ActionSpace::Pyquaticus => Some(SPEEDS.len() * TURNS + 1),
-            ActionSpace::Continuous => None,
+            ActionSpace::Continuous | ActionSpace::Options => None,
         }
     }
 
-    /// How many outputs a policy has: a logit for each discrete action, or a number for each dimension.
+    /// Whether an action is one of several.
     #[must_use]
-    pub fn outputs(self) -> usize {
-        self.count().unwrap_or(2)
+    pub fn is_discrete(self) -> bool {
+        self != ActionSpace::Continuous
     }
 
     /// The course and the speed that an action asks of a boat with this heading and top speed. An action of another space, or
-    /// one with numbers that are none, is a stop.
+    /// one with numbers that are none, is a stop, and so is an option.
     #[must_use]
     pub fn set_point(self, action: Action, heading_rad: f64, speed_max_m_s: f64) -> SetPoint {
         let (turn_rad, share) = match (self, action) {

@@ -109,6 +109,9 @@ pub struct PolicyReport {
     pub course_deg: Option<f64>,
     /// The speed that it proposes, m/s.
     pub speed_m_s: Option<f64>,
+    /// The option that it chooses, if it chooses among those of the strategy.
+    #[serde(default)]
+    pub option: Option<String>,
     /// Why it proposes nothing, if it does not.
     pub fault: Option<String>,
     /// How sure it was of each discrete action; empty where actions are continuous.
@@ -126,7 +129,7 @@ impl PolicyReport {
             return PolicyWords::default();
         };
         let mut actions: Vec<(String, f32)> =
-            self.probabilities.iter().enumerate().map(|(i, share)| (model.spec.action.words(i), *share)).collect();
+            self.probabilities.iter().enumerate().map(|(i, share)| (model.words(i), *share)).collect();
         actions.sort_by(|a, b| b.1.total_cmp(&a.1));
         let (mates, enemies) = scenario.sides_of(vehicle);
         let names = model.spec.observation.names(mates, enemies);

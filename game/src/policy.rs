@@ -14,6 +14,8 @@ use thiserror::Error;
 
 /// The largest model file, bytes: it goes to every agent with the scenario.
 pub const BYTES_MAX: u64 = 1 << 20;
+/// The numbers of a continuous action.
+const CONTINUOUS: usize = 2;
 /// How long a decision of a policy may hold, s.
 pub const PERIODS_S: RangeInclusive<f64> = 0.01..=10.0;
 
@@ -22,6 +24,8 @@ const OBSERVATION: &str = "squall.observation";
 const OBSERVATION_VERSION: &str = "squall.observation_version";
 const ACTION: &str = "squall.action";
 const PERIOD_S: &str = "squall.period_s";
+/// The entry with the names of options, in order, with a comma between them.
+const OPTIONS: &str = "squall.options";
 
 /// What a model is given, what it chooses, and how often.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -151,6 +155,28 @@ impl PolicyModel {
         self.network.input_size()
     }
 
+    /// How many discrete actions it chooses among; none if its actions are continuous.
+    #[must_use]
+    pub fn actions(&self) -> Option<usize> {
+        let outputs = self.network.outputs()[self.output].size;
+        // One number is that of the action itself.
+        self.spec.action.is_discrete().then(|| self.spec.action.count().unwrap_or(outputs))
+    }
+
+    /// What the options that it chooses among are called, if its metadata says it.
+    #[must_use]
+    pub fn options(&self) -> Option<Vec<&str>> {
+        let names = self.network.metadata().get(OPTIONS)?;
+        (self.spec.action == ActionSpace::Options).then(|| names.split(',').collect())
+    }
+
+    /// What a discrete action is: "50 % speed, 45° to port", or the name of the option.
+    #[must_use]
+    pub fn words(&self, action: usize) -> String {
+        let option = self.options().and_then(|names| names.get(action).map(|name| (*name).to_owned()));
+        option.unwrap_or_else(|| self.spec.action.words(action))
+    }
+
     /// The bytes of its file.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
@@ -170,6 +196,12 @@ impl PolicySpec {
         ]
         .map(|(key, value)| (key.to_owned(), value))
     }
+}
+
+/// The names of options as an entry of a model's metadata.
+#[must_use]
+pub fn options_metadata(names: &[String]) -> (String, String) {
+    (OPTIONS.to_owned(), names.join(","))
 }
 
 /// What a network is given and chooses, by what is said of it and by its metadata.
@@ -247,13 +279,22 @@ fn check_input(network: &Network, observation: ObservationSpace) -> Result<(), P
     Ok(())
 }
 
-/// The output that makes an action: the only one of the right size, or else the only one with the number of an action.
+/// The output that makes an action: the only one of the right size, or else the only one with the number of an action. Options are as
+/// many as it has numbers.
 fn output_of(network: &Network, action: ActionSpace) -> Result<usize, PolicyError> {
     let of_size = |size: usize| -> Vec<usize> {
         let outputs = network.outputs().iter().enumerate();
         outputs.filter(|(_, port)| port.size == size).map(|(i, _)| i).collect()
     };
-    let numbers = action.outputs();
+    if action == ActionSpace::Options {
+        let several: Vec<usize> = (0..network.outputs().len()).filter(|i| network.outputs()[*i].size > 1).collect();
+        let expected = "one output with a number for each of two options or more".to_owned();
+        let [output] = several[..] else {
+            return Err(PolicyError::Output { found: listed(network.outputs()), expected });
+        };
+        return Ok(output);
+    }
+    let numbers = action.count().unwrap_or(CONTINUOUS);
     let whole = of_size(numbers);
     let index = if action.count().is_some() && whole.is_empty() { of_size(1) } else { vec![] };
     match (whole.as_slice(), index.as_slice()) {

@@ -36,7 +36,11 @@ impl Arguments {
         let action = match self.action.as_str() {
             "pyquaticus" => ActionSpace::Pyquaticus,
             "continuous" => ActionSpace::Continuous,
-            other => return Err(refused(format!("action is {other:?}, expected \"pyquaticus\" or \"continuous\""))),
+            "options" => ActionSpace::Options,
+            other => {
+                let expected = "\"pyquaticus\", \"continuous\" or \"options\"";
+                return Err(refused(format!("action is {other:?}, expected {expected}")));
+            }
         };
         Ok(RawSetup {
             game: self.game,

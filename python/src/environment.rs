@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, refused};
 use crate::{scene, standing};
-use learn::environment::{Action, ActionSpace, Games, Rows};
+use learn::environment::{Action, Games, Rows};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -93,9 +93,9 @@ impl VectorEnvironment {
     fn step(&mut self, py: Python<'_>, actions: &Bound<'_, PyAny>) -> PyResult<()> {
         let VectorEnvironment { games, actions: read, arrays } = self;
         let games = games.get_mut().unwrap_or_else(PoisonError::into_inner);
-        match games.setup().spaces.action {
-            ActionSpace::Pyquaticus => read_discrete(actions, games.rows().0, read)?,
-            ActionSpace::Continuous => read_continuous(actions, games.rows().0, read)?,
+        match games.setup().actions() {
+            Some(count) => read_discrete(actions, games.rows().0, count, read)?,
+            None => read_continuous(actions, games.rows().0, read)?,
         }
         arrays.write(py, |rows| games.step(read, rows))?.map_err(refused)?;
         arrays.end(py, games)
@@ -134,7 +134,7 @@ impl VectorEnvironment {
 
     #[getter]
     fn action_count(&self) -> Option<usize> {
-        self.games().setup().spaces.action.count()
+        self.games().setup().actions()
     }
 
     #[getter]
@@ -237,10 +237,9 @@ fn check_index(games: &Games, game: usize) -> PyResult<()> {
 }
 
 /// Reads one index for each row.
-fn read_discrete(actions: &Bound<'_, PyAny>, rows: usize, into: &mut Vec<Action>) -> PyResult<()> {
+fn read_discrete(actions: &Bound<'_, PyAny>, rows: usize, count: usize, into: &mut Vec<Action>) -> PyResult<()> {
     let actions: PyReadonlyArray1<'_, i64> =
         actions.extract().map_err(|_| refused(format!("actions are no array of int64 with the shape ({rows},)")))?;
-    let count = ActionSpace::Pyquaticus.count().unwrap_or_default();
     check_rows(actions.shape(), &[rows])?;
     into.clear();
     for (row, action) in actions.as_array().iter().enumerate() {

@@ -197,7 +197,7 @@ export class Details {
   tellPolicies(policies) {
     const pairs = policies.flatMap((policy) => [
       [plain(policy.behaviour), policy.model],
-      ['Proposes', policy.fault ?? `${bearing(policy.course_deg)} at ${number(policy.speed_m_s, 2, 'm/s')}`],
+      ['Proposes', policy.fault ?? policy.option ?? `${bearing(policy.course_deg)} at ${number(policy.speed_m_s, 2, 'm/s')}`],
       ...(policy.actions ?? []).map(([asked, share]) => [`${number(100 * share, 0)}\u00a0%`, asked]),
     ]);
     const observed = policies.flatMap((policy) => policy.observed ?? []);

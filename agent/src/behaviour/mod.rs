@@ -38,6 +38,11 @@ pub(crate) trait BehaviourLogic: Send {
     /// Takes in the situation of a decision, whether it runs or not.
     fn look(&mut self, _situation: &Situation) {}
 
+    /// The variable that it sets, and to which of its texts, whether it runs or not.
+    fn option(&self) -> Option<(u16, usize)> {
+        None
+    }
+
     /// It begins to run: forgets what was.
     fn begin(&mut self, _situation: &Situation) {}
 

@@ -2,7 +2,7 @@
 
 use super::{BehaviourLogic, BehaviourOutput};
 use crate::ivp::{Objective, Peak};
-use crate::policy::BoardPolicy;
+use crate::policy::{BoardPolicy, Chosen};
 use crate::situation::Situation;
 use game::action::SetPoint;
 use game::strategy::Policy;
@@ -26,7 +26,10 @@ impl PolicyBehaviour {
     /// What is proposed now.
     fn proposed(&self, situation: &Situation) -> Option<SetPoint> {
         match &self.policy {
-            Some(policy) => policy.chosen().ok(),
+            Some(policy) => match policy.chosen() {
+                Ok(Chosen::SetPoint(chosen)) => Some(chosen),
+                Ok(Chosen::Option(_)) | Err(_) => None,
+            },
             None => {
                 let proposal = situation.proposed?;
                 let is_fresh = (situation.now - proposal.at).as_s() <= self.task.ttl_s.value(situation);
@@ -43,7 +46,18 @@ impl BehaviourLogic for PolicyBehaviour {
         }
     }
 
+    fn option(&self) -> Option<(u16, usize)> {
+        let variable = self.task.sets?;
+        match self.policy.as_ref()?.chosen() {
+            Ok(Chosen::Option(option)) => Some((variable, option)),
+            _ => None,
+        }
+    }
+
     fn run(&mut self, situation: &Situation, output: &mut BehaviourOutput<'_>) {
+        if self.task.sets.is_some() {
+            return;
+        }
         let Some(SetPoint { course_rad, speed_m_s }) = self.proposed(situation) else { return };
         let speed_m_s = speed_m_s.clamp(0.0, situation.model.speed_max_m_s);
         let (heading_rad, speed_m_s) = situation.motion.steer(course_rad, speed_m_s);

@@ -80,6 +80,23 @@ impl HelmMind {
         &self.situation
     }
 
+    /// Chooses the option that somebody outside wants, if the program has options.
+    pub(crate) fn choose(&mut self, option: usize) {
+        if let Some(variable) = self.program.options().filter(|variable| option < self.program.texts(*variable).len()) {
+            self.situation.variables[usize::from(variable)] = option as f64;
+        }
+    }
+
+    /// Behaviours look at the situation, and policies choose among options, to which the rules of this decision answer.
+    fn look(&mut self) {
+        for instance in &mut self.instances {
+            instance.logic.look(&self.situation);
+            if let Some((variable, option)) = instance.logic.option() {
+                self.situation.variables[usize::from(variable)] = option as f64;
+            }
+        }
+    }
+
     /// Rules give values to variables, one after the other.
     fn apply_rules(&mut self, picture: &Picture) {
         for rule in &self.program.rules {
@@ -195,9 +212,9 @@ impl Mind for HelmMind {
             self.instances.iter_mut().for_each(|instance| instance.weight = 0.0);
             return Order::Hold;
         }
+        self.look();
         self.apply_rules(picture);
         self.choose_mode();
-        self.instances.iter_mut().for_each(|instance| instance.logic.look(&self.situation));
         let stop = self.mode.is_none_or(|mode| self.run_behaviours(mode));
         self.decided = self.solve(stop);
         self.order()

@@ -1,6 +1,7 @@
 //! The helm report: what is shown to those who look inside.
 
 use super::{Decided, HelmMind};
+use crate::policy::Chosen;
 use game::angle::compass_deg_from_rad;
 use game::helm::{BehaviourReport, DriftReport, FunctionReport, HelmReport, PolicyReport, VariableReport};
 
@@ -34,11 +35,20 @@ impl HelmMind {
         let policies = named.filter_map(|(behaviour, instance)| Some((behaviour, instance.logic.policy()?)));
         let policies = policies.map(|(behaviour, policy)| {
             let chosen = policy.chosen();
+            let set_point = match chosen {
+                Ok(Chosen::SetPoint(set_point)) => Some(set_point),
+                Ok(Chosen::Option(_)) | Err(_) => None,
+            };
+            let option = match chosen {
+                Ok(Chosen::Option(option)) => Some(policy.model().words(option)),
+                Ok(Chosen::SetPoint(_)) | Err(_) => None,
+            };
             PolicyReport {
                 behaviour: behaviour.name.clone(),
                 model: policy.model().name.clone(),
-                course_deg: chosen.ok().map(|chosen| compass_deg_from_rad(chosen.course_rad)),
-                speed_m_s: chosen.ok().map(|chosen| chosen.speed_m_s),
+                course_deg: set_point.map(|chosen| compass_deg_from_rad(chosen.course_rad)),
+                speed_m_s: set_point.map(|chosen| chosen.speed_m_s),
+                option,
                 fault: chosen.err().map(|fault| fault.to_string()),
                 probabilities: policy.probabilities(),
                 observed: policy.observed().to_vec(),

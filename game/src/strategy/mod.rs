@@ -200,9 +200,27 @@ impl Program {
     #[must_use]
     pub fn proposer(&self) -> Option<Proposer> {
         self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
-            Task::Policy(policy) if policy.model.is_none() => Some(policy.by),
+            Task::Policy(policy) if policy.model.is_none() && policy.sets.is_none() => Some(policy.by),
             _ => None,
         })
+    }
+
+    /// The variable that whoever is outside gives one of its texts to, by index, if the program has options.
+    #[must_use]
+    pub fn options(&self) -> Option<u16> {
+        self.behaviours.iter().find_map(|behaviour| match &behaviour.task {
+            Task::Policy(policy) if policy.model.is_none() => policy.sets,
+            _ => None,
+        })
+    }
+
+    /// The texts of a variable; none if it has other values.
+    #[must_use]
+    pub fn texts(&self, variable: u16) -> &[String] {
+        match &self.variables[usize::from(variable)].kind {
+            Kind::Text(texts) => texts,
+            _ => &[],
+        }
     }
 
     /// Whether a mode has no parts.

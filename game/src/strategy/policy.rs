@@ -14,6 +14,10 @@ pub struct Policy {
     #[serde(default)]
     #[schemars(flatten, with = "ModelKeys")]
     pub model: Option<PolicyModel>,
+    /// The variable that gets the option chosen, by index: the policy then proposes no course and no speed.
+    #[serde(default)]
+    #[schemars(with = "Option<String>", extend("x-expected" = "the name of a variable with texts"))]
+    pub sets: Option<u16>,
     /// Without a model, who proposes: `program` is waited for in lockstep, `person` (somebody at the page) is not.
     #[schemars(extend("default" = "program"))]
     pub by: Proposer,

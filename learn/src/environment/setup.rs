@@ -1,10 +1,10 @@
 //! What is played in an environment: the game, who learns, what a policy sees and may do, and against whom.
 
-use agent::Spaces;
+use agent::{ActionSpace, Spaces};
 use game::policy::PolicyModel;
 use game::rewards::Rewards;
 use game::scenario::{Problems, Scenario};
-use game::strategy::{Strategy, Task};
+use game::strategy::{Program, Strategy, Task};
 use game::{TeamId, VehicleId};
 use thiserror::Error;
 
@@ -68,9 +68,14 @@ pub enum SetupError {
     /// Nobody to play against.
     #[error("no opponent is given, or none with a weight above 0")]
     NoOpponent,
-    /// A strategy that asks no policy.
-    #[error("the role {0:?} has no behaviour of the kind \"policy\": nothing would come of actions")]
-    NoPolicy(String),
+    /// A strategy that asks no policy for what it is to choose.
+    #[error("the role {role:?} has no behaviour of the kind \"policy\" {expected}: nothing would come of actions")]
+    NoPolicy {
+        /// The role.
+        role: String,
+        /// What the behaviour would need.
+        expected: &'static str,
+    },
     /// Steps without a decision.
     #[error("a policy decides every 0 decisions of the game; expected 1 or more")]
     NoDecisions,
@@ -135,14 +140,48 @@ impl Setup {
             return Err(SetupError::NoOpponent);
         }
         if let Control::Helm(strategy) = &self.control {
-            let asks = |task: &Task| matches!(task, Task::Policy(policy) if policy.model.is_none());
-            let deaf =
-                strategy.roles.iter().find(|role| !role.behaviours.iter().any(|behaviour| asks(&behaviour.task)));
-            if let Some(role) = deaf {
-                return Err(SetupError::NoPolicy(role.name.clone()));
-            }
+            self.check_helm(strategy)?;
+        } else if self.spaces.action == ActionSpace::Options {
+            let allowed = "another action, or a helm whose strategy has the options".to_owned();
+            return Err(SetupError::Field { field: "action", found: "options".to_owned(), allowed });
         }
         Ok(())
+    }
+
+    /// Whether the programs of a strategy do what policies choose.
+    fn check_helm(&self, strategy: &Strategy) -> Result<(), SetupError> {
+        let has_options = self.spaces.action == ActionSpace::Options;
+        let asks = |task: &Task| matches!(task, Task::Policy(policy) if policy.model.is_none() && policy.sets.is_some() == has_options);
+        let deaf = strategy.roles.iter().find(|role| !role.behaviours.iter().any(|behaviour| asks(&behaviour.task)));
+        if let Some(role) = deaf {
+            let expected = if has_options { "with `sets`" } else { "for course and speed" };
+            return Err(SetupError::NoPolicy { role: role.name.clone(), expected });
+        }
+        let texts = |role: &Program| role.options().map(|variable| role.texts(variable).to_vec());
+        if let Some(other) = strategy.roles.iter().find(|role| has_options && texts(role) != texts(&strategy.roles[0])) {
+            let found = texts(other).unwrap_or_default().join(", ");
+            let allowed = format!("the options of the first: {}", self.options().unwrap_or_default().join(", "));
+            return Err(SetupError::Field { field: "sets of the second role", found, allowed });
+        }
+        Ok(())
+    }
+
+    /// The options that a policy chooses among; none if it chooses something else.
+    #[must_use]
+    pub fn options(&self) -> Option<&[String]> {
+        match &self.control {
+            Control::Helm(strategy) if self.spaces.action == ActionSpace::Options => {
+                let role = strategy.roles.first()?;
+                Some(role.texts(role.options()?))
+            }
+            _ => None,
+        }
+    }
+
+    /// How many discrete actions there are; none if they are continuous.
+    #[must_use]
+    pub fn actions(&self) -> Option<usize> {
+        self.options().map(<[String]>::len).or(self.spaces.action.count())
     }
 
     /// Whether any opponent is a policy.

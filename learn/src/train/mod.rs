@@ -11,7 +11,7 @@ pub use state::{Best, Evaluated, StateError};
 use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment};
 use crate::nn::{Perceptron, SHARD, Trace};
 use crate::ppo::{ActorCritic, Batch, Statistics};
-use game::policy::PolicySpec;
+use game::policy::{PolicySpec, options_metadata};
 use game::scenario;
 use game::stream::Stream;
 use game::training::{Stage, Training};
@@ -92,11 +92,16 @@ impl Trainer {
             let (found, allowed) = (format!("of {other} numbers"), format!("{size}, as in the first stage"));
             return Err(SetupError::Field { field: "the observation of a stage", found, allowed });
         }
-        let Some(actions) = training.action.count() else {
+        let Some(actions) = setups.last().and_then(Setup::actions) else {
             let (found, allowed) =
-                ("continuous".to_owned(), "pyquaticus: ppo chooses among discrete actions".to_owned());
+                ("continuous".to_owned(), "pyquaticus or options: ppo chooses among discrete actions".to_owned());
             return Err(SetupError::Field { field: "action", found, allowed });
         };
+        if let Some(other) = setups.iter().find(|other| other.options() != setups[0].options()) {
+            let list = |setup: &Setup| setup.options().unwrap_or_default().join(", ");
+            let (found, allowed) = (list(other), format!("those of the first stage: {}", list(&setups[0])));
+            return Err(SetupError::Field { field: "the options of a stage", found, allowed });
+        }
         let state = state.unwrap_or_else(|| {
             let learner = ActorCritic::new(size, size, &training.network.hidden, actions, training.seed);
             let mut state = State::new(learner);
@@ -164,6 +169,7 @@ impl Trainer {
             (SAMPLES.to_owned(), self.state.samples.to_string()),
             ("squall.version".to_owned(), game::VERSION.to_owned()),
         ]);
+        metadata.extend(self.setups.last().and_then(Setup::options).map(options_metadata));
         self.state.learner.actor.onnx("logits", metadata)
     }
 

@@ -2,6 +2,7 @@
 
 use super::scope::Scope;
 use super::variable::set;
+use crate::action::ActionSpace;
 use crate::frame::Ned;
 use crate::policy::{PartialSpec, PolicyModel};
 use crate::scenario::Kind;
@@ -9,7 +10,9 @@ use crate::scenario::guess::did_you_mean;
 use crate::scenario::raw;
 use crate::scenario::read;
 use crate::scenario::schema::declared;
-use crate::strategy::{Behaviour, Boat, Mode, Moment, Named, Parameter, Place, Post, Task};
+use crate::strategy::{
+    Behaviour, Boat, Kind as VariableKind, Mode, Moment, Named, Parameter, Place, Post, Task, Variable,
+};
 use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 
@@ -47,12 +50,14 @@ fn one(scope: &mut Scope<'_>, modes: Option<&[Mode]>, name: &str, given: &Json) 
         let shape = shape(scope, &path, &mut keys)?;
         keys.insert("shape".to_owned(), shape);
     }
-    let model = if variant == "Policy" { model(scope, &path, &mut keys)? } else { None };
+    let is_policy = variant == "Policy";
+    let sets = if is_policy { sets(scope, &path, &mut keys)? } else { None };
+    let model = if is_policy { model(scope, &path, &mut keys, sets)? } else { None };
     let weight = parameter(&keys, "weight")?;
     let duration_s = parameter(&keys, "duration_s");
     let mut task: Task = serde_json::from_value(json!({ variant: keys })).ok()?;
     if let Task::Policy(policy) = &mut task {
-        policy.model = model;
+        (policy.model, policy.sets) = (model, sets);
     }
     Some(Behaviour {
         name: name.to_owned(),
@@ -127,8 +132,51 @@ fn shape(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
     }
 }
 
+/// The variable that a policy gives its options to, if it has any.
+fn sets(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Option<u16>> {
+    let Some(Json::String(name)) = keys.remove("sets") else { return Some(None) };
+    let at = format!("{path}.sets");
+    let of_texts = |variable: &&Variable| matches!(&variable.kind, VariableKind::Text(_));
+    match scope.variable(&name) {
+        Some((index, variable)) if of_texts(&variable) => Some(Some(index)),
+        _ => {
+            let known: Vec<&str> =
+                scope.variables.iter().filter(of_texts).map(|variable| variable.name.as_str()).collect();
+            let expected = match known.as_slice() {
+                [] => "a variable with `values`, and there is none in [variables]".to_owned(),
+                _ => format!("one of the variables with texts, {}{}", known.join(", "), did_you_mean(&name, &known)),
+            };
+            scope.refuse(&at, &format!("is {name:?}, expected {expected}"))
+        }
+    }
+}
+
+/// What is wrong with a model for a policy that sets this variable, if anything is.
+fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<String> {
+    let has_options = model.spec.action == ActionSpace::Options;
+    let Some(variable) = sets.map(|index| &scope.variables[usize::from(index)]) else {
+        return has_options.then(|| "it chooses among options, and nothing is said that it sets (`sets`)".to_owned());
+    };
+    let VariableKind::Text(texts) = &variable.kind else { return None };
+    if !has_options {
+        return Some(format!("it chooses a course and a speed, expected one that chooses a value of {}", variable.name));
+    }
+    let names = model.options();
+    let found = names.as_ref().map_or_else(|| model.actions().unwrap_or_default().to_string(), |names| names.join(", "));
+    let is_fit = names.map_or(model.actions() == Some(texts.len()), |names| names == *texts);
+    (!is_fit).then(|| {
+        let expected = format!("the {} values of {}: {}", texts.len(), variable.name, texts.join(", "));
+        format!("its options are {found}, expected {expected}")
+    })
+}
+
 /// The model that a policy names, if it names one.
-fn model(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Option<Option<PolicyModel>> {
+fn model(
+    scope: &mut Scope<'_>,
+    path: &str,
+    keys: &mut Map<String, Json>,
+    sets: Option<u16>,
+) -> Option<Option<PolicyModel>> {
     let [file, observation, action, period_s] =
         ["model", "observation", "action", "period_s"].map(|key| keys.remove(key));
     let given = |key: &str| scope.document.has(&format!("{path}.{key}"));
@@ -155,7 +203,8 @@ fn model(scope: &mut Scope<'_>, path: &str, keys: &mut Map<String, Json>) -> Opt
         period_s: period_s.as_ref().and_then(Json::as_f64),
     };
     let path = scope.diagnostics.sources.resolve(scope.document.at(&at), file);
-    match read::model(scope.diagnostics, &path, said) {
+    let read = read::model(scope.diagnostics, &path, said).map_err(|why| why.to_string());
+    match read.and_then(|model| misfit(scope, &model, sets).map_or(Ok(model), Err)) {
         Ok(model) => Some(Some(model)),
         Err(why) => scope.refuse(&at, &format!("is {file:?}: {why}")),
     }

@@ -5,7 +5,7 @@
 //! term of its own that may hold or not: more cases than there are, never fewer.
 
 use super::scope::Scope;
-use crate::strategy::{Expression, Fact, Join, Kind, Measure, Program};
+use crate::strategy::{Expression, Fact, Join, Kind, Measure, Program, Task};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Of one mode no more cases than this are looked at; it is then taken to be possible.
@@ -187,6 +187,10 @@ impl Terms<'_> {
 
 /// The values that a variable ever has, if only constants are given to it.
 fn given_to(program: &Program, variable: u16) -> Option<Vec<f64>> {
+    let sets = |task: &Task| matches!(task, Task::Policy(policy) if policy.sets == Some(variable));
+    if program.behaviours.iter().any(|behaviour| sets(&behaviour.task)) {
+        return None;
+    }
     let entered = program.modes.iter().flat_map(|mode| &mode.enter);
     let ruled = program.rules.iter().flat_map(|rule| &rule.set);
     let set = entered.chain(ruled).map(|(variable, value)| (*variable, value));
