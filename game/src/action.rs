@@ -91,6 +91,12 @@ impl ActionSpace {
         }
     }
 
+    /// How many outputs a policy has: a logit for each discrete action, or a number for each dimension. Options are at least so many.
+    #[must_use]
+    pub fn outputs(self) -> usize {
+        self.count().unwrap_or(2)
+    }
+
     /// Whether an action is one of several.
     #[must_use]
     pub fn is_discrete(self) -> bool {

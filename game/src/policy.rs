@@ -14,8 +14,6 @@ use thiserror::Error;
 
 /// The largest model file, bytes: it goes to every agent with the scenario.
 pub const BYTES_MAX: u64 = 1 << 20;
-/// The numbers of a continuous action.
-const CONTINUOUS: usize = 2;
 /// How long a decision of a policy may hold, s.
 pub const PERIODS_S: RangeInclusive<f64> = 0.01..=10.0;
 
@@ -294,7 +292,7 @@ fn output_of(network: &Network, action: ActionSpace) -> Result<usize, PolicyErro
         };
         return Ok(output);
     }
-    let numbers = action.count().unwrap_or(CONTINUOUS);
+    let numbers = action.outputs();
     let whole = of_size(numbers);
     let index = if action.count().is_some() && whole.is_empty() { of_size(1) } else { vec![] };
     match (whole.as_slice(), index.as_slice()) {

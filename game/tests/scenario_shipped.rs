@@ -314,6 +314,9 @@ fn the_examples_of_the_handbook_are_sound() {
     for (from, to) in [
         ("strategies/safety.toml", "strategies/safety.toml"),
         ("strategies/policy.toml", "strategies/policy.toml"),
+        ("strategies/options.toml", "strategies/options.toml"),
+        ("strategies/medium_attacker.toml", "strategies/medium_attacker.toml"),
+        ("strategies/easy_attacker.toml", "strategies/easy_attacker.toml"),
         ("../onnx/tests/network/sb3_dynamo.onnx", "policies/learned.onnx"),
     ] {
         std::fs::create_dir_all(folder.path().join(to).parent().unwrap()).unwrap();

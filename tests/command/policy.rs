@@ -99,7 +99,8 @@ fn what_a_helm_reports_of_a_policy_is_told_in_words() {
     let model = game.strategy_of(blue).models().next().unwrap().name.clone();
     let (course_deg, speed_m_s, fault) = (Some(0.0), Some(1.0), None);
     let behaviour = "learned".to_owned();
-    let mut report = PolicyReport { behaviour, model, course_deg, speed_m_s, fault, probabilities, observed };
+    let mut report =
+        PolicyReport { behaviour, model, course_deg, speed_m_s, option: None, fault, probabilities, observed };
     let words = report.words(&game, blue);
     let [first, second] = [0, 1].map(|i: usize| (words.actions[i].0.as_str(), words.actions[i].1));
     assert_eq!((first, second), (("full speed, straight on", 0.75), ("full speed, about", 0.25)));

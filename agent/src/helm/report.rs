@@ -1,7 +1,7 @@
 //! The helm report: what is shown to those who look inside.
 
 use super::{Decided, HelmMind};
-use crate::policy::Chosen;
+use crate::policy::{BoardPolicy, Chosen};
 use game::angle::compass_deg_from_rad;
 use game::helm::{BehaviourReport, DriftReport, FunctionReport, HelmReport, PolicyReport, VariableReport};
 
@@ -33,27 +33,7 @@ impl HelmMind {
         });
         let named = self.program.behaviours.iter().zip(&self.instances);
         let policies = named.filter_map(|(behaviour, instance)| Some((behaviour, instance.logic.policy()?)));
-        let policies = policies.map(|(behaviour, policy)| {
-            let chosen = policy.chosen();
-            let set_point = match chosen {
-                Ok(Chosen::SetPoint(set_point)) => Some(set_point),
-                Ok(Chosen::Option(_)) | Err(_) => None,
-            };
-            let option = match chosen {
-                Ok(Chosen::Option(option)) => Some(policy.model().words(option)),
-                Ok(Chosen::SetPoint(_)) | Err(_) => None,
-            };
-            PolicyReport {
-                behaviour: behaviour.name.clone(),
-                model: policy.model().name.clone(),
-                course_deg: set_point.map(|chosen| compass_deg_from_rad(chosen.course_rad)),
-                speed_m_s: set_point.map(|chosen| chosen.speed_m_s),
-                option,
-                fault: chosen.err().map(|fault| fault.to_string()),
-                probabilities: policy.probabilities(),
-                observed: policy.observed().to_vec(),
-            }
-        });
+        let policies = policies.map(|(behaviour, policy)| policy_report(&behaviour.name, policy));
         let motion = &self.situation.motion;
         let drift = motion.drift();
         HelmReport {
@@ -78,5 +58,23 @@ impl HelmMind {
             policies: policies.collect(),
             functions: functions.collect(),
         }
+    }
+}
+
+fn policy_report(behaviour: &str, policy: &BoardPolicy) -> PolicyReport {
+    let (set_point, option, fault) = match policy.chosen() {
+        Ok(Chosen::SetPoint(set_point)) => (Some(set_point), None, None),
+        Ok(Chosen::Option(option)) => (None, Some(policy.model().words(option)), None),
+        Err(fault) => (None, None, Some(fault.to_string())),
+    };
+    PolicyReport {
+        behaviour: behaviour.to_owned(),
+        model: policy.model().name.clone(),
+        course_deg: set_point.map(|chosen| compass_deg_from_rad(chosen.course_rad)),
+        speed_m_s: set_point.map(|chosen| chosen.speed_m_s),
+        option,
+        fault,
+        probabilities: policy.probabilities(),
+        observed: policy.observed().to_vec(),
     }
 }

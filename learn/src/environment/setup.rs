@@ -158,7 +158,8 @@ impl Setup {
             return Err(SetupError::NoPolicy { role: role.name.clone(), expected });
         }
         let texts = |role: &Program| role.options().map(|variable| role.texts(variable).to_vec());
-        if let Some(other) = strategy.roles.iter().find(|role| has_options && texts(role) != texts(&strategy.roles[0])) {
+        if let Some(other) = strategy.roles.iter().find(|role| has_options && texts(role) != texts(&strategy.roles[0]))
+        {
             let found = texts(other).unwrap_or_default().join(", ");
             let allowed = format!("the options of the first: {}", self.options().unwrap_or_default().join(", "));
             return Err(SetupError::Field { field: "sets of the second role", found, allowed });

@@ -50,6 +50,7 @@ fn steered(file: &str) -> Scenario {
     let mut strategy = scenario.strategies[scenario.vehicles[0].strategy].clone();
     let policy = Policy {
         model: None,
+        sets: None,
         by: Proposer::Person,
         ttl_s: number(1.0),
         peak_width_deg: number(10.0),

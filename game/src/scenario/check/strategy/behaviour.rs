@@ -159,10 +159,14 @@ fn misfit(scope: &Scope<'_>, model: &PolicyModel, sets: Option<u16>) -> Option<S
     };
     let VariableKind::Text(texts) = &variable.kind else { return None };
     if !has_options {
-        return Some(format!("it chooses a course and a speed, expected one that chooses a value of {}", variable.name));
+        return Some(format!(
+            "it chooses a course and a speed, expected one that chooses a value of {}",
+            variable.name
+        ));
     }
     let names = model.options();
-    let found = names.as_ref().map_or_else(|| model.actions().unwrap_or_default().to_string(), |names| names.join(", "));
+    let found =
+        names.as_ref().map_or_else(|| model.actions().unwrap_or_default().to_string(), |names| names.join(", "));
     let is_fit = names.map_or(model.actions() == Some(texts.len()), |names| names == *texts);
     (!is_fit).then(|| {
         let expected = format!("the {} values of {}: {}", texts.len(), variable.name, texts.join(", "));
