@@ -23,7 +23,7 @@ import squall
         ({"frames": 0}, "frames is 0, expected 1 to 255"),
         ({"frames": 300}, "frames is 300, expected an integer from 0 to 255"),
         ({"observation": "truth"}, 'observation is "truth", expected "squall" or "pyquaticus"'),
-        ({"action": "jump"}, 'action is "jump", expected "pyquaticus" or "continuous"'),
+        ({"action": "jump"}, 'action is "jump", expected "pyquaticus", "continuous" or "options"'),
         ({"control": "pav01"}, 'has no behaviour of the kind "policy"'),
         ({"opponents": []}, "no opponent is given"),
         ({"opponents": [(-1.0, "pav01")]}, "an opponent's weight is -1, expected 0 or more"),
