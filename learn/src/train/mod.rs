@@ -10,7 +10,7 @@ pub use state::{Best, Evaluated, StateError};
 
 use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment};
 use crate::nn::{Perceptron, SHARD, Trace};
-use crate::ppo::{ActorCritic, Batch, Statistics};
+use crate::ppo::{ActorCritic, Batch, Lesson, Statistics};
 use game::policy::{PolicySpec, options_metadata};
 use game::scenario;
 use game::stream::Stream;
@@ -103,7 +103,8 @@ impl Trainer {
             return Err(SetupError::Field { field: "the options of a stage", found, allowed });
         }
         let state = state.unwrap_or_else(|| {
-            let learner = ActorCritic::new(size, size, &training.network.hidden, actions, training.seed);
+            let state = setups.first().map_or(0, Setup::state_size);
+            let learner = ActorCritic::new(size, state, &training.network.hidden, actions, training.seed);
             let mut state = State::new(learner);
             state.league.begin(setups.first().map_or(0, |setup| setup.opponents.len()));
             state
@@ -198,11 +199,12 @@ impl Trainer {
         let samples = rollout.samples(&ppo);
         let batch = Batch {
             observations: &samples.observations,
-            states: &samples.observations,
+            states: &samples.states,
             actions: &samples.actions,
             log_probabilities: &samples.log_probabilities,
             advantages: &samples.advantages,
             returns: &samples.returns,
+            lesson: if of_stage.teacher.is_some() { Lesson::Imitation } else { Lesson::Reinforcement },
             counts: &samples.counts,
         };
         let (done, all) = self.samples();
@@ -313,7 +315,7 @@ fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setu
         let Some(last) = last else { break };
         let name = strategy.name.clone();
         let opponents = vec![(1.0, Player::Strategy(Box::new(strategy)))];
-        judges.push((name, Setup { opponents, starts: None, steps_max: None, ..last.clone() }));
+        judges.push((name, Setup { opponents, teacher: None, starts: None, steps_max: None, ..last.clone() }));
     }
     Ok(judges)
 }
