@@ -166,8 +166,7 @@ mod tests {
             assert_eq!(space.nearest(asked, heading_rad, fastest_m_s), Some(action));
         }
         let asked = ActionSpace::Continuous.set_point(Action::Continuous([-0.25, 0.5]), heading_rad, fastest_m_s);
-        let Some(Action::Continuous([turn, speed])) =
-            ActionSpace::Continuous.nearest(asked, heading_rad, fastest_m_s)
+        let Some(Action::Continuous([turn, speed])) = ActionSpace::Continuous.nearest(asked, heading_rad, fastest_m_s)
         else {
             panic!("no continuous action")
         };

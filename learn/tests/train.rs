@@ -104,19 +104,21 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
 fn imitation(options: &[(&str, &str)]) -> Training {
     let options = options.iter().map(|(mode, option)| ((*mode).to_owned(), (*option).to_owned())).collect();
     let teacher = Some(Teacher { strategy: file("strategies/strategy_5.toml"), options });
-    let options = scenario::load_training(&file("training/options.toml")).unwrap_or_else(|problems| panic!("{problems}"));
+    let options =
+        scenario::load_training(&file("training/options.toml")).unwrap_or_else(|problems| panic!("{problems}"));
     let helm = Some(file("strategies/options.toml"));
     let stage = Stage { teacher, helm, samples: 40_000, ..short().stage.remove(0) };
-    Training { stage: vec![stage], action: options.action, period_s: 1.0, ppo: Ppo { learning_rate: 3e-3, ..short().ppo }, ..short() }
+    Training {
+        stage: vec![stage],
+        action: options.action,
+        period_s: 1.0,
+        ppo: Ppo { learning_rate: 3e-3, ..short().ppo },
+        ..short()
+    }
 }
 
-const OPTIONS: [(&str, &str); 5] = [
-    ("raiding", "attack"),
-    ("intercepting", "pursue"),
-    ("keeping", "hold"),
-    ("waiting", "wait"),
-    ("chasing", "chase"),
-];
+const OPTIONS: [(&str, &str); 5] =
+    [("raiding", "attack"), ("intercepting", "pursue"), ("keeping", "hold"), ("waiting", "wait"), ("chasing", "chase")];
 
 #[test]
 fn a_policy_learns_to_choose_what_its_teacher_is_at() {

@@ -62,7 +62,9 @@ impl Game {
             match (is_learner, &setup.opponents[side.opponent].1, &setup.mates) {
                 (false, Player::Strategy(strategy), _) => agent::mind_by(scenario, vehicle, strategy),
                 (_, _, Some(strategy)) if !pilots.contains(&vehicle) => agent::mind_by(scenario, vehicle, strategy),
-                (false, Player::Model(model), _) => Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone())),
+                (false, Player::Model(model), _) => {
+                    Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone()))
+                }
                 _ => Box::new(pilot(setup, scenario, vehicle)),
             }
         };

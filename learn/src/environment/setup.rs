@@ -6,8 +6,8 @@ use game::policy::PolicyModel;
 use game::rewards::Rewards;
 use game::scenario::{Problems, Scenario};
 use game::strategy::{Program, Strategy, Task};
-use game::{TeamId, VehicleId};
 use game::training::CriticInput;
+use game::{TeamId, VehicleId};
 use std::collections::BTreeMap;
 use thiserror::Error;
 

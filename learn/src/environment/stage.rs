@@ -53,15 +53,16 @@ impl Setup {
     /// A teacher whose modes are the options that there are.
     fn teacher_of(&self, said: &training::Teacher) -> Result<Teacher, SetupError> {
         let strategy = Box::new(scenario::load_strategy(&said.strategy)?);
-        let modes: BTreeSet<String> = strategy
-            .roles
-            .iter()
-            .flat_map(|role| role.leaves().map(|mode| role.path(mode)))
-            .collect();
+        let modes: BTreeSet<String> =
+            strategy.roles.iter().flat_map(|role| role.leaves().map(|mode| role.path(mode))).collect();
         let listed = |names: &mut dyn Iterator<Item = &String>| names.cloned().collect::<Vec<_>>().join(", ");
         if let Some(unknown) = said.options.keys().find(|mode| !modes.contains(*mode)) {
             let allowed = format!("modes of {}: {}", strategy.name, listed(&mut modes.iter()));
-            return Err(SetupError::Field { field: "a mode in the teacher's options", found: unknown.clone(), allowed });
+            return Err(SetupError::Field {
+                field: "a mode in the teacher's options",
+                found: unknown.clone(),
+                allowed,
+            });
         }
         let mut options = BTreeMap::new();
         let Some(names) = self.options() else {
