@@ -28,7 +28,10 @@ pub(crate) fn text(report: &Report) -> String {
             line(&mut text, format_args!("{games} games a pairing, half of them on each side"));
             line(&mut text, format_args!("means a game ± 95 %, over {count} seeds from {first} to {last}\n"));
             entries(&mut text, report);
-            matrix(&mut text, report);
+            match &report.challenger {
+                Some(challenger) => pairings(&mut text, report, challenger),
+                None => matrix(&mut text, report),
+            }
         }
     }
     missing(&mut text, report);
@@ -72,6 +75,27 @@ fn matrix(text: &mut String, report: &Report) {
         let cells: String = report.entries.iter().map(|other| format!("{:>column$}", cell(other))).collect();
         line(text, format_args!("{:width$}{cells}", row.name));
     }
+}
+
+/// How the challenger did against each other entry.
+fn pairings(text: &mut String, report: &Report, challenger: &str) {
+    let width = width(report);
+    line(text, format_args!("\n{challenger} against each, with the share of decided games that it won ± 95 %"));
+    line(text, format_args!("{:width$}{:>7}{:>7}{:>7}{:>20}{:>16}", "", "won", "drawn", "lost", "of decided", "points"));
+    for cell in report.matrix.iter().filter(|cell| cell.row == challenger && cell.column != challenger) {
+        let Cell { column, wins, draws, losses, won_of_decided, score: [own, theirs], .. } = cell;
+        let share = won_of_decided.as_ref().map_or("-".to_owned(), share);
+        let points = format!("{own:.2} : {theirs:.2}");
+        line(text, format_args!("{column:width$}{wins:>7}{draws:>7}{losses:>7}{share:>20}{points:>16}"));
+    }
+}
+
+/// A share in per cent with its interval.
+fn share(estimate: &Estimate) -> String {
+    let pct = |share: f64| (100.0 * share).clamp(0.0, 100.0);
+    let interval = estimate.low.zip(estimate.high);
+    let interval = interval.map_or(String::new(), |(low, high)| format!(" ({:.0} to {:.0})", pct(low), pct(high)));
+    format!("{:.0} %{interval}", pct(estimate.mean))
 }
 
 fn beaten(cell: &Cell) -> String {

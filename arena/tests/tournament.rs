@@ -28,6 +28,7 @@ fn tournament(game: &str, games: u32, strategies: &[&str]) -> Tournament {
         games,
         seed: 7,
         self_play: false,
+        challenger: None,
     }
 }
 
@@ -145,6 +146,38 @@ fn all_opponents_of_a_seed_are_one_observation() {
     let half = first.score.half_width().unwrap();
     assert_eq!((first.name.as_str(), first.games, first.score.mean), ("pav01_0", 12, 7.0));
     assert!((half - T_975_OF_2 / 3_f64.sqrt()).abs() < ROUNDING, "{half}");
+}
+
+#[test]
+fn a_challenger_plays_everybody_and_nobody_else_plays() {
+    let all = tournament("attack_1v1", 6, &["idle", "easy_attackers", "pav01"]);
+    let plan = Plan::new(&Tournament { challenger: Some("easy_attackers_1".to_owned()), ..all }).unwrap();
+    assert_eq!((plan.games_per_seed(), plan.games()), (4, 12));
+    // Against the idle team two games are won and four drawn; against pav01 two are won and four lost.
+    let score = |seed: u64, sides: [usize; 2]| match (seed, sides) {
+        (7, [1, _]) => [2, 1],
+        (7, [_, 1]) => [0, 3],
+        (_, [2, _]) => [4, 1],
+        (_, [_, 2]) => [1, 4],
+        _ => [1, 1],
+    };
+    let matches = (0..plan.games()).map(|i| plan.match_at(i).0);
+    let records: Vec<Record> = matches.map(|of| record(of.seed, of.sides, score(of.seed, of.sides))).collect();
+    let report = Report::new(&plan, &records);
+    assert_eq!(report.challenger.as_deref(), Some("easy_attackers_1"));
+    let cell = |column: &str| {
+        let cell = report.matrix.iter().find(|cell| cell.row == "easy_attackers_1" && cell.column == column);
+        cell.unwrap_or_else(|| panic!("{report:?}"))
+    };
+    let idle = cell("idle_0");
+    assert_eq!((idle.games, idle.wins, idle.draws, idle.losses), (6, 2, 4, 0));
+    assert_eq!(idle.won_of_decided.map(|share| share.mean), Some(1.0));
+    let pav01 = cell("pav01_2");
+    assert_eq!((pav01.wins, pav01.draws, pav01.losses), (2, 0, 4));
+    let share = pav01.won_of_decided.expect("decided games");
+    assert!((share.mean - 1.0 / 3.0).abs() < 1e-12 && share.low.is_some_and(|low| low < 0.0), "{share:?}");
+    assert!((pav01.score_difference - (pav01.score[0] - pav01.score[1])).abs() < 1e-12);
+    assert!(report.matrix.iter().all(|cell| [&cell.row, &cell.column].contains(&&"easy_attackers_1".to_owned())));
 }
 
 #[test]

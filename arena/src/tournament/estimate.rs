@@ -32,6 +32,21 @@ impl Estimate {
         Estimate { mean, low: half.map(|half| mean - half), high: half.map(|half| mean + half) }
     }
 
+    /// The ratio of two sums over independent observations, each of a part and its whole, with its interval by linearisation (Cochran,
+    /// Sampling Techniques, 1977, section 2.11); none if the wholes are nothing.
+    #[must_use]
+    pub fn of_ratio(observations: &[(f64, f64)]) -> Option<Estimate> {
+        let whole: f64 = observations.iter().map(|(_, whole)| whole).sum();
+        if whole <= 0.0 {
+            return None;
+        }
+        let ratio = observations.iter().map(|(part, _)| part).sum::<f64>() / whole;
+        let mean_whole = whole / observations.len() as f64;
+        let offs: Vec<f64> = observations.iter().map(|(part, whole)| (part - ratio * whole) / mean_whole).collect();
+        let Estimate { low, high, .. } = Estimate::of(&offs);
+        Some(Estimate { mean: ratio, low: low.map(|low| ratio + low), high: high.map(|high| ratio + high) })
+    }
+
     /// Half the width of the interval.
     #[must_use]
     pub fn half_width(&self) -> Option<f64> {
@@ -57,6 +72,21 @@ mod tests {
             let got = estimate.half_width().unwrap_or(f64::NAN) / error;
             assert!(estimate.mean == 0.5 && (got - quantile).abs() < TABLE, "{count}: {got}, tables say {quantile}");
         }
+    }
+
+    #[test]
+    fn a_ratio_is_the_share_of_successes_with_the_interval_of_a_proportion() {
+        // 700 of 1000 trials that do not depend on each other, and 1000 that do not count.
+        let trials: Vec<(f64, f64)> =
+            (0..2000).map(|i| if i < 1000 { (f64::from(u8::from(i < 700)), 1.0) } else { (0.0, 0.0) }).collect();
+        let estimate = Estimate::of_ratio(&trials).expect("trials");
+        let want = 1.9612 * (0.7_f64 * 0.3 / 1000.0).sqrt();
+        let half = estimate.half_width().unwrap_or(f64::NAN);
+        assert!((estimate.mean - 0.7).abs() < 1e-12 && (half - want).abs() < 0.0001, "{estimate:?}, not {want}");
+        // The same share in every observation is known exactly, however large each is.
+        let equal = Estimate::of_ratio(&[(1.0, 2.0), (4.0, 8.0), (2.0, 4.0)]).expect("wholes");
+        assert!(equal.mean == 0.5 && equal.half_width().is_some_and(|half| half.abs() < 1e-12), "{equal:?}");
+        assert_eq!(Estimate::of_ratio(&[(0.0, 0.0); 3]), None);
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub struct Match {
 }
 
 impl Plan {
-    /// The games of a tournament. All pairings play the same seeds, each of them twice, with the sides exchanged; an
+    /// The games of a tournament: of every entry with every other, or of the challenger with every other. All pairings play the same seeds, each of them twice, with the sides exchanged; an
     /// entry against itself plays them once, since exchanged sides are the same game.
     ///
     /// # Errors
@@ -33,9 +33,12 @@ impl Plan {
     pub fn new(tournament: &Tournament) -> Result<Plan, Problems> {
         let teams = tournament.teams()?;
         let count = tournament.entries.len();
+        let challenges = |entry: usize| tournament.challenger.as_ref() == Some(&tournament.entries[entry].name);
+        let is_played =
+            |one: usize, other: usize| tournament.challenger.is_none() || challenges(one) || challenges(other);
         let mut rounds = vec![];
         for one in 0..count {
-            for other in one..count {
+            for other in (one..count).filter(|other| is_played(one, *other)) {
                 let both = [[one, other], [other, one]];
                 let sides = match (one == other, tournament.self_play) {
                     (true, true) => &both[..1],

@@ -25,6 +25,8 @@ pub struct Report {
     pub sea: Option<String>,
     /// The game's teams.
     pub teams: Vec<String>,
+    /// The entry whose pairings alone were played.
+    pub challenger: Option<String>,
     /// The first seed.
     pub seed: u64,
     /// How many games each pairing was to play.
@@ -97,6 +99,10 @@ pub struct Cell {
     pub draws: u64,
     /// Games that the column won.
     pub losses: u64,
+    /// The share of the decided games that the row won; none if none was decided. The interval is over seeds.
+    pub won_of_decided: Option<Estimate>,
+    /// The mean points of the row and of the column.
+    pub score: [f64; 2],
     /// The row's points less the column's, mean over games.
     pub score_difference: f64,
     /// Which seeds were played.
@@ -183,6 +189,7 @@ impl Report {
             game: tournament.game.display().to_string(),
             sea: tournament.sea.as_ref().map(|sea| sea.display().to_string()),
             teams: plan.teams().to_vec(),
+            challenger: tournament.challenger.clone(),
             seed: tournament.seed,
             games_per_pairing: 2 * plan.seeds(),
             seeds_counted: whole.len() as u64,
@@ -248,19 +255,30 @@ fn standing<'a>(appearances: impl Iterator<Item = Appearance<'a>>) -> [u64; 3] {
 }
 
 /// Each of `ranks` against each that it played.
-fn matrix(plan: &Plan, rounds: &[&[Record]], ranks: &[usize]) -> Vec<Cell> {
+fn matrix<'a>(plan: &Plan, rounds: &[&'a [Record]], ranks: &[usize]) -> Vec<Cell> {
     let (Some(first), Some(last)) = (rounds.first(), rounds.last()) else { return vec![] };
     let seeds = Seeds { first: first[0].of.seed, last: last[0].of.seed };
     let name = |entry: usize| plan.tournament().entries[entry].name.clone();
     let pairs = ranks.iter().flat_map(|row| ranks.iter().map(move |column| (*row, *column)));
     let cell = |(row, column): (usize, usize)| {
-        let all = || rounds.iter().flat_map(|round| appearances(round, row)).filter(|a| a.opponent == column);
+        let of_round = |round: &&'a [Record]| appearances(round, row).filter(move |a| a.opponent == column);
+        let all = || rounds.iter().flat_map(of_round);
         let games = all().count() as u64;
-        let difference = |a: Appearance<'_>| f64::from(a.game.score[a.side]) - f64::from(a.game.score[1 - a.side]);
+        let decided = |round: &&'a [Record]| {
+            let [wins, _, losses] = standing(of_round(round));
+            (wins as f64, (wins + losses) as f64)
+        };
+        let won_of_decided = Estimate::of_ratio(&rounds.iter().map(decided).collect::<Vec<_>>());
+        let points = |side: usize| {
+            let of = |a: Appearance<'_>| f64::from(a.game.score[if side == 0 { a.side } else { 1 - a.side }]);
+            all().map(of).sum::<f64>() / games as f64
+        };
+        let score = [points(0), points(1)];
         let [wins, draws, losses] = standing(all());
-        let score_difference = all().map(difference).sum::<f64>() / games as f64;
+        let score_difference = score[0] - score[1];
         let (row, column) = (name(row), name(column));
-        (games > 0).then_some(Cell { row, column, games, wins, draws, losses, score_difference, seeds })
+        let cell = Cell { row, column, games, wins, draws, losses, won_of_decided, score, score_difference, seeds };
+        (games > 0).then_some(cell)
     };
     pairs.filter_map(cell).collect()
 }

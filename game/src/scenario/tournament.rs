@@ -28,6 +28,9 @@ pub struct Tournament {
     /// Whether entries also play against themselves.
     #[schemars(extend("default" = false))]
     pub self_play: bool,
+    /// The name of an entry: only its pairings with the others are played. Default every pairing.
+    #[schemars(with = "Option<Name>")]
+    pub challenger: Option<String>,
     /// Who enters.
     #[serde(rename = "entry")]
     #[schemars(length(min = 2, max = 100))]

@@ -32,5 +32,10 @@ pub(in crate::scenario) fn tournament(
             diagnostics.note(document.at(&name_path), message);
         }
     }
+    if let Some(challenger) = tournament.challenger.as_ref().filter(|name| !names.contains(name)) {
+        let listed: Vec<&str> = names.iter().map(|name| name.as_str()).collect();
+        let message = format!("challenger is {challenger:?}, expected an entry: {}", listed.join(", "));
+        diagnostics.note(document.at("challenger"), message);
+    }
     document.is_faultless(diagnostics).then_some(tournament)
 }
