@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 pub struct DqnLearner {
     /// From an observation to what the rest of the episode is worth after each action, in the units of scaled rewards.
     pub network: Perceptron,
-    target: Perceptron,
+    /// What the network was.
+    pub target: Perceptron,
     optimiser: Adam,
     /// Steps of the optimiser.
     steps: u64,

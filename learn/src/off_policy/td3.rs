@@ -22,8 +22,10 @@ pub struct Td3Learner {
     pub actor: Perceptron,
     /// From an observation and an action to what the rest of the episode is worth, in the units of scaled rewards.
     pub critics: [Perceptron; 2],
-    target_actor: Perceptron,
-    target_critics: [Perceptron; 2],
+    /// What the policy was, slowly following it.
+    pub target_actor: Perceptron,
+    /// What the critics were.
+    pub target_critics: [Perceptron; 2],
     actor_optimiser: Adam,
     critic_optimisers: [Adam; 2],
     /// Steps of the critics' optimisers.
