@@ -53,7 +53,7 @@ fn trained_td3(steps: usize, threads: usize) -> Td3Learner {
 
 #[test]
 fn td3_learns_to_go_to_the_middle_of_a_line_and_stay_there() {
-    let learner = trained_td3(1200, 2);
+    let learner = trained_td3(3000, 2);
     let mut trace = Trace::default();
     for start in [-0.95_f32, -0.4, 0.1, 0.8] {
         let mut place = start;
