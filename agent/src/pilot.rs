@@ -16,6 +16,7 @@ use game::policy::PolicyModel;
 use game::scenario::Scenario;
 use game::strategy::{Fact, Mark, Place, Program, Proposer, Values};
 use game::{Order, Picture, VehicleId};
+use std::collections::BTreeMap;
 
 /// How actions reach the boat.
 enum Control {
@@ -23,6 +24,18 @@ enum Control {
     Direct(Box<Situation>),
     /// Through a helm, as a proposal that it weighs against safety.
     Helm(Box<HelmMind>),
+    /// Not at all: a strategy plays, and shows what it does.
+    Taught(Box<Teacher>),
+}
+
+/// A strategy that plays instead of a policy which is to learn to do as it does.
+struct Teacher {
+    helm: HelmMind,
+    /// Which option each of its modes is, by index.
+    options: Vec<Option<usize>>,
+    /// What it did at its first decision since it was last observed, if the policy could have chosen that.
+    did: Option<Action>,
+    is_observed: bool,
 }
 
 /// What a policy sees and what it may do.
@@ -62,6 +75,21 @@ impl Pilot {
         Pilot::new(Control::Helm(Box::new(HelmMind::new(scenario, vehicle, program))), spaces)
     }
 
+    /// A strategy plays, by its program for this boat: [`Pilot::taught`] says what a policy would have had to choose. `options` says of
+    /// each mode, by its path, which option it is.
+    #[must_use]
+    pub fn by_teacher(
+        scenario: &Scenario,
+        vehicle: VehicleId,
+        program: &Program,
+        options: &BTreeMap<String, usize>,
+        spaces: Spaces,
+    ) -> Pilot {
+        let helm = HelmMind::new(scenario, vehicle, program);
+        let options = (0..program.modes.len()).map(|mode| options.get(&program.path(mode)).copied()).collect();
+        Pilot::new(Control::Taught(Box::new(Teacher { helm, options, did: None, is_observed: false })), spaces)
+    }
+
     fn new(control: Control, spaces: Spaces) -> Pilot {
         let observer = Observer::new(spaces.observation, situation_of(&control));
         Pilot { observer, control, actions: spaces.action, set_point: SetPoint::default(), policy: None }
@@ -77,10 +105,7 @@ impl Pilot {
     /// Asks the model, if there is one and it is time to.
     fn ask_model(&mut self, picture: &Picture) {
         let Some(policy) = self.policy.as_mut().filter(|policy| policy.is_due(picture.stamp.valid_ns)) else { return };
-        match &mut self.control {
-            Control::Direct(situation) => situation.look_ahead(picture),
-            Control::Helm(helm) => helm.look_ahead(picture),
-        }
+        look_ahead(&mut self.control, picture);
         policy.look(situation_of(&self.control));
         if let Ok(chosen) = policy.chosen() {
             self.follow(chosen);
@@ -93,15 +118,15 @@ impl Pilot {
         match (chosen, &mut self.control) {
             (Chosen::SetPoint(set_point), _) => self.set_point = set_point,
             (Chosen::Option(option), Control::Helm(helm)) => helm.choose(option),
-            (Chosen::Option(_), Control::Direct(_)) => self.set_point = SetPoint::default(),
+            (Chosen::Option(_), Control::Direct(_) | Control::Taught(_)) => self.set_point = SetPoint::default(),
         }
     }
 
     /// Takes in the picture on which it will decide next, and gives the observation.
     pub fn observe(&mut self, picture: &Picture) -> &[f32] {
-        match &mut self.control {
-            Control::Direct(situation) => situation.look_ahead(picture),
-            Control::Helm(helm) => helm.look_ahead(picture),
+        look_ahead(&mut self.control, picture);
+        if let Control::Taught(teacher) = &mut self.control {
+            (teacher.did, teacher.is_observed) = (None, true);
         }
         self.observer.observe(situation_of(&self.control))
     }
@@ -117,12 +142,68 @@ impl Pilot {
         let situation = situation_of(&self.control);
         !situation.own.tagged && situation.fact(Fact::Disabled) == 0.0
     }
+
+    /// What a teacher did when it was last observed, as an action; none if there is no teacher, or no action does that.
+    #[must_use]
+    pub fn taught(&self) -> Option<Action> {
+        match &self.control {
+            Control::Taught(teacher) => teacher.did,
+            Control::Direct(_) | Control::Helm(_) => None,
+        }
+    }
+}
+
+impl Teacher {
+    fn decide(&mut self, picture: &Picture, actions: ActionSpace) -> Order {
+        let order = self.helm.decide(picture);
+        if std::mem::take(&mut self.is_observed) {
+            self.did = match actions {
+                ActionSpace::Options => self.helm.mode().and_then(|mode| self.options[mode]).map(Action::Discrete),
+                ActionSpace::Pyquaticus | ActionSpace::Continuous => self.steered(order, actions),
+            };
+        }
+        order
+    }
+
+    fn steered(&self, order: Order, actions: ActionSpace) -> Option<Action> {
+        let Order::Steer { heading_rad, speed_m_s } = order else { return None };
+        let situation = self.helm.situation();
+        let asked = SetPoint { course_rad: heading_rad, speed_m_s };
+        actions.nearest(asked, situation.own.nav.psi_rad, situation.model.speed_max_m_s)
+    }
+}
+
+/// Takes in the picture on which it will decide next.
+fn look_ahead(control: &mut Control, picture: &Picture) {
+    match control {
+        Control::Direct(situation) => situation.look_ahead(picture),
+        Control::Helm(helm) => helm.look_ahead(picture),
+        Control::Taught(teacher) => teacher.helm.look_ahead(picture),
+    }
+}
+
+/// The helm, if there is one.
+fn helm_of(control: &Control) -> Option<&HelmMind> {
+    match control {
+        Control::Direct(_) => None,
+        Control::Helm(helm) => Some(helm),
+        Control::Taught(teacher) => Some(&teacher.helm),
+    }
+}
+
+fn helm_of_mut(control: &mut Control) -> Option<&mut HelmMind> {
+    match control {
+        Control::Direct(_) => None,
+        Control::Helm(helm) => Some(helm),
+        Control::Taught(teacher) => Some(&mut teacher.helm),
+    }
 }
 
 fn situation_of(control: &Control) -> &Situation {
     match control {
         Control::Direct(situation) => situation,
         Control::Helm(helm) => helm.situation(),
+        Control::Taught(teacher) => teacher.helm.situation(),
     }
 }
 
@@ -137,6 +218,7 @@ impl Mind for Pilot {
                 helm.propose(Proposal { at: picture.stamp.valid_ns, course_rad, speed_m_s });
                 return helm.decide(picture);
             }
+            Control::Taught(teacher) => return teacher.decide(picture, self.actions),
         };
         if !situation.take(picture) {
             return Order::Hold;
@@ -152,10 +234,7 @@ impl Mind for Pilot {
     }
 
     fn shares(&self) -> bool {
-        match &self.control {
-            Control::Direct(_) => false,
-            Control::Helm(helm) => helm.shares(),
-        }
+        helm_of(&self.control).is_some_and(Mind::shares)
     }
 
     fn proposer(&self) -> Option<Proposer> {
@@ -163,13 +242,13 @@ impl Mind for Pilot {
     }
 
     fn send(&self, messages: &mut Vec<Word>) {
-        if let Control::Helm(helm) = &self.control {
+        if let Some(helm) = helm_of(&self.control) {
             helm.send(messages);
         }
     }
 
     fn receive(&mut self, messages: &[Word]) {
-        if let Control::Helm(helm) = &mut self.control {
+        if let Some(helm) = helm_of_mut(&mut self.control) {
             helm.receive(messages);
         }
     }
@@ -179,15 +258,12 @@ impl Mind for Pilot {
     }
 
     fn show(&mut self, shown: bool) {
-        if let Control::Helm(helm) = &mut self.control {
+        if let Some(helm) = helm_of_mut(&mut self.control) {
             helm.show(shown);
         }
     }
 
     fn report(&self) -> Option<HelmReport> {
-        match &self.control {
-            Control::Direct(_) => None,
-            Control::Helm(helm) => helm.report(),
-        }
+        helm_of(&self.control).and_then(Mind::report)
     }
 }

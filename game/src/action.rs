@@ -103,6 +103,24 @@ impl ActionSpace {
         self != ActionSpace::Continuous
     }
 
+    /// The action that asks most nearly for this course and speed, the other way round from [`ActionSpace::set_point`]; none for options.
+    #[must_use]
+    pub fn nearest(self, asked: SetPoint, heading_rad: f64, speed_max_m_s: f64) -> Option<Action> {
+        let turn_rad = wrap_pi(asked.course_rad - heading_rad);
+        let share = (asked.speed_m_s / speed_max_m_s).clamp(0.0, 1.0);
+        if self == ActionSpace::Continuous {
+            return Some(Action::Continuous([turn_rad / PI, 2.0 * share - 1.0].map(|number| number as f32)));
+        }
+        // A turn by a radian is as far off as all the speed; a stop has no turn.
+        let off = |action: usize| {
+            let SetPoint { course_rad, speed_m_s } = self.set_point(Action::Discrete(action), 0.0, 1.0);
+            let by_turn = if speed_m_s == 0.0 { 0.0 } else { wrap_pi(course_rad - turn_rad) };
+            let by_speed = speed_m_s - share;
+            by_turn * by_turn + by_speed * by_speed
+        };
+        (0..self.count()?).min_by(|a, b| off(*a).total_cmp(&off(*b))).map(Action::Discrete)
+    }
+
     /// The course and the speed that an action asks of a boat with this heading and top speed. An action of another space, or
     /// one with numbers that are none, is a stop, and so is an option.
     #[must_use]
@@ -123,7 +141,7 @@ impl ActionSpace {
 
 #[cfg(test)]
 mod tests {
-    use super::{Action, ActionSpace};
+    use super::{Action, ActionSpace, SetPoint};
 
     #[test]
     fn the_discrete_actions_are_those_of_pyquaticus() {
@@ -137,6 +155,27 @@ mod tests {
             let off_rad = crate::angle::wrap_pi(got.course_rad - 1.0 - f64::to_radians(turn_deg));
             assert!(off_rad.abs() < 1e-12 && (got.speed_m_s - speed_m_s).abs() < 1e-12, "{i}: {got:?}");
         }
+    }
+
+    #[test]
+    fn the_nearest_action_is_the_one_that_asked() {
+        let (heading_rad, fastest_m_s) = (2.5, 3.0);
+        let space = ActionSpace::Pyquaticus;
+        for action in (0..17).map(Action::Discrete) {
+            let asked = space.set_point(action, heading_rad, fastest_m_s);
+            assert_eq!(space.nearest(asked, heading_rad, fastest_m_s), Some(action));
+        }
+        let asked = ActionSpace::Continuous.set_point(Action::Continuous([-0.25, 0.5]), heading_rad, fastest_m_s);
+        let Some(Action::Continuous([turn, speed])) = ActionSpace::Continuous.nearest(asked, heading_rad, fastest_m_s)
+        else {
+            panic!("no continuous action")
+        };
+        assert!((turn + 0.25).abs() < 1e-6 && (speed - 0.5).abs() < 1e-6, "{turn} {speed}");
+        // Slowly, 10 degrees to starboard; and next to nothing, anywhere.
+        let slow = |turn_deg: f64, speed_m_s| SetPoint { course_rad: heading_rad + turn_deg.to_radians(), speed_m_s };
+        assert_eq!(space.nearest(slow(10.0, 1.4), heading_rad, fastest_m_s), Some(Action::Discrete(12)));
+        assert_eq!(space.nearest(slow(70.0, 0.1), heading_rad, fastest_m_s), Some(Action::Discrete(16)));
+        assert_eq!(ActionSpace::Options.nearest(asked, heading_rad, fastest_m_s), None);
     }
 
     #[test]

@@ -15,6 +15,7 @@ use crate::observation::ObservationSpace;
 use crate::scenario::raw::{FilePath, Name};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// How a policy is trained.
@@ -40,7 +41,7 @@ pub struct Training {
     /// The seed: with the file and the version it names the weights that come of it, to the bit.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub seed: u64,
-    /// The network.
+    /// The networks.
     pub network: Layers,
     /// How the policy learns: proximal policy optimisation, where the file has no table of another algorithm.
     pub ppo: Ppo,
@@ -57,12 +58,27 @@ pub struct Training {
     pub stage: Vec<Stage>,
 }
 
-/// A network's size.
+/// What a critic is given, who learns what the rest of a game is worth. It is of use in training alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CriticInput {
+    /// What the policy is given.
+    #[default]
+    Observation,
+    /// That and the truth about all boats, the flags and the sea, which no policy is given (a central critic: Lowe and others,
+    /// NeurIPS 2017).
+    Truth,
+}
+
+/// The networks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Layers {
     /// Numbers of each hidden layer.
     #[schemars(length(min = 1, max = 8), inner(range(min = 1, max = 1024)), extend("default" = [128, 128]))]
     pub hidden: Vec<usize>,
+    /// What the critic is given.
+    #[schemars(extend("default" = "observation"))]
+    pub critic: CriticInput,
 }
 
 /// How updates are made: proximal policy optimisation (Schulman and others, arXiv 1707.06347).
@@ -166,6 +182,9 @@ pub struct Stage {
     /// Default none: actions are orders.
     #[schemars(with = "Option<FilePath>")]
     pub helm: Option<PathBuf>,
+    /// A strategy that plays the policy's boats in this stage, so that the policy learns to do as it does (behaviour cloning) and the
+    /// critic what comes of it. Default none: the policy plays.
+    pub teacher: Option<Teacher>,
     /// How often the policy plays against itself as it is, in comparison with the other opponents.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub self_play: f64,
@@ -190,6 +209,18 @@ pub struct Stage {
     /// Or earlier, when an evaluation gives this share of games won, draws counting half. Default never.
     #[schemars(range(min = 0, max = 1))]
     pub until_won: Option<f64>,
+}
+
+/// A strategy to imitate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Teacher {
+    /// Its file.
+    #[schemars(with = "FilePath")]
+    pub strategy: PathBuf,
+    /// With `action = "options"`: which option each of its modes is. A mode that is not named here is the option of its own name, or
+    /// nothing to learn from.
+    #[schemars(extend("default" = {}))]
+    pub options: BTreeMap<String, String>,
 }
 
 /// A strategy to play against.

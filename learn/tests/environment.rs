@@ -3,8 +3,10 @@
 use agent::{Action, ActionSpace, Mind, ObservationSpace, Pilot, Spaces};
 use game::rewards::{Potential, Rewards, Worth};
 use game::stream::Stream;
+use game::training::CriticInput;
 use game::{Order, Picture, TeamId, VehicleId};
-use learn::environment::{Control, Player, Setup, VectorEnvironment};
+use learn::environment::{Control, Player, Setup, Teacher, VectorEnvironment};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 fn scenarios() -> PathBuf {
@@ -28,6 +30,8 @@ fn setup(game: &str, opponents: Vec<(f64, Player)>) -> Setup {
         scenario: scenario.unwrap_or_else(|problems| panic!("{problems}")),
         spaces: SPACES,
         control: Control::Direct,
+        teacher: None,
+        critic: CriticInput::Observation,
         decisions_per_step: 5,
         steps_max: None,
         starts: None,
@@ -62,6 +66,34 @@ fn played(threads: usize) -> (Vec<u32>, Vec<learn::environment::Finished>) {
         finished.extend_from_slice(environment.finished());
     }
     (numbers, finished)
+}
+
+#[test]
+fn a_critic_is_given_the_truth_that_sensors_do_not_tell() {
+    let opponents = vec![(1.0, Player::Policy)];
+    let setup = Setup { critic: CriticInput::Truth, ..setup("surveyor_2v2", opponents) };
+    let mut environment = VectorEnvironment::new(setup, 2, 1, 3).unwrap_or_else(|error| panic!("{error}"));
+    let (observation, state) = (environment.setup().observation_size(), environment.setup().state_size());
+    for _ in 0..40 {
+        environment.step(&[Action::Discrete(3); 8]).unwrap_or_else(|error| panic!("{error}"));
+    }
+    let mut off_m = 0.0_f64;
+    for (row, (state, observed)) in
+        environment.states().chunks_exact(state).zip(environment.observations().chunks_exact(observation)).enumerate()
+    {
+        assert_eq!(&state[..observation], observed);
+        let contest = environment.contest(row / 4);
+        // The boats of the team that learns come first: that is the second team in every second game, by the seed.
+        let me = VehicleId::at((row + if row / 4 == 0 { 2 } else { 0 }) % 4);
+        let scenario = contest.scenario();
+        let field = &scenario.field;
+        let sign = if scenario.team_of(me).index() == 0 { 1.0 } else { -1.0 };
+        let truth = contest.frame(&mut game::event::EventCursor::default()).vehicles[me.index()].nav;
+        let ahead = sign * (truth.at() - field.middle()).dot(field.along) / (0.5 * field.plan.width_m);
+        assert!((f64::from(state[observation]) - ahead).abs() < 1e-6, "row {row}: {}, not {ahead}", state[observation]);
+        off_m = off_m.max((f64::from(observed[0]) - ahead).abs() * 0.5 * field.plan.width_m);
+    }
+    assert!(off_m > 0.05, "sensors that are off by {off_m} m at most tell the truth");
 }
 
 #[test]
@@ -127,6 +159,32 @@ fn a_game_is_the_one_that_the_arena_plays() {
         let outcome = arena::play_watched(&setup.scenario, minds, seed, watch).unwrap();
         assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
     }
+}
+
+#[test]
+fn a_teacher_plays_as_its_strategy_does_and_shows_actions_that_ask_for_it() {
+    let teacher = Teacher { strategy: strategy("strategy_2"), options: BTreeMap::new() };
+    let base = setup("surveyor_2v2", vec![(1.0, Player::Policy)]);
+    let setup = Setup { teacher: Some(teacher), ..base };
+    let mut environment = VectorEnvironment::new(setup.clone(), 1, 1, 4).unwrap();
+    let mut taught = vec![];
+    for _ in 0..200 {
+        environment.step(&[Action::Discrete(16); 4]).unwrap();
+        taught.extend(environment.taught(0).iter().flatten().copied());
+    }
+    let scenario = setup.scenario.of_seed(4).unwrap();
+    let mind = |i| agent::mind_by(&scenario, VehicleId::at(i), &strategy("strategy_2"));
+    let watch = |contest: &mut sim::Contest| {
+        // As the environment has been shown the boats after its last step.
+        contest.pictures();
+        contest.decision() < 1000
+    };
+    let outcome = arena::play_watched(&setup.scenario, (0..4).map(mind).collect(), 4, watch).unwrap();
+    assert_eq!(environment.contest(0).outcome().digest, outcome.digest);
+    // Nearly always something is asked for: straight on at full speed more than by chance, and turns of every kind.
+    let times = |action| taught.iter().filter(|one| **one == Action::Discrete(action)).count();
+    let kinds = (0..17).filter(|action| times(*action) > 0).count();
+    assert!(taught.len() > 700 && times(4) > 100 && kinds > 10, "{} of {}, {kinds} kinds", times(4), taught.len());
 }
 
 #[test]

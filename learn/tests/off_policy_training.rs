@@ -53,7 +53,7 @@ fn short(algorithm: Algorithm) -> Training {
     };
     Training {
         games: 8,
-        network: Layers { hidden: vec![16] },
+        network: Layers { hidden: vec![16], ..base.network.clone() },
         td3,
         dqn,
         league: League { every_samples: 1_000, most: 2, priority: 1.0 },

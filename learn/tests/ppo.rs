@@ -3,7 +3,7 @@
 use game::stream::Stream;
 use game::training::Ppo;
 use learn::nn::{Adam, AdamSettings, Perceptron, Trace};
-use learn::ppo::{ActorCritic, Batch, choice};
+use learn::ppo::{ActorCritic, Batch, Lesson, choice};
 
 #[test]
 fn gradients_are_the_slopes_of_the_output() {
@@ -93,12 +93,21 @@ fn sampled(learner: &ActorCritic, stream: &mut Stream, count: usize) -> (Vec<f32
     (observations, actions, logs, rewards)
 }
 
-fn trained(updates: usize, threads: usize, mut learner: ActorCritic) -> ActorCritic {
+fn trained(updates: usize, threads: usize, learner: ActorCritic) -> ActorCritic {
+    taught(Lesson::Reinforcement, updates, threads, learner)
+}
+
+/// The same, or with a teacher who does what is worth nothing.
+fn taught(lesson: Lesson, updates: usize, threads: usize, mut learner: ActorCritic) -> ActorCritic {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let settings = Ppo { learning_rate: 3e-3, minibatch: 600, divergence_max: 1e9, ..Ppo::default() };
     for i in 0..updates {
         let mut stream = Stream::new(i as u64, "samples");
-        let (observations, actions, log_probabilities, rewards) = sampled(&learner, &mut stream, 1500);
+        let (observations, mut actions, log_probabilities, rewards) = sampled(&learner, &mut stream, 1500);
+        if lesson == Lesson::Imitation {
+            let picture = |row: &[f32]| (0..3).map(|bit| usize::from(row[bit] > 0.0) << bit).sum::<usize>();
+            actions = observations.chunks_exact(3).map(|row| ((picture(row) * 3 + 1) % 4) as u16).collect();
+        }
         let counts = vec![true; rewards.len()];
         let batch = Batch {
             observations: &observations,
@@ -107,6 +116,7 @@ fn trained(updates: usize, threads: usize, mut learner: ActorCritic) -> ActorCri
             log_probabilities: &log_probabilities,
             advantages: &rewards,
             returns: &rewards,
+            lesson,
             counts: &counts,
         };
         let statistics = pool.install(|| learner.update(&batch, &settings, 1.0, &mut stream));
@@ -127,6 +137,17 @@ fn a_policy_learns_which_action_is_worth_most() {
         learner.critic.forward(&observation, &mut value);
         let expected = value.output()[0] * learner.scale.deviation();
         assert!((expected - 1.0).abs() < 0.2, "picture {picture}: {expected}");
+    }
+}
+
+#[test]
+fn a_policy_imitates_its_teacher_whatever_comes_of_it() {
+    let learner = taught(Lesson::Imitation, 20, 2, ActorCritic::new(3, 3, &[32], 4, 1));
+    let mut trace = Trace::default();
+    for picture in 0..8_usize {
+        let observation = [0, 1, 2].map(|bit| if picture >> bit & 1 == 1 { 1.0 } else { -1.0 });
+        learner.actor.forward(&observation, &mut trace);
+        assert_eq!(choice::likeliest(trace.output()), (picture * 3 + 1) % 4, "picture {picture}: {:?}", trace.output());
     }
 }
 

@@ -1,8 +1,9 @@
 //! Training: something is learnt in a few seconds, and the same by everybody.
 
 use game::scenario;
-use game::training::{Evaluation, Layers, League, Ppo, Stage, Training};
+use game::training::{CriticInput, Evaluation, Layers, League, Ppo, Stage, Teacher, Training};
 use learn::train::{Progress, StateError, Trainer};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 fn file(path: &str) -> PathBuf {
@@ -38,6 +39,7 @@ fn short() -> Training {
         sea: None,
         rewards: file("rewards/bold.toml"),
         helm: helm.map(file),
+        teacher: None,
         self_play: 1.0,
         past_selves: 1.0,
         strategies: 1.0,
@@ -47,13 +49,17 @@ fn short() -> Training {
         samples: 4_000,
         until_won: None,
     };
-    let network = Layers { hidden: vec![16] };
+    let network = Layers { hidden: vec![16], critic: CriticInput::Truth };
     let ppo = Ppo { steps: 32, minibatch: 256, ..Ppo::default() };
     let league = League { every_samples: 1_000, most: 2, priority: 1.0 };
     let opponents = vec![file("strategies/pav01.toml")];
     let evaluation = Evaluation { every_samples: 3_000, games: 2, opponents };
     let stage = vec![
         stage("direct", "games/pav01_afloat.toml", None),
+        Stage {
+            teacher: Some(Teacher { strategy: file("strategies/strategy_2.toml"), options: BTreeMap::new() }),
+            ..stage("taught", "games/pav01_afloat.toml", None)
+        },
         stage("helm", "games/surveyor_2v2.toml", Some("strategies/policy.toml")),
     ];
     Training { games: 8, network, ppo, league, evaluation, stage, ..first() }
@@ -92,6 +98,54 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
     }
     assert!(taken_up > 2, "{taken_up}");
     assert!(trainer.state() == state);
+}
+
+/// Learns what strategy 2 is at, as options of another strategy.
+fn imitation(options: &[(&str, &str)]) -> Training {
+    let options = options.iter().map(|(mode, option)| ((*mode).to_owned(), (*option).to_owned())).collect();
+    let teacher = Some(Teacher { strategy: file("strategies/strategy_5.toml"), options });
+    let options =
+        scenario::load_training(&file("training/options.toml")).unwrap_or_else(|problems| panic!("{problems}"));
+    let helm = Some(file("strategies/options.toml"));
+    let stage = Stage { teacher, helm, samples: 40_000, ..short().stage.remove(0) };
+    Training {
+        stage: vec![stage],
+        action: options.action,
+        period_s: 1.0,
+        ppo: Ppo { learning_rate: 3e-3, ..short().ppo },
+        ..short()
+    }
+}
+
+const OPTIONS: [(&str, &str); 5] =
+    [("raiding", "attack"), ("intercepting", "pursue"), ("keeping", "hold"), ("waiting", "wait"), ("chasing", "chase")];
+
+#[test]
+fn a_policy_learns_to_choose_what_its_teacher_is_at() {
+    let mut trainer = Trainer::new(imitation(&OPTIONS), 2).unwrap_or_else(|error| panic!("{error}"));
+    let mut losses = vec![];
+    while !trainer.is_over() {
+        let progress = trainer.update().unwrap_or_else(|error| panic!("{error}"));
+        losses.extend(progress.learnt.policy_loss);
+        assert_eq!(progress.learnt.clipped, Some(0.0));
+    }
+    // Ten options to choose from at first.
+    let (first, last) = (losses[0], losses[losses.len() - 1]);
+    assert!(first > 1.5 && last < 0.7, "cross-entropy, nats: {losses:?}");
+}
+
+#[test]
+fn a_teacher_whose_modes_are_no_options_is_refused() {
+    let refused = |options: &[(&str, &str)]| match Trainer::new(imitation(options), 1) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("{options:?}"),
+    };
+    let message = refused(&[("raiding", "fly")]);
+    assert!(message.contains("\"fly\", expected attack, rush"), "{message}");
+    let message = refused(&[("flying", "attack")]);
+    assert!(message.contains("flying, expected modes of strategy_5: ") && message.contains("raiding"), "{message}");
+    let message = refused(&[]);
+    assert!(message.contains("of strategy_5, none of whose modes is an option"), "{message}");
 }
 
 #[test]

@@ -80,6 +80,11 @@ impl HelmMind {
         &self.situation
     }
 
+    /// The mode that it chose last, by index in its program.
+    pub(crate) fn mode(&self) -> Option<usize> {
+        self.mode
+    }
+
     /// Chooses the option that somebody outside wants, if the program has options.
     pub(crate) fn choose(&mut self, option: usize) {
         if let Some(variable) = self.program.options().filter(|variable| option < self.program.texts(*variable).len()) {

@@ -62,7 +62,9 @@ impl Game {
             match (is_learner, &setup.opponents[side.opponent].1, &setup.mates) {
                 (false, Player::Strategy(strategy), _) => agent::mind_by(scenario, vehicle, strategy),
                 (_, _, Some(strategy)) if !pilots.contains(&vehicle) => agent::mind_by(scenario, vehicle, strategy),
-                (false, Player::Model(model), _) => Box::new(pilot(setup, scenario, vehicle).by_model(model.clone())),
+                (false, Player::Model(model), _) => {
+                    Box::new(policy_pilot(setup, scenario, vehicle).by_model(model.clone()))
+                }
                 _ => Box::new(pilot(setup, scenario, vehicle)),
             }
         };
@@ -144,6 +146,11 @@ impl Game {
         pilot.obeys()
     }
 
+    /// What a teacher did with a boat in the last step, as an action.
+    pub(super) fn taught(&mut self, place: usize) -> Option<Action> {
+        self.pilot(place).and_then(|(pilot, _)| pilot.taught())
+    }
+
     /// How it stands.
     pub(super) fn standing(&self) -> Standing {
         let (score, scenario) = (self.contest.score(), self.contest.scenario());
@@ -200,8 +207,17 @@ impl Game {
     }
 }
 
-/// A boat that is given actions.
+/// A boat that is given actions, or shows those of a teacher.
 fn pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
+    if let Some(teacher) = &setup.teacher {
+        let program = agent::roles::role_in(scenario, vehicle, &teacher.strategy);
+        return Pilot::by_teacher(scenario, vehicle, program, &teacher.options, setup.spaces);
+    }
+    policy_pilot(setup, scenario, vehicle)
+}
+
+/// A boat by a policy.
+fn policy_pilot(setup: &Setup, scenario: &Scenario, vehicle: VehicleId) -> Pilot {
     match &setup.control {
         Control::Direct => Pilot::direct(scenario, vehicle, setup.spaces),
         Control::Helm(strategy) => {

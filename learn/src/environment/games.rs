@@ -3,6 +3,7 @@
 use super::game::{Ending, Game, Side};
 use super::setup::{Player, Setup, SetupError};
 use super::starts::Starts;
+use super::truth;
 use agent::Action;
 use game::VehicleId;
 use game::count::Counts;
@@ -69,6 +70,10 @@ struct Slot {
     /// The number of its game among all that are played: places count up by as many as there are.
     number: u64,
     ended: Option<Finished>,
+    /// What a teacher did in the last step, by row.
+    taught: Vec<Option<Action>>,
+    /// The truth for a critic, row by row: as it is now, and as it was before a new game began.
+    truth: [Vec<f32>; 2],
     /// Whether its boats have been shown how things stand: observing twice would be two decisions.
     is_shown: bool,
 }
@@ -84,7 +89,8 @@ impl Games {
         let starts = Starts::new(&setup, seed);
         let slot = |i: usize| {
             let game = starts.game(&setup, i as u64)?;
-            Ok(Slot { game, number: i as u64, ended: None, is_shown: false })
+            let (taught, truth) = (vec![], [vec![], vec![]]);
+            Ok(Slot { game, number: i as u64, ended: None, taught, truth, is_shown: false })
         };
         let slots: Result<Vec<Slot>, SetupError> = (0..games).map(slot).collect();
         Ok(Games {
@@ -127,6 +133,20 @@ impl Games {
         &self.finished
     }
 
+    /// What a teacher did with the boats of a game in the last step, by row; none where no action does that.
+    #[must_use]
+    pub fn taught(&self, game: usize) -> &[Option<Action>] {
+        &self.slots[game].taught
+    }
+
+    /// What a critic is given of a game besides observations, row by row: as it is now, and, if a game ended in the last step, as it was
+    /// then. Rows of boats that are given no actions are missing.
+    #[must_use]
+    pub fn truth(&self, game: usize) -> (&[f32], &[f32]) {
+        let [now, last] = &self.slots[game].truth;
+        (now, last)
+    }
+
     /// A game as it stands.
     #[must_use]
     pub fn contest(&self, game: usize) -> &Contest {
@@ -150,10 +170,10 @@ impl Games {
     /// # Panics
     /// If the slices are not as long as there are rows.
     pub fn show(&mut self, rows: Rows<'_>) {
-        self.for_each_game(rows, |_, _, _, slot, rows| {
+        self.for_each_game(rows, |setup, _, _, slot, rows| {
             if !slot.is_shown {
                 rows.rewards.fill(0.0);
-                slot.show(rows);
+                slot.show(setup, rows);
             }
         });
     }
@@ -209,7 +229,7 @@ impl Games {
         let (count, per_game) = (self.slots.len() as u64, self.rows_per_game);
         let begun = self.for_each_game(rows, |setup, starts, i, slot, rows| {
             if !slot.is_shown {
-                slot.show(rows);
+                slot.show(setup, rows);
             }
             slot.play(setup, i, &actions[i * per_game..(i + 1) * per_game], rows);
             if slot.ended.is_none() {
@@ -218,7 +238,8 @@ impl Games {
             rows.final_observations.copy_from_slice(rows.observations);
             slot.number = slot.number.wrapping_add(count);
             slot.begin(setup, starts)?;
-            slot.show(rows);
+            slot.truth.swap(0, 1);
+            slot.show(setup, rows);
             Ok(())
         });
         self.finished.clear();
@@ -270,7 +291,11 @@ impl Slot {
         let ending = self.game.step(setup);
         rows.rewards.fill(0.0);
         rows.rewards[..pilots].iter_mut().enumerate().for_each(|(i, reward)| *reward = self.game.reward_of(i) as f32);
-        self.show(rows);
+        self.taught.clear();
+        if setup.teacher.is_some() {
+            self.taught.extend((0..pilots).map(|place| self.game.taught(place)));
+        }
+        self.show(setup, rows);
         self.ended = (ending != Ending::None).then(|| Finished {
             game,
             standing: self.game.standing(),
@@ -279,13 +304,17 @@ impl Slot {
     }
 
     /// Writes what the boats are shown now.
-    fn show(&mut self, rows: &mut Rows<'_>) {
+    fn show(&mut self, setup: &Setup, rows: &mut Rows<'_>) {
         let size = rows.observations.len() / rows.rewards.len();
         self.is_shown = true;
         rows.observations.fill(0.0);
         rows.counts.fill(false);
         for (i, observation) in rows.observations.chunks_exact_mut(size).take(self.game.pilots()).enumerate() {
             rows.counts[i] = self.game.observe(i, observation);
+        }
+        if setup.truth_size() > 0 {
+            self.truth[0].clear();
+            truth::write(self.game.contest(), self.game.boats_with_actions(), &mut self.truth[0]);
         }
     }
 }

@@ -7,11 +7,12 @@ mod raw;
 mod setup;
 mod stage;
 mod starts;
+mod truth;
 mod vector;
 
 pub use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 pub use game::Side;
 pub use games::{Finished, Games, Rows, Standing};
 pub use raw::{RawObservation, RawSetup};
-pub use setup::{Control, Player, Setup, SetupError};
+pub use setup::{Control, Player, Setup, SetupError, Teacher};
 pub use vector::VectorEnvironment;

@@ -6,6 +6,7 @@ use game::TeamId;
 use game::rewards::Rewards;
 use game::scenario::{self, Scenario};
 use game::strategy::Strategy;
+use game::training::CriticInput;
 use std::path::{Path, PathBuf};
 
 /// What policies see, before it is known how large the teams are.
@@ -78,6 +79,8 @@ impl RawSetup {
         let setup = Setup {
             spaces: Spaces { observation: self.observation.check(&scenario)?, action: self.action },
             control: helm.map_or(Control::Direct, Control::Helm),
+            teacher: None,
+            critic: CriticInput::Observation,
             decisions_per_step,
             steps_max: self.episode_max_s.map(|s| steps_max(s, &scenario, decisions_per_step)).transpose()?,
             starts: self.starts,

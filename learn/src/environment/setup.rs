@@ -1,11 +1,14 @@
 //! What is played in an environment: the game, who learns, what a policy sees and may do, and against whom.
 
+use super::truth;
 use agent::{ActionSpace, Spaces};
 use game::policy::PolicyModel;
 use game::rewards::Rewards;
 use game::scenario::{Problems, Scenario};
 use game::strategy::{Program, Strategy, Task};
+use game::training::CriticInput;
 use game::{TeamId, VehicleId};
+use std::collections::BTreeMap;
 use thiserror::Error;
 
 /// How actions reach a boat.
@@ -15,6 +18,15 @@ pub enum Control {
     Direct,
     /// As proposals to the helms of this strategy, every role of which has a behaviour of the kind `policy`.
     Helm(Box<Strategy>),
+}
+
+/// A strategy that plays instead of the policy, which learns to do as it does.
+#[derive(Clone, Debug)]
+pub struct Teacher {
+    /// The strategy.
+    pub strategy: Box<Strategy>,
+    /// With [`ActionSpace::Options`]: which option a mode is, by the mode's path. What is in none of these modes is not taught.
+    pub options: BTreeMap<String, usize>,
 }
 
 /// Who plays a team in a game.
@@ -37,6 +49,10 @@ pub struct Setup {
     pub spaces: Spaces,
     /// How it reaches the boats.
     pub control: Control,
+    /// Who plays the policy's boats instead of it; none: it plays itself.
+    pub teacher: Option<Teacher>,
+    /// What a critic is given.
+    pub critic: CriticInput,
     /// Decisions of the game to one of the policy.
     pub decisions_per_step: u32,
     /// An episode ends after so many steps at the latest, though the game would go on; none plays whole games.
@@ -225,6 +241,20 @@ impl Setup {
     pub fn observation_names(&self) -> Vec<String> {
         let boats = self.team_size();
         self.spaces.observation.names(boats.saturating_sub(1), boats)
+    }
+
+    /// How many numbers a critic is given.
+    #[must_use]
+    pub fn state_size(&self) -> usize {
+        self.observation_size() + self.truth_size()
+    }
+
+    /// How many of them no policy is given.
+    pub(super) fn truth_size(&self) -> usize {
+        match self.critic {
+            CriticInput::Observation => 0,
+            CriticInput::Truth => truth::size(self.scenario.vehicles.len()),
+        }
     }
 
     /// How many numbers an observation has.

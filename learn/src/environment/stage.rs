@@ -1,10 +1,11 @@
 //! A stage of a training as a setup.
 
 use super::raw::{decisions_per_step, steps_max};
-use super::setup::{Control, Player, Setup, SetupError};
+use super::setup::{Control, Player, Setup, SetupError, Teacher};
 use agent::Spaces;
 use game::scenario::{self, Overrides};
-use game::training::{Stage, Training};
+use game::training::{self, Stage, Training};
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Setup {
     /// What is played in a stage: first against the policy itself, if it ever is, then against the stage's strategies. Nobody is
@@ -26,12 +27,14 @@ impl Setup {
             *weight = 1.0;
         }
         let decisions_per_step = decisions_per_step(training.period_s, &scenario)?;
-        let setup = Setup {
+        let mut setup = Setup {
             spaces: Spaces { observation: training.observation, action: training.action },
             control: match &stage.helm {
                 Some(helm) => Control::Helm(strategy(helm)?),
                 None => Control::Direct,
             },
+            teacher: None,
+            critic: training.network.critic,
             decisions_per_step,
             steps_max: stage.episode_max_s.map(|s| steps_max(s, &scenario, decisions_per_step)).transpose()?,
             starts: stage.starts,
@@ -43,6 +46,48 @@ impl Setup {
             scenario,
         };
         setup.check()?;
+        setup.teacher = stage.teacher.as_ref().map(|teacher| setup.teacher_of(teacher)).transpose()?;
         Ok(setup)
+    }
+
+    /// A teacher whose modes are the options that there are.
+    fn teacher_of(&self, said: &training::Teacher) -> Result<Teacher, SetupError> {
+        let strategy = Box::new(scenario::load_strategy(&said.strategy)?);
+        let modes: BTreeSet<String> =
+            strategy.roles.iter().flat_map(|role| role.leaves().map(|mode| role.path(mode))).collect();
+        let listed = |names: &mut dyn Iterator<Item = &String>| names.cloned().collect::<Vec<_>>().join(", ");
+        if let Some(unknown) = said.options.keys().find(|mode| !modes.contains(*mode)) {
+            let allowed = format!("modes of {}: {}", strategy.name, listed(&mut modes.iter()));
+            return Err(SetupError::Field {
+                field: "a mode in the teacher's options",
+                found: unknown.clone(),
+                allowed,
+            });
+        }
+        let mut options = BTreeMap::new();
+        let Some(names) = self.options() else {
+            if let Some(option) = said.options.values().next() {
+                let allowed = "none: the policy's action is not \"options\"".to_owned();
+                return Err(SetupError::Field { field: "the teacher's options", found: option.clone(), allowed });
+            }
+            return Ok(Teacher { strategy, options });
+        };
+        for mode in modes {
+            let name = said.options.get(&mode).unwrap_or(&mode);
+            match names.iter().position(|option| option == name) {
+                Some(option) => drop(options.insert(mode, option)),
+                None if said.options.contains_key(&mode) => {
+                    let (found, allowed) = (format!("{name:?}"), listed(&mut names.iter()));
+                    return Err(SetupError::Field { field: "an option of the teacher's", found, allowed });
+                }
+                None => {}
+            }
+        }
+        if options.is_empty() {
+            let found = format!("of {}, none of whose modes is an option", strategy.name);
+            let allowed = format!("options for its modes, of {}", listed(&mut names.iter()));
+            return Err(SetupError::Field { field: "the teacher", found, allowed });
+        }
+        Ok(Teacher { strategy, options })
     }
 }

@@ -18,11 +18,14 @@ struct Shown {
     final_observations: Vec<f32>,
     rewards: Vec<f32>,
     counts: Vec<bool>,
+    /// What a critic is given, rows × numbers, and the same before a new game began; empty where that is the observation.
+    states: Vec<f32>,
+    final_states: Vec<f32>,
 }
 
 impl Shown {
     fn rows(&mut self) -> Rows<'_> {
-        let Shown { observations, final_observations, rewards, counts } = self;
+        let Shown { observations, final_observations, rewards, counts, .. } = self;
         Rows { observations, final_observations, rewards, counts }
     }
 }
@@ -40,9 +43,13 @@ impl VectorEnvironment {
             final_observations: vec![0.0; numbers],
             rewards: vec![0.0; rows],
             counts: vec![false; rows],
+            states: vec![],
+            final_states: vec![],
         };
         games.show(shown.rows());
-        Ok(VectorEnvironment { games, shown })
+        let mut environment = VectorEnvironment { games, shown };
+        environment.note_states();
+        Ok(environment)
     }
 
     /// What is played.
@@ -77,6 +84,24 @@ impl VectorEnvironment {
     #[must_use]
     pub fn final_observations(&self) -> &[f32] {
         &self.shown.final_observations
+    }
+
+    /// What a critic is given, rows × [`Setup::state_size`].
+    #[must_use]
+    pub fn states(&self) -> &[f32] {
+        if self.setup().truth_size() == 0 { &self.shown.observations } else { &self.shown.states }
+    }
+
+    /// The same before a new game began; of games that ended in the last step alone.
+    #[must_use]
+    pub fn final_states(&self) -> &[f32] {
+        if self.setup().truth_size() == 0 { &self.shown.final_observations } else { &self.shown.final_states }
+    }
+
+    /// What a teacher did with the boats of a game in the last step, by row: see [`Games::taught`].
+    #[must_use]
+    pub fn taught(&self, game: usize) -> &[Option<Action>] {
+        self.games.taught(game)
     }
 
     /// What the last step was worth, by row.
@@ -123,6 +148,34 @@ impl VectorEnvironment {
     /// # Panics
     /// If there is not one action for each row.
     pub fn step(&mut self, actions: &[Action]) -> Result<(), SetupError> {
-        self.games.step(actions, self.shown.rows())
+        self.games.step(actions, self.shown.rows())?;
+        self.note_states();
+        Ok(())
+    }
+
+    /// Puts observations and the truth side by side.
+    fn note_states(&mut self) {
+        let truth = self.setup().truth_size();
+        if truth == 0 {
+            return;
+        }
+        let (size, (rows, per_game)) = (self.setup().observation_size(), self.rows());
+        let VectorEnvironment { games, shown } = self;
+        let Shown { observations, final_observations, states, final_states, .. } = shown;
+        for (states, observations, is_last) in
+            [(states, &*observations, false), (final_states, &*final_observations, true)]
+        {
+            states.resize(rows * (size + truth), 0.0);
+            for (row, state) in states.chunks_exact_mut(size + truth).enumerate() {
+                let (game, place) = (row / per_game, row % per_game);
+                let (now, last) = games.truth(game);
+                let of_game = if is_last { last } else { now };
+                state[..size].copy_from_slice(&observations[row * size..(row + 1) * size]);
+                match of_game.get(place * truth..(place + 1) * truth) {
+                    Some(numbers) => state[size..].copy_from_slice(numbers),
+                    None => state[size..].fill(0.0),
+                }
+            }
+        }
     }
 }

@@ -70,8 +70,19 @@ pub struct Batch<'a> {
     pub advantages: &'a [f32],
     /// What is to be expected.
     pub returns: &'a [f32],
+    /// What is learnt from them.
+    pub lesson: Lesson,
     /// Whether the boat did what was chosen. Of other samples only the critic learns: it has to know what a tagged boat can expect.
     pub counts: &'a [bool],
+}
+
+/// What a policy learns from samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lesson {
+    /// To do more often what came out better than was expected, within limits: PPO.
+    Reinforcement,
+    /// To do what was done, whatever came of it: behaviour cloning, by the cross-entropy.
+    Imitation,
 }
 
 /// What an update was like, in the mean over its samples.
@@ -191,8 +202,11 @@ impl ActorCritic {
             }
             log_probabilities(logits, &mut logs);
             let advantage = advantages.normalised(batch.advantages[i]);
-            let was = batch.log_probabilities[i];
-            policy_gradient(&logs, usize::from(batch.actions[i]), (was, advantage), settings, by, &mut sums);
+            let (action, was) = (usize::from(batch.actions[i]), batch.log_probabilities[i]);
+            match batch.lesson {
+                Lesson::Reinforcement => policy_gradient(&logs, action, (was, advantage), settings, by, &mut sums),
+                Lesson::Imitation => imitation_gradient(&logs, action, by, &mut sums),
+            }
             by.iter_mut().for_each(|number| *number *= per_counted);
         }
         let mut actor = vec![0.0; self.actor.parameters().len()];
@@ -285,6 +299,16 @@ fn policy_gradient(
     sums.clipped += f32::from(u8::from((ratio - 1.0).abs() > settings.clip));
 }
 
+/// The gradient of a sample's cross-entropy by its logits.
+fn imitation_gradient(logs: &[f32], action: usize, by: &mut [f32], sums: &mut Sums) {
+    for (i, (by, log)) in by.iter_mut().zip(logs).enumerate() {
+        let probability = libm::expf(*log);
+        *by = probability - if i == action { 1.0 } else { 0.0 };
+        sums.entropy -= probability * log;
+    }
+    sums.policy -= logs[action];
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -322,6 +346,28 @@ mod tests {
                 let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
                 assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{change} {advantage} {i}: {}, not {want}", by[i]);
             }
+        }
+    }
+
+    #[test]
+    fn the_imitation_gradient_is_the_slope_of_the_cross_entropy() {
+        const STEP: f64 = 1e-5;
+        const TOLERANCE: f64 = 1e-5;
+        let logits = [0.3_f64, -1.1, 0.8, 0.1];
+        let mut logs = [0.0; 4];
+        log_probabilities(&logits.map(|logit| logit as f32), &mut logs);
+        let (mut by, mut sums) = ([0.0; 4], Sums::default());
+        imitation_gradient(&logs, 1, &mut by, &mut sums);
+        let entropy = |logits: [f64; 4]| libm::log(logits.iter().map(|logit| libm::exp(*logit)).sum()) - logits[1];
+        assert!((f64::from(sums.policy) - entropy(logits)).abs() < TOLERANCE, "{}", sums.policy);
+        for i in 0..4 {
+            let at = |step: f64| {
+                let mut logits = logits;
+                logits[i] += step;
+                entropy(logits)
+            };
+            let want = (at(STEP) - at(-STEP)) / (2.0 * STEP);
+            assert!((f64::from(by[i]) - want).abs() < TOLERANCE, "{i}: {}, not {want}", by[i]);
         }
     }
 

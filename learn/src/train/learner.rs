@@ -1,6 +1,7 @@
 //! What learns in a training: the policy of one algorithm, with all that its learning goes on from.
 
 use super::off_policy::OffPolicy;
+use crate::environment::Setup;
 use crate::nn::Perceptron;
 use crate::off_policy::dqn::DqnLearner;
 use crate::off_policy::td3::{Numbers, Td3Learner, action};
@@ -24,12 +25,13 @@ pub enum Learner {
 }
 
 impl Learner {
-    /// A new one of a training's algorithm, whose policy is shown this many numbers and chooses among this many actions.
-    pub(super) fn new(training: &Training, observation: usize, actions: usize) -> Learner {
+    /// A new one of a training's algorithm for these games, whose policy chooses among this many actions.
+    pub(super) fn new(training: &Training, setup: &Setup, actions: usize) -> Learner {
         let (hidden, seed) = (&training.network.hidden, training.seed);
+        let observation = setup.observation_size();
         match training.algorithm() {
             Algorithm::Ppo(_) => {
-                Learner::Ppo(Box::new(ActorCritic::new(observation, observation, hidden, actions, seed)))
+                Learner::Ppo(Box::new(ActorCritic::new(observation, setup.state_size(), hidden, actions, seed)))
             }
             Algorithm::Td3(settings) => {
                 let learner = Td3Learner::new(observation, hidden, seed);

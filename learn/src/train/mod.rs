@@ -16,7 +16,7 @@ pub use state::{Best, Evaluated, StateError};
 
 use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment};
 use crate::nn::{Perceptron, SHARD, Trace};
-use crate::ppo::{ActorCritic, Batch};
+use crate::ppo::{ActorCritic, Batch, Lesson};
 use game::policy::{PolicySpec, options_metadata};
 use game::scenario;
 use game::stream::Stream;
@@ -122,7 +122,7 @@ impl Trainer {
             return Err(SetupError::Field { field: "the options of a stage", found, allowed });
         }
         let state = state.unwrap_or_else(|| {
-            let mut state = State::new(Learner::new(&training, size, actions.unwrap_or_default()));
+            let mut state = State::new(Learner::new(&training, &setups[0], actions.unwrap_or_default()));
             state.league.begin(setups.first().map_or(0, |setup| setup.opponents.len()));
             state
         });
@@ -308,13 +308,15 @@ fn update_by_ppo(
 ) -> Result<Update, SetupError> {
     let rollout = Rollout::play(environment, pool, learner, ppo.steps, stream)?;
     let samples = rollout.samples(ppo);
+    let is_taught = environment.setup().teacher.is_some();
     let batch = Batch {
         observations: &samples.observations,
-        states: &samples.observations,
+        states: &samples.states,
         actions: &samples.actions,
         log_probabilities: &samples.log_probabilities,
         advantages: &samples.advantages,
         returns: &samples.returns,
+        lesson: if is_taught { Lesson::Imitation } else { Lesson::Reinforcement },
         counts: &samples.counts,
     };
     let rate = 1.0 - (1.0 - ppo.learning_rate_end) * done.min(1.0);
@@ -350,7 +352,7 @@ fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setu
         let Some(last) = last else { break };
         let name = strategy.name.clone();
         let opponents = vec![(1.0, Player::Strategy(Box::new(strategy)))];
-        judges.push((name, Setup { opponents, starts: None, steps_max: None, ..last.clone() }));
+        judges.push((name, Setup { opponents, teacher: None, starts: None, steps_max: None, ..last.clone() }));
     }
     Ok(judges)
 }

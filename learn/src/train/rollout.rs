@@ -11,6 +11,7 @@ use game::training::Ppo;
 pub(super) struct Rollout {
     rows: usize,
     observations: Vec<f32>,
+    states: Vec<f32>,
     actions: Vec<u16>,
     log_probabilities: Vec<f32>,
     values: Vec<f32>,
@@ -27,6 +28,7 @@ pub(super) struct Rollout {
 /// The steps of boats that a policy sails, for an update.
 pub(super) struct Samples {
     pub(super) observations: Vec<f32>,
+    pub(super) states: Vec<f32>,
     pub(super) actions: Vec<u16>,
     pub(super) log_probabilities: Vec<f32>,
     pub(super) advantages: Vec<f32>,
@@ -48,6 +50,7 @@ impl Rollout {
         let mut rollout = Rollout {
             rows,
             observations: vec![],
+            states: vec![],
             actions: vec![],
             log_probabilities: vec![],
             values: vec![],
@@ -59,28 +62,36 @@ impl Rollout {
             ended: vec![],
             finished: vec![],
         };
-        let expected = |observations: &[f32]| {
+        let expected = |states: &[f32]| {
             let deviation = learner.scale.deviation();
-            let values = pool.install(|| outputs(&learner.critic, observations));
+            let values = pool.install(|| outputs(&learner.critic, states));
             values.into_iter().map(|value| value * deviation).collect::<Vec<f32>>()
         };
-        let mut values = expected(environment.observations());
+        let mut values = expected(environment.states());
         for _ in 0..steps {
             rollout.observations.extend_from_slice(environment.observations());
+            rollout.states.extend_from_slice(environment.states());
             rollout.counts.extend_from_slice(environment.counts());
             let boats = (0..rows / per_game).map(|game| environment.boats(game));
             rollout.sailed.extend(boats.flat_map(|boats| (0..per_game).map(move |row| row < boats)));
             rollout.values.extend_from_slice(&values);
-            let actions = rollout.choose(environment.observations(), pool, learner, stream);
+            let actions = if environment.setup().teacher.is_some() {
+                vec![Action::Discrete(0); rows]
+            } else {
+                rollout.choose(environment.observations(), pool, learner, stream)
+            };
             environment.step(&actions)?;
+            if environment.setup().teacher.is_some() {
+                rollout.take_taught(environment);
+            }
             rollout.rewards.extend_from_slice(environment.rewards());
-            values = expected(environment.observations());
+            values = expected(environment.states());
             let mut next = values.clone();
             let (mut over, mut ended) = (vec![false; rows], vec![false; rows]);
             for one in environment.finished() {
                 let of_game = one.game * per_game..(one.game + 1) * per_game;
-                let size = environment.setup().observation_size();
-                let last = &environment.final_observations()[of_game.start * size..of_game.end * size];
+                let size = environment.setup().state_size();
+                let last = &environment.final_states()[of_game.start * size..of_game.end * size];
                 next[of_game.clone()].copy_from_slice(&expected(last));
                 over[of_game.clone()].fill(!one.cut_off);
                 ended[of_game].fill(true);
@@ -91,6 +102,22 @@ impl Rollout {
             rollout.finished.extend_from_slice(environment.finished());
         }
         Ok(rollout)
+    }
+
+    /// Notes what a teacher did in the last step; where no action does that, there is nothing to learn.
+    fn take_taught(&mut self, environment: &VectorEnvironment) {
+        let (rows, per_game) = environment.rows();
+        let first = self.counts.len() - rows;
+        for row in 0..rows {
+            let taught = environment.taught(row / per_game).get(row % per_game).copied().flatten();
+            let Some(Action::Discrete(action)) = taught else {
+                self.counts[first + row] = false;
+                self.actions.push(0);
+                continue;
+            };
+            self.actions.push(action as u16);
+        }
+        self.log_probabilities.resize(self.actions.len(), 0.0);
     }
 
     /// Draws the actions of a step.
@@ -125,11 +152,15 @@ impl Rollout {
             ended: &self.ended,
         };
         let advantages = advantages(steps, settings.discount, settings.lambda);
-        let size = self.observations.len() / self.actions.len();
         let sailed: Vec<usize> = (0..self.actions.len()).filter(|i| self.sailed[*i]).collect();
         let of = |numbers: &[f32]| sailed.iter().map(|i| numbers[*i]).collect();
+        let rows_of = |numbers: &[f32]| -> Vec<f32> {
+            let size = numbers.len() / self.actions.len();
+            sailed.iter().flat_map(|i| &numbers[i * size..(i + 1) * size]).copied().collect()
+        };
         Samples {
-            observations: sailed.iter().flat_map(|i| &self.observations[i * size..(i + 1) * size]).copied().collect(),
+            observations: rows_of(&self.observations),
+            states: rows_of(&self.states),
             actions: sailed.iter().map(|i| self.actions[*i]).collect(),
             log_probabilities: of(&self.log_probabilities),
             returns: sailed.iter().map(|i| advantages[*i] + self.values[*i]).collect(),

@@ -2,7 +2,7 @@
 
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::read::Document;
-use crate::training::Training;
+use crate::training::{Algorithm, CriticInput, Training};
 
 /// The tables of algorithms.
 const TABLES: [&str; 3] = ["ppo", "td3", "dqn"];
@@ -24,6 +24,9 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
         let found = serde_json::to_string(&action).unwrap_or_default();
         diagnostics.note(document.at(place), format!("action is {found}, expected {expected} with {name}"));
     }
+    if !matches!(algorithm, Algorithm::Ppo(_)) {
+        check_ppo_alone(diagnostics, document, name);
+    }
     let sizes = training.td3.map(|td3| (td3.warm_up, td3.buffer));
     if let Some((warm_up, buffer)) = sizes.or(training.dqn.map(|dqn| (dqn.warm_up, dqn.buffer)))
         && warm_up > buffer
@@ -31,5 +34,21 @@ pub(super) fn check(diagnostics: &mut Diagnostics, document: &Document<Training>
     {
         let message = format!("warm_up is {warm_up}, expected at most {buffer}, which is buffer");
         diagnostics.note(document.at(&format!("{name}.warm_up")), message);
+    }
+}
+
+/// Notes what only PPO can.
+fn check_ppo_alone(diagnostics: &mut Diagnostics, document: &Document<Training>, name: &str) {
+    let critic = "network.critic";
+    if document.is_sound(critic) && document.raw.network.critic != CriticInput::Observation {
+        let message = format!("critic is \"truth\", expected \"observation\" with {name}");
+        diagnostics.note(document.at(critic), message);
+    }
+    for i in 0..document.raw.stage.len() {
+        let teacher = format!("stage.{i}.teacher");
+        if document.has(&teacher) {
+            let message = format!("teacher is here, expected none with {name}: it is imitated with ppo");
+            diagnostics.note(document.at(&teacher), message);
+        }
     }
 }

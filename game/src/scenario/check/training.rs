@@ -27,6 +27,9 @@ pub(in crate::scenario) fn training(diagnostics: &mut Diagnostics, document: &Do
         if let Some(helm) = &mut stage.helm {
             strategy(diagnostics, &format!("{at}.helm"), helm);
         }
+        if let Some(teacher) = &mut stage.teacher {
+            strategy(diagnostics, &format!("{at}.teacher.strategy"), &mut teacher.strategy);
+        }
         for (k, opponent) in stage.opponent.iter_mut().enumerate() {
             strategy(diagnostics, &format!("{at}.opponent.{k}.strategy"), &mut opponent.strategy);
         }

@@ -1,0 +1,93 @@
+//! The truth about a game as numbers, for a critic: what no boat's sensors tell, in a frame that is the same for both teams.
+//!
+//! Places and directions are told ahead of the boat's team, as it looks at the enemies' end, and to its port, from the middle of the
+//! field; speeds in units of 3 m/s, wind in units of 10 m/s, truths as 0 or 1. The own boat comes first, then its mates, then the
+//! enemies, each in the scenario's order.
+
+use game::event::EventCursor;
+use game::frame::{Body, Rotation, ned_from_body};
+use game::message::VehicleTruth;
+use game::{Ned, Picture, VehicleId};
+use sim::Contest;
+
+/// Numbers of each boat.
+const BOAT: usize = 11;
+/// Numbers of the game.
+const GAME: usize = 8;
+/// What speeds are divided by, m/s: a Surveyor's top speed.
+const SPEED_M_S: f64 = 3.0;
+/// What wind speeds are divided by, m/s.
+const WIND_M_S: f64 = 10.0;
+/// What points are divided by.
+const POINTS: f64 = 10.0;
+
+/// How many numbers there are in a game of so many boats.
+pub(super) fn size(boats: usize) -> usize {
+    boats * BOAT + GAME
+}
+
+/// Adds the numbers of each of these boats, boat by boat.
+pub(super) fn write(contest: &Contest, boats: &[VehicleId], out: &mut Vec<f32>) {
+    // Events that happened are of no use here: the cursor stands behind them.
+    let mut cursor = EventCursor::default();
+    cursor.read(contest.events());
+    let frame = contest.frame(&mut cursor);
+    let scenario = contest.scenario();
+    let field = &scenario.field;
+    let half_m = (0.5 * field.plan.width_m, 0.5 * field.plan.depth_m);
+    let waits = waits(contest);
+    for me in boats {
+        let team = scenario.team_of(*me);
+        let sign = if team.index() == 0 { 1.0 } else { -1.0 };
+        let axes = (field.along.scaled(sign), field.across.scaled(sign));
+        let mut push = |number: f64| out.push(number as f32);
+        let along = |vector: Ned| [vector.dot(axes.0), vector.dot(axes.1)];
+        let mut boat = |i: usize, truth: &VehicleTruth| {
+            let [forward_m, port_m] = along(truth.nav.at() - field.middle());
+            let turn = Rotation::from_heading(truth.nav.psi_rad);
+            let velocity = ned_from_body(turn, Body { ahead: truth.nav.surge_m_s, starboard: truth.nav.sway_m_s });
+            push(forward_m / half_m.0);
+            push(port_m / half_m.1);
+            along(turn.ahead()).into_iter().for_each(&mut push);
+            along(velocity).into_iter().for_each(|m_s| push(m_s / SPEED_M_S));
+            push(truth.nav.yaw_rate_rad_s);
+            [truth.tagged, truth.carrying >= 0, truth.outside].into_iter().for_each(|is| push(f64::from(u8::from(is))));
+            push(waits[i]);
+        };
+        boat(me.index(), &frame.vehicles[me.index()]);
+        for of_team in [true, false] {
+            for (i, truth) in frame.vehicles.iter().enumerate() {
+                let other = VehicleId::at(i);
+                if other != *me && (scenario.team_of(other) == team) == of_team {
+                    boat(i, truth);
+                }
+            }
+        }
+        let carried = |own: bool| {
+            let of_team = |i: usize| (scenario.team_of(VehicleId::at(i)) == team) == own;
+            frame.vehicles.iter().enumerate().any(|(i, truth)| of_team(i) && truth.carrying >= 0)
+        };
+        push(f64::from(u8::from(carried(true))));
+        push(f64::from(u8::from(carried(false))));
+        let points: f64 = frame.score.iter().map(|points| f64::from(*points)).sum();
+        push((2.0 * f64::from(frame.score[team.index()]) - points) / POINTS);
+        let limit_s = scenario.rules.time_limit.as_s().max(1.0);
+        push((1.0 - contest.now().as_s() / limit_s).max(0.0));
+        let sea = frame.sea;
+        let wind = Ned { north: sea.wind_north_m_s, east: sea.wind_east_m_s };
+        let current = Ned { north: sea.current_north_m_s, east: sea.current_east_m_s };
+        along(wind).into_iter().for_each(|m_s| push(m_s / WIND_M_S));
+        along(current).into_iter().for_each(|m_s| push(m_s / SPEED_M_S));
+    }
+}
+
+/// By vehicle, the share of the time between two tags for which it must still wait.
+fn waits(contest: &Contest) -> Vec<f64> {
+    let (scenario, now) = (contest.scenario(), contest.now());
+    let mut waits = vec![0.0; scenario.vehicles.len()];
+    for boat in contest.last_pictures().iter().flat_map(|picture: &Picture| &picture.own) {
+        let wait_s = (boat.tag_ready_ns - now).as_s().max(0.0);
+        waits[boat.vehicle.index()] = (wait_s / scenario.rules.tag_cooldown.as_s().max(1.0)).min(1.0);
+    }
+    waits
+}
