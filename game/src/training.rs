@@ -2,6 +2,14 @@
 //!
 //! [`Training`] is data, from `scenarios/training/*.toml`, whose keys it declares; the crate `learn` trains by it.
 
+mod algorithm;
+mod dqn;
+mod td3;
+
+pub use algorithm::Algorithm;
+pub use dqn::Dqn;
+pub use td3::Td3;
+
 use crate::action::ActionSpace;
 use crate::observation::ObservationSpace;
 use crate::scenario::raw::{FilePath, Name};
@@ -35,8 +43,12 @@ pub struct Training {
     pub seed: u64,
     /// The networks.
     pub network: Layers,
-    /// How the policy learns: proximal policy optimisation.
+    /// How the policy learns: proximal policy optimisation, where the file has no table of another algorithm.
     pub ppo: Ppo,
+    /// How it learns instead, with continuous actions.
+    pub td3: Option<Td3>,
+    /// How it learns instead, with discrete actions.
+    pub dqn: Option<Dqn>,
     /// What past policies are kept as opponents, for stages that have them.
     pub league: League,
     /// How it is seen how good a policy is; the best one is kept.

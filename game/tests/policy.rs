@@ -27,6 +27,7 @@ fn file(metadata: &BTreeMap<String, String>, outputs: &[(&str, usize)]) -> Vec<u
         hidden: vec![],
         activation: Activation::Tanh,
         heads: outputs.iter().map(head).collect(),
+        end: None,
         metadata: metadata.clone(),
     };
     network.onnx().expect("sizes that fit")

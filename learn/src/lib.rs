@@ -2,5 +2,6 @@
 
 pub mod environment;
 pub mod nn;
+pub mod off_policy;
 pub mod ppo;
 pub mod train;

@@ -126,8 +126,8 @@ fn a_policy_learns_to_choose_what_its_teacher_is_at() {
     let mut losses = vec![];
     while !trainer.is_over() {
         let progress = trainer.update().unwrap_or_else(|error| panic!("{error}"));
-        losses.push(progress.statistics.policy_loss);
-        assert_eq!(progress.statistics.clipped, 0.0);
+        losses.extend(progress.learnt.policy_loss);
+        assert_eq!(progress.learnt.clipped, Some(0.0));
     }
     // Ten options to choose from at first.
     let (first, last) = (losses[0], losses[losses.len() - 1]);

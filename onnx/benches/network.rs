@@ -28,7 +28,7 @@ fn network(random: &mut ChaCha8Rng, width: usize, activation: Activation) -> Net
     let hidden = vec![layer(random, INPUTS, width), layer(random, width, width)];
     let heads = vec![Head { name: "logits".to_owned(), layer: layer(random, width, ACTIONS) }];
     let (input, metadata) = ("observation".to_owned(), BTreeMap::new());
-    let policy = Perceptron { input, normalisation: None, hidden, activation, heads, metadata };
+    let policy = Perceptron { input, normalisation: None, hidden, activation, heads, end: None, metadata };
     Network::read(&policy.onnx().expect("sizes that fit")).expect("a network")
 }
 

@@ -24,8 +24,10 @@ pub struct Perceptron {
     pub hidden: Vec<Layer>,
     /// What follows each hidden layer.
     pub activation: Activation,
-    /// The outputs, each a layer after the last hidden one, with nothing behind it.
+    /// The outputs, each a layer after the last hidden one.
     pub heads: Vec<Head>,
+    /// What follows each output; none: nothing.
+    pub end: Option<Activation>,
     /// What the file says about itself.
     pub metadata: BTreeMap<String, String>,
 }
@@ -61,13 +63,22 @@ pub struct Head {
     pub layer: Layer,
 }
 
-/// What follows a hidden layer.
+/// What follows a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activation {
     /// The hyperbolic tangent.
     Tanh,
     /// What is above zero, or else zero.
     Relu,
+}
+
+impl Activation {
+    fn operator(self) -> &'static str {
+        match self {
+            Activation::Tanh => "Tanh",
+            Activation::Relu => "Relu",
+        }
+    }
 }
 
 impl Perceptron {
@@ -92,15 +103,13 @@ impl Perceptron {
         for (i, layer) in self.hidden.iter().enumerate() {
             let sums = format!("hidden.{i}.sums");
             dense(&mut graph, &format!("hidden.{i}"), layer, &last, &sums);
-            let operator = match self.activation {
-                Activation::Tanh => "Tanh",
-                Activation::Relu => "Relu",
-            };
             last = format!("hidden.{i}.output");
-            graph.node.push(node(operator, [&sums], &last));
+            graph.node.push(node(self.activation.operator(), [&sums], &last));
         }
         for (i, head) in self.heads.iter().enumerate() {
-            dense(&mut graph, &format!("head.{i}"), &head.layer, &last, &head.name);
+            let sums = self.end.map_or(head.name.clone(), |_| format!("head.{i}.sums"));
+            dense(&mut graph, &format!("head.{i}"), &head.layer, &last, &sums);
+            graph.node.extend(self.end.map(|end| node(end.operator(), [&sums], &head.name)));
             graph.output.push(port(&head.name, head.layer.outputs));
         }
         let entry =

@@ -10,10 +10,10 @@ pub(crate) struct Learnt {
     pub(crate) samples: u64,
     /// The mean reward of a step.
     pub(crate) reward: f64,
-    /// Its entropy, nats.
-    pub(crate) entropy: f64,
-    /// How much what it expects is off, in parts of its spread.
-    pub(crate) value_loss: f64,
+    /// Its entropy, nats, if it has one.
+    pub(crate) entropy: Option<f64>,
+    /// How much what it expects is off: see `learn::train::Learnt`. None before anything is learnt.
+    pub(crate) value_loss: Option<f64>,
 }
 
 /// Points of a line, at most: more are not seen.
@@ -21,15 +21,16 @@ const POINTS: usize = 400;
 
 /// The curves as the text of an SVG.
 pub(crate) fn svg(title: &str, learnt: &[Learnt], evaluations: &[Evaluated]) -> Result<String> {
-    let of_update = |title: &str, y: &str, value: fn(&Learnt) -> f64| {
+    let of_update = |title: &str, y: &str, value: fn(&Learnt) -> Option<f64>| {
+        let seen: Vec<(u64, f64)> = learnt.iter().filter_map(|one| Some((one.samples, value(one)?))).collect();
         // Means over groups of updates.
-        let size = learnt.len().div_ceil(POINTS).max(1);
-        let mean = |group: &[Learnt]| {
-            let sum: f64 = group.iter().map(value).sum();
-            (millions(group.last().map_or(0, |last| last.samples)), sum / group.len() as f64)
+        let size = seen.len().div_ceil(POINTS).max(1);
+        let mean = |group: &[(u64, f64)]| {
+            let sum: f64 = group.iter().map(|(_, value)| value).sum();
+            (millions(group.last().map_or(0, |(samples, _)| *samples)), sum / group.len() as f64)
         };
-        let points = learnt.chunks(size).map(mean).collect();
-        Panel::of(title, [SAMPLES, y], vec![Line::of("", points)], "nothing learnt yet")
+        let points = seen.chunks(size).map(mean).collect();
+        Panel::of(title, [SAMPLES, y], vec![Line::of("", points)], "nothing of it yet, or not with this algorithm")
     };
     let against = |title: &str, y: &str, value: fn(&Played) -> f64| {
         let names = evaluations.last().map_or(&[][..], |last| &last.played);
@@ -44,9 +45,9 @@ pub(crate) fn svg(title: &str, learnt: &[Learnt], evaluations: &[Evaluated]) -> 
         against("Points ahead", "points a game", |played| played.points[0] - played.points[1]),
         against("Points", "points a game", |played| played.points[0]),
         against("Left the field", "times a game", |played| played.left_field),
-        of_update("Reward", "a step", |learnt| learnt.reward),
+        of_update("Reward", "a step", |learnt| Some(learnt.reward)),
         of_update("Entropy of the policy", "nats", |learnt| learnt.entropy),
-        of_update("Error of what it expects", "in parts of the spread, squared", |learnt| learnt.value_loss),
+        of_update("Error of what it expects", "loss", |learnt| learnt.value_loss),
     ];
     plot::svg(&Page { title: title.to_owned(), columns: 2, panel: plot::PANEL, panels })
 }

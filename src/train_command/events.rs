@@ -74,19 +74,11 @@ impl Events {
 }
 
 fn values(progress: &Progress) -> Vec<Value> {
-    let learnt = &progress.statistics;
-    let mut all: Vec<(String, f64)> = [
-        ("stage", progress.stage as f64),
-        ("reward", f64::from(progress.reward)),
-        ("policy_loss", f64::from(learnt.policy_loss)),
-        ("value_loss", f64::from(learnt.value_loss)),
-        ("entropy", f64::from(learnt.entropy)),
-        ("divergence", f64::from(learnt.divergence)),
-        ("clipped", f64::from(learnt.clipped)),
-        ("epochs", f64::from(learnt.epochs)),
-    ]
-    .map(|(name, value)| (format!("learning/{name}"), value))
-    .into();
+    let of_all = [("stage", progress.stage as f64), ("reward", f64::from(progress.reward))];
+    // What the algorithm does not have is no point of a curve.
+    let learnt = progress.learnt.named().into_iter().filter_map(|(name, value)| Some((name, f64::from(value?))));
+    let mut all: Vec<(String, f64)> =
+        of_all.into_iter().chain(learnt).map(|(name, value)| (format!("learning/{name}"), value)).collect();
     if let Some(evaluated) = &progress.evaluated {
         all.push(("evaluation/won".to_owned(), evaluated.won()));
         for (name, played) in &evaluated.played {

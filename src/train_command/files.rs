@@ -68,18 +68,13 @@ impl Files {
     pub(super) fn update(&mut self, trainer: &Trainer, progress: &Progress) -> Result<()> {
         let training = trainer.training();
         let stage = &training.stage[progress.stage].name;
-        let (samples, statistics) = (progress.samples, progress.statistics);
+        let samples = progress.samples;
         let mut lines = [String::new(), String::new(), String::new()];
         let _ = writeln!(
             lines[0],
-            "{samples},{stage},{},{},{},{},{},{},{}",
+            "{samples},{stage},{}{}",
             progress.reward,
-            statistics.policy_loss,
-            statistics.value_loss,
-            statistics.entropy,
-            statistics.divergence,
-            statistics.clipped,
-            statistics.epochs
+            progress.learnt.named().map(|(_, value)| value.map_or(",".to_owned(), |value| format!(",{value}"))).concat()
         );
         self.learnt.extend(learnt(lines[0].trim_end()));
         for (name, played) in progress.evaluated.iter().flat_map(|evaluated| &evaluated.played) {
@@ -162,5 +157,5 @@ fn first_number(line: &str) -> Option<u64> {
 fn learnt(line: &str) -> Option<Learnt> {
     let cells: Vec<&str> = line.split(',').collect();
     let number = |i: usize| cells.get(i)?.parse::<f64>().ok();
-    Some(Learnt { samples: first_number(line)?, reward: number(2)?, entropy: number(5)?, value_loss: number(4)? })
+    Some(Learnt { samples: first_number(line)?, reward: number(2)?, entropy: number(5), value_loss: number(4) })
 }

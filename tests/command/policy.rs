@@ -30,6 +30,7 @@ fn model() -> Vec<u8> {
         hidden: vec![],
         activation: Activation::Tanh,
         heads: vec![Head { name: "logits".to_owned(), layer }],
+        end: None,
         metadata: BTreeMap::from(SPEC.metadata()),
     };
     network.onnx().unwrap()

@@ -51,6 +51,7 @@ fn own() -> Vec<u8> {
         hidden: vec![layer(spec.observation.size(0, 1), 4)],
         activation: Activation::Tanh,
         heads: vec![Head { name: "logits".to_owned(), layer: layer(4, spec.action.outputs()) }],
+        end: None,
         metadata: BTreeMap::from(spec.metadata()),
     };
     network.onnx().expect("the sizes fit")

@@ -42,7 +42,7 @@ impl Setup {
             mates: None,
             opponents,
             rewards: scenario::load_rewards(&stage.rewards)?,
-            discount: f64::from(training.ppo.discount),
+            discount: f64::from(training.algorithm().discount()),
             scenario,
         };
         setup.check()?;

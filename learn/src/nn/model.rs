@@ -10,6 +10,23 @@ impl Perceptron {
     /// # Errors
     /// [`NetworkError`], if a weight is not finite.
     pub fn onnx(&self, output: &str, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
+        self.file(output, None, metadata)
+    }
+
+    /// The same with the hyperbolic tangent of every output.
+    ///
+    /// # Errors
+    /// [`NetworkError`], if a weight is not finite.
+    pub fn onnx_bounded(&self, output: &str, metadata: BTreeMap<String, String>) -> Result<Vec<u8>, NetworkError> {
+        self.file(output, Some(Activation::Tanh), metadata)
+    }
+
+    fn file(
+        &self,
+        output: &str,
+        end: Option<Activation>,
+        metadata: BTreeMap<String, String>,
+    ) -> Result<Vec<u8>, NetworkError> {
         let layers = self.sizes().len() - 1;
         let mut layers: Vec<Layer> = (0..layers).map(|i| self.onnx_layer(i)).collect();
         let last = layers.pop().map(|layer| Head { name: output.to_owned(), layer });
@@ -19,6 +36,7 @@ impl Perceptron {
             hidden: layers,
             activation: Activation::Tanh,
             heads: last.into_iter().collect(),
+            end,
             metadata,
         };
         network.onnx()

@@ -1,5 +1,6 @@
 //! How good a policy is: games of it against an opponent, from both sides.
 
+use super::learner::greedy;
 use super::{outputs, pool};
 use crate::environment::{Finished, Setup, SetupError, VectorEnvironment};
 use crate::nn::Perceptron;
@@ -40,7 +41,7 @@ impl Played {
     }
 }
 
-/// Plays one game of each of so many seeds with the likeliest actions of a policy.
+/// Plays one game of each of so many seeds with the likeliest actions of a policy, or its continuous ones.
 ///
 /// # Errors
 /// [`SetupError`] where nothing can be played.
@@ -51,14 +52,15 @@ pub fn evaluate(
     threads: usize,
     seed: u64,
 ) -> Result<Played, SetupError> {
-    let pool = pool(threads);
+    let (pool, is_discrete) = (pool(threads), setup.spaces.action.is_discrete());
     let mut environment = VectorEnvironment::new(setup, games, threads, seed)?;
     let (rows, _) = environment.rows();
     let mut ended: Vec<Option<Finished>> = vec![None; games];
     while ended.iter().any(Option::is_none) {
         let observations = environment.observations();
         let logits = pool.install(|| outputs(actor, observations));
-        let actions: Vec<Action> = logits.chunks_exact(logits.len() / rows).map(Action::likeliest).collect();
+        let chosen = logits.chunks_exact(logits.len() / rows).map(|output| greedy(is_discrete, output));
+        let actions: Vec<Action> = chosen.collect();
         environment.step(&actions)?;
         for one in environment.finished() {
             ended[one.game].get_or_insert(*one);

@@ -1,20 +1,26 @@
-//! Training by PPO: plays with the policy, learns from it, and goes on, stage by stage.
+//! Training: plays with the policy, learns from it, and goes on, stage by stage.
 
 mod evaluation;
 mod league;
+mod learner;
+mod learnt;
+mod off_policy;
 mod rollout;
 mod state;
 
 pub use evaluation::{Played, evaluate};
+pub use learner::Learner;
+pub use learnt::Learnt;
+pub use off_policy::OffPolicy;
 pub use state::{Best, Evaluated, StateError};
 
 use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment};
 use crate::nn::{Perceptron, SHARD, Trace};
-use crate::ppo::{ActorCritic, Batch, Lesson, Statistics};
+use crate::ppo::{ActorCritic, Batch, Lesson};
 use game::policy::{PolicySpec, options_metadata};
 use game::scenario;
 use game::stream::Stream;
-use game::training::{Stage, Training};
+use game::training::{Ppo, Stage, Training};
 use rayon::prelude::*;
 use rollout::Rollout;
 use state::State;
@@ -51,7 +57,7 @@ pub struct Progress {
     /// The stage.
     pub stage: usize,
     /// What the optimisers did.
-    pub statistics: Statistics,
+    pub learnt: Learnt,
     /// The mean reward of a step.
     pub reward: f32,
     /// The episodes that ended, with the name of who played against the policy.
@@ -62,6 +68,18 @@ pub struct Progress {
     pub is_best: bool,
     /// Whether the training can be taken up again from here: see [`Trainer::state`].
     pub can_be_resumed: bool,
+}
+
+/// What was played and learnt at once.
+struct Update {
+    /// Samples in which boats did what was chosen.
+    counted: u64,
+    /// All samples.
+    transitions: u64,
+    /// The mean reward of a step.
+    reward: f32,
+    finished: Vec<Finished>,
+    learnt: Learnt,
 }
 
 impl Trainer {
@@ -92,20 +110,19 @@ impl Trainer {
             let (found, allowed) = (format!("of {other} numbers"), format!("{size}, as in the first stage"));
             return Err(SetupError::Field { field: "the observation of a stage", found, allowed });
         }
-        let Some(actions) = setups.last().and_then(Setup::actions) else {
-            let (found, allowed) =
-                ("continuous".to_owned(), "pyquaticus or options: ppo chooses among discrete actions".to_owned());
+        let (actions, algorithm) = (setups.last().and_then(Setup::actions), training.algorithm());
+        if actions.is_some() != algorithm.is_discrete() {
+            let kinds = if algorithm.is_discrete() { ["continuous", "discrete"] } else { ["discrete", "continuous"] };
+            let (found, allowed) = (kinds[0].to_owned(), format!("{} with {}", kinds[1], algorithm.name()));
             return Err(SetupError::Field { field: "action", found, allowed });
-        };
+        }
         if let Some(other) = setups.iter().find(|other| other.options() != setups[0].options()) {
             let list = |setup: &Setup| setup.options().unwrap_or_default().join(", ");
             let (found, allowed) = (list(other), format!("those of the first stage: {}", list(&setups[0])));
             return Err(SetupError::Field { field: "the options of a stage", found, allowed });
         }
         let state = state.unwrap_or_else(|| {
-            let state = setups.first().map_or(0, Setup::state_size);
-            let learner = ActorCritic::new(size, state, &training.network.hidden, actions, training.seed);
-            let mut state = State::new(learner);
+            let mut state = State::new(Learner::new(&training, &setups[0], actions.unwrap_or_default()));
             state.league.begin(setups.first().map_or(0, |setup| setup.opponents.len()));
             state
         });
@@ -123,7 +140,7 @@ impl Trainer {
 
     /// The policy and what it expects, as they are now.
     #[must_use]
-    pub fn learner(&self) -> &ActorCritic {
+    pub fn learner(&self) -> &Learner {
         &self.state.learner
     }
 
@@ -171,7 +188,7 @@ impl Trainer {
             ("squall.version".to_owned(), game::VERSION.to_owned()),
         ]);
         metadata.extend(self.setups.last().and_then(Setup::options).map(options_metadata));
-        self.state.learner.actor.onnx("logits", metadata)
+        self.state.learner.onnx(metadata)
     }
 
     /// What the policy is given and chooses.
@@ -193,37 +210,26 @@ impl Trainer {
         let mut stream = Stream::new(self.training.seed.wrapping_add(self.state.updates), "update");
         let of_stage = &self.training.stage[stage];
         self.environment.set_weights(self.state.league.weights(of_stage, &self.training.league));
-        let ppo = self.training.ppo;
-        let learner = &self.state.learner;
-        let rollout = Rollout::play(&mut self.environment, &self.pool, learner, ppo.steps, &mut stream)?;
-        let samples = rollout.samples(&ppo);
-        let batch = Batch {
-            observations: &samples.observations,
-            states: &samples.states,
-            actions: &samples.actions,
-            log_probabilities: &samples.log_probabilities,
-            advantages: &samples.advantages,
-            returns: &samples.returns,
-            lesson: if of_stage.teacher.is_some() { Lesson::Imitation } else { Lesson::Reinforcement },
-            counts: &samples.counts,
-        };
         let (done, all) = self.samples();
-        let rate = 1.0 - (1.0 - ppo.learning_rate_end) * (done as f32 / all.max(1) as f32).min(1.0);
-        let Trainer { pool, state, .. } = self;
-        let statistics = pool.install(|| state.learner.update(&batch, &ppo, rate, &mut stream));
-        let count = samples.counts.iter().filter(|counts| **counts).count() as u64;
+        let done = (done, done as f32 / all.max(1) as f32);
+        let Trainer { environment, pool, state, training, .. } = self;
+        let update = match &mut state.learner {
+            Learner::Ppo(learner) => update_by_ppo(learner, environment, pool, &training.ppo, done.1, &mut stream)?,
+            Learner::Td3(of) => of.update(environment, pool, stage == 0, &mut stream)?,
+            Learner::Dqn(of) => of.update(environment, pool, done.0, &mut stream)?,
+        };
+        let Update { counted, reward, finished, learnt, .. } = update;
         state.updates += 1;
         state.updates_of_epoch += 1;
-        state.samples += count;
-        state.samples_of_stage += count;
-        state.league.see(&rollout.finished);
-        let reward = samples.rewards.iter().sum::<f32>() / samples.actions.len().max(1) as f32;
+        state.samples += counted;
+        state.samples_of_stage += counted;
+        state.league.see(&finished);
         let name = |one: Finished| (one, self.opponent_name(stage, one.standing.side.opponent));
-        let finished = rollout.finished.into_iter().map(name).collect();
+        let finished = finished.into_iter().map(name).collect();
         let (evaluated, is_best) = self.after_update()?;
         let can_be_resumed = self.begin_anew(evaluated.as_ref())?;
         let samples = self.state.samples;
-        Ok(Progress { samples, stage, statistics, reward, finished, evaluated, is_best, can_be_resumed })
+        Ok(Progress { samples, stage, learnt, reward, finished, evaluated, is_best, can_be_resumed })
     }
 
     /// Who an opponent of a stage is.
@@ -253,7 +259,7 @@ impl Trainer {
         }
         let mut played = vec![];
         for (name, setup) in &self.judges {
-            let actor = &self.state.learner.actor;
+            let actor = self.state.learner.actor();
             let games = evaluation.games.next_multiple_of(2) as usize;
             played.push((name.clone(), evaluate(actor, setup.clone(), games, self.threads, EVALUATION_SEED)?));
         }
@@ -279,6 +285,7 @@ impl Trainer {
         (state.epoch, state.updates_of_epoch) = (state.epoch + 1, 0);
         if is_over {
             (state.stage, state.samples_of_stage) = (state.stage + 1, 0);
+            state.learner.begin_stage();
         }
         match self.setups.get(state.stage) {
             Some(setup) if is_over => state.league.begin(setup.opponents.len()),
@@ -288,6 +295,36 @@ impl Trainer {
         self.environment = environment(&self.training, &self.setups, &self.state, self.threads)?;
         Ok(true)
     }
+}
+
+/// Plays and learns once by PPO, when this share of all samples is done.
+fn update_by_ppo(
+    learner: &mut ActorCritic,
+    environment: &mut VectorEnvironment,
+    pool: &rayon::ThreadPool,
+    ppo: &Ppo,
+    done: f32,
+    stream: &mut Stream,
+) -> Result<Update, SetupError> {
+    let rollout = Rollout::play(environment, pool, learner, ppo.steps, stream)?;
+    let samples = rollout.samples(ppo);
+    let is_taught = environment.setup().teacher.is_some();
+    let batch = Batch {
+        observations: &samples.observations,
+        states: &samples.states,
+        actions: &samples.actions,
+        log_probabilities: &samples.log_probabilities,
+        advantages: &samples.advantages,
+        returns: &samples.returns,
+        lesson: if is_taught { Lesson::Imitation } else { Lesson::Reinforcement },
+        counts: &samples.counts,
+    };
+    let rate = 1.0 - (1.0 - ppo.learning_rate_end) * done.min(1.0);
+    let learnt = pool.install(|| learner.update(&batch, ppo, rate, stream)).into();
+    let counted = samples.counts.iter().filter(|counts| **counts).count() as u64;
+    let reward = samples.rewards.iter().sum::<f32>() / samples.actions.len().max(1) as f32;
+    let transitions = samples.actions.len() as u64;
+    Ok(Update { counted, transitions, reward, finished: rollout.finished, learnt })
 }
 
 /// New games of the stage that a training is in.
@@ -322,7 +359,7 @@ fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setu
 
 fn updates_per_epoch(training: &Training, setup: &Setup) -> u64 {
     let step = setup.scenario.decision() * i64::from(setup.decisions_per_step);
-    let update = step * training.ppo.steps as i64;
+    let update = step * training.algorithm().steps() as i64;
     let game = setup.steps_max.map_or(setup.scenario.rules.time_limit, |steps| step * i64::from(steps));
     (LENGTHS * game.0 / update.0.max(1)).max(1) as u64
 }

@@ -2,8 +2,8 @@
 
 use super::evaluation::Played;
 use super::league::League;
+use super::learner::Learner;
 use crate::environment::SetupError;
-use crate::ppo::ActorCritic;
 use game::training::Training;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -11,7 +11,7 @@ use thiserror::Error;
 /// Where a training stands as games begin anew.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct State {
-    pub(super) learner: ActorCritic,
+    pub(super) learner: Learner,
     pub(super) updates: u64,
     /// Since games began anew last.
     pub(super) updates_of_epoch: u64,
@@ -91,7 +91,7 @@ pub enum StateError {
 }
 
 impl State {
-    pub(super) fn new(learner: ActorCritic) -> State {
+    pub(super) fn new(learner: Learner) -> State {
         State {
             learner,
             updates: 0,

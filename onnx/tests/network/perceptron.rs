@@ -30,6 +30,7 @@ fn perceptron(activation: Activation) -> Perceptron {
         hidden,
         activation,
         heads: heads.to_vec(),
+        end: None,
         metadata: BTreeMap::from([("layout".to_owned(), "1".to_owned()), ("actions".to_owned(), "17".to_owned())]),
     }
 }
@@ -108,6 +109,23 @@ fn a_perceptron_without_hidden_layers_and_normalisation_is_its_head() {
     let mut network = Network::read(&policy.onnx().unwrap()).unwrap();
     network.evaluate(&[0.0; 13]);
     assert_eq!(network.output(0), policy.heads[0].layer.biases);
+}
+
+#[test]
+fn what_follows_an_output_is_applied_to_it_alone() {
+    let plain = perceptron(Activation::Relu);
+    let mut network = Network::read(&plain.onnx().unwrap()).unwrap();
+    let bounded = Perceptron { end: Some(Activation::Tanh), ..plain };
+    let mut ended = Network::read(&bounded.onnx().unwrap()).unwrap();
+    for row in rows() {
+        network.evaluate(&row);
+        ended.evaluate(&row);
+        for name in ["logits", "value"] {
+            let numbers = network.output_named(name).unwrap();
+            let want: Vec<f32> = numbers.iter().copied().map(onnx::tanh).collect();
+            assert_eq!(ended.output_named(name).unwrap(), want);
+        }
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! What a single value may be says its declaration, and has been checked when a check gets it. Every check
 //! notes all it finds in the [`Diagnostics`] and returns `None` if anything was wrong.
 
+mod algorithm;
 mod boat;
 mod field;
 mod game;

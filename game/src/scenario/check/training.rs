@@ -20,6 +20,7 @@ pub(in crate::scenario) fn training(diagnostics: &mut Diagnostics, document: &Do
     for (i, path) in training.evaluation.opponents.iter_mut().enumerate() {
         strategy(diagnostics, &format!("evaluation.opponents.{i}"), path);
     }
+    super::algorithm::check(diagnostics, document);
     let mut scenarios = vec![];
     for (i, stage) in training.stage.iter_mut().enumerate() {
         let at = format!("stage.{i}");

@@ -1,0 +1,64 @@
+//! The algorithm that a training learns by: the one whose table its file has.
+
+use super::{Dqn, Ppo, Td3, Training};
+
+/// An algorithm with its settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Algorithm {
+    /// Proximal policy optimisation.
+    Ppo(Ppo),
+    /// The twin delayed deep deterministic policy gradient.
+    Td3(Td3),
+    /// Double deep Q-learning.
+    Dqn(Dqn),
+}
+
+impl Training {
+    /// The algorithm that it learns by.
+    #[must_use]
+    pub fn algorithm(&self) -> Algorithm {
+        match (self.td3, self.dqn) {
+            (Some(td3), _) => Algorithm::Td3(td3),
+            (None, Some(dqn)) => Algorithm::Dqn(dqn),
+            (None, None) => Algorithm::Ppo(self.ppo),
+        }
+    }
+}
+
+impl Algorithm {
+    /// What its table is called.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Algorithm::Ppo(_) => "ppo",
+            Algorithm::Td3(_) => "td3",
+            Algorithm::Dqn(_) => "dqn",
+        }
+    }
+
+    /// Whether it chooses one of several actions, or else numbers.
+    #[must_use]
+    pub fn is_discrete(&self) -> bool {
+        !matches!(self, Algorithm::Td3(_))
+    }
+
+    /// Steps of every game to an update.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        match self {
+            Algorithm::Ppo(ppo) => ppo.steps,
+            Algorithm::Td3(td3) => td3.steps,
+            Algorithm::Dqn(dqn) => dqn.steps,
+        }
+    }
+
+    /// What a reward one step later is worth.
+    #[must_use]
+    pub fn discount(&self) -> f32 {
+        match self {
+            Algorithm::Ppo(ppo) => ppo.discount,
+            Algorithm::Td3(td3) => td3.discount,
+            Algorithm::Dqn(dqn) => dqn.discount,
+        }
+    }
+}

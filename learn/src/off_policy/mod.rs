@@ -1,0 +1,30 @@
+//! Off-policy algorithms: a policy learns from transitions of a replay buffer, whatever policy they come from.
+//!
+//! As in PPO, rows are worked on in shards of a fixed size whose gradients are summed in their order, so that what is learnt is the same
+//! to the bit on any number of threads.
+
+pub mod dqn;
+mod replay;
+pub mod td3;
+
+pub use replay::{Minibatch, Replay, Transition};
+
+/// The gradient of a loss, and the loss, of a shard: summed over its rows.
+#[derive(Clone, Debug, Default)]
+struct Slope {
+    gradient: Vec<f32>,
+    loss: f32,
+}
+
+impl Slope {
+    /// The sum of the slopes of all shards, in their order.
+    fn sum(shards: impl IntoIterator<Item = Slope>) -> Slope {
+        let mut shards = shards.into_iter();
+        let mut all = shards.next().unwrap_or_default();
+        for shard in shards {
+            all.loss += shard.loss;
+            all.gradient.iter_mut().zip(&shard.gradient).for_each(|(sum, number)| *sum += number);
+        }
+        all
+    }
+}

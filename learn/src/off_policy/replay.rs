@@ -1,0 +1,203 @@
+//! A replay buffer: the newest transitions, from which minibatches are drawn.
+
+use game::stream::Stream;
+use serde::{Deserialize, Serialize};
+
+/// One step of one boat.
+#[derive(Clone, Copy, Debug)]
+pub struct Transition<'a, A> {
+    /// What the policy was shown.
+    pub observation: &'a [f32],
+    /// What was chosen.
+    pub action: A,
+    /// What the step was worth.
+    pub reward: f32,
+    /// What it was shown after the step; after the last step of an episode, the last state of that episode.
+    pub next_observation: &'a [f32],
+    /// Whether the game was over after the step: nothing more is to be expected then.
+    pub over: bool,
+    /// Whether the boat did what was chosen. Of other transitions only values are learnt: a tagged boat is steered home.
+    pub counts: bool,
+}
+
+/// The newest transitions, so many at most.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Replay<A> {
+    /// Numbers of an observation.
+    size: usize,
+    capacity: usize,
+    /// Where the next transition goes once the buffer is full: the place of the oldest.
+    oldest: usize,
+    observations: Vec<f32>,
+    next_observations: Vec<f32>,
+    actions: Vec<A>,
+    rewards: Vec<f32>,
+    over: Vec<bool>,
+    counts: Vec<bool>,
+}
+
+/// Transitions drawn from a buffer, each list by transition.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Minibatch<A> {
+    /// What the policy was shown, transitions × numbers.
+    pub observations: Vec<f32>,
+    /// What was chosen.
+    pub actions: Vec<A>,
+    /// What the step was worth.
+    pub rewards: Vec<f32>,
+    /// What the policy was shown after the step, transitions × numbers.
+    pub next_observations: Vec<f32>,
+    /// Whether the game was over then.
+    pub over: Vec<bool>,
+    /// Whether the boat did what was chosen.
+    pub counts: Vec<bool>,
+}
+
+impl<A: Copy> Replay<A> {
+    /// An empty buffer for so many transitions with observations of so many numbers.
+    ///
+    /// # Panics
+    /// If either is 0.
+    #[must_use]
+    pub fn new(size: usize, capacity: usize) -> Replay<A> {
+        assert!(size > 0 && capacity > 0, "{size}, {capacity}");
+        Replay {
+            size,
+            capacity,
+            oldest: 0,
+            observations: vec![],
+            next_observations: vec![],
+            actions: vec![],
+            rewards: vec![],
+            over: vec![],
+            counts: vec![],
+        }
+    }
+
+    /// How many transitions there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.rewards.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rewards.is_empty()
+    }
+
+    /// Forgets all transitions.
+    pub fn clear(&mut self) {
+        *self = Replay::new(self.size, self.capacity);
+    }
+
+    /// Keeps a transition, in place of the oldest if the buffer is full.
+    ///
+    /// # Panics
+    /// If an observation has another size.
+    pub fn push(&mut self, transition: Transition<'_, A>) {
+        let Transition { observation, action, reward, next_observation, over, counts } = transition;
+        assert!(observation.len() == self.size && next_observation.len() == self.size);
+        if self.len() < self.capacity {
+            self.observations.extend_from_slice(observation);
+            self.next_observations.extend_from_slice(next_observation);
+            self.actions.push(action);
+            self.rewards.push(reward);
+            self.over.push(over);
+            self.counts.push(counts);
+            return;
+        }
+        let i = self.oldest;
+        self.oldest = (i + 1) % self.capacity;
+        let numbers = i * self.size..(i + 1) * self.size;
+        self.observations[numbers.clone()].copy_from_slice(observation);
+        self.next_observations[numbers].copy_from_slice(next_observation);
+        (self.actions[i], self.rewards[i]) = (action, reward);
+        (self.over[i], self.counts[i]) = (over, counts);
+    }
+
+    /// Draws so many transitions, each of all alike and with replacement.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn draw(&self, count: usize, stream: &mut Stream) -> Minibatch<A> {
+        let drawn: Vec<usize> = (0..count).map(|_| stream.below(self.len() as u64) as usize).collect();
+        let rows = |from: &[f32]| -> Vec<f32> {
+            let mut rows = Vec::with_capacity(count * self.size);
+            drawn.iter().for_each(|i| rows.extend_from_slice(&from[i * self.size..(i + 1) * self.size]));
+            rows
+        };
+        Minibatch {
+            observations: rows(&self.observations),
+            actions: drawn.iter().map(|i| self.actions[*i]).collect(),
+            rewards: drawn.iter().map(|i| self.rewards[*i]).collect(),
+            next_observations: rows(&self.next_observations),
+            over: drawn.iter().map(|i| self.over[*i]).collect(),
+            counts: drawn.iter().map(|i| self.counts[*i]).collect(),
+        }
+    }
+}
+
+impl<A> Minibatch<A> {
+    /// How many transitions there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.rewards.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rewards.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Replay, Transition};
+    use game::stream::Stream;
+
+    fn filled(capacity: usize, count: usize) -> Replay<u16> {
+        let mut replay = Replay::new(2, capacity);
+        for i in 0..count {
+            let number = i as f32;
+            replay.push(Transition {
+                observation: &[number, -number],
+                action: i as u16,
+                reward: 10.0 * number,
+                next_observation: &[number + 0.5, 0.0],
+                over: i % 2 == 0,
+                counts: i % 3 == 0,
+            });
+        }
+        replay
+    }
+
+    #[test]
+    fn the_newest_transitions_are_drawn_all_alike_and_whole() {
+        const DRAWN: usize = 40_000;
+        let replay = filled(8, 21);
+        assert_eq!(replay.len(), 8);
+        let minibatch = replay.draw(DRAWN, &mut Stream::new(1, "test/replay"));
+        let mut times = [0_u32; 21];
+        for i in 0..DRAWN {
+            let action = minibatch.actions[i];
+            times[usize::from(action)] += 1;
+            let number = f32::from(action);
+            assert_eq!(minibatch.observations[2 * i..2 * i + 2], [number, -number]);
+            assert_eq!(minibatch.next_observations[2 * i..2 * i + 2], [number + 0.5, 0.0]);
+            assert_eq!(minibatch.rewards[i], 10.0 * number);
+            assert_eq!((minibatch.over[i], minibatch.counts[i]), (action % 2 == 0, action % 3 == 0));
+        }
+        assert_eq!(times[..13], [0; 13]);
+        // Five standard deviations of the binomial distribution.
+        assert!(times[13..].iter().all(|times| (f64::from(*times) - 5000.0).abs() < 5.0 * 66.2), "{times:?}");
+    }
+
+    #[test]
+    fn a_buffer_that_was_emptied_is_as_new() {
+        let mut replay = filled(8, 21);
+        replay.clear();
+        assert!(replay.is_empty() && replay == Replay::new(2, 8));
+    }
+}

@@ -1,0 +1,151 @@
+//! An update of an off-policy algorithm: steps of all games with exploration, which go into the replay buffer, and steps of the optimiser
+//! with what is drawn from it.
+
+use super::learnt::Learnt;
+use super::{Update, outputs};
+use crate::environment::{SetupError, VectorEnvironment};
+use crate::off_policy::dqn::{self, DqnLearner};
+use crate::off_policy::td3::{self, NUMBERS, Numbers, Td3Learner};
+use crate::off_policy::{Replay, Transition};
+use agent::Action;
+use game::stream::Stream;
+use game::training::{Dqn, Td3};
+use rayon::ThreadPool;
+use serde::{Deserialize, Serialize};
+
+/// A learner with its settings and its replay buffer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OffPolicy<L, S, A> {
+    /// The networks and their optimisers.
+    pub learner: L,
+    /// How it learns.
+    pub settings: S,
+    /// What it learns from.
+    pub replay: Replay<A>,
+}
+
+impl OffPolicy<Td3Learner, Td3, Numbers> {
+    /// Plays and learns once. As long as `is_new`, actions are drawn uniformly until something is learnt.
+    pub(super) fn update(
+        &mut self,
+        environment: &mut VectorEnvironment,
+        pool: &ThreadPool,
+        is_new: bool,
+        stream: &mut Stream,
+    ) -> Result<Update, SetupError> {
+        let OffPolicy { learner, settings, replay } = self;
+        let actor = &learner.actor;
+        let choose = |observations: &[f32], counts: &[bool], known: usize| -> Vec<Numbers> {
+            if is_new && known < settings.warm_up {
+                return counts.iter().map(|_| td3::drawn(stream)).collect();
+            }
+            let outputs = pool.install(|| outputs(actor, observations));
+            let explored = |(output, counts): (&[f32], &bool)| {
+                // Nothing depends on the action of a boat that does not obey: its critics learn that by all actions.
+                if *counts {
+                    td3::explored(td3::action(output), settings.exploration, stream)
+                } else {
+                    td3::drawn(stream)
+                }
+            };
+            outputs.chunks_exact(NUMBERS).zip(counts).map(explored).collect()
+        };
+        let mut update = play(environment, settings.steps, replay, choose, Action::Continuous)?;
+        if replay.len() < settings.warm_up {
+            return Ok(update);
+        }
+        let (mut critic, mut actor, mut actor_steps) = (0.0, 0.0, 0.0);
+        for _ in 0..settings.minibatches {
+            let losses = pool.install(|| learner.update(replay, settings, stream));
+            critic += losses.critic;
+            actor += losses.actor.unwrap_or_default();
+            actor_steps += f32::from(u8::from(losses.actor.is_some()));
+        }
+        let drawn = settings.minibatches as f32 * settings.minibatch as f32;
+        update.learnt = Learnt {
+            policy_loss: (actor_steps > 0.0).then(|| actor / actor_steps),
+            value_loss: Some(critic / settings.minibatches as f32),
+            epochs: Some(drawn / update.transitions.max(1) as f32),
+            ..Learnt::default()
+        };
+        Ok(update)
+    }
+}
+
+impl OffPolicy<DqnLearner, Dqn, u16> {
+    /// Plays and learns once, after so many samples in all.
+    pub(super) fn update(
+        &mut self,
+        environment: &mut VectorEnvironment,
+        pool: &ThreadPool,
+        samples: u64,
+        stream: &mut Stream,
+    ) -> Result<Update, SetupError> {
+        let OffPolicy { learner, settings, replay } = self;
+        let (network, epsilon) = (&learner.network, settings.epsilon_after(samples));
+        let choose = |observations: &[f32], counts: &[bool], _: usize| -> Vec<u16> {
+            let outputs = pool.install(|| outputs(network, observations));
+            let explored = |(values, counts): (&[f32], &bool)| {
+                // Nothing depends on the action of a boat that does not obey: it is learnt of all actions.
+                dqn::explored(values, if *counts { epsilon } else { 1.0 }, stream) as u16
+            };
+            outputs.chunks_exact(outputs.len() / counts.len()).zip(counts).map(explored).collect()
+        };
+        let discrete = |action: u16| Action::Discrete(usize::from(action));
+        let mut update = play(environment, settings.steps, replay, choose, discrete)?;
+        if replay.len() < settings.warm_up {
+            return Ok(update);
+        }
+        let mut loss = 0.0;
+        for _ in 0..settings.minibatches {
+            loss += pool.install(|| learner.update(replay, settings, stream));
+        }
+        let drawn = settings.minibatches as f32 * settings.minibatch as f32;
+        update.learnt = Learnt {
+            value_loss: Some(loss / settings.minibatches as f32),
+            epochs: Some(drawn / update.transitions.max(1) as f32),
+            ..Learnt::default()
+        };
+        Ok(update)
+    }
+}
+
+/// Plays so many steps of all games; those of boats that a policy sails go into the buffer. `choose` is given the observations, which of
+/// them count, and how many transitions there are.
+fn play<A: Copy>(
+    environment: &mut VectorEnvironment,
+    steps: usize,
+    replay: &mut Replay<A>,
+    mut choose: impl FnMut(&[f32], &[bool], usize) -> Vec<A>,
+    action: impl Fn(A) -> Action,
+) -> Result<Update, SetupError> {
+    let ((rows, per_game), size) = (environment.rows(), environment.setup().observation_size());
+    let mut update = Update { counted: 0, transitions: 0, reward: 0.0, finished: vec![], learnt: Learnt::default() };
+    for _ in 0..steps {
+        let (before, counts) = (environment.observations().to_vec(), environment.counts().to_vec());
+        let boats: Vec<usize> = (0..rows / per_game).map(|game| environment.boats(game)).collect();
+        let chosen = choose(&before, &counts, replay.len());
+        environment.step(&chosen.iter().copied().map(&action).collect::<Vec<Action>>())?;
+        let mut ended: Vec<Option<bool>> = vec![None; boats.len()];
+        environment.finished().iter().for_each(|one| ended[one.game] = Some(!one.cut_off));
+        for row in (0..rows).filter(|row| row % per_game < boats[row / per_game]) {
+            let (numbers, ended) = (row * size..(row + 1) * size, ended[row / per_game]);
+            let shown =
+                if ended.is_some() { environment.final_observations() } else { environment.observations() };
+            replay.push(Transition {
+                observation: &before[numbers.clone()],
+                action: chosen[row],
+                reward: environment.rewards()[row],
+                next_observation: &shown[numbers],
+                over: ended == Some(true),
+                counts: counts[row],
+            });
+            update.transitions += 1;
+            update.counted += u64::from(counts[row]);
+            update.reward += environment.rewards()[row];
+        }
+        update.finished.extend_from_slice(environment.finished());
+    }
+    update.reward /= update.transitions.max(1) as f32;
+    Ok(update)
+}
