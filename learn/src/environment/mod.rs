@@ -8,6 +8,7 @@ mod setup;
 mod stage;
 mod starts;
 mod vector;
+mod watch;
 
 pub use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 pub use game::Side;
@@ -15,3 +16,4 @@ pub use games::{Finished, Games, Rows, Standing};
 pub use raw::{RawObservation, RawSetup};
 pub use setup::{Control, Player, Setup, SetupError};
 pub use vector::VectorEnvironment;
+pub use watch::{Moment, Watch, Watches};
