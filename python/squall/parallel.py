@@ -139,6 +139,5 @@ def parallel_env(
         raise ValueError("opponents is given, but all boats are agents: say which team's are (`team`)")
     options["opponents"] = "policy"
     # With both sides sailed from here it only makes a difference to the order of the agents.
-    unrecorded: Options = {**options, "record": None}
-    options["team"] = native_environment(unrecorded, seed=0, games=1, threads=1).team_names[0]
+    options["team"] = native_environment(options, seed=0, games=1, threads=1).team_names[0]
     return SquallParallelEnv(seed=seed, render_mode=render_mode, options=options)

@@ -1,5 +1,6 @@
 """Options: what a policy chooses is what a boat is at, and a strategy says how that is done."""
 
+import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -11,9 +12,10 @@ OPTIONS = {"action": "options", "control": "options"}
 
 
 @pytest.mark.filterwarnings("ignore:.*A Box observation space m.*imum value is.*infinity")
-@pytest.mark.parametrize("make", [squall.TeamEnv, squall.BoatEnv])
-def test_gymnasium_accepts(make: type) -> None:
-    check_env(make(episode_max_s=30, **OPTIONS))
+@pytest.mark.parametrize("name", ["Squall/CaptureTheFlag-v0", "Squall/PyquaticusBoat-v0"])
+@pytest.mark.usefixtures("page")
+def test_gymnasium_accepts(name: str) -> None:
+    check_env(gymnasium.make(name, episode_max_s=30, **OPTIONS).unwrapped)
 
 
 def test_there_is_an_action_for_each_option() -> None:

@@ -22,13 +22,16 @@ def test_a_game_is_shown_when_it_ends_and_the_next_on_the_same_page(page: Shown,
     environment.reset()
     environment.step(0)
     assert page.browser == ["http://127.0.0.1:8088/"] and len(page.commands()) == 1
-    environment.close()
+    environment.reset()
     first, second = page.commands()
     assert first.startswith("replay ") and first.endswith("_surveyor_2v2_1.mcap --listen 127.0.0.1:0")
     assert second.endswith("_surveyor_2v2_2.mcap --listen 127.0.0.1:8088"), "one that is given up is shown, too"
     assert page.browser == ["http://127.0.0.1:8088/"], "it goes on to the next game by itself"
+    environment.step(0)
     environment.close()
-    assert len(page.commands()) == 2
+    assert len(page.commands()) == 3
+    environment.close()
+    assert len(page.commands()) == 3
 
 
 def test_games_of_agents_are_shown(page: Shown) -> None:

@@ -90,7 +90,7 @@ def test_games_side_by_side_are_recorded_on_any_thread(tmp_path: Path, program: 
 
 def test_each_nth_game_is_recorded(tmp_path: Path) -> None:
     environment = squall.VectorEnv(3, record=tmp_path, record_every=3, row="team", **{**SHORT, "episode_max_s": 1.0})
-    for _ in range(6):
+    for _ in range(5):
         environment.step(np.zeros((3, 2), dtype=int))
     environment.close()
     assert [seed_of(file) for file in files(tmp_path)] == [1, 4, 7], "the first place of three"
@@ -114,7 +114,11 @@ def test_a_recorded_game_is_the_same_game(tmp_path: Path) -> None:
     assert environments[0].native.digest(0) == environments[1].native.digest(0)
 
 
-@pytest.mark.parametrize("end", ["", "del environment", "raise SystemExit"])
+HELD = """import threading
+threading.Thread(target=lambda _: threading.Event().wait(), args=(environment,), daemon=True).start()"""
+
+
+@pytest.mark.parametrize("end", ["", "del environment", "raise SystemExit", HELD])
 def test_nobody_has_to_close_an_environment(tmp_path: Path, end: str) -> None:
     script = f"""import squall
 environment = squall.TeamEnv(record={str(tmp_path)!r}, seed=4)

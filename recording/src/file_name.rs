@@ -15,3 +15,20 @@ pub fn free_path(folder: &Path, game: &str, seed: u64) -> PathBuf {
     }
     path
 }
+
+#[cfg(test)]
+mod tests {
+    use super::free_path;
+
+    #[test]
+    fn a_name_tells_the_game_and_its_seed_and_is_taken_once() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let mut names = Vec::new();
+        for _ in 0..3 {
+            let path = free_path(folder.path(), "strategy_4_vs_3", 7);
+            std::fs::File::create_new(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            names.push(path.file_name().expect("a name").to_string_lossy().into_owned());
+        }
+        assert!(names.iter().all(|name| name.contains("_strategy_4_vs_3_7") && name.ends_with(".mcap")), "{names:?}");
+    }
+}
