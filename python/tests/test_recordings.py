@@ -73,7 +73,7 @@ def test_the_program_plays_recorded_games_again_to_the_last_bit(tmp_path: Path, 
     [
         {"opponents": "policy", "game": "pyquaticus_2v2", "observation": "pyquaticus"},
         {"starts": 2, "control": "teleop"},
-        {"action": "options", "control": "options", "game": "mctf_2026"},
+        {"action": "options", "control": "options", "game": "strategy_4_vs_3"},
     ],
 )
 def test_games_side_by_side_are_recorded_on_any_thread(tmp_path: Path, program: str, options: dict) -> None:
