@@ -55,6 +55,9 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         "autoreset_mode": _SAME_STEP,
     }
 
+    # gymnasium also closes an environment that could not be made.
+    _recordings: Recordings | None = None
+
     def __init__(
         self,
         games: int = 1,
@@ -149,7 +152,8 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
 
     def close_extras(self, **kwargs: Any) -> None:
         """Completes the recordings."""
-        self._recordings.end()
+        if self._recordings is not None:
+            self._recordings.end()
 
     def _shown(self, array: NDArray[Any]) -> NDArray[Any]:
         return array.copy() if self.copy else array
