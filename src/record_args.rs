@@ -3,8 +3,6 @@
 use crate::output_file;
 use anyhow::{Context, Result};
 use game::Scenario;
-use game::run_state::RecordingState;
-use recording::utc;
 use std::path::PathBuf;
 
 /// Whether and where `run` records.
@@ -25,24 +23,9 @@ impl RecordArgs {
             return Ok(None);
         }
         output_file::make_folder(&self.record).context("nowhere to record")?;
-        let stem = format!("{}_{}_{seed}", utc::file_stamp(utc::now_ns()), scenario.name);
-        let names = std::iter::once(format!("{stem}.mcap")).chain((2..).map(|n| format!("{stem}_{n}.mcap")));
-        let file = names.map(|name| self.record.join(name)).find(|path| !path.exists());
         // Made by whoever records, and not before; whether it can be is told before the game.
-        file.as_deref().map_or(Ok(()), |path| output_file::check(path, "the recording"))?;
-        Ok(file)
-    }
-}
-
-/// What is wrong with a recording, in words, if anything is.
-pub(crate) fn problem(state: &RecordingState) -> Option<String> {
-    let file = &state.file;
-    match &state.failed {
-        Some(reason) if state.bytes == 0 => Some(format!("nothing is recorded in {file}: {reason}")),
-        Some(reason) => Some(format!("the recording {file} is not complete: {reason}")),
-        None if state.dropped > 0 => {
-            Some(format!("the recording {file} lacks {} messages: the disk was too slow", state.dropped))
-        }
-        None => None,
+        let file = recording::free_path(&self.record, &scenario.name, seed);
+        output_file::check(&file, "the recording")?;
+        Ok(Some(file))
     }
 }

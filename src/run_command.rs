@@ -6,7 +6,7 @@ use crate::game_args::GameArgs;
 use crate::hardware_loop::{HardwareLoop, LoopArgs};
 use crate::net_args::{token_text, unique_game_name};
 use crate::page_args::PageArgs;
-use crate::record_args::{self, RecordArgs};
+use crate::record_args::RecordArgs;
 use crate::screen::{self, Screen};
 use crate::stop;
 use anyhow::{Context, Result, anyhow, bail};
@@ -186,7 +186,7 @@ fn play_here(
         ..Run::default()
     };
     let mut report = Report { outcome, run };
-    report.run.recording_problem = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report)));
+    report.run.recording_problem = recorder.and_then(|recorder| recorder.end(&report).problem());
     reporter.rest(&report.outcome, &mut |message| screen.show(&message));
     screen.show(&ProgressMessage::Done(Box::new(report.clone())));
     Ok(report)

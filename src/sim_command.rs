@@ -3,7 +3,6 @@
 use crate::game_args::GameArgs;
 use crate::net_args::{HubArgs, token_text, unique_game_name};
 use crate::printer::Printer;
-use crate::record_args;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::water_args::within;
@@ -89,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let tell = &mut |message| printer.print(message);
     let mut report = sim::node::serve(&scenario, seed, &settings, recorder.as_mut(), tell)?;
     drop(registration);
-    report.run.recording_problem = recorder.and_then(|recorder| record_args::problem(&recorder.end(&report)));
+    report.run.recording_problem = recorder.and_then(|recorder| recorder.end(&report).problem());
     let written = args.play.write_result(&report);
     let (cut_short, problem) = (report.run.cut_short, report.run.recording_problem.clone());
     printer.end(ProgressMessage::Done(Box::new(report)));

@@ -54,3 +54,19 @@ pub struct RecordingState {
     /// Why nothing is written any more, if so.
     pub failed: Option<String>,
 }
+
+impl RecordingState {
+    /// What is wrong with it, in words, if anything is.
+    #[must_use]
+    pub fn problem(&self) -> Option<String> {
+        let file = &self.file;
+        match &self.failed {
+            Some(reason) if self.bytes == 0 => Some(format!("nothing is recorded in {file}: {reason}")),
+            Some(reason) => Some(format!("the recording {file} is not complete: {reason}")),
+            None if self.dropped > 0 => {
+                Some(format!("the recording {file} lacks {} messages: the disk was too slow", self.dropped))
+            }
+            None => None,
+        }
+    }
+}

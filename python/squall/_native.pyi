@@ -1,5 +1,6 @@
 """The native module. Private: use what `squall` exports."""
 
+from pathlib import Path
 from typing import Any, TypedDict
 
 import numpy as np
@@ -45,10 +46,13 @@ class VectorEnvironment:
     The arrays are made once. `step`, `restart` and `restart_games` overwrite them; nothing else does.
     """
 
-    def __init__(self, setup: Setup, seed: int, games: int, threads: int) -> None:
+    def __init__(
+        self, setup: Setup, seed: int, games: int, threads: int, record: tuple[str, int] | None = None
+    ) -> None:
         """Begins `games` games: seeds count up from `seed`, game by game and episode by episode.
 
-        Raises ValueError with everything that is wrong with the setup and its files.
+        `record` is a folder, which is made where there is none, and n: each nth game is recorded, counted as seeds count. Raises
+        ValueError with everything that is wrong with the setup and its files, or with the folder.
         """
 
     observations: NDArray[np.float32]
@@ -68,6 +72,8 @@ class VectorEnvironment:
     observation_names: list[str]
     action_count: int | None
     """How many discrete actions there are; None where actions are continuous."""
+    action_names: list[str] | None
+    """What the discrete actions are called: the values of a strategy's variable, or what they ask of a boat."""
     step_s: float
     """Simulated time of a step, s."""
     boat_names: list[str]
@@ -76,7 +82,7 @@ class VectorEnvironment:
     def step(self, actions: NDArray[Any]) -> None:
         """Plays a step of every game, without the interpreter's lock.
 
-        `actions` are (rows,) int64 from 0 to 16, or (rows, 2) float32 from -1 to 1. Raises ValueError, and plays nothing, where
+        `actions` are (rows,) int64 below `action_count`, or (rows, 2) float32 from -1 to 1. Raises ValueError, and plays nothing, where
         they are not.
         """
 
@@ -85,6 +91,15 @@ class VectorEnvironment:
 
     def restart_games(self, chosen: list[tuple[int, int | None]]) -> None:
         """Begins some games anew, each with its seed or its next one."""
+
+    def end_recordings(self) -> None:
+        """Completes all recordings; nothing is recorded from now on.
+
+        Warns, as `step` and `restart` do, of what could not be recorded.
+        """
+
+    def take_recording(self) -> Path | None:
+        """The newest recording, if one has been completed since this was asked last."""
 
     def boats(self, game: int) -> list[int | None]:
         """The boat of each row of a game; None where nobody is given actions."""

@@ -11,7 +11,15 @@ from pettingzoo import ParallelEnv
 from typing_extensions import Unpack
 
 from squall.picture import draw
-from squall.setup import Options, action_space, native_environment, needs_no_policy, observation_space
+from squall.recording import Recordings, folder_to_show
+from squall.setup import (
+    Options,
+    action_space,
+    check_render_mode,
+    native_environment,
+    needs_no_policy,
+    observation_space,
+)
 from squall.vector import seen_by_enemy
 
 Shown = dict[str, NDArray[np.float32]]
@@ -20,12 +28,17 @@ Shown = dict[str, NDArray[np.float32]]
 class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[misc]
     """A game whose agents are boats, under their names in the game."""
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 10, "name": "squall_v0"}
+    metadata: ClassVar[dict[str, Any]] = {
+        "render_modes": ["human", "rgb_array"],
+        "render_fps": 10,
+        "name": "squall_v0",
+    }
 
     def __init__(self, *, seed: int | None, render_mode: str | None, options: Options) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f'render_mode is {render_mode!r}, expected None or "rgb_array"')
-        self.native = native_environment(options, seed=seed, games=1, threads=1)
+        check_render_mode(render_mode, self.metadata["render_modes"])
+        record = folder_to_show(render_mode)
+        self.native = native_environment(options, seed=seed, games=1, threads=1, record=record)
+        self._recordings = Recordings(self, self.native, render_mode)
         self.render_mode = render_mode
         names = self.native.boat_names
         self.possible_agents = [names[boat] for boat in self.native.boats(0) if boat is not None]
@@ -41,6 +54,11 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
         """What the numbers of an observation are called, in their order."""
         return self.native.observation_names
 
+    @property
+    def action_names(self) -> list[str] | None:
+        """What the discrete actions are called, in their order; None where actions are continuous."""
+        return self.native.action_names
+
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
         """What an agent is shown; the same object for all."""
         return self.observation_spaces[agent]
@@ -55,6 +73,7 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
         """Begins the game of this seed, or the next one."""
         if seed is not None or not self._is_new:
             self.native.restart(seed)
+            self._recordings.show()
         self.agents, self._is_new = list(self.possible_agents), True
         return self._by_agent(self.native.observations.copy()), self._infos(self.native.standing(0))
 
@@ -78,15 +97,20 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
         self._is_new = is_over
         if is_over:
             self.agents = []
+            self._recordings.show()
         ends = dict.fromkeys(agents, terminated), dict.fromkeys(agents, truncated)
         return self._by_agent(shown.copy()), rewards, *ends, infos
 
     def render(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3); None without `render_mode`. After its last step it is the next game."""
-        return None if self.render_mode is None else draw(self.native.scene(0))
+        """The game from above, (height, width, 3), after its last step the next game; None but for "rgb_array".
+
+        With "human", games are shown on Squall's page in a browser, each when it has ended: see the package's README.
+        """
+        return draw(self.native.scene(0)) if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Completes the recording. With `render_mode="human"` it is shown."""
+        self._recordings.end()
 
     def _by_agent(self, observations: NDArray[np.float32]) -> Shown:
         return dict(zip(self.possible_agents, observations, strict=True))

@@ -29,11 +29,12 @@ class Options(TypedDict, total=False):
     """What a boat is shown: "squall" (default) is what sensors and radio tell, "pyquaticus" the numbers of that environment."""
     frames: int
     """How many decisions "squall" shows together, the newest first: 1 by default."""
-    action: Literal["pyquaticus", "continuous"]
-    """What a boat may do: one of 17 (default), or turn and speed as two numbers from -1 to 1."""
+    action: Literal["pyquaticus", "continuous", "options"]
+    """What a boat may do: one of 17 (default), turn and speed as two numbers from -1 to 1, or one of the options of `control`: the
+    values of a strategy's variable, such as attack and defend. `action_names` of an environment tells them."""
     control: File
     """How that is done: "direct" (default) as orders, or through the helms of a strategy with a behaviour of the kind `policy`,
-    which keep the boat safe: "teleop" is one."""
+    which keep the boat safe: "policy" and "teleop" are some for turns and speeds, "options" is one for options."""
     decision_s: float | None
     """How long an action holds, s: a multiple of the game's own period. 0.5 by default; None is the game's own."""
     episode_max_s: float | None
@@ -48,14 +49,28 @@ class Options(TypedDict, total=False):
     """What is worth how much: "bold" by default; None is nothing."""
     discount: float
     """What a reward a step later is worth, for the potentials in rewards: 0.99 by default."""
+    record: str | os.PathLike[str] | None
+    """A folder for a recording of every game, named by the time, the game and its seed, which `squall replay` shows and plays again.
+    None (default): nothing is recorded. A game of which no step is played leaves no file; one that is reset, or whose environment is
+    closed, before its end is kept up to there."""
+    record_every: int
+    """Each so manieth game is recorded, the first included, counted game by game and episode by episode as seeds are: 1 by default.
+    With as many as there are games in a `VectorEnv`, those of its first place are recorded."""
 
 
 def native_environment(
-    options: Options, *, seed: int | None, games: int, threads: int, mates: File | None = None
+    options: Options,
+    *,
+    seed: int | None,
+    games: int,
+    threads: int,
+    mates: File | None = None,
+    record: str | os.PathLike[str] | None = None,
 ) -> _native.VectorEnvironment:
     """Begins the games. `mates` is the strategy that sails all but one boat of a team; None: actions are for all.
 
-    A seed of None is drawn from the system; `standing(game)["seed"]` tells it. Raises ValueError with everything that is wrong.
+    A seed of None is drawn from the system; `standing(game)["seed"]` tells it. `record` is the folder for recordings where the options
+    name none. Raises ValueError with everything that is wrong.
     """
     unknown = options.keys() - Options.__annotations__.keys()
     if unknown:
@@ -78,8 +93,14 @@ def native_environment(
     }
     if seed is None:
         seed = int(np.random.SeedSequence().generate_state(1)[0])
+    folder = record if options.get("record") is None else options.get("record")
+    every = _number("record_every", options.get("record_every", 1), 2**64 - 1, least=1)
     return _native.VectorEnvironment(
-        setup, _number("seed", seed, 2**64 - 1), _number("games", games, 10**6), _number("threads", threads, 1024)
+        setup,
+        _number("seed", seed, 2**64 - 1),
+        _number("games", games, 10**6),
+        _number("threads", threads, 1024),
+        None if folder is None else (os.fspath(folder), every),
     )
 
 
@@ -117,6 +138,13 @@ def actions_for(native: _native.VectorEnvironment, actions: Any) -> NDArray[Any]
     return rows.astype(np.int64, copy=False).reshape(native.rows)
 
 
+def check_render_mode(render_mode: str | None, modes: Sequence[str]) -> None:
+    """Raises ValueError for a mode that there is not."""
+    if render_mode is not None and render_mode not in modes:
+        expected = " or ".join(["None", *(f'"{mode}"' for mode in modes)])
+        raise ValueError(f"render_mode is {render_mode!r}, expected {expected}")
+
+
 def needs_no_policy(options: Options, where: str) -> None:
     """Raises ValueError where an opponent is the policy itself, whose actions nobody would give."""
     if any(file is None for _, file in _opponents(options.get("opponents", "pav01"))):
@@ -130,7 +158,7 @@ def _opponents(given: Opponents) -> list[tuple[float, str | None]]:
     return [(float(weight), None if file == "policy" else path_of("strategies", file)) for weight, file in pairs]
 
 
-def _number(name: str, number: int, most: int) -> int:
-    if not 0 <= number <= most:
-        raise ValueError(f"{name} is {number}, expected an integer from 0 to {most}")
+def _number(name: str, number: int, most: int, least: int = 0) -> int:
+    if not least <= number <= most:
+        raise ValueError(f"{name} is {number}, expected an integer from {least} to {most}")
     return int(number)

@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 from typing_extensions import Unpack
 
 from squall.picture import draw
+from squall.recording import Recordings, folder_to_show
 from squall.setup import (
     File,
     Options,
     action_space,
     actions_for,
+    check_render_mode,
     native_environment,
     needs_no_policy,
     observation_space,
@@ -24,16 +26,17 @@ from squall.setup import (
 class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
     """What both have in common."""
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 (gymnasium's own)
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 10}  # noqa: RUF012 (gymnasium's own)
     observation_space: gymnasium.spaces.Box  # type: ignore[assignment]
 
     def __init__(
         self, *, is_team: bool, seed: int | None, mates: File | None, render_mode: str | None, options: Options
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f'render_mode is {render_mode!r}, expected None or "rgb_array"')
+        check_render_mode(render_mode, self.metadata["render_modes"])
         needs_no_policy(options, type(self).__name__)
-        self.native = native_environment(options, seed=seed, games=1, threads=1, mates=mates)
+        record = folder_to_show(render_mode)
+        self.native = native_environment(options, seed=seed, games=1, threads=1, mates=mates, record=record)
+        self._recordings = Recordings(self, self.native, render_mode)
         self.render_mode = render_mode
         boats = self.native.rows if is_team else None
         self.observation_space = observation_space(self.native, options, boats)
@@ -47,6 +50,11 @@ class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
         """What the numbers of a boat's observation are called, in their order."""
         return self.native.observation_names
 
+    @property
+    def action_names(self) -> list[str] | None:
+        """What the discrete actions are called, in their order; None where actions are continuous."""
+        return self.native.action_names
+
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
@@ -54,6 +62,7 @@ class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
         super().reset(seed=seed)
         if seed is not None or not self._is_new:
             self.native.restart(seed)
+            self._recordings.show()
         self._is_over, self._is_new = False, True
         return self._shown(self.native.observations), self._info(self.native.standing(0))
 
@@ -68,13 +77,21 @@ class _GameEnv(gymnasium.Env[NDArray[np.float32], Any]):
         self._is_over = self._is_new = terminated or truncated
         if self._is_over:
             shown, standing = native.final_observations, native.finished()[0][2]
+            self._recordings.show()
         else:
             shown, standing = native.observations, native.standing(0)
         return self._shown(shown), reward, terminated, truncated, self._info(standing)
 
     def render(self) -> NDArray[np.uint8] | None:
-        """The game from above, (height, width, 3); None without `render_mode`. After its last step it is the next game."""
-        return None if self.render_mode is None else draw(self.native.scene(0))
+        """The game from above, (height, width, 3), after its last step the next game; None but for "rgb_array".
+
+        With "human", games are shown on Squall's page in a browser, each when it has ended: see the package's README.
+        """
+        return draw(self.native.scene(0)) if self.render_mode == "rgb_array" else None
+
+    def close(self) -> None:
+        """Completes the recording. With `render_mode="human"` it is shown."""
+        self._recordings.end()
 
     def _shown(self, observations: NDArray[np.float32]) -> NDArray[np.float32]:
         return observations.reshape(self.observation_space.shape).copy()

@@ -13,7 +13,16 @@ from numpy.typing import NDArray
 from typing_extensions import Unpack
 
 from squall.picture import draw
-from squall.setup import File, Options, action_space, actions_for, native_environment, observation_space
+from squall.recording import Recordings
+from squall.setup import (
+    File,
+    Options,
+    action_space,
+    actions_for,
+    check_render_mode,
+    native_environment,
+    observation_space,
+)
 
 # gymnasium 1.0 has no such enumeration: its environments reset at the next step, and ours say so in their docstring.
 _SAME_STEP = getattr(getattr(gymnasium.vector, "AutoresetMode", None), "SAME_STEP", "SameStep")
@@ -35,6 +44,8 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
     a critic should, or it does not know what being tagged costs.
     `info["seed"]` (num_envs,) is the seed of the game.
 
+    With `record`, every game is recorded, or each `record_every`th: each such game has a file open and a thread that writes it.
+
     With `copy=False`, `step` and `reset` return the environment's own arrays, which the next call overwrites.
     """
 
@@ -43,6 +54,9 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         "render_fps": 10,
         "autoreset_mode": _SAME_STEP,
     }
+
+    # gymnasium also closes an environment that could not be made.
+    _recordings: Recordings | None = None
 
     def __init__(
         self,
@@ -63,10 +77,10 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         """
         if row not in ("boat", "team"):
             raise ValueError(f'row is {row!r}, expected "boat" or "team"')
-        if render_mode not in (None, "rgb_array"):
-            raise ValueError(f'render_mode is {render_mode!r}, expected None or "rgb_array"')
+        check_render_mode(render_mode, self.metadata["render_modes"])
         threads = min(games, os.cpu_count() or 1) if threads is None else threads
         self.native = native_environment(options, seed=seed, games=games, threads=max(threads, 1), mates=mates)
+        self._recordings = Recordings(self, self.native)
         self.render_mode, self.copy, self.games = render_mode, copy, games
         native = self.native
         self.boats_per_team = 1 if mates is not None else len(native.boat_names) // 2
@@ -88,6 +102,11 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
     def observation_names(self) -> list[str]:
         """What the numbers of a boat's observation are called, in their order."""
         return self.native.observation_names
+
+    @property
+    def action_names(self) -> list[str] | None:
+        """What the discrete actions are called, in their order; None where actions are continuous."""
+        return self.native.action_names
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -130,6 +149,11 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
             return None
         pictures = [draw(self.native.scene(game)) for game in range(self.games)]
         return tuple(pictures[env // self.rows_per_game] for env in range(self.num_envs))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Completes the recordings."""
+        if self._recordings is not None:
+            self._recordings.end()
 
     def _shown(self, array: NDArray[Any]) -> NDArray[Any]:
         return array.copy() if self.copy else array

@@ -1,13 +1,16 @@
 //! Many games at a time for Python: a step without the interpreter's lock, into numpy arrays that stay the same.
 
 use crate::arguments::{Arguments, refused};
+use crate::recorder::{self, Log};
 use crate::{scene, standing};
 use learn::environment::{Action, Games, Rows};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::PyIndexError;
+use pyo3::exceptions::{PyIndexError, PyRuntimeWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::ffi::CString;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Many games at a time; the stub explains it.
 #[pyclass(module = "squall._native")]
@@ -15,6 +18,7 @@ pub(crate) struct VectorEnvironment {
     games: Mutex<Games>,
     actions: Vec<Action>,
     arrays: Arrays,
+    recordings: Arc<Log>,
 }
 
 /// What a step writes: rows × numbers, or rows.
@@ -75,37 +79,52 @@ impl Arrays {
 #[pymethods]
 impl VectorEnvironment {
     #[new]
-    fn new(py: Python<'_>, setup: Arguments, seed: u64, games: usize, threads: usize) -> PyResult<VectorEnvironment> {
+    #[pyo3(signature = (setup, seed, games, threads, record=None))]
+    fn new(
+        py: Python<'_>,
+        setup: Arguments,
+        seed: u64,
+        games: usize,
+        threads: usize,
+        record: Option<(PathBuf, u64)>,
+    ) -> PyResult<VectorEnvironment> {
         for (name, number, most) in [("games", games, 1_000_000), ("threads", threads, 1024)] {
             if !(1..=most).contains(&number) {
                 return Err(refused(format!("{name} is {number}, expected 1 to {most}")));
             }
         }
         let setup = setup.setup()?;
-        let begun = py.detach(|| setup.check().and_then(|setup| Games::new(setup, games, threads, seed)));
-        let games = begun.map_err(refused)?;
+        let recordings = Arc::<Log>::default();
+        if let Some((folder, _)) = &record {
+            recorder::check_folder(folder).map_err(refused)?;
+        }
+        let watches = record.map(|(folder, every)| recorder::watches(folder, every, Arc::clone(&recordings)));
+        let begin = || setup.check().and_then(|setup| Games::watched(setup, games, threads, seed, watches));
+        let games = py.detach(begin).map_err(refused)?;
         let arrays = Arrays::new(py, games.rows().0, games.setup().observation_size());
-        let mut environment = VectorEnvironment { games: Mutex::new(games), actions: Vec::new(), arrays };
+        let mut environment = VectorEnvironment { games: Mutex::new(games), actions: Vec::new(), arrays, recordings };
         environment.show(py)?;
         Ok(environment)
     }
 
     fn step(&mut self, py: Python<'_>, actions: &Bound<'_, PyAny>) -> PyResult<()> {
-        let VectorEnvironment { games, actions: read, arrays } = self;
+        let VectorEnvironment { games, actions: read, arrays, .. } = self;
         let games = games.get_mut().unwrap_or_else(PoisonError::into_inner);
         match games.setup().actions() {
             Some(count) => read_discrete(actions, games.rows().0, count, read)?,
             None => read_continuous(actions, games.rows().0, read)?,
         }
         arrays.write(py, |rows| games.step(read, rows))?.map_err(refused)?;
-        arrays.end(py, games)
+        arrays.end(py, games)?;
+        self.warn(py)
     }
 
     #[pyo3(signature = (seed=None))]
     fn restart(&mut self, py: Python<'_>, seed: Option<u64>) -> PyResult<()> {
         let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
         py.detach(|| games.restart(seed)).map_err(refused)?;
-        self.show(py)
+        self.show(py)?;
+        self.warn(py)
     }
 
     fn restart_games(&mut self, py: Python<'_>, chosen: Vec<(usize, Option<u64>)>) -> PyResult<()> {
@@ -114,7 +133,18 @@ impl VectorEnvironment {
             check_index(games, game)?;
             py.detach(|| games.restart_game(game, seed)).map_err(refused)?;
         }
-        self.show(py)
+        self.show(py)?;
+        self.warn(py)
+    }
+
+    fn end_recordings(&mut self, py: Python<'_>) -> PyResult<()> {
+        let games = self.games.get_mut().unwrap_or_else(PoisonError::into_inner);
+        py.detach(|| games.end_watches());
+        self.warn(py)
+    }
+
+    fn take_recording(&self) -> Option<PathBuf> {
+        self.recordings.take_newest()
     }
 
     #[getter]
@@ -135,6 +165,15 @@ impl VectorEnvironment {
     #[getter]
     fn action_count(&self) -> Option<usize> {
         self.games().setup().actions()
+    }
+
+    #[getter]
+    fn action_names(&self) -> Option<Vec<String>> {
+        let games = self.games();
+        let setup = games.setup();
+        let space = setup.spaces.action;
+        let words = || setup.actions().map(|count| (0..count).map(|action| space.words(action)).collect());
+        setup.options().map(<[String]>::to_vec).or_else(words)
     }
 
     #[getter]
@@ -219,6 +258,16 @@ impl VectorEnvironment {
 impl VectorEnvironment {
     fn games(&self) -> MutexGuard<'_, Games> {
         self.games.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Warns of what is wrong with recordings: games go on without.
+    fn warn(&self, py: Python<'_>) -> PyResult<()> {
+        for problem in self.recordings.take_problems() {
+            // A file's name has no byte 0.
+            let text = CString::new(problem).unwrap_or_default();
+            PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &text, 2)?;
+        }
+        Ok(())
     }
 
     fn show(&mut self, py: Python<'_>) -> PyResult<()> {

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod environment;
+mod recorder;
 mod scene;
 mod standing;
 

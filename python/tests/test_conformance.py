@@ -22,6 +22,7 @@ def test_all_ids_are_registered() -> None:
 @pytest.mark.parametrize("action", ["pyquaticus", "continuous"])
 @pytest.mark.parametrize("name", IDS)
 @pytest.mark.filterwarnings("ignore:.*A Box observation space m.*imum value is.*infinity")
+@pytest.mark.usefixtures("page")
 def test_gymnasium_accepts(name: str, action: str) -> None:
     environment = gymnasium.make(name, action=action, render_mode="rgb_array")
     check_env(environment.unwrapped)

@@ -27,6 +27,7 @@
 
 mod bag;
 mod damaged;
+mod file_name;
 mod game_recording;
 mod index;
 mod json_string;
@@ -38,6 +39,7 @@ mod writer;
 
 pub use bag::{Bag, RecordedMessage, RecordingError};
 pub use damaged::Damaged;
+pub use file_name::free_path;
 pub use game_recording::{Ending, FRAME, Header, INPUTS, Recording, picture};
 pub use recorder::{NewFile, Recorder};
 pub use writer::{Decision, Entry, Opening, Writer};

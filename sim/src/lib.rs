@@ -17,6 +17,10 @@ pub mod motion;
 pub mod node;
 mod piecewise_linear;
 mod radio;
+#[cfg(feature = "record")]
+mod recorder;
+#[cfg(feature = "record")]
+mod report;
 pub mod sea;
 pub mod sensor;
 mod sighting;
@@ -30,6 +34,10 @@ pub mod world;
 pub use afloat::{NotAfloat, afloat};
 pub use contest::{Contest, RestoreError};
 pub use external::BadReport;
+#[cfg(feature = "record")]
+pub use recorder::GameRecorder;
+#[cfg(feature = "record")]
+pub use report::{Report, Run};
 pub use spawn::NoStart;
 pub use state::{BoatState, State};
 pub use world::{VehiclePlan, World, WorldPlan};

@@ -23,7 +23,7 @@ const MAY_IMPORT: [(&str, &[&str]); 15] = [
     ("analysis", &["game", "recording"]),
     ("shore", &["game", "bus", "recording"]),
     ("learn", &["onnx", "game", "sim", "agent", "arena"]),
-    ("python", &["learn"]),
+    ("python", &["game", "recording", "sim", "learn"]),
     ("", &["onnx", "game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "learn", "shore"]),
 ];
 

@@ -2,6 +2,7 @@
 
 use super::games::Standing;
 use super::setup::{Control, Player, Setup};
+use super::watch::{Moment, Watch};
 use agent::{Action, Mind, MindRunner, Pilot};
 use game::count::Tally;
 use game::event::EventCursor;
@@ -35,6 +36,7 @@ pub(super) struct Game {
     /// By vehicle.
     boats: Vec<BoatProgress>,
     rewards: Vec<f64>,
+    watch: Option<Watch>,
 }
 
 /// What became of a step.
@@ -50,7 +52,7 @@ pub(super) enum Ending {
 
 impl Game {
     /// The game of a seed from its start.
-    pub(super) fn new(setup: &Setup, contest: Contest, seed: u64) -> Game {
+    pub(super) fn new(setup: &Setup, contest: Contest, seed: u64, watch: Option<Watch>) -> Game {
         let side = draw_side(setup, seed);
         let scenario = contest.scenario();
         let enemy = TeamId(1 - side.learner.0);
@@ -81,7 +83,10 @@ impl Game {
             tally: Tally::new(count),
             boats: vec![BoatProgress::default(); count],
             rewards: vec![0.0; count],
+            watch,
         };
+        // Before the first pictures, so that nothing the game is given is missed.
+        game.show(Moment::Decision);
         game.contest.pictures();
         game.look();
         game
@@ -113,15 +118,14 @@ impl Game {
 
     /// Plays a step of the policy.
     pub(super) fn step(&mut self, setup: &Setup) -> Ending {
-        let Game { contest, runner, .. } = self;
         for _ in 0..setup.decisions_per_step {
-            if contest.is_over() {
+            if self.contest.is_over() {
                 break;
             }
-            arena::decide(contest, runner);
-            contest.advance();
+            arena::decide(&mut self.contest, &mut self.runner);
+            self.contest.advance();
+            self.show(Moment::Decision);
         }
-        contest.pictures();
         self.steps += 1;
         let ending = if self.contest.is_over() {
             Ending::Over
@@ -130,8 +134,25 @@ impl Game {
         } else {
             Ending::None
         };
+        if ending != Ending::None {
+            self.show(Moment::End);
+            self.end_watch();
+        }
+        self.contest.pictures();
         self.reward(setup, ending);
         ending
+    }
+
+    /// Shows it to whoever sees it.
+    fn show(&mut self, moment: Moment) {
+        if let Some(watch) = &mut self.watch {
+            watch(&mut self.contest, moment);
+        }
+    }
+
+    /// Nobody sees it from now on.
+    pub(super) fn end_watch(&mut self) {
+        self.watch = None;
     }
 
     /// A boat's reward of the last step.

@@ -4,6 +4,7 @@ use super::game::{Ending, Game, Side};
 use super::setup::{Player, Setup, SetupError};
 use super::starts::Starts;
 use super::truth;
+use super::watch::Watches;
 use agent::Action;
 use game::VehicleId;
 use game::count::Counts;
@@ -84,9 +85,23 @@ impl Games {
     /// # Errors
     /// [`SetupError`] where nothing can be played.
     pub fn new(setup: Setup, games: usize, threads: usize, seed: u64) -> Result<Games, SetupError> {
+        Games::watched(setup, games, threads, seed, None)
+    }
+
+    /// As [`Games::new`], and shows the games to others.
+    ///
+    /// # Errors
+    /// [`SetupError`] where nothing can be played.
+    pub fn watched(
+        setup: Setup,
+        games: usize,
+        threads: usize,
+        seed: u64,
+        watches: Option<Watches>,
+    ) -> Result<Games, SetupError> {
         setup.check()?;
         let pool = || rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
-        let starts = Starts::new(&setup, seed);
+        let starts = Starts::new(&setup, seed, watches);
         let slot = |i: usize| {
             let game = starts.game(&setup, i as u64)?;
             let (taught, truth) = (vec![], [vec![], vec![]]);
@@ -147,6 +162,12 @@ impl Games {
         (now, last)
     }
 
+    /// Nobody sees the games from now on.
+    pub fn end_watches(&mut self) {
+        self.starts.end_watches();
+        self.slots.iter_mut().for_each(|slot| slot.game.end_watch());
+    }
+
     /// A game as it stands.
     #[must_use]
     pub fn contest(&self, game: usize) -> &Contest {
@@ -185,7 +206,7 @@ impl Games {
     /// [`SetupError::NoStart`] where a game cannot begin.
     pub fn restart(&mut self, seed: Option<u64>) -> Result<(), SetupError> {
         if let Some(seed) = seed {
-            self.starts = Starts::new(&self.setup, seed);
+            self.starts = self.starts.from(&self.setup, seed);
             self.slots.iter_mut().enumerate().for_each(|(i, slot)| slot.number = i as u64);
         } else {
             let count = self.slots.len() as u64;

@@ -9,6 +9,7 @@ mod stage;
 mod starts;
 mod truth;
 mod vector;
+mod watch;
 
 pub use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 pub use game::Side;
@@ -16,3 +17,4 @@ pub use games::{Finished, Games, Rows, Standing};
 pub use raw::{RawObservation, RawSetup};
 pub use setup::{Control, Player, Setup, SetupError, Teacher};
 pub use vector::VectorEnvironment;
+pub use watch::{Moment, Watch, Watches};

@@ -2,6 +2,7 @@
 
 use super::game::Game;
 use super::setup::{Setup, SetupError};
+use super::watch::Watches;
 use sim::Contest;
 use std::sync::OnceLock;
 
@@ -10,16 +11,29 @@ pub(super) struct Starts {
     seed: u64,
     /// Of as many games as there are starts, at their start: made when it is first played.
     made: Vec<OnceLock<Contest>>,
+    /// Who sees the games; none: nobody.
+    watches: Option<Watches>,
 }
 
 impl Starts {
-    pub(super) fn new(setup: &Setup, seed: u64) -> Starts {
+    pub(super) fn new(setup: &Setup, seed: u64, watches: Option<Watches>) -> Starts {
         let count = setup.starts.unwrap_or_default();
-        Starts { seed, made: (0..count).map(|_| OnceLock::new()).collect() }
+        Starts { seed, made: (0..count).map(|_| OnceLock::new()).collect(), watches }
+    }
+
+    /// The same games from another seed on.
+    pub(super) fn from(&self, setup: &Setup, seed: u64) -> Starts {
+        Starts::new(setup, seed, self.watches.clone())
+    }
+
+    /// Nobody sees the games that begin from now on.
+    pub(super) fn end_watches(&mut self) {
+        self.watches = None;
     }
 
     /// The game with this number.
     pub(super) fn game(&self, setup: &Setup, number: u64) -> Result<Game, SetupError> {
+        let watch = self.watches.as_ref().and_then(|watches| watches(number));
         let number = if self.made.is_empty() { number } else { number % self.made.len() as u64 };
         let seed = self.seed.wrapping_add(number);
         let place = self.made.get(number as usize);
@@ -30,7 +44,7 @@ impl Starts {
         if let Some(place) = place {
             place.get_or_init(|| contest.clone());
         }
-        Ok(Game::new(setup, contest, seed))
+        Ok(Game::new(setup, contest, seed, watch))
     }
 
     /// The number of the game with this seed.

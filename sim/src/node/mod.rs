@@ -13,21 +13,19 @@ mod observers;
 mod pacing;
 mod progress;
 mod realtime;
-mod recorder;
 mod server;
 mod subscriptions;
 mod working_time;
 
+pub use crate::recorder::GameRecorder;
+pub use crate::report::{Report, Run};
 pub use progress::{Progress, ProgressMessage, Reporter};
-pub use recorder::GameRecorder;
 
 use crate::contest::Contest;
 use crate::spawn::NoStart;
 use bus::{BusError, Net, clock};
-use game::refusal::Refusals;
+use game::Scenario;
 use game::topic::GameName;
-use game::{Outcome, Scenario};
-use serde::{Deserialize, Serialize};
 use server::GameServer;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -60,33 +58,6 @@ pub struct Settings {
     pub speed: Option<f64>,
     /// Set from outside to end the game early.
     pub stop: Arc<AtomicBool>,
-}
-
-/// How a served game went.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Report {
-    /// How the game ended.
-    pub outcome: Outcome,
-    /// How it was run.
-    pub run: Run,
-}
-
-/// What depends on the machines and the network, not on the game.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Run {
-    /// How the game was paced.
-    pub pace: String,
-    /// Wall-clock time it took, s.
-    pub wall_s: f64,
-    /// What was refused from agents and gateways.
-    pub refused: Refusals,
-    /// Decision ticks that began late (real time only).
-    pub overruns: u64,
-    /// Whether it was ended before its end.
-    pub cut_short: bool,
-    /// What is wrong with the recording, in words.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub recording_problem: Option<String>,
 }
 
 /// Why a game could not be served.

@@ -1,22 +1,15 @@
 //! What a sim answers observers, and the topics that it subscribes to only for the recorder.
 
 use crate::contest::Contest;
-use crate::sea::WaveField;
 use game::external::{GatewayStatus, LinkBytes};
 use game::message::{Message, PolicyProposal, Say};
 use game::outcome::EventOutcome;
-use game::water::Water;
 use game::{Scenario, codec};
 use serde::de::DeserializeOwned;
 
-/// The waves of a game.
-pub(super) fn water(contest: &Contest) -> Water {
-    Water { waves: contest.world().sea().waves().map(WaveField::plane_waves).unwrap_or_default() }
-}
-
 /// The waves, as JSON.
 pub(super) fn water_json(contest: &Contest) -> Vec<u8> {
-    serde_json::to_vec(&water(contest)).expect("waves are JSON")
+    serde_json::to_vec(&contest.world().sea().water()).expect("waves are JSON")
 }
 
 /// Events in an answer: no link takes more than a megabyte at once, and nobody waits for it.

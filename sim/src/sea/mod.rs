@@ -32,6 +32,7 @@ use crate::hull::{HullModel, Planar};
 use game::boat::{Drive, Windage};
 use game::frame::{Body, Ned, Pose, Rotation};
 use game::sea::Sea;
+use game::water::Water;
 use game::{Boat, Field, SimTime};
 use std::sync::Arc;
 
@@ -232,6 +233,12 @@ impl SeaNow<'_> {
     #[must_use]
     pub fn waves(&self) -> Option<&WaveField> {
         self.model.waves.as_ref()
+    }
+
+    /// The waves as observers draw them; none on calm water.
+    #[must_use]
+    pub fn water(&self) -> Water {
+        Water { waves: self.waves().map(WaveField::plane_waves).unwrap_or_default() }
     }
 
     /// The current at a place, m/s: what carries a point boat along.

@@ -1,7 +1,7 @@
 //! Records a game as it is played, from its first decision on: over the network or in this process.
 
-use super::{Report, observers};
 use crate::contest::Contest;
+use crate::report::Report;
 use game::input::Input;
 use game::message::{Frame, GameInfo};
 use game::run_state::RecordingState;
@@ -98,7 +98,7 @@ impl GameRecorder {
             pace: self.pace.clone(),
             scenario: contest.scenario().clone(),
         };
-        let water = observers::water(contest);
+        let water = contest.world().sea().water();
         let (commit, game) = (self.commit.clone(), self.game.clone());
         let header = Header { commit, game, began_utc_ns: utc::now_ns(), info, water };
         self.stage = match std::mem::replace(&mut self.stage, Stage::Failed(String::new())) {

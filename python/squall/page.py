@@ -1,0 +1,120 @@
+"""The page on which a browser shows recorded games: the program `squall` serves it."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import queue
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import webbrowser
+from pathlib import Path
+
+import gymnasium
+
+_START_MAX_S = 30.0
+"""How long the program may take to open a recording."""
+
+
+def program() -> str:
+    """The program `squall`: that which the environment variable SQUALL names, or that on PATH.
+
+    Raises `gymnasium.error.DependencyNotInstalled` where there is none.
+    """
+    named = os.environ.get("SQUALL")
+    found = shutil.which(named or "squall")
+    if found is None:
+        where = "on PATH" if named is None else f"where the environment variable SQUALL says, {named!r}"
+        raise gymnasium.error.DependencyNotInstalled(
+            f'render_mode "human" needs the program squall, which is not {where}: build it in a clone of the repository with'
+            " `cargo build --release`, and put target/release on PATH or the program's path into SQUALL"
+        )
+    return found
+
+
+class Page:
+    """A page that shows one recording, the newest, until the interpreter ends.
+
+    One that runs in a terminal waits at its end until somebody has seen it, and presses Enter.
+    """
+
+    def __init__(self) -> None:
+        self._server: subprocess.Popen[str] | None = None
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._lines: queue.SimpleQueue[str | None] = queue.SimpleQueue()
+        self.url: str | None = None
+
+    def folder(self) -> Path:
+        """A folder for recordings that are shown and not kept: it is removed when the interpreter ends."""
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="squall-")
+            atexit.register(self._end_at_exit)
+        return Path(self._folder.name)
+
+    def show(self, recording: Path) -> None:
+        """Shows a recording. A browser that shows the one before goes on to it by itself.
+
+        Raises RuntimeError where the program cannot show it.
+        """
+        self.end()
+        self.folder()
+        listen = "127.0.0.1:0" if self.url is None else self.url.removeprefix("http://").rstrip("/")
+        url = self._serve(recording, listen)
+        print(f"{recording.name} at {url}", file=sys.stderr)
+        if url != self.url:
+            self.url = url
+            webbrowser.open(url)
+
+    def end(self) -> None:
+        """Shows nothing any more."""
+        if self._server is not None:
+            self._server.terminate()
+            self._server.wait()
+            self._server = None
+
+    def _serve(self, recording: Path, listen: str) -> str:
+        command = [program(), "replay", str(recording), "--listen", listen]
+        server = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        self._server, self._lines = server, queue.SimpleQueue()
+        threading.Thread(target=_read, args=(server, self._lines), daemon=True).start()
+        said = []
+        try:
+            while (line := self._lines.get(timeout=_START_MAX_S)) is not None:
+                said.append(line.strip())
+                # "FILE at http://127.0.0.1:8088/ (Ctrl-C ends it)"
+                _, is_told, address = line.rpartition(" at http://")
+                if is_told:
+                    return f"http://{address.split()[0]}"
+        except queue.Empty:
+            said.append(f"no answer in {_START_MAX_S:.0f} s")
+        self.end()
+        raise RuntimeError(f"{' '.join(command)}: {' '.join(said) or 'no answer'}")
+
+    def _end_at_exit(self) -> None:
+        server = self._server
+        if server is not None and server.poll() is None and sys.stdin is not None and sys.stdin.isatty():
+            try:
+                input(f"{self.url} shows the last game until Enter is pressed: ")
+            except (EOFError, KeyboardInterrupt):
+                pass
+        self.end()
+        if self._folder is not None:
+            self._folder.cleanup()
+
+
+def _read(server: subprocess.Popen[str], lines: queue.SimpleQueue[str | None]) -> None:
+    """Reads all that a program says, so that it never waits for a reader; None is its end."""
+    if server.stdout is not None:
+        with server.stdout as said:
+            for line in said:
+                lines.put(line)
+    lines.put(None)
+
+
+PAGE = Page()
+"""The page of this interpreter."""
