@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import os
 import queue
+import select
 import shutil
 import subprocess
 import sys
@@ -96,15 +97,26 @@ class Page:
         raise RuntimeError(f"{' '.join(command)}: {' '.join(said) or 'no answer'}")
 
     def _end_at_exit(self) -> None:
-        server = self._server
-        if server is not None and server.poll() is None and sys.stdin is not None and sys.stdin.isatty():
-            try:
-                input(f"{self.url} shows the last game until Enter is pressed: ")
-            except (EOFError, KeyboardInterrupt):
-                pass
+        if sys.stdin is not None and sys.stdin.isatty():
+            self._wait_for_enter()
         self.end()
         if self._folder is not None:
             self._folder.cleanup()
+
+    def _wait_for_enter(self) -> None:
+        server = self._server
+        if server is None or server.poll() is not None:
+            return
+        print(f"{self.url} shows the last game until Enter is pressed", file=sys.stderr)
+        try:
+            # Ctrl-C ends the program that serves the page as well, so nobody waits longer than it runs.
+            while server.poll() is None and not select.select([sys.stdin], [], [], 0.2)[0]:
+                pass
+        except KeyboardInterrupt:
+            pass
+        except OSError:
+            # Windows cannot select a terminal.
+            input()
 
 
 def _read(server: subprocess.Popen[str], lines: queue.SimpleQueue[str | None]) -> None:
