@@ -42,10 +42,8 @@ fn short(algorithm: Algorithm) -> Training {
     let helm = format!("strategies/{name}.toml");
     // Options are a strategy's: there is no stage of them without a helm.
     let first = matches!(algorithm, Algorithm::Dqn(_)).then_some(helm.as_str());
-    let stage = vec![
-        stage("first", "games/pav01_afloat.toml", first),
-        stage("helm", "games/surveyor_2v2.toml", Some(&helm)),
-    ];
+    let stage =
+        vec![stage("first", "games/pav01_afloat.toml", first), stage("helm", "games/surveyor_2v2.toml", Some(&helm))];
     let (td3, dqn) = match algorithm {
         Algorithm::Td3(td3) => (Some(td3), None),
         Algorithm::Dqn(dqn) => (None, Some(dqn)),

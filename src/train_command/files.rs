@@ -74,7 +74,11 @@ impl Files {
             lines[0],
             "{samples},{stage},{}{}",
             progress.reward,
-            progress.learnt.named().map(|(_, value)| value.map_or(",".to_owned(), |value| format!(",{value}"))).concat()
+            progress
+                .learnt
+                .named()
+                .map(|(_, value)| value.map_or(",".to_owned(), |value| format!(",{value}")))
+                .concat()
         );
         self.learnt.extend(learnt(lines[0].trim_end()));
         for (name, played) in progress.evaluated.iter().flat_map(|evaluated| &evaluated.played) {

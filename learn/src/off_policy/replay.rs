@@ -187,7 +187,7 @@ mod tests {
             assert_eq!(minibatch.observations[2 * i..2 * i + 2], [number, -number]);
             assert_eq!(minibatch.next_observations[2 * i..2 * i + 2], [number + 0.5, 0.0]);
             assert_eq!(minibatch.rewards[i], 10.0 * number);
-            assert_eq!((minibatch.over[i], minibatch.counts[i]), (action % 2 == 0, action % 3 == 0));
+            assert_eq!((minibatch.over[i], minibatch.counts[i]), (action.is_multiple_of(2), action.is_multiple_of(3)));
         }
         assert_eq!(times[..13], [0; 13]);
         // Five standard deviations of the binomial distribution.

@@ -109,8 +109,7 @@ impl Td3Learner {
             let noisy = |(output, noise): (&[f32], &Numbers)| {
                 std::array::from_fn(|i| (tanh(output[i]) + noise[i]).clamp(-1.0, 1.0))
             };
-            let actions: Vec<Numbers> =
-                trace.output().chunks_exact(NUMBERS).zip(&noise[first..]).map(noisy).collect();
+            let actions: Vec<Numbers> = trace.output().chunks_exact(NUMBERS).zip(&noise[first..]).map(noisy).collect();
             let input = with_actions(rows, &actions, size);
             let values = [0, 1].map(|i| {
                 self.target_critics[i].forward(&input, &mut trace);
@@ -139,7 +138,8 @@ impl Td3Learner {
         let of_shard = |((rows, actions), targets): ((&[f32], &[Numbers]), &[f32])| {
             let mut trace = Trace::default();
             critic.forward(&with_actions(rows, actions, size), &mut trace);
-            let mut by_values: Vec<f32> = trace.output().iter().zip(targets).map(|(value, want)| value - want).collect();
+            let mut by_values: Vec<f32> =
+                trace.output().iter().zip(targets).map(|(value, want)| value - want).collect();
             let loss = by_values.iter().map(|off| 0.5 * off * off * per_row).sum();
             by_values.iter_mut().for_each(|off| *off *= per_row);
             let mut gradient = vec![0.0; critic.parameters().len()];
@@ -176,8 +176,7 @@ impl Td3Learner {
                 // The derivative of the hyperbolic tangent.
                 std::array::from_fn(|i| by[size + i] * (1.0 - action[i] * action[i]))
             };
-            let mut by_output: Vec<f32> =
-                by_input.chunks_exact(size + NUMBERS).zip(&actions).flat_map(slope).collect();
+            let mut by_output: Vec<f32> = by_input.chunks_exact(size + NUMBERS).zip(&actions).flat_map(slope).collect();
             let mut gradient = vec![0.0; self.actor.parameters().len()];
             self.actor.backward(&chosen, &mut by_output, &mut gradient, None);
             Slope { gradient, loss }

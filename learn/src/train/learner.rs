@@ -3,9 +3,9 @@
 use super::off_policy::OffPolicy;
 use crate::environment::Setup;
 use crate::nn::Perceptron;
+use crate::off_policy::Replay;
 use crate::off_policy::dqn::DqnLearner;
 use crate::off_policy::td3::{Numbers, Td3Learner, action};
-use crate::off_policy::Replay;
 use crate::ppo::ActorCritic;
 use agent::Action;
 use game::training::{Algorithm, Dqn, Td3, Training};
@@ -35,11 +35,19 @@ impl Learner {
             }
             Algorithm::Td3(settings) => {
                 let learner = Td3Learner::new(observation, hidden, seed);
-                Learner::Td3(Box::new(OffPolicy { learner, replay: Replay::new(observation, settings.buffer), settings }))
+                Learner::Td3(Box::new(OffPolicy {
+                    learner,
+                    replay: Replay::new(observation, settings.buffer),
+                    settings,
+                }))
             }
             Algorithm::Dqn(settings) => {
                 let learner = DqnLearner::new(observation, hidden, actions, seed);
-                Learner::Dqn(Box::new(OffPolicy { learner, replay: Replay::new(observation, settings.buffer), settings }))
+                Learner::Dqn(Box::new(OffPolicy {
+                    learner,
+                    replay: Replay::new(observation, settings.buffer),
+                    settings,
+                }))
             }
         }
     }

@@ -130,8 +130,7 @@ fn play<A: Copy>(
         environment.finished().iter().for_each(|one| ended[one.game] = Some(!one.cut_off));
         for row in (0..rows).filter(|row| row % per_game < boats[row / per_game]) {
             let (numbers, ended) = (row * size..(row + 1) * size, ended[row / per_game]);
-            let shown =
-                if ended.is_some() { environment.final_observations() } else { environment.observations() };
+            let shown = if ended.is_some() { environment.final_observations() } else { environment.observations() };
             replay.push(Transition {
                 observation: &before[numbers.clone()],
                 action: chosen[row],
