@@ -81,7 +81,10 @@ fn matrix(text: &mut String, report: &Report) {
 fn pairings(text: &mut String, report: &Report, challenger: &str) {
     let width = width(report);
     line(text, format_args!("\n{challenger} against each, with the share of decided games that it won ± 95 %"));
-    line(text, format_args!("{:width$}{:>7}{:>7}{:>7}{:>20}{:>16}", "", "won", "drawn", "lost", "of decided", "points"));
+    line(
+        text,
+        format_args!("{:width$}{:>7}{:>7}{:>7}{:>20}{:>16}", "", "won", "drawn", "lost", "of decided", "points"),
+    );
     for cell in report.matrix.iter().filter(|cell| cell.row == challenger && cell.column != challenger) {
         let Cell { column, wins, draws, losses, won_of_decided, score: [own, theirs], .. } = cell;
         let share = won_of_decided.as_ref().map_or("-".to_owned(), share);
