@@ -5,6 +5,7 @@ use agent::{Action, ActionSpace, ObservationSpace, Spaces};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use game::rewards::Rewards;
 use game::stream::Stream;
+use game::training::CriticInput;
 use learn::environment::{Control, Player, Setup, VectorEnvironment};
 use std::path::Path;
 
@@ -16,6 +17,8 @@ fn setup(game: &str, opponent: Player) -> Setup {
         scenario: game::scenario::load(&path).unwrap_or_else(|problems| panic!("{problems}")),
         spaces: Spaces { observation: ObservationSpace::Pyquaticus, action: ActionSpace::Pyquaticus },
         control: Control::Direct,
+        teacher: None,
+        critic: CriticInput::Observation,
         decisions_per_step: 1,
         steps_max: None,
         starts: None,
