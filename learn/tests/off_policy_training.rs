@@ -61,11 +61,12 @@ fn short(algorithm: Algorithm) -> Training {
     }
 }
 
-/// Each algorithm with a buffer that overflows.
+/// Each algorithm with a buffer that overflows. Games begin anew after steps of the optimiser that are no multiple of 7, so that whoever
+/// takes a training up again must know how many there were.
 fn algorithms() -> [Algorithm; 2] {
-    let td3 = Td3 { steps: 8, minibatches: 3, minibatch: 300, buffer: 2_000, warm_up: 500, ..Td3::default() };
+    let td3 = Td3 { steps: 8, minibatches: 8, minibatch: 300, buffer: 2_000, warm_up: 500, delay: 7, ..Td3::default() };
     let dqn = Dqn { steps: 8, minibatches: 3, minibatch: 300, buffer: 2_000, warm_up: 500, ..Dqn::default() };
-    [Algorithm::Td3(td3), Algorithm::Dqn(Dqn { target_every: 10, epsilon_samples: 4_000, ..dqn })]
+    [Algorithm::Td3(td3), Algorithm::Dqn(Dqn { target_every: 7, epsilon_samples: 4_000, ..dqn })]
 }
 
 fn updated(trainer: &mut Trainer) -> Progress {
