@@ -71,6 +71,24 @@ fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
 }
 
 #[test]
+fn a_challenger_is_told_against_whom_it_won_how_many_of_the_decided_games() {
+    let dir = tempfile::tempdir().unwrap();
+    let tournament = short_tournament(&dir, "challenger = \"strategy_4\"");
+    let path = place(&dir, "report.json");
+    let text = printed(project(), &["tournament", &tournament, "--games", "4", "--json", &path]);
+    let report = json(&path);
+    let cells: Vec<&Value> =
+        report["matrix"].as_array().unwrap().iter().filter(|cell| cell["row"] == "strategy_4").collect();
+    assert_eq!((cells.len(), &report["challenger"]), (2, &"strategy_4".into()));
+    for cell in cells {
+        let line = text.lines().rfind(|line| line.starts_with(cell["column"].as_str().unwrap())).unwrap();
+        let numbers: Vec<&str> = line.split_whitespace().skip(1).take(3).collect();
+        assert_eq!(numbers, ["wins", "draws", "losses"].map(|of| cell[of].to_string()), "{text}");
+        assert!(line.contains(if cell["won_of_decided"].is_null() { " - " } else { " % (" }), "{text}");
+    }
+}
+
+#[test]
 fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
     let dir = tempfile::tempdir().unwrap();
     let tournament = short_tournament(&dir, "self_play = true");
@@ -89,6 +107,7 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
     assert_eq!((&text, &report, &csv), (&play("4").0, &play("4").1, &play("4").2));
 
     let wanted = [
+        "challenger",
         "commit",
         "entries",
         "failures",
@@ -126,7 +145,9 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
     }
     let matrix = report["matrix"].as_array().unwrap();
     assert_eq!(matrix.len(), 9);
-    assert_eq!(keys(&matrix[0]), ["column", "draws", "games", "losses", "row", "score_difference", "seeds", "wins"]);
+    let of_cell =
+        ["column", "draws", "games", "losses", "row", "score", "score_difference", "seeds", "wins", "won_of_decided"];
+    assert_eq!(keys(&matrix[0]), of_cell);
     assert_eq!(matrix[0]["seeds"], serde_json::json!({ "first": 1, "last": 2 }));
 
     let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
