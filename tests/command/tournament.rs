@@ -73,13 +73,13 @@ fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
 #[test]
 fn a_challenger_is_told_against_whom_it_won_how_many_of_the_decided_games() {
     let dir = tempfile::tempdir().unwrap();
-    let tournament = short_tournament(&dir, "challenger = \"strategy_4\"");
+    let tournament = short_tournament(&dir, "challenger = \"pav01\"");
     let path = place(&dir, "report.json");
     let text = printed(project(), &["tournament", &tournament, "--games", "4", "--json", &path]);
     let report = json(&path);
     let cells: Vec<&Value> =
-        report["matrix"].as_array().unwrap().iter().filter(|cell| cell["row"] == "strategy_4").collect();
-    assert_eq!((cells.len(), &report["challenger"]), (2, &"strategy_4".into()));
+        report["matrix"].as_array().unwrap().iter().filter(|cell| cell["row"] == "pav01").collect();
+    assert_eq!((cells.len(), &report["challenger"]), (2, &"pav01".into()));
     for cell in cells {
         let line = text.lines().rfind(|line| line.starts_with(cell["column"].as_str().unwrap())).unwrap();
         let numbers: Vec<&str> = line.split_whitespace().skip(1).take(3).collect();
