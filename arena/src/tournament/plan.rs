@@ -24,8 +24,9 @@ pub struct Match {
 }
 
 impl Plan {
-    /// The games of a tournament: of every entry with every other, or of the challenger with every other. All pairings play the same seeds, each of them twice, with the sides exchanged; an
-    /// entry against itself plays them once, since exchanged sides are the same game.
+    /// The games of a tournament: of every entry with every other, or of the challenger with every other. All pairings play the
+    /// same seeds, each of them twice, with the sides exchanged; an entry against itself plays them once, since exchanged sides are
+    /// the same game.
     ///
     /// # Errors
     /// Everything that is wrong in the files, also in what they are together; and a game with real boats, which cannot
@@ -33,12 +34,13 @@ impl Plan {
     pub fn new(tournament: &Tournament) -> Result<Plan, Problems> {
         let teams = tournament.teams()?;
         let count = tournament.entries.len();
-        let challenges = |entry: usize| tournament.challenger.as_ref() == Some(&tournament.entries[entry].name);
-        let is_played =
-            |one: usize, other: usize| tournament.challenger.is_none() || challenges(one) || challenges(other);
+        let is_played = |sides: [usize; 2]| {
+            let is_there = |name: &String| sides.iter().any(|side| tournament.entries[*side].name == *name);
+            tournament.challenger.as_ref().is_none_or(is_there)
+        };
         let mut rounds = vec![];
         for one in 0..count {
-            for other in (one..count).filter(|other| is_played(one, *other)) {
+            for other in (one..count).filter(|other| is_played([one, *other])) {
                 let both = [[one, other], [other, one]];
                 let sides = match (one == other, tournament.self_play) {
                     (true, true) => &both[..1],

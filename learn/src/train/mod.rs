@@ -20,7 +20,7 @@ use crate::ppo::{ActorCritic, Batch, Lesson};
 use game::policy::{PolicySpec, options_metadata};
 use game::scenario;
 use game::stream::Stream;
-use game::training::{Ppo, Stage, Training};
+use game::training::{CriticInput, Ppo, Stage, Training};
 use rayon::prelude::*;
 use rollout::Rollout;
 use state::State;
@@ -345,6 +345,7 @@ fn environment(
 }
 
 /// The games of the evaluation: those of the last stage against each of its opponents.
+/// Nobody learns from them, so there is no teacher, and no truth for a critic.
 fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setup)>, SetupError> {
     let mut judges = vec![];
     for path in &training.evaluation.opponents {
@@ -352,7 +353,17 @@ fn judges(training: &Training, last: Option<&Setup>) -> Result<Vec<(String, Setu
         let Some(last) = last else { break };
         let name = strategy.name.clone();
         let opponents = vec![(1.0, Player::Strategy(Box::new(strategy)))];
-        judges.push((name, Setup { opponents, teacher: None, starts: None, steps_max: None, ..last.clone() }));
+        judges.push((
+            name,
+            Setup {
+                opponents,
+                teacher: None,
+                critic: CriticInput::Observation,
+                starts: None,
+                steps_max: None,
+                ..last.clone()
+            },
+        ));
     }
     Ok(judges)
 }
