@@ -6,7 +6,7 @@ use crate::sim_command::seconds;
 use crate::water_args::named_file;
 use anyhow::{Context, Result, bail};
 use game::Scenario;
-use game::scenario::{Kind, Overrides};
+use game::scenario::{Kind, Overrides, Setting};
 use sim::node::{Pace, Report};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -35,6 +35,10 @@ pub(crate) struct GameArgs {
     /// Each team follows the strategy of the other
     #[arg(long)]
     pub(crate) exchange_strategies: bool,
+    /// A value in place of what the files say, as in sea.waves.hs_m=0.3, boat.gps.noise_m=2 or link.delay_s=1; may be given
+    /// again for another
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = Setting::parse)]
+    settings: Vec<Setting>,
     /// Plays external boats as simulated ones: a rehearsal
     #[arg(long)]
     rehearse: bool,
@@ -76,6 +80,9 @@ impl GameArgs {
         }
         command.args(overrides.exchange_strategies.then_some("--exchange-strategies"));
         command.args(overrides.simulate_all.then_some("--rehearse"));
+        for Setting { key, value, .. } in &overrides.settings {
+            option(&mut command, "--set", Some(format!("{key}={value}")));
+        }
         option(&mut command, "--pace", Some(self.pace));
         option(&mut command, "--seed", self.seed);
         Ok(command)
@@ -104,6 +111,7 @@ impl GameArgs {
             sea: self.sea.clone(),
             exchange_strategies: self.exchange_strategies,
             simulate_all: self.rehearse,
+            settings: self.settings.clone(),
             ..Overrides::default()
         };
         let beside = self.scenario.parent().unwrap_or(Path::new(""));

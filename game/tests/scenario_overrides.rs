@@ -2,7 +2,7 @@
 
 use game::Scenario;
 use game::id::VehicleId;
-use game::scenario::{Overrides, load, load_with};
+use game::scenario::{Overrides, Setting, load, load_with};
 use std::path::{Path, PathBuf};
 
 /// A strategy file that needs no other.
@@ -141,4 +141,48 @@ fn teams_that_exchange_their_strategies_follow_each_others() {
     let person = Overrides { exchange_strategies: true, ..Overrides::default() };
     let refused = load_with(&shipped("games/person_2v2.toml"), &person).unwrap_err().to_string();
     assert!(refused.contains("strategy is teleop, expected none here: the teams exchange theirs"), "{refused}");
+}
+
+/// The single values in place of what files say.
+fn settings(texts: &[&str]) -> Overrides {
+    let settings = texts.iter().map(|text| Setting::parse(text).unwrap()).collect();
+    Overrides { settings, ..Overrides::default() }
+}
+
+#[test]
+fn a_single_value_takes_the_place_of_what_a_file_of_its_kind_says() {
+    let game = shipped("games/surveyor_2v2.toml");
+    let own = load(&game).unwrap();
+    let set = settings(&["sea.depth_m=4.5", "rules.tag_radius_m=12.5", "link.delay_s=0.5", "boat.gps.noise_m=0.25"]);
+    let other = load_with(&game, &set).unwrap();
+    assert_eq!((other.sea.depth_m, own.sea.depth_m), (Some(4.5), Some(10.0)));
+    assert_eq!((other.rules.tag_radius_m, own.rules.tag_radius_m), (12.5, 10.0));
+    assert_eq!(other.link.as_ref().unwrap().delay_s, 0.5);
+    assert!(other.boats.iter().all(|boat| boat.sensors.gps.as_ref().is_some_and(|gps| gps.noise_m == 0.25)));
+    // What is not set stays, and a game drawn again keeps it.
+    assert_eq!(other.sea.wind, own.sea.wind);
+    assert_eq!(other.of_seed(9).unwrap().rules.tag_radius_m, 12.5);
+    // The last of several counts, and a game without a sea file has one at rest to change.
+    let calm = shipped("games/pav01_vs_pav01.toml");
+    let windy = load_with(&calm, &settings(&["sea.wind.from_deg=90", "sea.wind.speed_m_s=3", "sea.wind.speed_m_s=4"])).unwrap();
+    assert_eq!(windy.sea.wind.as_ref().unwrap().speed_10m_m_s, 4.0);
+    assert_eq!((windy.sea.water_density_kg_m3, windy.sea.waves.is_none()), (1000.0, true));
+    // A distribution is drawn as if it stood in the file.
+    let drawn = load_with(&game, &settings(&["boat.gps.noise_m={ uniform = [0.5, 0.75] }"])).unwrap();
+    let noises = drawn.drawn.iter().filter(|drawn| drawn.parameter.ends_with("gps.noise_m")).map(|drawn| drawn.value);
+    assert_eq!(noises.clone().filter(|noise| (0.5..=0.75).contains(noise)).count(), 4, "{:?}", drawn.drawn);
+}
+
+#[test]
+fn a_single_value_is_checked_as_if_it_stood_in_the_file() {
+    let game = shipped("games/surveyor_2v2.toml");
+    for (text, want) in [
+        ("sea.waves.hs_m=99", "--set sea.waves.hs_m:1:14: hs_m is 99, expected"),
+        ("rules.tag_radius=3", "tag_radius is unknown"),
+        ("boat.gps.noise_m=often", "--set boat.gps.noise_m:1:15: noise_m is the string \"often\""),
+        ("game.field=nonesuch.toml", "nonesuch.toml cannot be read"),
+    ] {
+        let said = load_with(&game, &settings(&[text])).unwrap_err().to_string();
+        assert!(said.contains(want), "{text}: {said}");
+    }
 }

@@ -44,6 +44,7 @@ fn name_of(kind: Kind, path: &Path) -> Option<String> {
         Kind::Sea => scenario::draw_sea(path, 1).map(|(sea, _)| sea.name),
         Kind::Strategy => scenario::load_strategy(path).map(|strategy| strategy.name),
         Kind::Tournament => scenario::load_tournament(path).map(|tournament| tournament.name),
+        Kind::Sweep => scenario::load_sweep(path).map(|sweep| sweep.name),
         Kind::Gateway => scenario::load_gateway(path).map(|gateway| gateway.name),
     };
     Some(name.unwrap_or_else(|problems| panic!("{problems}")))
@@ -67,7 +68,7 @@ fn every_shipped_file_is_sound_and_says_what_it_is_for() {
 fn a_file_is_recognised_wherever_it_lies() {
     let folder = tempfile::tempdir().unwrap();
     for kind in Kind::ALL {
-        if matches!(kind, Kind::Game | Kind::Tournament | Kind::Training) {
+        if matches!(kind, Kind::Game | Kind::Tournament | Kind::Training | Kind::Sweep) {
             continue; // Their references would not follow them.
         }
         for path in files(kind) {

@@ -102,6 +102,7 @@ fn accepted(kind: Kind, path: &Path) {
                 check_shown(&problems);
             }
         }
+        Kind::Sweep => drop(scenario::load_sweep(path).expect("it was accepted")),
         Kind::Field | Kind::Rules | Kind::Boat | Kind::Sea | Kind::Rewards | Kind::Training => {}
     }
 }

@@ -29,11 +29,13 @@ pub enum Kind {
     Rewards,
     /// How a policy is trained.
     Training,
+    /// How strategies do at many points of a space of scenarios.
+    Sweep,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 10] = [
+    pub const ALL: [Kind; 11] = [
         Kind::Game,
         Kind::Field,
         Kind::Rules,
@@ -44,6 +46,7 @@ impl Kind {
         Kind::Gateway,
         Kind::Rewards,
         Kind::Training,
+        Kind::Sweep,
     ];
 
     /// Its name, which is also that of its schema file.
@@ -55,8 +58,10 @@ impl Kind {
     /// The folder its files lie in.
     #[must_use]
     pub fn folder(self) -> &'static str {
-        ["games", "fields", "rules", "boats", "seas", "strategies", "tournaments", "gateways", "rewards", "training"]
-            [self as usize]
+        [
+            "games", "fields", "rules", "boats", "seas", "strategies", "tournaments", "gateways", "rewards", "training",
+            "sweeps",
+        ][self as usize]
     }
 
     /// The kind that the folder of `path` says, if it says one.
@@ -94,6 +99,7 @@ mod tests {
             (vec!["order_ttl_s", "fence", "limits"], Kind::Gateway),
             (vec!["boat", "enemy", "potential"], Kind::Rewards),
             (vec!["stage", "observation", "seed"], Kind::Training),
+            (vec!["game", "opponent", "axis"], Kind::Sweep),
             (vec!["base"], Kind::Game),
             (vec![], Kind::Game),
         ] {

@@ -7,7 +7,7 @@ use super::overrides::Overrides;
 use super::problem::Problems;
 use super::read::{self, Document};
 use super::tree::Node;
-use super::{Scenario, Tournament, check};
+use super::{Scenario, Sweep, Tournament, check};
 use crate::boat::Boat;
 use crate::field::Field;
 use crate::gateway::Gateway;
@@ -154,6 +154,33 @@ pub fn load_training(path: &Path) -> Result<Training, Problems> {
     one(Kind::Training, path, check::training, 1).map(|(training, _)| training)
 }
 
+/// Reads and checks the sweep file at `path` and every file it names, and the game with every level of every axis, one at a time.
+///
+/// # Errors
+/// Everything that is wrong in any of them.
+pub fn load_sweep(path: &Path) -> Result<Sweep, Problems> {
+    let (sweep, _) = one(Kind::Sweep, path, check::sweep, 1)?;
+    let teams: Vec<String> = load(&sweep.game)?.teams.into_iter().map(|team| team.name).collect();
+    let nominal: Vec<_> = sweep.axes.iter().map(super::Axis::nominal).collect();
+    let mut problems: Vec<_> = vec![];
+    let mut read = |values: &[super::AxisValue]| {
+        if let Err(Problems(found)) = load_with(&sweep.game, &sweep.overrides(&teams, 0, 0, values)) {
+            problems.extend(found);
+        }
+    };
+    read(&nominal);
+    for (i, axis) in sweep.axes.iter().enumerate() {
+        let ends = axis.values.is_empty().then(|| [0.0, 1.0].map(|share| axis.at(share)));
+        for value in axis.levels().into_iter().chain(ends.into_iter().flatten()) {
+            let values: Vec<_> = nominal.iter().enumerate().map(|(k, other)| if k == i { &value } else { other }).cloned().collect();
+            read(&values);
+        }
+    }
+    problems.sort();
+    problems.dedup();
+    if problems.is_empty() { Ok(sweep) } else { Err(Problems(problems)) }
+}
+
 /// The gateway of a file that says nothing.
 ///
 /// # Panics
@@ -188,6 +215,7 @@ pub fn check_file(path: &Path) -> Result<Kind, Problems> {
         Kind::Gateway => load_gateway(path).map(drop),
         Kind::Rewards => load_rewards(path).map(drop),
         Kind::Training => load_training(path).map(drop),
+        Kind::Sweep => load_sweep(path).map(drop),
     }?;
     Ok(kind)
 }

@@ -20,7 +20,9 @@ mod read;
 mod real_boats;
 mod reference;
 mod schema;
+mod setting;
 mod source;
+mod sweep;
 mod tournament;
 mod tree;
 mod validate;
@@ -29,13 +31,15 @@ pub use draw::{Drawn, Recipe};
 pub use kind::Kind;
 pub use load::{
     check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_rewards,
-    load_strategy, load_tournament, load_training, load_with,
+    load_strategy, load_sweep, load_tournament, load_training, load_with,
 };
 pub use overrides::Overrides;
 pub use problem::{Problem, Problems};
 pub use real_boats::RealBoats;
 pub use reference::{file_reference, reference};
 pub use schema::schema;
+pub use setting::{Setting, SettingError};
+pub use sweep::{Axis, AxisValue, Design, Sweep};
 pub use tournament::{Entrant, Tournament};
 
 use crate::boat::Boat;

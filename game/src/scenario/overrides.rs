@@ -1,5 +1,7 @@
 //! What takes the place of what a game says: files of those it names, simulated boats of real ones.
 
+use super::kind::Kind;
+use super::setting::Setting;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -16,4 +18,14 @@ pub struct Overrides {
     pub exchange_strategies: bool,
     /// A rehearsal: every boat is simulated, whatever the game says of its source.
     pub simulate_all: bool,
+    /// Single values in the place of what files say; of several for one key the last counts.
+    #[serde(default)]
+    pub settings: Vec<Setting>,
+}
+
+impl Overrides {
+    /// Whether a single value takes the place of what files of this kind say.
+    pub(super) fn has_settings(&self, kind: Kind) -> bool {
+        self.settings.iter().any(|setting| setting.target().is_some_and(|(target, _)| target == kind))
+    }
 }

@@ -78,6 +78,31 @@ pub(super) fn document_of<T: DeserializeOwned>(
     let faults = diagnostics.faults();
     let own = if kind == Kind::Strategy { OWN } else { &[] };
     let tree = tree(diagnostics, path, asked_at, own)?;
+    document_of_tree(diagnostics, kind, path, tree, (owner, faults))
+}
+
+/// What a file of a kind with this text would say.
+pub(super) fn document_of_text<T: DeserializeOwned>(
+    diagnostics: &mut Diagnostics,
+    kind: Kind,
+    path: &Path,
+    text: &str,
+) -> Option<Document<T>> {
+    let faults = diagnostics.faults();
+    let start = diagnostics.sources.add(path.to_owned(), text.into());
+    let tree = parsed(diagnostics, start, text);
+    document_of_tree(diagnostics, kind, path, tree, (kind.name(), faults))
+}
+
+/// A tree, read by the schema of its kind, with single values in place of its own; `faults` is how much was wrong before it.
+fn document_of_tree<T: DeserializeOwned>(
+    diagnostics: &mut Diagnostics,
+    kind: Kind,
+    path: &Path,
+    mut tree: Node,
+    (owner, faults): (&str, usize),
+) -> Option<Document<T>> {
+    put_settings(diagnostics, kind, &mut tree);
     let start = tree.at;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     diagnostics.is_name(start, "the file's name", &name);
@@ -89,6 +114,17 @@ pub(super) fn document_of<T: DeserializeOwned>(
             diagnostics.note(start, format!("the file does not fit its own schema: {error}"));
             None
         }
+    }
+}
+
+/// Puts the single values that take the place of what a file of this kind says into its tree.
+fn put_settings(diagnostics: &mut Diagnostics, kind: Kind, tree: &mut Node) {
+    for setting in diagnostics.overrides.settings.clone() {
+        let Some((_, key)) = setting.target().filter(|(target, _)| *target == kind) else { continue };
+        let text: Arc<str> = setting.as_file(key).into();
+        let start = diagnostics.sources.add(setting.path.clone(), text.clone());
+        let layer = parsed(diagnostics, start, &text);
+        tree.put(layer);
     }
 }
 

@@ -21,7 +21,7 @@
 //! [`declared`] is the schema in this form, by which files are read (see `validate`); [`schema`] is the one for editors.
 
 use super::kind::Kind;
-use super::{Tournament, raw};
+use super::{Sweep, Tournament, raw};
 use crate::gateway::Gateway;
 use crate::rewards::Rewards;
 use crate::rules::Rules;
@@ -44,6 +44,7 @@ pub(super) fn declared(kind: Kind) -> &'static Value {
         Kind::Gateway => generated::<Gateway>(kind),
         Kind::Rewards => generated::<Rewards>(kind),
         Kind::Training => generated::<Training>(kind),
+        Kind::Sweep => generated::<Sweep>(kind),
     })
 }
 

@@ -1,5 +1,6 @@
 //! A scenario file as typed: a tree of values, each with the place where it stands.
 
+use super::draw::distribution_kind;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
@@ -74,6 +75,22 @@ impl Node {
     pub(super) fn remove(&mut self, keys: &[&str]) {
         if let Value::Table(table) = &mut self.value {
             table.retain(|key, _| !keys.contains(&key.as_str()));
+        }
+    }
+
+    /// Puts what `over` says in the place of what this says.
+    pub(super) fn put(&mut self, over: Node) {
+        let is_distribution = matches!(&over.value, Value::Table(table) if distribution_kind(table).is_some());
+        match (&mut self.value, over.value) {
+            (Value::Table(table), Value::Table(over)) if !is_distribution => {
+                for (key, value) in over {
+                    match table.get_mut(&key) {
+                        Some(mine) => mine.put(value),
+                        None => drop(table.insert(key, value)),
+                    }
+                }
+            }
+            (_, value) => *self = Node { value, at: over.at, key_at: over.key_at },
         }
     }
 

@@ -173,6 +173,11 @@ fn sea(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) -> Option<
     }
     match &document.raw.sea {
         Some(given) => referenced(diagnostics, document, Kind::Sea, &given.0, super::sea),
+        None if diagnostics.overrides.has_settings(Kind::Sea) => {
+            let path = Path::new("at_rest.toml");
+            let document = read::document_of_text(diagnostics, Kind::Sea, path, "water_density_kg_m3 = 1000")?;
+            super::sea(diagnostics, &document)
+        }
         None => Some(Sea::at_rest()),
     }
 }

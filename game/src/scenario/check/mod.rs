@@ -13,6 +13,7 @@ mod rules;
 mod sea;
 mod start_position;
 mod strategy;
+mod sweep;
 mod tournament;
 mod training;
 
@@ -24,6 +25,7 @@ pub(super) use rewards::rewards;
 pub(super) use rules::rules;
 pub(super) use sea::sea;
 pub(super) use strategy::strategy_file;
+pub(super) use sweep::sweep;
 pub(super) use tournament::tournament;
 pub(super) use training::training;
 

@@ -1,0 +1,119 @@
+//! A value in the place of what a scenario file says: `--set sea.waves.hs_m=0.3`, or an axis of a sweep.
+
+use super::kind::Kind;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// A value in the place of what all files of a kind say in a game. It is checked as if it stood in the file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Setting {
+    /// The kind of file and the key in it, as in `sea.waves.hs_m`. `link` and `fault` are tables of the game file.
+    pub key: String,
+    /// The value, as TOML.
+    pub value: String,
+    /// The file in which it is given, to which the paths of files are relative; `--set KEY` on the command line.
+    pub path: PathBuf,
+    /// The line there, from 1.
+    pub line: usize,
+    /// The column there, from 1.
+    pub column: usize,
+}
+
+/// Why a text is no setting.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum SettingError {
+    /// There is no key, or no value.
+    #[error("{0:?} is no setting, expected KEY=VALUE as in sea.waves.hs_m=0.3")]
+    Form(String),
+    /// The key does not begin with a kind of file.
+    #[error("the key {0:?} does not begin with a kind of file, expected one of {list} and a key of it, as in sea.waves.hs_m", list = PREFIXES.join(", "))]
+    Kind(String),
+}
+
+/// What a key may begin with.
+const PREFIXES: [&str; 7] = ["sea", "boat", "rules", "field", "game", "link", "fault"];
+
+impl Setting {
+    /// A setting from the command line. A value that is no TOML is a text.
+    ///
+    /// # Errors
+    /// [`SettingError`]: it is not of the form `KEY=VALUE`, or there is no such kind of file.
+    pub fn parse(text: &str) -> Result<Setting, SettingError> {
+        let (key, value) = text.split_once('=').ok_or_else(|| SettingError::Form(text.to_owned()))?;
+        let (key, value) = (key.trim(), value.trim());
+        if value.is_empty() {
+            return Err(SettingError::Form(text.to_owned()));
+        }
+        let is_toml = format!("key = {value}").parse::<toml::Table>().is_ok_and(|table| table.len() == 1);
+        let value = if is_toml { value.to_owned() } else { serde_json::Value::from(value).to_string() };
+        Setting::new(key, value, PathBuf::from(format!("--set {key}")), (1, 1))
+    }
+
+    /// A setting that stands at a line and column of a file.
+    ///
+    /// # Errors
+    /// [`SettingError`]: there is no such kind of file.
+    pub fn new(key: &str, value: String, path: PathBuf, (line, column): (usize, usize)) -> Result<Setting, SettingError> {
+        let setting = Setting { key: key.to_owned(), value, path, line, column };
+        match setting.target() {
+            Some(_) => Ok(setting),
+            None => Err(SettingError::Kind(key.to_owned())),
+        }
+    }
+
+    /// The kind of file, and the key in it.
+    pub(super) fn target(&self) -> Option<(Kind, &str)> {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        if !self.key.split('.').all(|part| !part.is_empty() && part.chars().all(is_plain)) {
+            return None;
+        }
+        let (first, rest) = self.key.split_once('.')?;
+        Some(match first {
+            "sea" => (Kind::Sea, rest),
+            "boat" => (Kind::Boat, rest),
+            "rules" => (Kind::Rules, rest),
+            "field" => (Kind::Field, rest),
+            "game" => (Kind::Game, rest),
+            "link" | "fault" => (Kind::Game, self.key.as_str()),
+            _ => return None,
+        })
+    }
+
+    /// A TOML file that says this alone, at the line and column where it is given.
+    pub(super) fn as_file(&self, key: &str) -> String {
+        let lines = self.line.saturating_sub(1);
+        let columns = self.column.saturating_sub(1);
+        format!("{}{}{key} = {}", "\n".repeat(lines), " ".repeat(columns), self.value)
+    }
+
+    /// The same for a command line, quoted for a shell.
+    #[must_use]
+    pub fn argument(&self) -> String {
+        format!("--set '{}={}'", self.key, self.value.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_setting_of_the_command_line_has_a_kind_a_key_and_a_value() {
+        for (text, kind, key, value) in [
+            ("sea.waves.hs_m=0.3", Kind::Sea, "waves.hs_m", "0.3"),
+            ("link.delay_s = 2", Kind::Game, "link.delay_s", "2"),
+            ("game.field=../fields/a.toml", Kind::Game, "field", "\"../fields/a.toml\""),
+            ("boat.gps.noise_m={ uniform = [0, 2] }", Kind::Boat, "gps.noise_m", "{ uniform = [0, 2] }"),
+        ] {
+            let setting = Setting::parse(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+            assert_eq!((setting.target(), setting.value.as_str()), (Some((kind, key)), value), "{text}");
+        }
+        for text in ["sea.waves.hs_m", "=3", "sea=3", "sea..hs_m=3", "weather.wind=3", "sea.waves=", "strategy.x=1"] {
+            assert!(Setting::parse(text).is_err(), "{text}");
+        }
+        // A value cannot smuggle in another key.
+        let smuggled = Setting::parse("sea.a=1\nb = 2").expect("a text");
+        assert_eq!(smuggled.value.matches('\n').count(), 0, "{}", smuggled.value);
+    }
+}

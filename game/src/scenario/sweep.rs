@@ -1,0 +1,327 @@
+//! A sweep: strategies that play the same games again and again while numbers of the scenario change.
+
+use super::raw::FilePath;
+use super::{Entrant, Overrides, Setting};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A sweep: how strategies do against one opponent at many points of a space of scenarios.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+pub struct Sweep {
+    /// The sweep file's stem.
+    #[schemars(skip)]
+    pub name: String,
+    /// Its path.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub path: PathBuf,
+    /// What it is meant for, in a line.
+    #[schemars(extend("default" = ""))]
+    pub about: String,
+    /// The game file; the strategies of its teams are replaced.
+    #[schemars(with = "FilePath")]
+    pub game: PathBuf,
+    /// The strategy file that the entries play against.
+    #[schemars(with = "FilePath")]
+    pub opponent: PathBuf,
+    /// Games of each entry at each point, half of them on each side; an odd number is rounded up. All points play the same seeds.
+    #[schemars(range(min = 2, max = 1000000), extend("default" = 20))]
+    pub games: u32,
+    /// The first seed; one more for every two games. It also chooses the points of a sampled design.
+    #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
+    pub seed: u64,
+    /// Which points of the space are played.
+    #[schemars(extend("default" = "grid"))]
+    pub design: Design,
+    /// How many points a sampled design has.
+    #[schemars(range(min = 1, max = 100000), extend("default" = 64))]
+    pub points: u32,
+    /// The strategies that are compared.
+    #[serde(rename = "entry")]
+    #[schemars(length(min = 1, max = 100))]
+    pub entries: Vec<Entrant>,
+    /// What changes from point to point.
+    #[serde(rename = "axis")]
+    #[schemars(length(min = 1, max = 50))]
+    pub axes: Vec<Axis>,
+}
+
+/// Which points of a space are played.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Design {
+    /// Every level of every axis with every level of every other.
+    Grid,
+    /// The nominal point, and every level of every axis with all others at their nominal values.
+    OneAtATime,
+    /// As many points as `points` says, each axis cut into as many equally likely pieces with one point in each (McKay and
+    /// others, Technometrics 1979).
+    LatinHypercube,
+    /// The first `points` of a scrambled Sobol sequence (Burley, JCGT 2020).
+    Sobol,
+}
+
+/// A number, or a whole file, that changes from point to point. It has one of `values`, `range`, `normal` and `log_normal`.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+pub struct Axis {
+    /// What changes: a kind of file and a key of it, as in `sea.wind.speed_m_s`, `boat.gps.noise_m`, `rules.tag_radius_m`,
+    /// `link.delay_s`; or `sea`, `boat`, `rules`, `field` with files as values; or `opponent` with strategy files.
+    #[schemars(length(min = 1), extend("x-expected" = "a key such as sea.wind.speed_m_s"))]
+    pub key: String,
+    /// Its levels, one by one: numbers, texts or files, all of one sort.
+    #[schemars(length(max = 1000))]
+    pub values: Vec<AxisValue>,
+    /// From and to: every number between is as likely, in a sampled design.
+    #[schemars(inner(range(min = -1e9, max = 1e9)))]
+    pub range: Option<[f64; 2]>,
+    /// Whether the logarithms of a range are spaced evenly, in place of the numbers.
+    #[schemars(extend("default" = false))]
+    pub log: bool,
+    /// Mean and standard deviation of a normal distribution, cut off 3 deviations from the mean.
+    #[schemars(inner(range(min = -1e9, max = 1e9)))]
+    pub normal: Option<[f64; 2]>,
+    /// Median, and standard deviation of the logarithm, of a log-normal distribution, cut off at 3 of these.
+    #[schemars(inner(range(min = 0, max = 1e9)))]
+    pub log_normal: Option<[f64; 2]>,
+    /// How many levels a range or a distribution has in a grid: evenly spaced, or equally likely.
+    #[schemars(range(min = 2, max = 1000), extend("default" = 5))]
+    pub count: u32,
+    /// The value where another axis changes alone. Default the middle level.
+    pub nominal: Option<AxisValue>,
+    /// Line and column of the axis in the sweep file.
+    #[serde(default)]
+    #[schemars(skip)]
+    pub place: (usize, usize),
+}
+
+/// A value of an axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[schemars(inline, extend("x-expected" = "a number, a text, true or false"))]
+pub enum AxisValue {
+    /// A number.
+    Number(f64),
+    /// Yes or no.
+    Truth(bool),
+    /// A text, or the path of a file.
+    Text(String),
+}
+
+impl fmt::Display for AxisValue {
+    /// As people read it: a file by its stem.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            AxisValue::Number(number) => write!(f, "{number}"),
+            AxisValue::Truth(truth) => write!(f, "{truth}"),
+            AxisValue::Text(text) => match text.strip_suffix(".toml") {
+                Some(path) => f.write_str(path.rsplit('/').next().unwrap_or(path)),
+                None => f.write_str(text),
+            },
+        }
+    }
+}
+
+impl AxisValue {
+    /// As TOML. Whole numbers have no point: some keys take no others.
+    #[must_use]
+    pub fn toml(&self) -> String {
+        match self {
+            AxisValue::Text(text) => serde_json::Value::from(text.as_str()).to_string(),
+            other => other.to_string(),
+        }
+    }
+
+    /// The number that it is.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        if let AxisValue::Number(number) = self { Some(*number) } else { None }
+    }
+}
+
+/// What an axis changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Target {
+    /// A key of the files of a kind.
+    Key,
+    /// A file that the game names under the axis' own key.
+    File,
+    /// The strategy of the opponents.
+    Opponent,
+}
+
+impl Axis {
+    /// What it changes.
+    pub(super) fn target(&self) -> Target {
+        match self.key.as_str() {
+            "opponent" => Target::Opponent,
+            "sea" | "boat" | "rules" | "field" => Target::File,
+            _ => Target::Key,
+        }
+    }
+
+    /// Whether its values are the paths of files.
+    #[must_use]
+    pub fn is_of_files(&self) -> bool {
+        self.target() != Target::Key
+    }
+
+    /// The levels that it has in a grid, in order.
+    #[must_use]
+    pub fn levels(&self) -> Vec<AxisValue> {
+        if !self.values.is_empty() {
+            return self.values.clone();
+        }
+        let count = self.count.max(2);
+        let share = |i: u32| match self.range {
+            Some(_) => f64::from(i) / f64::from(count - 1),
+            None => (f64::from(i) + 0.5) / f64::from(count),
+        };
+        (0..count).map(|i| self.at(share(i))).collect()
+    }
+
+    /// The value below which this share of its distribution lies, 0 to 1.
+    ///
+    /// # Panics
+    /// If it has neither values, a range nor a distribution.
+    #[must_use]
+    pub fn at(&self, share: f64) -> AxisValue {
+        let share = share.clamp(0.0, 1.0);
+        if !self.values.is_empty() {
+            let last = self.values.len() - 1;
+            return self.values[((share * self.values.len() as f64) as usize).min(last)].clone();
+        }
+        AxisValue::Number(match (self.range, self.normal, self.log_normal) {
+            (Some([low, high]), ..) if self.log => low * libm::pow(high / low, share),
+            (Some([low, high]), ..) => low + (high - low) * share,
+            (_, Some([mean, sigma]), _) => mean + sigma * truncated_normal(share),
+            (.., Some([median, sigma])) => median * libm::exp(sigma * truncated_normal(share)),
+            _ => unreachable!("an axis has values, a range or a distribution"),
+        })
+    }
+
+    /// The value where another axis changes alone.
+    #[must_use]
+    pub fn nominal(&self) -> AxisValue {
+        self.nominal.clone().unwrap_or_else(|| match self.values.len() {
+            0 => self.at(0.5),
+            count => self.values[(count - 1) / 2].clone(),
+        })
+    }
+}
+
+/// The quantile of the standard normal distribution that is cut off at 3 deviations.
+fn truncated_normal(share: f64) -> f64 {
+    const CUT: f64 = 3.0;
+    let below = |x: f64| 0.5 * libm::erfc(-x / std::f64::consts::SQRT_2);
+    let (least, whole) = (below(-CUT), below(CUT) - below(-CUT));
+    let wanted = least + share * whole;
+    // The distribution is monotonic, and 60 halvings of 6 deviations are as fine as a double.
+    let (mut low, mut high) = (-CUT, CUT);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *(if below(middle) < wanted { &mut low } else { &mut high }) = middle;
+    }
+    0.5 * (low + high)
+}
+
+impl Sweep {
+    /// What takes the place of the game's own files and numbers at a point, where an entry plays on a side (0: the first team,
+    /// 1: the second). `values` are those of the axes.
+    ///
+    /// # Panics
+    /// If there is no such entry or side, or a key is none: a checked sweep has none such.
+    #[must_use]
+    pub fn overrides(&self, teams: &[String], entry: usize, side: usize, values: &[AxisValue]) -> Overrides {
+        let mut opponent = self.opponent.clone();
+        let mut settings = vec![];
+        for (axis, value) in self.axes.iter().zip(values) {
+            let key = match axis.target() {
+                Target::Opponent => {
+                    if let AxisValue::Text(file) = value {
+                        opponent = beside(&self.path, file);
+                    }
+                    continue;
+                }
+                Target::File => format!("game.{}", axis.key),
+                Target::Key => axis.key.clone(),
+            };
+            let setting = Setting::new(&key, value.toml(), self.path.clone(), axis.place);
+            settings.push(setting.expect("the keys of a checked sweep are keys"));
+        }
+        let own = self.entries[entry].strategy.clone();
+        let strategies = match side {
+            0 => [own, opponent],
+            _ => [opponent, own],
+        };
+        Overrides { strategies: teams.iter().cloned().zip(strategies).collect(), settings, ..Overrides::default() }
+    }
+}
+
+/// A file that is named in another one.
+fn beside(file: &Path, named: &str) -> PathBuf {
+    super::source::tidied(&file.parent().unwrap_or(Path::new("")).join(named))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis() -> Axis {
+        Axis {
+            key: "sea.wind.speed_m_s".to_owned(),
+            values: vec![],
+            range: None,
+            log: false,
+            normal: None,
+            log_normal: None,
+            count: 5,
+            nominal: None,
+            place: (1, 1),
+        }
+    }
+
+    fn numbers(axis: &Axis) -> Vec<f64> {
+        axis.levels().iter().filter_map(AxisValue::number).collect()
+    }
+
+    #[test]
+    fn ranges_are_spaced_evenly_and_distributions_by_their_quantiles() {
+        assert_eq!(numbers(&Axis { range: Some([2.0, 4.0]), ..axis() }), [2.0, 2.5, 3.0, 3.5, 4.0]);
+        let log = numbers(&Axis { range: Some([0.01, 100.0]), log: true, ..axis() });
+        for (got, want) in log.iter().zip([0.01, 0.1, 1.0, 10.0, 100.0]) {
+            assert!((got / want - 1.0).abs() < 1e-12, "{log:?}");
+        }
+        // Tables: the normal distribution has 10, 30, 50 ... per cent below these. Cutting it off moves them by less than 0.01.
+        let normal = numbers(&Axis { normal: Some([10.0, 2.0]), ..axis() });
+        for (got, want) in normal.iter().zip([-1.2816, -0.5244, 0.0, 0.5244, 1.2816]) {
+            assert!(((got - 10.0) / 2.0 - want).abs() < 0.01, "{normal:?}");
+        }
+        let log_normal = Axis { log_normal: Some([3.0, 0.5]), ..axis() };
+        let ends = [0.0, 0.5, 1.0].map(|share| log_normal.at(share).number().unwrap_or(f64::NAN));
+        for (got, want) in ends.iter().zip([3.0 * (-1.5_f64).exp(), 3.0, 3.0 * 1.5_f64.exp()]) {
+            assert!((got / want - 1.0).abs() < 1e-9, "{ends:?}");
+        }
+    }
+
+    #[test]
+    fn a_share_of_a_list_is_the_value_at_that_share_of_it() {
+        let values = ["a", "b", "c", "d"].map(|text| AxisValue::Text(text.to_owned()));
+        let axis = Axis { values: values.to_vec(), ..axis() };
+        assert_eq!([0.0, 0.24, 0.25, 0.99, 1.0].map(|share| axis.at(share).to_string()), ["a", "a", "b", "d", "d"]);
+        assert_eq!(axis.nominal().to_string(), "b");
+    }
+
+    #[test]
+    fn values_are_written_as_keys_take_them() {
+        for (value, toml, shown) in [
+            (AxisValue::Number(3.0), "3", "3"),
+            (AxisValue::Number(0.1), "0.1", "0.1"),
+            (AxisValue::Truth(true), "true", "true"),
+            (AxisValue::Text("../seas/gale.toml".to_owned()), "\"../seas/gale.toml\"", "gale"),
+        ] {
+            assert_eq!((value.toml().as_str(), value.to_string().as_str()), (toml, shown));
+        }
+    }
+}
