@@ -30,6 +30,7 @@ mod sea_command;
 mod sim_command;
 mod stop;
 mod strategy_command;
+mod sweep_command;
 mod tournament_command;
 mod tournament_progress;
 mod tournament_table;
@@ -59,6 +60,8 @@ enum Command {
     Run(run_command::Args),
     /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
     Tournament(tournament_command::Args),
+    /// Plays strategies at many points of a space of scenarios: more wind, worse sensors, slower links.
+    Sweep(sweep_command::Args),
     /// Trains a policy by playing against itself, strategies and what it was.
     Train(train_command::Args),
     /// Serves one game to agents and gateways that join it.
@@ -108,6 +111,7 @@ fn main() -> ExitCode {
     let done = match cli.command {
         Command::Run(args) => run_command::run(&args),
         Command::Tournament(args) => tournament_command::run(&args),
+        Command::Sweep(args) => sweep_command::run(&args),
         Command::Train(args) => train_command::run(&args),
         Command::Sim(args) => sim_command::run(&args),
         Command::Agent(args) => agent_command::run(&args),

@@ -29,7 +29,7 @@ pub use hull_overlap::HullRectangle;
 pub use link_line::{Line, Lines};
 pub use response::{Response, SETTLED_S};
 pub use series::{BoatSeries, GameSeries};
-pub use statistics::{BoatStatistics, NavigationError, SteeringError};
+pub use statistics::{BoatStatistics, NavigationError, StatisticsBuilder, SteeringError};
 pub use step::{Sample, Step, for_each_step};
 pub use summary::{Summary, Topic, topics};
 pub use track::{TrackDifference, distances};

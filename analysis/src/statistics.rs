@@ -62,7 +62,7 @@ pub struct SteeringError {
 }
 
 /// The statistics of all boats, made decision by decision: of no decision more is kept than its part in the sums.
-pub(crate) struct StatisticsBuilder<'a> {
+pub struct StatisticsBuilder<'a> {
     scenario: &'a Scenario,
     /// The time of the decision before, s.
     before_s: Option<f64>,
@@ -92,14 +92,15 @@ struct BoatSums {
 
 impl<'a> StatisticsBuilder<'a> {
     /// Of no decision of this game yet.
-    pub(crate) fn new(scenario: &'a Scenario) -> StatisticsBuilder<'a> {
+    #[must_use]
+    pub fn new(scenario: &'a Scenario) -> StatisticsBuilder<'a> {
         let count = scenario.vehicles.len();
         let (tally, boats) = (Tally::new(count), vec![BoatSums::default(); count]);
         StatisticsBuilder { scenario, before_s: None, span_s: 0.0, tally, boats }
     }
 
     /// Adds a decision.
-    pub(crate) fn add(&mut self, step: &Step) {
+    pub fn add(&mut self, step: &Step) {
         step.events.iter().for_each(|logged| self.tally.add(logged.event));
         // A decision stands for the time since the one before, and the first for nothing.
         let step_s = step.time_s - self.before_s.replace(step.time_s).unwrap_or(step.time_s);
@@ -108,7 +109,8 @@ impl<'a> StatisticsBuilder<'a> {
     }
 
     /// The statistics, by vehicle.
-    pub(crate) fn end(self) -> Vec<BoatStatistics> {
+    #[must_use]
+    pub fn end(self) -> Vec<BoatStatistics> {
         let boats = self.scenario.vehicles.iter().zip(self.boats).zip(self.tally.vehicles);
         boats.map(|((vehicle, sums), counts)| sums.end(vehicle, counts, self.scenario, self.span_s)).collect()
     }

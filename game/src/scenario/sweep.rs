@@ -36,7 +36,7 @@ pub struct Sweep {
     #[schemars(extend("default" = "grid"))]
     pub design: Design,
     /// How many points a sampled design has.
-    #[schemars(range(min = 1, max = 100000), extend("default" = 64))]
+    #[schemars(range(min = 1, max = 65536), extend("default" = 64))]
     pub points: u32,
     /// The strategies that are compared.
     #[serde(rename = "entry")]

@@ -1,0 +1,23 @@
+//! How much sea, noise and failure a team stands: the same games at many points of a space of scenarios.
+//!
+//! A [`Plan`] says which games a sweep file means. [`play()`] plays any stretch of them, in this process, on several threads, in order.
+//! A [`Study`] keeps what came of them in a folder and is taken up again from it; [`Report`] is what all of it says. Everything
+//! depends on the plan alone: not on the number of threads, not on who played which games, not on when it was stopped.
+
+mod effects;
+mod html;
+mod metric;
+mod parquet_file;
+mod plan;
+mod play;
+mod report;
+mod study;
+mod text;
+
+pub use effects::{Effect, Interaction, Level};
+pub use metric::{METRICS, Metric};
+pub use plan::{Job, Plan, Point};
+pub use play::{Played, play, play_one};
+pub use report::{Difference, EntryAtPoint, Failure, PointReport, Report, Worst};
+pub use study::{Row, Study, StudyError, lines};
+pub use text::text;
