@@ -4,7 +4,9 @@
 //! A [`Study`] keeps what came of them in a folder and is taken up again from it; [`Report`] is what all of it says. Everything
 //! depends on the plan alone: not on the number of threads, not on who played which games, not on when it was stopped.
 
+mod condition;
 mod effects;
+mod find;
 mod html;
 mod metric;
 mod parquet_file;
@@ -13,11 +15,15 @@ mod play;
 mod report;
 mod study;
 mod text;
+mod until;
 
+pub use condition::{Condition, ConditionError};
 pub use effects::{Effect, Interaction, Level};
+pub use find::{Densities, Found, FindError, find};
 pub use metric::{METRICS, Metric};
 pub use plan::{Job, Plan, Point};
 pub use play::{Played, play, play_one};
 pub use report::{Difference, EntryAtPoint, Failure, PointReport, Report, Worst};
 pub use study::{Row, Study, StudyError, lines};
 pub use text::text;
+pub use until::{BreakingPoint, Tried, UntilError, breaking_point};

@@ -44,7 +44,6 @@ pub(crate) fn bytes(plan: &Plan, rows: &[Row]) -> Result<Vec<u8>, ParquetError> 
         column.close()?;
     }
     group.close()?;
-    writer.finish()?;
     writer.into_inner()
 }
 

@@ -63,6 +63,17 @@ impl Plan {
         if problems.is_empty() { Ok(plan) } else { Err(Problems(problems)) }
     }
 
+    /// The same sweep at other points, with so many seeds at each from `first_seed` on.
+    pub(crate) fn at(&self, points: Vec<Point>, (first_seed, seeds): (u64, u64)) -> Plan {
+        Plan { sweep: Sweep { seed: first_seed, ..self.sweep.clone() }, points, seeds, ..self.clone() }
+    }
+
+    /// The same sweep of one entry alone.
+    pub(crate) fn of_entry(&self, entry: usize) -> Plan {
+        let entries = vec![self.sweep.entries[entry].clone()];
+        Plan { sweep: Sweep { entries, ..self.sweep.clone() }, ..self.clone() }
+    }
+
     /// The sweep.
     #[must_use]
     pub fn sweep(&self) -> &Sweep {

@@ -65,22 +65,43 @@ pub fn play<E>(
     (from, to): (usize, usize),
     jobs: NonZeroUsize,
     stop: &AtomicBool,
+    take: impl FnMut(Played) -> Result<(), E>,
+) -> Result<(), E> {
+    play_each(plan, to.saturating_sub(from), &|i| plan.job(from + i), (jobs, stop), take)
+}
+
+/// The same for any games of a plan, in their order.
+pub(crate) fn play_jobs<E>(
+    plan: &Plan,
+    order: &[Job],
+    jobs: NonZeroUsize,
+    stop: &AtomicBool,
+    take: impl FnMut(Played) -> Result<(), E>,
+) -> Result<(), E> {
+    play_each(plan, order.len(), &|i| order[i], (jobs, stop), take)
+}
+
+fn play_each<E>(
+    plan: &Plan,
+    count: usize,
+    job: &(dyn Fn(usize) -> Job + Sync),
+    (jobs, stop): (NonZeroUsize, &AtomicBool),
     mut take: impl FnMut(Played) -> Result<(), E>,
 ) -> Result<(), E> {
     /// Games that may wait to be taken.
     const QUEUE: usize = 64;
-    let next = AtomicUsize::new(from);
+    let next = AtomicUsize::new(0);
     let refused = AtomicBool::new(false);
     std::thread::scope(|scope| {
         let (sender, receiver) = sync_channel(QUEUE);
-        for _ in 0..jobs.get().min(to.saturating_sub(from)) {
+        for _ in 0..jobs.get().min(count) {
             let (next, sender, refused) = (&next, sender.clone(), &refused);
-            scope.spawn(move || work(plan, (next, to), [stop, refused], &sender));
+            scope.spawn(move || work(plan, (next, count), job, [stop, refused], &sender));
         }
         drop(sender);
-        let (mut waiting, mut due) = (BTreeMap::new(), from);
-        for played in receiver {
-            waiting.insert(played.job.index, played);
+        let (mut waiting, mut due) = (BTreeMap::new(), 0);
+        for (i, played) in receiver {
+            waiting.insert(i, played);
             while let Some(played) = waiting.remove(&due) {
                 due += 1;
                 take(played).inspect_err(|_| refused.store(true, Ordering::Relaxed))?;
@@ -91,17 +112,23 @@ pub fn play<E>(
 }
 
 /// What one thread does: the next game that nobody has taken, until there is none.
-fn work(plan: &Plan, (next, to): (&AtomicUsize, usize), stops: [&AtomicBool; 2], sender: &SyncSender<Played>) {
+fn work(
+    plan: &Plan,
+    (next, count): (&AtomicUsize, usize),
+    job: &(dyn Fn(usize) -> Job + Sync),
+    stops: [&AtomicBool; 2],
+    sender: &SyncSender<(usize, Played)>,
+) {
     let is_stopped = || stops.iter().any(|stop| stop.load(Ordering::Relaxed));
     let mut loaded = Loaded::default();
     loop {
-        let index = next.fetch_add(1, Ordering::Relaxed);
-        if index >= to || is_stopped() {
+        let i = next.fetch_add(1, Ordering::Relaxed);
+        if i >= count || is_stopped() {
             return;
         }
-        let played = one(plan, index, &mut loaded, &is_stopped);
+        let played = one(plan, job(i), &mut loaded, &is_stopped);
         // A game that was stopped is no game.
-        if is_stopped() || sender.send(played).is_err() {
+        if is_stopped() || sender.send((i, played)).is_err() {
             return;
         }
     }
@@ -110,11 +137,10 @@ fn work(plan: &Plan, (next, to): (&AtomicUsize, usize), stops: [&AtomicBool; 2],
 /// Plays one game.
 #[must_use]
 pub fn play_one(plan: &Plan, index: usize) -> Played {
-    one(plan, index, &mut Loaded::default(), &|| false)
+    one(plan, plan.job(index), &mut Loaded::default(), &|| false)
 }
 
-fn one(plan: &Plan, index: usize, loaded: &mut Loaded, is_stopped: &dyn Fn() -> bool) -> Played {
-    let job = plan.job(index);
+fn one(plan: &Plan, job: Job, loaded: &mut Loaded, is_stopped: &dyn Fn() -> bool) -> Played {
     let failed = |why: String| Played { job, result: Err(why), digest: String::new(), boats: vec![] };
     let scenario = match loaded.scenario(plan, &job) {
         Ok(scenario) => scenario.of_seed(job.seed).map_err(|problems| problems.to_string()),
