@@ -5,9 +5,9 @@ use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
 use game::scenario::{Sweep, load_sweep};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use sweep::{Plan, Study};
+use sweep::{Condition, FindError, Plan, Study, UntilError};
 
 /// Which sweep, and how.
 #[derive(clap::Args)]
@@ -29,12 +29,33 @@ pub(crate) struct Args {
     /// Goes on with the sweep that this folder holds; what comes of it is the same as if it had never stopped
     #[arg(long)]
     resume: bool,
+    /// Searches for the value of an axis at which this begins to hold, in place of playing all points, as in
+    /// "strategy_5.win_share < 0.5"; no more games at a value than a point has
+    #[arg(long, value_name = "CONDITION", conflicts_with_all = ["resume", "find"])]
+    until: Option<String>,
+    /// With --until: the key of the axis to search along [default: the only one with numbers]
+    #[arg(long, value_name = "KEY", requires = "until")]
+    along: Option<String>,
+    /// Searches the space of the axes for games in which this holds, however rare, and says how rare, as in
+    /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` stand for conditions on the first entry
+    #[arg(long, value_name = "CONDITION", conflicts_with = "resume")]
+    find: Option<String>,
+    /// With --find: how many games
+    #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(20..=10_000_000))]
+    search_games: u32,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let plan = planned(args)?;
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("runs/sweep").join(&plan.sweep().name));
     output_file::make_folder(&folder)?;
+    let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
+    if let Some(condition) = &args.until {
+        return until(args, &plan, condition, (&folder, jobs));
+    }
+    if let Some(condition) = &args.find {
+        return find(args, &plan, condition, (&folder, jobs));
+    }
     let mut study = if args.resume { Study::resume(&folder, &plan)? } else { Study::begin(&folder, &plan)? };
     let (points, per_point) = (plan.points().len(), plan.games_per_point());
     screen::remark(&format!("{points} points with {per_point} games each; tables and report in {}", folder.display()));
@@ -42,7 +63,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         screen::remark(&format!("{} of {} games were played before", study.done(), plan.games()));
     }
     let stop = stop::on_ctrl_c()?;
-    let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
     let mut progress = Progress::new((plan.games() - study.done()) as u64);
     let from = study.done();
     let played = sweep::play(&plan, (from, plan.games()), jobs, &stop, |played| {
@@ -60,6 +80,63 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         return Ok(stop::interrupted());
     }
     Ok(if report.failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Searches for the breaking point.
+fn until(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsize)) -> Result<ExitCode> {
+    let condition = Condition::parse(text, plan.sweep())?;
+    let stop = stop::on_ctrl_c()?;
+    let result = sweep::breaking_point(plan, &condition, args.along.as_deref(), (jobs, &stop), |tried| {
+        let half = tried.mean.half_width().map_or("?".to_owned(), |half| format!("{half:.3}"));
+        let verdict = tried.holds.map_or("cannot be told", |holds| if holds { "holds" } else { "does not hold" });
+        let (value, games, mean) = (tried.value, tried.games, tried.mean.mean);
+        screen::remark(&format!("at {value:.4}: {mean:.3} ± {half} in {games} games, {condition} {verdict}"));
+    });
+    let point = match result {
+        Err(UntilError::Stopped) => return Ok(stop::interrupted()),
+        other => other?,
+    };
+    let path = folder.join("until.json");
+    output_file::write_json(&path, "the breaking point", &point)?;
+    let (entry, axis, condition) = (&point.entry, &point.axis, &point.condition);
+    screen::print(&match (point.low, point.high) {
+        (Some(low), Some(high)) => {
+            let at = point.at.map_or(String::new(), |at| format!(", about {at:.4}"));
+            format!("{entry}: {condition} begins to hold between {axis} = {low:.4} and {high:.4} (95 %){at}\n")
+        }
+        (Some(_), None) => format!("{entry}: {condition} surely does not hold at one end of {axis}, and surely holds nowhere\n"),
+        (None, Some(_)) => format!("{entry}: {condition} surely holds at one end of {axis}, and surely does not nowhere\n"),
+        (None, None) => format!("{entry}: whether {condition} holds cannot be told anywhere on {axis}: more --games tell more\n"),
+    });
+    screen::print(&format!("every value that was tried, with commands: {}\n", path.display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Searches for rare failures.
+fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsize)) -> Result<ExitCode> {
+    let first = &plan.sweep().entries[0].name;
+    let condition = match text {
+        "collision" => {
+            let distance_m = plan.scenario(0, 0, 0)?.rules.collision_distance_m;
+            format!("{first}.closest_m < {distance_m}")
+        }
+        "out_of_bounds" => format!("{first}.out_of_bounds > 0"),
+        other => other.to_owned(),
+    };
+    let condition = Condition::parse(&condition, plan.sweep())?;
+    let stop = stop::on_ctrl_c()?;
+    let found = sweep::find(plan, &condition, args.search_games as usize, (jobs, &stop), |games, failures| {
+        screen::remark(&format!("{failures} of {games} games with {condition}"));
+    });
+    let found = match found {
+        Err(FindError::Stopped) => return Ok(stop::interrupted()),
+        other => other?,
+    };
+    let path = folder.join("find.json");
+    output_file::write_json(&path, "what was found", &found)?;
+    screen::print(&sweep::found_text(&found));
+    screen::print(&format!("\neverything, with more commands: {}\n", path.display()));
+    Ok(ExitCode::SUCCESS)
 }
 
 fn planned(args: &Args) -> Result<Plan> {

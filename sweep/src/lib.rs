@@ -25,5 +25,5 @@ pub use plan::{Job, Plan, Point};
 pub use play::{Played, play, play_one};
 pub use report::{Difference, EntryAtPoint, Failure, PointReport, Report, Worst};
 pub use study::{Row, Study, StudyError, lines};
-pub use text::text;
+pub use text::{found_text, text};
 pub use until::{BreakingPoint, Tried, UntilError, breaking_point};

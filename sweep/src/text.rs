@@ -1,6 +1,7 @@
 //! The report for the terminal.
 
 use crate::effects::{Effect, Interaction};
+use crate::find::Found;
 use crate::metric::index_of;
 use crate::report::Report;
 use arena::tournament::Estimate;
@@ -100,4 +101,23 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
         line(format!("  {} of {}: {} with {}", one.metric, one.entry, one.axes[0], one.axes[1]));
         line(format!("    both low {low:.2}, second high {second:.2}, first high {first:.2}, both high {both:.2}"));
     }
+}
+
+/// What a search for rare failures found, for people.
+#[must_use]
+pub fn found_text(found: &Found) -> String {
+    let Found { entry, condition, games, failures, rate, .. } = found;
+    let half = rate.half_width().unwrap_or(f64::NAN);
+    let mut text = format!("{entry}: {condition} in {:.4} ± {half:.4} of all games; {failures} of {games} that were played\n", rate.mean);
+    if let Some(factor) = found.factor {
+        let _ = writeln!(text, "one of these games tells as much as {factor:.1} games drawn evenly");
+    }
+    for densities in &found.densities {
+        let pieces = densities.pieces.iter().zip(&densities.times).map(|(piece, times)| format!("{piece} ({times:.1}x)"));
+        let _ = writeln!(text, "{}: from {}", densities.axis, pieces.collect::<Vec<_>>().join(", "));
+    }
+    for named in found.named.iter().take(SHOWN) {
+        let _ = writeln!(text, "  {:.3} at {}\n    {}", named.value, named.values.join(", "), named.command);
+    }
+    text
 }
