@@ -3,7 +3,7 @@
 //! Every operation is a plain loop over all of them, which becomes one instruction, or several where registers are narrower.
 //! Which it is changes no bit: each number is worked out by itself, rounded by IEEE 754, and none is fused.
 
-use std::ops::{Add, AddAssign, Mul, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 /// As many single numbers as the widest registers hold: components of waves side by side.
 pub(crate) const LANES: usize = 16;
@@ -37,7 +37,7 @@ macro_rules! operators {
 }
 
 operators!(f32: Add add +=, Sub sub -=, Mul mul *=);
-operators!(f64: Add add +=, Sub sub -=, Mul mul *=);
+operators!(f64: Add add +=, Sub sub -=, Mul mul *=, Div div /=);
 
 impl<const N: usize> AddAssign for Lanes<f32, N> {
     #[inline(always)]
@@ -82,6 +82,20 @@ impl<const N: usize> Lanes<f64, N> {
         }
         self
     }
+}
+
+/// In each place, the number of `first` where that of `a` is at most that of `b`, and the number of `second` where it is not.
+#[inline(always)]
+pub(crate) fn where_at_most<const N: usize>(
+    (a, b): (Lanes<f64, N>, Lanes<f64, N>),
+    first: Lanes<f64, N>,
+    second: Lanes<f64, N>,
+) -> Lanes<f64, N> {
+    let mut chosen = second;
+    for i in 0..N {
+        chosen.0[i] = if a.0[i] <= b.0[i] { first.0[i] } else { second.0[i] };
+    }
+    chosen
 }
 
 impl Lanes<f32> {

@@ -5,7 +5,7 @@
 //! the others hold and whatever the processor offers: the numbers do not depend on who stands beside whom.
 
 use crate::hull::{HullModel, Planar};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, where_at_most};
 use game::instructions::{Instructions, Kernel};
 
 /// Boats side by side; and of those that are left, if they are no more.
@@ -294,7 +294,7 @@ impl<const N: usize> Row<N> {
         let s = r * half;
         let (v_2, s_2, half_2) = (v * v, s * s, half * half);
         let same_side = (s.abs(), v.abs());
-        let from = quotient(v, where_at_most(same_side, number(1.0), r));
+        let from = v / where_at_most(same_side, number(1.0), r);
         let side = self.crossflow.with_signs_of(where_at_most(same_side, v, r));
         let sway = where_at_most(
             same_side,
@@ -336,29 +336,6 @@ impl<const N: usize> Row<N> {
         let turn_half = number(dt_s / 24.0) * (number(5.0) * start.yaw + number(8.0) * middle.yaw - end.yaw);
         Motions { nu_r: end, nu_r_half: middle, turn_half_rad: turn_half, turn_rad: turn }
     }
-}
-
-/// By lane: `first` where `a` is at most `b`, and `second` where it is not.
-#[inline(always)]
-fn where_at_most<const N: usize>(
-    (a, b): (Lanes<f64, N>, Lanes<f64, N>),
-    first: Lanes<f64, N>,
-    second: Lanes<f64, N>,
-) -> Lanes<f64, N> {
-    let mut chosen = second;
-    for i in 0..N {
-        chosen.0[i] = if a.0[i] <= b.0[i] { first.0[i] } else { second.0[i] };
-    }
-    chosen
-}
-
-/// By lane.
-#[inline(always)]
-fn quotient<const N: usize>(mut numerator: Lanes<f64, N>, denominator: Lanes<f64, N>) -> Lanes<f64, N> {
-    for i in 0..N {
-        numerator.0[i] /= denominator.0[i];
-    }
-    numerator
 }
 
 #[cfg(test)]

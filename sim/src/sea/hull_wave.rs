@@ -128,8 +128,8 @@ impl HullWaves {
         let (lines, fraction) = self.lines.at(pose.psi_rad);
         for (n, (block, lines)) in self.blocks.iter().zip(lines.as_chunks::<FOLD>().0).enumerate() {
             let (sin, cos) = block.phases.sin_cos(pose.at, time_s);
-            for i in 0..FOLD {
-                let (row, line, sin, cos) = (&block.rows[i], lines[i].at_fraction(fraction), sin.row(i), cos.row(i));
+            for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
+                let (line, sin, cos) = (line.at_fraction(fraction), sin.row(i), cos.row(i));
                 sums.of_cos += line * (row.of_cos * cos);
                 sums.of_sin += line * (row.of_sin * sin);
                 if let Some(lines) = submergence {

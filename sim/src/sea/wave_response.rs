@@ -177,9 +177,8 @@ impl Kernel for At<'_> {
         for (block, lines) in self.response.blocks.iter().zip(lines.as_chunks::<FOLD>().0) {
             let (sin, cos) = block.phases.sin_cos(self.pose.at, self.time_s);
             let rate_rad_s = block.phases.rate_rad_s(self.velocity_m_s);
-            for i in 0..FOLD {
-                let (row, line, rate_rad_s) = (&block.rows[i], &lines[i], rate_rad_s.row(i));
-                let (sin, cos) = (sin.row(i), cos.row(i));
+            for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
+                let (sin, cos, rate_rad_s) = (sin.row(i), cos.row(i), rate_rad_s.row(i));
                 let value = row.value.of(sin, cos);
                 let now = line.at_fraction(fraction);
                 let swing = now * rate_rad_s;
