@@ -17,6 +17,7 @@ pub mod helm;
 pub mod id;
 pub mod input;
 pub mod input_file;
+pub mod instructions;
 pub mod link;
 pub mod math;
 pub mod message;

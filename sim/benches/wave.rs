@@ -1,7 +1,9 @@
-//! The waves at one boat, by the number of components: the horizontal plane, the attitude, and the bare surface.
+//! The waves at one boat, by the number of components: the horizontal plane, the attitude, and the bare surface. Then the first
+//! two by instructions of the processor.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use game::frame::{Ned, Pose};
+use game::instructions::Instructions;
 use game::sea::{Spreading, Waves};
 use sim::sea::{HullWaves, WaveField, WaveResponse};
 use std::hint::black_box;
@@ -52,6 +54,18 @@ fn one_boat(c: &mut Criterion) {
             b.iter(|| {
                 let (pose, time_s) = next();
                 field.surface(pose.at, time_s)
+            });
+        });
+    }
+    for set in Instructions::of_this_machine() {
+        let field = WaveField::new(&waves(64), None, 1).with_instructions(set);
+        let (hull, response) = (HullWaves::new(&field, boat, 1000.0), WaveResponse::new(&field, boat));
+        let mut i = 0;
+        group.bench_function(BenchmarkId::new("hull_and_response_64", format!("{set:?}")), |b| {
+            b.iter(|| {
+                i = (i + 1) % poses.len();
+                let (pose, time_s) = (black_box(poses[i]), black_box(3000.0 + 0.05 * i as f64));
+                (hull.at(pose, time_s), response.at(pose, Ned { north: 1.0, east: 0.5 }, 0.1, time_s))
             });
         });
     }

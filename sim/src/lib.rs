@@ -11,6 +11,7 @@ pub mod external;
 pub mod flaw;
 pub mod hull;
 pub mod kinematic;
+mod lanes;
 mod model;
 pub mod motion;
 #[cfg(feature = "net")]

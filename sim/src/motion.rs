@@ -1,14 +1,16 @@
 //! One step of motion, for several boats side by side.
 //!
 //! A boat's step is one long chain of dependent operations, in which a processor mostly waits. Boats do not depend on
-//! each other, so four are moved on together, each in its lane. A lane does the same IEEE operations whatever
+//! each other, so eight are moved on together, each in its lane. A lane does the same IEEE operations whatever
 //! the others hold and whatever the processor offers: the numbers do not depend on who stands beside whom.
 
 use crate::hull::{HullModel, Planar};
-use wide::f64x4;
+use crate::lanes::{Lanes, where_at_most};
+use game::instructions::{Instructions, Kernel};
 
-/// Boats side by side.
-const LANES: usize = 4;
+/// Boats side by side; and of those that are left, if they are no more.
+const MANY: usize = 8;
+const FEW: usize = 4;
 
 /// What moves a boat for a tick.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,14 +42,26 @@ pub struct Motion {
 #[derive(Clone, Debug)]
 pub struct Fleet {
     count: usize,
-    rows: Vec<Row>,
+    rows: Vec<Row<MANY>>,
+    /// Behind the rows, if there are any more: few.
+    last: Option<Row<FEW>>,
+    instructions: Instructions,
 }
 
 impl Fleet {
     /// The fleet of these hulls.
     pub fn new<'a>(hulls: impl IntoIterator<Item = &'a HullModel>) -> Fleet {
         let hulls: Vec<&HullModel> = hulls.into_iter().collect();
-        Fleet { count: hulls.len(), rows: hulls.chunks(LANES).map(Row::new).collect() }
+        let left = hulls.len() % MANY;
+        let (rows, last) = if left > FEW { (&hulls[..], None) } else { (&hulls[..hulls.len() - left], Some(left)) };
+        let last = last.filter(|left| *left > 0).map(|left| Row::new(&hulls[hulls.len() - left..]));
+        let rows = rows.chunks(MANY).map(Row::new).collect();
+        Fleet { count: hulls.len(), rows, last, instructions: Instructions::best() }
+    }
+
+    /// Moves the boats with these instructions. Which ones changes nothing but how long it takes.
+    pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
+        self.instructions = instructions;
     }
 
     /// Moves every boat on by `dt_s`: the classical Runge-Kutta step of fourth order. The motions, by boat, replace what
@@ -63,89 +77,167 @@ impl Fleet {
         assert_eq!(forcings.len(), self.count, "one forcing a boat");
         motions.clear();
         motions.resize(self.count, Motion::default());
-        let places = forcings.chunks(LANES).zip(motions.chunks_mut(LANES));
+        let places = forcings.chunks(MANY).zip(motions.chunks_mut(MANY));
         for (row, (forcings, motions)) in self.rows.iter().zip(places) {
-            if is_uniform {
-                row.advance::<true>(forcings, dt_s, motions);
-            } else {
-                row.advance::<false>(forcings, dt_s, motions);
-            }
+            self.advance_row(row, forcings, dt_s, is_uniform, motions);
         }
+        if let Some(row) = &self.last {
+            let first = MANY * self.rows.len();
+            self.advance_row(row, &forcings[first..], dt_s, is_uniform, &mut motions[first..]);
+        }
+    }
+
+    fn advance_row<const N: usize>(
+        &self,
+        row: &Row<N>,
+        forcings: &[Forcing],
+        dt_s: f64,
+        is_uniform: bool,
+        motions: &mut [Motion],
+    ) {
+        let forcings = Forcings::gather(forcings);
+        let moved = if is_uniform {
+            self.instructions.run(Advance::<N, true> { row, forcings: &forcings, dt_s })
+        } else {
+            self.instructions.run(Advance::<N, false> { row, forcings: &forcings, dt_s })
+        };
+        for (i, motion) in motions.iter_mut().enumerate() {
+            *motion = moved.lane(i);
+        }
+    }
+}
+
+/// A step of boats side by side. How these come and go is none of its business: done in it, it would keep their numbers
+/// out of wide registers.
+struct Advance<'a, const N: usize, const UNIFORM: bool> {
+    row: &'a Row<N>,
+    forcings: &'a Forcings<N>,
+    dt_s: f64,
+}
+
+impl<const N: usize, const UNIFORM: bool> Kernel for Advance<'_, N, UNIFORM> {
+    type Output = Motions<N>;
+
+    #[inline(always)]
+    fn run(self) -> Motions<N> {
+        self.row.advance::<UNIFORM>(self.forcings, self.dt_s)
     }
 }
 
 /// The resistance of a hull that drifts sideways at this speed, N.
 pub(crate) fn cross_flow_newton(hull: &HullModel, drift_m_s: f64) -> f64 {
-    let (sway, _) = Row::new(&[hull]).crossflow(f64x4::splat(drift_m_s), f64x4::ZERO);
-    hull.hull.sway_linear_kg_s * drift_m_s + sway.to_array()[0]
+    let (sway, _) = Row::<FEW>::new(&[hull]).crossflow(Lanes::splat(drift_m_s), Lanes::splat(0.0));
+    hull.hull.sway_linear_kg_s * drift_m_s + sway.0[0]
 }
 
-/// [`Planar`], four at a time.
+/// [`Planar`], side by side.
 #[derive(Clone, Copy)]
-struct Planar4 {
-    surge: f64x4,
-    sway: f64x4,
-    yaw: f64x4,
+struct Planars<const N: usize> {
+    surge: Lanes<f64, N>,
+    sway: Lanes<f64, N>,
+    yaw: Lanes<f64, N>,
 }
 
-impl Planar4 {
+impl<const N: usize> Planars<N> {
+    const ZERO: Planars<N> = Planars { surge: Lanes([0.0; N]), sway: Lanes([0.0; N]), yaw: Lanes([0.0; N]) };
+
     #[inline(always)]
-    fn gather(each: impl Fn(usize) -> Planar) -> Planar4 {
-        let lanes = [each(0), each(1), each(2), each(3)];
-        Planar4 {
-            surge: f64x4::new(lanes.map(|p| p.surge)),
-            sway: f64x4::new(lanes.map(|p| p.sway)),
-            yaw: f64x4::new(lanes.map(|p| p.yaw)),
+    fn gather(each: impl Fn(usize) -> Planar) -> Planars<N> {
+        let mut all = Planars::ZERO;
+        for i in 0..N {
+            let planar = each(i);
+            (all.surge.0[i], all.sway.0[i], all.yaw.0[i]) = (planar.surge, planar.sway, planar.yaw);
         }
+        all
     }
 
     #[inline(always)]
-    fn scatter(self) -> [Planar; LANES] {
-        let (surge, sway, yaw) = (self.surge.to_array(), self.sway.to_array(), self.yaw.to_array());
-        [0, 1, 2, 3].map(|i| Planar { surge: surge[i], sway: sway[i], yaw: yaw[i] })
+    fn lane(&self, i: usize) -> Planar {
+        Planar { surge: self.surge.0[i], sway: self.sway.0[i], yaw: self.yaw.0[i] }
     }
 
     /// `f` of each part and its like in the others.
     #[inline(always)]
-    fn zip<const N: usize>(parts: [Planar4; N], f: impl Fn([f64x4; N]) -> f64x4) -> Planar4 {
-        Planar4 { surge: f(parts.map(|p| p.surge)), sway: f(parts.map(|p| p.sway)), yaw: f(parts.map(|p| p.yaw)) }
+    fn zip<const M: usize>(parts: [Planars<N>; M], f: impl Fn([Lanes<f64, N>; M]) -> Lanes<f64, N>) -> Planars<N> {
+        Planars { surge: f(parts.map(|p| p.surge)), sway: f(parts.map(|p| p.sway)), yaw: f(parts.map(|p| p.yaw)) }
     }
 
     /// `self + step * rate`.
     #[inline(always)]
-    fn plus(self, step: f64, rate: Planar4) -> Planar4 {
-        Planar4::zip([self, rate], |[x, rate]| x + step * rate)
+    fn plus(self, step: f64, rate: Planars<N>) -> Planars<N> {
+        Planars::zip([self, rate], |[x, rate]| x + Lanes::splat(step) * rate)
     }
 }
 
-/// Four hulls side by side: the constants of [`HullModel`].
-#[derive(Clone, Debug)]
-struct Row {
-    m_surge: f64x4,
-    m_cross: f64x4,
-    /// m + what stands for A22 in the Coriolis terms.
-    m_munk: f64x4,
-    /// The same less A11: the Munk moment.
-    munk: f64x4,
-    inverse_surge: f64x4,
-    inverse_sway: f64x4,
-    inverse_cross: f64x4,
-    inverse_yaw: f64x4,
-    surge_linear: f64x4,
-    surge_quadratic: f64x4,
-    sway_linear: f64x4,
-    sway_lift: f64x4,
-    yaw_linear: f64x4,
-    yaw_quadratic: f64x4,
-    yaw_lift: f64x4,
-    crossflow: f64x4,
-    crossflow_half_m: f64x4,
+/// [`Forcing`], side by side.
+#[derive(Clone, Copy)]
+struct Forcings<const N: usize> {
+    nu_r: Planars<N>,
+    tau: [Planars<N>; 3],
+    water: Planars<N>,
+    water_rate: Planars<N>,
 }
 
-impl Row {
-    /// `hulls` has one to four; what is missing is filled up.
-    fn new(hulls: &[&HullModel]) -> Row {
-        let each = |f: fn(&HullModel) -> f64| f64x4::new(std::array::from_fn(|i| f(hulls[i.min(hulls.len() - 1)])));
+impl<const N: usize> Forcings<N> {
+    /// Of one to `N` boats; what is missing is filled up.
+    fn gather(forcings: &[Forcing]) -> Forcings<N> {
+        let forcing = |i: usize| &forcings[i.min(forcings.len() - 1)];
+        Forcings {
+            nu_r: Planars::gather(|i| forcing(i).nu_r),
+            tau: [0, 1, 2].map(|when| Planars::gather(|i| forcing(i).tau[when])),
+            water: Planars::gather(|i| forcing(i).water),
+            water_rate: Planars::gather(|i| forcing(i).water_rate),
+        }
+    }
+}
+
+/// [`Motion`], side by side.
+struct Motions<const N: usize> {
+    nu_r: Planars<N>,
+    nu_r_half: Planars<N>,
+    turn_half_rad: Lanes<f64, N>,
+    turn_rad: Lanes<f64, N>,
+}
+
+impl<const N: usize> Motions<N> {
+    fn lane(&self, i: usize) -> Motion {
+        Motion {
+            nu_r: self.nu_r.lane(i),
+            nu_r_half: self.nu_r_half.lane(i),
+            turn_half_rad: self.turn_half_rad.0[i],
+            turn_rad: self.turn_rad.0[i],
+        }
+    }
+}
+
+/// Hulls side by side: the constants of [`HullModel`].
+#[derive(Clone, Debug)]
+struct Row<const N: usize> {
+    m_surge: Lanes<f64, N>,
+    m_cross: Lanes<f64, N>,
+    /// m + what stands for A22 in the Coriolis terms.
+    m_munk: Lanes<f64, N>,
+    /// The same less A11: the Munk moment.
+    munk: Lanes<f64, N>,
+    inverse_surge: Lanes<f64, N>,
+    inverse_sway: Lanes<f64, N>,
+    inverse_cross: Lanes<f64, N>,
+    inverse_yaw: Lanes<f64, N>,
+    surge_linear: Lanes<f64, N>,
+    surge_quadratic: Lanes<f64, N>,
+    sway_linear: Lanes<f64, N>,
+    sway_lift: Lanes<f64, N>,
+    yaw_linear: Lanes<f64, N>,
+    yaw_quadratic: Lanes<f64, N>,
+    yaw_lift: Lanes<f64, N>,
+    crossflow: Lanes<f64, N>,
+    crossflow_half_m: Lanes<f64, N>,
+}
+
+impl<const N: usize> Row<N> {
+    /// `hulls` has one to `N`; what is missing is filled up.
+    fn new(hulls: &[&HullModel]) -> Row<N> {
+        let each = |f: fn(&HullModel) -> f64| Lanes(std::array::from_fn(|i| f(hulls[i.min(hulls.len() - 1)])));
         Row {
             m_surge: each(|m| m.m_surge),
             m_cross: each(|m| m.m_cross),
@@ -170,9 +262,9 @@ impl Row {
     /// The acceleration under `tau` at the velocity `nu_r` through the water. Resistance acts on the velocity through
     /// the water as it moves to and fro, `nu_r - water`.
     #[inline(always)]
-    fn acceleration<const UNIFORM: bool>(&self, nu_r: Planar4, tau: Planar4, water: Planar4) -> Planar4 {
-        let Planar4 { surge: u, sway: v, yaw: r } = nu_r;
-        let past = if UNIFORM { nu_r } else { Planar4::zip([nu_r, water], |[boat, water]| boat - water) };
+    fn acceleration<const UNIFORM: bool>(&self, nu_r: Planars<N>, tau: Planars<N>, water: Planars<N>) -> Planars<N> {
+        let Planars { surge: u, sway: v, yaw: r } = nu_r;
+        let past = if UNIFORM { nu_r } else { Planars::zip([nu_r, water], |[boat, water]| boat - water) };
         let (y_cross, n_cross) = self.crossflow(past.sway, past.yaw);
         let speed = past.surge.abs();
         let x = tau.surge + self.m_munk * v * r + self.m_cross * r * r
@@ -183,7 +275,7 @@ impl Row {
             - self.munk * u * v
             - (self.yaw_linear + self.yaw_quadratic * past.yaw.abs() + self.yaw_lift * speed) * past.yaw
             - n_cross;
-        Planar4 {
+        Planars {
             surge: self.inverse_surge * x,
             sway: self.inverse_sway * y + self.inverse_cross * n,
             yaw: self.inverse_cross * y + self.inverse_yaw * n,
@@ -196,57 +288,54 @@ impl Row {
     /// the turn makes: where |s| ≤ |v| the flow has one side all along the hull and the integrand is a polynomial;
     /// where |s| > |v| it changes its side at x = −v/r, and the two polynomials meet there.
     #[inline(always)]
-    fn crossflow(&self, v: f64x4, r: f64x4) -> (f64x4, f64x4) {
+    fn crossflow(&self, v: Lanes<f64, N>, r: Lanes<f64, N>) -> (Lanes<f64, N>, Lanes<f64, N>) {
+        let number = Lanes::<f64, N>::splat;
         let half = self.crossflow_half_m;
         let s = r * half;
         let (v_2, s_2, half_2) = (v * v, s * s, half * half);
-        let same_side = s.abs().simd_le(v.abs());
-        let from = v / same_side.select(f64x4::ONE, r);
-        let side = with_sign(self.crossflow, same_side.select(v, r));
-        let sway = same_side.select(2.0 * half * (v_2 + s_2 * (1.0 / 3.0)), 2.0 / 3.0 * from * (v_2 + 3.0 * s_2));
-        let yaw = same_side
-            .select(4.0 / 3.0 * half_2 * s * v, half_2 * (v_2 + 0.5 * s_2) - v_2 * (from * from) * (1.0 / 6.0));
+        let same_side = (s.abs(), v.abs());
+        let from = v / where_at_most(same_side, number(1.0), r);
+        let side = self.crossflow.with_signs_of(where_at_most(same_side, v, r));
+        let sway = where_at_most(
+            same_side,
+            number(2.0) * half * (v_2 + s_2 * number(1.0 / 3.0)),
+            number(2.0 / 3.0) * from * (v_2 + number(3.0) * s_2),
+        );
+        let yaw = where_at_most(
+            same_side,
+            number(4.0 / 3.0) * half_2 * s * v,
+            half_2 * (v_2 + number(0.5) * s_2) - v_2 * (from * from) * number(1.0 / 6.0),
+        );
         (side * sway, side * yaw)
     }
 
     #[inline(always)]
-    fn advance<const UNIFORM: bool>(&self, forcings: &[Forcing], dt_s: f64, motions: &mut [Motion]) {
-        let forcing = |i: usize| &forcings[i.min(forcings.len() - 1)];
-        let start = Planar4::gather(|i| forcing(i).nu_r);
-        let tau = [0, 1, 2].map(|when| Planar4::gather(|i| forcing(i).tau[when]));
+    fn advance<const UNIFORM: bool>(&self, forcings: &Forcings<N>, dt_s: f64) -> Motions<N> {
+        let number = Lanes::<f64, N>::splat;
+        let Forcings { nu_r: start, tau, water, water_rate } = *forcings;
         let half = 0.5 * dt_s;
-        let still = Planar4 { surge: f64x4::ZERO, sway: f64x4::ZERO, yaw: f64x4::ZERO };
         let water = if UNIFORM {
-            [still; 3]
+            [Planars::ZERO; 3]
         } else {
-            let (middle, rate) = (Planar4::gather(|i| forcing(i).water), Planar4::gather(|i| forcing(i).water_rate));
-            [middle.plus(-half, rate), middle, middle.plus(half, rate)]
+            [water.plus(-half, water_rate), water, water.plus(half, water_rate)]
         };
         let k1 = self.acceleration::<UNIFORM>(start, tau[0], water[0]);
         let k2 = self.acceleration::<UNIFORM>(start.plus(half, k1), tau[1], water[1]);
         let k3 = self.acceleration::<UNIFORM>(start.plus(half, k2), tau[1], water[1]);
         let k4 = self.acceleration::<UNIFORM>(start.plus(dt_s, k3), tau[2], water[2]);
         let sixth = dt_s / 6.0;
-        let end = Planar4::zip([start, k1, k2, k3, k4], |[x, a, b, c, d]| x + sixth * (a + 2.0 * (b + c) + d));
+        let end = Planars::zip([start, k1, k2, k3, k4], |[x, a, b, c, d]| {
+            x + number(sixth) * (a + number(2.0) * (b + c) + d)
+        });
         // Cubic through both ends and their slopes; k4 is the slope at the end to third order.
-        let eighth = dt_s / 8.0;
-        let middle = Planar4::zip([start, end, k1, k4], |[a, b, at_a, at_b]| 0.5 * (a + b) + eighth * (at_a - at_b));
+        let eighth = number(dt_s / 8.0);
+        let middle =
+            Planars::zip([start, end, k1, k4], |[a, b, at_a, at_b]| number(0.5) * (a + b) + eighth * (at_a - at_b));
         // Integrals of the yaw rate's cubic: Simpson over the whole tick, and its first half exactly.
-        let turn = sixth * (start.yaw + 4.0 * middle.yaw + end.yaw);
-        let turn_half = dt_s / 24.0 * (5.0 * start.yaw + 8.0 * middle.yaw - end.yaw);
-
-        let (end, middle) = (end.scatter(), middle.scatter());
-        let (turn, turn_half) = (turn.to_array(), turn_half.to_array());
-        for (i, motion) in motions.iter_mut().enumerate().take(LANES) {
-            *motion = Motion { nu_r: end[i], nu_r_half: middle[i], turn_half_rad: turn_half[i], turn_rad: turn[i] };
-        }
+        let turn = number(sixth) * (start.yaw + number(4.0) * middle.yaw + end.yaw);
+        let turn_half = number(dt_s / 24.0) * (number(5.0) * start.yaw + number(8.0) * middle.yaw - end.yaw);
+        Motions { nu_r: end, nu_r_half: middle, turn_half_rad: turn_half, turn_rad: turn }
     }
-}
-
-/// `magnitude` (not negative) with the sign of `sign`.
-#[inline(always)]
-fn with_sign(magnitude: f64x4, sign: f64x4) -> f64x4 {
-    magnitude | (sign & f64x4::splat(-0.0))
 }
 
 #[cfg(test)]
@@ -272,8 +361,8 @@ mod tests {
     }
 
     fn crossflow(model: &HullModel, v: f64, r: f64) -> (f64, f64) {
-        let (sway, yaw) = Row::new(&[model]).crossflow(f64x4::splat(v), f64x4::splat(r));
-        (sway.to_array()[0], yaw.to_array()[0])
+        let (sway, yaw) = Row::<FEW>::new(&[model]).crossflow(Lanes::splat(v), Lanes::splat(r));
+        (sway.0[0], yaw.0[0])
     }
 
     #[test]
@@ -281,7 +370,7 @@ mod tests {
         let mut other = model().hull;
         other.mass_kg = 40.0;
         let models = [model(), HullModel::new(&other, 1000.0)];
-        let kinds = [0, 1, 1, 0, 1, 0, 0];
+        let kinds: [usize; 21] = std::array::from_fn(|i| i * i % 3 % 2);
         let forcing = |i: usize| {
             let x = i as f64;
             let push = |n: f64| Planar { surge: 40.0 + n * x, sway: n, yaw: 5.0 - n * x };
@@ -292,15 +381,15 @@ mod tests {
         let forcings: Vec<Forcing> = (0..kinds.len()).map(forcing).collect();
         let mut motions = Vec::new();
         for count in 0..=kinds.len() {
-            Fleet::new(kinds[..count].iter().map(|kind| &models[*kind])).advance(
-                &forcings[..count],
-                0.05,
-                false,
-                &mut motions,
-            );
-            assert_eq!(motions.len(), count);
-            for (i, motion) in motions.iter().enumerate() {
-                assert_eq!(motion.nu_r, advance(&models[kinds[i]], &forcings[i], 0.05), "boat {i} of {count}");
+            let mut fleet = Fleet::new(kinds[..count].iter().map(|kind| &models[*kind]));
+            for set in Instructions::of_this_machine() {
+                fleet.set_instructions(set);
+                fleet.advance(&forcings[..count], 0.05, false, &mut motions);
+                assert_eq!(motions.len(), count);
+                for (i, motion) in motions.iter().enumerate() {
+                    let alone = advance(&models[kinds[i]], &forcings[i], 0.05);
+                    assert_eq!(motion.nu_r, alone, "boat {i} of {count}, {set:?}");
+                }
             }
         }
     }

@@ -9,6 +9,7 @@ use crate::sensor::{Reading, Truth};
 use crate::spawn::{self, NoStart};
 use crate::state::{BoatState, State};
 use game::frame::{self, Leg, Ned, Rotation};
+use game::instructions::Instructions;
 use game::near::{Near, Pair};
 use game::rules::Contact;
 use game::scenario::Source;
@@ -274,6 +275,13 @@ impl World {
     pub fn widen_contact(&mut self, close_m: f64) {
         self.model.contact.widen(close_m);
         self.find_pairs();
+    }
+
+    /// Works the sea and the motion out with these instructions instead of the fastest that the machine has. The same bytes.
+    #[doc(hidden)]
+    pub fn set_instructions(&mut self, instructions: Instructions) {
+        self.model.sea.set_instructions(instructions);
+        self.model.fleet.set_instructions(instructions);
     }
 
     /// Makes what follows from the state follow from it.

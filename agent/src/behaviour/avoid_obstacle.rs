@@ -4,10 +4,11 @@ use super::nearest::{Nearest, nearness};
 use super::outline::{Outline, Passes};
 use super::steering::{keep_clear, lag};
 use super::{BehaviourLogic, BehaviourOutput};
-use crate::ivp::{Instructions, Objective, Table};
+use crate::ivp::{Objective, Table};
 use crate::situation::{MovingPoint, Situation};
 use game::Ned;
 use game::field::Obstacle;
+use game::instructions::Instructions;
 use game::strategy::AvoidObstacle;
 
 pub(super) struct AvoidObstacleBehaviour {

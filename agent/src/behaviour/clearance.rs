@@ -2,9 +2,10 @@
 //!
 //! A boat that is given a decision goes on for its reaction time, then turns the shorter way at its rate, then goes straight.
 
-use crate::ivp::{Courses, Grid, Kernel, LANES, Lanes, Table, larger, smaller};
+use crate::ivp::{Courses, Grid, LANES, Lanes, Table, larger, smaller};
 use crate::own_motion::Handling;
 use game::angle::wrap_pi;
+use game::instructions::Kernel;
 use game::{Ned, math};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -347,7 +348,7 @@ fn kept(part: f32, bend: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ivp::Instructions;
+    use game::instructions::Instructions;
 
     /// A boat that always turns alike.
     const HANDLING: Handling = Handling::evenly(0.35);

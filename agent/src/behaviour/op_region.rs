@@ -2,9 +2,10 @@
 
 use super::clearance::Clearance;
 use super::{BehaviourLogic, BehaviourOutput};
-use crate::ivp::{Instructions, Objective, Peak, Table};
+use crate::ivp::{Objective, Peak, Table};
 use crate::own_motion::Handling;
 use crate::situation::Situation;
+use game::instructions::Instructions;
 use game::strategy::{BeyondHalt, OpRegion};
 use game::{Ned, SimTime};
 use std::f64::consts::PI;

@@ -4,9 +4,10 @@
 //! pass is the smaller of its own and the slower runs'.
 
 use super::steering::CPA_MIN_UTILITY;
-use crate::ivp::{Courses, Grid, Kernel, LANES, Lag, Lanes, Table, larger, smaller};
+use crate::ivp::{Courses, Grid, LANES, Lag, Lanes, Table, larger, smaller};
 use game::Ned;
 use game::field::{is_within, sides};
+use game::instructions::Kernel;
 
 /// What rounding may take from a bound, m, with room to spare.
 const ROUNDING_M: f64 = 1e-6;
@@ -363,8 +364,8 @@ enum Clear {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ivp::Instructions;
     use game::field::distance_to_line;
+    use game::instructions::Instructions;
     use game::stream::Stream;
 
     const MIN_M: f64 = 1.0;

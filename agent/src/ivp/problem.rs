@@ -3,10 +3,10 @@
 use super::cell::Cells;
 use super::fixed::{FUNCTIONS_MAX, QUANTUM, Weight};
 use super::grid::Grid;
-use super::instructions::Instructions;
 use super::objective::Objective;
 use super::search::{Bounds, Present, Search};
 use super::sums::Sums;
+use game::instructions::Instructions;
 
 /// A point of the grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

@@ -3,12 +3,12 @@
 use super::cell::{Cells, CourseSpans, SpeedSpans, cell};
 use super::fixed::{FUNCTIONS_MAX, Weight};
 use super::grid::Grid;
-use super::instructions::Kernel;
 use super::lanes::{LANES, Lanes, SIDE, larger};
 use super::measured::{Bounded, Distances};
 use super::objective::Field;
 use super::sums::Sums;
 use super::{closest, closing};
+use game::instructions::Kernel;
 use std::cmp::Ordering;
 
 /// A sector, tile or point that is done, or that is not on the grid.

@@ -2,12 +2,12 @@
 
 use super::fixed::{self, FUNCTIONS_MAX, NOWHERE, Weight};
 use super::grid::Grid;
-use super::instructions::{Instructions, Kernel};
 use super::lanes::{LANES, Lanes};
 use super::limit::SpeedLimit;
 use super::objective::{Field, Objective, Parts};
 use super::peak::{CoursePeak, Peak};
 use super::table::Table;
+use game::instructions::{Instructions, Kernel};
 
 /// Weighted utilities, added up as far as they can be before a point is known. Its lists are used again for the next decision.
 #[derive(Clone, Debug)]

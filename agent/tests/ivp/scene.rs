@@ -1,8 +1,9 @@
 //! Random decisions, with functions of every kind and plenty of equal values.
 
-use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Instructions, Lag, Objective, Peak};
+use agent::ivp::{Approach, Choice, Closest, Closing, Decision, Grid, Lag, Objective, Peak};
 use agent::ivp::{Preference, Problem, Side, SpeedLimit};
 use game::Ned;
+use game::instructions::Instructions;
 use game::stream::Stream;
 
 /// A table.

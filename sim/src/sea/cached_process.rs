@@ -50,20 +50,22 @@ impl CachedProcess {
     pub(super) fn at(&self, place: f64) -> Pair {
         let floor = place.floor();
         let (index, weight) = (floor as i64, place - floor);
-        let (low, high) = (self.point(index), self.point(index + 1));
+        let (low, high) = self.neighbours(index);
         let product = 2.0 * weight * (1.0 - weight);
         let deviation = (1.0 - product * (1.0 - self.correlation)).sqrt();
         let between = |low: f64, high: f64| (low + weight * (high - low)) / deviation;
         (between(low.0, high.0), between(low.1, high.1))
     }
 
+    /// A point and the next one.
     #[inline]
-    fn point(&self, index: i64) -> Pair {
-        if self.held.0 <= index && index < self.held.1 {
-            self.ring[self.slot(index)]
-        } else {
-            self.process.at(index, &mut Trail::default())
+    fn neighbours(&self, index: i64) -> (Pair, Pair) {
+        if self.held.0 <= index && index + 1 < self.held.1 {
+            return (self.ring[self.slot(index)], self.ring[self.slot(index + 1)]);
         }
+        // Most of the way to the second is that to the first.
+        let mut trail = Trail::default();
+        (self.process.at(index, &mut trail), self.process.at(index + 1, &mut trail))
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! A table over the heading: entries every five degrees, linear in between.
 
+use crate::lanes::{FOLD, Lanes, ROW};
 use std::f64::consts::TAU;
-use wide::f32x4;
 
 /// Headings at which the numbers stand.
 pub(super) const BINS: usize = 72;
@@ -15,52 +15,51 @@ fn place(heading_rad: f64) -> (usize, f64) {
     ((below as i64).rem_euclid(BINS as i64) as usize, bins - below)
 }
 
-/// A number (four side by side) from one bin to the next.
+/// Four numbers for each of four components, from one bin to the next.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
-    from: f32x4,
-    /// What it gains up to the next bin.
-    gain: f32x4,
+    from: Lanes<f32>,
+    /// What they gain up to the next bin.
+    gain: Lanes<f32>,
 }
 
 impl Segment {
-    /// The number at `fraction` (0 to 1) of the way.
+    /// The numbers at `fraction` (0 to 1) of the way.
     #[inline(always)]
-    pub(super) fn at_fraction(&self, fraction: f32x4) -> f32x4 {
+    pub(super) fn at_fraction(&self, fraction: Lanes<f32>) -> Lanes<f32> {
         self.from + self.gain * fraction
     }
 
-    /// Its derivative by the heading, 1/rad.
+    /// Their derivatives by the heading, 1/rad.
     #[inline(always)]
-    pub(super) fn per_rad(&self) -> f32x4 {
-        self.gain * f32x4::splat((BINS as f64 / TAU) as f32)
+    pub(super) fn per_rad(&self) -> Lanes<f32> {
+        self.gain * Lanes::<f32>::splat((BINS as f64 / TAU) as f32)
     }
 }
 
-/// Rows of `N` numbers that depend on the heading. The rows of one bin lie one after the other.
+/// Rows of numbers that depend on the heading. The rows of one bin lie one after the other.
 #[derive(Clone, Debug)]
-pub(super) struct HeadingTable<const N: usize> {
+pub(super) struct HeadingTable {
     rows: usize,
-    lines: Vec<[Segment; N]>,
+    lines: Vec<Segment>,
 }
 
-impl<const N: usize> HeadingTable<N> {
-    /// The table of as many `rows`, which `numbers` gives for a row and a heading in rad.
-    pub(super) fn new(rows: usize, numbers: impl Fn(usize, f64) -> [f32x4; N]) -> HeadingTable<N> {
+impl HeadingTable {
+    /// The table of as many `rows`, which `numbers` gives for a row and a heading in rad: four for each of four components,
+    /// by number.
+    pub(super) fn new(rows: usize, numbers: impl Fn(usize, f64) -> [[f32; ROW]; FOLD]) -> HeadingTable {
         let bin_rad = TAU / BINS as f64;
-        let at: Vec<[f32x4; N]> = (0..BINS * rows).map(|i| numbers(i % rows, (i / rows) as f64 * bin_rad)).collect();
-        let line = |i: usize| {
-            let (from, to) = (&at[i], &at[(i + rows) % at.len()]);
-            std::array::from_fn(|n| Segment { from: from[n], gain: to[n] - from[n] })
-        };
+        let number = |i: usize| Lanes::of_row(numbers(i % rows, (i / rows) as f64 * bin_rad));
+        let at: Vec<Lanes<f32>> = (0..BINS * rows).map(number).collect();
+        let line = |i: usize| Segment { from: at[i], gain: at[(i + rows) % at.len()] - at[i] };
         HeadingTable { rows, lines: (0..at.len()).map(line).collect() }
     }
 
     /// The rows for a heading, and how far it lies from their bin to the next.
     #[inline(always)]
-    pub(super) fn at(&self, heading_rad: f64) -> (&[[Segment; N]], f32x4) {
+    pub(super) fn at(&self, heading_rad: f64) -> (&[Segment], Lanes<f32>) {
         let (bin, fraction) = place(heading_rad);
-        (&self.lines[bin * self.rows..(bin + 1) * self.rows], f32x4::splat(fraction as f32))
+        (&self.lines[bin * self.rows..(bin + 1) * self.rows], Lanes::splat(fraction as f32))
     }
 }
 

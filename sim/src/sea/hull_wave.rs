@@ -7,14 +7,14 @@
 //!
 //! Second order: the drift force, which varies with the groups of waves (Newman 1974).
 
-use super::heading::HeadingTable;
-use super::sine::sum;
-use super::submergence::{PropellerSums, Submergence};
-use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes, side_by_side};
+use super::heading::{HeadingTable, Segment};
+use super::submergence::{self, Submergence};
+use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, side_by_side, waves_of_row};
 use crate::hull::Planar;
+use crate::lanes::{FOLD, LANES, Lanes, ROW};
 use game::boat::Boat;
 use game::frame::Pose;
-use wide::f32x4;
+use game::instructions::{Instructions, Kernel};
 
 /// The waves at one hull, in its own axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,114 +40,156 @@ pub struct WaveSample {
 /// where they spread, the groups set the size, and the mean over the directions the direction.
 #[derive(Clone, Debug)]
 pub struct HullWaves {
-    rows: Vec<Row>,
-    /// Velocity per cosine of the phase in surge and sway; per sine of it in yaw.
-    velocity: HeadingTable<3>,
+    instructions: Instructions,
+    blocks: Vec<Block>,
+    /// For each component, velocity per cosine of the phase in surge and sway, per sine of it in yaw; and a R, which does not
+    /// depend on the heading.
+    lines: HeadingTable,
     /// The mean drift force over the sum of c²: surge, sway, and nothing twice.
-    drift: HeadingTable<1>,
+    drift: HeadingTable,
 }
 
-/// Four components side by side: what does not depend on the heading.
+/// Sixteen components side by side: what does not depend on the heading.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    phases: Phases,
+    rows: [Row; FOLD],
+}
+
+/// The factors on the cosine and on the sine of the phase, of four components, for each of the four numbers of a line. As
+/// time goes on the phase falls by ω: (cos)' = ω sin, (sin)' = −ω cos.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    phases: Phases,
-    omega_rad_s: f32x4,
-    /// a R.
-    reflected_m: f32x4,
+    /// Surge, sway, fall of yaw's rate, drift in phase.
+    of_cos: Lanes<f32>,
+    /// Rates of surge and sway, yaw, drift a quarter turn off.
+    of_sin: Lanes<f32>,
+}
+
+impl Row {
+    fn new(waves: &[PlaneWave]) -> Row {
+        let (one, omega_rad_s) = ([1.0; ROW], row_of(waves, |w| w.component.omega_rad_s));
+        Row {
+            of_cos: Lanes::of_row([one, one, omega_rad_s, one]),
+            of_sin: Lanes::of_row([omega_rad_s, omega_rad_s, one, one]),
+        }
+    }
 }
 
 impl HullWaves {
     /// The waves of `field` on a boat like this in water of this density.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat, water_density_kg_m3: f64) -> HullWaves {
-        let chunks: Vec<&[PlaneWave]> = field.waves.chunks(LANES).collect();
-        let row = |waves: &&[PlaneWave]| Row {
+        let block = |waves: &[PlaneWave]| Block {
             phases: Phases::new(waves),
-            omega_rad_s: side_by_side(waves, |w| w.component.omega_rad_s),
-            reflected_m: side_by_side(waves, |w| w.reflected_m(boat.draught_m)),
+            rows: std::array::from_fn(|row| Row::new(waves_of_row(waves, row))),
         };
-        let velocity = HeadingTable::new(chunks.len(), |row, heading_rad| {
-            let speeds = lanes(chunks[row], |w| orbital_velocity(w, boat, heading_rad));
-            let single = |fraction: fn(&Planar) -> f64| f32x4::new(speeds.each_ref().map(|v| fraction(v) as f32));
-            [single(|v| v.surge), single(|v| v.sway), single(|v| v.yaw)]
+        let lines = HeadingTable::new(row_count(&field.waves), |row, heading_rad| {
+            let waves = waves_of_row(&field.waves, row);
+            let speeds: [Planar; ROW] = side_by_side(waves, |w| orbital_velocity(w, boat, heading_rad));
+            let single = |part: fn(&Planar) -> f64| speeds.each_ref().map(|v| part(v) as f32);
+            let reflected_m = row_of(waves, |w| w.reflected_m(boat.draught_m));
+            [single(|v| v.surge), single(|v| v.sway), single(|v| v.yaw), reflected_m]
         });
         let reflected_m2: f64 = field.waves.iter().map(|w| w.reflected_m(boat.draught_m)).map(|c| c * c).sum();
         let per_m2 = if reflected_m2 > 0.0 { 1.0 / reflected_m2 } else { 0.0 };
         let drift = HeadingTable::new(1, |_, heading_rad| {
             let mean = field.mean_drift_newton(boat, water_density_kg_m3, heading_rad);
-            [f32x4::new([(per_m2 * mean.surge) as f32, (per_m2 * mean.sway) as f32, 0.0, 0.0])]
+            let mut numbers = [[0.0; ROW]; FOLD];
+            (numbers[0][0], numbers[1][0]) = ((per_m2 * mean.surge) as f32, (per_m2 * mean.sway) as f32);
+            numbers
         });
-        HullWaves { rows: chunks.iter().map(row).collect(), velocity, drift }
+        let blocks = field.waves.chunks(LANES).map(block).collect();
+        HullWaves { instructions: field.instructions, blocks, lines, drift }
+    }
+
+    pub(super) fn set_instructions(&mut self, instructions: Instructions) {
+        self.instructions = instructions;
     }
 
     /// The waves at a boat.
     #[must_use]
     pub fn at(&self, pose: Pose, time_s: f64) -> WaveSample {
-        self.summed(pose, time_s, |_, _, _, _| ())
+        self.sample(&self.instructions.run(At { waves: self, pose, time_s }), pose.psi_rad)
     }
 
     /// The waves at a boat, and how much deeper than in calm water its propellers are, m.
     #[must_use]
     pub fn at_with(&self, submergence: &Submergence, pose: Pose, time_s: f64) -> (WaveSample, [f64; 2]) {
-        let (mut depths, (lines, _)) = (PropellerSums::default(), submergence.lines(pose.psi_rad));
-        let sample = self.summed(pose, time_s, |row, fraction, sin, cos| depths.add(&lines[row], fraction, sin, cos));
-        (sample, depths.submergence_change_m())
+        let (sums, change_m) = self.instructions.run(AtWith { waves: self, submergence, pose, time_s });
+        (self.sample(&sums, pose.psi_rad), [change_m.sum(0), change_m.sum(1)])
     }
 
-    /// The sum over the components; `also` gets each row's number, the place between two headings, sine and cosine.
+    /// The sums over the components, and those of the submergence whose lines are given.
     #[inline(always)]
-    fn summed(&self, pose: Pose, time_s: f64, mut also: impl FnMut(usize, f32x4, f32x4, f32x4)) -> WaveSample {
-        let mut sums = Sums::default();
-        let (lines, fraction) = self.velocity.at(pose.psi_rad);
-        for (i, (row, lines)) in self.rows.iter().zip(lines).enumerate() {
-            let (sin, cos) = row.phases.sin_cos(pose.at, time_s);
-            sums.add(row, lines.each_ref().map(|line| line.at_fraction(fraction)), sin, cos);
-            also(i, fraction, sin, cos);
+    fn sums(&self, submergence: Option<&[Segment]>, pose: Pose, time_s: f64) -> (Sums, Lanes<f32>) {
+        let mut sums = Sums { of_cos: Lanes::splat(0.0), of_sin: Lanes::splat(0.0) };
+        let mut change_m = Lanes::splat(0.0);
+        let (lines, fraction) = self.lines.at(pose.psi_rad);
+        for (n, (block, lines)) in self.blocks.iter().zip(lines.as_chunks::<FOLD>().0).enumerate() {
+            let (sin, cos) = block.phases.sin_cos(pose.at, time_s);
+            for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
+                let (line, sin, cos) = (line.at_fraction(fraction), sin.row(i), cos.row(i));
+                sums.of_cos += line * (row.of_cos * cos);
+                sums.of_sin += line * (row.of_sin * sin);
+                if let Some(lines) = submergence {
+                    submergence::add(&mut change_m, lines[FOLD * n + i].at_fraction(fraction), sin, cos);
+                }
+            }
         }
-        self.sample(&sums, pose.psi_rad)
+        (sums, change_m)
     }
 
-    #[inline(always)]
-    fn sample(&self, sums: &Sums, heading_rad: f64) -> WaveSample {
-        let (in_phase, off_phase) = (sum(sums.reflected_cos), sum(sums.reflected_sin));
+    fn sample(&self, Sums { of_cos, of_sin }: &Sums, heading_rad: f64) -> WaveSample {
+        let (in_phase, off_phase) = (of_cos.sum(3), of_sin.sum(3));
         let groups_m2 = in_phase * in_phase + off_phase * off_phase;
         let (drift, fraction) = self.drift.at(heading_rad);
-        let [surge, sway, ..] = drift[0][0].at_fraction(fraction).to_array().map(|mean| f64::from(mean) * groups_m2);
+        let mean = drift[0].at_fraction(fraction);
+        let [surge, sway] = [mean.0[0], mean.0[ROW]].map(|mean| f64::from(mean) * groups_m2);
         WaveSample {
-            velocity: Planar { surge: sum(sums.surge), sway: sum(sums.sway), yaw: sum(sums.yaw) },
-            acceleration: Planar { surge: sum(sums.surge_rate), sway: sum(sums.sway_rate), yaw: -sum(sums.yaw_fall) },
+            velocity: Planar { surge: of_cos.sum(0), sway: of_cos.sum(1), yaw: of_sin.sum(2) },
+            acceleration: Planar { surge: of_sin.sum(0), sway: of_sin.sum(1), yaw: -of_cos.sum(2) },
             drift_newton: Planar { surge, sway, yaw: 0.0 },
         }
     }
 }
 
-/// Sums over the components, four side by side.
-#[derive(Clone, Copy, Default)]
+/// Sums over the rows: the numbers of [`Row`].
 struct Sums {
-    surge: f32x4,
-    sway: f32x4,
-    yaw: f32x4,
-    surge_rate: f32x4,
-    sway_rate: f32x4,
-    /// The rate of `yaw`, negative.
-    yaw_fall: f32x4,
-    reflected_sin: f32x4,
-    reflected_cos: f32x4,
+    of_cos: Lanes<f32>,
+    of_sin: Lanes<f32>,
 }
 
-impl Sums {
-    /// Adds four components of these velocities. As time goes on the phase falls by ω: (cos)' = ω sin, (sin)' = −ω cos.
+/// [`HullWaves::at`], but for what is done with the sums: done here, it would decide how these lie in the registers.
+struct At<'a> {
+    waves: &'a HullWaves,
+    pose: Pose,
+    time_s: f64,
+}
+
+impl Kernel for At<'_> {
+    type Output = Sums;
+
     #[inline(always)]
-    fn add(&mut self, row: &Row, [surge, sway, yaw]: [f32x4; 3], sin: f32x4, cos: f32x4) {
-        let (sin_rate, cos_rate) = (row.omega_rad_s * cos, row.omega_rad_s * sin);
-        self.surge += surge * cos;
-        self.sway += sway * cos;
-        self.yaw += yaw * sin;
-        self.surge_rate += surge * cos_rate;
-        self.sway_rate += sway * cos_rate;
-        self.yaw_fall += yaw * sin_rate;
-        self.reflected_sin += row.reflected_m * sin;
-        self.reflected_cos += row.reflected_m * cos;
+    fn run(self) -> Sums {
+        self.waves.sums(None, self.pose, self.time_s).0
+    }
+}
+
+/// The same of [`HullWaves::at_with`].
+struct AtWith<'a> {
+    waves: &'a HullWaves,
+    submergence: &'a Submergence,
+    pose: Pose,
+    time_s: f64,
+}
+
+impl Kernel for AtWith<'_> {
+    type Output = (Sums, Lanes<f32>);
+
+    #[inline(always)]
+    fn run(self) -> (Sums, Lanes<f32>) {
+        self.waves.sums(Some(self.submergence.lines(self.pose.psi_rad)), self.pose, self.time_s)
     }
 }
 

@@ -31,6 +31,7 @@ pub use wind::WindField;
 use crate::hull::{HullModel, Planar};
 use game::boat::{Drive, Windage};
 use game::frame::{Body, Ned, Pose, Rotation};
+use game::instructions::Instructions;
 use game::sea::Sea;
 use game::water::Water;
 use game::{Boat, Field, SimTime};
@@ -152,6 +153,16 @@ impl SeaModel {
             response: WaveResponse::new(field, boat),
             rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
         })
+    }
+
+    /// Works its waves out with these instructions. Which ones changes nothing but how long it takes.
+    pub(crate) fn set_instructions(&mut self, instructions: Instructions) {
+        self.waves = self.waves.take().map(|waves| waves.with_instructions(instructions));
+        for (_, shape) in &mut self.shapes {
+            let shape = Arc::make_mut(shape);
+            shape.waves.set_instructions(instructions);
+            shape.response.set_instructions(instructions);
+        }
     }
 
     /// Has at hand what is asked for at `now`. Only for speed: without it everything is the same to the last bit.

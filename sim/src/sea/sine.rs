@@ -1,4 +1,4 @@
-//! Sine and cosine of four angles at once, the same bits on every machine.
+//! Sine and cosine of sixteen angles at once, the same bits on every machine.
 //!
 //! The sea asks for thousands of them a tick. Only sums, products and differences are taken, each rounded by IEEE 754
 //! and none fused, so neither the processor nor the platform's C library has a say in the result.
@@ -6,7 +6,7 @@
 //! The angle is brought within half a turn in double precision; what follows, sine, cosine and the sums over the waves,
 //! is in single, twice as many numbers in the same instruction. A wave is then right to a millionth of its height.
 
-use wide::{f32x4, f64x4};
+use crate::lanes::Lanes;
 
 /// 1.5 · 2^52: what is added to it is rounded to a whole number, half to even, for the mantissa has no bit left behind
 /// the point. Good for magnitudes below 2^51.
@@ -21,42 +21,29 @@ const COS: [f32; 5] = [0.999_999_95, -4.934_793, 4.058_412, -1.331_880_2, 0.219_
 
 /// The largest error of [`sin_cos_turns`], apart from what the angle itself was rounded by.
 #[cfg(test)]
-pub(crate) const ERROR: f64 = 1.2e-6;
+pub(super) const ERROR: f64 = 1.2e-6;
 
 /// Sine and cosine of angles in turns: 1 is all the way round. Within 1.2e-6 up to 2^51 turns either way.
 ///
 /// In turns the reduction is a subtraction without error, however far round the angle is.
 /// The polynomials are of half the angle, between a quarter turn either way, and no quadrant has to be told apart.
 #[inline(always)]
-pub(crate) fn sin_cos_turns(turns: f64x4) -> (f32x4, f32x4) {
-    let rounder = f64x4::splat(ROUNDER);
-    let r = single(turns - ((turns + rounder) - rounder));
+pub(super) fn sin_cos_turns(turns: Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
+    let rounder = Lanes::<f64>::splat(ROUNDER);
+    let r = (turns - ((turns + rounder) - rounder)).single();
     let x = r * r;
     let sin_half = quartic(SIN, x) * r;
     let cos_half = quartic(COS, x);
     let sin_twice = sin_half + sin_half;
-    (sin_twice * cos_half, f32x4::ONE - sin_twice * sin_half)
+    (sin_twice * cos_half, Lanes::<f32>::splat(1.0) - sin_twice * sin_half)
 }
 
 /// c0 + c1 x + ... + c4 x⁴ (Estrin): a chain shorter than Horner's, so less waiting.
 #[inline(always)]
-fn quartic(c: [f32; 5], x: f32x4) -> f32x4 {
-    let c = c.map(f32x4::splat);
+fn quartic(c: [f32; 5], x: Lanes<f32>) -> Lanes<f32> {
+    let c = c.map(Lanes::<f32>::splat);
     let x2 = x * x;
     (c[0] + c[1] * x) + ((c[2] + c[3] * x) + c[4] * x2) * x2
-}
-
-/// Rounded to single precision.
-#[inline(always)]
-pub(crate) fn single(lanes: f64x4) -> f32x4 {
-    f32x4::new(lanes.to_array().map(|lane| lane as f32))
-}
-
-/// The sum of four numbers, always in the same order.
-#[inline(always)]
-pub(crate) fn sum(lanes: f32x4) -> f64 {
-    let [a, b, c, d] = lanes.to_array().map(f64::from);
-    (a + b) + (c + d)
 }
 
 #[cfg(test)]
@@ -65,8 +52,8 @@ mod tests {
     use game::stream::Stream;
 
     fn one(turns: f64) -> (f64, f64) {
-        let (sin, cos) = sin_cos_turns(f64x4::splat(turns));
-        (f64::from(sin.to_array()[0]), f64::from(cos.to_array()[0]))
+        let (sin, cos) = sin_cos_turns(Lanes::<f64>::splat(turns));
+        (f64::from(sin.0[0]), f64::from(cos.0[0]))
     }
 
     /// libm's of the same angle, brought within half a turn without error.

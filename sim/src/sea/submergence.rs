@@ -2,59 +2,46 @@
 
 use super::heading::{HeadingTable, Segment};
 use super::hull_wave::Patch;
-use super::sine::sum;
-use super::wave::{LANES, PlaneWave, WaveField, lanes};
+use super::wave::{PlaneWave, WaveField, row_count, side_by_side, waves_of_row};
 use super::wave_response::{HEAVE, PITCH, ROLL, quasi_static, transfer};
+use crate::lanes::{LANES, Lanes, ROW};
 use game::boat::Boat;
 use game::frame::Body;
-use wide::f32x4;
 
 /// How the submergence of the two propellers of a kind of boat changes in a field of waves.
 #[derive(Clone, Debug)]
 pub struct Submergence {
-    /// Port per cosine and per sine of the phase amidships, then starboard, m.
-    change: HeadingTable<4>,
+    /// Port and starboard per cosine of the phase amidships, then both per sine, m.
+    change: HeadingTable,
 }
 
 impl Submergence {
     /// That of propellers at `places` of a boat like this.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat, places: [Body; 2]) -> Submergence {
-        let chunks: Vec<&[PlaneWave]> = field.waves.chunks(LANES).collect();
-        let change = HeadingTable::new(chunks.len(), |row, heading_rad| {
-            let parts = lanes(chunks[row], |w| {
+        let change = HeadingTable::new(row_count(&field.waves), |row, heading_rad| {
+            let parts: [[f64; 4]; ROW] = side_by_side(waves_of_row(&field.waves, row), |w| {
                 let [port, starboard] = places.map(|place| change_of(w, boat, heading_rad, place));
-                [port.0, port.1, starboard.0, starboard.1]
+                [port.0, starboard.0, port.1, starboard.1]
             });
-            std::array::from_fn(|part| f32x4::new(parts.map(|parts| parts[part] as f32)))
+            std::array::from_fn(|part| parts.map(|parts| parts[part] as f32))
         });
         Submergence { change }
     }
 
     /// The numbers for a heading, for [`HullWaves::at_with`](super::HullWaves::at_with), which has the phases at hand.
     #[inline(always)]
-    pub(super) fn lines(&self, heading_rad: f64) -> (&[[Segment; 4]], f32x4) {
-        self.change.at(heading_rad)
+    pub(super) fn lines(&self, heading_rad: f64) -> &[Segment] {
+        self.change.at(heading_rad).0
     }
 }
 
-/// The submergence of both propellers, summed over the components four at a time.
-#[derive(Clone, Copy, Default)]
-pub(super) struct PropellerSums {
-    port: f32x4,
-    starboard: f32x4,
-}
-
-impl PropellerSums {
-    #[inline(always)]
-    pub(super) fn add(&mut self, lines: &[Segment; 4], fraction: f32x4, sin: f32x4, cos: f32x4) {
-        self.port += lines[0].at_fraction(fraction) * cos + lines[1].at_fraction(fraction) * sin;
-        self.starboard += lines[2].at_fraction(fraction) * cos + lines[3].at_fraction(fraction) * sin;
-    }
-
-    #[inline(always)]
-    pub(super) fn submergence_change_m(&self) -> [f64; 2] {
-        [sum(self.port), sum(self.starboard)]
+/// Adds what the waves of a row change, by these numbers of it, sines and cosines: the first for port, the second for starboard.
+#[inline(always)]
+pub(super) fn add(change_m: &mut Lanes<f32>, line: Lanes<f32>, sin: Lanes<f32>, cos: Lanes<f32>) {
+    const HALF: usize = LANES / 2;
+    for i in 0..HALF {
+        change_m.0[i] += line.0[i] * cos.0[i] + line.0[HALF + i] * sin.0[HALF + i];
     }
 }
 

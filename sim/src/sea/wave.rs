@@ -4,17 +4,15 @@
 //! through it meets it at the frequency of encounter, ω − k·V, simply because it is asked for where they are.
 //! What it does to a hull stands in [`HullWaves`](super::HullWaves).
 
-use super::sine::{sin_cos_turns, single, sum};
+use super::sine::sin_cos_turns;
 use super::spectrum;
 use crate::hull::Planar;
+use crate::lanes::{FOLD, LANES, Lanes, ROW};
 use game::boat::Boat;
 use game::frame::Ned;
+use game::instructions::{Instructions, Kernel};
 use game::sea::{GRAVITY_M_S2, Waves};
 use std::f64::consts::TAU;
-use wide::{f32x4, f64x4};
-
-/// Components side by side.
-pub(super) const LANES: usize = 4;
 
 /// One plane wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,60 +113,90 @@ pub fn wavenumber_rad_m(omega_rad_s: f64, depth_m: f64) -> f64 {
     k
 }
 
-/// Phases of four components, in turns: they fall by `per_s` and rise by `per_north_m` and `per_east_m`.
+/// Phases of sixteen components, in turns: they fall by `per_s` and rise by `per_north_m` and `per_east_m`.
 ///
 /// After a day the phase of the fastest wave is some 10^5 turns, which an f64 holds to 10^-11 turns.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Phases {
-    start: f64x4,
-    per_s: f64x4,
-    per_north_m: f64x4,
-    per_east_m: f64x4,
+    start: Lanes<f64>,
+    per_s: Lanes<f64>,
+    per_north_m: Lanes<f64>,
+    per_east_m: Lanes<f64>,
 }
 
 impl Phases {
     pub(super) fn new(waves: &[PlaneWave]) -> Phases {
         Phases {
-            start: f64x4::new(lanes(waves, |w| w.component.phase_rad / TAU)),
-            per_s: f64x4::new(lanes(waves, |w| w.component.omega_rad_s / TAU)),
-            per_north_m: f64x4::new(lanes(waves, |w| w.wavenumber_rad_m * w.toward.north / TAU)),
-            per_east_m: f64x4::new(lanes(waves, |w| w.wavenumber_rad_m * w.toward.east / TAU)),
+            start: Lanes(side_by_side(waves, |w| w.component.phase_rad / TAU)),
+            per_s: Lanes(side_by_side(waves, |w| w.component.omega_rad_s / TAU)),
+            per_north_m: Lanes(side_by_side(waves, |w| w.wavenumber_rad_m * w.toward.north / TAU)),
+            per_east_m: Lanes(side_by_side(waves, |w| w.wavenumber_rad_m * w.toward.east / TAU)),
         }
     }
 
     /// Sine and cosine of the phases at a place and time.
     #[inline(always)]
-    pub(super) fn sin_cos(&self, at: Ned, time_s: f64) -> (f32x4, f32x4) {
-        let there = self.per_north_m * f64x4::splat(at.north) + self.per_east_m * f64x4::splat(at.east);
-        sin_cos_turns(there + (self.start - self.per_s * f64x4::splat(time_s)))
+    pub(super) fn sin_cos(&self, at: Ned, time_s: f64) -> (Lanes<f32>, Lanes<f32>) {
+        sin_cos_turns(self.along(at) + (self.start - self.per_s * Lanes::<f64>::splat(time_s)))
     }
 
     /// By how much the phases rise per second for someone who moves, rad/s: minus the frequency of encounter.
     #[inline(always)]
-    pub(super) fn rate_rad_s(&self, velocity_m_s: Ned) -> f32x4 {
-        let there =
-            self.per_north_m * f64x4::splat(velocity_m_s.north) + self.per_east_m * f64x4::splat(velocity_m_s.east);
-        single((there - self.per_s) * f64x4::splat(TAU))
+    pub(super) fn rate_rad_s(&self, velocity_m_s: Ned) -> Lanes<f32> {
+        ((self.along(velocity_m_s) - self.per_s) * Lanes::<f64>::splat(TAU)).single()
+    }
+
+    /// By how much they rise along a way.
+    #[inline(always)]
+    fn along(&self, way: Ned) -> Lanes<f64> {
+        self.per_north_m * Lanes::<f64>::splat(way.north) + self.per_east_m * Lanes::<f64>::splat(way.east)
     }
 }
 
-/// `part` of up to four waves; lanes without a wave are 0.
-pub(super) fn lanes<T: Default>(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> T) -> [T; LANES] {
+/// `part` of up to as many waves as there are lanes; lanes without a wave are 0.
+pub(super) fn side_by_side<T: Default, const N: usize>(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> T) -> [T; N] {
     std::array::from_fn(|lane| waves.get(lane).map_or_else(T::default, &part))
 }
 
-/// [`lanes`] of a number, in single precision.
-pub(super) fn side_by_side(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> f64) -> f32x4 {
-    f32x4::new(lanes(waves, |w| part(w) as f32))
+/// [`side_by_side`] of a number of each of a row's waves, in single precision.
+pub(super) fn row_of(waves: &[PlaneWave], part: impl Fn(&PlaneWave) -> f64) -> [f32; ROW] {
+    side_by_side(waves, |w| part(w) as f32)
 }
 
-/// Four components of the surface side by side.
+/// How many rows stand for so many waves: as many as fill all lanes.
+pub(super) fn row_count(waves: &[PlaneWave]) -> usize {
+    FOLD * waves.len().div_ceil(LANES)
+}
+
+/// The waves of a row; beyond the last wave there are none.
+pub(super) fn waves_of_row(waves: &[PlaneWave], row: usize) -> &[PlaneWave] {
+    waves.chunks(ROW).nth(row).unwrap_or_default()
+}
+
+/// Sixteen components of the surface side by side.
+#[derive(Clone, Copy, Debug)]
+struct SurfaceBlock {
+    phases: Phases,
+    rows: [SurfaceRow; FOLD],
+}
+
+/// Four components of the surface: elevation, slope to the north, slope to the east, and nothing.
 #[derive(Clone, Copy, Debug)]
 struct SurfaceRow {
-    phases: Phases,
-    amplitude_m: f32x4,
-    slope_north: f32x4,
-    slope_east: f32x4,
+    per_cos: Lanes<f32>,
+    per_sin: Lanes<f32>,
+}
+
+impl SurfaceRow {
+    fn new(waves: &[PlaneWave]) -> SurfaceRow {
+        let nothing = [0.0; ROW];
+        let slope =
+            |part: fn(Ned) -> f64| row_of(waves, |w| -w.component.amplitude_m * w.wavenumber_rad_m * part(w.toward));
+        SurfaceRow {
+            per_cos: Lanes::of_row([row_of(waves, |w| w.component.amplitude_m), nothing, nothing, nothing]),
+            per_sin: Lanes::of_row([nothing, slope(|toward| toward.north), slope(|toward| toward.east), nothing]),
+        }
+    }
 }
 
 /// The surface at a point.
@@ -185,7 +213,8 @@ pub struct Surface {
 pub struct WaveField {
     pub(super) waves: Vec<PlaneWave>,
     pub(super) drift_factor: f64,
-    rows: Vec<SurfaceRow>,
+    pub(super) instructions: Instructions,
+    blocks: Vec<SurfaceBlock>,
 }
 
 impl WaveField {
@@ -200,14 +229,18 @@ impl WaveField {
     pub fn of(components: &[Component], depth_m: Option<f64>, drift_factor: f64) -> WaveField {
         let depth_m = depth_m.unwrap_or(f64::INFINITY);
         let waves: Vec<PlaneWave> = components.iter().map(|c| PlaneWave::new(*c, depth_m)).collect();
-        let row = |waves: &[PlaneWave]| SurfaceRow {
+        let block = |waves: &[PlaneWave]| SurfaceBlock {
             phases: Phases::new(waves),
-            amplitude_m: side_by_side(waves, |w| w.component.amplitude_m),
-            slope_north: side_by_side(waves, |w| -w.component.amplitude_m * w.wavenumber_rad_m * w.toward.north),
-            slope_east: side_by_side(waves, |w| -w.component.amplitude_m * w.wavenumber_rad_m * w.toward.east),
+            rows: std::array::from_fn(|row| SurfaceRow::new(waves_of_row(waves, row))),
         };
-        let rows = waves.chunks(LANES).map(row).collect();
-        WaveField { waves, drift_factor, rows }
+        let blocks = waves.chunks(LANES).map(block).collect();
+        WaveField { waves, drift_factor, instructions: Instructions::best(), blocks }
+    }
+
+    /// The same field, worked out with these instructions, and what is made of it: which ones changes nothing but how long it takes.
+    #[must_use]
+    pub fn with_instructions(self, instructions: Instructions) -> WaveField {
+        WaveField { instructions, ..self }
     }
 
     /// The components.
@@ -231,14 +264,8 @@ impl WaveField {
     /// The surface at a place and time, of all components.
     #[must_use]
     pub fn surface(&self, at: Ned, time_s: f64) -> Surface {
-        let (mut elevation, mut north, mut east) = (f32x4::ZERO, f32x4::ZERO, f32x4::ZERO);
-        for row in &self.rows {
-            let (sin, cos) = row.phases.sin_cos(at, time_s);
-            elevation += row.amplitude_m * cos;
-            north += row.slope_north * sin;
-            east += row.slope_east * sin;
-        }
-        Surface { elevation_m: sum(elevation), slope: Ned { north: sum(north), east: sum(east) } }
+        let sums = self.instructions.run(SurfaceAt { blocks: &self.blocks, at, time_s });
+        Surface { elevation_m: sums.sum(0), slope: Ned { north: sums.sum(1), east: sums.sum(2) } }
     }
 
     /// Significant wave height, m: four standard deviations of the elevation.
@@ -320,5 +347,28 @@ impl WaveField {
     /// The mean of the square of what is `per_m` of amplitude, its own square given.
     fn mean(&self, per_m_squared: impl Fn(&PlaneWave) -> f64) -> f64 {
         self.waves.iter().map(|w| 0.5 * w.component.amplitude_m * w.component.amplitude_m * per_m_squared(w)).sum()
+    }
+}
+
+/// The sums over the rows of elevation and slopes at a place and time.
+struct SurfaceAt<'a> {
+    blocks: &'a [SurfaceBlock],
+    at: Ned,
+    time_s: f64,
+}
+
+impl Kernel for SurfaceAt<'_> {
+    type Output = Lanes<f32>;
+
+    #[inline(always)]
+    fn run(self) -> Lanes<f32> {
+        let mut sums = Lanes::<f32>::splat(0.0);
+        for block in self.blocks {
+            let (sin, cos) = block.phases.sin_cos(self.at, self.time_s);
+            for (i, row) in block.rows.iter().enumerate() {
+                sums += row.per_cos * cos.row(i) + row.per_sin * sin.row(i);
+            }
+        }
+        sums
     }
 }

@@ -5,11 +5,11 @@
 
 use super::heading::HeadingTable;
 use super::hull_wave::Patch;
-use super::sine::sum;
-use super::wave::{LANES, Phases, PlaneWave, WaveField, lanes, side_by_side};
+use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, side_by_side, waves_of_row};
+use crate::lanes::{FOLD, LANES, Lanes, ROW};
 use game::boat::Boat;
 use game::frame::{Ned, Pose};
-use wide::f32x4;
+use game::instructions::{Instructions, Kernel};
 
 /// Natural frequency, rad/s, and damping ratio: those of the Otter in Fossen's Marine Systems Simulator. A hull as long as
 /// the Otter has much the same.
@@ -44,40 +44,61 @@ pub struct Attitude {
 /// own speed is left out, the frequency of encounter is not.
 #[derive(Clone, Debug)]
 pub struct WaveResponse {
-    rows: Vec<Row>,
-    /// Heave per cosine, roll and pitch per sine of the phase, before the springs respond.
-    quasi_static: HeadingTable<3>,
+    instructions: Instructions,
+    blocks: Vec<Block>,
+    /// Heave per cosine, roll and pitch per sine of the phase, before the springs respond; and nothing.
+    quasi_static: HeadingTable,
 }
 
-/// Four components side by side: what does not depend on the heading.
+/// Sixteen components side by side: what does not depend on the heading.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    phases: Phases,
+    rows: [Row; FOLD],
+}
+
+/// How the springs of heave, roll and pitch pass four components on, and nothing: the factors on the sine and the cosine of the
+/// phase. The phase falls with time, so what lags has a phase that is ahead.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    phases: Phases,
-    heave: Transfer,
-    roll: Transfer,
-    pitch: Transfer,
+    /// What becomes of the cosine of the phase in heave, and of the sine of it in roll and pitch.
+    value: Passed,
+    /// The derivatives of these by the phase.
+    slope: Passed,
 }
 
-/// A spring's transfer function at four frequencies: the parts in phase with the waves and a quarter turn behind.
+/// A factor on the sine and one on the cosine.
 #[derive(Clone, Copy, Debug)]
-struct Transfer {
-    real: f32x4,
-    behind: f32x4,
+struct Passed {
+    of_sin: Lanes<f32>,
+    of_cos: Lanes<f32>,
 }
 
-impl Transfer {
-    fn new(waves: &[PlaneWave], (natural_rad_s, damping): (f64, f64)) -> Transfer {
-        let fraction = |pick: fn((f64, f64)) -> f64| {
-            side_by_side(waves, |w| pick(transfer(natural_rad_s, damping, w.component.omega_rad_s)))
-        };
-        Transfer { real: fraction(|(real, _)| real), behind: fraction(|(_, behind)| behind) }
-    }
-
-    /// The sine and cosine of the phase as the spring passes them on. The phase falls with time, so what lags has a phase
-    /// that is ahead.
+impl Passed {
     #[inline(always)]
-    fn apply(&self, sin: f32x4, cos: f32x4) -> (f32x4, f32x4) {
-        (self.real * sin + self.behind * cos, self.real * cos - self.behind * sin)
+    fn of(&self, sin: Lanes<f32>, cos: Lanes<f32>) -> Lanes<f32> {
+        self.of_sin * sin + self.of_cos * cos
+    }
+}
+
+impl Row {
+    fn new(waves: &[PlaneWave]) -> Row {
+        let part = |spring: (f64, f64), pick: fn((f64, f64)) -> f64| {
+            row_of(waves, |w| pick(transfer(spring.0, spring.1, w.component.omega_rad_s)))
+        };
+        let real = |spring| part(spring, |(real, _)| real);
+        let behind = |spring| part(spring, |(_, behind)| behind);
+        let minus = |numbers: [f32; ROW]| numbers.map(|number| -number);
+        let springs = |heave: [f32; ROW], roll_and_pitch: &dyn Fn((f64, f64)) -> [f32; ROW]| {
+            Lanes::of_row([heave, roll_and_pitch(ROLL), roll_and_pitch(PITCH), [0.0; ROW]])
+        };
+        Row {
+            value: Passed { of_sin: springs(minus(behind(HEAVE)), &real), of_cos: springs(real(HEAVE), &behind) },
+            slope: Passed {
+                of_sin: springs(minus(real(HEAVE)), &|spring| minus(behind(spring))),
+                of_cos: springs(minus(behind(HEAVE)), &real),
+            },
+        }
     }
 }
 
@@ -93,56 +114,80 @@ impl WaveResponse {
     /// The response of a boat like this to the waves of `field`.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat) -> WaveResponse {
-        let chunks: Vec<&[PlaneWave]> = field.waves.chunks(LANES).collect();
-        let row = |waves: &&[PlaneWave]| Row {
+        let block = |waves: &[PlaneWave]| Block {
             phases: Phases::new(waves),
-            heave: Transfer::new(waves, HEAVE),
-            roll: Transfer::new(waves, ROLL),
-            pitch: Transfer::new(waves, PITCH),
+            rows: std::array::from_fn(|row| Row::new(waves_of_row(waves, row))),
         };
-        let quasi_static = HeadingTable::new(chunks.len(), |row, heading_rad| {
-            let parts = lanes(chunks[row], |w| quasi_static(w, boat, heading_rad));
-            [0, 1, 2].map(|n| f32x4::new(parts.map(|part| part[n] as f32)))
+        let quasi_static = HeadingTable::new(row_count(&field.waves), |row, heading_rad| {
+            let waves = waves_of_row(&field.waves, row);
+            let parts: [[f64; 3]; ROW] = side_by_side(waves, |w| quasi_static(w, boat, heading_rad));
+            let [heave, roll, pitch] = [0, 1, 2].map(|n| parts.map(|part| part[n] as f32));
+            [heave, roll, pitch, [0.0; ROW]]
         });
-        WaveResponse { rows: chunks.iter().map(row).collect(), quasi_static }
+        let blocks = field.waves.chunks(LANES).map(block).collect();
+        WaveResponse { instructions: field.instructions, blocks, quasi_static }
+    }
+
+    pub(super) fn set_instructions(&mut self, instructions: Instructions) {
+        self.instructions = instructions;
     }
 
     /// The attitude of a boat that moves over the ground at this velocity and turns at this rate.
     #[must_use]
     pub fn at(&self, pose: Pose, velocity_m_s: Ned, turn_rad_s: f64, time_s: f64) -> Attitude {
-        let (mut heave, mut roll, mut pitch) = (f32x4::ZERO, f32x4::ZERO, f32x4::ZERO);
-        let (mut heave_rate, mut roll_rate, mut pitch_rate) = (f32x4::ZERO, f32x4::ZERO, f32x4::ZERO);
-        let mut heave_acceleration = f32x4::ZERO;
-        let (lines, fraction) = self.quasi_static.at(pose.psi_rad);
-        let turn = f32x4::splat(turn_rad_s as f32);
-        for (row, lines) in self.rows.iter().zip(lines) {
-            let (sin, cos) = row.phases.sin_cos(pose.at, time_s);
-            let rate = row.phases.rate_rad_s(velocity_m_s);
-            let now = [lines[0].at_fraction(fraction), lines[1].at_fraction(fraction), lines[2].at_fraction(fraction)];
-
-            let (heave_sin, heave_cos) = row.heave.apply(sin, cos);
-            heave += now[0] * heave_cos;
-            let swing = now[0] * rate;
-            heave_rate += lines[0].per_rad() * turn * heave_cos - swing * heave_sin;
-            heave_acceleration -= swing * rate * heave_cos;
-
-            let (roll_sin, roll_cos) = row.roll.apply(sin, cos);
-            roll += now[1] * roll_sin;
-            roll_rate += lines[1].per_rad() * turn * roll_sin + now[1] * rate * roll_cos;
-
-            let (pitch_sin, pitch_cos) = row.pitch.apply(sin, cos);
-            pitch += now[2] * pitch_sin;
-            pitch_rate += lines[2].per_rad() * turn * pitch_sin + now[2] * rate * pitch_cos;
-        }
+        let Sums { values, rates, heave_acceleration } =
+            self.instructions.run(At { response: self, pose, velocity_m_s, turn_rad_s, time_s });
         Attitude {
-            heave_up_m: sum(heave),
-            roll_rad: sum(roll),
-            pitch_rad: sum(pitch),
-            heave_up_m_s: sum(heave_rate),
-            roll_rad_s: sum(roll_rate),
-            pitch_rad_s: sum(pitch_rate),
-            heave_up_m_s2: sum(heave_acceleration),
+            heave_up_m: values.sum(0),
+            roll_rad: values.sum(1),
+            pitch_rad: values.sum(2),
+            heave_up_m_s: rates.sum(0),
+            roll_rad_s: rates.sum(1),
+            pitch_rad_s: rates.sum(2),
+            heave_up_m_s2: heave_acceleration.sum(0),
         }
+    }
+}
+
+/// Sums over the rows: of heave, roll and pitch.
+struct Sums {
+    values: Lanes<f32>,
+    rates: Lanes<f32>,
+    heave_acceleration: Lanes<f32>,
+}
+
+/// [`WaveResponse::at`], but for what is done with the sums: done here, it would decide how these lie in the registers.
+struct At<'a> {
+    response: &'a WaveResponse,
+    pose: Pose,
+    velocity_m_s: Ned,
+    turn_rad_s: f64,
+    time_s: f64,
+}
+
+impl Kernel for At<'_> {
+    type Output = Sums;
+
+    #[inline(always)]
+    fn run(self) -> Sums {
+        let nothing = Lanes::<f32>::splat(0.0);
+        let mut sums = Sums { values: nothing, rates: nothing, heave_acceleration: nothing };
+        let (lines, fraction) = self.response.quasi_static.at(self.pose.psi_rad);
+        let turn = Lanes::<f32>::splat(self.turn_rad_s as f32);
+        for (block, lines) in self.response.blocks.iter().zip(lines.as_chunks::<FOLD>().0) {
+            let (sin, cos) = block.phases.sin_cos(self.pose.at, self.time_s);
+            let rate_rad_s = block.phases.rate_rad_s(self.velocity_m_s);
+            for (i, (row, line)) in block.rows.iter().zip(lines).enumerate() {
+                let (sin, cos, rate_rad_s) = (sin.row(i), cos.row(i), rate_rad_s.row(i));
+                let value = row.value.of(sin, cos);
+                let now = line.at_fraction(fraction);
+                let swing = now * rate_rad_s;
+                sums.values += now * value;
+                sums.rates += line.per_rad() * turn * value + swing * row.slope.of(sin, cos);
+                sums.heave_acceleration = sums.heave_acceleration - swing * rate_rad_s * value;
+            }
+        }
+        sums
     }
 }
 

@@ -1,8 +1,8 @@
-//! Which instructions of the processor the solver uses, chosen while it runs.
+//! Which instructions of the processor the longest loops use, chosen while the program runs.
 //!
-//! The program is compiled for every processor of its kind. The loops of the solver are compiled again for those that have
-//! wider registers: the same operations, one by one, on more numbers at a time. No operation is fused with another or put
-//! elsewhere, so all of them come to the same bits.
+//! The program is compiled for every processor of its kind. The loops that take most of the time, those of a helm's solver and
+//! those over the components of waves, are compiled again for processors that have wider registers: the same operations, one by
+//! one, on more numbers at a time. No operation is fused with another or put elsewhere, so all of them come to the same bits.
 
 /// A set of instructions that this machine has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ enum Set {
 
 /// A calculation that is compiled for each set of instructions. What it calls must be inlined into it, or that part stays as
 /// it is for all.
-pub(crate) trait Kernel {
+pub trait Kernel {
     /// What it comes to.
     type Output;
 
@@ -67,9 +67,9 @@ impl Instructions {
             reason = "code for a processor that was found while the program runs cannot be called otherwise"
         )
     )]
-    pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            Set::Baseline => kernel.run(),
+            Set::Baseline => with_baseline(kernel),
             // SAFETY: only `of_this_machine` makes this value, on a processor that has these instructions.
             #[cfg(target_arch = "x86_64")]
             Set::Avx2 => unsafe { with_avx2(kernel) },
@@ -78,6 +78,12 @@ impl Instructions {
             Set::Avx512 => unsafe { with_avx512(kernel) },
         }
     }
+}
+
+/// Not inlined, as the others cannot be: what is done with the result has no say in how the kernel is compiled.
+#[inline(never)]
+fn with_baseline<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run()
 }
 
 #[cfg(target_arch = "x86_64")]

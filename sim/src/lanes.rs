@@ -1,0 +1,125 @@
+//! Numbers side by side, as they lie in wide registers.
+//!
+//! Every operation is a plain loop over all of them, which becomes one instruction, or several where registers are narrower.
+//! Which it is changes no bit: each number is worked out by itself, rounded by IEEE 754, and none is fused.
+
+use std::ops::{Add, AddAssign, Div, Mul, Sub};
+
+/// As many single numbers as the widest registers hold: components of waves side by side.
+pub(crate) const LANES: usize = 16;
+
+/// Components of a row. Sums over the components are kept by their place in the row, so that these do not wait for each other.
+pub(crate) const ROW: usize = 4;
+
+/// Rows side by side; or numbers for each component of one row.
+pub(crate) const FOLD: usize = LANES / ROW;
+
+/// Numbers side by side. Sixteen are one for each of sixteen components, or four for each component of a row, all of the first
+/// number before all of the second.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(crate) struct Lanes<T, const N: usize = LANES>(pub(crate) [T; N]);
+
+macro_rules! operators {
+    ($number:ty: $($trait:ident $method:ident $operator:tt),*) => {
+        $(impl<const N: usize> $trait for Lanes<$number, N> {
+            type Output = Lanes<$number, N>;
+
+            #[inline(always)]
+            fn $method(mut self, other: Lanes<$number, N>) -> Lanes<$number, N> {
+                for i in 0..N {
+                    self.0[i] $operator other.0[i];
+                }
+                self
+            }
+        })*
+    };
+}
+
+operators!(f32: Add add +=, Sub sub -=, Mul mul *=);
+operators!(f64: Add add +=, Sub sub -=, Mul mul *=, Div div /=);
+
+impl<const N: usize> AddAssign for Lanes<f32, N> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Lanes<f32, N>) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Copy, const N: usize> Lanes<T, N> {
+    /// The same number in all places.
+    #[inline(always)]
+    pub(crate) fn splat(number: T) -> Lanes<T, N> {
+        Lanes([number; N])
+    }
+}
+
+impl<const N: usize> Lanes<f64, N> {
+    /// Rounded to single precision.
+    #[inline(always)]
+    pub(crate) fn single(self) -> Lanes<f32, N> {
+        let mut single = Lanes::splat(0.0);
+        for i in 0..N {
+            single.0[i] = self.0[i] as f32;
+        }
+        single
+    }
+
+    /// The same numbers without their signs.
+    #[inline(always)]
+    pub(crate) fn abs(mut self) -> Lanes<f64, N> {
+        for number in &mut self.0 {
+            *number = number.abs();
+        }
+        self
+    }
+
+    /// These numbers, which are not negative, with the signs of others.
+    #[inline(always)]
+    pub(crate) fn with_signs_of(mut self, others: Lanes<f64, N>) -> Lanes<f64, N> {
+        for i in 0..N {
+            self.0[i] = self.0[i].copysign(others.0[i]);
+        }
+        self
+    }
+}
+
+/// In each place, the number of `first` where that of `a` is at most that of `b`, and the number of `second` where it is not.
+#[inline(always)]
+pub(crate) fn where_at_most<const N: usize>(
+    (a, b): (Lanes<f64, N>, Lanes<f64, N>),
+    first: Lanes<f64, N>,
+    second: Lanes<f64, N>,
+) -> Lanes<f64, N> {
+    let mut chosen = second;
+    for i in 0..N {
+        chosen.0[i] = if a.0[i] <= b.0[i] { first.0[i] } else { second.0[i] };
+    }
+    chosen
+}
+
+impl Lanes<f32> {
+    /// Four numbers for each component of a row.
+    pub(crate) fn of_row(numbers: [[f32; ROW]; FOLD]) -> Lanes<f32> {
+        let mut lanes = Lanes::splat(0.0);
+        lanes.0.copy_from_slice(numbers.as_flattened());
+        lanes
+    }
+
+    /// The numbers of one row out of those of sixteen components, four times over.
+    #[inline(always)]
+    pub(crate) fn row(&self, row: usize) -> Lanes<f32> {
+        let mut repeated = Lanes::splat(0.0);
+        for i in 0..LANES {
+            repeated.0[i] = self.0[ROW * row + i % ROW];
+        }
+        repeated
+    }
+
+    /// The sum of one of four numbers over the components of a row, always in the same order.
+    #[inline(always)]
+    pub(crate) fn sum(&self, number: usize) -> f64 {
+        let at = |place: usize| f64::from(self.0[ROW * number + place]);
+        (at(0) + at(1)) + (at(2) + at(3))
+    }
+}
