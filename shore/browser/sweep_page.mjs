@@ -9,6 +9,6 @@ import { ROOT } from './harness.mjs';
 export function writePage(report, path) {
   const json = JSON.stringify(report).replaceAll('</', '<\\/').replaceAll('<!--', '<\\!--');
   const page = readFileSync(join(ROOT, 'sweep/src/report.html'), 'utf8');
-  writeFileSync(path, page.replace('/*REPORT*/null', () => json));
+  writeFileSync(path, page.replace('<title></title>', () => `<title>${report.sweep}</title>`).replace('/*REPORT*/null', () => json));
   return pathToFileURL(path).href;
 }
