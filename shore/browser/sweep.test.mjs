@@ -20,7 +20,8 @@ async function sweep(t, more = '') {
   const place = folder(t);
   const game = gameFile(t, 'short', 'surveyor_2v2.toml', 'duration_s = 60');
   const entry = (name) => `[[entry]]\nname = "${name}"\nstrategy = "${scenario(`strategies/${name}.toml`)}"\n`;
-  const axes = more || `[[axis]]\nkey = "sea.wind.speed_m_s"\nvalues = [1, 12]\n[[axis]]\nkey = "boat.gps.noise_m"\nrange = [0.1, 10]\nlog = true\ncount = 3\n`;
+  const axes = more || '[[axis]]\nkey = "sea.wind.speed_m_s"\nvalues = [1, 12]\n'
+    + '[[axis]]\nkey = "boat.gps.noise_m"\nrange = [0.1, 10]\nlog = true\ncount = 3\n';
   const file = join(place, 'short.toml');
   writeFileSync(file, `about = ${JSON.stringify(HOSTILE)}\ngame = "${game}"\nopponent = "${scenario('strategies/strategy_3.toml')}"\ngames = 4\n`
     + `${entry('strategy_4')}${entry('strategy_5')}${axes}`);
@@ -34,7 +35,8 @@ async function sweep(t, more = '') {
 
 /** Opens a page without a network. The test fails on whatever its console says and on whatever it asks for. */
 async function open(t, address, more = {}) {
-  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, offline: true, permissions: ['clipboard-read', 'clipboard-write'], ...more });
+  const permissions = ['clipboard-read', 'clipboard-write'];
+  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, offline: true, permissions, ...more });
   const page = await context.newPage();
   const [said, asked] = [[], []];
   page.on('console', (message) => said.push(message.text()));
@@ -43,7 +45,7 @@ async function open(t, address, more = {}) {
   t.after(async () => {
     await context.close();
     assert.deepEqual(said, [], 'the console of the page');
-    assert.deepEqual(asked.filter((url) => url.split('#')[0] !== address), [], 'what the page asks for but itself');
+    assert.deepEqual(asked.filter((url) => url.split('#')[0] !== address.split('#')[0]), [], 'what the page asks for but itself');
   });
   await page.goto(address);
   return page;
@@ -103,7 +105,7 @@ test('the metric that is chosen changes every chart, and an entry that is hidden
   await page.click('#legend button >> nth=0');
   assert.equal(await page.locator('#curve-charts .card >> nth=0 >> path.line').count(), report.entries.length - 1);
   assert.equal(await page.locator('#tornado-charts .card').count(), report.entries.length - 1);
-  // Games of two boats without batteries have no energy if the boats have none.
+  // No metric makes an error: that the console stays empty is seen at the end.
   for (const { name } of report.metrics) await page.selectOption('#metric', name);
 });
 
@@ -113,7 +115,10 @@ test('the values of a level are shown to a pointer and to a keyboard', async (t)
   const card = page.locator('#curve-charts .card').first();
   const { levels } = report.effects[0];
   const wins = metric(report, 'win_share');
-  const has = async (level, box) => assert((await box.textContent()).includes(percent(levels[level].metrics[wins].mean)), `level ${level}: ${await box.textContent()}`);
+  const has = async (level, box) => {
+    const text = await box.textContent();
+    assert(text.includes(percent(levels[level].metrics[wins].mean)), `level ${level}: ${text}`);
+  };
   const box = card.locator('.values');
   assert(!(await box.isVisible()));
   const { x, y, width } = await card.locator('.chart').boundingBox();
@@ -150,6 +155,19 @@ test('a command that is copied is the command of the report', async (t) => {
   assert.equal(await copied(), report.worst.at(-1).command);
 });
 
+test('the points are sorted by the column that is pressed', async (t) => {
+  const { page: address, report } = await sweep(t);
+  const page = await open(t, `${address}#metric=distance_m`);
+  const column = page.getByRole('columnheader', { name: report.entries[1] }).last().getByRole('button');
+  const order = () => page.locator('#points-table tbody th').evaluateAll((all) => all.map((head) => Number(head.textContent)));
+  const mean = (point) => report.points[point].entries[1].metrics[metric(report, 'distance_m')].mean;
+  const rising = report.points.map((_, point) => point).sort((a, b) => mean(a) - mean(b));
+  await column.click();
+  assert.deepEqual(await order(), rising);
+  await column.click();
+  assert.deepEqual(await order(), rising.toReversed());
+});
+
 test('texts of a report are texts, and never script', async (t) => {
   const { out, report } = await sweep(t);
   const command = `squall run '${HOSTILE}'`;
@@ -172,8 +190,9 @@ test('a sweep that is not finished says so, and shows what there is', async (t) 
   const none = (list) => list.map(() => null);
   const point = (each, i) => (i < 3 ? each : { ...each, seeds: 0, entries: each.entries.map((one) => ({ ...one, metrics: none(one.metrics) })),
     differences: each.differences.map((one) => ({ ...one, metrics: none(one.metrics) })) });
-  const unfinished = { ...report, games_done: report.games / 2, points: report.points.map(point), interactions: [],
-    effects: report.effects.map((effect) => ({ ...effect, contrasts: none(effect.contrasts), levels: effect.levels.map((level, i) => (i === 0 ? level : { ...level, metrics: none(level.metrics) })) })) };
+  const level = (each, i) => (i === 0 ? each : { ...each, metrics: none(each.metrics) });
+  const effects = report.effects.map((effect) => ({ ...effect, contrasts: none(effect.contrasts), levels: effect.levels.map(level) }));
+  const unfinished = { ...report, games_done: report.games / 2, points: report.points.map(point), interactions: [], effects };
   const page = await open(t, writePage(unfinished, join(out, 'unfinished.html')));
   assert.match(await page.textContent('#chips'), new RegExp(`not finished: ${report.games / 2} of ${report.games} games`));
   assert.equal(await page.locator('#heat-charts .card >> nth=0 >> td.none').count(), report.points.length - 3);
@@ -182,7 +201,8 @@ test('a sweep that is not finished says so, and shows what there is', async (t) 
 });
 
 test('the page fits screens from a phone to a desk', async (t) => {
-  const axes = `[[axis]]\nkey = "opponent"\nvalues = [${['strategy_3', 'strategy_4_assigned'].map((name) => JSON.stringify(scenario(`strategies/${name}.toml`))).join(', ')}]\n`;
+  const files = ['strategy_3', 'strategy_4_assigned'].map((name) => scenario(`strategies/${name}.toml`));
+  const axes = `[[axis]]\nkey = "opponent"\nvalues = ${JSON.stringify(files)}\n`;
   const { page: address, out } = await sweep(t, axes);
   assert.deepEqual(readdirSync(out).filter((name) => name.endsWith('.html')), ['report.html']);
   for (const [width, height] of [[390, 844], [1400, 900], [1920, 1080]]) {
