@@ -1,0 +1,215 @@
+// The page of a sweep: one file on a disk, opened without a network.
+
+import assert from 'node:assert/strict';
+import { readdirSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { after, before, test } from 'node:test';
+import { folder, gameFile, openBrowser, readJson, scenario, squall } from './harness.mjs';
+import { writePage } from './sweep_page.mjs';
+
+let browser;
+before(async () => { browser = await openBrowser(); });
+after(() => browser.close());
+
+/** What would change the title of the page if it ever ran. */
+const HOSTILE = '</script><script>document.title = "owned"</script><img src=x onerror="document.title=\'owned\'">';
+
+/** Plays a sweep of short games: two entries, and two axes of two and three levels unless `more` has others. */
+async function sweep(t, more = '') {
+  const place = folder(t);
+  const game = gameFile(t, 'short', 'surveyor_2v2.toml', 'duration_s = 60');
+  const entry = (name) => `[[entry]]\nname = "${name}"\nstrategy = "${scenario(`strategies/${name}.toml`)}"\n`;
+  const axes = more || '[[axis]]\nkey = "sea.wind.speed_m_s"\nvalues = [1, 12]\n'
+    + '[[axis]]\nkey = "boat.gps.noise_m"\nrange = [0.1, 10]\nlog = true\ncount = 3\n';
+  const file = join(place, 'short.toml');
+  writeFileSync(file, `about = ${JSON.stringify(HOSTILE)}\ngame = "${game}"\nopponent = "${scenario('strategies/strategy_3.toml')}"\ngames = 4\n`
+    + `${entry('strategy_4')}${entry('strategy_5')}${axes}`);
+  const out = join(place, 'out');
+  await squall(t, 'sweep', file, '--out', out, '--jobs', '2');
+  const report = readJson(join(out, 'report.json'));
+  const page = join(out, 'report.html');
+  // To work on the page without building the program, as on the live page.
+  return { out, report, page: process.env.SQUALL_WEB ? writePage(report, page) : pathToFileURL(page).href };
+}
+
+/** Opens a page without a network. The test fails on whatever its console says and on whatever it asks for. */
+async function open(t, address, more = {}) {
+  const permissions = ['clipboard-read', 'clipboard-write'];
+  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, offline: true, permissions, ...more });
+  const page = await context.newPage();
+  const [said, asked] = [[], []];
+  page.on('console', (message) => said.push(message.text()));
+  page.on('pageerror', (error) => said.push(error.stack ?? error.message));
+  page.on('request', (request) => /^(file|http|ws)/.test(request.url()) && asked.push(request.url()));
+  t.after(async () => {
+    await context.close();
+    assert.deepEqual(said, [], 'the console of the page');
+    assert.deepEqual(asked.filter((url) => url.split('#')[0] !== address.split('#')[0]), [], 'what the page asks for but itself');
+  });
+  await page.goto(address);
+  return page;
+}
+
+/** The index of a metric, and what the page makes of a number of it. */
+const metric = (report, name) => report.metrics.findIndex((each) => each.name === name);
+const percent = (mean) => `${Number((100 * mean).toPrecision(3))}`.replace('-', '−');
+
+test('the page of a sweep shows curves, a heat map and a tornado chart of what the report says', async (t) => {
+  const { page: address, report } = await sweep(t);
+  const page = await open(t, address);
+  assert.equal(await page.title(), report.sweep);
+  assert.equal(await page.textContent('#about'), HOSTILE);
+  assert.match(await page.textContent('#chips'), new RegExp(`all ${report.games} games played`));
+
+  const charts = page.locator('#curve-charts .card');
+  assert.equal(await charts.count(), report.axes.length);
+  for (const [axis, key] of report.axes.entries()) {
+    const lines = charts.nth(axis).locator('path.line');
+    assert.equal(await charts.nth(axis).getAttribute('data-axis'), key);
+    assert.deepEqual(await lines.evaluateAll((all) => all.map((line) => line.dataset.entry)), report.entries);
+    const corners = await lines.evaluateAll((all) => all.map((line) => line.getAttribute('d').match(/[ML]/g).length));
+    assert.deepEqual(corners, report.entries.map(() => report.effects[axis * report.entries.length].levels.length));
+    assert.equal(await charts.nth(axis).locator('path.band').count(), report.entries.length);
+  }
+  assert.equal(await charts.nth(1).locator('.scale').textContent(), 'logarithmic scale');
+
+  const wins = metric(report, 'win_share');
+  const cells = await page.locator('#heat-charts .card').first().locator('tbody td').allTextContents();
+  assert.deepEqual(cells, report.points.map((point) => percent(point.entries[0].metrics[wins].mean)));
+  await page.selectOption('#heat-rows', '1');
+  assert.equal(await page.locator('#heat-charts .card').first().locator('tbody tr').count(), 3);
+
+  for (const [i, entry] of report.entries.entries()) {
+    const tornado = page.locator('#tornado-charts .card').nth(i);
+    assert.equal(await tornado.locator('.bar').count(), report.axes.length);
+    const means = report.effects.filter((effect) => effect.entry === entry).map((effect) => [effect.axis, Math.abs(effect.contrasts[wins].mean)]);
+    const sorted = means.sort(([, a], [, b]) => b - a).map(([key]) => key);
+    assert.deepEqual(await tornado.locator('li').evaluateAll((all) => all.map((row) => row.dataset.axis)), sorted);
+  }
+});
+
+test('the metric that is chosen changes every chart, and an entry that is hidden leaves them', async (t) => {
+  const { page: address, report } = await sweep(t);
+  const page = await open(t, address);
+  const places = ['#curve-charts', '#heat-charts', '#tornado-charts', '#differences-table', '#points-table'];
+  const shown = () => Promise.all(places.map((place) => page.innerHTML(place)));
+  const before = await shown();
+  await page.selectOption('#metric', 'distance_m');
+  (await shown()).forEach((now, i) => assert.notEqual(now, before[i], `${places[i]} stays as it was`));
+  const { mean } = report.points[0].entries[0].metrics[metric(report, 'distance_m')];
+  assert((await page.textContent('#points-table tbody td.estimate')).startsWith(mean >= 100 ? mean.toFixed(0) : `${Number(mean.toPrecision(3))}`));
+  await page.reload();
+  assert.equal(await page.inputValue('#metric'), 'distance_m', 'the address keeps the metric');
+
+  await page.click('#legend button >> nth=0');
+  assert.equal(await page.locator('#curve-charts .card >> nth=0 >> path.line').count(), report.entries.length - 1);
+  assert.equal(await page.locator('#tornado-charts .card').count(), report.entries.length - 1);
+  // No metric makes an error: that the console stays empty is seen at the end.
+  for (const { name } of report.metrics) await page.selectOption('#metric', name);
+});
+
+test('the values of a level are shown to a pointer and to a keyboard', async (t) => {
+  const { page: address, report } = await sweep(t);
+  const page = await open(t, address);
+  const card = page.locator('#curve-charts .card').first();
+  const { levels } = report.effects[0];
+  const wins = metric(report, 'win_share');
+  const has = async (level, box) => {
+    const text = await box.textContent();
+    assert(text.includes(percent(levels[level].metrics[wins].mean)), `level ${level}: ${text}`);
+  };
+  const box = card.locator('.values');
+  assert(!(await box.isVisible()));
+  const { x, y, width } = await card.locator('.chart').boundingBox();
+  await page.mouse.move(x + width - 40, y + 60);
+  assert(await box.isVisible());
+  await has(1, box);
+  await page.mouse.move(5, 5);
+  assert(!(await box.isVisible()));
+  await card.locator('.chart').focus();
+  await has(0, box);
+  await page.keyboard.press('ArrowRight');
+  await has(1, box);
+  assert((await page.textContent('#said')).includes(report.entries[1]));
+  await page.keyboard.press('Escape');
+  assert(!(await box.isVisible()));
+});
+
+test('a command that is copied is the command of the report', async (t) => {
+  const { page: address, report } = await sweep(t);
+  const page = await open(t, address);
+  const copied = () => page.evaluate(() => navigator.clipboard.readText());
+  const rows = page.locator('#points-table tbody tr');
+  assert.equal(await rows.count(), report.points.length);
+  for (const at of [0, report.points.length - 1]) {
+    await rows.nth(at).getByRole('button', { name: 'Copy' }).click();
+    await page.waitForFunction((at) => document.querySelectorAll('#points-table tbody button')[at].textContent === 'Copied', at);
+    assert.equal(await copied(), report.points[at].command);
+    assert.equal(await rows.nth(at).locator('code').textContent(), report.points[at].command);
+  }
+  const games = page.locator('#worst-list .game');
+  assert.equal(await games.count(), report.worst.length);
+  await games.last().getByRole('button').click();
+  await page.waitForFunction(() => [...document.querySelectorAll('#worst-list button')].at(-1).textContent === 'Copied');
+  assert.equal(await copied(), report.worst.at(-1).command);
+});
+
+test('the points are sorted by the column that is pressed', async (t) => {
+  const { page: address, report } = await sweep(t);
+  const page = await open(t, `${address}#metric=distance_m`);
+  const column = page.getByRole('columnheader', { name: report.entries[1] }).last().getByRole('button');
+  const order = () => page.locator('#points-table tbody th').evaluateAll((all) => all.map((head) => Number(head.textContent)));
+  const mean = (point) => report.points[point].entries[1].metrics[metric(report, 'distance_m')].mean;
+  const rising = report.points.map((_, point) => point).sort((a, b) => mean(a) - mean(b));
+  await column.click();
+  assert.deepEqual(await order(), rising);
+  await column.click();
+  assert.deepEqual(await order(), rising.toReversed());
+});
+
+test('texts of a report are texts, and never script', async (t) => {
+  const { out, report } = await sweep(t);
+  const command = `squall run '${HOSTILE}'`;
+  const hostile = { ...report, entries: report.entries.map(() => HOSTILE), axes: report.axes.map((key) => `${key}${HOSTILE}`),
+    failures: Array.from({ length: 30 }, (_, game) => ({ game, why: HOSTILE, command })) };
+  const page = await open(t, writePage(hostile, join(out, 'hostile.html')));
+  assert.equal(await page.title(), report.sweep);
+  assert.equal(await page.locator('img').count(), 0);
+  const cards = page.locator('#failures-list .game');
+  assert.equal(await cards.count(), 20, 'a page of them');
+  assert.equal(await cards.first().locator('.why').textContent(), HOSTILE);
+  assert.equal(await cards.first().locator('code').textContent(), command);
+  await page.getByRole('navigation', { name: 'Pages of failures' }).getByRole('button', { name: 'Next' }).click();
+  assert.equal(await cards.count(), 10);
+  assert.match(await page.textContent('#chips'), /30 could not start/);
+});
+
+test('a sweep that is not finished says so, and shows what there is', async (t) => {
+  const { out, report } = await sweep(t);
+  const none = (list) => list.map(() => null);
+  const point = (each, i) => (i < 3 ? each : { ...each, seeds: 0, entries: each.entries.map((one) => ({ ...one, metrics: none(one.metrics) })),
+    differences: each.differences.map((one) => ({ ...one, metrics: none(one.metrics) })) });
+  const level = (each, i) => (i === 0 ? each : { ...each, metrics: none(each.metrics) });
+  const effects = report.effects.map((effect) => ({ ...effect, contrasts: none(effect.contrasts), levels: effect.levels.map(level) }));
+  const unfinished = { ...report, games_done: report.games / 2, points: report.points.map(point), interactions: [], effects };
+  const page = await open(t, writePage(unfinished, join(out, 'unfinished.html')));
+  assert.match(await page.textContent('#chips'), new RegExp(`not finished: ${report.games / 2} of ${report.games} games`));
+  assert.equal(await page.locator('#heat-charts .card >> nth=0 >> td.none').count(), report.points.length - 3);
+  assert.equal(await page.locator('#tornado-charts .bar').count(), 0);
+  assert(!/NaN|undefined|null|Infinity/.test(await page.innerText('body')), 'a number that is none');
+});
+
+test('the page fits screens from a phone to a desk', async (t) => {
+  const files = ['strategy_3', 'strategy_4_assigned'].map((name) => scenario(`strategies/${name}.toml`));
+  const axes = `[[axis]]\nkey = "opponent"\nvalues = ${JSON.stringify(files)}\n`;
+  const { page: address, out } = await sweep(t, axes);
+  assert.deepEqual(readdirSync(out).filter((name) => name.endsWith('.html')), ['report.html']);
+  for (const [width, height] of [[390, 844], [1400, 900], [1920, 1080]]) {
+    for (const colorScheme of ['light', 'dark']) {
+      const page = await open(t, address, { viewport: { width, height }, colorScheme });
+      assert(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `wider than ${width}`);
+      assert(!(await page.isVisible('#heat')), 'one axis has no heat map');
+    }
+  }
+});
