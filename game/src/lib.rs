@@ -10,6 +10,7 @@ pub mod codec;
 pub mod count;
 pub mod event;
 pub mod external;
+pub mod fault;
 pub mod field;
 pub mod frame;
 pub mod gateway;

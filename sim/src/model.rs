@@ -14,6 +14,7 @@ use crate::thruster::ThrusterModel;
 use crate::world::WorldPlan;
 use game::angle::wrap_pi;
 use game::boat;
+use game::fault::{FaultKind, FaultSpan};
 use game::frame::{self, Ned, Rotation};
 use game::sensor::Sensors;
 use game::{Order, Pose, SimTime};
@@ -40,6 +41,17 @@ pub(crate) struct Model {
     pub(crate) contact: ContactModel,
     /// Pairs of boats within this are looked for, m.
     pub(crate) pairs_within_m: f64,
+    /// By vehicle: the faults of its thrusters.
+    thruster_faults: Vec<Vec<FaultSpan>>,
+}
+
+/// What is wrong with a thruster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Failing {
+    /// It stands still.
+    Lost,
+    /// It goes on as it went.
+    Stuck,
 }
 
 /// What drives a kind of boat.
@@ -73,7 +85,10 @@ impl Model {
         let sensors = |kind: usize| &plan.kinds[kind].sensors;
         let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
         let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
-            let model = || SensorModel::new(sensors(vehicle.kind), plan.sensor_period, plan.seed, vehicle.name);
+            let model = || {
+                let model = SensorModel::new(sensors(vehicle.kind), plan.sensor_period, plan.seed, vehicle.name);
+                model.with_faults(&vehicle.faults)
+            };
             place.map(|place| (place, model()))
         });
         Model {
@@ -82,6 +97,7 @@ impl Model {
             points: numbered(points),
             external: plan.vehicles.iter().map(|vehicle| vehicle.is_external).collect(),
             sensed: sensed.collect(),
+            thruster_faults: plan.vehicles.iter().map(|vehicle| thruster_faults(&vehicle.faults)).collect(),
             fleet: Fleet::new(plan.vehicles.iter().map(|vehicle| &hulls[vehicle.kind])),
             sea: SeaModel::new(plan.sea, plan.kinds, plan.field, plan.tick, plan.seed),
             contact: ContactModel::new(shapes, plan.field, plan.boats_are_solid, dt_s),
@@ -134,12 +150,28 @@ impl Model {
         }
     }
 
+    /// What is wrong with a vehicle's port and starboard thrusters at this time.
+    #[inline]
+    pub(crate) fn failing(&self, vehicle: usize, now: SimTime) -> [Option<Failing>; 2] {
+        let mut failing = [None; 2];
+        for span in self.thruster_faults[vehicle].iter().filter(|span| span.is_on(now)) {
+            match span.kind {
+                FaultKind::PortLost => failing[0] = Some(Failing::Lost),
+                FaultKind::StarboardLost => failing[1] = Some(Failing::Lost),
+                FaultKind::PortStuck => failing[0] = Some(Failing::Stuck),
+                FaultKind::StarboardStuck => failing[1] = Some(Failing::Stuck),
+                _ => {}
+            }
+        }
+        failing
+    }
+
     /// What moves a boat in this tick, and the current it is in: its thrusters take up its command, by the heading that
     /// its compass shows, and the sea does its part.
     #[inline]
     pub(crate) fn forcing(
         &self,
-        vehicle: usize,
+        (vehicle, failing): (usize, [Option<Failing>; 2]),
         boat: &mut BoatState,
         flaws: &mut FlawState,
         (rotation, heading_error_rad): (Rotation, f64),
@@ -154,7 +186,14 @@ impl Model {
             return (Forcing::default(), Ned::default());
         }
         let hull = &self.hulls[kind];
-        let settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), command);
+        let mut settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), command);
+        for (side, shaft) in [&boat.port, &boat.starboard].into_iter().enumerate() {
+            match failing[side] {
+                None => {}
+                Some(Failing::Lost) => settings[side] = 0.0,
+                Some(Failing::Stuck) => settings[side] = shaft.command,
+            }
+        }
         let from_sea = sea.forcing(kind, hull, boat.pose, rotation, boat.nu);
         let still_m = thruster.ventilation().map_or(0.0, |ventilation| ventilation.depth_m);
         let water_above_m = from_sea.submergence_change_m.map(|change_m| still_m + change_m);
@@ -276,6 +315,14 @@ fn numbered(counts: impl Iterator<Item = bool>) -> Vec<Option<usize>> {
 
 /// The settings of the thrusters, port and starboard, that a command asks for.
 #[inline]
+fn thruster_faults(faults: &[FaultSpan]) -> Vec<FaultSpan> {
+    let is_of_thrusters = |kind: FaultKind| {
+        use FaultKind::{PortLost, PortStuck, StarboardLost, StarboardStuck};
+        matches!(kind, PortLost | PortStuck | StarboardLost | StarboardStuck)
+    };
+    faults.iter().filter(|span| is_of_thrusters(span.kind)).copied().collect()
+}
+
 fn settings(
     boat: &mut BoatState,
     heading_error_rad: f64,

@@ -8,6 +8,7 @@ use crate::sea::{Attitude, SeaNow};
 use crate::sensor::{Reading, Truth};
 use crate::spawn::{self, NoStart};
 use crate::state::{BoatState, State};
+use game::fault::{FaultSpan, fault_spans};
 use game::frame::{self, Leg, Ned, Rotation};
 use game::instructions::Instructions;
 use game::near::{Near, Pair};
@@ -64,6 +65,8 @@ pub struct VehiclePlan<'a> {
     pub start: Pose,
     /// Whether it is a real boat: nothing here moves it.
     pub is_external: bool,
+    /// What of it fails, and when.
+    pub faults: Vec<FaultSpan>,
 }
 
 /// Memory that is used again every tick; all of it follows from the state.
@@ -112,7 +115,11 @@ impl World {
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
         let scenario = scenario.of_seed(seed)?;
         let starts = spawn::start_positions(&scenario, seed)?;
-        let vehicles = scenario.vehicles.iter().zip(starts).map(|(vehicle, start)| VehiclePlan {
+        let faults = |i: usize, name: &str| {
+            fault_spans(&scenario.faults, (VehicleId::at(i), name), seed, scenario.rules.time_limit)
+        };
+        let vehicles = scenario.vehicles.iter().zip(starts).enumerate().map(|(i, (vehicle, start))| VehiclePlan {
+            faults: faults(i, &vehicle.name),
             name: &vehicle.name,
             kind: vehicle.boat,
             start,
@@ -307,7 +314,9 @@ impl World {
         work.currents_m_s.clear();
         for (i, boat) in state.boats.iter_mut().enumerate() {
             let heading = (work.rotations[i], model.heading_error_rad(i, &state.senses));
-            let (forcing, current_m_s) = model.forcing(i, boat, &mut state.flaws[i], heading, commands[i], &sea);
+            let failing = model.failing(i, state.now);
+            let (forcing, current_m_s) =
+                model.forcing((i, failing), boat, &mut state.flaws[i], heading, commands[i], &sea);
             work.forcings.push(forcing);
             work.currents_m_s.push(current_m_s);
         }

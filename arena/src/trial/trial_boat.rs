@@ -35,7 +35,7 @@ impl TrialBoat {
     /// A boat at its start. `seed` chooses the randomness of the sea and of its sensors.
     #[must_use]
     pub fn new(boat: &Boat, sea: &Sea, tick: SimTime, seed: u64, start: &Start) -> TrialBoat {
-        let vehicle = VehiclePlan { name: "boat", kind: 0, start: Pose::default(), is_external: false };
+        let vehicle = VehiclePlan { name: "boat", kind: 0, start: Pose::default(), is_external: false, faults: vec![] };
         let mut world = World::new(&WorldPlan {
             boats_are_solid: true,
             tick,

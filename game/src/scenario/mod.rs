@@ -43,6 +43,7 @@ pub use sweep::{Axis, AxisValue, Design, Sweep};
 pub use tournament::{Entrant, Tournament};
 
 use crate::boat::Boat;
+use crate::fault::Fault;
 use crate::field::Field;
 use crate::frame::Pose;
 use crate::id::{TeamId, VehicleId};
@@ -78,6 +79,9 @@ pub struct Scenario {
     pub sea: Sea,
     /// Over which radio links minds and boats talk; `None` is at once and without loss.
     pub link: Option<Link>,
+    /// What fails in the midst of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
     /// Who against whom.
     pub teams: Vec<Team>,
     /// The kinds of boat that occur.

@@ -4,6 +4,7 @@
 //! network node and the in-process arena do just that and nothing else, so a game is the same bytes in both. The world
 //! is physics alone: what a boat does in a tick is worked out in [`Contest::effective_command`].
 
+mod faults;
 mod order;
 mod snapshot;
 mod state;
@@ -19,6 +20,7 @@ use crate::view::Scene;
 use crate::world::World;
 use game::boat::Drive;
 use game::event::{EventCursor, Logged};
+use game::fault::FaultSpan;
 use game::input::Input;
 use game::message::Frame;
 use game::outcome::{Outcome, Played};
@@ -39,6 +41,8 @@ pub struct Contest {
     watchdogs: Vec<Option<SimTime>>,
     world: World,
     radio: Option<Radio>,
+    /// By vehicle: the faults of its agent and of its link.
+    faults: Vec<Vec<FaultSpan>>,
     sightings: Option<Sightings>,
     state: ContestState,
     work: Work,
@@ -91,6 +95,7 @@ impl Contest {
         };
         Ok(Contest {
             radio: Radio::new(&scenario),
+            faults: (0..count).map(|i| faults::of(&scenario, VehicleId::at(i), seed)).collect(),
             sightings: Sightings::new(&scenario),
             watchdogs: (0..count).map(|i| watchdog(&scenario, VehicleId::at(i))).collect(),
             referee,
@@ -260,7 +265,7 @@ impl Contest {
 
     /// Boats look round and report.
     fn gather(&mut self) {
-        let Contest { scenario, world, radio, sightings, state, .. } = self;
+        let Contest { scenario, world, radio, sightings, state, faults, .. } = self;
         let ContestState { standing, decision, known, tracks, .. } = state;
         let (decision, now) = (*decision, world.state().now);
         let scene = Scene { scenario, world, standing, decision };
@@ -269,6 +274,10 @@ impl Contest {
             sightings.look(decision, oldest, (0..tracks.len()).map(|i| scene.contact(i)));
         }
         for (i, (known, track)) in known.iter_mut().zip(tracks).enumerate() {
+            // What a boat does not report, nobody knows.
+            if faults::is_silent(&faults[i], now) {
+                continue;
+            }
             let mut report = scene.own_boat(i);
             let mut take = |sent: u64| {
                 if let Some(sightings) = sightings {
@@ -337,6 +346,7 @@ impl Contest {
             if self.is_over() {
                 break;
             }
+            self.begin_and_end_faults();
             self.deliver_orders();
             self.watch_real_boats();
             self.step();

@@ -25,6 +25,9 @@ impl Contest {
         let (order, i, now) = (checked.unwrap_or_default(), vehicle.index(), self.now());
         let given_at = given_at.min(now);
         self.note(Input::Ordered { vehicle, order, given_at });
+        if self.is_cut_off(vehicle) {
+            return checked.map(drop);
+        }
         let in_force = &mut self.state.orders[i];
         in_force.given_at = given_at;
         match &mut self.radio {

@@ -11,6 +11,7 @@
 use super::{Truth, whole_ticks};
 use game::SimTime;
 use game::angle::wrap_pi;
+use game::fault::{FaultKind, FaultSpan};
 use game::math;
 use game::sensor::Compass;
 use game::stream::Noise;
@@ -22,6 +23,8 @@ pub struct CompassModel {
     compass: Compass,
     noise: Noise,
     period: SimTime,
+    /// Faults of the game.
+    faults: Vec<FaultSpan>,
 }
 
 /// Everything that changes about a compass.
@@ -41,6 +44,7 @@ impl CompassModel {
             compass: compass.clone(),
             noise: Noise::new(seed, &format!("compass/{vehicle}")),
             period: whole_ticks(compass.period_s, tick),
+            faults: vec![],
         }
     }
 
@@ -53,6 +57,16 @@ impl CompassModel {
         a + b * sin + c * cos + d * (2.0 * sin * cos) + e * (cos * cos - sin * sin)
     }
 
+    /// Faults that befall it in the midst of the game.
+    pub fn set_faults(&mut self, faults: &[FaultSpan]) {
+        self.faults = faults.iter().filter(|span| span.kind == FaultKind::CompassOffset).copied().collect();
+    }
+
+    /// How far those put it off, rad.
+    fn fault_rad(&self, now: SimTime) -> Option<f64> {
+        self.faults.iter().filter(|span| span.is_on(now)).map(|span| span.offset_rad).reduce(|sum, one| sum + one)
+    }
+
     /// The heading that the boat reads at `now`, rad, -pi to pi: that of the last period.
     pub fn read(&self, state: &mut CompassState, truth: &Truth, now: SimTime) -> f64 {
         if now.0 % self.period.0 == 0 {
@@ -62,6 +76,9 @@ impl CompassModel {
             let magnetic_rad = psi_rad - self.compass.declination_error_rad - self.deviation_rad(psi_rad);
             let error_rad = self.compass.thrust_error_rad * truth.thrust_share + self.compass.noise_rad * noise;
             state.psi_rad = wrap_pi(magnetic_rad + error_rad);
+            if let Some(off_rad) = self.fault_rad(now) {
+                state.psi_rad = wrap_pi(state.psi_rad + off_rad);
+            }
             state.error_rad = wrap_pi(state.psi_rad - psi_rad);
         }
         state.psi_rad

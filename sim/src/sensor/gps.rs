@@ -7,7 +7,9 @@
 use super::{GaussMarkovStep, Truth, whole_ticks};
 use crate::two_state::TwoStateChain;
 use game::SimTime;
+use game::fault::{FaultKind, FaultSpan};
 use game::frame::Ned;
+use game::math;
 use game::sensor::{Gps, Outage};
 use game::stream::Noise;
 use serde::{Deserialize, Serialize};
@@ -48,6 +50,8 @@ pub struct GpsModel {
     /// Probability of a jump at a fix.
     jump_chance: f64,
     jump_m: f64,
+    /// Faults of the game, beside those of its own.
+    faults: Vec<FaultSpan>,
 }
 
 /// Everything that changes about a receiver. The default is the state before the game.
@@ -96,7 +100,19 @@ impl GpsModel {
             freeze: chain(gps.freeze, period),
             jump_chance: -libm::expm1(-gps.jump.rate_per_s * period.as_s()),
             jump_m: gps.jump.sigma_m,
+            faults: vec![],
         }
+    }
+
+    /// Faults that befall it in the midst of the game.
+    pub fn set_faults(&mut self, faults: &[FaultSpan]) {
+        let is_of_gps = |kind| matches!(kind, FaultKind::GpsFrozen | FaultKind::GpsLost | FaultKind::GpsOffset);
+        self.faults = faults.iter().filter(|span| is_of_gps(span.kind)).copied().collect();
+    }
+
+    /// The fault of a kind that is going on, if one is.
+    fn fault(&self, kind: FaultKind, now: SimTime) -> Option<&FaultSpan> {
+        self.faults.iter().find(|span| span.kind == kind && span.is_on(now))
     }
 
     /// The last fix that has come out by `now`. The receiver has been on since before the game: the fix of time 0 is
@@ -109,9 +125,10 @@ impl GpsModel {
         if now.0 % self.period.0 == 0 {
             let number = (now.0 / self.period.0) as u64;
             let fix = self.take(state, truth, now, number);
-            if number == 0 || (self.latency == SimTime::ZERO && !state.dropped) {
+            let dropped = state.dropped || self.fault(FaultKind::GpsLost, now).is_some();
+            if number == 0 || (self.latency == SimTime::ZERO && !dropped) {
                 state.latest = fix;
-            } else if !state.dropped {
+            } else if !dropped {
                 assert!(state.under_way.len() < UNDER_WAY_MAX, "a latency is at most {UNDER_WAY_MAX} periods");
                 state.under_way.push_back(fix);
             }
@@ -133,12 +150,18 @@ impl GpsModel {
                 state.jump = normal(3, self.jump_m);
             }
         }
-        let measured = Fix {
+        let mut measured = Fix {
             at: now,
             position: truth.pose.at + state.bias + state.jump + normal(1, self.noise_m),
             velocity_m_s: truth.velocity_m_s() + normal(2, self.velocity_noise_m_s),
         };
-        let freezes = number > 0 && self.freeze.next(state.frozen.is_some(), uniform(1));
+        if let Some(span) = self.fault(FaultKind::GpsOffset, now) {
+            let (sin, cos) = math::sin_cos(span.direction_rad);
+            measured.position = measured.position + Ned { north: cos, east: sin }.scaled(span.offset_m);
+        }
+        let freezes = number > 0
+            && (self.freeze.next(state.frozen.is_some(), uniform(1))
+                || self.fault(FaultKind::GpsFrozen, now).is_some());
         state.frozen = freezes.then(|| state.frozen.unwrap_or(measured));
         // A frozen receiver still stamps its fixes anew: who reads them cannot tell by their age.
         state.frozen.map_or(measured, |frozen| Fix { at: now, ..frozen })

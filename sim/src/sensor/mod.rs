@@ -13,6 +13,7 @@ use crate::hull::Planar;
 use crate::sea::Attitude;
 use compass::{CompassModel, CompassState};
 use game::frame::{Ned, Pose, Rotation, body_from_ned};
+use game::fault::FaultSpan;
 use game::math;
 use game::picture::Nav;
 use game::sensor::Sensors;
@@ -89,6 +90,18 @@ impl SensorModel {
             compass: sensors.compass.as_ref().map(|compass| CompassModel::new(compass, tick, seed, vehicle)),
             imu: sensors.imu.as_ref().map(|imu| ImuModel::new(imu, tick, seed, vehicle)),
         }
+    }
+
+    /// The same sensors with these faults.
+    #[must_use]
+    pub fn with_faults(mut self, faults: &[FaultSpan]) -> SensorModel {
+        if let Some(gps) = &mut self.gps {
+            gps.set_faults(faults);
+        }
+        if let Some(compass) = &mut self.compass {
+            compass.set_faults(faults);
+        }
+        self
     }
 
     /// What the boat knows at `now`: a whole number of ticks, every one of them from 0 on in turn.

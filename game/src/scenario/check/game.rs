@@ -139,6 +139,8 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
         start_position,
         source: entry.source,
     });
+    let vehicles: Vec<Vehicle> = vehicles.collect();
+    let faults = super::fault::faults(diagnostics, document, &vehicles, &boats.items);
     let mut link = raw.link.clone();
     if !document.has("link.station") {
         let middle = field.seen_from(TeamId(0), 0.5 * field.plan.width_m, 0.5 * field.plan.depth_m);
@@ -158,7 +160,8 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
         teams: raw.team.iter().map(|team| Team { name: team.name.0.clone() }).collect(),
         boats: boats.items,
         strategies: strategies.items,
-        vehicles: vehicles.collect(),
+        vehicles,
+        faults,
         drawn: vec![],
         recipe: None,
     };

@@ -5,6 +5,7 @@
 
 mod algorithm;
 mod boat;
+mod fault;
 mod field;
 mod game;
 mod gateway;

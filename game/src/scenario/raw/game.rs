@@ -1,10 +1,12 @@
 //! A game file as typed.
 
 use super::{FilePath, Name, Position};
+use crate::fault::Fault;
 use crate::link::Link;
 use crate::scenario::Source;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// A game: where, by which rules, on what water, and who plays. Paths are relative to the file they stand in.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -20,6 +22,9 @@ pub(crate) struct Game {
     /// Over which radio links minds and boats talk. Default at once and without loss.
     #[schemars(extend("x-drawn" = true))]
     pub(crate) link: Option<Link>,
+    /// What fails in the midst of the game, under names that single values and sweeps know it by.
+    #[schemars(extend("default" = {}))]
+    pub(crate) fault: BTreeMap<String, Fault>,
     /// Chooses the game.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub(crate) seed: u64,
