@@ -72,6 +72,11 @@ impl FlawModel {
 }
 
 impl FlawState {
+    /// Puts a setting in the place of all that are on their way to one of the thrusters.
+    pub(crate) fn replace_under_way(&mut self, side: usize, setting: f64) {
+        self.under_way.iter_mut().for_each(|settings| settings[side] = setting);
+    }
+
     /// Sends `settings` off; gives those that arrive.
     #[inline]
     pub(crate) fn pass(&mut self, settings: [f64; 2]) -> [f64; 2] {

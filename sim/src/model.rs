@@ -188,11 +188,10 @@ impl Model {
         let hull = &self.hulls[kind];
         let mut settings = settings(boat, heading_error_rad, (hull, thruster, autopilot), command);
         for (side, shaft) in [&boat.port, &boat.starboard].into_iter().enumerate() {
-            match failing[side] {
-                None => {}
-                Some(Failing::Lost) => settings[side] = 0.0,
-                Some(Failing::Stuck) => settings[side] = shaft.command,
-            }
+            let Some(failing) = failing[side] else { continue };
+            settings[side] = if failing == Failing::Lost { 0.0 } else { shaft.command };
+            // What is under way to it does not count either.
+            flaws.replace_under_way(side, settings[side]);
         }
         let from_sea = sea.forcing(kind, hull, boat.pose, rotation, boat.nu);
         let still_m = thruster.ventilation().map_or(0.0, |ventilation| ventilation.depth_m);
