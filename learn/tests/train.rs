@@ -40,6 +40,7 @@ fn short() -> Training {
         rewards: file("rewards/bold.toml"),
         helm: helm.map(file),
         teacher: None,
+        mates: None,
         self_play: 1.0,
         past_selves: 1.0,
         strategies: 1.0,
