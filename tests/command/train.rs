@@ -125,7 +125,8 @@ fn each_nth_episode_of_a_training_is_recorded_and_can_be_replayed() {
         .map(|entry| format!("games/{}", entry.unwrap().file_name().to_str().unwrap()))
         .collect();
     let mut told: Vec<String> = named.iter().map(|(_, file)| (*file).to_owned()).collect();
-    (files.sort(), told.sort());
+    files.sort();
+    told.sort();
     assert_eq!(files, told, "a file for each episode that ended, and no other");
     for (seed, file) in [named[0], named[named.len() - 1]] {
         assert!(file.starts_with(&format!("games/{seed}_")), "{file} is of seed {seed}");
