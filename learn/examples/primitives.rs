@@ -26,7 +26,7 @@ const HOME: f64 = 0.125;
 enum Actor {
     Policy(Box<Network>),
     Stops,
-    Random(Stream),
+    Random(Box<Stream>),
 }
 
 impl Actor {
@@ -146,7 +146,7 @@ fn main() {
         for (who, mut actor) in [
             ("policy", Actor::Policy(Box::new(network))),
             ("stopped", Actor::Stops),
-            ("random", Actor::Random(Stream::new(1, "random"))),
+            ("random", Actor::Random(Box::new(Stream::new(1, "random")))),
         ] {
             let all = played(setup.clone(), &mut actor, episodes);
             let [guard, shield, clear] = all.among.map(|sum| sum / all.looks);
