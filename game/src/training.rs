@@ -185,6 +185,10 @@ pub struct Stage {
     /// A strategy that plays the policy's boats in this stage, so that the policy learns to do as it does (behaviour cloning) and the
     /// critic what comes of it. Default none: the policy plays.
     pub teacher: Option<Teacher>,
+    /// The strategy file of its mates: the policy sails one boat of its team, each by turns, and this strategy the others. Default none:
+    /// the policy sails all.
+    #[schemars(with = "Option<FilePath>")]
+    pub mates: Option<PathBuf>,
     /// How often the policy plays against itself as it is, in comparison with the other opponents.
     #[schemars(range(min = 0, max = 1_000_000), extend("default" = 0))]
     pub self_play: f64,

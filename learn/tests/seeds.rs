@@ -2,7 +2,7 @@
 
 use agent::{Action, ActionSpace};
 use game::TeamId;
-use learn::environment::{Games, RawObservation, RawSetup, Rows, SetupError};
+use learn::environment::{CriticInput, Games, RawObservation, RawSetup, Rows, SetupError};
 use std::path::{Path, PathBuf};
 
 fn scenario(file: &str) -> PathBuf {
@@ -23,6 +23,7 @@ fn raw() -> RawSetup {
         opponents: vec![(1.0, Some(scenario("strategies/pav01.toml")))],
         rewards: Some(scenario("rewards/bold.toml")),
         discount: 0.99,
+        critic: CriticInput::Observation,
     }
 }
 

@@ -2,9 +2,11 @@
 
 use game::scenario;
 use game::training::{CriticInput, Evaluation, Layers, League, Ppo, Stage, Teacher, Training};
+use learn::environment::{Moment, Watch};
 use learn::train::{Progress, StateError, Trainer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 
 fn file(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(path)
@@ -40,6 +42,7 @@ fn short() -> Training {
         rewards: file("rewards/bold.toml"),
         helm: helm.map(file),
         teacher: None,
+        mates: None,
         self_play: 1.0,
         past_selves: 1.0,
         strategies: 1.0,
@@ -98,6 +101,32 @@ fn the_same_file_trains_the_same_weights_on_any_number_of_threads_and_resumed() 
     }
     assert!(taken_up > 2, "{taken_up}");
     assert!(trainer.state() == state);
+}
+
+#[test]
+fn episodes_that_are_seen_have_the_numbers_that_are_told_and_change_nothing() {
+    let plain = trained(Trainer::new(short(), 2).unwrap_or_else(|error| panic!("{error}")), &mut vec![]);
+    let ended: Arc<Mutex<BTreeSet<(u64, u64)>>> = Arc::default();
+    let kept = Arc::clone(&ended);
+    let watches = move |number: u64| {
+        number.is_multiple_of(3).then(|| -> Watch {
+            let kept = Arc::clone(&kept);
+            Box::new(move |contest, moment| {
+                if moment == Moment::End {
+                    kept.lock().expect("nobody panics").insert((contest.scenario().seed, number));
+                }
+            })
+        })
+    };
+    let mut trainer = Trainer::new(short(), 2).unwrap_or_else(|error| panic!("{error}"));
+    trainer.watch(Arc::new(watches)).unwrap_or_else(|error| panic!("{error}"));
+    let mut progress = vec![];
+    let trainer = trained(trainer, &mut progress);
+    assert!(trainer.state() == plain.state(), "what is seen is learnt from differently");
+    let told = progress.iter().flat_map(|one| &one.finished).map(|(one, _)| (one.standing.seed, one.number));
+    let told: BTreeSet<(u64, u64)> = told.filter(|(_, number)| number.is_multiple_of(3)).collect();
+    assert!(told.len() > 10, "{told:?}");
+    assert_eq!(told, *ended.lock().expect("nobody panics"));
 }
 
 /// Learns what strategy 2 is at, as options of another strategy.

@@ -5,7 +5,7 @@ use game::event::EventCursor;
 use game::input::Input;
 use game::message::Frame;
 use game::{Outcome, Scenario};
-use learn::environment::{Games, Moment, RawObservation, RawSetup, Rows, Watch};
+use learn::environment::{CriticInput, Games, Moment, RawObservation, RawSetup, Rows, Watch};
 use sim::Contest;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -64,6 +64,7 @@ fn seen(starts: Option<u32>, steps: usize, every: u64, play: impl Fn(&mut Games,
         opponents: vec![(1.0, Some(scenario("strategies/pav01.toml")))],
         rewards: None,
         discount: 0.99,
+        critic: CriticInput::Observation,
     };
     let all: Arc<Mutex<Vec<Arc<Mutex<Seen>>>>> = Arc::default();
     let kept = Arc::clone(&all);

@@ -24,6 +24,7 @@ class Setup(TypedDict):
     opponents: list[tuple[float, str | None]]
     rewards: str | None
     discount: float
+    state: bool
 
 class Scene(TypedDict):
     """The truth about a game: m along the field from the first team's end, m across it to that team's port."""
@@ -59,6 +60,11 @@ class VectorEnvironment:
     """(rows, numbers): what every boat is shown."""
     final_observations: NDArray[np.float32]
     """(rows, numbers): what it was shown last in a game that ended in the last step. Other rows are stale."""
+    states: NDArray[np.float32]
+    """(rows, len(state_names)): the truth as a row's boat would tell it; 0 for boats that are given no actions. No numbers without the
+    setup's `state`."""
+    final_states: NDArray[np.float32]
+    """The same at the end of a game that ended in the last step. Other rows are stale."""
     rewards: NDArray[np.float32]
     """(rows,)"""
     counts: NDArray[np.bool_]
@@ -70,6 +76,8 @@ class VectorEnvironment:
     rows: int
     rows_per_game: int
     observation_names: list[str]
+    state_names: list[str]
+    """What the numbers of a state are called; none without the setup's `state`."""
     action_count: int | None
     """How many discrete actions there are; None where actions are continuous."""
     action_names: list[str] | None

@@ -19,6 +19,7 @@ from squall.setup import (
     native_environment,
     needs_no_policy,
     observation_space,
+    state_space,
 )
 from squall.vector import seen_by_enemy
 
@@ -26,7 +27,10 @@ Shown = dict[str, NDArray[np.float32]]
 
 
 class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[misc]
-    """A game whose agents are boats, under their names in the game."""
+    """A game whose agents are boats, under their names in the game.
+
+    With `state=True`, `state()` is the truth about the game, for critics that are to know more than any agent; see the package's README.
+    """
 
     metadata: ClassVar[dict[str, Any]] = {
         "render_modes": ["human", "rgb_array"],
@@ -34,10 +38,10 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
         "name": "squall_v0",
     }
 
-    def __init__(self, *, seed: int | None, render_mode: str | None, options: Options) -> None:
+    def __init__(self, *, seed: int | None, render_mode: str | None, state: bool, options: Options) -> None:
         check_render_mode(render_mode, self.metadata["render_modes"])
         record = folder_to_show(render_mode)
-        self.native = native_environment(options, seed=seed, games=1, threads=1, record=record)
+        self.native = native_environment(options, seed=seed, games=1, threads=1, state=state, record=record)
         self._recordings = Recordings(self, self.native, render_mode)
         self.render_mode = render_mode
         names = self.native.boat_names
@@ -47,7 +51,10 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
         spaces = observation_space(self.native, options, None), action_space(self.native, None)
         self.observation_spaces = dict.fromkeys(self.possible_agents, spaces[0])
         self.action_spaces = {agent: action_space(self.native, None) for agent in self.possible_agents}
+        if state:
+            self.state_space = state_space(self.native)
         self._is_new = True
+        self._is_over = False
 
     @property
     def observation_names(self) -> list[str]:
@@ -58,6 +65,22 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
     def action_names(self) -> list[str] | None:
         """What the discrete actions are called, in their order; None where actions are continuous."""
         return self.native.action_names
+
+    @property
+    def state_names(self) -> list[str]:
+        """What the numbers of the state are called, in their order; none without `state=True`."""
+        return self.native.state_names
+
+    def state(self) -> NDArray[np.float32]:
+        """The truth about the game as its first agent would tell it, after the last step of a game how that ended.
+
+        Raises NotImplementedError without `state=True`.
+        """
+        if not self.native.state_names:
+            raise NotImplementedError("the truth about a game is told by parallel_env(state=True)")
+        states = self.native.final_states if self._is_over else self.native.states
+        first: NDArray[np.float32] = states[0].copy()
+        return first
 
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
         """What an agent is shown; the same object for all."""
@@ -74,7 +97,7 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
         if seed is not None or not self._is_new:
             self.native.restart(seed)
             self._recordings.show()
-        self.agents, self._is_new = list(self.possible_agents), True
+        self.agents, self._is_new, self._is_over = list(self.possible_agents), True, False
         return self._by_agent(self.native.observations.copy()), self._infos(self.native.standing(0))
 
     def step(
@@ -94,7 +117,7 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
         shown = native.final_observations if is_over else native.observations
         infos = self._infos(native.finished()[0][2] if is_over else native.standing(0))
         rewards = dict(zip(agents, native.rewards.tolist(), strict=True))
-        self._is_new = is_over
+        self._is_new = self._is_over = is_over
         if is_over:
             self.agents = []
             self._recordings.show()
@@ -123,21 +146,22 @@ class SquallParallelEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ig
 
 
 def parallel_env(
-    *, seed: int | None = None, render_mode: str | None = None, **options: Unpack[Options]
+    *, seed: int | None = None, render_mode: str | None = None, state: bool = False, **options: Unpack[Options]
 ) -> SquallParallelEnv:
     """One game as PettingZoo's `ParallelEnv`.
 
     With `team`, the boats of the team of that name are agents, with `opponents` as in the other environments; without, all boats
     are, and `opponents` may not be given. An agent's `info` says how the game stands for its team, as that of `TeamEnv`, and in
-    `counts` whether it does as it is told: a tagged boat sails home. Raises ValueError with everything that is wrong with options
+    `counts` whether it does as it is told: a tagged boat sails home. With `state`, the environment also has `state()` and
+    `state_space`: the truth about the game. Raises ValueError with everything that is wrong with options
     and scenario files.
     """
     if options.get("team") is not None:
         needs_no_policy(options, "one team's parallel_env")
-        return SquallParallelEnv(seed=seed, render_mode=render_mode, options=options)
+        return SquallParallelEnv(seed=seed, render_mode=render_mode, state=state, options=options)
     if "opponents" in options:
         raise ValueError("opponents is given, but all boats are agents: say which team's are (`team`)")
     options["opponents"] = "policy"
     # With both sides sailed from here it only makes a difference to the order of the agents.
     options["team"] = native_environment(options, seed=0, games=1, threads=1).team_names[0]
-    return SquallParallelEnv(seed=seed, render_mode=render_mode, options=options)
+    return SquallParallelEnv(seed=seed, render_mode=render_mode, state=state, options=options)

@@ -65,9 +65,11 @@ def native_environment(
     games: int,
     threads: int,
     mates: File | None = None,
+    state: bool = False,
     record: str | os.PathLike[str] | None = None,
 ) -> _native.VectorEnvironment:
     """Begins the games. `mates` is the strategy that sails all but one boat of a team; None: actions are for all.
+    With `state` the truth is told too.
 
     A seed of None is drawn from the system; `standing(game)["seed"]` tells it. `record` is the folder for recordings where the options
     name none. Raises ValueError with everything that is wrong.
@@ -90,6 +92,7 @@ def native_environment(
         "opponents": _opponents(options.get("opponents", "pav01")),
         "rewards": None if rewards is None else path_of("rewards", rewards),
         "discount": options.get("discount", 0.99),
+        "state": bool(state),
     }
     if seed is None:
         seed = int(np.random.SeedSequence().generate_state(1)[0])
@@ -109,6 +112,11 @@ def observation_space(native: _native.VectorEnvironment, options: Options, boats
     numbers = len(native.observation_names)
     most = 1.0 if options.get("observation") == "pyquaticus" else np.inf
     return gymnasium.spaces.Box(-most, most, (numbers,) if boats is None else (boats, numbers), np.float32)
+
+
+def state_space(native: _native.VectorEnvironment) -> gymnasium.spaces.Box:
+    """What the truth may be, as one boat would tell it."""
+    return gymnasium.spaces.Box(-np.inf, np.inf, (len(native.state_names),), np.float32)
 
 
 def action_space(native: _native.VectorEnvironment, boats: int | None) -> gymnasium.Space[Any]:

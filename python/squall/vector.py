@@ -67,19 +67,22 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
         seed: int | None = None,
         mates: File | None = None,
         copy: bool = True,
+        state: bool = False,
         render_mode: str | None = None,
         **options: Unpack[Options],
     ) -> None:
         """Begins `games` games on so many threads (None: one for each core), with seeds that count up from `seed` (None: any).
 
         `mates` is a strategy for all but one boat of a team, as in `BoatEnv`; None: all boats are rows. Results depend on seed and
-        actions alone, not on threads. Raises ValueError with everything that is wrong with options and scenario files.
+        actions alone, not on threads. With `state`, `states` are told. Raises ValueError with everything that is wrong with options and scenario files.
         """
         if row not in ("boat", "team"):
             raise ValueError(f'row is {row!r}, expected "boat" or "team"')
         check_render_mode(render_mode, self.metadata["render_modes"])
         threads = min(games, os.cpu_count() or 1) if threads is None else threads
-        self.native = native_environment(options, seed=seed, games=games, threads=max(threads, 1), mates=mates)
+        self.native = native_environment(
+            options, seed=seed, games=games, threads=max(threads, 1), mates=mates, state=state
+        )
         self._recordings = Recordings(self, self.native)
         self.render_mode, self.copy, self.games = render_mode, copy, games
         native = self.native
@@ -107,6 +110,25 @@ class VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[Any], ND
     def action_names(self) -> list[str] | None:
         """What the discrete actions are called, in their order; None where actions are continuous."""
         return self.native.action_names
+
+    @property
+    def states(self) -> NDArray[np.float32]:
+        """The truth as each row's boat would tell it, (rows, numbers): for critics that are to know more than a policy.
+
+        With `row="team"` there is still one for each boat: (games x boats, numbers). 0 for boats that nobody is asked for. No numbers
+        without `state=True`.
+        """
+        return self._shown(self.native.states)
+
+    @property
+    def final_states(self) -> NDArray[np.float32]:
+        """The same at the end of the games that ended in the last step; other rows are stale."""
+        return self._shown(self.native.final_states)
+
+    @property
+    def state_names(self) -> list[str]:
+        """What the numbers of a state are called, in their order; none without `state=True`."""
+        return self.native.state_names
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None

@@ -1,6 +1,6 @@
 //! What Python says is to be played.
 
-use learn::environment::{ActionSpace, RawObservation, RawSetup};
+use learn::environment::{ActionSpace, CriticInput, RawObservation, RawSetup};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::fmt::Display;
@@ -23,6 +23,7 @@ pub(crate) struct Arguments {
     opponents: Vec<(f64, Option<PathBuf>)>,
     rewards: Option<PathBuf>,
     discount: f64,
+    state: bool,
 }
 
 impl Arguments {
@@ -55,6 +56,7 @@ impl Arguments {
             opponents: self.opponents,
             rewards: self.rewards,
             discount: self.discount,
+            critic: if self.state { CriticInput::Truth } else { CriticInput::Observation },
         })
     }
 }

@@ -1,9 +1,9 @@
 //! Many games at a time for Python: a step without the interpreter's lock, into numpy arrays that stay the same.
 
 use crate::arguments::{Arguments, refused};
-use crate::recorder::{self, Log};
+use crate::recorder;
 use crate::{scene, standing};
-use learn::environment::{Action, Games, Rows};
+use learn::environment::{Action, Games, RecordingLog, Rows, Setup};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyIndexError, PyRuntimeWarning};
 use pyo3::prelude::*;
@@ -18,7 +18,7 @@ pub(crate) struct VectorEnvironment {
     games: Mutex<Games>,
     actions: Vec<Action>,
     arrays: Arrays,
-    recordings: Arc<Log>,
+    recordings: Arc<RecordingLog>,
 }
 
 /// What a step writes: rows × numbers, or rows.
@@ -29,19 +29,25 @@ struct Arrays {
     counts: Py<PyArray1<bool>>,
     terminated: Py<PyArray1<bool>>,
     truncated: Py<PyArray1<bool>>,
+    /// The truth, rows × numbers, none of them unless it is asked for.
+    states: Py<PyArray2<f32>>,
+    final_states: Py<PyArray2<f32>>,
 }
 
 impl Arrays {
-    fn new(py: Python<'_>, rows: usize, numbers: usize) -> Arrays {
-        let table = || PyArray2::zeros(py, [rows, numbers], false).unbind();
+    fn new(py: Python<'_>, rows: usize, setup: &Setup) -> Arrays {
+        let table = |numbers: usize| PyArray2::zeros(py, [rows, numbers], false).unbind();
+        let (numbers, truths) = (setup.observation_size(), setup.truth_size());
         let flags = || PyArray1::zeros(py, [rows], false).unbind();
         Arrays {
-            observations: table(),
-            final_observations: table(),
+            observations: table(numbers),
+            final_observations: table(numbers),
             rewards: PyArray1::zeros(py, [rows], false).unbind(),
             counts: flags(),
             terminated: flags(),
             truncated: flags(),
+            states: table(truths),
+            final_states: table(truths),
         }
     }
 
@@ -60,8 +66,9 @@ impl Arrays {
         Ok(py.detach(|| work(rows)))
     }
 
-    /// Notes which games ended in the step.
+    /// Notes which games ended in the step, and the truth about all of them.
     fn end(&self, py: Python<'_>, games: &Games) -> PyResult<()> {
+        self.write_states(py, games)?;
         let mut terminated = self.terminated.bind(py).try_readwrite()?;
         let mut truncated = self.truncated.bind(py).try_readwrite()?;
         let (terminated, truncated) = (terminated.as_slice_mut()?, truncated.as_slice_mut()?);
@@ -71,6 +78,28 @@ impl Arrays {
         for one in games.finished() {
             let rows = one.game * per_game..(one.game + 1) * per_game;
             (if one.cut_off { &mut truncated[rows] } else { &mut terminated[rows] }).fill(true);
+        }
+        Ok(())
+    }
+
+    fn write_states(&self, py: Python<'_>, games: &Games) -> PyResult<()> {
+        let numbers = games.setup().truth_size() * games.rows().1;
+        if numbers == 0 {
+            return Ok(());
+        }
+        let mut states = self.states.bind(py).try_readwrite()?;
+        let mut final_states = self.final_states.bind(py).try_readwrite()?;
+        // Boats that are given no actions are told nothing: theirs are the last rows.
+        let write = |rows: &mut [f32], truth: &[f32]| {
+            rows[..truth.len()].copy_from_slice(truth);
+            rows[truth.len()..].fill(0.0);
+        };
+        for (game, rows) in states.as_slice_mut()?.chunks_exact_mut(numbers).enumerate() {
+            write(rows, games.truth(game).0);
+        }
+        let final_states = final_states.as_slice_mut()?;
+        for one in games.finished() {
+            write(&mut final_states[one.game * numbers..(one.game + 1) * numbers], games.truth(one.game).1);
         }
         Ok(())
     }
@@ -94,14 +123,14 @@ impl VectorEnvironment {
             }
         }
         let setup = setup.setup()?;
-        let recordings = Arc::<Log>::default();
+        let recordings = Arc::<RecordingLog>::default();
         if let Some((folder, _)) = &record {
             recorder::check_folder(folder).map_err(refused)?;
         }
         let watches = record.map(|(folder, every)| recorder::watches(folder, every, Arc::clone(&recordings)));
         let begin = || setup.check().and_then(|setup| Games::watched(setup, games, threads, seed, watches));
         let games = py.detach(begin).map_err(refused)?;
-        let arrays = Arrays::new(py, games.rows().0, games.setup().observation_size());
+        let arrays = Arrays::new(py, games.rows().0, games.setup());
         let mut environment = VectorEnvironment { games: Mutex::new(games), actions: Vec::new(), arrays, recordings };
         environment.show(py)?;
         Ok(environment)
@@ -160,6 +189,11 @@ impl VectorEnvironment {
     #[getter]
     fn observation_names(&self) -> Vec<String> {
         self.games().setup().observation_names()
+    }
+
+    #[getter]
+    fn state_names(&self) -> Vec<String> {
+        self.games().setup().truth_names()
     }
 
     #[getter]
@@ -232,6 +266,16 @@ impl VectorEnvironment {
     #[getter]
     fn final_observations(&self, py: Python<'_>) -> Py<PyArray2<f32>> {
         self.arrays.final_observations.clone_ref(py)
+    }
+
+    #[getter]
+    fn states(&self, py: Python<'_>) -> Py<PyArray2<f32>> {
+        self.arrays.states.clone_ref(py)
+    }
+
+    #[getter]
+    fn final_states(&self, py: Python<'_>) -> Py<PyArray2<f32>> {
+        self.arrays.final_states.clone_ref(py)
     }
 
     #[getter]

@@ -5,6 +5,7 @@ use crate::output_file;
 use crate::plot::training::{Learnt, svg};
 use anyhow::{Context, Result};
 use game::printable;
+use learn::environment::{Finished, recording_name};
 use learn::train::{Progress, Trainer};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -14,7 +15,10 @@ const UPDATES: &str = "samples,stage,reward,policy_loss,value_loss,entropy,diver
 /// What the table of evaluations begins with.
 const EVALUATIONS: &str = "samples,stage,opponent,won,drawn,lost,points,points_against,left_field\n";
 /// What the table of episodes begins with.
-const EPISODES: &str = "samples,stage,seed,team,opponent,points,points_against,steps,cut_off\n";
+const EPISODES: &str = "samples,stage,seed,team,opponent,points,points_against,steps,cut_off,recording\n";
+
+/// The folder of recordings in that of a training.
+const GAMES: &str = "games";
 
 /// The folder of a training.
 pub(super) struct Files {
@@ -64,6 +68,17 @@ impl Files {
         folder.join("state.bin")
     }
 
+    /// The folder of recordings.
+    pub(super) fn games(folder: &Path) -> PathBuf {
+        folder.join(GAMES)
+    }
+
+    /// The recording of an episode as a path in the folder; empty if there is none.
+    fn recording(&self, one: &Finished) -> String {
+        let path = format!("{GAMES}/{}", recording_name(one.standing.seed, one.number));
+        if self.folder.join(&path).exists() { path } else { String::new() }
+    }
+
     /// Notes an update.
     pub(super) fn update(&mut self, trainer: &Trainer, progress: &Progress) -> Result<()> {
         let training = trainer.training();
@@ -94,8 +109,10 @@ impl Files {
             let (seed, steps) = (one.standing.seed, one.standing.steps);
             let _ = writeln!(
                 lines[2],
-                "{samples},{stage},{seed},{},{opponent},{own},{theirs},{steps},{}",
-                side.learner.0, one.cut_off
+                "{samples},{stage},{seed},{},{opponent},{own},{theirs},{steps},{},{}",
+                side.learner.0,
+                one.cut_off,
+                self.recording(one)
             );
         }
         for ((name, _), lines) in self.tables.iter().zip(lines) {

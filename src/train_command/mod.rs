@@ -9,10 +9,12 @@ use files::Files;
 use game::scenario::{self, Kind};
 use game::training::Training;
 use indicatif::{ProgressBar, ProgressStyle};
+use learn::environment::{RecordingLog, RecordingNames, Recordings, check_recording_folder};
 use learn::train::{Evaluated, Played, Trainer};
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 /// The largest state, bytes: networks of the largest size, and a league of them.
@@ -38,6 +40,9 @@ pub(crate) struct Args {
     /// Threads; the policy is the same on any number of them [default: one for each core]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZeroUsize>,
+    /// Records each Nth episode into the folder's games/, for `squall replay`; the policy is the same with or without
+    #[arg(long, value_name = "N")]
+    record_every: Option<NonZeroU64>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -48,6 +53,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let mut trainer = begin(args, training, &folder, jobs)?;
     let mut files = Files::open(&folder, &base(&args.training, trainer.training()), &trainer)?;
+    let recordings = args.record_every.map(|every| record(&mut trainer, &folder, every)).transpose()?;
     let bar = bar(&trainer);
     let size = trainer.model().context("the policy has become none")?.len();
     say(&bar, &format!("trains {} in {}: a model of {} kB", trainer.training().name, folder.display(), size / 1000));
@@ -68,6 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         bar.set_position(progress.samples);
         files.update(&trainer, &progress)?;
+        recordings.iter().flat_map(|log| log.take_problems()).for_each(|problem| say(&bar, &problem));
         if let Some(evaluated) = &progress.evaluated {
             files.models(&trainer, progress.is_best)?;
             say(&bar, &line(evaluated, progress.is_best));
@@ -98,6 +105,16 @@ fn begin(args: &Args, training: Training, folder: &Path, jobs: usize) -> Result<
         bail!("{} holds a training: --resume goes on with it, --out puts this one elsewhere", folder.display());
     }
     Ok(Trainer::new(training, jobs)?)
+}
+
+/// Records each so manieth episode; gives what becomes of that.
+fn record(trainer: &mut Trainer, folder: &Path, every: NonZeroU64) -> Result<Arc<RecordingLog>> {
+    let folder = Files::games(folder);
+    let log = Arc::<RecordingLog>::default();
+    check_recording_folder(&folder).with_context(|| format!("cannot record into {}", folder.display()))?;
+    let (names, commit) = (RecordingNames::ByNumber, env!("SQUALL_COMMIT").to_owned());
+    trainer.watch(Recordings { folder, names, every: every.get(), commit }.watches(Arc::clone(&log)))?;
+    Ok(log)
 }
 
 fn bar(trainer: &Trainer) -> ProgressBar {

@@ -91,3 +91,46 @@ fn a_training_goes_on_from_its_state_as_if_it_had_not_stopped() {
     };
     assert_eq!(rewards("cut"), rewards("whole"));
 }
+
+#[test]
+fn each_nth_episode_of_a_training_is_recorded_and_can_be_replayed() {
+    let dir = tempfile::tempdir().unwrap();
+    let here = dir.path();
+    std::fs::write(here.join("short.toml"), training()).unwrap();
+    printed(here, &["train", "short.toml", "--out", "plain"]);
+    printed(here, &["train", "short.toml", "--out", "seen", "--record-every", "7"]);
+    let [plain, seen] = ["plain", "seen"].map(|folder| here.join(folder));
+    for name in ["best.onnx", "last.onnx", "state.bin", "updates.csv", "digest.txt"] {
+        assert!(read(&plain, name) == read(&seen, name), "{name} depends on what is recorded");
+    }
+
+    // The tables tell the same episodes, and this one names a recording for each seventh.
+    let [plain, episodes] = [&plain, &seen].map(|folder| String::from_utf8(read(folder, "episodes.csv")).unwrap());
+    let split =
+        |line: &str| line.rsplit_once(',').map(|(episode, file)| (episode.to_owned(), file.to_owned())).unwrap();
+    let of_plain: Vec<(String, String)> = plain.lines().map(split).collect();
+    let of_seen: Vec<(String, String)> = episodes.lines().map(split).collect();
+    assert!(of_plain.iter().map(|one| &one.0).eq(of_seen.iter().map(|one| &one.0)));
+    assert!(of_plain.iter().skip(1).all(|one| one.1.is_empty()) && of_seen[0].1 == "recording", "{episodes}");
+    let named: Vec<(&str, &str)> = episodes
+        .lines()
+        .skip(1)
+        .filter(|line| line.ends_with(".mcap"))
+        .map(|line| (line.split(',').nth(2).unwrap(), line.rsplit_once(',').unwrap().1))
+        .collect();
+    let count = of_seen.len() - 1;
+    assert!((count / 10..=count / 4).contains(&named.len()), "{} of {count}", named.len());
+    let mut files: Vec<String> = std::fs::read_dir(seen.join("games"))
+        .unwrap()
+        .map(|entry| format!("games/{}", entry.unwrap().file_name().to_str().unwrap()))
+        .collect();
+    let mut told: Vec<String> = named.iter().map(|(_, file)| (*file).to_owned()).collect();
+    files.sort();
+    told.sort();
+    assert_eq!(files, told, "a file for each episode that ended, and no other");
+    for (seed, file) in [named[0], named[named.len() - 1]] {
+        assert!(file.starts_with(&format!("games/{seed}_")), "{file} is of seed {seed}");
+        let checked = printed(here, &["replay", &format!("seen/{file}"), "--check"]);
+        assert!(checked.contains("the same: 201 frames to 20.0 s"), "{checked}");
+    }
+}

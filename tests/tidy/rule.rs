@@ -22,8 +22,8 @@ const MAY_IMPORT: [(&str, &[&str]); 15] = [
     ("arena", &["game", "sim", "agent", "analysis"]),
     ("analysis", &["game", "recording"]),
     ("shore", &["game", "bus", "recording"]),
-    ("learn", &["onnx", "game", "sim", "agent", "arena"]),
-    ("python", &["game", "recording", "sim", "learn"]),
+    ("learn", &["onnx", "game", "sim", "agent", "arena", "recording"]),
+    ("python", &["game", "learn"]),
     ("", &["onnx", "game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "learn", "shore"]),
 ];
 

@@ -6,8 +6,7 @@ use super::watch::{Moment, Watch};
 use agent::{Action, Mind, MindRunner, Pilot};
 use game::count::Tally;
 use game::event::EventCursor;
-use game::picture::OwnBoat;
-use game::rewards::BoatProgress;
+use game::rewards::{BoatProgress, Placed, progress};
 use game::scenario::Scenario;
 use game::stream::Stream;
 use game::{Ned, Picture, TeamId, VehicleId};
@@ -88,7 +87,7 @@ impl Game {
         // Before the first pictures, so that nothing the game is given is missed.
         game.show(Moment::Decision);
         game.contest.pictures();
-        game.look();
+        game.look(setup);
         game
     }
 
@@ -189,13 +188,14 @@ impl Game {
     fn reward(&mut self, setup: &Setup, ending: Ending) {
         let rewards = &setup.rewards;
         let carrying: Vec<bool> = self.boats.iter().map(|boat| boat.carrying).collect();
-        let before: Vec<f64> = self.boats.iter().map(|boat| rewards.potential.of(boat)).collect();
-        self.look();
+        let before: Vec<f64> =
+            self.boats.iter().map(|boat| rewards.potential.of(boat) + rewards.place.of(boat)).collect();
+        self.look(setup);
         let scenario = self.contest.scenario();
         let step_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision * setup.decisions_per_step);
         for (i, reward) in self.rewards.iter_mut().enumerate() {
             let after = if ending == Ending::Over { 0.0 } else { rewards.potential.of(&self.boats[i]) };
-            *reward = setup.discount * after - before[i] + rewards.second * step_s;
+            *reward = setup.discount * after + rewards.place.of(&self.boats[i]) - before[i] + rewards.second * step_s;
         }
         let events = self.read.read(self.contest.events());
         rewards.add_events(scenario, events, &carrying, &mut self.rewards);
@@ -208,23 +208,19 @@ impl Game {
     }
 
     /// Notes how the boats are, for rewards.
-    fn look(&mut self) {
-        let field = &self.contest.scenario().field;
-        let width_m = field.plan.width_m;
-        for (team, picture) in self.contest.last_pictures().iter().enumerate() {
-            let home = |team: usize| field.flags[team].home;
-            let away = |from: Ned, to: Ned| from.distance(to) / width_m;
-            for boat in &picture.own {
-                let OwnBoat { vehicle, nav, tagged, .. } = *boat;
-                let at = nav.at();
-                self.boats[vehicle.index()] = BoatProgress {
-                    tagged,
-                    carrying: boat.carried_flag().is_some(),
-                    from_flag: away(at, home(1 - team)),
-                    from_home: away(at, home(team)),
-                };
-            }
+    fn look(&mut self, setup: &Setup) {
+        let scenario = self.contest.scenario();
+        let mut placed: Vec<Placed> = scenario
+            .vehicles
+            .iter()
+            .map(|vehicle| Placed { at: Ned::default(), team: vehicle.team, tagged: false, carrying: false })
+            .collect();
+        for boat in self.contest.last_pictures().iter().flat_map(|picture| &picture.own) {
+            let (vehicle, carrying) = (boat.vehicle, boat.carried_flag().is_some());
+            let team = scenario.team_of(vehicle);
+            placed[vehicle.index()] = Placed { at: boat.nav.at(), team, tagged: boat.tagged, carrying };
         }
+        progress(&scenario.field, &placed, setup.rewards.mind_others(), &mut self.boats);
     }
 }
 

@@ -31,6 +31,8 @@ pub struct Standing {
 pub struct Finished {
     /// Which of the games.
     pub game: usize,
+    /// Its number: they count up game by game and episode by episode.
+    pub number: u64,
     /// How it stood in the end.
     pub standing: Standing,
     /// Whether it was cut off before the game was over.
@@ -319,6 +321,7 @@ impl Slot {
         self.show(setup, rows);
         self.ended = (ending != Ending::None).then(|| Finished {
             game,
+            number: self.number,
             standing: self.game.standing(),
             cut_off: ending == Ending::CutOff,
         });

@@ -52,6 +52,8 @@ pub struct RawSetup {
     pub rewards: Option<PathBuf>,
     /// What a reward a step later is worth, 0 to 1.
     pub discount: f64,
+    /// What a critic is given.
+    pub critic: CriticInput,
 }
 
 impl RawSetup {
@@ -80,7 +82,7 @@ impl RawSetup {
             spaces: Spaces { observation: self.observation.check(&scenario)?, action: self.action },
             control: helm.map_or(Control::Direct, Control::Helm),
             teacher: None,
-            critic: CriticInput::Observation,
+            critic: self.critic,
             decisions_per_step,
             steps_max: self.episode_max_s.map(|s| steps_max(s, &scenario, decisions_per_step)).transpose()?,
             starts: self.starts,

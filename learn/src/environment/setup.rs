@@ -249,8 +249,19 @@ impl Setup {
         self.observation_size() + self.truth_size()
     }
 
+    /// What those of them are called that no policy is given.
+    #[must_use]
+    pub fn truth_names(&self) -> Vec<String> {
+        let boats = self.team_size();
+        match self.critic {
+            CriticInput::Observation => vec![],
+            CriticInput::Truth => truth::names(boats.saturating_sub(1), boats),
+        }
+    }
+
     /// How many of them no policy is given.
-    pub(super) fn truth_size(&self) -> usize {
+    #[must_use]
+    pub fn truth_size(&self) -> usize {
         match self.critic {
             CriticInput::Observation => 0,
             CriticInput::Truth => truth::size(self.scenario.vehicles.len()),

@@ -39,7 +39,7 @@ impl Setup {
             steps_max: stage.episode_max_s.map(|s| steps_max(s, &scenario, decisions_per_step)).transpose()?,
             starts: stage.starts,
             learner: None,
-            mates: None,
+            mates: stage.mates.as_deref().map(strategy).transpose()?,
             opponents,
             rewards: scenario::load_rewards(&stage.rewards)?,
             discount: f64::from(training.algorithm().discount()),

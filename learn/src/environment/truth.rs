@@ -10,10 +10,31 @@ use game::message::VehicleTruth;
 use game::{Ned, Picture, VehicleId};
 use sim::Contest;
 
-/// Numbers of each boat.
-const BOAT: usize = 11;
-/// Numbers of the game.
-const GAME: usize = 8;
+/// The numbers of each boat.
+const BOAT: [&str; 11] = [
+    "position_ahead",
+    "position_port",
+    "heading_ahead",
+    "heading_port",
+    "velocity_ahead",
+    "velocity_port",
+    "yaw_rate",
+    "tagged",
+    "has_flag",
+    "outside",
+    "tag_wait",
+];
+/// The numbers of the game.
+const GAME: [&str; 8] = [
+    "enemy_flag_taken",
+    "own_flag_taken",
+    "score_lead",
+    "time_left",
+    "wind_ahead",
+    "wind_port",
+    "current_ahead",
+    "current_port",
+];
 /// What speeds are divided by, m/s: a Surveyor's top speed.
 const SPEED_M_S: f64 = 3.0;
 /// What wind speeds are divided by, m/s.
@@ -23,7 +44,16 @@ const POINTS: f64 = 10.0;
 
 /// How many numbers there are in a game of so many boats.
 pub(super) fn size(boats: usize) -> usize {
-    boats * BOAT + GAME
+    boats * BOAT.len() + GAME.len()
+}
+
+/// What the numbers are called, in their order, in a game of teams with so many mates and enemies to a boat.
+pub(super) fn names(mates: usize, enemies: usize) -> Vec<String> {
+    let mates = (1..=mates).map(|i| format!("mate_{i}"));
+    let enemies = (1..=enemies).map(|i| format!("enemy_{i}"));
+    let boats = std::iter::once("own".to_owned()).chain(mates).chain(enemies);
+    let of_boats = boats.flat_map(|boat| BOAT.map(|name| format!("{boat}_{name}")));
+    of_boats.chain(GAME.map(str::to_owned)).collect()
 }
 
 /// Adds the numbers of each of these boats, boat by boat.

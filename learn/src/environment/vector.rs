@@ -3,6 +3,7 @@
 use super::game::Side;
 use super::games::{Finished, Games, Rows};
 use super::setup::{Player, Setup, SetupError};
+use super::watch::Watches;
 use agent::Action;
 use sim::Contest;
 
@@ -36,7 +37,21 @@ impl VectorEnvironment {
     /// # Errors
     /// [`SetupError`] where nothing can be played.
     pub fn new(setup: Setup, games: usize, threads: usize, seed: u64) -> Result<VectorEnvironment, SetupError> {
-        let mut games = Games::new(setup, games, threads, seed)?;
+        VectorEnvironment::watched(setup, games, threads, seed, None)
+    }
+
+    /// As [`VectorEnvironment::new`], and shows the games to others.
+    ///
+    /// # Errors
+    /// [`SetupError`] where nothing can be played.
+    pub fn watched(
+        setup: Setup,
+        games: usize,
+        threads: usize,
+        seed: u64,
+        watches: Option<Watches>,
+    ) -> Result<VectorEnvironment, SetupError> {
+        let mut games = Games::watched(setup, games, threads, seed, watches)?;
         let (rows, numbers) = (games.rows().0, games.rows().0 * games.setup().observation_size());
         let mut shown = Shown {
             observations: vec![0.0; numbers],

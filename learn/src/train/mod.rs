@@ -14,7 +14,7 @@ pub use learnt::Learnt;
 pub use off_policy::OffPolicy;
 pub use state::{Best, Evaluated, StateError};
 
-use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment};
+use crate::environment::{Finished, Player, Setup, SetupError, VectorEnvironment, Watches};
 use crate::nn::{Perceptron, SHARD, Trace};
 use crate::ppo::{ActorCritic, Batch, Lesson};
 use game::policy::{PolicySpec, options_metadata};
@@ -25,6 +25,7 @@ use rayon::prelude::*;
 use rollout::Rollout;
 use state::State;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The metadata of models that say where they come from.
 const SAMPLES: &str = "squall.samples";
@@ -44,6 +45,8 @@ pub struct Trainer {
     threads: usize,
     pool: rayon::ThreadPool,
     environment: VectorEnvironment,
+    /// Who sees the episodes, by their number in the training.
+    watches: Option<Watches>,
     /// Updates from one new beginning of all games to the next, by stage.
     updates_per_epoch: Vec<u64>,
     state: State,
@@ -60,7 +63,7 @@ pub struct Progress {
     pub learnt: Learnt,
     /// The mean reward of a step.
     pub reward: f32,
-    /// The episodes that ended, with the name of who played against the policy.
+    /// The episodes that ended, with the name of who played against the policy. Their numbers are those of [`Trainer::watch`].
     pub finished: Vec<(Finished, String)>,
     /// How good the policy is now, if it was looked at.
     pub evaluated: Option<Evaluated>,
@@ -127,9 +130,25 @@ impl Trainer {
             state
         });
         let updates_per_epoch = setups.iter().map(|setup| updates_per_epoch(&training, setup)).collect();
-        let environment = environment(&training, &setups, &state, threads)?;
+        let environment = environment(&training, &setups, &state, threads, None)?;
         let pool = pool(threads);
-        Ok(Trainer { training, setups, judges, threads, pool, environment, updates_per_epoch, state })
+        let watches = None;
+        Ok(Trainer { training, setups, judges, threads, pool, environment, watches, updates_per_epoch, state })
+    }
+
+    /// Shows the episodes to others from now on, those of the evaluation excepted. Episodes are numbered through a training, as far as they
+    /// are whole games; where games end early, a number may come again, with another seed. It changes nothing of what is learnt.
+    ///
+    /// # Errors
+    /// [`SetupError::NoStart`] where a game cannot begin.
+    ///
+    /// # Panics
+    /// If there was an update since the training was begun or resumed: games would begin anew.
+    pub fn watch(&mut self, watches: Watches) -> Result<(), SetupError> {
+        assert_eq!(self.state.updates_of_epoch, 0, "games are seen from their start on");
+        self.watches = Some(watches);
+        self.environment = environment(&self.training, &self.setups, &self.state, self.threads, self.watches.as_ref())?;
+        Ok(())
     }
 
     /// The training.
@@ -224,7 +243,9 @@ impl Trainer {
         state.samples += counted;
         state.samples_of_stage += counted;
         state.league.see(&finished);
-        let name = |one: Finished| (one, self.opponent_name(stage, one.standing.side.opponent));
+        let first = first_number(training, state.epoch);
+        let numbered = |one: Finished| Finished { number: one.number.wrapping_add(first), ..one };
+        let name = |one: Finished| (numbered(one), self.opponent_name(stage, one.standing.side.opponent));
         let finished = finished.into_iter().map(name).collect();
         let (evaluated, is_best) = self.after_update()?;
         let can_be_resumed = self.begin_anew(evaluated.as_ref())?;
@@ -292,7 +313,7 @@ impl Trainer {
             Some(_) => state.league.compact(),
             None => return Ok(true),
         }
-        self.environment = environment(&self.training, &self.setups, &self.state, self.threads)?;
+        self.environment = environment(&self.training, &self.setups, &self.state, self.threads, self.watches.as_ref())?;
         Ok(true)
     }
 }
@@ -333,6 +354,7 @@ fn environment(
     setups: &[Setup],
     state: &State,
     threads: usize,
+    watches: Option<&Watches>,
 ) -> Result<VectorEnvironment, SetupError> {
     // After the last stage nothing is played any more.
     let mut setup = setups[state.stage.min(setups.len() - 1)].clone();
@@ -341,7 +363,14 @@ fn environment(
     let weights = state.league.weights(stage, &training.league);
     setup.opponents.iter_mut().zip(weights).for_each(|((weight, _), drawn)| *weight = drawn);
     let seed = (training.seed << (2 * SEEDS_BITS)).wrapping_add(state.epoch << SEEDS_BITS) % EVALUATION_SEED;
-    VectorEnvironment::new(setup, training.games as usize, threads, seed)
+    let first = first_number(training, state.epoch);
+    let watches = watches.cloned().map(|watches| -> Watches { Arc::new(move |number| watches(first + number)) });
+    VectorEnvironment::watched(setup, training.games as usize, threads, seed, watches)
+}
+
+/// The number of the first episode after games have begun anew so many times.
+fn first_number(training: &Training, epoch: u64) -> u64 {
+    epoch * LENGTHS as u64 * u64::from(training.games)
 }
 
 /// The games of the evaluation: those of the last stage against each of its opponents.

@@ -30,6 +30,9 @@ pub(in crate::scenario) fn training(diagnostics: &mut Diagnostics, document: &Do
         if let Some(teacher) = &mut stage.teacher {
             strategy(diagnostics, &format!("{at}.teacher.strategy"), &mut teacher.strategy);
         }
+        if let Some(mates) = &mut stage.mates {
+            strategy(diagnostics, &format!("{at}.mates"), mates);
+        }
         for (k, opponent) in stage.opponent.iter_mut().enumerate() {
             strategy(diagnostics, &format!("{at}.opponent.{k}.strategy"), &mut opponent.strategy);
         }

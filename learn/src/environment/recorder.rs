@@ -1,0 +1,205 @@
+//! Records games of an environment, each into a file of its own, as `squall run` records one.
+
+use super::watch::{Moment, Watch, Watches};
+use game::Scenario;
+use game::event::EventCursor;
+use game::message::Frame;
+use recording::{RecordError, utc};
+use sim::{Contest, GameRecorder, Report, Run};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Others may record into the same folder: so often another name is tried.
+const NAMES_MAX: u32 = 100;
+
+/// What has become of recordings, until somebody asks.
+#[derive(Default)]
+pub struct RecordingLog {
+    /// The file that was completed last.
+    newest: Mutex<Option<PathBuf>>,
+    /// What went wrong, in words.
+    problems: Mutex<Vec<String>>,
+}
+
+impl RecordingLog {
+    /// The newest file, if one has been completed since this was asked last.
+    pub fn take_newest(&self) -> Option<PathBuf> {
+        self.newest.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// What has gone wrong since this was asked last.
+    pub fn take_problems(&self) -> Vec<String> {
+        std::mem::take(&mut *self.problems.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn completed(&self, file: PathBuf) {
+        *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(file);
+    }
+
+    fn problem(&self, problem: String) {
+        self.problems.lock().unwrap_or_else(PoisonError::into_inner).push(problem);
+    }
+}
+
+/// What recordings are called, and whether games that are given up are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecordingNames {
+    /// By the time, the game and its seed: always a new file. Of a game that is given up what was played is kept, without a result.
+    ByTime,
+    /// By the game's seed and number: [`recording_name`]. A file of that name is replaced; a game that is given up leaves none.
+    ByNumber,
+}
+
+/// What the recording of a game with this seed and number is called.
+#[must_use]
+pub fn recording_name(seed: u64, number: u64) -> String {
+    format!("{seed}_{number}.mcap")
+}
+
+/// How games are recorded.
+#[derive(Clone)]
+pub struct Recordings {
+    /// The folder; it is there.
+    pub folder: PathBuf,
+    /// What the files are called.
+    pub names: RecordingNames,
+    /// Each so manieth game is recorded, the first one included.
+    pub every: u64,
+    /// The commit of the program that records.
+    pub commit: String,
+}
+
+impl Recordings {
+    /// Records games by watching them. What becomes of it goes into the log; games go on whatever that is.
+    #[must_use]
+    pub fn watches(self, log: Arc<RecordingLog>) -> Watches {
+        let recordings = Arc::new(self);
+        Arc::new(move |number| {
+            number.is_multiple_of(recordings.every).then(|| -> Watch {
+                let mut game = RecordedGame {
+                    recordings: Arc::clone(&recordings),
+                    number,
+                    log: Arc::clone(&log),
+                    shown: EventCursor::default(),
+                    began_utc_ns: utc::now_ns(),
+                    stage: Stage::Waiting,
+                };
+                Box::new(move |contest, moment| game.see(contest, moment))
+            })
+        })
+    }
+
+    /// A new file for a game.
+    fn begin(&self, game: &Scenario, number: u64) -> Result<(GameRecorder, PathBuf), RecordError> {
+        let mut tried = 0;
+        loop {
+            let path = match self.names {
+                RecordingNames::ByTime => recording::free_path(&self.folder, &game.name, game.seed),
+                RecordingNames::ByNumber => self.folder.join(recording_name(game.seed, number)),
+            };
+            tried += 1;
+            match GameRecorder::in_process(path.clone(), &game.name, &self.commit) {
+                Err(RecordError::File(error)) if error.kind() == ErrorKind::AlreadyExists && tried < NAMES_MAX => {
+                    if self.names == RecordingNames::ByNumber {
+                        std::fs::remove_file(&path).map_err(RecordError::File)?;
+                    }
+                }
+                begun => return begun.map(|recorder| (recorder, path)),
+            }
+        }
+    }
+}
+
+/// A game, and how far its recording is.
+struct RecordedGame {
+    recordings: Arc<Recordings>,
+    number: u64,
+    log: Arc<RecordingLog>,
+    shown: EventCursor,
+    began_utc_ns: u64,
+    stage: Stage,
+}
+
+/// A game of which no step is played leaves no file.
+enum Stage {
+    /// Nothing has been seen.
+    Waiting,
+    /// A copy of the game at its start, and its first frame.
+    Start(Box<Contest>, Arc<Frame>),
+    Recording(Box<GameRecorder>, PathBuf),
+    /// The file is complete, or there is none, and why has been told.
+    Ended,
+}
+
+impl RecordedGame {
+    fn see(&mut self, contest: &mut Contest, moment: Moment) {
+        let stage = std::mem::replace(&mut self.stage, Stage::Ended);
+        self.stage = match (stage, moment) {
+            (Stage::Waiting, _) => {
+                contest.keep_inputs();
+                Stage::Start(Box::new(contest.clone()), Arc::new(contest.frame(&mut self.shown)))
+            }
+            (Stage::Start(mut start, first), Moment::Decision) => {
+                match self.recordings.begin(start.scenario(), self.number) {
+                    Ok((mut recorder, path)) => {
+                        recorder.decision(&mut start, first);
+                        recorder.decision(contest, Arc::new(contest.frame(&mut self.shown)));
+                        Stage::Recording(Box::new(recorder), path)
+                    }
+                    Err(error) => {
+                        let (folder, seed) = (self.recordings.folder.display(), contest.scenario().seed);
+                        self.log.problem(format!("the game of seed {seed} is not recorded in {folder}: {error}"));
+                        Stage::Ended
+                    }
+                }
+            }
+            (Stage::Recording(mut recorder, path), Moment::Decision) => {
+                recorder.decision(contest, Arc::new(contest.frame(&mut self.shown)));
+                Stage::Recording(recorder, path)
+            }
+            (Stage::Recording(recorder, path), Moment::End) => {
+                let run = Run {
+                    pace: "in process".to_owned(),
+                    wall_s: utc::now_ns().saturating_sub(self.began_utc_ns) as f64 * 1e-9,
+                    cut_short: !contest.is_over(),
+                    ..Run::default()
+                };
+                let state = recorder.end(&Report { outcome: contest.outcome(), run });
+                state.problem().into_iter().for_each(|problem| self.log.problem(problem));
+                self.log.completed(path);
+                Stage::Ended
+            }
+            (Stage::Start(..), Moment::End) | (Stage::Ended, _) => Stage::Ended,
+        };
+    }
+}
+
+impl Drop for RecordedGame {
+    /// A game that was given up.
+    fn drop(&mut self) {
+        let Stage::Recording(recorder, path) = std::mem::replace(&mut self.stage, Stage::Ended) else { return };
+        let problem = recorder.state().problem();
+        drop(recorder);
+        problem.into_iter().for_each(|problem| self.log.problem(problem));
+        match self.recordings.names {
+            RecordingNames::ByTime => self.log.completed(path),
+            RecordingNames::ByNumber => {
+                if let Err(error) = std::fs::remove_file(&path) {
+                    self.log.problem(format!("cannot remove {}: {error}", path.display()));
+                }
+            }
+        }
+    }
+}
+
+/// Makes a folder for recordings where there is none, and tries it.
+///
+/// # Errors
+/// If it takes no files.
+pub fn check_recording_folder(folder: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    let file = folder.join(format!(".squall-{}-{}", std::process::id(), utc::now_ns()));
+    std::fs::File::create_new(&file)?;
+    std::fs::remove_file(&file)
+}
