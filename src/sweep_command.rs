@@ -104,9 +104,15 @@ fn until(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUs
             let at = point.at.map_or(String::new(), |at| format!(", about {at:.4}"));
             format!("{entry}: {condition} begins to hold between {axis} = {low:.4} and {high:.4} (95 %){at}\n")
         }
-        (Some(_), None) => format!("{entry}: {condition} surely does not hold at one end of {axis}, and surely holds nowhere\n"),
-        (None, Some(_)) => format!("{entry}: {condition} surely holds at one end of {axis}, and surely does not nowhere\n"),
-        (None, None) => format!("{entry}: whether {condition} holds cannot be told anywhere on {axis}: more --games tell more\n"),
+        (Some(_), None) => {
+            format!("{entry}: {condition} surely does not hold at one end of {axis}, and surely holds nowhere\n")
+        }
+        (None, Some(_)) => {
+            format!("{entry}: {condition} surely holds at one end of {axis}, and surely does not nowhere\n")
+        }
+        (None, None) => {
+            format!("{entry}: whether {condition} holds cannot be told anywhere on {axis}: more --games tell more\n")
+        }
     });
     screen::print(&format!("every value that was tried, with commands: {}\n", path.display()));
     Ok(ExitCode::SUCCESS)

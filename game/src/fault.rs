@@ -160,7 +160,9 @@ mod tests {
     #[test]
     fn drawn_faults_come_as_often_as_stated_and_at_other_times_for_every_boat_and_seed() {
         let drawn = Fault { every_s: Some(50.0), for_s: Some(10.0), ..fault() };
-        let of = |vehicle: u16, name, seed| fault_spans(std::slice::from_ref(&drawn), (VehicleId(vehicle), name), seed, HOUR);
+        let of = |vehicle: u16, name, seed| {
+            fault_spans(std::slice::from_ref(&drawn), (VehicleId(vehicle), name), seed, HOUR)
+        };
         let count: usize = (0..100).map(|seed| of(0, "a", seed).len()).sum();
         // 3600 s with one each 60 s, over 100 games: 6000, with a standard deviation of about 65.
         assert!((5700..6300).contains(&count), "{count}");

@@ -164,7 +164,8 @@ fn a_single_value_takes_the_place_of_what_a_file_of_its_kind_says() {
     assert_eq!(other.of_seed(9).unwrap().rules.tag_radius_m, 12.5);
     // The last of several counts, and a game without a sea file has one at rest to change.
     let calm = shipped("games/pav01_vs_pav01.toml");
-    let windy = load_with(&calm, &settings(&["sea.wind.from_deg=90", "sea.wind.speed_m_s=3", "sea.wind.speed_m_s=4"])).unwrap();
+    let windy =
+        load_with(&calm, &settings(&["sea.wind.from_deg=90", "sea.wind.speed_m_s=3", "sea.wind.speed_m_s=4"])).unwrap();
     assert_eq!(windy.sea.wind.as_ref().unwrap().speed_10m_m_s, 4.0);
     assert_eq!((windy.sea.water_density_kg_m3, windy.sea.waves.is_none()), (1000.0, true));
     // A distribution is drawn as if it stood in the file.

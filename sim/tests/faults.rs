@@ -133,7 +133,10 @@ fn a_thruster_stands_still_or_goes_on_as_it_went() {
             seen.push(shaft(&contest));
         }
         let want = if is_stuck { before } else { 0.0 };
-        assert!(seen.iter().all(|command| (command - want).abs() < 1e-9 * before.abs()), "{kind}: {seen:?}, not {want}");
+        assert!(
+            seen.iter().all(|command| (command - want).abs() < 1e-9 * before.abs()),
+            "{kind}: {seen:?}, not {want}"
+        );
         play_to(&mut contest, 45.0);
         assert!(shaft(&contest) != want, "{kind}");
     }

@@ -152,9 +152,7 @@ fn groups(plan: &Plan, axis: usize) -> Vec<Group> {
     let group = |level: AxisValue| Group {
         label: level.to_string(),
         value: level.number(),
-        points: (0..points.len())
-            .filter(|i| is_looked_at(&points[*i]) && points[*i].values[axis] == level)
-            .collect(),
+        points: (0..points.len()).filter(|i| is_looked_at(&points[*i]) && points[*i].values[axis] == level).collect(),
     };
     let mut levels = about.levels();
     // One at a time the nominal value may be none of the levels.

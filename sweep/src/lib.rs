@@ -19,7 +19,7 @@ mod until;
 
 pub use condition::{Condition, ConditionError};
 pub use effects::{Effect, Interaction, Level};
-pub use find::{Densities, Found, FindError, find};
+pub use find::{Densities, FindError, Found, find};
 pub use metric::{METRICS, Metric};
 pub use plan::{Job, Plan, Point};
 pub use play::{Played, play, play_one};

@@ -83,6 +83,7 @@ fn columns(plan: &Plan, rows: &[Row]) -> Vec<Column> {
         columns.push(Column::Number(metric.name.to_owned(), rows.iter().map(number).collect()));
     }
     columns.push(text("digest", rows.iter().map(|row| row.digest.clone()).collect()));
-    columns.push(text("error", rows.iter().map(|row| row.result.as_ref().err().cloned().unwrap_or_default()).collect()));
+    columns
+        .push(text("error", rows.iter().map(|row| row.result.as_ref().err().cloned().unwrap_or_default()).collect()));
     columns
 }

@@ -1,8 +1,8 @@
 //! Which games a sweep consists of.
 
+use game::Scenario;
 use game::scenario::{Axis, AxisValue, Design, Overrides, Problem, Problems, Setting, Sweep, load, load_with};
 use game::stream::Stream;
-use game::Scenario;
 use std::collections::BTreeMap;
 use std::path::Path;
 

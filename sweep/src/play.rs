@@ -217,9 +217,8 @@ impl<'a> Watch<'a> {
         let team = |is_own: bool| {
             let name = &scenario.teams[if is_own { job.side } else { 1 - job.side }].name;
             let counts = outcome.counts.teams[name];
-            let sum = |of: &dyn Fn(&BoatRow) -> f64| {
-                boats.iter().filter(|boat| boat.is_own == is_own).map(of).sum::<f64>()
-            };
+            let sum =
+                |of: &dyn Fn(&BoatRow) -> f64| boats.iter().filter(|boat| boat.is_own == is_own).map(of).sum::<f64>();
             [
                 f64::from(outcome.score.teams[name]),
                 f64::from(counts.grabs),

@@ -25,8 +25,23 @@ const FIRST: [&str; 6] = ["game", "point", "entry", "seed", "side", "boats"];
 const LAST: [&str; 2] = ["digest", "error"];
 /// The columns of the table of boats.
 const BOAT_COLUMNS: [&str; 17] = [
-    "game", "boat", "team", "is_entrys", "grabs", "captures", "tags", "tagged", "out_of_bounds", "collisions", "tagged_s",
-    "outside_s", "carrying_s", "distance_m", "speed_mean_m_s", "speed_max_m_s", "energy_kj",
+    "game",
+    "boat",
+    "team",
+    "is_entrys",
+    "grabs",
+    "captures",
+    "tags",
+    "tagged",
+    "out_of_bounds",
+    "collisions",
+    "tagged_s",
+    "outside_s",
+    "carrying_s",
+    "distance_m",
+    "speed_mean_m_s",
+    "speed_max_m_s",
+    "energy_kj",
 ];
 
 /// A sweep that is kept in a folder.
@@ -230,8 +245,10 @@ pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
     cells.extend([played.digest.clone(), why.split_whitespace().collect::<Vec<_>>().join(" ")]);
     let boat = |boat: &crate::play::BoatRow| {
         let (of, counts) = (&boat.statistics, &boat.statistics.counts);
-        let counts = [counts.grabs, counts.captures, counts.tags, counts.tagged, counts.out_of_bounds, counts.collisions];
-        let mut cells = vec![job.index.to_string(), of.boat.clone(), of.team.clone(), u8::from(boat.is_own).to_string()];
+        let counts =
+            [counts.grabs, counts.captures, counts.tags, counts.tagged, counts.out_of_bounds, counts.collisions];
+        let mut cells =
+            vec![job.index.to_string(), of.boat.clone(), of.team.clone(), u8::from(boat.is_own).to_string()];
         cells.extend(counts.map(|count| count.to_string()));
         let numbers = [of.tagged_s, of.outside_s, of.carrying_s, of.distance_m, of.speed_mean_m_s, of.speed_max_m_s];
         cells.extend(numbers.into_iter().chain([boat.energy_kj]).map(cell));

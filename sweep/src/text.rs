@@ -84,7 +84,12 @@ fn differences(report: &Report, line: &mut impl FnMut(String)) {
         let worse = sure(|one| one.high.is_some_and(|high| high < 0.0));
         let mean = all.iter().map(|one| one.mean).sum::<f64>() / all.len().max(1) as f64;
         let mut about = String::new();
-        let _ = write!(about, "\n{entry} less {}, on the same seeds: {:+.0} % of games won in the mean", report.entries[0], 100.0 * mean);
+        let _ = write!(
+            about,
+            "\n{entry} less {}, on the same seeds: {:+.0} % of games won in the mean",
+            report.entries[0],
+            100.0 * mean
+        );
         let _ = write!(about, ";\nsurely more at {better} and surely less at {worse} of {} points", all.len());
         line(about);
     }
@@ -108,12 +113,16 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
 pub fn found_text(found: &Found) -> String {
     let Found { entry, condition, games, failures, rate, .. } = found;
     let half = rate.half_width().unwrap_or(f64::NAN);
-    let mut text = format!("{entry}: {condition} in {:.4} ± {half:.4} of all games; {failures} of {games} that were played\n", rate.mean);
+    let mut text = format!(
+        "{entry}: {condition} in {:.4} ± {half:.4} of all games; {failures} of {games} that were played\n",
+        rate.mean
+    );
     if let Some(factor) = found.factor {
         let _ = writeln!(text, "one of these games tells as much as {factor:.1} games drawn evenly");
     }
     for densities in &found.densities {
-        let pieces = densities.pieces.iter().zip(&densities.times).map(|(piece, times)| format!("{piece} ({times:.1}x)"));
+        let pieces =
+            densities.pieces.iter().zip(&densities.times).map(|(piece, times)| format!("{piece} ({times:.1}x)"));
         let _ = writeln!(text, "{}: from {}", densities.axis, pieces.collect::<Vec<_>>().join(", "));
     }
     for named in found.named.iter().take(SHOWN) {

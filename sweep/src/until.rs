@@ -122,7 +122,10 @@ pub fn breaking_point(
                 let [near_ok, near_broken] = untold.unwrap_or([share; 2]);
                 let is_nearer_ok = (share - ok).abs() < (near_ok - ok).abs();
                 let is_nearer_broken = (share - broken).abs() < (near_broken - broken).abs();
-                untold = Some([if is_nearer_ok { share } else { near_ok }, if is_nearer_broken { share } else { near_broken }]);
+                untold = Some([
+                    if is_nearer_ok { share } else { near_ok },
+                    if is_nearer_broken { share } else { near_broken },
+                ]);
             }
         }
     }

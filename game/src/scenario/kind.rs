@@ -59,7 +59,16 @@ impl Kind {
     #[must_use]
     pub fn folder(self) -> &'static str {
         [
-            "games", "fields", "rules", "boats", "seas", "strategies", "tournaments", "gateways", "rewards", "training",
+            "games",
+            "fields",
+            "rules",
+            "boats",
+            "seas",
+            "strategies",
+            "tournaments",
+            "gateways",
+            "rewards",
+            "training",
             "sweeps",
         ][self as usize]
     }

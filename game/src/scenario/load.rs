@@ -172,7 +172,8 @@ pub fn load_sweep(path: &Path) -> Result<Sweep, Problems> {
     for (i, axis) in sweep.axes.iter().enumerate() {
         let ends = axis.values.is_empty().then(|| [0.0, 1.0].map(|share| axis.at(share)));
         for value in axis.levels().into_iter().chain(ends.into_iter().flatten()) {
-            let values: Vec<_> = nominal.iter().enumerate().map(|(k, other)| if k == i { &value } else { other }).cloned().collect();
+            let values: Vec<_> =
+                nominal.iter().enumerate().map(|(k, other)| if k == i { &value } else { other }).cloned().collect();
             read(&values);
         }
     }

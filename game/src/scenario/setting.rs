@@ -54,7 +54,12 @@ impl Setting {
     ///
     /// # Errors
     /// [`SettingError`]: there is no such kind of file.
-    pub fn new(key: &str, value: String, path: PathBuf, (line, column): (usize, usize)) -> Result<Setting, SettingError> {
+    pub fn new(
+        key: &str,
+        value: String,
+        path: PathBuf,
+        (line, column): (usize, usize),
+    ) -> Result<Setting, SettingError> {
         let setting = Setting { key: key.to_owned(), value, path, line, column };
         match setting.target() {
             Some(_) => Ok(setting),

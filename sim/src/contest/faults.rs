@@ -29,9 +29,8 @@ impl Contest {
             if self.faults[i].is_empty() {
                 continue;
             }
-            let is_on = |at: SimTime| {
-                self.faults[i].iter().any(|span| span.kind == FaultKind::AgentLost && span.is_on(at))
-            };
+            let is_on =
+                |at: SimTime| self.faults[i].iter().any(|span| span.kind == FaultKind::AgentLost && span.is_on(at));
             let (was, is) = (now.0 >= tick.0 && is_on(now - tick), is_on(now));
             if is {
                 self.hold_now(i);

@@ -36,7 +36,10 @@ pub(super) fn faults(
         for vehicle in &fault.vehicles {
             let Vehicle { name: vehicle, boat, .. } = &vehicles[vehicle.index()];
             if let Some(lacks) = lacks(fault.kind, &boats[*boat]) {
-                let message = format!("{name} befalls {vehicle}, whose boat {} has no {lacks}, expected one with it", boats[*boat].name);
+                let message = format!(
+                    "{name} befalls {vehicle}, whose boat {} has no {lacks}, expected one with it",
+                    boats[*boat].name
+                );
                 diagnostics.note(document.at(&path), message);
                 break;
             }

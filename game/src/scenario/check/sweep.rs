@@ -3,7 +3,7 @@
 use super::game::{FileCache, referenced};
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::read::Document;
-use crate::scenario::{AxisValue, Axis, Kind, Setting, Sweep};
+use crate::scenario::{Axis, AxisValue, Kind, Setting, Sweep};
 use std::collections::BTreeSet;
 
 /// Checks a sweep.
@@ -39,7 +39,8 @@ pub(in crate::scenario) fn sweep(diagnostics: &mut Diagnostics, document: &Docum
         if document.is_sound(&at) {
             check_axis(diagnostics, document, &at, axis);
             if !keys.insert(axis.key.clone()) {
-                diagnostics.note(key_at, format!("key is {:?} again, expected a different one for each axis", axis.key));
+                diagnostics
+                    .note(key_at, format!("key is {:?} again, expected a different one for each axis", axis.key));
             }
         }
     }
@@ -80,7 +81,9 @@ fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &st
         wrong("log", "log is given without range, expected with it only".to_owned())
     } else if let Some([_, sigma]) = axis.normal.filter(|[_, sigma]| *sigma <= 0.0) {
         wrong("normal", format!("normal has a deviation of {sigma}, expected more than 0"))
-    } else if let Some(pair) = axis.log_normal.filter(|[median, sigma]| *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0) {
+    } else if let Some(pair) =
+        axis.log_normal.filter(|[median, sigma]| *median <= 0.0 || !(0.0..=10.0).contains(sigma) || *sigma == 0.0)
+    {
         wrong("log_normal", format!("log_normal is {pair:?}, expected a median above 0 and a deviation of at most 10"))
     } else {
         None
