@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn a_fault_with_a_time_happens_then_and_one_without_end_lasts() {
         let at = Fault { at_s: Some(30.0), ..fault() };
-        let spans = fault_spans(&[at.clone()], (VehicleId(0), "a"), 1, HOUR);
+        let spans = fault_spans(std::slice::from_ref(&at), (VehicleId(0), "a"), 1, HOUR);
         assert_eq!(spans.len(), 1);
         let on = |s: f64| spans[0].is_on(SimTime::from_s(s));
         assert_eq!([29.9, 30.0, 3599.9].map(on), [false, true, true]);

@@ -145,7 +145,7 @@ fn teams_that_exchange_their_strategies_follow_each_others() {
 
 /// The single values in place of what files say.
 fn settings(texts: &[&str]) -> Overrides {
-    let settings = texts.iter().map(|text| Setting::parse(text).unwrap()).collect();
+    let settings = texts.iter().map(|text| Setting::parse(text).expect("a setting")).collect();
     Overrides { settings, ..Overrides::default() }
 }
 

@@ -12,9 +12,9 @@ const SPARED: VehicleId = VehicleId(1);
 /// Two against two, in which something befalls the first boat from 20 s to 40 s.
 fn scenario(kind: &str, more: &str) -> Scenario {
     let fault = format!("fault.tried={{ kind = \"{kind}\", boats = [\"blue_1\"], at_s = 20, for_s = 20{more} }}");
-    let overrides = Overrides { settings: vec![Setting::parse(&fault).unwrap()], ..Overrides::default() };
+    let overrides = Overrides { settings: vec![Setting::parse(&fault).expect("it can be")], ..Overrides::default() };
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/surveyor_2v2.toml");
-    load_with(&file, &overrides).unwrap_or_else(|problems| panic!("{problems}")).of_seed(3).unwrap()
+    load_with(&file, &overrides).unwrap_or_else(|problems| panic!("{problems}")).of_seed(3).expect("it can be")
 }
 
 /// Plays on to a time; all boats steer a slow circle.
@@ -23,7 +23,7 @@ fn play_to(contest: &mut Contest, until_s: f64) {
         let at = contest.pictures()[0].stamp.valid_ns;
         for i in 0..4 {
             let heading_rad = 0.05 * at.as_s();
-            contest.order(VehicleId(i), Order::Steer { heading_rad, speed_m_s: 2.0 }, at).unwrap();
+            contest.order(VehicleId(i), Order::Steer { heading_rad, speed_m_s: 2.0 }, at).expect("it can be");
         }
         contest.advance();
     }
@@ -36,7 +36,7 @@ fn speed_m_s(contest: &Contest, vehicle: VehicleId) -> f64 {
 /// How far the position that a boat's receiver gives is from the true one, m, and the heading that its compass shows, rad.
 fn errors(contest: &Contest, vehicle: VehicleId) -> (f64, f64) {
     let pose = contest.world().state().boats[vehicle.index()].pose;
-    let nav = contest.world().reading(vehicle).unwrap().nav;
+    let nav = contest.world().reading(vehicle).expect("it can be").nav;
     (nav.at().distance(pose.at), game::angle::wrap_pi(nav.psi_rad - pose.psi_rad))
 }
 

@@ -253,7 +253,8 @@ fn probability(numbers: &[f64]) -> Option<f64> {
         return None;
     }
     let mean = numbers.iter().sum::<f64>() / count;
-    let error = (numbers.iter().map(|number| (number - mean).powi(2)).sum::<f64>() / (count - 1.0) / count).sqrt();
+    let error =
+        (numbers.iter().map(|number| (number - mean) * (number - mean)).sum::<f64>() / (count - 1.0) / count).sqrt();
     if error == 0.0 {
         return Some(if mean == 0.0 { 1.0 } else { 0.0 });
     }

@@ -227,7 +227,7 @@ fn found(plan: &Plan, condition: &Condition, density: &Density, nominal: &Densit
     // By the games after all learning: what a longer search would gain.
     let last = &weights[weights.len() / 2..];
     let mean = last.iter().sum::<f64>() / last.len() as f64;
-    let variance = last.iter().map(|one| (one - mean).powi(2)).sum::<f64>() / (last.len() as f64 - 1.0).max(1.0);
+    let variance = last.iter().map(|one| (one - mean) * (one - mean)).sum::<f64>() / (last.len() as f64 - 1.0).max(1.0);
     let mut failures: Vec<&Sample> = samples.iter().filter(|one| one.margin < 0.0).collect();
     failures.sort_by(|a, b| a.margin.total_cmp(&b.margin).then(a.job.seed.cmp(&b.job.seed)));
     let value = |one: &Sample| {
@@ -295,7 +295,7 @@ mod tests {
         }
         let mean = Estimate::of(&rates);
         assert!((mean.mean - 0.02).abs() < 1.5 * mean.half_width().unwrap_or(0.0), "{mean:?}, not 0.02");
-        let spread = |rates: &[f64]| rates.iter().map(|rate| (rate - 0.02).powi(2)).sum::<f64>();
+        let spread = |rates: &[f64]| rates.iter().map(|rate| (rate - 0.02) * (rate - 0.02)).sum::<f64>();
         assert!(spread(&nominal_rates) > 2.5 * spread(&rates), "{} {}", spread(&nominal_rates), spread(&rates));
     }
 }

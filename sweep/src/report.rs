@@ -165,13 +165,9 @@ fn observations(plan: &Plan, rows: &[Row]) -> Observations {
         Some(numbers.chunks(2).map(of_entry).collect())
     };
     let of_point = |point: usize| {
-        let mut by_entry = vec![vec![None; seeds]; entries];
-        for seed in 0..seeds {
-            for (entry, observation) in of_seed(point, seed).into_iter().flatten().enumerate() {
-                by_entry[entry][seed] = Some(observation);
-            }
-        }
-        by_entry
+        let seeds: Vec<Option<Vec<Vec<f64>>>> = (0..seeds).map(|seed| of_seed(point, seed)).collect();
+        let of_entry = |entry: usize| seeds.iter().map(|seed| Some(seed.as_ref()?[entry].clone())).collect();
+        (0..entries).map(of_entry).collect()
     };
     Observations { by_point: (0..plan.points().len()).map(of_point).collect() }
 }

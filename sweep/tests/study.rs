@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use sweep::{Condition, Plan, Study, StudyError};
 
 fn shipped(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(file).canonicalize().unwrap()
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(file).canonicalize().expect("it can be")
 }
 
 /// A sweep of two entries over two axes with short games, and more lines.
@@ -29,22 +29,24 @@ const WIND: &str = "[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 9]\ncoun
 
 fn plan_of(folder: &Path, more: &str) -> Plan {
     let path = folder.join("tried.toml");
-    std::fs::write(&path, text(more)).unwrap();
-    Plan::new(&load_sweep(&path).unwrap_or_else(|problems| panic!("{problems}"))).unwrap()
+    std::fs::write(&path, text(more)).expect("it can be");
+    Plan::new(&load_sweep(&path).unwrap_or_else(|problems| panic!("{problems}"))).expect("it can be")
 }
 
 /// Plays a study from where it is to before the game `to`.
 fn go_on(study: &mut Study, plan: &Plan, to: usize, jobs: usize) {
-    let (from, jobs) = (study.done(), NonZeroUsize::new(jobs).unwrap());
-    sweep::play(plan, (from, to), jobs, &AtomicBool::new(false), |played| study.add(plan, &played)).unwrap();
+    let (from, jobs) = (study.done(), NonZeroUsize::new(jobs).expect("it can be"));
+    sweep::play(plan, (from, to), jobs, &AtomicBool::new(false), |played| study.add(plan, &played)).expect("it can be");
 }
 
 /// Every file of a study.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut files: Vec<(String, Vec<u8>)> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap())
-        .map(|entry| (entry.file_name().into_string().unwrap(), std::fs::read(entry.path()).unwrap()))
+        .expect("it can be")
+        .map(|entry| entry.expect("it can be"))
+        .map(|entry| {
+            (entry.file_name().into_string().expect("it can be"), std::fs::read(entry.path()).expect("it can be"))
+        })
         .collect();
     files.sort();
     files

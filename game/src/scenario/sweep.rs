@@ -300,7 +300,7 @@ mod tests {
         }
         let log_normal = Axis { log_normal: Some([3.0, 0.5]), ..axis() };
         let ends = [0.0, 0.5, 1.0].map(|share| log_normal.at(share).number().unwrap_or(f64::NAN));
-        for (got, want) in ends.iter().zip([3.0 * (-1.5_f64).exp(), 3.0, 3.0 * 1.5_f64.exp()]) {
+        for (got, want) in ends.iter().zip([3.0 * libm::exp(-1.5), 3.0, 3.0 * libm::exp(1.5)]) {
             assert!((got / want - 1.0).abs() < 1e-9, "{ends:?}");
         }
     }
