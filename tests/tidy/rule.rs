@@ -8,7 +8,7 @@ use crate::tree::Tree;
 pub(crate) const LINES_MAX: usize = 500;
 
 /// What each crate of ours may depend on, whatever the section. Folders that are planned are in here already.
-const MAY_IMPORT: [(&str, &[&str]); 15] = [
+const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("onnx", &[]),
     ("game", &["onnx"]),
     ("bus", &["game"]),
@@ -23,8 +23,25 @@ const MAY_IMPORT: [(&str, &[&str]); 15] = [
     ("analysis", &["game", "recording"]),
     ("shore", &["game", "bus", "recording"]),
     ("learn", &["onnx", "game", "sim", "agent", "arena", "recording"]),
+    ("sweep", &["game", "sim", "agent", "analysis", "arena"]),
     ("python", &["game", "learn"]),
-    ("", &["onnx", "game", "bus", "recording", "sim", "agent", "gateway", "arena", "analysis", "learn", "shore"]),
+    (
+        "",
+        &[
+            "onnx",
+            "game",
+            "bus",
+            "recording",
+            "sim",
+            "agent",
+            "gateway",
+            "arena",
+            "analysis",
+            "learn",
+            "shore",
+            "sweep",
+        ],
+    ),
 ];
 
 /// Crates whose network shell, `node`, is the only place that may use `bus`; everything else in them is pure.
