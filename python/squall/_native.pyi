@@ -116,9 +116,6 @@ class VectorEnvironment:
     def scene(self, game: int) -> Scene:
         """A game as it looks from above."""
 
-Packed = tuple[str, list[tuple[Path, bytes]], str]
-"""A plan with all that its games need: the checked sweep as JSON, its files, its digest."""
-
 class SweepPlan:
     """Which games a sweep consists of. It never changes, and threads may share it."""
 
@@ -131,11 +128,11 @@ class SweepPlan:
         """
 
     @staticmethod
-    def unpack(packed: Packed) -> SweepPlan:
+    def unpack(packed: tuple[str, list[tuple[Path, bytes]], str]) -> SweepPlan:
         """The plan that was packed elsewhere; no file is read. Raises ValueError where another version of Squall packed it."""
 
-    def pack(self) -> Packed:
-        """Packs it for a process on another machine."""
+    def pack(self) -> tuple[str, list[tuple[Path, bytes]], str]:
+        """All that its games need, for a process on another machine: the checked sweep as JSON, its files, its digest."""
 
     name: str
     digest: str
