@@ -123,3 +123,53 @@ class VectorEnvironment:
 
     def scene(self, game: int) -> Scene:
         """A game as it looks from above."""
+
+class SweepPlan:
+    """Which games a sweep consists of. It never changes, and threads may share it."""
+
+    @staticmethod
+    def open(path: str | Path, games: int | None = None, seed: int | None = None) -> SweepPlan:
+        """Reads a sweep file, and the game at every point of it.
+
+        `games` (of each entry at each point) and `seed` take the place of the file's. Raises ValueError with everything that is wrong at
+        any point.
+        """
+
+    @staticmethod
+    def unpack(packed: tuple[str, list[tuple[Path, bytes]], str]) -> SweepPlan:
+        """The plan that was packed elsewhere; no file is read. Raises ValueError where another version of Squall packed it."""
+
+    def pack(self) -> tuple[str, list[tuple[Path, bytes]], str]:
+        """All that its games need, for a process on another machine: the checked sweep as JSON, its files, its digest."""
+
+    name: str
+    digest: str
+    """What identifies it: equal digests, equal games. It does not depend on where the files lie."""
+    points: int
+    games_per_point: int
+    games: int
+
+    def lines(self, begin: int, end: int, threads: int = 1) -> list[tuple[str, str]]:
+        """Plays the games from `begin` to before `end` in this process, without the interpreter's lock.
+
+        Returns for each its line in the table of games, and the lines of its boats. A game that cannot start has a line that says why.
+        Ctrl-C ends it with KeyboardInterrupt. Raises IndexError where there are no such games.
+        """
+
+    def begin(self, folder: str | Path) -> SweepStudy:
+        """A new study in a folder, which is made. Raises ValueError where there is one already, OSError where it cannot be written."""
+
+    def resume(self, folder: str | Path) -> SweepStudy:
+        """The study of a folder, taken up again; raises ValueError where there is none, or one of another sweep."""
+
+class SweepStudy:
+    """What came of a sweep, in a folder: the same files as `squall sweep` writes."""
+
+    done: int
+    """How many games it has: the next one's place."""
+
+    def add(self, index: int, game_line: str, boat_lines: str) -> None:
+        """Adds the next game, as `SweepPlan.lines` has it. Raises IndexError if it is another one, OSError where it cannot be written."""
+
+    def report(self) -> tuple[str, int]:
+        """Writes the report of all games so far: for people, and the number of games that could not start."""

@@ -1,10 +1,11 @@
-//! The native module of the Python package `squall`: games as environments, whose arrays Python shares.
+//! The native module of the Python package `squall`: games as environments, whose arrays Python shares; and sweeps.
 
 mod arguments;
 mod environment;
 mod recorder;
 mod scene;
 mod standing;
+mod sweep;
 
 use pyo3::prelude::*;
 
@@ -12,5 +13,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add_class::<environment::VectorEnvironment>()
+    module.add_class::<environment::VectorEnvironment>()?;
+    module.add_class::<sweep::SweepPlan>()?;
+    module.add_class::<sweep::SweepStudy>()
 }

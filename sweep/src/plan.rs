@@ -1,10 +1,13 @@
 //! Which games a sweep consists of.
 
 use game::Scenario;
-use game::scenario::{Axis, AxisValue, Design, Overrides, Problem, Problems, Setting, Sweep, load, load_with};
+use game::scenario::{
+    Axis, AxisValue, Design, Entrant, Files, Overrides, Problem, Problems, Setting, Sweep, load_with_files,
+};
 use game::stream::Stream;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The most points of a grid.
 const POINTS_MAX: usize = 100_000;
@@ -18,6 +21,9 @@ pub struct Plan {
     teams: Vec<String>,
     seeds: u64,
     points: Vec<Point>,
+    files: Arc<Files>,
+    /// How many of these files its own points need.
+    files_needed: usize,
 }
 
 /// A point of the space: a value for each axis.
@@ -48,19 +54,27 @@ impl Plan {
     /// # Errors
     /// Everything that is wrong at any point, and a grid of more than 100,000 points.
     pub fn new(sweep: &Sweep) -> Result<Plan, Problems> {
-        let teams = load(&sweep.game)?.teams.into_iter().map(|team| team.name).collect();
-        let points = points(sweep)?;
-        let plan = Plan { sweep: sweep.clone(), teams, seeds: u64::from(sweep.games).div_ceil(2), points };
+        let mut plan = Plan::unchecked(sweep, Arc::default())?;
         let mut problems = vec![];
-        for index in 0..plan.points.len() {
-            // Other entries and sides have the same scenario but for strategies, which were checked with the file.
-            if let Err(Problems(found)) = plan.scenario(index, 0, 0) {
+        // Other entries and sides have the same scenario at other points but for strategies.
+        let of_points = (0..plan.points.len()).map(|point| (point, 0));
+        for (point, entry) in of_points.chain((1..sweep.entries.len()).map(|entry| (0, entry))) {
+            if let Err(Problems(found)) = plan.scenario(point, entry, 0) {
                 problems.extend(found);
             }
         }
         problems.sort();
         problems.dedup();
+        plan.files_needed = plan.files.list().len();
         if problems.is_empty() { Ok(plan) } else { Err(Problems(problems)) }
+    }
+
+    /// A plan whose points nobody has looked at, which is read from these files.
+    pub(crate) fn unchecked(sweep: &Sweep, files: Arc<Files>) -> Result<Plan, Problems> {
+        let game = load_with_files(&sweep.game, &Overrides::default(), &files)?;
+        let teams = game.teams.into_iter().map(|team| team.name).collect();
+        let (points, files_needed) = (points(sweep)?, files.list().len());
+        Ok(Plan { sweep: sweep.clone(), teams, seeds: u64::from(sweep.games).div_ceil(2), points, files, files_needed })
     }
 
     /// The same sweep at other points, with so many seeds at each from `first_seed` on.
@@ -129,7 +143,7 @@ impl Plan {
     /// Everything that is wrong in any file.
     pub fn scenario(&self, point: usize, entry: usize, side: usize) -> Result<Scenario, Problems> {
         let overrides = self.overrides(point, entry, side);
-        let scenario = load_with(&self.sweep.game, &overrides)?;
+        let scenario = load_with_files(&self.sweep.game, &overrides, &self.files)?;
         scenario.has_no_real_boats().map_err(|real_boats| self.problem(real_boats.to_string()))?;
         Ok(scenario)
     }
@@ -157,15 +171,31 @@ impl Plan {
         words.join(" ")
     }
 
-    /// What identifies it: a study of another one is not gone on with.
+    /// The files that its games need, in the order in which it asks for them.
+    pub(crate) fn files(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
+        let mut files = self.files.list();
+        files.truncate(self.files_needed);
+        files
+    }
+
+    /// What identifies it: a study of another one is not gone on with. It depends on what files say and not on where they lie: of two
+    /// that lie elsewhere but name each other in the same way it is the same.
     #[must_use]
     pub fn digest(&self) -> String {
-        let games = [0, 1].map(|side| {
-            let of = |entry| self.scenario(0, entry, side).map(|scenario| serde_json::to_string(&scenario).ok()).ok();
-            (0..self.sweep.entries.len()).map(of).collect::<Vec<_>>()
-        });
-        let sweep = Sweep { path: "".into(), ..self.sweep.clone() };
-        let text = format!("{} {sweep:?} {games:?}", game::VERSION);
+        let nowhere = PathBuf::new;
+        let entry = |entry: &Entrant| Entrant { strategy: nowhere(), ..entry.clone() };
+        let axis = |axis: &Axis| Axis { place: (1, 1), ..axis.clone() };
+        let Sweep { entries, axes, .. } = &self.sweep;
+        let sweep = Sweep {
+            path: nowhere(),
+            game: nowhere(),
+            opponent: nowhere(),
+            entries: entries.iter().map(entry).collect(),
+            axes: axes.iter().map(axis).collect(),
+            ..self.sweep.clone()
+        };
+        let contents: Vec<u128> = self.files().iter().map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes)).collect();
+        let text = format!("{} {sweep:?} {contents:x?}", game::VERSION);
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
     }
 }

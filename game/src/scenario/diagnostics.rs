@@ -1,11 +1,13 @@
 //! The list of problems found so far, and the checks of single values that add to it.
 
 use super::draw::{Drawing, Drawn};
+use super::files::Files;
 use super::overrides::Overrides;
 use super::problem::{Problem, Problems};
 use super::source::Sources;
 use crate::policy::PolicyModel;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// What was read, and what is wrong with it.
 #[derive(Debug)]
@@ -15,8 +17,10 @@ pub(super) struct Diagnostics {
     pub(super) drawing: Drawing,
     /// Those that were taken.
     pub(super) drawn: Vec<Drawn>,
-    /// Instead of the file system.
-    pub(super) files: Option<Vec<(PathBuf, String)>>,
+    /// Where files are read.
+    pub(super) files: Arc<Files>,
+    /// Texts in place of all others.
+    pub(super) texts: Option<Vec<(PathBuf, String)>>,
     /// Models that were read before.
     pub(super) models: Vec<PolicyModel>,
     /// The files that take the place of the game's own.
@@ -32,7 +36,8 @@ impl Diagnostics {
             sources: Sources::default(),
             drawing,
             drawn: vec![],
-            files: None,
+            files: Arc::default(),
+            texts: None,
             models: vec![],
             overrides: Overrides::default(),
             problems: vec![],

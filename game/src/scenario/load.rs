@@ -2,6 +2,7 @@
 
 use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn, Recipe};
+use super::files::Files;
 use super::kind::Kind;
 use super::overrides::Overrides;
 use super::problem::Problems;
@@ -18,6 +19,7 @@ use crate::training::Training;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Reads and checks the game file at `path` and every file it names. Where files give distributions, the numbers
 /// are those of the game's own seed; [`Scenario::of_seed`] draws others.
@@ -33,9 +35,18 @@ pub fn load(path: &Path) -> Result<Scenario, Problems> {
 /// # Errors
 /// Everything that is wrong in any file, by file, line and column; also a strategy for a team that is not in the game.
 pub fn load_with(path: &Path, overrides: &Overrides) -> Result<Scenario, Problems> {
+    load_with_files(path, overrides, &Arc::default())
+}
+
+/// The same, read from these files.
+///
+/// # Errors
+/// Everything that is wrong in any file, as above.
+pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -> Result<Scenario, Problems> {
     let read = |drawing: Drawing| {
         let mut diagnostics = Diagnostics::new(drawing);
         diagnostics.overrides = overrides.clone();
+        diagnostics.files = Arc::clone(files);
         game_of(diagnostics, path)
     };
     let least = read(Drawing::Least)?;
@@ -68,7 +79,7 @@ impl Scenario {
             return Ok(Scenario { seed, ..self.clone() });
         };
         let mut diagnostics = Diagnostics::new(Drawing::Seed(seed));
-        diagnostics.files = Some(recipe.files.clone());
+        diagnostics.texts = Some(recipe.files.clone());
         diagnostics.overrides.clone_from(&recipe.overrides);
         diagnostics.models = self.strategies.iter().flat_map(Strategy::models).cloned().collect();
         let mut drawn = game_of(diagnostics, &recipe.game)?;
@@ -190,7 +201,7 @@ pub fn load_sweep(path: &Path) -> Result<Sweep, Problems> {
 pub fn default_gateway() -> Gateway {
     let path = Path::new("default.toml");
     let mut diagnostics = Diagnostics::new(Drawing::Least);
-    diagnostics.files = Some(vec![(path.to_owned(), String::new())]);
+    diagnostics.texts = Some(vec![(path.to_owned(), String::new())]);
     let document = read::document(&mut diagnostics, Kind::Gateway, path, None);
     document.and_then(|document| check::gateway(&mut diagnostics, &document)).expect("every key has a default")
 }

@@ -10,6 +10,7 @@ mod check;
 mod diagnostics;
 mod draw;
 mod field_value;
+mod files;
 mod guess;
 mod kind;
 mod load;
@@ -28,10 +29,11 @@ mod tree;
 mod validate;
 
 pub use draw::{Drawn, Recipe};
+pub use files::Files;
 pub use kind::Kind;
 pub use load::{
     check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_rewards,
-    load_strategy, load_sweep, load_tournament, load_training, load_with,
+    load_strategy, load_sweep, load_tournament, load_training, load_with, load_with_files,
 };
 pub use overrides::Overrides;
 pub use problem::{Problem, Problems};

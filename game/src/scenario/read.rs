@@ -194,11 +194,12 @@ fn text_of(diagnostics: &mut Diagnostics, path: &Path, asked_at: Option<usize>) 
 }
 
 fn bytes_of(diagnostics: &Diagnostics, path: &Path) -> Result<Vec<u8>, String> {
-    if let Some(files) = &diagnostics.files {
-        let kept = files.iter().find(|(kept, _)| kept == path);
+    if let Some(texts) = &diagnostics.texts {
+        let kept = texts.iter().find(|(kept, _)| kept == path);
         return kept.map(|(_, text)| text.clone().into_bytes()).ok_or_else(|| "is not among the files kept".into());
     }
-    crate::input_file::read(path, LARGEST_BYTES).map_err(|error| format!("cannot be read ({error}), expected a file"))
+    let bytes = diagnostics.files.read(path, LARGEST_BYTES);
+    bytes.map(|bytes| bytes.to_vec()).map_err(|error| format!("cannot be read ({error}), expected a file"))
 }
 
 /// Reads the file of a model, if that was not done before.
@@ -208,7 +209,7 @@ pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -
     if let Some(kept) = kept {
         return Ok(kept.clone());
     }
-    let bytes = crate::input_file::read(path, policy::BYTES_MAX);
+    let bytes = diagnostics.files.read(path, policy::BYTES_MAX);
     let bytes = bytes.map_err(|error| format!("it cannot be read ({error}), expected an ONNX file"))?;
     PolicyModel::read(&name, &bytes, said).map_err(|error| error.to_string())
 }

@@ -8,7 +8,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// A sweep: how strategies do against one opponent at many points of a space of scenarios.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sweep {
     /// The sweep file's stem.
     #[schemars(skip)]
@@ -64,7 +64,7 @@ pub enum Design {
 }
 
 /// A number, or a whole file, that changes from point to point. It has one of `values`, `range`, `normal` and `log_normal`.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
     /// What changes: a kind of file and a key of it, as in `sea.wind.speed_m_s`, `boat.gps.noise_m`, `rules.tag_radius_m`,
     /// `link.delay_s`; or `sea`, `boat`, `rules`, `field` with files as values; or `opponent` with strategy files.

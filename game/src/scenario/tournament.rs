@@ -3,7 +3,7 @@
 use super::raw::{FilePath, Name};
 use super::{Overrides, Problems, Scenario, load, load_with};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -38,7 +38,7 @@ pub struct Tournament {
 }
 
 /// Who enters.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Entrant {
     /// Its name in the tables.
     #[schemars(with = "Name")]
