@@ -13,6 +13,7 @@ mod observation;
 mod own_motion;
 mod pilot;
 mod policy;
+mod restart;
 pub mod roles;
 mod runner;
 mod situation;
@@ -33,13 +34,13 @@ use game::strategy::Strategy;
 /// The mind that the scenario's strategy gives this vehicle in the game that the scenario's seed chooses.
 #[must_use]
 pub fn mind_of(scenario: &Scenario, vehicle: VehicleId) -> Box<dyn Mind> {
-    Box::new(HelmMind::new(scenario, vehicle, roles::role_of(scenario, vehicle)))
+    restart::helm_of(scenario, vehicle, roles::role_of(scenario, vehicle))
 }
 
 /// The mind that `strategy` gives this vehicle, whatever the scenario's own strategy for it is.
 #[must_use]
 pub fn mind_by(scenario: &Scenario, vehicle: VehicleId, strategy: &Strategy) -> Box<dyn Mind> {
-    Box::new(HelmMind::new(scenario, vehicle, roles::role_in(scenario, vehicle, strategy)))
+    restart::helm_of(scenario, vehicle, roles::role_in(scenario, vehicle, strategy))
 }
 
 /// The minds of all vehicles, in the scenario's order.

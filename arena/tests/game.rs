@@ -117,3 +117,34 @@ fn a_game_with_real_boats_does_not_start_here() {
     let refused = arena::play(&scenario, agent::minds_of(&scenario), 1);
     assert!(matches!(refused, Err(sim::NoStart::RealBoats(_))), "{refused:?}");
 }
+
+#[test]
+fn an_agent_that_is_killed_begins_anew_when_it_is_back() {
+    let dir = tempfile::tempdir().expect("a directory");
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").canonicalize().expect("it is there");
+    let counts = "unsafe_i_know = true\nunsafe_because = \"it lies still\"\n[variables]\ndecisions = 0\n[[rule]]\nwhen = \"true\"\n\
+                  set = { decisions = \"decisions + 1\" }\n[behaviour.stop]\nkind = \"full_stop\"\n";
+    let game = format!(
+        "base = \"{}/games/pav01_vs_pav01.toml\"\n\
+         team = [{{ name = \"blue\", strategy = \"counts.toml\" }}, {{ name = \"red\", strategy = \"counts.toml\" }}]\n\
+         [fault.killed]\nkind = \"agent_lost\"\nboats = [\"blue_two\"]\nat_s = 10\nfor_s = 5\n",
+        scenarios.display()
+    );
+    std::fs::write(dir.path().join("counts.toml"), counts).expect("it is written");
+    std::fs::write(dir.path().join("game.toml"), game).expect("it is written");
+    let mut scenario = game::scenario::load(&dir.path().join("game.toml")).unwrap_or_else(|e| panic!("{e}"));
+    scenario.rules.time_limit = SimTime::from_s(20.0);
+    let mut decisions = vec![];
+    arena::play_observed(&scenario, agent::minds_of(&scenario), 1, |_, runner| {
+        let count = |(_, mind): (VehicleId, &dyn agent::Mind)| {
+            mind.report().map(|report| report.variables[0].value.parse::<f64>().expect("a number"))
+        };
+        decisions = runner.minds().map(count).collect();
+        true
+    })
+    .unwrap_or_else(|e| panic!("{e}"));
+    let [killed, spared] = [1, 0].map(|i| decisions[i].expect("it has a helm"));
+    let a_second = 1.0 / scenario.decision().as_s();
+    assert!((spared - 20.0 * a_second).abs() < 2.0, "{decisions:?}");
+    assert!((killed - 5.0 * a_second).abs() < 2.0, "{decisions:?}");
+}

@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FaultKind {
-    /// The agent is dead: the boat holds and reports nothing, and no order of it counts until the fault is over.
+    /// The agent is dead: the boat holds and reports nothing, and no order of it counts until the fault is over. Then the agent begins
+    /// anew and has forgotten everything.
     AgentLost,
     /// No order reaches the boat, and no report of it its team: its orders expire.
     LinkLost,

@@ -187,3 +187,32 @@ fn a_single_value_is_checked_as_if_it_stood_in_the_file() {
         assert!(said.contains(want), "{text}: {said}");
     }
 }
+
+#[test]
+fn a_value_of_a_strategy_changes_that_of_its_team_alone() {
+    let game = shipped("games/surveyor_2v2.toml");
+    let both = ["blue", "red"].map(|team| (team.to_owned(), shipped("strategies/strategy_4.toml")));
+    let with = |texts: &[&str]| {
+        load_with(&game, &Overrides { strategies: both.clone().into(), ..settings(texts) }).map_err(|e| e.to_string())
+    };
+    let weight = |scenario: &Scenario, vehicle: usize| {
+        let strategy = &scenario.strategies[scenario.vehicles[vehicle].strategy];
+        let pursue = strategy.roles[0].behaviours.iter().find(|behaviour| behaviour.name == "pursue");
+        format!("{:?}", pursue.expect("strategy 4 pursues").weight)
+    };
+    let (own, changed) = (with(&[]).unwrap(), with(&["strategy.red.behaviour.pursue.weight=37"]).unwrap());
+    assert_eq!((own.strategies.len(), changed.strategies.len()), (1, 2), "boats of a team share its strategy");
+    let weights = |scenario: &Scenario| [0, 1, 2, 3].map(|vehicle| weight(scenario, vehicle).contains("37"));
+    assert_eq!((weights(&own), weights(&changed)), ([false; 4], [false, false, true, true]));
+    for (text, want) in [
+        (
+            "strategy.red.behaviour.pursue.weight=-1",
+            "--set strategy.red.behaviour.pursue.weight:1:27: weight is -1, expected",
+        ),
+        ("strategy.red.behaviour.pursue.wait=1", "wait is unknown"),
+        ("strategy.green.behaviour.pursue.weight=1", "there is no such team, expected one of blue, red after strategy"),
+    ] {
+        let said = with(&[text]).unwrap_err();
+        assert!(said.contains(want), "{text}: {said}");
+    }
+}

@@ -28,4 +28,10 @@ impl Overrides {
     pub(super) fn has_settings(&self, kind: Kind) -> bool {
         self.settings.iter().any(|setting| setting.target().is_some_and(|(target, _)| target == kind))
     }
+
+    /// The name of this team if a single value takes the place of what its strategy says, or else none: who owns the strategy's file,
+    /// which teams share that change nothing in it.
+    pub(super) fn owner_of_strategy<'a>(&self, team: &'a str) -> &'a str {
+        if self.settings.iter().any(|setting| setting.team() == Some(team)) { team } else { "" }
+    }
 }

@@ -102,7 +102,7 @@ fn document_of_tree<T: DeserializeOwned>(
     mut tree: Node,
     (owner, faults): (&str, usize),
 ) -> Option<Document<T>> {
-    put_settings(diagnostics, kind, &mut tree);
+    put_settings(diagnostics, (kind, owner), &mut tree);
     let start = tree.at;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     diagnostics.is_name(start, "the file's name", &name);
@@ -117,10 +117,13 @@ fn document_of_tree<T: DeserializeOwned>(
     }
 }
 
-/// Puts the single values that take the place of what a file of this kind says into its tree.
-fn put_settings(diagnostics: &mut Diagnostics, kind: Kind, tree: &mut Node) {
+/// Puts the single values that take the place of what a file of this kind says into its tree: in a strategy those of its team.
+fn put_settings(diagnostics: &mut Diagnostics, (kind, owner): (Kind, &str), tree: &mut Node) {
     for setting in diagnostics.overrides.settings.clone() {
         let Some((_, key)) = setting.target().filter(|(target, _)| *target == kind) else { continue };
+        if setting.team().is_some_and(|team| team != owner) {
+            continue;
+        }
         let text: Arc<str> = setting.as_file(key).into();
         let start = diagnostics.sources.add(setting.path.clone(), text.clone());
         let layer = parsed(diagnostics, start, &text);

@@ -8,7 +8,8 @@ use thiserror::Error;
 /// A value in the place of what all files of a kind say in a game. It is checked as if it stood in the file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Setting {
-    /// The kind of file and the key in it, as in `sea.waves.hs_m`. `link` and `fault` are tables of the game file.
+    /// The kind of file and the key in it, as in `sea.waves.hs_m`. `link` and `fault` are tables of the game file; after `strategy` comes
+    /// the name of the team whose strategy it is, as in `strategy.blue.behaviour.pursue.weight`.
     pub key: String,
     /// The value, as TOML.
     pub value: String,
@@ -32,7 +33,7 @@ pub enum SettingError {
 }
 
 /// What a key may begin with.
-const PREFIXES: [&str; 7] = ["sea", "boat", "rules", "field", "game", "link", "fault"];
+const PREFIXES: [&str; 8] = ["sea", "boat", "rules", "field", "game", "link", "fault", "strategy"];
 
 impl Setting {
     /// A setting from the command line. A value that is no TOML is a text.
@@ -81,8 +82,15 @@ impl Setting {
             "field" => (Kind::Field, rest),
             "game" => (Kind::Game, rest),
             "link" | "fault" => (Kind::Game, self.key.as_str()),
+            "strategy" => (Kind::Strategy, rest.split_once('.')?.1),
             _ => return None,
         })
+    }
+
+    /// The name of the team whose strategy it changes, if it changes one.
+    pub(super) fn team(&self) -> Option<&str> {
+        let (team, _) = self.key.strip_prefix("strategy.")?.split_once('.')?;
+        Some(team)
     }
 
     /// A TOML file that says this alone, at the line and column where it is given.

@@ -1,7 +1,7 @@
 //! A sweep: strategies that play the same games again and again while numbers of the scenario change.
 
 use super::raw::FilePath;
-use super::{Entrant, Overrides, Setting};
+use super::{Entrant, Overrides, Setting, SettingError};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -67,7 +67,8 @@ pub enum Design {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axis {
     /// What changes: a kind of file and a key of it, as in `sea.wind.speed_m_s`, `boat.gps.noise_m`, `rules.tag_radius_m`,
-    /// `link.delay_s`; or `sea`, `boat`, `rules`, `field` with files as values; or `opponent` with strategy files.
+    /// `link.delay_s`, or `strategy.behaviour.pursue.weight`, in the strategies of the entries; or `sea`, `boat`, `rules`, `field` with files
+    /// as values; or `opponent` with strategy files.
     #[schemars(length(min = 1), extend("x-expected" = "a key such as sea.wind.speed_m_s"))]
     pub key: String,
     /// Its levels, one by one: numbers, texts or files, all of one sort.
@@ -161,6 +162,23 @@ impl Axis {
         }
     }
 
+    /// It in a setting of a game in which the entry plays as this team.
+    fn setting_key(&self, team: &str) -> String {
+        match (self.target(), self.key.strip_prefix("strategy.")) {
+            (Target::File, _) => format!("game.{}", self.key),
+            (_, Some(key)) => format!("strategy.{team}.{key}"),
+            (_, None) => self.key.clone(),
+        }
+    }
+
+    /// The value in a game in which the entry plays as this team.
+    ///
+    /// # Errors
+    /// The key of the axis does not begin with a kind of file.
+    pub(super) fn setting(&self, team: &str, value: &AxisValue, path: &Path) -> Result<Setting, SettingError> {
+        Setting::new(&self.setting_key(team), value.toml(), path.to_owned(), self.place)
+    }
+
     /// Whether its values are the paths of files.
     #[must_use]
     pub fn is_of_files(&self) -> bool {
@@ -237,18 +255,12 @@ impl Sweep {
         let mut opponent = self.opponent.clone();
         let mut settings = vec![];
         for (axis, value) in self.axes.iter().zip(values) {
-            let key = match axis.target() {
-                Target::Opponent => {
-                    if let AxisValue::Text(file) = value {
-                        opponent = beside(&self.path, file);
-                    }
-                    continue;
-                }
-                Target::File => format!("game.{}", axis.key),
-                Target::Key => axis.key.clone(),
-            };
-            let setting = Setting::new(&key, value.toml(), self.path.clone(), axis.place);
-            settings.push(setting.expect("the keys of a checked sweep are keys"));
+            if axis.target() != Target::Opponent {
+                let setting = axis.setting(&teams[side], value, &self.path);
+                settings.push(setting.expect("the keys of a checked sweep are keys"));
+            } else if let AxisValue::Text(file) = value {
+                opponent = beside(&self.path, file);
+            }
         }
         let own = self.entries[entry].strategy.clone();
         let strategies = match side {

@@ -38,24 +38,34 @@ pub(super) struct Entry {
 /// Reads and checks the file at a path, which is referred to from a place, for an owner who draws its numbers.
 type LoadFile<T> = fn(&mut Diagnostics, &Path, Option<usize>, &str) -> Option<T>;
 
-/// Files of one kind that a game names. Each is read once, or once for each owner if it has numbers to be drawn.
+/// Files of one kind that a game names. Each is read once; or once for each owner, always or if it has numbers to be drawn.
 pub(super) struct FileCache<T> {
     items: Vec<T>,
     path_of: BTreeMap<String, PathBuf>,
-    /// Of files without numbers to be drawn.
-    index_of: BTreeMap<PathBuf, Option<usize>>,
+    /// Of files without numbers to be drawn, by path and owner ("" where owners share them).
+    index_of: BTreeMap<(PathBuf, String), Option<usize>>,
+    is_by_owner: bool,
     load: LoadFile<T>,
 }
 
 impl<T> FileCache<T> {
     pub(super) fn new(load: LoadFile<T>) -> FileCache<T> {
-        FileCache { items: vec![], path_of: BTreeMap::new(), index_of: BTreeMap::new(), load }
+        FileCache { items: vec![], path_of: BTreeMap::new(), index_of: BTreeMap::new(), is_by_owner: false, load }
+    }
+
+    /// Files that each owner has in a version of its own.
+    fn by_owner(load: LoadFile<T>) -> FileCache<T> {
+        FileCache { is_by_owner: true, ..FileCache::new(load) }
+    }
+
+    fn key(&self, path: PathBuf, owner: &str) -> (PathBuf, String) {
+        (path, if self.is_by_owner { owner.to_owned() } else { String::new() })
     }
 
     /// The index of the file that `given`, standing at `place`, names, as `owner` has it.
     fn index(&mut self, diagnostics: &mut Diagnostics, given: &str, place: usize, owner: &str) -> Option<usize> {
         let path = diagnostics.sources.resolve(place, given);
-        let is_new = !self.index_of.contains_key(&path);
+        let is_new = !self.index_of.contains_key(&self.key(path.clone(), owner));
         let index = self.index_at(diagnostics, &path, Some(place), owner)?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if is_new && *self.path_of.entry(name.clone()).or_insert_with(|| path.clone()) != path {
@@ -73,18 +83,18 @@ impl<T> FileCache<T> {
         place: Option<usize>,
         owner: &str,
     ) -> Option<usize> {
-        let path = tidied(path);
-        if let Some(index) = self.index_of.get(&path) {
+        let key = self.key(tidied(path), owner);
+        if let Some(index) = self.index_of.get(&key) {
             return *index;
         }
         let drawn = diagnostics.drawn.len();
-        let item = (self.load)(diagnostics, &path, place, owner);
+        let item = (self.load)(diagnostics, &key.0, place, owner);
         let index = item.map(|item| {
             self.items.push(item);
             self.items.len() - 1
         });
         if diagnostics.drawn.len() == drawn {
-            self.index_of.insert(path, index);
+            self.index_of.insert(key, index);
         }
         index
     }
@@ -115,7 +125,7 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
             let document = read::document_of(diagnostics, Kind::Boat, path, place, owner)?;
             super::boat(diagnostics, &document)
         }),
-        strategies: FileCache::new(super::strategy_file),
+        strategies: FileCache::by_owner(super::strategy_file),
         names: BTreeSet::new(),
         entries: vec![],
     };
@@ -280,10 +290,16 @@ fn check_teams(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
             diagnostics.note(place, format!("name is {name:?} again, expected a different one for each team"));
         }
     }
-    let unknown = diagnostics.overrides.strategies.keys().find(|team| !teams.contains(&team.as_str())).cloned();
-    if let Some(team) = unknown {
-        let names = teams.join(", ");
-        let message = format!("there is no team {team:?} to give another strategy to, expected one of {names}");
+    let is_unknown = |team: &&str| !teams.contains(team);
+    let overrides = &diagnostics.overrides;
+    let (names, replaced) = (teams.join(", "), overrides.strategies.keys().map(String::as_str).find(is_unknown));
+    let message = replaced
+        .map(|team| format!("there is no team {team:?} to give another strategy to, expected one of {names}"))
+        .or_else(|| {
+            let changed = overrides.settings.iter().find(|setting| setting.team().as_ref().is_some_and(is_unknown))?;
+            Some(format!("{}: there is no such team, expected one of {names} after strategy", changed.key))
+        });
+    if let Some(message) = message {
         diagnostics.note_if_intact(document.at(""), message);
     }
 }
@@ -435,11 +451,13 @@ impl Fleet<'_> {
             return None;
         }
         let team = team.map(|team| self.whose_strategy(diagnostics, team));
+        let owner = team
+            .map_or("", |team| diagnostics.overrides.owner_of_strategy(&self.document.raw.team[team.index()].name.0));
         let is_replaced = is_replaced(diagnostics, team);
         let states_one = |team: TeamId| self.document.raw.team[team.index()].strategy.is_some();
         match (given, team) {
             (Some(given), _) => {
-                self.strategies.index(diagnostics, &strategy_path(&given.0), self.document.at(&path), "")
+                self.strategies.index(diagnostics, &strategy_path(&given.0), self.document.at(&path), owner)
             }
             (None, Some(team)) if is_replaced || states_one(team) => self.strategy_of_team(diagnostics, team.index()),
             (None, Some(_)) => {
@@ -459,11 +477,12 @@ impl Fleet<'_> {
     /// The strategy that a team states, or the one that takes its place.
     fn strategy_of_team(&mut self, diagnostics: &mut Diagnostics, team: usize) -> Option<usize> {
         let raw::Team { name, strategy } = &self.document.raw.team[team];
+        let owner = diagnostics.overrides.owner_of_strategy(&name.0);
         if let Some(path) = diagnostics.overrides.strategies.get(&name.0).cloned() {
-            return self.strategies.index_at(diagnostics, &path, None, "");
+            return self.strategies.index_at(diagnostics, &path, None, owner);
         }
         let place = self.document.at(&format!("team.{team}.strategy"));
-        self.strategies.index(diagnostics, &strategy_path(&strategy.as_ref()?.0), place, "")
+        self.strategies.index(diagnostics, &strategy_path(&strategy.as_ref()?.0), place, owner)
     }
 
     /// Notes that a vehicle or fleet lacks a key, which its game or team could give as well.

@@ -3,8 +3,9 @@
 use super::game::{FileCache, referenced};
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::read::Document;
-use crate::scenario::{Axis, AxisValue, Kind, Setting, Sweep};
+use crate::scenario::{Axis, AxisValue, Kind, Sweep};
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// Checks a sweep.
 pub(in crate::scenario) fn sweep(diagnostics: &mut Diagnostics, document: &Document<Sweep>) -> Option<Sweep> {
@@ -57,7 +58,7 @@ fn check_axis(diagnostics: &mut Diagnostics, document: &Document<Sweep>, at: &st
     let wrong = |key: &str, message: String| Some((place(key), message));
     let files = || "files as values, as in values = [\"../seas/calm.toml\"]";
     let problem = if !axis.is_of_files()
-        && let Err(error) = Setting::new(&axis.key, String::new(), "".into(), (1, 1))
+        && let Err(error) = axis.setting("team", &AxisValue::Number(0.0), Path::new(""))
     {
         wrong("key", format!("key is {:?}, expected sea, boat, rules, field or opponent, or more: {error}", axis.key))
     } else if given.len() != 1 {

@@ -18,14 +18,15 @@ use crate::strategy::{Program, Strategy};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Reads and checks the strategy file at `path`, which is referred to from a place; it has no numbers that are drawn.
+/// Reads and checks the strategy file at `path`, which is referred to from a place, for a team that has values of its own in it, or for
+/// everybody ("").
 pub(in crate::scenario) fn strategy_file(
     diagnostics: &mut Diagnostics,
     path: &Path,
     asked_at: Option<usize>,
-    _: &str,
+    owner: &str,
 ) -> Option<Strategy> {
-    let document = read::document(diagnostics, Kind::Strategy, path, asked_at)?;
+    let document = read::document_of(diagnostics, Kind::Strategy, path, asked_at, owner)?;
     strategy(diagnostics, &document)
 }
 

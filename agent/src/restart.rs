@@ -1,0 +1,80 @@
+//! A mind whose agent is killed in a game and comes back: it begins anew, as a process does that was started again.
+
+use crate::helm::HelmMind;
+use crate::mind::{Mind, Proposal};
+use crate::pilot::Pilot;
+use game::event::EventRecord;
+use game::fault::FaultKind;
+use game::helm::HelmReport;
+use game::message::Word;
+use game::scenario::Scenario;
+use game::strategy::{Program, Proposer};
+use game::{Event, Order, Picture, VehicleId};
+
+/// The mind of a vehicle that follows `program`; where the scenario has faults that kill its agent, one that forgets everything with each.
+pub(crate) fn helm_of(scenario: &Scenario, vehicle: VehicleId, program: &Program) -> Box<dyn Mind> {
+    let is_killed =
+        |fault: &game::fault::Fault| fault.kind == FaultKind::AgentLost && fault.vehicles.contains(&vehicle);
+    let helm = HelmMind::new(scenario, vehicle, program);
+    if !scenario.faults.iter().any(is_killed) {
+        return Box::new(helm);
+    }
+    let begin = {
+        let (scenario, program) = (scenario.clone(), program.clone());
+        Box::new(move || HelmMind::new(&scenario, vehicle, &program))
+    };
+    Box::new(Restarted { vehicle, helm, begin, shown: false })
+}
+
+/// A helm that begins anew when the picture says that its agent is back.
+struct Restarted {
+    vehicle: VehicleId,
+    helm: HelmMind,
+    begin: Box<dyn Fn() -> HelmMind + Send>,
+    shown: bool,
+}
+
+impl Mind for Restarted {
+    fn decide(&mut self, picture: &Picture) -> Order {
+        let is_back =
+            |record: &EventRecord| record.logged().is_some_and(|logged| logged.event == Event::AgentBack(self.vehicle));
+        if picture.events.iter().any(is_back) {
+            self.helm = (self.begin)();
+            self.helm.show(self.shown);
+        }
+        self.helm.decide(picture)
+    }
+
+    fn shares(&self) -> bool {
+        self.helm.shares()
+    }
+
+    fn proposer(&self) -> Option<Proposer> {
+        self.helm.proposer()
+    }
+
+    fn send(&self, messages: &mut Vec<Word>) {
+        self.helm.send(messages);
+    }
+
+    fn receive(&mut self, messages: &[Word]) {
+        self.helm.receive(messages);
+    }
+
+    fn propose(&mut self, proposal: Proposal) {
+        self.helm.propose(proposal);
+    }
+
+    fn show(&mut self, shown: bool) {
+        self.shown = shown;
+        self.helm.show(shown);
+    }
+
+    fn pilot(&mut self) -> Option<&mut Pilot> {
+        self.helm.pilot()
+    }
+
+    fn report(&self) -> Option<HelmReport> {
+        self.helm.report()
+    }
+}
