@@ -33,7 +33,6 @@ mod strategy_command;
 mod sweep_command;
 mod tournament_command;
 mod tournament_progress;
-mod tournament_table;
 mod train_command;
 mod trial_command;
 mod view_command;

@@ -1,12 +1,12 @@
 //! `squall tournament`: every strategy against every other, in this process.
 
 use crate::tournament_progress::Progress;
-use crate::{output_file, screen, stop, tournament_table};
+use crate::{output_file, screen, stop};
 use agent::MindRunner;
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result};
-use arena::tournament::{Observer, Plan, Record, Report, play, play_observed};
+use arena::tournament::{self, Observer, Plan, Record, Report, play, play_observed};
 use game::Scenario;
 use game::event::EventCursor;
 use game::scenario::{Tournament, load_tournament};
@@ -81,9 +81,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         output_file::write_json(path, "the report", &Whole { report: &report, quality: quality.as_ref() })?;
     }
     if let Some(path) = &args.csv {
-        output_file::write(path, "the report", tournament_table::csv(&report))?;
+        output_file::write(path, "the report", tournament::csv(&report))?;
     }
-    screen::print(&tournament_table::text(&report));
+    screen::print(&tournament::text(&report));
     if let Some(quality) = quality {
         screen::print(&format!("\n{quality}"));
     }

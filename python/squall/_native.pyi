@@ -173,3 +173,37 @@ class SweepStudy:
 
     def report(self) -> tuple[str, int]:
         """Writes the report of all games so far: for people, and the number of games that could not start."""
+
+class TournamentPlan:
+    """Which games a tournament consists of. It never changes, and threads may share it."""
+
+    @staticmethod
+    def open(path: str | Path, games: int | None = None, seed: int | None = None) -> TournamentPlan:
+        """Reads a tournament file, and the game of every pairing.
+
+        `games` (of each pairing) and `seed` take the place of the file's. Raises ValueError with everything that is wrong.
+        """
+
+    @staticmethod
+    def unpack(packed: tuple[str, list[tuple[Path, bytes]], str]) -> TournamentPlan:
+        """The plan that was packed elsewhere; no file is read. Raises ValueError where another version of Squall packed it."""
+
+    def pack(self) -> tuple[str, list[tuple[Path, bytes]], str]:
+        """All that its games need, for a process on another machine: the checked file as JSON, its files, its digest."""
+
+    name: str
+    digest: str
+    """What identifies it: equal digests, equal games. It does not depend on where the files lie."""
+    games: int
+
+    def records(self, begin: int, end: int, threads: int = 1) -> list[str]:
+        """Plays the games from `begin` to before `end` in this process, without the interpreter's lock.
+
+        Returns a record of each, JSON. Ctrl-C ends it with KeyboardInterrupt. Raises IndexError where there are no such games.
+        """
+
+    def report(self, records: list[str]) -> tuple[str, str, str, int]:
+        """What the records of the first games come to: for people, as JSON and as CSV, and the number of games that could not start.
+
+        Raises ValueError where a record is none, IndexError where they are not those of the first games in their order.
+        """

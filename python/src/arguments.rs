@@ -1,9 +1,11 @@
 //! What Python says is to be played.
 
 use learn::environment::{ActionSpace, CriticInput, RawObservation, RawSetup};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use std::fmt::Display;
+use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// A mapping with a key for each of these: the stub has their meanings.
@@ -64,4 +66,28 @@ impl Arguments {
 /// An error of ours as Python's `ValueError`, with its whole text.
 pub(crate) fn refused(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// How many games and from which seed on, in the place of what a file says.
+pub(crate) fn games_and_seed(games: Option<u32>, seed: Option<u64>) -> PyResult<(Option<u32>, Option<u64>)> {
+    if let Some(games) = games.filter(|games| !(2..=1_000_000).contains(games)) {
+        return Err(refused(format!("games is {games}, expected 2 to 1000000")));
+    }
+    if let Some(seed) = seed.filter(|seed| i64::try_from(*seed).is_err()) {
+        return Err(refused(format!("seed is {seed}, expected 0 to {}", i64::MAX)));
+    }
+    Ok((games, seed))
+}
+
+/// A stretch of so many games, and the threads that play it.
+pub(crate) fn stretch(
+    (begin, end): (usize, usize),
+    games: usize,
+    threads: usize,
+) -> PyResult<(Range<usize>, NonZeroUsize)> {
+    if begin > end || end > games {
+        return Err(PyIndexError::new_err(format!("games {begin} to {end}, expected from 0 to {games} and in order")));
+    }
+    let threads = NonZeroUsize::new(threads).ok_or_else(|| refused("threads is 0, expected at least 1"))?;
+    Ok((begin..end, threads))
 }

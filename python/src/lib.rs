@@ -1,11 +1,13 @@
-//! The native module of the Python package `squall`: games as environments, whose arrays Python shares; and sweeps.
+//! The native module of the Python package `squall`: games as environments, whose arrays Python shares; sweeps and tournaments.
 
 mod arguments;
 mod environment;
 mod recorder;
 mod scene;
+mod signals;
 mod standing;
 mod sweep;
+mod tournament;
 
 use pyo3::prelude::*;
 
@@ -15,5 +17,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<environment::VectorEnvironment>()?;
     module.add_class::<sweep::SweepPlan>()?;
-    module.add_class::<sweep::SweepStudy>()
+    module.add_class::<sweep::SweepStudy>()?;
+    module.add_class::<tournament::TournamentPlan>()
 }

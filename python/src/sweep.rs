@@ -1,20 +1,16 @@
 //! A sweep for Python: its plan, stretches of its games played in this process, and the folder that keeps what came of them.
 
-use crate::arguments::refused;
-use game::scenario::{Sweep, load_sweep};
+use crate::arguments::{games_and_seed, refused, stretch};
+use crate::signals;
+use game::scenario::{Packed, Sweep, load_sweep};
 use pyo3::exceptions::{PyIndexError, PyOSError};
 use pyo3::prelude::*;
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
-use sweep::{Packed, Plan, Study, StudyError};
-
-/// How often Python is asked whether somebody has pressed Ctrl-C.
-const SIGNALS_EVERY: Duration = Duration::from_millis(100);
+use sweep::{Plan, Study, StudyError};
 
 /// Which games a sweep consists of; the stub explains it.
 #[pyclass(frozen, module = "squall._native")]
@@ -25,12 +21,7 @@ impl SweepPlan {
     #[staticmethod]
     #[pyo3(signature = (path, games=None, seed=None))]
     fn open(py: Python<'_>, path: PathBuf, games: Option<u32>, seed: Option<u64>) -> PyResult<SweepPlan> {
-        if let Some(games) = games.filter(|games| !(2..=1_000_000).contains(games)) {
-            return Err(refused(format!("games is {games}, expected 2 to 1000000")));
-        }
-        if let Some(seed) = seed.filter(|seed| i64::try_from(*seed).is_err()) {
-            return Err(refused(format!("seed is {seed}, expected 0 to {}", i64::MAX)));
-        }
+        let (games, seed) = games_and_seed(games, seed)?;
         let plan = py.detach(|| {
             let file = load_sweep(&path)?;
             Plan::new(&Sweep { games: games.unwrap_or(file.games), seed: seed.unwrap_or(file.seed), ..file })
@@ -40,14 +31,14 @@ impl SweepPlan {
 
     #[staticmethod]
     fn unpack(py: Python<'_>, packed: (String, Vec<(PathBuf, Vec<u8>)>, String)) -> PyResult<SweepPlan> {
-        let (sweep, files, digest) = packed;
-        let plan = py.detach(|| Packed { sweep, files, digest }.unpack());
+        let (spec, files, digest) = packed;
+        let plan = py.detach(|| Plan::unpack(Packed { spec, files, digest }));
         plan.map(|plan| SweepPlan(Arc::new(plan))).map_err(refused)
     }
 
     fn pack(&self) -> (String, Vec<(PathBuf, Vec<u8>)>, String) {
-        let Packed { sweep, files, digest } = Packed::new(&self.0);
-        (sweep, files, digest)
+        let Packed { spec, files, digest } = self.0.pack();
+        (spec, files, digest)
     }
 
     #[getter]
@@ -77,16 +68,8 @@ impl SweepPlan {
 
     #[pyo3(signature = (begin, end, threads=1))]
     fn lines(&self, py: Python<'_>, begin: usize, end: usize, threads: usize) -> PyResult<Vec<(String, String)>> {
-        if begin > end || end > self.0.games() {
-            let games = self.0.games();
-            return Err(PyIndexError::new_err(format!(
-                "games {begin} to {end}, expected from 0 to {games} and in order"
-            )));
-        }
-        let Some(threads) = NonZeroUsize::new(threads) else {
-            return Err(refused("threads is 0, expected at least 1"));
-        };
-        py.detach(|| play(&self.0, (begin, end), threads))
+        let (games, threads) = stretch((begin, end), self.0.games(), threads)?;
+        py.detach(|| played(&self.0, games, threads))
     }
 
     fn begin(&self, folder: PathBuf) -> PyResult<SweepStudy> {
@@ -106,29 +89,14 @@ impl SweepPlan {
 }
 
 /// Plays games on other threads than this one, which has Python look after its signals.
-fn play(plan: &Plan, games: (usize, usize), threads: NonZeroUsize) -> PyResult<Vec<(String, String)>> {
-    let stop = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        let (sender, receiver) = channel();
-        let stop = &stop;
-        scope.spawn(move || {
-            let played = sweep::play(plan, games, threads, stop, |played| {
-                // Nobody listens any more after a signal.
-                drop(sender.send(sweep::lines(plan, &played)));
-                Ok::<(), Infallible>(())
-            });
-            let Ok(()) = played;
+fn played(plan: &Plan, games: Range<usize>, threads: NonZeroUsize) -> PyResult<Vec<(String, String)>> {
+    signals::heeded(|stop| {
+        let mut lines = Vec::with_capacity(games.len());
+        let Ok(()) = sweep::play(plan, (games.start, games.end), threads, stop, |played| {
+            lines.push(sweep::lines(plan, &played));
+            Ok::<(), Infallible>(())
         });
-        let mut lines = Vec::with_capacity(games.1 - games.0);
-        loop {
-            match receiver.recv_timeout(SIGNALS_EVERY) {
-                Ok(line) => lines.push(line),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Ok(lines),
-            }
-            // Else the scope waits for games that nobody wants.
-            Python::attach(|py| py.check_signals()).inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
-        }
+        lines
     })
 }
 

@@ -10,7 +10,9 @@ import pytest
 
 from squall._native import SweepPlan
 from squall.scenario import SCENARIOS
-from squall.sweep import InOrder, batch_of, main, play_all
+from squall.cluster import InOrder, batch_of, play_all
+from squall.cluster_task import play_sweep
+from squall.sweep import Kept, main
 
 SWEEP = """
 about = "a tiny one"
@@ -174,10 +176,10 @@ def test_ctrl_c_ends_a_long_stretch(sweep: Path) -> None:
 
 
 def test_results_go_on_in_order() -> None:
-    order = InOrder(2)
-    batches = {2: [("2", "b2"), ("3", "b3")], 4: [("4", "b4")], 5: [("5", "b5"), ("6", "b6")]}
-    got = [[place for place, _, _ in order.put(begin, batches[begin])] for begin in (5, 4, 2)]
-    assert got == [[], [], [2, 3, 4, 5, 6]]
+    order: InOrder[str] = InOrder(2)
+    batches = {2: ["two", "three"], 4: ["four"], 5: ["five", "six"]}
+    got = [list(order.put(begin, batches[begin])) for begin in (5, 4, 2)]
+    assert got == [[], [], list(enumerate(["two", "three", "four", "five", "six"], 2))]
     assert not order.waiting
 
 
@@ -219,7 +221,7 @@ def test_a_cluster_that_loses_a_machine_writes_the_same_bytes(
             lost.append(done)
             cluster.remove_node(nodes[0], allow_graceful=False)
 
-    play_all(plan, study, batch=2, show=show)
+    play_all(plan, Kept(study), play_sweep, batch=2, show=show)
     study.report()
     assert lost and lost[0] < plan.games, "the machine was lost in the midst"
     same(here, tmp_path / "ray")
@@ -236,7 +238,7 @@ def test_ctrl_c_leaves_a_folder_that_is_gone_on_with(
             raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("squall.sweep.Progress.show", stopped)
+        patch.setattr("squall.cluster.Progress.show", stopped)
         assert main(words) == 130
     assert "--resume goes on" in capsys.readouterr().err
     assert main(words) == 1, "there is one already"
@@ -255,5 +257,5 @@ def test_a_worker_of_another_version_ends_the_sweep_and_keeps_it(cluster: Any, s
 
     plan = SweepPlan.open(sweep)
     with pytest.raises(ValueError, match="same version of Squall"):
-        play_all(Other(plan), plan.begin(tmp_path / "ray"))  # type: ignore[arg-type]
+        play_all(Other(plan), Kept(plan.begin(tmp_path / "ray")), play_sweep)
     assert plan.resume(tmp_path / "ray").done == 0

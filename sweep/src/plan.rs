@@ -2,7 +2,8 @@
 
 use game::Scenario;
 use game::scenario::{
-    Axis, AxisValue, Design, Entrant, Files, Overrides, Problem, Problems, Setting, Sweep, load_with_files,
+    Axis, AxisValue, Design, Entrant, Files, Overrides, Packed, Problem, Problems, Setting, Sweep, UnpackError,
+    digest_of, load_with_files,
 };
 use game::stream::Stream;
 use std::collections::BTreeMap;
@@ -70,7 +71,7 @@ impl Plan {
     }
 
     /// A plan whose points nobody has looked at, which is read from these files.
-    pub(crate) fn unchecked(sweep: &Sweep, files: Arc<Files>) -> Result<Plan, Problems> {
+    fn unchecked(sweep: &Sweep, files: Arc<Files>) -> Result<Plan, Problems> {
         let game = load_with_files(&sweep.game, &Overrides::default(), &files)?;
         let teams = game.teams.into_iter().map(|team| team.name).collect();
         let (points, files_needed) = (points(sweep)?, files.list().len());
@@ -172,7 +173,7 @@ impl Plan {
     }
 
     /// The files that its games need, in the order in which it asks for them.
-    pub(crate) fn files(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
+    fn files(&self) -> Vec<(PathBuf, Arc<[u8]>)> {
         let mut files = self.files.list();
         files.truncate(self.files_needed);
         files
@@ -194,9 +195,21 @@ impl Plan {
             axes: axes.iter().map(axis).collect(),
             ..self.sweep.clone()
         };
-        let contents: Vec<u128> = self.files().iter().map(|(_, bytes)| xxhash_rust::xxh3::xxh3_128(bytes)).collect();
-        let text = format!("{} {sweep:?} {contents:x?}", game::VERSION);
-        format!("{:032x}", xxhash_rust::xxh3::xxh3_128(text.as_bytes()))
+        digest_of(&format!("{sweep:?}"), &self.files())
+    }
+
+    /// It with all that its games need, for a process on another machine.
+    #[must_use]
+    pub fn pack(&self) -> Packed {
+        Packed::new(&self.sweep, self.files(), self.digest())
+    }
+
+    /// The plan that was packed elsewhere. Its points are not looked at again.
+    ///
+    /// # Errors
+    /// [`UnpackError`]: it is damaged, or another version of Squall packed it.
+    pub fn unpack(packed: Packed) -> Result<Plan, UnpackError> {
+        packed.unpack(Plan::unchecked, Plan::digest)
     }
 }
 

@@ -24,7 +24,7 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("shore", &["game", "bus", "recording"]),
     ("learn", &["onnx", "game", "sim", "agent", "arena", "recording"]),
     ("sweep", &["game", "sim", "agent", "analysis", "arena"]),
-    ("python", &["game", "learn", "sweep"]),
+    ("python", &["arena", "game", "learn", "sweep"]),
     (
         "",
         &[

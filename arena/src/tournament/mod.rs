@@ -7,8 +7,10 @@ mod estimate;
 mod plan;
 mod play;
 mod report;
+mod table;
 
 pub use estimate::Estimate;
 pub use plan::{Match, Plan};
-pub use play::{Game, Observer, Record, play, play_observed};
+pub use play::{Game, Observer, Record, play, play_observed, play_some};
 pub use report::{Cell, Failure, MatchRow, Report, Row, Seeds};
+pub use table::{csv, text};

@@ -1,7 +1,10 @@
 //! Which games a tournament consists of.
 
 use game::Scenario;
-use game::scenario::{Problem, Problems, Tournament};
+use game::scenario::{Entrant, Files, Packed, Problem, Problems, Tournament, UnpackError, digest_of};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A tournament with everything that its games need.
 #[derive(Clone, Debug)]
@@ -12,10 +15,11 @@ pub struct Plan {
     seeds: u64,
     /// What is played with each seed: who is the first team and who the second, and the game.
     rounds: Vec<([usize; 2], Scenario)>,
+    files: Arc<Files>,
 }
 
 /// One game.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Match {
     /// Chooses the game.
     pub seed: u64,
@@ -32,7 +36,11 @@ impl Plan {
     /// Everything that is wrong in the files, also in what they are together; and a game with real boats, which cannot
     /// be played here.
     pub fn new(tournament: &Tournament) -> Result<Plan, Problems> {
-        let teams = tournament.teams()?;
+        Plan::of_files(tournament, Arc::default())
+    }
+
+    fn of_files(tournament: &Tournament, files: Arc<Files>) -> Result<Plan, Problems> {
+        let teams = tournament.teams(&files)?;
         let count = tournament.entries.len();
         let is_played = |sides: [usize; 2]| {
             let is_there = |name: &String| sides.iter().any(|side| tournament.entries[*side].name == *name);
@@ -48,12 +56,12 @@ impl Plan {
                     (false, _) => &both[..],
                 };
                 for sides in sides {
-                    rounds.push((*sides, game_of(tournament, &teams, *sides)?));
+                    rounds.push((*sides, game_of(tournament, &teams, *sides, &files)?));
                 }
             }
         }
         let seeds = u64::from(tournament.games).div_ceil(2);
-        Ok(Plan { tournament: tournament.clone(), teams, seeds, rounds })
+        Ok(Plan { tournament: tournament.clone(), teams, seeds, rounds, files })
     }
 
     /// The tournament.
@@ -97,11 +105,40 @@ impl Plan {
         let seed = self.tournament.seed.wrapping_add((index / self.rounds.len()) as u64);
         (Match { seed, sides: *sides }, scenario)
     }
+
+    /// What identifies it. It depends on what files say and not on where they lie: of two that lie elsewhere but name each other in the
+    /// same way it is the same.
+    #[must_use]
+    pub fn digest(&self) -> String {
+        let nowhere = |entry: &Entrant| Entrant { strategy: PathBuf::new(), ..entry.clone() };
+        let (entries, sea) = (self.tournament.entries.iter().map(nowhere).collect(), self.tournament.sea.is_some());
+        let meant = Tournament { game: PathBuf::new(), sea: None, entries, ..self.tournament.clone() };
+        digest_of(&format!("{meant:?} {sea}"), &self.files.list())
+    }
+
+    /// It with all that its games need, for a process on another machine.
+    #[must_use]
+    pub fn pack(&self) -> Packed {
+        Packed::new(&self.tournament, self.files.list(), self.digest())
+    }
+
+    /// The plan that was packed elsewhere.
+    ///
+    /// # Errors
+    /// [`UnpackError`]: it is damaged, or another version of Squall packed it.
+    pub fn unpack(packed: Packed) -> Result<Plan, UnpackError> {
+        packed.unpack(Plan::of_files, Plan::digest)
+    }
 }
 
 /// The game in which one entry plays as the first team and another as the second, if it can be played here.
-fn game_of(tournament: &Tournament, teams: &[String], sides: [usize; 2]) -> Result<Scenario, Problems> {
-    let scenario = tournament.game_of(teams, sides)?;
+fn game_of(
+    tournament: &Tournament,
+    teams: &[String],
+    sides: [usize; 2],
+    files: &Arc<Files>,
+) -> Result<Scenario, Problems> {
+    let scenario = tournament.game_of(teams, sides, files)?;
     let at_top = |message| Problems(vec![Problem { path: tournament.game.clone(), line: 1, column: 1, message }]);
     scenario.has_no_real_boats().map_err(|real_boats| at_top(real_boats.to_string()))?;
     Ok(scenario)

@@ -4,13 +4,15 @@ use super::plan::{Match, Plan};
 use agent::MindRunner;
 use game::count::Counts;
 use game::{Outcome, Scenario};
+use serde::{Deserialize, Serialize};
 use sim::Contest;
 use std::num::NonZeroUsize;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
 
 /// A game that was played, or could not be.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// Which game.
     pub of: Match,
@@ -19,7 +21,7 @@ pub struct Record {
 }
 
 /// How a game ended.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Game {
     /// Points of the first team and of the second.
     pub score: [u32; 2],
@@ -45,8 +47,7 @@ pub struct Observer<B, S> {
 /// The records are in the order of the plan, and the same whatever the number of threads. Games that `stop` cut
 /// short are not among them.
 pub fn play(plan: &Plan, jobs: NonZeroUsize, stop: &AtomicBool, watch: impl FnMut(&Record)) -> Vec<Record> {
-    let nobody = Observer { begin: |_: &Scenario| (), see: |(): &mut (), _: &Contest, _: &MindRunner| () };
-    play_observed(plan, jobs, stop, &nobody, watch).into_iter().map(|(record, _)| record).collect()
+    play_some(plan, 0..plan.games(), jobs, stop, watch)
 }
 
 /// As [`play`], with somebody who looks on; with each record what came of that, of games that could start.
@@ -55,17 +56,44 @@ pub fn play_observed<T: Send>(
     jobs: NonZeroUsize,
     stop: &AtomicBool,
     observer: &Observer<impl Fn(&Scenario) -> T + Sync, impl Fn(&mut T, &Contest, &MindRunner) + Sync>,
+    watch: impl FnMut(&Record),
+) -> Vec<(Record, Option<T>)> {
+    play_from(plan, 0..plan.games(), jobs, stop, observer, watch)
+}
+
+/// As [`play`], of the games at these places alone, in whichever process.
+///
+/// # Panics
+/// If the plan has not as many.
+pub fn play_some(
+    plan: &Plan,
+    games: Range<usize>,
+    jobs: NonZeroUsize,
+    stop: &AtomicBool,
+    watch: impl FnMut(&Record),
+) -> Vec<Record> {
+    assert!(games.end <= plan.games(), "games {games:?} of {}", plan.games());
+    let nobody = Observer { begin: |_: &Scenario| (), see: |(): &mut (), _: &Contest, _: &MindRunner| () };
+    play_from(plan, games, jobs, stop, &nobody, watch).into_iter().map(|(record, _)| record).collect()
+}
+
+fn play_from<T: Send>(
+    plan: &Plan,
+    games: Range<usize>,
+    jobs: NonZeroUsize,
+    stop: &AtomicBool,
+    observer: &Observer<impl Fn(&Scenario) -> T + Sync, impl Fn(&mut T, &Contest, &MindRunner) + Sync>,
     mut watch: impl FnMut(&Record),
 ) -> Vec<(Record, Option<T>)> {
     /// Games that may wait to be shown.
     const QUEUE: usize = 64;
-    let next = AtomicUsize::new(0);
+    let (next, end) = (AtomicUsize::new(games.start), games.end);
     let mut records: Vec<(usize, Record, Option<T>)> = vec![];
     std::thread::scope(|scope| {
         let (sender, receiver) = sync_channel(QUEUE);
-        for _ in 0..jobs.get().min(plan.games()) {
+        for _ in 0..jobs.get().min(games.len()) {
             let (next, sender) = (&next, sender.clone());
-            scope.spawn(move || work(plan, next, stop, observer, &sender));
+            scope.spawn(move || work(plan, (next, end), stop, observer, &sender));
         }
         drop(sender);
         for (index, record, seen) in receiver {
@@ -80,14 +108,14 @@ pub fn play_observed<T: Send>(
 /// What one thread does: the next game that nobody has taken, until there is none.
 fn work<T>(
     plan: &Plan,
-    next: &AtomicUsize,
+    (next, end): (&AtomicUsize, usize),
     stop: &AtomicBool,
     observer: &Observer<impl Fn(&Scenario) -> T, impl Fn(&mut T, &Contest, &MindRunner)>,
     sender: &SyncSender<(usize, Record, Option<T>)>,
 ) {
     loop {
         let index = next.fetch_add(1, Ordering::Relaxed);
-        if index >= plan.games() || stop.load(Ordering::Relaxed) {
+        if index >= end || stop.load(Ordering::Relaxed) {
             return;
         }
         let (of, scenario) = plan.match_at(index);

@@ -15,6 +15,7 @@ mod guess;
 mod kind;
 mod load;
 mod overrides;
+mod packed;
 mod problem;
 pub(crate) mod raw;
 mod read;
@@ -36,6 +37,7 @@ pub use load::{
     load_strategy, load_sweep, load_tournament, load_training, load_with, load_with_files,
 };
 pub use overrides::Overrides;
+pub use packed::{Packed, UnpackError, digest_of};
 pub use problem::{Problem, Problems};
 pub use real_boats::RealBoats;
 pub use reference::{file_reference, reference};

@@ -1,14 +1,15 @@
 //! A tournament: who enters, and which game they play against each other.
 
 use super::raw::{FilePath, Name};
-use super::{Overrides, Problems, Scenario, load, load_with};
+use super::{Files, Overrides, Problems, Scenario, load_with_files};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A tournament: every entry against every other, in one game, over many seeds and from both sides.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Tournament {
     /// The tournament file's stem.
     #[schemars(skip)]
@@ -53,8 +54,8 @@ impl Tournament {
     ///
     /// # Errors
     /// Everything that is wrong in the game's files.
-    pub fn teams(&self) -> Result<Vec<String>, Problems> {
-        Ok(load(&self.game)?.teams.into_iter().map(|team| team.name).collect())
+    pub fn teams(&self, files: &Arc<Files>) -> Result<Vec<String>, Problems> {
+        Ok(load_with_files(&self.game, &Overrides::default(), files)?.teams.into_iter().map(|team| team.name).collect())
     }
 
     /// What takes the place of the game's own files when one entry plays as the first of these teams and another as
@@ -76,7 +77,7 @@ impl Tournament {
     ///
     /// # Panics
     /// If there are no such entries.
-    pub fn game_of(&self, teams: &[String], sides: [usize; 2]) -> Result<Scenario, Problems> {
-        load_with(&self.game, &self.overrides(teams, sides))
+    pub fn game_of(&self, teams: &[String], sides: [usize; 2], files: &Arc<Files>) -> Result<Scenario, Problems> {
+        load_with_files(&self.game, &self.overrides(teams, sides), files)
     }
 }

@@ -1,7 +1,8 @@
 //! The report of a tournament as tables: for people, and one for spreadsheets.
 
-use crate::screen::line;
-use arena::tournament::{Cell, Estimate, Report, Row};
+use super::estimate::Estimate;
+use super::report::{Cell, Report, Row};
+use std::fmt::Arguments;
 
 /// A column: its name in the CSV file, its heading for people, and its value.
 type Column = (&'static str, &'static str, fn(&Row) -> Estimate);
@@ -17,7 +18,8 @@ const COLUMNS: [Column; 7] = [
 ];
 
 /// The report for people.
-pub(crate) fn text(report: &Report) -> String {
+#[must_use]
+pub fn text(report: &Report) -> String {
     let mut text = String::new();
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(", sea {sea}"));
     line(&mut text, format_args!("{}: {}{sea}", report.tournament, report.game));
@@ -37,6 +39,12 @@ pub(crate) fn text(report: &Report) -> String {
     missing(&mut text, report);
     again(&mut text, report);
     text
+}
+
+/// Adds a line without blanks at its end.
+fn line(text: &mut String, args: Arguments<'_>) {
+    text.push_str(args.to_string().trim_end_matches(' '));
+    text.push('\n');
 }
 
 fn width(report: &Report) -> usize {
@@ -146,7 +154,8 @@ fn option(team: &str, file: &str) -> String {
 }
 
 /// A line for each entry, separated by commas. Names hold no commas, and paths are put in quotes.
-pub(crate) fn csv(report: &Report) -> String {
+#[must_use]
+pub fn csv(report: &Report) -> String {
     let mut text = String::new();
     let heads: String = COLUMNS.iter().map(|(name, _, _)| format!(",{name},{name}_low,{name}_high")).collect();
     line(&mut text, format_args!("name,strategy,games,wins,draws,losses{heads}"));

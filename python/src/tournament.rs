@@ -1,0 +1,82 @@
+//! A tournament for Python: its plan, stretches of its games played in this process, and what came of them.
+
+use crate::arguments::{games_and_seed, refused, stretch};
+use crate::signals;
+use arena::tournament::{Plan, Record, Report, csv, play_some, text};
+use game::scenario::{Packed, Tournament, load_tournament};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Which games a tournament consists of; the stub explains it.
+#[pyclass(frozen, module = "squall._native")]
+pub(crate) struct TournamentPlan(Arc<Plan>);
+
+#[pymethods]
+impl TournamentPlan {
+    #[staticmethod]
+    #[pyo3(signature = (path, games=None, seed=None))]
+    fn open(py: Python<'_>, path: PathBuf, games: Option<u32>, seed: Option<u64>) -> PyResult<TournamentPlan> {
+        let (games, seed) = games_and_seed(games, seed)?;
+        let plan = py.detach(|| {
+            let file = load_tournament(&path)?;
+            Plan::new(&Tournament { games: games.unwrap_or(file.games), seed: seed.unwrap_or(file.seed), ..file })
+        });
+        plan.map(|plan| TournamentPlan(Arc::new(plan))).map_err(refused)
+    }
+
+    #[staticmethod]
+    fn unpack(py: Python<'_>, packed: (String, Vec<(PathBuf, Vec<u8>)>, String)) -> PyResult<TournamentPlan> {
+        let (spec, files, digest) = packed;
+        let plan = py.detach(|| Plan::unpack(Packed { spec, files, digest }));
+        plan.map(|plan| TournamentPlan(Arc::new(plan))).map_err(refused)
+    }
+
+    fn pack(&self) -> (String, Vec<(PathBuf, Vec<u8>)>, String) {
+        let Packed { spec, files, digest } = self.0.pack();
+        (spec, files, digest)
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.tournament().name
+    }
+
+    #[getter]
+    fn digest(&self) -> String {
+        self.0.digest()
+    }
+
+    #[getter]
+    fn games(&self) -> usize {
+        self.0.games()
+    }
+
+    #[pyo3(signature = (begin, end, threads=1))]
+    fn records(&self, py: Python<'_>, begin: usize, end: usize, threads: usize) -> PyResult<Vec<String>> {
+        let (games, threads) = stretch((begin, end), self.0.games(), threads)?;
+        py.detach(|| played(&self.0, games, threads))
+    }
+
+    fn report(&self, py: Python<'_>, records: Vec<String>) -> PyResult<(String, String, String, usize)> {
+        py.detach(|| {
+            let records = records.iter().map(|record| serde_json::from_str(record)).collect::<Result<Vec<Record>, _>>();
+            let records = records.map_err(|error| refused(format!("a record cannot be read: {error}")))?;
+            if (0..records.len()).any(|i| i >= self.0.games() || records[i].of != self.0.match_at(i).0) {
+                return Err(PyIndexError::new_err("the records are not the tournament's first games, in their order"));
+            }
+            let report = Report::new(&self.0, &records);
+            let json = serde_json::to_string_pretty(&report).expect("it has names for keys");
+            Ok((text(&report), json + "\n", csv(&report), report.failures.len()))
+        })
+    }
+}
+
+/// Plays games on other threads than this one, which has Python look after its signals.
+fn played(plan: &Plan, games: Range<usize>, threads: NonZeroUsize) -> PyResult<Vec<String>> {
+    let records = signals::heeded(|stop| play_some(plan, games, threads, stop, |_| {}))?;
+    Ok(records.iter().map(|record| serde_json::to_string(record).expect("it has names for keys")).collect())
+}
