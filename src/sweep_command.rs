@@ -7,7 +7,7 @@ use game::scenario::{Sweep, load_sweep};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use sweep::{Condition, FindError, Plan, Study, UntilError};
+use sweep::{Condition, FindError, Journal, Plan, Search, Study, UntilError};
 
 /// Which sweep, and how.
 #[derive(clap::Args)]
@@ -26,19 +26,20 @@ pub(crate) struct Args {
     /// The folder for the tables and the report [default: runs/sweep/NAME]
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Goes on with the sweep that this folder holds; what comes of it is the same as if it had never stopped
+    /// Goes on with the sweep that this folder holds; what comes of it is the same as if it had never stopped. With --until and --find:
+    /// games of searches that the folder has are not played again
     #[arg(long)]
     resume: bool,
     /// Searches for the value of an axis at which this begins to hold, in place of playing all points, as in
     /// "strategy_5.win_share < 0.5"; no more games at a value than a point has
-    #[arg(long, value_name = "CONDITION", conflicts_with_all = ["resume", "find"])]
+    #[arg(long, value_name = "CONDITION", conflicts_with = "find")]
     until: Option<String>,
     /// With --until: the key of the axis to search along [default: the only one with numbers]
     #[arg(long, value_name = "KEY", requires = "until")]
     along: Option<String>,
     /// Searches the space of the axes for games in which this holds, however rare, and says how rare, as in
     /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` stand for conditions on the first entry
-    #[arg(long, value_name = "CONDITION", conflicts_with = "resume")]
+    #[arg(long, value_name = "CONDITION")]
     find: Option<String>,
     /// With --find: how many games
     #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(20..=10_000_000))]
@@ -86,14 +87,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 fn until(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsize)) -> Result<ExitCode> {
     let condition = Condition::parse(text, plan.sweep())?;
     let stop = stop::on_ctrl_c()?;
-    let result = sweep::breaking_point(plan, &condition, args.along.as_deref(), (jobs, &stop), |tried| {
+    let mut journal = journal(args, folder, plan)?;
+    let result = sweep::breaking_point(plan, &condition, args.along.as_deref(), &mut journal, (jobs, &stop), |tried| {
         let half = tried.mean.half_width().map_or("?".to_owned(), |half| format!("{half:.3}"));
         let verdict = tried.holds.map_or("cannot be told", |holds| if holds { "holds" } else { "does not hold" });
         let (value, games, mean) = (tried.value, tried.games, tried.mean.mean);
         screen::remark(&format!("at {value:.4}: {mean:.3} ± {half} in {games} games, {condition} {verdict}"));
     });
     let point = match result {
-        Err(UntilError::Stopped) => return Ok(stop::interrupted()),
+        Err(UntilError::Stopped) => return Ok(stopped(&journal)),
         other => other?,
     };
     let path = folder.join("until.json");
@@ -131,11 +133,13 @@ fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsi
     };
     let condition = Condition::parse(&condition, plan.sweep())?;
     let stop = stop::on_ctrl_c()?;
-    let found = sweep::find(plan, &condition, args.search_games as usize, (jobs, &stop), |games, failures| {
+    let mut journal = journal(args, folder, plan)?;
+    let search = Search { games: args.search_games as usize, learns: true };
+    let found = sweep::find(plan, &condition, search, &mut journal, (jobs, &stop), |games, failures| {
         screen::remark(&format!("{failures} of {games} games with {condition}"));
     });
     let found = match found {
-        Err(FindError::Stopped) => return Ok(stop::interrupted()),
+        Err(FindError::Stopped) => return Ok(stopped(&journal)),
         other => other?,
     };
     let path = folder.join("find.json");
@@ -143,6 +147,20 @@ fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsi
     screen::print(&sweep::found_text(&found));
     screen::print(&format!("\neverything, with more commands: {}\n", path.display()));
     Ok(ExitCode::SUCCESS)
+}
+
+/// The games of searches over this sweep in its folder.
+fn journal(args: &Args, folder: &Path, plan: &Plan) -> Result<Journal> {
+    let journal = if args.resume { Journal::resume(folder, plan)? } else { Journal::begin(folder, plan)? };
+    if journal.games() > 0 {
+        screen::remark(&format!("{} games were played before", journal.games()));
+    }
+    Ok(journal)
+}
+
+fn stopped(journal: &Journal) -> ExitCode {
+    screen::remark(&format!("stopped; {} games are kept, and --resume goes on with them", journal.games()));
+    stop::interrupted()
 }
 
 fn planned(args: &Args) -> Result<Plan> {

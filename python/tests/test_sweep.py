@@ -29,7 +29,7 @@ name = "strategy_4"
 strategy = "{scenarios}/strategies/strategy_4.toml"
 
 [[axis]]
-key = "rules.time_limit_s"
+key = "game.duration_s"
 values = [10, 20]
 
 [[axis]]

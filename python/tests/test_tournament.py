@@ -21,18 +21,14 @@ entry = [
 """
 SHORT = """
 base = "{scenarios}/games/surveyor_2v2.toml"
-rules = "rules.toml"
-"""
-RULES = """
-base = "{scenarios}/rules/aquaticus_2023.toml"
-time_limit_s = 20
+duration_s = 20
 """
 
 
 @pytest.fixture
 def tournament(tmp_path: Path) -> Path:
     """The file of a tournament of 12 short games."""
-    for name, text in (("tiny.toml", TOURNAMENT), ("short.toml", SHORT), ("rules.toml", RULES)):
+    for name, text in (("tiny.toml", TOURNAMENT), ("short.toml", SHORT)):
         (tmp_path / name).write_text(text.format(folder=tmp_path, scenarios=SCENARIOS))
     return tmp_path / "tiny.toml"
 

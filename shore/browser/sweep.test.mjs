@@ -23,7 +23,7 @@ async function sweep(t, more = '') {
   const axes = more || '[[axis]]\nkey = "sea.wind.speed_m_s"\nvalues = [1, 12]\n'
     + '[[axis]]\nkey = "boat.gps.noise_m"\nrange = [0.1, 10]\nlog = true\ncount = 3\n';
   const file = join(place, 'short.toml');
-  writeFileSync(file, `about = ${JSON.stringify(HOSTILE)}\ngame = "${game}"\nopponent = "${scenario('strategies/strategy_3.toml')}"\ngames = 4\n`
+  writeFileSync(file, `about = ${JSON.stringify(HOSTILE)}\ngame = "${game}"\nopponent = "${scenario('strategies/strategy_3.toml')}"\ngames = 10\n`
     + `${entry('strategy_4')}${entry('strategy_5')}${axes}`);
   const out = join(place, 'out');
   await squall(t, 'sweep', file, '--out', out, '--jobs', '2');

@@ -74,6 +74,8 @@ struct Group {
 const GROUP_POINTS_MIN: usize = 4;
 /// And there are at most so many.
 const GROUPS_MAX: usize = 8;
+/// From so many seeds on there are intervals: fewer are often all the same, and would seem to be sure.
+const SEEDS_MIN: usize = 5;
 
 impl Observations {
     /// By seed, what is observed of an entry in the mean over points: none for seeds that are not whole at all of them.
@@ -100,7 +102,10 @@ impl Observations {
 }
 
 fn estimate(numbers: Vec<f64>) -> Option<Estimate> {
-    (!numbers.is_empty()).then(|| Estimate::of(&numbers))
+    (!numbers.is_empty()).then(|| match Estimate::of(&numbers) {
+        Estimate { mean, .. } if numbers.len() < SEEDS_MIN => Estimate { mean, low: None, high: None },
+        estimate => estimate,
+    })
 }
 
 fn difference(one: &[Option<f64>], other: &[Option<f64>]) -> Option<Estimate> {
@@ -246,10 +251,10 @@ fn interaction(
     Some((metric, [0, 1, 2, 3].map(mean), Estimate::of(&contrasts), p))
 }
 
-/// How probable a mean so far from 0 is if the true one is 0, by Student's t; none of fewer than two numbers.
+/// How probable a mean so far from 0 is if the true one is 0, by Student's t; none of fewer than [`SEEDS_MIN`] numbers.
 fn probability(numbers: &[f64]) -> Option<f64> {
     let count = numbers.len() as f64;
-    if count < 2.0 {
+    if numbers.len() < SEEDS_MIN {
         return None;
     }
     let mean = numbers.iter().sum::<f64>() / count;
@@ -289,7 +294,13 @@ mod tests {
         let numbers: Vec<f64> = (0..10).map(|i| 1.0 + if i % 2 == 0 { spread } else { -spread }).collect();
         let p = probability(&numbers).expect("ten numbers");
         assert!((p - 0.05).abs() < 1e-4, "{p}");
-        assert_eq!((probability(&[1.0]), probability(&[2.0; 3]), probability(&[0.0; 3])), (None, Some(0.0), Some(1.0)));
+        assert_eq!(
+            (probability(&[2.0; 4]), probability(&[2.0; 5]), probability(&[0.0; 5])),
+            (None, Some(0.0), Some(1.0))
+        );
+        // Four seeds that are all the same are not sure.
+        assert_eq!(estimate(vec![2.0; 4]), Some(Estimate { mean: 2.0, low: None, high: None }));
+        assert!(estimate(vec![2.0; 5]).is_some_and(|five| five.low == Some(2.0)));
     }
 
     #[test]

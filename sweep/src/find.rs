@@ -7,12 +7,14 @@
 //! alone, so the mean of its weights over failures is unbiased whatever was learnt.
 
 use crate::condition::Condition;
+use crate::journal::Journal;
 use crate::plan::{Job, Plan, Point};
+use crate::study::StudyError;
 use arena::tournament::Estimate;
 use game::stream::Stream;
 use serde::Serialize;
 use std::num::NonZeroUsize;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// Pieces of an axis with a range or a distribution.
 const PIECES: usize = 10;
@@ -73,11 +75,14 @@ pub struct Named {
 }
 
 /// Why nothing was found.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum FindError {
     /// A game cannot start.
     #[error("{0}")]
     Game(String),
+    /// What was played cannot be written down.
+    #[error(transparent)]
+    Journal(#[from] StudyError),
     /// It was stopped.
     #[error("stopped before enough games were played")]
     Stopped,
@@ -96,14 +101,25 @@ struct Sample {
     job: Job,
 }
 
-/// Looks for games in which a condition holds, in so many games; `tell` is told of each round: its games, its failures.
+/// How games are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// How many games.
+    pub games: usize,
+    /// Whether it learns where failures are. One that does not draws evenly: brute force, to compare with.
+    pub learns: bool,
+}
+
+/// Looks for games in which a condition holds, in so many games; those that the journal has are not played again. `tell` is told of each round:
+/// its games, its failures.
 ///
 /// # Errors
 /// [`FindError`]: a game cannot start, or `stop` was set.
 pub fn find(
     plan: &Plan,
     condition: &Condition,
-    games: usize,
+    Search { games, learns }: Search,
+    journal: &mut Journal,
     (jobs, stop): (NonZeroUsize, &AtomicBool),
     mut tell: impl FnMut(usize, usize),
 ) -> Result<Found, FindError> {
@@ -114,10 +130,10 @@ pub fn find(
     let mut samples: Vec<Sample> = vec![];
     for round in 0..=ROUNDS {
         let count = if round < ROUNDS { per_round } else { games.saturating_sub(samples.len()).max(1) };
-        let new = play_round(&plan, condition, (&density, &nominal), (samples.len(), count), (jobs, stop))?;
+        let new = play_round(&plan, condition, (&density, &nominal), (samples.len(), count), journal, (jobs, stop))?;
         tell(count, new.iter().filter(|one| one.margin < 0.0).count());
         samples.extend(new);
-        if round < ROUNDS {
+        if round < ROUNDS && learns {
             density = learnt(&nominal, &samples);
         }
     }
@@ -139,6 +155,7 @@ fn play_round(
     condition: &Condition,
     (density, nominal): (&Density, &Density),
     (before, count): (usize, usize),
+    journal: &mut Journal,
     (jobs, stop): (NonZeroUsize, &AtomicBool),
 ) -> Result<Vec<Sample>, FindError> {
     let mut stream = Stream::new(plan.sweep().seed, &format!("sweep/find/{before}"));
@@ -165,16 +182,16 @@ fn play_round(
         samples.push((pieces, weight, point, Job { index: 2 * i + side, point: i, entry: 0, seed, side }));
     }
     let order: Vec<Job> = samples.iter().map(|(.., job)| *job).collect();
-    let mut margins = vec![];
-    crate::play::play_jobs(&round, &order, jobs, stop, |played| {
-        let number = played.result?[condition.metric];
-        margins.push(if number.is_nan() { f64::INFINITY } else { condition.margin(number) });
-        Ok(())
-    })
-    .map_err(FindError::Game)?;
-    if stop.load(Ordering::Relaxed) || margins.len() < count {
+    let played = journal.play(&round, &order, jobs, stop)?;
+    if played.len() < count {
         return Err(FindError::Stopped);
     }
+    let margin = |numbers: Vec<f64>| {
+        let number = numbers[condition.metric];
+        if number.is_nan() { f64::INFINITY } else { condition.margin(number) }
+    };
+    let margins = played.into_iter().map(|result| result.map(margin)).collect::<Result<Vec<f64>, String>>();
+    let margins = margins.map_err(FindError::Game)?;
     let sample = |((pieces, weight, point, job), margin)| Sample { pieces, weight, margin, point, job };
     Ok(samples.into_iter().zip(margins).map(sample).collect())
 }

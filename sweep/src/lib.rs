@@ -8,6 +8,7 @@ mod condition;
 mod effects;
 mod find;
 mod html;
+mod journal;
 mod metric;
 mod parquet_file;
 mod plan;
@@ -19,7 +20,8 @@ mod until;
 
 pub use condition::{Condition, ConditionError};
 pub use effects::{Effect, Interaction, Level};
-pub use find::{Densities, FindError, Found, find};
+pub use find::{Densities, FindError, Found, Search, find};
+pub use journal::Journal;
 pub use metric::{METRICS, Metric};
 pub use plan::{Job, Plan, Point};
 pub use play::{Played, play, play_one};

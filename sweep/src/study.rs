@@ -258,12 +258,17 @@ pub fn lines(plan: &Plan, played: &Played) -> (String, String) {
 }
 
 /// A number that is read again to the bit; nothing where there is none.
-fn cell(number: f64) -> String {
+pub(crate) fn cell(number: f64) -> String {
     if number.is_finite() { number.to_string() } else { String::new() }
 }
 
+/// The number that [`cell`] wrote.
+pub(crate) fn number_of(cell: &str) -> Option<f64> {
+    if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() }
+}
+
 /// A line of a table.
-fn record(cells: &[String]) -> String {
+pub(crate) fn record(cells: &[String]) -> String {
     let mut writer = csv::WriterBuilder::new().from_writer(vec![]);
     writer.write_record(cells).expect("memory takes it");
     String::from_utf8(writer.into_inner().expect("memory takes it")).expect("cells are text")
@@ -289,12 +294,7 @@ fn parsed<'a>(plan: &'a Plan, text: &'a str) -> impl Iterator<Item = (Row, usize
         if !is_there || record.len() != metrics_from + METRICS.len() + LAST.len() || record[0].parse() != Ok(index) {
             return None;
         }
-        let numbers: Option<Vec<f64>> = (0..METRICS.len())
-            .map(|m| match &record[metrics_from + m] {
-                "" => Some(f64::NAN),
-                number => number.parse().ok(),
-            })
-            .collect();
+        let numbers: Option<Vec<f64>> = (0..METRICS.len()).map(|m| number_of(&record[metrics_from + m])).collect();
         let [digest, why] = [0, 1].map(|i| record[metrics_from + METRICS.len() + i].to_owned());
         let result = if why.is_empty() { Ok(numbers?) } else { Err(why) };
         let boats: usize = record[5].parse().ok()?;
@@ -336,7 +336,7 @@ fn write(path: &Path, text: &str) -> Result<(), StudyError> {
     std::fs::write(path, text).map_err(io("write", path))
 }
 
-fn io(doing: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> StudyError {
+pub(crate) fn io(doing: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> StudyError {
     let path = path.to_owned();
     move |error| StudyError::Io { doing, path, error }
 }

@@ -5,14 +5,15 @@
 //! chance of any wrong verdict is shared among all looks (Bonferroni), so that the interval that comes of it is one of 95 % at least.
 
 use crate::condition::Condition;
-use crate::plan::{Plan, Point};
-use crate::play::play;
+use crate::journal::Journal;
+use crate::plan::{Job, Plan, Point};
+use crate::study::StudyError;
 use arena::tournament::Estimate;
 use game::scenario::AxisValue;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::num::NonZeroUsize;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// Seeds of the first batch at a value; each later one doubles what was played.
 const FIRST_SEEDS: u64 = 8;
@@ -58,7 +59,7 @@ pub struct Tried {
 }
 
 /// Why there is no search.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum UntilError {
     /// It is not clear along which axis.
     #[error("there are {0} axes with numbers, expected --along with the key of one of them: {1}")]
@@ -66,13 +67,16 @@ pub enum UntilError {
     /// A game cannot start.
     #[error("{0}")]
     Game(String),
+    /// What was played cannot be written down.
+    #[error(transparent)]
+    Journal(#[from] StudyError),
     /// It was stopped.
     #[error("stopped before the breaking point was found")]
     Stopped,
 }
 
-/// Searches along the axis of this key, or the only one with numbers, all others at their nominal values. `tell` is told of each
-/// value that was tried.
+/// Searches along the axis of this key, or the only one with numbers, all others at their nominal values. Games that the journal has are
+/// not played again. `tell` is told of each value that was tried.
 ///
 /// # Errors
 /// [`UntilError`]: no axis, or several; a game that cannot start; `stop` was set.
@@ -80,6 +84,7 @@ pub fn breaking_point(
     plan: &Plan,
     condition: &Condition,
     along: Option<&str>,
+    journal: &mut Journal,
     (jobs, stop): (NonZeroUsize, &AtomicBool),
     mut tell: impl FnMut(&Tried),
 ) -> Result<BreakingPoint, UntilError> {
@@ -94,7 +99,7 @@ pub fn breaking_point(
     let plan = plan.of_entry(condition.entry);
     let mut tried: Vec<Tried> = vec![];
     let mut test = |share: f64, tried: &mut Vec<Tried>| {
-        let one = try_value(&plan, condition, (axis, share), (jobs, stop))?;
+        let one = try_value(&plan, condition, (axis, share), journal, (jobs, stop))?;
         tell(&one);
         let holds = one.holds;
         tried.push(one);
@@ -137,6 +142,7 @@ fn try_value(
     plan: &Plan,
     condition: &Condition,
     (axis, share): (usize, f64),
+    journal: &mut Journal,
     (jobs, stop): (NonZeroUsize, &AtomicBool),
 ) -> Result<Tried, UntilError> {
     let mut values: Vec<AxisValue> = plan.sweep().axes.iter().map(game::scenario::Axis::nominal).collect();
@@ -147,21 +153,16 @@ fn try_value(
     let looks = (most as f64 / FIRST_SEEDS as f64).log2().ceil().max(0.0) + 1.0;
     let alpha = ALPHA / looks / f64::from(STEPS + 2);
     let mut observations: Vec<f64> = vec![];
-    let (mut sides, mut until) = (vec![], FIRST_SEEDS.min(most));
+    let mut until = FIRST_SEEDS.min(most);
     loop {
-        let from = 2 * observations.len();
-        let played = play(&plan, (from, 2 * until as usize), jobs, stop, |played| {
-            sides.push(played.result?[condition.metric]);
-            if sides.len() == 2 {
-                observations.push(0.5 * (sides[0] + sides[1]));
-                sides.clear();
-            }
-            Ok(())
-        });
-        played.map_err(UntilError::Game)?;
-        if stop.load(Ordering::Relaxed) || observations.is_empty() {
+        let order: Vec<Job> = (2 * observations.len()..2 * until as usize).map(|index| plan.job(index)).collect();
+        let played = journal.play(&plan, &order, jobs, stop)?;
+        if played.len() < order.len() {
             return Err(UntilError::Stopped);
         }
+        let numbers: Result<Vec<f64>, String> =
+            played.into_iter().map(|result| result.map(|numbers| numbers[condition.metric])).collect();
+        observations.extend(numbers.map_err(UntilError::Game)?.chunks(2).map(|sides| 0.5 * (sides[0] + sides[1])));
         let holds = verdict(condition, &observations, alpha);
         if holds.is_some() || until >= most {
             return Ok(Tried {

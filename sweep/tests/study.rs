@@ -3,8 +3,8 @@
 use game::scenario::{Overrides, load_sweep, load_with};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-use sweep::{Condition, Plan, Study, StudyError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use sweep::{Condition, FindError, Journal, Plan, Search, Study, StudyError, UntilError};
 
 fn shipped(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios").join(file).canonicalize().expect("it can be")
@@ -190,10 +190,77 @@ fn the_breaking_point_is_found_where_it_is() {
     let plan = Plan::new(&load_sweep(&path).unwrap()).unwrap();
     let condition = Condition::parse("easy.duration_s > 37", plan.sweep()).unwrap();
     let jobs = (NonZeroUsize::MIN, &AtomicBool::new(false));
-    let point = sweep::breaking_point(&plan, &condition, Some("game.duration_s"), jobs, |_| {}).unwrap();
+    let mut journal = Journal::begin(dir.path(), &plan).unwrap();
+    let point = sweep::breaking_point(&plan, &condition, Some("game.duration_s"), &mut journal, jobs, |_| {}).unwrap();
     let (low, high) = (point.low.unwrap(), point.high.unwrap());
     assert!(low < 37.0 && 37.0 < high && high - low < 1.0, "{low} to {high}");
     for text in ["easy.duration_s", "nobody.score < 1", "easy.speed < 1", "score < 1"] {
         assert!(Condition::parse(text, plan.sweep()).is_err(), "{text}");
     }
+}
+
+#[test]
+fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("find.toml");
+    std::fs::write(&path, text("[[axis]]\nkey = \"sea.wind.speed_m_s\"\nrange = [1, 12]\n")).unwrap();
+    let plan = Plan::new(&load_sweep(&path).unwrap()).unwrap();
+    let condition = Condition::parse("easy.closest_m < 9", plan.sweep()).unwrap();
+    let find = |journal: &mut Journal, stop: &AtomicBool, after: usize| {
+        let mut rounds = 0;
+        sweep::find(
+            &plan,
+            &condition,
+            Search { games: 40, learns: true },
+            journal,
+            (NonZeroUsize::MIN, stop),
+            |_, _| {
+                rounds += 1;
+                stop.store(rounds == after, Ordering::Relaxed);
+            },
+        )
+    };
+    let whole = dir.path().join("whole");
+    let mut journal = Journal::begin(&whole, &plan).unwrap();
+    let want = find(&mut journal, &AtomicBool::new(false), 99).unwrap();
+    assert_eq!((want.games, journal.games()), (40, 40));
+
+    let cut = dir.path().join("cut");
+    let mut journal = Journal::begin(&cut, &plan).unwrap();
+    assert!(matches!(find(&mut journal, &AtomicBool::new(false), 3), Err(FindError::Stopped)));
+    assert_eq!(journal.games(), 12);
+    drop(journal);
+    assert!(matches!(Journal::begin(&cut, &plan), Err(StudyError::Exists { games: 12, .. })));
+    let file = cut.join("search.csv");
+    let bytes = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &bytes[..bytes.len() - 5]).unwrap();
+    let mut journal = Journal::resume(&cut, &plan).unwrap();
+    assert_eq!(journal.games(), 11, "what was torn off is no game");
+    assert_eq!(find(&mut journal, &AtomicBool::new(false), 99).unwrap(), want);
+    assert_eq!(std::fs::read(&file).unwrap(), std::fs::read(whole.join("search.csv")).unwrap());
+
+    // Another condition asks for other games where it has learnt something else, and a breaking point for others still: none is lost.
+    let condition = Condition::parse("easy.score < 1", plan.sweep()).unwrap();
+    let stop = AtomicBool::new(false);
+    sweep::breaking_point(
+        &plan,
+        &condition,
+        Some("sea.wind.speed_m_s"),
+        &mut journal,
+        (NonZeroUsize::MIN, &stop),
+        |_| {},
+    )
+    .unwrap();
+    assert!(journal.games() > 40);
+    drop(journal);
+    let mut again = Journal::resume(&cut, &plan).unwrap();
+    // With nobody to play them all games are there.
+    let stopped = (NonZeroUsize::MIN, &AtomicBool::new(true));
+    sweep::breaking_point(&plan, &condition, Some("sea.wind.speed_m_s"), &mut again, stopped, |_| {}).unwrap();
+    let other = plan_of(dir.path(), WIND);
+    assert!(matches!(Journal::resume(&cut, &other), Err(StudyError::Other { .. })));
+    let condition = Condition::parse("easy.score < 2", other.sweep()).unwrap();
+    let mut new = Journal::begin(&dir.path().join("new"), &other).unwrap();
+    let none = sweep::breaking_point(&other, &condition, Some("sea.wind.speed_m_s"), &mut new, stopped, |_| {});
+    assert!(matches!(none, Err(UntilError::Stopped)), "{none:?}");
 }
