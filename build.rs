@@ -4,8 +4,26 @@ use std::path::Path;
 use std::process::Command;
 
 /// What the program is made of.
-const SOURCES: [&str; 11] =
-    ["Cargo.toml", "Cargo.lock", "build.rs", "src", "game", "bus", "sim", "agent", "gateway", "arena", "shore"];
+const SOURCES: [&str; 18] = [
+    "Cargo.toml",
+    "Cargo.lock",
+    "build.rs",
+    "src",
+    "scenarios",
+    "onnx",
+    "game",
+    "bus",
+    "recording",
+    "sim",
+    "agent",
+    "gateway",
+    "arena",
+    "analysis",
+    "learn",
+    "sweep",
+    "shore",
+    "benches",
+];
 
 fn main() {
     let commit = commit();

@@ -2,8 +2,8 @@
 
 use crate::child_process::{self, option};
 use crate::output_file;
+use crate::scenario_files;
 use crate::sim_command::seconds;
-use crate::water_args::named_file;
 use anyhow::{Context, Result, bail};
 use game::Scenario;
 use game::scenario::{Kind, Overrides, Setting};
@@ -14,20 +14,24 @@ use std::process::Command;
 /// A game, from the command line.
 #[derive(Clone, clap::Args)]
 pub(crate) struct GameArgs {
-    /// The game file
+    /// The game: a file, or the name of one in scenarios/games or inside of the program
+    #[arg(value_name = "GAME", value_parser = scenario_files::game)]
     scenario: PathBuf,
     /// Chooses the game [default: as the file says]
     #[arg(long)]
     seed: Option<u64>,
-    /// A sea file in place of the game's own
-    #[arg(long, value_name = "FILE")]
+    /// A sea in place of the game's own: a file or a name, as in --sea gale
+    #[arg(long, value_name = "SEA", value_parser = scenario_files::sea)]
     sea: Option<PathBuf>,
-    /// The strategy of all boats of the team blue, also of those that the game gives one of their own: a file, or the
-    /// name of one in the folder strategies beside the game's
-    #[arg(long, value_name = "FILE")]
+    /// A field in place of the game's own: a file or a name
+    #[arg(long, value_name = "FIELD", value_parser = scenario_files::field)]
+    field: Option<PathBuf>,
+    /// The strategy of all boats of the team blue, also of those that the game gives one of their own: a file or a name, which is
+    /// first looked for in the folder strategies beside the game's
+    #[arg(long, value_name = "STRATEGY")]
     blue: Option<String>,
     /// The same for the team red
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "STRATEGY")]
     red: Option<String>,
     /// The same for a team of any name; may be given again for another
     #[arg(long, value_name = "TEAM=FILE", value_parser = team_and_file)]
@@ -107,19 +111,24 @@ impl GameArgs {
 
     /// What takes the place of what the game file says.
     fn overrides(&self) -> Result<Overrides> {
+        let mut settings = self.settings.clone();
+        if let Some(field) = &self.field {
+            settings
+                .push(Setting::parse(&format!("game.field={}", serde_json::Value::from(field.display().to_string())))?);
+        }
         let mut overrides = Overrides {
             sea: self.sea.clone(),
             exchange_strategies: self.exchange_strategies,
             simulate_all: self.rehearse,
-            settings: self.settings.clone(),
+            settings,
             ..Overrides::default()
         };
         let beside = self.scenario.parent().unwrap_or(Path::new(""));
-        let folder = || Ok(beside.join("..").join(Kind::Strategy.folder()));
+        let folder = beside.parent().unwrap_or(Path::new("..")).join(Kind::Strategy.folder());
         let named = [("blue", &self.blue), ("red", &self.red)];
         let named = named.into_iter().filter_map(|(team, file)| Some((team, file.as_deref()?)));
         for (team, file) in named.chain(self.strategy.iter().map(|(team, file)| (team.as_str(), file.as_str()))) {
-            let path = named_file(file, ["strategy file", "strategy"], folder)?;
+            let path = scenario_files::find_beside(file, Kind::Strategy, Some(&folder))?;
             if overrides.strategies.insert(team.to_owned(), path).is_some() {
                 bail!("the strategy of team {team} is given twice, expected one");
             }

@@ -4,6 +4,7 @@ mod agent_command;
 mod both_sides;
 mod check_command;
 mod child_process;
+mod cli;
 mod game_args;
 mod gateway_command;
 mod hardware_loop;
@@ -14,6 +15,7 @@ mod keys_command;
 mod list_command;
 mod log_command;
 mod net_args;
+mod new_command;
 mod observer;
 mod output_file;
 mod page_args;
@@ -25,6 +27,7 @@ mod recording_file;
 mod replay_command;
 mod result_table;
 mod run_command;
+mod scenario_files;
 mod screen;
 mod sea_command;
 mod sim_command;
@@ -39,7 +42,7 @@ mod view_command;
 mod watch_command;
 mod water_args;
 
-use clap::{Parser, Subcommand};
+use clap::{FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// The version, and the commit it was built from.
@@ -50,64 +53,112 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMM
 #[command(name = "squall", version = VERSION, max_term_width = 100)]
 struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
 }
 
 #[derive(Subcommand)]
 enum Command {
+    /// Plays a windy, uneven game in the browser.
+    #[command(after_help = "Examples:\n  squall demo\n  squall demo --listen 0.0.0.0:8088 --token secret")]
+    Demo(run_command::DemoArgs),
     /// Plays a whole game: starts the sim and the agents, shows what happens, prints the result.
+    #[command(
+        after_help = "Examples:\n  squall run strategy_4_vs_3\n  squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --view\n  squall run surveyor_2v2 --set link.delay_s=1 --seed 7 --both-sides"
+    )]
     Run(run_command::Args),
     /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
+    #[command(
+        after_help = "Examples:\n  squall tournament paper --games 20\n  squall tournament mine.toml --json report.json --quality"
+    )]
     Tournament(tournament_command::Args),
     /// Plays strategies at many points of a space of scenarios: more wind, worse sensors, slower links.
+    #[command(
+        after_help = "Examples:\n  squall sweep wind\n  squall sweep wind --until strategy_4.win_share<0.5\n  squall sweep storm --find out_of_bounds"
+    )]
     Sweep(sweep_command::Args),
     /// Trains a policy by playing against itself, strategies and what it was.
+    #[command(after_help = "Examples:\n  squall train first\n  squall train first --resume")]
     Train(train_command::Args),
     /// Serves one game to agents and gateways that join it.
+    #[command(after_help = "Examples:\n  squall sim surveyor_2v2 --game mine --listen tcp/0.0.0.0:7447 --insecure")]
     Sim(sim_command::Args),
     /// Decides for one or many boats in a game that a sim serves.
+    #[command(after_help = "Examples:\n  squall agent blue_1 --game mine --connect tcp/10.0.0.5:7447")]
     Agent(agent_command::Args),
     /// Shows a running game in the terminal, or one boat's helm.
+    #[command(after_help = "Examples:\n  squall watch\n  squall watch --game mine --connect tcp/10.0.0.5:7447")]
     Watch(watch_command::Args),
     /// Shows a running game on a page.
+    #[command(after_help = "Examples:\n  squall view\n  squall view --listen 0.0.0.0:8088 --token secret")]
     View(view_command::Args),
     /// Shows a recorded game again, or checks that the same comes of it.
+    #[command(after_help = "Examples:\n  squall replay runs/game.mcap\n  squall replay runs/game.mcap --check")]
     Replay(replay_command::Args),
     /// Says what a recorded game tells: a summary, tables, plots, MOOS logs, and how it differs from another.
+    #[command(after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap")]
     Log(log_command::Args),
     /// Dumps one decision of a boat's helm: a table, numbers, pictures.
+    #[command(after_help = "Examples:\n  squall helm runs/game.mcap --vehicle blue_1 --at 120")]
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
+    #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
     Gateway(gateway_command::Args),
     /// Makes keys for a network with strangers in it: encrypted links, and certificates that say who may do what.
+    #[command(after_help = "Examples:\n  squall keys new keys --help")]
     Keys(keys_command::Args),
     /// Lists the games on the network and how they stand.
+    #[command(after_help = "Examples:\n  squall list\n  squall list --connect tcp/10.0.0.5:7447")]
     List(list_command::Args),
     /// Says what a sea means for a boat, and draws it.
+    #[command(after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg")]
     Sea(sea_command::Args),
     /// Puts one boat in open water through recorded commands or a standard manoeuvre.
+    #[command(after_help = "Examples:\n  squall trial surveyor_m1_8 --help")]
     Trial(trial_command::Args),
     /// Fits a boat file to a recorded series, and says how well.
+    #[command(after_help = "Examples:\n  squall identify --help")]
     Identify(identify_command::Args),
     /// Shows what a strategy file means: its modes, and what may run in each.
+    #[command(after_help = "Examples:\n  squall strategy strategy_4\n  squall strategy mine.toml --dot")]
     Strategy(strategy_command::Args),
     /// Tells what a trained policy is, and explains a decision of it in a recorded game.
+    #[command(after_help = "Examples:\n  squall policy scenarios/policies/options.onnx")]
     Policy(policy_command::Args),
     /// Checks scenario files and explains every error.
+    #[command(after_help = "Examples:\n  squall check scenarios/games/mine.toml")]
     Check(check_command::Args),
     /// Prints the JSON Schema of a kind of scenario file, for editors.
+    #[command(after_help = "Examples:\n  squall schema game")]
     Schema(check_command::SchemaArgs),
+    /// Lists the scenario files that are there by name.
+    #[command(after_help = "Examples:\n  squall files")]
+    Files,
+    /// Puts a file that is there by name on the disk, to change it.
+    #[command(after_help = "Examples:\n  squall copy strategy_4 mine\n  squall copy seas/gale")]
+    Copy(new_command::CopyArgs),
+    /// Begins a scenario file from a template that explains itself.
+    #[command(after_help = "Examples:\n  squall new strategy mine\n  squall new sweep how_much_wind")]
+    New(new_command::NewArgs),
+    /// Prints what a shell needs to complete commands.
+    #[command(after_help = "Examples:\n  squall completions bash > ~/.local/share/bash-completion/completions/squall")]
+    Completions(cli::CompletionArgs),
+    /// Writes man pages into a folder.
+    #[command(after_help = "Examples:\n  squall man man1")]
+    Man(cli::ManArgs),
 }
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    scenario_files::install();
+    let cli = Cli::from_arg_matches(&cli::command::<Cli>().get_matches()).unwrap_or_else(|error| error.exit());
+    let Some(command) = cli.command else { return cli::first() };
     // `run` only hands keys on: what it starts without keys must not have the threads of those with keys.
-    let is_run = matches!(cli.command, Command::Run(_));
+    let is_run = matches!(command, Command::Run(_) | Command::Demo(_));
     if !is_run && let Err(error) = child_process::with_threads_for_keys() {
         screen::complain(&format!("{error:#}"));
         return ExitCode::FAILURE;
     }
-    let done = match cli.command {
+    let done = match command {
+        Command::Demo(args) => run_command::demo(&args),
         Command::Run(args) => run_command::run(&args),
         Command::Tournament(args) => tournament_command::run(&args),
         Command::Sweep(args) => sweep_command::run(&args),
@@ -129,6 +180,11 @@ fn main() -> ExitCode {
         Command::Policy(args) => policy_command::run(&args),
         Command::Check(args) => check_command::run(&args),
         Command::Schema(args) => check_command::print_schema(&args),
+        Command::Files => Ok(new_command::files()),
+        Command::Copy(args) => new_command::copy(&args),
+        Command::New(args) => new_command::new(&args),
+        Command::Completions(args) => Ok(cli::completions::<Cli>(&args)),
+        Command::Man(args) => cli::man::<Cli>(&args),
     };
     match done {
         Ok(code) => code,

@@ -1,5 +1,6 @@
 //! The command line's way of saying where the page is served.
 
+use crate::screen;
 use anyhow::Result;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use shore::page::{Page, PageError, PageSettings};
@@ -23,6 +24,9 @@ pub(crate) struct PageArgs {
     /// A further name under which the page may be asked for; it needs a token
     #[arg(long, value_name = "NAME")]
     host: Vec<String>,
+    /// Opens the page in the browser
+    #[arg(long)]
+    open: bool,
 }
 
 impl PageArgs {
@@ -50,7 +54,7 @@ impl PageArgs {
 
     /// Whether anything is said of the page.
     pub(crate) fn is_given(&self) -> bool {
-        self.listen.is_some() || self.token.is_some() || !self.host.is_empty()
+        self.listen.is_some() || self.token.is_some() || !self.host.is_empty() || self.open
     }
 
     /// Where a browser finds the page, with its rights.
@@ -63,12 +67,25 @@ impl PageArgs {
         format!("http://{address}/{token}")
     }
 
+    /// The same, and the page is opened in the browser.
+    pub(crate) fn opened(&self) -> PageArgs {
+        PageArgs { open: true, ..self.clone() }
+    }
+
+    /// Opens the page in the browser if that was asked for; where there is none people have its address.
+    pub(crate) fn open_browser(&self, page: &Page) {
+        if self.open && open::that_detached(self.url(page)).is_err() {
+            screen::remark("no browser can be opened from here");
+        }
+    }
+
     /// The same as arguments of another process of this program.
     pub(crate) fn words(&self) -> Vec<String> {
         let listen = self.listen.iter().map(|listen| ("--listen", listen.to_string()));
         let token = self.token.iter().map(|token| ("--token", token.clone()));
         let hosts = self.host.iter().map(|host| ("--host", host.clone()));
-        listen.chain(token).chain(hosts).flat_map(|(name, value)| [name.to_owned(), value]).collect()
+        let words = listen.chain(token).chain(hosts).flat_map(|(name, value)| [name.to_owned(), value]);
+        words.chain(self.open.then(|| "--open".to_owned())).collect()
     }
 }
 

@@ -42,6 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let page = args.page.open(&stop)?;
     page.show(Arc::new(show));
     Screen::new().line(&format!("{} at {} (Ctrl-C ends it)", args.file.display(), args.page.url(&page)));
+    args.page.open_browser(&page);
     stop::wait(&stop);
     Ok(ExitCode::SUCCESS)
 }

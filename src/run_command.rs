@@ -12,6 +12,7 @@ use crate::stop;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::{Bundle, Identity};
 use bus::{Token, clock};
+use clap::{Args as _, FromArgMatches};
 use game::Scenario;
 use game::event::EventCursor;
 use game::scenario::Vehicle;
@@ -52,6 +53,21 @@ pub(crate) struct Args {
     hardware_loop: LoopArgs,
 }
 
+/// Where the page is served.
+#[derive(clap::Args)]
+pub(crate) struct DemoArgs {
+    #[command(flatten)]
+    page: PageArgs,
+}
+
+/// Plays a game for people who want to see one.
+pub(crate) fn demo(args: &DemoArgs) -> Result<ExitCode> {
+    let words = ["run", "surveyor_2v2", "--sea", "fresh_breeze", "--blue", "learned", "--red", "strategy_3", "--view"];
+    let words = words.into_iter().map(str::to_owned).chain(args.page.opened().words());
+    let matches = Args::augment_args(clap::Command::new("demo")).try_get_matches_from(words)?;
+    run(&Args::from_arg_matches(&matches)?)
+}
+
 /// As fast as a person can follow a game, simulated seconds a second.
 const SPEED_TO_WATCH: f64 = 10.0;
 
@@ -61,7 +77,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         scenario.has_no_real_boats()?;
     }
     if args.page.is_given() && !args.view {
-        bail!("--listen, --token and --host say how the page is served: they need --view");
+        bail!("--listen, --token, --host and --open say how the page is served: they need --view");
     }
     args.play.check_result_file()?;
     check_keys(args, &scenario)?;

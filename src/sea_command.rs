@@ -15,7 +15,8 @@ use std::process::ExitCode;
 /// Which sea, and for which boat.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The sea file
+    /// The sea: a file or a name
+    #[arg(value_parser = crate::scenario_files::sea)]
     sea: PathBuf,
     /// The boat that it is told for: a file, or the name of one in scenarios/boats
     #[arg(long, value_name = "BOAT", default_value = "surveyor_m1_8")]

@@ -11,8 +11,8 @@ use std::process::ExitCode;
 /// Which file, and how it is shown.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A strategy file
-    #[arg(required_unless_present = "reference")]
+    /// A strategy: a file or a name
+    #[arg(required_unless_present = "reference", value_parser = crate::scenario_files::strategy)]
     file: Option<PathBuf>,
     /// Writes the modes and what may run in them as a Graphviz graph
     #[arg(long)]

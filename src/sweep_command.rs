@@ -12,7 +12,8 @@ use sweep::{Condition, FindError, Journal, Plan, Search, Study, UntilError};
 /// Which sweep, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The sweep file
+    /// The sweep: a file or a name
+    #[arg(value_parser = crate::scenario_files::sweep)]
     sweep: PathBuf,
     /// Games of each entry at each point, half of them on each side [default: as the file says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]

@@ -20,7 +20,8 @@ use std::sync::atomic::AtomicBool;
 /// Which tournament, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The tournament file
+    /// The tournament: a file or a name
+    #[arg(value_parser = crate::scenario_files::tournament)]
     tournament: PathBuf,
     /// Games of each pairing, half of them on each side [default: as the file says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]

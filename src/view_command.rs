@@ -37,6 +37,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let live = LiveView::open(args.leaf.place()?, args.leaf.game.clone(), tell).context("cannot look for games")?;
     page.show(Arc::new(live));
     Screen::new().line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));
+    args.page.open_browser(&page);
     while !stop::is_set_soon(&stop) {
         let Some(file) = recordings.as_ref().and_then(|named| named.try_recv().ok()) else { continue };
         match replay_command::show(Path::new(&file)) {

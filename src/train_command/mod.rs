@@ -23,7 +23,8 @@ const STATE_BYTES_MAX: u64 = 4 << 30;
 /// What is trained, and where it goes.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The training file
+    /// The training: a file or a name
+    #[arg(value_parser = crate::scenario_files::training)]
     training: PathBuf,
     /// The folder for the policy, its curves and all tables [default: runs/train/NAME]
     #[arg(long, value_name = "FOLDER")]

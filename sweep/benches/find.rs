@@ -1,6 +1,6 @@
 //! What the search for rare failures gains over brute force, in the same run: as many games of `sweeps/storm.toml`, drawn evenly.
 //!
-//! `cargo bench -p squall-sweep --bench find -- [GAMES] [CONDITION]`, by default 2000 games and `strategy_5.out_of_bounds > 0`.
+//! `cargo bench -p squall-sweep --bench find -- [GAMES] [CONDITION]`, by default 1000 games and `strategy_5.out_of_bounds > 0`.
 
 use game::scenario::load_sweep;
 use std::num::NonZeroUsize;
@@ -12,7 +12,7 @@ use sweep::{Condition, Found, Journal, Plan, Search, find};
 fn main() {
     // Cargo itself says `--bench`.
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
-    let games = words.first().and_then(|word| word.parse().ok()).unwrap_or(2000_usize).max(20);
+    let games = words.first().and_then(|word| word.parse().ok()).unwrap_or(1000_usize).max(20);
     let condition = words.get(1).map_or("strategy_5.out_of_bounds > 0", String::as_str);
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/sweeps/storm.toml");
     let sweep = load_sweep(&file).unwrap_or_else(|problems| panic!("{problems}"));

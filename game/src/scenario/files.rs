@@ -1,11 +1,13 @@
 //! The files that scenarios are read from: the disk's, each read once, or those that were kept of it.
 
+use super::built_in::built_in;
 use crate::input_file;
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The files that scenarios are read from. What was read once is not read again: all that is read from these files is of one moment.
+/// The files that scenarios are read from; those that a program has inside of itself stand in for missing ones. What was read once is not read again: all that is read from these files is of one moment.
 #[derive(Debug, Default)]
 pub struct Files {
     read: Mutex<Read>,
@@ -53,7 +55,11 @@ impl Files {
         if self.is_complete {
             return Err("it is not among the files kept".to_owned());
         }
-        let bytes: Arc<[u8]> = input_file::read(path, bytes_max).map_err(|error| error.to_string())?.into();
+        let bytes: Arc<[u8]> = match (input_file::read(path, bytes_max), built_in(path)) {
+            (Ok(bytes), _) => bytes.into(),
+            (Err(error), Some(bytes)) if error.kind() == ErrorKind::NotFound => bytes.into(),
+            (Err(error), _) => return Err(error.to_string()),
+        };
         read.add(path.to_owned(), Arc::clone(&bytes));
         Ok(bytes)
     }

@@ -7,7 +7,8 @@ pub(super) fn nearest<'a>(name: &str, choices: &[&'a str]) -> Option<&'a str> {
     distances.filter(|(distance, _)| *distance <= far).min().map(|(_, choice)| choice)
 }
 
-/// The same as the end of a message: ` (did you mean seed?)`, or nothing.
-pub(super) fn did_you_mean(name: &str, choices: &[&str]) -> String {
+/// The one of `choices` that `name` was probably meant to be, as the end of a message: ` (did you mean seed?)`; or nothing.
+#[must_use]
+pub fn did_you_mean(name: &str, choices: &[&str]) -> String {
     nearest(name, choices).map(|guess| format!(" (did you mean {guess}?)")).unwrap_or_default()
 }

@@ -5,6 +5,7 @@
 //! `read` finds the files and lays them over their bases, `validate` reads them by their schema, `check` makes of them
 //! what the program believes, and `diagnostics` collects every [`Problem`] on the way.
 
+mod built_in;
 mod chance;
 mod check;
 mod diagnostics;
@@ -29,8 +30,10 @@ mod tournament;
 mod tree;
 mod validate;
 
+pub use built_in::{BuiltIn, set_built_in};
 pub use draw::{Drawn, Recipe};
 pub use files::Files;
+pub use guess::did_you_mean;
 pub use kind::Kind;
 pub use load::{
     check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_rewards,

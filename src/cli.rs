@@ -1,0 +1,132 @@
+//! The command line as a whole: help in groups, what to do first, completions for shells, man pages.
+
+use crate::screen;
+use anyhow::{Context, Result};
+use clap::{Command, CommandFactory};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// The subcommands by what they are for, in the order of the help.
+const GROUPS: [(&str, &[&str]); 6] = [
+    ("Play", &["demo", "run", "tournament", "sweep"]),
+    ("Learn", &["train", "policy"]),
+    ("Watch", &["view", "watch", "list", "replay", "log", "helm"]),
+    ("Over a network, and real boats", &["sim", "agent", "gateway", "keys"]),
+    ("Boats and seas", &["sea", "trial", "identify"]),
+    ("Files", &["files", "copy", "new", "strategy", "check", "schema", "completions", "man"]),
+];
+
+/// What there is to do first, for somebody who typed nothing else.
+const FIRST: &str = "\
+Squall simulates boats that play capture the flag.
+
+  squall demo                         a windy game in the browser
+  squall run strategy_4_vs_3          a game in the terminal
+  squall run surveyor_2v2 --sea gale --blue learned --view
+  squall files                        games, seas and strategies that are there by name
+  squall new strategy mine            a strategy of your own to change, and then
+  squall run surveyor_2v2 --blue mine
+  squall help                         everything else
+";
+
+/// Which shell.
+#[derive(clap::Args)]
+pub(crate) struct CompletionArgs {
+    /// The shell
+    shell: clap_complete::Shell,
+}
+
+/// Where to.
+#[derive(clap::Args)]
+pub(crate) struct ManArgs {
+    /// The folder for the pages
+    folder: PathBuf,
+}
+
+/// The command line with its subcommands in groups.
+pub(crate) fn command<T: CommandFactory>() -> Command {
+    let command = T::command();
+    let width = command.get_subcommands().map(|one| one.get_name().len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for (group, names) in GROUPS {
+        text.push_str(&format!("{group}:\n"));
+        for name in names {
+            let about = command.find_subcommand(name).and_then(Command::get_about).map(ToString::to_string);
+            // The first sentence: the rest is in the command's own help.
+            let about = about.unwrap_or_default();
+            let about = about.split([':', ';', ',']).next().unwrap_or_default();
+            text.push_str(&format!("  {name:width$}  {about}\n"));
+        }
+        text.push('\n');
+    }
+    text.push_str("squall COMMAND --help tells more, with examples.");
+    command.help_template("{about}\n\n{usage-heading} {usage}{after-help}\n\nOptions:\n{options}").after_help(text)
+}
+
+pub(crate) fn first() -> ExitCode {
+    screen::print(FIRST);
+    ExitCode::SUCCESS
+}
+
+pub(crate) fn completions<T: CommandFactory>(args: &CompletionArgs) -> ExitCode {
+    let mut script = vec![];
+    clap_complete::generate(args.shell, &mut command::<T>(), "squall", &mut script);
+    screen::print(&String::from_utf8_lossy(&script));
+    ExitCode::SUCCESS
+}
+
+pub(crate) fn man<T: CommandFactory>(args: &ManArgs) -> Result<ExitCode> {
+    crate::output_file::make_folder(&args.folder)?;
+    clap_mangen::generate_to(T::command(), &args.folder)
+        .with_context(|| format!("cannot write man pages to {}", args.folder.display()))?;
+    screen::print(&format!(
+        "man pages in {}; man {}/squall.1 shows the first\n",
+        args.folder.display(),
+        args.folder.display()
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_subcommand_is_in_one_group_and_its_help_has_an_example() {
+        let command = crate::Cli::command();
+        let mut grouped: Vec<&str> = GROUPS.iter().flat_map(|(_, names)| names.iter().copied()).collect();
+        let mut known: Vec<&str> = command.get_subcommands().map(Command::get_name).collect();
+        grouped.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(grouped, known);
+        for one in command.get_subcommands() {
+            let examples = one.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let example = format!("squall {}", one.get_name());
+            assert!(
+                examples.starts_with("Examples:") && examples.contains(&example),
+                "{}: {examples:?}",
+                one.get_name()
+            );
+        }
+    }
+
+    #[test]
+    fn the_lines_of_the_help_fit_a_terminal_and_the_examples_are_commands() {
+        let help = command::<crate::Cli>().render_help().to_string();
+        for line in help.lines().chain(FIRST.lines()) {
+            assert!(line.chars().count() <= 80, "{line}");
+        }
+        let all = crate::Cli::command();
+        for one in all.get_subcommands() {
+            let examples = one.get_after_help().map(ToString::to_string).unwrap_or_default();
+            for line in examples.lines().filter_map(|line| line.trim().strip_prefix("squall ")) {
+                // What stands behind two blanks is what it is for.
+                let line = line.split("  ").next().unwrap_or(line);
+                let words = std::iter::once("squall").chain(line.split_whitespace());
+                if let Err(error) = crate::Cli::command().try_get_matches_from(words) {
+                    panic!("{line}: {error}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! `squall new` and `squall copy`: a scenario file on the disk to change.
+
+use crate::{output_file, scenario_files, screen};
+use anyhow::{Result, anyhow, bail};
+use game::scenario::{Kind, did_you_mean};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// What begins from a template.
+const TEMPLATES: [(Kind, &str); 7] = [
+    (Kind::Strategy, include_str!("templates/strategy.toml")),
+    (Kind::Boat, include_str!("templates/boat.toml")),
+    (Kind::Sea, include_str!("templates/sea.toml")),
+    (Kind::Game, include_str!("templates/game.toml")),
+    (Kind::Sweep, include_str!("templates/sweep.toml")),
+    (Kind::Training, include_str!("templates/training.toml")),
+    (Kind::Tournament, include_str!("templates/tournament.toml")),
+];
+
+/// Which file.
+#[derive(clap::Args)]
+pub(crate) struct NewArgs {
+    /// strategy, boat, sea, game, sweep, training or tournament
+    #[arg(value_parser = template)]
+    kind: (Kind, &'static str),
+    /// Its name: a-z, 0-9 and _
+    #[arg(value_parser = name)]
+    name: String,
+}
+
+/// Which file.
+#[derive(clap::Args)]
+pub(crate) struct CopyArgs {
+    /// Its name, or its folder and name where several kinds have it, as in seas/calm
+    name: String,
+    /// The name of the copy [default: the same]
+    #[arg(value_parser = name)]
+    as_name: Option<String>,
+}
+
+fn template(word: &str) -> Result<(Kind, &'static str), String> {
+    let kinds: Vec<&str> = TEMPLATES.iter().map(|(kind, _)| kind.name()).collect();
+    let found = TEMPLATES.into_iter().find(|(kind, _)| kind.name() == word);
+    found.ok_or_else(|| format!("{word:?} is none of {}{}", kinds.join(", "), did_you_mean(word, &kinds)))
+}
+
+fn name(word: &str) -> Result<String, String> {
+    let is_name = !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+    if is_name { Ok(word.to_owned()) } else { Err(format!("{word:?} is no name, expected a-z, 0-9 and _")) }
+}
+
+pub(crate) fn new(NewArgs { kind: (kind, text), name }: &NewArgs) -> Result<ExitCode> {
+    let path = write(*kind, name, text.replace("NAME", name).as_bytes())?;
+    screen::print(&format!("{}: a {kind} to change; squall check {name} says whether it is good\n", path.display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+pub(crate) fn copy(args: &CopyArgs) -> Result<ExitCode> {
+    let (folder, name) = args.name.split_once('/').map_or((None, args.name.as_str()), |(f, name)| (Some(f), name));
+    let name = name.strip_suffix(".toml").unwrap_or(name);
+    let is_asked = |kind: &Kind| folder.is_none_or(|folder| folder == kind.folder());
+    let of = |kind: Kind| Some((kind, scenario_files::contents(kind, name)?));
+    let found: Vec<(Kind, &[u8])> = Kind::ALL.into_iter().filter(is_asked).filter_map(of).collect();
+    let (kind, content) = match found[..] {
+        [one] => one,
+        [] => {
+            let known: Vec<String> = Kind::ALL.into_iter().filter(is_asked).flat_map(scenario_files::names).collect();
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            bail!("there is no file {}{}; squall files lists them", args.name, did_you_mean(name, &known));
+        }
+        [(one, _), (other, _), ..] => {
+            let (one, other) = (one.folder(), other.folder());
+            return Err(anyhow!("several files have the name {name}, expected {one}/{name} or {other}/{name}"));
+        }
+    };
+    let path = write(kind, args.as_name.as_deref().unwrap_or(name), content)?;
+    screen::print(&format!("{}: a {kind} to change; what it names comes from inside of the program\n", path.display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes a file where its name is found, unless there is one.
+fn write(kind: Kind, name: &str, content: &[u8]) -> Result<PathBuf> {
+    let path = Path::new("scenarios").join(kind.folder()).join(format!("{name}.toml"));
+    if path.exists() {
+        bail!("there is a file {} already, expected a new name", path.display());
+    }
+    if let Some(folder) = path.parent() {
+        output_file::make_folder(folder)?;
+    }
+    output_file::write(&path, "the file", content)?;
+    Ok(path)
+}
+
+/// Lists what is inside of the program, by kind.
+pub(crate) fn files() -> ExitCode {
+    for kind in Kind::ALL {
+        let names: Vec<String> = scenario_files::names(kind).into_iter().collect();
+        screen::print(&format!("{}: {}\n", kind.folder(), names.join(" ")));
+    }
+    ExitCode::SUCCESS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::scenario::check_file;
+
+    #[test]
+    fn every_template_is_a_good_file_with_nothing_else_on_the_disk() {
+        scenario_files::install();
+        let folder = tempfile::tempdir().expect("a folder");
+        for (kind, text) in TEMPLATES {
+            let file = folder.path().join("scenarios").join(kind.folder()).join("mine.toml");
+            std::fs::create_dir_all(file.parent().expect("it has one")).expect("it is made");
+            std::fs::write(&file, text.replace("NAME", "mine")).expect("it is written");
+            assert_eq!(check_file(&file).unwrap_or_else(|problems| panic!("{problems}")), kind);
+        }
+    }
+
+    #[test]
+    fn names_are_found_inside_of_the_program_and_what_is_meant_is_guessed() {
+        scenario_files::install();
+        let find = |word: &str, kind| scenario_files::find(word, kind).map_err(|error| error.to_string());
+        assert!(find("gale", Kind::Sea).is_ok_and(|path| path.ends_with("scenarios/seas/gale.toml")));
+        assert_eq!(
+            find("pav1_vs_pav01", Kind::Game),
+            Err("there is no game pav1_vs_pav01 (did you mean pav01_vs_pav01?)".into())
+        );
+        assert_eq!(
+            find("pav01", Kind::Game),
+            Err("there is no game pav01, but a strategy of that name: --blue and --red take it".into())
+        );
+        let path = "scenarios/seas/gale.toml";
+        assert_eq!(find(path, Kind::Game), Err(format!("{path} is a sea, expected a game: --sea takes it")));
+    }
+}

@@ -1,0 +1,107 @@
+//! The scenario files that the program has inside of itself, and what a word of the command line names: a path, or the name of one.
+
+use anyhow::{Result, anyhow, bail};
+use game::scenario::{Kind, did_you_mean, set_built_in};
+use include_dir::{Dir, include_dir};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/scenarios");
+/// The folder in which files are looked for by name, here and in folders above.
+const FOLDER: &str = "scenarios";
+
+/// What is inside of the program stands in for what is not on the disk.
+pub(crate) fn install() {
+    set_built_in(|name| FILES.get_file(name).map(include_dir::File::contents));
+}
+
+/// What a file inside of the program says, if there is one of this name.
+pub(crate) fn contents(kind: Kind, name: &str) -> Option<&'static [u8]> {
+    FILES.get_file(format!("{}/{name}.toml", kind.folder())).map(include_dir::File::contents)
+}
+
+/// The file of a kind that a word names: a path, or a name in the folder `scenarios` here, in one above, or inside of the program.
+pub(crate) fn find(word: &str, kind: Kind) -> Result<PathBuf> {
+    find_beside(word, kind, None)
+}
+
+/// The same, where a name is first looked for in a folder.
+pub(crate) fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
+    let given = PathBuf::from(word);
+    if word.contains(['/', '\\']) || given.extension().is_some_and(|end| end == "toml") || given.is_file() {
+        return match Kind::by_folder(&given).filter(|other| *other != kind) {
+            Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
+            None => Ok(given),
+        };
+    }
+    let here = std::env::current_dir().unwrap_or_default();
+    let above = here.ancestors().map(|folder| folder.join(FOLDER).join(kind.folder()));
+    let folders: Vec<PathBuf> = beside.map(Path::to_owned).into_iter().chain(above).collect();
+    let file = format!("{word}.toml");
+    if let Some(path) = folders.iter().map(|folder| folder.join(&file)).find(|path| path.is_file()) {
+        // As people would write it, so that it is read again as it was printed.
+        return Ok(path.strip_prefix(&here).map(Path::to_owned).unwrap_or(path));
+    }
+    if contents(kind, word).is_some() {
+        return Ok(Path::new(FOLDER).join(kind.folder()).join(file));
+    }
+    Err(unknown(word, kind, &folders))
+}
+
+fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {
+    let others = Kind::ALL.into_iter().filter(|other| *other != kind);
+    if let Some(other) = others.into_iter().find(|other| names(*other).contains(word)) {
+        return anyhow!("there is no {kind} {word}, but a {other} of that name{}", where_it_goes(other));
+    }
+    let mut known = names(kind);
+    known.extend(folders.iter().flat_map(|folder| names_in(folder)));
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let guess = did_you_mean(word, &known);
+    let list =
+        if guess.is_empty() { format!(", expected the path of a file or one of {}", known.join(", ")) } else { guess };
+    anyhow!("there is no {kind} {word}{list}")
+}
+
+/// Where a file of a kind is asked for.
+fn where_it_goes(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Game => ": squall run plays it",
+        Kind::Strategy => ": --blue and --red take it",
+        Kind::Sea => ": --sea takes it",
+        Kind::Field => ": --field takes it",
+        Kind::Tournament => ": squall tournament plays it",
+        Kind::Sweep => ": squall sweep plays it",
+        Kind::Training => ": squall train takes it",
+        Kind::Boat | Kind::Rules | Kind::Gateway | Kind::Rewards => "",
+    }
+}
+
+/// The names of the files of a kind inside of the program.
+pub(crate) fn names(kind: Kind) -> BTreeSet<String> {
+    let files = FILES.get_dir(kind.folder()).into_iter().flat_map(Dir::files);
+    files.filter_map(|file| name_of(file.path())).collect()
+}
+
+/// The names of the files in a folder.
+fn names_in(folder: &Path) -> BTreeSet<String> {
+    let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(std::result::Result::ok);
+    files.filter_map(|file| name_of(&file.path())).collect()
+}
+
+fn name_of(path: &Path) -> Option<String> {
+    let is_toml = path.extension().is_some_and(|end| end == "toml");
+    is_toml.then(|| path.file_stem()?.to_str().map(str::to_owned))?
+}
+
+macro_rules! finders {
+    ($($name:ident $kind:ident,)*) => {
+        $(
+            /// What an argument for a file of this kind names.
+            pub(crate) fn $name(word: &str) -> Result<PathBuf> {
+                find(word, Kind::$kind)
+            }
+        )*
+    };
+}
+
+finders! { field Field, game Game, sea Sea, strategy Strategy, tournament Tournament, sweep Sweep, training Training, }

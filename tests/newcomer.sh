@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# What somebody does who has the program alone, in an empty folder: `tests/newcomer.sh PATH/OF/squall`. Says what failed, and ends with 1.
+set -euo pipefail
+program=$(realpath "$1")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+mkdir "$folder/bin" "$folder/empty"
+ln -s "$program" "$folder/bin/squall"
+export PATH="$folder/bin:$PATH" XDG_RUNTIME_DIR="$folder"
+cd "$folder/empty"
+
+# Runs a command, and shows what it said if it fails or if that lacks a text.
+expect() {
+    local text=$1 said
+    shift
+    if ! said=$("$@" 2>&1) || [[ $said != *"$text"* ]]; then
+        printf 'FAILED: %s\nexpected %s in\n%s\n' "$*" "$text" "$said"
+        exit 1
+    fi
+}
+
+# The same of a command that is to fail.
+refuse() {
+    local text=$1 said
+    shift
+    if said=$("$@" 2>&1) || [[ $said != *"$text"* ]]; then
+        printf 'FAILED: %s\nexpected to fail with %s, and said\n%s\n' "$*" "$text" "$said"
+        exit 1
+    fi
+}
+
+expect "squall demo" squall
+expect "Play:" squall help
+expect "Examples:" squall run --help
+expect "seas: " squall files
+expect "blue" squall run strategy_4_vs_3 --no-record
+expect "after 600 s" squall run surveyor_2v2 --sea gale --blue learned --red strategy_3 --in-process --no-record
+expect "after 600 s" squall run surveyor_2v2 --field jervis_bay_2023 --in-process --no-record
+expect "significant" squall sea gale --plot gale.svg
+expect "mode" squall strategy strategy_4
+refuse "did you mean pav01_vs_pav01?" squall run pav1_vs_pav01
+refuse "--blue and --red take it" squall run strategy_4
+refuse "is a sea, expected a game" squall run scenarios/seas/gale.toml
+
+# A file of one's own, which takes the place of the one inside of the program.
+expect "scenarios/strategies/mine.toml" squall new strategy mine
+expect "a good strategy" squall check scenarios/strategies/mine.toml
+expect "after 600 s" squall run surveyor_2v2 --blue mine --in-process --no-record
+refuse "there is a file scenarios/strategies/mine.toml already" squall new strategy mine
+for kind in boat sea game sweep training tournament; do
+    expect "a $kind to change" squall new "$kind" mine
+done
+for kind in boats seas games sweeps training tournaments; do
+    expect "a good" squall check "scenarios/$kind/mine.toml"
+done
+expect "after 600 s" squall run mine --in-process --no-record
+expect "scenarios/seas/gale.toml" squall copy gale
+printf '\n[current]\nspeed_m_s = 99\n' >>scenarios/seas/gale.toml
+refuse "scenarios/seas/gale.toml" squall run surveyor_2v2 --sea gale --in-process --no-record
+
+expect "recorded" squall run pav01_vs_pav01 --in-process
+expect "blue" squall log runs/*.mcap
+expect "same" squall replay runs/*.mcap --check
+expect "_squall" squall completions bash
+expect "man1" squall man man1
+test -s man1/squall-run.1
+printf 'a newcomer gets in: ok\n'
