@@ -58,7 +58,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Plays a windy, uneven game in the browser.
+    /// Shows a game in strong wind in the browser.
     #[command(after_help = "Examples:\n  squall demo\n  squall demo --listen 0.0.0.0:8088 --token secret")]
     Demo(run_command::DemoArgs),
     /// Plays a whole game: starts the sim and the agents, shows what happens, prints the result.

@@ -25,13 +25,26 @@ pub(crate) fn find(word: &str, kind: Kind) -> Result<PathBuf> {
     find_beside(word, kind, None)
 }
 
+/// Whether the program has a file in the place of one that is not on the disk.
+fn is_inside(path: &Path, kind: Kind) -> bool {
+    let is_there = path.parent().is_some_and(|folder| folder.ends_with(Path::new(FOLDER).join(kind.folder())));
+    is_there && name_of(path).is_some_and(|name| contents(kind, &name).is_some())
+}
+
 /// The same, where a name is first looked for in a folder.
 pub(crate) fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
     if word.contains(['/', '\\']) || given.extension().is_some_and(|end| end == "toml") || given.is_file() {
         return match Kind::by_folder(&given).filter(|other| *other != kind) {
             Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
-            None => Ok(given),
+            None if given.exists() || is_inside(&given, kind) => Ok(given),
+            None => {
+                let name = name_of(&given).unwrap_or_default();
+                let there =
+                    names_in(given.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new(".")));
+                let there: Vec<&str> = there.iter().map(String::as_str).collect();
+                bail!("there is no file {word}{}", did_you_mean(&name, &there))
+            }
         };
     }
     let here = std::env::current_dir().unwrap_or_default();

@@ -7,6 +7,7 @@ mod algorithm;
 mod boat;
 mod fault;
 mod field;
+mod file_cache;
 mod game;
 mod gateway;
 mod rewards;

@@ -1,6 +1,7 @@
 //! A sweep file and the files it names, checked. What the values of its axes make of the game is seen where that is read.
 
-use super::game::{FileCache, referenced};
+use super::file_cache::FileCache;
+use super::game::referenced;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::read::Document;
 use crate::scenario::{Axis, AxisValue, Kind, Sweep};

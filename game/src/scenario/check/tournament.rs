@@ -1,6 +1,7 @@
 //! A tournament file and all the files it names, checked.
 
-use super::game::{FileCache, referenced};
+use super::file_cache::FileCache;
+use super::game::referenced;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::read::Document;
 use crate::scenario::{Kind, Tournament};

@@ -1,6 +1,7 @@
 //! A training file and all the files it names, checked.
 
-use super::game::{FileCache, referenced_at};
+use super::file_cache::FileCache;
+use super::game::referenced_at;
 use crate::scenario::diagnostics::Diagnostics;
 use crate::scenario::read::Document;
 use crate::scenario::{Kind, Scenario};
