@@ -48,7 +48,7 @@ use std::process::ExitCode;
 /// The version, and the commit it was built from.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMMIT"), ")");
 
-/// A distributed swarm simulator for unmanned surface vehicles that play capture the flag.
+/// A simulator for unmanned surface vehicles that play capture the flag.
 #[derive(Parser)]
 #[command(name = "squall", version = VERSION, max_term_width = 100)]
 struct Cli {
