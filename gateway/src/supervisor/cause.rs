@@ -28,6 +28,9 @@ pub enum Cause {
     /// It did not take up the mode that it was sent: this is the one it reported.
     #[error("the boat does not follow the commands it is sent: it is in mode {0}")]
     Disobeyed(char),
+    /// The gateway itself did not run for this long, s, and its guard may have stopped the boat.
+    #[error("the gateway hung for {0:.1} s, and its guard may have stopped the boat")]
+    Hung(f64),
     /// The link broke.
     #[error("the link is lost")]
     LinkLost,
@@ -36,6 +39,9 @@ pub enum Cause {
 /// What is wrong with navigation.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NavFault {
+    /// No game has said where the field is.
+    #[error("no game yet, and so no field and no geofence")]
+    NoField,
     /// There was no fix yet.
     #[error("no fix yet")]
     NoFix,
@@ -70,6 +76,7 @@ impl Cause {
     #[must_use]
     pub fn missing(self) -> String {
         match self {
+            Cause::Hung(_) => "a gateway that does not hang".to_owned(),
             Cause::LinkLost => "the link to the boat".to_owned(),
             Cause::TakenOver(by) => format!("secondary control: {} commands the boat", operator(by)),
             Cause::ControlUnknown | Cause::Disobeyed(_) => {
