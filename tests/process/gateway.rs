@@ -79,10 +79,13 @@ impl Loop {
     }
 
     fn ask(&self, command: &OperatorCommand) -> OperatorReply {
+        self.try_ask(command).expect("the gateway answers")
+    }
+
+    fn try_ask(&self, command: &OperatorCommand) -> Option<OperatorReply> {
         let bus = self.sim.bus();
         let key = topic::operate(&self.sim.name(), "blue_one");
-        let answer = bus.request(&key, command, Duration::from_secs(10)).expect("the hub is there");
-        answer.expect("the gateway answers")
+        bus.request(&key, command, Duration::from_secs(10)).expect("the hub is there")
     }
 
     fn status(&self) -> GatewayStatus {
@@ -148,6 +151,7 @@ fn a_killed_gateway_is_outlived_by_its_guard_which_stops_the_boat() {
     all.gateway.kill();
     all.stops_within(Duration::from_millis(500));
     all.gateway = start_gateway(&all.sim, all.proxy.port, &[]);
+    wait_until("it is in the game", || all.try_ask(&OperatorCommand::Status).is_some());
     all.wait_for_state("safed");
     all.arm();
 }

@@ -492,7 +492,7 @@ impl Bridge {
         if let Some(OnSite { estimator, geofence, bow, .. }) = &mut self.on_site {
             nav_fault = estimator.fault(now);
             if let Some((nav, _)) = estimator.nav(now) {
-                inside = geofence.is_inside(now, nav.at(), estimator.velocity_m_s());
+                inside = geofence.is_inside(now, nav.at(), estimator.fastest_velocity_m_s());
                 blocked = bow.is_blocked(now, &nav, known);
             }
         }

@@ -120,7 +120,10 @@ impl GatewayLoop<'_> {
             self.take_requests()?;
             let due = self.bridge.due(self.clock.now());
             let wait = self.clock.until(due);
-            match self.input.calls.take(if self.guarded.is_some() { wait.min(HEARTBEAT) } else { wait }) {
+            let call = self.input.calls.take(if self.guarded.is_some() { wait.min(HEARTBEAT) } else { wait });
+            // That it was suspended comes before what came meanwhile.
+            beat_at = self.beat(beat_at)?;
+            match call {
                 Some(call) => self.take(call)?,
                 None => self.step(Input::Tick, None)?,
             }

@@ -69,6 +69,12 @@ pub enum NavFault {
     /// The position has been the same to the last digit for this long though the boat is driven, s.
     #[error("the position has not changed for {0:.1} s under thrust")]
     Frozen(f64),
+    /// The compass has shown the same to the last digit while the course turned this far, degrees.
+    #[error("the compass shows the same while the course turned by {0:.0} degrees")]
+    CompassFrozen(f64),
+    /// The reported speed is less than that of the positions, which is this, m/s.
+    #[error("the reported speed is less than that of the positions, {0:.1} m/s")]
+    SpeedTooLow(f64),
 }
 
 impl Cause {
