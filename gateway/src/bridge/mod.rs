@@ -6,14 +6,12 @@
 mod command_encoder;
 mod control;
 mod interface;
+mod on_site;
 mod status;
 mod upload;
 
-use crate::geodesy::LocalFrame;
-use crate::geofence::{BowWatch, GeofenceWatch};
-use crate::nav_estimate::NavEstimator;
 use crate::nmea::{Command, Framer, Mode, ParseError, Sentence, TimeOfDay};
-use crate::set_point::{SetPoint, SetPointMapper};
+use crate::set_point::SetPoint;
 use crate::supervisor::{
     Action, Conditions, Control, NavFault, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task,
 };
@@ -24,6 +22,7 @@ use game::external::{FailsafeReport, FleetCommand, Mission, OperatorCommand};
 use game::frame::Ned;
 use game::gateway::Gateway;
 use game::{Order, SimTime};
+use on_site::OnSite;
 use std::collections::BTreeMap;
 use upload::{Next, Upload};
 
@@ -61,37 +60,6 @@ struct Counters {
     old_orders: u64,
     orders_ahead: u64,
     sent: u64,
-}
-
-/// What only works where the field is known.
-struct OnSite {
-    estimator: NavEstimator,
-    geofence: GeofenceWatch,
-    bow: BowWatch,
-    set_points: SetPointMapper,
-}
-
-impl OnSite {
-    fn new(gateway: &Gateway, site: &Site) -> OnSite {
-        let Gateway { nav, limits, geofence, halt, compass, .. } = gateway;
-        let frame = LocalFrame::new(site.field.plan.datum);
-        let compass_to_true_rad = site.compass_to_true_rad(*compass);
-        OnSite {
-            set_points: SetPointMapper::new(gateway, compass_to_true_rad),
-            estimator: NavEstimator::new(frame, *nav, compass_to_true_rad, limits.speed_max_m_s),
-            geofence: GeofenceWatch::new(&site.field, *geofence),
-            bow: BowWatch::new(*halt, site.length_m),
-        }
-    }
-
-    fn contains(&self, mission: &Mission) -> bool {
-        let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
-        // The upload refuses invalid positions with a better reason.
-        let spots = places.filter(|[lat_deg, lon_deg]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0);
-        spots
-            .map(|[lat_deg, lon_deg]| self.estimator.place(*lat_deg, *lon_deg))
-            .all(|place| self.geofence.contains(place))
-    }
 }
 
 /// The core of a gateway.
