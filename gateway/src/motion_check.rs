@@ -48,9 +48,8 @@ impl MotionCheck {
             .zip(measured)
             .is_some_and(|(reported, measured)| measured.length() - reported.length() > SPEED_GAP_M_S);
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
-        // A speed that is too low hides a course.
-        let fastest = [reported, measured].into_iter().flatten().max_by(|a, b| a.length().total_cmp(&b.length()));
-        self.take_course(fastest.filter(|velocity| velocity.length() >= COURSE_FROM_M_S));
+        // A fix that steps has a course of its own; that of the reported velocity comes first.
+        self.take_course(reported.or(measured).filter(|velocity| velocity.length() >= COURSE_FROM_M_S));
     }
 
     fn take_course(&mut self, velocity: Option<Ned>) {
@@ -154,7 +153,12 @@ mod tests {
         let mut check = MotionCheck::default();
         for i in 0..200_i32 {
             let now = SimTime::from_s(0.1 * f64::from(i));
-            check.take_fix(now, Ned { north: if i < 100 { 0.0 } else { 4.9 }, east: 0.0 }, Some(Ned::default()));
+            check.take_fix(
+                now,
+                Ned { north: if i / 40 % 2 == 0 { 0.0 } else { 4.0 }, east: 0.0 },
+                Some(Ned::default()),
+            );
+            check.take_heading(1.0);
             assert_eq!(check.fault(now), None, "at {now}");
         }
     }
