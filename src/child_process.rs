@@ -7,7 +7,7 @@ use bus::{Token, clock};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{BufRead, BufReader, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::LazyLock;
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -30,10 +30,14 @@ pub(crate) fn squall(args: &[&str]) -> Result<Command> {
     squall_with(bus::RUNTIME, args)
 }
 
+/// The file of this program.
+pub(crate) fn own_program() -> Result<PathBuf> {
+    std::env::current_exe().context("cannot find this program's own file")
+}
+
 /// The same, with these threads of zenoh.
 pub(crate) fn squall_with(runtime: &str, args: &[&str]) -> Result<Command> {
-    let program = std::env::current_exe().context("cannot find this program's own file")?;
-    let mut command = Command::new(program);
+    let mut command = Command::new(own_program()?);
     if std::env::var_os(bus::RUNTIME_VARIABLE).is_none() {
         command.env(bus::RUNTIME_VARIABLE, runtime);
     }

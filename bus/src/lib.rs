@@ -18,6 +18,7 @@ mod inbox;
 pub mod keys;
 mod latest;
 mod linger;
+mod link_lock;
 mod local_registry;
 mod net;
 mod place;
@@ -37,6 +38,7 @@ pub use game_search::ANSWER;
 pub use gateway_port::{GATEWAY_PORT_KEY, ask_gateway};
 pub use inbox::{Inbox, InboxSender, inbox};
 pub use latest::Latest;
+pub use link_lock::{LinkLock, LinkLockError};
 pub use local_registry::{
     Entry, GatewayEntry, Registration, gateways as local_gateways, list as local_registry, register, register_gateway,
 };

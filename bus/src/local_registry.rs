@@ -76,12 +76,24 @@ pub fn register_gateway(entry: &GatewayEntry) -> std::io::Result<Registration> {
     register_in(&folder(), &format!("{}.{GATEWAYS}", entry.pid), entry)
 }
 
-fn register_in<E: Serialize>(folder: &Path, name: &str, entry: &E) -> std::io::Result<Registration> {
+/// The folder of what runs on this machine, which nobody but this user can look into.
+pub(crate) fn private_folder() -> std::io::Result<PathBuf> {
+    let folder = folder();
+    make_private(&folder)?;
+    Ok(folder)
+}
+
+fn make_private(folder: &Path) -> std::io::Result<()> {
     fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
     if !is_private(folder) {
         let problem = format!("{} is open to others, expected a folder of mode 700 of this user", folder.display());
         return Err(std::io::Error::other(problem));
     }
+    Ok(())
+}
+
+fn register_in<E: Serialize>(folder: &Path, name: &str, entry: &E) -> std::io::Result<Registration> {
+    make_private(folder)?;
     let registration = Registration(folder.join(name));
     registration.write(entry)?;
     Ok(registration)

@@ -99,7 +99,8 @@ impl CurrentToken {
         self.0.lock().clone()
     }
 
-    pub(crate) fn set(&self, token: Option<Token>) {
+    /// From now on it is this one.
+    pub fn set(&self, token: Option<Token>) {
         *self.0.lock() = token;
     }
 }

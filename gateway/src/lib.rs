@@ -10,6 +10,7 @@ pub mod game_clock;
 pub mod geodesy;
 pub mod geofence;
 pub mod link;
+mod motion_check;
 pub mod nav_estimate;
 pub mod nmea;
 #[cfg(feature = "net")]

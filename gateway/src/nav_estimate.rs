@@ -5,6 +5,7 @@
 //! last one younger.
 
 use crate::geodesy::LocalFrame;
+use crate::motion_check::MotionCheck;
 use crate::nmea::{Attitude, Gga, M_S_PER_KN, Rmc, Sentence, TimeOfDay, Vtg};
 use crate::supervisor::NavFault;
 use game::SimTime;
@@ -17,6 +18,8 @@ use game::picture::Nav;
 const JUMP_MEMORY_S: f64 = 2.0;
 /// A reported velocity is used for this long; then it is computed from the change of position, s.
 const VELOCITY_AGE_MAX_S: f64 = 1.5;
+/// What a compass may show, degrees; anything else is as if it had said nothing.
+const HEADINGS_DEG: std::ops::RangeInclusive<f64> = -180.0..=360.0;
 /// The boat counts as under thrust for this long after the last command with thrust, s.
 const THRUST_MEMORY_S: f64 = 0.5;
 
@@ -61,6 +64,7 @@ struct Known {
     time_of_fix: Option<TimeOfDay>,
     /// Since when the position is the same to the last digit under thrust.
     still_since: Option<SimTime>,
+    motion: MotionCheck,
     /// When the boat was last sent a command with thrust.
     thrust_at: Option<SimTime>,
 }
@@ -90,7 +94,10 @@ impl NavEstimator {
             Sentence::Rmc(rmc) => self.take_rmc(now, rmc),
             Sentence::Vtg(vtg) => self.take_vtg(now, vtg),
             Sentence::Attitude(attitude) => self.take_attitude(now, attitude),
-            Sentence::Hdt(hdt) => self.take_heading(now, hdt.heading_deg.map(rad_from_compass_deg), None),
+            Sentence::Hdt(hdt) => {
+                let heading_deg = hdt.heading_deg.filter(|heading_deg| HEADINGS_DEG.contains(heading_deg));
+                self.take_heading(now, heading_deg.map(rad_from_compass_deg), None)
+            }
             _ => false,
         }
     }
@@ -123,6 +130,14 @@ impl NavEstimator {
         self.known.velocity.map_or_else(Ned::default, |(_, velocity)| velocity)
     }
 
+    /// Velocity over the ground, m/s, as whoever must stop in time takes it: the reported one, or that of the positions if it is faster.
+    #[must_use]
+    pub fn fastest_velocity_m_s(&self) -> Ned {
+        let reported = self.velocity_m_s();
+        let measured = self.known.motion.velocity_m_s().unwrap_or_default();
+        if measured.length() > reported.length() { measured } else { reported }
+    }
+
     /// What is wrong with navigation now.
     #[must_use]
     pub fn fault(&self, now: SimTime) -> Option<NavFault> {
@@ -138,6 +153,7 @@ impl NavEstimator {
             .or((fix_age_s > self.watch.age_max_s).then_some(NavFault::FixStale(fix_age_s)))
             .or((heading_age_s > self.watch.age_max_s).then_some(NavFault::HeadingStale(heading_age_s)))
             .or((still_s > self.watch.frozen_s).then_some(NavFault::Frozen(still_s)))
+            .or_else(|| self.known.motion.fault(now))
     }
 
     fn take_gga(&mut self, now: SimTime, gga: &Gga) -> bool {
@@ -191,12 +207,15 @@ impl NavEstimator {
             if moved.length() > self.speed_max_m_s * since_s + self.watch.jump_m {
                 self.known.jumped = Some((now, moved.length()));
                 self.known.velocity = None;
+                self.known.motion.jump();
             } else if !self.is_velocity_reported(now) && since_s > 0.05 {
                 self.known.velocity = Some((None, moved.scaled(1.0 / since_s)));
             }
             let pushed = self.known.thrust_at.is_some_and(|at| (now - at).as_s() < THRUST_MEMORY_S);
             self.known.still_since = (before.raw == at && pushed).then(|| self.known.still_since.unwrap_or(before.at));
         }
+        let reported = self.is_velocity_reported(now).then(|| self.velocity_m_s());
+        self.known.motion.take_fix(now, place, reported);
         self.known.fix = Some(Fix { at: now, raw: at, place });
         true
     }
@@ -225,12 +244,14 @@ impl NavEstimator {
     fn take_attitude(&mut self, now: SimTime, attitude: &Attitude) -> bool {
         let heading = attitude
             .heading_deg
+            .filter(|heading_deg| HEADINGS_DEG.contains(heading_deg))
             .map(|heading_deg| wrap_pi(rad_from_compass_deg(heading_deg) + self.compass_to_true_rad));
         self.take_heading(now, heading, attitude.yaw_rate_deg_s.map(f64::to_radians))
     }
 
     fn take_heading(&mut self, now: SimTime, psi_rad: Option<f64>, turn_rad_s: Option<f64>) -> bool {
         let Some(psi_rad) = psi_rad else { return false };
+        self.known.motion.take_heading(psi_rad);
         let turned_rad_s = || {
             let Some(before) = self.known.heading else { return 0.0 };
             let since_s = (now - before.at).as_s();

@@ -48,10 +48,15 @@ pub struct StepEncoder {
 }
 
 impl StepEncoder {
-    /// For the boat of this name and number.
+    /// For the boat of this name; its number follows from the game.
     #[must_use]
-    pub fn new(boat: &str, vehicle: VehicleId) -> StepEncoder {
-        StepEncoder { link_topic: link_topic(boat), vehicle, pieces: 0 }
+    pub fn new(boat: &str) -> StepEncoder {
+        StepEncoder { link_topic: link_topic(boat), vehicle: VehicleId(0), pieces: 0 }
+    }
+
+    /// From now on the boat has this number.
+    pub fn set_vehicle(&mut self, vehicle: VehicleId) {
+        self.vehicle = vehicle;
     }
 
     /// The entries of a step at `at` by the gateway's clock, `game_now` being the game's time as last received.

@@ -2,9 +2,11 @@
 
 mod check;
 mod emulate;
+mod guard;
 mod log_line;
 mod mission_file;
 mod replay;
+mod stop_boat;
 mod surveyor;
 mod tell;
 
@@ -27,8 +29,13 @@ enum Command {
     Emulate(emulate::Args),
     /// Checks a boat's sentences before arming, without sending anything, and lists what is missing.
     Check(check::Args),
+    /// Stops a boat with nothing else running: thrust zero and standby, straight over its link.
+    Stop(stop_boat::Args),
     /// Sends an operator command to a boat's gateway: arm, disarm, estop, release, ...
     Tell(tell::Args),
+    /// What a gateway starts to stop its boat when it is killed or hangs.
+    #[command(hide = true)]
+    Guard,
     /// Plays a recording of a gateway through its codec and supervisor again.
     Replay(replay::Args),
 }
@@ -38,7 +45,9 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         Command::Surveyor(args) => surveyor::run(args),
         Command::Emulate(args) => emulate::run(args),
         Command::Check(args) => check::run(args),
+        Command::Stop(args) => stop_boat::run(args),
         Command::Tell(args) => tell::run(args),
+        Command::Guard => guard::run(),
         Command::Replay(args) => replay::run(args),
     }
 }

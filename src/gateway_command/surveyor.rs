@@ -1,18 +1,24 @@
 //! `squall gateway surveyor`: a real boat in a game.
 
 use super::log_line::{Log, full};
+use crate::child_process;
 use crate::net_args::LeafArgs;
 use crate::sim_command::seconds;
 use crate::stop;
 use anyhow::{Context, Result, anyhow};
 use bus::{Registration, Token};
+use game::external::{GatewayCommand, OperatorCommand};
 use gateway::link::LinkAddress;
-use gateway::node::{NodeEvent, Outside, Settings};
+use gateway::node::{NodeEvent, Outside, Settings, on_enter};
 use recording::utc;
+use std::io::IsTerminal;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
+
+/// How long the gateway may take to answer to its own terminal.
+const KEY_ANSWER: Duration = Duration::from_secs(2);
 
 /// Which boat, and where.
 #[derive(clap::Args)]
@@ -44,9 +50,9 @@ pub(crate) struct Args {
     /// After this long without a byte the boat counts as gone, s
     #[arg(long, value_name = "S", default_value_t = 3.0, value_parser = seconds)]
     silence_s: f64,
-    /// How long to look for the game, s
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
-    wait_s: f64,
+    /// How long to look for the game, s [default: as long as it runs; operators are served meanwhile]
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    wait_s: Option<f64>,
     #[command(flatten)]
     leaf: LeafArgs,
     /// Prints errors only, and stops when standard input ends
@@ -78,11 +84,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         at_game_pace: args.at_game_pace,
         record,
         commit: env!("SQUALL_COMMIT"),
-        wait: Duration::from_secs_f64(args.wait_s),
+        wait: args.wait_s.map_or(Duration::MAX, Duration::from_secs_f64),
         stop: stop.clone(),
     };
     let silence = Duration::from_secs_f64(args.silence_s);
-    let outside = Outside { link, silence, control: args.control_listen };
+    // An emulated boat in a hurry is stopped by nobody: a busy machine would look like a gateway that hangs.
+    let guard = if args.at_game_pace { None } else { Some(child_process::own_program()?) };
+    let outside = Outside { link, silence, control: args.control_listen, guard };
     let (mut last, mut registration) = (String::new(), None::<Registration>);
     let mut notify = |event: NodeEvent<'_>| match event {
         NodeEvent::Looking { reason } => log.remark(format!("{}: looking for the game: {reason}", args.vehicle)),
@@ -97,6 +105,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             }
             registration = bus::register_gateway(&entry).ok();
             log.remark(format!("operators reach this gateway at {control}, with or without a game"));
+            if !args.for_parent && std::io::stdin().is_terminal() {
+                log.remark("Enter, in this terminal, is an E-stop of this boat".to_owned());
+                let stop = OperatorCommand::EStop;
+                let stop = GatewayCommand::Boat { name: args.vehicle.clone(), command: stop };
+                // Whether it was carried out shows in the log.
+                on_enter(move || drop(bus::ask_gateway(control, None, &stop, KEY_ANSWER)));
+            }
         }
         NodeEvent::Event { at_s, event } => log.event(at_s, event),
         NodeEvent::Status(status) => log.status(status),

@@ -5,6 +5,7 @@
     reason = "processes are waited for by the clock, with a limit; a test that is skipped says so"
 )]
 
+mod boat_alone;
 mod external;
 mod faults;
 mod games;

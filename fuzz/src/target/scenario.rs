@@ -5,7 +5,7 @@ use super::{Target, check_shown, texts};
 use crate::played::scenarios;
 use game::scenario::{self, Kind, Problems};
 use game::{Scenario, VehicleId};
-use gateway::bridge::{Bridge, Plan};
+use gateway::bridge::{Bridge, Plan, Site};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use tempfile::TempDir;
@@ -93,7 +93,8 @@ fn accepted(kind: Kind, path: &Path) {
             let gateway = scenario::load_gateway(path).expect("it was accepted");
             let field = scenario::load_field(&scenarios().join("fields/open_800x400.toml")).expect("a field");
             let vehicle = "blue_one".to_owned();
-            let plan = Plan { vehicle, gateway, field, length_m: 2.0, declination_rad: 0.1, arms_itself: false };
+            let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1 });
+    let plan = Plan { vehicle, gateway, site, arms_itself: false };
             drop(Bridge::new(plan));
         }
         Kind::Tournament => {

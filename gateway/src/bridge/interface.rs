@@ -14,21 +14,29 @@ pub struct Plan {
     pub vehicle: String,
     /// How it is driven and stopped.
     pub gateway: Gateway,
-    /// Where it plays.
-    pub field: Field,
-    /// Its length, m.
-    pub length_m: f64,
-    /// Declination, east positive, rad.
-    pub declination_rad: f64,
+    /// Where it plays, if that is known from the beginning; else [`Input::Site`] says so.
+    #[serde(flatten)]
+    pub site: Option<Site>,
     /// Whether it arms by itself, once, as soon as it is ready.
     pub arms_itself: bool,
 }
 
-impl Plan {
-    /// What must be added to a heading of the boat's compass to make it true, rad.
+/// What only a game says: where a boat plays, and how long it is there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Site {
+    /// The field.
+    pub field: Field,
+    /// The boat's length, m.
+    pub length_m: f64,
+    /// Declination, east positive, rad.
+    pub declination_rad: f64,
+}
+
+impl Site {
+    /// What must be added to a heading of a compass that shows this to make it true, rad.
     #[must_use]
-    pub fn compass_to_true_rad(&self) -> f64 {
-        match self.gateway.compass {
+    pub fn compass_to_true_rad(&self, compass: CompassFrame) -> f64 {
+        match compass {
             CompassFrame::Magnetic => self.declination_rad,
             CompassFrame::True => 0.0,
         }
@@ -62,6 +70,10 @@ pub enum Input {
     Operator(OperatorCommand),
     /// An operator's command for all boats.
     Fleet(FleetCommand),
+    /// A game was found, and says where the boat plays.
+    Site(Box<Site>),
+    /// The gateway did not run for so long, s, that its guard may have stopped the boat.
+    Hung(f64),
     /// Time passes.
     Tick,
 }

@@ -6,22 +6,23 @@
 mod command_encoder;
 mod control;
 mod interface;
+mod on_site;
 mod status;
 mod upload;
 
-use crate::geodesy::LocalFrame;
-use crate::geofence::{BowWatch, GeofenceWatch};
-use crate::nav_estimate::NavEstimator;
 use crate::nmea::{Command, Framer, Mode, ParseError, Sentence, TimeOfDay};
-use crate::set_point::{SetPoint, SetPointMapper};
-use crate::supervisor::{Action, Conditions, Control, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task};
-pub use interface::{Event, Input, NavOut, Output, Plan};
+use crate::set_point::SetPoint;
+use crate::supervisor::{
+    Action, Conditions, Control, NavFault, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task,
+};
+pub use interface::{Event, Input, NavOut, Output, Plan, Site};
 
 use control::ControlLog;
 use game::external::{FailsafeReport, FleetCommand, Mission, OperatorCommand};
 use game::frame::Ned;
 use game::gateway::Gateway;
 use game::{Order, SimTime};
+use on_site::OnSite;
 use std::collections::BTreeMap;
 use upload::{Next, Upload};
 
@@ -65,13 +66,13 @@ struct Counters {
 pub struct Bridge {
     plan: Plan,
     framer: Framer,
-    estimator: NavEstimator,
     control: ControlLog,
-    geofence: GeofenceWatch,
-    bow: BowWatch,
-    set_points: SetPointMapper,
+    /// Nothing before a game says where the boat plays.
+    on_site: Option<OnSite>,
     supervisor: Supervisor,
     link_up: bool,
+    /// For how long the gateway did not run until this input, s.
+    hung_s: Option<f64>,
     order: Option<CurrentOrder>,
     /// Whether the order has not been sent yet.
     order_is_new: bool,
@@ -102,19 +103,15 @@ impl Bridge {
     /// A bridge without a link, safed.
     #[must_use]
     pub fn new(plan: Plan) -> Bridge {
-        let Gateway { nav, limits, control, geofence, halt, battery, .. } = plan.gateway.clone();
-        let frame = LocalFrame::new(plan.field.plan.datum);
-        let compass_to_true_rad = plan.compass_to_true_rad();
+        let Gateway { control, battery, .. } = &plan.gateway;
         Bridge {
             framer: Framer::new(),
-            set_points: SetPointMapper::new(&plan.gateway, compass_to_true_rad),
-            estimator: NavEstimator::new(frame, nav, compass_to_true_rad, limits.speed_max_m_s),
-            control: ControlLog::new(control),
-            geofence: GeofenceWatch::new(&plan.field, geofence),
-            bow: BowWatch::new(halt, plan.length_m),
+            control: ControlLog::new(*control),
+            on_site: plan.site.as_ref().map(|site| OnSite::new(&plan.gateway, site)),
             supervisor: Supervisor::new(plan.arms_itself, battery.action),
             plan,
             link_up: false,
+            hung_s: None,
             order: None,
             order_is_new: false,
             order_sent: SimTime::LONG_AGO,
@@ -144,10 +141,13 @@ impl Bridge {
     /// Takes an input, and does what is due.
     pub fn take(&mut self, now: SimTime, input: &Input, out: &mut Output) {
         let mut request = None;
+        self.hung_s = None;
         match input {
             Input::LinkUp => self.take_link_up(),
             Input::LinkDown => self.link_up = false,
             Input::Bytes(bytes) => self.read(now, bytes, out),
+            Input::Site(site) => self.on_site = Some(OnSite::new(&self.plan.gateway, site)),
+            Input::Hung(seconds) => self.hung_s = Some(*seconds),
             Input::Joined => self.order = None,
             Input::Order(order, given) => self.take_order(now, *order, *given),
             Input::BadOrder => self.counters.bad_orders += 1,
@@ -194,12 +194,12 @@ impl Bridge {
     /// The shutdown message, sent before the link closes: thrust zero, then standby.
     #[must_use]
     pub fn shutdown_message(&self) -> Vec<u8> {
-        let mut commands = Vec::new();
+        let mut message = Vec::new();
         if self.upload.is_some() {
-            commands.push(command_encoder::end_of_download());
+            message.extend(command_encoder::bytes_of(&[command_encoder::end_of_download()]));
         }
-        commands.extend([command_encoder::of_set_point(SetPoint::ZERO), command_encoder::standby()]);
-        command_encoder::bytes_of(&commands)
+        message.extend(stop_message());
+        message
     }
 
     /// A new link: nothing is known of the boat at its end, and it is sent standby first.
@@ -207,7 +207,7 @@ impl Bridge {
         self.link_up = true;
         // A sentence that was cut off must not be completed by bytes of the new link.
         self.framer.push(b"\r\n", &mut |_| {});
-        self.estimator.forget();
+        self.on_site.iter_mut().for_each(|site| site.estimator.forget());
         self.control.forget();
         (self.volts, self.low_since, self.clock) = (None, None, None);
         self.upload = None;
@@ -231,7 +231,7 @@ impl Bridge {
     }
 
     fn apply(&mut self, now: SimTime, sentence: &Sentence, out: &mut Output) {
-        self.nav_is_new |= self.estimator.take(now, sentence);
+        self.nav_is_new |= self.on_site.as_mut().is_some_and(|site| site.estimator.take(now, sentence));
         match sentence {
             Sentence::ControlState(state) => self.control.take(now, state),
             Sentence::Battery(battery) => {
@@ -289,7 +289,9 @@ impl Bridge {
         let begun = match self.supervisor.state() {
             State::EStopped => Err(self.e_stop_in_force()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
-            _ if !self.is_within_geofence(mission) => Err("a place of it is outside of the geofence".to_owned()),
+            _ if !self.on_site.as_ref().is_some_and(|site| site.contains(mission)) => {
+                Err("a place of it is outside of the geofence".to_owned())
+            }
             _ => Upload::new(mission, self.plan.gateway.upload_gap_s, now),
         };
         match begun {
@@ -302,15 +304,6 @@ impl Bridge {
                 None
             }
         }
-    }
-
-    fn is_within_geofence(&self, mission: &Mission) -> bool {
-        let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
-        // The upload refuses invalid positions with a better reason.
-        let spots = places.filter(|[lat_deg, lon_deg]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0);
-        spots
-            .map(|[lat_deg, lon_deg]| self.estimator.place(*lat_deg, *lon_deg))
-            .all(|place| self.geofence.contains(place))
     }
 
     fn e_stop_in_force(&self) -> String {
@@ -356,7 +349,7 @@ impl Bridge {
             self.failsafes.drain(..surplus);
         }
         if state != State::Armed {
-            self.set_points.reset();
+            self.on_site.iter_mut().for_each(|site| site.set_points.reset());
         }
     }
 
@@ -406,14 +399,15 @@ impl Bridge {
 
     /// The set-point of the current order.
     fn follow(&mut self, now: SimTime) -> Option<SetPoint> {
-        let (nav, _) = self.estimator.nav(now)?;
-        let set_point = self.set_points.map(now, self.order?.order, &nav);
+        let site = self.on_site.as_mut()?;
+        let (nav, _) = site.estimator.nav(now)?;
+        let set_point = site.set_points.map(now, self.order?.order, &nav);
         let has_thrust = match set_point {
             SetPoint::Thrust { thrust_pct, .. } => thrust_pct.abs() >= THRUST_MIN_PCT,
             SetPoint::Speed { speed_m_s, .. } => speed_m_s > 0.5,
         };
         if has_thrust {
-            self.estimator.note_thrust(now);
+            site.estimator.note_thrust(now);
         }
         Some(set_point)
     }
@@ -447,9 +441,10 @@ impl Bridge {
     }
 
     fn report_nav(&mut self, now: SimTime, out: &mut Output) {
-        let Some((nav, age_s)) = self.estimator.nav(now) else { return };
+        let Some(site) = &self.on_site else { return };
+        let Some((nav, age_s)) = site.estimator.nav(now) else { return };
         let is_new = std::mem::take(&mut self.nav_is_new);
-        let valid = self.link_up && self.estimator.fault(now).is_none();
+        let valid = self.link_up && site.estimator.fault(now).is_none();
         let (reported_at, reported_valid) = self.nav_reported;
         let overdue = !valid && (now - reported_at).as_s() >= INVALID_NAV_EVERY_S;
         if (is_new && valid) || valid != reported_valid || overdue {
@@ -459,17 +454,22 @@ impl Bridge {
     }
 
     fn conditions_at(&mut self, now: SimTime) -> Conditions {
-        let nav_fault = self.estimator.fault(now);
-        let nav = self.estimator.nav(now).map(|(nav, _)| nav);
-        let inside = nav.is_some_and(|nav| self.geofence.is_inside(now, nav.at(), self.estimator.velocity_m_s()));
         let (others_at, others) = &self.others;
         let known: &[Ned] = if (now - *others_at).as_s() <= OTHERS_AGE_MAX_S { others } else { &[] };
-        let blocked = nav.is_some_and(|nav| self.bow.is_blocked(now, &nav, known));
+        let (mut nav_fault, mut inside, mut blocked) = (Some(NavFault::NoField), false, false);
+        if let Some(OnSite { estimator, geofence, bow, .. }) = &mut self.on_site {
+            nav_fault = estimator.fault(now);
+            if let Some((nav, _)) = estimator.nav(now) {
+                inside = geofence.is_inside(now, nav.at(), estimator.fastest_velocity_m_s());
+                blocked = bow.is_blocked(now, &nav, known);
+            }
+        }
         let battery = &self.plan.gateway.battery;
         let low_s = self.low_since.map_or(0.0, |since| (now - since).as_s());
         let ttl_s = self.plan.gateway.order_ttl_s;
         Conditions {
             link: self.link_up,
+            hung_s: self.hung_s,
             control: self.control.control(now),
             nav: nav_fault,
             inside,
@@ -478,6 +478,12 @@ impl Bridge {
             order_fresh: self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s),
         }
     }
+}
+
+/// What stops a boat, whatever it does: thrust zero, then standby.
+#[must_use]
+pub fn stop_message() -> Vec<u8> {
+    command_encoder::bytes_of(&[command_encoder::of_set_point(SetPoint::ZERO), command_encoder::standby()])
 }
 
 fn request_from(command: &OperatorCommand) -> Option<OperatorRequest> {

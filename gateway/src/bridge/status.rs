@@ -11,7 +11,7 @@ impl Bridge {
     /// no difference to a replay. What only the shell knows (the link's name, the control port, latencies) is left to the shell.
     #[must_use]
     pub fn status(&self, now: SimTime) -> GatewayStatus {
-        let known = self.estimator.nav(now);
+        let known = self.on_site.as_ref().and_then(|site| site.estimator.nav(now));
         let last_sent =
             self.last_sent.as_ref().map(|(_, command)| command_encoder::bytes_of(std::slice::from_ref(command)));
         GatewayStatus {

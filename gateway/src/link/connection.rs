@@ -34,6 +34,7 @@ impl Connection {
         let mut connection = Connection { threads: Arc::clone(threads), peer, writer: None };
         // Added first, then announced: who answers `Up` with bytes wants them to reach this peer. The writer comes
         // last, so that no `Written` comes before `Up`.
+        threads.tell_port(connection.peer.port.descriptor());
         threads.add(&connection.peer);
         threads.emit(LinkEvent::Up { peer: connection.peer.number, name });
         let (shared, peer) = (Arc::clone(threads), Arc::clone(&connection.peer));
@@ -94,6 +95,7 @@ impl Connection {
             End::Lost(_) => self.peer.port.reset(),
             End::Asked | End::Stopped => self.peer.port.finish(),
         }
+        self.threads.tell_port(None);
         if let Some(writer) = self.writer.take() {
             // A writer that panicked is as done as one that did not.
             drop(writer.join());

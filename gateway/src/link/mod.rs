@@ -24,6 +24,7 @@ pub use address::{BAUDS, HostPort, LinkAddress, LinkAddressError, Side};
 use outbox::Priority;
 use std::io;
 use std::net::SocketAddr;
+use std::os::fd::BorrowedFd;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -53,7 +54,7 @@ impl Default for LinkSettings {
         LinkSettings {
             silence: Some(Duration::from_secs(3)),
             retry_first: Duration::from_millis(100),
-            retry_max: Duration::from_secs(5),
+            retry_max: Duration::from_secs(1),
         }
     }
 }
@@ -158,6 +159,9 @@ pub trait BoatLink {
     fn send_and_wait(&self, bytes: &[u8], limit: Duration) -> bool;
 }
 
+/// Called with the descriptor of every connection before it is used, and with nothing when it is over.
+pub type OnPort = Box<dyn Fn(Option<BorrowedFd<'_>>) + Send + Sync>;
+
 /// A link that reconnects by itself, in threads of its own. Dropped, it closes everything within 200 ms: what
 /// was written still arrives, what was only queued is lost. A shutdown message is sent with
 /// [`Link::send_and_wait`].
@@ -176,7 +180,20 @@ impl Link {
         settings: LinkSettings,
         on_event: impl Fn(LinkEvent) + Send + Sync + 'static,
     ) -> Result<Link, LinkError> {
-        let threads = Threads::new(settings, on_event);
+        Link::open_watched(address, settings, None, on_event)
+    }
+
+    /// As [`Link::open`]; `on_port` may duplicate the descriptors, to write to them when this process cannot.
+    ///
+    /// # Errors
+    /// [`LinkError`], as there.
+    pub fn open_watched(
+        address: &LinkAddress,
+        settings: LinkSettings,
+        on_port: Option<OnPort>,
+        on_event: impl Fn(LinkEvent) + Send + Sync + 'static,
+    ) -> Result<Link, LinkError> {
+        let threads = Threads::new(settings, on_port, on_event);
         let (reach, work) = prepare(Arc::clone(&threads), address)?;
         let failed = |source| LinkError::Thread { address: address.to_string(), source };
         drop(threads.spawn("link", work).map_err(failed)?);

@@ -6,6 +6,7 @@ use serial2::SerialPort;
 use socket2::SockRef;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpStream, UdpSocket};
+use std::os::fd::{AsFd, BorrowedFd};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -45,6 +46,16 @@ pub(super) enum Wrote {
 }
 
 impl Port {
+    /// What the system knows it by; nothing for a port that peers share.
+    pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
+        match self {
+            Port::Tcp(stream) => Some(stream.as_fd()),
+            Port::Udp(socket) => Some(socket.as_fd()),
+            Port::Serial { line, .. } => Some(line.as_fd()),
+            Port::UdpTo(..) | Port::Pty(_) => None,
+        }
+    }
+
     /// Waits for bytes, a tick at most.
     pub(super) fn read(&self, buffer: &mut [u8]) -> io::Result<Received> {
         let read = match self {

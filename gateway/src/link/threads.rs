@@ -2,9 +2,10 @@
 
 use super::outbox::{Completion, Priority, WriteRequest};
 use super::peer::{End, Peer};
-use super::{LinkEvent, LinkSettings};
+use super::{LinkEvent, LinkSettings, OnPort};
 use parking_lot::{Condvar, Mutex, MutexGuard};
 use std::io;
+use std::os::fd::BorrowedFd;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
@@ -14,6 +15,7 @@ use std::time::Duration;
 pub(super) struct Threads {
     pub(super) settings: LinkSettings,
     on_event: Box<dyn Fn(LinkEvent) + Send + Sync>,
+    on_port: Option<OnPort>,
     /// Peers that are up. Never locked while anything waits.
     peers: Mutex<Vec<Arc<Peer>>>,
     numbers: AtomicU32,
@@ -51,10 +53,15 @@ impl Drop for RunningThread {
 }
 
 impl Threads {
-    pub(super) fn new(settings: LinkSettings, on_event: impl Fn(LinkEvent) + Send + Sync + 'static) -> Arc<Threads> {
+    pub(super) fn new(
+        settings: LinkSettings,
+        on_port: Option<OnPort>,
+        on_event: impl Fn(LinkEvent) + Send + Sync + 'static,
+    ) -> Arc<Threads> {
         Arc::new(Threads {
             settings,
             on_event: Box::new(on_event),
+            on_port,
             peers: Mutex::default(),
             numbers: AtomicU32::new(0),
             displaced: AtomicU64::new(0),
@@ -75,6 +82,13 @@ impl Threads {
             let _running = running;
             work();
         })
+    }
+
+    /// Tells of the descriptor of a connection, or that it is over.
+    pub(super) fn tell_port(&self, descriptor: Option<BorrowedFd<'_>>) {
+        if let Some(on_port) = &self.on_port {
+            on_port(descriptor);
+        }
     }
 
     /// Calls back with an event. Never with a lock held: the callback may call anything.

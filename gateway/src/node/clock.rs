@@ -8,12 +8,20 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
     start: Instant,
+    /// Its time at `start`.
+    base: SimTime,
     factor: f64,
 }
 
 impl Clock {
-    pub(super) fn start(factor: f64) -> Clock {
-        Clock { start: clock::now(), factor }
+    pub(super) fn start() -> Clock {
+        Clock { start: clock::now(), base: SimTime::ZERO, factor: 1.0 }
+    }
+
+    /// From now on it runs as fast as a game of this pace.
+    pub(super) fn set_pace(&mut self, factor: f64) {
+        let now = clock::now();
+        *self = Clock { base: self.at(now), start: now, factor };
     }
 
     pub(super) fn now(&self) -> SimTime {
@@ -22,7 +30,7 @@ impl Clock {
 
     /// The gateway's time at a moment of real time.
     pub(super) fn at(&self, moment: Instant) -> SimTime {
-        SimTime::from_s(moment.saturating_duration_since(self.start).as_secs_f64() * self.factor)
+        self.base + SimTime::from_s(moment.saturating_duration_since(self.start).as_secs_f64() * self.factor)
     }
 
     /// How long it is in real time until the gateway's time `due`.

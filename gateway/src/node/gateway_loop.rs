@@ -1,23 +1,26 @@
 //! The gateway loop: inputs from the boat, the sim and operators go to the core, its outputs go out.
 
 use super::clock::Clock;
+use super::game_finder::FoundGame;
+use super::guard::{Guarded, HEARTBEAT, HUNG};
+use super::join::Join;
 use super::latency::Latency;
-use super::loop_input::{Call, LoopOutput};
-use super::{NodeError, NodeEvent};
+use super::loop_input::{Call, LoopInput, LoopOutput};
+use super::{NodeError, NodeEvent, Settings, subscribe};
 use crate::bridge::{Bridge, Event, Input, NavOut, Output};
 use crate::game_clock::{GameClock, OrderTime};
 use crate::link::{BoatLink, LinkEvent};
 use crate::record::StepEncoder;
 use crate::supervisor::Scope;
 use bus::token::{self, Checked, Guard};
-use bus::{CurrentToken, Publisher, Query, clock};
+use bus::{Bus, CurrentToken, Declaration, Priority, Publisher, Query, clock};
 use game::codec;
 use game::external::{
     FleetCommand, GatewayCommand, GatewayStatus, LinkBytes, NavReport, OperatorCommand, OperatorReply,
 };
 use game::frame::Ned;
 use game::message::{Frame, Message, Stamp};
-use game::{Order, SimTime, VehicleId};
+use game::{Order, SimTime, VehicleId, topic};
 use recording::{Entry, Recorder};
 use std::collections::VecDeque;
 use std::net::SocketAddr;
@@ -42,13 +45,12 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) clock: Clock,
     pub(super) input: LoopOutput,
     pub(super) game_clock: GameClock,
-    pub(super) nav: Publisher,
-    pub(super) status: Publisher,
-    /// Every byte of the link, for recorders.
-    pub(super) link_bytes: Publisher,
-    pub(super) vehicle: VehicleId,
-    /// The other real boats.
-    pub(super) others: Vec<VehicleId>,
+    /// The game, once it is found.
+    pub(super) in_game: Option<InGame>,
+    pub(super) settings: &'a Settings,
+    pub(super) guarded: Option<Guarded>,
+    /// Where what comes from the game is put.
+    pub(super) back: LoopInput,
     pub(super) recorder: Option<Recorder>,
     pub(super) encoder: StepEncoder,
     pub(super) counters: Counters,
@@ -56,6 +58,20 @@ pub(super) struct GatewayLoop<'a> {
     pub(super) guard: Guard,
     /// The control port, where there is one, and the token that it asks for.
     pub(super) port: Option<(SocketAddr, CurrentToken)>,
+}
+
+/// What a gateway has of the game that it is in.
+pub(super) struct InGame {
+    bus: Bus,
+    nav: Publisher,
+    status: Publisher,
+    /// Every byte of the link, for recorders.
+    link_bytes: Publisher,
+    vehicle: VehicleId,
+    /// The other real boats.
+    others: Vec<VehicleId>,
+    _join: Join,
+    _subscriptions: Vec<Declaration>,
 }
 
 /// What the loop keeps track of.
@@ -98,21 +114,51 @@ impl Counters {
 impl GatewayLoop<'_> {
     /// Runs until it is told to stop.
     pub(super) fn run(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
+        let mut beat_at = clock::now();
         while !stop.load(Ordering::Relaxed) {
+            beat_at = self.beat(beat_at)?;
             self.take_requests()?;
             let due = self.bridge.due(self.clock.now());
-            match self.input.calls.take(self.clock.until(due)) {
+            let wait = self.clock.until(due);
+            let call = self.input.calls.take(if self.guarded.is_some() { wait.min(HEARTBEAT) } else { wait });
+            // That it was suspended comes before what came meanwhile.
+            beat_at = self.beat(beat_at)?;
+            match call {
                 Some(call) => self.take(call)?,
                 None => self.step(Input::Tick, None)?,
             }
             if clock::now() >= self.counters.status_at {
                 self.counters.status_at = clock::now() + STATUS_EVERY;
                 let status = self.full_status();
-                self.status.send_json(serde_json::to_vec(&status).expect("a status is JSON"))?;
+                if let Some(in_game) = &self.in_game {
+                    in_game.status.send_json(serde_json::to_vec(&status).expect("a status is JSON"))?;
+                }
                 (self.notify)(NodeEvent::Status(&status));
             }
         }
         Ok(())
+    }
+
+    /// Shows the guard that the loop runs, and the core if it has not for so long that the guard may have stopped the boat.
+    fn beat(&mut self, last: Instant) -> Result<Instant, NodeError> {
+        let now = clock::now();
+        let Some(guarded) = &self.guarded else { return Ok(now) };
+        if !guarded.beat() {
+            self.warn("the guard has died: if the gateway is killed, nobody stops the boat");
+        }
+        let gap = now.saturating_duration_since(last);
+        if gap >= HUNG {
+            self.step(Input::Hung(gap.as_secs_f64()), None)?;
+        }
+        Ok(now)
+    }
+
+    fn warn(&mut self, text: &str) {
+        let (at, event) = (self.clock.now(), Event::Warning(text.to_owned()));
+        (self.notify)(NodeEvent::Event { at_s: at.as_s(), event: &event });
+        if let Some(recorder) = &self.recorder {
+            recorder.record(StepEncoder::event(at, Event::Remark(text.to_owned())));
+        }
     }
 
     /// E-stops before everything else, then at most one request at the control port and one at the hub.
@@ -122,6 +168,9 @@ impl GatewayLoop<'_> {
         }
         if self.input.take_stop(Scope::Boat) {
             self.step(Input::Operator(OperatorCommand::EStop), None)?;
+        }
+        if let Some(found) = self.input.take_found() {
+            self.enter(found?)?;
         }
         if let Some((command, reply)) = self.input.port_requests.take_now() {
             let refused = match command {
@@ -135,6 +184,30 @@ impl GatewayLoop<'_> {
             Some(query) => self.operate(query),
             None => Ok(()),
         }
+    }
+
+    /// Enters the game that was found.
+    fn enter(&mut self, found: FoundGame) -> Result<(), NodeError> {
+        let FoundGame { bus, game, info, vehicle, factor, site } = found;
+        let (scenario, name) = (&info.scenario, &self.settings.vehicle);
+        let in_game = InGame {
+            nav: bus.publisher(topic::nav(&game, scenario, vehicle), Priority::Normal)?,
+            status: bus.publisher(topic::status(&game, name), Priority::Normal)?,
+            link_bytes: bus.publisher(topic::link(&game, name), Priority::Normal)?,
+            vehicle,
+            others: scenario.externals().filter(|other| *other != vehicle).collect(),
+            _subscriptions: subscribe(&bus, &game, &info, vehicle, &self.back)?,
+            _join: Join::begin(&bus, &self.settings.place, (&game, scenario), name, self.back.calls.clone())?,
+            bus,
+        };
+        self.in_game = Some(in_game);
+        self.clock.set_pace(factor);
+        self.encoder.set_vehicle(vehicle);
+        self.step(Input::Site(Box::new(site)), None)
+    }
+
+    fn vehicle(&self) -> Option<VehicleId> {
+        self.in_game.as_ref().map(|in_game| in_game.vehicle)
     }
 
     /// The status of core and shell.
@@ -161,11 +234,19 @@ impl GatewayLoop<'_> {
             Call::Release => self.step(Input::Fleet(FleetCommand::Release), None),
             // What it is about was read before.
             Call::Look => Ok(()),
-            Call::Joined(joined) if joined.vehicles == [self.vehicle] => {
+            Call::Looking(reason) => {
+                (self.notify)(NodeEvent::Looking { reason: &reason });
+                Ok(())
+            }
+            Call::Joined(joined) if self.vehicle().is_some_and(|vehicle| joined.vehicles == [vehicle]) => {
                 self.counters.ticket = Some(joined.ticket);
                 self.counters.game_now = joined.now;
                 self.game_clock.join(self.clock.at(joined.asked), joined.now);
                 if let Some((address, token)) = &self.port {
+                    // In a game with keys it stays the port's own.
+                    if let Some(known) = self.settings.place.token().get() {
+                        token.set(Some(known));
+                    }
                     (self.notify)(NodeEvent::ControlPort { address: *address, token: token.get() });
                 }
                 self.remark("joined: the sim takes reports of the boat");
@@ -230,7 +311,7 @@ impl GatewayLoop<'_> {
             OrderTime::Plausible => {}
         }
         self.counters.game_now = message.stamp.valid_ns;
-        if message.order.vehicle != self.vehicle {
+        if Some(message.order.vehicle) != self.vehicle() {
             return self.step(Input::BadOrder, None);
         }
         let sound = message.order.order().and_then(|order: Order| order.check().ok());
@@ -246,7 +327,8 @@ impl GatewayLoop<'_> {
     fn take_frame(&mut self, bytes: &[u8]) -> Result<(), NodeError> {
         let Ok(frame) = codec::decode::<Frame>(bytes) else { return Ok(()) };
         let place = |vehicle: &VehicleId| frame.vehicles.get(vehicle.index()).map(|truth| truth.nav.at());
-        let others: Vec<Ned> = self.others.iter().filter_map(place).collect();
+        let others = self.in_game.iter().flat_map(|in_game| &in_game.others);
+        let others: Vec<Ned> = others.filter_map(place).collect();
         self.step(Input::Others(others), None)
     }
 
@@ -311,13 +393,16 @@ impl GatewayLoop<'_> {
 
     /// Publishes the bytes that went over the link, and records the whole step.
     fn record_step(&mut self, now: SimTime, input: &Input, out: &Output) -> Result<(), NodeError> {
-        let is_heard = self.link_bytes.is_heard();
+        let link_bytes = self.in_game.as_ref().map(|in_game| &in_game.link_bytes);
+        let is_heard = link_bytes.is_some_and(Publisher::is_heard);
         if !is_heard && self.recorder.is_none() {
             return Ok(());
         }
         for entry in self.encoder.step(now, self.counters.game_now, input, out) {
-            if let (true, Entry::Message { schema: Some(LinkBytes::SCHEMA), bytes, .. }) = (is_heard, &entry) {
-                self.link_bytes.send_encoded::<LinkBytes>(bytes.clone())?;
+            if let (true, Some(link_bytes), Entry::Message { schema: Some(LinkBytes::SCHEMA), bytes, .. }) =
+                (is_heard, link_bytes, &entry)
+            {
+                link_bytes.send_encoded::<LinkBytes>(bytes.clone())?;
             }
             if let Some(recorder) = &self.recorder {
                 recorder.record(entry);
@@ -327,12 +412,12 @@ impl GatewayLoop<'_> {
     }
 
     fn report(&mut self, out: &NavOut) -> Result<(), NodeError> {
-        let Some(ticket) = self.counters.ticket else { return Ok(()) };
+        let (Some(ticket), Some(in_game)) = (self.counters.ticket, &self.in_game) else { return Ok(()) };
         self.counters.reports += 1;
         let stamp = Stamp { valid_ns: self.counters.game_now, seq: self.counters.reports, version: NavReport::VERSION };
         let age_ns = SimTime::from_s(out.age_s).0;
-        let report = NavReport { stamp, ticket, vehicle: self.vehicle, valid: out.valid, age_ns, nav: out.nav };
-        Ok(self.nav.send(&report)?)
+        let report = NavReport { stamp, ticket, vehicle: in_game.vehicle, valid: out.valid, age_ns, nav: out.nav };
+        Ok(in_game.nav.send(&report)?)
     }
 
     /// Logs a message, unless it was logged just now.
@@ -351,11 +436,21 @@ impl GatewayLoop<'_> {
     }
 }
 
+impl InGame {
+    /// Leaves the game.
+    pub(super) fn leave(self) {
+        let InGame { bus, _join, _subscriptions, .. } = self;
+        drop((_join, _subscriptions));
+        bus.close();
+    }
+}
+
 impl Drop for GatewayLoop<'_> {
     /// However a gateway ends, except by a kill or a power cut: the boat is sent the shutdown message, three times, before
     /// the link closes.
     fn drop(&mut self) {
         let message = self.bridge.shutdown_message().repeat(3);
         self.link.send_and_wait(&message, SHUTDOWN_MAX);
+        self.guarded.iter().for_each(Guarded::end);
     }
 }

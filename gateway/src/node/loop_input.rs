@@ -1,5 +1,7 @@
 //! What comes to the gateway loop from its other threads, and wakes it.
 
+use super::NodeError;
+use super::game_finder::FoundGame;
 use crate::link::LinkEvent;
 use crate::supervisor::Scope;
 use bus::game_search::Joined;
@@ -27,6 +29,8 @@ pub(super) enum Call {
     Release,
     Joined(Joined),
     SimGone,
+    /// There is no game yet, for this reason.
+    Looking(String),
     Remark(String),
 }
 
@@ -40,6 +44,7 @@ pub(super) struct LoopInput {
     /// The latest order, and when it came. However many come, only the latest waits.
     pub(super) latest_order: Arc<Mutex<Option<(ExternalOrder, Instant)>>>,
     stops: Arc<Stops>,
+    found: Arc<Mutex<Option<Result<FoundGame, NodeError>>>>,
     queries: InboxSender<Query>,
     port_requests: InboxSender<PortRequest>,
 }
@@ -51,6 +56,7 @@ pub(super) struct LoopOutput {
     pub(super) queries: Inbox<Query>,
     pub(super) port_requests: Inbox<PortRequest>,
     stops: Arc<Stops>,
+    found: Arc<Mutex<Option<Result<FoundGame, NodeError>>>>,
 }
 
 /// E-stops that came and that the loop has not carried out. They wait behind nothing, and nothing can displace them.
@@ -74,13 +80,15 @@ pub(super) fn loop_input() -> (LoopInput, LoopOutput) {
     let (calls, calls_out) = inbox(CALLS_MAX);
     let (queries, queries_out) = inbox(REQUESTS_MAX);
     let (port_requests, port_requests_out) = inbox(REQUESTS_MAX);
-    let input = LoopInput { calls, latest_order: Arc::default(), stops: Arc::default(), queries, port_requests };
+    let (latest_order, stops, found) = Default::default();
+    let input = LoopInput { calls, latest_order, stops, found, queries, port_requests };
     let output = LoopOutput {
         calls: calls_out,
         latest_order: Arc::clone(&input.latest_order),
         queries: queries_out,
         port_requests: port_requests_out,
         stops: Arc::clone(&input.stops),
+        found: Arc::clone(&input.found),
     };
     (input, output)
 }
@@ -97,6 +105,12 @@ impl LoopInput {
     /// Whether an E-stop waits to be carried out.
     pub(super) fn has_stop(&self) -> bool {
         [Scope::Boat, Scope::Fleet].iter().any(|scope| self.stops.of(*scope).load(Ordering::SeqCst))
+    }
+
+    /// The game, or why there is none. It cannot be displaced either.
+    pub(super) fn found(&self, found: Result<FoundGame, NodeError>) {
+        *self.found.lock() = Some(found);
+        self.wake();
     }
 
     /// A query of an operator.
@@ -118,6 +132,11 @@ impl LoopInput {
 }
 
 impl LoopOutput {
+    /// Takes the game that was found, once.
+    pub(super) fn take_found(&self) -> Option<Result<FoundGame, NodeError>> {
+        self.found.lock().take()
+    }
+
     /// Takes the E-stop that is to be carried out, if there is one.
     pub(super) fn take_stop(&self, scope: Scope) -> bool {
         self.stops.of(scope).swap(false, Ordering::SeqCst)

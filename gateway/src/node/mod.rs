@@ -6,40 +6,46 @@
 mod clock;
 mod control_port;
 mod emulator;
+mod game_finder;
 mod gateway_loop;
+mod guard;
 mod join;
 mod latency;
 mod loop_input;
+mod terminal_key;
 
 pub use emulator::{EmulatorSettings, emulate};
+pub use guard::guard;
+pub use terminal_key::on_enter;
 
 use crate::bridge::{Bridge, Event, Plan};
 use crate::declination::{DeclinationError, declination_deg};
 use crate::game_clock::GameClock;
-use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings};
+use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, OnPort};
 use crate::nmea::date_and_time;
 use crate::record::{self, StepEncoder};
 use crate::supervisor::Scope;
-use bus::game_search::{self, GameSearch, NotFound};
+use bus::game_search::NotFound;
 use bus::token::{Checked, Guard};
-use bus::{Bus, BusError, Declaration, Place, Priority, Token};
+use bus::{Bus, BusError, Declaration, LinkLock, LinkLockError, Place, Token};
 use clock::Clock;
 use control_port::ControlPort;
 use game::external::{GatewayStatus, OperatorCommand};
 use game::frame::LatLon;
 use game::gateway::Gateway;
-use game::message::{Control, GameInfo, Role};
+use game::message::{Control, GameInfo};
 use game::scenario::{Source, UnknownVehicle};
 use game::topic::{self, GameName};
 use game::{SimTime, VehicleId, codec};
-use gateway_loop::{Counters, GatewayLoop};
-use join::Join;
+use gateway_loop::{Counters, GatewayLoop, InGame};
+use guard::Guarded;
 use loop_input::{Call, LoopInput, LoopOutput, loop_input};
 use recording::{NewFile, RecordError, Recorder, utc};
 use std::net::SocketAddr;
 use std::path::PathBuf;
+use std::process::Command;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use thiserror::Error;
 
@@ -75,6 +81,8 @@ pub struct Outside {
     pub silence: Duration,
     /// Where the control port listens; port 0 is any that is free.
     pub control: SocketAddr,
+    /// The program whose `gateway guard` stops the boat when this process cannot; `None` is without.
+    pub guard: Option<PathBuf>,
 }
 
 /// What a link tells its gateway.
@@ -134,6 +142,9 @@ pub enum NodeError {
         /// Why.
         source: std::io::Error,
     },
+    /// Another gateway has the link.
+    #[error(transparent)]
+    Locked(#[from] LinkLockError),
     /// The recording cannot be written.
     #[error("{path}: {source}")]
     Record {
@@ -159,26 +170,48 @@ pub enum NodeError {
     SimReplaced,
 }
 
-/// Connects a real boat with a game until it is told to stop. However it ends, the boat is sent standby.
+/// Connects a real boat with a game until it is told to stop. The link comes first, and standby is the first thing that the boat
+/// is sent; the game is looked for while operators are served. However it ends, the boat is sent standby.
 ///
 /// # Errors
-/// [`NodeError`] if there is no such game or boat, or if the network, the link or the recording cannot work. A boat or a
-/// sim that goes away is none: the gateway waits for it.
+/// [`NodeError`] if another gateway on this machine has the link, if the game refuses, or if the network, the link or the
+/// recording cannot work. A boat or a sim that goes away is none: the gateway waits for it.
 pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Result<(), NodeError> {
+    let _lock = match LinkLock::take(&outside.link.to_string()) {
+        Ok(lock) => Some(lock),
+        Err(held @ LinkLockError::Held { .. }) => return Err(held.into()),
+        // A boat is not left alone since a file cannot be written.
+        Err(LinkLockError::File { link, source }) => {
+            let text = format!("the link {link} is not locked against a second gateway: {source}");
+            notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });
+            None
+        }
+    };
     let input = loop_input();
-    // The control port asks for the token that is known by then, and is there before everything that can take its time.
-    let mut search = GameSearch::new(settings.wait, &settings.stop);
-    let net = search.until(&mut |_| (), || settings.place.net(settings.game.as_ref()))?;
-    // No certificate is shown at the port: where a game has keys and no token, the port has one of its own.
-    let own = net.keys.is_some() && net.token.is_none();
-    let token = if own { Some(Token::random()).into() } else { settings.place.token().clone() };
-    let port = ControlPort::open(outside.control, &settings.vehicle, token, input.0.clone())?;
-    notify(NodeEvent::ControlPort { address: port.address, token: port.token.get() });
+    // What is known of the token by now; nothing is waited for.
+    drop(settings.place.net(settings.game.as_ref()));
+    // Until a game says which, the port has a token of its own; in a game with keys that stays so.
+    let token = settings.place.token().get().unwrap_or_else(Token::random);
+    let port = ControlPort::open(outside.control, &settings.vehicle, Some(token).into(), input.0.clone())?;
+    let guarded = start_guard(outside, notify);
+    let on_port = guarded.clone().map(|guarded| -> OnPort { Box::new(move |descriptor| guarded.link(descriptor)) });
     let open = |on_event: OnLinkEvent| -> Result<Box<dyn BoatLink>, LinkError> {
         let link_settings = LinkSettings { silence: Some(outside.silence), ..LinkSettings::default() };
-        Ok(Box::new(Link::open(&outside.link, link_settings, on_event)?))
+        Ok(Box::new(Link::open_watched(&outside.link, link_settings, on_port, on_event)?))
     };
-    connect(settings, input, Some(port), open, notify)
+    connect(settings, input, (Some(port), guarded), open, notify)
+}
+
+/// The guard, where there is to be one. A boat is not left alone since it cannot be started.
+fn start_guard(outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
+    let mut command = Command::new(outside.guard.as_ref()?);
+    command.args(["gateway", "guard"]).env_clear();
+    let started = Guarded::start(command);
+    if let Err(e) = &started {
+        let text = format!("there is no guard, so if the gateway is killed, nobody stops the boat: {e}");
+        notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });
+    }
+    started.ok()
 }
 
 /// As [`serve`], without a control port and over a link that `open` gives: for networks that are simulated.
@@ -190,75 +223,55 @@ pub fn serve_over(
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
-    connect(settings, loop_input(), None, open, notify)
+    connect(settings, loop_input(), (None, None), open, notify)
 }
 
-/// Finds the game, joins it, opens the link, and runs the loop.
+/// Opens the link, runs the loop, and finds the game meanwhile.
 fn connect(
     settings: &Settings,
     (input, output): (LoopInput, LoopOutput),
-    port: Option<ControlPort>,
+    (port, guarded): (Option<ControlPort>, Option<Guarded>),
     open: impl FnOnce(OnLinkEvent) -> Result<Box<dyn BoatLink>, LinkError>,
     notify: &mut dyn FnMut(NodeEvent<'_>),
 ) -> Result<(), NodeError> {
-    let (place, named) = (&settings.place, settings.game.as_ref());
-    let mut search = GameSearch::new(settings.wait, &settings.stop);
-    let mut looking = |reason: &str| notify(NodeEvent::Looking { reason });
-    let (bus, game, info) = search.game(&mut looking, place, named)?;
-    let vehicle = external_vehicle(&info, &settings.vehicle)?;
-    let factor = pace_factor(&info.pace, settings.at_game_pace)?;
-    let plan = plan(settings, &info, vehicle)?;
+    if let Some(port) = &port {
+        notify(NodeEvent::ControlPort { address: port.address, token: port.token.get() });
+    }
+    let Settings { vehicle, gateway, arms_itself, .. } = settings;
+    let plan = Plan { vehicle: vehicle.clone(), gateway: gateway.clone(), site: None, arms_itself: *arms_itself };
     let recorder = recorder(settings, &plan)?;
-    // Nothing is sent to a boat that another gateway has. The thread that keeps it joined asks again, and gets it again.
-    let names = [settings.vehicle.clone()];
-    let mut say = |reason: &str| notify(NodeEvent::Looking { reason });
-    search.until(&mut say, || game_search::join(&bus, place, (&game, &info.scenario), Role::Gateway, &names))?;
-    let subscriptions = subscribe(&bus, &game, &info, vehicle, &input)?;
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
-    let others = info.scenario.externals().filter(|other| *other != vehicle).collect();
     let mut gateway_loop = GatewayLoop {
         game_clock: GameClock::new(SimTime::from_s(plan.gateway.order_ttl_s)),
         bridge: Bridge::new(plan),
         link,
-        clock: Clock::start(factor),
+        clock: Clock::start(),
         input: output,
-        nav: bus.publisher(topic::nav(&game, &info.scenario, vehicle), Priority::Normal)?,
-        status: bus.publisher(topic::status(&game, &settings.vehicle), Priority::Normal)?,
-        link_bytes: bus.publisher(topic::link(&game, &settings.vehicle), Priority::Normal)?,
-        vehicle,
-        others,
+        in_game: None,
+        settings,
+        guarded,
+        back: input.clone(),
         recorder,
-        encoder: StepEncoder::new(&settings.vehicle, vehicle),
+        encoder: StepEncoder::new(vehicle),
         counters: Counters::new(),
         notify: &mut *notify,
-        guard: Guard::new(place.token().clone()),
+        guard: Guard::new(settings.place.token().clone()),
         port: port.as_ref().map(|port| (port.address, port.token.clone())),
     };
-    let join = Join::begin(&bus, place, (&game, &info.scenario), &settings.vehicle, input.calls)?;
+    let finder = game_finder::begin(settings, input);
     port.iter().for_each(ControlPort::begin);
     let result = gateway_loop.run(&settings.stop);
     let status = gateway_loop.full_status();
     // The boat is stopped before the network closes.
+    let in_game = gateway_loop.in_game.take();
     drop(gateway_loop);
-    drop((port, join, subscriptions));
+    // It ends however it came to that; who looks for a game does so too.
+    settings.stop.store(true, Ordering::Relaxed);
+    drop((port, finder));
     notify(NodeEvent::Ended(&status));
-    bus.close();
+    in_game.into_iter().for_each(InGame::leave);
     result
-}
-
-/// What the core is made for.
-fn plan(settings: &Settings, info: &GameInfo, vehicle: VehicleId) -> Result<Plan, NodeError> {
-    let field = info.scenario.field.clone();
-    let declination_rad = declination_rad(settings.gateway.declination_rad, field.plan.datum)?;
-    Ok(Plan {
-        vehicle: settings.vehicle.clone(),
-        gateway: settings.gateway.clone(),
-        field,
-        length_m: info.scenario.boat_of(vehicle).length_m,
-        declination_rad,
-        arms_itself: settings.arms_itself,
-    })
 }
 
 /// The recording, if there is to be one.

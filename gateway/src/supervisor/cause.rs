@@ -28,6 +28,9 @@ pub enum Cause {
     /// It did not take up the mode that it was sent: this is the one it reported.
     #[error("the boat does not follow the commands it is sent: it is in mode {0}")]
     Disobeyed(char),
+    /// The gateway itself did not run for this long, s, and its guard may have stopped the boat.
+    #[error("the gateway hung for {0:.1} s, and its guard may have stopped the boat")]
+    Hung(f64),
     /// The link broke.
     #[error("the link is lost")]
     LinkLost,
@@ -36,6 +39,9 @@ pub enum Cause {
 /// What is wrong with navigation.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NavFault {
+    /// No game has said where the field is.
+    #[error("no game yet, and so no field and no geofence")]
+    NoField,
     /// There was no fix yet.
     #[error("no fix yet")]
     NoFix,
@@ -63,6 +69,12 @@ pub enum NavFault {
     /// The position has been the same to the last digit for this long though the boat is driven, s.
     #[error("the position has not changed for {0:.1} s under thrust")]
     Frozen(f64),
+    /// The compass has shown the same to the last digit while the course turned this far, degrees.
+    #[error("the compass shows the same while the course turned by {0:.0} degrees")]
+    CompassFrozen(f64),
+    /// The reported speed is less than that of the positions, which is this, m/s.
+    #[error("the reported speed is less than that of the positions, {0:.1} m/s")]
+    SpeedTooLow(f64),
 }
 
 impl Cause {
@@ -70,6 +82,7 @@ impl Cause {
     #[must_use]
     pub fn missing(self) -> String {
         match self {
+            Cause::Hung(_) => "a gateway that does not hang".to_owned(),
             Cause::LinkLost => "the link to the boat".to_owned(),
             Cause::TakenOver(by) => format!("secondary control: {} commands the boat", operator(by)),
             Cause::ControlUnknown | Cause::Disobeyed(_) => {

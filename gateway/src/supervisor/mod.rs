@@ -35,6 +35,8 @@ use thiserror::Error;
 pub struct Conditions {
     /// Whether bytes can reach the boat.
     pub link: bool,
+    /// For how long the gateway itself did not run until now, s, if its guard may have stopped the boat meanwhile.
+    pub hung_s: Option<f64>,
     /// Who commands the boat, by its own report.
     pub control: Control,
     /// What is wrong with navigation.
@@ -53,6 +55,7 @@ impl Conditions {
     /// Before anything was received.
     pub const UNKNOWN: Conditions = Conditions {
         link: false,
+        hung_s: None,
         control: Control::Unknown,
         nav: Some(NavFault::NoFix),
         inside: false,
@@ -291,7 +294,8 @@ impl Conditions {
         let geofence = (!self.inside && self.nav.is_none()).then_some(Cause::Geofence);
         let battery = self.battery_low.then_some(Cause::BatteryLow);
         let order = (!self.order_fresh).then_some(Cause::OrderStale);
-        [link, control, self.nav.map(Cause::Nav), geofence, battery, order].into_iter().flatten()
+        let hung = self.hung_s.map(Cause::Hung);
+        [link, hung, control, self.nav.map(Cause::Nav), geofence, battery, order].into_iter().flatten()
     }
 
     /// The failsafe of an armed boat.

@@ -4,6 +4,7 @@ use super::*;
 
 const GOOD: Conditions = Conditions {
     link: true,
+    hung_s: None,
     control: Control::Granted,
     nav: None,
     inside: true,
@@ -17,11 +18,12 @@ const BATTERIES: [LowBattery; 3] = [LowBattery::Standby, LowBattery::StationKeep
 fn all_conditions() -> Vec<Conditions> {
     let controls = [Control::Granted, Control::Unknown, Control::Other(5), Control::Disobeys('L')];
     let mut all = Vec::new();
-    for bits in 0..64_u8 {
+    for bits in 0..128_u8 {
         let is = |bit: u8| bits & (1 << bit) != 0;
         let nav = is(1).then_some(NavFault::NoFix);
         let of = |control| Conditions {
             link: is(0),
+            hung_s: is(6).then_some(0.5),
             control,
             nav,
             inside: is(2),
@@ -71,7 +73,12 @@ fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorReques
 /// Whether the boat's own controller may take over now; `at_low_battery` is whether this task is meant for a low battery.
 fn is_fit(now: &Conditions, at_low_battery: bool) -> bool {
     let granted = matches!(now.control, Control::Granted | Control::Disobeys(_));
-    now.link && granted && now.nav.is_none() && now.inside && (!now.battery_low || at_low_battery)
+    now.link
+        && now.hung_s.is_none()
+        && granted
+        && now.nav.is_none()
+        && now.inside
+        && (!now.battery_low || at_low_battery)
 }
 
 #[test]
@@ -167,6 +174,7 @@ fn every_failsafe_is_reported_with_its_true_cause_and_brings_standby() {
                 Cause::ControlUnknown => now.control == Control::Unknown,
                 Cause::Disobeyed(mode) => now.control == Control::Disobeys(mode),
                 Cause::LinkLost => !now.link,
+                Cause::Hung(_) => now.hung_s.is_some(),
             };
             assert!(is_true, "{case}");
         }

@@ -9,7 +9,7 @@ use gateway::emulator::{self, Emulator, Extra, Port};
 use gateway::nmea::Sentence;
 
 fn boat(change: impl FnOnce(&mut emulator::Plan)) -> Emulator {
-    let mut plan = emulated(plan("surveyor.toml", false).field.plan.datum, 0.0);
+    let mut plan = emulated(plan("surveyor.toml", false).site.expect("the rig has one").field.plan.datum, 0.0);
     change(&mut plan);
     Emulator::new(plan)
 }

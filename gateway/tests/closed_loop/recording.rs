@@ -1,7 +1,7 @@
 //! What is recorded plays again just so, whole or cut.
 
 use crate::script::played;
-use game::{SimTime, VehicleId};
+use game::SimTime;
 use gateway::bridge::Event;
 use gateway::record::{StepEncoder, opening};
 use gateway::replay::{Replay, replay};
@@ -17,7 +17,7 @@ fn recording(end_well: bool) -> (Vec<u8>, usize, usize) {
     let rig = played(DRIVE);
     let opening = opening(&crate::rig::plan("surveyor.toml", false), 1_700_000_000_000_000_000, "c0ffee");
     let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("memory");
-    let mut encoder = StepEncoder::new("blue_one", VehicleId(0));
+    let mut encoder = StepEncoder::new("blue_one");
     let mut entries = Vec::new();
     rig.turns.iter().for_each(|(at, input, out)| entries.extend(encoder.step(*at, SimTime::ZERO, input, out)));
     entries.push(StepEncoder::event(rig.now, Event::Remark("the end".to_owned())));

@@ -6,7 +6,7 @@ use crate::tamper::{Tamper, with_checksum};
 use game::external::{FleetCommand, OperatorCommand};
 use game::frame::Ned;
 use game::{Order, SimTime};
-use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan};
+use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Site};
 use gateway::emulator::{self, Emulator, Port};
 use std::path::Path;
 
@@ -58,16 +58,15 @@ pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
     Plan {
         vehicle: "blue_one".to_owned(),
         gateway: game::scenario::load_gateway(&gateway).unwrap_or_else(|e| panic!("{e}")),
-        length_m: 1.83,
-        field: game.field,
-        declination_rad: (-12.5_f64).to_radians(),
+        site: Some(Site { length_m: 1.83, field: game.field, declination_rad: (-12.5_f64).to_radians() }),
         arms_itself,
     }
 }
 
 impl Rig {
     pub(crate) fn of(plan: Plan, watchdog_s: Option<f64>, integers: bool) -> Rig {
-        let emulator = emulator::Plan { watchdog_s, integers, ..emulated(plan.field.plan.datum, plan.declination_rad) };
+        let Site { field, declination_rad, .. } = plan.site.as_ref().expect("the rig has one");
+        let emulator = emulator::Plan { watchdog_s, integers, ..emulated(field.plan.datum, *declination_rad) };
         let mut rig = Rig {
             now: SimTime::ZERO,
             steps: 0,

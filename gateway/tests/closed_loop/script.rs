@@ -168,7 +168,7 @@ fn order_of(words: &[&str]) -> Option<Order> {
 
 /// A mission of places `x,y` on the field or `@latitude,longitude`.
 fn mission_of(words: &[&str]) -> Mission {
-    let frame = LocalFrame::new(plan("surveyor.toml", false).field.plan.datum);
+    let frame = LocalFrame::new(plan("surveyor.toml", false).site.expect("the rig has one").field.plan.datum);
     let place = |text: &str| {
         let (a, b) = text.trim_start_matches('@').split_once(',').expect("two numbers");
         if text.starts_with('@') {

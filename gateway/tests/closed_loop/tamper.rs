@@ -30,6 +30,11 @@ pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {
             let place = [lat, north, lon, east].map(|field| (*field).to_owned());
             refixed(move |fields| fields[2..6].clone_from_slice(&place))
         }
+        ["frozen-compass"] => frozen_compass(),
+        ["stuck-speed"] => rewritten(|body| {
+            let is_speed = body.starts_with("GPVTG");
+            if is_speed { "GPVTG,,T,,M,0.00,N,0.00,K".to_owned() } else { body.to_owned() }
+        }),
         ["whole-seconds"] => refixed(|fields| fields[1].replace_range(6.., ".00")),
         other => panic!("no tampering is {other:?}"),
     })
@@ -69,6 +74,19 @@ fn first_fix_again() -> Tamper {
         let (fix, rest) = text.split_once('\n').expect("several sentences");
         let fix = first.get_or_insert_with(|| fix.to_owned());
         vec![format!("{fix}\n{rest}").into_bytes()]
+    })
+}
+
+/// A compass that shows for ever what it showed first.
+fn frozen_compass() -> Tamper {
+    let mut first = None;
+    rewritten(move |body| {
+        let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
+        if fields[0] == "PSEAA" {
+            let now = fields[3].clone();
+            fields[3].clone_from(first.get_or_insert(now));
+        }
+        fields.join(",")
     })
 }
 

@@ -1,0 +1,165 @@
+//! Checks the instruments of a boat against each other: its compass against its course, its reported speed against its positions.
+//!
+//! What is checked cannot be so on any sea: a compass that shows the same to the last digit while the boat's course turns far, and
+//! positions that go away faster than the speed that is reported with them. Leeway and current cause neither.
+
+use crate::supervisor::NavFault;
+use game::SimTime;
+use game::angle::wrap_pi;
+use game::frame::Ned;
+use game::math;
+use std::collections::VecDeque;
+
+/// Positions of this long make a speed, s; with less than that there is none.
+const WINDOW_S: f64 = 4.0;
+const WINDOW_MIN_S: f64 = 2.0;
+/// The most positions that are kept: 20 a second.
+const FIXES_MAX: usize = 80;
+/// A reported speed may be this much less than that of the positions, m/s, for this long, s: a fix may step by some metres.
+const SPEED_GAP_M_S: f64 = 1.2;
+const SPEED_GAP_S: f64 = 2.5;
+/// A boat has a course from this speed on, m/s.
+const COURSE_FROM_M_S: f64 = 0.8;
+/// A course that turns so far while the compass shows the same, rad.
+const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_3;
+
+/// What is known of a boat's motion by each instrument.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MotionCheck {
+    /// Positions, the newest last.
+    fixes: VecDeque<(SimTime, Ned)>,
+    /// Since when the reported speed has been less than that of the positions.
+    slow_since: Option<SimTime>,
+    /// What the compass shows, rad, and how far the course has turned since it began to show that, rad.
+    shown: Option<(f64, f64)>,
+    /// The course that was seen last, rad.
+    course_rad: Option<f64>,
+}
+
+impl MotionCheck {
+    /// Takes a position with the velocity that is reported with it, if one is.
+    pub(crate) fn take_fix(&mut self, now: SimTime, place: Ned, reported: Option<Ned>) {
+        while self.fixes.front().is_some_and(|(at, _)| (now - *at).as_s() > WINDOW_S) || self.fixes.len() >= FIXES_MAX {
+            self.fixes.pop_front();
+        }
+        self.fixes.push_back((now, place));
+        let measured = self.velocity_m_s();
+        let is_slow = reported
+            .zip(measured)
+            .is_some_and(|(reported, measured)| measured.length() - reported.length() > SPEED_GAP_M_S);
+        self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
+        // A fix that steps has a course of its own; that of the reported velocity comes first.
+        self.take_course(reported.or(measured).filter(|velocity| velocity.length() >= COURSE_FROM_M_S));
+    }
+
+    fn take_course(&mut self, velocity: Option<Ned>) {
+        let course_rad = velocity.map(|velocity| math::atan2(velocity.east, velocity.north));
+        if let (Some((_, turned_rad)), Some(before_rad), Some(now_rad)) = (&mut self.shown, self.course_rad, course_rad)
+        {
+            *turned_rad += wrap_pi(now_rad - before_rad);
+        }
+        self.course_rad = course_rad;
+    }
+
+    /// Takes what the compass shows, rad.
+    pub(crate) fn take_heading(&mut self, psi_rad: f64) {
+        if self.shown.is_none_or(|(shown_rad, _)| shown_rad != psi_rad) {
+            self.shown = Some((psi_rad, 0.0));
+        }
+    }
+
+    /// The receiver's position has jumped: what went before says nothing of the boat's speed.
+    pub(crate) fn jump(&mut self) {
+        self.fixes.clear();
+        (self.slow_since, self.course_rad) = (None, None);
+    }
+
+    /// Velocity over the ground by positions alone, m/s: from the middle of the older ones to that of the newer.
+    pub(crate) fn velocity_m_s(&self) -> Option<Ned> {
+        let ((first, _), (last, _)) = (self.fixes.front()?, self.fixes.back()?);
+        if (*last - *first).as_s() < WINDOW_MIN_S {
+            return None;
+        }
+        let half = self.fixes.len() / 2;
+        let middle = |fixes: &mut dyn Iterator<Item = &(SimTime, Ned)>| {
+            let (mut count, mut time_s, mut place) = (0.0, 0.0, Ned::default());
+            for (at, fix) in fixes {
+                (count, time_s, place) = (count + 1.0, time_s + (*at - *first).as_s(), place + *fix);
+            }
+            (time_s / count, place.scaled(1.0 / count))
+        };
+        let (older_s, older) = middle(&mut self.fixes.iter().take(half));
+        let (newer_s, newer) = middle(&mut self.fixes.iter().skip(half));
+        Some((newer - older).scaled(1.0 / (newer_s - older_s)))
+    }
+
+    /// What is wrong now.
+    pub(crate) fn fault(&self, now: SimTime) -> Option<NavFault> {
+        let turned = self.shown.map(|(_, turned_rad)| turned_rad.abs()).filter(|turned_rad| *turned_rad > TURN_MAX_RAD);
+        let is_slow = self.slow_since.is_some_and(|since| (now - since).as_s() > SPEED_GAP_S);
+        turned
+            .map(|turned_rad| NavFault::CompassFrozen(turned_rad.to_degrees()))
+            .or_else(|| is_slow.then(|| NavFault::SpeedTooLow(self.velocity_m_s().map_or(0.0, Ned::length))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A boat that sails a circle at this speed and rate of turn for 20 s, with what its instruments make of that; the fault.
+    fn circle(
+        speed_m_s: f64,
+        turn_deg_s: f64,
+        compass: impl Fn(f64) -> f64,
+        log: impl Fn(Ned) -> Option<Ned>,
+    ) -> Option<NavFault> {
+        let (mut check, mut place) = (MotionCheck::default(), Ned::default());
+        (0..200).find_map(|i| {
+            let now = SimTime::from_s(0.1 * f64::from(i));
+            let course_deg = turn_deg_s * 0.1 * f64::from(i);
+            let velocity = Ned::toward_deg(course_deg).scaled(speed_m_s);
+            place = place + velocity.scaled(0.1);
+            check.take_heading(wrap_pi(compass(course_deg).to_radians()));
+            check.take_fix(now, place, log(velocity));
+            check.fault(now)
+        })
+    }
+
+    #[test]
+    fn a_compass_that_shows_the_same_on_every_course_is_frozen() {
+        let is_frozen = |fault| matches!(fault, Some(NavFault::CompassFrozen(turned_deg)) if turned_deg < 64.0);
+        for turn_deg_s in [5.0, -5.0, 30.0] {
+            assert!(is_frozen(circle(2.6, turn_deg_s, |_| 90.0, Some)), "{turn_deg_s}");
+        }
+        // One that is off by much and turns is not, nor one of a boat that goes straight, nor of one that lies still.
+        assert_eq!(circle(2.6, 20.0, |course_deg| course_deg + 70.0, Some), None);
+        assert_eq!(circle(2.6, 0.0, |_| 90.0, Some), None);
+        assert_eq!(circle(0.3, 20.0, |_| 90.0, Some), None);
+    }
+
+    #[test]
+    fn a_speed_that_is_less_than_that_of_the_positions_is_a_fault_and_one_that_is_more_is_none() {
+        let stuck = |speed_m_s, log: fn(Ned) -> Option<Ned>| circle(speed_m_s, 0.0, |course_deg| course_deg, log);
+        let Some(NavFault::SpeedTooLow(measured)) = stuck(2.0, |_| Some(Ned::default())) else { panic!("no fault") };
+        assert!((measured - 2.0).abs() < 0.01, "{measured}");
+        assert_eq!(stuck(2.0, |velocity| Some(velocity.scaled(0.5))), None, "within what fixes may step");
+        assert_eq!(stuck(0.0, |_| Some(Ned { north: 2.0, east: 0.0 })), None);
+        assert_eq!(stuck(2.0, |_| None), None, "nothing is reported");
+    }
+
+    #[test]
+    fn a_fix_that_steps_by_some_metres_is_no_fault() {
+        let mut check = MotionCheck::default();
+        for i in 0..200_i32 {
+            let now = SimTime::from_s(0.1 * f64::from(i));
+            check.take_fix(
+                now,
+                Ned { north: if i / 40 % 2 == 0 { 0.0 } else { 4.0 }, east: 0.0 },
+                Some(Ned::default()),
+            );
+            check.take_heading(1.0);
+            assert_eq!(check.fault(now), None, "at {now}");
+        }
+    }
+}

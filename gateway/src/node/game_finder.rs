@@ -1,0 +1,72 @@
+//! Finds the game of a boat and joins it, in a thread of its own: the boat's link and its operators do not wait for that.
+
+use super::loop_input::{Call, LoopInput};
+use super::{NodeError, Settings, declination_rad, external_vehicle, pace_factor};
+use crate::bridge::Site;
+use bus::game_search::{self, GameSearch};
+use bus::{Bus, NodeThread, Place};
+use game::VehicleId;
+use game::gateway::Gateway;
+use game::message::{GameInfo, Role};
+use game::topic::GameName;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+/// A game that has let the boat join.
+pub(super) struct FoundGame {
+    pub(super) bus: Bus,
+    pub(super) game: GameName,
+    pub(super) info: GameInfo,
+    pub(super) vehicle: VehicleId,
+    /// How many seconds of the game pass in a second of real time.
+    pub(super) factor: f64,
+    pub(super) site: Site,
+}
+
+/// What is looked for.
+struct Wanted {
+    game: Option<GameName>,
+    place: Place,
+    vehicle: String,
+    gateway: Gateway,
+    at_game_pace: bool,
+    wait: Duration,
+    stop: Arc<AtomicBool>,
+}
+
+/// Begins to look. What is found, or why nothing can be, is given to the loop.
+pub(super) fn begin(settings: &Settings, input: LoopInput) -> NodeThread {
+    let Settings { game, place, vehicle, gateway, at_game_pace, wait, stop, .. } = settings;
+    let wanted = Wanted {
+        game: game.clone(),
+        place: place.clone(),
+        vehicle: vehicle.clone(),
+        gateway: gateway.clone(),
+        at_game_pace: *at_game_pace,
+        wait: *wait,
+        stop: Arc::clone(stop),
+    };
+    NodeThread::start(move || {
+        let mut tell = |reason: &str| input.calls.put(Call::Looking(reason.to_owned()));
+        let found = wanted.find(&mut tell);
+        input.found(found);
+    })
+}
+
+impl Wanted {
+    fn find(&self, tell: &mut dyn FnMut(&str)) -> Result<FoundGame, NodeError> {
+        let mut search = GameSearch::new(self.wait, &self.stop);
+        let (bus, game, info) = search.game(tell, &self.place, self.game.as_ref())?;
+        let vehicle = external_vehicle(&info, &self.vehicle)?;
+        let factor = pace_factor(&info.pace, self.at_game_pace)?;
+        let field = info.scenario.field.clone();
+        let declination_rad = declination_rad(self.gateway.declination_rad, field.plan.datum)?;
+        let site = Site { length_m: info.scenario.boat_of(vehicle).length_m, field, declination_rad };
+        // The thread that keeps it joined asks again, and gets it again.
+        let names = [self.vehicle.clone()];
+        let all = (&game, &info.scenario);
+        search.until(tell, || game_search::join(&bus, &self.place, all, Role::Gateway, &names))?;
+        Ok(FoundGame { bus, game, info, vehicle, factor, site })
+    }
+}

@@ -1,0 +1,120 @@
+//! `squall gateway stop`: stops a boat with nothing else running, straight over its link.
+
+use crate::screen;
+use crate::sim_command::seconds;
+use anyhow::{Result, anyhow, bail};
+use bus::{LinkLock, ask_gateway, clock};
+use game::external::{GatewayCommand, OperatorCommand};
+use gateway::bridge::stop_message;
+use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
+use gateway::nmea::{Framer, Mode, Operator, Sentence};
+use std::process::ExitCode;
+use std::sync::mpsc::sync_channel;
+use std::time::Duration;
+
+/// How often it is said.
+const AGAIN: Duration = Duration::from_millis(100);
+/// For how long it is said at least: one sentence may be lost.
+const SAY: Duration = Duration::from_millis(500);
+/// How long a gateway that has the link may take to answer.
+const ANSWER: Duration = Duration::from_secs(1);
+/// The most events that wait to be read.
+const EVENTS_MAX: usize = 4096;
+
+/// Which boat.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
+    link: String,
+    /// How long to try, s
+    #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
+    wait_s: f64,
+}
+
+pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    let address = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("LINK: {e}"))?;
+    // A gateway that has the link would send its boat on.
+    if stopped_by_its_gateway(&address) {
+        return Ok(ExitCode::SUCCESS);
+    }
+    let (sender, events) = sync_channel(EVENTS_MAX);
+    // A full queue drops events: the boat reports again.
+    let take = move |event| drop(sender.try_send(event));
+    let settings = LinkSettings { silence: None, retry_max: AGAIN, ..LinkSettings::default() };
+    let link = Link::open(&address, settings, take)?;
+    let (mut framer, mut boat) = (Framer::new(), BoatReport::default());
+    let (start, limit) = (clock::now(), Duration::from_secs_f64(args.wait_s));
+    let (mut connected, mut due, mut reason) = (None, start, "no answer yet".to_owned());
+    while clock::since(start) < limit {
+        match events.recv_timeout(due.saturating_duration_since(clock::now()).min(AGAIN)) {
+            Ok(LinkEvent::Up { name, .. }) => {
+                screen::remark(&format!("connected to {name}: thrust zero and standby"));
+                (connected, due) = (Some(clock::now()), clock::now());
+            }
+            Ok(LinkEvent::Bytes { bytes, .. }) => framer.push(&bytes, &mut |body| boat.take(body)),
+            Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
+                (connected, reason) = (None, why);
+            }
+            Ok(LinkEvent::Written { .. }) | Err(_) => {}
+        }
+        let Some(since) = connected else { continue };
+        if clock::now() >= due {
+            due = clock::now() + AGAIN;
+            link.send(stop_message(), 0);
+        }
+        if clock::since(since) >= SAY && boat.mode == Some(Mode::Standby) {
+            screen::print("the boat reports standby\n");
+            return Ok(ExitCode::SUCCESS);
+        }
+    }
+    match (connected, boat) {
+        (None, _) => bail!("the boat at {address} was not reached in {} s: {reason}", args.wait_s),
+        (_, BoatReport { mode: None, .. }) => {
+            bail!("{address} was sent thrust zero and standby for {} s, and reports nothing of it", args.wait_s)
+        }
+        (_, BoatReport { mode: Some(mode), operator }) => bail!(
+            "the boat is sent thrust zero and standby and reports mode {}{}",
+            mode.letter(),
+            match operator {
+                Some(Operator::Secondary) | None => String::new(),
+                Some(other) => format!(": operator {} commands it, who must stop it", other.number()),
+            }
+        ),
+    }
+}
+
+/// What the boat last reported since.
+#[derive(Default)]
+struct BoatReport {
+    mode: Option<Mode>,
+    operator: Option<Operator>,
+}
+
+impl BoatReport {
+    fn take(&mut self, body: &str) {
+        if let Ok(Sentence::ControlState(state)) = Sentence::parse(body) {
+            (self.mode, self.operator) = (Some(state.mode), state.operator);
+        }
+    }
+}
+
+/// Whether a gateway on this machine has the link, and has stopped its boat.
+fn stopped_by_its_gateway(address: &LinkAddress) -> bool {
+    let Some(pid) = LinkLock::holder(&address.to_string()) else { return false };
+    let Some(entry) = bus::local_gateways().into_iter().find(|entry| entry.pid == pid) else { return false };
+    let command = GatewayCommand::Boat { name: entry.vehicle.clone(), command: OperatorCommand::EStop };
+    match ask_gateway(entry.control, None, &command, ANSWER) {
+        Ok(reply) if reply.refused.is_none() && reply.status.link == "up" => {
+            screen::print(&format!("the gateway of {} has the link: {}\n", entry.vehicle, reply.status.state));
+            true
+        }
+        Ok(reply) => {
+            screen::remark(&format!("the gateway of {} has the link, and it is {}", entry.vehicle, reply.status.link));
+            false
+        }
+        Err(e) => {
+            screen::remark(&format!("the gateway of {} has the link, and does not answer: {e}", entry.vehicle));
+            false
+        }
+    }
+}
