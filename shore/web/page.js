@@ -291,6 +291,7 @@ class Page {
     // On a wide page the events have a place of their own.
     this.tabName = name === 'events' && this.wide.matches ? 'boats' : name;
     document.body.dataset.tab = this.tabName;
+    this.log.under(this.tabName, this.wide.matches);
     // A phone has no room for these below the chart.
     const place = this.wide.matches ? byId('controls') : byId('pane-game');
     if (byId('shown').parentElement !== place) place.insertBefore(byId('shown'), this.wide.matches ? byId('help') : place.firstChild);
