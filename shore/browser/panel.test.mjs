@@ -19,7 +19,7 @@ async function replay(t, game, ...words) {
   const place = folder(t);
   await squall(t, 'run', scenario(`games/${game}.toml`), ...words, '--in-process', '--record', place);
   const file = readdirSync(place).find((name) => name.endsWith('.mcap'));
-  return new Program(t, 'replay', join(place, file), '--listen', '127.0.0.1:0').url();
+  return `${await new Program(t, 'replay', join(place, file), '--listen', '127.0.0.1:0').url()}#t=0`;
 }
 
 /** Whether all of an element is within what its pane shows. */
@@ -129,7 +129,7 @@ const INK = (name) => {
 
 test('among twenty a side names cover no boat, tagged boats fade, and circles come when they are pointed at', async (t) => {
   const url = await replay(t, 'swarm_20v20', '--set', 'game.duration_s=120');
-  const sight = await Sight.open(t, browser, url, { size: DESK });
+  const sight = await Sight.open(t, browser, url, { size: DESK, allows: /willReadFrequently/ });
   assert(!(await sight.page.isVisible('#weather')), 'an empty sea takes no box');
   const overlaps = () => sight.get(() => {
     const cross = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;

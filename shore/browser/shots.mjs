@@ -32,7 +32,7 @@ const replay = (...words) => async (t) => {
   const into = folder(t);
   await squall(t, 'run', ...words, '--in-process', '--record', into);
   const file = readdirSync(into).find((name) => name.endsWith('.mcap'));
-  return new Program(t, 'replay', join(into, file), '--listen', '127.0.0.1:0').url();
+  return `${await new Program(t, 'replay', join(into, file), '--listen', '127.0.0.1:0').url()}#t=0`;
 };
 
 const at = (t_s) => (sight) => sight.until('it is time', (t_s) => squall.t_s > t_s, t_s);

@@ -23,7 +23,9 @@
 // event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game, zoom-in, zoom-out, fit, show-names, show-trails,
 // show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-box, sheet.
 
+import { name as nameMoment, wanted } from './address.js';
 import { Boats } from './boats.js';
+import { Capture } from './capture.js';
 import { Controls } from './controls.js';
 import { Details, isBare } from './details.js';
 import { Drive } from './drive.js';
@@ -36,6 +38,7 @@ import { BoatList } from './list.js';
 import { Log } from './log.js';
 import { Measure } from './measure.js';
 import { palette } from './palette.js';
+import { Plots } from './plots.js';
 import { Pointer } from './pointer.js';
 import { Sea, Weather } from './sea.js';
 import { notice, Status } from './status.js';
@@ -81,6 +84,8 @@ class Page {
     this.controls = new Controls(send);
     this.drive = new Drive(send);
     this.timeline = new Timeline(send);
+    this.plots = new Plots({ send: (message) => this.link.send(message), seek: (t_s) => this.timeline.seek(t_s), moved: () => this.tell() });
+    this.capture = new Capture(this.layers, this.game);
     this.list = new BoatList({ choose: (name) => this.look(name), hover: (at) => { this.boats.hovered = at; } });
     this.log = new Log((event) => this.goTo(event));
     this.details = new Details({
@@ -101,6 +106,8 @@ class Page {
   bind() {
     byId('zoom-in').addEventListener('click', () => this.zoom(1.4));
     byId('zoom-out').addEventListener('click', () => this.zoom(1 / 1.4));
+    byId('share').addEventListener('click', () => this.share());
+    addEventListener('hashchange', () => this.game.hello && this.goToAddress());
     byId('fit').addEventListener('click', () => this.fit());
     for (const name of ['boats', 'boat', 'events', 'game']) byId(`tab-${name}`).addEventListener('click', () => this.tab(name));
     byId('tabs').addEventListener('keydown', (event) => this.tabKey(event));
@@ -156,6 +163,10 @@ class Page {
         break;
       case 'helm': if (message.vehicle === game.selected) game.helm = message; break;
       case 'modes': game.modes = message.modes; break;
+      case 'curves':
+        if (message.vehicle === null) this.timeline.takeScore(message);
+        else this.plots.take(message);
+        break;
       case 'estimate': if (message.vehicle === game.selected) game.estimate = message; break;
       case 'status': game.statuses.set(message.vehicle, message.status); break;
       case 'drive':
@@ -196,12 +207,40 @@ class Page {
     this.controls.greet(hello);
     this.list.greet(game);
     this.timeline.greet(game);
+    this.plots.greet(game);
     this.drawnField = '';
     this.asked = '';
     this.askedModes = false;
     if (game.indexOf.has(before)) this.select(before);
     else this.setFollowing(false);
+    this.begin(game.greeted === 1);
     this.tell();
+  }
+
+  /** A replay begins where the address says, else it plays; one that is shown after its game stands, with the score of its end. */
+  begin(first) {
+    if (first && !this.goToAddress() && this.game.mode === 'replay') this.link.send({ do: 'control', what: 'resume' });
+  }
+
+  /** To the moment and the boat of the address. Whether it names a moment. */
+  goToAddress() {
+    const { t_s, boat } = wanted();
+    if (boat !== null) this.look(boat);
+    if (t_s === null || this.game.mode !== 'replay') return false;
+    this.link.send({ do: 'control', what: 'pause' });
+    this.link.send({ do: 'seek', t_s });
+    return true;
+  }
+
+  /** Puts what is shown into the address, and that where people can paste it. */
+  async share() {
+    const address = nameMoment(this.game.t_s, this.game.selected);
+    try {
+      await navigator.clipboard.writeText(address);
+      notice('The address of this moment is copied.');
+    } catch {
+      notice('The address in the browser shows this moment now: copy it from there.');
+    }
   }
 
   /** Selects a boat, or none. `look` brings up its details. */
@@ -366,6 +405,7 @@ class Page {
     if (this.ticks % LIST_EVERY === 0 || this.list.selected !== game.selected) this.list.tell(game);
     this.log.tell(game);
     this.timeline.tell(game);
+    this.plots.tell(game);
     this.weather.tell(game.sea, this.sea.deviation_m);
     this.legend.tell(game, this.controls.shown.legend);
     this.measure.tell(game, this.view);
@@ -405,6 +445,7 @@ class Page {
     }
     this.drawnBoats = moving ? '' : boats;
     this.timeline.draw();
+    this.capture.drawn();
     if (game.frames > 0 || game.hello) this.status.tellFrame(game);
     if (this.link.owed > 0) {
       stats.drawn += this.link.owed;
