@@ -18,10 +18,11 @@
 //   measured                      { range_m, bearing_deg }; null before two ends are chosen
 //
 // Elements with an id that stays: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
-// rose-function, behaviours, variables, gateway, helm-reason, follow, drive, deselect, steering, pause, step, step-back, speed, halt,
-// halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop, stop-confirm, stop-cancel, timeline, event-kind, event-back,
-// event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game, zoom-in, zoom-out, fit, show-names, show-trails,
-// show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-box, sheet.
+// rose-function, events-fold, show-plots, plots, plot-other, share, png, film, behaviours, variables, gateway, helm-reason, follow,
+// drive, deselect, steering, pause, step, step-back, speed, halt, halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop,
+// stop-confirm, stop-cancel, timeline, event-kind, event-back, event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game,
+// zoom-in, zoom-out, fit, show-names, show-trails, show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-
+// box, sheet.
 
 import { name as nameMoment, wanted } from './address.js';
 import { Boats } from './boats.js';

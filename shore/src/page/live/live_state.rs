@@ -182,7 +182,8 @@ impl LiveState {
 
     /// The boats whose modes some page wants.
     pub(super) fn listed(&self) -> Vec<VehicleId> {
-        let count = self.game.as_ref().filter(|_| !self.listed.is_empty()).map_or(0, |game| game.scenario().vehicles.len());
+        let count =
+            self.game.as_ref().filter(|_| !self.listed.is_empty()).map_or(0, |game| game.scenario().vehicles.len());
         (0..count).map(VehicleId::at).collect()
     }
 

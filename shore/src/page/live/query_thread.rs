@@ -68,7 +68,8 @@ impl QuerySchedule {
         };
         let due = wanted.iter().filter(|(vehicle, functions)| is_due(vehicle, **functions));
         let longest = due.min_by_key(|(vehicle, _)| self.asked.get(vehicle).map(|(start, _)| *start));
-        let longest = longest.map(|(vehicle, functions)| Turn { vehicle: *vehicle, functions: *functions, is_listed: false });
+        let longest =
+            longest.map(|(vehicle, functions)| Turn { vehicle: *vehicle, functions: *functions, is_listed: false });
         longest.or_else(|| self.next_listed(wanted, listed, now))
     }
 

@@ -79,7 +79,11 @@ impl PageViewer {
     fn list(&mut self, wanted: bool) {
         (self.wants_modes, self.sent.modes) = (wanted, None);
         let mut state = self.shared.state.lock();
-        if wanted { state.listed.insert(self.page) } else { state.listed.remove(&self.page) };
+        if wanted {
+            state.listed.insert(self.page)
+        } else {
+            state.listed.remove(&self.page)
+        };
     }
 
     fn set_speed(&self, factor: Option<f64>) -> Result<(), String> {
@@ -197,7 +201,8 @@ impl Viewer for PageViewer {
     fn due(&self, now: Instant) -> Option<Instant> {
         let run = self.sent.run.map(|(_, at)| at + SEND_INTERVAL);
         let estimate = self.sent.estimate.as_ref().map(|(_, at)| *at + ESTIMATE_INTERVAL).filter(|at| *at > now);
-        let modes = self.sent.modes.filter(|_| self.wants_modes).map(|(_, at)| at + MODES_INTERVAL).filter(|at| *at > now);
+        let modes =
+            self.sent.modes.filter(|_| self.wants_modes).map(|(_, at)| at + MODES_INTERVAL).filter(|at| *at > now);
         run.into_iter().chain(estimate).chain(modes).min()
     }
 }
@@ -290,9 +295,8 @@ impl Sent {
 
     /// The modes of all boats, if any has changed.
     fn next_modes(&mut self, state: &LiveState, now: Instant) -> Option<String> {
-        let is_sent = |(news, at): (u64, Instant)| {
-            news == state.modes_news || now.saturating_duration_since(at) < MODES_INTERVAL
-        };
+        let is_sent =
+            |(news, at): (u64, Instant)| news == state.modes_news || now.saturating_duration_since(at) < MODES_INTERVAL;
         if state.modes.is_empty() || self.modes.is_some_and(is_sent) {
             return None;
         }

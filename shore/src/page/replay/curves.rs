@@ -44,7 +44,9 @@ impl Plotter {
             score: (0..series.teams.len())
                 .map(|team| series.score.iter().map(|score| score.get(team).copied().unwrap_or(0)).collect())
                 .collect(),
-            boat: vehicle.filter(|_| one.is_some()).map(|vehicle| boat_curves(series, &recording.scenario().field, vehicle)),
+            boat: vehicle
+                .filter(|_| one.is_some())
+                .map(|vehicle| boat_curves(series, &recording.scenario().field, vehicle)),
             range_m: one.zip(another).map(range),
         };
         PageMessage::Curves { curves: &curves }.json()
@@ -85,7 +87,8 @@ fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec
         while let Some(logged) = events.next_if(|logged| logged.at.as_s() <= time_s + 1e-6) {
             let Some(flag) = logged.event.flag() else { continue };
             if let Some(carrier) = carriers.get_mut(usize::from(flag.0)) {
-                *carrier = logged.event.vehicle().filter(|_| matches!(logged.event, game::event::Event::Grabbed { .. }));
+                *carrier =
+                    logged.event.vehicle().filter(|_| matches!(logged.event, game::event::Event::Grabbed { .. }));
             }
         }
         let at = boat.samples[sample].truth.at();

@@ -146,7 +146,9 @@ impl Sources {
             Query::Helm(HelmRequest { vehicle, decision, functions }) => {
                 let answer = match &mut self.helms {
                     Some(helms) => helms.report(vehicle, decision, functions),
-                    None => HelmAnswer { reason: Some("the recording does not tell".to_owned()), ..HelmAnswer::default() },
+                    None => {
+                        HelmAnswer { reason: Some("the recording does not tell".to_owned()), ..HelmAnswer::default() }
+                    }
                 };
                 helm_text(&self.scenario, vehicle, functions, answer)
             }
@@ -208,8 +210,9 @@ mod tests {
             go.send(()).unwrap();
         }
         // The third is at work only after the second was handed out.
-        let kept: Vec<u64> =
-            thread.0.visit(|queue| queue.answers.keys().map(|(viewer, _)| *viewer).filter(|viewer| *viewer < 3).collect());
+        let kept: Vec<u64> = thread
+            .0
+            .visit(|queue| queue.answers.keys().map(|(viewer, _)| *viewer).filter(|viewer| *viewer < 3).collect());
         assert_eq!(kept, [2]);
     }
 }

@@ -6,7 +6,8 @@ use super::query_thread::{HelmRequest, Query};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
 use crate::page::view::{
-    Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, TRAIL_S, TRAIL_STEP_S, Viewer,
+    Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, TRAIL_S, TRAIL_STEP_S,
+    Viewer,
 };
 use game::external::GatewayStatus;
 use game::message::Control;
