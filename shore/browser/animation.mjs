@@ -15,7 +15,7 @@ const scene = { after: (end) => ends.unshift(end) };
 try {
   await squall(scene, 'run', scenario('games/strategy_4_vs_3.toml'), '--in-process', '--record', folder);
   const recording = join(folder, readdirSync(folder).find((name) => name.endsWith('.mcap')));
-  const url = await new Program(scene, 'replay', recording, '--listen', '127.0.0.1:0').url();
+  const url = `${await new Program(scene, 'replay', recording, '--listen', '127.0.0.1:0').url()}#t=0`;
   const browser = await openBrowser();
   scene.after(() => browser.close());
   const sight = await Sight.open(scene, browser, url, { size: { width: 1120, height: 640 }, colorScheme: 'light' });

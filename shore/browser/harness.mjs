@@ -19,10 +19,12 @@ const LEAVE_MS = 10_000;
 /** The repository. */
 export const ROOT = resolve(fileURLToPath(import.meta.url), '../../..');
 const SQUALL = resolve(process.env.SQUALL ?? join(ROOT, 'target/release/squall'));
-/** To work on the page without building the program: its scripts and styles are taken from this folder. */
-const WEB = process.env.SQUALL_WEB;
+/** To work on the page without building the program: its files are taken from this folder. */
+const WEB = process.env.SQUALL_WEB && resolve(process.env.SQUALL_WEB);
 const FLAGS = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-  '--disable-component-update', '--disable-sync'];
+  '--disable-component-update', '--disable-sync',
+  // A browser trusts no page from elsewhere to talk to this machine, and takes one from the folder for such a page.
+  ...(WEB ? ['--disable-features=LocalNetworkAccessChecks'] : [])];
 
 /** A file of the folder scenarios. */
 export const scenario = (path) => join(ROOT, 'scenarios', path);
@@ -168,10 +170,8 @@ export class Sight {
     const sight = new Sight(context, page, allows);
     afterwards(t, () => sight.close());
     if (WEB) {
-      // The page itself is the program's: a browser trusts no page from elsewhere to talk to this machine.
-      const file = (address) => join(WEB, new URL(address).pathname);
-      const ours = (address) => address.pathname !== '/' && existsSync(file(address));
-      await page.route(ours, (route) => route.fulfill({ path: file(route.request().url()) }));
+      const file = (address) => join(WEB, new URL(address).pathname.replace(/\/$/, '/index.html'));
+      await page.route((address) => existsSync(file(address)), (route) => route.fulfill({ path: file(route.request().url()) }));
     }
     await page.goto(url);
     await sight.until('a picture is drawn', () => squall.drawn > 0 && squall.frame !== null);

@@ -50,7 +50,7 @@ async function scrub(sight, t_s) {
 test('a recording shows at every moment what the events say', async (t) => {
   const { file, result } = await record(t);
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
-  const sight = await Sight.open(t, browser, await replay.url());
+  const sight = await Sight.open(t, browser, `${await replay.url()}#t=0`);
   assert.equal(await sight.get(() => squall.mode), 'replay');
   const { points, teams, field } = await sight.get(() => squall.hello.chart);
   assert.deepEqual(await sight.get(() => squall.events.filter((each) => each.event !== 'failsafe').map(({ text, ...event }) => event)), result.events);
@@ -82,7 +82,7 @@ test('a recording shows at every moment what the events say', async (t) => {
 test('the buttons of a replay: on, back, to events, faster', async (t) => {
   const { file, result } = await record(t);
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
-  const sight = await Sight.open(t, browser, await replay.url());
+  const sight = await Sight.open(t, browser, `${await replay.url()}#t=0`);
   // A replay that stands says nothing for as long as it does, and is not taken for dead.
   const hello = await sight.page.evaluateHandle(() => squall.hello);
   await sight.page.waitForTimeout(7000);
@@ -131,7 +131,7 @@ test('the buttons of a replay: on, back, to events, faster', async (t) => {
 test('a helm that thinks again agrees with what is recorded', async (t) => {
   const { file } = await record(t);
   const replay = new Program(t, 'replay', file, '--listen', '127.0.0.1:0');
-  const sight = await Sight.open(t, browser, await replay.url());
+  const sight = await Sight.open(t, browser, `${await replay.url()}#t=0`);
   const modes = new Set();
   for (const [name, t_s] of [['blue_one', 40], ['blue_two', 200], ['red_two', 120], ['red_one', 500]]) {
     await scrub(sight, t_s);

@@ -5,7 +5,8 @@ import { join } from 'node:path';
 import { Program, Sight, folder, openBrowser, scenario, squall } from './harness.mjs';
 
 const [place = 'shots', ...only] = process.argv.slice(2);
-const DESK = { size: { width: 1440, height: 900 } };
+const DESK = { size: { width: 1400, height: 900 } };
+const HALL = { size: { width: 1920, height: 1080 } };
 const PHONE = { size: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true };
 const WAVES = ['--sea', scenario('seas/fresh_breeze.toml')];
 const PAV01 = scenario('games/pav01_vs_pav01.toml');
@@ -32,7 +33,7 @@ const replay = (...words) => async (t) => {
   const into = folder(t);
   await squall(t, 'run', ...words, '--in-process', '--record', into);
   const file = readdirSync(into).find((name) => name.endsWith('.mcap'));
-  return new Program(t, 'replay', join(into, file), '--listen', '127.0.0.1:0').url();
+  return `${await new Program(t, 'replay', join(into, file), '--listen', '127.0.0.1:0').url()}#t=0`;
 };
 
 const at = (t_s) => (sight) => sight.until('it is time', (t_s) => squall.t_s > t_s, t_s);
@@ -47,6 +48,16 @@ const toGrab = async (sight) => {
   await sight.until('a flag is carried', () => squall.flags.some((flag) => flag.carrier !== null));
 };
 const keys = (...each) => (sight) => sight.keys(...each);
+const plots = async (sight) => {
+  await sight.press('#show-plots');
+  await sight.page.selectOption('#plot-other', 'blue_one');
+  await sight.until('its curves are drawn', () => /\d/.test(document.querySelector('.plot:last-child .value').textContent));
+};
+const measure = async (sight) => {
+  await sight.page.focus('#sheet');
+  await sight.keys('[', 'm', 'Enter', '[', 'Enter', 'l');
+  await sight.until('it is measured', () => squall.measured);
+};
 
 const fast = live(PAV01, ...WAVES, '--speed', '10x');
 const calm = live(PAV01, '--speed', '10x');
@@ -58,6 +69,10 @@ const SCENES = {
   'estop': [calm, DESK, 'light', at(30), keys('e')],
   'help': [calm, DESK, 'light', at(10), keys('?')],
   'replay': [replay(PAV01, ...WAVES), DESK, 'light', toGrab, select('red_two')],
+  'replay-plots': [replay(PAV01, ...WAVES), DESK, 'light', toGrab, select('red_two'), plots],
+  'replay-plots-hall': [replay(PAV01, ...WAVES), HALL, 'dark', toGrab, select('red_two'), plots],
+  'replay-measure': [replay(PAV01, ...WAVES), HALL, 'light', toGrab, measure],
+  'replay-swarm': [replay(scenario('games/swarm_20v20.toml')), DESK, 'light', toGrab],
   'replay-dark': [replay(PAV01, ...WAVES), DESK, 'dark', toGrab],
   'harbour': [live(scenario('games/harbour_2v2.toml'), '--speed', '10x'), DESK, 'light', at(30)],
   'swarm': [live(scenario('games/swarm_20v20.toml'), '--speed', '5x', '--agents-per-process', '40'), DESK, 'dark', at(30)],
@@ -65,6 +80,7 @@ const SCENES = {
   'phone-selected': [fast, PHONE, 'dark', at(60), select('blue_two')],
   'phone-game': [fast, PHONE, 'light', at(20), keys('4')],
   'phone-replay': [replay(PAV01, ...WAVES), PHONE, 'light', toGrab],
+  'phone-replay-plots': [replay(PAV01, ...WAVES), PHONE, 'dark', toGrab, select('red_two'), plots],
   'phone-drive': [live(scenario('games/person_2v2.toml'), '--pace', 'realtime'), PHONE, 'light', at(2), select('blue_one'), (sight) => sight.press('#drive')],
 };
 

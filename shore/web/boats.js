@@ -16,8 +16,10 @@ const MANY = 60;
 const AHEAD_S = 3;
 /** What a carried flag takes, px. */
 const FLAG_ROOM_PX = 24;
-/** Circles of more boats than this are a tangle. */
-const CIRCLES_MAX = 40;
+/** Among more boats than this those that are tagged fade, and circles come only of those that are pointed at or selected. */
+const CROWD = 24;
+/** How strongly boats are drawn that are out of play in a crowd. */
+const FADED = 0.4;
 
 /** Traces `shape` at a place: length and width in pixels. */
 function trace(context, shape, x, y, heading, length, width) {
@@ -32,6 +34,44 @@ function trace(context, shape, x, y, heading, length, width) {
     else context.lineTo(px, py);
   }
   context.closePath();
+}
+
+/** Draws a hull of a size, px. `look` has `team`, `idle` (out of play), `disabled`, or `ghost`: where a boat takes itself to be. */
+export function drawHullAt(context, x, y, heading, length, width, { team, idle = false, disabled = false, ghost = false }) {
+  context.beginPath();
+  trace(context, HULL, x, y, heading, length, width);
+  if (ghost) {
+    context.setLineDash([3, 3]);
+    context.lineWidth = 1.5;
+    context.strokeStyle = palette.ink;
+    context.stroke();
+    context.setLineDash([]);
+    return;
+  }
+  const colour = teamColour(team);
+  context.fillStyle = idle ? palette.halo : colour;
+  context.fill();
+  context.lineWidth = idle ? 2.25 : 1.25;
+  context.strokeStyle = idle ? colour : palette.halo;
+  context.stroke();
+  if (team === 1) {
+    context.beginPath();
+    trace(context, STRIPE, x, y, heading, length, width * 0.8);
+    context.fillStyle = idle ? colour : palette.halo;
+    context.fill();
+  }
+  if (disabled) drawCross(context, x, y, length * 0.42);
+}
+
+function drawCross(context, x, y, half) {
+  context.beginPath();
+  context.moveTo(x - half, y - half);
+  context.lineTo(x + half, y + half);
+  context.moveTo(x + half, y - half);
+  context.lineTo(x - half, y + half);
+  context.lineWidth = 2;
+  context.strokeStyle = palette.ink;
+  context.stroke();
 }
 
 /** A flag on its pole, foot at the place. The second team's has a stripe. */
@@ -84,10 +124,11 @@ export class Boats {
   draw(game, view, shown, ratio) {
     const { context } = this;
     const selected = game.indexOf.get(game.selected) ?? -1;
+    this.selected = selected;
     context.clearRect(0, 0, view.width, view.height);
     this.measure(game, view);
     this.drawFlagsAtHome(game, view);
-    if (shown.circles) this.drawCircles(game, view, selected);
+    if (shown.circles) this.drawCircles(game, view);
     this.drawLeads(game, view);
     for (let i = 0; i < game.count; i++) if (i !== selected) this.drawHull(game, view, i);
     if (selected >= 0) {
@@ -111,46 +152,31 @@ export class Boats {
     return this.lengths[index] * Math.min(0.62, Math.max(0.42, beam_m / length_m || 0.5));
   }
 
+  /** Whether a boat is one of many, and out of play. */
+  isFaded(game, index) {
+    return game.count > CROWD && index !== this.selected && index !== this.hovered && (game.marks[index] & (TAGGED | DISABLED)) !== 0;
+  }
+
   drawHull(game, view, index) {
+    this.context.globalAlpha = this.isFaded(game, index) ? FADED : 1;
+    this.drawSolid(game, view, index);
+    this.context.globalAlpha = 1;
+  }
+
+  drawSolid(game, view, index) {
     const { context } = this;
     const x = view.xOf(game.x[index]);
     const y = view.yOf(game.y[index]);
     const length = this.lengths[index];
     if (x < -length || y < -length || x > view.width + length || y > view.height + length) return;
-    const width = this.width(game, index);
     const { team } = game.vehicles[index];
-    const colour = teamColour(team);
     const idle = (game.marks[index] & (TAGGED | DISABLED)) !== 0;
-    context.beginPath();
-    trace(context, HULL, x, y, game.heading[index], length, width);
-    context.fillStyle = idle ? palette.halo : colour;
-    context.fill();
-    context.lineWidth = idle ? 2.25 : 1.25;
-    context.strokeStyle = idle ? colour : palette.halo;
-    context.stroke();
-    if (team === 1) {
-      context.beginPath();
-      trace(context, STRIPE, x, y, game.heading[index], length, width * 0.8);
-      context.fillStyle = idle ? colour : palette.halo;
-      context.fill();
-    }
-    if (game.marks[index] & DISABLED) this.drawCross(x, y, length * 0.42);
+    const disabled = (game.marks[index] & DISABLED) !== 0;
+    drawHullAt(context, x, y, game.heading[index], length, this.width(game, index), { team, idle, disabled });
     if (game.carrying[index] >= 0) {
       const flag = game.chart.field?.flags?.[game.carrying[index]];
       drawFlag(context, x, y, flag ? flag.team : 0, Math.max(11, length * 0.55));
     }
-  }
-
-  drawCross(x, y, half) {
-    const { context } = this;
-    context.beginPath();
-    context.moveTo(x - half, y - half);
-    context.lineTo(x + half, y + half);
-    context.moveTo(x + half, y - half);
-    context.lineTo(x - half, y + half);
-    context.lineWidth = 2;
-    context.strokeStyle = palette.ink;
-    context.stroke();
   }
 
   /** Lines from the bows over the ground, as far as the boats get in a few seconds. */
@@ -159,7 +185,7 @@ export class Boats {
     for (let team = 0; team < palette.teams.length; team++) {
       context.beginPath();
       for (let i = 0; i < game.count; i++) {
-        if (game.vehicles[i].team !== team || game.speed[i] < 0.05) continue;
+        if (game.vehicles[i].team !== team || game.speed[i] < 0.05 || this.isFaded(game, i)) continue;
         const reach = this.lengths[i] / 2 + game.speed[i] * AHEAD_S * view.scale;
         const x = view.xOf(game.x[i]);
         const y = view.yOf(game.y[i]);
@@ -173,19 +199,20 @@ export class Boats {
   }
 
   /** Where boats may tag: those in play, in their own zone. */
-  drawCircles(game, view, selected) {
+  drawCircles(game, view) {
     const radius = game.chart.radii?.tag_m * view.scale;
     const zones = game.chart.field?.zones;
     if (!(radius > 3) || !zones) return;
     const { context } = this;
-    const alone = game.count > CIRCLES_MAX;
+    const crowded = game.count > CROWD;
     context.lineWidth = 1;
     context.setLineDash([3, 4]);
     context.globalAlpha = 0.8;
     for (let team = 0; team < palette.teams.length; team++) {
       context.beginPath();
       for (let i = 0; i < game.count; i++) {
-        if (game.vehicles[i].team !== team || (alone && i !== selected) || game.marks[i] & (TAGGED | DISABLED)) continue;
+        if (game.vehicles[i].team !== team || game.marks[i] & (TAGGED | DISABLED)) continue;
+        if (crowded && i !== this.selected && i !== this.hovered) continue;
         if (!zones.some((zone) => zone.team === team && inside(zone.corners, game.x[i], game.y[i]))) continue;
         const x = view.xOf(game.x[i]);
         const y = view.yOf(game.y[i]);
@@ -213,13 +240,8 @@ export class Boats {
     if (!ghost) return;
     const x = view.xOf(ghost.x);
     const y = view.yOf(ghost.y);
-    context.setLineDash([3, 3]);
-    context.lineWidth = 1.5;
-    context.strokeStyle = palette.ink;
-    context.beginPath();
-    trace(context, HULL, x, y, (ghost.heading_deg * Math.PI) / 180, this.lengths[index], this.width(game, index));
-    context.stroke();
-    context.setLineDash([]);
+    const heading = (ghost.heading_deg * Math.PI) / 180;
+    drawHullAt(context, x, y, heading, this.lengths[index], this.width(game, index), { ghost: true });
   }
 
   drawRing(game, view, index) {
@@ -245,6 +267,7 @@ export class Boats {
     context.textBaseline = 'middle';
     for (let i = 0; i < game.count; i++) {
       if (game.marks[i] === 0) continue;
+      context.globalAlpha = this.isFaded(game, i) ? FADED : 1;
       let x = view.xOf(game.x[i]) + this.lengths[i] * 0.35 + 5;
       const y = view.yOf(game.y[i]) - this.lengths[i] * 0.35 - 7;
       for (let mark = 0; mark < MARKS.length; mark++) {
@@ -257,6 +280,7 @@ export class Boats {
       }
       if (game.marks[i] & NAV_LOST) this.drawLostRing(view.xOf(game.x[i]), view.yOf(game.y[i]), this.lengths[i]);
     }
+    context.globalAlpha = 1;
   }
 
   drawLostRing(x, y, length) {
@@ -277,33 +301,59 @@ export class Boats {
     return Math.min(1, Math.max(0, (room - 56) / 24));
   }
 
+  /** Half of what a hull takes on the chart to each side, and up and down, px. */
+  extent(game, index) {
+    const across = Math.abs(Math.sin(game.heading[index]));
+    const along = Math.abs(Math.cos(game.heading[index]));
+    const [length, width] = [this.lengths[index] / 2, this.width(game, index) / 2];
+    return [across * length + along * width, along * length + across * width];
+  }
+
+  /** What all hulls take, for tests. */
+  hulls(game, view) {
+    return game.vehicles.map(({ name }, i) => {
+      const [right, down] = this.extent(game, i);
+      const [x, y] = [view.xOf(game.x[i]), view.yOf(game.y[i])];
+      return { name, left: x - right, top: y - down, right: x + right, bottom: y + down };
+    });
+  }
+
   drawNames(game, view, shown, selected, ratio) {
     const { context, labels } = this;
     labels.begin(game.vehicles, view, ratio);
     const strength = shown.names ? this.nameStrength(game, view) : 0;
-    const single = (index, alpha, force) => {
+    if (strength <= 0.02 && selected < 0 && this.hovered < 0) return;
+    const single = (index, alpha, wanted) => {
       const x = view.xOf(game.x[index]);
       const y = view.yOf(game.y[index]);
       if (x < -60 || y < -20 || x > view.width + 60 || y > view.height + 20) return;
       context.globalAlpha = alpha;
-      labels.draw(context, index, x, y, Math.max(12, this.lengths[index] * 0.45) + (index === selected ? 8 : 0), force);
+      labels.draw(context, index, x, y, this.lengths[index] * 0.5 + 4 + (index === selected ? 8 : 0), wanted);
     };
-    if (strength > 0.02) {
-      for (let i = 0; i < game.count; i++) {
-        const half = this.lengths[i] * 0.3;
-        const x = view.xOf(game.x[i]);
-        const y = view.yOf(game.y[i]);
-        labels.claim(x - half, y - half, 2 * half, 2 * half, true);
-        if (game.carrying[i] >= 0) labels.claim(x, y - FLAG_ROOM_PX, FLAG_ROOM_PX * 0.7, FLAG_ROOM_PX, true);
-        if (game.marks[i] !== 0) labels.claim(x + half, y - half - 14, 16, 14, true);
-      }
-    }
+    this.blockHulls(game, view);
     if (selected >= 0) single(selected, 1, true);
     if (this.hovered >= 0 && this.hovered !== selected && this.hovered < game.count) single(this.hovered, 1, true);
     for (let i = 0; i < game.count && strength > 0.02; i++) {
-      if (i !== selected && i !== this.hovered) single(i, strength, false);
+      if (i !== selected && i !== this.hovered && !this.isFaded(game, i)) single(i, strength, false);
     }
     context.globalAlpha = 1;
+  }
+
+  /** Keeps names off boats, and what they carry. */
+  blockHulls(game, view) {
+    const { labels } = this;
+    for (let i = 0; i < game.count; i++) {
+      const x = view.xOf(game.x[i]);
+      const y = view.yOf(game.y[i]);
+      const [right, down] = this.extent(game, i);
+      labels.block(x - right, y - down, x + right, y + down);
+      const half = this.lengths[i] * 0.3;
+      if (game.carrying[i] >= 0) labels.block(x, y - FLAG_ROOM_PX, x + FLAG_ROOM_PX * 0.7, y);
+      if (game.marks[i] !== 0) labels.block(x + half, y - half - 14, x + half + 16, y - half);
+    }
+    (game.chart.field?.flags ?? []).forEach((flag, i) => {
+      if (game.carrierOf(i) < 0) labels.block(view.xOf(flag.x), view.yOf(flag.y) - FLAG_ROOM_PX, view.xOf(flag.x) + 19, view.yOf(flag.y));
+    });
   }
 
   /** The boat at a pixel, or -1. */

@@ -26,10 +26,11 @@ export class Details {
     this.about = make('p', 'faint');
     this.follow = this.button('follow', 'Follow', 'Keep this boat in the middle of the chart (o)', on.follow);
     this.drive = this.button('drive', 'Drive', 'Steer this boat yourself (d)', on.drive);
-    this.close = this.button('deselect', 'Close', 'Select no boat (Escape)', on.close);
-    const buttons = make('div', 'row', '', this.follow, this.drive, this.close);
+    this.close = this.button('deselect', '×', 'Select no boat (Escape)', on.close);
+    this.close.setAttribute('aria-label', 'Close');
+    this.matter = make('p', 'trouble');
+    const head = make('div', 'boat-head', '', make('div', 'boat-name', '', this.name, this.about, this.matter), this.follow, this.drive, this.close);
     this.steeringNote = make('p', 'note');
-    this.matter = make('p', 'matter');
     this.facts = make('dl', 'facts');
     this.thrust = make('div', 'thrust', '', this.bar('Port'), this.bar('Starboard'));
     this.canvas = make('canvas');
@@ -53,11 +54,12 @@ export class Details {
     this.variables.id = 'variables';
     this.gateway = make('dl', 'facts');
     this.gateway.id = 'gateway';
-    this.helmBox = make('div', '', '', make('h3', '', 'Why it steers so'), this.chooser, this.canvas, this.key, this.policyBox,
-      this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
+    // The helm's picture stands first: it is what people come for, and is to be seen whole.
+    this.picture = make('div', 'helm-picture', '', this.chooser, this.canvas, this.key);
+    this.helmBox = make('div', '', '', this.policyBox, this.behaviourHead = make('h3', '', 'Behaviours'), this.behaviours, this.variableHead = make('h3', '', 'Variables'), this.variables);
     this.gatewayBox = make('div', '', '', make('h3', '', 'Gateway'), this.gateway);
-    this.body = make('div', 'boat', '', make('div', 'boat-head', '', this.name, this.about), buttons, this.steeringNote, this.matter,
-      this.facts, this.gatewayBox, this.reason, this.helmBox, make('h3', '', 'Thrust'), this.thrust);
+    this.body = make('div', 'boat', '', head, this.steeringNote, this.picture, this.reason, this.facts,
+      make('h3', '', 'Thrust'), this.thrust, this.gatewayBox, this.helmBox);
     this.pane.replaceChildren(this.none, this.body);
   }
 
@@ -104,8 +106,11 @@ export class Details {
 
   tellFacts(game, index) {
     const matter = MARKS.filter(([bit]) => game.marks[index] & bit).map(([, , text]) => text);
-    write(this.matter, matter.length > 0 ? `${matter.join(', ')}.` : '');
+    write(this.matter, matter.join(', '));
+    this.matter.title = matter.join(', ');
+    // One line for both, so that the picture below stays where it is.
     show(this.matter, matter.length > 0);
+    show(this.about, matter.length === 0);
     const report = game.helm?.report;
     const error = game.estimateError();
     const flag = game.chart.field.flags?.[game.carrying[index]];
@@ -170,7 +175,7 @@ export class Details {
     write(this.reason, words);
     show(this.reason, words !== '');
     show(this.helmBox, Boolean(report));
-    for (const part of [this.chooser, this.canvas, this.key]) show(part, !unseen);
+    show(this.picture, Boolean(report) && !unseen);
     if (!report) return;
     const functions = report.functions ?? [];
     const named = functions.map((each) => [each.contact ? `${each.behaviour} · ${each.contact}` : each.behaviour, each]);

@@ -136,7 +136,7 @@ export class Drive {
     const side = this.canvas.clientWidth;
     if (side === 0) return;
     const ratio = Math.min(2, devicePixelRatio);
-    if (this.canvas.width !== side * ratio) {
+    if (this.canvas.width !== side * ratio || this.canvas.height !== side * ratio) {
       this.canvas.width = side * ratio;
       this.canvas.height = side * ratio;
     }

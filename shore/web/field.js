@@ -214,7 +214,7 @@ function drawZoneNames(context, view, chart) {
     const across = (Math.max(...xs) - Math.min(...xs)) * view.scale;
     if (across < 70) continue;
     context.globalAlpha = 0.7;
-    haloText(context, plain(name).toUpperCase(), view.xOf(east), y - 18, teamColour(zone.team));
+    haloText(context, plain(name), view.xOf(east), y - 18, teamColour(zone.team));
     context.globalAlpha = 1;
   }
   context.font = FONT;

@@ -40,12 +40,15 @@ const floats = (count) => new Float64Array(count);
 export class Game {
   constructor() {
     this.hello = null;
+    /** Counts the games that were shown. */
+    this.greeted = 0;
     this.clear({ vehicles: [], teams: [], field: null });
   }
 
   /** Begins anew with another game. */
   greet(hello) {
     this.hello = hello;
+    this.greeted += 1;
     this.clear(hello.chart);
     this.read = readerOf(hello.definitions, 'Frame');
   }
@@ -89,6 +92,7 @@ export class Game {
     this.state = null;
     this.player = null;
     this.statuses = new Map();
+    this.modes = null;
     this.drivers = new Map();
     this.select(null);
   }
@@ -127,7 +131,10 @@ export class Game {
     const { vehicles, stamp } = this.pastRaw;
     const count = Math.min(this.count, vehicles.length);
     this.trails.begin(stamp.valid_ns / 1e9);
-    for (let i = 0; i < count; i++) this.trails.put(i, vehicles[i].nav.east_m, vehicles[i].nav.north_m);
+    for (let i = 0; i < count; i++) {
+      const { east_m, north_m, surge_m_s, sway_m_s } = vehicles[i].nav;
+      this.trails.put(i, east_m, north_m, Math.hypot(surge_m_s, sway_m_s));
+    }
   }
 
   takePresent(buffer, now_ms) {
@@ -178,7 +185,7 @@ export class Game {
       this.carrying[i] = truth.carrying;
       this.marks[i] = (truth.tagged ? TAGGED : 0) | (truth.disabled ? DISABLED : 0) | (truth.outside ? OUTSIDE : 0)
         | (truth.agent_lost ? AGENT_LOST : 0) | (truth.quarantined ? QUARANTINED : 0) | (truth.nav_lost ? NAV_LOST : 0);
-      if (sampled) this.trails.put(i, nav.east_m, nav.north_m);
+      if (sampled) this.trails.put(i, nav.east_m, nav.north_m, speed);
     }
   }
 

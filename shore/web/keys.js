@@ -12,7 +12,7 @@ const PAD = `its left stick, once you have pressed one of its buttons${isSecureC
 
 const HELP = [
   ['The chart', [['+  −', 'zoom'], ['arrows', 'move the chart'], ['f  0', 'fit the field'], ['[  ]', 'choose the boat before or after'],
-    ['o', 'follow the boat'], ['Escape', 'close, let go, or select no boat'], ['1 to 4', 'boats, details, events, game']]],
+    ['o', 'follow the boat'], ['m', 'measure; then Enter takes the selected boat, or the middle of the chart'], ['l', 'legend'], ['Escape', 'close, let go, or select no boat'], ['1 to 4', 'boats, details, events, game']]],
   ['The game', [['space', 'pause or go on'], ['s', 'pause, and one decision'], [',  .', 'slower, faster'], ['h', 'halt all boats, or let them go on'],
     ['e', 'E-stop at once, or ask to release it']]],
   ['Driving', [['d', 'steer a boat that can be steered'], ['arrows, w a s d', 'course and speed'], ['Escape', 'let go'],
@@ -39,7 +39,7 @@ export class Keys {
     this.plain = {
       '+': () => page.zoom(ZOOM), '=': () => page.zoom(ZOOM), '-': () => page.zoom(1 / ZOOM), '_': () => page.zoom(1 / ZOOM),
       f: () => page.fit(), 0: () => page.fit(), '[': () => page.selectNext(-1), ']': () => page.selectNext(1),
-      o: () => page.toggleFollow(), d: () => page.toggleDrive(), '?': () => this.toggleHelp(),
+      o: () => page.toggleFollow(), m: () => page.measure.toggle(), l: () => page.controls.toggleShown('legend'), d: () => page.toggleDrive(), '?': () => this.toggleHelp(),
       s: () => page.controls.step(1), S: () => page.controls.step(-1), ',': () => page.controls.shiftSpeed(-1),
       '.': () => page.controls.shiftSpeed(1), h: () => page.controls.halt(), e: () => page.controls.eStop(),
       1: () => page.tab('boats'), 2: () => page.tab('boat'), 3: () => page.tab('events'), 4: () => page.tab('game'),
@@ -55,7 +55,8 @@ export class Keys {
     else if (event.key === ' ' && !isPressed(event.target)) {
       event.preventDefault();
       this.page.controls.pause();
-    } else if (this.arrow(event) || this.replay(event)) event.preventDefault();
+    } else if (event.key === 'Enter' && event.target.id === 'sheet' && this.page.measureHere()) event.preventDefault();
+    else if (this.arrow(event) || this.replay(event)) event.preventDefault();
     else if (this.plain[event.key]) {
       // Held keys zoom, but they ask nothing twice.
       if (!event.repeat || '+=-_[]s'.includes(event.key)) this.plain[event.key]();
@@ -67,6 +68,7 @@ export class Keys {
     if (closeAsk()) return;
     if (this.help.open) this.toggleHelp();
     else if (this.page.drive.driving) this.page.drive.letGo();
+    else if (this.page.measure.active) this.page.measure.toggle();
     else this.page.select(null);
   }
 

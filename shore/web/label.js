@@ -6,13 +6,19 @@ import { plain } from './words.js';
 const FONT = '600 12px system-ui, sans-serif';
 const HEIGHT = 18;
 /** Cells in which room is counted, px. */
-const CELL = 9;
-/** Places of a name about its boat: right, left, below, above; parts of its width, of its height, and of the room it keeps. */
-const PLACES = [[0, -0.5, 1, 0], [-1, -0.5, -1, 0], [-0.5, 0, 0, 1], [-0.5, -1, 0, -1]];
+const CELL = 4;
+/** Places of a name about its boat: beside, below, above, and at its corners; parts of its width, of its height, and of the room it keeps. */
+const PLACES = [[0, -0.5, 1, 0], [-1, -0.5, -1, 0], [-0.5, 0, 0, 1], [-0.5, -1, 0, -1],
+  [0, 0, 0.7, 0.7], [-1, 0, -0.7, 0.7], [0, -1, 0.7, -0.7], [-1, -1, -0.7, -0.7]];
+/** A name that is wanted may stand as far off as this, in rooms, with a line to its boat. */
+const FAR = [2.5, 4, 6, 9, 13];
 
 export class Labels {
   constructor() {
     this.sprites = [];
+    this.vehicles = [];
+    /** Of the last picture: index, left, top, right and bottom of each name, one after the other. */
+    this.drawn = [];
     this.key = '';
     this.taken = new Uint8Array(0);
     this.place = new Uint8Array(0);
@@ -26,6 +32,7 @@ export class Labels {
       this.sprites = [];
       this.place = new Uint8Array(vehicles.length);
     }
+    this.drawn = [];
     this.vehicles = vehicles;
     this.ratio = ratio;
     this.width = view.width;
@@ -60,38 +67,76 @@ export class Labels {
     return made;
   }
 
-  /** Whether a box is free; takes it if so, or if `force`. */
-  claim(x, y, width, height, force) {
-    const left = Math.max(0, Math.floor(x / CELL));
-    const right = Math.min(this.across - 1, Math.floor((x + width) / CELL));
-    const top = Math.max(0, Math.floor(y / CELL));
-    const bottom = Math.min(this.down - 1, Math.floor((y + height) / CELL));
-    if (!force) {
-      for (let row = top; row <= bottom; row++) {
-        for (let column = left; column <= right; column++) if (this.taken[row * this.across + column]) return false;
-      }
-    }
-    for (let row = top; row <= bottom; row++) {
-      for (let column = left; column <= right; column++) this.taken[row * this.across + column] = 1;
+  /** Takes a box, so that no name stands there. */
+  block(left, top, right, bottom) {
+    this.each(left, top, right, bottom, (cell) => {
+      this.taken[cell] = 1;
+      return true;
+    });
+  }
+
+  /** Whether a box is free; takes it if so. */
+  claim(left, top, right, bottom) {
+    if (!this.each(left, top, right, bottom, (cell) => this.taken[cell] === 0)) return false;
+    this.block(left, top, right, bottom);
+    return true;
+  }
+
+  /** Whether `visit` is content with each cell of a box. */
+  each(left, top, right, bottom, visit) {
+    const first = Math.max(0, Math.floor(left / CELL));
+    const last = Math.min(this.across - 1, Math.floor(right / CELL));
+    const low = Math.min(this.down - 1, Math.floor(bottom / CELL));
+    for (let row = Math.max(0, Math.floor(top / CELL)); row <= low; row++) {
+      for (let column = first; column <= last; column++) if (!visit(row * this.across + column)) return false;
     }
     return true;
   }
 
-  /** Draws a name at least `room` pixels from its boat's middle, where it stood before if there is room. `force` draws it anyhow. */
-  draw(context, index, x, y, room, force) {
-    const { canvas, width } = this.sprite(index);
-    for (let attempt = 0; attempt <= PLACES.length; attempt++) {
-      const place = attempt === 0 ? this.place[index] : attempt - 1;
-      const [alongX, alongY, outX, outY] = PLACES[place];
-      const left = x + alongX * width + outX * room;
-      const top = y + alongY * HEIGHT + outY * room;
-      const last = force && attempt === PLACES.length;
-      const within = left >= 0 && top >= 0 && left + width <= this.width && top + HEIGHT <= this.height;
-      if (!within && !last) continue;
-      if (!this.claim(left, top, width - 2, HEIGHT - 3, last)) continue;
+  /** Draws a name at least `room` pixels from its boat's middle, where it stood before if there is room; else not, unless it is
+   * `wanted`: then farther off. No name covers a boat or another name. */
+  draw(context, index, x, y, room, wanted) {
+    if (this.put(context, index, x, y, room, this.place[index])) return;
+    for (let place = 0; place < PLACES.length; place++) {
+      if (!this.put(context, index, x, y, room, place)) continue;
       this.place[index] = place;
-      context.drawImage(canvas, left, top, width, HEIGHT);
       return;
     }
+    for (let far = 0; wanted && far < FAR.length; far++) {
+      for (let place = 0; place < PLACES.length; place++) if (this.put(context, index, x, y, room * FAR[far], place, room)) return;
+    }
+  }
+
+  /** Draws a name at one of the places about a boat, if it is free; with a line that begins `lead` pixels from the boat. */
+  put(context, index, x, y, room, place, lead = 0) {
+    const { canvas, width } = this.sprite(index);
+    const [alongX, alongY, outX, outY] = PLACES[place];
+    const left = x + alongX * width + outX * room;
+    const top = y + alongY * HEIGHT + outY * room;
+    const [right, bottom] = [left + width - 2, top + HEIGHT - 3];
+    if (left < 0 || top < 0 || left + width > this.width || top + HEIGHT > this.height) return false;
+    if (!this.claim(left, top, right, bottom)) return false;
+    if (lead > 0) {
+      const part = lead / room;
+      context.beginPath();
+      context.moveTo(x + outX * room * part, y + outY * room * part);
+      context.lineTo(x + outX * room, y + outY * room);
+      context.lineWidth = 1;
+      context.strokeStyle = palette.ink;
+      context.stroke();
+    }
+    context.drawImage(canvas, left, top, width, HEIGHT);
+    this.drawn.push(index, left, top, right, bottom);
+    return true;
+  }
+
+  /** The names that were drawn last, and where. */
+  boxes() {
+    const boxes = [];
+    for (let i = 0; i < this.drawn.length; i += 5) {
+      const [index, left, top, right, bottom] = this.drawn.slice(i, i + 5);
+      boxes.push({ name: this.vehicles[index].name, left, top, right, bottom });
+    }
+    return boxes;
   }
 }

@@ -1,19 +1,53 @@
-// The list of boats: one line each, by team, with what is the matter with it.
+// The list of boats: one line each, by team, with mode, flag, heading, speed and its curve, and what is the matter with it.
 
 import { MARKS } from './game.js';
-import { fill, make, number, plain, write } from './words.js';
+import { palette, teamColour } from './palette.js';
+import { bearing, fill, make, number, plain, show, write } from './words.js';
+
+const SVG = 'http://www.w3.org/2000/svg';
+const ARROW = 'M0-9 6 8 0 4-6 8z';
+const FLAG = 'M-6 9V-9L7-4-4 1V9z';
+
+/** A small drawing of one path. */
+function glyph(classes, path) {
+  const svg = document.createElementNS(SVG, 'svg');
+  svg.setAttribute('viewBox', '-10 -10 20 20');
+  svg.setAttribute('class', classes);
+  svg.setAttribute('aria-hidden', 'true');
+  const shape = document.createElementNS(SVG, 'path');
+  shape.setAttribute('d', path);
+  svg.append(shape);
+  return svg;
+}
 
 export class BoatList {
-  /** `choose(name)` is called for the boat that somebody presses. */
-  constructor(choose) {
+  /** `on` has `choose(name)`, for the boat that somebody presses, and `hover(index)`, for the one pointed at; -1 is none. */
+  constructor(on) {
     this.place = document.getElementById('boat-list');
-    this.choose = choose;
+    this.on = on;
     this.rows = [];
+    /** The rows that can be seen: curves of others are not drawn. */
+    this.seen = new Set();
+    this.watch = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) {
+        if (isIntersecting) this.seen.add(target);
+        else this.seen.delete(target);
+      }
+    });
     this.place.addEventListener('click', (event) => {
       const row = event.target.closest('[data-vehicle]');
-      if (row) this.choose(row.dataset.vehicle);
+      if (row) this.on.choose(row.dataset.vehicle);
     });
+    this.place.addEventListener('pointerover', (event) => this.pointAt(event.target));
+    this.place.addEventListener('pointerleave', () => this.pointAt(null));
+    this.place.addEventListener('focusin', (event) => this.pointAt(event.target));
+    this.place.addEventListener('focusout', () => this.pointAt(null));
     this.place.addEventListener('keydown', (event) => this.key(event));
+  }
+
+  pointAt(target) {
+    const button = target?.closest('[data-vehicle]');
+    this.on.hover(this.rows.find((row) => row.button === button)?.at ?? -1);
   }
 
   /** Up and down go through the list. */
@@ -26,8 +60,15 @@ export class BoatList {
     this.rows[Math.min(this.rows.length - 1, Math.max(0, at + step))].button.focus();
   }
 
+  /** Whether it can be seen, so that modes are worth asking for. */
+  get visible() {
+    return this.place.offsetParent !== null;
+  }
+
   greet(game) {
     this.rows = [];
+    this.seen.clear();
+    this.watch.disconnect();
     this.place.replaceChildren();
     const teams = game.chart.teams;
     teams.forEach((team, index) => {
@@ -37,41 +78,90 @@ export class BoatList {
       this.place.append(head);
       const box = make('div', 'boat-rows');
       this.place.append(box);
-      fill(box, members, () => this.row(), (button, at) => {
-        button.dataset.vehicle = game.vehicles[at].name;
-        write(button.children[0], plain(game.vehicles[at].name));
-        this.rows.push({ button, at, state: button.children[1], speed: button.children[2] });
-      });
+      fill(box, members, () => this.row(), (button, at) => this.begin(button, at, game.vehicles[at]));
     });
   }
 
   row() {
-    const button = make('button', 'boat-row', '', make('span', 'name'), make('span', 'state'), make('span', 'speed'));
+    const canvas = make('canvas', 'curve');
+    canvas.setAttribute('aria-hidden', 'true');
+    const button = make('button', 'boat-row', '', make('span', 'what', '', make('span', 'name'), make('span', 'state')),
+      make('span', 'carries', '', glyph('flag', FLAG), make('span', 'hidden-text')),
+      make('span', 'heading', '', glyph('arrow', ARROW), make('span')), canvas, make('span', 'speed'));
     button.type = 'button';
     return button;
   }
 
+  begin(button, at, vehicle) {
+    button.dataset.vehicle = vehicle.name;
+    const [what, carries, heading, canvas, speed] = button.children;
+    write(what.firstElementChild, plain(vehicle.name));
+    this.watch.observe(button);
+    this.rows.push({ button, at, state: what.lastElementChild, carries, heading, canvas, speed });
+  }
+
   tell(game) {
     this.selected = game.selected;
-    if (this.place.offsetParent === null) return;
-    for (const { button, at, state, speed } of this.rows) {
+    if (!this.visible) return;
+    for (const row of this.rows) {
+      const { button, at } = row;
       const chosen = game.vehicles[at].name === game.selected;
       if ((button.getAttribute('aria-pressed') === 'true') !== chosen) button.setAttribute('aria-pressed', String(chosen));
-      write(state, this.words(game, at));
-      write(speed, game.frames > 0 ? number(game.speed[at], 1, 'm/s') : '');
+      this.tellState(row, game);
+      this.tellFlag(row, game);
+      const known = game.frames > 0;
+      const deg = (game.toH[at] * 180) / Math.PI;
+      write(row.heading.lastElementChild, known ? bearing(deg) : '');
+      row.heading.firstElementChild.style.transform = `rotate(${Math.round(deg)}deg)`;
+      show(row.heading.firstElementChild, known);
+      write(row.speed, known ? number(game.speed[at], 1, 'm/s') : '');
+      if (known && this.seen.has(button)) this.drawCurve(row.canvas, game, at, chosen);
     }
   }
 
-  words(game, at) {
-    const words = [];
-    if (game.carrying[at] >= 0) {
-      const flag = game.chart.field.flags[game.carrying[at]];
-      words.push(`carries the ${plain(game.chart.teams[flag?.team]?.name ?? '')} flag`);
-    }
-    for (const [bit, , text] of MARKS) if (game.marks[at] & bit) words.push(text);
+  /** What is the matter with a boat, else its mode. */
+  tellState({ at, state }, game) {
+    const matter = MARKS.filter(([bit]) => game.marks[at] & bit).map(([, , text]) => text);
     const status = game.statuses.get(game.vehicles[at].name);
-    if (status) words.push(`gateway ${status.state}`);
-    else if (game.vehicles[at].external) words.push('real boat');
-    return words.join(', ');
+    if (status) matter.push(`gateway ${status.state}`);
+    else if (game.vehicles[at].external) matter.push('real boat');
+    const words = matter.length > 0 ? matter.join(', ') : plain(game.modes?.[at] ?? '').replaceAll(':', ' › ');
+    write(state, words);
+    if (state.title !== words) state.title = words;
+    state.classList.toggle('trouble', matter.length > 0);
+  }
+
+  tellFlag({ at, carries }, game) {
+    const flag = game.chart.field?.flags?.[game.carrying[at]];
+    const team = flag ? `team-${flag.team}` : '';
+    if (carries.dataset.of === team) return;
+    carries.dataset.of = team;
+    carries.className = `carries ${team}`;
+    const words = flag ? `carries the ${plain(game.chart.teams[flag.team]?.name ?? '')} flag` : '';
+    write(carries.lastElementChild, words);
+    carries.title = words;
+    carries.firstElementChild.style.visibility = flag ? 'visible' : 'hidden';
+  }
+
+  /** The speed over the last minute, from rest to the boat's greatest. */
+  drawCurve(canvas, game, at, chosen) {
+    const { clientWidth: width, clientHeight: height } = canvas;
+    if (width === 0) return;
+    const ratio = Math.min(2, devicePixelRatio);
+    if (canvas.width !== width * ratio || canvas.height !== height * ratio) Object.assign(canvas, { width: width * ratio, height: height * ratio });
+    const context = canvas.getContext('2d');
+    const { team, speed_max_m_s } = game.vehicles[at];
+    const most = speed_max_m_s > 0 ? speed_max_m_s : 1;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, width, height);
+    context.fillStyle = chosen ? palette.faint : palette.grid;
+    context.fillRect(0, height - 1, width, 1);
+    context.beginPath();
+    game.trails.eachSpeed(at, game.t_s, (age, speed) =>
+      context.lineTo((1 - age) * (width - 1), 1 + (height - 2) * (1 - Math.min(1, speed / most))));
+    context.lineWidth = 1.5;
+    context.lineJoin = 'round';
+    context.strokeStyle = chosen ? palette.paper : teamColour(team);
+    context.stroke();
   }
 }

@@ -1,6 +1,6 @@
 // The list of events, newest first: a press goes to the boat, and in a replay to the moment.
 
-import { clock, fill, make, plain, show, write } from './words.js';
+import { clock, clockShort, fill, make, plain, show, write } from './words.js';
 
 /** Lines on the page; there may be thousands of events. */
 const LINES_MAX = 300;
@@ -14,6 +14,17 @@ const KINDS = {
     'went_on', 'failsafe', 'left_field'],
 };
 
+const FOLDED_KEY = 'squall.events-folded';
+
+/** Below which tabs somebody folded the events, or opened them. */
+function remembered() {
+  try {
+    return JSON.parse(localStorage.getItem(FOLDED_KEY)) ?? {};
+  } catch {
+    return {};
+  }
+}
+
 /** Events that are said more loudly. */
 const LOUD = ['captured', 'grabbed', 'ended', 'e_stopped', 'agent_lost', 'quarantined', 'nav_lost', 'failsafe', 'collided'];
 
@@ -26,11 +37,55 @@ export class Log {
     this.go = go;
     this.lines = [];
     this.drawn = '';
+    this.bindFold();
     this.filter.addEventListener('change', () => { this.drawn = ''; });
     this.place.addEventListener('click', (event) => {
       const at = [...this.place.children].indexOf(event.target.closest('li'));
       if (at >= 0) this.go(this.lines[at]);
     });
+  }
+
+  bindFold() {
+    this.fold = document.getElementById('events-fold');
+    this.newest = document.getElementById('events-newest');
+    this.box = document.getElementById('events-box');
+    this.chosen = remembered();
+    this.tab = 'boats';
+    // A low page has no room for both the events and the whole helm of a boat.
+    this.low = matchMedia('(max-height: 999px)');
+    this.low.addEventListener('change', () => this.showFold());
+    this.fold.addEventListener('click', () => {
+      this.chosen[this.tab] = !this.folded;
+      try {
+        localStorage.setItem(FOLDED_KEY, JSON.stringify(this.chosen));
+      } catch {
+        // Then it is forgotten with the page.
+      }
+      this.showFold();
+    });
+  }
+
+  /** Whether only the newest event is shown. */
+  get folded() {
+    return this.wide && (this.chosen[this.tab] ?? (this.tab === 'boat' && this.low.matches));
+  }
+
+  /** Which tab the events are below; on a page that is not `wide` they have one of their own. */
+  under(tab, wide) {
+    this.tab = tab;
+    this.wide = wide;
+    this.showFold();
+  }
+
+  showFold() {
+    const { folded } = this;
+    document.body.classList.toggle('events-folded', folded);
+    this.fold.setAttribute('aria-expanded', String(!folded));
+    this.fold.disabled = !this.wide;
+    show(this.box, !folded);
+    show(this.newest, folded);
+    show(this.filter.parentElement, !folded);
+    this.drawn = '';
   }
 
   tell(game) {
@@ -47,6 +102,8 @@ export class Log {
     const first = Math.max(0, last - LINES_MAX);
     this.lines = known.slice(first, last).reverse();
     show(this.none, this.lines.length === 0);
+    const newest = known[past - 1];
+    write(this.newest, newest ? `${clockShort(newest.at_s)} ${plain(newest.text ?? newest.event)}` : 'none yet');
     fill(this.place, this.lines, () => this.row(), (row, event) => this.tellRow(row, event, game, event.at_s > t_s + 1e-6));
     if (replay) this.keepInSight(last - past);
   }
@@ -69,7 +126,7 @@ export class Log {
   /** Scrolls so that the newest event of a replay can be seen, unless somebody reads the list. */
   keepInSight(at) {
     const row = this.place.children[Math.max(0, at)];
-    if (!row || this.place.matches(':hover, :focus-within')) return;
+    if (!row || this.folded || this.place.matches(':hover, :focus-within')) return;
     const pane = this.place.closest('.pane');
     const box = row.getBoundingClientRect();
     const within = pane.getBoundingClientRect();

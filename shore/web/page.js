@@ -10,17 +10,23 @@
 //   events                        all that are known; of a game that is played the newest 20000
 //   selected, following, driving  the boat's name or null; whether; its name or null
 //   helm, estimate                of the selected boat, as sent; null without
+//   modes                         of the helms of all boats, as sent; null before
+//   hulls, labels                 [{ name, left, top, right, bottom }]: what boats, and names beside them, take on the chart, px
 //   statuses                      of gateways, by boat
 //   drawn, fps, draw_ms           frames drawn; pictures a second; mean time of a picture's making
 //   view                          { x, y, scale }: middle, and pixels to a metre
+//   measured                      { range_m, bearing_deg }; null before two ends are chosen
 //
 // Elements with an id that stays: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
-// rose-function, behaviours, variables, gateway, helm-reason, follow, drive, deselect, steering, pause, step, step-back, speed, halt,
-// halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop, stop-confirm, stop-cancel, timeline, event-kind, event-back,
-// event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game, zoom-in, zoom-out, fit, show-names, show-trails,
-// show-circles, show-waves, help, help-box, sheet.
+// rose-function, events-fold, show-plots, plots, plot-other, share, png, film, behaviours, variables, gateway, helm-reason, follow,
+// drive, deselect, steering, pause, step, step-back, speed, halt, halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop,
+// stop-confirm, stop-cancel, timeline, event-kind, event-back, event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game,
+// zoom-in, zoom-out, fit, show-names, show-trails, show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-
+// box, sheet.
 
+import { name as nameMoment, wanted } from './address.js';
 import { Boats } from './boats.js';
+import { Capture } from './capture.js';
 import { Controls } from './controls.js';
 import { Details, isBare } from './details.js';
 import { Drive } from './drive.js';
@@ -28,12 +34,16 @@ import { drawField } from './field.js';
 import { Game } from './game.js';
 import { Keys } from './keys.js';
 import { Link } from './link.js';
+import { Legend } from './legend.js';
 import { BoatList } from './list.js';
 import { Log } from './log.js';
+import { Measure } from './measure.js';
 import { palette } from './palette.js';
+import { Plots } from './plots.js';
 import { Pointer } from './pointer.js';
 import { Sea, Weather } from './sea.js';
 import { notice, Status } from './status.js';
+import { Theme } from './theme.js';
 import { Timeline } from './timeline.js';
 import { View } from './view.js';
 import { expose } from './window.js';
@@ -68,17 +78,23 @@ class Page {
     this.trails = this.layers[2].getContext('2d');
     this.boats = new Boats(this.layers[3]);
     this.weather = new Weather();
+    this.theme = new Theme();
+    this.legend = new Legend();
+    this.measure = new Measure({ changed: () => { this.drawnBoats = ''; } });
     this.status = new Status();
     this.controls = new Controls(send);
     this.drive = new Drive(send);
     this.timeline = new Timeline(send);
-    this.list = new BoatList((name) => this.select(name, true));
+    this.plots = new Plots({ send: (message) => this.link.send(message), seek: (t_s) => this.timeline.seek(t_s), moved: () => this.tell() });
+    this.capture = new Capture(this.layers, this.game);
+    this.list = new BoatList({ choose: (name) => this.look(name), hover: (at) => { this.boats.hovered = at; } });
     this.log = new Log((event) => this.goTo(event));
     this.details = new Details({
       follow: () => this.toggleFollow(), drive: () => this.toggleDrive(), close: () => this.select(null),
     });
     this.following = false;
     this.asked = '';
+    this.askedModes = false;
     this.stats = { drawn: 0, fps: 0, draw_ms: 0, last_ms: 0 };
     this.drawnField = '';
     this.trailed = { look: '', soft: '', at_ms: 0, x: 0, y: 0 };
@@ -91,6 +107,8 @@ class Page {
   bind() {
     byId('zoom-in').addEventListener('click', () => this.zoom(1.4));
     byId('zoom-out').addEventListener('click', () => this.zoom(1 / 1.4));
+    byId('share').addEventListener('click', () => this.share());
+    addEventListener('hashchange', () => this.game.hello && this.goToAddress());
     byId('fit').addEventListener('click', () => this.fit());
     for (const name of ['boats', 'boat', 'events', 'game']) byId(`tab-${name}`).addEventListener('click', () => this.tab(name));
     byId('tabs').addEventListener('keydown', (event) => this.tabKey(event));
@@ -145,6 +163,11 @@ class Page {
         this.controls.tellEvents(message.events ?? [], message.reset);
         break;
       case 'helm': if (message.vehicle === game.selected) game.helm = message; break;
+      case 'modes': game.modes = message.modes; break;
+      case 'curves':
+        if (message.vehicle === null) this.timeline.takeScore(message);
+        else this.plots.take(message);
+        break;
       case 'estimate': if (message.vehicle === game.selected) game.estimate = message; break;
       case 'status': game.statuses.set(message.vehicle, message.status); break;
       case 'drive':
@@ -180,15 +203,45 @@ class Page {
     if (!sameField && field) this.view.setBounds([...field.corners, ...(field.flags ?? []).map(({ x, y }) => [x, y])]);
     this.sea.greet(hello.chart.waves);
     this.boats.hovered = -1;
+    this.measure.forget();
     this.status.greet(game);
     this.controls.greet(hello);
     this.list.greet(game);
     this.timeline.greet(game);
+    this.plots.greet(game);
     this.drawnField = '';
     this.asked = '';
+    this.askedModes = false;
     if (game.indexOf.has(before)) this.select(before);
     else this.setFollowing(false);
+    this.begin(game.greeted === 1);
     this.tell();
+  }
+
+  /** A replay begins where the address says, else it plays; one that is shown after its game stands, with the score of its end. */
+  begin(first) {
+    if (first && !this.goToAddress() && this.game.mode === 'replay') this.link.send({ do: 'control', what: 'resume' });
+  }
+
+  /** To the moment and the boat of the address. Whether it names a moment. */
+  goToAddress() {
+    const { t_s, boat } = wanted();
+    if (boat !== null) this.look(boat);
+    if (t_s === null || this.game.mode !== 'replay') return false;
+    this.link.send({ do: 'control', what: 'pause' });
+    this.link.send({ do: 'seek', t_s });
+    return true;
+  }
+
+  /** Puts what is shown into the address, and that where people can paste it. */
+  async share() {
+    const address = nameMoment(this.game.t_s, this.game.selected);
+    try {
+      await navigator.clipboard.writeText(address);
+      notice('The address of this moment is copied.');
+    } catch {
+      notice('The address in the browser shows this moment now: copy it from there.');
+    }
   }
 
   /** Selects a boat, or none. `look` brings up its details. */
@@ -205,16 +258,26 @@ class Page {
     this.tell();
   }
 
+  /** Selects a boat that may be anywhere, and brings it into the chart. */
+  look(name) {
+    const index = this.game.indexOf.get(name);
+    if (index === undefined) return;
+    this.select(name, true);
+    if (this.game.frames > 0) this.view.bringIn(this.game.toX[index], this.game.toY[index]);
+  }
+
   selectNext(by) {
     const { count, indexOf, selected, vehicles } = this.game;
     if (count === 0) return;
     const at = indexOf.get(selected);
     const next = at === undefined ? (by > 0 ? 0 : count - 1) : (at + by + count) % count;
-    this.select(vehicles[next].name, true);
+    this.look(vehicles[next].name);
   }
 
   /** Asks the server for the helm and the estimate of the selected boat, if what is wanted has changed. */
   ask() {
+    const modes = this.list.visible && !document.hidden;
+    if (this.game.hello && modes !== this.askedModes && this.link.send({ do: 'modes', wanted: modes })) this.askedModes = modes;
     const vehicle = this.game.selected;
     const functions = vehicle !== null && this.details.visible;
     const key = `${vehicle} ${functions}`;
@@ -229,16 +292,31 @@ class Page {
   tap(x, y, touch) {
     this.sheet.focus({ preventScroll: true });
     const at = this.boats.at(this.game, this.view, x, y, touch ? REACH_TOUCH_PX : REACH_MOUSE_PX);
-    if (at >= 0) this.select(this.game.vehicles[at].name, true);
+    if (this.measure.active) this.measure.take(at >= 0 ? { boat: at } : { x: this.view.eastOf(x), y: this.view.northOf(y) });
+    else if (at >= 0) this.select(this.game.vehicles[at].name, true);
+  }
+
+  /** By keys an end of what is measured is taken at the selected boat, else in the middle of the chart. */
+  measureHere() {
+    if (!this.measure.active) return false;
+    const boat = this.game.indexOf.get(this.game.selected);
+    this.measure.take(boat === undefined ? { x: this.view.centreX, y: this.view.centreY } : { boat });
+    return true;
   }
 
   hover(x, y) {
+    this.measure.point(x, y);
     this.boats.hovered = this.boats.at(this.game, this.view, x, y, REACH_MOUSE_PX);
     this.sheet.classList.toggle('over-boat', this.boats.hovered >= 0);
   }
 
+  /** Zooms at the selected boat, if it is on the chart, else at the middle. */
   zoom(factor) {
-    this.view.zoomAt(this.view.width / 2, this.view.height / 2, factor);
+    const { game, view } = this;
+    const index = game.frames > 0 ? game.indexOf.get(game.selected) : undefined;
+    const [x, y] = index === undefined ? [-1, -1] : [view.xOf(game.x[index]), view.yOf(game.y[index])];
+    const within = x >= 0 && y >= 0 && x <= view.width && y <= view.height;
+    view.zoomAt(within ? x : view.width / 2, within ? y : view.height / 2, factor);
   }
 
   fit() {
@@ -291,6 +369,7 @@ class Page {
     // On a wide page the events have a place of their own.
     this.tabName = name === 'events' && this.wide.matches ? 'boats' : name;
     document.body.dataset.tab = this.tabName;
+    this.log.under(this.tabName, this.wide.matches);
     // A phone has no room for these below the chart.
     const place = this.wide.matches ? byId('controls') : byId('pane-game');
     if (byId('shown').parentElement !== place) place.insertBefore(byId('shown'), this.wide.matches ? byId('help') : place.firstChild);
@@ -327,7 +406,10 @@ class Page {
     if (this.ticks % LIST_EVERY === 0 || this.list.selected !== game.selected) this.list.tell(game);
     this.log.tell(game);
     this.timeline.tell(game);
+    this.plots.tell(game);
     this.weather.tell(game.sea, this.sea.deviation_m);
+    this.legend.tell(game, this.controls.shown.legend);
+    this.measure.tell(game, this.view);
     if (document.hidden) this.status.tellFrame(game);
   }
 
@@ -358,9 +440,13 @@ class Page {
     this.drawnField = look;
     this.drawTrails(shown, index, now_ms);
     const boats = `${look} ${game.frames} ${index} ${this.boats.hovered} ${game.estimate?.at_s}`;
-    if (moving || boats !== this.drawnBoats) this.boats.draw(game, view, shown, this.ratio);
+    if (moving || boats !== this.drawnBoats) {
+      this.boats.draw(game, view, shown, this.ratio);
+      this.measure.draw(this.boats.context, game, view);
+    }
     this.drawnBoats = moving ? '' : boats;
     this.timeline.draw();
+    this.capture.drawn();
     if (game.frames > 0 || game.hello) this.status.tellFrame(game);
     if (this.link.owed > 0) {
       stats.drawn += this.link.owed;

@@ -6,12 +6,12 @@ const NAMES = [
   'heat-0', 'heat-1', 'heat-2', 'heat-3', 'heat-4', 'heat-5', 'heat-6', 'heat-7', 'heat-8',
 ];
 
-const dark = matchMedia('(prefers-color-scheme: dark)');
 const calm = matchMedia('(prefers-reduced-motion: reduce)');
 
 export const palette = { version: 0 };
 
-function readColours() {
+/** Takes them anew from the style sheets. */
+export function readColours() {
   const style = getComputedStyle(document.documentElement);
   for (const name of NAMES) palette[name] = style.getPropertyValue(`--${name}`).trim();
   palette.teams = [0, 1, 2, 3].map((team) => palette[`team-${team}`]);
@@ -20,7 +20,6 @@ function readColours() {
 }
 
 readColours();
-dark.addEventListener('change', readColours);
 
 /** Whether people asked for little motion. */
 export const calmly = () => calm.matches;

@@ -31,7 +31,7 @@ export class Rose {
     const key = [report?.at_s, utilities, palette.version, side, ratio, Math.round(now.course_deg), now.speed_m_s.toFixed(1)];
     if (this.drawn?.every((each, i) => each === key[i])) return;
     this.drawn = key;
-    if (this.canvas.width !== side * ratio) {
+    if (this.canvas.width !== side * ratio || this.canvas.height !== side * ratio) {
       this.canvas.width = side * ratio;
       this.canvas.height = side * ratio;
     }

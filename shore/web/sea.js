@@ -109,6 +109,9 @@ export class Sea {
   }
 }
 
+/** Wind and current that are less than this are none, m/s. */
+const LEAST_M_S = 0.005;
+
 /** Wind and current beside the chart. */
 export class Weather {
   constructor() {
@@ -120,8 +123,10 @@ export class Weather {
 
   /** Tells what the frame's sea is like. */
   tell(sea, waves_m) {
-    show(this.place, Boolean(sea));
-    if (!sea) return;
+    const some = Boolean(sea) && (waves_m > 0 || [[sea.wind_east_m_s, sea.wind_north_m_s], [sea.current_east_m_s, sea.current_north_m_s]]
+      .some((each) => Math.hypot(...each) >= LEAST_M_S));
+    show(this.place, some);
+    if (!some) return;
     const windTo = wrapDeg((Math.atan2(sea.wind_east_m_s, sea.wind_north_m_s) * 180) / Math.PI);
     const wind = Math.hypot(sea.wind_north_m_s, sea.wind_east_m_s);
     const currentTo = wrapDeg((Math.atan2(sea.current_east_m_s, sea.current_north_m_s) * 180) / Math.PI);
@@ -133,7 +138,7 @@ export class Weather {
   }
 
   line(place, speed, to_deg, lead, words, none) {
-    const some = speed >= 0.005;
+    const some = speed >= LEAST_M_S;
     write(place.children[1], some ? lead : '');
     write(place.lastElementChild, some ? words : none);
     const arrow = place.firstElementChild;

@@ -57,6 +57,7 @@ export class Timeline {
     this.kind = document.getElementById('event-kind');
     this.legend = document.getElementById('legend');
     this.marks = [];
+    this.score = null;
     this.wanted_s = null;
     this.sent_ms = -1e9;
     this.timer = 0;
@@ -80,6 +81,8 @@ export class Timeline {
     this.scrubbing = false;
     this.wanted_s = null;
     this.marksVersion = -1;
+    this.score = null;
+    if (game.mode === 'replay') this.send({ do: 'curves', vehicle: null, other: null });
     show(this.box, game.mode === 'replay');
   }
 
@@ -222,6 +225,7 @@ export class Timeline {
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     const base = height - 17;
     this.drawScale(context, x, width, base);
+    this.drawScore(context, x, base);
     const colours = palette.teams;
     for (const mark of this.marks) {
       context.fillStyle = colours[mark.team] ?? palette.ink;
@@ -247,6 +251,33 @@ export class Timeline {
       const at = Math.min(width - 18, Math.max(18, x(t_s)));
       context.fillText(clockShort(t_s), at, base + 17);
     }
+  }
+
+  /** Takes the score over the game. */
+  takeScore({ t_s, score }) {
+    this.score = { t_s, score, most: Math.max(1, ...score.map((points) => points.at(-1) ?? 0)) };
+    this.drawn = `${this.drawn} `;
+  }
+
+  /** The score as steps, behind the marks. */
+  drawScore(context, x, base) {
+    if (!this.score) return;
+    const { t_s, score, most } = this.score;
+    const low = base - 6;
+    score.forEach((points, team) => {
+      const y = (value) => low - (value / most) * (low - 5) - team * 2;
+      context.beginPath();
+      for (let i = 0; i < t_s.length; i++) {
+        const steps = i > 0 && points[i] !== points[i - 1];
+        if (steps) context.lineTo(x(t_s[i]), y(points[i - 1]));
+        if (steps || i === 0 || i === t_s.length - 1) context.lineTo(x(t_s[i]), y(points[i]));
+      }
+      context.strokeStyle = palette.teams[team] ?? palette.ink;
+      context.lineWidth = 2;
+      context.globalAlpha = 0.55;
+      context.stroke();
+      context.globalAlpha = 1;
+    });
   }
 
   drawHandle(context, at, base) {

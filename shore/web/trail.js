@@ -1,4 +1,4 @@
-// Where boats have been in the last minute: one ring of places for all of them.
+// Where boats have been in the last minute, and how fast: one ring of samples for all of them.
 
 /** Length of a trail, s. */
 export const TRAIL_S = 60;
@@ -21,6 +21,7 @@ export class Trails {
     this.times = new Float64Array(SAMPLES);
     this.xs = new Float32Array(SAMPLES * count);
     this.ys = new Float32Array(SAMPLES * count);
+    this.speeds = new Float32Array(SAMPLES * count);
     this.near = new Uint8Array(count);
     this.version = 0;
     /** Grows when all is forgotten. */
@@ -48,9 +49,20 @@ export class Trails {
     this.version += 1;
   }
 
-  put(boat, x, y) {
+  put(boat, x, y, speed) {
     this.xs[this.head * this.count + boat] = x;
     this.ys[this.head * this.count + boat] = y;
+    this.speeds[this.head * this.count + boat] = speed;
+  }
+
+  /** Calls `visit(age, speed)` for the samples of a boat, newest first; ages are parts of the length of a trail. */
+  eachSpeed(boat, now_s, visit) {
+    for (let back = 0; back < this.kept; back++) {
+      const row = this.row(back);
+      const age = (now_s - this.times[row]) / TRAIL_S;
+      if (age > 1) break;
+      visit(Math.max(0, age), this.speeds[row * this.count + boat]);
+    }
   }
 
   /** The row of the sample `back` before the newest. */

@@ -2,6 +2,8 @@
 
 const SCALE_MIN = 0.02;
 const SCALE_MAX = 120;
+/** The inner part of the chart, of its width and height. */
+const INNER = 0.6;
 
 export class View {
   constructor() {
@@ -76,6 +78,15 @@ export class View {
     this.centreY = y;
     this.fitted = false;
     this.version += 1;
+  }
+
+  /** Brings a place into the inner part of the chart, if it is not there: to the middle. */
+  bringIn(x, y) {
+    const across = Math.abs(this.xOf(x) - this.width / 2) / this.width;
+    const down = Math.abs(this.yOf(y) - this.height / 2) / this.height;
+    // What is near the rim while all of the field is shown can be seen well.
+    const most = this.fitted ? 0.5 : INNER / 2;
+    if (across > most || down > most) this.centreOn(x, y);
   }
 
   panBy(dx, dy) {

@@ -36,8 +36,13 @@ export function expose(page) {
     mode: () => game.mode, hello: () => game.hello, state: () => game.state, player: () => game.player,
     connected: () => link.connected, t_s: () => game.t_s, score: () => [...game.score], frame: () => frameOf(game), flags: () => flagsOf(game),
     events: () => [...game.events], selected: () => game.selected, following: () => page.following, driving: () => drive.vehicle,
+    modes: () => game.modes, hulls: () => page.boats.hulls(game, view), labels: () => page.boats.labels.boxes(),
     helm: () => game.helm, estimate: () => game.estimate, statuses: () => Object.fromEntries(game.statuses),
     drawn: () => stats.drawn, fps: () => stats.fps, draw_ms: () => stats.draw_ms,
+    measured: () => {
+      const { range_m, bearing_deg } = (page.measure.ends.length === 2 && page.measure.reading(game, view)) || {};
+      return range_m === undefined ? null : { range_m, bearing_deg };
+    },
     view: () => ({ x: view.centreX, y: view.centreY, scale: view.scale }),
   };
   const squall = {};

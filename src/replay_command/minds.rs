@@ -119,4 +119,16 @@ impl Helms for Minds {
             agrees: self.recorded(vehicle, decision).map(|recorded| recorded == order),
         }
     }
+
+    fn modes(&mut self, decision: u64) -> Vec<Option<String>> {
+        let vehicles = self.recording.scenario().vehicles.len();
+        let mode = |vehicle: VehicleId| {
+            // Its mates have decided with the first of a team.
+            self.decide(vehicle, decision)?;
+            let team = &self.teams[self.recording.scenario().team_of(vehicle).index()];
+            let report = team.runner.mind(vehicle).and_then(Mind::report)?;
+            Some(report.mode).filter(|mode| !mode.is_empty())
+        };
+        (0..vehicles).map(VehicleId::at).map(mode).collect()
+    }
 }

@@ -21,7 +21,8 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
     // `analysis` for examples: what games in one process tell.
     ("arena", &["game", "sim", "agent", "analysis"]),
     ("analysis", &["game", "recording"]),
-    ("shore", &["game", "bus", "recording"]),
+    // `analysis` for the curves below the time line of a replay.
+    ("shore", &["game", "bus", "recording", "analysis"]),
     ("learn", &["onnx", "game", "sim", "agent", "arena", "recording"]),
     ("sweep", &["game", "sim", "agent", "analysis", "arena"]),
     ("python", &["arena", "game", "learn", "sweep"]),

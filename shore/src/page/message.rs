@@ -10,6 +10,33 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
+/// Curves over time of a recorded game, as a page draws them. Numbers that are not known are null.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct Curves<'a> {
+    pub(super) vehicle: Option<&'a str>,
+    pub(super) other: Option<&'a str>,
+    /// When the samples were.
+    pub(super) t_s: Vec<f64>,
+    /// By team, by sample.
+    pub(super) score: Vec<Vec<u32>>,
+    pub(super) boat: Option<BoatCurves>,
+    /// Between the two boats.
+    pub(super) range_m: Option<Vec<f64>>,
+}
+
+/// A boat's curves, by sample.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct BoatCurves {
+    pub(super) speed_m_s: Vec<f64>,
+    pub(super) ordered_speed_m_s: Vec<f64>,
+    pub(super) heading_deg: Vec<f64>,
+    pub(super) ordered_heading_deg: Vec<f64>,
+    /// To the nearest flag of another team, wherever that is.
+    pub(super) flag_m: Vec<f64>,
+    /// Of its own estimated position.
+    pub(super) error_m: Vec<f64>,
+}
+
 /// The version of the protocol.
 pub(super) const PROTOCOL: u32 = 1;
 
@@ -59,6 +86,14 @@ pub(super) enum PageMessage<'a> {
         reason: Option<&'a str>,
         computed: bool,
         agrees: Option<bool>,
+    },
+    Modes {
+        at_s: f64,
+        modes: &'a [Option<String>],
+    },
+    Curves {
+        #[serde(flatten)]
+        curves: &'a Curves<'a>,
     },
     Estimate {
         vehicle: &'a str,

@@ -18,6 +18,18 @@ pub enum PageRequest {
         #[serde(default)]
         functions: bool,
     },
+    /// Whether the mode of every boat is wanted.
+    Modes {
+        /// Whether.
+        wanted: bool,
+    },
+    /// The score over time, and curves of a boat. Of a recording only.
+    Curves {
+        /// The vehicle's name; none is the score alone.
+        vehicle: Option<String>,
+        /// To which other vehicle the range is wanted.
+        other: Option<String>,
+    },
     /// Something for the whole game.
     Control {
         /// What.

@@ -10,6 +10,8 @@ use tokio::sync::watch;
 pub(super) const SEND_INTERVAL: Duration = Duration::from_millis(200);
 /// How often a page is sent the report of a helm.
 pub(super) const HELM_INTERVAL: Duration = Duration::from_millis(500);
+/// How often a page is sent the modes of all boats.
+pub(super) const MODES_INTERVAL: Duration = Duration::from_secs(1);
 /// How often a page is sent the estimated position of a boat.
 pub(super) const ESTIMATE_INTERVAL: Duration = Duration::from_millis(100);
 /// The past that a page gets for trails: frames so far apart (simulated time), s.

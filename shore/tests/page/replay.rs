@@ -110,6 +110,42 @@ fn a_selected_boat_tells_what_its_helm_thought_and_where_it_believed_to_be() {
 }
 
 #[test]
+fn the_modes_of_all_boats_are_told_where_they_are_wanted() {
+    let (_page, mut client) = visit(show());
+    client.send(r#"{"do":"seek","t_s":10}"#);
+    client.send(r#"{"do":"modes","wanted":true}"#);
+    let modes = client.until("modes", |modes| modes["modes"][0] == "sailing:100");
+    assert_eq!(modes, json!({"kind": "modes", "at_s": 10.0, "modes": ["sailing:100", null]}));
+    client.send(r#"{"do":"step","by":1}"#);
+    client.until("modes", |modes| modes["modes"][0] == "sailing:101");
+    client.send(r#"{"do":"modes","wanted":false}"#);
+    client.send(r#"{"do":"step","by":1}"#);
+    assert!(client.rest().iter().all(|said| !said.to_string().contains(r#""kind":"modes""#)));
+}
+
+#[test]
+fn curves_are_of_the_whole_recording() {
+    let (_page, mut client) = visit(show());
+    client.send(r#"{"do":"curves"}"#);
+    let score = client.until("curves", |_| true);
+    assert_eq!((&score["vehicle"], &score["boat"], &score["range_m"]), (&json!(null), &json!(null), &json!(null)));
+    let times = score["t_s"].as_array().expect("times");
+    assert_eq!((times.len(), &times[1200]), (1201, &json!(120.0)));
+    assert_eq!(score["score"].as_array().map(Vec::len), Some(2), "one for each team");
+    client.send(r#"{"do":"curves","vehicle":"blue_one","other":"red_one"}"#);
+    let curves = client.until("curves", |curves| curves["vehicle"] == "blue_one");
+    for key in ["speed_m_s", "ordered_speed_m_s", "heading_deg", "ordered_heading_deg", "flag_m", "error_m"] {
+        assert_eq!(curves["boat"][key].as_array().map(Vec::len), Some(1201), "{key}");
+    }
+    // All boats are at the datum.
+    assert_eq!(curves["range_m"][7], json!(0.0));
+    let flag_m = curves["boat"]["flag_m"][7].as_f64().expect("a distance");
+    assert!((flag_m - game::math::length(140.0, 40.0)).abs() < 0.01, "{flag_m}");
+    client.send(r#"{"do":"curves","vehicle":"whale"}"#);
+    assert_eq!(client.until("refused", |_| true)["what"], "curves");
+}
+
+#[test]
 fn what_a_recording_cannot_do_is_refused() {
     let (_page, mut client) = visit(show());
     for (ask, what) in [

@@ -123,4 +123,8 @@ impl Helms for Rememberer {
         let report = Some(HelmReport { mode, ..report(vehicle) });
         HelmAnswer { report, reason: None, computed: true, agrees: Some(true) }
     }
+
+    fn modes(&mut self, decision: u64) -> Vec<Option<String>> {
+        vec![Some(format!("sailing:{decision}")), None]
+    }
 }

@@ -6,6 +6,7 @@ use super::steering::SteeringLocks;
 use crate::page::chart::chart;
 use bus::Bus;
 use game::external::GatewayStatus;
+use game::helm::HelmReport;
 use game::message::{Frame, GameInfo};
 use game::outcome::EventOutcome;
 use game::picture::{OwnBoat, Picture};
@@ -14,7 +15,7 @@ use game::topic::GameName;
 use game::water::Water;
 use game::{Scenario, SimTime, VehicleId};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -67,6 +68,13 @@ pub(super) struct LiveState {
     pub(super) steering: BTreeMap<VehicleId, (f64, f64)>,
     /// By page: the selected boat, and whether utilities are wanted.
     pub(super) selected: BTreeMap<u64, (VehicleId, bool)>,
+    /// The pages that want the modes of all boats.
+    pub(super) listed: BTreeSet<u64>,
+    /// By vehicle the mode that its helm told last, and when that was, s.
+    pub(super) modes: Vec<Option<String>>,
+    pub(super) modes_at_s: f64,
+    /// Rises with news of them.
+    pub(super) modes_news: u64,
 }
 
 impl LiveGame {
@@ -170,6 +178,24 @@ impl LiveState {
             *wanted.entry(*vehicle).or_insert(false) |= functions;
         }
         wanted
+    }
+
+    /// The boats whose modes some page wants.
+    pub(super) fn listed(&self) -> Vec<VehicleId> {
+        let count =
+            self.game.as_ref().filter(|_| !self.listed.is_empty()).map_or(0, |game| game.scenario().vehicles.len());
+        (0..count).map(VehicleId::at).collect()
+    }
+
+    /// A helm told its mode, if it has one.
+    pub(super) fn take_mode(&mut self, vehicle: VehicleId, report: Option<&HelmReport>) {
+        let Some(game) = &self.game else { return };
+        self.modes.resize(game.scenario().vehicles.len(), None);
+        let Some(known) = self.modes.get_mut(vehicle.index()) else { return };
+        let mode = report.map(|report| report.mode.clone()).filter(|mode| !mode.is_empty());
+        self.modes_at_s = report.map_or(self.modes_at_s, |report| report.at.as_s());
+        self.modes_news += u64::from(*known != mode);
+        *known = mode;
     }
 
     /// Drops what no page has selected any more.

@@ -18,8 +18,12 @@ use std::time::{Duration, Instant};
 const ROUND: Duration = Duration::from_millis(50);
 /// How long a helm may think about its answer.
 const HELM_ANSWER: Duration = Duration::from_secs(1);
-/// No more than one part in so many of the time is spent on the answers of helms.
+/// No more than one part in so many of the time is spent on the answers of helms that somebody looks at.
 const SHARE: u32 = 5;
+/// The same for helms of which only the mode is wanted, for a list of all boats.
+const LIST_SHARE: u32 = 20;
+/// How often a helm is asked for its mode.
+const LIST_INTERVAL: Duration = Duration::from_secs(2);
 /// How long the sim may collect its events.
 const EVENTS_ANSWER: Duration = Duration::from_secs(3);
 
@@ -39,10 +43,21 @@ struct QuerySchedule {
     rest: Option<Instant>,
 }
 
+/// A helm that is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Turn {
+    vehicle: VehicleId,
+    /// Whether with utilities.
+    functions: bool,
+    /// Whether only its mode is wanted, and nobody looks at it.
+    is_listed: bool,
+}
+
 impl QuerySchedule {
-    /// Whose turn it is, if it is anybody's: of those that are due, the one that has waited longest.
-    fn next(&mut self, wanted: &BTreeMap<VehicleId, bool>, now: Instant) -> Option<(VehicleId, bool)> {
-        self.asked.retain(|vehicle, _| wanted.contains_key(vehicle));
+    /// Whose turn it is, if it is anybody's: of those that are due, the one that has waited longest. Those of which only the
+    /// mode is wanted come after those that are looked at.
+    fn next(&mut self, wanted: &BTreeMap<VehicleId, bool>, listed: &[VehicleId], now: Instant) -> Option<Turn> {
+        self.asked.retain(|vehicle, _| wanted.contains_key(vehicle) || listed.contains(vehicle));
         if self.rest.is_some_and(|rest| now < rest) {
             return None;
         }
@@ -53,14 +68,27 @@ impl QuerySchedule {
         };
         let due = wanted.iter().filter(|(vehicle, functions)| is_due(vehicle, **functions));
         let longest = due.min_by_key(|(vehicle, _)| self.asked.get(vehicle).map(|(start, _)| *start));
-        longest.map(|(vehicle, functions)| (*vehicle, *functions))
+        let longest =
+            longest.map(|(vehicle, functions)| Turn { vehicle: *vehicle, functions: *functions, is_listed: false });
+        longest.or_else(|| self.next_listed(wanted, listed, now))
+    }
+
+    fn next_listed(&self, wanted: &BTreeMap<VehicleId, bool>, listed: &[VehicleId], now: Instant) -> Option<Turn> {
+        let start = |vehicle: &VehicleId| self.asked.get(vehicle).map(|(start, _)| *start);
+        let is_due = |vehicle: &&VehicleId| {
+            !wanted.contains_key(vehicle)
+                && start(vehicle).is_none_or(|start| now.saturating_duration_since(start) >= LIST_INTERVAL)
+        };
+        let longest = listed.iter().filter(is_due).min_by_key(|vehicle| start(vehicle));
+        longest.map(|vehicle| Turn { vehicle: *vehicle, functions: false, is_listed: true })
     }
 
     /// A helm was asked from `start` to `end`. In lockstep a game waits while a mind answers, and one process may mind all
     /// boats: after a long answer all have a rest. A game that stands waits for nobody.
-    fn update(&mut self, asked: (VehicleId, bool), start: Instant, end: Instant, is_going: bool) {
-        self.asked.insert(asked.0, (start, asked.1));
-        self.rest = is_going.then(|| start + end.saturating_duration_since(start) * SHARE);
+    fn update(&mut self, turn: Turn, start: Instant, end: Instant, is_going: bool) {
+        self.asked.insert(turn.vehicle, (start, turn.functions));
+        let share = if turn.is_listed { LIST_SHARE } else { SHARE };
+        self.rest = is_going.then(|| start + end.saturating_duration_since(start) * share);
     }
 }
 
@@ -70,13 +98,16 @@ impl QueryThread {
         let mut schedule = QuerySchedule::default();
         while !left.wait(ROUND, |left| *left) {
             self.ask_events();
-            let wanted = self.shared.state.lock().wanted();
+            let (wanted, listed) = {
+                let state = self.shared.state.lock();
+                (state.wanted(), state.listed())
+            };
             let start = clock::now();
-            if let Some((vehicle, functions)) = schedule.next(&wanted, start) {
-                self.ask_helm(vehicle, functions);
+            if let Some(turn) = schedule.next(&wanted, &listed, start) {
+                self.ask_helm(turn);
                 let end = clock::now();
                 let is_going = self.shared.state.lock().phase(end) == "playing";
-                schedule.update((vehicle, functions), start, end, is_going);
+                schedule.update(turn, start, end, is_going);
             }
         }
     }
@@ -95,7 +126,7 @@ impl QueryThread {
         }
     }
 
-    fn ask_helm(&self, vehicle: VehicleId, functions: bool) {
+    fn ask_helm(&self, Turn { vehicle, functions, is_listed }: Turn) {
         let question = serde_json::to_vec(&HelmQuestion { functions }).unwrap_or_default();
         let key = topic::helm(&self.game.name, self.game.scenario(), vehicle);
         let answer = self.bus.ask(&key, question, HELM_ANSWER).ok().flatten();
@@ -106,6 +137,11 @@ impl QueryThread {
             Some(Err(_)) => because(format!("the mind of {name} is of another version of Squall")),
             None => because(format!("no agent runs {name} now")),
         };
+        self.shared.state.lock().take_mode(vehicle, answer.report.as_ref());
+        if is_listed {
+            self.shared.news.send_replace(());
+            return;
+        }
         // Long work with a long report, for which the state is not kept from others.
         let full = functions.then(|| helm_text(self.game.scenario(), vehicle, true, answer.clone()));
         let light = helm_text(self.game.scenario(), vehicle, false, answer);
@@ -126,13 +162,22 @@ mod tests {
 
     /// Asks for so long, each answer after as long: who was asked when, ms.
     fn asked(wanted: &BTreeMap<VehicleId, bool>, took_ms: u64, until_ms: u64, is_going: bool) -> Vec<(VehicleId, u64)> {
+        asked_and_listed((wanted, &[]), took_ms, until_ms, is_going)
+    }
+
+    fn asked_and_listed(
+        (wanted, listed): (&BTreeMap<VehicleId, bool>, &[VehicleId]),
+        took_ms: u64,
+        until_ms: u64,
+        is_going: bool,
+    ) -> Vec<(VehicleId, u64)> {
         let start = clock::now();
         let at = |ms| start + Duration::from_millis(ms);
         let (mut schedule, mut now_ms, mut asked) = (QuerySchedule::default(), 0, vec![]);
         while now_ms < until_ms {
-            if let Some(turn) = schedule.next(wanted, at(now_ms)) {
+            if let Some(turn) = schedule.next(wanted, listed, at(now_ms)) {
                 schedule.update(turn, at(now_ms), at(now_ms + took_ms), is_going);
-                asked.push((turn.0, now_ms));
+                asked.push((turn.vehicle, now_ms));
                 now_ms += took_ms;
             }
             now_ms += 50;
@@ -172,8 +217,21 @@ mod tests {
     #[test]
     fn who_wants_utilities_too_does_not_wait_for_the_next_round() {
         let (mut schedule, start) = (QuerySchedule::default(), clock::now());
-        schedule.update((BOATS[0], false), start, start, true);
-        assert_eq!(schedule.next(&BTreeMap::from([(BOATS[0], false)]), start), None);
-        assert_eq!(schedule.next(&BTreeMap::from([(BOATS[0], true)]), start), Some((BOATS[0], true)));
+        let turn = |functions| Turn { vehicle: BOATS[0], functions, is_listed: false };
+        schedule.update(turn(false), start, start, true);
+        assert_eq!(schedule.next(&BTreeMap::from([(BOATS[0], false)]), &[], start), None);
+        assert_eq!(schedule.next(&BTreeMap::from([(BOATS[0], true)]), &[], start), Some(turn(true)));
+    }
+
+    #[test]
+    fn modes_of_all_boats_cost_little_and_keep_no_boat_that_is_looked_at_waiting() {
+        let wanted = BTreeMap::from([(BOATS[0], true)]);
+        let of = |all: &[(VehicleId, u64)], boat| all.iter().filter(|(asked, _)| *asked == boat).count();
+        let quick = asked_and_listed((&wanted, &BOATS), 0, 4000, true);
+        assert_eq!(BOATS.map(|boat| of(&quick, boat)), [8, 2, 2], "{quick:?}");
+        // Nobody is looked at: a twentieth of the time, each in turn.
+        let slow = asked_and_listed((&BTreeMap::new(), &BOATS), 100, 12_000, true);
+        assert_eq!(slow.len(), 6, "{slow:?}");
+        assert_eq!(BOATS.map(|boat| of(&slow, boat)), [2, 2, 2]);
     }
 }

@@ -4,7 +4,7 @@ use super::live_state::{HelmMessage, Latest, LiveGame, LiveState};
 use super::{Command, SharedState, stopping};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
-use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
+use crate::page::view::{Access, Budget, ESTIMATE_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, Viewer};
 use axum::body::Bytes;
 use game::external::GatewayStatus;
 use game::message::Control;
@@ -21,6 +21,8 @@ pub(super) struct PageViewer {
     page: u64,
     /// The selected boat, and whether utilities are wanted: also in the next game, if it has that boat.
     selection: Option<(String, bool)>,
+    /// Whether the modes of all boats are wanted.
+    wants_modes: bool,
     sent: Sent,
 }
 
@@ -37,6 +39,8 @@ struct Sent {
     statuses: Latest<GatewayStatus>,
     helm: Option<Arc<HelmMessage>>,
     estimate: Option<(Arc<(OwnBoat, SimTime)>, Instant)>,
+    /// Which news of modes, and when.
+    modes: Option<(u64, Instant)>,
     /// The newest frame; 0 is none.
     frame: u64,
     /// The frames of the past that find before it, once there is one.
@@ -45,7 +49,7 @@ struct Sent {
 
 impl PageViewer {
     pub(super) fn new(shared: Arc<SharedState>, access: Access, page: u64) -> PageViewer {
-        PageViewer { shared, access, page, selection: None, sent: Sent::default() }
+        PageViewer { shared, access, page, selection: None, wants_modes: false, sent: Sent::default() }
     }
 
     /// Passes on a command to this game. The state stays locked meanwhile, so that the next game does not get it.
@@ -70,6 +74,16 @@ impl PageViewer {
         let mut state = self.shared.state.lock();
         state.selected.remove(&self.page);
         state.select(self.page, self.selection.as_ref())
+    }
+
+    fn list(&mut self, wanted: bool) {
+        (self.wants_modes, self.sent.modes) = (wanted, None);
+        let mut state = self.shared.state.lock();
+        if wanted {
+            state.listed.insert(self.page)
+        } else {
+            state.listed.remove(&self.page)
+        };
     }
 
     fn set_speed(&self, factor: Option<f64>) -> Result<(), String> {
@@ -138,6 +152,10 @@ impl Viewer for PageViewer {
         match ask {
             PageRequest::Ack => Ok(()),
             PageRequest::Select { vehicle, functions } => self.select(vehicle.as_deref(), *functions),
+            PageRequest::Modes { wanted } => {
+                self.list(*wanted);
+                Ok(())
+            }
             PageRequest::Speed { factor } | PageRequest::Control { what: Control::Speed(factor) } => {
                 self.set_speed(*factor)
             }
@@ -147,6 +165,7 @@ impl Viewer for PageViewer {
             PageRequest::Step { .. } | PageRequest::Seek { .. } => {
                 Err("a game that is being played cannot be wound".to_owned())
             }
+            PageRequest::Curves { .. } => Err("curves are of recordings: this game is still being played".to_owned()),
         }
     }
 
@@ -157,6 +176,9 @@ impl Viewer for PageViewer {
             self.sent = Sent { generation: state.generation, ..Sent::default() };
             // The boat may not be in this game; then the page selects another.
             drop(state.select(self.page, self.selection.as_ref()));
+            if self.wants_modes {
+                state.listed.insert(self.page);
+            }
             let hello =
                 PageMessage::hello(&game.info.version, Mode::Live, self.access.rights, game.name.as_str(), &game.chart);
             return Some(Outgoing::Text(hello.json()));
@@ -167,7 +189,8 @@ impl Viewer for PageViewer {
             .or_else(|| sent.next_run(&state, &game, now))
             .or_else(|| sent.next_steering(&state, &game, self.page))
             .or_else(|| sent.next_status(&state, &game))
-            .or_else(|| if budget == Budget::All { sent.next_selected(&state, &game, self.page, now) } else { None });
+            .or_else(|| if budget == Budget::All { sent.next_selected(&state, &game, self.page, now) } else { None })
+            .or_else(|| if budget == Budget::All && self.wants_modes { sent.next_modes(&state, now) } else { None });
         match text {
             Some(text) => Some(Outgoing::Text(text)),
             None if budget >= Budget::Frames => sent.next_frame(&state),
@@ -178,7 +201,9 @@ impl Viewer for PageViewer {
     fn due(&self, now: Instant) -> Option<Instant> {
         let run = self.sent.run.map(|(_, at)| at + SEND_INTERVAL);
         let estimate = self.sent.estimate.as_ref().map(|(_, at)| *at + ESTIMATE_INTERVAL).filter(|at| *at > now);
-        run.into_iter().chain(estimate).min()
+        let modes =
+            self.sent.modes.filter(|_| self.wants_modes).map(|(_, at)| at + MODES_INTERVAL).filter(|at| *at > now);
+        run.into_iter().chain(estimate).chain(modes).min()
     }
 }
 
@@ -186,6 +211,7 @@ impl Drop for PageViewer {
     fn drop(&mut self) {
         let mut state = self.shared.state.lock();
         state.selected.remove(&self.page);
+        state.listed.remove(&self.page);
         state.steering_locks.release_all(self.page);
         drop(state);
         self.shared.news.send_replace(());
@@ -265,6 +291,17 @@ impl Sent {
         self.estimate = Some((Arc::clone(estimate), now));
         let (boat, at) = &**estimate;
         Some(PageMessage::estimate(game.name_of(vehicle), boat, *at).json())
+    }
+
+    /// The modes of all boats, if any has changed.
+    fn next_modes(&mut self, state: &LiveState, now: Instant) -> Option<String> {
+        let is_sent =
+            |(news, at): (u64, Instant)| news == state.modes_news || now.saturating_duration_since(at) < MODES_INTERVAL;
+        if state.modes.is_empty() || self.modes.is_some_and(is_sent) {
+            return None;
+        }
+        self.modes = Some((state.modes_news, now));
+        Some(PageMessage::Modes { at_s: state.modes_at_s, modes: &state.modes }.json())
     }
 
     /// The newest frame, before the first of all those of the past.

@@ -1,16 +1,18 @@
 //! A recording, shown to pages: each has its own playback.
 
-mod helm_thread;
+mod curves;
 mod playback;
+mod query_thread;
 mod recorded;
 mod viewer;
 
-pub use helm_thread::Helms;
+pub use query_thread::Helms;
 pub use recorded::Recorded;
 
 use super::chart::chart;
 use super::view::{Access, Changes, View, Viewer};
-use helm_thread::HelmThread;
+use curves::Plotter;
+use query_thread::{QueryThread, Sources};
 use serde_json::Value;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -26,7 +28,7 @@ pub struct ReplayView {
 struct SharedReplay {
     source: Arc<Recorded>,
     chart: Value,
-    helms: HelmThread,
+    queries: QueryThread,
     viewers: AtomicU64,
 }
 
@@ -37,8 +39,9 @@ impl ReplayView {
         let news = Changes::default();
         let scenario = source.info().scenario.clone();
         let chart = chart(&scenario, &source.header().water);
-        let helms = HelmThread::open(scenario, helms, news.clone());
-        ReplayView { shared: Arc::new(SharedReplay { source, chart, helms, viewers: AtomicU64::new(0) }), news }
+        let plotter = Plotter::new(source.recording());
+        let queries = QueryThread::open(Sources { scenario, helms, plotter }, news.clone());
+        ReplayView { shared: Arc::new(SharedReplay { source, chart, queries, viewers: AtomicU64::new(0) }), news }
     }
 }
 

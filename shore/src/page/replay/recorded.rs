@@ -84,6 +84,12 @@ impl Recorded {
     fn status_at(&self, place: usize) -> Option<GatewayStatus> {
         serde_json::from_slice(&self.recording.bag().message(place).bytes).ok()
     }
+
+    /// All of it.
+    pub(super) fn recording(&self) -> Arc<Recording> {
+        Arc::clone(&self.recording)
+    }
+
     /// What the recording says of its game.
     pub(super) fn header(&self) -> &Header {
         self.recording.header()

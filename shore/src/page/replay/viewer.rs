@@ -1,12 +1,13 @@
 //! One page's view of a recording.
 
 use super::SharedReplay;
-use super::helm_thread::HelmRequest;
 use super::playback::Playback;
+use super::query_thread::{HelmRequest, Query};
 use crate::page::message::{EventMessage, Mode, PageMessage, seconds};
 use crate::page::request::PageRequest;
 use crate::page::view::{
-    Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, Outgoing, SEND_INTERVAL, TRAIL_S, TRAIL_STEP_S, Viewer,
+    Access, Budget, ESTIMATE_INTERVAL, HELM_INTERVAL, MODES_INTERVAL, Outgoing, SEND_INTERVAL, TRAIL_S, TRAIL_STEP_S,
+    Viewer,
 };
 use game::external::GatewayStatus;
 use game::message::Control;
@@ -36,6 +37,9 @@ pub(super) struct PageViewer {
     selected: Option<(VehicleId, bool)>,
     requested: Option<(HelmRequest, Instant)>,
     estimated: Option<(usize, Instant)>,
+    /// Whether the modes of all boats are wanted, and for which decision they were requested last, and when.
+    wants_modes: bool,
+    requested_modes: Option<(u64, Instant)>,
     /// The real boats, with the status that was sent of each.
     gateways: Vec<(VehicleId, Option<GatewayStatus>)>,
     /// The frame for which they were read last, and when.
@@ -62,6 +66,8 @@ impl PageViewer {
             selected: None,
             requested: None,
             estimated: None,
+            wants_modes: false,
+            requested_modes: None,
             gateways,
             looked: None,
             statuses: VecDeque::new(),
@@ -148,10 +154,32 @@ impl PageViewer {
         });
         if is_due {
             self.requested = Some((request, now));
-            self.shared.helms.request(self.viewer, request);
+            self.shared.queries.request(self.viewer, Query::Helm(request));
         }
-        let (answered, text) = self.shared.helms.take(self.viewer)?;
+        let (answered, text) = self.shared.queries.take_helm(self.viewer)?;
         (answered.vehicle == vehicle).then_some(Outgoing::Text(text))
+    }
+
+    /// The modes of all boats, and curves.
+    fn next_other(&mut self, frame: usize, now: Instant) -> Option<Outgoing> {
+        let is_due = |(before, at): (u64, Instant), decision| {
+            before != decision && now.saturating_duration_since(at) >= MODES_INTERVAL
+        };
+        if let Some(decision) = self.decision(frame).filter(|_| self.wants_modes)
+            && self.requested_modes.is_none_or(|requested| is_due(requested, decision))
+        {
+            self.requested_modes = Some((decision, now));
+            let at = self.shared.source.frame_times()[frame];
+            self.shared.queries.request(self.viewer, Query::Modes(decision, at));
+        }
+        self.shared.queries.take_other(self.viewer).map(Outgoing::Text)
+    }
+
+    fn request_curves(&self, vehicle: Option<&str>, other: Option<&str>) -> Result<(), String> {
+        let named = |name: &str| self.shared.source.info().scenario.vehicle_named(name).map_err(|e| e.to_string());
+        let query = Query::Curves(vehicle.map(named).transpose()?, other.map(named).transpose()?);
+        self.shared.queries.request(self.viewer, query);
+        Ok(())
     }
 
     /// The decision that a frame is of.
@@ -231,6 +259,11 @@ impl Viewer for PageViewer {
                     (self.requested, self.estimated) = (None, None);
                 }
             }
+            PageRequest::Modes { wanted } => {
+                self.wants_modes = *wanted;
+                self.requested_modes = None;
+            }
+            PageRequest::Curves { vehicle, other } => self.request_curves(vehicle.as_deref(), other.as_deref())?,
             PageRequest::Control { what: Control::Pause } => self.playback.pause(now),
             PageRequest::Control { what: Control::Resume } => self.play(now),
             PageRequest::Control { what: Control::Step } => self.step(1, now),
@@ -258,7 +291,9 @@ impl Viewer for PageViewer {
         }
         if let Some(frame) = self.shown {
             let selected = if budget == Budget::All {
-                self.next_helm(frame, now).or_else(|| self.next_estimate(frame, now))
+                self.next_helm(frame, now)
+                    .or_else(|| self.next_estimate(frame, now))
+                    .or_else(|| self.next_other(frame, now))
             } else {
                 None
             };
@@ -284,14 +319,17 @@ impl Viewer for PageViewer {
             .filter(|(request, _)| selected && self.is_outdated(*request))
             .map(|(_, at)| at + HELM_INTERVAL);
         let status = self.looked.filter(|(frame, _)| is_old(*frame)).map(|(_, at)| at + SEND_INTERVAL);
-        let due = [next, sent, estimate, helm, status].into_iter().flatten().min();
+        let is_old_mode = |decision| self.shown.and_then(|frame| self.decision(frame)) != Some(decision);
+        let modes = self.requested_modes.filter(|(decision, _)| self.wants_modes && is_old_mode(*decision));
+        let modes = modes.map(|(_, at)| at + MODES_INTERVAL);
+        let due = [next, sent, estimate, helm, status, modes].into_iter().flatten().min();
         due.map(|due| due.max(now + FRAME_AGAIN))
     }
 }
 
 impl Drop for PageViewer {
     fn drop(&mut self) {
-        self.shared.helms.remove(self.viewer);
+        self.shared.queries.remove(self.viewer);
     }
 }
 

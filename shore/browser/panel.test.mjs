@@ -1,0 +1,179 @@
+// The side of the page: the helm's picture is whole, events fold, lists tell.
+
+import assert from 'node:assert/strict';
+import { readdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Program, Sight, folder, openBrowser, scenario, squall } from './harness.mjs';
+
+let browser;
+before(async () => { browser = await openBrowser(); });
+after(() => browser.close());
+
+const DESK = { width: 1400, height: 900 };
+const HALL = { width: 1920, height: 1080 };
+const PHONE = { width: 390, height: 844 };
+
+/** Plays a game, and opens its replay. */
+async function replay(t, game, ...words) {
+  const place = folder(t);
+  await squall(t, 'run', scenario(`games/${game}.toml`), ...words, '--in-process', '--record', place);
+  const file = readdirSync(place).find((name) => name.endsWith('.mcap'));
+  return `${await new Program(t, 'replay', join(place, file), '--listen', '127.0.0.1:0').url()}#t=0`;
+}
+
+/** Whether all of an element is within what its pane shows. */
+const WHOLE = (selector) => {
+  const box = document.querySelector(selector).getBoundingClientRect();
+  const pane = document.querySelector(selector).closest('.pane').getBoundingClientRect();
+  return box.width > 100 && Math.abs(box.width - box.height) < 1 && box.top >= pane.top && box.bottom <= pane.bottom && box.left >= pane.left
+    && box.right <= pane.right;
+};
+
+test("the helm's picture is whole at once, in a game and in a replay, on each screen", async (t) => {
+  const url = await replay(t, 'pav01_vs_pav01');
+  const live = await new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '5x', '--no-record',
+    '--listen', '127.0.0.1:0').url();
+  for (const size of [DESK, HALL, PHONE]) {
+    for (const at of [url, live]) {
+      const sight = await Sight.open(t, browser, at, { size, deviceScaleFactor: size === PHONE ? 2 : 1 });
+      await sight.press('[data-vehicle=red_two]');
+      await sight.until('the picture is whole', WHOLE, '#rose');
+      const [width, height] = await sight.get(() => [document.getElementById('rose').width, document.getElementById('rose').height]);
+      assert.equal(width, height, 'it is round');
+      const head = await sight.get(() => ['h2', '#follow', '#deselect'].map((each) => {
+        const box = document.querySelector(`#pane-boat ${each}`).getBoundingClientRect();
+        return [box.top, box.bottom];
+      }));
+      const middle = (head[0][0] + head[0][1]) / 2;
+      assert(head.every(([top, bottom]) => top < middle && middle < bottom), `name and buttons share a line: ${head}`);
+      await sight.close();
+    }
+  }
+});
+
+test('events fold and open again, below each tab by itself, and stay so', async (t) => {
+  const url = await replay(t, 'pav01_vs_pav01');
+  const sight = await Sight.open(t, browser, url, { size: DESK });
+  const open = () => sight.get(() => [document.getElementById('events-fold').getAttribute('aria-expanded') === 'true',
+    document.getElementById('events').offsetParent !== null]);
+  await sight.until('there are events', () => document.querySelectorAll('#events li').length > 0);
+  assert.deepEqual(await open(), [true, true], 'below the list of boats they are open');
+  await sight.press('[data-vehicle=red_two]');
+  assert.deepEqual(await open(), [false, false], 'a helm needs the room');
+  await sight.keys('n');
+  await sight.until('the newest is told', () => {
+    const event = squall.events.findLast((each) => each.at_s <= squall.t_s + 1e-6);
+    return event && document.getElementById('events-newest').textContent.endsWith(event.text.replaceAll('_', ' '));
+  });
+  await sight.page.focus('#events-fold');
+  await sight.keys('Enter');
+  assert.deepEqual(await open(), [true, true]);
+  await sight.press('#tab-boats');
+  await sight.press('#events-fold');
+  assert.deepEqual(await open(), [false, false]);
+  await sight.page.reload();
+  await sight.until('it is back', () => squall.drawn > 0 && squall.frame !== null);
+  assert.deepEqual(await open(), [false, false], 'the page keeps it');
+  await sight.press('[data-vehicle=red_two]');
+  assert.deepEqual(await open(), [true, true]);
+});
+
+/** What stands in a line of the list of boats. */
+const LINE = (name) => {
+  const [what, carries, heading, curve, speed] = document.querySelector(`[data-vehicle=${name}]`).children;
+  const { data } = curve.getContext('2d').getImageData(0, 0, curve.width, curve.height);
+  const inked = new Uint32Array(data.buffer).filter((pixel) => pixel !== 0).length;
+  return { state: what.lastElementChild.textContent, flag: carries.textContent, heading: heading.textContent, speed: speed.textContent, inked };
+};
+
+test('a line of the list tells heading, speed and its curve, mode, and what is carried', async (t) => {
+  const url = await replay(t, 'pav01_vs_pav01');
+  const sight = await Sight.open(t, browser, url, { size: DESK });
+  await sight.page.selectOption('#event-kind', { label: 'grabs' });
+  await sight.press('#event-next');
+  await sight.until('a flag is carried', () => squall.flags.some((each) => each.carrier !== null));
+  await sight.until('every boat has told its mode', () => squall.modes?.length === 4 && squall.modes.every(Boolean));
+  const { boats, flags } = await sight.get(() => ({ boats: squall.frame.boats, flags: squall.flags }));
+  const teams = await sight.get(() => squall.hello.chart.teams.map(({ name }) => name));
+  const modes = await sight.get(() => squall.modes);
+  for (const [at, boat] of boats.entries()) {
+    const want = { heading: `${String(Math.round(boat.heading_deg) % 360).padStart(3, '0')}°`, speed: `${boat.speed_m_s.toFixed(1)}\u00a0m/s` };
+    await sight.until(`the line of ${boat.name} is of now`, ([name, { heading, speed }]) => {
+      const [, , told, , pace] = document.querySelector(`[data-vehicle=${name}]`).children;
+      return told.textContent === heading && pace.textContent === speed;
+    }, [boat.name, want]);
+    const line = await sight.get(LINE, boat.name);
+    const flag = flags.find((each) => each.carrier === boat.name);
+    assert.equal(line.flag, flag ? `carries the ${teams[flag.team]} flag` : '', boat.name);
+    assert.equal(line.state, boat.tagged ? 'tagged' : modes[at].replaceAll('_', ' ').replaceAll(':', ' › '), boat.name);
+    assert(line.inked > 60, `${boat.name} has a curve of ${line.inked} pixels`);
+  }
+  const live = new Program(t, 'run', scenario('games/pav01_vs_pav01.toml'), '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
+  const game = await Sight.open(t, browser, await live.url(), { size: DESK });
+  await game.until('modes are told in a game too', () => squall.modes?.length === 4 && squall.modes.every(Boolean));
+  await game.until('and written', () => [...document.querySelectorAll('.boat-row .state')].every((each) => each.textContent !== ''));
+});
+
+/** How dark a team's ink is about a boat: the sum over a small square of the layer with the boats. */
+const INK = (name) => {
+  const hull = squall.hulls.find((each) => each.name === name);
+  const ratio = Math.min(2, devicePixelRatio);
+  const [left, top, right, bottom] = [hull.left, hull.top, hull.right, hull.bottom].map((each) => Math.round(each * ratio));
+  const layer = document.getElementById('layer-boats');
+  const { data } = layer.getContext('2d').getImageData(left, top, Math.max(1, right - left), Math.max(1, bottom - top));
+  let most = 0;
+  for (let i = 3; i < data.length; i += 4) most = Math.max(most, data[i]);
+  return most;
+};
+
+test('among twenty a side names cover no boat, tagged boats fade, and circles come when they are pointed at', async (t) => {
+  const url = await replay(t, 'swarm_20v20', '--set', 'game.duration_s=120');
+  const sight = await Sight.open(t, browser, url, { size: DESK, allows: /willReadFrequently/ });
+  assert(!(await sight.page.isVisible('#weather')), 'an empty sea takes no box');
+  const overlaps = () => sight.get(() => {
+    const cross = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const { labels, hulls } = squall;
+    return { labels: labels.length, bad: labels.flatMap((label, i) => [
+      ...hulls.filter((hull) => cross(label, hull)).map((hull) => `${label.name} on ${hull.name}`),
+      ...labels.slice(i + 1).filter((other) => cross(label, other)).map((other) => `${label.name} on the name ${other.name}`)]) };
+  });
+  await sight.page.focus('#sheet');
+  for (const t_s of [10, 20, 40, 60, 80, 100]) {
+    while ((await sight.get(() => squall.t_s)) < t_s) {
+      const before_s = await sight.get(() => squall.t_s);
+      await sight.page.locator('#timeline').press('Shift+ArrowRight');
+      await sight.until('the replay has moved', (before_s) => squall.t_s > before_s, before_s);
+    }
+    const chosen = await sight.get(() => squall.frame.boats[(Math.round(squall.t_s) * 7) % 40].name);
+    await sight.page.focus(`[data-vehicle=${chosen}]`);
+    await sight.page.hover(`[data-vehicle=${chosen}]`);
+    await sight.until('its name is shown', (name) => squall.labels.some((label) => label.name === name), chosen);
+    const { labels, bad } = await overlaps();
+    assert.deepEqual(bad, [], `at ${t_s} s`);
+    assert(labels > 12, `only ${labels} names at ${t_s} s`);
+  }
+  await sight.page.hover('#game-name');
+  const [tagged, free] = await sight.until('one is tagged and one is not', () => {
+    const found = [true, false].map((tagged) => squall.frame.boats.find((boat) => boat.tagged === tagged)?.name);
+    return found.every(Boolean) && found;
+  });
+  await sight.page.focus('#sheet');
+  await sight.until('nobody is pointed at', (name) => !squall.labels.some((label) => label.name === name), tagged);
+  const [faded, plain] = [await sight.get(INK, tagged), await sight.get(INK, free)];
+  assert(faded < 0.7 * plain, `a tagged boat is drawn with ${faded}, another with ${plain}`);
+  await sight.page.hover(`[data-vehicle=${tagged}]`);
+  await sight.until('pointed at, it is as clear as others', (name) => squall.labels.some((label) => label.name === name), tagged);
+  assert((await sight.get(INK, tagged)) > 0.9 * plain);
+});
+
+test('names are written one way', async (t) => {
+  const url = await replay(t, 'pav01_vs_pav01');
+  const sight = await Sight.open(t, browser, url, { size: DESK });
+  await sight.press('[data-vehicle=red_two]');
+  await sight.until('it is selected', () => document.querySelector('#pane-boat h2').textContent !== '');
+  const changed = await sight.get(() => [...document.querySelectorAll('h2, h3, .name, .event, #score *')]
+    .filter((each) => getComputedStyle(each).textTransform !== 'none').map((each) => each.outerHTML));
+  assert.deepEqual(changed, []);
+  assert.equal(await sight.get(() => document.querySelector('#pane-boat h2').innerText), 'red two');
+});

@@ -1,0 +1,108 @@
+//! The curves of a recorded game over time, for the plots below its time line.
+
+use crate::page::message::{BoatCurves, Curves, PageMessage};
+use analysis::{GameSeries, Sample};
+use game::angle::compass_deg_from_rad;
+use game::{Field, Ned, Order, VehicleId};
+use recording::Recording;
+use std::sync::Arc;
+
+/// How many samples of a boat a page gets at most: more than a screen has pixels.
+const SAMPLES: usize = 1500;
+/// How many samples of all boats together are kept at most, about 140 bytes each.
+const SAMPLES_MAX: usize = 400_000;
+
+/// Reads the curves off a recording, once somebody asks for them.
+#[derive(Default)]
+pub(super) struct Plotter {
+    recording: Option<Arc<Recording>>,
+    series: Option<GameSeries>,
+}
+
+impl Plotter {
+    /// Of this recording. Nothing is read yet.
+    pub(super) fn new(recording: Arc<Recording>) -> Plotter {
+        Plotter { recording: Some(recording), series: None }
+    }
+
+    /// The score, a boat's curves, and its range to another, as a message for the page.
+    pub(super) fn curves(&mut self, vehicle: Option<VehicleId>, other: Option<VehicleId>) -> String {
+        let Some(recording) = &self.recording else { return PageMessage::Curves { curves: &Curves::default() }.json() };
+        let series = self.series.get_or_insert_with(|| {
+            let boats = recording.scenario().vehicles.len();
+            GameSeries::of_at_most(recording, SAMPLES.saturating_mul(boats).min(SAMPLES_MAX))
+        });
+        let boat = |vehicle: VehicleId| series.boats.get(vehicle.index());
+        let (one, another) = (vehicle.and_then(boat), other.and_then(boat));
+        let range = |(one, another): (&analysis::BoatSeries, &analysis::BoatSeries)| {
+            one.track().zip(another.track()).map(|(one, another)| rounded(one.distance(another))).collect()
+        };
+        let curves = Curves {
+            vehicle: one.map(|boat| boat.name.as_str()),
+            other: another.map(|boat| boat.name.as_str()),
+            t_s: series.times_s.iter().copied().map(rounded).collect(),
+            score: (0..series.teams.len())
+                .map(|team| series.score.iter().map(|score| score.get(team).copied().unwrap_or(0)).collect())
+                .collect(),
+            boat: vehicle
+                .filter(|_| one.is_some())
+                .map(|vehicle| boat_curves(series, &recording.scenario().field, vehicle)),
+            range_m: one.zip(another).map(range),
+        };
+        PageMessage::Curves { curves: &curves }.json()
+    }
+}
+
+fn boat_curves(series: &GameSeries, field: &Field, vehicle: VehicleId) -> BoatCurves {
+    let boat = &series.boats[vehicle.index()];
+    let each = |of: &dyn Fn(&Sample) -> Option<f64>| -> Vec<f64> {
+        boat.samples.iter().map(|sample| rounded(of(sample).unwrap_or(f64::NAN))).collect()
+    };
+    let ordered_speed = |sample: &Sample| match sample.order {
+        Order::Steer { speed_m_s, .. } | Order::Turn { speed_m_s, .. } => Some(speed_m_s),
+        Order::Hold => Some(0.0),
+        Order::Thrust { .. } => None,
+    };
+    let ordered_heading = |sample: &Sample| match sample.order {
+        Order::Steer { heading_rad, .. } => Some(compass_deg_from_rad(heading_rad)),
+        Order::Hold | Order::Turn { .. } | Order::Thrust { .. } => None,
+    };
+    BoatCurves {
+        speed_m_s: each(&|sample| Some(sample.truth.speed_m_s())),
+        ordered_speed_m_s: each(&ordered_speed),
+        heading_deg: each(&|sample| Some(compass_deg_from_rad(sample.truth.psi_rad))),
+        ordered_heading_deg: each(&ordered_heading),
+        flag_m: flag_distances(series, field, vehicle),
+        error_m: each(&Sample::nav_error_m),
+    }
+}
+
+/// How far a boat is from the nearest flag of another team, which may be on its way.
+fn flag_distances(series: &GameSeries, field: &Field, vehicle: VehicleId) -> Vec<f64> {
+    let boat = &series.boats[vehicle.index()];
+    let mut carriers: Vec<Option<VehicleId>> = vec![None; field.flags.len()];
+    let mut events = series.events.iter().peekable();
+    let mut distances = Vec::with_capacity(boat.samples.len());
+    for (sample, time_s) in series.times_s.iter().enumerate() {
+        while let Some(logged) = events.next_if(|logged| logged.at.as_s() <= time_s + 1e-6) {
+            let Some(flag) = logged.event.flag() else { continue };
+            if let Some(carrier) = carriers.get_mut(usize::from(flag.0)) {
+                *carrier =
+                    logged.event.vehicle().filter(|_| matches!(logged.event, game::event::Event::Grabbed { .. }));
+            }
+        }
+        let at = boat.samples[sample].truth.at();
+        let place = |flag: usize| -> Ned {
+            let carrier = carriers[flag].and_then(|carrier| series.boats.get(carrier.index()));
+            carrier.map_or(field.flags[flag].home, |carrier| carrier.samples[sample].truth.at())
+        };
+        let others = (0..field.flags.len()).filter(|flag| field.flags[*flag].team.index() != boat.team);
+        distances.push(rounded(others.map(|flag| at.distance(place(flag))).fold(f64::INFINITY, f64::min)));
+    }
+    distances
+}
+
+/// Millimetres are enough for a plot, and make a short message.
+fn rounded(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}

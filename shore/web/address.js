@@ -1,0 +1,20 @@
+// What the page's address says of the moment and the boat to be shown: `#t=83.2&boat=blue_one`.
+
+const words = () => new URLSearchParams(location.hash.slice(1));
+
+/** The time, s, and the boat that the address names; null for what it does not. */
+export function wanted() {
+  const given = words();
+  const t_s = given.has('t') && given.get('t') !== '' ? Number(given.get('t')) : NaN;
+  return { t_s: Number.isFinite(t_s) ? t_s : null, boat: given.get('boat') };
+}
+
+/** Puts a moment and a boat into the address; what else it carries stays. Gives the whole address. */
+export function name(t_s, boat) {
+  const given = words();
+  given.set('t', t_s.toFixed(1));
+  if (boat === null) given.delete('boat');
+  else given.set('boat', boat);
+  history.replaceState(null, '', `#${given}`);
+  return location.href;
+}

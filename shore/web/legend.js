@@ -1,0 +1,97 @@
+// The legend: what the marks on the chart are, each drawn as the chart draws it.
+
+import { drawFlag, drawHullAt } from './boats.js';
+import { palette, teamColour } from './palette.js';
+import { make, plain, show } from './words.js';
+
+const WIDTH = 44;
+const HEIGHT = 26;
+
+function ring(context, radius, dash, colour) {
+  context.beginPath();
+  context.arc(WIDTH / 2, HEIGHT / 2, radius, 0, 2 * Math.PI);
+  context.setLineDash(dash);
+  context.strokeStyle = colour;
+  context.lineWidth = 1.5;
+  context.stroke();
+  context.setLineDash([]);
+}
+
+function line(context, dash, colour, width = 1.75) {
+  context.beginPath();
+  context.moveTo(4, HEIGHT / 2);
+  context.lineTo(WIDTH - 4, HEIGHT / 2);
+  context.setLineDash(dash);
+  context.strokeStyle = colour;
+  context.lineWidth = width;
+  context.stroke();
+  context.setLineDash([]);
+}
+
+const hull = (look) => (context) => drawHullAt(context, WIDTH / 2, HEIGHT / 2, Math.PI / 2, 24, 12, look);
+
+/** What a chart shows: words, and how it is drawn. */
+function entriesOf(chart) {
+  const { radii = {}, field } = chart;
+  const entries = chart.teams.map((team, index) => [`boat of ${plain(team.name)}`, hull({ team: index })]);
+  entries.push(['tagged: out of play until it is home', hull({ team: 0, idle: true })]);
+  entries.push(['out of action', hull({ team: 0, idle: true, disabled: true })]);
+  entries.push(['where the selected boat takes itself to be', hull({ ghost: true })]);
+  entries.push(['its way in 3 s', (context) => line(context, [], teamColour(0), 1.25)]);
+  entries.push(['its track of the last minute', (context) => {
+    context.globalAlpha = 0.5;
+    line(context, [], teamColour(0), 2);
+    context.globalAlpha = 1;
+  }]);
+  entries.push(['a flag; on a boat, carried by it', (context) => drawFlag(context, WIDTH / 2 - 5, HEIGHT - 3, 0, 12)]);
+  if (radii.tag_m > 0) entries.push([`where a boat may tag, ${radii.tag_m} m`, (context) => ring(context, 10, [3, 4], teamColour(0))]);
+  if (radii.grab_m > 0) entries.push([`where a flag is taken, ${radii.grab_m} m`, (context) => ring(context, 10, [], teamColour(0))]);
+  if (radii.keepout_m > 0) entries.push([`keep out, ${radii.keepout_m} m`, (context) => ring(context, 10, [2, 4], teamColour(0))]);
+  if (field?.scrimmage) entries.push(['scrimmage line', (context) => line(context, [12, 5, 2, 5], palette.edge)]);
+  if (field?.obstacles?.length > 0) {
+    entries.push(['obstacle', (context) => {
+      context.beginPath();
+      context.arc(WIDTH / 2, HEIGHT / 2, 9, 0, 2 * Math.PI);
+      context.fillStyle = palette.land;
+      context.fill();
+      context.strokeStyle = palette.wall;
+      context.stroke();
+    }]);
+  }
+  if (chart.waves?.length > 0) {
+    entries.push(['crest and trough of waves', (context) => {
+      context.fillStyle = palette.crest;
+      context.fillRect(4, 5, WIDTH / 2 - 4, 16);
+      context.fillStyle = palette.trough;
+      context.fillRect(WIDTH / 2, 5, WIDTH / 2 - 4, 16);
+      context.strokeStyle = palette.grid;
+      context.strokeRect(4.5, 5.5, WIDTH - 9, 15);
+    }]);
+  }
+  return entries;
+}
+
+export class Legend {
+  constructor() {
+    this.place = document.getElementById('chart-legend');
+    this.drawn = '';
+  }
+
+  /** Shows it, or not; drawn anew if colours or the game have changed. */
+  tell(game, visible) {
+    show(this.place, visible && Boolean(game.hello));
+    const key = `${palette.version} ${game.greeted}`;
+    if (!visible || !game.hello || key === this.drawn) return;
+    this.drawn = key;
+    const ratio = Math.min(2, devicePixelRatio);
+    this.place.replaceChildren(...entriesOf(game.chart).map(([words, draw]) => {
+      const canvas = make('canvas');
+      canvas.setAttribute('aria-hidden', 'true');
+      Object.assign(canvas, { width: WIDTH * ratio, height: HEIGHT * ratio });
+      const context = canvas.getContext('2d');
+      context.scale(ratio, ratio);
+      draw(context);
+      return make('li', '', '', canvas, words);
+    }));
+  }
+}

@@ -1,0 +1,137 @@
+// The measure tool: range and bearing between two places or boats on the chart, and the coordinates of what is pointed at.
+
+import { latLonWords } from './datum.js';
+import { haloText } from './field.js';
+import { palette } from './palette.js';
+import { bearing, number, plain, show, write } from './words.js';
+
+const CROSS_PX = 9;
+
+export class Measure {
+  /** `on` has `changed()`. */
+  constructor(on) {
+    this.on = on;
+    this.button = document.getElementById('measure');
+    this.words = document.getElementById('measured');
+    this.place = document.getElementById('place');
+    this.sheet = document.getElementById('sheet');
+    this.active = false;
+    /** Two ends at most: `{ boat }`, its number, or `{ x, y }`. */
+    this.ends = [];
+    /** Where the pointer is, px; null elsewhere. */
+    this.pointed = null;
+    this.button.addEventListener('click', () => this.toggle());
+  }
+
+  toggle() {
+    this.active = !this.active;
+    this.ends = [];
+    this.button.setAttribute('aria-pressed', String(this.active));
+    this.sheet.classList.toggle('measuring', this.active);
+    this.on.changed();
+  }
+
+  forget() {
+    this.ends = [];
+    if (this.active) this.toggle();
+  }
+
+  /** The pointer is here, px; far off the chart it is nowhere. */
+  point(x, y) {
+    this.pointed = x < -1e8 ? null : { x, y };
+    if (this.active && this.ends.length === 1) this.on.changed();
+  }
+
+  /** Takes an end, a boat's number or a place; the third begins anew. */
+  take(end) {
+    if (this.ends.length === 2) this.ends = [];
+    this.ends.push(end);
+    this.on.changed();
+  }
+
+  placeOf(game, end) {
+    return end.boat === undefined ? [end.x, end.y] : [game.x[end.boat], game.y[end.boat]];
+  }
+
+  /** The range, m, and bearing, degrees, of the second end from the first, and both places; null without two. */
+  reading(game, view) {
+    if (!this.active || this.ends.length === 0) return null;
+    const from = this.placeOf(game, this.ends[0]);
+    let to = null;
+    if (this.ends.length === 2) to = this.placeOf(game, this.ends[1]);
+    else if (this.pointed) to = [view.eastOf(this.pointed.x), view.northOf(this.pointed.y)];
+    if (!to) return { from, to: from, range_m: 0, bearing_deg: NaN };
+    const [east, north] = [to[0] - from[0], to[1] - from[1]];
+    return { from, to, range_m: Math.hypot(east, north), bearing_deg: (Math.atan2(east, north) * 180) / Math.PI };
+  }
+
+  /** Draws the line, over the boats. */
+  draw(context, game, view) {
+    if (!this.active) return;
+    if (!this.pointed && this.ends.length < 2) this.cross(context, view.width / 2, view.height / 2);
+    const reading = this.reading(game, view);
+    if (!reading) return;
+    const [fromX, fromY] = [view.xOf(reading.from[0]), view.yOf(reading.from[1])];
+    const [toX, toY] = [view.xOf(reading.to[0]), view.yOf(reading.to[1])];
+    for (const [width, colour] of [[4, palette.halo], [2, palette.accent]]) {
+      context.beginPath();
+      context.moveTo(fromX, fromY);
+      context.lineTo(toX, toY);
+      context.lineWidth = width;
+      context.strokeStyle = colour;
+      context.stroke();
+    }
+    for (const [x, y] of [[fromX, fromY], [toX, toY]]) {
+      context.beginPath();
+      context.arc(x, y, 4, 0, 2 * Math.PI);
+      context.fillStyle = palette.accent;
+      context.fill();
+    }
+    if (reading.range_m === 0) return;
+    context.font = '600 13px system-ui, sans-serif';
+    context.textAlign = 'center';
+    context.textBaseline = 'bottom';
+    haloText(context, this.short(reading), (fromX + toX) / 2, (fromY + toY) / 2 - 6);
+  }
+
+  /** Where Enter takes an end: the middle of the chart. */
+  cross(context, x, y) {
+    context.beginPath();
+    context.moveTo(x - CROSS_PX, y);
+    context.lineTo(x + CROSS_PX, y);
+    context.moveTo(x, y - CROSS_PX);
+    context.lineTo(x, y + CROSS_PX);
+    context.lineWidth = 2;
+    context.strokeStyle = palette.accent;
+    context.stroke();
+  }
+
+  short({ range_m, bearing_deg }) {
+    const range = range_m >= 1000 ? number(range_m / 1000, 2, 'km') : number(range_m, 1, 'm');
+    return `${range} ${bearing(bearing_deg)}`;
+  }
+
+  name(game, end) {
+    return end.boat === undefined ? `${number(end.x, 1)}, ${number(end.y, 1)}` : plain(game.vehicles[end.boat].name);
+  }
+
+  /** Writes what is measured, and where the pointer is; without one, the middle of the chart for those who use keys. */
+  tell(game, view) {
+    show(this.words, this.active);
+    if (this.active) write(this.words, this.told(game, view));
+    const byKeys = !this.pointed && this.sheet.matches(':focus-visible');
+    const at = this.pointed ?? (byKeys ? { x: view.width / 2, y: view.height / 2 } : null);
+    show(this.place, at !== null);
+    if (!at) return;
+    const [x, y] = [view.eastOf(at.x), view.northOf(at.y)];
+    const { datum } = game.chart.field ?? {};
+    write(this.place, `x ${number(x, 1)} y ${number(y, 1)} m${datum ? ` · ${latLonWords(datum, x, y)}` : ''}`);
+  }
+
+  told(game, view) {
+    if (this.ends.length === 0) return 'Measure: choose a boat or a place to begin at.';
+    const from = this.name(game, this.ends[0]);
+    if (this.ends.length === 1) return `Measure from ${from}: choose where to.`;
+    return `${from} to ${this.name(game, this.ends[1])}: ${this.short(this.reading(game, view))}`;
+  }
+}

@@ -1,0 +1,180 @@
+// Plots of the selected boat over a recorded game, below the time line and in step with the chart.
+
+import { palette, teamColour } from './palette.js';
+import { bearing, clock, make, number, options, plain, show, write } from './words.js';
+
+const KEY = 'squall.plots';
+const PAD = 4;
+const NONE = '';
+/** A plot reaches at least so far up, m or m/s: noise is not drawn as mountains. */
+const LEAST = 1;
+
+const metres = (value) => number(value, 1, 'm');
+const speed = (value) => number(value, 2, 'm/s');
+
+/** Each plot: title, the lists of a boat's curves, the ordered one first, how values are written, and whether they go around. */
+const PLOTS = [
+  ['Speed', ['ordered_speed_m_s', 'speed_m_s'], speed, false],
+  ['Heading', ['ordered_heading_deg', 'heading_deg'], bearing, true],
+  ['To the flag', ['flag_m'], metres, false],
+  ['Navigation error', ['error_m'], metres, false],
+  ['Range', ['range_m'], metres, false],
+];
+
+function remembered() {
+  try {
+    return localStorage.getItem(KEY) === 'true';
+  } catch {
+    return false;
+  }
+}
+
+/** The sample of a time: the last that was not later. */
+export function sampleAt(times, t_s) {
+  let low = 0;
+  let high = times.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t_s + 1e-6) low = middle + 1;
+    else high = middle;
+  }
+  return Math.max(0, low - 1);
+}
+
+export class Plots {
+  /** `on` has `send(message)`, `seek(t_s)`, and `moved()`, when the chart gets more room or less. */
+  constructor(on) {
+    this.on = on;
+    this.button = document.getElementById('show-plots');
+    this.place = document.getElementById('plots');
+    this.other = make('select');
+    this.other.id = 'plot-other';
+    this.other.setAttribute('aria-label', 'Range to');
+    this.open = remembered();
+    this.asked = '';
+    this.curves = null;
+    this.button.addEventListener('click', () => this.toggle());
+    this.other.addEventListener('change', () => { this.asked = ''; });
+    this.plots = PLOTS.map(([title, keys, words, round]) => this.build(title, keys, words, round));
+    this.none = make('p', 'faint', 'Select a boat to see its curves.');
+    this.place.replaceChildren(this.none, ...this.plots.map(({ box }) => box));
+  }
+
+  build(title, keys, words, round) {
+    const canvas = make('canvas');
+    canvas.setAttribute('role', 'img');
+    const value = make('span', 'value');
+    const head = make('figcaption', '', '', make('span', '', title), ...(title === 'Range' ? [this.other] : []), value);
+    canvas.addEventListener('pointerdown', (event) => this.press(event, canvas));
+    canvas.addEventListener('pointermove', (event) => event.buttons > 0 && this.press(event, canvas));
+    return { box: make('figure', 'plot', '', head, canvas), canvas, value, title, keys, words, round, drawn: '' };
+  }
+
+  press(event, canvas) {
+    const box = canvas.getBoundingClientRect();
+    const part = Math.min(1, Math.max(0, (event.clientX - box.left - PAD) / Math.max(1, box.width - 2 * PAD)));
+    const { t_s } = this.curves ?? {};
+    if (t_s?.length > 0) this.on.seek(t_s[0] + part * (t_s.at(-1) - t_s[0]));
+  }
+
+  toggle() {
+    this.open = !this.open;
+    try {
+      localStorage.setItem(KEY, String(this.open));
+    } catch {
+      // Then it is forgotten with the page.
+    }
+    this.on.moved();
+  }
+
+  greet(game) {
+    this.curves = null;
+    this.asked = '';
+    options(this.other, [[NONE, 'to …'], ...game.vehicles.map(({ name }) => [name, `to ${plain(name)}`])]);
+  }
+
+  /** Takes what the server sent. The score alone is the time line's. */
+  take(message) {
+    if (message.vehicle === null) return;
+    this.curves = message;
+  }
+
+  /** Asks for the curves of the selected boat once they are to be seen, and draws them. */
+  tell(game) {
+    const replay = game.mode === 'replay';
+    show(this.button, replay);
+    this.button.setAttribute('aria-pressed', String(this.open));
+    show(this.place, replay && this.open);
+    if (!replay || !this.open) return;
+    const boat = game.selected;
+    const other = this.other.value === boat ? NONE : this.other.value;
+    const wanted = `${boat} ${other}`;
+    if (boat !== null && wanted !== this.asked && this.on.send({ do: 'curves', vehicle: boat, other: other || null })) this.asked = wanted;
+    show(this.none, boat === null);
+    for (const plot of this.plots) {
+      show(plot.box, boat !== null);
+      if (boat !== null) this.draw(plot, game);
+    }
+  }
+
+  /** The lists of a plot, as far as they are known. */
+  lists(plot, boat) {
+    if (this.curves?.vehicle !== boat) return [];
+    return plot.keys.map((key) => (key === 'range_m' ? this.curves.range_m : this.curves.boat?.[key]) ?? []);
+  }
+
+  draw(plot, game) {
+    const lists = this.lists(plot, game.selected);
+    const times = this.curves?.t_s ?? [];
+    const at = sampleAt(times, game.t_s);
+    const now = lists.at(-1)?.[at];
+    const words = Number.isFinite(now) ? plot.words(now) : '–';
+    write(plot.value, words);
+    const label = `${plot.title} of ${plain(game.selected)} over the game; at ${clock(game.t_s)}: ${words}`;
+    if (plot.canvas.getAttribute('aria-label') !== label) plot.canvas.setAttribute('aria-label', label);
+    const { clientWidth: width, clientHeight: height } = plot.canvas;
+    const ratio = Math.min(2, devicePixelRatio);
+    const key = `${width} ${height} ${ratio} ${palette.version} ${at} ${this.curves?.vehicle} ${this.curves?.other} ${game.selected}`;
+    if (key === plot.drawn || width === 0) return;
+    plot.drawn = key;
+    Object.assign(plot.canvas, { width: width * ratio, height: height * ratio });
+    const context = plot.canvas.getContext('2d');
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const most = plot.round ? 360 : Math.max(LEAST, ...lists.map((list) => list.reduce((most, each) => Math.max(most, each ?? 0), 0)));
+    const span = Math.max(1e-3, (times.at(-1) ?? 1) - (times[0] ?? 0));
+    const x = (t_s) => PAD + ((t_s - (times[0] ?? 0)) / span) * (width - 2 * PAD);
+    const y = (value) => height - PAD - (value / most) * (height - 2 * PAD);
+    context.strokeStyle = palette.grid;
+    context.strokeRect(PAD - 0.5, PAD - 0.5, width - 2 * PAD + 1, height - 2 * PAD + 1);
+    const { team } = game.vehicles[game.indexOf.get(game.selected)];
+    lists.forEach((list, which) => {
+      const ordered = lists.length === 2 && which === 0;
+      this.line(context, list, times, x, y, plot.round);
+      context.strokeStyle = ordered ? palette.faint : teamColour(team);
+      context.lineWidth = ordered ? 1 : 1.5;
+      context.stroke();
+    });
+    context.fillStyle = palette.ink;
+    context.fillRect(x(game.t_s) - 0.75, 0, 1.5, height);
+    context.font = '11px system-ui, sans-serif';
+    context.textBaseline = 'top';
+    context.fillStyle = palette.faint;
+    context.fillText(plot.round ? '360°' : plot.words(most), PAD + 3, PAD + 1);
+  }
+
+  /** A line with gaps where nothing is known, and where a compass course goes through north. */
+  line(context, list, times, x, y, round) {
+    context.beginPath();
+    let before = null;
+    for (let i = 0; i < list.length; i++) {
+      const value = list[i];
+      if (value === null) {
+        before = null;
+        continue;
+      }
+      if (before === null || (round && Math.abs(value - before) > 180)) context.moveTo(x(times[i]), y(value));
+      else context.lineTo(x(times[i]), y(value));
+      before = value;
+    }
+  }
+}
