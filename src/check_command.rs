@@ -17,13 +17,18 @@ pub(crate) struct Args {
 /// Which kind.
 #[derive(clap::Args)]
 pub(crate) struct SchemaArgs {
-    /// game, field, rules, boat, sea, strategy, tournament or gateway
+    /// game, field, rules, boat, sea, strategy, tournament, gateway, rewards, training or sweep
     kind: String,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let mut errors = 0;
     for file in &args.files {
+        if file.extension().is_none_or(|end| end != "toml") {
+            errors += 1;
+            screen::print(&format!("{}: no scenario file, expected a TOML file, NAME.toml\n", file.display()));
+            continue;
+        }
         match check_file(file) {
             Ok(kind) => {
                 screen::print(&format!("{}: a good {kind}\n", file.display()));

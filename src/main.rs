@@ -68,7 +68,7 @@ enum Command {
     Run(run_command::Args),
     /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
     #[command(
-        after_help = "Examples:\n  squall tournament paper --games 20\n  squall tournament mine.toml --json report.json --quality"
+        after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament simple --json report.json --quality"
     )]
     Tournament(tournament_command::Args),
     /// Plays strategies at many points of a space of scenarios: more wind, worse sensors, slower links.
@@ -83,7 +83,7 @@ enum Command {
     #[command(after_help = "Examples:\n  squall sim surveyor_2v2 --game mine --listen tcp/0.0.0.0:7447 --insecure")]
     Sim(sim_command::Args),
     /// Decides for one or many boats in a game that a sim serves.
-    #[command(after_help = "Examples:\n  squall agent blue_1 --game mine --connect tcp/10.0.0.5:7447")]
+    #[command(after_help = "Examples:\n  squall agent --vehicle blue_1 --game mine --connect tcp/10.0.0.5:7447")]
     Agent(agent_command::Args),
     /// Shows a running game in the terminal, or one boat's helm.
     #[command(after_help = "Examples:\n  squall watch\n  squall watch --game mine --connect tcp/10.0.0.5:7447")]
@@ -98,7 +98,7 @@ enum Command {
     #[command(after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap")]
     Log(log_command::Args),
     /// Dumps one decision of a boat's helm: a table, numbers, pictures.
-    #[command(after_help = "Examples:\n  squall helm runs/game.mcap --vehicle blue_1 --at 120")]
+    #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --png helm.png")]
     Helm(helm_command::Args),
     /// Brings real boats into games, and lets real back seats drive simulated ones.
     #[command(after_help = "Examples:\n  squall gateway emulate --help\n  squall gateway surveyor --help")]
@@ -112,14 +112,14 @@ enum Command {
     /// Says what a sea means for a boat, and draws it.
     #[command(after_help = "Examples:\n  squall sea gale\n  squall sea gale --boat heron --plot gale.svg")]
     Sea(sea_command::Args),
-    /// Puts one boat in open water through recorded commands or a standard manoeuvre.
+    /// Sails one boat in open water: by recorded commands, or a standard manoeuvre.
     #[command(after_help = "Examples:\n  squall trial surveyor_m1_8 --help")]
     Trial(trial_command::Args),
     /// Fits a boat file to a recorded series, and says how well.
     #[command(after_help = "Examples:\n  squall identify --help")]
     Identify(identify_command::Args),
     /// Shows what a strategy file means: its modes, and what may run in each.
-    #[command(after_help = "Examples:\n  squall strategy strategy_4\n  squall strategy mine.toml --dot")]
+    #[command(after_help = "Examples:\n  squall strategy strategy_4\n  squall strategy pav01 --dot")]
     Strategy(strategy_command::Args),
     /// Tells what a trained policy is, and explains a decision of it in a recorded game.
     #[command(after_help = "Examples:\n  squall policy scenarios/policies/options.onnx")]

@@ -130,6 +130,11 @@ mod tests {
             find("pav01", Kind::Game),
             Err("there is no game pav01, but a strategy of that name: --blue and --red take it".into())
         );
+        let folder = tempfile::tempdir().expect("a folder");
+        let sweep = folder.path().join("mine.toml");
+        std::fs::write(&sweep, TEMPLATES[4].1).expect("it is written");
+        let said = find(&sweep.display().to_string(), Kind::Game).expect_err("it is none");
+        assert!(said.ends_with("is a sweep, expected a game: squall sweep plays it"), "{said}");
         let path = "scenarios/seas/gale.toml";
         assert_eq!(find(path, Kind::Game), Err(format!("{path} is a sea, expected a game: --sea takes it")));
     }

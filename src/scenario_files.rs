@@ -1,7 +1,7 @@
 //! The scenario files that the program has inside of itself, and what a word of the command line names: a path, or the name of one.
 
 use anyhow::{Result, anyhow, bail};
-use game::scenario::{Kind, did_you_mean, set_built_in};
+use game::scenario::{Kind, did_you_mean, other_kind, set_built_in};
 use include_dir::{Dir, include_dir};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ fn is_inside(path: &Path, kind: Kind) -> bool {
 pub(crate) fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
     if word.contains(['/', '\\']) || given.extension().is_some_and(|end| end == "toml") || given.is_file() {
-        return match Kind::by_folder(&given).filter(|other| *other != kind) {
+        return match other_kind(&given, kind) {
             Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
             None if given.exists() || is_inside(&given, kind) => Ok(given),
             None => {

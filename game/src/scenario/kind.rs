@@ -82,12 +82,19 @@ impl Kind {
 
     /// The kind that knows most of these top-level keys; the first of [`Kind::ALL`] where several do.
     pub(super) fn by_keys(keys: &BTreeSet<String>) -> Kind {
-        let known = |kind: Kind| {
-            let known = &declared(kind)["properties"];
-            keys.iter().filter(|key| known.get(key.as_str()).is_some()).count()
-        };
         // Of equals `max_by_key` takes the last.
-        Kind::ALL.into_iter().rev().max_by_key(|kind| known(*kind)).unwrap_or(Kind::Game)
+        Kind::ALL.into_iter().rev().max_by_key(|kind| kind.known(keys)).unwrap_or(Kind::Game)
+    }
+
+    /// The kind of a file with these top-level keys, if it is clearly another than this: it knows two more of them at least.
+    pub(super) fn other_by_keys(self, keys: &BTreeSet<String>) -> Option<Kind> {
+        Some(Kind::by_keys(keys)).filter(|other| other.known(keys) >= self.known(keys) + 2)
+    }
+
+    /// How many of these top-level keys it knows.
+    fn known(self, keys: &BTreeSet<String>) -> usize {
+        let known = &declared(self)["properties"];
+        keys.iter().filter(|key| known.get(key.as_str()).is_some()).count()
     }
 }
 
@@ -115,6 +122,10 @@ mod tests {
             let keys = keys.into_iter().map(str::to_owned).collect();
             assert_eq!(Kind::by_keys(&keys), want, "{keys:?}");
         }
+        let keys = |keys: &[&str]| keys.iter().map(|key| (*key).to_owned()).collect::<BTreeSet<String>>();
+        assert_eq!(Kind::Game.other_by_keys(&keys(&["about", "game", "opponent", "axis"])), Some(Kind::Sweep));
+        assert_eq!(Kind::Game.other_by_keys(&keys(&["field", "team", "typo"])), None);
+        assert_eq!(Kind::Sea.other_by_keys(&keys(&["typo", "other"])), None);
         assert_eq!(Kind::by_folder(Path::new("x/seas/calm.toml")), Some(Kind::Sea));
         assert_eq!(Kind::by_folder(Path::new("calm.toml")), None);
     }

@@ -232,6 +232,15 @@ pub fn check_file(path: &Path) -> Result<Kind, Problems> {
     Ok(kind)
 }
 
+/// The kind of a file by its folder or its keys, if it is clearly another than the one that is expected.
+#[must_use]
+pub fn other_kind(path: &Path, expected: Kind) -> Option<Kind> {
+    match Kind::by_folder(path) {
+        Some(kind) => (kind != expected).then_some(kind),
+        None => expected.other_by_keys(&top_keys(path)),
+    }
+}
+
 /// A file of one kind, and what was drawn for it.
 fn one<R: DeserializeOwned, T>(
     kind: Kind,

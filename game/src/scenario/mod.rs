@@ -37,7 +37,7 @@ pub use guess::did_you_mean;
 pub use kind::Kind;
 pub use load::{
     check_file, default_gateway, draw_boat, draw_sea, load, load_boat, load_field, load_gateway, load_rewards,
-    load_strategy, load_sweep, load_tournament, load_training, load_with, load_with_files,
+    load_strategy, load_sweep, load_tournament, load_training, load_with, load_with_files, other_kind,
 };
 pub use overrides::Overrides;
 pub use packed::{Packed, UnpackError, digest_of};
