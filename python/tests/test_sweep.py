@@ -166,7 +166,9 @@ def test_what_is_wrong_is_told(sweep: Path, tmp_path: Path) -> None:
 
 def test_ctrl_c_ends_a_long_stretch(sweep: Path) -> None:
     code = (
-        "import _thread, threading; from squall._native import SweepPlan\n"
+        # What was started in the background ignores the signal, and so does what it starts.
+        "import _thread, signal, threading; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "from squall._native import SweepPlan\n"
         f"plan = SweepPlan.open({str(sweep)!r}, games=100000)\n"
         "threading.Timer(0.5, _thread.interrupt_main).start()\n"
         "try:\n    plan.lines(0, plan.games)\nexcept KeyboardInterrupt:\n    print('stopped')"
