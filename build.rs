@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// What the program is made of.
-const SOURCES: [&str; 18] = [
+const SOURCES: [&str; 17] = [
     "Cargo.toml",
     "Cargo.lock",
     "build.rs",
@@ -22,7 +22,6 @@ const SOURCES: [&str; 18] = [
     "learn",
     "sweep",
     "shore",
-    "benches",
 ];
 
 fn main() {

@@ -1,7 +1,7 @@
 //! The scenario files that the program has inside of itself, and what a word of the command line names: a path, or the name of one.
 
 use anyhow::{Result, anyhow, bail};
-use game::scenario::{Kind, did_you_mean, other_kind, set_built_in};
+use game::scenario::{Kind, built_in, did_you_mean, other_kind, set_built_in};
 use include_dir::{Dir, include_dir};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -25,19 +25,13 @@ pub(crate) fn find(word: &str, kind: Kind) -> Result<PathBuf> {
     find_beside(word, kind, None)
 }
 
-/// Whether the program has a file in the place of one that is not on the disk.
-fn is_inside(path: &Path, kind: Kind) -> bool {
-    let is_there = path.parent().is_some_and(|folder| folder.ends_with(Path::new(FOLDER).join(kind.folder())));
-    is_there && name_of(path).is_some_and(|name| contents(kind, &name).is_some())
-}
-
 /// The same, where a name is first looked for in a folder.
 pub(crate) fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Result<PathBuf> {
     let given = PathBuf::from(word);
     if word.contains(['/', '\\']) || given.extension().is_some_and(|end| end == "toml") || given.is_file() {
         return match other_kind(&given, kind) {
             Some(other) => bail!("{word} is a {other}, expected a {kind}{}", where_it_goes(other)),
-            None if given.exists() || is_inside(&given, kind) => Ok(given),
+            None if given.exists() || built_in(&given).is_some() => Ok(given),
             None => {
                 let name = name_of(&given).unwrap_or_default();
                 let there =
@@ -55,10 +49,8 @@ pub(crate) fn find_beside(word: &str, kind: Kind, beside: Option<&Path>) -> Resu
         // As people would write it, so that it is read again as it was printed.
         return Ok(path.strip_prefix(&here).map(Path::to_owned).unwrap_or(path));
     }
-    if contents(kind, word).is_some() {
-        return Ok(Path::new(FOLDER).join(kind.folder()).join(file));
-    }
-    Err(unknown(word, kind, &folders))
+    let inside = Path::new(FOLDER).join(kind.folder()).join(file);
+    if built_in(&inside).is_some() { Ok(inside) } else { Err(unknown(word, kind, &folders)) }
 }
 
 fn unknown(word: &str, kind: Kind, folders: &[PathBuf]) -> anyhow::Error {

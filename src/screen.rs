@@ -129,12 +129,6 @@ fn is_written(text: &str) -> bool {
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_ok()
 }
 
-/// Adds a line to a text, without blanks at its end.
-pub(crate) fn line(text: &mut String, args: std::fmt::Arguments<'_>) {
-    text.push_str(args.to_string().trim_end_matches(' '));
-    text.push('\n');
-}
-
 /// Prints what went wrong.
 pub(crate) fn complain(text: &str) {
     remark(&format!("squall: {text}"));

@@ -2,7 +2,6 @@
 
 use crate::helm::HelmMind;
 use crate::mind::{Mind, Proposal};
-use crate::pilot::Pilot;
 use game::event::EventRecord;
 use game::fault::FaultKind;
 use game::helm::HelmReport;
@@ -19,10 +18,8 @@ pub(crate) fn helm_of(scenario: &Scenario, vehicle: VehicleId, program: &Program
     if !scenario.faults.iter().any(is_killed) {
         return Box::new(helm);
     }
-    let begin = {
-        let (scenario, program) = (scenario.clone(), program.clone());
-        Box::new(move || HelmMind::new(&scenario, vehicle, &program))
-    };
+    let (scenario, program) = (scenario.clone(), program.clone());
+    let begin = Box::new(move || HelmMind::new(&scenario, vehicle, &program));
     Box::new(Restarted { vehicle, helm, begin, shown: false })
 }
 
@@ -68,10 +65,6 @@ impl Mind for Restarted {
     fn show(&mut self, shown: bool) {
         self.shown = shown;
         self.helm.show(shown);
-    }
-
-    fn pilot(&mut self) -> Option<&mut Pilot> {
-        self.helm.pilot()
     }
 
     fn report(&self) -> Option<HelmReport> {

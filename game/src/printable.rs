@@ -72,6 +72,12 @@ fn shortened(text: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{head} … ({surplus} characters) … {tail}"))
 }
 
+/// Adds a line to a text, without blanks at its end.
+pub fn add_line(text: &mut String, args: std::fmt::Arguments<'_>) {
+    text.push_str(args.to_string().trim_end_matches(' '));
+    text.push('\n');
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -41,7 +41,6 @@ LINE_EVERY_S = 30.0
 """How often a line is written where there is no terminal, s."""
 
 
-
 class Plan(Protocol):
     """Which games are to be played."""
 

@@ -1,5 +1,6 @@
 //! What Python says is to be played.
 
+use game::scenario::Packed;
 use learn::environment::{ActionSpace, CriticInput, RawObservation, RawSetup};
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
@@ -66,6 +67,19 @@ impl Arguments {
 /// An error of ours as Python's `ValueError`, with its whole text.
 pub(crate) fn refused(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// A packed plan as Python has it; the stub explains it.
+pub(crate) type PackedParts = (String, Vec<(PathBuf, Vec<u8>)>, String);
+
+/// It for Python.
+pub(crate) fn parts_of(Packed { spec, files, digest }: Packed) -> PackedParts {
+    (spec, files, digest)
+}
+
+/// It from Python.
+pub(crate) fn packed_of((spec, files, digest): PackedParts) -> Packed {
+    Packed { spec, files, digest }
 }
 
 /// How many games and from which seed on, in the place of what a file says.

@@ -1,8 +1,8 @@
 //! A sweep for Python: its plan, stretches of its games played in this process, and the folder that keeps what came of them.
 
-use crate::arguments::{games_and_seed, refused, stretch};
+use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
-use game::scenario::{Packed, Sweep, load_sweep};
+use game::scenario::{Sweep, load_sweep};
 use pyo3::exceptions::{PyIndexError, PyOSError};
 use pyo3::prelude::*;
 use std::convert::Infallible;
@@ -30,15 +30,13 @@ impl SweepPlan {
     }
 
     #[staticmethod]
-    fn unpack(py: Python<'_>, packed: (String, Vec<(PathBuf, Vec<u8>)>, String)) -> PyResult<SweepPlan> {
-        let (spec, files, digest) = packed;
-        let plan = py.detach(|| Plan::unpack(Packed { spec, files, digest }));
+    fn unpack(py: Python<'_>, packed: PackedParts) -> PyResult<SweepPlan> {
+        let plan = py.detach(|| Plan::unpack(packed_of(packed)));
         plan.map(|plan| SweepPlan(Arc::new(plan))).map_err(refused)
     }
 
-    fn pack(&self) -> (String, Vec<(PathBuf, Vec<u8>)>, String) {
-        let Packed { spec, files, digest } = self.0.pack();
-        (spec, files, digest)
+    fn pack(&self) -> PackedParts {
+        parts_of(self.0.pack())
     }
 
     #[getter]

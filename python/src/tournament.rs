@@ -1,9 +1,9 @@
 //! A tournament for Python: its plan, stretches of its games played in this process, and what came of them.
 
-use crate::arguments::{games_and_seed, refused, stretch};
+use crate::arguments::{PackedParts, games_and_seed, packed_of, parts_of, refused, stretch};
 use crate::signals;
 use arena::tournament::{Plan, Record, Report, csv, play_some, text};
-use game::scenario::{Packed, Tournament, load_tournament};
+use game::scenario::{Tournament, load_tournament};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use std::num::NonZeroUsize;
@@ -29,15 +29,13 @@ impl TournamentPlan {
     }
 
     #[staticmethod]
-    fn unpack(py: Python<'_>, packed: (String, Vec<(PathBuf, Vec<u8>)>, String)) -> PyResult<TournamentPlan> {
-        let (spec, files, digest) = packed;
-        let plan = py.detach(|| Plan::unpack(Packed { spec, files, digest }));
+    fn unpack(py: Python<'_>, packed: PackedParts) -> PyResult<TournamentPlan> {
+        let plan = py.detach(|| Plan::unpack(packed_of(packed)));
         plan.map(|plan| TournamentPlan(Arc::new(plan))).map_err(refused)
     }
 
-    fn pack(&self) -> (String, Vec<(PathBuf, Vec<u8>)>, String) {
-        let Packed { spec, files, digest } = self.0.pack();
-        (spec, files, digest)
+    fn pack(&self) -> PackedParts {
+        parts_of(self.0.pack())
     }
 
     #[getter]

@@ -1,17 +1,17 @@
 //! Two recorded games beside each other, as text.
 
-use crate::screen::line;
 use analysis::{Comparison, Pair, Response, SETTLED_S};
+use game::printable::add_line;
 use std::path::Path;
 
 /// The whole page.
 pub(super) fn text([a, b]: [&Path; 2], comparison: &Comparison) -> String {
     let mut text = String::new();
     for (name, file, duration_s) in [("A", a, comparison.durations_s[0]), ("B", b, comparison.durations_s[1])] {
-        line(&mut text, format_args!("{name}  {}  {duration_s:.1} s", file.display()));
+        add_line(&mut text, format_args!("{name}  {}  {duration_s:.1} s", file.display()));
     }
     for note in &comparison.notes {
-        line(&mut text, format_args!("   {note}"));
+        add_line(&mut text, format_args!("   {note}"));
     }
     let width = comparison.boats.iter().map(|pair| pair.boat.len()).max().unwrap_or(0).max(8) + 2;
     tracks(&mut text, width, comparison);
@@ -21,13 +21,13 @@ pub(super) fn text([a, b]: [&Path; 2], comparison: &Comparison) -> String {
 }
 
 fn tracks(text: &mut String, width: usize, comparison: &Comparison) {
-    line(text, format_args!("\nbetween the tracks over {:.1} s, m", comparison.common_s));
+    add_line(text, format_args!("\nbetween the tracks over {:.1} s, m", comparison.common_s));
     let heads = ["mean", "rms", "max", "at the end", "as shapes"].map(|head| format!("{head:>12}")).concat();
-    line(text, format_args!("{:width$}{heads}", ""));
+    add_line(text, format_args!("{:width$}{heads}", ""));
     for Pair { boat, apart, .. } in &comparison.boats {
         let cells = [apart.mean_m, apart.rms_m, apart.max_m, apart.final_m, apart.frechet_m];
         let cells = cells.map(|metres| format!("{metres:>12.2}")).concat();
-        line(text, format_args!("{boat:width$}{cells}"));
+        add_line(text, format_args!("{boat:width$}{cells}"));
     }
     *text += "as shapes: discrete Fréchet distance (Eiter and Mannila 1994), which forgives being early or late\n";
 }
@@ -45,11 +45,11 @@ const MEASURES: [Measure; 6] = [
 ];
 
 fn responses(text: &mut String, width: usize, boats: &[Pair]) {
-    line(text, format_args!("\nhow boats answer to their orders"));
+    add_line(text, format_args!("\nhow boats answer to their orders"));
     let heads = MEASURES.map(|(name, ..)| format!("{name:>13}")).concat();
-    line(text, format_args!("{:width$}  {heads}{:>22}", "", "drift while holding"));
+    add_line(text, format_args!("{:width$}  {heads}{:>22}", "", "drift while holding"));
     let units = MEASURES.map(|(_, unit, ..)| format!("{unit:>13}")).concat();
-    line(text, format_args!("{:width$}  {units}{:>22}", "", "north, east m/s"));
+    add_line(text, format_args!("{:width$}  {units}{:>22}", "", "north, east m/s"));
     for pair in boats {
         for (game, response) in ["A", "B"].into_iter().zip(&pair.response) {
             let cell = |(_, _, places, of): Measure| match of(response) {
@@ -61,7 +61,7 @@ fn responses(text: &mut String, width: usize, boats: &[Pair]) {
                 None => "-".to_owned(),
             };
             let name = if game == "A" { pair.boat.as_str() } else { "" };
-            line(text, format_args!("{name:width$}{game} {}{drift:>22}", MEASURES.map(cell).concat()));
+            add_line(text, format_args!("{name:width$}{game} {}{drift:>22}", MEASURES.map(cell).concat()));
         }
     }
     *text += &format!(
@@ -70,23 +70,23 @@ fn responses(text: &mut String, width: usize, boats: &[Pair]) {
 }
 
 fn events(text: &mut String, comparison: &Comparison) {
-    line(text, format_args!("\n{:20}{:>7}{:>7}", "", "A", "B"));
+    add_line(text, format_args!("\n{:20}{:>7}{:>7}", "", "A", "B"));
     for (team, points) in &comparison.score {
         let [a, b] = points.map(|points| points.map_or("-".to_owned(), |points| points.to_string()));
-        line(text, format_args!("{:20}{a:>7}{b:>7}", format!("score of {team}")));
+        add_line(text, format_args!("{:20}{a:>7}{b:>7}", format!("score of {team}")));
     }
     let found = &comparison.events;
     for (kind, [a, b]) in &found.counts {
-        line(text, format_args!("{:20}{a:>7}{b:>7}", kind.replace('_', " ")));
+        add_line(text, format_args!("{:20}{a:>7}{b:>7}", kind.replace('_', " ")));
     }
     let tolerance_s = found.tolerance_s;
-    line(text, format_args!("\n{} events are in both within {tolerance_s:.1} s", found.in_both));
+    add_line(text, format_args!("\n{} events are in both within {tolerance_s:.1} s", found.in_both));
     for (name, only) in [("A", &found.only_in_a), ("B", &found.only_in_b)] {
         if !only.is_empty() {
-            line(text, format_args!("only in {name}:"));
+            add_line(text, format_args!("only in {name}:"));
         }
         for event in only {
-            line(text, format_args!("{:>7.1} s  {}", event.at_s, event.sentence()));
+            add_line(text, format_args!("{:>7.1} s  {}", event.at_s, event.sentence()));
         }
     }
 }

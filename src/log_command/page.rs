@@ -1,7 +1,7 @@
 //! The summary of a recorded game as text.
 
-use crate::screen::line;
 use analysis::{BoatStatistics, Gateway, Summary, Topic, Traffic};
+use game::printable::add_line;
 use recording::{Bag, Damaged, utc};
 use std::collections::BTreeMap;
 
@@ -23,22 +23,22 @@ pub(super) fn gateway(bag: &Bag) -> String {
     let [boat, version, commit] = ["vehicle", "version", "commit"].map(|key| bag.fact(key));
     let gateway = analysis::gateway_of(bag, boat);
     let mut text = format!("the gateway of {boat}\n");
-    line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(bag.began_utc_ns())));
+    add_line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(bag.began_utc_ns())));
     let duration_s = bag.messages().map(|message| message.at).max().unwrap_or_default().as_s();
-    line(&mut text, format_args!("{duration_s:.1} s, {:.1} MB", bag.size() as f64 * 1e-6));
+    add_line(&mut text, format_args!("{duration_s:.1} s, {:.1} MB", bag.size() as f64 * 1e-6));
     if bag.is_cut() {
-        line(&mut text, format_args!("the file ends before the gateway did: what follows holds up to there"));
+        add_line(&mut text, format_args!("the file ends before the gateway did: what follows holds up to there"));
     }
     damaged(&mut text, &gateway.damaged);
     text += &gateway_text(&gateway);
     text += &topics(&analysis::topics(bag));
-    line(&mut text, format_args!("\nsquall gateway replay plays it through the codec and the supervisor again"));
+    add_line(&mut text, format_args!("\nsquall gateway replay plays it through the codec and the supervisor again"));
     text
 }
 
 fn damaged(text: &mut String, damaged: &Damaged) {
     if let Some(remark) = damaged.remark() {
-        line(text, format_args!("{remark}"));
+        add_line(text, format_args!("{remark}"));
     }
 }
 
@@ -50,14 +50,14 @@ pub(super) fn events(summary: &Summary) -> String {
 fn head(summary: &Summary) -> String {
     let Summary { scenario, seed, version, commit, pace, duration_s, wall_s, bytes, .. } = summary;
     let mut text = format!("{}  {scenario}  seed {seed}\n", summary.game);
-    line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(summary.began_utc_ns)));
+    add_line(&mut text, format_args!("recorded {} by Squall {version} ({commit})", utc::text(summary.began_utc_ns)));
     let megabytes = *bytes as f64 * 1e-6;
-    line(&mut text, format_args!("{pace}, {duration_s:.1} s in {wall_s:.1} s by the clock, {megabytes:.1} MB"));
+    add_line(&mut text, format_args!("{pace}, {duration_s:.1} s in {wall_s:.1} s by the clock, {megabytes:.1} MB"));
     if summary.is_cut {
-        line(&mut text, format_args!("the file ends before the game did: what follows holds up to there"));
+        add_line(&mut text, format_args!("the file ends before the game did: what follows holds up to there"));
     }
     if let Some(dropped) = summary.dropped.filter(|dropped| *dropped > 0) {
-        line(&mut text, format_args!("{dropped} messages are missing: the disk was too slow"));
+        add_line(&mut text, format_args!("{dropped} messages are missing: the disk was too slow"));
     }
     damaged(&mut text, &summary.damaged);
     let score: Vec<String> = summary.score.iter().map(|(team, points)| format!("{team} {points}")).collect();
@@ -67,9 +67,9 @@ fn head(summary: &Summary) -> String {
         (None, false) if summary.events.iter().any(|event| event.event == "ended") => "a draw".to_owned(),
         (None, false) => "cut short".to_owned(),
     };
-    line(&mut text, format_args!("{}  {end}", score.join("  ")));
+    add_line(&mut text, format_args!("{}  {end}", score.join("  ")));
     if let Some(digest) = &summary.digest {
-        line(&mut text, format_args!("digest {digest}"));
+        add_line(&mut text, format_args!("digest {digest}"));
     }
     text
 }
@@ -78,19 +78,22 @@ fn head(summary: &Summary) -> String {
 fn boats(boats: &[BoatStatistics]) -> String {
     let width = boats.iter().map(|boat| boat.boat.len()).max().unwrap_or(0).max(8) + 2;
     let mut text = format!("\n{:width$}{:>10}{:>8}{:>7}", "", "distance", "speed", "max");
-    line(&mut text, format_args!("{:>7}{:>10}{:>6}{:>8}{:>12}", "grabs", "captures", "tags", "tagged", "collisions"));
-    line(&mut text, format_args!("{:width$}{:>10}{:>8}{:>7}", "", "m", "m/s", "m/s"));
+    add_line(
+        &mut text,
+        format_args!("{:>7}{:>10}{:>6}{:>8}{:>12}", "grabs", "captures", "tags", "tagged", "collisions"),
+    );
+    add_line(&mut text, format_args!("{:width$}{:>10}{:>8}{:>7}", "", "m", "m/s", "m/s"));
     for boat in boats {
         let moved = format!("{:>10.0}{:>8.2}{:>7.2}", boat.distance_m, boat.speed_mean_m_s, boat.speed_max_m_s);
         let c = &boat.counts;
         let did = format!("{:>7}{:>10}{:>6}{:>8}{:>12}", c.grabs, c.captures, c.tags, c.tagged, c.collisions);
-        line(&mut text, format_args!("{:width$}{moved}{did}", boat.boat));
+        add_line(&mut text, format_args!("{:width$}{moved}{did}", boat.boat));
     }
     let heads = ["carrying", "tagged", "outside", "no agent", "lost"].map(|head| format!("{head:>9}")).concat();
-    line(&mut text, format_args!("\n{:width$}{heads}{:>22}{:>22}", "", "navigation error", "off its orders"));
+    add_line(&mut text, format_args!("\n{:width$}{heads}{:>22}{:>22}", "", "navigation error", "off its orders"));
     let (navigation, orders) =
         (format!("{:>12}{:>10}", "rms m", "95 % m"), format!("{:>12}{:>10}", "rms deg", "rms m/s"));
-    line(&mut text, format_args!("{:width$}{}{navigation}{orders}", "", format!("{:>9}", "s").repeat(5)));
+    add_line(&mut text, format_args!("{:width$}{}{navigation}{orders}", "", format!("{:>9}", "s").repeat(5)));
     for boat in boats {
         let spans_s = [boat.carrying_s, boat.tagged_s, boat.outside_s, boat.agent_lost_s, boat.nav_lost_s];
         let spans = spans_s.map(|span_s| format!("{span_s:>9.1}")).concat();
@@ -102,12 +105,12 @@ fn boats(boats: &[BoatStatistics]) -> String {
             Some(error) => format!("{:>12.1}{:>10.2}", error.heading_rms_deg, error.speed_rms_m_s),
             None => format!("{:>12}{:>10}", "-", "-"),
         };
-        line(&mut text, format_args!("{:width$}{spans}{navigation}{orders}", boat.boat));
+        add_line(&mut text, format_args!("{:width$}{spans}{navigation}{orders}", boat.boat));
     }
     let real: Vec<&str> = boats.iter().filter(|boat| boat.is_real).map(|boat| boat.boat.as_str()).collect();
     if !real.is_empty() {
         let real = real.join(", ");
-        line(&mut text, format_args!("{real}: real; the truth about them is what their gateways reported"));
+        add_line(&mut text, format_args!("{real}: real; the truth about them is what their gateways reported"));
     }
     text
 }
@@ -120,12 +123,12 @@ fn gateway_text(gateway: &Gateway) -> String {
     };
     let mut text = format!("\ngateway of {}: {state} in the end, {failsafes}\n", gateway.boat);
     for failsafe in &gateway.failsafes {
-        line(&mut text, format_args!("{:>7.1} s of the gateway  {}", failsafe.at_s, failsafe.cause));
+        add_line(&mut text, format_args!("{:>7.1} s of the gateway  {}", failsafe.at_s, failsafe.cause));
     }
     for (way, traffic) in [("from the boat", &gateway.from_boat), ("to the boat", &gateway.to_boat)] {
         let Traffic { bytes, sentences } = traffic;
         let kinds: Vec<String> = sentences.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
-        line(&mut text, format_args!("  {way:<14}{bytes:>9} bytes  {}", kinds.join("  ")));
+        add_line(&mut text, format_args!("  {way:<14}{bytes:>9} bytes  {}", kinds.join("  ")));
     }
     text
 }
@@ -133,11 +136,11 @@ fn gateway_text(gateway: &Gateway) -> String {
 fn topics(topics: &BTreeMap<String, Topic>) -> String {
     let width = topics.keys().map(String::len).max().unwrap_or(0).max(5) + 2;
     let mut text = String::new();
-    line(&mut text, format_args!("\n{:width$}{:>10}{:>10}{:>10}", "topic", "messages", "a second", "kB"));
+    add_line(&mut text, format_args!("\n{:width$}{:>10}{:>10}{:>10}", "topic", "messages", "a second", "kB"));
     for (name, topic) in topics {
         let rate = topic.rate_hz.map_or("-".to_owned(), |rate_hz| format!("{rate_hz:.1}"));
         let kilobytes = topic.bytes as f64 * 1e-3;
-        line(&mut text, format_args!("{name:width$}{:>10}{rate:>10}{kilobytes:>10.0}", topic.count));
+        add_line(&mut text, format_args!("{name:width$}{:>10}{rate:>10}{kilobytes:>10.0}", topic.count));
     }
     text
 }

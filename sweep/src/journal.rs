@@ -86,14 +86,16 @@ impl Journal {
         jobs: NonZeroUsize,
         stop: &AtomicBool,
     ) -> Result<Vec<Outcome>, StudyError> {
-        let new: Vec<Job> = order.iter().filter(|job| !self.known.contains_key(&key(plan, job))).copied().collect();
+        let keys: Vec<Vec<String>> = order.iter().map(|job| key(plan, job)).collect();
+        let is_new = |(_, key): &(&Job, &Vec<String>)| !self.known.contains_key(*key);
+        let new: Vec<Job> = order.iter().zip(&keys).filter(is_new).map(|(job, _)| *job).collect();
         play_jobs(plan, &new, jobs, stop, |played| {
             let key = key(plan, &played.job);
             self.file.write_all(line_of(&key, &played.result).as_bytes()).map_err(io("write", &self.path))?;
             self.known.insert(key, played.result);
             Ok::<(), StudyError>(())
         })?;
-        Ok(order.iter().map_while(|job| self.known.get(&key(plan, job)).cloned()).collect())
+        Ok(keys.iter().map_while(|key| self.known.get(key).cloned()).collect())
     }
 }
 

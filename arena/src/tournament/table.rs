@@ -2,7 +2,7 @@
 
 use super::estimate::Estimate;
 use super::report::{Cell, Report, Row};
-use std::fmt::Arguments;
+use game::printable::add_line;
 
 /// A column: its name in the CSV file, its heading for people, and its value.
 type Column = (&'static str, &'static str, fn(&Row) -> Estimate);
@@ -22,13 +22,13 @@ const COLUMNS: [Column; 7] = [
 pub fn text(report: &Report) -> String {
     let mut text = String::new();
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(", sea {sea}"));
-    line(&mut text, format_args!("{}: {}{sea}", report.tournament, report.game));
+    add_line(&mut text, format_args!("{}: {}{sea}", report.tournament, report.game));
     match report.matrix.first() {
-        None => line(&mut text, format_args!("no seed of which all games were played: no result")),
+        None => add_line(&mut text, format_args!("no seed of which all games were played: no result")),
         Some(Cell { games, seeds, .. }) => {
             let (count, first, last) = (report.seeds_counted, seeds.first, seeds.last);
-            line(&mut text, format_args!("{games} games a pairing, half of them on each side"));
-            line(&mut text, format_args!("means a game ± 95 %, over {count} seeds from {first} to {last}\n"));
+            add_line(&mut text, format_args!("{games} games a pairing, half of them on each side"));
+            add_line(&mut text, format_args!("means a game ± 95 %, over {count} seeds from {first} to {last}\n"));
             entries(&mut text, report);
             match &report.challenger {
                 Some(challenger) => pairings(&mut text, report, challenger),
@@ -41,12 +41,6 @@ pub fn text(report: &Report) -> String {
     text
 }
 
-/// Adds a line without blanks at its end.
-fn line(text: &mut String, args: Arguments<'_>) {
-    text.push_str(args.to_string().trim_end_matches(' '));
-    text.push('\n');
-}
-
 fn width(report: &Report) -> usize {
     report.entries.iter().map(|row| row.name.len()).max().unwrap_or(0).max(6) + 1
 }
@@ -55,11 +49,11 @@ fn width(report: &Report) -> usize {
 fn entries(text: &mut String, report: &Report) {
     let width = width(report);
     let heads: String = COLUMNS.iter().map(|(_, words, _)| format!("{words:>15}")).collect();
-    line(text, format_args!("{:width$}{heads}{:>7}{:>7}{:>7}", "", "won", "drawn", "lost"));
+    add_line(text, format_args!("{:width$}{heads}{:>7}{:>7}{:>7}", "", "won", "drawn", "lost"));
     for row in &report.entries {
         let cells: String = COLUMNS.iter().map(|(_, _, of)| format!("{:>15}", estimate(&of(row)))).collect();
         let Row { name, wins, draws, losses, .. } = row;
-        line(text, format_args!("{name:width$}{cells}{wins:>7}{draws:>7}{losses:>7}"));
+        add_line(text, format_args!("{name:width$}{cells}{wins:>7}{draws:>7}{losses:>7}"));
     }
 }
 
@@ -71,25 +65,25 @@ fn estimate(estimate: &Estimate) -> String {
 /// Who beats whom.
 fn matrix(text: &mut String, report: &Report) {
     let width = width(report);
-    line(text, format_args!("\nrow beats column: won % / drawn %, and the row's score less the column's a game"));
+    add_line(text, format_args!("\nrow beats column: won % / drawn %, and the row's score less the column's a game"));
     let column = width.max(19);
     let heads: String = report.entries.iter().map(|row| format!("{:>column$}", row.name)).collect();
-    line(text, format_args!("{:width$}{heads}", ""));
+    add_line(text, format_args!("{:width$}{heads}", ""));
     for row in &report.entries {
         let cell = |column: &Row| {
             let cell = report.matrix.iter().find(|cell| cell.row == row.name && cell.column == column.name);
             cell.map_or("-".to_owned(), beaten)
         };
         let cells: String = report.entries.iter().map(|other| format!("{:>column$}", cell(other))).collect();
-        line(text, format_args!("{:width$}{cells}", row.name));
+        add_line(text, format_args!("{:width$}{cells}", row.name));
     }
 }
 
 /// How the challenger did against each other entry.
 fn pairings(text: &mut String, report: &Report, challenger: &str) {
     let width = width(report);
-    line(text, format_args!("\n{challenger} against each, with the share of decided games that it won ± 95 %"));
-    line(
+    add_line(text, format_args!("\n{challenger} against each, with the share of decided games that it won ± 95 %"));
+    add_line(
         text,
         format_args!("{:width$}{:>7}{:>7}{:>7}{:>20}{:>16}", "", "won", "drawn", "lost", "of decided", "points"),
     );
@@ -97,7 +91,7 @@ fn pairings(text: &mut String, report: &Report, challenger: &str) {
         let Cell { column, wins, draws, losses, won_of_decided, score: [own, theirs], .. } = cell;
         let share = won_of_decided.as_ref().map_or("-".to_owned(), share);
         let points = format!("{own:.2} : {theirs:.2}");
-        line(text, format_args!("{column:width$}{wins:>7}{draws:>7}{losses:>7}{share:>20}{points:>16}"));
+        add_line(text, format_args!("{column:width$}{wins:>7}{draws:>7}{losses:>7}{share:>20}{points:>16}"));
     }
 }
 
@@ -120,20 +114,20 @@ fn missing(text: &mut String, report: &Report) {
     const LISTED: usize = 5;
     let Report { games_unplayed, games_left_out, failures, .. } = report;
     if *games_unplayed > 0 {
-        line(text, format_args!("\nCUT SHORT: {games_unplayed} games were not played"));
+        add_line(text, format_args!("\nCUT SHORT: {games_unplayed} games were not played"));
     }
     if !failures.is_empty() {
-        line(text, format_args!("\n{} games could not start:", failures.len()));
+        add_line(text, format_args!("\n{} games could not start:", failures.len()));
     }
     for failure in failures.iter().take(LISTED) {
         let why = failure.why.replace('\n', "; ");
-        line(text, format_args!("  {} against {}, seed {}: {why}", failure.blue, failure.red, failure.seed));
+        add_line(text, format_args!("  {} against {}, seed {}: {why}", failure.blue, failure.red, failure.seed));
     }
     if failures.len() > LISTED {
-        line(text, format_args!("  and {} more", failures.len() - LISTED));
+        add_line(text, format_args!("  and {} more", failures.len() - LISTED));
     }
     if *games_left_out > 0 {
-        line(text, format_args!("{games_left_out} games are left out, since others of their seed are missing"));
+        add_line(text, format_args!("{games_left_out} games are left out, since others of their seed are missing"));
     }
 }
 
@@ -141,10 +135,10 @@ fn missing(text: &mut String, report: &Report) {
 fn again(text: &mut String, report: &Report) {
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(" --sea {sea}"));
     let sides: String = report.teams.iter().zip(["A", "B"]).map(|(team, file)| option(team, file)).collect();
-    line(text, format_args!("\nany of these games again, with strategy files for A and B:"));
-    line(text, format_args!("  squall run {}{sea}{sides} --seed {} --in-process", report.game, report.seed));
+    add_line(text, format_args!("\nany of these games again, with strategy files for A and B:"));
+    add_line(text, format_args!("  squall run {}{sea}{sides} --seed {} --in-process", report.game, report.seed));
     for row in &report.entries {
-        line(text, format_args!("  {:<16} {}", row.name, row.strategy));
+        add_line(text, format_args!("  {:<16} {}", row.name, row.strategy));
     }
 }
 
@@ -158,7 +152,7 @@ fn option(team: &str, file: &str) -> String {
 pub fn csv(report: &Report) -> String {
     let mut text = String::new();
     let heads: String = COLUMNS.iter().map(|(name, _, _)| format!(",{name},{name}_low,{name}_high")).collect();
-    line(&mut text, format_args!("name,strategy,games,wins,draws,losses{heads}"));
+    add_line(&mut text, format_args!("name,strategy,games,wins,draws,losses{heads}"));
     for row in &report.entries {
         let number = |number: Option<f64>| number.map_or(String::new(), |number| number.to_string());
         let numbers = |of: &fn(&Row) -> Estimate| {
@@ -168,7 +162,7 @@ pub fn csv(report: &Report) -> String {
         let cells: String = COLUMNS.iter().map(|(_, _, of)| numbers(of)).collect();
         let Row { name, strategy, games, wins, draws, losses, .. } = row;
         let strategy = strategy.replace('"', "\"\"");
-        line(&mut text, format_args!("{name},\"{strategy}\",{games},{wins},{draws},{losses}{cells}"));
+        add_line(&mut text, format_args!("{name},\"{strategy}\",{games},{wins},{draws},{losses}{cells}"));
     }
     text
 }

@@ -16,7 +16,8 @@ pub fn set_built_in(files: BuiltIn) {
 
 /// What the program has in the place of a file that is not on the disk: only of one in a folder of a folder `scenarios`, as in
 /// `scenarios/seas/gale.toml`.
-pub(super) fn built_in(path: &Path) -> Option<&'static [u8]> {
+#[must_use]
+pub fn built_in(path: &Path) -> Option<&'static [u8]> {
     let mut parts = path.components().rev().map(|part| part.as_os_str().to_str());
     let [name, folder, root] = [parts.next()??, parts.next()??, parts.next()??];
     if root == "scenarios" { BUILT_IN.get()?(&format!("{folder}/{name}")) } else { None }

@@ -30,7 +30,7 @@ mod tournament;
 mod tree;
 mod validate;
 
-pub use built_in::{BuiltIn, set_built_in};
+pub use built_in::{BuiltIn, built_in, set_built_in};
 pub use draw::{Drawn, Recipe};
 pub use files::Files;
 pub use guess::did_you_mean;
