@@ -80,7 +80,8 @@ test('pause, one decision, speed and going on', async (t) => {
 test('a helm that nobody looked at before the pause says so, and shows its rose after a step', async (t) => {
   const run = new Program(t, 'run', pav01, '--view', '--speed', '5x', '--no-record', '--listen', '127.0.0.1:0');
   const sight = await Sight.open(t, browser, await run.url());
-  await sight.goesOn();
+  // A helm without a fix of its position weighs nothing yet.
+  await sight.until('every boat goes', (least) => squall.frame?.boats.every((boat) => boat.speed_m_s > least), GOES_M_S);
   await sight.press('#pause');
   await sight.phase('paused');
   await sight.press('[data-vehicle=blue_two]');

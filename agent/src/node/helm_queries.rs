@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 /// Queries that may wait to be read.
 const INBOX: usize = 32;
-/// A mind keeps its utilities for this long after the last query.
+/// A mind keeps its utilities for this long after the last query that wanted them.
 const LOOKED_AT: Duration = Duration::from_secs(5);
 /// A query that came before anything was kept waits this long for the next decision. In a game that is paused there is
 /// none, and the page waits no longer than a second.
@@ -79,6 +79,10 @@ impl HelmQueries {
         // A query without a payload wants the short answer.
         let wants: HelmQuestion = serde_json::from_slice(&query.payload).unwrap_or_default();
         let asked = Asked { vehicle, wants, query, at: clock::now() };
+        if !wants.functions {
+            // Modes and weights are there without anybody looking: a list of boats costs a helm nothing.
+            return reply(runner, asked);
+        }
         match self.looked.iter_mut().find(|(looked, _)| *looked == vehicle) {
             Some((_, at)) => *at = asked.at,
             None => {
