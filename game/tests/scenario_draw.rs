@@ -41,10 +41,12 @@ fn each_vehicle_and_each_seed_draws_its_own_numbers_and_the_model_takes_them() {
         scenario::load(&written(dir.path(), BOAT, SEA, "link = { delay_s = { uniform = [0.1, 0.2] } }")).unwrap();
     // The files are not needed any more.
     std::fs::remove_dir_all(dir.path()).unwrap();
+    let recorded: Scenario = serde_json::from_str(&serde_json::to_string(&first).unwrap()).unwrap();
 
     for seed in 1..=50 {
         let game = first.of_seed(seed).unwrap();
         assert_eq!(game, first.of_seed(seed).unwrap(), "seed {seed}");
+        assert_eq!(game, recorded.of_seed(seed).unwrap(), "seed {seed}: the same where the texts are read again");
         assert_eq!(game.drawn.len(), 2 * 3 + 1 + 1, "{:?}", game.drawn);
         let mass_kg = value(&game, "blue_one/hull.mass_kg");
         assert!((0.9 * 52.3..1.1 * 52.3).contains(&mass_kg), "seed {seed}: {mass_kg}");

@@ -2,6 +2,7 @@
 
 use super::draw::{Drawing, Drawn};
 use super::files::Files;
+use super::kept::Kept;
 use super::overrides::Overrides;
 use super::problem::{Problem, Problems};
 use super::source::Sources;
@@ -23,6 +24,8 @@ pub(super) struct Diagnostics {
     pub(super) texts: Option<Vec<(PathBuf, String)>>,
     /// Models that were read before.
     pub(super) models: Vec<PolicyModel>,
+    /// What was made of files before.
+    pub(super) kept: Arc<Kept>,
     /// The files that take the place of the game's own.
     pub(super) overrides: Overrides,
     problems: Vec<Problem>,
@@ -39,6 +42,7 @@ impl Diagnostics {
             files: Arc::default(),
             texts: None,
             models: vec![],
+            kept: Arc::default(),
             overrides: Overrides::default(),
             problems: vec![],
             faults: 0,

@@ -5,6 +5,7 @@
 //! the middle of a campaign.
 
 use super::diagnostics::Diagnostics;
+use super::kept::Reading;
 use super::overrides::Overrides;
 use super::tree::{Node, Table, Value};
 use crate::stream::Stream;
@@ -32,6 +33,9 @@ pub struct Recipe {
     pub(super) overrides: Overrides,
     /// Every file, as read.
     pub(super) files: Vec<(PathBuf, String)>,
+    /// What was made of them.
+    #[serde(skip)]
+    pub(super) reading: Reading,
     /// The seed that the numbers at hand were drawn with.
     pub(super) seed: Option<u64>,
 }

@@ -3,6 +3,7 @@
 use super::diagnostics::Diagnostics;
 use super::draw::{Drawing, Drawn, Recipe};
 use super::files::Files;
+use super::kept::Reading;
 use super::kind::Kind;
 use super::overrides::Overrides;
 use super::problem::Problems;
@@ -47,25 +48,24 @@ pub fn load_with_files(path: &Path, overrides: &Overrides, files: &Arc<Files>) -
         let mut diagnostics = Diagnostics::new(drawing);
         diagnostics.overrides = overrides.clone();
         diagnostics.files = Arc::clone(files);
-        game_of(diagnostics, path)
+        game_of(&mut diagnostics, path).map(|scenario| (scenario, diagnostics))
     };
-    let least = read(Drawing::Least)?;
-    if least.recipe.is_none() {
+    let (mut least, diagnostics) = read(Drawing::Least)?;
+    if least.drawn.is_empty() {
         return Ok(least);
     }
     read(Drawing::Greatest)?;
+    let files = diagnostics.sources.texts();
+    let reading = Reading::of(diagnostics);
+    least.recipe = Some(Recipe { game: path.to_owned(), overrides: overrides.clone(), files, reading, seed: None });
     least.of_seed(least.seed)
 }
 
-fn game_of(mut diagnostics: Diagnostics, path: &Path) -> Result<Scenario, Problems> {
-    let value = read::document(&mut diagnostics, Kind::Game, path, None)
-        .and_then(|document| check::game(&mut diagnostics, &document));
+fn game_of(diagnostics: &mut Diagnostics, path: &Path) -> Result<Scenario, Problems> {
+    let value =
+        read::document(diagnostics, Kind::Game, path, None).and_then(|document| check::game(diagnostics, &document));
     let mut scenario = diagnostics.close(value)?;
     scenario.drawn = std::mem::take(&mut diagnostics.drawn);
-    if !scenario.drawn.is_empty() {
-        let (game, overrides) = (path.to_owned(), diagnostics.overrides.clone());
-        scenario.recipe = Some(Recipe { game, overrides, files: diagnostics.sources.texts(), seed: None });
-    }
     Ok(scenario)
 }
 
@@ -79,14 +79,18 @@ impl Scenario {
             return Ok(Scenario { seed, ..self.clone() });
         };
         let mut diagnostics = Diagnostics::new(Drawing::Seed(seed));
-        diagnostics.texts = Some(recipe.files.clone());
         diagnostics.overrides.clone_from(&recipe.overrides);
-        diagnostics.models = self.strategies.iter().flat_map(Strategy::models).cloned().collect();
-        let mut drawn = game_of(diagnostics, &recipe.game)?;
-        drawn.seed = seed;
-        if let Some(recipe) = &mut drawn.recipe {
-            recipe.seed = Some(seed);
+        match &recipe.reading.0 {
+            Some(reading) => (diagnostics.sources, diagnostics.kept) = (**reading).clone(),
+            None => {
+                diagnostics.texts = Some(recipe.files.clone());
+                diagnostics.models = self.strategies.iter().flat_map(Strategy::models).cloned().collect();
+            }
         }
+        let mut drawn = game_of(&mut diagnostics, &recipe.game)?;
+        drawn.seed = seed;
+        let reading = if recipe.reading.0.is_some() { recipe.reading.clone() } else { Reading::of(diagnostics) };
+        drawn.recipe = Some(Recipe { reading, seed: Some(seed), ..recipe.clone() });
         Ok(drawn)
     }
 }

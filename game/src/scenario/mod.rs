@@ -13,6 +13,7 @@ mod draw;
 mod field_value;
 mod files;
 mod guess;
+mod kept;
 mod kind;
 mod load;
 mod overrides;

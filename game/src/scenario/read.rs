@@ -1,6 +1,7 @@
 //! From a path to what the file says: text, bases, merging, and what its schema makes of it.
 
 use super::diagnostics::Diagnostics;
+use super::kept::KeptDocument;
 use super::kind::Kind;
 use super::schema::declared;
 use super::source::tidied;
@@ -21,7 +22,7 @@ pub(super) struct Document<T> {
     pub(super) raw: T,
     /// How much was wrong before this file was read.
     faults: usize,
-    tree: Node,
+    tree: Arc<Node>,
     wrong: Vec<String>,
 }
 
@@ -76,9 +77,15 @@ pub(super) fn document_of<T: DeserializeOwned>(
     owner: &str,
 ) -> Option<Document<T>> {
     let faults = diagnostics.faults();
+    let kept = Arc::clone(&diagnostics.kept);
+    if let Some(kept) = kept.document(kind, path, owner) {
+        return document_of_tree(diagnostics, kind, path, kept.clone(), (owner, faults));
+    }
     let own = if kind == Kind::Strategy { OWN } else { &[] };
-    let tree = tree(diagnostics, path, asked_at, own)?;
-    document_of_tree(diagnostics, kind, path, tree, (owner, faults))
+    let mut tree = tree(diagnostics, path, asked_at, own)?;
+    put_settings(diagnostics, (kind, owner), &mut tree);
+    let document = KeptDocument { tree: Arc::new(tree), value: None };
+    document_of_tree(diagnostics, kind, path, document, (owner, faults))
 }
 
 /// What a file of a kind with this text would say.
@@ -90,24 +97,37 @@ pub(super) fn document_of_text<T: DeserializeOwned>(
 ) -> Option<Document<T>> {
     let faults = diagnostics.faults();
     let start = diagnostics.sources.add(path.to_owned(), text.into());
-    let tree = parsed(diagnostics, start, text);
-    document_of_tree(diagnostics, kind, path, tree, (kind.name(), faults))
+    let mut tree = parsed(diagnostics, start, text);
+    put_settings(diagnostics, (kind, kind.name()), &mut tree);
+    let document = KeptDocument { tree: Arc::new(tree), value: None };
+    document_of_tree(diagnostics, kind, path, document, (kind.name(), faults))
 }
 
-/// A tree, read by the schema of its kind, with single values in place of its own; `faults` is how much was wrong before it.
+/// A tree, read by the schema of its kind, if that was not done before; `faults` is how much was wrong before it.
 fn document_of_tree<T: DeserializeOwned>(
     diagnostics: &mut Diagnostics,
     kind: Kind,
     path: &Path,
-    mut tree: Node,
+    KeptDocument { tree, value }: KeptDocument,
     (owner, faults): (&str, usize),
 ) -> Option<Document<T>> {
-    put_settings(diagnostics, (kind, owner), &mut tree);
     let start = tree.at;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    diagnostics.is_name(start, "the file's name", &name);
-    let (mut value, wrong) = validated(diagnostics, &tree, declared(kind), owner);
-    value["name"] = name.clone().into();
+    let (value, wrong) = if let Some(value) = value {
+        (value, vec![])
+    } else {
+        diagnostics.is_name(start, "the file's name", &name);
+        let drawn = diagnostics.drawn.len();
+        let (mut value, wrong) = validated(diagnostics, &tree, declared(kind), owner);
+        value["name"] = name.clone().into();
+        let is_known = diagnostics.kept.document(kind, path, owner).is_some();
+        if !is_known && diagnostics.faults() == faults {
+            let value = (diagnostics.drawn.len() == drawn).then(|| value.clone());
+            let document = KeptDocument { tree: Arc::clone(&tree), value };
+            Arc::make_mut(&mut diagnostics.kept).keep_document(kind, path, owner, document);
+        }
+        (value, wrong)
+    };
     match serde_json::from_value(value) {
         Ok(raw) => Some(Document { name, raw, faults, tree, wrong }),
         Err(error) => {

@@ -173,8 +173,9 @@ impl<'a> Validator<'a> {
     fn table(&mut self, node: &'a Node, table: &'a Table, schema: &'a Json) -> Json {
         let mut values = Map::new();
         let others = schema.get("additionalProperties").filter(|others| others.is_object());
+        let properties = &schema["properties"];
         for (key, value) in table {
-            match schema["properties"].get(key).or(others) {
+            match properties.get(key).or(others) {
                 Some(about) => {
                     let value = self.below(key, |below| below.property(key, value, about));
                     values.extend(value.map(|value| (key.clone(), value)));
@@ -182,16 +183,20 @@ impl<'a> Validator<'a> {
                 None => self.unknown(key, value, schema),
             }
         }
-        for (key, about) in schema["properties"].as_object().into_iter().flatten() {
+        for (key, about) in properties.as_object().into_iter().flatten() {
+            if values.contains_key(key) {
+                continue;
+            }
+            let is_required = is_required(schema, key);
             if !table.contains_key(key) {
-                let value = self.below(key, |below| below.absent(node, about, is_required(schema, key)));
+                let value = self.below(key, |below| below.absent(node, about, is_required));
                 values.extend(value.map(|value| (key.clone(), value)));
             }
-            if !values.contains_key(key) && is_required(schema, key) {
+            if !values.contains_key(key) && is_required {
                 values.insert(key.clone(), self.stand_in(about));
             }
         }
-        by_fields(values, &schema["properties"])
+        by_fields(values, properties)
     }
 
     /// The value of a key that is there.

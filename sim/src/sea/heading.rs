@@ -6,6 +6,11 @@ use std::f64::consts::TAU;
 /// Headings at which the numbers stand.
 pub(super) const BINS: usize = 72;
 
+/// The heading of a bin, rad.
+pub(super) fn of_bin(bin: usize) -> f64 {
+    bin as f64 * (TAU / BINS as f64)
+}
+
 /// The heading in bins: the bin below, and how far on to the next.
 #[inline(always)]
 fn place(heading_rad: f64) -> (usize, f64) {
@@ -45,11 +50,14 @@ pub(super) struct HeadingTable {
 }
 
 impl HeadingTable {
-    /// The table of as many `rows`, which `numbers` gives for a row and a heading in rad: four for each of four components,
-    /// by number.
-    pub(super) fn new(rows: usize, numbers: impl Fn(usize, f64) -> [[f32; ROW]; FOLD]) -> HeadingTable {
-        let bin_rad = TAU / BINS as f64;
-        let number = |i: usize| Lanes::of_row(numbers(i % rows, (i / rows) as f64 * bin_rad));
+    /// The table of as many `rows`, whose `numbers` are four for each component, given for a bin and a component; beyond the last
+    /// component they are nothing.
+    pub(super) fn new(rows: usize, numbers: impl Fn(usize, usize) -> [f64; FOLD]) -> HeadingTable {
+        let number = |i: usize| {
+            let (bin, row) = (i / rows, i % rows);
+            let parts: [[f64; FOLD]; ROW] = std::array::from_fn(|lane| numbers(bin, row * ROW + lane));
+            Lanes::of_row(std::array::from_fn(|part| parts.map(|parts| parts[part] as f32)))
+        };
         let at: Vec<Lanes<f32>> = (0..BINS * rows).map(number).collect();
         let line = |i: usize| Segment { from: at[i], gain: at[(i + rows) % at.len()] - at[i] };
         HeadingTable { rows, lines: (0..at.len()).map(line).collect() }

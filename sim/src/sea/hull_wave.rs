@@ -8,8 +8,9 @@
 //! Second order: the drift force, which varies with the groups of waves (Newman 1974).
 
 use super::heading::{HeadingTable, Segment};
+use super::patch::{Patch, Patches};
 use super::submergence::{self, Submergence};
-use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, side_by_side, waves_of_row};
+use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, waves_of_row};
 use crate::hull::Planar;
 use crate::lanes::{FOLD, LANES, Lanes, ROW};
 use game::boat::Boat;
@@ -80,24 +81,31 @@ impl HullWaves {
     /// The waves of `field` on a boat like this in water of this density.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat, water_density_kg_m3: f64) -> HullWaves {
+        HullWaves::of(field, boat, water_density_kg_m3, &Patches::new(field, boat))
+    }
+
+    /// The same, with the waves under its hull at hand.
+    pub(super) fn of(field: &WaveField, boat: &Boat, water_density_kg_m3: f64, patches: &Patches) -> HullWaves {
         let block = |waves: &[PlaneWave]| Block {
             phases: Phases::new(waves),
             rows: std::array::from_fn(|row| Row::new(waves_of_row(waves, row))),
         };
-        let lines = HeadingTable::new(row_count(&field.waves), |row, heading_rad| {
-            let waves = waves_of_row(&field.waves, row);
-            let speeds: [Planar; ROW] = side_by_side(waves, |w| orbital_velocity(w, boat, heading_rad));
-            let single = |part: fn(&Planar) -> f64| speeds.each_ref().map(|v| part(v) as f32);
-            let reflected_m = row_of(waves, |w| w.reflected_m(boat.draught_m));
-            [single(|v| v.surge), single(|v| v.sway), single(|v| v.yaw), reflected_m]
+        let speeds_m_s: Vec<f64> = field.waves.iter().map(|wave| orbital_speed_m_s(wave, boat)).collect();
+        let reflected_m = field.reflected_m(boat);
+        let lines = HeadingTable::new(row_count(&field.waves), |bin, wave| {
+            let Some(patch) = patches.of_bin(bin).get(wave) else { return [0.0; FOLD] };
+            let Planar { surge, sway, yaw } = orbital_velocity(speeds_m_s[wave], patch);
+            [surge, sway, yaw, reflected_m[wave]]
         });
-        let reflected_m2: f64 = field.waves.iter().map(|w| w.reflected_m(boat.draught_m)).map(|c| c * c).sum();
+        let reflected_m2: f64 = reflected_m.iter().map(|c| c * c).sum();
         let per_m2 = if reflected_m2 > 0.0 { 1.0 / reflected_m2 } else { 0.0 };
-        let drift = HeadingTable::new(1, |_, heading_rad| {
-            let mean = field.mean_drift_newton(boat, water_density_kg_m3, heading_rad);
-            let mut numbers = [[0.0; ROW]; FOLD];
-            (numbers[0][0], numbers[1][0]) = ((per_m2 * mean.surge) as f32, (per_m2 * mean.sway) as f32);
-            numbers
+        let drift = HeadingTable::new(1, |bin, number| {
+            if number > 0 {
+                return [0.0; FOLD];
+            }
+            let travels = patches.of_bin(bin).iter().map(|patch| (patch.ahead, patch.starboard));
+            let mean = field.drift_of(boat, water_density_kg_m3, reflected_m.iter().copied().zip(travels));
+            [per_m2 * mean.surge, per_m2 * mean.sway, 0.0, 0.0]
         });
         let blocks = field.waves.chunks(LANES).map(block).collect();
         HullWaves { instructions: field.instructions, blocks, lines, drift }
@@ -193,55 +201,20 @@ impl Kernel for AtWith<'_> {
     }
 }
 
-/// Orbital velocity of a wave at half the draught, averaged over the hull as a rectangle of its length and beam: per
+/// The amplitude of a wave's orbital velocity at half the draught, m/s.
+pub(super) fn orbital_speed_m_s(wave: &PlaneWave, boat: &Boat) -> f64 {
+    wave.component.amplitude_m * wave.component.omega_rad_s * wave.orbital_at(0.5 * boat.draught_m)
+}
+
+/// Orbital velocity of a wave of this amplitude of it, averaged over the hull as a rectangle of its length and beam: per
 /// cosine of the phase amidships in surge and sway, and per sine of it in yaw.
 ///
 /// Yaw is the rate at which a rigid line along the hull turns that has the same first moment of the transverse
 /// velocity, the mean of x v over the mean of x².
-pub(super) fn orbital_velocity(wave: &PlaneWave, boat: &Boat, heading_rad: f64) -> Planar {
-    let patch = Patch::new(wave, boat, heading_rad);
-    let component = &wave.component;
-    let speed_m_s = component.amplitude_m * component.omega_rad_s * wave.orbital_at(0.5 * boat.draught_m);
+pub(super) fn orbital_velocity(speed_m_s: f64, patch: &Patch) -> Planar {
     Planar {
         surge: speed_m_s * patch.ahead * patch.mean_x * patch.mean_y,
         sway: speed_m_s * patch.starboard * patch.mean_x * patch.mean_y,
         yaw: -speed_m_s * patch.starboard * patch.tilt_x * patch.mean_y,
     }
-}
-
-/// A plane wave under a rectangle, length by beam.
-pub(super) struct Patch {
-    /// The wave's travel in the boat's axes: a unit vector.
-    pub(super) ahead: f64,
-    pub(super) starboard: f64,
-    /// What is left of it in the mean over the length, and over the beam.
-    pub(super) mean_x: f64,
-    pub(super) mean_y: f64,
-    /// The slope of the straight line that fits it best over the length and over the beam, per −sine of the phase, 1/m.
-    pub(super) tilt_x: f64,
-    pub(super) tilt_y: f64,
-}
-
-impl Patch {
-    pub(super) fn new(wave: &PlaneWave, boat: &Boat, heading_rad: f64) -> Patch {
-        let (starboard, ahead) = libm::sincos(wave.component.toward_rad - heading_rad);
-        let (k_x, k_y) = (wave.wavenumber_rad_m * ahead, wave.wavenumber_rad_m * starboard);
-        let (x, y) = (0.5 * k_x * boat.length_m, 0.5 * k_y * boat.beam_m);
-        Patch { ahead, starboard, mean_x: mean(x), mean_y: mean(y), tilt_x: k_x * tilt(x), tilt_y: k_y * tilt(y) }
-    }
-}
-
-/// The mean of cos over −`half_rad` to `half_rad`: sin u / u.
-fn mean(half_rad: f64) -> f64 {
-    if half_rad.abs() < 1e-4 { 1.0 - half_rad * half_rad / 6.0 } else { libm::sin(half_rad) / half_rad }
-}
-
-/// The slope of the line that fits sin best over −`half_rad` to `half_rad`: 3 (sin u − u cos u) / u³.
-fn tilt(half_rad: f64) -> f64 {
-    let u = half_rad;
-    if u.abs() < 0.01 {
-        return 1.0 - u * u / 10.0;
-    }
-    let (sin, cos) = libm::sincos(u);
-    3.0 * (sin - u * cos) / (u * u * u)
 }

@@ -10,6 +10,7 @@ pub mod eddy;
 mod gauss_markov;
 mod heading;
 mod hull_wave;
+mod patch;
 mod sine;
 pub mod spectrum;
 mod submergence;
@@ -28,6 +29,8 @@ pub use wave::{Component, Surface, WaveField};
 pub use wave_response::{Attitude, WaveResponse};
 pub use wind::WindField;
 
+use patch::Patches;
+
 use crate::hull::{HullModel, Planar};
 use game::boat::{Drive, Windage};
 use game::frame::{Body, Ned, Pose, Rotation};
@@ -40,6 +43,9 @@ use std::sync::Arc;
 /// Propellers are this share of the length astern of midships.
 const PROPELLER_ASTERN: f64 = 0.4;
 
+/// What was made for hulls of different size, which is large and shared.
+type Made<const N: usize, T> = Vec<([f64; N], Arc<T>)>;
+
 /// The sea of a game, and how each kind of boat lies in it. Copies share the tables, which are large.
 #[derive(Clone, Debug)]
 pub struct SeaModel {
@@ -47,9 +53,9 @@ pub struct SeaModel {
     wind: Option<WindField>,
     current: CurrentField,
     /// Hulls of different size; kinds of boat that differ in other things share one.
-    shapes: Vec<([f64; 3], Arc<Shape>)>,
+    shapes: Made<3, Shape>,
     /// Propeller submergence, by size of hull and place of the propellers.
-    submergences: Vec<([f64; 4], Arc<Submergence>)>,
+    submergences: Made<4, Submergence>,
     kinds: Vec<Kind>,
     /// Half a tick, and as seconds.
     half_tick: SimTime,
@@ -121,11 +127,12 @@ impl SeaModel {
             waves,
             wind,
         };
+        let mut patches = Made::new();
         for boat in boats {
             let kind = Kind {
-                submergence: model.submergence_of(boat),
+                submergence: model.submergence_of(boat, &mut patches),
                 length_m: boat.length_m,
-                shape: model.shape_of(boat, sea.water_density_kg_m3),
+                shape: model.shape_of(boat, sea.water_density_kg_m3, &mut patches),
                 windage: boat.windage.clone(),
                 wind_mean_m_s: model.wind.as_ref().map_or(0.0, |wind| wind.mean_m_s(boat.windage.height_m)),
             };
@@ -135,23 +142,27 @@ impl SeaModel {
     }
 
     /// The index of the boat's propeller submergence, made if it is the first of it, if the propellers can ventilate.
-    fn submergence_of(&mut self, boat: &Boat) -> Option<usize> {
+    fn submergence_of(&mut self, boat: &Boat, patches: &mut Made<2, Patches>) -> Option<usize> {
         let (Drive::Thrusters { thruster, .. }, Some(field)) = (&boat.drive, &self.waves) else { return None };
         thruster.flaws.ventilation?;
         let size = [boat.length_m, boat.beam_m, boat.draught_m, thruster.arm_m];
         Some(index_of(&mut self.submergences, size, || {
             let ahead = -PROPELLER_ASTERN * boat.length_m;
-            Submergence::new(field, boat, [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m }))
+            let places = [-1.0, 1.0].map(|side| Body { ahead, starboard: side * thruster.arm_m });
+            Submergence::of(field, boat, places, patches_of(patches, field, boat))
         }))
     }
 
     /// The index of the boat's shape, made if it is the first of it.
-    fn shape_of(&mut self, boat: &Boat, water_density_kg_m3: f64) -> usize {
+    fn shape_of(&mut self, boat: &Boat, water_density_kg_m3: f64, patches: &mut Made<2, Patches>) -> usize {
         let Some(field) = &self.waves else { return 0 };
-        index_of(&mut self.shapes, [boat.length_m, boat.beam_m, boat.draught_m], || Shape {
-            waves: HullWaves::new(field, boat, water_density_kg_m3),
-            response: WaveResponse::new(field, boat),
-            rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
+        index_of(&mut self.shapes, [boat.length_m, boat.beam_m, boat.draught_m], || {
+            let patches = patches_of(patches, field, boat);
+            Shape {
+                waves: HullWaves::of(field, boat, water_density_kg_m3, patches),
+                response: WaveResponse::of(field, boat, patches),
+                rise_drift_m_s: field.rise_drift_m_s(boat.draught_m),
+            }
         })
     }
 
@@ -281,8 +292,14 @@ impl SeaNow<'_> {
     }
 }
 
+/// The waves under a hull of this length and beam.
+fn patches_of<'a>(made: &'a mut Made<2, Patches>, field: &WaveField, boat: &Boat) -> &'a Patches {
+    let index = index_of(made, [boat.length_m, boat.beam_m], || Patches::new(field, boat));
+    &made[index].1
+}
+
 /// The place of what was made for this size, made now if it is the first of it.
-fn index_of<const N: usize, T>(made: &mut Vec<([f64; N], Arc<T>)>, size: [f64; N], make: impl FnOnce() -> T) -> usize {
+fn index_of<const N: usize, T>(made: &mut Made<N, T>, size: [f64; N], make: impl FnOnce() -> T) -> usize {
     made.iter().position(|(other, _)| *other == size).unwrap_or_else(|| {
         made.push((size, Arc::new(make())));
         made.len() - 1

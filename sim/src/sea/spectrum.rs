@@ -24,14 +24,31 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Spectral density of the surface elevation, m² s, at the angular frequency `omega_rad_s` > 0.
 #[must_use]
 pub fn jonswap_m2_s(waves: &Waves, omega_rad_s: f64) -> f64 {
-    let peak_rad_s = TAU / waves.tp_s;
-    let ratio = peak_rad_s / omega_rad_s;
-    let ratio_4 = ratio * ratio * ratio * ratio;
-    let width = if omega_rad_s <= peak_rad_s { 0.07 } else { 0.09 };
-    let off = (omega_rad_s / peak_rad_s - 1.0) / width;
-    let log_gamma = libm::log(waves.gamma);
-    let shape = libm::exp(log_gamma * libm::exp(-0.5 * off * off) - 1.25 * ratio_4);
-    (1.0 - 0.287 * log_gamma) * 0.3125 * waves.hs_m * waves.hs_m * ratio_4 / omega_rad_s * shape
+    Jonswap::new(waves).density_m2_s(omega_rad_s)
+}
+
+/// The spectrum of a sea, without what depends on the frequency.
+struct Jonswap {
+    peak_rad_s: f64,
+    log_gamma: f64,
+    scale_m2: f64,
+}
+
+impl Jonswap {
+    fn new(waves: &Waves) -> Jonswap {
+        let log_gamma = libm::log(waves.gamma);
+        let scale_m2 = (1.0 - 0.287 * log_gamma) * 0.3125 * waves.hs_m * waves.hs_m;
+        Jonswap { peak_rad_s: TAU / waves.tp_s, log_gamma, scale_m2 }
+    }
+
+    fn density_m2_s(&self, omega_rad_s: f64) -> f64 {
+        let ratio = self.peak_rad_s / omega_rad_s;
+        let ratio_4 = ratio * ratio * ratio * ratio;
+        let width = if omega_rad_s <= self.peak_rad_s { 0.07 } else { 0.09 };
+        let off = (omega_rad_s / self.peak_rad_s - 1.0) / width;
+        let shape = libm::exp(self.log_gamma * libm::exp(-0.5 * off * off) - 1.25 * ratio_4);
+        self.scale_m2 * ratio_4 / omega_rad_s * shape
+    }
 }
 
 /// The same over frequency: m²/Hz at `frequency_hz` > 0.
@@ -54,8 +71,10 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
     let peak_rad_s = TAU / waves.tp_s;
     // The shape does not depend on the height, and a sea of no height has one too.
     let shape = Waves { hs_m: 1.0, ..waves.clone() };
-    let energy = Curve::new(BAND, |x| jonswap_m2_s(&shape, x * peak_rad_s));
-    let second = Curve::new(BAND, |x| x * x * jonswap_m2_s(&shape, x * peak_rad_s));
+    let jonswap = Jonswap::new(&shape);
+    let densities: Vec<f64> = points(BAND).map(|x| jonswap.density_m2_s(x * peak_rad_s)).collect();
+    let energy = Curve::new(BAND, densities.iter().copied());
+    let second = Curve::new(BAND, points(BAND).zip(&densities).map(|(x, density)| x * x * density));
     let both = Curve { x: energy.x, up_to: (0..=PIECES).map(|i| 0.5 * (energy.up_to[i] + second.up_to[i])).collect() };
     let spread = spread(waves.spreading);
     let first_quantile = stream.unit();
@@ -82,11 +101,22 @@ pub(super) fn components(waves: &Waves, seed: u64) -> Vec<Component> {
 
 /// The spreading, as a curve over the angle off the mean direction.
 fn spread(spreading: Spreading) -> Option<Curve> {
-    match spreading {
-        Spreading::None => None,
-        Spreading::CosineSquared => Some(Curve::new((-FRAC_PI_2, FRAC_PI_2), |mu| libm::cos(mu) * libm::cos(mu))),
-        Spreading::Cosine2s { s } => Some(Curve::new((-PI, PI), |mu| libm::pow(libm::cos(0.5 * mu).abs(), 2.0 * s))),
-    }
+    let (half_rad, density): (f64, &dyn Fn(f64) -> f64) = match spreading {
+        Spreading::None => return None,
+        Spreading::CosineSquared => (FRAC_PI_2, &|mu| {
+            let cos = libm::cos(mu);
+            cos * cos
+        }),
+        Spreading::Cosine2s { s } => (PI, &move |mu| libm::pow(libm::cos(0.5 * mu).abs(), 2.0 * s)),
+    };
+    let interval = (-half_rad, half_rad);
+    Some(Curve::new(interval, points(interval).map(density)))
+}
+
+/// The ends of an interval and of its [`PIECES`].
+fn points(x: (f64, f64)) -> impl Iterator<Item = f64> {
+    let step = (x.1 - x.0) / PIECES as f64;
+    (0..=PIECES).map(move |i| x.0 + step * i as f64)
 }
 
 /// A density over an interval, summed up: straight between [`PIECES`] + 1 points.
@@ -97,13 +127,12 @@ struct Curve {
 }
 
 impl Curve {
-    /// Sums `density`, which is positive somewhere, over the interval, by the trapezoidal rule.
-    fn new(x: (f64, f64), density: impl Fn(f64) -> f64) -> Curve {
-        let step = (x.1 - x.0) / PIECES as f64;
-        let mut up_to = vec![0.0];
-        let (mut sum, mut last) = (0.0, density(x.0));
-        for i in 1..=PIECES {
-            let next = density(x.0 + step * i as f64);
+    /// Sums densities at the [`points`] of the interval, which are positive somewhere, by the trapezoidal rule.
+    fn new(x: (f64, f64), mut densities: impl Iterator<Item = f64>) -> Curve {
+        let mut up_to = Vec::with_capacity(PIECES + 1);
+        up_to.push(0.0);
+        let (mut sum, mut last) = (0.0, densities.next().unwrap_or_default());
+        for next in densities {
             sum += 0.5 * (last + next);
             last = next;
             up_to.push(sum);

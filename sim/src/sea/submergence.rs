@@ -1,10 +1,10 @@
 //! Propeller submergence in waves: the elevation of the surface there, less the rise of the hull.
 
-use super::heading::{HeadingTable, Segment};
-use super::hull_wave::Patch;
-use super::wave::{PlaneWave, WaveField, row_count, side_by_side, waves_of_row};
-use super::wave_response::{HEAVE, PITCH, ROLL, quasi_static, transfer};
-use crate::lanes::{LANES, Lanes, ROW};
+use super::heading::{BINS, HeadingTable, Segment};
+use super::patch::{Patch, Patches};
+use super::wave::{PlaneWave, WaveField, row_count};
+use super::wave_response::{HEAVE, PITCH, ROLL, pressed_m, quasi_static, transfer};
+use crate::lanes::{FOLD, LANES, Lanes};
 use game::boat::Boat;
 use game::frame::Body;
 
@@ -19,12 +19,26 @@ impl Submergence {
     /// That of propellers at `places` of a boat like this.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat, places: [Body; 2]) -> Submergence {
-        let change = HeadingTable::new(row_count(&field.waves), |row, heading_rad| {
-            let parts: [[f64; 4]; ROW] = side_by_side(waves_of_row(&field.waves, row), |w| {
-                let [port, starboard] = places.map(|place| change_of(w, boat, heading_rad, place));
-                [port.0, starboard.0, port.1, starboard.1]
+        Submergence::of(field, boat, places, &Patches::new(field, boat))
+    }
+
+    /// The same, with the waves under its hull at hand.
+    pub(super) fn of(field: &WaveField, boat: &Boat, places: [Body; 2], patches: &Patches) -> Submergence {
+        let waves: Vec<Wave> = field.waves.iter().map(|wave| Wave::new(wave, boat)).collect();
+        let further = |bin| {
+            let each = patches.of_bin(bin).iter().zip(&waves);
+            each.map(|(patch, wave)| places.map(|place| libm::sincos(wave.further_rad(place, patch))))
+        };
+        // On the opposite heading a wave comes to a place as much later as it came earlier.
+        let phases: Vec<[(f64, f64); 2]> = (0..BINS / 2).flat_map(further).collect();
+        let change = HeadingTable::new(row_count(&field.waves), |bin, wave| {
+            let Some(patch) = patches.of_bin(bin).get(wave) else { return [0.0; FOLD] };
+            let (half, sign) = if bin < BINS / 2 { (bin, 1.0) } else { (bin - BINS / 2, -1.0) };
+            let [port, starboard] = [0, 1].map(|side| {
+                let (sin, cos) = phases[half * waves.len() + wave][side];
+                waves[wave].change_at(places[side], patch, (sign * sin, cos))
             });
-            std::array::from_fn(|part| parts.map(|parts| parts[part] as f32))
+            [port.0, starboard.0, port.1, starboard.1]
         });
         Submergence { change }
     }
@@ -45,21 +59,46 @@ pub(super) fn add(change_m: &mut Lanes<f32>, line: Lanes<f32>, sin: Lanes<f32>, 
     }
 }
 
-/// What a wave adds to the submergence of a place, per cosine and per sine of its phase amidships.
-fn change_of(wave: &PlaneWave, boat: &Boat, heading_rad: f64, place: Body) -> (f64, f64) {
-    let patch = Patch::new(wave, boat, heading_rad);
-    let further_rad = wave.wavenumber_rad_m * (patch.ahead * place.ahead + patch.starboard * place.starboard);
-    let (sin, cos) = libm::sincos(further_rad);
-    let a = wave.component.amplitude_m;
-    let [heave, roll, pitch] = quasi_static(wave, boat, heading_rad);
-    let transfer_of = |(natural_rad_s, damping)| transfer(natural_rad_s, damping, wave.component.omega_rad_s);
-    let ((heave_real, heave_behind), (roll_real, roll_behind)) = (transfer_of(HEAVE), transfer_of(ROLL));
-    let (pitch_real, pitch_behind) = transfer_of(PITCH);
-    let (bow_up, starboard_down) = (pitch * place.ahead, roll * place.starboard);
-    (
-        a * cos - heave * heave_real - bow_up * pitch_behind + starboard_down * roll_behind,
-        -a * sin + heave * heave_behind - bow_up * pitch_real + starboard_down * roll_real,
-    )
+/// What of a wave does not depend on the heading.
+struct Wave {
+    amplitude_m: f64,
+    pressed_m: f64,
+    wavenumber_rad_m: f64,
+    /// What the springs pass on, in phase and behind.
+    heave: (f64, f64),
+    roll: (f64, f64),
+    pitch: (f64, f64),
+}
+
+impl Wave {
+    fn new(wave: &PlaneWave, boat: &Boat) -> Wave {
+        let [heave, roll, pitch] = [HEAVE, ROLL, PITCH]
+            .map(|(natural_rad_s, damping)| transfer(natural_rad_s, damping, wave.component.omega_rad_s));
+        Wave {
+            amplitude_m: wave.component.amplitude_m,
+            pressed_m: pressed_m(wave, boat),
+            wavenumber_rad_m: wave.wavenumber_rad_m,
+            heave,
+            roll,
+            pitch,
+        }
+    }
+
+    /// By how much its phase at a place is further than amidships.
+    fn further_rad(&self, place: Body, patch: &Patch) -> f64 {
+        self.wavenumber_rad_m * (patch.ahead * place.ahead + patch.starboard * place.starboard)
+    }
+
+    /// What it adds to the submergence of a place, per cosine and per sine of its phase amidships; given are sine and cosine of
+    /// [`Wave::further_rad`].
+    fn change_at(&self, place: Body, patch: &Patch, (sin, cos): (f64, f64)) -> (f64, f64) {
+        let [heave, roll, pitch] = quasi_static(self.pressed_m, patch);
+        let (bow_up, starboard_down) = (pitch * place.ahead, roll * place.starboard);
+        (
+            self.amplitude_m * cos - heave * self.heave.0 - bow_up * self.pitch.1 + starboard_down * self.roll.1,
+            -self.amplitude_m * sin + heave * self.heave.1 - bow_up * self.pitch.0 + starboard_down * self.roll.0,
+        )
+    }
 }
 
 #[cfg(test)]

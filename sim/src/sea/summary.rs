@@ -1,6 +1,7 @@
 //! A summary of a sea for a kind of boat: wave height and length, orbital velocity, forces, drift.
 
-use super::hull_wave::orbital_velocity;
+use super::hull_wave::{orbital_speed_m_s, orbital_velocity};
+use super::patch::Patch;
 use super::windage::{AIR_DENSITY_KG_M3, wind_force};
 use super::{CurrentField, WaveField};
 use crate::hull::HullModel;
@@ -73,7 +74,10 @@ impl Summary {
 fn wave_summary(field: &WaveField, (tp_s, from_rad): (f64, f64), boat: &Boat, density_kg_m3: f64) -> WaveSummary {
     let headings_rad = [from_rad, from_rad + std::f64::consts::FRAC_PI_2];
     let on_hull = |heading_rad: f64| {
-        let velocities = field.waves.iter().map(|wave| orbital_velocity(wave, boat, heading_rad));
+        let velocities = field
+            .waves
+            .iter()
+            .map(|wave| orbital_velocity(orbital_speed_m_s(wave, boat), &Patch::new(wave, boat, heading_rad)));
         velocities.map(|v| 0.5 * (v.surge * v.surge + v.sway * v.sway)).sum::<f64>().sqrt()
     };
     let drift = |heading_rad: f64| {

@@ -333,10 +333,28 @@ impl WaveField {
     /// `drift_factor` is there.
     #[must_use]
     pub fn mean_drift_newton(&self, boat: &Boat, water_density_kg_m3: f64, heading_rad: f64) -> Planar {
+        let travel = |wave: &PlaneWave| {
+            let (sin, cos) = libm::sincos(wave.component.toward_rad - heading_rad);
+            (cos, sin)
+        };
+        let parts = self.reflected_m(boat).into_iter().zip(self.waves.iter().map(travel));
+        self.drift_of(boat, water_density_kg_m3, parts)
+    }
+
+    /// [`PlaneWave::reflected_m`] of each wave.
+    pub(super) fn reflected_m(&self, boat: &Boat) -> Vec<f64> {
+        self.waves.iter().map(|wave| wave.reflected_m(boat.draught_m)).collect()
+    }
+
+    /// The same force, of what a boat throws back of each wave and the wave's travel ahead and to starboard.
+    pub(super) fn drift_of(
+        &self,
+        boat: &Boat,
+        water_density_kg_m3: f64,
+        waves: impl Iterator<Item = (f64, (f64, f64))>,
+    ) -> Planar {
         let (mut surge, mut sway) = (0.0, 0.0);
-        for w in &self.waves {
-            let (sin, cos) = libm::sincos(w.component.toward_rad - heading_rad);
-            let reflected_m = w.reflected_m(boat.draught_m);
+        for (reflected_m, (cos, sin)) in waves {
             surge += reflected_m * reflected_m * cos * cos.abs();
             sway += reflected_m * reflected_m * sin * sin.abs();
         }

@@ -4,8 +4,8 @@
 //! horizontal motion.
 
 use super::heading::HeadingTable;
-use super::hull_wave::Patch;
-use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, side_by_side, waves_of_row};
+use super::patch::{Patch, Patches};
+use super::wave::{Phases, PlaneWave, WaveField, row_count, row_of, waves_of_row};
 use crate::lanes::{FOLD, LANES, Lanes, ROW};
 use game::boat::Boat;
 use game::frame::{Ned, Pose};
@@ -114,15 +114,20 @@ impl WaveResponse {
     /// The response of a boat like this to the waves of `field`.
     #[must_use]
     pub fn new(field: &WaveField, boat: &Boat) -> WaveResponse {
+        WaveResponse::of(field, boat, &Patches::new(field, boat))
+    }
+
+    /// The same, with the waves under its hull at hand.
+    pub(super) fn of(field: &WaveField, boat: &Boat, patches: &Patches) -> WaveResponse {
         let block = |waves: &[PlaneWave]| Block {
             phases: Phases::new(waves),
             rows: std::array::from_fn(|row| Row::new(waves_of_row(waves, row))),
         };
-        let quasi_static = HeadingTable::new(row_count(&field.waves), |row, heading_rad| {
-            let waves = waves_of_row(&field.waves, row);
-            let parts: [[f64; 3]; ROW] = side_by_side(waves, |w| quasi_static(w, boat, heading_rad));
-            let [heave, roll, pitch] = [0, 1, 2].map(|n| parts.map(|part| part[n] as f32));
-            [heave, roll, pitch, [0.0; ROW]]
+        let pressed_m: Vec<f64> = field.waves.iter().map(|wave| pressed_m(wave, boat)).collect();
+        let quasi_static = HeadingTable::new(row_count(&field.waves), |bin, wave| {
+            let Some(patch) = patches.of_bin(bin).get(wave) else { return [0.0; FOLD] };
+            let [heave, roll, pitch] = quasi_static(pressed_m[wave], patch);
+            [heave, roll, pitch, 0.0]
         });
         let blocks = field.waves.chunks(LANES).map(block).collect();
         WaveResponse { instructions: field.instructions, blocks, quasi_static }
@@ -191,10 +196,14 @@ impl Kernel for At<'_> {
     }
 }
 
-/// Heave, roll and pitch of the plane that fits a wave's pressure at the draught best: heave per cosine, roll and pitch
+/// The amplitude of a wave's pressure at the draught, as a height of water, m.
+pub(super) fn pressed_m(wave: &PlaneWave, boat: &Boat) -> f64 {
+    wave.component.amplitude_m * wave.pressure_at(boat.draught_m)
+}
+
+/// Heave, roll and pitch of the plane that fits a pressure of this amplitude best: heave per cosine, roll and pitch
 /// per sine of the phase amidships. Where the surface rises ahead the bow goes up; where it rises to starboard, that side.
-pub(super) fn quasi_static(wave: &PlaneWave, boat: &Boat, heading_rad: f64) -> [f64; 3] {
-    let patch = Patch::new(wave, boat, heading_rad);
-    let a = wave.component.amplitude_m * wave.pressure_at(boat.draught_m);
+pub(super) fn quasi_static(pressed_m: f64, patch: &Patch) -> [f64; 3] {
+    let a = pressed_m;
     [a * patch.mean_x * patch.mean_y, a * patch.tilt_y * patch.mean_x, -a * patch.tilt_x * patch.mean_y]
 }

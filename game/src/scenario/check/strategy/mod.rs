@@ -17,6 +17,7 @@ use crate::scenario::read::{self, Document};
 use crate::strategy::{Program, Strategy};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Reads and checks the strategy file at `path`, which is referred to from a place, for a team that has values of its own in it, or for
 /// everybody ("").
@@ -26,8 +27,13 @@ pub(in crate::scenario) fn strategy_file(
     asked_at: Option<usize>,
     owner: &str,
 ) -> Option<Strategy> {
+    if let Some(kept) = diagnostics.kept.strategy(path, owner) {
+        return Some(kept.clone());
+    }
     let document = read::document_of(diagnostics, Kind::Strategy, path, asked_at, owner)?;
-    strategy(diagnostics, &document)
+    let strategy = strategy(diagnostics, &document)?;
+    Arc::make_mut(&mut diagnostics.kept).keep_strategy(path, owner, strategy.clone());
+    Some(strategy)
 }
 
 fn strategy(diagnostics: &mut Diagnostics, document: &Document<raw::Strategy>) -> Option<Strategy> {

@@ -1,0 +1,67 @@
+//! What was made of files before: a game is drawn again without reading them again.
+
+use super::diagnostics::Diagnostics;
+use super::kind::Kind;
+use super::source::Sources;
+use super::tree::Node;
+use crate::strategy::Strategy;
+use serde_json::Value as Json;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// By kind and path, and for whom: of strategies a team that has values of its own in it.
+type Key = (Kind, PathBuf, String);
+
+/// What was made of files in which nothing was wrong.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Kept {
+    documents: BTreeMap<Key, KeptDocument>,
+    strategies: BTreeMap<Key, Strategy>,
+}
+
+/// A file, laid over its bases.
+#[derive(Clone, Debug)]
+pub(super) struct KeptDocument {
+    pub(super) tree: Arc<Node>,
+    /// Its values by fields; none where numbers of it are drawn.
+    pub(super) value: Option<Json>,
+}
+
+fn key(kind: Kind, path: &Path, owner: &str) -> Key {
+    (kind, path.to_owned(), if kind == Kind::Strategy { owner.to_owned() } else { String::new() })
+}
+
+impl Kept {
+    pub(super) fn document(&self, kind: Kind, path: &Path, owner: &str) -> Option<&KeptDocument> {
+        self.documents.get(&key(kind, path, owner))
+    }
+
+    pub(super) fn keep_document(&mut self, kind: Kind, path: &Path, owner: &str, document: KeptDocument) {
+        self.documents.insert(key(kind, path, owner), document);
+    }
+
+    pub(super) fn strategy(&self, path: &Path, owner: &str) -> Option<&Strategy> {
+        self.strategies.get(&key(Kind::Strategy, path, owner))
+    }
+
+    pub(super) fn keep_strategy(&mut self, path: &Path, owner: &str, strategy: Strategy) {
+        self.strategies.insert(key(Kind::Strategy, path, owner), strategy);
+    }
+}
+
+/// What a game was made of, with the texts that its places are in. It follows from the texts, so it is in no comparison and no recording.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Reading(pub(super) Option<Arc<(Sources, Arc<Kept>)>>);
+
+impl Reading {
+    pub(super) fn of(diagnostics: Diagnostics) -> Reading {
+        Reading(Some(Arc::new((diagnostics.sources, diagnostics.kept))))
+    }
+}
+
+impl PartialEq for Reading {
+    fn eq(&self, _: &Reading) -> bool {
+        true
+    }
+}
