@@ -1,6 +1,6 @@
 //! A chart of the field with tracks on it, as SVG and PNG files.
 
-use crate::plot::{Area, Drawing, Drawn, FONT, Ink};
+use crate::plot::{Area, Drawing, Drawn, FONT};
 use game::field::{Field, Obstacle};
 use game::{Ned, math};
 use plotters::prelude::*;
@@ -124,7 +124,7 @@ impl Drawing for Chart<'_> {
         View::of(self).size()
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &Area<B>, _: Ink) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
         let view = View::of(self);
         root.draw(&Text::new(self.title.clone(), (24, 16), (FONT, 20).into_font()))?;
         draw_axes(root, &view)?;

@@ -154,7 +154,7 @@ fn boat_page(header: &Header, series: &GameSeries, boat: &BoatSeries) -> Page<Pa
     let absent = "no picture showed the estimated position of this boat";
     let panels = vec![
         Panel::of("Speed ahead, over the ground", [TIME, "m/s"], speeds, ""),
-        Panel::of("Heading", [TIME, "degrees"], headings, ""),
+        Panel::of("Heading", [TIME, plot::COMPASS], headings, ""),
         Panel::of("Error of its own navigation", [TIME, "m"], if is_known { vec![error] } else { vec![] }, absent),
     ];
     Page { title: title(header, &boat.name), columns: 1, panel: WIDE, panels }

@@ -1,5 +1,6 @@
 //! Plots as SVG and PNG files: panels with axes and units, each with a few lines and a legend.
 
+mod axis;
 pub(crate) mod colour;
 pub(crate) mod field;
 pub(crate) mod game;
@@ -9,11 +10,15 @@ pub(crate) mod training;
 pub(crate) mod trial;
 
 use crate::output_file;
+use crate::plot::axis::Axis;
 use anyhow::Context;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{Options, Tree, fontdb};
 use std::path::Path;
+use std::sync::Arc;
 
 /// A page of panels of one kind.
 pub(crate) struct Page<P> {
@@ -46,6 +51,11 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
+    /// Its lines, each with its colour.
+    fn coloured(&self) -> impl Iterator<Item = (&Line, RGBColor)> {
+        self.lines.iter().zip(COLOURS.iter().cycle()).map(|(line, colour)| (line, line.colour.unwrap_or(*colour)))
+    }
+
     /// A diagram of these lines, with axes of their own and nothing pointed out. Without lines it says what is absent.
     pub(crate) fn of(title: &str, [x, y]: [&str; 2], lines: Vec<Line>, absent: &'static str) -> Panel {
         Panel { title: title.into(), x: x.into(), y: y.into(), equal: false, lines, absent, marks: vec![] }
@@ -85,6 +95,10 @@ pub(crate) const PANEL: (u32, u32) = (560, 400);
 pub(crate) const TITLE_HEIGHT: u32 = 44;
 pub(crate) const FONT: &str = "sans-serif";
 const CAPTION: (&str, u32) = (FONT, 16);
+/// Where a panel's title begins, the height of a row of it, and the length of a line beside its name, pixels.
+const HEADER_LEFT: i32 = 76;
+const HEADER_ROW: i32 = 22;
+const KEY: i32 = 18;
 /// How much of a line's colour is in what it fills.
 const FILLING: f64 = 0.25;
 /// Colours that people with any colour vision tell apart (Okabe and Ito 2008).
@@ -100,46 +114,19 @@ pub(crate) const COLOURS: [RGBColor; 6] = [
 /// Where something is drawn.
 pub(crate) type Area<B> = DrawingArea<B, Shift>;
 
-/// How lines are made thick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Ink {
-    /// By their width: a viewer knows what to do at sharp corners.
-    Vector,
-    /// By lines beside each other: of a series, the library's thick ones stick out at sharp corners, and have gaps.
-    Pixels,
-}
-
-impl Ink {
-    /// How wide a stroke is.
-    pub(crate) fn width(self) -> u32 {
-        match self {
-            Ink::Vector => 2,
-            Ink::Pixels => 1,
-        }
-    }
-
-    /// Where strokes are, pixels right and down.
-    pub(crate) fn strokes(self) -> &'static [(i32, i32)] {
-        match self {
-            Ink::Vector => &[(0, 0)],
-            Ink::Pixels => &[(0, 0), (1, 0), (0, 1)],
-        }
-    }
-}
-
 /// Something that can be drawn into a file.
 pub(crate) trait Drawing {
     /// Width and height, pixels.
     fn size(&self) -> (u32, u32);
 
     /// Draws it onto a white ground of this size.
-    fn draw<B: DrawingBackend>(&self, root: &Area<B>, ink: Ink) -> Drawn<B>;
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B>;
 }
 
 /// Something that can be drawn onto a part of a page.
 pub(crate) trait Diagram {
     /// Draws it onto a white ground of any size.
-    fn draw<B: DrawingBackend>(&self, area: &Area<B>, ink: Ink) -> Drawn<B>;
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B>;
 }
 
 /// What comes of drawing.
@@ -148,7 +135,7 @@ pub(crate) type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>
 /// Draws as the text of an SVG.
 pub(crate) fn svg(drawing: &impl Drawing) -> anyhow::Result<String> {
     let mut svg = String::new();
-    draw_on(SVGBackend::with_string(&mut svg, drawing.size()), drawing, Ink::Vector).context("cannot draw")?;
+    draw_on(SVGBackend::with_string(&mut svg, drawing.size()), drawing).context("cannot draw")?;
     Ok(svg)
 }
 
@@ -158,17 +145,23 @@ pub(crate) fn write_svg(path: &Path, drawing: &impl Drawing) -> anyhow::Result<(
     output_file::write(path, "the plot", svg)
 }
 
-/// Draws into a PNG file, three bytes a pixel.
+/// Draws into a PNG file.
 pub(crate) fn write_png(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
-    let (wide, high) = drawing.size();
-    let mut pixels = vec![0; 3 * wide as usize * high as usize];
-    draw_on(BitMapBackend::with_buffer(&mut pixels, (wide, high)), drawing, Ink::Pixels)
-        .with_context(|| format!("cannot draw {}", path.display()))?;
-    let mut file = vec![];
-    let mut encoder = png::Encoder::new(&mut file, wide, high);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header()?.write_image_data(&pixels)?;
-    output_file::write(path, "the plot", file)
+    let picture = svg(drawing).and_then(|svg| Ok(pixels(&svg)?.encode_png()?));
+    output_file::write(path, "the plot", picture.with_context(|| format!("cannot draw {}", path.display()))?)
+}
+
+/// What an SVG shows, each of its pixels one of the picture.
+fn pixels(svg: &str) -> anyhow::Result<Pixmap> {
+    let mut fonts = fontdb::Database::new();
+    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+    let family = fonts.faces().next().and_then(|face| face.families.first()).context("the font has no name")?.0.clone();
+    fonts.set_sans_serif_family(family);
+    let tree = Tree::from_str(svg, &Options { fontdb: Arc::new(fonts), ..Options::default() })?;
+    let size = tree.size().to_int_size();
+    let mut picture = Pixmap::new(size.width(), size.height()).context("the picture is too large")?;
+    resvg::render(&tree, Transform::identity(), &mut picture.as_mut());
+    Ok(picture)
 }
 
 /// Draws into an SVG and a PNG file of this name.
@@ -177,11 +170,11 @@ pub(crate) fn write_both(stem: &Path, drawing: &impl Drawing) -> anyhow::Result<
     write_png(&stem.with_extension("png"), drawing)
 }
 
-fn draw_on<B: DrawingBackend>(backend: B, drawing: &impl Drawing, ink: Ink) -> Drawn<B> {
+fn draw_on<B: DrawingBackend>(backend: B, drawing: &impl Drawing) -> Drawn<B> {
     provide_font();
     let root = backend.into_drawing_area();
     root.fill(&WHITE)?;
-    drawing.draw(&root, ink)?;
+    drawing.draw(&root)?;
     root.present()
 }
 
@@ -196,83 +189,87 @@ impl<P: Diagram> Drawing for Page<P> {
         (self.panel.0 * self.columns as u32, TITLE_HEIGHT + self.panel.1 * self.rows() as u32)
     }
 
-    fn draw<B: DrawingBackend>(&self, root: &Area<B>, ink: Ink) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, root: &Area<B>) -> Drawn<B> {
         let (top, rest) = root.split_vertically(TITLE_HEIGHT);
         top.draw(&Text::new(self.title.clone(), (24, 14), (FONT, 20).into_font()))?;
         let areas = rest.split_evenly((self.rows(), self.columns));
-        areas.iter().zip(&self.panels).try_for_each(|(area, panel)| panel.draw(area, ink))
+        areas.iter().zip(&self.panels).try_for_each(|(area, panel)| panel.draw(area))
     }
 }
 
 impl Diagram for Panel {
-    fn draw<B: DrawingBackend>(&self, area: &Area<B>, ink: Ink) -> Drawn<B> {
-        if self.lines.is_empty() { draw_absent(area, self) } else { draw_lines(area, self, ink) }
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
+        if self.lines.is_empty() { draw_absent(area, self) } else { draw_lines(area, self) }
     }
 }
 
-fn draw_lines<B: DrawingBackend>(area: &Area<B>, panel: &Panel, ink: Ink) -> Drawn<B> {
-    let has_names = panel.lines.iter().any(|line| !line.name.is_empty());
-    let ((x0, x1), (y0, y1)) = ranges(panel, has_names, area.dim_in_pixel());
-    let mut chart = ChartBuilder::on(area)
+fn draw_lines<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Drawn<B> {
+    let area = draw_header(area, panel)?;
+    let ((x0, x1), (y0, y1)) = ranges(panel, area.dim_in_pixel());
+    let (x_axis, y_axis) = (Axis::new(&panel.x, (x0, x1)), Axis::new(&panel.y, (y0, y1)));
+    let (x_places, y_places) = (x_axis.places, y_axis.places);
+    let mut chart = ChartBuilder::on(&area)
         .margin(12)
+        .margin_top(0)
         .margin_right(24)
-        .caption(&panel.title, CAPTION)
         .x_label_area_size(40)
         .y_label_area_size(64)
-        .build_cartesian_2d(x0..x1, y0..y1)?;
+        .build_cartesian_2d(x_axis, y_axis)?;
     chart
         .configure_mesh()
         .x_desc(&panel.x)
         .y_desc(&panel.y)
         .axis_desc_style((FONT, 14))
         .label_style((FONT, 12))
-        .x_labels(8)
-        .y_labels(8)
         .light_line_style(TRANSPARENT)
         .bold_line_style(RGBColor(222, 222, 222))
-        .x_label_formatter(&|x| label(*x, x1 - x0))
-        .y_label_formatter(&|y| label(*y, y1 - y0))
+        .x_label_formatter(&|x| ::game::math::decimal(*x, x_places))
+        .y_label_formatter(&|y| ::game::math::decimal(*y, y_places))
         .draw()?;
-    // Tracks turn every way, and the library's thin lines have gaps where they go back.
-    let ink = if panel.equal { Ink::Vector } else { ink };
-    let (wide, high) = chart.plotting_area().dim_in_pixel();
-    let pixel = ((x1 - x0) / f64::from(wide.max(1)), (y0 - y1) / f64::from(high.max(1)));
-    for (line, colour) in panel.lines.iter().zip(COLOURS.iter().cycle()) {
-        let colour = line.colour.unwrap_or(*colour);
-        let style = colour.stroke_width(ink.width());
-        for (i, piece) in pieces(&line.points).into_iter().enumerate() {
+    for (line, colour) in panel.coloured() {
+        for piece in pieces(&line.points) {
             if line.filled {
                 chart.draw_series([Polygon::new(down_to_0(piece), colour.mix(FILLING))])?;
             }
-            for (right, down) in ink.strokes() {
-                let beside = (f64::from(*right) * pixel.0, f64::from(*down) * pixel.1);
-                let points = piece.iter().map(move |(x, y)| (x + beside.0, y + beside.1));
-                let drawn = chart.draw_series(LineSeries::new(points, style))?;
-                if i == 0 && (*right, *down) == (0, 0) && !line.name.is_empty() {
-                    let key = colour.stroke_width(2);
-                    drawn.label(&line.name).legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 18, y)], key));
-                }
-            }
+            chart.draw_series(LineSeries::new(piece.iter().copied(), colour.stroke_width(2)))?;
         }
     }
     let rises = rises(&panel.marks);
     for mark in panel.marks.iter().filter(|mark| mark.at.0.is_finite() && mark.at.1.is_finite()) {
         // The name goes where there is room for it, and not onto the line from mark to mark.
         let (side, right) = if mark.at.0 > 0.5 * (x0 + x1) { (HPos::Right, -1) } else { (HPos::Left, 1) };
-        let style = (FONT, 12).into_font().into_text_style(area).pos(Pos::new(side, VPos::Center));
+        let style = (FONT, 12).into_font().into_text_style(&area).pos(Pos::new(side, VPos::Center));
         let name = Text::new(mark.name.clone(), (7 * right, if rises { 6 * right } else { -6 * right }), style);
         chart.draw_series([EmptyElement::at(mark.at) + Circle::new((0, 0), 3, BLACK.filled()) + name])?;
     }
-    if has_names && panel.lines.iter().any(|line| !pieces(&line.points).is_empty()) {
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.85))
-            .border_style(RGBColor(200, 200, 200))
-            .label_font((FONT, 12))
-            .draw()?;
-    }
     Ok(())
+}
+
+/// The title and, beside it or in rows below, the names of the lines; gives what is left of the area.
+fn draw_header<B: DrawingBackend>(
+    area: &Area<B>,
+    panel: &Panel,
+) -> Result<Area<B>, DrawingAreaErrorKind<B::ErrorType>> {
+    let style = (FONT, 12).into_font().into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
+    let (left, right) = (HEADER_LEFT, area.dim_in_pixel().0 as i32 - 24);
+    let title = CAPTION.into_font().into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
+    let (mut at, mut rows) = (left + area.estimate_text_size(&panel.title, &title)?.0 as i32 + 32, 0);
+    let mut places = vec![];
+    let named = || panel.coloured().filter(|(line, _)| !line.name.is_empty() && !pieces(&line.points).is_empty());
+    for (line, _) in named() {
+        let width = KEY + 6 + area.estimate_text_size(&line.name, &style)?.0 as i32;
+        if at > left && at + width > right {
+            (at, rows) = (left, rows + 1);
+        }
+        places.push((at, HEADER_ROW * rows + HEADER_ROW / 2 + 4));
+        at += width + 20;
+    }
+    area.draw(&Text::new(panel.title.clone(), (left, HEADER_ROW / 2 + 4), title))?;
+    for ((line, colour), (x, y)) in named().zip(places) {
+        area.draw(&PathElement::new([(x, y), (x + KEY, y)], colour.stroke_width(2)))?;
+        area.draw(&Text::new(line.name.clone(), (x + KEY + 6, y), style.clone()))?;
+    }
+    Ok(area.split_vertically(HEADER_ROW * (rows + 1) + 12).1)
 }
 
 /// A panel of what there is not.
@@ -286,17 +283,14 @@ fn draw_absent<B: DrawingBackend>(area: &Area<B>, panel: &Panel) -> Drawn<B> {
 }
 
 /// What a panel shows horizontally and vertically.
-fn ranges(panel: &Panel, has_names: bool, size: (u32, u32)) -> ((f64, f64), (f64, f64)) {
-    let ((mut x0, mut x1), (mut y0, mut y1)) = (extent(panel, |p| p.0), extent(panel, |p| p.1));
+fn ranges(panel: &Panel, size: (u32, u32)) -> ((f64, f64), (f64, f64)) {
+    let ((mut x0, mut x1), (mut y0, mut y1)) = (extent(panel, &panel.x, |p| p.0), extent(panel, &panel.y, |p| p.1));
     if panel.equal {
-        // What labels and title leave of the panel.
-        let (wide, high) = (f64::from(size.0) - 100.0, f64::from(size.1) - 105.0);
+        // What labels leave of the panel.
+        let (wide, high) = (f64::from(size.0) - 100.0, f64::from(size.1) - 52.0);
         let metres_per_pixel = f64::max((x1 - x0) / wide, (y1 - y0) / high);
         (x0, x1) = about_middle(x0, x1, wide * metres_per_pixel);
         (y0, y1) = about_middle(y0, y1, high * metres_per_pixel);
-    } else if has_names {
-        // Room for the legend above the lines.
-        y1 += 0.25 * (y1 - y0);
     }
     ((x0, x1), (y0, y1))
 }
@@ -318,30 +312,35 @@ fn pieces(points: &[(f64, f64)]) -> Vec<&[(f64, f64)]> {
     points.split(|point| !(point.0.is_finite() && point.1.is_finite())).filter(|piece| !piece.is_empty()).collect()
 }
 
-/// The range of a panel's points in one direction, with a margin.
-fn extent(panel: &Panel, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
+/// The range of a panel's points in one direction, with a margin, and no narrower than what counts of its unit: a millimetre is no error of
+/// a boat's navigation.
+fn extent(panel: &Panel, axis: &str, of: impl Fn(&(f64, f64)) -> f64) -> (f64, f64) {
+    if axis == COMPASS {
+        return (0.0, 360.0);
+    }
     let numbers = panel.lines.iter().flat_map(|line| &line.points).map(of).filter(|number| number.is_finite());
     let (low, high) = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), n| (l.min(n), h.max(n)));
     if low > high {
         return (0.0, 1.0);
     }
+    let least = LEAST.iter().find(|(unit, _)| axis == *unit).map_or(0.0, |(_, least)| *least);
     // A constant gets a tenth of itself above and below it, and a line of nothing but rounding is a constant.
-    let least = (0.1 * low.abs().max(high.abs())).max(1e-3);
-    let margin = (0.05 * (high - low)).max(if high - low < 0.01 * least { least } else { 0.0 });
-    (low - margin, high + margin)
+    let constant = 0.2 * if low == 0.0 && high == 0.0 { 1.0 } else { low.abs().max(high.abs()) };
+    let is_constant = high - low < 1e-6 * constant;
+    let wide = (1.1 * (high - low)).max(if is_constant { constant } else { 0.0 }).max(least);
+    about_middle(low, high, wide)
 }
+
+/// What an axis of compass headings is called.
+pub(crate) const COMPASS: &str = "compass heading in degrees";
+
+/// The least width of an axis, by its unit.
+const LEAST: [(&str, f64); 5] = [("m", 0.2), ("m/s", 0.2), ("degrees", 2.0), ("degrees per s", 1.0), ("N", 1.0)];
 
 /// The range widened about its middle.
 fn about_middle(low: f64, high: f64, width: f64) -> (f64, f64) {
     let middle = 0.5 * (low + high);
     (middle - 0.5 * width, middle + 0.5 * width)
-}
-
-/// A number on an axis of this width, with the places that tell its labels apart.
-fn label(number: f64, width: f64) -> String {
-    // There are up to nine labels at steps of 1, 2 or 5.
-    let places = (0..6).find(|places| width >= 5.0 * [1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5][*places]).unwrap_or(6);
-    ::game::math::decimal(number, places)
 }
 
 /// Gives the plotting library the letters that it measures texts by and draws into pictures.
@@ -413,11 +412,31 @@ mod tests {
     }
 
     #[test]
-    fn labels_have_the_places_they_need() {
-        for (number, width, want) in
-            [(3.0, 100.0, "3"), (0.5, 2.0, "0.5"), (-0.0001, 2.0, "0.0"), (0.12, 0.2, "0.12"), (0.05, 0.45, "0.05")]
-        {
-            assert_eq!(label(number, width), want);
-        }
+    fn what_hardly_varies_is_not_blown_up() {
+        let range = |y: &str, points: &[f64]| {
+            let points = points.iter().enumerate().map(|(i, y)| (i as f64, *y)).collect();
+            ranges(&Panel::of("", ["time in s", y], vec![Line::of("", points)], ""), (500, 300)).1
+        };
+        assert_eq!(range("m", &[0.0, 0.0]), (-0.1 * 1.0, 0.1 * 1.0));
+        let (low, high) = range("m/s", &[0.001, -0.001]);
+        assert!(low <= -0.1 && high >= 0.1);
+        let (low, high) = range("loss", &[3e-4, 1e-4]);
+        assert!(low > 0.0 && high < 4e-4, "a unit without a least width is shown as it is");
+        let (low, high) = range("loss", &[5.0, 5.0 + 1e-13]);
+        assert!(low < 4.6 && high > 5.4);
+        assert_eq!(range(COMPASS, &[10.0, 20.0]), (0.0, 360.0));
+    }
+
+    #[test]
+    fn pixels_show_letters_with_spaces_between_words() {
+        let width = |text: &str| {
+            let svg = format!(
+                "<svg xmlns='http://www.w3.org/2000/svg' width='300' height='40'><text x='5' y='25' font-family='sans-serif' font-size='20'>{text}</text></svg>"
+            );
+            let picture = pixels(&svg).expect("it is SVG");
+            let dark = |x: &u32| (0..40).any(|y| picture.pixel(*x, y).is_some_and(|pixel| pixel.alpha() > 64));
+            (0..300).filter(|x| !dark(x) && (0..*x).any(|x| dark(&x)) && (*x..300).any(|x| dark(&x))).count()
+        };
+        assert!(width("time in s") > width("timeins") + 4, "{} {}", width("time in s"), width("timeins"));
     }
 }

@@ -1,6 +1,6 @@
 //! Polar plots of a helm's objective functions: coloured discs with north on top.
 
-use crate::plot::{self, Area, Diagram, Drawn, Ink, colour};
+use crate::plot::{self, Area, Diagram, Drawn, colour};
 use game::math;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -28,6 +28,8 @@ const MIDDLE: (f64, f64) = (225.0, 268.0);
 const RADIUS: f64 = 180.0;
 /// The colour scale: left and right edge, top and bottom.
 const SCALE: [i32; 4] = [444, 460, 88, 448];
+/// The side of a square of one colour, pixels.
+const GRAIN: i32 = 2;
 /// Steps of the colour scale.
 const SHADES: usize = 64;
 const GREY: RGBColor = RGBColor(90, 90, 90);
@@ -36,9 +38,9 @@ const GREY: RGBColor = RGBColor(90, 90, 90);
 pub(crate) const COLUMNS_MAX: usize = 3;
 
 impl Diagram for PolarPlot {
-    fn draw<B: DrawingBackend>(&self, area: &Area<B>, ink: Ink) -> Drawn<B> {
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<B> {
         area.draw(&Text::new(self.title.clone(), (24, 12), (plot::FONT, 15).into_font()))?;
-        draw_disc(area, self, if ink == Ink::Vector { 2 } else { 1 })?;
+        draw_disc(area, self)?;
         draw_axes(area, self)?;
         draw_scale(area, self)?;
         let Some((course_deg, speed_m_s)) = self.chosen else { return Ok(()) };
@@ -49,9 +51,10 @@ impl Diagram for PolarPlot {
     }
 }
 
-/// The disc, row by row of its grains, each a few stretches of one colour. Where grains are more than a pixel, in a
-/// drawing that can be enlarged, stretches reach a pixel under those that are drawn after them, so that no gap shows.
-fn draw_disc<B: DrawingBackend>(area: &Area<B>, plot: &PolarPlot, grain: i32) -> Drawn<B> {
+/// The disc, row by row of its grains, each a few stretches of one colour. Stretches reach a pixel under those that are drawn after them,
+/// so that no gap shows.
+fn draw_disc<B: DrawingBackend>(area: &Area<B>, plot: &PolarPlot) -> Drawn<B> {
+    let grain = GRAIN;
     let rim = rim(plot);
     let (x0, y0) = place(0.0, 0.0);
     let rows = (rim.ceil() as i32) / grain;
@@ -158,7 +161,7 @@ fn colour_of(shade: usize) -> RGBColor {
 mod tests {
     use super::*;
     use crate::plot::{Page, TITLE_HEIGHT};
-    use std::path::Path;
+    use resvg::tiny_skia::Pixmap;
 
     fn plot(values: Vec<f64>) -> PolarPlot {
         PolarPlot {
@@ -172,13 +175,9 @@ mod tests {
     }
 
     /// Red, green and blue at a place of a picture that is one panel wide.
-    fn pixel(path: &Path, at: (i32, i32)) -> [u8; 3] {
-        let file = std::io::BufReader::new(std::fs::File::open(path).expect("it is there"));
-        let mut reader = png::Decoder::new(file).read_info().expect("it is PNG");
-        let mut pixels = vec![0; reader.output_buffer_size().expect("it is small")];
-        reader.next_frame(&mut pixels).expect("it is whole");
-        let start = 3 * ((at.1 + TITLE_HEIGHT as i32) * PANEL.0 as i32 + at.0) as usize;
-        [pixels[start], pixels[start + 1], pixels[start + 2]]
+    fn pixel(picture: &Pixmap, at: (i32, i32)) -> [u8; 3] {
+        let pixel = picture.pixel(at.0 as u32, at.1 as u32 + TITLE_HEIGHT).expect("it is on the picture");
+        [pixel.red(), pixel.green(), pixel.blue()]
     }
 
     #[test]
@@ -191,11 +190,16 @@ mod tests {
         let page = Page { title: "blue_one".into(), columns: 1, panel: PANEL, panels: vec![plot(values)] };
         plot::write_png(&png, &page).expect("it can be drawn");
         plot::write_svg(&svg, &page).expect("it can be drawn");
+        let picture = Pixmap::load_png(&png).expect("it is PNG");
         let (best, worst) = ([253, 231, 37], [68, 1, 84]);
         for (course_deg, speed, want) in
             [(80.0, 0.75, best), (80.0, 0.4, worst), (10.0, 0.75, worst), (190.0, 0.75, worst), (280.0, 0.75, worst)]
         {
-            assert_eq!(pixel(&png, place(course_deg, RADIUS * speed)), want, "{course_deg}° at {speed} of the speed");
+            assert_eq!(
+                pixel(&picture, place(course_deg, RADIUS * speed)),
+                want,
+                "{course_deg}° at {speed} of the speed"
+            );
         }
         let text = std::fs::read_to_string(&svg).expect("it is there");
         for part in ["blue_one", "keep_clear: weight 300", "#FDE725", "#440154", "3.50 m/s", "\n100\n"] {
