@@ -1,6 +1,6 @@
 //! `squall check` and `squall schema`: scenario files explained.
 
-use crate::screen;
+use crate::{explain, screen, style};
 use anyhow::{Result, anyhow, bail};
 use game::scenario::{Kind, check_file, load, schema};
 use std::path::{Path, PathBuf};
@@ -31,14 +31,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         }
         match check_file(file) {
             Ok(kind) => {
-                screen::print(&format!("{}: a good {kind}\n", file.display()));
+                screen::show(&format!("{}: {} {kind}\n", file.display(), style::good("a good")));
                 for warning in warnings(file, kind) {
-                    screen::print(&format!("  warning: {warning}\n"));
+                    screen::show(&format!("  {} {warning}\n", style::warning("warning:")));
                 }
             }
             Err(problems) => {
                 errors += problems.0.len();
-                screen::print(&format!("{problems}\n"));
+                screen::show(&format!("{}\n", explain::problems(&problems)));
             }
         }
     }

@@ -1,11 +1,13 @@
 //! `squall identify`: fits a boat file to a recorded series.
 
+use crate::progress::Progress;
 use crate::trial_command::{read_sheet, tick, usual_tick_s};
 use crate::water_args::{self, WaterArgs, within};
 use crate::{output_file, screen};
 use anyhow::{Context, Result, bail};
-use arena::identify::{self, Fit, Log, Setting};
+use arena::identify::{self, Fit, Log, Setting, Step};
 use game::SimTime;
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -57,7 +59,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         segment: SimTime::from_s(args.segment_s),
     };
     let named = args.log.display().to_string();
-    let fit = identify::fit(&boat, &log, &setting, &parameters).with_context(|| format!("cannot fit {named}"))?;
+    let progress = RefCell::new(Progress::without_end("steps"));
+    let tell = |step: Step| {
+        let left = step.rms.map_or(String::new(), |rms| format!(", {rms:.3} standard deviations off"));
+        progress.borrow_mut().add_with(|| format!("search {} of {}{left}", step.search, step.searches));
+    };
+    let fit = identify::fit(&boat, &log, &setting, &parameters, &tell);
+    progress.borrow().end();
+    let fit = fit.with_context(|| format!("cannot fit {named}"))?;
     screen::print(&table(&boat.name, &named, &fit));
     let text = identify::written(&fit, &base_of(&out, &path), &named);
     output_file::write(&out, "the boat", text)?;

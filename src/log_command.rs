@@ -1,6 +1,7 @@
 //! `squall log`: what a recorded game tells afterwards.
 
 use crate::plot::game as plot;
+use crate::style::Names;
 use crate::water_args::within;
 use crate::{output_file, recording_file, screen};
 use analysis::{Comparison, GameSeries, Summary};
@@ -110,10 +111,11 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
 /// Prints the summary, or what happened, and writes all of it as JSON.
 fn summary(args: &Args, recording: &Recording, wants_page: bool) -> Result<Damaged> {
     let summary = Summary::of(recording);
+    let names = Names::of(recording.scenario());
     if args.events {
-        screen::print(&page::events(&summary));
+        screen::show(&names.paint(&page::events(&summary)));
     } else if wants_page {
-        screen::print(&page::text(&summary));
+        screen::show(&names.paint(&page::text(&summary)));
     }
     if let Some(path) = &args.json {
         output_file::write_json(path, "the summary", &summary)?;

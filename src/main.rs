@@ -5,6 +5,7 @@ mod both_sides;
 mod check_command;
 mod child_process;
 mod cli;
+mod explain;
 mod game_args;
 mod gateway_command;
 mod hardware_loop;
@@ -22,6 +23,7 @@ mod page_args;
 mod plot;
 mod policy_command;
 mod printer;
+mod progress;
 mod record_args;
 mod recording_file;
 mod replay_command;
@@ -33,16 +35,16 @@ mod sea_command;
 mod sim_command;
 mod stop;
 mod strategy_command;
+mod style;
 mod sweep_command;
 mod tournament_command;
-mod tournament_progress;
 mod train_command;
 mod trial_command;
 mod view_command;
 mod watch_command;
 mod water_args;
 
-use clap::{FromArgMatches, Parser, Subcommand};
+use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// The version, and the commit it was built from.
@@ -52,6 +54,9 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMM
 #[derive(Parser)]
 #[command(name = "squall", version = VERSION, max_term_width = 100)]
 struct Cli {
+    /// Colours on the terminal
+    #[arg(long, global = true, value_name = "WHEN", default_value_t = ColorChoice::Auto)]
+    color: ColorChoice,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -150,11 +155,12 @@ enum Command {
 fn main() -> ExitCode {
     scenario_files::install();
     let cli = Cli::from_arg_matches(&cli::command::<Cli>().get_matches()).unwrap_or_else(|error| error.exit());
+    screen::set_colour(cli.color);
     let Some(command) = cli.command else { return cli::first() };
     // `run` only hands keys on: what it starts without keys must not have the threads of those with keys.
     let is_run = matches!(command, Command::Run(_) | Command::Demo(_));
     if !is_run && let Err(error) = child_process::with_threads_for_keys() {
-        screen::complain(&format!("{error:#}"));
+        screen::complain(&explain::error(&error));
         return ExitCode::FAILURE;
     }
     let done = match command {
@@ -189,7 +195,7 @@ fn main() -> ExitCode {
     match done {
         Ok(code) => code,
         Err(error) => {
-            screen::complain(&format!("{error:#}"));
+            screen::complain(&explain::error(&error));
             ExitCode::FAILURE
         }
     }

@@ -1,12 +1,14 @@
 //! `squall replay`: a recorded game again.
 
 use crate::page_args::PageArgs;
+use crate::progress::Progress;
 use crate::recording_file;
 use crate::screen::{self, Screen};
 use crate::stop;
+use crate::style::Names;
 use anyhow::{Context, Result, bail};
 use minds::Minds;
-use recording::Recording;
+use recording::{FRAME, Recording};
 use shore::page::replay::{Recorded, ReplayView};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -33,7 +35,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             bail!("--check shows no page: --listen, --token and --host are of no use with it");
         }
         let recording = open(&args.file)?;
-        let verdict = check::check(&recording).with_context(|| format!("cannot play {} again", args.file.display()))?;
+        let frames = recording.bag().messages().filter(|message| message.topic == FRAME).count();
+        let mut progress = Progress::of(frames as u64, "frames");
+        let verdict = check::check(&recording, || progress.add());
+        progress.end();
+        let verdict = verdict.with_context(|| format!("cannot play {} again", args.file.display()))?;
         screen::print(&verdict.text);
         return Ok(if verdict.is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE });
     }
@@ -41,7 +47,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let stop = stop::on_ctrl_c()?;
     let page = args.page.open(&stop)?;
     page.show(Arc::new(show));
-    Screen::new().line(&format!("{} at {} (Ctrl-C ends it)", args.file.display(), args.page.url(&page)));
+    Screen::new(Names::default()).line(&format!(
+        "{} at {} (Ctrl-C ends it)",
+        args.file.display(),
+        args.page.url(&page)
+    ));
     args.page.open_browser(&page);
     stop::wait(&stop);
     Ok(ExitCode::SUCCESS)

@@ -9,6 +9,7 @@ use crate::page_args::PageArgs;
 use crate::record_args::RecordArgs;
 use crate::screen::{self, Screen};
 use crate::stop;
+use crate::style::Names;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::{Bundle, Identity};
 use bus::{Token, clock};
@@ -85,7 +86,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         args.page.check()?;
     }
     let stop = stop::on_ctrl_c()?;
-    let mut screen = Screen::new();
+    let mut screen = Screen::new(Names::of(&scenario));
     if args.both_sides {
         return both_sides(args, &scenario, (&stop, &mut screen));
     }

@@ -1,6 +1,9 @@
 //! The terminal: events as lines, how the game stands as one line that is written over.
 
 use crate::result_table;
+use crate::style::{self, Names};
+use anstream::AutoStream;
+use anstream::adapter::strip_str;
 use game::printable;
 use sim::node::{Progress, ProgressMessage};
 use std::io::{IsTerminal, Write};
@@ -10,6 +13,7 @@ pub(crate) struct Screen {
     /// Whether a line can be written over.
     live: bool,
     status: String,
+    names: Names,
     /// Simulated time of the last status line on a screen that scrolls, s.
     last_s: f64,
 }
@@ -18,9 +22,9 @@ pub(crate) struct Screen {
 const PRINT_EVERY_S: f64 = 60.0;
 
 impl Screen {
-    /// The screen of this process.
-    pub(crate) fn new() -> Screen {
-        Screen { live: std::io::stdout().is_terminal(), status: String::new(), last_s: 0.0 }
+    /// The screen of this process, for a game with these names.
+    pub(crate) fn new(names: Names) -> Screen {
+        Screen { live: std::io::stdout().is_terminal(), status: String::new(), names, last_s: 0.0 }
     }
 
     /// Shows one thing.
@@ -41,7 +45,7 @@ impl Screen {
             ProgressMessage::Progress(progress) => self.progress(progress),
             ProgressMessage::Done(report) => {
                 self.clear();
-                print(&result_table::text(report));
+                show(&self.names.paint(&result_table::text(report)));
             }
         }
     }
@@ -70,18 +74,18 @@ impl Screen {
     pub(crate) fn line(&mut self, text: &str) {
         self.clear();
         let status = if self.live { self.status.as_str() } else { "" };
-        print(&format!("{text}\n{status}"));
+        show(&self.names.paint(&format!("{text}\n{status}")));
     }
 
     /// A line that the next one is written over.
     fn status(&mut self, text: &str) {
         if !self.live {
-            print(&format!("{text}\n"));
+            show(&self.names.paint(&format!("{text}\n")));
             return;
         }
         self.clear();
         self.status = text.to_owned();
-        print(text);
+        show(&self.names.paint(text));
     }
 
     fn clear(&mut self) {
@@ -109,32 +113,56 @@ pub(crate) fn print(text: &str) {
     is_read(text);
 }
 
+/// Prints text that may have colours.
+pub(crate) fn show(text: &str) {
+    is_written("", &printable::coloured(text));
+}
+
 /// Prints text, and says whether anybody still reads. Nothing in it steers the terminal.
 pub(crate) fn is_read(text: &str) -> bool {
-    is_written(&printable::text(text))
+    is_written("", &printable::text(text))
 }
 
 /// Prints over the line that was printed last without an end.
 pub(crate) fn overwrite(text: &str) {
-    is_written(&format!("\r\x1b[K{}", printable::text(text)));
+    is_written("\r\x1b[K", &printable::coloured(text));
 }
 
 /// Shows a page, which may have colours, instead of all that was on the terminal, and says whether anybody still looks.
 pub(crate) fn is_seen(page: &str) -> bool {
-    is_written(&format!("\x1b[H\x1b[J{}", printable::coloured(page)))
+    is_written("\x1b[H\x1b[J", &printable::coloured(page))
 }
 
-fn is_written(text: &str) -> bool {
+/// When texts have colours; left to itself where a terminal shows them and `NO_COLOR` does not forbid it.
+pub(crate) fn set_colour(choice: clap::ColorChoice) {
+    let choice = match choice {
+        clap::ColorChoice::Auto => anstream::ColorChoice::Auto,
+        clap::ColorChoice::Always => anstream::ColorChoice::Always,
+        clap::ColorChoice::Never => anstream::ColorChoice::Never,
+    };
+    choice.write_global();
+}
+
+/// Writes what steers the terminal, and a text whose colours are left out where nobody can see them.
+fn is_written(control: &str, text: &str) -> bool {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_ok()
+    let is_plain = AutoStream::choice(&out) == anstream::ColorChoice::Never;
+    let text = if is_plain { strip_str(text).to_string() } else { text.to_owned() };
+    out.write_all(control.as_bytes()).and_then(|()| out.write_all(text.as_bytes())).and_then(|()| out.flush()).is_ok()
 }
 
-/// Prints what went wrong.
+/// The columns of the terminal; a width that most have where there is none.
+pub(crate) fn columns() -> usize {
+    terminal_size::terminal_size().map_or(120, |(terminal_size::Width(columns), _)| usize::from(columns))
+}
+
+/// Prints what went wrong, a text that may have colours.
 pub(crate) fn complain(text: &str) {
-    remark(&format!("squall: {text}"));
+    let text = printable::coloured_message(text);
+    drop(writeln!(anstream::stderr(), "{} {text}", style::bad("squall:")));
 }
 
 /// Prints something to standard error, where it does not mix with results.
 pub(crate) fn remark(text: &str) {
-    drop(writeln!(std::io::stderr(), "{}", printable::message(text)));
+    drop(writeln!(anstream::stderr(), "{}", printable::message(text)));
 }

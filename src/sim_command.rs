@@ -5,6 +5,7 @@ use crate::net_args::{HubArgs, token_text, unique_game_name};
 use crate::printer::Printer;
 use crate::screen::{self, Screen};
 use crate::stop;
+use crate::style::Names;
 use crate::water_args::within;
 use anyhow::{Context, Result, bail};
 use bus::Token;
@@ -52,7 +53,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     };
     let net = args.hub.net()?;
     let token = net.token.clone();
-    let (mut screen, for_parent, shown) = (Screen::new(), args.for_parent, token.clone());
+    let (mut screen, for_parent, shown) = (Screen::new(Names::of(&scenario)), args.for_parent, token.clone());
     let printer = Printer::start(move |message| {
         if for_parent {
             screen::print(&(serde_json::to_string(message).expect("a message is JSON") + "\n"));

@@ -1,6 +1,6 @@
 //! `squall sweep`: how much sea, noise and failure a team stands.
 
-use crate::tournament_progress::Progress;
+use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use anyhow::{Context, Result};
 use game::scenario::{Sweep, load_sweep};
@@ -65,13 +65,13 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         screen::remark(&format!("{} of {} games were played before", study.done(), plan.games()));
     }
     let stop = stop::on_ctrl_c()?;
-    let mut progress = Progress::new((plan.games() - study.done()) as u64);
+    let mut progress = Progress::of_games((plan.games() - study.done()) as u64);
     let from = study.done();
     let played = sweep::play(&plan, (from, plan.games()), jobs, &stop, |played| {
-        progress.played();
+        progress.add();
         study.add(&plan, &played)
     });
-    progress.done(jobs.get());
+    progress.end_of_games(jobs.get());
     // What was played before a disk was full is there, and can be gone on with.
     played.with_context(|| format!("{} of {} games are kept; --resume goes on", study.done(), plan.games()))?;
     let report = study.report(&plan)?;

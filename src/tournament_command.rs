@@ -1,6 +1,6 @@
 //! `squall tournament`: every strategy against every other, in this process.
 
-use crate::tournament_progress::Progress;
+use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use agent::MindRunner;
 use analysis::Step;
@@ -63,14 +63,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let stop = stop::on_ctrl_c()?;
     let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
-    let mut progress = Progress::new(plan.games() as u64);
+    let mut progress = Progress::of_games(plan.games() as u64);
     let (records, quality) = if args.quality {
-        let (records, quality) = play_judged(&plan, jobs, &stop, |_| progress.played());
+        let (records, quality) = play_judged(&plan, jobs, &stop, |_| progress.add());
         (records, Some(quality))
     } else {
-        (play(&plan, jobs, &stop, |_| progress.played()), None)
+        (play(&plan, jobs, &stop, |_| progress.add()), None)
     };
-    let rate = progress.done(jobs.get().min(plan.games()));
+    let rate = progress.end_of_games(jobs.get().min(plan.games()));
 
     let mut report = Report::new(&plan, &records);
     report.commit = env!("SQUALL_COMMIT").to_owned();
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.csv {
         output_file::write(path, "the report", tournament::csv(&report))?;
     }
-    screen::print(&tournament::text(&report));
+    screen::print(&tournament::text(&report, screen::columns()));
     if let Some(quality) = quality {
         screen::print(&format!("\n{quality}"));
     }

@@ -5,6 +5,7 @@ use crate::page_args::PageArgs;
 use crate::replay_command;
 use crate::screen::{self, Screen};
 use crate::stop;
+use crate::style::Names;
 use anyhow::{Context, Result};
 use shore::page::live::LiveView;
 use std::path::Path;
@@ -36,7 +37,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     });
     let live = LiveView::open(args.leaf.place()?, args.leaf.game.clone(), tell).context("cannot look for games")?;
     page.show(Arc::new(live));
-    Screen::new().line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));
+    Screen::new(Names::default()).line(&format!("look at it on {} (Ctrl-C ends it)", args.page.url(&page)));
     args.page.open_browser(&page);
     while !stop::is_set_soon(&stop) {
         let Some(file) = recordings.as_ref().and_then(|named| named.try_recv().ok()) else { continue };

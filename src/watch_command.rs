@@ -4,6 +4,7 @@ use crate::net_args::LeafArgs;
 use crate::observer::Observer;
 use crate::screen;
 use crate::stop;
+use crate::style::Names;
 use anyhow::{Result, bail};
 use bus::{Watched, clock};
 use game::codec;
@@ -35,8 +36,8 @@ pub(crate) struct Args {
     rate: u8,
 }
 
-/// A game without a frame for this long is gone.
-const SILENCE: Duration = Duration::from_secs(10);
+/// After so long without a frame the sim is asked whether it is still there.
+const SILENCE: Duration = Duration::from_secs(3);
 /// Events that stay on the screen.
 const EVENTS: usize = 6;
 
@@ -74,21 +75,29 @@ impl Seen {
 }
 
 /// Shows the field until the game is over, this often.
-fn watch_field(Observer { bus, game, info }: &Observer, pause: Duration, stop: &AtomicBool) -> Result<()> {
+fn watch_field(observer: &Observer, pause: Duration, stop: &AtomicBool) -> Result<()> {
+    let Observer { bus, game, info } = observer;
     let seen = Arc::new(Watched::new(Seen::default()));
     let (incoming, scenario) = (Arc::clone(&seen), info.scenario.clone());
     let take = move |bytes: &[u8]| incoming.visit(|seen| seen.take(&scenario, bytes));
     let _frames = bus.subscribe(topic::frame(game), take)?;
     let mut meter = Meter::new();
+    let names = Names::of(&info.scenario);
     let live = std::io::stdout().is_terminal();
     while !stop.load(Ordering::Relaxed) {
         seen.wait(SILENCE, |seen| seen.frame.is_some());
         let (frame, count, events) = seen.visit(|seen| (seen.frame.take(), seen.count, seen.events.clone()));
-        let Some(frame) = frame else { bail!("game {} is gone", game.as_str()) };
+        let Some(frame) = frame else {
+            // A game that is paused sends no frames.
+            if stop.load(Ordering::Relaxed) || observer.is_on()? {
+                continue;
+            }
+            bail!("game {} is gone", game.as_str());
+        };
         let rates = meter.read(frame.stamp.valid_ns, count);
         let events: Vec<String> = events.iter().map(|logged| sentence(&info.scenario, logged)).collect();
         let is_read = if live {
-            screen::is_seen(&chart::page(info, game, &frame, &events, &rates))
+            screen::is_seen(&names.paint(&chart::page(info, game, &frame, &events, &rates)))
         } else {
             screen::is_read(&chart::line(&info.scenario, &frame, &rates))
         };

@@ -72,7 +72,7 @@ fn fitted(start: &Boat, csv: &str, names: &[&str]) -> Result<Fit, NoFit> {
     let sheet = Sheet::read("log.csv", csv.as_bytes()).expect("it is CSV");
     let log = Log::of_sheet(&sheet, start).unwrap_or_else(|e| panic!("{e}"));
     let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-    identify::fit(start, &log, &setting(), &identify::parameters(&names, start)?)
+    identify::fit(start, &log, &setting(), &identify::parameters(&names, start)?, &|_| {})
 }
 
 #[test]

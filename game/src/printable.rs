@@ -41,6 +41,12 @@ pub fn message(text: &str) -> String {
     text.split('\n').map(line).collect::<Vec<_>>().join("\n")
 }
 
+/// The same of a message that may have colours.
+#[must_use]
+pub fn coloured_message(text: &str) -> String {
+    text.split('\n').map(|line| shortened(&coloured(line)).into_owned()).collect::<Vec<_>>().join("\n")
+}
+
 fn steers(character: char) -> bool {
     character.is_control()
         || matches!(character, '\u{200e}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

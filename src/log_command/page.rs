@@ -74,7 +74,7 @@ fn head(summary: &Summary) -> String {
     text
 }
 
-/// Three tables, so that each fits a terminal: how it moved, for how long it was what, how well it knew and did.
+/// Three tables, so that each fits a terminal of 80 columns: how it moved, for how long it was what, how well it knew and did.
 fn boats(boats: &[BoatStatistics]) -> String {
     let width = boats.iter().map(|boat| boat.boat.len()).max().unwrap_or(0).max(8) + 2;
     let mut text = format!("\n{:width$}{:>10}{:>8}{:>7}", "", "distance", "speed", "max");
@@ -90,13 +90,18 @@ fn boats(boats: &[BoatStatistics]) -> String {
         add_line(&mut text, format_args!("{:width$}{moved}{did}", boat.boat));
     }
     let heads = ["carrying", "tagged", "outside", "no agent", "lost"].map(|head| format!("{head:>9}")).concat();
-    add_line(&mut text, format_args!("\n{:width$}{heads}{:>22}{:>22}", "", "navigation error", "off its orders"));
-    let (navigation, orders) =
-        (format!("{:>12}{:>10}", "rms m", "95 % m"), format!("{:>12}{:>10}", "rms deg", "rms m/s"));
-    add_line(&mut text, format_args!("{:width$}{}{navigation}{orders}", "", format!("{:>9}", "s").repeat(5)));
+    add_line(&mut text, format_args!("\n{:width$}{heads}", ""));
+    add_line(&mut text, format_args!("{:width$}{}", "", format!("{:>9}", "s").repeat(5)));
     for boat in boats {
         let spans_s = [boat.carrying_s, boat.tagged_s, boat.outside_s, boat.agent_lost_s, boat.nav_lost_s];
         let spans = spans_s.map(|span_s| format!("{span_s:>9.1}")).concat();
+        add_line(&mut text, format_args!("{:width$}{spans}", boat.boat));
+    }
+    add_line(&mut text, format_args!("\n{:width$}{:>22}{:>22}", "", "navigation error", "off its orders"));
+    let (navigation, orders) =
+        (format!("{:>12}{:>10}", "rms m", "95 % m"), format!("{:>12}{:>10}", "rms deg", "rms m/s"));
+    add_line(&mut text, format_args!("{:width$}{navigation}{orders}", ""));
+    for boat in boats {
         let navigation = match &boat.navigation {
             Some(error) => format!("{:>12.2}{:>10.2}", error.rms_m, error.p95_m),
             None => format!("{:>12}{:>10}", "-", "-"),
@@ -105,7 +110,7 @@ fn boats(boats: &[BoatStatistics]) -> String {
             Some(error) => format!("{:>12.1}{:>10.2}", error.heading_rms_deg, error.speed_rms_m_s),
             None => format!("{:>12}{:>10}", "-", "-"),
         };
-        add_line(&mut text, format_args!("{:width$}{spans}{navigation}{orders}", boat.boat));
+        add_line(&mut text, format_args!("{:width$}{navigation}{orders}", boat.boat));
     }
     let real: Vec<&str> = boats.iter().filter(|boat| boat.is_real).map(|boat| boat.boat.as_str()).collect();
     if !real.is_empty() {

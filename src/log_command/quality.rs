@@ -1,5 +1,6 @@
 //! How sensibly boats played in recorded games.
 
+use crate::progress::Progress;
 use crate::replay_command::minds::Minds;
 use crate::{output_file, recording_file, screen};
 use analysis::Step;
@@ -12,9 +13,12 @@ use std::sync::Arc;
 /// Prints it of all games together, and writes it as JSON.
 pub(super) fn print(files: &[PathBuf], json: Option<&Path>) -> Result<()> {
     let mut sum = Quality::default();
+    let mut progress = Progress::of(files.len() as u64, "recordings");
     for file in files {
         sum.merge(&of_recording(file)?);
+        progress.add();
     }
+    progress.end();
     screen::print(&sum.to_string());
     json.map_or(Ok(()), |path| output_file::write_json(path, "the quality", &sum))
 }

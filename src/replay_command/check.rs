@@ -18,8 +18,8 @@ pub(super) struct Verdict {
     pub(super) text: String,
 }
 
-/// Plays the game again.
-pub(super) fn check(recording: &Recording) -> Result<Verdict> {
+/// Plays the game again, and tells of every frame.
+pub(super) fn check(recording: &Recording, mut tell: impl FnMut()) -> Result<Verdict> {
     let scenario = recording.scenario();
     let (mut contest, mut shown) = (Contest::new(scenario, scenario.seed)?, EventCursor::default());
     let mut inputs = Vec::new();
@@ -51,6 +51,7 @@ pub(super) fn check(recording: &Recording) -> Result<Verdict> {
             return Ok(Verdict { is_same: false, text });
         }
         frames += 1;
+        tell();
         end_s = message.at.as_s();
     }
     if frames == 0 {
@@ -151,12 +152,12 @@ mod tests {
     }
 
     fn refused(recording: &Recording) -> String {
-        check(recording).expect_err("it cannot be played again").to_string()
+        check(recording, || {}).expect_err("it cannot be played again").to_string()
     }
 
     #[test]
     fn what_was_played_is_played_again() {
-        let verdict = check(&recorded(Some)).unwrap_or_else(|e| panic!("{e}"));
+        let verdict = check(&recorded(Some), || {}).unwrap_or_else(|e| panic!("{e}"));
         assert!(verdict.is_same, "{}", verdict.text);
         assert!(verdict.text.starts_with("the same: 11 frames to 1.0 s to the last bit, digest "));
     }
@@ -165,7 +166,7 @@ mod tests {
     fn another_order_is_found_at_the_tick_after_it() {
         let order = Order::Thrust { port: 1.0, starboard: -1.0 };
         let input = Input::Ordered { vehicle: VehicleId(0), order, given_at: SimTime::from_s(0.4) };
-        let verdict = check(&with(input)).unwrap_or_else(|e| panic!("{e}"));
+        let verdict = check(&with(input), || {}).unwrap_or_else(|e| panic!("{e}"));
         assert!(!verdict.is_same);
         let name = recorded(Some).scenario().vehicles[0].name.clone();
         assert!(verdict.text.starts_with(&format!("DIFFERENT from tick 10 on (0.5 s): {name} ")), "{}", verdict.text);

@@ -1,17 +1,15 @@
 //! The field drawn with letters: boats as arrows, flags, the scrimmage line.
 
 use super::Rates;
+use crate::style;
 use game::angle::compass_deg_from_rad;
 use game::message::{Frame, GameInfo, VehicleTruth};
 use game::topic::GameName;
 use game::{Ned, Scenario};
 
 /// Columns and rows of the chart. Letters are twice as high as wide, a field twice as wide as deep.
-const COLUMNS: usize = 80;
+const COLUMNS: usize = 78;
 const ROWS: usize = 20;
-/// ANSI colours of the first and the second team.
-const COLOURS: [&str; 2] = ["\x1b[94m", "\x1b[91m"];
-const PLAIN: &str = "\x1b[0m";
 
 /// One picture of the game.
 pub(super) fn page(info: &GameInfo, game: &GameName, frame: &Frame, events: &[String], rates: &Rates) -> String {
@@ -64,7 +62,7 @@ fn cell(scenario: &Scenario, at: Ned) -> (usize, usize) {
 }
 
 fn paint(cells: &mut [Vec<String>], (row, column): (usize, usize), team: usize, letter: &str) {
-    cells[row][column] = format!("{}{letter}{PLAIN}", COLOURS[team % COLOURS.len()]);
+    cells[row][column] = style::team(team, letter);
 }
 
 fn draw_field(scenario: &Scenario, frame: &Frame, cells: &mut [Vec<String>]) {
@@ -94,10 +92,9 @@ fn boats<'a>(scenario: &'a Scenario, frame: &'a Frame) -> impl Iterator<Item = S
     boats.map(|(vehicle, boat)| {
         let nav = &boat.nav;
         let speed_m_s = nav.speed_m_s();
-        let colour = COLOURS[vehicle.team.index() % COLOURS.len()];
         format!(
-            "{colour}{:<14}{PLAIN} x {:>7.1}  y {:>7.1}  {:>5.1}°  {:>4.2} m/s  {}",
-            vehicle.name,
+            "{} x {:>7.1}  y {:>7.1}  {:>5.1}°  {:>4.2} m/s  {}",
+            style::team(vehicle.team.index(), &format!("{:<14}", vehicle.name)),
             nav.east_m,
             nav.north_m,
             compass_deg_from_rad(nav.psi_rad),

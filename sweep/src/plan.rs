@@ -154,7 +154,7 @@ impl Plan {
     }
 
     fn problem(&self, message: String) -> Problems {
-        Problems(vec![Problem { path: self.sweep.path.clone(), line: 1, column: 1, message }])
+        Problems(vec![Problem::of_file(self.sweep.path.clone(), message)])
     }
 
     /// The command that plays a game of it again.
@@ -267,7 +267,7 @@ fn grid(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
     let count = levels.iter().try_fold(1_usize, |count, levels| count.checked_mul(levels.len()));
     if count.is_none_or(|count| count > POINTS_MAX) {
         let message = format!("the grid has more than {POINTS_MAX} points, expected fewer levels, or another design");
-        return Err(Problems(vec![Problem { path: sweep.path.clone(), line: 1, column: 1, message }]));
+        return Err(Problems(vec![Problem::of_file(sweep.path.clone(), message)]));
     }
     let mut points = vec![Point { values: vec![] }];
     for levels in &levels {

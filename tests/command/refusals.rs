@@ -1,6 +1,6 @@
 //! Commands that must be refused: `refusals.txt` has them, and what they must say.
 
-use crate::program::{project, refusal};
+use crate::program::{command, project, refusal, scenario};
 
 /// Runs the commands of one case; what is missing in what they say.
 fn missing(case: &str) -> Vec<String> {
@@ -39,4 +39,25 @@ fn every_mistake_is_refused_and_explained() {
         cases.iter().flat_map(|(name, case)| missing(case).into_iter().map(move |why| format!("{name}: {why}")));
     let wrong: Vec<String> = wrong.collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn errors_show_the_line_with_a_caret_and_colours_where_they_are_wanted() {
+    let dir = tempfile::tempdir().unwrap();
+    let game = "base = \"GAME\"\nduration_s = \"12\"\nsea = ../gale.toml\n";
+    let base = scenario("games/pav01_vs_pav01.toml");
+    std::fs::write(dir.path().join("a.toml"), game.replace("GAME", &base)).unwrap();
+    let said = |more: &[&str], no_colour: Option<&str>| {
+        let mut command = command(&dir, &[&["check", "a.toml"], more].concat());
+        command.envs(no_colour.map(|value| ("NO_COLOR", value)));
+        String::from_utf8(command.output().unwrap().stdout).unwrap()
+    };
+    let plain = said(&[], None);
+    let want = "a.toml:2:14: duration_s is the string \"12\", expected a number\n  |\n2 | duration_s = \"12\"\n  |              ^^^^\n\
+                a.toml:3:7: ../gale.toml is not in quotes, expected \"../gale.toml\"\n  |\n3 | sea = ../gale.toml\n  |       ^^^^^^^^^^^^\n";
+    assert_eq!(plain, want);
+    assert_eq!(said(&["--color", "never"], None), plain);
+    let coloured = said(&["--color", "always"], Some("1"));
+    assert!(coloured.contains("\u{1b}[1;31ma.toml:2:14:\u{1b}[0m"), "{coloured:?}");
+    assert!(!said(&[], Some("1")).contains('\u{1b}'));
 }

@@ -7,6 +7,7 @@ use super::rollout::Setting;
 use game::boat::Boat;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::DMatrix;
+use std::cell::Cell;
 use thiserror::Error;
 
 /// A fitted parameter.
@@ -114,11 +115,28 @@ pub fn parameters(named: &[String], boat: &Boat) -> Result<Vec<Parameter>, NoFit
     Ok(PARAMETERS.iter().filter(|known| named.iter().any(|name| name == known.name)).copied().collect())
 }
 
-/// Fits `parameters` of `boat` to a log.
+/// A step of the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The search is made so many times, each with channels weighed by what the one before left of them.
+    pub searches: usize,
+    /// Which of them it is, from 1.
+    pub search: usize,
+    /// What is left, in standard deviations of the channels: their root mean square. None where the boat cannot be sailed.
+    pub rms: Option<f64>,
+}
+
+/// Fits `parameters` of `boat` to a log, and tells of every step.
 ///
 /// # Errors
 /// [`NoFit`] says why there is none.
-pub fn fit(boat: &Boat, log: &Log, setting: &Setting, parameters: &[Parameter]) -> Result<Fit, NoFit> {
+pub fn fit(
+    boat: &Boat,
+    log: &Log,
+    setting: &Setting,
+    parameters: &[Parameter],
+    tell: &dyn Fn(Step),
+) -> Result<Fit, NoFit> {
     let knob = |parameter: &Parameter| Knob::new(*parameter, boat).ok_or(NoFit::NotThere(parameter.name));
     let knobs = parameters.iter().map(knob).collect::<Result<Vec<Knob>, NoFit>>()?;
     if knobs.is_empty() {
@@ -127,7 +145,9 @@ pub fn fit(boat: &Boat, log: &Log, setting: &Setting, parameters: &[Parameter]) 
     if log.segments(setting.segment).len() < 2 {
         return Err(NoFit::NoStart);
     }
-    let mut problem = Problem::new(boat, setting, log, knobs);
+    let search = Cell::new(1);
+    let told = |rms| tell(Step { searches: WEIGHINGS, search: search.get(), rms });
+    let mut problem = Problem::new(boat, setting, log, knobs, &told);
     let first_guess = problem.sigmas;
     for weighing in 0..WEIGHINGS {
         let (found, report) = LevenbergMarquardt::new().with_tol(1e-9).with_patience(20).minimize(problem);
@@ -136,6 +156,7 @@ pub fn fit(boat: &Boat, log: &Log, setting: &Setting, parameters: &[Parameter]) 
             return Err(NoFit::Search(format!("{:?}", report.termination)));
         }
         if weighing + 1 < WEIGHINGS {
+            search.set(weighing + 2);
             let sigma = |channel: usize| rms(&problem.residuals_of(channel)).max(LEAST_SIGMA * first_guess[channel]);
             let sigmas = std::array::from_fn(sigma);
             problem.weigh(sigmas);

@@ -8,7 +8,7 @@ mod parameter;
 mod problem;
 mod rollout;
 
-pub use fit::{Confused, Estimate, Fit, NoFit, Quality, fit, names, parameters};
+pub use fit::{Confused, Estimate, Fit, NoFit, Quality, Step, fit, names, parameters};
 pub use log::Log;
 pub use parameter::{PARAMETERS, Parameter};
 pub use rollout::Setting;

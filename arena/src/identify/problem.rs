@@ -38,10 +38,18 @@ pub(super) struct Problem<'a> {
     starts: Vec<Point>,
     /// Whitened residuals at `at`; none where the model cannot be sailed.
     residuals: Option<DVector<f64>>,
+    /// Told of every step: the root mean square of the residuals.
+    tell: &'a dyn Fn(Option<f64>),
 }
 
 impl<'a> Problem<'a> {
-    pub(super) fn new(boat: &'a Boat, setting: &'a Setting, log: &'a Log, knobs: Vec<Knob>) -> Problem<'a> {
+    pub(super) fn new(
+        boat: &'a Boat,
+        setting: &'a Setting,
+        log: &'a Log,
+        knobs: Vec<Knob>,
+        tell: &'a dyn Fn(Option<f64>),
+    ) -> Problem<'a> {
         let segments = log.segments(setting.segment);
         let rows = segments[0]..log.measured.len();
         let measured = |row: usize| (0..6).filter(move |channel| log.measured[row][*channel].is_finite());
@@ -66,6 +74,7 @@ impl<'a> Problem<'a> {
             at,
             starts,
             residuals: None,
+            tell,
         };
         problem.settle();
         problem
@@ -177,6 +186,8 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Problem<'_> {
     fn set_params(&mut self, at: &DVector<f64>) {
         self.at.copy_from(at);
         self.settle();
+        let rms = |residuals: &DVector<f64>| (residuals.norm_squared() / residuals.len() as f64).sqrt();
+        (self.tell)(self.residuals.as_ref().map(rms));
     }
 
     fn params(&self) -> DVector<f64> {

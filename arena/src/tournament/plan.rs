@@ -139,7 +139,7 @@ fn game_of(
     files: &Arc<Files>,
 ) -> Result<Scenario, Problems> {
     let scenario = tournament.game_of(teams, sides, files)?;
-    let at_top = |message| Problems(vec![Problem { path: tournament.game.clone(), line: 1, column: 1, message }]);
+    let at_top = |message| Problems(vec![Problem::of_file(tournament.game.clone(), message)]);
     scenario.has_no_real_boats().map_err(|real_boats| at_top(real_boats.to_string()))?;
     Ok(scenario)
 }

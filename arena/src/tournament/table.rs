@@ -17,9 +17,9 @@ const COLUMNS: [Column; 7] = [
     ("collisions", "collisions", |row| row.collisions),
 ];
 
-/// The report for people.
+/// The report for people, in tables of at most so many `columns`, as far as names leave room; commands stand in one line.
 #[must_use]
-pub fn text(report: &Report) -> String {
+pub fn text(report: &Report, columns: usize) -> String {
     let mut text = String::new();
     let sea = report.sea.as_ref().map_or(String::new(), |sea| format!(", sea {sea}"));
     add_line(&mut text, format_args!("{}: {}{sea}", report.tournament, report.game));
@@ -29,10 +29,10 @@ pub fn text(report: &Report) -> String {
             let (count, first, last) = (report.seeds_counted, seeds.first, seeds.last);
             add_line(&mut text, format_args!("{games} games a pairing, half of them on each side"));
             add_line(&mut text, format_args!("means a game ± 95 %, over {count} seeds from {first} to {last}\n"));
-            entries(&mut text, report);
+            entries(&mut text, report, columns);
             match &report.challenger {
                 Some(challenger) => pairings(&mut text, report, challenger),
-                None => matrix(&mut text, report),
+                None => matrix(&mut text, report, columns),
             }
         }
     }
@@ -41,19 +41,56 @@ pub fn text(report: &Report) -> String {
     text
 }
 
-fn width(report: &Report) -> usize {
-    report.entries.iter().map(|row| row.name.len()).max().unwrap_or(0).max(6) + 1
+fn names(report: &Report) -> Vec<&str> {
+    report.entries.iter().map(|row| row.name.as_str()).collect()
 }
 
+fn width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
+    names.map(str::len).max().unwrap_or(0).max(6) + 1
+}
+
+/// A heading with a cell for each entry.
+type Cells = (String, Vec<String>);
+
 /// A line for each entry.
-fn entries(text: &mut String, report: &Report) {
-    let width = width(report);
-    let heads: String = COLUMNS.iter().map(|(_, words, _)| format!("{words:>15}")).collect();
-    add_line(text, format_args!("{:width$}{heads}{:>7}{:>7}{:>7}", "", "won", "drawn", "lost"));
-    for row in &report.entries {
-        let cells: String = COLUMNS.iter().map(|(_, _, of)| format!("{:>15}", estimate(&of(row)))).collect();
-        let Row { name, wins, draws, losses, .. } = row;
-        add_line(text, format_args!("{name:width$}{cells}{wins:>7}{draws:>7}{losses:>7}"));
+fn entries(text: &mut String, report: &Report, columns: usize) {
+    let counts: [(&str, fn(&Row) -> u64); 3] =
+        [("won", |row| row.wins), ("drawn", |row| row.draws), ("lost", |row| row.losses)];
+    let counts = counts.map(|(words, of)| cells(report, words, |row| of(row).to_string()));
+    let means = COLUMNS.iter().map(|(_, words, of)| cells(report, words, |row| estimate(&of(row))));
+    table(text, &names(report), &counts.into_iter().chain(means).collect::<Vec<_>>(), columns);
+}
+
+fn cells(report: &Report, heading: &str, of: impl Fn(&Row) -> String) -> Cells {
+    (heading.to_owned(), report.entries.iter().map(of).collect())
+}
+
+/// A table with a line for each entry; where it is wider than so many columns, what does not fit stands in another one below.
+fn table(text: &mut String, names: &[&str], cells: &[Cells], columns: usize) {
+    let name = width(names.iter().copied());
+    let wide = |(heading, cells): &Cells| {
+        cells.iter().chain([heading]).map(|cell| cell.chars().count()).max().unwrap_or(0) + 2
+    };
+    let mut rest = cells;
+    while !rest.is_empty() {
+        let mut sum = name;
+        let fits = rest.iter().take_while(|cells| {
+            sum += wide(cells);
+            sum <= columns
+        });
+        let (block, others) = rest.split_at(fits.count().max(1));
+        let line = |entry: &str, of: &dyn Fn(&Cells) -> String| {
+            let cells: String = block.iter().map(|cells| format!("{:>1$}", of(cells), wide(cells))).collect();
+            format!("{entry:name$}{cells}")
+        };
+        add_line(text, format_args!("{}", line("", &|(heading, _)| heading.clone())));
+        for (i, entry) in names.iter().enumerate() {
+            add_line(text, format_args!("{}", line(entry, &|(_, cells)| cells[i].clone())));
+        }
+        rest = others;
+        if !rest.is_empty() {
+            text.push('\n');
+        }
     }
 }
 
@@ -63,25 +100,21 @@ fn estimate(estimate: &Estimate) -> String {
 }
 
 /// Who beats whom.
-fn matrix(text: &mut String, report: &Report) {
-    let width = width(report);
+fn matrix(text: &mut String, report: &Report, columns: usize) {
     add_line(text, format_args!("\nrow beats column: won % / drawn %, and the row's score less the column's a game"));
-    let column = width.max(19);
-    let heads: String = report.entries.iter().map(|row| format!("{:>column$}", row.name)).collect();
-    add_line(text, format_args!("{:width$}{heads}", ""));
-    for row in &report.entries {
-        let cell = |column: &Row| {
+    let against = |column: &Row| {
+        let cell = |row: &Row| {
             let cell = report.matrix.iter().find(|cell| cell.row == row.name && cell.column == column.name);
             cell.map_or("-".to_owned(), beaten)
         };
-        let cells: String = report.entries.iter().map(|other| format!("{:>column$}", cell(other))).collect();
-        add_line(text, format_args!("{:width$}{cells}", row.name));
-    }
+        cells(report, &column.name, cell)
+    };
+    table(text, &names(report), &report.entries.iter().map(against).collect::<Vec<_>>(), columns);
 }
 
 /// How the challenger did against each other entry.
 fn pairings(text: &mut String, report: &Report, challenger: &str) {
-    let width = width(report);
+    let width = width(names(report).into_iter());
     add_line(text, format_args!("\n{challenger} against each, with the share of decided games that it won ± 95 %"));
     add_line(
         text,
@@ -165,4 +198,26 @@ pub fn csv(report: &Report) -> String {
         add_line(&mut text, format_args!("{name},\"{strategy}\",{games},{wins},{draws},{losses}{cells}"));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wide_table_is_cut_into_blocks_that_fit() {
+        let cells: Vec<Cells> =
+            ["won", "score"].map(|head| (head.to_owned(), vec!["1.00 ± 0.25".to_owned(), "2".to_owned()])).to_vec();
+        let shown = |columns| {
+            let mut text = String::new();
+            table(&mut text, &["attackers", "b"], &cells, columns);
+            text
+        };
+        let wide = "                    won        score\nattackers   1.00 ± 0.25  1.00 ± 0.25\nb                     2            2\n";
+        assert_eq!(shown(36), wide);
+        let [first, second] = ["won", "score"]
+            .map(|head| format!("{:10}{head:>13}\nattackers   1.00 ± 0.25\nb                     2\n", ""));
+        assert_eq!(shown(35), format!("{first}\n{second}"));
+        assert_eq!(shown(0), shown(35), "a column stands there however narrow it is");
+    }
 }

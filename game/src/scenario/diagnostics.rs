@@ -80,7 +80,7 @@ impl Diagnostics {
     /// Notes a problem with a whole file that could not be read.
     pub(super) fn note_file(&mut self, path: PathBuf, message: impl Into<String>) {
         self.faults += 1;
-        self.problems.push(Problem { path, line: 1, column: 1, message: message.into() });
+        self.problems.push(Problem::of_file(path, message.into()));
     }
 
     fn push(&mut self, at: usize, message: String) {

@@ -27,6 +27,7 @@ mod schema;
 mod setting;
 mod source;
 mod sweep;
+mod syntax;
 mod tournament;
 mod tree;
 mod validate;

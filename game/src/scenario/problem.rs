@@ -15,6 +15,16 @@ pub struct Problem {
     pub column: usize,
     /// Which key, what was found, and what is allowed.
     pub message: String,
+    /// The line as it stands there; empty where a whole file is meant.
+    pub source: String,
+}
+
+impl Problem {
+    /// What is wrong with a whole file.
+    #[must_use]
+    pub fn of_file(path: PathBuf, message: String) -> Problem {
+        Problem { path, line: 1, column: 1, message, source: String::new() }
+    }
 }
 
 impl fmt::Display for Problem {

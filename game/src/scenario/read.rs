@@ -5,6 +5,7 @@ use super::kept::KeptDocument;
 use super::kind::Kind;
 use super::schema::declared;
 use super::source::tidied;
+use super::syntax;
 use super::tree::{Node, Value};
 use super::validate::validated;
 use crate::policy::{self, PartialSpec, PolicyModel};
@@ -240,11 +241,12 @@ pub(super) fn model(diagnostics: &Diagnostics, path: &Path, said: PartialSpec) -
 /// The tree of a text that begins at `start`, as far as its syntax is good; what is not is noted.
 fn parsed(diagnostics: &mut Diagnostics, start: usize, text: &str) -> Node {
     let (table, errors) = DeTable::parse_recoverable(text);
-    for error in errors {
-        match error.span() {
-            Some(span) => diagnostics.note_syntax(start + span.start, error.message()),
-            None => diagnostics.note_syntax(start, "found a key of very many parts, expected at most 3"),
-        }
+    for error in &errors {
+        diagnostics.sources.mark_broken(start + error.span().map_or(0, |span| span.start));
+    }
+    let mistakes = if errors.is_empty() { vec![] } else { syntax::mistakes(text) };
+    for (at, message) in mistakes {
+        diagnostics.note_syntax(start + at, &message);
     }
     Node::root(table.into_inner(), start)
 }

@@ -56,7 +56,8 @@ impl Sources {
         let before = &file.text[..end];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let (line, column) = (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1);
-        Problem { path: file.path.clone(), line, column, message }
+        let source = file.text[line_start..].lines().next().unwrap_or_default().to_owned();
+        Problem { path: file.path.clone(), line, column, message, source }
     }
 
     fn line(&self, offset: usize) -> usize {
@@ -117,16 +118,17 @@ mod tests {
         let mut sources = Sources::default();
         let a = sources.add("games/a.toml".into(), "x = 1\nß = 2".into());
         let b = sources.add("b.toml".into(), "y".into());
-        for (offset, path, line, column) in [
-            (a, "games/a.toml", 1, 1),
-            (a + 4, "games/a.toml", 1, 5),
-            (a + 6, "games/a.toml", 2, 1),
-            (a + 9, "games/a.toml", 2, 3),
-            (a + 12, "games/a.toml", 2, 6),
-            (b, "b.toml", 1, 1),
-            (b + 70, "b.toml", 1, 2),
+        for (offset, path, line, column, source) in [
+            (a, "games/a.toml", 1, 1, "x = 1"),
+            (a + 4, "games/a.toml", 1, 5, "x = 1"),
+            (a + 6, "games/a.toml", 2, 1, "ß = 2"),
+            (a + 9, "games/a.toml", 2, 3, "ß = 2"),
+            (a + 12, "games/a.toml", 2, 6, "ß = 2"),
+            (b, "b.toml", 1, 1, "y"),
+            (b + 70, "b.toml", 1, 2, "y"),
         ] {
-            let problem = Problem { path: path.into(), line, column, message: "wrong".into() };
+            let source = source.to_owned();
+            let problem = Problem { path: path.into(), line, column, message: "wrong".into(), source };
             assert_eq!(sources.problem(offset, "wrong".into()), problem, "{offset}");
         }
         assert_eq!(sources.resolve(a, "../fields/f.toml"), Path::new("fields/f.toml"));
