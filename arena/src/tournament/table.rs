@@ -54,9 +54,8 @@ type Cells = (String, Vec<String>);
 
 /// A line for each entry.
 fn entries(text: &mut String, report: &Report, columns: usize) {
-    let counts: [(&str, fn(&Row) -> u64); 3] =
-        [("won", |row| row.wins), ("drawn", |row| row.draws), ("lost", |row| row.losses)];
-    let counts = counts.map(|(words, of)| cells(report, words, |row| of(row).to_string()));
+    let count = |words, of: fn(&Row) -> u64| cells(report, words, |row| of(row).to_string());
+    let counts = [count("won", |row| row.wins), count("drawn", |row| row.draws), count("lost", |row| row.losses)];
     let means = COLUMNS.iter().map(|(_, words, of)| cells(report, words, |row| estimate(&of(row))));
     table(text, &names(report), &counts.into_iter().chain(means).collect::<Vec<_>>(), columns);
 }
