@@ -6,10 +6,11 @@ use crate::scenario_files;
 use crate::sim_command::seconds;
 use anyhow::{Context, Result, bail};
 use game::Scenario;
-use game::scenario::{Kind, Overrides, Setting};
+use game::scenario::{Files, Kind, Overrides, Setting};
 use sim::node::{Pace, Report};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 
 /// A game, from the command line.
 #[derive(Clone, clap::Args)]
@@ -61,9 +62,19 @@ pub(crate) struct GameArgs {
 }
 
 impl GameArgs {
+    /// The file of the game.
+    pub(crate) fn file(&self) -> &Path {
+        &self.scenario
+    }
+
     /// The scenario, with every problem in the error.
     pub(crate) fn load(&self) -> Result<Scenario> {
-        game::scenario::load_with(&self.scenario, &self.overrides()?)
+        self.load_from(&Arc::default())
+    }
+
+    /// The same, read from these files.
+    pub(crate) fn load_from(&self, files: &Arc<Files>) -> Result<Scenario> {
+        game::scenario::load_with_files(&self.scenario, &self.overrides()?, files)
             .with_context(|| format!("cannot play {}", self.scenario.display()))
     }
 

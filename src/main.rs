@@ -42,6 +42,7 @@ mod train_command;
 mod trial_command;
 mod view_command;
 mod watch_command;
+mod watch_files;
 mod water_args;
 
 use clap::{ColorChoice, FromArgMatches, Parser, Subcommand};

@@ -2,6 +2,7 @@
 
 use crate::both_sides::BothSides;
 use crate::child_process::{self, ChildProcess, option};
+use crate::explain;
 use crate::game_args::GameArgs;
 use crate::hardware_loop::{HardwareLoop, LoopArgs};
 use crate::net_args::{token_text, unique_game_name};
@@ -10,6 +11,7 @@ use crate::record_args::RecordArgs;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;
+use crate::watch_files::WatchedFiles;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::{Bundle, Identity};
 use bus::{Token, clock};
@@ -41,6 +43,9 @@ pub(crate) struct Args {
     /// Plays the game twice, the second time with the strategies exchanged, and adds up the points
     #[arg(long, conflicts_with_all = ["view", "exchange_strategies"])]
     both_sides: bool,
+    /// Plays again whenever a file of the game is saved, until Ctrl-C
+    #[arg(long, conflicts_with = "view")]
+    watch_files: bool,
     /// Plays in this process, without a network: the same game, byte for byte
     #[arg(long, conflicts_with_all = ["pace", "speed", "agents_per_process"])]
     in_process: bool,
@@ -73,7 +78,33 @@ pub(crate) fn demo(args: &DemoArgs) -> Result<ExitCode> {
 const SPEED_TO_WATCH: f64 = 10.0;
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    if args.watch_files {
+        return play_when_saved(args);
+    }
     let scenario = args.play.load()?;
+    let stop = stop::on_ctrl_c()?;
+    play_once(args, &scenario, &stop)
+}
+
+/// Plays, and plays again when a file of the game has changed. A file with mistakes is no reason to end.
+fn play_when_saved(args: &Args) -> Result<ExitCode> {
+    let stop = stop::on_ctrl_c()?;
+    loop {
+        let files = Arc::default();
+        let scenario = args.play.load_from(&files);
+        // As they are before it is played: what is saved meanwhile counts.
+        let read = files.list().into_iter().map(|(path, _)| path);
+        let watched = WatchedFiles::new(read.chain([args.play.file().to_owned()]));
+        if let Err(error) = scenario.and_then(|scenario| play_once(args, &scenario, &stop)) {
+            screen::complain(&explain::error(&error));
+        }
+        screen::remark("waiting for a file of the game to be saved (Ctrl-C ends it)");
+        let Some(path) = watched.wait(&stop) else { return Ok(stop::interrupted()) };
+        screen::remark(&format!("{} has changed", path.display()));
+    }
+}
+
+fn play_once(args: &Args, scenario: &Scenario, stop: &AtomicBool) -> Result<ExitCode> {
     if args.in_process || args.play.pace == Pace::Lockstep {
         scenario.has_no_real_boats()?;
     }
@@ -81,16 +112,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         bail!("--listen, --token, --host and --open say how the page is served: they need --view");
     }
     args.play.check_result_file()?;
-    check_keys(args, &scenario)?;
+    check_keys(args, scenario)?;
     if args.view {
         args.page.check()?;
     }
-    let stop = stop::on_ctrl_c()?;
-    let mut screen = Screen::new(Names::of(&scenario));
+    let mut screen = Screen::new(Names::of(scenario));
     if args.both_sides {
-        return both_sides(args, &scenario, (&stop, &mut screen));
+        return both_sides(args, scenario, (stop, &mut screen));
     }
-    let (file, report, page) = play(args, &scenario, (&stop, &mut screen))?;
+    let (file, report, page) = play(args, scenario, (stop, &mut screen))?;
     let Some(report) = report else { return Ok(stop::interrupted()) };
     let unwritten = args.play.write_result(&report).err().map(|error| format!("{error:#}"));
     let problems: Vec<String> = unwritten.into_iter().chain(report.run.recording_problem.clone()).collect();
@@ -98,12 +128,12 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         problems.iter().for_each(|problem| screen::remark(problem));
         screen.line("the game is over; the page stays until Ctrl-C");
         // The sim has ended, so that the recording is whole.
-        if let (Some(file), false) = (&file, stop::is_set_soon(&stop))
+        if let (Some(file), false) = (&file, stop::is_set_soon(stop))
             && let Err(error) = page.send(&file.display().to_string())
         {
             screen::remark(&format!("{error:#}"));
         }
-        while page.ended().is_none() && !stop::is_set_soon(&stop) {}
+        while page.ended().is_none() && !stop::is_set_soon(stop) {}
         page.stop();
     }
     if !problems.is_empty() {

@@ -46,6 +46,28 @@ refuse "is a sea, expected a game" squall run scenarios/seas/gale.toml
 expect "scenarios/strategies/mine.toml" squall new strategy mine
 expect "a good strategy" squall check scenarios/strategies/mine.toml
 expect "after 600 s" squall run surveyor_2v2 --blue mine --in-process --no-record
+
+# Played again when it is saved, with a mistake and without.
+squall run surveyor_2v2 --blue mine --in-process --no-record --watch-files >watched.txt 2>&1 &
+watching=$!
+# Waits until so many lines of what it said have a text in them.
+heard() {
+    for _ in $(seq 300); do
+        [[ $(grep -c "$2" watched.txt) -ge $1 ]] && return
+        sleep 0.1
+    done
+    printf 'FAILED: run --watch-files never said %s %s times, but\n%s\n' "$2" "$1" "$(<watched.txt)"
+    exit 1
+}
+heard 1 "waiting for a file"
+cp scenarios/strategies/mine.toml whole.toml
+printf 'about = gone\n' >scenarios/strategies/mine.toml
+heard 1 'gone is not in quotes'
+heard 2 "waiting for a file"
+cp whole.toml scenarios/strategies/mine.toml
+heard 2 "after 600 s"
+kill -TERM $watching
+wait $watching || [[ $? -eq 130 ]]
 refuse "there is a file scenarios/strategies/mine.toml already" squall new strategy mine
 for kind in boat sea game sweep training tournament; do
     expect "a $kind to change" squall new "$kind" mine
