@@ -106,6 +106,21 @@ impl Plan {
         (Match { seed, sides: *sides }, scenario)
     }
 
+    /// Which of the games that are played with each seed these sides play.
+    ///
+    /// # Panics
+    /// If they play none.
+    pub(super) fn round_of(&self, sides: [usize; 2]) -> usize {
+        self.rounds.iter().position(|(played, _)| *played == sides).expect("they play each other")
+    }
+
+    /// What identifies the games that are played with each seed, in their order: what the program makes of their files. Of another version,
+    /// or with another file, it is another game; entries may have other names, and files may lie elsewhere.
+    #[must_use]
+    pub fn pairings(&self) -> Vec<String> {
+        self.rounds.iter().map(|(_, scenario)| scenario.digest()).collect()
+    }
+
     /// What identifies it. It depends on what files say and not on where they lie: of two that lie elsewhere but name each other in the
     /// same way it is the same.
     #[must_use]
