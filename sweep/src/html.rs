@@ -59,7 +59,9 @@ mod tests {
         for inside in ["<style", "<script>", "http-equiv", "style="] {
             assert!(!page.contains(inside), "{inside}");
         }
-        assert!(page.contains("data-games=\"true\"") && page.contains("id=\"worst-list\"") && page.ends_with("</html>\n"));
+        assert!(
+            page.contains("data-games=\"true\"") && page.contains("id=\"worst-list\"") && page.ends_with("</html>\n")
+        );
         assert_eq!(data.trim(), "const report = {\"sweep\":\"wind\"};");
         assert!(style.contains(".tornado") && script.contains("function begin()") && !script.contains("</script>"));
     }

@@ -3,8 +3,8 @@
 //! They are a text of one line a game, JSON, that is only ever appended to. A game is known by what the program makes of its files and by
 //! its seed: whoever changes a strategy gets new games, and whoever gives it another name does not.
 
-use super::play::{Game, Record};
 use super::plan::Plan;
+use super::play::{Game, Record};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use thiserror::Error;
@@ -73,19 +73,19 @@ impl League {
             Ok(game) => Outcome::Game(game),
             Err(why) => Outcome::Failed(why),
         };
-        let pairing = pairings[plan.round_of(record.of.sides)].clone();
+        let pairing = pairings[plan.place_of(record.of) % pairings.len()].clone();
         let line = Line { pairing, blue, red, seed: record.of.seed, outcome };
         serde_json::to_string(&line).expect("it has names for keys") + "\n"
     }
 
-    /// The games of a plan that are known, each with its place; and the places of the others.
+    /// The games of a plan that are known, and the places of the others.
     #[must_use]
-    pub fn split(&self, plan: &Plan, pairings: &[String]) -> (Vec<(usize, Record)>, Vec<usize>) {
+    pub fn split(&self, plan: &Plan, pairings: &[String]) -> (Vec<Record>, Vec<usize>) {
         let (mut known, mut new) = (vec![], vec![]);
         for place in 0..plan.games() {
             let of = plan.match_at(place).0;
             match self.known.get(&(pairings[place % pairings.len()].clone(), of.seed)) {
-                Some(result) => known.push((place, Record { of, result: result.clone() })),
+                Some(result) => known.push(Record { of, result: result.clone() }),
                 None => new.push(place),
             }
         }

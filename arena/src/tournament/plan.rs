@@ -106,12 +106,14 @@ impl Plan {
         (Match { seed, sides: *sides }, scenario)
     }
 
-    /// Which of the games that are played with each seed these sides play.
+    /// The place of a game.
     ///
     /// # Panics
-    /// If they play none.
-    pub(super) fn round_of(&self, sides: [usize; 2]) -> usize {
-        self.rounds.iter().position(|(played, _)| *played == sides).expect("they play each other")
+    /// If it has none.
+    #[must_use]
+    pub fn place_of(&self, of: Match) -> usize {
+        let round = self.rounds.iter().position(|(sides, _)| *sides == of.sides).expect("they play each other");
+        of.seed.wrapping_sub(self.tournament.seed) as usize * self.rounds.len() + round
     }
 
     /// What identifies the games that are played with each seed, in their order: what the program makes of their files. Of another version,

@@ -154,7 +154,10 @@ mod tests {
     fn who_wins_everything_is_rated_high_and_not_surely_so() {
         let rated = ratings(2, &meetings([0, 1], 20, 20));
         assert!(rated[0].elo - rated[1].elo > 400.0 && rated[0].elo.is_finite(), "{rated:?}");
-        assert!(rated[0].high.expect("an interval") - rated[0].elo > 100.0, "equal seeds do not mean no error: {rated:?}");
+        assert!(
+            rated[0].high.expect("an interval") - rated[0].elo > 100.0,
+            "equal seeds do not mean no error: {rated:?}"
+        );
         // One against itself, and a single seed.
         let rated = ratings(2, &[vec![Meeting { sides: [0, 0], share: 1.0 }, Meeting { sides: [0, 1], share: 0.5 }]]);
         assert!(rated.iter().all(|one| (one.elo - 1500.0).abs() < 1e-9 && one.low.is_none()), "{rated:?}");

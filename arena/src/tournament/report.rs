@@ -192,9 +192,9 @@ impl Report {
             let why = record.result.as_ref().err()?.clone();
             Some(Failure { blue: name(record.of.sides[0]), red: name(record.of.sides[1]), seed: record.of.seed, why })
         });
-        let matches = records.iter().enumerate().filter_map(|(game, record)| {
+        let matches = records.iter().filter_map(|record| {
             let Game { score, winner, duration_s, digest, .. } = record.result.as_ref().ok()?.clone();
-            let [blue, red] = record.of.sides.map(name);
+            let ([blue, red], game) = (record.of.sides.map(name), plan.place_of(record.of));
             Some(MatchRow { game, blue, red, seed: record.of.seed, score, winner, duration_s, digest })
         });
         Report {

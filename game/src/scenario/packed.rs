@@ -135,7 +135,8 @@ mod tests {
 
     #[test]
     fn texts_and_models_go_through_json_and_what_is_neither_is_refused() {
-        let files = vec![(PathBuf::from("a.toml"), b"x = \"1\"\n".to_vec()), (PathBuf::from("b.onnx"), vec![0, 255, 7])];
+        let files =
+            vec![(PathBuf::from("a.toml"), b"x = \"1\"\n".to_vec()), (PathBuf::from("b.onnx"), vec![0, 255, 7])];
         let packed = Packed { spec: "{}".to_owned(), files, digest: "d".to_owned() };
         let json = serde_json::to_string(&packed).expect("it has names for keys");
         assert!(json.contains("x = \\\"1\\\"\\n") && json.contains("AP8H"), "{json}");

@@ -1,16 +1,15 @@
 //! A websocket: the network shell around the session of one page.
 
+use super::report::Shown;
 use super::routes::Room;
 use super::session::PageSession;
-use super::view::{Access, Changes, Outgoing, View};
+use super::view::{Access, Changes, Outgoing};
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use bus::{Slot, clock};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
 use std::pin::pin;
-use std::sync::Arc;
 use std::time::Duration;
-use tokio::sync::watch;
 use tokio::time::{Instant, sleep_until, timeout};
 
 /// The longest message from a page, bytes.
@@ -23,9 +22,6 @@ const PING: Duration = Duration::from_secs(15);
 const DEAD: Duration = Duration::from_secs(45);
 /// A game at full speed changes more often than a page can draw: messages are sent no more often than this.
 const MIN_INTERVAL: Duration = Duration::from_millis(4);
-
-/// What is shown now, if anything is yet. Its end is that of the server.
-pub(super) type Shown = watch::Receiver<Option<Arc<dyn View>>>;
 
 /// What ends the session with a page.
 enum End {
