@@ -99,7 +99,9 @@ enum Command {
     #[command(after_help = "Examples:\n  squall replay runs/game.mcap\n  squall replay runs/game.mcap --check")]
     Replay(replay_command::Args),
     /// Says what a recorded game tells: a summary, tables, plots, MOOS logs, and how it differs from another.
-    #[command(after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap")]
+    #[command(
+        after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap\n  squall log runs/game.mcap --gif game.gif --from 120 --to 190"
+    )]
     Log(log_command::Args),
     /// Dumps one decision of a boat's helm: a table, numbers, pictures.
     #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --png helm.png")]

@@ -18,3 +18,9 @@ export function name(t_s, boat) {
   history.replaceState(null, '', `#${given}`);
   return location.href;
 }
+
+/** The game of a report that the address names, or null. */
+export const gameOfReport = () => new URLSearchParams(location.search).get('game');
+
+/** The address of a game of a report. */
+export const addressOfGame = (game) => `/?game=${encodeURIComponent(game)}${location.hash.includes('token=') ? `#token=${encodeURIComponent(words().get('token'))}` : ''}`;

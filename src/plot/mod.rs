@@ -2,6 +2,7 @@
 
 pub(crate) mod colour;
 pub(crate) mod field;
+pub(crate) mod film;
 pub(crate) mod game;
 pub(crate) mod polar;
 pub(crate) mod sea;
@@ -158,12 +159,18 @@ pub(crate) fn write_svg(path: &Path, drawing: &impl Drawing) -> anyhow::Result<(
     output_file::write(path, "the plot", svg)
 }
 
+/// Draws as pixels, three bytes each: red, green and blue.
+pub(crate) fn pixels(drawing: &impl Drawing) -> anyhow::Result<Vec<u8>> {
+    let (wide, high) = drawing.size();
+    let mut pixels = vec![0; 3 * wide as usize * high as usize];
+    draw_on(BitMapBackend::with_buffer(&mut pixels, (wide, high)), drawing, Ink::Pixels).context("cannot draw")?;
+    Ok(pixels)
+}
+
 /// Draws into a PNG file, three bytes a pixel.
 pub(crate) fn write_png(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
     let (wide, high) = drawing.size();
-    let mut pixels = vec![0; 3 * wide as usize * high as usize];
-    draw_on(BitMapBackend::with_buffer(&mut pixels, (wide, high)), drawing, Ink::Pixels)
-        .with_context(|| format!("cannot draw {}", path.display()))?;
+    let pixels = pixels(drawing).with_context(|| path.display().to_string())?;
     let mut file = vec![];
     let mut encoder = png::Encoder::new(&mut file, wide, high);
     encoder.set_color(png::ColorType::Rgb);

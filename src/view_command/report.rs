@@ -16,6 +16,9 @@ use std::sync::atomic::AtomicBool;
 /// The largest file of a report that is read, bytes.
 pub(super) const BYTES_MAX: u64 = 256 << 20;
 
+/// Where the page is on which tournaments and trainings are shown.
+pub(super) const PAGE: &str = "/report.html";
+
 /// The report at a path: a file, or the folder that it is in.
 pub(super) fn open(path: &Path, stop: &Arc<AtomicBool>) -> Result<Arc<dyn Report>> {
     let games = Games::new(stop)?;
@@ -79,7 +82,16 @@ impl TournamentReport {
             Some(packed) => tournament::Plan::unpack(packed).map_err(|why| why.to_string()),
         };
         let digests = report.matches.iter().map(|row| (row.game, row.digest.clone())).collect();
-        let json = json!({"kind": "tournament", "report": report, "unplayable": plan.as_ref().err()});
+        let mut shown = serde_json::to_value(&report).expect("it has names for keys");
+        // Numbers of JavaScript have too few digits for all seeds.
+        let spell = |row: &mut Value| row["seed"] = row["seed"].to_string().into();
+        spell(&mut shown);
+        let rows = ["matches", "failures"].map(|list| shown[list].take());
+        for (list, mut rows) in ["matches", "failures"].into_iter().zip(rows) {
+            rows.as_array_mut().into_iter().flatten().for_each(spell);
+            shown[list] = rows;
+        }
+        let json = json!({"kind": "tournament", "report": shown, "unplayable": plan.as_ref().err()});
         TournamentReport { json: json.to_string().into_bytes(), plan, digests, games }
     }
 
@@ -109,6 +121,10 @@ fn place_of(name: &str, games: usize) -> Result<usize> {
 }
 
 impl Report for TournamentReport {
+    fn page(&self) -> &'static str {
+        PAGE
+    }
+
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         (path == "/report.json").then(|| self.json.clone())
     }
@@ -167,6 +183,10 @@ fn unpacked(path: &PathBuf) -> Result<sweep::Plan> {
 }
 
 impl Report for SweepReport {
+    fn page(&self) -> &'static str {
+        self.files[0].0
+    }
+
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         self.files.iter().find(|(name, _)| *name == path).map(|(_, text)| text.clone().into_bytes())
     }

@@ -1,7 +1,7 @@
 //! The folder of a training on the page: its curves, what came of its evaluations, and its recorded episodes.
 
 use super::games::{Game, Games, Source};
-use super::report::read;
+use super::report::{PAGE, read};
 use anyhow::{Context, Result, bail};
 use serde_json::{Value, json};
 use shore::page::{Report, Shown};
@@ -112,6 +112,10 @@ fn number(cell: &str) -> Result<Value> {
 }
 
 impl Report for TrainingReport {
+    fn page(&self) -> &'static str {
+        PAGE
+    }
+
     fn file(&self, path: &str) -> Option<Vec<u8>> {
         // A table that cannot be read any more is told where the curves were.
         let problem = |why: anyhow::Error| json!({"kind": "training", "problem": format!("{why:#}")});

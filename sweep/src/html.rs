@@ -24,7 +24,7 @@ pub fn served(json: &serde_json::Value, has_games: bool) -> [(&'static str, Stri
     let head = head.replace("<html lang=\"en\">", &format!("<html lang=\"en\" data-games=\"{has_games}\">"));
     let scripts = "<script src=\"/sweep_report.js\"></script>\n<script src=\"/sweep.js\"></script>";
     [
-        ("/report.html", format!("{head}</head>{body}{scripts}{end}")),
+        ("/sweep.html", format!("{head}</head>{body}{scripts}{end}")),
         ("/sweep.css", style.to_owned()),
         // JSON is JavaScript.
         ("/sweep_report.js", data.replace(PLACE, &json.to_string())),

@@ -6,6 +6,9 @@ use tokio::sync::watch;
 
 /// Something that was counted up from many games: of a tournament, a sweep, a training.
 pub trait Report: Send + Sync {
+    /// The path of its page.
+    fn page(&self) -> &'static str;
+
     /// The report's own file at this path of the page's address, such as `/report.json`, if it has one there. It may take its time.
     fn file(&self, path: &str) -> Option<Vec<u8>>;
 

@@ -156,16 +156,13 @@ async fn check(State(app): State<AppState>, request: Request, next: Next) -> Res
     response
 }
 
-/// Where a report is shown.
-const REPORT: &str = "/report.html";
-
 async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response<Body> {
     if method != Method::GET && method != Method::HEAD {
         return asset::text(StatusCode::METHOD_NOT_ALLOWED, "There are only files here.\n");
     }
     let path = uri.path().to_owned();
-    if app.report.get().is_some() && path == "/" && value(uri.query(), "game").is_none() {
-        return asset::elsewhere(REPORT);
+    if let Some(report) = app.report.get().filter(|_| path == "/" && value(uri.query(), "game").is_none()) {
+        return asset::elsewhere(report.page());
     }
     match app.of_report(move |report| report.file(&path)).await.flatten() {
         Some(contents) => asset::own(uri.path(), Body::from(contents)),
