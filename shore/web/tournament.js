@@ -197,10 +197,10 @@ export class Tournament {
       const watch = make('a', 'watch', 'Watch');
       watch.href = addressOfGame(game.game);
       watch.setAttribute('aria-label', `Watch seed ${game.seed}, ${plain(this.chosen[0])} as ${teams[game.side]}, ${own} to ${theirs}`);
-      return make('tr', `result-${game.result}`, '', cell(String(game.seed), 'number'), cell(plain(teams[game.side] ?? '')), cell(`${own} : ${theirs}`, 'number strong'),
-        cell(game.result), cell(clockShort(game.duration_s), 'number'), make('td', '', '', ...(this.unplayable ? [] : [watch])));
+      return make('tr', `result-${game.result}`, '', make('td', '', '', ...(this.unplayable ? [] : [watch])), cell(String(game.seed), 'number'), cell(plain(teams[game.side] ?? '')), cell(`${own} : ${theirs}`, 'number strong'),
+        make('td', 'result', game.result), cell(clockShort(game.duration_s), 'number'));
     };
-    const heads = [head('Seed', 'number'), head('Team'), head('Points', 'number'), head('Result'), head('Length', 'number'), head('')];
+    const heads = [head(''), head('Seed', 'number'), head('Team'), head('Points', 'number'), head('Result'), head('Length', 'number')];
     const games = table(heads, found.slice(0, this.listed).map(row));
     show(games, found.length > 0);
     return scrolled('Games', games);

@@ -149,14 +149,14 @@ export class Training {
   }
 
   drawEpisodes(episodes) {
-    const heads = ['Samples', 'Stage', 'Opponent', 'Seed', 'Points', 'Steps', ''];
+    const heads = ['', 'Samples', 'Stage', 'Opponent', 'Seed', 'Points', 'Steps'];
     const row = (each) => {
       const name = each.recording.replace(/^games\//, '');
       const watch = make('a', 'watch', 'Watch');
       watch.href = addressOfGame(name);
       watch.setAttribute('aria-label', `Watch the episode of seed ${each.seed} against ${plain(each.opponent)}`);
       const texts = [`${number(each.samples / MILLION, 2)} M`, plain(each.stage), plain(each.opponent), each.seed, `${each.points} : ${each.points_against}`, String(each.steps)];
-      return make('tr', '', '', ...texts.map((text, i) => make('td', i === 1 || i === 2 ? '' : 'number', text)), make('td', '', '', watch));
+      return make('tr', '', '', make('td', '', '', watch), ...texts.map((text, i) => make('td', i === 1 || i === 2 ? '' : 'number', text)));
     };
     this.episodes.replaceChildren(make('h2', '', 'Recorded episodes'), episodes.length === 0
       ? make('p', 'faint', 'None: squall train --record-every N records some.')
@@ -164,8 +164,8 @@ export class Training {
   }
 
   table(label, heads, rows) {
-    const head = heads.map((text, i) => {
-      const th = make('th', [1, 2].includes(i) ? '' : 'number', text);
+    const head = heads.map((text) => {
+      const th = make('th', ['Stage', 'Opponent'].includes(text) ? '' : 'number', text);
       th.scope = 'col';
       return th;
     });

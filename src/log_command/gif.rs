@@ -18,6 +18,8 @@ use std::path::Path;
 
 /// Pictures a second of watching.
 const PICTURES_HZ: f64 = 10.0;
+/// How long the end stands before it begins again, hundredths of a second.
+const END_CS: u16 = 200;
 /// Pictures of a film, at most.
 const PICTURES_MAX: f64 = 5000.0;
 /// How far back trails go, s.
@@ -54,7 +56,10 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), colour::of_team(i))).collect();
     let stage = Stage::new(header.game.clone(), &scenario.field, teams, args.width);
     let mut damaged = Damaged::default();
-    let moments = moments(recording, args, &stage, &mut damaged)?;
+    // There is nothing between two decisions.
+    let step_s = f64::max(args.speed / PICTURES_HZ, scenario.decision().as_s());
+    let delay_cs = (100.0 * step_s / args.speed).round() as u16;
+    let moments = moments(recording, (args, step_s), &stage, &mut damaged)?;
     let [Some(first), Some(last)] = [moments.first(), moments.last()] else {
         bail!("the recording has no frame from {} s on", args.from.unwrap_or(0.0))
     };
@@ -73,7 +78,7 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
         let indices = palette.indices(&pixels(moment)?);
         let mut picture = changes(&indices, before.as_deref(), (size.0 as usize, size.1 as usize));
         // The end stands for a while before it begins again.
-        picture.delay = if i + 1 == moments.len() { 200 } else { (100.0 / PICTURES_HZ) as u16 };
+        picture.delay = if i + 1 == moments.len() { END_CS } else { delay_cs };
         encoder.write_frame(&picture).with_context(what)?;
         before = Some(indices);
     }
@@ -85,7 +90,7 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
 /// The moments of a film.
 fn moments<'a>(
     recording: &Recording,
-    args: &FilmArgs,
+    (args, step_s): (&FilmArgs, f64),
     stage: &'a Stage<'a>,
     damaged: &mut Damaged,
 ) -> Result<Vec<Moment<'a>>> {
@@ -94,7 +99,6 @@ fn moments<'a>(
     if to_s <= from_s {
         bail!("--to is {to_s} s, expected more than --from, {from_s} s");
     }
-    let step_s = args.speed / PICTURES_HZ;
     let mut moments = vec![];
     let mut trails: VecDeque<(f64, Vec<Ned>)> = VecDeque::new();
     for frame in recording.frames() {
