@@ -24,7 +24,7 @@
 // zoom-in, zoom-out, fit, show-names, show-trails, show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-
 // box, sheet.
 
-import { gameOfReport, name as nameMoment, wanted } from './address.js';
+import { addressOfReport, gameOfReport, name as nameMoment, wanted } from './address.js';
 import { Boats } from './boats.js';
 import { Capture } from './capture.js';
 import { Controls } from './controls.js';
@@ -106,7 +106,7 @@ class Page {
 
   bind() {
     show(byId('back'), gameOfReport() !== null);
-    byId('back').addEventListener('click', (event) => this.goBack(event));
+    byId('back').href = addressOfReport();
     byId('zoom-in').addEventListener('click', () => this.zoom(1.4));
     byId('zoom-out').addEventListener('click', () => this.zoom(1 / 1.4));
     byId('share').addEventListener('click', () => this.share());
@@ -238,13 +238,6 @@ class Page {
   /** A replay begins where the address says, else it plays; one that is shown after its game stands, with the score of its end. */
   begin(first) {
     if (first && !this.goToAddress() && this.game.mode === 'replay') this.link.send({ do: 'control', what: 'resume' });
-  }
-
-  /** Back to the report as it was left, if this page was opened from there. */
-  goBack(event) {
-    if (!document.referrer.startsWith(location.origin) || history.length < 2) return;
-    event.preventDefault();
-    history.back();
   }
 
   /** To the moment and the boat of the address. Whether it names a moment. */

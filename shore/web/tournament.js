@@ -1,6 +1,6 @@
 // A tournament or a league on the page: ratings, who beats whom, and the games of two entries, each of which can be watched.
 
-import { addressOfGame } from './address.js';
+import { addressOfGame, keepAddress } from './address.js';
 import { clockShort, make, number, options, plain, show, write } from './words.js';
 
 /** Games that are listed at first, and how many more each time. */
@@ -146,6 +146,7 @@ export class Tournament {
     words.set('row', row);
     words.set('column', column);
     history.replaceState(null, '', `#${words}`);
+    keepAddress();
     this.fromAddress();
   }
 

@@ -18,7 +18,9 @@ pub fn served(json: &serde_json::Value, has_games: bool) -> [(&'static str, Stri
     let ((before, _), (style, after)) = (halves(PAGE, "<meta http-equiv"), between(PAGE, "style"));
     let (data, rest) = between(after, "script");
     let (script, end) = between(rest, "script");
-    let head = format!("{before}<link rel=\"stylesheet\" href=\"/sweep.css\">\n<title>Sweep</title>\n");
+    let head = format!(
+        "{before}<link rel=\"icon\" href=\"/icon.svg\">\n<link rel=\"stylesheet\" href=\"/sweep.css\">\n<title>Sweep</title>\n"
+    );
     let (_, body) = halves(after, "</head>");
     let (body, _) = halves(body, "<script>");
     let head = head.replace("<html lang=\"en\">", &format!("<html lang=\"en\" data-games=\"{has_games}\">"));

@@ -31,11 +31,11 @@ pub fn text(report: &Report) -> String {
             add_line(&mut text, format_args!("{games} games a pairing, half of them on each side"));
             add_line(&mut text, format_args!("means a game ± 95 %, over {count} seeds from {first} to {last}\n"));
             entries(&mut text, report);
+            ratings(&mut text, report);
             match &report.challenger {
                 Some(challenger) => pairings(&mut text, report, challenger),
                 None => matrix(&mut text, report),
             }
-            ratings(&mut text, report);
         }
     }
     missing(&mut text, report);
