@@ -54,7 +54,7 @@ pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Resu
     let header = recording.header();
     let scenario = &header.info.scenario;
     let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), colour::of_team(i))).collect();
-    let stage = Stage::new(header.game.clone(), &scenario.field, teams, args.width);
+    let stage = Stage::new(header.game.replace('_', " "), &scenario.field, teams, args.width);
     let mut damaged = Damaged::default();
     // There is nothing between two decisions.
     let step_s = f64::max(args.speed / PICTURES_HZ, scenario.decision().as_s());
