@@ -179,7 +179,12 @@ export class Sight {
     afterwards(t, () => sight.close());
     if (WEB) {
       const file = (address) => join(WEB, new URL(address).pathname.replace(/\/$/, '/index.html'));
-      await page.route((address) => existsSync(file(address)), (route) => route.fulfill({ path: file(route.request().url()) }));
+      await page.route((address) => existsSync(file(address)), async (route) => {
+        // A report has its page elsewhere.
+        const { pathname, search } = new URL(route.request().url());
+        const leads = pathname === '/' && search === '' && (await route.fetch({ maxRedirects: 0 })).status() === 307;
+        return leads ? route.continue() : route.fulfill({ path: file(route.request().url()) });
+      });
     }
     await page.goto(url);
     return sight;
