@@ -72,7 +72,6 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     report.commit = env!("SQUALL_COMMIT").to_owned();
     report.rate = Some(rate);
     let of_league = league.as_ref().map(LeagueFile::report);
-    league.map_or(Ok(()), LeagueFile::end)?;
     for path in args.json.iter().chain(&of_league) {
         output_file::write_json(path, "the report", &Whole { report: &report, quality: quality.as_ref() })?;
     }
@@ -83,6 +82,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(quality) = quality {
         screen::print(&format!("\n{quality}"));
     }
+    // What came of the games is printed even if the disk is full.
+    league.map_or(Ok(()), LeagueFile::end)?;
     Ok(match (report.games_unplayed > 0, report.failures.is_empty()) {
         (true, _) => stop::interrupted(),
         (false, true) => ExitCode::SUCCESS,

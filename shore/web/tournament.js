@@ -1,7 +1,8 @@
 // A tournament or a league on the page: ratings, who beats whom, and the games of two entries, each of which can be watched.
 
 import { addressOfGame, keepAddress } from './address.js';
-import { clockShort, make, number, options, plain, show, write } from './words.js';
+import { cell, head, tableOf, watch } from './table.js';
+import { clockShort, make, number, options, plain, show } from './words.js';
 
 /** Games that are listed at first, and how many more each time. */
 const LISTED = 100;
@@ -12,33 +13,6 @@ const COUNTS = [['Points', 'score'], ['Grabs', 'grabs'], ['Captures', 'captures'
 
 const percent = (count, of) => Math.round((100 * count) / Math.max(1, of));
 const signed = (value) => `${value > 0 ? '+' : ''}${number(value, 2)}`;
-const cell = (text, classes = '') => make('td', classes, text);
-
-function head(text, classes = '') {
-  const th = make('th', classes, text);
-  th.scope = 'col';
-  return th;
-}
-
-function rowHead(text, ...children) {
-  const th = make('th', '', text, ...children);
-  th.scope = 'row';
-  return th;
-}
-
-/** A table that can be moved sideways, by keys as well. */
-function scrolled(label, table) {
-  const box = make('div', 'scroll', '', table);
-  box.tabIndex = 0;
-  box.setAttribute('role', 'region');
-  box.setAttribute('aria-label', label);
-  return box;
-}
-
-function table(heads, rows, classes = 'list') {
-  return make('table', classes, '', make('thead', '', '', make('tr', '', '', ...heads)), make('tbody', '', '', ...rows));
-}
-
 export class Tournament {
   constructor(place) {
     this.place = place;
@@ -103,15 +77,15 @@ export class Tournament {
       return make('td', 'wide', '', box);
     };
     const mean = ({ mean, high }) => make('td', 'number', number(mean, 2), make('small', '', high === null ? '' : ` ± ${number(high - mean, 2)}`));
-    const row = (entry, place) => make('tr', '', '', cell(String(place + 1), 'number'), rowHead(plain(entry.name)),
+    const row = (entry, place) => make('tr', '', '', cell(String(place + 1), 'number'), head('row', plain(entry.name)),
       cell(number(entry.rating.elo, 0), 'number strong'),
       cell(entry.rating.low === null ? '–' : `${number(entry.rating.low, 0)} to ${number(entry.rating.high, 0)}`, 'number'), bar(entry.rating),
       cell(String(entry.wins), 'number'), cell(String(entry.draws), 'number'), cell(String(entry.losses), 'number'),
       ...COUNTS.map(([, key]) => mean(entry[key])));
-    const heads = [head('Place', 'number'), head('Entry'), head('Rating', 'number'), head('95 %', 'number'), head(''), head('Won', 'number'),
-      head('Drawn', 'number'), head('Lost', 'number'), ...COUNTS.map(([title]) => head(title, 'number'))];
+    const heads = [['Place', 'number'], ['Entry'], ['Rating', 'number'], ['95 %', 'number'], [''], ['Won', 'number'], ['Drawn', 'number'], ['Lost', 'number'],
+      ...COUNTS.map(([title]) => [title, 'number'])];
     this.ratings.replaceChildren(make('h2', '', 'Ratings'), make('p', 'faint', 'Elo: 100 points ahead are 64 % of a game, 200 are 76 %. All other numbers '
-      + 'are means a game. Intervals are of 95 %, over seeds.'), scrolled('Ratings', table(heads, entries.map(row), 'list ratings')));
+      + 'are means a game. Intervals are of 95 %, over seeds.'), tableOf('Ratings', heads, entries.map(row), 'list ratings'));
   }
 
   drawMatrix() {
@@ -135,9 +109,9 @@ export class Tournament {
       this.buttons.set(`${row.name} ${column.name}`, button);
       return make('td', '', '', button);
     };
-    const rows = entries.map((row) => make('tr', '', '', rowHead(plain(row.name)), ...entries.map((column) => of(row, column))));
+    const rows = entries.map((row) => make('tr', '', '', head('row', plain(row.name)), ...entries.map((column) => of(row, column))));
     this.matrix.replaceChildren(make('h2', '', 'Head to head'), make('p', 'faint', 'How often the row beats the column, and by how many points a game. '
-      + 'Press a cell for its games.'), scrolled('Head to head', table([head(''), ...entries.map(({ name }) => head(plain(name)))], rows, 'matrix')));
+      + 'Press a cell for its games.'), tableOf('Head to head', [[''], ...entries.map(({ name }) => [plain(name)])], rows, 'matrix'));
   }
 
   /** Shows the games of two entries, and puts them into the address. */
@@ -195,15 +169,13 @@ export class Tournament {
     const { teams } = this.report;
     const row = (game) => {
       const [own, theirs] = [game.score[game.side], game.score[1 - game.side]];
-      const watch = make('a', 'watch', 'Watch');
-      watch.href = addressOfGame(game.game);
-      watch.setAttribute('aria-label', `Watch seed ${game.seed}, ${plain(this.chosen[0])} as ${teams[game.side]}, ${own} to ${theirs}`);
-      return make('tr', `result-${game.result}`, '', make('td', '', '', ...(this.unplayable ? [] : [watch])), cell(String(game.seed), 'number'), cell(plain(teams[game.side] ?? '')), cell(`${own} : ${theirs}`, 'number strong'),
+      const label = `Watch seed ${game.seed}, ${plain(this.chosen[0])} as ${teams[game.side]}, ${own} to ${theirs}`;
+      return make('tr', `result-${game.result}`, '', this.unplayable ? cell('') : watch(addressOfGame(game.game), label), cell(String(game.seed), 'number'), cell(plain(teams[game.side] ?? '')), cell(`${own} : ${theirs}`, 'number strong'),
         make('td', 'result', game.result), cell(clockShort(game.duration_s), 'number'));
     };
-    const heads = [head(''), head('Seed', 'number'), head('Team'), head('Points', 'number'), head('Result'), head('Length', 'number')];
-    const games = table(heads, found.slice(0, this.listed).map(row));
+    const heads = [[''], ['Seed', 'number'], ['Team'], ['Points', 'number'], ['Result'], ['Length', 'number']];
+    const games = tableOf('Games', heads, found.slice(0, this.listed).map(row));
     show(games, found.length > 0);
-    return scrolled('Games', games);
+    return games;
   }
 }

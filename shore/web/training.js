@@ -3,10 +3,13 @@
 import { addressOfGame } from './address.js';
 import { drawDiagram, partAt, sampleAt, ticksOf } from './diagram.js';
 import { palette } from './palette.js';
-import { make, number, plain, show, write } from './words.js';
+import { cell, tableOf, watch } from './table.js';
+import { make, number, plain, show } from './words.js';
 
 const MARGIN = { left: 46, right: 12, top: 8, bottom: 24 };
 const MILLION = 1e6;
+/** Evaluations that are listed. */
+const ROWS_MAX = 200;
 const DASHES = [[], [7, 4], [2, 3], [10, 3, 2, 3]];
 
 /** A share of games, of those that are won, drawn and lost. */
@@ -51,7 +54,9 @@ class Chart {
     [this.from, this.to] = [0, xs.reduce((most, each) => Math.max(most, each), 0) || 1];
     const values = lines.flatMap((line) => line.values).filter(isNumber);
     const [low, high] = this.span ?? [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
-    const room = this.span ? 0 : Math.max(0.06 * (high - low), 1e-3 * Math.max(Math.abs(low), Math.abs(high)), 1e-6);
+    // What does not change is in the middle, with room for a tenth of it: rounding is not drawn as mountains.
+    const size = Math.max(Math.abs(low), Math.abs(high));
+    const room = this.span ? 0 : Math.max(0.06 * (high - low), high - low < 0.01 * size ? 0.1 * size : 0, 1e-6);
     [this.low, this.high] = [low - room, high + room];
     this.draw();
   }
@@ -79,7 +84,7 @@ class Chart {
     const valueAt = ({ xs, values }) => values[this.at === null ? values.length - 1 : sampleAt(xs, this.at)];
     const words = (line) => number(valueAt(line), this.high - this.low > 20 ? 0 : this.high - this.low > 0.5 ? 2 : 4);
     const styled = this.lines.map((line, which) => ({ ...line, colour: palette.teams[which % 4], width: 1.8, dash: DASHES[Math.floor(which / 4) % 4] }));
-    const one = (line, which) => make('li', `team-${which % 4}`, '', make('i', 'swatch'), make('span', '', line.name ? plain(line.name) : ''), make('b', '', words(line)));
+    const one = (line, which) => make('li', `team-${which % 4}`, '', ...(line.name ? [make('i', 'swatch'), make('span', '', plain(line.name))] : []), make('b', '', words(line)));
     this.legend.replaceChildren(...styled.map(one));
     const when = this.at === null ? 'at the end' : `at ${number(this.at, 2)} million samples`;
     this.canvas.setAttribute('aria-label', `${this.title}, ${when}: ${styled.map((line) => `${line.name ? `${plain(line.name)} ` : ''}${words(line)}`).join(', ')}. `
@@ -140,39 +145,25 @@ export class Training {
   /** What came of the games of each checkpoint, the newest first. */
   drawEvaluations(evaluations) {
     show(this.newest, evaluations.length > 0);
-    const heads = ['Samples', 'Stage', 'Opponent', 'Won', 'Drawn', 'Lost', 'Points', 'Left the field'];
-    const row = (each) => make('tr', '', '', ...[`${number(each.samples / MILLION, 2)} M`, plain(each.stage), plain(each.opponent), String(each.won), String(each.drawn),
-      String(each.lost), `${number(each.points, 1)} : ${number(each.points_against, 1)}`, number(each.left_field, 1)]
-      .map((text, i) => make('td', i === 1 || i === 2 ? '' : 'number', text)));
+    const heads = [['Samples', 'number'], ['Stage'], ['Opponent'], ...['Won', 'Drawn', 'Lost', 'Points', 'Left the field'].map((text) => [text, 'number'])];
+    const row = (each) => make('tr', '', '', ...this.first(each), ...[String(each.won), String(each.drawn), String(each.lost),
+      `${number(each.points, 1)} : ${number(each.points_against, 1)}`, number(each.left_field, 1)].map((text) => cell(text, 'number')));
     this.newest.replaceChildren(make('h2', '', 'Evaluations'), make('p', 'faint', 'Games of each checkpoint against each opponent, the newest first; points are means a game.'),
-      this.table('Evaluations', heads, evaluations.slice(-200).reverse().map(row)));
+      tableOf('Evaluations', heads, evaluations.slice(-ROWS_MAX).reverse().map(row)));
+  }
+
+  /** The cells that every row begins with. */
+  first({ samples, stage, opponent }) {
+    return [cell(`${number(samples / MILLION, 2)} M`, 'number'), cell(plain(stage)), cell(plain(opponent))];
   }
 
   drawEpisodes(episodes) {
-    const heads = ['', 'Samples', 'Stage', 'Opponent', 'Seed', 'Points', 'Steps'];
-    const row = (each) => {
-      const name = each.recording.replace(/^games\//, '');
-      const watch = make('a', 'watch', 'Watch');
-      watch.href = addressOfGame(name);
-      watch.setAttribute('aria-label', `Watch the episode of seed ${each.seed} against ${plain(each.opponent)}`);
-      const texts = [`${number(each.samples / MILLION, 2)} M`, plain(each.stage), plain(each.opponent), each.seed, `${each.points} : ${each.points_against}`, String(each.steps)];
-      return make('tr', '', '', make('td', '', '', watch), ...texts.map((text, i) => make('td', i === 1 || i === 2 ? '' : 'number', text)));
-    };
+    const heads = [[''], ['Samples', 'number'], ['Stage'], ['Opponent'], ...['Seed', 'Points', 'Steps'].map((text) => [text, 'number'])];
+    const row = (each) => make('tr', '', '',
+      watch(addressOfGame(each.recording.replace(/^games\//, '')), `Watch the episode of seed ${each.seed} against ${plain(each.opponent)}`), ...this.first(each),
+      ...[each.seed, `${each.points} : ${each.points_against}`, String(each.steps)].map((text) => cell(text, 'number')));
     this.episodes.replaceChildren(make('h2', '', 'Recorded episodes'), episodes.length === 0
       ? make('p', 'faint', 'None: squall train --record-every N records some.')
-      : this.table('Recorded episodes', heads, [...episodes].reverse().map(row)));
-  }
-
-  table(label, heads, rows) {
-    const head = heads.map((text) => {
-      const th = make('th', ['Stage', 'Opponent'].includes(text) ? '' : 'number', text);
-      th.scope = 'col';
-      return th;
-    });
-    const box = make('div', 'scroll', '', make('table', 'list', '', make('thead', '', '', make('tr', '', '', ...head)), make('tbody', '', '', ...rows)));
-    box.tabIndex = 0;
-    box.setAttribute('role', 'region');
-    box.setAttribute('aria-label', label);
-    return box;
+      : tableOf('Recorded episodes', heads, [...episodes].reverse().map(row)));
   }
 }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use shore::page::{Report, Shown};
 use std::collections::BTreeMap;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -176,7 +176,7 @@ impl SweepReport {
     }
 }
 
-fn unpacked(path: &PathBuf) -> Result<sweep::Plan> {
+fn unpacked(path: &Path) -> Result<sweep::Plan> {
     let packed: Packed =
         serde_json::from_slice(&read(path)?).with_context(|| format!("{} is no plan", path.display()))?;
     Ok(sweep::Plan::unpack(packed)?)
