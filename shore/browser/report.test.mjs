@@ -31,6 +31,25 @@ const view = async (t, path) => (await new Program(t, 'view', path, '--listen', 
 /** Whether nothing of a text was taken for more than text. */
 const isText = (sight) => sight.get(() => document.title !== 'owned' && document.querySelector('img') === null);
 
+/** Texts whose contrast to what is behind them is less than 4.5, by WCAG 2.1, 1.4.3. */
+function faint() {
+  const numbers = (colour) => {
+    const found = colour.match(/[\d.]+/g).map(Number);
+    return colour.startsWith('color(') ? found.map((each, i) => (i < 3 ? each * 255 : each)) : found;
+  };
+  const behind = (element) => {
+    const colour = numbers(getComputedStyle(element).backgroundColor);
+    return colour[3] === 0 && element.parentElement ? behind(element.parentElement) : colour;
+  };
+  const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+  const luminance = (colour) => [0.2126, 0.7152, 0.0722].reduce((sum, weight, i) => sum + weight * linear(colour[i] / 255), 0);
+  const own = (element) => [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim() !== '');
+  return [...document.querySelectorAll('body *')].filter((each) => own(each) && each.offsetParent !== null).map((each) => {
+    const [low, high] = [numbers(getComputedStyle(each).color), behind(each)].map(luminance).sort((a, b) => a - b);
+    return [(high + 0.05) / (low + 0.05), each.textContent];
+  }).filter(([contrast]) => contrast < 4.5);
+}
+
 test('from a cell of the win matrix to its games, to a replay of one, and back', async (t) => {
   const { path, report } = await tournament(t);
   const sight = await Sight.load(t, browser, await view(t, path));
@@ -43,6 +62,9 @@ test('from a cell of the win matrix to its games, to a replay of one, and back',
   const rated = [...report.entries].sort((a, b) => b.rating.elo - a.rating.elo);
   assert.deepEqual(rows.map((row) => [row[1], row[2], row[5]]), rated.map(({ name, rating, wins }) => [name.replaceAll('_', ' '), rating.elo.toFixed(0), String(wins)]));
 
+  assert.deepEqual(await sight.get(faint), []);
+  await sight.press('#dark');
+  assert.deepEqual(await sight.get(faint), [], 'in the dark');
   const [row, column] = ['strategy_4', 'pav01'];
   const cell = `.matrix button[aria-label^="strategy 4 against pav01:"]`;
   await sight.page.focus(cell);
@@ -161,6 +183,7 @@ test('a training shows curves that follow its tables, and its recorded episodes'
   const label = (title) => sight.until(`the curve ${title} is drawn`, (title) => [...document.querySelectorAll('.card:not([hidden]) canvas')]
     .map((canvas) => canvas.getAttribute('aria-label')).find((text) => text?.startsWith(title)), title);
   assert.match(await label('Games won'), /at the end: pav01 65, <b>x<\/b> 50\./);
+  assert.deepEqual(await sight.get(faint), []);
   assert.match(await label('Reward'), /at the end: 4\.90\./);
   await sight.page.focus('.card canvas');
   await sight.keys('ArrowLeft', 'ArrowLeft');

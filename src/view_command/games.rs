@@ -6,7 +6,7 @@ use game::Scenario;
 use shore::page::{PreparingView, Showing, Shown};
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use tempfile::TempDir;
 
@@ -36,6 +36,8 @@ pub(super) struct Game {
 pub(super) struct Games {
     open: Mutex<VecDeque<Open>>,
     folder: TempDir,
+    /// How many recordings there were in it.
+    recordings: AtomicU64,
     /// How many are played now.
     played: Arc<(Mutex<usize>, Condvar)>,
     stop: Arc<AtomicBool>,
@@ -59,7 +61,13 @@ impl Drop for Open {
 impl Games {
     pub(super) fn new(stop: &Arc<AtomicBool>) -> Result<Games> {
         let folder = TempDir::with_prefix("squall-view-").context("no folder for the recordings of games")?;
-        Ok(Games { open: Mutex::default(), folder, played: Arc::default(), stop: Arc::clone(stop) })
+        Ok(Games {
+            open: Mutex::default(),
+            folder,
+            recordings: AtomicU64::new(0),
+            played: Arc::default(),
+            stop: Arc::clone(stop),
+        })
     }
 
     /// What is shown of the game of this name; `find` says which it is.
@@ -83,11 +91,8 @@ impl Games {
         };
         let preparing =
             Arc::new(PreparingView::new(&format!("{}: it is played as soon as another is over", game.about)));
-        let showing = Arc::new(Showing::new(Arc::clone(&preparing) as _));
-        let file = self
-            .folder
-            .path()
-            .join(format!("{}.mcap", open.iter().map(|open| number(&open.file)).max().unwrap_or(0) + 1));
+        let showing = Showing::new(Arc::clone(&preparing) as _);
+        let file = self.folder.path().join(format!("{}.mcap", self.recordings.fetch_add(1, Ordering::Relaxed)));
         let shown = showing.shown();
         open.push_back(Open { name: name.to_owned(), showing: Arc::clone(&showing), file: file.clone() });
         let (played, stop) = (Arc::clone(&self.played), Arc::clone(&self.stop));
@@ -100,11 +105,6 @@ impl Games {
         });
         shown
     }
-}
-
-/// The number of a recording of ours.
-fn number(file: &Path) -> u64 {
-    file.file_stem().and_then(|stem| stem.to_str()?.parse().ok()).unwrap_or(0)
 }
 
 /// One of the places for games that are played.

@@ -118,11 +118,16 @@ impl Page {
         let serve = move || {
             let access_control = AccessControl::new(address, &hosts, token);
             // What cannot be taken over by the runtime was never a listener.
-            drop(runtime.block_on(routes::serve(listener, access_control, (to_show, to_publish), async {
-                while !end.load(Ordering::Relaxed) && !stop.load(Ordering::Relaxed) {
-                    tokio::time::sleep(LOOK_AGAIN).await;
-                }
-            })));
+            drop(runtime.block_on(routes::serve(
+                listener,
+                access_control,
+                (Shown::to_all(to_show), to_publish),
+                async {
+                    while !end.load(Ordering::Relaxed) && !stop.load(Ordering::Relaxed) {
+                        tokio::time::sleep(LOOK_AGAIN).await;
+                    }
+                },
+            )));
             runtime.block_on(async { tokio::time::sleep(GOODBYE).await });
             runtime.shutdown_timeout(GOODBYE);
         };

@@ -16,8 +16,20 @@ pub trait Report: Send + Sync {
     fn game(&self, name: &str) -> Shown;
 }
 
-/// What is shown now, if anything is yet. Its end is that of the server.
-pub type Shown = watch::Receiver<Option<Arc<dyn View>>>;
+/// What one page is shown now, if anything is yet. Its end is that of the server.
+#[derive(Clone)]
+pub struct Shown {
+    pub(super) receiver: watch::Receiver<Option<Arc<dyn View>>>,
+    /// What a page is shown of a report does not end while it looks.
+    _kept: Option<Arc<Showing>>,
+}
+
+impl Shown {
+    /// What all pages are shown that ask for nothing of their own.
+    pub(super) fn to_all(receiver: watch::Receiver<Option<Arc<dyn View>>>) -> Shown {
+        Shown { receiver, _kept: None }
+    }
+}
 
 /// What all pages are shown that ask for one game: one view after another.
 pub struct Showing(watch::Sender<Option<Arc<dyn View>>>);
@@ -25,8 +37,8 @@ pub struct Showing(watch::Sender<Option<Arc<dyn View>>>);
 impl Showing {
     /// Shows this first.
     #[must_use]
-    pub fn new(first: Arc<dyn View>) -> Showing {
-        Showing(watch::Sender::new(Some(first)))
+    pub fn new(first: Arc<dyn View>) -> Arc<Showing> {
+        Arc::new(Showing(watch::Sender::new(Some(first))))
     }
 
     /// From now on pages are shown this.
@@ -36,8 +48,8 @@ impl Showing {
 
     /// For one page.
     #[must_use]
-    pub fn shown(&self) -> Shown {
-        self.0.subscribe()
+    pub fn shown(self: &Arc<Showing>) -> Shown {
+        Shown { receiver: self.0.subscribe(), _kept: Some(Arc::clone(self)) }
     }
 
     /// Whether any page looks.

@@ -69,7 +69,7 @@ impl Socket {
     async fn talk(&mut self, mut shown: Shown, access: Access) -> End {
         let mut session: Option<PageSession> = None;
         loop {
-            let show = shown.borrow_and_update().clone();
+            let show = shown.receiver.borrow_and_update().clone();
             let ended = match show {
                 None => self.wait(&mut shown).await,
                 Some(show) => {
@@ -91,7 +91,7 @@ impl Socket {
     async fn wait(&mut self, shown: &mut Shown) -> Result<(), End> {
         loop {
             tokio::select! {
-                changed = shown.changed() => return changed.map_err(|_| End::Closed),
+                changed = shown.receiver.changed() => return changed.map_err(|_| End::Closed),
                 message = self.incoming.stream.next() => if !matches!(message, Some(Ok(_))) {
                     return Err(End::Gone);
                 },
@@ -121,7 +121,7 @@ impl Socket {
             let next_send = Instant::from_std(now + MIN_INTERVAL);
             tokio::select! {
                 received = self.incoming.receive(session) => received?,
-                changed = shown.changed() => return changed.map_err(|_| End::Closed),
+                changed = shown.receiver.changed() => return changed.map_err(|_| End::Closed),
                 changed = async { sleep_until(next_send).await; news.changed().await } => changed.map_err(|_| End::Gone)?,
                 () = sleep_until(Instant::from_std(next)) => {}
             }

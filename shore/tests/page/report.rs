@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// A report with one game, which is not there at once.
 struct OneGame {
     preparing: Arc<PreparingView>,
-    showing: Showing,
+    showing: Arc<Showing>,
 }
 
 impl Report for OneGame {
@@ -62,4 +62,7 @@ fn a_report_has_files_and_a_game_is_told_of_until_it_is_there() {
     let mut other = Client::connect(at, "/ws?game=%3Cb%3E", &[]).expect("all may look");
     let told = other.until("preparing", |_| true);
     assert_eq!((&told["text"], &told["failed"]), (&"there is no game \"<b>\"".into(), &true.into()));
+    // A page that comes back for more would ask for ever.
+    other.send(r#"{"do":"seek","t_s":3}"#);
+    other.until("refused", |_| true);
 }
