@@ -131,7 +131,7 @@ impl Drawing for Chart<'_> {
         let view = View::of(self);
         root.draw(&Text::new(self.title.clone(), (24, 16), (FONT, 20).into_font()))?;
         draw_axes(root, &view)?;
-        draw_field(root, self, &view)?;
+        draw_field(root, self.field, &self.teams, &view)?;
         for track in &self.tracks {
             root.draw(&PathElement::new(fine(&track.places, &view), track.colour.stroke_width(2)))?;
         }
@@ -176,15 +176,20 @@ fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Drawn<B> {
 }
 
 /// Zones in their teams' colours, the outline, the scrimmage line, and what stands in the water.
-pub(super) fn draw_field<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Drawn<B> {
+pub(super) fn draw_field<B: DrawingBackend>(
+    root: &Area<B>,
+    field: &Field,
+    teams: &[(String, RGBColor)],
+    view: &View,
+) -> Drawn<B> {
     let pixels = |places: &[Ned]| places.iter().map(|place| view.pixel(*place)).collect::<Vec<_>>();
-    for (zone, (_, colour)) in chart.field.zones.iter().zip(&chart.teams) {
+    for (zone, (_, colour)) in field.zones.iter().zip(teams) {
         root.draw(&Polygon::new(pixels(&zone.corners), colour.mix(0.08)))?;
     }
-    let outline: Vec<Ned> = chart.field.corners.iter().chain(chart.field.corners.first()).copied().collect();
+    let outline: Vec<Ned> = field.corners.iter().chain(field.corners.first()).copied().collect();
     root.draw(&PathElement::new(pixels(&outline), GREY.stroke_width(1)))?;
-    root.draw(&PathElement::new(pixels(&chart.field.scrimmage), GREY.mix(0.6).stroke_width(1)))?;
-    for obstacle in &chart.field.plan.obstacles {
+    root.draw(&PathElement::new(pixels(&field.scrimmage), GREY.mix(0.6).stroke_width(1)))?;
+    for obstacle in &field.plan.obstacles {
         let corners = match obstacle {
             Obstacle::Polygon { corners } => corners.clone(),
             Obstacle::Circle { centre, radius_m } => {

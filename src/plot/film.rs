@@ -1,6 +1,6 @@
 //! The chart of a moment of a game: a frame of its film.
 
-use crate::plot::field::{Chart, Symbol, View, draw_field, draw_symbol, fine, is_drawn};
+use crate::plot::field::{Symbol, View, draw_field, draw_symbol, fine, is_drawn};
 use crate::plot::{Area, Drawing, Drawn, FONT, Ink};
 use game::field::Field;
 use game::{Ned, math};
@@ -82,14 +82,7 @@ impl Drawing for Moment<'_> {
         let (head, water) = root.split_vertically(HEAD);
         self.draw_head(&head)?;
         water.fill(&WATER)?;
-        let chart = Chart {
-            title: String::new(),
-            field: stage.field,
-            teams: stage.teams.clone(),
-            tracks: vec![],
-            spots: vec![],
-        };
-        draw_field(&water, &chart, &stage.view)?;
+        draw_field(&water, stage.field, &stage.teams, &stage.view)?;
         for boat in &self.boats {
             let trail = stage.colour(boat.team).mix(0.45).stroke_width(2);
             water.draw(&PathElement::new(fine(&boat.trail, &stage.view), trail))?;
