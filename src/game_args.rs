@@ -156,7 +156,7 @@ fn result_of(report: &Report) -> Result<serde_json::Value> {
 }
 
 /// A speed from the command line, as in `10x` or `0.5`.
-fn speed(text: &str) -> Result<f64, String> {
+pub(crate) fn speed(text: &str) -> Result<f64, String> {
     let factor = text.strip_suffix('x').unwrap_or(text).parse().ok();
     let factor = factor.filter(|factor| (0.01..=1000.0).contains(factor));
     factor.ok_or_else(|| format!("speed {text:?} is not a factor from 0.01x to 1000x such as 10x"))

@@ -13,6 +13,7 @@ use std::process::ExitCode;
 
 mod difference;
 mod export;
+mod gif;
 mod page;
 mod quality;
 
@@ -42,12 +43,17 @@ pub(crate) struct Args {
     /// shoreside's
     #[arg(long, value_name = "DIR", conflicts_with = "compare")]
     alog: Option<PathBuf>,
+    /// Draws the game as a moving picture into this GIF file
+    #[arg(long, value_name = "FILE", conflicts_with = "compare")]
+    gif: Option<PathBuf>,
+    #[command(flatten)]
+    film: gif::FilmArgs,
     /// Lays two recordings side by side, for example a game on the water and its simulation
     #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with_all = ["file", "events"])]
     compare: Option<Vec<PathBuf>>,
     /// Says how sensibly boats play, in all these recordings together: chatter, standing still, edges, contacts, orbits
     #[arg(long, num_args = 1.., value_name = "GAME")]
-    #[arg(conflicts_with_all = ["file", "events", "csv", "plot", "alog", "compare"])]
+    #[arg(conflicts_with_all = ["file", "events", "csv", "plot", "alog", "gif", "compare"])]
     quality: Option<Vec<PathBuf>>,
     /// Events of two recordings that are nearer than this are the same, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = within(0.0, 3600.0, "s"), requires = "compare")]
@@ -70,7 +76,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 fn look_at(args: &Args, file: &Path) -> Result<()> {
     let bag = recording_file::open_any(file, "look at")?;
-    let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none();
+    let wants_page = args.csv.is_none() && args.plot.is_none() && args.alog.is_none() && args.gif.is_none();
     if bag.kind() == Kind::Gateway {
         if let Some(topic) = &args.csv {
             return csv(args, file, (&bag, None), topic);
@@ -102,6 +108,11 @@ fn look_at(args: &Args, file: &Path) -> Result<()> {
     if let Some(path) = &args.alog {
         let (files, damaged) = export::alog(&recording, path)?;
         screen::remark(&format!("{files} MOOS log{} in {}", if files == 1 { "" } else { "s" }, path.display()));
+        remarks.extend(damaged.remark().filter(|remark| !remarks.contains(remark)));
+    }
+    if let Some(path) = &args.gif {
+        let (pictures, damaged) = gif::write(path, &recording, &args.film)?;
+        screen::remark(&format!("{pictures} pictures in {}", path.display()));
         remarks.extend(damaged.remark().filter(|remark| !remarks.contains(remark)));
     }
     remarks.iter().for_each(|remark| screen::remark(remark));

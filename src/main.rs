@@ -12,7 +12,9 @@ mod hardware_loop;
 mod helm_command;
 mod helm_text;
 mod identify_command;
+mod in_process;
 mod keys_command;
+mod league_file;
 mod list_command;
 mod log_command;
 mod net_args;
@@ -74,7 +76,7 @@ enum Command {
     Run(run_command::Args),
     /// Plays every strategy against every other over many seeds, and says who is better, and how surely.
     #[command(
-        after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament simple --json report.json --quality"
+        after_help = "Examples:\n  squall tournament paper_2023 --games 20\n  squall tournament simple --json report.json --quality\n  squall tournament simple --league league"
     )]
     Tournament(tournament_command::Args),
     /// Plays strategies at many points of a space of scenarios: more wind, worse sensors, slower links.
@@ -94,14 +96,18 @@ enum Command {
     /// Shows a running game in the terminal, or one boat's helm.
     #[command(after_help = "Examples:\n  squall watch\n  squall watch --game mine --connect tcp/10.0.0.5:7447")]
     Watch(watch_command::Args),
-    /// Shows a running game on a page.
-    #[command(after_help = "Examples:\n  squall view\n  squall view --listen 0.0.0.0:8088 --token secret")]
+    /// Shows a running game on a page, or a report with its games.
+    #[command(
+        after_help = "Examples:\n  squall view\n  squall view report.json\n  squall view runs/sweep/wind\n  squall view runs/train/first\n  squall view --listen 0.0.0.0:8088 --token secret"
+    )]
     View(view_command::Args),
     /// Shows a recorded game again, or checks that the same comes of it.
     #[command(after_help = "Examples:\n  squall replay runs/game.mcap\n  squall replay runs/game.mcap --check")]
     Replay(replay_command::Args),
     /// Says what a recorded game tells: a summary, tables, plots, MOOS logs, and how it differs from another.
-    #[command(after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap")]
+    #[command(
+        after_help = "Examples:\n  squall log runs/game.mcap\n  squall log --compare one.mcap other.mcap\n  squall log runs/game.mcap --gif game.gif --from 120 --to 190"
+    )]
     Log(log_command::Args),
     /// Dumps one decision of a boat's helm: a table, numbers, pictures.
     #[command(after_help = "Examples:\n  squall helm --vehicle blue_1 --png helm.png")]

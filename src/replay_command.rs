@@ -59,10 +59,15 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
 /// A recording as a page shows it.
 pub(crate) fn show(file: &Path) -> Result<ReplayView> {
+    show_about(file, None)
+}
+
+/// The same with a sentence about where it comes from.
+pub(crate) fn show_about(file: &Path, about: Option<String>) -> Result<ReplayView> {
     let recording = Arc::new(open(file)?);
     let recorded = Recorded::new(Arc::clone(&recording), file.display().to_string());
     recorded.damaged().remark().iter().for_each(|remark| screen::remark(remark));
-    Ok(ReplayView::new(Arc::new(recorded), Some(Box::new(Minds::new(recording)))))
+    Ok(ReplayView::about(about, Arc::new(recorded), Some(Box::new(Minds::new(recording)))))
 }
 
 fn open(file: &Path) -> Result<Recording> {

@@ -5,6 +5,7 @@ use crate::child_process::{self, ChildProcess, option};
 use crate::explain;
 use crate::game_args::GameArgs;
 use crate::hardware_loop::{HardwareLoop, LoopArgs};
+use crate::in_process;
 use crate::net_args::{token_text, unique_game_name};
 use crate::page_args::PageArgs;
 use crate::record_args::RecordArgs;
@@ -12,15 +13,13 @@ use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;
 use crate::watch_files::WatchedFiles;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail};
 use bus::keys::{Bundle, Identity};
 use bus::{Token, clock};
 use clap::{Args as _, FromArgMatches};
 use game::Scenario;
-use game::event::EventCursor;
 use game::scenario::Vehicle;
-use sim::Contest;
-use sim::node::{GameRecorder, Pace, ProgressMessage, Report, Reporter, Run};
+use sim::node::{Pace, ProgressMessage, Report, Reporter};
 use std::path::{Path, PathBuf};
 use std::process::{ExitCode, Stdio};
 use std::sync::Arc;
@@ -200,22 +199,9 @@ fn play_here(
     (stop, screen): (&AtomicBool, &mut Screen),
 ) -> Result<Report> {
     const SHOW_EVERY: Duration = Duration::from_millis(100);
-    let seed = args.play.seed(scenario);
-    let scenario = scenario.of_seed(seed)?;
     let mut reporter = Reporter::default();
-    let start = clock::now();
-    let mut shown = (start, 0.0);
-    let record = |path: &Path| {
-        GameRecorder::in_process(path.to_owned(), &scenario.name, env!("SQUALL_COMMIT"))
-            .with_context(|| format!("cannot record into {}", path.display()))
-    };
-    let mut recorder = file.map(record).transpose()?;
-    let mut written = EventCursor::default();
-    let watch = |contest: &mut Contest| {
-        if let Some(recorder) = &mut recorder {
-            let frame = Arc::new(contest.frame(&mut written));
-            recorder.decision(contest, frame);
-        }
+    let mut shown = (clock::now(), 0.0);
+    let report = in_process::play(scenario, args.play.seed(scenario), file, stop, |contest| {
         // The clock is slower than a decision: look at it now and then.
         if contest.decision().is_multiple_of(64) && clock::since(shown.0) >= SHOW_EVERY {
             let now_s = contest.now().as_s();
@@ -223,17 +209,7 @@ fn play_here(
             shown = (clock::now(), now_s);
             reporter.progress(contest, (rate, 0), &mut |message| screen.show(&message));
         }
-        !stop.load(Ordering::Relaxed)
-    };
-    let outcome = arena::play_watched(&scenario, agent::minds_of(&scenario), seed, watch)?;
-    let run = Run {
-        pace: "in process".to_owned(),
-        wall_s: clock::since(start).as_secs_f64(),
-        cut_short: stop.load(Ordering::Relaxed),
-        ..Run::default()
-    };
-    let mut report = Report { outcome, run };
-    report.run.recording_problem = recorder.and_then(|recorder| recorder.end(&report).problem());
+    })?;
     reporter.rest(&report.outcome, &mut |message| screen.show(&message));
     screen.show(&ProgressMessage::Done(Box::new(report.clone())));
     Ok(report)

@@ -1,12 +1,13 @@
 //! `squall tournament`: every strategy against every other, in this process.
 
+use crate::league_file::LeagueFile;
 use crate::progress::Progress;
 use crate::{output_file, screen, stop};
 use agent::MindRunner;
 use analysis::Step;
 use analysis::quality::{GameQuality, MindState, Quality};
 use anyhow::{Context, Result};
-use arena::tournament::{self, Observer, Plan, Record, Report, play, play_observed};
+use arena::tournament::{self, Observer, Plan, Record, Report, play, play_observed, play_these};
 use game::Scenario;
 use game::event::EventCursor;
 use game::scenario::{Tournament, load_tournament};
@@ -32,15 +33,16 @@ pub(crate) struct Args {
     /// Threads [default: one for each core]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZeroUsize>,
-    /// Writes everything to this file
+    /// Writes everything to this file, every game and what it takes to play it again; `squall view FILE` shows it
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Writes a line for each entry to this file
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// Puts every game with its digest into the JSON file
-    #[arg(long, requires = "json")]
-    matches: bool,
+    /// Keeps the results in this folder and plays only what is not there: entries may join, and a tournament that was stopped goes on;
+    /// `squall view FOLDER` shows it
+    #[arg(long, value_name = "FOLDER", conflicts_with = "quality")]
+    league: Option<PathBuf>,
     /// Says as well how sensibly boats play: chatter, standing still, edges, contacts, orbits
     #[arg(long)]
     quality: bool,
@@ -63,22 +65,14 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     }
     let stop = stop::on_ctrl_c()?;
     let jobs = args.jobs.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
-    let mut progress = Progress::of_games(plan.games() as u64);
-    let (records, quality) = if args.quality {
-        let (records, quality) = play_judged(&plan, jobs, &stop, |_| progress.add());
-        (records, Some(quality))
-    } else {
-        (play(&plan, jobs, &stop, |_| progress.add()), None)
-    };
-    let rate = progress.end_of_games(jobs.get().min(plan.games()));
+    let mut league = args.league.as_deref().map(LeagueFile::open).transpose()?;
+    let Played { records, quality, rate } = play_all(args, &plan, (jobs, &stop), league.as_mut());
 
     let mut report = Report::new(&plan, &records);
     report.commit = env!("SQUALL_COMMIT").to_owned();
     report.rate = Some(rate);
-    if !args.matches {
-        report.matches.clear();
-    }
-    if let Some(path) = &args.json {
+    let of_league = league.as_ref().map(LeagueFile::report);
+    for path in args.json.iter().chain(&of_league) {
         output_file::write_json(path, "the report", &Whole { report: &report, quality: quality.as_ref() })?;
     }
     if let Some(path) = &args.csv {
@@ -88,11 +82,50 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     if let Some(quality) = quality {
         screen::print(&format!("\n{quality}"));
     }
+    // What came of the games is printed even if the disk is full.
+    league.map_or(Ok(()), LeagueFile::end)?;
     Ok(match (report.games_unplayed > 0, report.failures.is_empty()) {
         (true, _) => stop::interrupted(),
         (false, true) => ExitCode::SUCCESS,
         (false, false) => ExitCode::FAILURE,
     })
+}
+
+/// What came of playing.
+struct Played {
+    records: Vec<Record>,
+    quality: Option<Quality>,
+    /// Games a second.
+    rate: f64,
+}
+
+/// Plays the games of a plan, of a league only those that it does not know.
+fn play_all(
+    args: &Args,
+    plan: &Plan,
+    (jobs, stop): (NonZeroUsize, &AtomicBool),
+    league: Option<&mut LeagueFile>,
+) -> Played {
+    let Some(league) = league else {
+        let mut progress = Progress::of_games(plan.games() as u64);
+        let (records, quality) = if args.quality {
+            let (records, quality) = play_judged(plan, jobs, stop, |_| progress.add());
+            (records, Some(quality))
+        } else {
+            (play(plan, jobs, stop, |_| progress.add()), None)
+        };
+        return Played { records, quality, rate: progress.end_of_games(jobs.get().min(plan.games())) };
+    };
+    let pairings = plan.pairings();
+    let (mut records, new) = league.league.split(plan, &pairings);
+    screen::remark(&format!("{} of {} games were played before", records.len(), plan.games()));
+    let mut progress = Progress::of_games(new.len() as u64);
+    records.extend(play_these(plan, &new, jobs, stop, |record| {
+        league.add(plan, &pairings, record);
+        progress.add();
+    }));
+    records.sort_by_key(|record| plan.place_of(record.of));
+    Played { records, quality: None, rate: progress.end_of_games(jobs.get().min(new.len().max(1))) }
 }
 
 /// Plays the games of a plan and judges how sensibly boats play in them.

@@ -1,4 +1,4 @@
-//! `squall view`: a running game on a page, from any machine.
+//! `squall view`: on a page, a running game from any machine, or a report with its games.
 
 use crate::net_args::LeafArgs;
 use crate::page_args::PageArgs;
@@ -6,15 +6,22 @@ use crate::replay_command;
 use crate::screen::{self, Screen};
 use crate::stop;
 use crate::style::Names;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use shore::page::live::LiveView;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Which game, and where the page is served.
+mod games;
+mod report;
+mod training;
+
+/// What is shown, and where the page is served.
 #[derive(clap::Args)]
 pub(crate) struct Args {
+    /// The report of a tournament (its JSON), or the folder of a league, a sweep or a training; or a recording [default: a running game]
+    #[arg(conflicts_with_all = ["game", "connect"])]
+    report: Option<PathBuf>,
     #[command(flatten)]
     leaf: LeafArgs,
     #[command(flatten)]
@@ -25,6 +32,9 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
+    if let Some(path) = &args.report {
+        return show_report(args, path);
+    }
     let stop = stop::on_ctrl_c()?;
     let recordings = args.for_parent.then(|| stop::with_parent(&stop));
     let page = args.page.open(&stop)?;
@@ -46,5 +56,29 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
             Err(error) => screen::remark(&format!("{error:#}")),
         }
     }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Shows a report, or a recording, until Ctrl-C.
+fn show_report(args: &Args, path: &Path) -> Result<ExitCode> {
+    if args.for_parent {
+        bail!("a report is shown to people");
+    }
+    let stop = stop::on_ctrl_c()?;
+    let is_recording = path.extension().is_some_and(|end| end == "mcap");
+    let page = if is_recording {
+        let show = replay_command::show(path)?;
+        let page = args.page.open(&stop)?;
+        page.show(Arc::new(show));
+        page
+    } else {
+        let report = report::open(path, &stop)?;
+        let page = args.page.open(&stop)?;
+        page.publish(report);
+        page
+    };
+    Screen::new(Names::default()).line(&format!("{} at {} (Ctrl-C ends it)", path.display(), args.page.url(&page)));
+    args.page.open_browser(&page);
+    stop::wait(&stop);
     Ok(ExitCode::SUCCESS)
 }

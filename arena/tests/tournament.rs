@@ -91,7 +91,10 @@ fn every_seed_is_played_from_both_sides_and_is_the_game_of_these_strategies() {
 fn record(seed: u64, sides: [usize; 2], score: [u32; 2]) -> Record {
     let winner = if score[0] == score[1] { None } else { Some(usize::from(score[1] > score[0])) };
     let counts = [Counts { grabs: 1, ..Counts::default() }, Counts::default()];
-    Record { of: Match { seed, sides }, result: Ok(Game { score, counts, winner, digest: format!("{seed}") }) }
+    Record {
+        of: Match { seed, sides },
+        result: Ok(Game { score, counts, winner, duration_s: 60.0, digest: format!("{seed}") }),
+    }
 }
 
 #[test]

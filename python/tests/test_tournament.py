@@ -35,7 +35,7 @@ def tournament(tmp_path: Path) -> Path:
 
 def by_program(program: str, tournament: Path, folder: Path) -> tuple[str, dict[str, object], str]:
     """What the program prints, its JSON file and its CSV file."""
-    words = ["tournament", tournament, "--matches", "--json", folder / "there.json", "--csv", folder / "there.csv"]
+    words = ["tournament", tournament, "--json", folder / "there.json", "--csv", folder / "there.csv"]
     done = subprocess.run([program, *words], check=True, capture_output=True, text=True, timeout=120)
     return done.stdout, json.loads((folder / "there.json").read_text()), (folder / "there.csv").read_text()
 

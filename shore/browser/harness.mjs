@@ -162,7 +162,15 @@ export async function squall(t, ...args) {
 
 /** A page in a browser. A test with it fails on any error that the page's console shows, but for those it `allows`. */
 export class Sight {
-  static async open(t, browser, url, { size = { width: 1440, height: 900 }, allows = null, before = null, ...more } = {}) {
+  /** A page with a game on it, once it is drawn. */
+  static async open(t, browser, url, how = {}) {
+    const sight = await Sight.load(t, browser, url, how);
+    await sight.until('a picture is drawn', () => squall.drawn > 0 && squall.frame !== null);
+    return sight;
+  }
+
+  /** Any page. */
+  static async load(t, browser, url, { size = { width: 1440, height: 900 }, allows = null, before = null, ...more } = {}) {
     const context = await browser.newContext({ viewport: size, ...more });
     const page = await context.newPage();
     page.setDefaultTimeout(LIMIT_MS);
@@ -171,10 +179,14 @@ export class Sight {
     afterwards(t, () => sight.close());
     if (WEB) {
       const file = (address) => join(WEB, new URL(address).pathname.replace(/\/$/, '/index.html'));
-      await page.route((address) => existsSync(file(address)), (route) => route.fulfill({ path: file(route.request().url()) }));
+      await page.route((address) => existsSync(file(address)), async (route) => {
+        // A report has its page elsewhere.
+        const { pathname, search } = new URL(route.request().url());
+        const leads = pathname === '/' && search === '' && (await route.fetch({ maxRedirects: 0 })).status() === 307;
+        return leads ? route.continue() : route.fulfill({ path: file(route.request().url()) });
+      });
     }
     await page.goto(url);
-    await sight.until('a picture is drawn', () => squall.drawn > 0 && squall.frame !== null);
     return sight;
   }
 
@@ -198,7 +210,7 @@ export class Sight {
       const handle = await this.page.waitForFunction(condition, arg, { polling: LOOK_MS, timeout: LIMIT_MS });
       return await handle.jsonValue();
     } catch (error) {
-      const now = await this.get(() => JSON.stringify({ mode: squall.mode, helm: squall.helm && { ...squall.helm, report: Object.keys(squall.helm.report ?? {}) }, t_s: squall.t_s, score: squall.score, state: squall.state,
+      const now = await this.get(() => typeof squall === 'undefined' ? document.body.innerText.slice(0, 500) : JSON.stringify({ mode: squall.mode, helm: squall.helm && { ...squall.helm, report: Object.keys(squall.helm.report ?? {}) }, t_s: squall.t_s, score: squall.score, state: squall.state,
         player: squall.player, selected: squall.selected, driving: squall.driving, connected: squall.connected,
         notices: document.getElementById('notices').textContent })).catch(() => 'nothing');
       throw new Error(`${what}: ${error.message.split('\n')[0]}; the page shows ${now}`);

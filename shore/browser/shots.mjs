@@ -1,8 +1,8 @@
 // Pictures of the page for people to look at: node shots.mjs FOLDER [NAME …]
 
-import { mkdirSync, readdirSync } from 'node:fs';
+import { copyFileSync, mkdirSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { Program, Sight, folder, openBrowser, scenario, squall } from './harness.mjs';
+import { Program, Sight, folder, gameFile, openBrowser, scenario, squall } from './harness.mjs';
 
 const [place = 'shots', ...only] = process.argv.slice(2);
 const DESK = { size: { width: 1400, height: 900 } };
@@ -59,6 +59,52 @@ const measure = async (sight) => {
   await sight.until('it is measured', () => squall.measured);
 };
 
+const entry = (name) => `[[entry]]\nname = "${name}"\nstrategy = "${scenario(`strategies/${name}.toml`)}"\n`;
+const view = async (t, path) => new Program(t, 'view', path, '--listen', '127.0.0.1:0').url();
+const league = async (t) => {
+  const place = folder(t);
+  const file = join(place, 'harbour_cup.toml');
+  const game = gameFile(t, 'short', 'surveyor_2v2.toml', 'duration_s = 240');
+  writeFileSync(file, `game = "${game}"\ngames = 10\n${['strategy_2', 'strategy_3', 'strategy_4', 'strategy_5', 'pav01', 'observer'].map(entry).join('')}`);
+  await squall(t, 'tournament', file, '--league', join(place, 'league'));
+  return view(t, join(place, 'league'));
+};
+const leagueGame = async (t) => `${await league(t)}?game=7`;
+const sweep = async (t) => {
+  const place = folder(t);
+  const file = join(place, 'wind.toml');
+  const game = gameFile(t, 'short', 'surveyor_2v2.toml', 'duration_s = 60');
+  writeFileSync(file, `about = "How much wind?"\ngame = "${game}"\nopponent = "${scenario('strategies/strategy_3.toml')}"\ngames = 10\n${entry('strategy_4')}${entry('strategy_5')}`
+    + '[[axis]]\nkey = "sea.wind.speed_m_s"\nvalues = [1, 6, 12]\n');
+  await squall(t, 'sweep', file, '--out', join(place, 'out'));
+  return view(t, join(place, 'out'));
+};
+/** A training as its folder holds it, of made-up numbers: a real one takes minutes. */
+const training = async (t) => {
+  const place = join(folder(t), 'first');
+  mkdirSync(join(place, 'games'), { recursive: true });
+  await squall(t, 'run', PAV01, '--in-process', '--record', place);
+  copyFileSync(join(place, readdirSync(place).find((name) => name.endsWith('.mcap'))), join(place, 'games/7_1.mcap'));
+  const noise = (i) => Math.sin(i * 12.9898) * 43758.5453 % 1;
+  const rows = (count, row) => [...Array(count).keys()].map(row).join('\n');
+  writeFileSync(join(place, 'updates.csv'), `samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs\n${rows(200, (i) =>
+    `${(i + 1) * 10000},${i < 60 ? 'nobody_in_the_way' : 'against_pav01'},${0.02 * Math.log(i + 1) + 0.01 * noise(i)},${-0.01 + 0.002 * noise(i)},${2 / (1 + i / 30)},${2.7 - i / 150},0.01,0.1,4`)}\n`);
+  writeFileSync(join(place, 'evaluations.csv'), `samples,stage,opponent,won,drawn,lost,points,points_against,left_field\n${rows(20, (i) => ['pav01', 'strategy_2', 'strategy_4'].map((name, k) =>
+    `${(i + 1) * 100000},${i < 6 ? 'nobody_in_the_way' : 'against_pav01'},${name},${Math.max(0, i - 3 * k)},2,${18 - Math.max(0, i - 3 * k)},${4 + i / 4 - k},${8 - i / 6},${Math.max(0, 1.5 - i / 10)}`).join('\n'))}\n`);
+  writeFileSync(join(place, 'episodes.csv'), `samples,stage,seed,team,opponent,points,points_against,steps,cut_off,recording\n${rows(5, (i) =>
+    `${(i + 1) * 40000},nobody_in_the_way,${i},0,pav01,${i},2,600,false,games/7_1.mcap`)}\n`);
+  return view(t, place);
+};
+const chosen = async (sight) => {
+  await sight.page.waitForSelector('.matrix button');
+  await sight.press('.matrix tbody tr:nth-child(2) td:nth-child(4) button');
+  // The pointer's colours are not those of the cell.
+  await sight.page.mouse.move(2, 2);
+};
+const shown = (selector) => (sight) => sight.page.waitForSelector(selector);
+const worst = (sight) => sight.page.evaluate(() => document.getElementById('worst').scrollIntoView());
+const lower = (sight) => sight.page.evaluate(() => scrollTo(0, document.body.scrollHeight));
+
 const fast = live(PAV01, ...WAVES, '--speed', '10x');
 const calm = live(PAV01, '--speed', '10x');
 const SCENES = {
@@ -76,12 +122,26 @@ const SCENES = {
   'replay-dark': [replay(PAV01, ...WAVES), DESK, 'dark', toGrab],
   'harbour': [live(scenario('games/harbour_2v2.toml'), '--speed', '10x'), DESK, 'light', at(30)],
   'swarm': [live(scenario('games/swarm_20v20.toml'), '--speed', '5x', '--agents-per-process', '40'), DESK, 'dark', at(30)],
+  'league-game': [leagueGame, DESK, 'light', at(5)],
+  'phone-league-game': [leagueGame, PHONE, 'dark', at(5)],
   'phone': [fast, PHONE, 'light', at(60)],
   'phone-selected': [fast, PHONE, 'dark', at(60), select('blue_two')],
   'phone-game': [fast, PHONE, 'light', at(20), keys('4')],
   'phone-replay': [replay(PAV01, ...WAVES), PHONE, 'light', toGrab],
   'phone-replay-plots': [replay(PAV01, ...WAVES), PHONE, 'dark', toGrab, select('red_two'), plots],
   'phone-drive': [live(scenario('games/person_2v2.toml'), '--pace', 'realtime'), PHONE, 'light', at(2), select('blue_one'), (sight) => sight.press('#drive')],
+};
+/** Pages of reports. */
+const REPORTS = {
+  'league': [league, DESK, 'light', chosen],
+  'league-hall': [league, HALL, 'dark', chosen],
+  'phone-league': [league, PHONE, 'light', chosen],
+  'training': [training, DESK, 'light', shown('.card canvas')],
+  'training-hall': [training, HALL, 'dark', shown('.card canvas')],
+  'training-games': [training, DESK, 'dark', shown('.card canvas'), lower],
+  'phone-training': [training, PHONE, 'dark', shown('.card canvas')],
+  'sweep-games': [sweep, DESK, 'light', shown('#worst-list .watch'), worst],
+  'phone-sweep-games': [sweep, PHONE, 'dark', shown('#worst-list .watch'), worst],
 };
 
 mkdirSync(place, { recursive: true });
@@ -99,6 +159,19 @@ for (const [name, [begin, { size, ...device }, colorScheme, ...acts]] of Object.
     const wide = await sight.get(() => document.documentElement.scrollWidth > innerWidth);
     const boats = await sight.get(() => squall.frame.boats.map(({ name, x, y, heading_deg }) => `${name} ${x.toFixed(1)} E ${y.toFixed(1)} N ${heading_deg.toFixed(0)}°`));
     process.stdout.write(`${name}${wide ? ' (wider than the screen)' : ''}: ${boats.length > 8 ? `${boats.length} boats` : boats.join(', ')}\n`);
+  } finally {
+    await scene.close();
+  }
+}
+for (const [name, [begin, { size, ...device }, colorScheme, ...acts]] of Object.entries(REPORTS)) {
+  if (only.length > 0 && !only.includes(name)) continue;
+  const scene = new Scene();
+  try {
+    const sight = await Sight.load(scene, browser, await begin(scene), { size, colorScheme, ...device });
+    for (const act of acts) await act(sight);
+    await sight.page.waitForTimeout(300);
+    await sight.page.screenshot({ path: join(place, `${name}.png`) });
+    process.stdout.write(`${name}${(await sight.get(() => document.documentElement.scrollWidth > innerWidth)) ? ' (wider than the screen)' : ''}\n`);
   } finally {
     await scene.close();
   }

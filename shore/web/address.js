@@ -18,3 +18,29 @@ export function name(t_s, boat) {
   history.replaceState(null, '', `#${given}`);
   return location.href;
 }
+
+/** The game of a report that the address names, or null. */
+export const gameOfReport = () => new URLSearchParams(location.search).get('game');
+
+const KEPT = 'squall.report';
+
+/** Keeps what the address says of a report, for the way back from one of its games. */
+export function keepAddress() {
+  try {
+    sessionStorage.setItem(KEPT, location.hash);
+  } catch {
+    // Then the way back leads to its beginning.
+  }
+}
+
+/** The address of the report from which a game was opened, as it was left. */
+export function addressOfReport() {
+  try {
+    return `/${sessionStorage.getItem(KEPT) ?? ''}`;
+  } catch {
+    return '/';
+  }
+}
+
+/** The address of a game of a report. */
+export const addressOfGame = (game) => `/?game=${encodeURIComponent(game)}${location.hash.includes('token=') ? `#token=${encodeURIComponent(words().get('token'))}` : ''}`;

@@ -1,5 +1,7 @@
 // The websocket to the server: it comes back by itself, and tells the server when a frame is drawn.
 
+import { gameOfReport } from './address.js';
+
 /** Waits between two tries, s. */
 const WAITS_S = [0.3, 0.6, 1, 2, 3, 5];
 /** While nobody looks at the page frames are acknowledged this often, s. */
@@ -21,6 +23,15 @@ const ANSWERED = ['control'];
 /** The token in the page's address, kept over a reload since it stays in the address. */
 function token() {
   return new URLSearchParams(location.hash.slice(1)).get('token');
+}
+
+/** What the server is to show: the game of a report that the page's address names, else what it shows to all. */
+function query(secret) {
+  const words = new URLSearchParams();
+  const game = gameOfReport();
+  if (game !== null) words.set('game', game);
+  if (secret) words.set('token', secret);
+  return words.size > 0 ? `?${words}` : '';
 }
 
 export class Link {
@@ -54,8 +65,7 @@ export class Link {
     const secret = token();
     this.secret = secret;
     const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
-    const query = secret ? `?token=${encodeURIComponent(secret)}` : '';
-    const socket = new WebSocket(`${scheme}//${location.host}/ws${query}`);
+    const socket = new WebSocket(`${scheme}//${location.host}/ws${query(secret)}`);
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     this.owed = 0;

@@ -24,7 +24,7 @@
 // zoom-in, zoom-out, fit, show-names, show-trails, show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-
 // box, sheet.
 
-import { name as nameMoment, wanted } from './address.js';
+import { addressOfReport, gameOfReport, name as nameMoment, wanted } from './address.js';
 import { Boats } from './boats.js';
 import { Capture } from './capture.js';
 import { Controls } from './controls.js';
@@ -105,6 +105,8 @@ class Page {
   }
 
   bind() {
+    show(byId('back'), gameOfReport() !== null);
+    byId('back').href = addressOfReport();
     byId('zoom-in').addEventListener('click', () => this.zoom(1.4));
     byId('zoom-out').addEventListener('click', () => this.zoom(1 / 1.4));
     byId('share').addEventListener('click', () => this.share());
@@ -156,6 +158,7 @@ class Page {
     const { game } = this;
     switch (message.kind) {
       case 'hello': return this.greet(message);
+      case 'preparing': return this.wait(message);
       case 'state': game.state = message; break;
       case 'player': game.player = message; break;
       case 'events':
@@ -186,8 +189,22 @@ class Page {
     if (message.kind === 'state' || message.kind === 'player') this.controls.tell(game);
   }
 
+  /** There is no game yet: says how far it is, or why there is none. */
+  wait({ text, failed }) {
+    this.link.tries = 0;
+    document.body.classList.add('unplayed');
+    document.body.classList.remove('lost');
+    show(byId('connection'), false);
+    write(byId('about'), text);
+    write(byId('phase'), failed ? 'no game' : 'being played');
+    this.waiting = true;
+  }
+
   greet(hello) {
     const { game } = this;
+    this.waiting = false;
+    document.body.classList.remove('unplayed');
+    write(byId('about'), hello.about ?? '');
     const before = game.selected;
     const sameField = game.chart.field && JSON.stringify(game.chart.field) === JSON.stringify(hello.chart.field);
     this.drive.letGo();
@@ -399,7 +416,7 @@ class Page {
     this.ticks += 1;
     this.ask();
     game.smooth = game.mode === 'replay' ? game.player?.speed !== null : game.state?.speed !== null;
-    this.status.tell(game, this.link.connected, this.controls.eStopped);
+    if (!this.waiting) this.status.tell(game, this.link.connected, this.controls.eStopped);
     if (!game.hello) return;
     this.controls.tell(game);
     this.details.tell(game, this.following, this.driver);

@@ -1,10 +1,11 @@
 // Plots of the selected boat over a recorded game, below the time line and in step with the chart.
 
+import { drawDiagram, partAt, sampleAt } from './diagram.js';
 import { palette, teamColour } from './palette.js';
 import { bearing, clock, make, number, options, plain, show, write } from './words.js';
 
 const KEY = 'squall.plots';
-const PAD = 4;
+const MARGIN = { left: 4, right: 4, top: 4, bottom: 4 };
 const NONE = '';
 /** A plot reaches at least so far up, m or m/s: noise is not drawn as mountains. */
 const LEAST = 1;
@@ -27,18 +28,6 @@ function remembered() {
   } catch {
     return false;
   }
-}
-
-/** The sample of a time: the last that was not later. */
-export function sampleAt(times, t_s) {
-  let low = 0;
-  let high = times.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (times[middle] <= t_s + 1e-6) low = middle + 1;
-    else high = middle;
-  }
-  return Math.max(0, low - 1);
 }
 
 export class Plots {
@@ -71,10 +60,8 @@ export class Plots {
   }
 
   press(event, canvas) {
-    const box = canvas.getBoundingClientRect();
-    const part = Math.min(1, Math.max(0, (event.clientX - box.left - PAD) / Math.max(1, box.width - 2 * PAD)));
     const { t_s } = this.curves ?? {};
-    if (t_s?.length > 0) this.on.seek(t_s[0] + part * (t_s.at(-1) - t_s[0]));
+    if (t_s?.length > 0) this.on.seek(t_s[0] + partAt(event, canvas, MARGIN) * (t_s.at(-1) - t_s[0]));
   }
 
   toggle() {
@@ -137,44 +124,13 @@ export class Plots {
     const key = `${width} ${height} ${ratio} ${palette.version} ${at} ${this.curves?.vehicle} ${this.curves?.other} ${game.selected}`;
     if (key === plot.drawn || width === 0) return;
     plot.drawn = key;
-    Object.assign(plot.canvas, { width: width * ratio, height: height * ratio });
-    const context = plot.canvas.getContext('2d');
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
     const most = plot.round ? 360 : Math.max(LEAST, ...lists.map((list) => list.reduce((most, each) => Math.max(most, each ?? 0), 0)));
-    const span = Math.max(1e-3, (times.at(-1) ?? 1) - (times[0] ?? 0));
-    const x = (t_s) => PAD + ((t_s - (times[0] ?? 0)) / span) * (width - 2 * PAD);
-    const y = (value) => height - PAD - (value / most) * (height - 2 * PAD);
-    context.strokeStyle = palette.grid;
-    context.strokeRect(PAD - 0.5, PAD - 0.5, width - 2 * PAD + 1, height - 2 * PAD + 1);
     const { team } = game.vehicles[game.indexOf.get(game.selected)];
-    lists.forEach((list, which) => {
-      const ordered = lists.length === 2 && which === 0;
-      this.line(context, list, times, x, y, plot.round);
-      context.strokeStyle = ordered ? palette.faint : teamColour(team);
-      context.lineWidth = ordered ? 1 : 1.5;
-      context.stroke();
+    const line = (values, which) => (lists.length === 2 && which === 0
+      ? { xs: times, values, colour: palette.faint, width: 1 } : { xs: times, values, colour: teamColour(team), width: 1.5 });
+    drawDiagram(plot.canvas, {
+      lines: lists.map(line), from: times[0] ?? 0, to: times.at(-1) ?? 1, low: 0, high: most, margin: MARGIN, at: game.t_s,
+      corner: plot.round ? '360°' : plot.words(most), round: plot.round,
     });
-    context.fillStyle = palette.ink;
-    context.fillRect(x(game.t_s) - 0.75, 0, 1.5, height);
-    context.font = '11px system-ui, sans-serif';
-    context.textBaseline = 'top';
-    context.fillStyle = palette.faint;
-    context.fillText(plot.round ? '360°' : plot.words(most), PAD + 3, PAD + 1);
-  }
-
-  /** A line with gaps where nothing is known, and where a compass course goes through north. */
-  line(context, list, times, x, y, round) {
-    context.beginPath();
-    let before = null;
-    for (let i = 0; i < list.length; i++) {
-      const value = list[i];
-      if (value === null) {
-        before = null;
-        continue;
-      }
-      if (before === null || (round && Math.abs(value - before) > 180)) context.moveTo(x(times[i]), y(value));
-      else context.lineTo(x(times[i]), y(value));
-      before = value;
-    }
   }
 }

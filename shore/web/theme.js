@@ -17,7 +17,9 @@ function remembered() {
 }
 
 export class Theme {
-  constructor() {
+  /** `changed` is called when the colours are others. */
+  constructor(changed = () => {}) {
+    this.changed = changed;
     this.sheet = document.getElementById('dark-style');
     this.button = document.getElementById('dark');
     this.chosen = remembered();
@@ -51,5 +53,6 @@ export class Theme {
     document.documentElement.style.colorScheme = this.dark ? 'dark' : 'light';
     this.button.setAttribute('aria-pressed', String(this.dark));
     readColours();
+    this.changed();
   }
 }

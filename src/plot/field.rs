@@ -75,11 +75,13 @@ const GREY: RGBColor = RGBColor(90, 90, 90);
 const FINE: f64 = 0.7;
 
 /// What part of the world is shown, and how large.
-struct View {
-    east_m: (f64, f64),
-    north_m: (f64, f64),
+pub(super) struct View {
+    pub(super) east_m: (f64, f64),
+    pub(super) north_m: (f64, f64),
     /// Pixels.
-    water: (u32, u32),
+    pub(super) water: (u32, u32),
+    /// Its corner at the top left, pixels.
+    pub(super) corner: (u32, u32),
 }
 
 impl View {
@@ -104,6 +106,7 @@ impl View {
             east_m: (middle_m - half_m, middle_m + half_m),
             north_m: (low.north - margin_m, high.north + margin_m),
             water: (wide.round() as u32, (high_m * pixels_per_m).round() as u32),
+            corner: (MARGIN + LABELS.0, TITLE),
         }
     }
 
@@ -112,10 +115,10 @@ impl View {
     }
 
     /// A place in pixels.
-    fn pixel(&self, at: Ned) -> (i32, i32) {
+    pub(super) fn pixel(&self, at: Ned) -> (i32, i32) {
         let right = (at.east - self.east_m.0) / (self.east_m.1 - self.east_m.0) * f64::from(self.water.0);
         let down = (self.north_m.1 - at.north) / (self.north_m.1 - self.north_m.0) * f64::from(self.water.1);
-        ((right + f64::from(MARGIN + LABELS.0)).round() as i32, (down + f64::from(TITLE)).round() as i32)
+        ((right + f64::from(self.corner.0)).round() as i32, (down + f64::from(self.corner.1)).round() as i32)
     }
 }
 
@@ -128,7 +131,7 @@ impl Drawing for Chart<'_> {
         let view = View::of(self);
         root.draw(&Text::new(self.title.clone(), (24, 16), (FONT, 20).into_font()))?;
         draw_axes(root, &view)?;
-        draw_field(root, self, &view)?;
+        draw_field(root, self.field, &self.teams, &view)?;
         for track in &self.tracks {
             root.draw(&PathElement::new(fine(&track.places, &view), track.colour.stroke_width(2)))?;
         }
@@ -173,15 +176,20 @@ fn draw_axes<B: DrawingBackend>(root: &Area<B>, view: &View) -> Drawn<B> {
 }
 
 /// Zones in their teams' colours, the outline, the scrimmage line, and what stands in the water.
-fn draw_field<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View) -> Drawn<B> {
+pub(super) fn draw_field<B: DrawingBackend>(
+    root: &Area<B>,
+    field: &Field,
+    teams: &[(String, RGBColor)],
+    view: &View,
+) -> Drawn<B> {
     let pixels = |places: &[Ned]| places.iter().map(|place| view.pixel(*place)).collect::<Vec<_>>();
-    for (zone, (_, colour)) in chart.field.zones.iter().zip(&chart.teams) {
+    for (zone, (_, colour)) in field.zones.iter().zip(teams) {
         root.draw(&Polygon::new(pixels(&zone.corners), colour.mix(0.08)))?;
     }
-    let outline: Vec<Ned> = chart.field.corners.iter().chain(chart.field.corners.first()).copied().collect();
+    let outline: Vec<Ned> = field.corners.iter().chain(field.corners.first()).copied().collect();
     root.draw(&PathElement::new(pixels(&outline), GREY.stroke_width(1)))?;
-    root.draw(&PathElement::new(pixels(&chart.field.scrimmage), GREY.mix(0.6).stroke_width(1)))?;
-    for obstacle in &chart.field.plan.obstacles {
+    root.draw(&PathElement::new(pixels(&field.scrimmage), GREY.mix(0.6).stroke_width(1)))?;
+    for obstacle in &field.plan.obstacles {
         let corners = match obstacle {
             Obstacle::Polygon { corners } => corners.clone(),
             Obstacle::Circle { centre, radius_m } => {
@@ -195,12 +203,12 @@ fn draw_field<B: DrawingBackend>(root: &Area<B>, chart: &Chart<'_>, view: &View)
 }
 
 /// Whether a place can be drawn: not what a damaged recording says, or a boat whose numbers went bad.
-fn is_drawn(place: &Ned) -> bool {
+pub(super) fn is_drawn(place: &Ned) -> bool {
     [place.north, place.east].iter().all(|number| number.abs() < 1e6)
 }
 
 /// The places of a track in pixels, without those that change nothing.
-fn fine(places: &[Ned], view: &View) -> Vec<(i32, i32)> {
+pub(super) fn fine(places: &[Ned], view: &View) -> Vec<(i32, i32)> {
     let least_m = FINE * (view.east_m.1 - view.east_m.0) / f64::from(view.water.0);
     let mut kept: Vec<Ned> = vec![];
     for place in places.iter().filter(|place| is_drawn(place)) {
@@ -211,7 +219,12 @@ fn fine(places: &[Ned], view: &View) -> Vec<(i32, i32)> {
     kept.into_iter().map(|place| view.pixel(place)).collect()
 }
 
-fn draw_symbol<B: DrawingBackend>(root: &Area<B>, symbol: Symbol, at: (i32, i32), colour: RGBColor) -> Drawn<B> {
+pub(super) fn draw_symbol<B: DrawingBackend>(
+    root: &Area<B>,
+    symbol: Symbol,
+    at: (i32, i32),
+    colour: RGBColor,
+) -> Drawn<B> {
     let off = |(right, down): (i32, i32)| (at.0 + right, at.1 + down);
     let edge = BLACK.stroke_width(1);
     let solid = |corners: Vec<(i32, i32)>| {

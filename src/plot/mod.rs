@@ -3,6 +3,7 @@
 mod axis;
 pub(crate) mod colour;
 pub(crate) mod field;
+pub(crate) mod film;
 pub(crate) mod game;
 pub(crate) mod polar;
 pub(crate) mod sea;
@@ -18,7 +19,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A page of panels of one kind.
 pub(crate) struct Page<P> {
@@ -147,17 +148,26 @@ pub(crate) fn write_svg(path: &Path, drawing: &impl Drawing) -> anyhow::Result<(
 
 /// Draws into a PNG file.
 pub(crate) fn write_png(path: &Path, drawing: &impl Drawing) -> anyhow::Result<()> {
-    let picture = svg(drawing).and_then(|svg| Ok(pixels(&svg)?.encode_png()?));
+    let picture = pixels(drawing).and_then(|picture| Ok(picture.encode_png()?));
     output_file::write(path, "the plot", picture.with_context(|| format!("cannot draw {}", path.display()))?)
 }
 
+/// Draws as pixels.
+pub(crate) fn pixels(drawing: &impl Drawing) -> anyhow::Result<Pixmap> {
+    pixels_of(&svg(drawing)?)
+}
+
 /// What an SVG shows, each of its pixels one of the picture.
-fn pixels(svg: &str) -> anyhow::Result<Pixmap> {
-    let mut fonts = fontdb::Database::new();
-    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-    let family = fonts.faces().next().and_then(|face| face.families.first()).context("the font has no name")?.0.clone();
-    fonts.set_sans_serif_family(family);
-    let tree = Tree::from_str(svg, &Options { fontdb: Arc::new(fonts), ..Options::default() })?;
+fn pixels_of(svg: &str) -> anyhow::Result<Pixmap> {
+    static FONTS: OnceLock<Arc<fontdb::Database>> = OnceLock::new();
+    let fonts = FONTS.get_or_init(|| {
+        let mut fonts = fontdb::Database::new();
+        fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+        let family = fonts.faces().next().and_then(|face| face.families.first()).map(|(name, _)| name.clone());
+        family.into_iter().for_each(|family| fonts.set_sans_serif_family(family));
+        Arc::new(fonts)
+    });
+    let tree = Tree::from_str(svg, &Options { fontdb: Arc::clone(fonts), ..Options::default() })?;
     let size = tree.size().to_int_size();
     let mut picture = Pixmap::new(size.width(), size.height()).context("the picture is too large")?;
     resvg::render(&tree, Transform::identity(), &mut picture.as_mut());
@@ -433,7 +443,7 @@ mod tests {
             let svg = format!(
                 "<svg xmlns='http://www.w3.org/2000/svg' width='300' height='40'><text x='5' y='25' font-family='sans-serif' font-size='20'>{text}</text></svg>"
             );
-            let picture = pixels(&svg).expect("it is SVG");
+            let picture = pixels_of(&svg).expect("it is SVG");
             let dark = |x: &u32| (0..40).any(|y| picture.pixel(*x, y).is_some_and(|pixel| pixel.alpha() > 64));
             (0..300).filter(|x| !dark(x) && (0..*x).any(|x| dark(&x)) && (*x..300).any(|x| dark(&x))).count()
         };

@@ -1,4 +1,4 @@
-//! The report as one page that needs no network.
+//! The report as one page that needs no network, and as the files of a server.
 
 /// Where the report stands in the page.
 const PLACE: &str = "/*REPORT*/null";
@@ -11,6 +11,39 @@ pub(crate) fn page(title: &str, json: &str) -> String {
     PAGE.replace("<title></title>", &format!("<title>{title}</title>")).replace(PLACE, json.trim_end())
 }
 
+/// The page as files of a server that allows no style or script within a page, each under its path: `json` is a report. Whether games can
+/// be watched there, at `/?game=` and their place, is `has_games`.
+#[must_use]
+pub fn served(json: &serde_json::Value, has_games: bool) -> [(&'static str, String); 4] {
+    let ((before, _), (style, after)) = (halves(PAGE, "<meta http-equiv"), between(PAGE, "style"));
+    let (data, rest) = between(after, "script");
+    let (script, end) = between(rest, "script");
+    let head = format!(
+        "{before}<link rel=\"icon\" href=\"/icon.svg\">\n<link rel=\"stylesheet\" href=\"/sweep.css\">\n<title>Sweep</title>\n"
+    );
+    let (_, body) = halves(after, "</head>");
+    let (body, _) = halves(body, "<script>");
+    let head = head.replace("<html lang=\"en\">", &format!("<html lang=\"en\" data-games=\"{has_games}\">"));
+    let scripts = "<script src=\"/sweep_report.js\"></script>\n<script src=\"/sweep.js\"></script>";
+    [
+        ("/sweep.html", format!("{head}</head>{body}{scripts}{end}")),
+        ("/sweep.css", style.to_owned()),
+        // JSON is JavaScript.
+        ("/sweep_report.js", data.replace(PLACE, &json.to_string())),
+        ("/sweep.js", script.to_owned()),
+    ]
+}
+
+/// What is before a mark, and what is after it.
+fn halves<'a>(text: &'a str, mark: &str) -> (&'a str, &'a str) {
+    text.split_once(mark).expect("the page has it")
+}
+
+/// What is in the first element of a kind, and what is after it.
+fn between<'a>(text: &'a str, tag: &str) -> (&'a str, &'a str) {
+    halves(halves(text, &format!("<{tag}>")).1, &format!("</{tag}>"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -20,5 +53,18 @@ mod tests {
         let page = page("wind", "{\"why\": \"</script><script>alert(1)</script>\"}");
         assert!(page.contains("<title>wind</title>") && page.contains("<\\/script><script>alert(1)<\\/script>"));
         assert!(!page.contains(PLACE) && PAGE.matches(PLACE).count() == 1);
+    }
+
+    #[test]
+    fn a_server_has_style_and_scripts_apart_and_all_of_them() {
+        let [(_, page), (_, style), (_, data), (_, script)] = served(&serde_json::json!({"sweep": "wind"}), true);
+        for inside in ["<style", "<script>", "http-equiv", "style="] {
+            assert!(!page.contains(inside), "{inside}");
+        }
+        assert!(
+            page.contains("data-games=\"true\"") && page.contains("id=\"worst-list\"") && page.ends_with("</html>\n")
+        );
+        assert_eq!(data.trim(), "const report = {\"sweep\":\"wind\"};");
+        assert!(style.contains(".tornado") && script.contains("function begin()") && !script.contains("</script>"));
     }
 }

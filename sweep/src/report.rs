@@ -103,6 +103,8 @@ pub struct Worst {
     pub contacts: f64,
     /// How often one of its boats left the field.
     pub out_of_bounds: f64,
+    /// Digest of its final state and of all events.
+    pub digest: String,
     /// The command that plays it again.
     pub command: String,
 }
@@ -197,22 +199,23 @@ fn worst(plan: &Plan, rows: &[Row]) -> Vec<Worst> {
     let number = |numbers: &[f64], name: &str| index_of(name).map_or(f64::NAN, |i| numbers[i]);
     let mut worst = vec![];
     for (entry, entrant) in plan.sweep().entries.iter().enumerate() {
-        let mut games: Vec<(Job, &Vec<f64>)> = rows
+        let mut games: Vec<(Job, &Vec<f64>, &String)> = rows
             .iter()
-            .filter_map(|row| Some((plan.job(row.index), row.result.as_ref().ok()?)))
-            .filter(|(job, _)| job.entry == entry)
+            .filter_map(|row| Some((plan.job(row.index), row.result.as_ref().ok()?, &row.digest)))
+            .filter(|(job, ..)| job.entry == entry)
             .collect();
-        games.sort_by(|(a, one), (b, other)| {
+        games.sort_by(|(a, one, _), (b, other, _)| {
             let by = number(one, "score_difference").total_cmp(&number(other, "score_difference"));
             by.then(a.index.cmp(&b.index))
         });
-        worst.extend(games.into_iter().take(WORST).map(|(job, numbers)| Worst {
+        worst.extend(games.into_iter().take(WORST).map(|(job, numbers, digest)| Worst {
             entry: entrant.name.clone(),
             game: job.index,
             values: plan.points()[job.point].values.iter().map(ToString::to_string).collect(),
             score: ["score", "opponent_score"].map(|name| number(numbers, name)),
             contacts: number(numbers, "contacts"),
             out_of_bounds: number(numbers, "out_of_bounds"),
+            digest: digest.clone(),
             command: plan.command(&job),
         }));
     }

@@ -19,6 +19,8 @@ const GAMES: &str = "games.csv";
 const BOATS: &str = "boats.csv";
 /// What identifies the plan.
 const PLAN: &str = "plan.txt";
+/// The plan with all that its games need, so that any of them can be played again.
+pub const PACKED_PLAN: &str = "plan.json";
 /// The columns of the table of games before those of the axes.
 const FIRST: [&str; 6] = ["game", "point", "entry", "seed", "side", "boats"];
 /// Its last columns.
@@ -126,6 +128,9 @@ impl Study {
             return Err(StudyError::Exists { folder: folder.to_owned(), games });
         }
         write(&folder.join(PLAN), &(plan.digest() + "\n"))?;
+        let packed = serde_json::to_string(&plan.pack());
+        let packed = packed.map_err(|error| StudyError::Table { what: PACKED_PLAN, why: error.to_string() })?;
+        write(&folder.join(PACKED_PLAN), &(packed + "\n"))?;
         write(&folder.join(GAMES), &record(&columns(plan)))?;
         write(&folder.join(BOATS), &record(&BOAT_COLUMNS.map(str::to_owned)))?;
         Study::open(folder, 0)

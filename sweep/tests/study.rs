@@ -63,7 +63,12 @@ fn a_study_that_was_cut_anywhere_and_taken_up_again_is_the_same_bytes_on_any_num
     study.report(&plan).unwrap();
     let want = files(&whole);
     let names: Vec<&str> = want.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["boats.csv", "games.csv", "games.parquet", "plan.txt", "report.html", "report.json"]);
+    assert_eq!(
+        names,
+        ["boats.csv", "games.csv", "games.parquet", "plan.json", "plan.txt", "report.html", "report.json"]
+    );
+    let packed = serde_json::from_slice(&want[3].1).expect("a packed plan");
+    assert_eq!(Plan::unpack(packed).expect("it is this version's").digest(), plan.digest());
 
     // Of the last line of either table, and of lines before it, any number of bytes may be missing.
     let cut = dir.path().join("cut");

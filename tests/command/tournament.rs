@@ -47,7 +47,7 @@ fn a_game_of_a_tournament_is_played_again_by_run_byte_for_byte() {
     let (report, result) = (place(&dir, "report.json"), place(&dir, "result.json"));
     let text = printed(
         project(),
-        &["tournament", TOURNAMENT, "--games", "2", "--seed", "11", "--jobs", "2", "--matches", "--json", &report],
+        &["tournament", TOURNAMENT, "--games", "2", "--seed", "11", "--jobs", "2", "--json", &report],
     );
     let how = format!("squall run {GAME} --sea {SEA} --blue A --red B --seed 11 --in-process");
     assert!(text.contains(&how), "{text}");
@@ -115,7 +115,9 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
         "games_left_out",
         "games_per_pairing",
         "games_unplayed",
+        "matches",
         "matrix",
+        "plan",
         "rate",
         "sea",
         "seed",
@@ -124,7 +126,7 @@ fn the_report_has_every_number_and_is_the_same_on_one_thread_and_on_four() {
         "tournament",
         "version",
     ];
-    assert_eq!(keys(&report), wanted, "without --matches there are none");
+    assert_eq!(keys(&report), wanted);
     assert_eq!((&report["tournament"], &report["seed"]), (&"tournament".into(), &1.into()));
     assert_eq!((&report["games_per_pairing"], &report["seeds_counted"]), (&4.into(), &2.into()));
     let commit = report["commit"].as_str().unwrap();
@@ -236,6 +238,47 @@ fn games_that_cannot_start_are_explained() {
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(1), "{text}");
     assert!(text.contains("6 games could not start") && text.contains("no free start position for red_1"), "{text}");
+}
+
+#[test]
+fn who_joins_a_league_plays_its_own_games_alone_and_a_torn_line_is_played_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let strategies = project().join("scenarios/strategies");
+    let entry = |name: &str, file: &str| {
+        format!("[[entry]]\nname = {name:?}\nstrategy = {:?}\n", strategies.join(format!("{file}.toml")))
+    };
+    let (league, whole) = (place(&dir, "league"), place(&dir, "whole.json"));
+    let results = format!("{league}/results.jsonl");
+    let play = |entries: &[String], options: &[&str]| {
+        let tournament = short_tournament(&dir, "");
+        let text = format!("game = \"short.toml\"\nsea = {:?}\ngames = 4\n", project().join(SEA));
+        std::fs::write(&tournament, text + &entries.concat()).unwrap();
+        let output = output(&[&["tournament", &tournament], options].concat());
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let [four, pav01, idle] = ["strategy_4", "pav01", "idle"].map(|name| entry(name, name));
+    let said = play(&[four.clone(), pav01.clone()], &["--league", &league]);
+    assert!(said.contains("0 of 4 games were played before"), "{said}");
+    // The last line was torn off as the machine stopped.
+    let text = std::fs::read_to_string(&results).unwrap();
+    std::fs::write(&results, &text[..text.len() - 9]).unwrap();
+    let said = play(&[four.clone(), pav01.clone(), idle.clone()], &["--league", &league]);
+    assert!(said.contains("3 of 12 games were played before") && said.contains("9 games in"), "{said}");
+    // The same comes of it as of a tournament that plays all of them.
+    play(&[four.clone(), pav01.clone(), idle], &["--json", &whole]);
+    let (mut known, mut anew) = (json(&format!("{league}/report.json")), json(&whole));
+    (known["rate"], anew["rate"]) = (Value::Null, Value::Null);
+    assert_eq!(known, anew);
+    // Another name is the same player, and another file is not.
+    let said = play(&[entry("renamed", "strategy_4"), pav01], &["--league", &league]);
+    assert!(said.contains("4 of 4 games were played before"), "{said}");
+    let said = play(&[four, entry("pav01", "easy_attackers")], &["--league", &league]);
+    assert!(said.contains("0 of 4 games were played before"), "{said}");
+    std::fs::write(&results, "{}\n").unwrap();
+    let refused = output(&["tournament", &place(&dir, "tournament.toml"), "--league", &league]);
+    let why = String::from_utf8(refused.stderr).unwrap();
+    assert!(!refused.status.success() && why.contains("results.jsonl: line 1 is no game of a league"), "{why}");
 }
 
 #[test]

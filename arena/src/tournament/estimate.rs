@@ -1,10 +1,10 @@
 //! A mean, and how well it is known.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// The mean of independent observations with its 95 % confidence interval, by Student's t.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The mean.
     pub mean: f64,
@@ -26,9 +26,7 @@ impl Estimate {
         let mean = observations.iter().sum::<f64>() / count as f64;
         let squares: f64 = observations.iter().map(|observation| (observation - mean) * (observation - mean)).sum();
         let degrees = count as f64 - 1.0;
-        let half = StudentsT::new(0.0, 1.0, degrees)
-            .ok()
-            .map(|student| student.inverse_cdf(0.975) * (squares / degrees / count as f64).sqrt());
+        let half = quantile(degrees).map(|quantile| quantile * (squares / degrees / count as f64).sqrt());
         Estimate { mean, low: half.map(|half| mean - half), high: half.map(|half| mean + half) }
     }
 
@@ -52,6 +50,11 @@ impl Estimate {
     pub fn half_width(&self) -> Option<f64> {
         self.high.map(|high| high - self.mean)
     }
+}
+
+/// How many standard errors reach to the end of a 95 % interval, by Student's t; none without a degree of freedom.
+pub(super) fn quantile(degrees: f64) -> Option<f64> {
+    StudentsT::new(0.0, 1.0, degrees).ok().map(|student| student.inverse_cdf(0.975))
 }
 
 #[cfg(test)]

@@ -4,13 +4,17 @@
 //! it. The report depends on the plan alone, not on the number of threads.
 
 mod estimate;
+mod league;
 mod plan;
 mod play;
+mod rating;
 mod report;
 mod table;
 
 pub use estimate::Estimate;
+pub use league::{League, LeagueError};
 pub use plan::{Match, Plan};
-pub use play::{Game, Observer, Record, play, play_observed, play_some};
+pub use play::{Game, Observer, Record, play, play_observed, play_some, play_these};
+pub use rating::{Meeting, Rating, ratings};
 pub use report::{Cell, Failure, MatchRow, Report, Row, Seeds};
 pub use table::{csv, text};

@@ -106,6 +106,23 @@ impl Plan {
         (Match { seed, sides: *sides }, scenario)
     }
 
+    /// The place of a game.
+    ///
+    /// # Panics
+    /// If it has none.
+    #[must_use]
+    pub fn place_of(&self, of: Match) -> usize {
+        let round = self.rounds.iter().position(|(sides, _)| *sides == of.sides).expect("they play each other");
+        of.seed.wrapping_sub(self.tournament.seed) as usize * self.rounds.len() + round
+    }
+
+    /// What identifies the games that are played with each seed, in their order: what the program makes of their files. Of another version,
+    /// or with another file, it is another game; entries may have other names, and files may lie elsewhere.
+    #[must_use]
+    pub fn pairings(&self) -> Vec<String> {
+        self.rounds.iter().map(|(_, scenario)| scenario.digest()).collect()
+    }
+
     /// What identifies it. It depends on what files say and not on where they lie: of two that lie elsewhere but name each other in the
     /// same way it is the same.
     #[must_use]

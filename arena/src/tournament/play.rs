@@ -29,6 +29,8 @@ pub struct Game {
     pub counts: [Counts; 2],
     /// Which of them won; none is a draw.
     pub winner: Option<usize>,
+    /// How long it was, simulated s.
+    pub duration_s: f64,
     /// Digest of the final state and of all events, hex.
     pub digest: String,
 }
@@ -58,7 +60,7 @@ pub fn play_observed<T: Send>(
     observer: &Observer<impl Fn(&Scenario) -> T + Sync, impl Fn(&mut T, &Contest, &MindRunner) + Sync>,
     watch: impl FnMut(&Record),
 ) -> Vec<(Record, Option<T>)> {
-    play_from(plan, 0..plan.games(), jobs, stop, observer, watch)
+    play_from(plan, &(0..plan.games()).collect::<Vec<_>>(), jobs, stop, observer, watch)
 }
 
 /// As [`play`], of the games at these places alone, in whichever process.
@@ -72,14 +74,27 @@ pub fn play_some(
     stop: &AtomicBool,
     watch: impl FnMut(&Record),
 ) -> Vec<Record> {
-    assert!(games.end <= plan.games(), "games {games:?} of {}", plan.games());
+    play_these(plan, &games.collect::<Vec<_>>(), jobs, stop, watch)
+}
+
+/// As [`play`], of the games at these places alone, in their order.
+///
+/// # Panics
+/// If the plan has not as many.
+pub fn play_these(
+    plan: &Plan,
+    games: &[usize],
+    jobs: NonZeroUsize,
+    stop: &AtomicBool,
+    watch: impl FnMut(&Record),
+) -> Vec<Record> {
     let nobody = Observer { begin: |_: &Scenario| (), see: |(): &mut (), _: &Contest, _: &MindRunner| () };
     play_from(plan, games, jobs, stop, &nobody, watch).into_iter().map(|(record, _)| record).collect()
 }
 
 fn play_from<T: Send>(
     plan: &Plan,
-    games: Range<usize>,
+    games: &[usize],
     jobs: NonZeroUsize,
     stop: &AtomicBool,
     observer: &Observer<impl Fn(&Scenario) -> T + Sync, impl Fn(&mut T, &Contest, &MindRunner) + Sync>,
@@ -87,44 +102,42 @@ fn play_from<T: Send>(
 ) -> Vec<(Record, Option<T>)> {
     /// Games that may wait to be shown.
     const QUEUE: usize = 64;
-    let (next, end) = (AtomicUsize::new(games.start), games.end);
+    let next = AtomicUsize::new(0);
     let mut records: Vec<(usize, Record, Option<T>)> = vec![];
     std::thread::scope(|scope| {
         let (sender, receiver) = sync_channel(QUEUE);
         for _ in 0..jobs.get().min(games.len()) {
             let (next, sender) = (&next, sender.clone());
-            scope.spawn(move || work(plan, (next, end), stop, observer, &sender));
+            scope.spawn(move || work(plan, (next, games), stop, observer, &sender));
         }
         drop(sender);
-        for (index, record, seen) in receiver {
+        for (place, record, seen) in receiver {
             watch(&record);
-            records.push((index, record, seen));
+            records.push((place, record, seen));
         }
     });
-    records.sort_unstable_by_key(|(index, ..)| *index);
+    records.sort_unstable_by_key(|(place, ..)| *place);
     records.into_iter().map(|(_, record, seen)| (record, seen)).collect()
 }
 
 /// What one thread does: the next game that nobody has taken, until there is none.
 fn work<T>(
     plan: &Plan,
-    (next, end): (&AtomicUsize, usize),
+    (next, games): (&AtomicUsize, &[usize]),
     stop: &AtomicBool,
     observer: &Observer<impl Fn(&Scenario) -> T, impl Fn(&mut T, &Contest, &MindRunner)>,
     sender: &SyncSender<(usize, Record, Option<T>)>,
 ) {
     loop {
-        let index = next.fetch_add(1, Ordering::Relaxed);
-        if index >= end || stop.load(Ordering::Relaxed) {
-            return;
-        }
+        let place = next.fetch_add(1, Ordering::Relaxed);
+        let Some(&index) = games.get(place).filter(|_| !stop.load(Ordering::Relaxed)) else { return };
         let (of, scenario) = plan.match_at(index);
         let (result, seen) = match game_of(scenario, of.seed, stop, observer) {
             Ok((game, seen)) => (Ok(game), Some(seen)),
             Err(why) => (Err(why), None),
         };
         // A game that was stopped is no game.
-        if stop.load(Ordering::Relaxed) || sender.send((index, Record { of, result }, seen)).is_err() {
+        if stop.load(Ordering::Relaxed) || sender.send((place, Record { of, result }, seen)).is_err() {
             return;
         }
     }
@@ -152,6 +165,7 @@ impl Game {
             score: [0, 1].map(|side| outcome.score.teams[name(side)]),
             counts: [0, 1].map(|side| outcome.counts.teams[name(side)]),
             winner: (0..2).find(|side| outcome.winner.as_deref() == Some(name(*side))),
+            duration_s: outcome.duration_s,
             digest: outcome.digest.clone(),
         }
     }

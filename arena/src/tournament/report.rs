@@ -3,15 +3,17 @@
 use super::estimate::Estimate;
 use super::plan::Plan;
 use super::play::{Game, Record};
+use super::rating::{Meeting, Rating, ratings};
 use game::count::Counts;
-use serde::Serialize;
+use game::scenario::Packed;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// What came of a tournament: what `--json` writes.
 ///
 /// Only seeds of which all games were played count in [`Report::entries`] and [`Report::matrix`]: with some of the
 /// games of a seed an entry would be measured against some of its opponents.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// The tournament's name.
     pub tournament: String,
@@ -46,15 +48,17 @@ pub struct Report {
     /// Games that could not start.
     pub failures: Vec<Failure>,
     /// Every game that was played.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub matches: Vec<MatchRow>,
+    /// The games themselves, so that any of them can be played again wherever the report is.
+    #[serde(default)]
+    pub plan: Option<Packed>,
 }
 
 /// How an entry did, a game.
 ///
 /// All games of a seed are on the same sea, so they are one observation: the entry's mean over its opponents and both
 /// sides. The intervals are over seeds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The entry's name.
     pub name: String,
@@ -62,6 +66,8 @@ pub struct Row {
     pub strategy: String,
     /// Games it played; one against itself counts from both sides.
     pub games: u64,
+    /// How strong it is, by whom it beat.
+    pub rating: Rating,
     /// Points.
     pub score: Estimate,
     /// Flags taken.
@@ -85,7 +91,7 @@ pub struct Row {
 }
 
 /// How one entry did against another.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
     /// Whose wins are counted.
     pub row: String,
@@ -110,7 +116,7 @@ pub struct Cell {
 }
 
 /// The first and last of some seeds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Seeds {
     /// The first.
     pub first: u64,
@@ -119,8 +125,10 @@ pub struct Seeds {
 }
 
 /// A game that was played.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MatchRow {
+    /// Its place in the order of the tournament.
+    pub game: usize,
     /// The first team's entry.
     pub blue: String,
     /// The second team's.
@@ -129,12 +137,16 @@ pub struct MatchRow {
     pub seed: u64,
     /// Points of both.
     pub score: [u32; 2],
+    /// Which of them won, 0 or 1; none is a draw.
+    pub winner: Option<usize>,
+    /// How long it was, simulated s.
+    pub duration_s: f64,
     /// Digest of the final state and of all events.
     pub digest: String,
 }
 
 /// A game that could not start.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Failure {
     /// The first team's entry.
     pub blue: String,
@@ -169,7 +181,10 @@ impl Report {
         let is_left_out = |record: &&Record| record.result.is_ok() && !counted.contains(&record.of.seed);
         let mut order: Vec<(usize, Row)> = match whole.is_empty() {
             true => vec![],
-            false => (0..tournament.entries.len()).map(|entry| (entry, row(plan, &whole, entry))).collect(),
+            false => {
+                let rated = ratings(tournament.entries.len(), &meetings(&whole));
+                rated.into_iter().enumerate().map(|(entry, rating)| (entry, row(plan, &whole, entry, rating))).collect()
+            }
         };
         order.sort_by(|(_, a), (_, b)| b.score.mean.total_cmp(&a.score.mean));
         let ranks: Vec<usize> = order.iter().map(|(entry, _)| *entry).collect();
@@ -178,9 +193,9 @@ impl Report {
             Some(Failure { blue: name(record.of.sides[0]), red: name(record.of.sides[1]), seed: record.of.seed, why })
         });
         let matches = records.iter().filter_map(|record| {
-            let Game { score, digest, .. } = record.result.as_ref().ok()?;
-            let [blue, red] = record.of.sides.map(name);
-            Some(MatchRow { blue, red, seed: record.of.seed, score: *score, digest: digest.clone() })
+            let Game { score, winner, duration_s, digest, .. } = record.result.as_ref().ok()?.clone();
+            let ([blue, red], game) = (record.of.sides.map(name), plan.place_of(record.of));
+            Some(MatchRow { game, blue, red, seed: record.of.seed, score, winner, duration_s, digest })
         });
         Report {
             tournament: tournament.name.clone(),
@@ -200,8 +215,18 @@ impl Report {
             entries: order.into_iter().map(|(_, row)| row).collect(),
             failures: failures.collect(),
             matches: matches.collect(),
+            plan: Some(plan.pack()),
         }
     }
+}
+
+/// Who met whom, seed by seed, and what came of it.
+fn meetings(rounds: &[&[Record]]) -> Vec<Vec<Meeting>> {
+    let of_record = |record: &Record| {
+        let winner = record.result.as_ref().ok()?.winner;
+        Some(Meeting { sides: record.of.sides, share: winner.map_or(0.5, |side| if side == 0 { 1.0 } else { 0.0 }) })
+    };
+    rounds.iter().map(|round| round.iter().filter_map(of_record).collect()).collect()
 }
 
 /// The games of a seed that an entry played in; both sides of one against itself.
@@ -216,7 +241,7 @@ fn appearances(round: &[Record], entry: usize) -> impl Iterator<Item = Appearanc
 }
 
 /// How an entry did. Each of the rounds is one observation.
-fn row(plan: &Plan, rounds: &[&[Record]], entry: usize) -> Row {
+fn row(plan: &Plan, rounds: &[&[Record]], entry: usize, rating: Rating) -> Row {
     let entrant = &plan.tournament().entries[entry];
     let estimate = |value: &dyn Fn(&Appearance<'_>) -> u32| {
         let observation = |round: &&[Record]| {
@@ -232,6 +257,7 @@ fn row(plan: &Plan, rounds: &[&[Record]], entry: usize) -> Row {
         name: entrant.name.clone(),
         strategy: entrant.strategy.display().to_string(),
         games: all().count() as u64,
+        rating,
         score: estimate(&|a: &Appearance<'_>| a.game.score[a.side]),
         grabs: count(|counts| counts.grabs),
         captures: count(|counts| counts.captures),

@@ -1,6 +1,7 @@
 //! The report of a tournament as tables: for people, and one for spreadsheets.
 
 use super::estimate::Estimate;
+use super::rating::Rating;
 use super::report::{Cell, Report, Row};
 use game::printable::add_line;
 
@@ -30,6 +31,7 @@ pub fn text(report: &Report, columns: usize) -> String {
             add_line(&mut text, format_args!("{games} games a pairing, half of them on each side"));
             add_line(&mut text, format_args!("means a game ± 95 %, over {count} seeds from {first} to {last}\n"));
             entries(&mut text, report, columns);
+            ratings(&mut text, report);
             match &report.challenger {
                 Some(challenger) => pairings(&mut text, report, challenger),
                 None => matrix(&mut text, report, columns),
@@ -138,6 +140,18 @@ fn share(estimate: &Estimate) -> String {
 fn beaten(cell: &Cell) -> String {
     let pct = |count: u64| 100.0 * count as f64 / cell.games as f64;
     format!("{:.0} / {:.0}  {:+.2}", pct(cell.wins), pct(cell.draws), cell.score_difference)
+}
+
+/// How strong they are.
+fn ratings(text: &mut String, report: &Report) {
+    let width = width(names(report).into_iter());
+    add_line(text, format_args!("\nElo ratings with 95 %: 100 points ahead are 64 % of the points of a game"));
+    let mut rows: Vec<&Row> = report.entries.iter().collect();
+    rows.sort_by(|a, b| b.rating.elo.total_cmp(&a.rating.elo));
+    for Row { name, rating: Rating { elo, low, high }, .. } in rows {
+        let interval = low.zip(*high).map_or("?".to_owned(), |(low, high)| format!("{low:.0} to {high:.0}"));
+        add_line(text, format_args!("{name:width$}{elo:>7.0}{interval:>16}"));
+    }
 }
 
 /// What is not in the tables.

@@ -65,9 +65,14 @@ impl AccessControl {
     /// Whether a page whose address has this query may act.
     pub(super) fn has_rights(&self, query: Option<&str>) -> bool {
         let Some(token) = &self.token else { return true };
-        let shown = query.unwrap_or_default().split('&').find_map(|pair| pair.strip_prefix("token="));
-        shown.is_some_and(|shown| is_same(&decoded(shown), token.as_bytes()))
+        value(query, "token").is_some_and(|shown| is_same(&shown, token.as_bytes()))
     }
+}
+
+/// What the query of an address gives for this name.
+pub(super) fn value(query: Option<&str>, name: &str) -> Option<Vec<u8>> {
+    let pairs = query.unwrap_or_default().split('&').filter_map(|pair| pair.split_once('='));
+    pairs.into_iter().find(|(given, _)| *given == name).map(|(_, value)| decoded(value))
 }
 
 /// The host without its port, and an IPv6 address without its brackets.

@@ -27,8 +27,22 @@ pub(super) fn answer(path: &str) -> Response<Body> {
         "" => "index.html",
         name => name,
     };
-    let Some(file) = WEB.get_file(name) else { return text(StatusCode::NOT_FOUND, "There is no such file.\n") };
-    plain(StatusCode::OK, kind(name), Body::from(file.contents()))
+    match WEB.get_file(name) {
+        Some(file) => own(name, Body::from(file.contents())),
+        None => text(StatusCode::NOT_FOUND, "There is no such file.\n"),
+    }
+}
+
+/// A file of this name.
+pub(super) fn own(name: &str, contents: Body) -> Response<Body> {
+    plain(StatusCode::OK, kind(name), contents)
+}
+
+/// An answer that leads to another path.
+pub(super) fn elsewhere(path: &'static str) -> Response<Body> {
+    let mut response = text(StatusCode::TEMPORARY_REDIRECT, "What there is to see is there.\n");
+    response.headers_mut().insert(header::LOCATION, HeaderValue::from_static(path));
+    response
 }
 
 /// An answer in words.

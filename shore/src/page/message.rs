@@ -50,6 +50,7 @@ pub(super) enum PageMessage<'a> {
         mode: Mode,
         rights: bool,
         game: &'a str,
+        about: Option<&'a str>,
         definitions: BTreeMap<&'static str, &'static str>,
         chart: &'a Value,
     },
@@ -112,6 +113,10 @@ pub(super) enum PageMessage<'a> {
         vehicle: &'a str,
         by: Option<&'static str>,
     },
+    Preparing {
+        text: &'a str,
+        failed: bool,
+    },
     Refused {
         what: &'a str,
         reason: &'a str,
@@ -153,16 +158,16 @@ pub(super) fn seconds(time: SimTime) -> f64 {
 }
 
 impl PageMessage<'_> {
-    /// The first message to a page.
+    /// The first message to a page: of the game of this name, and perhaps with a sentence about where that comes from.
     pub(super) fn hello<'a>(
         version: &'a str,
         mode: Mode,
         rights: bool,
-        game: &'a str,
+        (game, about): (&'a str, Option<&'a str>),
         chart: &'a Value,
     ) -> PageMessage<'a> {
         let definitions = game::ros::DEFINITIONS.into_iter().collect();
-        PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, game, definitions, chart }
+        PageMessage::Hello { protocol: PROTOCOL, version, mode, rights, game, about, definitions, chart }
     }
 
     /// The estimated position of a boat at this time.

@@ -9,7 +9,9 @@ mod asset;
 mod chart;
 pub mod live;
 mod message;
+mod preparing;
 pub mod replay;
+mod report;
 mod request;
 mod rose;
 mod routes;
@@ -18,6 +20,8 @@ mod socket;
 mod view;
 
 pub use message::Mode;
+pub use preparing::PreparingView;
+pub use report::{Report, Showing, Shown};
 pub use request::PageRequest;
 pub use rose::{HelmAnswer, is_sound};
 pub use session::PageSession;
@@ -25,8 +29,8 @@ pub use view::{Access, Budget, Changes, Outgoing, View, Viewer};
 
 use access::AccessControl;
 use std::net::{SocketAddr, TcpListener};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 use std::time::Duration;
 use thiserror::Error;
@@ -79,6 +83,7 @@ pub enum PageError {
 pub struct Page {
     address: SocketAddr,
     shown: Option<watch::Sender<Option<Arc<dyn View>>>>,
+    report: Arc<OnceLock<Arc<dyn Report>>>,
     ended: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -108,25 +113,37 @@ impl Page {
         let (shown, to_show) = watch::channel(None);
         let ended = Arc::new(AtomicBool::new(false));
         let end = Arc::clone(&ended);
+        let report = Arc::new(OnceLock::new());
+        let to_publish = Arc::clone(&report);
         let serve = move || {
             let access_control = AccessControl::new(address, &hosts, token);
             // What cannot be taken over by the runtime was never a listener.
-            drop(runtime.block_on(routes::serve(listener, access_control, to_show, async {
-                while !end.load(Ordering::Relaxed) && !stop.load(Ordering::Relaxed) {
-                    tokio::time::sleep(LOOK_AGAIN).await;
-                }
-            })));
+            drop(runtime.block_on(routes::serve(
+                listener,
+                access_control,
+                (Shown::to_all(to_show), to_publish),
+                async {
+                    while !end.load(Ordering::Relaxed) && !stop.load(Ordering::Relaxed) {
+                        tokio::time::sleep(LOOK_AGAIN).await;
+                    }
+                },
+            )));
             runtime.block_on(async { tokio::time::sleep(GOODBYE).await });
             runtime.shutdown_timeout(GOODBYE);
         };
         let thread = std::thread::Builder::new().name("page".to_owned()).spawn(serve).map_err(PageError::Begin)?;
-        Ok(Page { address, shown: Some(shown), ended, thread: Some(thread) })
+        Ok(Page { address, shown: Some(shown), report, ended, thread: Some(thread) })
     }
 
     /// Where it listens.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address
+    }
+
+    /// Publishes a report with its games; the first stays.
+    pub fn publish(&self, report: Arc<dyn Report>) {
+        self.report.get_or_init(|| report);
     }
 
     /// From now on all pages are shown this.

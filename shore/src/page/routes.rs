@@ -1,8 +1,9 @@
 //! The routes of the web server: which request gets which response.
 
-use super::access::AccessControl;
+use super::access::{AccessControl, value};
 use super::asset;
-use super::socket::{self, RECEIVED_MAX, Shown};
+use super::report::{Report, Shown};
+use super::socket::{self, RECEIVED_MAX};
 use super::view::Access;
 use axum::Router;
 use axum::body::Body;
@@ -19,7 +20,7 @@ use hyper_util::server::conn::auto::Builder;
 use hyper_util::service::TowerToHyperService;
 use std::future::Future;
 use std::net::IpAddr;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::oneshot;
@@ -46,11 +47,19 @@ const REQUEST: Duration = Duration::from_secs(10);
 struct AppState {
     access_control: Arc<AccessControl>,
     shown: Shown,
+    report: Arc<OnceLock<Arc<dyn Report>>>,
     viewers: Connections,
     operators: Connections,
 }
 
 impl AppState {
+    /// Something of the report, in a thread that may take its time; none without a report.
+    async fn of_report<T: Send + 'static>(&self, get: impl FnOnce(&dyn Report) -> T + Send + 'static) -> Option<T> {
+        let report = Arc::clone(self.report.get()?);
+        // If it panicked it has said so by itself.
+        tokio::task::spawn_blocking(move || get(&*report)).await.ok()
+    }
+
     /// Room for a page from this address with this query, and what it may do.
     fn admit(&self, from: IpAddr, query: Option<&str>) -> (Room, Access) {
         let access = Access { rights: self.access_control.has_rights(query) };
@@ -72,13 +81,14 @@ fn admit(connections: &Connections, from: IpAddr) -> Room {
 pub(super) async fn serve(
     listener: std::net::TcpListener,
     access_control: AccessControl,
-    shown: Shown,
+    (shown, report): (Shown, Arc<OnceLock<Arc<dyn Report>>>),
     end: impl Future<Output = ()>,
 ) -> std::io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
     let app = AppState {
         access_control: Arc::new(access_control),
         shown,
+        report,
         viewers: Connections::new(PAGES_MAX),
         operators: Connections::new(OPERATORS_MAX),
     };
@@ -146,10 +156,17 @@ async fn check(State(app): State<AppState>, request: Request, next: Next) -> Res
     response
 }
 
-async fn file(method: Method, uri: Uri) -> Response<Body> {
-    match method {
-        Method::GET | Method::HEAD => asset::answer(uri.path()),
-        _ => asset::text(StatusCode::METHOD_NOT_ALLOWED, "There are only files here.\n"),
+async fn file(State(app): State<AppState>, method: Method, uri: Uri) -> Response<Body> {
+    if method != Method::GET && method != Method::HEAD {
+        return asset::text(StatusCode::METHOD_NOT_ALLOWED, "There are only files here.\n");
+    }
+    let path = uri.path().to_owned();
+    if let Some(report) = app.report.get().filter(|_| path == "/" && value(uri.query(), "game").is_none()) {
+        return asset::elsewhere(report.page());
+    }
+    match app.of_report(move |report| report.file(&path)).await.flatten() {
+        Some(contents) => asset::own(uri.path(), Body::from(contents)),
+        None => asset::answer(uri.path()),
     }
 }
 
@@ -164,9 +181,14 @@ async fn upgrade(
     if let Err(reason) = AccessControl::check_origin(text_of(&headers, &HOST), text_of(&headers, &ORIGIN)) {
         return asset::text(StatusCode::FORBIDDEN, &reason);
     }
+    let game = value(uri.query(), "game").map(|name| String::from_utf8_lossy(&name).into_owned());
+    let game = match game {
+        Some(name) => app.of_report(move |report| report.game(&name)).await,
+        None => None,
+    };
     let (room, access) = app.admit(from, uri.query());
     let upgrade = upgrade.max_message_size(RECEIVED_MAX).max_frame_size(RECEIVED_MAX);
-    upgrade.on_upgrade(move |socket| socket::serve(socket, app.shown, access, room))
+    upgrade.on_upgrade(move |socket| socket::serve(socket, game.unwrap_or(app.shown), access, room))
 }
 
 /// A header, if it is a text. One that is there and is none is as good as a wrong one.

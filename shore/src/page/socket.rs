@@ -1,16 +1,15 @@
 //! A websocket: the network shell around the session of one page.
 
+use super::report::Shown;
 use super::routes::Room;
 use super::session::PageSession;
-use super::view::{Access, Changes, Outgoing, View};
+use super::view::{Access, Changes, Outgoing};
 use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use bus::{Slot, clock};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
 use std::pin::pin;
-use std::sync::Arc;
 use std::time::Duration;
-use tokio::sync::watch;
 use tokio::time::{Instant, sleep_until, timeout};
 
 /// The longest message from a page, bytes.
@@ -23,9 +22,6 @@ const PING: Duration = Duration::from_secs(15);
 const DEAD: Duration = Duration::from_secs(45);
 /// A game at full speed changes more often than a page can draw: messages are sent no more often than this.
 const MIN_INTERVAL: Duration = Duration::from_millis(4);
-
-/// What is shown now, if anything is yet. Its end is that of the server.
-pub(super) type Shown = watch::Receiver<Option<Arc<dyn View>>>;
 
 /// What ends the session with a page.
 enum End {
@@ -73,7 +69,7 @@ impl Socket {
     async fn talk(&mut self, mut shown: Shown, access: Access) -> End {
         let mut session: Option<PageSession> = None;
         loop {
-            let show = shown.borrow_and_update().clone();
+            let show = shown.receiver.borrow_and_update().clone();
             let ended = match show {
                 None => self.wait(&mut shown).await,
                 Some(show) => {
@@ -95,7 +91,7 @@ impl Socket {
     async fn wait(&mut self, shown: &mut Shown) -> Result<(), End> {
         loop {
             tokio::select! {
-                changed = shown.changed() => return changed.map_err(|_| End::Closed),
+                changed = shown.receiver.changed() => return changed.map_err(|_| End::Closed),
                 message = self.incoming.stream.next() => if !matches!(message, Some(Ok(_))) {
                     return Err(End::Gone);
                 },
@@ -125,7 +121,7 @@ impl Socket {
             let next_send = Instant::from_std(now + MIN_INTERVAL);
             tokio::select! {
                 received = self.incoming.receive(session) => received?,
-                changed = shown.changed() => return changed.map_err(|_| End::Closed),
+                changed = shown.receiver.changed() => return changed.map_err(|_| End::Closed),
                 changed = async { sleep_until(next_send).await; news.changed().await } => changed.map_err(|_| End::Gone)?,
                 () = sleep_until(Instant::from_std(next)) => {}
             }

@@ -4,6 +4,7 @@ mod access;
 mod client;
 mod live;
 mod replay;
+mod report;
 mod session;
 mod source;
 

@@ -179,8 +179,13 @@ impl Viewer for PageViewer {
             if self.wants_modes {
                 state.listed.insert(self.page);
             }
-            let hello =
-                PageMessage::hello(&game.info.version, Mode::Live, self.access.rights, game.name.as_str(), &game.chart);
+            let hello = PageMessage::hello(
+                &game.info.version,
+                Mode::Live,
+                self.access.rights,
+                (game.name.as_str(), None),
+                &game.chart,
+            );
             return Some(Outgoing::Text(hello.json()));
         }
         let sent = &mut self.sent;

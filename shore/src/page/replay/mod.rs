@@ -28,6 +28,8 @@ pub struct ReplayView {
 struct SharedReplay {
     source: Arc<Recorded>,
     chart: Value,
+    /// Where the game comes from, in words.
+    about: Option<String>,
     queries: QueryThread,
     viewers: AtomicU64,
 }
@@ -36,12 +38,21 @@ impl ReplayView {
     /// Shows a recording. Without helms there are no helm reports.
     #[must_use]
     pub fn new(source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
+        ReplayView::about(None, source, helms)
+    }
+
+    /// Shows a recording, and says in words where it comes from.
+    #[must_use]
+    pub fn about(about: Option<String>, source: Arc<Recorded>, helms: Option<Box<dyn Helms>>) -> ReplayView {
         let news = Changes::default();
         let scenario = source.info().scenario.clone();
         let chart = chart(&scenario, &source.header().water);
         let plotter = Plotter::new(source.recording());
         let queries = QueryThread::open(Sources { scenario, helms, plotter }, news.clone());
-        ReplayView { shared: Arc::new(SharedReplay { source, chart, queries, viewers: AtomicU64::new(0) }), news }
+        ReplayView {
+            shared: Arc::new(SharedReplay { source, chart, about, queries, viewers: AtomicU64::new(0) }),
+            news,
+        }
     }
 }
 

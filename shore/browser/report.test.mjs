@@ -1,0 +1,205 @@
+// Reports on the page: a tournament, a league, a sweep and a training, and from their tables to the games behind them.
+
+import assert from 'node:assert/strict';
+import { copyFileSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Program, Sight, folder, gameFile, openBrowser, readJson, scenario, squall } from './harness.mjs';
+
+let browser;
+before(async () => { browser = await openBrowser(); });
+after(() => browser.close());
+
+/** What would change the title of the page if it ever ran. */
+const HOSTILE = '</script><script>document.title = "owned"</script><img src=x onerror="document.title=\'owned\'">';
+
+const entry = (name) => `[[entry]]\nname = "${name}"\nstrategy = "${scenario(`strategies/${name}.toml`)}"\n`;
+
+/** Plays a tournament of short games, and gives its report and the file with it. */
+async function tournament(t, ...words) {
+  const place = folder(t);
+  const game = gameFile(t, 'short', 'pav01_vs_pav01.toml', 'duration_s = 60');
+  const file = join(place, 'short.toml');
+  writeFileSync(file, `game = "${game}"\nsea = "${scenario('seas/moderate_breeze.toml')}"\ngames = 4\n${['strategy_4', 'pav01', 'idle'].map(entry).join('')}`);
+  const path = join(place, 'report.json');
+  await squall(t, 'tournament', file, '--json', path, ...words);
+  return { place, file, path, report: readJson(path) };
+}
+
+const view = async (t, path) => (await new Program(t, 'view', path, '--listen', '127.0.0.1:0')).url();
+
+/** Whether nothing of a text was taken for more than text. */
+const isText = (sight) => sight.get(() => document.title !== 'owned' && document.querySelector('img') === null);
+
+/** Texts whose contrast to what is behind them is less than 4.5, by WCAG 2.1, 1.4.3. */
+function faint() {
+  const numbers = (colour) => {
+    const found = colour.match(/[\d.]+/g).map(Number);
+    return colour.startsWith('color(') ? found.map((each, i) => (i < 3 ? each * 255 : each)) : found;
+  };
+  const behind = (element) => {
+    const colour = numbers(getComputedStyle(element).backgroundColor);
+    return colour[3] === 0 && element.parentElement ? behind(element.parentElement) : colour;
+  };
+  const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+  const luminance = (colour) => [0.2126, 0.7152, 0.0722].reduce((sum, weight, i) => sum + weight * linear(colour[i] / 255), 0);
+  const own = (element) => [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim() !== '');
+  return [...document.querySelectorAll('body *')].filter((each) => own(each) && each.offsetParent !== null).map((each) => {
+    const [low, high] = [numbers(getComputedStyle(each).color), behind(each)].map(luminance).sort((a, b) => a - b);
+    return [(high + 0.05) / (low + 0.05), each.textContent];
+  }).filter(([contrast]) => contrast < 4.5);
+}
+
+test('from a cell of the win matrix to its games, to a replay of one, and back', async (t) => {
+  const { path, report } = await tournament(t);
+  const sight = await Sight.load(t, browser, await view(t, path));
+  const cells = await sight.until('the matrix is shown', () => {
+    const buttons = [...document.querySelectorAll('.matrix button')];
+    return buttons.length > 0 && buttons.map((button) => button.getAttribute('aria-label'));
+  });
+  assert.equal(cells.length, report.matrix.length);
+  const rows = await sight.get(() => [...document.querySelectorAll('.ratings tbody tr')].map((row) => [...row.children].map((each) => each.textContent)));
+  const rated = [...report.entries].sort((a, b) => b.rating.elo - a.rating.elo);
+  assert.deepEqual(rows.map((row) => [row[1], row[2], row[5]]), rated.map(({ name, rating, wins }) => [name.replaceAll('_', ' '), rating.elo.toFixed(0), String(wins)]));
+
+  assert.deepEqual(await sight.get(faint), []);
+  await sight.press('#dark');
+  assert.deepEqual(await sight.get(faint), [], 'in the dark');
+  const [row, column] = ['strategy_4', 'pav01'];
+  const cell = `.matrix button[aria-label^="strategy 4 against pav01:"]`;
+  await sight.page.focus(cell);
+  await sight.keys('Enter');
+  const want = report.matches.filter(({ blue, red }) => [blue, red].sort().join() === [column, row].sort().join());
+  const games = await sight.until('its games are listed', () => {
+    const listed = [...document.querySelectorAll('#games tbody tr')];
+    return listed.length > 0 && listed.map((each) => [...each.children].map((one) => one.textContent));
+  });
+  const result = (game, side) => (game.winner === null ? 'drawn' : game.winner === side ? 'won' : 'lost');
+  assert.deepEqual(games, want.map((game) => {
+    const side = game.blue === row ? 0 : 1;
+    return ['Watch', String(game.seed), report.teams[side], `${game.score[side]} : ${game.score[1 - side]}`, result(game, side), '01:00'];
+  }));
+
+  await sight.press('#games tbody tr:nth-child(2) a');
+  await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
+  const about = await sight.text('#about');
+  assert.match(about, new RegExp(`seed ${want[1].seed}; played again, as in the report$`), about);
+  await sight.page.press('#timeline', 'End');
+  await sight.until('it is at its end', () => squall.t_s > 59.9);
+  assert.deepEqual(await sight.get(() => squall.score), want[1].score);
+  await sight.press('#back');
+  await sight.until('the report is as it was', () => document.querySelector('.matrix [aria-pressed="true"]') !== null);
+  assert.equal(await sight.get(() => document.querySelectorAll('#games tbody tr').length), want.length);
+  await sight.page.selectOption('#games-filter', 'won');
+  const won = want.filter((game) => result(game, game.blue === row ? 0 : 1) === 'won').length;
+  assert.equal(await sight.get(() => [...document.querySelectorAll('#games tbody tr')].length), won);
+});
+
+test('what is wrong with a report or a game is said in words', async (t) => {
+  const { place, path, report } = await tournament(t);
+  // Texts from elsewhere, a game that went otherwise, and a seed with more digits than the page's numbers.
+  const seed = '9007199254740993';
+  report.tournament = HOSTILE;
+  report.game = HOSTILE;
+  report.failures = [{ blue: HOSTILE, red: 'b', seed: 1, why: HOSTILE }];
+  report.matches.forEach((game) => { game.digest = 'another'; });
+  const changed = join(place, 'changed.json');
+  writeFileSync(changed, JSON.stringify(report).replaceAll('"seed":2,', `"seed":${seed},`));
+  const url = await view(t, changed);
+  const sight = await Sight.load(t, browser, url);
+  await sight.until('the failure is told', () => document.getElementById('remarks').textContent.includes('Could not start'));
+  assert.equal(await sight.text('#name'), HOSTILE.replaceAll('_', ' '));
+  assert(await isText(sight));
+  await sight.page.evaluate(() => { location.hash = '#row=strategy_4&column=pav01'; });
+  await sight.until('the seed has all its digits', (seed) => [...document.querySelectorAll('#games tbody td:nth-child(2)')].some((each) => each.textContent === seed), seed);
+  const game = report.matches.find(({ seed }) => seed === 1).game;
+  const other = await Sight.open(t, browser, `${url}?game=${game}`);
+  assert.match(await other.text('#about'), /NOT as in the report/);
+  for (const [name, why] of [['999', /there is no game "999", expected a number from 0 to 11/], [HOSTILE, /there is no game .*expected a number/]]) {
+    const none = await Sight.load(t, browser, `${url}?game=${encodeURIComponent(name)}`);
+    await none.until('it is refused', () => document.getElementById('about').textContent !== '');
+    assert.match(await none.text('#about'), why);
+    assert.equal(await none.text('#phase'), 'no game');
+    assert(await isText(none));
+  }
+  // A report without its plan is shown, and nothing can be watched.
+  delete report.plan;
+  writeFileSync(path, JSON.stringify(report));
+  const bare = await Sight.load(t, browser, `${await view(t, path)}#row=strategy_4&column=pav01`);
+  await bare.until('it says so', () => /No game of it can be watched/.test(document.getElementById('remarks').textContent));
+  assert.equal(await bare.get(() => document.querySelectorAll('.watch').length), 0);
+});
+
+test('who joins a league plays its own games alone, and the folder is shown', async (t) => {
+  const { file, place } = await tournament(t);
+  const league = join(place, 'league');
+  const text = readFileSync(file, 'utf8');
+  writeFileSync(file, text.replace(entry('idle'), ''));
+  assert.match(await squall(t, 'tournament', file, '--league', league), /0 of 4 games were played before/);
+  writeFileSync(file, text);
+  const said = await squall(t, 'tournament', file, '--league', league);
+  assert.match(said, /4 of 12 games were played before/);
+  assert.match(said, /8 games in/);
+  const sight = await Sight.load(t, browser, await view(t, league));
+  await sight.until('all three are rated', () => document.querySelectorAll('.ratings tbody tr').length === 3);
+});
+
+test('the worst games of a sweep are watched from its page', async (t) => {
+  const place = folder(t);
+  const game = gameFile(t, 'short', 'surveyor_2v2.toml', 'duration_s = 60');
+  const file = join(place, 'wind.toml');
+  writeFileSync(file, `about = ${JSON.stringify(HOSTILE)}\ngame = "${game}"\nopponent = "${scenario('strategies/strategy_3.toml')}"\ngames = 2\n${entry('strategy_4')}`
+    + '[[axis]]\nkey = "sea.wind.speed_m_s"\nvalues = [1, 12]\n');
+  const out = join(place, 'out');
+  await squall(t, 'sweep', file, '--out', out);
+  const [worst] = readJson(join(out, 'report.json')).worst;
+  const sight = await Sight.load(t, browser, await view(t, out));
+  await sight.page.waitForSelector('#worst-list .watch');
+  assert(await isText(sight));
+  assert.equal(await sight.text('#about'), HOSTILE);
+  assert.equal(await sight.get(() => getComputedStyle(document.querySelector('.tornado .bar')).position), 'absolute', 'its style is served');
+  await sight.press('#worst-list .watch');
+  await sight.until('the game is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
+  assert.match(await sight.text('#about'), /strategy_4 \(\w+\) at sea.wind.speed_m_s \d+, seed \d+; played again, as in the report/);
+  await sight.page.press('#timeline', 'End');
+  await sight.until('it is at its end', () => squall.t_s > 59.9);
+  assert.deepEqual((await sight.get(() => squall.score)).sort(), [...worst.score].sort());
+});
+
+test('a training shows curves that follow its tables, and its recorded episodes', async (t) => {
+  const place = join(folder(t), 'first_steps');
+  const games = join(place, 'games');
+  mkdirSync(games, { recursive: true });
+  await squall(t, 'run', gameFile(t, 'short', 'pav01_vs_pav01.toml', 'duration_s = 60'), '--in-process', '--record', place);
+  copyFileSync(join(place, readdirSync(place).find((name) => name.endsWith('.mcap'))), join(games, '7_1.mcap'));
+  const updates = [...Array(50).keys()].map((i) => `${(i + 1) * 20000},${i < 20 ? 'alone' : 'against'},${i / 10},0.1,${i < 3 ? '' : 2 - i / 50},1.5,0.01,0.1,4`);
+  writeFileSync(join(place, 'updates.csv'), `samples,stage,reward,policy_loss,value_loss,entropy,divergence,clipped,epochs\n${updates.join('\n')}\n99`);
+  writeFileSync(join(place, 'evaluations.csv'), 'samples,stage,opponent,won,drawn,lost,points,points_against,left_field\n'
+    + '500000,alone,pav01,5,5,10,3.5,6.25,0.5\n500000,alone,<b>x</b>,20,0,0,9,1,0\n1000000,against,pav01,12,2,6,8,5,0.1\n1000000,against,<b>x</b>,10,0,10,4,4,0\n');
+  writeFileSync(join(place, 'episodes.csv'), 'samples,stage,seed,team,opponent,points,points_against,steps,cut_off,recording\n'
+    + `20000,alone,6,0,pav01,1,2,300,false,\n40000,alone,9007199254740993,0,pav01,3,2,300,false,games/7_1.mcap\n`);
+  const url = await view(t, place);
+  const sight = await Sight.load(t, browser, url);
+  const label = (title) => sight.until(`the curve ${title} is drawn`, (title) => [...document.querySelectorAll('.card:not([hidden]) canvas')]
+    .map((canvas) => canvas.getAttribute('aria-label')).find((text) => text?.startsWith(title)), title);
+  assert.match(await label('Games won'), /at the end: pav01 65, <b>x<\/b> 50\./);
+  assert.deepEqual(await sight.get(faint), []);
+  assert.match(await label('Reward'), /at the end: 4\.90\./);
+  await sight.page.focus('.card canvas');
+  await sight.keys('ArrowLeft', 'ArrowLeft');
+  assert.match(await label('Games won'), /at 0\.50 million samples: pav01 38, <b>x<\/b> 100\./);
+  const painted = await sight.get(() => {
+    const canvas = document.querySelector('.card canvas');
+    return new Set(new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size;
+  });
+  assert(painted > 6, `the curves have only ${painted} colours`);
+  assert.equal(await sight.get(() => document.querySelector('b:not(.legend b)')), null, 'a name is text');
+  assert.deepEqual(await sight.get(() => [...document.querySelectorAll('section:last-child tbody td')].map((each) => each.textContent)),
+    ['Watch', '0.04 M', 'alone', 'pav01', '9007199254740993', '3 : 2', '300']);
+  await sight.press('section:last-child .watch');
+  await sight.until('the episode is shown', () => window.squall?.mode === 'replay' && squall.frame !== null);
+  for (const escape of ['../7_1.mcap', '..%2fupdates.csv', 'none.mcap', '/etc/passwd', 'games/7_1.mcap']) {
+    const none = await Sight.load(t, browser, `${url}?game=${encodeURIComponent(escape)}`);
+    await none.until('it is refused', () => /there is no recording/.test(document.getElementById('about').textContent));
+  }
+});

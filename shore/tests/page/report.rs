@@ -1,0 +1,68 @@
+//! A report and the games behind it.
+
+use super::client::{Client, get};
+use super::empty_page;
+use super::replay::show;
+use shore::page::{PreparingView, Report, Showing, Shown};
+use std::sync::Arc;
+
+/// A report with one game, which is not there at once.
+struct OneGame {
+    preparing: Arc<PreparingView>,
+    showing: Arc<Showing>,
+}
+
+impl Report for OneGame {
+    fn page(&self) -> &'static str {
+        "/report.html"
+    }
+
+    fn file(&self, path: &str) -> Option<Vec<u8>> {
+        (path == "/report.json").then(|| b"{\"kind\":\"x\"}".to_vec())
+    }
+
+    fn game(&self, name: &str) -> Shown {
+        match name {
+            "a b&c" => self.showing.shown(),
+            other => Showing::new(Arc::new(PreparingView::failed(&format!("there is no game {other:?}")))).shown(),
+        }
+    }
+}
+
+#[test]
+fn a_report_has_files_and_a_game_is_told_of_until_it_is_there() {
+    let preparing = Arc::new(PreparingView::new("in a moment"));
+    let report = Arc::new(OneGame { showing: Showing::new(Arc::clone(&preparing) as _), preparing });
+    let page = empty_page(None, &[]);
+    page.publish(Arc::clone(&report) as _);
+    let (at, host) = (page.address(), page.address().to_string());
+    for (path, status, part) in [
+        ("/", 307, "location: /report.html"),
+        ("/?game=1", 200, "layer-boats"),
+        ("/report.json", 200, "{\"kind\":\"x\"}"),
+        ("/report.html", 200, "report.js"),
+        ("/other.json", 404, "no such file"),
+    ] {
+        let (got, answer) = get(at, path, &host);
+        assert!(got == status && answer.contains(part), "{path}: {got} {answer}");
+        assert!(answer.to_lowercase().contains("content-security-policy: default-src 'self'"), "{path}: {answer}");
+    }
+    assert!(!report.showing.is_watched());
+    let mut client = Client::connect(at, "/ws?game=a%20b%26c", &[]).expect("all may look");
+    let told = client.until("preparing", |told| told["text"] == "in a moment");
+    assert_eq!(told["failed"], false);
+    // There is nothing to be asked yet, and that is no harm.
+    client.send(r#"{"do":"seek","t_s":3}"#);
+    client.until("refused", |told| told["reason"] == "there is no game yet");
+    report.preparing.tell("half of it");
+    client.until("preparing", |told| told["text"] == "half of it");
+    assert!(report.showing.is_watched());
+    report.showing.show(show());
+    assert_eq!(client.until("hello", |_| true)["mode"], "replay");
+    let mut other = Client::connect(at, "/ws?game=%3Cb%3E", &[]).expect("all may look");
+    let told = other.until("preparing", |_| true);
+    assert_eq!((&told["text"], &told["failed"]), (&"there is no game \"<b>\"".into(), &true.into()));
+    // A page that comes back for more would ask for ever.
+    other.send(r#"{"do":"seek","t_s":3}"#);
+    other.until("refused", |_| true);
+}

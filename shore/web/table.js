@@ -1,0 +1,30 @@
+// Tables of a report.
+
+import { make } from './words.js';
+
+export const cell = (text, classes = '') => make('td', classes, text);
+
+/** The head of a row or a column. */
+export function head(scope, text, classes = '') {
+  const th = make('th', classes, text);
+  th.scope = scope;
+  return th;
+}
+
+/** A link to a game. */
+export function watch(address, label) {
+  const link = make('a', 'watch', 'Watch');
+  link.href = address;
+  link.setAttribute('aria-label', label);
+  return make('td', '', '', link);
+}
+
+/** A table with heads `[text, classes]` of its columns, which can be moved sideways, by keys as well. */
+export function tableOf(label, heads, rows, classes = 'list') {
+  const columns = heads.map(([text, of]) => head('col', text, of));
+  const box = make('div', 'scroll', '', make('table', classes, '', make('thead', '', '', make('tr', '', '', ...columns)), make('tbody', '', '', ...rows)));
+  box.tabIndex = 0;
+  box.setAttribute('role', 'region');
+  box.setAttribute('aria-label', label);
+  return box;
+}

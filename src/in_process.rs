@@ -1,0 +1,51 @@
+//! A whole game in this process, recorded if that is wanted.
+
+use anyhow::{Context, Result};
+use bus::clock;
+use game::Scenario;
+use game::event::EventCursor;
+use sim::Contest;
+use sim::node::{GameRecorder, Report, Run};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Plays the game of `scenario` that `seed` chooses, without a network, until it is over or `stop` is set, and shows it to `look` before
+/// every decision and at the end.
+///
+/// # Errors
+/// The game cannot start, or there can be no recording in `file`.
+pub(crate) fn play(
+    scenario: &Scenario,
+    seed: u64,
+    file: Option<&Path>,
+    stop: &AtomicBool,
+    mut look: impl FnMut(&Contest),
+) -> Result<Report> {
+    let scenario = scenario.of_seed(seed)?;
+    let start = clock::now();
+    let record = |path: &Path| {
+        GameRecorder::in_process(path.to_owned(), &scenario.name, env!("SQUALL_COMMIT"))
+            .with_context(|| format!("cannot record into {}", path.display()))
+    };
+    let mut recorder = file.map(record).transpose()?;
+    let mut written = EventCursor::default();
+    let watch = |contest: &mut Contest| {
+        if let Some(recorder) = &mut recorder {
+            let frame = Arc::new(contest.frame(&mut written));
+            recorder.decision(contest, frame);
+        }
+        look(contest);
+        !stop.load(Ordering::Relaxed)
+    };
+    let outcome = arena::play_watched(&scenario, agent::minds_of(&scenario), seed, watch)?;
+    let run = Run {
+        pace: "in process".to_owned(),
+        wall_s: clock::since(start).as_secs_f64(),
+        cut_short: stop.load(Ordering::Relaxed),
+        ..Run::default()
+    };
+    let mut report = Report { outcome, run };
+    report.run.recording_problem = recorder.and_then(|recorder| recorder.end(&report).problem());
+    Ok(report)
+}

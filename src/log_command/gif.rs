@@ -1,0 +1,265 @@
+//! A stretch of a recorded game as a GIF file.
+//!
+//! All pictures have one palette, and each has only what changed since the one before it.
+
+use crate::game_args;
+use crate::output_file;
+use crate::plot::film::{Boat, Moment, Stage};
+use crate::plot::{colour, pixels};
+use crate::water_args::within;
+use anyhow::{Context, Result, bail};
+use game::Ned;
+use game::message::{Frame, VehicleTruth};
+use gif::{DisposalMethod, Encoder, Repeat};
+use recording::{Damaged, Recording};
+use std::borrow::Cow;
+use std::collections::{BTreeMap, VecDeque};
+use std::path::Path;
+
+/// Pictures a second of watching.
+const PICTURES_HZ: f64 = 10.0;
+/// How long the end stands before it begins again, hundredths of a second.
+const END_CS: u16 = 200;
+/// Pictures of a film, at most.
+const PICTURES_MAX: f64 = 5000.0;
+/// How far back trails go, s.
+const TRAIL_S: f64 = 30.0;
+/// Boats have names up to so many.
+const NAMES_MAX: usize = 12;
+/// The colour of a pixel that is as before.
+const UNCHANGED: u8 = 255;
+/// Pictures that the palette is made of.
+const SAMPLES: usize = 6;
+
+/// Which stretch of a game a film shows, and how.
+#[derive(clap::Args)]
+pub(super) struct FilmArgs {
+    /// With --gif: from this moment of the game on, s [default: its beginning]
+    #[arg(long, value_name = "S", requires = "gif", value_parser = within(0.0, 1e7, "s"))]
+    from: Option<f64>,
+    /// With --gif: up to this moment, s [default: its end]
+    #[arg(long, value_name = "S", requires = "gif", value_parser = within(0.0, 1e7, "s"))]
+    to: Option<f64>,
+    /// With --gif: how much faster than it was played
+    #[arg(long, value_name = "FACTOR", requires = "gif", default_value = "10x", value_parser = game_args::speed)]
+    speed: f64,
+    /// With --gif: how wide the picture is, pixels
+    #[arg(long, value_name = "PIXELS", requires = "gif", default_value_t = 800, value_parser = clap::value_parser!(u32).range(200..=2000))]
+    width: u32,
+}
+
+/// Writes a film; gives how many pictures it has, and what of the recording is damaged.
+pub(super) fn write(path: &Path, recording: &Recording, args: &FilmArgs) -> Result<(usize, Damaged)> {
+    output_file::check(path, "the film")?;
+    let header = recording.header();
+    let scenario = &header.info.scenario;
+    let teams = scenario.teams.iter().enumerate().map(|(i, team)| (team.name.clone(), colour::of_team(i))).collect();
+    let stage = Stage::new(header.game.replace('_', " "), &scenario.field, teams, args.width);
+    let mut damaged = Damaged::default();
+    // There is nothing between two decisions.
+    let step_s = f64::max(args.speed / PICTURES_HZ, scenario.decision().as_s());
+    let delay_cs = (100.0 * step_s / args.speed).round() as u16;
+    let moments = moments(recording, (args, step_s), &stage, &mut damaged)?;
+    let [Some(first), Some(last)] = [moments.first(), moments.last()] else {
+        bail!("the recording has no frame from {} s on", args.from.unwrap_or(0.0))
+    };
+    let size = crate::plot::Drawing::size(first);
+    // Moments that are far apart have all colours between them, and the last one has them all in use.
+    let step = moments.len().div_ceil(SAMPLES);
+    let samples = moments.iter().step_by(step).chain([last]).map(colours).collect::<Result<Vec<_>>>()?;
+    let mut palette = Palette::of(&samples);
+    let file = std::fs::File::create(path).with_context(|| format!("cannot write the film to {}", path.display()))?;
+    let mut writer = std::io::BufWriter::new(file);
+    let what = || format!("cannot write the film to {}", path.display());
+    let mut encoder = Encoder::new(&mut writer, size.0 as u16, size.1 as u16, &palette.bytes()).with_context(what)?;
+    encoder.set_repeat(Repeat::Infinite).with_context(what)?;
+    let mut before: Option<Vec<u8>> = None;
+    for (i, moment) in moments.iter().enumerate() {
+        let indices = palette.indices(&colours(moment)?);
+        let mut picture = changes(&indices, before.as_deref(), (size.0 as usize, size.1 as usize));
+        // The end stands for a while before it begins again.
+        picture.delay = if i + 1 == moments.len() { END_CS } else { delay_cs };
+        encoder.write_frame(&picture).with_context(what)?;
+        before = Some(indices);
+    }
+    drop(encoder);
+    std::io::Write::flush(&mut writer).with_context(what)?;
+    Ok((moments.len(), damaged))
+}
+
+/// Red, green and blue of each pixel of a moment, one after the other.
+fn colours(moment: &Moment<'_>) -> Result<Vec<u8>> {
+    let picture = pixels(moment)?;
+    Ok(picture.pixels().iter().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect())
+}
+
+/// The moments of a film.
+fn moments<'a>(
+    recording: &Recording,
+    (args, step_s): (&FilmArgs, f64),
+    stage: &'a Stage<'a>,
+    damaged: &mut Damaged,
+) -> Result<Vec<Moment<'a>>> {
+    let from_s = args.from.unwrap_or(0.0);
+    let to_s = args.to.unwrap_or(f64::INFINITY);
+    if to_s <= from_s {
+        bail!("--to is {to_s} s, expected more than --from, {from_s} s");
+    }
+    let mut moments = vec![];
+    let mut trails: VecDeque<(f64, Vec<Ned>)> = VecDeque::new();
+    for frame in recording.frames() {
+        let Some(frame) = damaged.sound(frame) else { continue };
+        let t_s = frame.stamp.valid_ns.as_s();
+        if t_s > to_s + 1e-6 {
+            break;
+        }
+        if t_s < from_s - TRAIL_S {
+            continue;
+        }
+        trails.push_back((t_s, frame.vehicles.iter().map(place).collect()));
+        while trails.front().is_some_and(|(before_s, _)| *before_s < t_s - TRAIL_S) {
+            trails.pop_front();
+        }
+        if t_s < from_s + moments.len() as f64 * step_s - 1e-6 {
+            continue;
+        }
+        if moments.len() as f64 >= PICTURES_MAX {
+            bail!(
+                "the film has more than {PICTURES_MAX} pictures: a greater --speed, or --from and --to, make it shorter"
+            );
+        }
+        moments.push(moment(recording, &frame, stage, &trails));
+    }
+    Ok(moments)
+}
+
+fn place(vehicle: &VehicleTruth) -> Ned {
+    Ned { north: vehicle.nav.north_m, east: vehicle.nav.east_m }
+}
+
+fn moment<'a>(
+    recording: &Recording,
+    frame: &Frame,
+    stage: &'a Stage<'a>,
+    trails: &VecDeque<(f64, Vec<Ned>)>,
+) -> Moment<'a> {
+    let scenario = &recording.header().info.scenario;
+    let named = scenario.vehicles.len() <= NAMES_MAX;
+    let boat = |(i, (vehicle, truth)): (usize, (&game::scenario::Vehicle, &VehicleTruth))| Boat {
+        name: if named { vehicle.name.replace('_', " ") } else { String::new() },
+        team: vehicle.team.index(),
+        at: place(truth),
+        psi_rad: truth.nav.psi_rad,
+        length_m: scenario.boats[vehicle.boat].length_m,
+        tagged: truth.tagged,
+        trail: trails.iter().filter_map(|(_, places)| places.get(i).copied()).collect(),
+    };
+    let flag = |(flag, view): (&game::field::Flag, &game::picture::FlagView)| {
+        let carrier = usize::try_from(view.carrier).ok().and_then(|carrier| frame.vehicles.get(carrier));
+        (flag.team.index(), carrier.map_or(flag.home, place))
+    };
+    Moment {
+        stage,
+        t_s: frame.stamp.valid_ns.as_s(),
+        score: frame.score.clone(),
+        boats: scenario.vehicles.iter().zip(&frame.vehicles).enumerate().map(boat).collect(),
+        flags: scenario.field.flags.iter().zip(&frame.flags).map(flag).collect(),
+    }
+}
+
+/// The colours of a film: those that most pixels have.
+struct Palette {
+    colours: Vec<[u8; 3]>,
+    /// What stands for a colour: itself, or the nearest.
+    nearest: BTreeMap<[u8; 3], u8>,
+}
+
+impl Palette {
+    fn of(samples: &[Vec<u8>]) -> Palette {
+        let mut counts: BTreeMap<[u8; 3], u64> = BTreeMap::new();
+        for pixel in samples.iter().flat_map(|sample| sample.chunks_exact(3)) {
+            *counts.entry([pixel[0], pixel[1], pixel[2]]).or_default() += 1;
+        }
+        let mut counts: Vec<([u8; 3], u64)> = counts.into_iter().collect();
+        counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let colours: Vec<[u8; 3]> = counts.into_iter().map(|(colour, _)| colour).take(usize::from(UNCHANGED)).collect();
+        let nearest = colours.iter().enumerate().map(|(i, colour)| (*colour, i as u8)).collect();
+        Palette { colours, nearest }
+    }
+
+    /// As it stands in the file.
+    fn bytes(&self) -> Vec<u8> {
+        let mut bytes = self.colours.concat();
+        bytes.resize(3 * 256, 0);
+        bytes
+    }
+
+    /// The number of each pixel's colour.
+    fn indices(&mut self, pixels: &[u8]) -> Vec<u8> {
+        let Palette { colours, nearest } = self;
+        let mut index = |colour: [u8; 3]| {
+            *nearest.entry(colour).or_insert_with(|| {
+                let distance = |other: &[u8; 3]| -> u32 {
+                    colour.iter().zip(other).map(|(a, b)| u32::from(a.abs_diff(*b)).pow(2)).sum()
+                };
+                let best = colours.iter().enumerate().min_by_key(|(_, other)| distance(other));
+                best.map_or(0, |(i, _)| i as u8)
+            })
+        };
+        pixels.chunks_exact(3).map(|pixel| index([pixel[0], pixel[1], pixel[2]])).collect()
+    }
+}
+
+/// The part of a picture that is not as before, in which all else is transparent.
+fn changes(indices: &[u8], before: Option<&[u8]>, (wide, high): (usize, usize)) -> gif::Frame<'static> {
+    let is_changed = |i: usize| before.is_none_or(|before| before[i] != indices[i]);
+    let changed = || (0..indices.len()).filter(|i| is_changed(*i));
+    let bounds = changed().map(|i| (i % wide, i / wide)).fold(None, |bounds: Option<[usize; 4]>, (x, y)| {
+        let [left, top, right, bottom] = bounds.unwrap_or([x, y, x, y]);
+        Some([left.min(x), top.min(y), right.max(x), bottom.max(y)])
+    });
+    // A picture has at least a pixel.
+    let [left, top, right, bottom] = bounds.unwrap_or([0; 4]);
+    let (right, bottom) = (right.min(wide - 1), bottom.min(high - 1));
+    let of_row = |y: usize| (left..=right).map(move |x| y * wide + x);
+    let pixel = |i: usize| if is_changed(i) { indices[i] } else { UNCHANGED };
+    gif::Frame {
+        left: left as u16,
+        top: top as u16,
+        width: (right - left + 1) as u16,
+        height: (bottom - top + 1) as u16,
+        transparent: Some(UNCHANGED),
+        dispose: DisposalMethod::Keep,
+        buffer: Cow::Owned((top..=bottom).flat_map(of_row).map(pixel).collect()),
+        ..gif::Frame::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_has_what_changed_and_the_first_one_has_all() {
+        let first = [0, 1, 2, 3, 4, 5];
+        let whole = changes(&first, None, (3, 2));
+        assert_eq!((whole.width, whole.height, &whole.buffer[..]), (3, 2, &first[..]));
+        let next = changes(&[0, 1, 9, 3, 7, 5], Some(&first), (3, 2));
+        assert_eq!((next.left, next.top, next.width, next.height), (1, 0, 2, 2));
+        assert_eq!(next.buffer[..], [UNCHANGED, 9, 7, UNCHANGED]);
+        let same = changes(&first, Some(&first), (3, 2));
+        assert_eq!((same.width, same.height, &same.buffer[..]), (1, 1, &[UNCHANGED][..]));
+    }
+
+    #[test]
+    fn of_many_colours_the_frequent_ones_stay_and_others_become_the_nearest() {
+        let mut pixels: Vec<u8> = [[10, 10, 10]; 50].concat();
+        pixels.extend((0..200).flat_map(|i| [[200, i, 0]; 2].concat()));
+        pixels.extend((0..200).flat_map(|i| [90, 100, i]));
+        let mut palette = Palette::of(&[pixels]);
+        assert_eq!((palette.colours.len(), palette.bytes().len()), (255, 768));
+        let got = palette.indices(&[10, 10, 10, 10, 11, 10, 200, 77, 0]);
+        let colours: Vec<[u8; 3]> = got.iter().map(|i| palette.colours[usize::from(*i)]).collect();
+        assert_eq!(colours, [[10, 10, 10], [10, 10, 10], [200, 77, 0]]);
+    }
+}

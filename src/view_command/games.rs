@@ -1,0 +1,157 @@
+//! The games behind a report: each is played when a page asks for it, into a recording that is not kept, or was recorded before.
+
+use crate::{in_process, replay_command};
+use anyhow::{Context, Result, bail};
+use game::Scenario;
+use shore::page::{PreparingView, Showing, Shown};
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use tempfile::TempDir;
+
+/// Games that are there at a time: one that nobody looks at makes room for another.
+const OPEN_MAX: usize = 8;
+/// Games that are played at a time.
+const PLAYED_MAX: usize = 2;
+/// A page is told so often how far a game is, decisions.
+const TELL_EVERY: u64 = 100;
+
+/// Where a game comes from.
+pub(super) enum Source {
+    /// A recording.
+    Recorded(PathBuf),
+    /// It is played again; the report may say which digest came of it.
+    Played { scenario: Box<Scenario>, seed: u64, digest: Option<String> },
+}
+
+/// A game of a report.
+pub(super) struct Game {
+    /// Which it is, in words.
+    pub(super) about: String,
+    pub(super) source: Source,
+}
+
+/// The games that pages look at.
+pub(super) struct Games {
+    open: Mutex<VecDeque<Open>>,
+    folder: TempDir,
+    /// How many recordings there were in it.
+    recordings: AtomicU64,
+    /// How many are played now.
+    played: Arc<(Mutex<usize>, Condvar)>,
+    stop: Arc<AtomicBool>,
+}
+
+/// A game that is there, or will be.
+struct Open {
+    name: String,
+    showing: Arc<Showing>,
+    /// The recording that goes with it.
+    file: PathBuf,
+}
+
+impl Drop for Open {
+    fn drop(&mut self) {
+        // A recorded one, or one that could not be played, has none.
+        drop(std::fs::remove_file(&self.file));
+    }
+}
+
+impl Games {
+    pub(super) fn new(stop: &Arc<AtomicBool>) -> Result<Games> {
+        let folder = TempDir::with_prefix("squall-view-").context("no folder for the recordings of games")?;
+        Ok(Games {
+            open: Mutex::default(),
+            folder,
+            recordings: AtomicU64::new(0),
+            played: Arc::default(),
+            stop: Arc::clone(stop),
+        })
+    }
+
+    /// What is shown of the game of this name; `find` says which it is.
+    pub(super) fn show(&self, name: &str, find: impl FnOnce() -> Result<Game>) -> Shown {
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = open.iter().find(|open| open.name == name) {
+            return known.showing.shown();
+        }
+        let refused = |why: &str| Showing::new(Arc::new(PreparingView::failed(why))).shown();
+        if open.len() >= OPEN_MAX {
+            let Some(idle) = open.iter().position(|open| !open.showing.is_watched()) else {
+                return refused(&format!(
+                    "{OPEN_MAX} other games are looked at: close one of them, and load this page again"
+                ));
+            };
+            open.remove(idle);
+        }
+        let game = match find() {
+            Ok(game) => game,
+            Err(why) => return refused(&format!("{why:#}")),
+        };
+        let preparing =
+            Arc::new(PreparingView::new(&format!("{}: it is played as soon as another is over", game.about)));
+        let showing = Showing::new(Arc::clone(&preparing) as _);
+        let file = self.folder.path().join(format!("{}.mcap", self.recordings.fetch_add(1, Ordering::Relaxed)));
+        let shown = showing.shown();
+        open.push_back(Open { name: name.to_owned(), showing: Arc::clone(&showing), file: file.clone() });
+        let (played, stop) = (Arc::clone(&self.played), Arc::clone(&self.stop));
+        std::thread::spawn(move || {
+            let _place = Place::wait(&played);
+            match prepare(&game, &file, &stop, &preparing) {
+                Ok(view) => showing.show(Arc::new(view)),
+                Err(why) => showing.show(Arc::new(PreparingView::failed(&format!("{}: {why:#}", game.about)))),
+            }
+        });
+        shown
+    }
+}
+
+/// One of the places for games that are played.
+struct Place<'a>(&'a (Mutex<usize>, Condvar));
+
+impl Place<'_> {
+    fn wait(played: &(Mutex<usize>, Condvar)) -> Place<'_> {
+        let taken = played.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut taken =
+            played.1.wait_while(taken, |taken| *taken >= PLAYED_MAX).unwrap_or_else(PoisonError::into_inner);
+        *taken += 1;
+        Place(played)
+    }
+}
+
+impl Drop for Place<'_> {
+    fn drop(&mut self) {
+        *self.0.0.lock().unwrap_or_else(PoisonError::into_inner) -= 1;
+        self.0.1.notify_one();
+    }
+}
+
+/// Plays a game if it is not recorded, and opens its recording.
+fn prepare(
+    game: &Game,
+    file: &Path,
+    stop: &AtomicBool,
+    preparing: &PreparingView,
+) -> Result<shore::page::replay::ReplayView> {
+    let (scenario, seed, digest) = match &game.source {
+        Source::Recorded(path) => return replay_command::show_about(path, Some(game.about.clone())),
+        Source::Played { scenario, seed, digest } => (scenario, *seed, digest),
+    };
+    let end_s = scenario.rules.time_limit.as_s();
+    let report = in_process::play(scenario, seed, Some(file), stop, |contest| {
+        if contest.decision().is_multiple_of(TELL_EVERY) {
+            let share = 100.0 * (contest.now().as_s() / end_s).clamp(0.0, 1.0);
+            preparing.tell(&format!("{}: it is being played, {share:.0} %", game.about));
+        }
+    })?;
+    if let Some(problem) = report.run.recording_problem {
+        bail!("{problem}");
+    }
+    let about = match digest {
+        Some(digest) if *digest == report.outcome.digest => format!("{}; played again, as in the report", game.about),
+        Some(_) => format!("{}; played again, and NOT as in the report: this program plays otherwise", game.about),
+        None => format!("{}; played again", game.about),
+    };
+    replay_command::show_about(file, Some(about))
+}

@@ -1,0 +1,197 @@
+//! Reports that a page shows: of tournaments, leagues, sweeps and trainings.
+
+use super::games::{Game, Games, Source};
+use super::training::TrainingReport;
+use anyhow::{Context, Result, anyhow, bail};
+use arena::tournament;
+use game::scenario::Packed;
+use serde_json::{Value, json};
+use shore::page::{Report, Shown};
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// The largest file of a report that is read, bytes.
+pub(super) const BYTES_MAX: u64 = 256 << 20;
+
+/// Where the page is on which tournaments and trainings are shown.
+pub(super) const PAGE: &str = "/report.html";
+
+/// The report at a path: a file, or the folder that it is in.
+pub(super) fn open(path: &Path, stop: &Arc<AtomicBool>) -> Result<Arc<dyn Report>> {
+    let games = Games::new(stop)?;
+    // People have the page of a report before them, which is beside it.
+    let is_page = path.extension().is_some_and(|end| end == "html");
+    let folder =
+        if is_page { path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new(".")) } else { path };
+    if !folder.is_dir() {
+        return of_file(folder, games);
+    }
+    let file = folder.join("report.json");
+    if file.exists() {
+        return of_file(&file, games);
+    }
+    if TrainingReport::is_in(folder) {
+        return Ok(Arc::new(TrainingReport::open(folder, games)?));
+    }
+    bail!(
+        "there is no report in {}, expected report.json (of a league or a sweep) or updates.csv (of a training)",
+        folder.display()
+    )
+}
+
+fn of_file(path: &Path, games: Games) -> Result<Arc<dyn Report>> {
+    let bytes = read(path)?;
+    let is_none = || format!("{} is no report", path.display());
+    let value: Value = serde_json::from_slice(&bytes).with_context(is_none)?;
+    match ["tournament", "sweep"].map(|kind| value.get(kind).is_some()) {
+        [true, _] => Ok(Arc::new(TournamentReport::new(serde_json::from_slice(&bytes).with_context(is_none)?, games))),
+        [_, true] => Ok(Arc::new(SweepReport::open(path, &value, games).with_context(is_none)?)),
+        _ => bail!("{} is no report: it has neither the key tournament nor sweep", path.display()),
+    }
+}
+
+/// A whole file.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
+    let what = || format!("cannot read {}", path.display());
+    let file = std::fs::File::open(path).with_context(what)?;
+    let mut bytes = vec![];
+    file.take(BYTES_MAX + 1).read_to_end(&mut bytes).with_context(what)?;
+    if bytes.len() as u64 > BYTES_MAX {
+        bail!("{} is larger than {} MB, expected a report", path.display(), BYTES_MAX >> 20);
+    }
+    Ok(bytes)
+}
+
+/// The report of a tournament or a league.
+struct TournamentReport {
+    json: Vec<u8>,
+    /// Why no game can be played again, if that is so.
+    plan: Result<tournament::Plan, String>,
+    /// What the report says of each game, by its place.
+    digests: BTreeMap<usize, String>,
+    games: Games,
+}
+
+impl TournamentReport {
+    fn new(mut report: tournament::Report, games: Games) -> TournamentReport {
+        let plan = match report.plan.take() {
+            None => Err("the report has no plan".to_owned()),
+            Some(packed) => tournament::Plan::unpack(packed).map_err(|why| why.to_string()),
+        };
+        let digests = report.matches.iter().map(|row| (row.game, row.digest.clone())).collect();
+        let mut shown = serde_json::to_value(&report).expect("it has names for keys");
+        // Numbers of JavaScript have too few digits for all seeds.
+        let spell = |row: &mut Value| row["seed"] = row["seed"].to_string().into();
+        spell(&mut shown);
+        let rows = ["matches", "failures"].map(|list| shown[list].take());
+        for (list, mut rows) in ["matches", "failures"].into_iter().zip(rows) {
+            rows.as_array_mut().into_iter().flatten().for_each(spell);
+            shown[list] = rows;
+        }
+        let json = json!({"kind": "tournament", "report": shown, "unplayable": plan.as_ref().err()});
+        TournamentReport { json: json.to_string().into_bytes(), plan, digests, games }
+    }
+
+    fn find(&self, name: &str) -> Result<Game> {
+        let plan = self.plan.as_ref().map_err(|why| anyhow!("no game can be played again: {why}"))?;
+        let place = place_of(name, plan.games())?;
+        let (of, scenario) = plan.match_at(place);
+        let [blue, red] = of.sides.map(|entry| &plan.tournament().entries[entry].name);
+        let teams = plan.teams();
+        Ok(Game {
+            about: format!("{blue} ({}) against {red} ({}), seed {}", teams[0], teams[1], of.seed),
+            source: Source::Played {
+                scenario: Box::new(scenario.clone()),
+                seed: of.seed,
+                digest: self.digests.get(&place).cloned(),
+            },
+        })
+    }
+}
+
+/// A game's place among so many.
+fn place_of(name: &str, games: usize) -> Result<usize> {
+    name.parse()
+        .ok()
+        .filter(|place| *place < games)
+        .with_context(|| format!("there is no game {name:?}, expected a number from 0 to {}", games.saturating_sub(1)))
+}
+
+impl Report for TournamentReport {
+    fn page(&self) -> &'static str {
+        PAGE
+    }
+
+    fn file(&self, path: &str) -> Option<Vec<u8>> {
+        (path == "/report.json").then(|| self.json.clone())
+    }
+
+    fn game(&self, name: &str) -> Shown {
+        self.games.show(name, || self.find(name))
+    }
+}
+
+/// The report of a sweep: its own page, and its games.
+struct SweepReport {
+    files: [(&'static str, String); 4],
+    plan: Result<sweep::Plan, String>,
+    digests: BTreeMap<usize, String>,
+    games: Games,
+}
+
+impl SweepReport {
+    fn open(path: &Path, value: &Value, games: Games) -> Result<SweepReport> {
+        for key in ["axes", "entries", "metrics", "points", "effects", "interactions", "worst", "failures"] {
+            if !value[key].is_array() {
+                bail!("{key} is not a list");
+            }
+        }
+        let plan = unpacked(&path.with_file_name(sweep::PACKED_PLAN)).map_err(|why| format!("{why:#}"));
+        let worst = value["worst"].as_array().into_iter().flatten();
+        let digest =
+            |game: &Value| Some((usize::try_from(game["game"].as_u64()?).ok()?, game["digest"].as_str()?.to_owned()));
+        let digests = worst.filter_map(digest).collect();
+        Ok(SweepReport { files: sweep::served(value, plan.is_ok()), plan, digests, games })
+    }
+
+    fn find(&self, name: &str) -> Result<Game> {
+        let plan = self.plan.as_ref().map_err(|why| anyhow!("no game can be played again: {why}"))?;
+        let job = plan.job(place_of(name, plan.games())?);
+        let scenario = plan.scenario(job.point, job.entry, job.side)?;
+        let (sweep, values) = (plan.sweep(), &plan.points()[job.point].values);
+        let axes: Vec<String> =
+            sweep.axes.iter().zip(values).map(|(axis, value)| format!("{} {value}", axis.key)).collect();
+        let (entry, team) = (&sweep.entries[job.entry].name, &plan.teams()[job.side]);
+        Ok(Game {
+            about: format!("{entry} ({team}) at {}, seed {}", axes.join(", "), job.seed),
+            source: Source::Played {
+                scenario: Box::new(scenario),
+                seed: job.seed,
+                digest: self.digests.get(&job.index).cloned(),
+            },
+        })
+    }
+}
+
+fn unpacked(path: &Path) -> Result<sweep::Plan> {
+    let packed: Packed =
+        serde_json::from_slice(&read(path)?).with_context(|| format!("{} is no plan", path.display()))?;
+    Ok(sweep::Plan::unpack(packed)?)
+}
+
+impl Report for SweepReport {
+    fn page(&self) -> &'static str {
+        self.files[0].0
+    }
+
+    fn file(&self, path: &str) -> Option<Vec<u8>> {
+        self.files.iter().find(|(name, _)| *name == path).map(|(_, text)| text.clone().into_bytes())
+    }
+
+    fn game(&self, name: &str) -> Shown {
+        self.games.show(name, || self.find(name))
+    }
+}
