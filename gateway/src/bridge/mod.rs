@@ -3,10 +3,12 @@
 //! No socket and no clock in here: [`Bridge::take`] gets an [`Input`] with its time, and fills an [`Output`].
 //! The same inputs at the same times give the same outputs, byte for byte: that is how a recording is replayed.
 
+mod command_echo;
 mod command_encoder;
 mod control;
 mod interface;
 mod on_site;
+mod recovery_point;
 mod status;
 mod upload;
 
@@ -23,6 +25,7 @@ use game::frame::Ned;
 use game::gateway::Gateway;
 use game::{Order, SimTime};
 use on_site::OnSite;
+use recovery_point::RecoveryPoint;
 use std::collections::BTreeMap;
 use upload::{Next, Upload};
 
@@ -30,14 +33,14 @@ use upload::{Next, Upload};
 const GAP_MIN_S: f64 = 0.045;
 /// Positions of other boats are used for this long.
 const OTHERS_AGE_MAX_S: f64 = 2.0;
-/// From this thrust on a boat's position must change, per cent.
-const THRUST_MIN_PCT: f64 = 20.0;
 /// A task that the boat does not report is sent again after this time.
 const TASK_AGAIN_S: f64 = 1.0;
 /// How often invalid navigation is reported.
 const INVALID_NAV_EVERY_S: f64 = 0.25;
 /// A step of the receiver's time of day against our clock that is worth a warning, s.
 const CLOCK_STEP_S: f64 = 2.0;
+/// A battery that is not reported for this long is worth a warning, s.
+const BATTERY_SILENCE_S: f64 = 10.0;
 /// How many failsafes and names of unknown sentences are kept.
 const FAILSAFES_MAX: usize = 32;
 const UNKNOWN_MAX: usize = 64;
@@ -79,12 +82,16 @@ pub struct Bridge {
     /// When an order was last sent for the first time.
     order_sent: SimTime,
     others: (SimTime, Vec<Ned>),
-    volts: Option<f64>,
+    /// The battery voltage, and when it came.
+    volts: Option<(SimTime, f64)>,
+    /// Since when the battery has not been reported, and whether that was said.
+    battery_silence: (SimTime, bool),
     low_since: Option<SimTime>,
     boat_error: String,
     /// The receiver's time of day, and when it came.
     clock: Option<(SimTime, TimeOfDay)>,
     upload: Option<Upload>,
+    recovery_point: RecoveryPoint,
     /// The command that was sent last, and when.
     last_sent: Option<(SimTime, Command)>,
     /// Whether the boat may be moving by what it was sent.
@@ -103,12 +110,12 @@ impl Bridge {
     /// A bridge without a link, safed.
     #[must_use]
     pub fn new(plan: Plan) -> Bridge {
-        let Gateway { control, battery, .. } = &plan.gateway;
+        let Gateway { control, failsafe, .. } = &plan.gateway;
         Bridge {
             framer: Framer::new(),
             control: ControlLog::new(*control),
             on_site: plan.site.as_ref().map(|site| OnSite::new(&plan.gateway, site)),
-            supervisor: Supervisor::new(plan.arms_itself, battery.action),
+            supervisor: Supervisor::new(plan.arms_itself, *failsafe),
             plan,
             link_up: false,
             hung_s: None,
@@ -117,10 +124,12 @@ impl Bridge {
             order_sent: SimTime::LONG_AGO,
             others: (SimTime::LONG_AGO, vec![]),
             volts: None,
+            battery_silence: (SimTime::ZERO, false),
             low_since: None,
             boat_error: String::new(),
             clock: None,
             upload: None,
+            recovery_point: RecoveryPoint::default(),
             last_sent: None,
             under_way: false,
             conditions: Conditions::UNKNOWN,
@@ -143,7 +152,7 @@ impl Bridge {
         let mut request = None;
         self.hung_s = None;
         match input {
-            Input::LinkUp => self.take_link_up(),
+            Input::LinkUp => self.take_link_up(now),
             Input::LinkDown => self.link_up = false,
             Input::Bytes(bytes) => self.read(now, bytes, out),
             Input::Site(site) => self.on_site = Some(OnSite::new(&self.plan.gateway, site)),
@@ -203,14 +212,16 @@ impl Bridge {
     }
 
     /// A new link: nothing is known of the boat at its end, and it is sent standby first.
-    fn take_link_up(&mut self) {
+    fn take_link_up(&mut self, now: SimTime) {
         self.link_up = true;
         // A sentence that was cut off must not be completed by bytes of the new link.
         self.framer.push(b"\r\n", &mut |_| {});
         self.on_site.iter_mut().for_each(|site| site.estimator.forget());
         self.control.forget();
         (self.volts, self.low_since, self.clock) = (None, None, None);
+        self.battery_silence = (now, false);
         self.upload = None;
+        self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
         self.under_way = true;
     }
@@ -233,10 +244,14 @@ impl Bridge {
     fn apply(&mut self, now: SimTime, sentence: &Sentence, out: &mut Output) {
         self.nav_is_new |= self.on_site.as_mut().is_some_and(|site| site.estimator.take(now, sentence));
         match sentence {
-            Sentence::ControlState(state) => self.control.take(now, state),
+            Sentence::ControlState(state) => {
+                self.control.take(now, state);
+                self.recovery_point.take(state, self.upload.is_some());
+            }
             Sentence::Battery(battery) => {
+                self.battery_silence = (now, false);
                 if let Some(volts) = battery.volts {
-                    self.volts = Some(volts);
+                    self.volts = Some((now, volts));
                     let low = volts < self.plan.gateway.battery.volts_min;
                     self.low_since = low.then(|| self.low_since.unwrap_or(now));
                 }
@@ -285,7 +300,7 @@ impl Bridge {
 
     /// Begins the upload of a mission, or refuses it.
     fn take_mission(&mut self, now: SimTime, mission: &Mission, out: &mut Output) -> Option<OperatorRequest> {
-        let unfit = self.conditions_at(now).unfit();
+        let unfit = self.conditions_at(now).unfit(Task::Mission);
         let begun = match self.supervisor.state() {
             State::EStopped => Err(self.e_stop_in_force()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
@@ -297,6 +312,7 @@ impl Bridge {
         match begun {
             Ok(upload) => {
                 self.upload = Some(upload);
+                self.recovery_point.begin(mission);
                 Some(OperatorRequest::Disarm)
             }
             Err(reason) => {
@@ -329,6 +345,9 @@ impl Bridge {
         if self.supervisor.state() == State::Armed && changed {
             out.events.push(Event::Blocked(conditions.blocked));
         }
+        if matches!(conditions.control, Control::Foreign | Control::Other(_)) {
+            self.recovery_point = RecoveryPoint::default();
+        }
         let urgent = before.is_some() || request.is_some() || self.last_sent.is_none() || changed;
         if !self.link_up {
             self.upload = None;
@@ -338,12 +357,13 @@ impl Bridge {
             self.send_action(now, action, out);
         }
         self.watch_standby(now, action, out);
+        self.watch_battery(now, out);
     }
 
     fn note_change(&mut self, now: SimTime, before: State, out: &mut Output) {
         let state = self.supervisor.state();
         out.events.push(Event::State { from: before.to_string(), to: state.to_string() });
-        if let State::Failsafe(cause) = state {
+        if let State::Failsafe { cause, .. } = state {
             self.failsafes.push(FailsafeReport { at_s: now.as_s(), cause: cause.to_string() });
             let surplus = self.failsafes.len().saturating_sub(FAILSAFES_MAX);
             self.failsafes.drain(..surplus);
@@ -356,6 +376,7 @@ impl Bridge {
     /// Cancels the upload of a mission.
     fn cancel_upload(&mut self, out: &mut Output) {
         if self.upload.take().is_some() && self.link_up {
+            self.recovery_point = RecoveryPoint::default();
             out.bytes.extend(command_encoder::bytes_of(&[command_encoder::end_of_download()]));
         }
     }
@@ -392,7 +413,7 @@ impl Bridge {
         if out.carries_order {
             (self.order_is_new, self.order_sent) = (false, now);
         }
-        self.control.note_sent(now, command.mode);
+        self.control.note_sent(now, &command);
         self.counters.sent += 1;
         self.last_sent = Some((now, command));
     }
@@ -402,13 +423,7 @@ impl Bridge {
         let site = self.on_site.as_mut()?;
         let (nav, _) = site.estimator.nav(now)?;
         let set_point = site.set_points.map(now, self.order?.order, &nav);
-        let has_thrust = match set_point {
-            SetPoint::Thrust { thrust_pct, .. } => thrust_pct.abs() >= THRUST_MIN_PCT,
-            SetPoint::Speed { speed_m_s, .. } => speed_m_s > 0.5,
-        };
-        if has_thrust {
-            site.estimator.note_thrust(now);
-        }
+        site.estimator.note_order(now, site.set_points.ordered(set_point));
         Some(set_point)
     }
 
@@ -418,7 +433,9 @@ impl Bridge {
             Some(Next::Line(line)) => {
                 line.write(&mut out.bytes);
                 self.counters.sent += 1;
-                self.last_sent = Some((now, command_encoder::end_of_download()));
+                let command = command_encoder::end_of_download();
+                self.control.note_sent(now, &command);
+                self.last_sent = Some((now, command));
             }
             Some(Next::Done) => {
                 self.upload = None;
@@ -432,12 +449,22 @@ impl Bridge {
     fn watch_standby(&mut self, now: SimTime, action: Action, out: &mut Output) {
         let driven = |mode: &Mode| matches!(mode, Mode::Thruster | Mode::Speed | Mode::Heading);
         // Under another operator's control that is right.
-        let ours = matches!(self.control.control(now), Control::Granted | Control::Disobeys(_));
+        let ours = matches!(self.control.control(now), Control::Granted | Control::Disobeys(_) | Control::Foreign);
         let ignored = action == Action::Standby && ours && self.control.mode_mismatch(now).as_ref().is_some_and(driven);
         if ignored && !self.standby_ignored {
             out.events.push(Event::Warning("the boat is sent standby and reports that it is driven".to_owned()));
         }
         self.standby_ignored = ignored;
+    }
+
+    /// Warns once when a boat that is watched for a low battery does not report it.
+    fn watch_battery(&mut self, now: SimTime, out: &mut Output) {
+        let (since, said) = self.battery_silence;
+        let is_watched = self.link_up && self.plan.gateway.battery.volts_min > 0.0;
+        if is_watched && !said && (now - since).as_s() > BATTERY_SILENCE_S {
+            self.battery_silence.1 = true;
+            out.events.push(Event::Warning(format!("the boat has not reported its battery for {BATTERY_SILENCE_S} s")));
+        }
     }
 
     fn report_nav(&mut self, now: SimTime, out: &mut Output) {
@@ -456,13 +483,16 @@ impl Bridge {
     fn conditions_at(&mut self, now: SimTime) -> Conditions {
         let (others_at, others) = &self.others;
         let known: &[Ned] = if (now - *others_at).as_s() <= OTHERS_AGE_MAX_S { others } else { &[] };
-        let (mut nav_fault, mut inside, mut blocked) = (Some(NavFault::NoField), false, false);
+        let (mut nav_fault, mut thrust_fault) = (Some(NavFault::NoField), None);
+        let (mut inside, mut blocked, mut recovery_point) = (false, false, false);
         if let Some(OnSite { estimator, geofence, bow, .. }) = &mut self.on_site {
-            nav_fault = estimator.fault(now);
+            (nav_fault, thrust_fault) = (estimator.fault(now), estimator.thrust_fault(now));
             if let Some((nav, _)) = estimator.nav(now) {
                 inside = geofence.is_inside(now, nav.at(), estimator.fastest_velocity_m_s());
                 blocked = bow.is_blocked(now, &nav, known);
             }
+            let place = self.recovery_point.taken().map(|[lat_deg, lon_deg]| estimator.place(lat_deg, lon_deg));
+            recovery_point = place.is_some_and(|place| geofence.contains(place));
         }
         let battery = &self.plan.gateway.battery;
         let low_s = self.low_since.map_or(0.0, |since| (now - since).as_s());
@@ -472,6 +502,8 @@ impl Bridge {
             hung_s: self.hung_s,
             control: self.control.control(now),
             nav: nav_fault,
+            thrust: thrust_fault,
+            recovery_point,
             inside,
             battery_low: self.low_since.is_some() && low_s >= battery.debounce_s,
             blocked,
