@@ -272,8 +272,8 @@ fn each_fault_is_found_in_its_time_in_a_gale_too() {
         (Fault::CompassOff(0.52), "the compass is off", 240.0),
         (Fault::CompassOff(-0.52), "the compass is off", 240.0),
         (Fault::CompassFrozen, "", 240.0),
-        (Fault::PortLost, "the thrusters", 240.0),
-        (Fault::BothLost, "the thrusters", 240.0),
+        (Fault::PortLost, "the thrusters", 600.0),
+        (Fault::BothLost, "the thrusters", 600.0),
     ] {
         let mut late = vec![];
         let mut times = vec![];

@@ -3,6 +3,7 @@
 //! No socket and no clock in here: [`Bridge::take`] gets an [`Input`] with its time, and fills an [`Output`].
 //! The same inputs at the same times give the same outputs, byte for byte: that is how a recording is replayed.
 
+mod battery;
 mod command_echo;
 mod command_encoder;
 mod control;
@@ -19,6 +20,7 @@ use crate::supervisor::{
 };
 pub use interface::{Event, Input, NavOut, Output, Plan, Site};
 
+use battery::BatteryLog;
 use control::ControlLog;
 use game::external::{FailsafeReport, FleetCommand, Mission, OperatorCommand};
 use game::frame::Ned;
@@ -26,7 +28,7 @@ use game::gateway::Gateway;
 use game::{Order, SimTime};
 use on_site::OnSite;
 use recovery_point::RecoveryPoint;
-use std::collections::BTreeMap;
+use status::Counters;
 use upload::{Next, Upload};
 
 /// Two new orders are sent at least this far apart.
@@ -39,8 +41,6 @@ const TASK_AGAIN_S: f64 = 1.0;
 const INVALID_NAV_EVERY_S: f64 = 0.25;
 /// A step of the receiver's time of day against our clock that is worth a warning, s.
 const CLOCK_STEP_S: f64 = 2.0;
-/// A battery that is not reported for this long is worth a warning, s.
-const BATTERY_SILENCE_S: f64 = 10.0;
 /// How many failsafes and names of unknown sentences are kept.
 const FAILSAFES_MAX: usize = 32;
 const UNKNOWN_MAX: usize = 64;
@@ -51,18 +51,6 @@ struct CurrentOrder {
     order: Order,
     given: SimTime,
     came: SimTime,
-}
-
-/// How often each thing happened.
-#[derive(Clone, Debug, Default)]
-struct Counters {
-    unknown: BTreeMap<String, u64>,
-    unreadable: u64,
-    orders: u64,
-    bad_orders: u64,
-    old_orders: u64,
-    orders_ahead: u64,
-    sent: u64,
 }
 
 /// The core of a gateway.
@@ -82,11 +70,7 @@ pub struct Bridge {
     /// When an order was last sent for the first time.
     order_sent: SimTime,
     others: (SimTime, Vec<Ned>),
-    /// The battery voltage, and when it came.
-    volts: Option<(SimTime, f64)>,
-    /// Since when the battery has not been reported, and whether that was said.
-    battery_silence: (SimTime, bool),
-    low_since: Option<SimTime>,
+    battery: BatteryLog,
     boat_error: String,
     /// The receiver's time of day, and when it came.
     clock: Option<(SimTime, TimeOfDay)>,
@@ -110,12 +94,13 @@ impl Bridge {
     /// A bridge without a link, safed.
     #[must_use]
     pub fn new(plan: Plan) -> Bridge {
-        let Gateway { control, failsafe, .. } = &plan.gateway;
+        let Gateway { control, battery, failsafe, .. } = &plan.gateway;
         Bridge {
             framer: Framer::new(),
             control: ControlLog::new(*control),
             on_site: plan.site.as_ref().map(|site| OnSite::new(&plan.gateway, site)),
             supervisor: Supervisor::new(plan.arms_itself, *failsafe),
+            battery: BatteryLog::new(*battery, SimTime::ZERO),
             plan,
             link_up: false,
             hung_s: None,
@@ -123,9 +108,6 @@ impl Bridge {
             order_is_new: false,
             order_sent: SimTime::LONG_AGO,
             others: (SimTime::LONG_AGO, vec![]),
-            volts: None,
-            battery_silence: (SimTime::ZERO, false),
-            low_since: None,
             boat_error: String::new(),
             clock: None,
             upload: None,
@@ -218,8 +200,8 @@ impl Bridge {
         self.framer.push(b"\r\n", &mut |_| {});
         self.on_site.iter_mut().for_each(|site| site.estimator.forget());
         self.control.forget();
-        (self.volts, self.low_since, self.clock) = (None, None, None);
-        self.battery_silence = (now, false);
+        self.clock = None;
+        self.battery.forget(now);
         self.upload = None;
         self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
@@ -248,14 +230,7 @@ impl Bridge {
                 self.control.take(now, state);
                 self.recovery_point.take(state, self.upload.is_some());
             }
-            Sentence::Battery(battery) => {
-                self.battery_silence = (now, false);
-                if let Some(volts) = battery.volts {
-                    self.volts = Some((now, volts));
-                    let low = volts < self.plan.gateway.battery.volts_min;
-                    self.low_since = low.then(|| self.low_since.unwrap_or(now));
-                }
-            }
+            Sentence::Battery(battery) => self.battery.take(now, battery.volts),
             Sentence::BoatError(error) if error.code != self.boat_error => {
                 self.boat_error.clone_from(&error.code);
                 if error.code != "N" {
@@ -357,7 +332,10 @@ impl Bridge {
             self.send_action(now, action, out);
         }
         self.watch_standby(now, action, out);
-        self.watch_battery(now, out);
+        if self.link_up && self.battery.falls_silent(now) {
+            let text = format!("the boat has not reported its battery for {} s", battery::SILENCE_S);
+            out.events.push(Event::Warning(text));
+        }
     }
 
     fn note_change(&mut self, now: SimTime, before: State, out: &mut Output) {
@@ -457,16 +435,6 @@ impl Bridge {
         self.standby_ignored = ignored;
     }
 
-    /// Warns once when a boat that is watched for a low battery does not report it.
-    fn watch_battery(&mut self, now: SimTime, out: &mut Output) {
-        let (since, said) = self.battery_silence;
-        let is_watched = self.link_up && self.plan.gateway.battery.volts_min > 0.0;
-        if is_watched && !said && (now - since).as_s() > BATTERY_SILENCE_S {
-            self.battery_silence.1 = true;
-            out.events.push(Event::Warning(format!("the boat has not reported its battery for {BATTERY_SILENCE_S} s")));
-        }
-    }
-
     fn report_nav(&mut self, now: SimTime, out: &mut Output) {
         let Some(site) = &self.on_site else { return };
         let Some((nav, age_s)) = site.estimator.nav(now) else { return };
@@ -494,8 +462,6 @@ impl Bridge {
             let place = self.recovery_point.taken().map(|[lat_deg, lon_deg]| estimator.place(lat_deg, lon_deg));
             recovery_point = place.is_some_and(|place| geofence.contains(place));
         }
-        let battery = &self.plan.gateway.battery;
-        let low_s = self.low_since.map_or(0.0, |since| (now - since).as_s());
         let ttl_s = self.plan.gateway.order_ttl_s;
         Conditions {
             link: self.link_up,
@@ -505,7 +471,7 @@ impl Bridge {
             thrust: thrust_fault,
             recovery_point,
             inside,
-            battery_low: self.low_since.is_some() && low_s >= battery.debounce_s,
+            battery_low: self.battery.is_low(now),
             blocked,
             order_fresh: self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s),
         }

@@ -32,8 +32,6 @@ pub(crate) struct Rig {
     pub(crate) others: Option<Vec<Ned>>,
     /// A receiver that measures nothing new.
     pub(crate) frozen: bool,
-    /// Thrusters that give nothing.
-    pub(crate) thrusters_lost: bool,
     /// The place that the receiver reports as new again and again.
     pub(crate) pinned: Option<Ned>,
     pub(crate) offset: Ned,
@@ -84,7 +82,6 @@ impl Rig {
             given: SimTime::ZERO,
             others: None,
             frozen: false,
-            thrusters_lost: false,
             pinned: None,
             offset: Ned::default(),
             events: vec![],
@@ -177,7 +174,7 @@ impl Rig {
         self.steps += 1;
         self.now = SimTime::from_s(STEP_S * self.steps as f64);
         self.boat_order = self.emulator.order(self.now);
-        self.boat.step(if self.thrusters_lost { Order::Hold } else { self.boat_order });
+        self.boat.step(self.boat_order);
         if self.steps.is_multiple_of(TELEMETRY_STEPS) {
             self.send_telemetry();
             if let Some(order) = self.order {

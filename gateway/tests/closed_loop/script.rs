@@ -118,7 +118,6 @@ pub(crate) fn play(rig: &mut Rig, line: &str) {
         ["jump", north_m, east_m] => rig.offset = Ned { north: number(north_m), east: number(east_m) },
         ["appear", x, y] => rig.offset = Ned::from_xy(number(x), number(y)) - rig.boat.at,
         ["control", operator] => rig.emulator.give_control(rig.now, named(operator)),
-        ["thrusters", how] => rig.thrusters_lost = *how == "lost",
         ["volts", volts] => rig.emulator.set_volts(number(volts)),
         ["other", "none"] => rig.others = None,
         ["other", north_m, east_m] => {
