@@ -4,6 +4,8 @@
 //! `SQUALL_HOURS=24 cargo test --locked --release --workspace --test gale -- --nocapture` sails a day with four boats; without it, half
 //! an hour.
 
+#![expect(clippy::print_stdout, reason = "what was measured is shown to whoever runs it by hand")]
+
 use game::angle::wrap_pi;
 use game::external::OperatorCommand;
 use game::frame::{Ned, Rotation, body_from_ned};
