@@ -17,6 +17,21 @@ pub fn since(start: Instant) -> Duration {
     now().saturating_duration_since(start)
 }
 
+/// How long this machine has been suspended since it was started, of which [`now`] knows nothing: the boot-time clock less the monotonic
+/// one, of Linux. In a simulated network no time passes so.
+#[must_use]
+pub fn suspended() -> Duration {
+    #[cfg(target_os = "linux")]
+    if !simulated::is_inside() {
+        use rustix::time::{ClockId, clock_gettime};
+        let read = |id| Duration::try_from(clock_gettime(id)).unwrap_or_default();
+        // In this order the difference is never too large.
+        let boot_time = read(ClockId::Boottime);
+        return boot_time.saturating_sub(read(ClockId::Monotonic));
+    }
+    Duration::ZERO
+}
+
 /// Waits where there is no condition to wait for: between two attempts, or two pictures for a person.
 #[expect(clippy::disallowed_methods, reason = "the one place where nodes wait for time to pass")]
 pub fn rest(time: Duration) {

@@ -180,8 +180,14 @@ pub struct GatewayStatus {
     pub nav: Option<Nav>,
     /// Age of the last good fix, s.
     pub nav_age_s: Option<f64>,
+    /// Age of mode and operator, s; earlier versions have none.
+    #[serde(default)]
+    pub mode_age_s: Option<f64>,
     /// Battery, V.
     pub battery_v: Option<f64>,
+    /// Its age, s; earlier versions have none.
+    #[serde(default)]
+    pub battery_age_s: Option<f64>,
     /// The sentence that was sent last.
     pub last_sent: String,
     /// Counts of everything, by name.

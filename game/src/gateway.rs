@@ -39,8 +39,10 @@ pub struct Gateway {
     pub geofence: Geofence,
     /// When another real boat is too near: the boat stops until it is clear.
     pub halt: Halt,
-    /// When the battery is low, and what then.
+    /// When the battery is low.
     pub battery: BatteryWatch,
+    /// What a boat does after a failsafe, by its cause; after one that is not named here, it stops.
+    pub failsafe: FailsafeActions,
     /// How we know that the boat listens to us.
     pub control: ControlWatch,
     /// Our own heading and speed loops, where `drive` is "thrust".
@@ -147,20 +149,35 @@ pub struct BatteryWatch {
     /// It must be lower for this long, s.
     #[schemars(range(min = 0, max = 600), extend("default" = 5))]
     pub debounce_s: f64,
-    /// What then.
-    #[schemars(extend("default" = "standby"))]
-    pub action: LowBattery,
 }
 
-/// What a boat with a low battery does.
+/// What a boat does after a failsafe, by its cause. Those after which it cannot be told anything, does not know where it is or points, or
+/// is not moved by its thrusters, are not here: it stops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FailsafeActions {
+    /// No fresh order came.
+    #[schemars(extend("default" = "standby"))]
+    pub order_stale: FailsafeAction,
+    /// It is outside of the geofence, or unable to stop inside.
+    #[schemars(extend("default" = "standby"))]
+    pub geofence: FailsafeAction,
+    /// Its battery is low.
+    #[schemars(extend("default" = "standby"))]
+    pub battery_low: FailsafeAction,
+    /// The gateway hung.
+    #[schemars(extend("default" = "standby"))]
+    pub hung: FailsafeAction,
+}
+
+/// What a boat does after a failsafe, as far as it can: else it stops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum LowBattery {
+pub enum FailsafeAction {
     /// It stops.
     Standby,
     /// It keeps its station by its own means.
     StationKeep,
-    /// It goes to its emergency recovery point by its own means.
+    /// It goes to its emergency recovery point by its own means, if the gateway uploaded one inside of the geofence.
     GoToErp,
 }
 
@@ -176,6 +193,9 @@ pub struct ControlWatch {
     /// A command that the boat does not show after this time is not followed, s.
     #[schemars(range(min = 0.2, max = 30), extend("default" = 1.5))]
     pub echo_s: f64,
+    /// How far the thrust that the boat shows may be from what it was sent, per cent (no such watch at 200).
+    #[schemars(range(min = 1, max = 200), extend("default" = 2))]
+    pub echo_thrust_pct: f64,
 }
 
 /// The Surveyor's thrust map, by the West Point missions of 2024: thrust in per cent, speed in m/s.

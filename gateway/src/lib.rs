@@ -4,6 +4,7 @@
 //! [`nmea`]. [`emulator`] is the boat's end of the link. Sockets and clocks are only in [`link`] and `node`.
 
 pub mod bridge;
+mod compass_check;
 pub mod declination;
 pub mod emulator;
 pub mod game_clock;
@@ -20,3 +21,4 @@ pub mod replay;
 pub mod sensor_check;
 pub mod set_point;
 pub mod supervisor;
+pub mod thrust_check;

@@ -20,6 +20,8 @@ const SPEED_GAP_M_S: f64 = 1.2;
 const SPEED_GAP_S: f64 = 2.5;
 /// A boat has a course from this speed on, m/s.
 const COURSE_FROM_M_S: f64 = 0.8;
+/// Courses of fixes that are farther apart than this, s, are not compared.
+const COURSE_GAP_MAX_S: f64 = 1.0;
 /// A course that turns so far while the compass shows the same, rad.
 const TURN_MAX_RAD: f64 = std::f64::consts::FRAC_PI_3;
 
@@ -32,8 +34,8 @@ pub(crate) struct MotionCheck {
     slow_since: Option<SimTime>,
     /// What the compass shows, rad, and how far the course has turned since it began to show that, rad.
     shown: Option<(f64, f64)>,
-    /// The course that was seen last, rad.
-    course_rad: Option<f64>,
+    /// The course that was seen last, rad, and when.
+    course: Option<(SimTime, f64)>,
 }
 
 impl MotionCheck {
@@ -49,16 +51,17 @@ impl MotionCheck {
             .is_some_and(|(reported, measured)| measured.length() - reported.length() > SPEED_GAP_M_S);
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
         // A fix that steps has a course of its own; that of the reported velocity comes first.
-        self.take_course(reported.or(measured).filter(|velocity| velocity.length() >= COURSE_FROM_M_S));
+        self.take_course(now, reported.or(measured).filter(|velocity| velocity.length() >= COURSE_FROM_M_S));
     }
 
-    fn take_course(&mut self, velocity: Option<Ned>) {
+    fn take_course(&mut self, now: SimTime, velocity: Option<Ned>) {
         let course_rad = velocity.map(|velocity| math::atan2(velocity.east, velocity.north));
-        if let (Some((_, turned_rad)), Some(before_rad), Some(now_rad)) = (&mut self.shown, self.course_rad, course_rad)
-        {
+        // Between fixes that are far apart a boat may have gone astern.
+        let before = self.course.filter(|(at, _)| (now - *at).as_s() <= COURSE_GAP_MAX_S);
+        if let (Some((_, turned_rad)), Some((_, before_rad)), Some(now_rad)) = (&mut self.shown, before, course_rad) {
             *turned_rad += wrap_pi(now_rad - before_rad);
         }
-        self.course_rad = course_rad;
+        self.course = course_rad.map(|course_rad| (now, course_rad));
     }
 
     /// Takes what the compass shows, rad.
@@ -71,7 +74,7 @@ impl MotionCheck {
     /// The receiver's position has jumped: what went before says nothing of the boat's speed.
     pub(crate) fn jump(&mut self) {
         self.fixes.clear();
-        (self.slow_since, self.course_rad) = (None, None);
+        (self.slow_since, self.course) = (None, None);
     }
 
     /// Velocity over the ground by positions alone, m/s: from the middle of the older ones to that of the newer.
@@ -146,6 +149,20 @@ mod tests {
         assert_eq!(stuck(2.0, |velocity| Some(velocity.scaled(0.5))), None, "within what fixes may step");
         assert_eq!(stuck(0.0, |_| Some(Ned { north: 2.0, east: 0.0 })), None);
         assert_eq!(stuck(2.0, |_| None), None, "nothing is reported");
+    }
+
+    #[test]
+    fn a_boat_that_went_astern_while_there_were_no_fixes_has_no_frozen_compass() {
+        let mut check = MotionCheck::default();
+        for i in 0..100_i32 {
+            let now = SimTime::from_s(0.1 * f64::from(i));
+            let ahead_m_s = if i < 50 { 1.0 } else { -1.0 };
+            check.take_heading(0.5);
+            if !(40..60).contains(&i) {
+                check.take_fix(now, Ned::default(), Some(Ned { north: ahead_m_s, east: 0.0 }));
+            }
+            assert_eq!(check.fault(now), None, "at {now}");
+        }
     }
 
     #[test]

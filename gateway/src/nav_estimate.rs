@@ -4,10 +4,12 @@
 //! attitude. Bad data is reported as a [`NavFault`], never covered up: a repeated or doubtful fix does not make the
 //! last one younger.
 
+use crate::compass_check::CompassCheck;
 use crate::geodesy::LocalFrame;
 use crate::motion_check::MotionCheck;
 use crate::nmea::{Attitude, Gga, M_S_PER_KN, Rmc, Sentence, TimeOfDay, Vtg};
 use crate::supervisor::NavFault;
+use crate::thrust_check::{Ordered, ThrustCheck, ThrustFault};
 use game::SimTime;
 use game::angle::{rad_from_compass_deg, wrap_pi};
 use game::frame::{Body, LatLon, Ned, Rotation, body_from_ned};
@@ -22,6 +24,10 @@ const VELOCITY_AGE_MAX_S: f64 = 1.5;
 const HEADINGS_DEG: std::ops::RangeInclusive<f64> = -180.0..=360.0;
 /// The boat counts as under thrust for this long after the last command with thrust, s.
 const THRUST_MEMORY_S: f64 = 0.5;
+/// From this speed on that a command should give the position must change, m/s.
+const THRUST_FROM_M_S: f64 = 0.5;
+/// A command counts for this long, s.
+const ORDERED_MEMORY_S: f64 = 1.5;
 
 /// A fix that was good.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +71,10 @@ struct Known {
     /// Since when the position is the same to the last digit under thrust.
     still_since: Option<SimTime>,
     motion: MotionCheck,
-    /// When the boat was last sent a command with thrust.
+    compass: CompassCheck,
+    thrust: ThrustCheck,
+    /// What the boat was last sent, and when; when last a command with thrust.
+    ordered: Option<(SimTime, Ordered)>,
     thrust_at: Option<SimTime>,
 }
 
@@ -102,9 +111,21 @@ impl NavEstimator {
         }
     }
 
-    /// The boat was sent a command with thrust just now.
-    pub fn note_thrust(&mut self, now: SimTime) {
-        self.known.thrust_at = Some(now);
+    /// The boat is sent this just now.
+    pub fn note_order(&mut self, now: SimTime, ordered: Ordered) {
+        self.known.ordered = Some((now, ordered));
+        if ordered.ahead_m_s.abs() >= THRUST_FROM_M_S {
+            self.known.thrust_at = Some(now);
+        }
+        if let Some((nav, _)) = self.nav(now) {
+            self.known.thrust.take(now, ordered, nav.psi_rad, nav.surge_m_s);
+        }
+    }
+
+    /// What the boat does not do though it is ordered to.
+    #[must_use]
+    pub fn thrust_fault(&self, now: SimTime) -> Option<ThrustFault> {
+        self.known.thrust.fault(now)
     }
 
     /// The boat's motion, and the age of its fix, s; nothing before the first fix and heading.
@@ -154,6 +175,7 @@ impl NavEstimator {
             .or((heading_age_s > self.watch.age_max_s).then_some(NavFault::HeadingStale(heading_age_s)))
             .or((still_s > self.watch.frozen_s).then_some(NavFault::Frozen(still_s)))
             .or_else(|| self.known.motion.fault(now))
+            .or_else(|| self.known.compass.fault_rad().map(|off_rad| NavFault::CompassOff(off_rad.to_degrees())))
     }
 
     fn take_gga(&mut self, now: SimTime, gga: &Gga) -> bool {
@@ -208,6 +230,7 @@ impl NavEstimator {
                 self.known.jumped = Some((now, moved.length()));
                 self.known.velocity = None;
                 self.known.motion.jump();
+                self.known.compass.interrupt();
             } else if !self.is_velocity_reported(now) && since_s > 0.05 {
                 self.known.velocity = Some((None, moved.scaled(1.0 / since_s)));
             }
@@ -217,6 +240,10 @@ impl NavEstimator {
         let reported = self.is_velocity_reported(now).then(|| self.velocity_m_s());
         self.known.motion.take_fix(now, place, reported);
         self.known.fix = Some(Fix { at: now, raw: at, place });
+        let ordered = self.known.ordered.filter(|(at, _)| (now - *at).as_s() <= ORDERED_MEMORY_S);
+        if let (Some((_, ordered)), Some(heading), Some(velocity)) = (ordered, self.known.heading, reported) {
+            self.known.compass.take(now, heading.psi_rad, velocity, ordered.ahead_m_s);
+        }
         true
     }
 

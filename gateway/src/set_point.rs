@@ -3,6 +3,7 @@
 //! With `drive = "thrust"` the heading and speed loops are here; with `drive = "speed"` they are the boat's. Thrust is in
 //! per cent, its difference positive to starboard: port = thrust + difference, starboard = thrust − difference.
 
+use crate::thrust_check::Ordered;
 use game::angle::{compass_deg_from_rad, wrap_pi};
 use game::gateway::{Drive, Gateway, Limits, Loops};
 use game::math::interpolate;
@@ -100,6 +101,18 @@ impl SetPointMapper {
         }
         let (thrust, difference) = self.steer(self.step_s(now), turn_rad, speed_m_s, nav);
         self.within_limits(now, thrust, difference)
+    }
+
+    /// What a set-point should do to a boat. How one turns that steers by itself is its own affair.
+    #[must_use]
+    pub fn ordered(&self, set_point: SetPoint) -> Ordered {
+        match set_point {
+            SetPoint::Thrust { thrust_pct, difference_pct } => {
+                let ahead_m_s = interpolate(self.loops.thrust_map.iter().copied(), thrust_pct);
+                Ordered { ahead_m_s, turn_pct: difference_pct }
+            }
+            SetPoint::Speed { speed_m_s, .. } => Ordered { ahead_m_s: speed_m_s, turn_pct: 0.0 },
+        }
     }
 
     fn step_s(&self, now: SimTime) -> f64 {

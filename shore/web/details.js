@@ -10,6 +10,9 @@ const UNSEEN = 'Weighed before anybody looked: step once to see what courses are
 /** Whether a report has functions, but not what courses and speeds are worth to them. */
 export const isBare = (report) => report?.functions?.length > 0 && !report.functions.some((each) => each.utilities?.length > 0);
 
+// How old a value of a gateway is, after it.
+const age = (seconds) => (Number.isFinite(seconds) ? `, ${number(seconds, 1, 's')} old` : '');
+
 export class Details {
   /** `on` has `follow()`, `drive()` and `close()`. */
   constructor(on) {
@@ -156,10 +159,10 @@ export class Details {
     show(this.gatewayBox, Boolean(status));
     if (!status) return;
     const pairs = [['State', status.state ?? '–'], ['Link', status.link ?? '–']];
-    if (status.mode) pairs.push(['Mode', status.mode]);
-    if (status.operator) pairs.push(['In control', status.operator]);
+    if (status.mode) pairs.push(['Mode', `${status.mode}${age(status.mode_age_s)}`]);
+    if (status.operator) pairs.push(['In control', `${status.operator}${age(status.mode_age_s)}`]);
     if (Number.isFinite(status.nav_age_s)) pairs.push(['Last fix', `${number(status.nav_age_s, 1, 's')} ago`]);
-    if (Number.isFinite(status.battery_v)) pairs.push(['Battery', number(status.battery_v, 1, 'V')]);
+    if (Number.isFinite(status.battery_v)) pairs.push(['Battery', `${number(status.battery_v, 1, 'V')}${age(status.battery_age_s)}`]);
     if (status.missing?.length > 0) pairs.push(['Missing', status.missing.join('; ')]);
     const failsafe = status.failsafes?.at(-1);
     if (failsafe) pairs.push([`Failsafes: ${status.failsafes.length}`, `last: ${failsafe.cause ?? failsafe}`]);

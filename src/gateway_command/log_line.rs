@@ -93,9 +93,19 @@ fn brief(status: &GatewayStatus) -> String {
         ),
         _ => "no navigation".to_owned(),
     };
-    let mode = status.mode.map_or("-".to_owned(), String::from);
-    let text = format!("{} | link {} | mode {mode} | {nav} | {}", status.state, status.link, status.last_sent);
+    let mode = status.mode.map_or("-".to_owned(), |mode| with_age(mode.to_string(), status.mode_age_s));
+    let battery = volts(status).map_or(String::new(), |volts| format!("{volts} | "));
+    let text = format!("{} | link {} | mode {mode} | {nav} | {battery}{}", status.state, status.link, status.last_sent);
     text.chars().take(150).collect()
+}
+
+/// A value with its age, where that is known.
+fn with_age(text: String, age_s: Option<f64>) -> String {
+    age_s.map_or(text.clone(), |age_s| format!("{text}, {age_s:.1} s old"))
+}
+
+fn volts(status: &GatewayStatus) -> Option<String> {
+    status.battery_v.map(|volts| with_age(format!("{volts:.1} V"), status.battery_age_s))
 }
 
 /// The full status of a gateway.
@@ -114,10 +124,13 @@ pub(super) fn full(status: &GatewayStatus) -> String {
     let mut lines = vec![
         format!("{}: {}", status.vehicle, status.state),
         format!("  link        {}", status.link),
-        format!("  mode        {}", or_none(status.mode.map(String::from))),
-        format!("  operator    {}", or_none(status.operator.clone())),
+        format!("  mode        {}", or_none(status.mode.map(|mode| with_age(mode.to_string(), status.mode_age_s)))),
+        format!(
+            "  operator    {}",
+            or_none(status.operator.clone().map(|operator| with_age(operator, status.mode_age_s)))
+        ),
         format!("  navigation  {}", or_none(nav)),
-        format!("  battery     {}", or_none(status.battery_v.map(|volts| format!("{volts:.1} V")))),
+        format!("  battery     {}", or_none(volts(status))),
         format!("  last sent   {}", status.last_sent),
     ];
     if !status.missing.is_empty() {

@@ -1,6 +1,7 @@
 //! Who commands the boat, and whether it follows its commands: by its own report, PSEAD.
 
-use crate::nmea::{ControlState, Mode, Operator};
+use super::command_echo::CommandEcho;
+use crate::nmea::{Command, ControlState, Mode, Operator};
 use crate::supervisor::Control;
 use game::SimTime;
 use game::gateway::ControlWatch;
@@ -22,11 +23,12 @@ pub(super) struct ControlLog {
     sent: Option<Mode>,
     /// Since when it has reported another one.
     mismatch_since: Option<SimTime>,
+    echo: CommandEcho,
 }
 
 impl ControlLog {
     pub(super) fn new(watch: ControlWatch) -> ControlLog {
-        ControlLog { watch, reported: None, sent: None, mismatch_since: None }
+        ControlLog { watch, reported: None, sent: None, mismatch_since: None, echo: CommandEcho::new(watch) }
     }
 
     /// Forgets everything: the boat may be another one now.
@@ -36,12 +38,19 @@ impl ControlLog {
 
     pub(super) fn take(&mut self, now: SimTime, state: &ControlState) {
         self.reported = Some(Report { at: now, mode: state.mode, operator: state.operator });
+        if state.operator.is_none_or(|operator| operator == Operator::Secondary) {
+            self.echo.take(now, state);
+        } else {
+            self.echo = CommandEcho::new(self.watch);
+        }
         let mismatch = self.sent.is_some_and(|sent| sent != state.mode);
         self.mismatch_since = mismatch.then(|| self.mismatch_since.unwrap_or(now));
     }
 
-    /// The boat was sent this mode.
-    pub(super) fn note_sent(&mut self, now: SimTime, mode: Mode) {
+    /// The boat was sent this.
+    pub(super) fn note_sent(&mut self, now: SimTime, command: &Command) {
+        self.echo.note_sent(now, command);
+        let mode = command.mode;
         if self.sent != Some(mode) {
             self.sent = Some(mode);
             let matches = self.mode() == Some(mode);
@@ -52,6 +61,11 @@ impl ControlLog {
     /// The mode that the boat reports.
     pub(super) fn mode(&self) -> Option<Mode> {
         self.reported.map(|report| report.mode)
+    }
+
+    /// How old its last report is, s.
+    pub(super) fn age_s(&self, now: SimTime) -> Option<f64> {
+        self.reported.map(|report| (now - report.at).as_s())
     }
 
     /// Who the boat reports commands it.
@@ -74,7 +88,10 @@ impl ControlLog {
         if (now - report.at).as_s() > self.watch.age_max_s {
             return Control::Unknown;
         }
+        let is_ours = report.operator.map_or(self.watch.assumed, |operator| operator == Operator::Secondary);
         match (report.operator, self.mode_mismatch(now)) {
+            _ if is_ours && self.echo.is_foreign(now) => Control::Foreign,
+            (_, None) if is_ours && self.echo.is_deaf(now) => Control::Deaf,
             (Some(Operator::Secondary), None) => Control::Granted,
             (Some(Operator::Secondary), Some(mode)) => Control::Disobeys(mode.letter()),
             (Some(other), _) => Control::Other(other.number()),

@@ -3,10 +3,13 @@
 //! No socket and no clock in here: [`Bridge::take`] gets an [`Input`] with its time, and fills an [`Output`].
 //! The same inputs at the same times give the same outputs, byte for byte: that is how a recording is replayed.
 
+mod battery;
+mod command_echo;
 mod command_encoder;
 mod control;
 mod interface;
 mod on_site;
+mod recovery_point;
 mod status;
 mod upload;
 
@@ -17,21 +20,21 @@ use crate::supervisor::{
 };
 pub use interface::{Event, Input, NavOut, Output, Plan, Site};
 
+use battery::BatteryLog;
 use control::ControlLog;
 use game::external::{FailsafeReport, FleetCommand, Mission, OperatorCommand};
 use game::frame::Ned;
 use game::gateway::Gateway;
 use game::{Order, SimTime};
 use on_site::OnSite;
-use std::collections::BTreeMap;
+use recovery_point::RecoveryPoint;
+use status::Counters;
 use upload::{Next, Upload};
 
 /// Two new orders are sent at least this far apart.
 const GAP_MIN_S: f64 = 0.045;
 /// Positions of other boats are used for this long.
 const OTHERS_AGE_MAX_S: f64 = 2.0;
-/// From this thrust on a boat's position must change, per cent.
-const THRUST_MIN_PCT: f64 = 20.0;
 /// A task that the boat does not report is sent again after this time.
 const TASK_AGAIN_S: f64 = 1.0;
 /// How often invalid navigation is reported.
@@ -48,18 +51,6 @@ struct CurrentOrder {
     order: Order,
     given: SimTime,
     came: SimTime,
-}
-
-/// How often each thing happened.
-#[derive(Clone, Debug, Default)]
-struct Counters {
-    unknown: BTreeMap<String, u64>,
-    unreadable: u64,
-    orders: u64,
-    bad_orders: u64,
-    old_orders: u64,
-    orders_ahead: u64,
-    sent: u64,
 }
 
 /// The core of a gateway.
@@ -79,12 +70,12 @@ pub struct Bridge {
     /// When an order was last sent for the first time.
     order_sent: SimTime,
     others: (SimTime, Vec<Ned>),
-    volts: Option<f64>,
-    low_since: Option<SimTime>,
+    battery: BatteryLog,
     boat_error: String,
     /// The receiver's time of day, and when it came.
     clock: Option<(SimTime, TimeOfDay)>,
     upload: Option<Upload>,
+    recovery_point: RecoveryPoint,
     /// The command that was sent last, and when.
     last_sent: Option<(SimTime, Command)>,
     /// Whether the boat may be moving by what it was sent.
@@ -103,12 +94,13 @@ impl Bridge {
     /// A bridge without a link, safed.
     #[must_use]
     pub fn new(plan: Plan) -> Bridge {
-        let Gateway { control, battery, .. } = &plan.gateway;
+        let Gateway { control, battery, failsafe, .. } = &plan.gateway;
         Bridge {
             framer: Framer::new(),
             control: ControlLog::new(*control),
             on_site: plan.site.as_ref().map(|site| OnSite::new(&plan.gateway, site)),
-            supervisor: Supervisor::new(plan.arms_itself, battery.action),
+            supervisor: Supervisor::new(plan.arms_itself, *failsafe),
+            battery: BatteryLog::new(*battery, SimTime::ZERO),
             plan,
             link_up: false,
             hung_s: None,
@@ -116,11 +108,10 @@ impl Bridge {
             order_is_new: false,
             order_sent: SimTime::LONG_AGO,
             others: (SimTime::LONG_AGO, vec![]),
-            volts: None,
-            low_since: None,
             boat_error: String::new(),
             clock: None,
             upload: None,
+            recovery_point: RecoveryPoint::default(),
             last_sent: None,
             under_way: false,
             conditions: Conditions::UNKNOWN,
@@ -143,7 +134,7 @@ impl Bridge {
         let mut request = None;
         self.hung_s = None;
         match input {
-            Input::LinkUp => self.take_link_up(),
+            Input::LinkUp => self.take_link_up(now),
             Input::LinkDown => self.link_up = false,
             Input::Bytes(bytes) => self.read(now, bytes, out),
             Input::Site(site) => self.on_site = Some(OnSite::new(&self.plan.gateway, site)),
@@ -203,14 +194,16 @@ impl Bridge {
     }
 
     /// A new link: nothing is known of the boat at its end, and it is sent standby first.
-    fn take_link_up(&mut self) {
+    fn take_link_up(&mut self, now: SimTime) {
         self.link_up = true;
         // A sentence that was cut off must not be completed by bytes of the new link.
         self.framer.push(b"\r\n", &mut |_| {});
         self.on_site.iter_mut().for_each(|site| site.estimator.forget());
         self.control.forget();
-        (self.volts, self.low_since, self.clock) = (None, None, None);
+        self.clock = None;
+        self.battery.forget(now);
         self.upload = None;
+        self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
         self.under_way = true;
     }
@@ -233,14 +226,11 @@ impl Bridge {
     fn apply(&mut self, now: SimTime, sentence: &Sentence, out: &mut Output) {
         self.nav_is_new |= self.on_site.as_mut().is_some_and(|site| site.estimator.take(now, sentence));
         match sentence {
-            Sentence::ControlState(state) => self.control.take(now, state),
-            Sentence::Battery(battery) => {
-                if let Some(volts) = battery.volts {
-                    self.volts = Some(volts);
-                    let low = volts < self.plan.gateway.battery.volts_min;
-                    self.low_since = low.then(|| self.low_since.unwrap_or(now));
-                }
+            Sentence::ControlState(state) => {
+                self.control.take(now, state);
+                self.recovery_point.take(state, self.upload.is_some());
             }
+            Sentence::Battery(battery) => self.battery.take(now, battery.volts),
             Sentence::BoatError(error) if error.code != self.boat_error => {
                 self.boat_error.clone_from(&error.code);
                 if error.code != "N" {
@@ -285,7 +275,7 @@ impl Bridge {
 
     /// Begins the upload of a mission, or refuses it.
     fn take_mission(&mut self, now: SimTime, mission: &Mission, out: &mut Output) -> Option<OperatorRequest> {
-        let unfit = self.conditions_at(now).unfit();
+        let unfit = self.conditions_at(now).unfit(Task::Mission);
         let begun = match self.supervisor.state() {
             State::EStopped => Err(self.e_stop_in_force()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
@@ -297,6 +287,7 @@ impl Bridge {
         match begun {
             Ok(upload) => {
                 self.upload = Some(upload);
+                self.recovery_point.begin(mission);
                 Some(OperatorRequest::Disarm)
             }
             Err(reason) => {
@@ -329,6 +320,9 @@ impl Bridge {
         if self.supervisor.state() == State::Armed && changed {
             out.events.push(Event::Blocked(conditions.blocked));
         }
+        if matches!(conditions.control, Control::Foreign | Control::Other(_)) {
+            self.recovery_point = RecoveryPoint::default();
+        }
         let urgent = before.is_some() || request.is_some() || self.last_sent.is_none() || changed;
         if !self.link_up {
             self.upload = None;
@@ -338,12 +332,16 @@ impl Bridge {
             self.send_action(now, action, out);
         }
         self.watch_standby(now, action, out);
+        if self.link_up && self.battery.falls_silent(now) {
+            let text = format!("the boat has not reported its battery for {} s", battery::SILENCE_S);
+            out.events.push(Event::Warning(text));
+        }
     }
 
     fn note_change(&mut self, now: SimTime, before: State, out: &mut Output) {
         let state = self.supervisor.state();
         out.events.push(Event::State { from: before.to_string(), to: state.to_string() });
-        if let State::Failsafe(cause) = state {
+        if let State::Failsafe { cause, .. } = state {
             self.failsafes.push(FailsafeReport { at_s: now.as_s(), cause: cause.to_string() });
             let surplus = self.failsafes.len().saturating_sub(FAILSAFES_MAX);
             self.failsafes.drain(..surplus);
@@ -356,6 +354,7 @@ impl Bridge {
     /// Cancels the upload of a mission.
     fn cancel_upload(&mut self, out: &mut Output) {
         if self.upload.take().is_some() && self.link_up {
+            self.recovery_point = RecoveryPoint::default();
             out.bytes.extend(command_encoder::bytes_of(&[command_encoder::end_of_download()]));
         }
     }
@@ -392,7 +391,7 @@ impl Bridge {
         if out.carries_order {
             (self.order_is_new, self.order_sent) = (false, now);
         }
-        self.control.note_sent(now, command.mode);
+        self.control.note_sent(now, &command);
         self.counters.sent += 1;
         self.last_sent = Some((now, command));
     }
@@ -402,13 +401,7 @@ impl Bridge {
         let site = self.on_site.as_mut()?;
         let (nav, _) = site.estimator.nav(now)?;
         let set_point = site.set_points.map(now, self.order?.order, &nav);
-        let has_thrust = match set_point {
-            SetPoint::Thrust { thrust_pct, .. } => thrust_pct.abs() >= THRUST_MIN_PCT,
-            SetPoint::Speed { speed_m_s, .. } => speed_m_s > 0.5,
-        };
-        if has_thrust {
-            site.estimator.note_thrust(now);
-        }
+        site.estimator.note_order(now, site.set_points.ordered(set_point));
         Some(set_point)
     }
 
@@ -418,7 +411,9 @@ impl Bridge {
             Some(Next::Line(line)) => {
                 line.write(&mut out.bytes);
                 self.counters.sent += 1;
-                self.last_sent = Some((now, command_encoder::end_of_download()));
+                let command = command_encoder::end_of_download();
+                self.control.note_sent(now, &command);
+                self.last_sent = Some((now, command));
             }
             Some(Next::Done) => {
                 self.upload = None;
@@ -432,7 +427,7 @@ impl Bridge {
     fn watch_standby(&mut self, now: SimTime, action: Action, out: &mut Output) {
         let driven = |mode: &Mode| matches!(mode, Mode::Thruster | Mode::Speed | Mode::Heading);
         // Under another operator's control that is right.
-        let ours = matches!(self.control.control(now), Control::Granted | Control::Disobeys(_));
+        let ours = matches!(self.control.control(now), Control::Granted | Control::Disobeys(_) | Control::Foreign);
         let ignored = action == Action::Standby && ours && self.control.mode_mismatch(now).as_ref().is_some_and(driven);
         if ignored && !self.standby_ignored {
             out.events.push(Event::Warning("the boat is sent standby and reports that it is driven".to_owned()));
@@ -456,24 +451,27 @@ impl Bridge {
     fn conditions_at(&mut self, now: SimTime) -> Conditions {
         let (others_at, others) = &self.others;
         let known: &[Ned] = if (now - *others_at).as_s() <= OTHERS_AGE_MAX_S { others } else { &[] };
-        let (mut nav_fault, mut inside, mut blocked) = (Some(NavFault::NoField), false, false);
+        let (mut nav_fault, mut thrust_fault) = (Some(NavFault::NoField), None);
+        let (mut inside, mut blocked, mut recovery_point) = (false, false, false);
         if let Some(OnSite { estimator, geofence, bow, .. }) = &mut self.on_site {
-            nav_fault = estimator.fault(now);
+            (nav_fault, thrust_fault) = (estimator.fault(now), estimator.thrust_fault(now));
             if let Some((nav, _)) = estimator.nav(now) {
                 inside = geofence.is_inside(now, nav.at(), estimator.fastest_velocity_m_s());
                 blocked = bow.is_blocked(now, &nav, known);
             }
+            let place = self.recovery_point.taken().map(|[lat_deg, lon_deg]| estimator.place(lat_deg, lon_deg));
+            recovery_point = place.is_some_and(|place| geofence.contains(place));
         }
-        let battery = &self.plan.gateway.battery;
-        let low_s = self.low_since.map_or(0.0, |since| (now - since).as_s());
         let ttl_s = self.plan.gateway.order_ttl_s;
         Conditions {
             link: self.link_up,
             hung_s: self.hung_s,
             control: self.control.control(now),
             nav: nav_fault,
+            thrust: thrust_fault,
+            recovery_point,
             inside,
-            battery_low: self.low_since.is_some() && low_s >= battery.debounce_s,
+            battery_low: self.battery.is_low(now),
             blocked,
             order_fresh: self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s),
         }

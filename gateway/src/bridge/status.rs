@@ -5,6 +5,19 @@ use crate::nmea::Operator;
 use crate::supervisor::{Cause, State};
 use game::SimTime;
 use game::external::GatewayStatus;
+use std::collections::BTreeMap;
+
+/// How often each thing happened.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Counters {
+    pub(super) unknown: BTreeMap<String, u64>,
+    pub(super) unreadable: u64,
+    pub(super) orders: u64,
+    pub(super) bad_orders: u64,
+    pub(super) old_orders: u64,
+    pub(super) orders_ahead: u64,
+    pub(super) sent: u64,
+}
 
 impl Bridge {
     /// The status now, with what was missing at the last step. It changes nothing, so that how often it is queried makes
@@ -12,6 +25,7 @@ impl Bridge {
     #[must_use]
     pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self.on_site.as_ref().and_then(|site| site.estimator.nav(now));
+        let battery = self.battery.volts(now);
         let last_sent =
             self.last_sent.as_ref().map(|(_, command)| command_encoder::bytes_of(std::slice::from_ref(command)));
         GatewayStatus {
@@ -26,7 +40,9 @@ impl Bridge {
             operator: self.control.operator().map(name_of),
             nav: known.map(|(nav, _)| nav),
             nav_age_s: known.map(|(_, age_s)| age_s),
-            battery_v: self.volts,
+            mode_age_s: self.control.age_s(now),
+            battery_v: battery.map(|(volts, _)| volts),
+            battery_age_s: battery.map(|(_, age_s)| age_s),
             last_sent: last_sent.map(|bytes| String::from_utf8_lossy(&bytes).trim_end().to_owned()).unwrap_or_default(),
             counts: self.counts(),
             latency_us: [None; 2],

@@ -162,11 +162,15 @@ fn control_state(boat: &Emulator) -> ControlState {
     // Where it steers no heading, it reports the one it has.
     let steers = matches!(boat.command.mode, Mode::Heading | Mode::Speed);
     let has = || boat.own.as_ref().map(|own| compass_deg_from_rad(own.nav.psi_rad - boat.plan.declination_rad));
+    // As the boat follows it: no more than all, but for a speed.
+    let is_speed = boat.command.mode == Mode::Speed;
+    let clamped =
+        |number: Option<f64>| number.map(|number| if is_speed { number } else { number.clamp(-100.0, 100.0) });
     ControlState {
         mode: boat.command.mode,
         heading_deg: if steers { boat.command.heading_deg } else { has() },
-        thrust: boat.command.thrust,
-        difference: boat.command.difference,
+        thrust: clamped(boat.command.thrust),
+        difference: clamped(boat.command.difference),
         words: boat.command.words.clone(),
         transmission: Some('T'),
         sent_to: Some(boat.operator.number()),

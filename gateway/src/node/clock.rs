@@ -1,4 +1,5 @@
-//! The gateway's monotonic clock; in a game that runs faster than real time it runs as fast as the game.
+//! The gateway's monotonic clock, which goes on while the machine is suspended; in a game that runs faster than real time it runs as fast
+//! as the game.
 
 use bus::clock;
 use game::SimTime;
@@ -8,6 +9,8 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock {
     start: Instant,
+    /// How long the machine had been suspended then.
+    suspended: Duration,
     /// Its time at `start`.
     base: SimTime,
     factor: f64,
@@ -15,27 +18,87 @@ pub(super) struct Clock {
 
 impl Clock {
     pub(super) fn start() -> Clock {
-        Clock { start: clock::now(), base: SimTime::ZERO, factor: 1.0 }
+        Clock { start: clock::now(), suspended: clock::suspended(), base: SimTime::ZERO, factor: 1.0 }
     }
 
     /// From now on it runs as fast as a game of this pace.
     pub(super) fn set_pace(&mut self, factor: f64) {
-        let now = clock::now();
-        *self = Clock { base: self.at(now), start: now, factor };
+        let (now, suspended) = (clock::now(), clock::suspended());
+        *self = Clock { base: self.time_at(now, suspended), start: now, suspended, factor };
     }
 
     pub(super) fn now(&self) -> SimTime {
         self.at(clock::now())
     }
 
-    /// The gateway's time at a moment of real time.
+    /// The gateway's time at a moment of real time since the machine was last suspended.
     pub(super) fn at(&self, moment: Instant) -> SimTime {
-        self.base + SimTime::from_s(moment.saturating_duration_since(self.start).as_secs_f64() * self.factor)
+        self.time_at(moment, clock::suspended())
+    }
+
+    fn time_at(&self, moment: Instant, suspended: Duration) -> SimTime {
+        let passed = moment.saturating_duration_since(self.start) + suspended.saturating_sub(self.suspended);
+        self.base + SimTime::from_s(passed.as_secs_f64() * self.factor)
     }
 
     /// How long it is in real time until the gateway's time `due`.
     pub(super) fn until(&self, due: SimTime) -> Duration {
         let wait_s = (due - self.now()).as_s() / self.factor;
         Duration::from_secs_f64(wait_s.clamp(0.0, 1.0))
+    }
+}
+
+/// When the gateway's loop last ran, and how long the machine had been suspended by then.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LastRun {
+    at: Instant,
+    suspended: Duration,
+}
+
+/// A suspension counts from here on: the two clocks are not read at once.
+const SUSPENSION_MIN: Duration = Duration::from_millis(50);
+
+impl LastRun {
+    pub(super) fn now() -> LastRun {
+        LastRun { at: clock::now(), suspended: clock::suspended() }
+    }
+
+    /// For how long the loop has not run until `now`, and of that, how long the machine was suspended, if it was.
+    pub(super) fn gap(self, now: LastRun) -> (Duration, Option<Duration>) {
+        let suspended = now.suspended.saturating_sub(self.suspended);
+        let awake = now.at.saturating_duration_since(self.at);
+        (awake + suspended, (suspended >= SUSPENSION_MIN).then_some(suspended))
+    }
+
+    /// The moment.
+    pub(super) fn moment(self) -> Instant {
+        self.at
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_suspended_machine_slept_counts_as_time_and_as_a_gap() {
+        let clock = Clock::start();
+        let (second, hour) = (Duration::from_secs(1), Duration::from_secs(3600));
+        let later = clock.start + second;
+        assert_eq!(clock.time_at(later, clock.suspended), SimTime::from_s(1.0));
+        assert_eq!(clock.time_at(later, clock.suspended + hour), SimTime::from_s(3601.0));
+        let before = LastRun::now();
+        let after = |suspended| LastRun { at: before.at + second, suspended: before.suspended + suspended };
+        assert_eq!(before.gap(after(Duration::ZERO)), (second, None));
+        assert_eq!(before.gap(after(hour)), (second + hour, Some(hour)));
+    }
+
+    #[test]
+    fn the_clock_of_this_machine_does_not_run_backwards() {
+        let clock = Clock::start();
+        let times: Vec<SimTime> = (0..1000).map(|_| clock.now()).collect();
+        let backwards = times.windows(2).map(|two| (two[0] - two[1]).as_s()).fold(0.0, f64::max);
+        // The two clocks are read one after the other.
+        assert!(backwards < 0.01, "{backwards} s");
     }
 }

@@ -1,6 +1,6 @@
 //! The gateway loop: inputs from the boat, the sim and operators go to the core, its outputs go out.
 
-use super::clock::Clock;
+use super::clock::{Clock, LastRun};
 use super::game_finder::FoundGame;
 use super::guard::{Guarded, HEARTBEAT, HUNG};
 use super::join::Join;
@@ -89,6 +89,8 @@ pub(super) struct Counters {
     sentence_to_topic: Latency,
     order_to_sentence: Latency,
     status_at: Instant,
+    /// When the machine last came back from a suspension, or the gateway began.
+    awake_since: Instant,
     remarked: (Instant, String),
 }
 
@@ -106,6 +108,7 @@ impl Counters {
             sentence_to_topic: Latency::new(),
             order_to_sentence: Latency::new(),
             status_at: now,
+            awake_since: now,
             remarked: (now, String::new()),
         }
     }
@@ -114,7 +117,7 @@ impl Counters {
 impl GatewayLoop<'_> {
     /// Runs until it is told to stop.
     pub(super) fn run(&mut self, stop: &AtomicBool) -> Result<(), NodeError> {
-        let mut beat_at = clock::now();
+        let mut beat_at = LastRun::now();
         while !stop.load(Ordering::Relaxed) {
             beat_at = self.beat(beat_at)?;
             self.take_requests()?;
@@ -140,17 +143,28 @@ impl GatewayLoop<'_> {
     }
 
     /// Shows the guard that the loop runs, and the core if it has not for so long that the guard may have stopped the boat.
-    fn beat(&mut self, last: Instant) -> Result<Instant, NodeError> {
-        let now = clock::now();
-        let Some(guarded) = &self.guarded else { return Ok(now) };
-        if !guarded.beat() {
+    /// What came before the machine was suspended is not used.
+    fn beat(&mut self, last: LastRun) -> Result<LastRun, NodeError> {
+        let now = LastRun::now();
+        let (gap, suspended) = last.gap(now);
+        if let Some(suspended) = suspended {
+            self.counters.awake_since = now.moment();
+            self.warn(&format!("this machine was suspended for {:.1} s", suspended.as_secs_f64()));
+        }
+        if let Some(guarded) = &self.guarded
+            && !guarded.beat()
+        {
             self.warn("the guard has died: if the gateway is killed, nobody stops the boat");
         }
-        let gap = now.saturating_duration_since(last);
-        if gap >= HUNG {
+        if gap >= HUNG && (self.guarded.is_some() || suspended.is_some()) {
             self.step(Input::Hung(gap.as_secs_f64()), None)?;
         }
         Ok(now)
+    }
+
+    /// Whether what came at this moment has waited too long to go by.
+    fn is_too_old(&self, came: Instant) -> bool {
+        clock::since(came) > WAITED_MAX || came < self.counters.awake_since
     }
 
     fn warn(&mut self, text: &str) {
@@ -273,7 +287,7 @@ impl GatewayLoop<'_> {
                 self.remark(&format!("connected to {name}"));
                 self.step(Input::LinkUp, None)
             }
-            LinkEvent::Bytes { at, .. } if clock::since(at) > WAITED_MAX => {
+            LinkEvent::Bytes { at, .. } if self.is_too_old(at) => {
                 self.remark("what the boat sent has waited for too long: it is not used");
                 self.step(Input::Tick, None)
             }
@@ -302,7 +316,7 @@ impl GatewayLoop<'_> {
     fn take_order(&mut self) -> Result<(), NodeError> {
         let taken = self.input.latest_order.lock().take();
         let Some((message, came)) = taken else { return Ok(()) };
-        if clock::since(came) > WAITED_MAX {
+        if self.is_too_old(came) {
             return self.step(Input::OldOrder, None);
         }
         match self.game_clock.check(self.clock.at(came), &message) {

@@ -20,14 +20,16 @@
 //!
 //! *Ready* is: link up, control granted, navigation sound, inside the geofence, battery not low, order fresh. *Fit* is the
 //! same without an order. Only in `Armed` does anything that moves the boat come from us, and only while it is ready in
-//! this very step and no other boat is in the way. There is no clock in here: [`Conditions`] say what is fresh, sound or
+//! this very step and no other boat is in the way. After a failsafe the boat stops, or its own controller takes over if the gateway's
+//! file says so for that cause and nothing that this needs has failed. There is no clock in here: [`Conditions`] say what is fresh, sound or
 //! granted now, so that a test can try every state with every input.
 
 mod cause;
 
 pub use cause::{Cause, NavFault};
 
-use game::gateway::LowBattery;
+use crate::thrust_check::ThrustFault;
+use game::gateway::{FailsafeAction, FailsafeActions};
 use thiserror::Error;
 
 /// What is true now.
@@ -41,6 +43,10 @@ pub struct Conditions {
     pub control: Control,
     /// What is wrong with navigation.
     pub nav: Option<NavFault>,
+    /// What the boat does not do though it is ordered to.
+    pub thrust: Option<ThrustFault>,
+    /// Whether the boat has a recovery point that we uploaded, and that is inside of the geofence.
+    pub recovery_point: bool,
     /// Whether the boat is inside the geofence and can stop there.
     pub inside: bool,
     /// Whether the battery is low.
@@ -58,6 +64,8 @@ impl Conditions {
         hung_s: None,
         control: Control::Unknown,
         nav: Some(NavFault::NoFix),
+        thrust: None,
+        recovery_point: false,
         inside: false,
         battery_low: false,
         blocked: false,
@@ -76,6 +84,10 @@ pub enum Control {
     Other(u8),
     /// We do, and it reports another mode than the one it was sent.
     Disobeys(char),
+    /// We do, and it reports thrust of a command that others have followed since.
+    Deaf,
+    /// We do, and it reports a command that we have not sent.
+    Foreign,
 }
 
 /// What an operator requests.
@@ -120,8 +132,13 @@ pub enum State {
     Safed,
     /// Following orders.
     Armed,
-    /// Standby after a failsafe, until it is armed anew.
-    Failsafe(Cause),
+    /// A failsafe, until it is armed anew.
+    Failsafe {
+        /// Why.
+        cause: Cause,
+        /// What the boat's own controller does meanwhile; with nothing, standby.
+        task: Option<Task>,
+    },
     /// The boat's own controller takes over with a task.
     Delegated(Task),
     /// Standby until the E-stop is released.
@@ -171,15 +188,15 @@ pub struct Supervisor {
     stops: [bool; 2],
     /// Whether to arm by itself as soon as everything is there, once.
     arms_itself: bool,
-    low_battery: LowBattery,
+    actions: FailsafeActions,
 }
 
 impl Supervisor {
     /// A safed supervisor. With `arms_itself` it arms when it is ready for the first time, unless an operator requests
     /// anything before; after whatever stops it then, it has to be armed by request.
     #[must_use]
-    pub fn new(arms_itself: bool, low_battery: LowBattery) -> Supervisor {
-        Supervisor { state: State::Safed, stops: [false; 2], arms_itself, low_battery }
+    pub fn new(arms_itself: bool, actions: FailsafeActions) -> Supervisor {
+        Supervisor { state: State::Safed, stops: [false; 2], arms_itself, actions }
     }
 
     /// The state.
@@ -219,7 +236,7 @@ impl Supervisor {
             OperatorRequest::Release(scope) => self.stops[scope as usize] = false,
             OperatorRequest::Arm | OperatorRequest::Delegate(_) if self.is_stopped() => return Some(Refusal::EStopped),
             OperatorRequest::Arm => return self.enter(State::Armed, now.missing()),
-            OperatorRequest::Delegate(task) => return self.enter(State::Delegated(task), now.unfit()),
+            OperatorRequest::Delegate(task) => return self.enter(State::Delegated(task), now.unfit(task)),
             OperatorRequest::Disarm => self.state = State::Safed,
         }
         None
@@ -242,31 +259,42 @@ impl Supervisor {
         self.state = match self.state {
             _ if self.is_stopped() => State::EStopped,
             State::EStopped => State::Safed,
-            State::Armed => match now.failsafe() {
-                // With a low battery alone the boat's own controller may still take over.
-                Some(Cause::BatteryLow) => self.on_low_battery(),
-                Some(cause) => State::Failsafe(cause),
-                None => State::Armed,
-            },
-            State::Delegated(task) => match now.fitness_failsafe() {
-                Some(Cause::BatteryLow) if self.low_battery_task() == Some(task) => self.state,
-                Some(Cause::BatteryLow) => self.on_low_battery(),
-                Some(cause) => State::Failsafe(cause),
-                None => self.state,
-            },
-            State::Safed | State::Failsafe(_) => self.state,
+            State::Armed => now.failsafe().map_or(State::Armed, |cause| self.failsafe(now, cause)),
+            State::Delegated(task) => now.unfit_failsafe(task).map_or(self.state, |cause| self.failsafe(now, cause)),
+            State::Failsafe { cause, task: Some(task) } => self.watch_task(now, cause, task),
+            State::Safed | State::Failsafe { task: None, .. } => self.state,
         };
     }
 
-    fn on_low_battery(&self) -> State {
-        self.low_battery_task().map_or(State::Failsafe(Cause::BatteryLow), State::Delegated)
+    /// The failsafe of this cause, with what the boat does after it, if it still can.
+    fn failsafe(&self, now: &Conditions, cause: Cause) -> State {
+        let task = self.task_after(cause).filter(|task| now.hindrance(*task).is_none());
+        State::Failsafe { cause, task }
     }
 
-    fn low_battery_task(&self) -> Option<Task> {
-        match self.low_battery {
-            LowBattery::Standby => None,
-            LowBattery::StationKeep => Some(Task::StationKeep),
-            LowBattery::GoToErp => Some(Task::GoToErp),
+    /// A task after a failsafe goes on until the boat cannot do it, or something graver happens.
+    fn watch_task(&self, now: &Conditions, cause: Cause, task: Task) -> State {
+        if let Some(cause) = now.hindrance(task) {
+            return State::Failsafe { cause, task: None };
+        }
+        let graver = now.causes().find(|other| other.gravity() > cause.gravity());
+        graver.map_or(self.state, |graver| self.failsafe(now, graver))
+    }
+
+    /// What the boat does after a failsafe of this cause.
+    fn task_after(&self, cause: Cause) -> Option<Task> {
+        let action = match cause {
+            Cause::OrderStale => self.actions.order_stale,
+            Cause::Geofence => self.actions.geofence,
+            Cause::BatteryLow => self.actions.battery_low,
+            Cause::Hung(_) => self.actions.hung,
+            // It hears nothing or obeys nobody, does not know where it is or points, or is not moved by its thrusters.
+            _ => FailsafeAction::Standby,
+        };
+        match action {
+            FailsafeAction::Standby => None,
+            FailsafeAction::StationKeep => Some(Task::StationKeep),
+            FailsafeAction::GoToErp => Some(Task::GoToErp),
         }
     }
 
@@ -275,7 +303,8 @@ impl Supervisor {
             State::Armed if now.blocked => Action::Zero,
             State::Armed => Action::Follow,
             State::Delegated(task) => Action::Task(task),
-            State::Safed | State::Failsafe(_) | State::EStopped => Action::Standby,
+            State::Failsafe { task: Some(task), .. } => Action::Task(task),
+            State::Safed | State::Failsafe { task: None, .. } | State::EStopped => Action::Standby,
         }
     }
 }
@@ -288,6 +317,8 @@ impl Conditions {
             Control::Unknown => Some(Cause::ControlUnknown),
             Control::Other(operator) => Some(Cause::TakenOver(operator)),
             Control::Disobeys(mode) => Some(Cause::Disobeyed(mode)),
+            Control::Deaf => Some(Cause::Deaf),
+            Control::Foreign => Some(Cause::ForeignOrders),
         };
         let link = (!self.link).then_some(Cause::LinkLost);
         // Without navigation nobody knows.
@@ -295,7 +326,8 @@ impl Conditions {
         let battery = self.battery_low.then_some(Cause::BatteryLow);
         let order = (!self.order_fresh).then_some(Cause::OrderStale);
         let hung = self.hung_s.map(Cause::Hung);
-        [link, hung, control, self.nav.map(Cause::Nav), geofence, battery, order].into_iter().flatten()
+        let (nav, thrust) = (self.nav.map(Cause::Nav), self.thrust.map(Cause::Thrust));
+        [link, hung, control, nav, thrust, geofence, battery, order].into_iter().flatten()
     }
 
     /// The failsafe of an armed boat.
@@ -304,22 +336,33 @@ impl Conditions {
         self.causes().next()
     }
 
-    /// The same for a delegated boat, which needs no order.
-    fn fitness_failsafe(&self) -> Option<Cause> {
-        self.causes().find(|cause| *cause != Cause::OrderStale)
+    /// The same for a delegated boat, which needs no order, and for some tasks more.
+    fn unfit_failsafe(&self, task: Task) -> Option<Cause> {
+        self.causes().find(|cause| *cause != Cause::OrderStale).or(self.missing_for(task))
+    }
+
+    /// What makes a task impossible after a failsafe, whatever caused that.
+    fn hindrance(&self, task: Task) -> Option<Cause> {
+        self.causes().find(|cause| !cause.leaves_control()).or(self.missing_for(task))
+    }
+
+    /// What a task needs beside what all of them do.
+    fn missing_for(&self, task: Task) -> Option<Cause> {
+        (task == Task::GoToErp && !self.recovery_point).then_some(Cause::NoRecoveryPoint)
     }
 
     /// Everything that is missing for arming.
     #[must_use]
     pub fn missing(&self) -> Vec<Cause> {
         // The mode of a boat that is not commanded means nothing.
-        self.causes().filter(|cause| !matches!(cause, Cause::Disobeyed(_))).collect()
+        self.causes().filter(|cause| !matches!(cause, Cause::Disobeyed(_) | Cause::Deaf)).collect()
     }
 
-    /// Everything that is missing for delegating to the boat's own controller.
+    /// Everything that is missing for delegating a task to the boat's own controller.
     #[must_use]
-    pub fn unfit(&self) -> Vec<Cause> {
-        self.missing().into_iter().filter(|cause| *cause != Cause::OrderStale).collect()
+    pub fn unfit(&self, task: Task) -> Vec<Cause> {
+        let general = self.missing().into_iter().filter(|cause| *cause != Cause::OrderStale);
+        general.chain(self.missing_for(task)).collect()
     }
 }
 

@@ -7,25 +7,54 @@ const GOOD: Conditions = Conditions {
     hung_s: None,
     control: Control::Granted,
     nav: None,
+    thrust: None,
+    recovery_point: true,
     inside: true,
     battery_low: false,
     blocked: false,
     order_fresh: true,
 };
 
-const BATTERIES: [LowBattery; 3] = [LowBattery::Standby, LowBattery::StationKeep, LowBattery::GoToErp];
+/// What is done after each cause that can be followed by anything: all the same, and all unlike.
+fn all_actions() -> Vec<FailsafeActions> {
+    use FailsafeAction::{GoToErp, Standby, StationKeep};
+    let of = |[order_stale, geofence, battery_low, hung]: [FailsafeAction; 4]| FailsafeActions {
+        order_stale,
+        geofence,
+        battery_low,
+        hung,
+    };
+    [
+        [Standby; 4],
+        [StationKeep; 4],
+        [GoToErp; 4],
+        [StationKeep, GoToErp, Standby, GoToErp],
+        [GoToErp, Standby, StationKeep, Standby],
+    ]
+    .map(of)
+    .to_vec()
+}
 
 fn all_conditions() -> Vec<Conditions> {
-    let controls = [Control::Granted, Control::Unknown, Control::Other(5), Control::Disobeys('L')];
+    let controls = [
+        Control::Granted,
+        Control::Unknown,
+        Control::Other(5),
+        Control::Disobeys('L'),
+        Control::Deaf,
+        Control::Foreign,
+    ];
     let mut all = Vec::new();
-    for bits in 0..128_u8 {
-        let is = |bit: u8| bits & (1 << bit) != 0;
+    for bits in 0..512_u16 {
+        let is = |bit: u16| bits & (1 << bit) != 0;
         let nav = is(1).then_some(NavFault::NoFix);
         let of = |control| Conditions {
             link: is(0),
             hung_s: is(6).then_some(0.5),
             control,
             nav,
+            thrust: is(7).then_some(ThrustFault::NoWay(0.0)),
+            recovery_point: is(8),
             inside: is(2),
             battery_low: is(3),
             blocked: is(4),
@@ -52,8 +81,8 @@ fn all_requests() -> Vec<Option<OperatorRequest>> {
 /// Calls `check` with every step from every supervisor that can be reached: before, inputs, after, result.
 fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorRequest>, &Supervisor, &Step)) -> usize {
     let (conditions, requests) = (all_conditions(), all_requests());
-    let starts = BATTERIES.into_iter().flat_map(|battery| [true, false].map(|by_itself| (by_itself, battery)));
-    let mut known: Vec<Supervisor> = starts.map(|(by_itself, battery)| Supervisor::new(by_itself, battery)).collect();
+    let starts = all_actions().into_iter().flat_map(|actions| [true, false].map(|by_itself| (by_itself, actions)));
+    let mut known: Vec<Supervisor> = starts.map(|(by_itself, actions)| Supervisor::new(by_itself, actions)).collect();
     let mut next = 0;
     while next < known.len() {
         let before = known[next].clone();
@@ -70,15 +99,11 @@ fn explore(mut check: impl FnMut(&Supervisor, &Conditions, Option<OperatorReques
     known.len()
 }
 
-/// Whether the boat's own controller may take over now; `at_low_battery` is whether this task is meant for a low battery.
-fn is_fit(now: &Conditions, at_low_battery: bool) -> bool {
-    let granted = matches!(now.control, Control::Granted | Control::Disobeys(_));
-    now.link
-        && now.hung_s.is_none()
-        && granted
-        && now.nav.is_none()
-        && now.inside
-        && (!now.battery_low || at_low_battery)
+/// What the boat's own controller needs for a task, whatever else is wrong: to be told, to know where it is, and thrusters.
+fn can_do(now: &Conditions, task: Task) -> bool {
+    let granted = matches!(now.control, Control::Granted);
+    let has_place = task != Task::GoToErp || now.recovery_point;
+    now.link && granted && now.nav.is_none() && now.thrust.is_none() && has_place
 }
 
 #[test]
@@ -86,7 +111,7 @@ fn no_path_leads_to_thrust_without_link_control_navigation_and_a_fresh_order() {
     let reached = explore(|before, now, request, after, step| {
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         if step.action == Action::Follow {
-            assert_eq!(*now, GOOD, "{case}");
+            assert_eq!(Conditions { recovery_point: true, ..*now }, GOOD, "{case}");
             assert_eq!((after.state, after.stops), (State::Armed, [false; 2]), "{case}");
         }
         assert_eq!(
@@ -116,21 +141,58 @@ fn only_an_explicit_command_arms_and_only_once_by_itself() {
 }
 
 #[test]
-fn a_boat_is_delegated_only_by_request_or_when_its_battery_is_low() {
+fn a_boat_is_delegated_only_by_request_and_while_it_is_fit() {
     explore(|before, now, request, after, step| {
-        let State::Delegated(task) = after.state else {
-            assert!(!matches!(step.action, Action::Task(_)));
-            return;
-        };
+        let State::Delegated(task) = after.state else { return };
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         assert_eq!(step.action, Action::Task(task), "{case}");
-        let for_low = after.low_battery_task() == Some(task) && now.battery_low;
-        assert!(is_fit(now, for_low), "{case}");
-        let driven =
-            matches!(before.state, State::Armed | State::Delegated(_)) || request == Some(OperatorRequest::Arm);
-        let asked = request == Some(OperatorRequest::Delegate(task)) || before.state == State::Delegated(task);
-        assert!(asked || (driven || matches!(request, Some(OperatorRequest::Delegate(_)))) && for_low, "{case}");
+        let is_fit =
+            can_do(now, task) || (matches!(now.control, Control::Disobeys(_) | Control::Deaf) && step.before.is_some());
+        assert!(is_fit && now.hung_s.is_none() && now.inside && !now.battery_low, "{case}");
+        assert!(request == Some(OperatorRequest::Delegate(task)) || before.state == State::Delegated(task), "{case}");
     });
+}
+
+#[test]
+fn after_a_failsafe_a_task_is_what_the_file_says_for_its_cause_and_needs_nothing_that_failed() {
+    let mut tasks = 0;
+    explore(|before, now, request, after, step| {
+        let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
+        let State::Failsafe { cause, task } = after.state else { return };
+        let wanted = match cause {
+            Cause::OrderStale => after.actions.order_stale,
+            Cause::Geofence => after.actions.geofence,
+            Cause::BatteryLow => after.actions.battery_low,
+            Cause::Hung(_) => after.actions.hung,
+            _ => FailsafeAction::Standby,
+        };
+        let wanted = match wanted {
+            FailsafeAction::Standby => None,
+            FailsafeAction::StationKeep => Some(Task::StationKeep),
+            FailsafeAction::GoToErp => Some(Task::GoToErp),
+        };
+        let Some(task) = task else {
+            assert_eq!(step.action, Action::Standby, "{case}");
+            // It stops for want of a task that was asked for only if the boat cannot do that now, or could not before.
+            let stays = before.state == after.state;
+            assert!(stays || wanted.is_none_or(|task| !can_do(now, task)), "{case}");
+            return;
+        };
+        tasks += 1;
+        assert_eq!((step.action, wanted), (Action::Task(task), Some(task)), "{case}");
+        assert!(can_do(now, task) && !after.is_stopped(), "{case}");
+        // Nobody is sent anywhere who was not driven or delegated before.
+        let was_driven =
+            matches!(before.state, State::Armed | State::Delegated(_) | State::Failsafe { task: Some(_), .. });
+        let asked = matches!(request, Some(OperatorRequest::Arm | OperatorRequest::Delegate(_)));
+        assert!(was_driven || asked || before.arms_itself, "{case}");
+        // Outside of the geofence that is the cause.
+        assert!(
+            now.inside || cause == Cause::Geofence || step.before.is_none_or(|_| matches!(cause, Cause::Hung(_))),
+            "{case}"
+        );
+    });
+    assert!(tasks > 1000, "only {tasks}");
 }
 
 #[test]
@@ -158,27 +220,31 @@ fn an_e_stop_beats_everything_until_each_is_released_and_leaves_the_boat_safed()
 }
 
 #[test]
-fn every_failsafe_is_reported_with_its_true_cause_and_brings_standby() {
+fn every_failsafe_is_reported_with_its_true_cause_and_brings_standby_or_a_task() {
     explore(|before, now, request, after, step| {
         let case = format!("{before:?}, {now:?}, {request:?} -> {step:?}");
         assert_eq!(step.before, (before.state != after.state).then_some(before.state), "{case}");
-        if let State::Failsafe(cause) = after.state
+        if let State::Failsafe { cause, .. } = after.state
             && before.state != after.state
         {
             let is_true = match cause {
                 Cause::OrderStale => !now.order_fresh,
                 Cause::Nav(_) => now.nav.is_some(),
+                Cause::Thrust(_) => now.thrust.is_some(),
                 Cause::Geofence => !now.inside,
                 Cause::BatteryLow => now.battery_low,
                 Cause::TakenOver(by) => now.control == Control::Other(by),
                 Cause::ControlUnknown => now.control == Control::Unknown,
                 Cause::Disobeyed(mode) => now.control == Control::Disobeys(mode),
+                Cause::Deaf => now.control == Control::Deaf,
+                Cause::ForeignOrders => now.control == Control::Foreign,
+                Cause::NoRecoveryPoint => !now.recovery_point,
                 Cause::LinkLost => !now.link,
                 Cause::Hung(_) => now.hung_s.is_some(),
             };
             assert!(is_true, "{case}");
         }
-        let at_rest = matches!(after.state, State::Safed | State::Failsafe(_));
+        let at_rest = matches!(after.state, State::Safed | State::Failsafe { task: None, .. });
         if at_rest {
             assert_eq!(step.action, Action::Standby, "{case}");
         }
@@ -216,10 +282,10 @@ fn from_every_state_the_boat_can_be_armed_again() {
 
 #[test]
 fn the_gravest_cause_is_the_one_that_is_reported() {
-    let mut supervisor = Supervisor::new(false, LowBattery::Standby);
+    let mut supervisor = Supervisor::new(false, all_actions()[0]);
     supervisor.step(&GOOD, Some(OperatorRequest::Arm));
     let bad = Conditions { link: false, control: Control::Other(1), order_fresh: false, ..GOOD };
     supervisor.step(&bad, None);
-    assert_eq!(supervisor.state(), State::Failsafe(Cause::LinkLost));
+    assert_eq!(supervisor.state(), State::Failsafe { cause: Cause::LinkLost, task: None });
     assert_eq!(Cause::TakenOver(5).to_string(), "the remote control has taken over");
 }

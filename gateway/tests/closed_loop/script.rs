@@ -20,7 +20,7 @@ use std::path::Path;
 const UNDER_WAY: &str = "order steer 90 1.5\nrun 1\noperator arm\nexpect state = armed\nexpect refused =\nrun 9
 expect speed > 1.2";
 
-const COMPARISONS: [&str; 7] = ["=", "!=", "~", "^", "!^", "<", ">"];
+const COMPARISONS: [&str; 8] = ["=", "!=", "~", "!~", "^", "!^", "<", ">"];
 
 #[test]
 fn every_scenario_goes_as_it_is_written() {
@@ -145,7 +145,9 @@ fn boat(options: &[&str]) -> Rig {
     for option in options.chunks(2) {
         match option {
             ["watchdog", seconds] => watchdog_s = Some(number(seconds)),
-            ["battery", action] => plan.gateway.battery.action = named(action),
+            ["battery", action] => plan.gateway.failsafe.battery_low = named(action),
+            ["geofence", action] => plan.gateway.failsafe.geofence = named(action),
+            ["order", action] => plan.gateway.failsafe.order_stale = named(action),
             ["integers", "only"] => integers = true,
             ["arms-itself", "once"] => plan.arms_itself = true,
             other => panic!("no boat has {other:?}"),
@@ -204,6 +206,7 @@ fn holds(rig: &Rig, condition: &str) -> bool {
         "~" => got.contains(&want),
         "^" => got.starts_with(&want),
         "!^" => !got.starts_with(&want),
+        "!~" => !got.contains(&want),
         "<" => number(&got) < number(&want),
         _ => number(&got) > number(&want),
     }
@@ -231,6 +234,11 @@ fn value(rig: &Rig, name: &str) -> String {
             Order::Turn { by_rad, speed_m_s } => format!("turn {:.3} {speed_m_s:.3}", by_rad.to_degrees()),
             Order::Thrust { port, starboard } => format!("thrust {port:.3} {starboard:.3}"),
         },
+        ["telemetry"] => {
+            let mut burst = vec![];
+            rig.emulator.telemetry(rig.now, &mut burst);
+            String::from_utf8_lossy(&burst).into_owned()
+        }
         ["after"] => rig.after_s.to_string(),
         ["rest"] => if boat.speed_m_s.abs() < 0.05 { "yes" } else { "no" }.to_owned(),
         ["speed"] => boat.speed_m_s.to_string(),

@@ -31,6 +31,7 @@ pub(crate) fn tamper(words: &[&str]) -> Option<Tamper> {
             refixed(move |fields| fields[2..6].clone_from_slice(&place))
         }
         ["frozen-compass"] => frozen_compass(),
+        ["turned-compass", degrees] => turned_compass(degrees.parse().expect("degrees")),
         ["stuck-speed"] => rewritten(|body| {
             let is_speed = body.starts_with("GPVTG");
             if is_speed { "GPVTG,,T,,M,0.00,N,0.00,K".to_owned() } else { body.to_owned() }
@@ -85,6 +86,18 @@ fn frozen_compass() -> Tamper {
         if fields[0] == "PSEAA" {
             let now = fields[3].clone();
             fields[3].clone_from(first.get_or_insert(now));
+        }
+        fields.join(",")
+    })
+}
+
+/// A compass that shows this much more than it should, degrees.
+fn turned_compass(by_deg: f64) -> Tamper {
+    rewritten(move |body| {
+        let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
+        if fields[0] == "PSEAA" {
+            let shown_deg: f64 = fields[3].parse().expect("a heading");
+            fields[3] = format!("{:.1}", (shown_deg + by_deg).rem_euclid(360.0));
         }
         fields.join(",")
     })

@@ -1,0 +1,221 @@
+//! Checks a compass against the course over the ground: does the boat move where it points, leeway and current apart?
+//!
+//! On one heading nobody can tell a compass that is off from a current across. On several one can: a current is the same on all of
+//! them, an offset turns with the boat. With the velocity over the ground V, the heading psi that the compass shows and the speed
+//! through the water m that the orders should give, V = k m exp(i psi) + c, where the drift c (current, leeway) is the same on all
+//! headings, |k| is how much of the speed the boat makes, and the angle of k is how far the compass is off: complex linear least squares.
+
+use game::SimTime;
+use game::angle::wrap_pi;
+use game::frame::{Ned, Rotation};
+use game::math;
+use std::collections::VecDeque;
+
+/// A straight run is made of this many pieces of this length, s; the first is left for the boat to settle.
+const PIECES: usize = 4;
+const PIECE_S: f64 = 1.5;
+/// The headings of its pieces are this close to each other, rad.
+const STRAIGHT_RAD: f64 = 0.3;
+/// The speed that is ordered on it, m/s, at least.
+const SPEED_FROM_M_S: f64 = 0.7;
+/// A boat takes up speed with about this lag, s.
+const SPEED_LAG_S: f64 = 2.0;
+/// Orders and velocities with a longer gap between them are of another run, s.
+const GAP_MAX_S: f64 = 1.5;
+/// Runs that are kept, and how long, s: currents change.
+const RUNS_MAX: usize = 40;
+const RUN_AGE_MAX_S: f64 = 240.0;
+/// How many there must be.
+const RUNS_MIN: usize = 6;
+/// Velocities of runs scatter by this much at least, m/s, though a few may agree by chance.
+const SCATTER_MIN_M_S: f64 = 0.15;
+/// An offset is a fault when it is larger than this by so many standard deviations, rad: runs that follow each other are alike.
+/// By a simulated day in a gale (`tests/gale`) 4.5 are too few.
+const OFFSET_MAX_RAD: f64 = 0.25;
+const SIGMAS: f64 = 5.0;
+/// The mean of the headings of all runs, as unit vectors, is at most this long: they are about 60 degrees apart.
+const MEAN_HEADING_MAX: f64 = 0.88;
+/// A boat that makes less of its ordered speed than this shows nothing of its compass.
+const SHARE_MIN: f64 = 0.2;
+
+/// Sums over a piece of a run.
+#[derive(Clone, Copy, Debug, Default)]
+struct Piece {
+    count: f64,
+    /// Where the bow points.
+    ahead: Ned,
+    /// The speed that is ordered, along the bow, m/s.
+    ordered: Ned,
+    /// Over the ground, m/s.
+    velocity: Ned,
+}
+
+/// A straight run: the mean velocity that was ordered, by the compass, and the one over the ground, m/s.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    at: SimTime,
+    ordered: Ned,
+    velocity: Ned,
+}
+
+/// What is known of a boat's compass.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct CompassCheck {
+    /// Since when the piece that grows has done so, and when it last did.
+    began: Option<(SimTime, SimTime)>,
+    piece: Piece,
+    pieces: VecDeque<Piece>,
+    /// The speed that is ordered, as slowly as a boat takes it up, m/s.
+    speed_m_s: f64,
+    runs: VecDeque<Run>,
+}
+
+impl CompassCheck {
+    /// Takes what the compass shows, rad, the velocity over the ground and the speed ahead that is ordered.
+    pub(crate) fn take(&mut self, now: SimTime, psi_rad: f64, velocity: Ned, ordered_m_s: f64) {
+        let gap_s = self.began.map_or(f64::INFINITY, |(_, last)| (now - last).as_s());
+        if gap_s > GAP_MAX_S {
+            self.interrupt();
+            self.speed_m_s = ordered_m_s;
+        } else {
+            self.speed_m_s += (ordered_m_s - self.speed_m_s) * (gap_s / SPEED_LAG_S).min(1.0);
+        }
+        let (began, _) = self.began.unwrap_or((now, now));
+        self.began = Some((began, now));
+        let ahead = Rotation::from_heading(psi_rad).ahead();
+        self.piece.count += 1.0;
+        self.piece.ahead = self.piece.ahead + ahead;
+        self.piece.ordered = self.piece.ordered + ahead.scaled(self.speed_m_s);
+        self.piece.velocity = self.piece.velocity + velocity;
+        if (now - began).as_s() >= PIECE_S {
+            self.pieces.push_back(std::mem::take(&mut self.piece));
+            self.began = Some((now, now));
+            self.end_piece(now);
+        }
+    }
+
+    /// What comes next is another run: the boat was stopped, or its receiver jumped.
+    pub(crate) fn interrupt(&mut self) {
+        (self.began, self.piece) = (None, Piece::default());
+        self.pieces.clear();
+    }
+
+    fn end_piece(&mut self, now: SimTime) {
+        if self.pieces.len() > PIECES {
+            self.pieces.pop_front();
+        }
+        if self.pieces.len() < PIECES {
+            return;
+        }
+        let first_rad = angle_rad(self.pieces[0].ahead);
+        let is_straight =
+            self.pieces.iter().all(|piece| wrap_pi(angle_rad(piece.ahead) - first_rad).abs() < STRAIGHT_RAD);
+        let settled = self.pieces.iter().skip(1);
+        let [mut ordered, mut velocity] = [Ned::default(); 2];
+        let count = settled.fold(0.0, |count, piece| {
+            (ordered, velocity) = (ordered + piece.ordered, velocity + piece.velocity);
+            count + piece.count
+        });
+        let run = Run { at: now, ordered: ordered.scaled(1.0 / count), velocity: velocity.scaled(1.0 / count) };
+        if is_straight && run.ordered.length() >= SPEED_FROM_M_S {
+            // The last piece of this run is the first of the next.
+            self.pieces.drain(..PIECES - 1);
+            self.runs.push_back(run);
+        }
+        while self.runs.len() > RUNS_MAX || self.runs.front().is_some_and(|run| (now - run.at).as_s() > RUN_AGE_MAX_S) {
+            self.runs.pop_front();
+        }
+    }
+
+    /// How far the compass is off, rad, with its standard deviation: what it shows and this are where the boat points.
+    pub(crate) fn offset_rad(&self) -> Option<(f64, f64)> {
+        if self.runs.len() < RUNS_MIN {
+            return None;
+        }
+        let count = self.runs.len() as f64;
+        let mean =
+            |of: fn(&Run) -> Ned| self.runs.iter().fold(Ned::default(), |sum, run| sum + of(run)).scaled(1.0 / count);
+        let heading = mean(|run| run.ordered.scaled(1.0 / run.ordered.length()));
+        if heading.length() > MEAN_HEADING_MAX {
+            return None;
+        }
+        let (ordered, velocity) = (mean(|run| run.ordered), mean(|run| run.velocity));
+        let (mut share, mut spread) = (Ned::default(), 0.0);
+        for run in &self.runs {
+            let (z, v) = (run.ordered - ordered, run.velocity - velocity);
+            share = share + over(v, z);
+            spread += z.dot(z);
+        }
+        let share = share.scaled(1.0 / spread);
+        let rest = self.runs.iter().map(|run| {
+            let (z, v) = (run.ordered - ordered, run.velocity - velocity);
+            let left = v - times(share, z);
+            left.dot(left)
+        });
+        // Of two components each, four numbers were fitted.
+        let scatter_m_s = (rest.sum::<f64>() / (2.0 * count - 4.0)).sqrt().max(SCATTER_MIN_M_S);
+        let sigma_rad = scatter_m_s / (spread.sqrt() * share.length());
+        (share.length() >= SHARE_MIN && sigma_rad.is_finite()).then(|| (angle_rad(share), sigma_rad))
+    }
+
+    /// How far the compass is off, rad, if that is a fault.
+    pub(crate) fn fault_rad(&self) -> Option<f64> {
+        let (offset_rad, sigma_rad) = self.offset_rad()?;
+        (offset_rad.abs() - SIGMAS * sigma_rad > OFFSET_MAX_RAD).then_some(offset_rad)
+    }
+}
+
+/// The angle of a vector clockwise from north, rad.
+fn angle_rad(vector: Ned) -> f64 {
+    math::atan2(vector.east, vector.north)
+}
+
+/// The product of two complex numbers, north real and east imaginary.
+fn times(a: Ned, b: Ned) -> Ned {
+    Ned { north: a.north * b.north - a.east * b.east, east: a.north * b.east + a.east * b.north }
+}
+
+/// The product of the first and the conjugate of the second.
+fn over(a: Ned, b: Ned) -> Ned {
+    times(a, Ned { north: b.north, east: -b.east })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Runs of 24 s on these headings at 1.5 m/s, of which the boat makes so much, with a compass that is off and a current.
+    fn sailed(headings_deg: &[f64], off_deg: f64, share: f64, current: Ned) -> CompassCheck {
+        let mut check = CompassCheck::default();
+        for i in 0..240 * headings_deg.len() {
+            let true_deg = headings_deg[i / 240];
+            let velocity = Ned::toward_deg(true_deg).scaled(1.5 * share) + current;
+            let psi_rad = wrap_pi((true_deg - off_deg).to_radians());
+            check.take(SimTime::from_s(0.1 * i as f64), psi_rad, velocity, 1.5);
+        }
+        check
+    }
+
+    #[test]
+    fn a_compass_that_is_off_is_found_on_several_headings_whatever_the_current() {
+        for current in [Ned::default(), Ned { north: 0.8, east: -0.4 }] {
+            for off_deg in [30.0, -30.0, 150.0] {
+                for share in [0.7, 1.1] {
+                    let off_rad = sailed(&[10.0, 100.0, 190.0], off_deg, share, current).fault_rad();
+                    assert!(
+                        off_rad.is_some_and(|rad| (rad.to_degrees() - off_deg).abs() < 0.1),
+                        "{off_deg} {off_rad:?}"
+                    );
+                }
+            }
+            assert_eq!(sailed(&[10.0, 100.0, 250.0], 5.0, 1.0, current).fault_rad(), None, "that is its deviation");
+        }
+    }
+
+    #[test]
+    fn a_current_across_is_no_fault_of_the_compass() {
+        let across = Ned { north: 0.0, east: 0.9 };
+        assert_eq!(sailed(&[0.0], 0.0, 1.0, across).fault_rad(), None, "on one heading");
+        assert_eq!(sailed(&[0.0, 90.0, 180.0], 0.0, 1.0, across).fault_rad(), None, "on several");
+    }
+}

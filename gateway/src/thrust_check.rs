@@ -1,0 +1,208 @@
+//! Checks a boat's motion against the thrust that it is sent: does it turn, and make way, as it is ordered?
+
+use game::SimTime;
+use game::angle::wrap_pi;
+use thiserror::Error;
+
+/// What a set-point should do to a boat.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ordered {
+    /// The speed ahead that it should give, m/s.
+    pub ahead_m_s: f64,
+    /// Thrust difference, per cent, positive to starboard; 0 where the boat steers by itself.
+    pub turn_pct: f64,
+}
+
+/// What a boat does not do though it is ordered to.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum ThrustFault {
+    /// Its heading does not follow the thrust difference: it turns by this many degrees a second under half of all.
+    #[error("its heading does not follow the thrust difference: {0:.0} degrees a second under half of it")]
+    NoTurn(f64),
+    /// It makes this little way ahead, m/s, under the thrust for [`WAY_S`].
+    #[error("it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
+    NoWay(f64),
+}
+
+/// A boat that is ordered to go this fast, m/s, ...
+const WAY_FROM_M_S: f64 = 1.2;
+/// ... for this time, s, ...
+const WAY_S: f64 = 40.0;
+/// ... goes ahead by this share of that at least, but against a current that is as fast.
+const WAY_SHARE_MIN: f64 = 0.1;
+/// Rates of turn are means over this time, s, ...
+const PIECE_S: f64 = 0.5;
+/// ... and a boat takes them up with about this lag, s.
+const TURN_LAG_S: f64 = 0.7;
+/// The time over which they are compared with what is ordered, s; by this many of them at least.
+const TURN_MEMORY_S: f64 = 60.0;
+const PIECES_MIN: f64 = 20.0;
+/// So many of them, one after the other, count as one: waves and gusts last.
+const PIECES_ALIKE: f64 = 8.0;
+/// They scatter by this much at least, rad/s.
+const TURN_SCATTER_MIN_RAD_S: f64 = 0.03;
+/// A boat turns by this much at least, rad/s, under a thrust difference of 100 %, ...
+const TURN_MIN_RAD_S: f64 = 0.15;
+/// ... or it is a fault, when it is less by so many standard deviations. In a gale a healthy boat may be held by the wind for longer than
+/// a minute, or turned the other way: what counts is whether it turns more when more is ordered.
+const SIGMAS: f64 = 5.0;
+/// Orders with a longer gap between them are not held, s.
+const GAP_MAX_S: f64 = 1.5;
+
+/// A speed that is held, and what the boat has done meanwhile.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    since: SimTime,
+    count: f64,
+    /// Sums over the steps so far, m/s.
+    ordered: f64,
+    seen: f64,
+}
+
+/// The rate of turn against the thrust difference: a regression that forgets.
+#[derive(Clone, Copy, Debug, Default)]
+struct Turn {
+    /// What is ordered, as a share of all, as slowly as a boat takes it up.
+    difference: f64,
+    /// The piece that grows: how long it is, s, and how far the boat has turned in it, rad.
+    piece_s: f64,
+    turned_rad: f64,
+    /// Sums of 1, x, y, xx, xy and yy, where x is the difference and y the rate of turn, rad/s.
+    sums: [f64; 6],
+}
+
+impl Turn {
+    /// Takes a step of this length; returns how fast the boat turns for a difference of all, rad/s, and its standard deviation.
+    fn take(&mut self, difference: f64, step_s: f64, turned_rad: f64) -> Option<(f64, f64)> {
+        self.difference += (difference - self.difference) * (step_s / TURN_LAG_S).min(1.0);
+        self.piece_s += step_s;
+        self.turned_rad += turned_rad;
+        if self.piece_s < PIECE_S {
+            return None;
+        }
+        let (x, y) = (self.difference, self.turned_rad / self.piece_s);
+        let keep = 1.0 - (self.piece_s / TURN_MEMORY_S).min(1.0);
+        for (sum, new) in self.sums.iter_mut().zip([1.0, x, y, x * x, x * y, y * y]) {
+            *sum = keep * *sum + new;
+        }
+        (self.piece_s, self.turned_rad) = (0.0, 0.0);
+        let count = self.sums[0];
+        let [mean_x, mean_y, xx, xy, yy] = std::array::from_fn(|i| self.sums[i + 1] / count);
+        let spread = xx - mean_x * mean_x;
+        let slope = (xy - mean_x * mean_y) / spread;
+        let rest = (yy - mean_y * mean_y - slope * slope * spread).max(TURN_SCATTER_MIN_RAD_S * TURN_SCATTER_MIN_RAD_S);
+        let sigma = (rest * PIECES_ALIKE / (spread * count)).sqrt();
+        (count >= PIECES_MIN && sigma.is_finite()).then_some((slope, sigma))
+    }
+}
+
+/// What was ordered lately, and what was seen of it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ThrustCheck {
+    /// When the last order was noted, and the heading then, rad.
+    last: Option<(SimTime, f64)>,
+    turn: Turn,
+    way: Option<Way>,
+    fault: Option<ThrustFault>,
+}
+
+impl ThrustCheck {
+    /// The boat is sent this now, with what is known of its motion: heading, rad, and speed ahead over the ground, m/s.
+    pub(crate) fn take(&mut self, now: SimTime, ordered: Ordered, psi_rad: f64, ahead_m_s: f64) {
+        let before = self.last.replace((now, psi_rad)).filter(|(at, _)| (now - *at).as_s() <= GAP_MAX_S);
+        let Some((before, before_rad)) = before else {
+            *self = ThrustCheck { last: self.last, ..ThrustCheck::default() };
+            return;
+        };
+        let turned_rad = wrap_pi(psi_rad - before_rad);
+        let known = self.turn.take(0.01 * ordered.turn_pct, (now - before).as_s(), turned_rad);
+        if let Some((slope, sigma)) = known
+            && slope + SIGMAS * sigma < TURN_MIN_RAD_S
+        {
+            self.fault = Some(ThrustFault::NoTurn((0.5 * slope).to_degrees()));
+        }
+        self.take_way(now, ordered.ahead_m_s, ahead_m_s);
+    }
+
+    fn take_way(&mut self, now: SimTime, ordered_m_s: f64, ahead_m_s: f64) {
+        if ordered_m_s < WAY_FROM_M_S {
+            self.way = None;
+            return;
+        }
+        let held = self.way.get_or_insert(Way { since: now, count: 0.0, ordered: 0.0, seen: 0.0 });
+        held.count += 1.0;
+        held.ordered += ordered_m_s;
+        held.seen += ahead_m_s;
+        if (now - held.since).as_s() >= WAY_S {
+            if held.seen < WAY_SHARE_MIN * held.ordered {
+                self.fault = Some(ThrustFault::NoWay(held.seen / held.count));
+            }
+            self.way = None;
+        }
+    }
+
+    /// What the boat did not do, as long as it is driven.
+    pub(crate) fn fault(&self, now: SimTime) -> Option<ThrustFault> {
+        self.fault.filter(|_| self.last.is_some_and(|(at, _)| (now - at).as_s() <= GAP_MAX_S))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// After how many seconds, and which, is there a fault when this is ordered and the boat turns and goes ahead like that.
+    fn first_fault(
+        ordered: impl Fn(f64) -> Ordered,
+        turn_deg_s: impl Fn(f64) -> f64,
+        ahead_m_s: f64,
+    ) -> Option<(f64, ThrustFault)> {
+        let (mut check, mut psi_deg) = (ThrustCheck::default(), 0.0);
+        (0..1000).find_map(|i| {
+            let time_s = 0.1 * f64::from(i);
+            psi_deg += 0.1 * turn_deg_s(time_s);
+            let psi_rad = wrap_pi(f64::to_radians(psi_deg));
+            check.take(SimTime::from_s(time_s), ordered(time_s), psi_rad, ahead_m_s);
+            check.fault(SimTime::from_s(time_s)).map(|fault| (time_s, fault))
+        })
+    }
+
+    fn held(ahead_m_s: f64, turn_pct: f64) -> impl Fn(f64) -> Ordered {
+        move |_| Ordered { ahead_m_s, turn_pct }
+    }
+
+    /// To one side and the other, five seconds each.
+    fn weaving(time_s: f64) -> Ordered {
+        Ordered { ahead_m_s: 0.5, turn_pct: if time_s % 10.0 < 5.0 { 40.0 } else { -40.0 } }
+    }
+
+    #[test]
+    fn a_heading_that_does_not_follow_the_thrust_difference_is_found_in_its_time() {
+        for (turn_deg_s, words) in [(0.0, "held by the wind"), (5.0, "turned by it")] {
+            let (after_s, fault) = first_fault(weaving, |_| turn_deg_s, 0.5).expect(words);
+            assert!(after_s < 60.0 && matches!(fault, ThrustFault::NoTurn(_)), "{words}: {after_s} {fault}");
+        }
+        let thwart = |time_s: f64| -0.2 * weaving(time_s).turn_pct;
+        assert!(first_fault(weaving, thwart, 0.5).is_some(), "the thrusters are exchanged");
+        assert_eq!(first_fault(weaving, |time_s| 0.5 * weaving(time_s).turn_pct, 0.5), None, "it turns");
+        assert_eq!(first_fault(held(0.5, 40.0), |_| -3.0, 0.5), None, "one order alone shows nothing in the wind");
+    }
+
+    #[test]
+    fn a_boat_that_makes_no_way_under_thrust_is_found_in_its_time() {
+        let (after_s, fault) = first_fault(held(2.0, 0.0), |_| 0.0, 0.1).expect("it lies still");
+        assert!((after_s - WAY_S).abs() < 0.3 && matches!(fault, ThrustFault::NoWay(_)), "{after_s} {fault}");
+        assert_eq!(first_fault(held(2.0, 0.0), |_| 0.0, 0.5), None, "slow, against the wind");
+        assert_eq!(first_fault(held(0.8, 0.0), |_| 0.0, 0.0), None, "too little to tell");
+    }
+
+    #[test]
+    fn a_fault_is_over_when_the_boat_is_not_driven_and_begins_anew() {
+        let mut check = ThrustCheck::default();
+        let at = |tenths: i32| SimTime::from_s(0.1 * f64::from(tenths));
+        (0..410).for_each(|i| check.take(at(i), Ordered { ahead_m_s: 2.0, turn_pct: 0.0 }, 0.0, 0.0));
+        assert!(check.fault(at(410)).is_some() && check.fault(at(430)).is_none());
+        check.take(at(430), Ordered { ahead_m_s: 2.0, turn_pct: 0.0 }, 0.0, 0.0);
+        assert_eq!(check.fault(at(430)), None);
+    }
+}
