@@ -34,8 +34,8 @@ pub(crate) struct MotionCheck {
     slow_since: Option<SimTime>,
     /// What the compass shows, rad, and how far the course has turned since it began to show that, rad.
     shown: Option<(f64, f64)>,
-    /// The course that was seen last, rad, and when.
-    course: Option<(SimTime, f64)>,
+    /// The course that was seen last, rad, when, and whether it was a reported one.
+    course: Option<(SimTime, bool, f64)>,
 }
 
 impl MotionCheck {
@@ -51,17 +51,22 @@ impl MotionCheck {
             .is_some_and(|(reported, measured)| measured.length() - reported.length() > SPEED_GAP_M_S);
         self.slow_since = is_slow.then(|| self.slow_since.unwrap_or(now));
         // A fix that steps has a course of its own; that of the reported velocity comes first.
-        self.take_course(now, reported.or(measured).filter(|velocity| velocity.length() >= COURSE_FROM_M_S));
+        self.take_course(
+            now,
+            reported.is_some(),
+            reported.or(measured).filter(|velocity| velocity.length() >= COURSE_FROM_M_S),
+        );
     }
 
-    fn take_course(&mut self, now: SimTime, velocity: Option<Ned>) {
+    fn take_course(&mut self, now: SimTime, is_reported: bool, velocity: Option<Ned>) {
         let course_rad = velocity.map(|velocity| math::atan2(velocity.east, velocity.north));
-        // Between fixes that are far apart a boat may have gone astern.
-        let before = self.course.filter(|(at, _)| (now - *at).as_s() <= COURSE_GAP_MAX_S);
-        if let (Some((_, turned_rad)), Some((_, before_rad)), Some(now_rad)) = (&mut self.shown, before, course_rad) {
+        // Between fixes that are far apart a boat may have gone astern, and positions step where the reported velocity does not.
+        let is_like = |at: SimTime, reported: bool| (now - at).as_s() <= COURSE_GAP_MAX_S && reported == is_reported;
+        let before = self.course.filter(|(at, reported, _)| is_like(*at, *reported));
+        if let (Some((_, turned_rad)), Some((.., before_rad)), Some(now_rad)) = (&mut self.shown, before, course_rad) {
             *turned_rad += wrap_pi(now_rad - before_rad);
         }
-        self.course = course_rad.map(|course_rad| (now, course_rad));
+        self.course = course_rad.map(|course_rad| (now, is_reported, course_rad));
     }
 
     /// Takes what the compass shows, rad.
