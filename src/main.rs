@@ -57,7 +57,7 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("SQUALL_COMM
 #[derive(Parser)]
 #[command(name = "squall", version = VERSION, max_term_width = 100)]
 struct Cli {
-    /// Colours on the terminal: auto, always or never
+    /// Colours: auto, always or never
     #[arg(long, global = true, value_name = "WHEN", default_value_t = ColorChoice::Auto, hide_possible_values = true, display_order = 1000)]
     color: ColorChoice,
     #[command(subcommand)]
