@@ -146,22 +146,35 @@ pub fn choose_game(bus: &Bus, named: Option<&GameName>) -> Result<(GameName, Gam
 
 /// The only game on the network.
 fn only_game(bus: &Bus) -> Result<GameName, Missing> {
-    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
-    let games: Vec<GameName> = keys.iter().filter_map(|key| topic::parse_alive(key)).map(|(game, _)| game).collect();
+    let games = games(bus)?;
     match games.as_slice() {
         [game] => Ok(game.clone()),
         [] => Err(Missing::Yet("no sim is on the network".to_owned())),
         several => {
-            let names: Vec<&str> = several.iter().map(GameName::as_str).collect();
-            Err(Missing::Forever(Refusal::Refused(format!("choose with --game among {}", names.join(", ")))))
+            let message = format!("choose with --game among {}", listed(several));
+            Err(Missing::Forever(Refusal::Refused(message)))
         }
     }
+}
+
+/// The games on the network.
+fn games(bus: &Bus) -> Result<Vec<GameName>, BusError> {
+    let keys = bus.who_is_alive(&topic::everyone_alive(), ANSWER)?;
+    Ok(keys.iter().filter_map(|key| topic::parse_alive(key)).map(|(game, _)| game).collect())
+}
+
+fn listed(games: &[GameName]) -> String {
+    games.iter().map(GameName::as_str).collect::<Vec<_>>().join(", ")
 }
 
 /// What the game is, from the sim.
 fn game_info(bus: &Bus, game: &GameName) -> Result<GameInfo, Missing> {
     let answer = bus.ask(&topic::scenario(game), Vec::new(), ANSWER)?;
-    let bytes = answer.ok_or_else(|| Missing::Yet(format!("no sim answers for game {:?}", game.as_str())))?;
+    let Some(bytes) = answer else {
+        let others = games(bus)?;
+        let others = if others.is_empty() { String::new() } else { format!("; there is {}", listed(&others)) };
+        return Err(Missing::Yet(format!("no sim answers for game {:?}{others}", game.as_str())));
+    };
     Ok(understood(&bytes)?)
 }
 
