@@ -19,7 +19,7 @@ pub enum ThrustFault {
     /// Its heading does not follow the thrust difference: it turns by this many degrees a second under half of all.
     #[error("its heading does not follow the thrust difference: {0:.0} degrees a second under half of it")]
     NoTurn(f64),
-    /// It makes this little way ahead, m/s, under the thrust for [`WAY_S`].
+    /// It makes this little way ahead, m/s, under the thrust for 40 s.
     #[error("it makes no way under thrust: {0:.1} m/s ahead in {WAY_S} s")]
     NoWay(f64),
 }
