@@ -11,6 +11,9 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// How wide tables are: as the program prints them where there is no terminal.
+const COLUMNS: usize = 120;
+
 /// Which games a tournament consists of; the stub explains it.
 #[pyclass(frozen, module = "squall._native")]
 pub(crate) struct TournamentPlan(Arc<Plan>);
@@ -68,7 +71,7 @@ impl TournamentPlan {
             }
             let report = Report::new(&self.0, &records);
             let json = serde_json::to_string_pretty(&report).expect("it has names for keys");
-            Ok((text(&report), json + "\n", csv(&report), report.failures.len()))
+            Ok((text(&report, COLUMNS), json + "\n", csv(&report), report.failures.len()))
         })
     }
 }
