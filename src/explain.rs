@@ -11,9 +11,7 @@ const COLUMNS: usize = 100;
 
 /// An error with all its causes; of files in full.
 pub(crate) fn error(error: &Error) -> String {
-    let Some(problems) =
-        error.downcast_ref::<Problems>().or_else(|| error.chain().find_map(|cause| cause.downcast_ref()))
-    else {
+    let Some(problems) = error.chain().find_map(|cause| cause.downcast_ref()) else {
         return printable::message(&format!("{error:#}"));
     };
     let before = error

@@ -3,7 +3,6 @@
 use crate::result_table;
 use crate::style::{self, Names};
 use anstream::AutoStream;
-use anstream::adapter::strip_str;
 use game::printable;
 use sim::node::{Progress, ProgressMessage};
 use std::io::{IsTerminal, Write};
@@ -146,9 +145,9 @@ pub(crate) fn set_colour(choice: clap::ColorChoice) {
 /// Writes what steers the terminal, and a text whose colours are left out where nobody can see them.
 fn is_written(control: &str, text: &str) -> bool {
     let mut out = std::io::stdout().lock();
-    let is_plain = AutoStream::choice(&out) == anstream::ColorChoice::Never;
-    let text = if is_plain { strip_str(text).to_string() } else { text.to_owned() };
-    out.write_all(control.as_bytes()).and_then(|()| out.write_all(text.as_bytes())).and_then(|()| out.flush()).is_ok()
+    let is_steered = out.write_all(control.as_bytes()).is_ok();
+    let mut out = AutoStream::auto(out);
+    is_steered && out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_ok()
 }
 
 /// The columns of the terminal; a width that most have where there is none.

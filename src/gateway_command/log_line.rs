@@ -101,7 +101,10 @@ fn brief(status: &GatewayStatus) -> String {
 
 /// A value with its age, where that is known.
 fn with_age(text: String, age_s: Option<f64>) -> String {
-    age_s.map_or(text.clone(), |age_s| format!("{text}, {age_s:.1} s old"))
+    match age_s {
+        Some(age_s) => format!("{text}, {age_s:.1} s old"),
+        None => text,
+    }
 }
 
 fn volts(status: &GatewayStatus) -> Option<String> {

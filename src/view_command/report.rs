@@ -4,17 +4,17 @@ use super::games::{Game, Games, Source};
 use super::training::TrainingReport;
 use anyhow::{Context, Result, anyhow, bail};
 use arena::tournament;
+use game::input_file;
 use game::scenario::Packed;
 use serde_json::{Value, json};
 use shore::page::{Report, Shown};
 use std::collections::BTreeMap;
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// The largest file of a report that is read, bytes.
-pub(super) const BYTES_MAX: u64 = 256 << 20;
+const BYTES_MAX: u64 = 256 << 20;
 
 /// Where the page is on which tournaments and trainings are shown.
 pub(super) const PAGE: &str = "/report.html";
@@ -55,14 +55,7 @@ fn of_file(path: &Path, games: Games) -> Result<Arc<dyn Report>> {
 
 /// A whole file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
-    let what = || format!("cannot read {}", path.display());
-    let file = std::fs::File::open(path).with_context(what)?;
-    let mut bytes = vec![];
-    file.take(BYTES_MAX + 1).read_to_end(&mut bytes).with_context(what)?;
-    if bytes.len() as u64 > BYTES_MAX {
-        bail!("{} is larger than {} MB, expected a report", path.display(), BYTES_MAX >> 20);
-    }
-    Ok(bytes)
+    input_file::read(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))
 }
 
 /// The report of a tournament or a league.
@@ -86,10 +79,8 @@ impl TournamentReport {
         // Numbers of JavaScript have too few digits for all seeds.
         let spell = |row: &mut Value| row["seed"] = row["seed"].to_string().into();
         spell(&mut shown);
-        let rows = ["matches", "failures"].map(|list| shown[list].take());
-        for (list, mut rows) in ["matches", "failures"].into_iter().zip(rows) {
-            rows.as_array_mut().into_iter().flatten().for_each(spell);
-            shown[list] = rows;
+        for list in ["matches", "failures"] {
+            shown[list].as_array_mut().into_iter().flatten().for_each(spell);
         }
         let json = json!({"kind": "tournament", "report": shown, "unplayable": plan.as_ref().err()});
         TournamentReport { json: json.to_string().into_bytes(), plan, digests, games }
