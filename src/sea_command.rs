@@ -42,7 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
 
     let file = args.plot.clone().unwrap_or_else(|| PathBuf::from(format!("{}.svg", sea.name)));
     let title = format!("{}: {}, seed {}", sea.name, boat.name, args.seed);
-    let model = SeaModel::new(&sea, std::slice::from_ref(&boat), &field, tick, args.seed);
+    let model = SeaModel::new(&sea, std::slice::from_ref(&boat), &field, tick, &args.seed.into());
     plot::sea::write(&file, title, &sea, &model, &drifted)?;
     screen::print(&format!("plot in {}\n", file.display()));
     Ok(ExitCode::SUCCESS)

@@ -279,6 +279,13 @@ impl Field {
         x > 0.0 && x < self.plan.width_m && y > 0.0 && y < self.plan.depth_m
     }
 
+    /// How far inside of the nearest side of the field `at` is, m; below 0 outside.
+    #[must_use]
+    pub fn inside_by_m(&self, at: Ned) -> f64 {
+        let (x, y) = self.along_across(at);
+        x.min(self.plan.width_m - x).min(y).min(self.plan.depth_m - y)
+    }
+
     /// Compass bearing in which `team` looks at its opponent's end, degrees.
     #[must_use]
     pub fn facing_deg(&self, team: TeamId) -> f64 {

@@ -31,6 +31,7 @@ pub mod picture;
 pub mod policy;
 pub mod printable;
 pub mod refusal;
+pub mod reseed;
 pub mod rewards;
 pub mod ros;
 pub mod rules;

@@ -86,7 +86,7 @@ impl Model {
         let is_sensed = plan.vehicles.iter().map(|v| !v.is_external && *sensors(v.kind) != Sensors::default());
         let sensed = numbered(is_sensed).into_iter().zip(&plan.vehicles).map(|(place, vehicle)| {
             let model = || {
-                let model = SensorModel::new(sensors(vehicle.kind), plan.sensor_period, plan.seed, vehicle.name);
+                let model = SensorModel::new(sensors(vehicle.kind), plan.sensor_period, &plan.seeds, vehicle.name);
                 model.with_faults(&vehicle.faults)
             };
             place.map(|place| (place, model()))
@@ -99,7 +99,7 @@ impl Model {
             sensed: sensed.collect(),
             thruster_faults: plan.vehicles.iter().map(|vehicle| thruster_faults(&vehicle.faults)).collect(),
             fleet: Fleet::new(plan.vehicles.iter().map(|vehicle| &hulls[vehicle.kind])),
-            sea: SeaModel::new(plan.sea, plan.kinds, plan.field, plan.tick, plan.seed),
+            sea: SeaModel::new(plan.sea, plan.kinds, plan.field, plan.tick, &plan.seeds),
             contact: ContactModel::new(shapes, plan.field, plan.boats_are_solid, dt_s),
             pairs_within_m: plan.pairs_within_m,
             kinds: plan.vehicles.iter().map(|vehicle| vehicle.kind).collect(),

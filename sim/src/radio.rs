@@ -6,12 +6,12 @@
 use crate::two_state::TwoStateChain;
 use game::link::Link;
 use game::picture::OwnBoat;
-use game::stream::Noise;
+use game::reseed::TimedNoise;
 use game::{Ned, Order, Scenario, SimTime};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// The largest number that [`Noise::exponential`] gives, 53 ln 2, rounded up.
+/// The largest number that [`game::stream::Noise::exponential`] gives, 53 ln 2, rounded up.
 const MOST_JITTERS: f64 = 37.0;
 /// Uniform numbers that a decision takes: the link's turn, and loss and jitter of either direction.
 const DRAWS: u64 = 5;
@@ -30,7 +30,9 @@ struct RadioModel {
     /// When a link is bad.
     bursts: TwoStateChain,
     /// By vehicle.
-    noises: Vec<Noise>,
+    noises: Vec<TimedNoise>,
+    /// The time between two decisions.
+    decision: SimTime,
     /// The most messages under way in one direction: one for each decision in the longest time that one takes.
     most: usize,
 }
@@ -90,23 +92,24 @@ impl Radio {
     /// The links of this scenario in the game that its seed chooses, if it states any.
     pub(crate) fn new(scenario: &Scenario) -> Option<Radio> {
         let link = scenario.link.clone()?;
-        let noise = |name: &str| Noise::new(scenario.seed, &format!("link/{name}"));
+        let seeds = scenario.seeds();
+        let noise = |name: &str| seeds.noise(&format!("link/{name}"));
         Some(Radio::over(link, scenario.decision(), scenario.vehicles.iter().map(|vehicle| noise(&vehicle.name))))
     }
 
-    fn over(link: Link, decision: SimTime, noises: impl Iterator<Item = Noise>) -> Radio {
+    fn over(link: Link, decision: SimTime, noises: impl Iterator<Item = TimedNoise>) -> Radio {
         let decisions = |span_s: f64| (span_s / decision.as_s()).ceil() as usize + 2;
         // Jitter is seldom so long, and what is late is overtaken.
         let usual = decisions(link.delay_s);
-        let line = |_: &Noise| Line {
+        let line = |_: &TimedNoise| Line {
             is_bad: false,
             orders: VecDeque::with_capacity(usual),
             reports: VecDeque::with_capacity(usual),
         };
-        let noises: Vec<Noise> = noises.collect();
+        let noises: Vec<TimedNoise> = noises.collect();
         let state = RadioState { decision: 0, lines: noises.iter().map(line).collect() };
         let most = decisions(link.delay_s + MOST_JITTERS * link.jitter_s);
-        Radio { model: RadioModel { bursts: bursts(&link, decision), noises, most, link }, state }
+        Radio { model: RadioModel { bursts: bursts(&link, decision), noises, decision, most, link }, state }
     }
 
     /// What changes, for reading.
@@ -123,8 +126,9 @@ impl Radio {
     pub(crate) fn open_next(&mut self) {
         let Radio { model, state } = self;
         state.decision += 1;
+        let now = model.decision * state.decision as i64;
         for (line, noise) in state.lines.iter_mut().zip(&model.noises) {
-            line.is_bad = model.bursts.next(line.is_bad, noise.unit(DRAWS * state.decision));
+            line.is_bad = model.bursts.next(line.is_bad, noise.at(now).unit(DRAWS * state.decision));
         }
     }
 
@@ -166,8 +170,8 @@ impl Radio {
 
     /// A message of the open decision, unless it is lost.
     fn sent<T>(&self, vehicle: usize, way: Direction, message: T, at: Ned, now: SimTime) -> Option<Sent<T>> {
-        let (link, noise) = (&self.model.link, &self.model.noises[vehicle]);
         let decision = self.state.decision;
+        let (link, noise) = (&self.model.link, self.model.noises[vehicle].at(now));
         let draw = DRAWS * decision + way as u64;
         let share = if self.state.lines[vehicle].is_bad { link.loss.bad } else { link.loss.good };
         let is_out_of_range = link.range_m.is_some_and(|range_m| at.distance(link.station) > range_m);
@@ -193,6 +197,7 @@ mod tests {
     use super::*;
     use game::link::Loss;
     use game::picture::Nav;
+    use game::reseed::Seeds;
     use game::{VehicleId, math};
 
     const TENTH: SimTime = SimTime(100_000_000);
@@ -202,7 +207,7 @@ mod tests {
     }
 
     fn radio(link: Link) -> Radio {
-        Radio::over(link, TENTH, std::iter::once(Noise::new(3, "link/test")))
+        Radio::over(link, TENTH, std::iter::once(Seeds::from(3).noise("link/test")))
     }
 
     fn link() -> Link {

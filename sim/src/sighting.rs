@@ -8,6 +8,7 @@ use game::angle::wrap_pi;
 use game::frame::{Ned, Pose};
 use game::link::Sharing;
 use game::picture::Contact;
+use game::reseed::TimedNoise;
 use game::stream::Noise;
 use game::{Scenario, SimTime};
 use serde::{Deserialize, Serialize};
@@ -20,7 +21,9 @@ pub(crate) struct Sightings {
     /// Decisions between a sighting and its report.
     late: u64,
     /// By vehicle.
-    noises: Vec<Noise>,
+    noises: Vec<TimedNoise>,
+    /// The time between two decisions.
+    decision: SimTime,
     state: SightingState,
     /// Memory that is used again.
     spare: Vec<Vec<Contact>>,
@@ -49,10 +52,11 @@ impl Sightings {
         if sharing == Sharing::default() {
             return None;
         }
-        let decision_s = scenario.tick.as_s() * f64::from(scenario.ticks_per_decision);
-        let noise = |name: &str| Noise::new(scenario.seed, &format!("contact/{name}"));
+        let (decision, seeds) = (scenario.decision(), scenario.seeds());
+        let noise = |name: &str| seeds.noise(&format!("contact/{name}"));
         Some(Sightings {
-            late: (sharing.delay_s / decision_s).round() as u64,
+            late: (sharing.delay_s / decision.as_s()).round() as u64,
+            decision,
             state: SightingState {
                 past: VecDeque::new(),
                 known: vec![vec![None; scenario.vehicles.len()]; scenario.teams.len()],
@@ -87,7 +91,7 @@ impl Sightings {
 
     /// The report that `seer` sent at `decision` has come in: its team is shown what it had seen.
     pub(crate) fn take(&mut self, seer: usize, decision: u64) {
-        let Sightings { sharing, late, noises, state: SightingState { past, known }, .. } = self;
+        let Sightings { sharing, late, noises, decision: length, state: SightingState { past, known }, .. } = self;
         let seen_at = decision.checked_sub(*late);
         let Some(place) = seen_at.and_then(|at| past.binary_search_by_key(&at, |past| past.decision).ok()) else {
             return;
@@ -99,7 +103,7 @@ impl Sightings {
         for (seen, known) in boats.iter().zip(known).filter(|(seen, _)| seen.team != own.team) {
             // Another boat may have reported as much already, or a later sighting.
             let is_news = known.is_none_or(|known| known.seen_ns < seen.seen_ns);
-            let noise = noises[seen.vehicle.index()];
+            let noise = noises[seen.vehicle.index()].at(*length * decision as i64);
             if is_news && sees(sharing, own, seen) && noise.unit(draw) >= sharing.loss {
                 *known = Some(blurred(sharing, *seen, noise, draw));
             }

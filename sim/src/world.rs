@@ -12,6 +12,7 @@ use game::fault::{FaultSpan, fault_spans};
 use game::frame::{self, Leg, Ned, Rotation};
 use game::instructions::Instructions;
 use game::near::{Near, Pair};
+use game::reseed::Seeds;
 use game::rules::Contact;
 use game::scenario::Source;
 use game::sea::Sea;
@@ -50,8 +51,8 @@ pub struct WorldPlan<'a> {
     pub boats_are_solid: bool,
     /// [`World::pairs`] lists all boats that are nearer to each other than this, m, and more.
     pub pairs_within_m: f64,
-    /// Chooses the randomness of the sea and of the sensors.
-    pub seed: u64,
+    /// Choose the randomness of the sea and of the sensors.
+    pub seeds: Seeds,
 }
 
 /// One vehicle of a [`WorldPlan`].
@@ -115,8 +116,9 @@ impl World {
     pub fn of_game(scenario: &Scenario, seed: u64) -> Result<World, NoStart> {
         let scenario = scenario.of_seed(seed)?;
         let starts = spawn::start_positions(&scenario, seed)?;
+        let seeds = scenario.seeds();
         let faults = |i: usize, name: &str| {
-            fault_spans(&scenario.faults, (VehicleId::at(i), name), seed, scenario.rules.time_limit)
+            fault_spans(&scenario.faults, (VehicleId::at(i), name), &seeds, scenario.rules.time_limit)
         };
         let vehicles = scenario.vehicles.iter().zip(starts).enumerate().map(|(i, (vehicle, start))| VehiclePlan {
             faults: faults(i, &vehicle.name),
@@ -134,7 +136,7 @@ impl World {
             sensor_period: scenario.decision(),
             boats_are_solid: scenario.rules.contact == Contact::Solid,
             pairs_within_m: scenario.rules.reach_m(),
-            seed,
+            seeds,
         }))
     }
 

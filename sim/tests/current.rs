@@ -15,7 +15,7 @@ fn field() -> Field {
 }
 
 fn model(current: &Current, seed: u64) -> CurrentField {
-    CurrentField::new(current, &field(), seed)
+    CurrentField::new(current, &field(), &seed.into())
 }
 
 /// The velocity at a place and a time in seconds.

@@ -34,7 +34,7 @@ fn ornstein_uhlenbeck() -> Gusts {
 /// Wind from the west at one place, every `step_s`: (east over the mean − 1, south over the mean), both over the
 /// intensity along the wind.
 fn record(gusts: Gusts, seed: u64, count: i64, step_s: f64) -> Vec<(f64, f64)> {
-    let mut field = WindField::new(&wind(270.0, gusts), HEIGHT_M, &field(), seed);
+    let mut field = WindField::new(&wind(270.0, gusts), HEIGHT_M, &field(), &seed.into());
     let mean_m_s = field.mean_m_s(HEIGHT_M);
     let sample = |i: i64| {
         let now = SimTime::from_s(i as f64 * step_s);
@@ -50,11 +50,11 @@ fn record(gusts: Gusts, seed: u64, count: i64, step_s: f64) -> Vec<(f64, f64)> {
 #[test]
 fn the_wind_blows_from_where_it_is_said_to_come_and_falls_towards_the_water() {
     for (from_deg, x, y) in [(0.0, 0.0, -1.0), (90.0, -1.0, 0.0), (180.0, 0.0, 1.0), (270.0, 1.0, 0.0)] {
-        let field = WindField::new(&wind(from_deg, Gusts::None), HEIGHT_M, &field(), 1);
+        let field = WindField::new(&wind(from_deg, Gusts::None), HEIGHT_M, &field(), &1.into());
         let air_m_s = field.at(Ned::default(), field.mean_m_s(10.0), SimTime::ZERO);
         assert!(air_m_s.distance(Ned::from_xy(x, y).scaled(SPEED_10M_M_S)) < 1e-12, "from {from_deg}: {air_m_s:?}");
     }
-    let field = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), 1);
+    let field = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), &1.into());
     assert!((field.mean_m_s(HEIGHT_M) / SPEED_10M_M_S - 0.80).abs() < 0.005, "{}", field.mean_m_s(HEIGHT_M));
 }
 
@@ -62,7 +62,7 @@ fn the_wind_blows_from_where_it_is_said_to_come_and_falls_towards_the_water() {
 fn ornstein_uhlenbeck_gusts_have_the_moments_and_the_memory_of_their_process() {
     const STEP_S: f64 = 0.25;
     const COUNT: i64 = 1_200_000;
-    let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), 1).mean_m_s(HEIGHT_M);
+    let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), &1.into()).mean_m_s(HEIGHT_M);
     let time_s = LENGTH_M / mean_m_s;
     let x = record(ornstein_uhlenbeck(), 11, COUNT, STEP_S);
     let within = five_errors(x.len(), STEP_S / time_s);
@@ -79,7 +79,7 @@ fn the_spectrum_of_ornstein_uhlenbeck_gusts_bends_at_the_length_scale() {
     // Dryden: S(ω) proportional to 1 / (1 + (ω τ)²). Periodograms of 3000 stretches of 64 τ with Hann's window.
     const STRETCH: usize = 1024;
     const STRETCHES: usize = 3000;
-    let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), 1).mean_m_s(HEIGHT_M);
+    let mean_m_s = WindField::new(&wind(0.0, Gusts::None), HEIGHT_M, &field(), &1.into()).mean_m_s(HEIGHT_M);
     let step_s = LENGTH_M / mean_m_s / 16.0;
     let x = record(ornstein_uhlenbeck(), 5, (STRETCH * STRETCHES) as i64, step_s);
     let power = |bin: usize| {
@@ -111,7 +111,7 @@ fn the_spectrum_of_ornstein_uhlenbeck_gusts_bends_at_the_length_scale() {
 fn a_gust_comes_to_a_boat_downwind_as_it_was() {
     const WITHIN_M_S: f64 = 1e-9;
     for from_deg in [0.0, 77.0, 200.0] {
-        let mut field = WindField::new(&wind(from_deg, ornstein_uhlenbeck()), HEIGHT_M, &field(), 7);
+        let mut field = WindField::new(&wind(from_deg, ornstein_uhlenbeck()), HEIGHT_M, &field(), &7.into());
         let mean_m_s = field.mean_m_s(HEIGHT_M);
         let upwind = Ned::from_xy(80.0, 40.0);
         let (downwind, abreast) = (Ned::toward_deg(from_deg + 180.0), Ned::toward_deg(from_deg + 90.0));
@@ -137,7 +137,7 @@ fn a_gust_comes_to_a_boat_downwind_as_it_was() {
 #[test]
 fn the_wind_is_a_function_of_seed_place_and_time_alone() {
     let places = [Ned::from_xy(5.0, 5.0), Ned::from_xy(150.0, 70.0), Ned::from_xy(-400.0, 900.0)];
-    let fresh = |seed| WindField::new(&wind(30.0, ornstein_uhlenbeck()), HEIGHT_M, &field(), seed);
+    let fresh = |seed| WindField::new(&wind(30.0, ornstein_uhlenbeck()), HEIGHT_M, &field(), &seed.into());
     let mut sailed = fresh(9);
     let tick = SimTime::from_s(0.05);
     // Sail on for ten minutes, go back to tick 700, then on again; each time as a world that starts there.
@@ -159,7 +159,7 @@ fn the_wind_is_a_function_of_seed_place_and_time_alone() {
 #[test]
 fn no_wind_is_no_gusts_either() {
     let still = Wind { speed_10m_m_s: 0.0, ..wind(40.0, ornstein_uhlenbeck()) };
-    let field = WindField::new(&still, HEIGHT_M, &field(), 1);
+    let field = WindField::new(&still, HEIGHT_M, &field(), &1.into());
     for i in 0..100 {
         let air_m_s = field.at(Ned::from_xy(3.0, 4.0), field.mean_m_s(HEIGHT_M), SimTime::from_s(f64::from(i)));
         assert_eq!(air_m_s, Ned::default());

@@ -45,7 +45,7 @@ impl TrialBoat {
             vehicles: vec![vehicle],
             sensor_period: tick,
             pairs_within_m: 0.0,
-            seed,
+            seeds: seed.into(),
         });
         let mut psi_rad = start.psi_rad;
         if let Drive::Kinematic(kinematic) = &boat.drive {

@@ -57,6 +57,7 @@ use crate::field::Field;
 use crate::frame::Pose;
 use crate::id::{TeamId, VehicleId};
 use crate::link::Link;
+use crate::reseed::{Reseed, Seeds};
 use crate::rules::Rules;
 use crate::sea::Sea;
 use crate::strategy::Strategy;
@@ -72,6 +73,9 @@ pub struct Scenario {
     pub name: String,
     /// Chooses the game; `--seed` replaces it.
     pub seed: u64,
+    /// What takes its place in the midst of the game, by rising times.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reseed: Vec<Reseed>,
     /// Physics tick.
     pub tick: SimTime,
     /// Physics ticks between two decisions of a mind.
@@ -150,6 +154,12 @@ impl Scenario {
     #[must_use]
     pub fn decision(&self) -> SimTime {
         self.tick * i64::from(self.ticks_per_decision)
+    }
+
+    /// What the randomness in the midst of this game is drawn by.
+    #[must_use]
+    pub fn seeds(&self) -> Seeds {
+        Seeds::new(self.seed, &self.reseed)
     }
 
     /// The team of a vehicle.

@@ -4,10 +4,10 @@ use super::Contest;
 use game::fault::{FaultKind, FaultSpan, fault_spans};
 use game::{Event, Scenario, SimTime, VehicleId};
 
-/// The faults of a vehicle's agent and link in the game that `seed` chooses.
-pub(super) fn of(scenario: &Scenario, vehicle: VehicleId, seed: u64) -> Vec<FaultSpan> {
+/// The faults of a vehicle's agent and link in this game.
+pub(super) fn of(scenario: &Scenario, vehicle: VehicleId) -> Vec<FaultSpan> {
     let name = &scenario.vehicles[vehicle.index()].name;
-    let spans = fault_spans(&scenario.faults, (vehicle, name), seed, scenario.rules.time_limit);
+    let spans = fault_spans(&scenario.faults, (vehicle, name), &scenario.seeds(), scenario.rules.time_limit);
     spans.into_iter().filter(|span| matches!(span.kind, FaultKind::AgentLost | FaultKind::LinkLost)).collect()
 }
 

@@ -95,7 +95,7 @@ impl Contest {
         };
         Ok(Contest {
             radio: Radio::new(&scenario),
-            faults: (0..count).map(|i| faults::of(&scenario, VehicleId::at(i), seed)).collect(),
+            faults: (0..count).map(|i| faults::of(&scenario, VehicleId::at(i))).collect(),
             sightings: Sightings::new(&scenario),
             watchdogs: (0..count).map(|i| watchdog(&scenario, VehicleId::at(i))).collect(),
             referee,

@@ -77,10 +77,9 @@ impl CachedProcess {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use game::stream::Noise;
 
     fn process() -> GaussMarkov {
-        GaussMarkov::new(Noise::new(1, "test"))
+        GaussMarkov::new(&1.into(), "test", |now| now.as_s())
     }
 
     #[test]

@@ -10,8 +10,8 @@ use game::SimTime;
 use game::field::Field;
 use game::frame::{Ned, Rotation};
 use game::math;
+use game::reseed::Seeds;
 use game::sea::{Current, Shear, Tide, Wander};
-use game::stream::Noise;
 use std::f64::consts::TAU;
 
 /// The current over a field.
@@ -36,12 +36,15 @@ pub struct CurrentNow<'a> {
 impl CurrentField {
     /// The current over `field`.
     #[must_use]
-    pub fn new(current: &Current, field: &Field, seed: u64) -> CurrentField {
-        let drawn = current.random_eddies.map(|random| eddy::draw(&random, field, seed)).unwrap_or_default();
-        let process = || CachedProcess::new(GaussMarkov::new(Noise::new(seed, "current")), 0.0);
+    pub fn new(current: &Current, field: &Field, seeds: &Seeds) -> CurrentField {
+        let drawn = current.random_eddies.map(|random| eddy::draw(&random, field, seeds.first())).unwrap_or_default();
+        let process = |wander: &Wander| {
+            let process = GaussMarkov::new(seeds, "current", |now| wander_place(wander, now));
+            CachedProcess::new(process, 0.0)
+        };
         CurrentField {
             mean_m_s: current.mean_m_s,
-            wander: current.wander.map(|wander| (wander, process())),
+            wander: current.wander.map(|wander| (wander, process(&wander))),
             tide: current.tide,
             shear: current.shear,
             eddies: current.eddies.iter().chain(&drawn).map(Vortex::new).collect(),

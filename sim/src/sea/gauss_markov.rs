@@ -11,7 +11,13 @@
 //!
 //! which is the Gauss-Markov process conditioned on both (the bridge of Lévy's construction, for this process). So a
 //! world that is put back to any tick finds the same bits, whatever it had looked at before.
+//!
+//! Where another seed takes over after a point k, the process goes on from there: with x that of the seed before and y that of the new
+//! one, it is y_j + (x_k − y_k) e^(−lag) at the points j after k. That has the law of the process given all up to k: what y has
+//! of its own value at k is taken out of it, and the rest does not depend on that.
 
+use game::SimTime;
+use game::reseed::Seeds;
 use game::stream::Noise;
 
 /// Grid points in one correlation length.
@@ -30,37 +36,64 @@ pub(super) type Pair = (f64, f64);
 #[derive(Clone, Debug)]
 pub(super) struct GaussMarkov {
     noise: Noise,
+    /// What takes its place, by rising points.
+    later: Vec<Later>,
     /// By level: the factor on the sum of the neighbours, and the standard deviation about it.
     halving: [(f64, f64); LEVELS],
 }
 
+/// A noise that takes the place of the one before.
+#[derive(Clone, Copy, Debug)]
+struct Later {
+    /// The last point of the one before.
+    after: i64,
+    noise: Noise,
+    /// By how much the one before was above it there.
+    above: Pair,
+}
+
 /// The points on the way to the one looked up last. Makes the next one cheap, and changes nothing else.
 #[derive(Clone, Debug)]
-pub(super) struct Trail([(i64, Pair); LEVELS + 2]);
+pub(super) struct Trail {
+    /// Which noise they are of: how many came before it.
+    of: usize,
+    points: [(i64, Pair); LEVELS + 2],
+}
 
 impl Default for Trail {
     fn default() -> Trail {
-        Trail([(i64::MIN, (0.0, 0.0)); LEVELS + 2])
+        Trail { of: 0, points: [(i64::MIN, (0.0, 0.0)); LEVELS + 2] }
     }
 }
 
 impl Trail {
     fn known(&mut self, place: usize, index: i64, find: impl FnOnce() -> Pair) -> Pair {
-        if self.0[place].0 != index {
-            self.0[place] = (index, find());
+        if self.points[place].0 != index {
+            self.points[place] = (index, find());
         }
-        self.0[place].1
+        self.points[place].1
     }
 }
 
 impl GaussMarkov {
-    pub(super) fn new(noise: Noise) -> GaussMarkov {
+    /// The process `name` of this game. `place` is how far on the grid it has been looked up at a time, at most: the points there are
+    /// the last that a seed counts for.
+    pub(super) fn new(seeds: &Seeds, name: &str, place: impl Fn(SimTime) -> f64) -> GaussMarkov {
         let halving = std::array::from_fn(|level| {
             let apart = (BLOCK >> (level + 1)) as f64 / STEPS_PER_LENGTH;
             let rho = libm::exp(-apart);
             (rho / (1.0 + rho * rho), (-libm::expm1(-2.0 * apart) / (1.0 + rho * rho)).sqrt())
         });
-        GaussMarkov { noise, halving }
+        let mut process = GaussMarkov { noise: Noise::new(seeds.first(), name), later: vec![], halving };
+        for (time, seed) in seeds.later() {
+            // A place between two points shows something of both.
+            let after = place(*time).floor() as i64 + 1;
+            let noise = Noise::new(*seed, name);
+            let before = process.at(after, &mut Trail::default());
+            let own = process.of_noise(noise, after, &mut Trail::default());
+            process.later.push(Later { after, noise, above: (before.0 - own.0, before.1 - own.1) });
+        }
+        process
     }
 
     /// The correlation of neighbours on the grid.
@@ -70,19 +103,34 @@ impl GaussMarkov {
 
     /// The two processes at a grid point.
     pub(super) fn at(&self, index: i64, trail: &mut Trail) -> Pair {
+        let of = self.later.iter().rposition(|later| later.after < index).map_or(0, |place| place + 1);
+        if trail.of != of {
+            *trail = Trail { of, ..Trail::default() };
+        }
+        let Some(Later { after, noise, above }) = of.checked_sub(1).map(|place| self.later[place]) else {
+            return self.of_noise(self.noise, index, trail);
+        };
+        let own = self.of_noise(noise, index, trail);
+        let left = libm::exp(-((index - after) as f64) / STEPS_PER_LENGTH);
+        (own.0 + left * above.0, own.1 + left * above.1)
+    }
+
+    /// The process of a noise at a grid point.
+    fn of_noise(&self, noise: Noise, index: i64, trail: &mut Trail) -> Pair {
+        let draw = |index: i64| noise.normal_pair((COUNT_OF_POINT_ZERO + index) as u64);
         let block = index.div_euclid(BLOCK);
         // The ends of a block take turns, so that the end of one stays known as the beginning of the next.
         let end = |block: i64| LEVELS + (block & 1) as usize;
-        let mut low = trail.known(end(block), block * BLOCK, || self.draw(block * BLOCK));
+        let mut low = trail.known(end(block), block * BLOCK, || draw(block * BLOCK));
         if index == block * BLOCK {
             return low;
         }
-        let mut high = trail.known(end(block + 1), (block + 1) * BLOCK, || self.draw((block + 1) * BLOCK));
+        let mut high = trail.known(end(block + 1), (block + 1) * BLOCK, || draw((block + 1) * BLOCK));
         let mut low_index = block * BLOCK;
         for (level, (pull, sigma)) in self.halving.into_iter().enumerate() {
             let middle_index = low_index + (BLOCK >> (level + 1));
             let middle = trail.known(level, middle_index, || {
-                let fresh = self.draw(middle_index);
+                let fresh = draw(middle_index);
                 (pull * (low.0 + high.0) + sigma * fresh.0, pull * (low.1 + high.1) + sigma * fresh.1)
             });
             match index.cmp(&middle_index) {
@@ -93,19 +141,56 @@ impl GaussMarkov {
         }
         unreachable!("halving a block ten times reaches each of its 1024 points")
     }
-
-    fn draw(&self, index: i64) -> Pair {
-        self.noise.normal_pair((COUNT_OF_POINT_ZERO + index) as u64)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use game::reseed::Reseed;
+
+    /// A seed that another takes the place of at point 500, and one more at 900.
+    fn reseeded(seed: u64) -> Seeds {
+        Seeds::new(seed, &[(500.0, seed + 1), (900.0, seed + 2)].map(|(after_s, seed)| Reseed { after_s, seed }))
+    }
+
+    #[test]
+    fn after_another_seed_it_is_the_process_given_what_was_before() {
+        const GAMES: u64 = 20_000;
+        const AFTER: i64 = 700;
+        let first = GaussMarkov::new(&9.into(), "test", |now| now.as_s());
+        let at = |process: &GaussMarkov, index| process.at(index, &mut Trail::default());
+        // Two points after the change, one block on, and given the point at which it changes.
+        let lags = [1_i64, 40, 60];
+        let known = at(&first, AFTER + 1).0;
+        let mut sums = [[0.0; 3]; 3];
+        for seed in 0..GAMES {
+            let seeds = Seeds::new(9, &[Reseed { after_s: AFTER as f64, seed: 100 + seed }]);
+            let process = GaussMarkov::new(&seeds, "test", |now| now.as_s());
+            assert_eq!(at(&process, AFTER - 3), at(&first, AFTER - 3));
+            assert_eq!(at(&process, AFTER + 1), at(&first, AFTER + 1));
+            let x = lags.map(|lag| at(&process, AFTER + 1 + lag).0);
+            for (sums, x) in sums.iter_mut().zip(x) {
+                *sums = [sums[0] + x, sums[1] + x * x, sums[2]];
+            }
+            sums[1][2] += x[1] * x[2];
+        }
+        let games = GAMES as f64;
+        for (lag, [sum, squares, _]) in lags.into_iter().zip(sums) {
+            let rho = libm::exp(-(lag as f64) / STEPS_PER_LENGTH);
+            let (mean, variance) = (sum / games, squares / games - (sum / games) * (sum / games));
+            let want = 1.0 - rho * rho;
+            assert!((mean - known * rho).abs() < 5.0 * (want / games).sqrt(), "lag {lag}: mean {mean}");
+            assert!((variance - want).abs() < 5.0 * want * (2.0 / games).sqrt(), "lag {lag}: variance {variance}");
+        }
+        let rho = |steps: f64| libm::exp(-steps / STEPS_PER_LENGTH);
+        let covariance = sums[1][2] / games - sums[1][0] / games * sums[2][0] / games;
+        let want = rho(20.0) * (1.0 - rho(80.0));
+        assert!((covariance - want).abs() < 5.0 / games.sqrt(), "covariance {covariance}, not {want}");
+    }
 
     #[test]
     fn a_point_is_the_same_however_one_comes_to_it() {
-        let process = GaussMarkov::new(Noise::new(3, "test"));
+        let process = GaussMarkov::new(&reseeded(3), "test", |now| now.as_s());
         let mut trail = Trail::default();
         let in_order: Vec<Pair> = (-2100..2100).map(|index| process.at(index, &mut trail)).collect();
         let stride = 1777; // coprime to 4200: every point once, in a wild order
@@ -119,7 +204,7 @@ mod tests {
     #[test]
     fn it_has_the_moments_of_its_process_within_blocks_and_across_their_ends() {
         const POINTS: i64 = 4_000_000;
-        let process = GaussMarkov::new(Noise::new(5, "test"));
+        let process = GaussMarkov::new(&5.into(), "test", |now| now.as_s());
         let mut trail = Trail::default();
         let x: Vec<Pair> = (0..POINTS).map(|index| process.at(index, &mut trail)).collect();
         // Five standard errors; 125 000 correlation lengths count as so many independent draws over two.

@@ -35,6 +35,7 @@ use crate::hull::{HullModel, Planar};
 use game::boat::{Drive, Windage};
 use game::frame::{Body, Ned, Pose, Rotation};
 use game::instructions::Instructions;
+use game::reseed::Seeds;
 use game::sea::Sea;
 use game::water::Water;
 use game::{Boat, Field, SimTime};
@@ -109,16 +110,16 @@ pub struct SeaForcing {
 }
 
 impl SeaModel {
-    /// This sea over this field, for these kinds of boat and ticks of this length, with the randomness that `seed` chooses.
+    /// This sea over this field, for these kinds of boat and ticks of this length, with the randomness that `seeds` choose.
     #[must_use]
-    pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seed: u64) -> SeaModel {
-        let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seed));
+    pub fn new(sea: &Sea, boats: &[Boat], field: &Field, tick: SimTime, seeds: &Seeds) -> SeaModel {
+        let waves = sea.waves.as_ref().map(|waves| WaveField::new(waves, sea.depth_m, seeds.first()));
         let highest = boats.iter().map(|boat| boat.windage.height_m).fold(0.5, f64::max);
         // Wind of no speed is no wind, whatever the boat makes by its own way.
         let wind = sea.wind.as_ref().filter(|wind| wind.speed_10m_m_s > 0.0);
-        let wind = wind.map(|wind| WindField::new(wind, highest, field, seed));
+        let wind = wind.map(|wind| WindField::new(wind, highest, field, seeds));
         let mut model = SeaModel {
-            current: CurrentField::new(&sea.current, field, seed),
+            current: CurrentField::new(&sea.current, field, seeds),
             shapes: vec![],
             submergences: vec![],
             kinds: vec![],

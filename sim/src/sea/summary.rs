@@ -66,7 +66,9 @@ impl Summary {
                 wave_summary(&waves_seen, (waves.tp_s, waves.from_rad), boat, sea.water_density_kg_m3)
             }),
             wind: sea.wind.as_ref().map(|wind| wind_summary(wind, boat, &hull)),
-            current_m_s: CurrentField::new(&sea.current, field, seed).at_time(game::SimTime::ZERO).at(field.middle()),
+            current_m_s: CurrentField::new(&sea.current, field, &seed.into())
+                .at_time(game::SimTime::ZERO)
+                .at(field.middle()),
         }
     }
 }

@@ -12,8 +12,8 @@ use super::gauss_markov::{GaussMarkov, STEPS_PER_LENGTH};
 use game::SimTime;
 use game::field::Field;
 use game::frame::{Ned, Rotation};
+use game::reseed::Seeds;
 use game::sea::{Gusts, Wind};
-use game::stream::Noise;
 
 /// Slowest speed at which gusts travel, m/s.
 pub const CARRY_MIN_M_S: f64 = 1.0;
@@ -50,7 +50,7 @@ impl WindField {
     /// The wind over `field`, with gusts that travel as fast as the mean wind `reference_height_m` above the water: that
     /// of the boats' own windage, as a rule.
     #[must_use]
-    pub fn new(wind: &Wind, reference_height_m: f64, field: &Field, seed: u64) -> WindField {
+    pub fn new(wind: &Wind, reference_height_m: f64, field: &Field, seeds: &Seeds) -> WindField {
         let upwind = Rotation::from_heading(wind.from_rad);
         let (downwind, across) = (upwind.ahead().scaled(-1.0), upwind.starboard().scaled(-1.0));
         let mut made = WindField {
@@ -70,12 +70,14 @@ impl WindField {
             Gusts::None => None,
             Gusts::OrnsteinUhlenbeck { intensity, across_ratio, length_m } => {
                 let steps_per_m = STEPS_PER_LENGTH / length_m;
-                let process = GaussMarkov::new(Noise::new(seed, "gust"));
+                let steps_per_s = steps_per_m * carry_m_s;
+                // Of what is drawn anew the field has seen nothing: it is upwind of it.
+                let process = GaussMarkov::new(seeds, "gust", |now| place((steps_per_s, steps_per_m), reach_m.0, now));
                 Some(Frozen {
                     process: CachedProcess::new(process, (reach_m.1 - reach_m.0) * steps_per_m),
                     intensity: (intensity, intensity * across_ratio),
                     steps_per_m,
-                    steps_per_s: steps_per_m * carry_m_s,
+                    steps_per_s,
                     reach_m,
                 })
             }
@@ -113,6 +115,11 @@ impl Frozen {
     /// The place of the process that blows `downwind_m` from the datum.
     #[inline]
     fn place(&self, downwind_m: f64, now: SimTime) -> f64 {
-        self.steps_per_s * now.as_s() - self.steps_per_m * downwind_m
+        place((self.steps_per_s, self.steps_per_m), downwind_m, now)
     }
+}
+
+#[inline]
+fn place((steps_per_s, steps_per_m): (f64, f64), downwind_m: f64, now: SimTime) -> f64 {
+    steps_per_s * now.as_s() - steps_per_m * downwind_m
 }

@@ -13,15 +13,15 @@ use game::SimTime;
 use game::angle::wrap_pi;
 use game::fault::{FaultKind, FaultSpan};
 use game::math;
+use game::reseed::{Seeds, TimedNoise};
 use game::sensor::Compass;
-use game::stream::Noise;
 use serde::{Deserialize, Serialize};
 
 /// A compass: constant.
 #[derive(Clone, Debug)]
 pub struct CompassModel {
     compass: Compass,
-    noise: Noise,
+    noise: TimedNoise,
     period: SimTime,
     /// Faults of the game.
     faults: Vec<FaultSpan>,
@@ -39,10 +39,10 @@ pub struct CompassState {
 impl CompassModel {
     /// The compass of the boat named `vehicle`.
     #[must_use]
-    pub fn new(compass: &Compass, tick: SimTime, seed: u64, vehicle: &str) -> CompassModel {
+    pub fn new(compass: &Compass, tick: SimTime, seeds: &Seeds, vehicle: &str) -> CompassModel {
         CompassModel {
             compass: compass.clone(),
-            noise: Noise::new(seed, &format!("compass/{vehicle}")),
+            noise: seeds.noise(&format!("compass/{vehicle}")),
             period: whole_ticks(compass.period_s, tick),
             faults: vec![],
         }
@@ -71,7 +71,7 @@ impl CompassModel {
     pub fn read(&self, state: &mut CompassState, truth: &Truth, now: SimTime) -> f64 {
         if now.0 % self.period.0 == 0 {
             let number = (now.0 / self.period.0) as u64;
-            let noise = self.noise.normal(number);
+            let noise = self.noise.at(now).normal(number);
             let psi_rad = truth.pose.psi_rad;
             let magnetic_rad = psi_rad - self.compass.declination_error_rad - self.deviation_rad(psi_rad);
             let error_rad = self.compass.thrust_error_rad * truth.thrust_share + self.compass.noise_rad * noise;

@@ -10,8 +10,8 @@ use game::SimTime;
 use game::fault::{FaultKind, FaultSpan};
 use game::frame::Ned;
 use game::math;
+use game::reseed::{Seeds, TimedNoise};
 use game::sensor::{Gps, Outage};
-use game::stream::Noise;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
@@ -37,8 +37,8 @@ pub struct Fix {
 /// A receiver: constant.
 #[derive(Clone, Debug)]
 pub struct GpsModel {
-    normals: Noise,
-    uniforms: Noise,
+    normals: TimedNoise,
+    uniforms: TimedNoise,
     period: SimTime,
     latency: SimTime,
     bias_m: f64,
@@ -83,13 +83,13 @@ impl GpsModel {
     /// # Panics
     /// If its latency is more than [`UNDER_WAY_MAX`] periods.
     #[must_use]
-    pub fn new(gps: &Gps, tick: SimTime, seed: u64, vehicle: &str) -> GpsModel {
+    pub fn new(gps: &Gps, tick: SimTime, seeds: &Seeds, vehicle: &str) -> GpsModel {
         let period = whole_ticks(gps.period_s, tick);
         let latency = SimTime::from_s(gps.latency_s);
         assert!(latency <= period * UNDER_WAY_MAX as i64, "a latency is at most {UNDER_WAY_MAX} periods");
         GpsModel {
-            normals: Noise::new(seed, &format!("gps/{vehicle}")),
-            uniforms: Noise::new(seed, &format!("gps/{vehicle}/events")),
+            normals: seeds.noise(&format!("gps/{vehicle}")),
+            uniforms: seeds.noise(&format!("gps/{vehicle}/events")),
             period,
             latency,
             bias_m: gps.bias_m,
@@ -137,11 +137,12 @@ impl GpsModel {
     }
 
     fn take(&self, state: &mut GpsState, truth: &Truth, now: SimTime, number: u64) -> Fix {
+        let (normals, uniforms) = (self.normals.at(now), self.uniforms.at(now));
         let normal = |which: u64, sigma: f64| {
-            let (north, east) = self.normals.normal_pair(PAIRS * number + which);
+            let (north, east) = normals.normal_pair(PAIRS * number + which);
             Ned { north, east }.scaled(sigma)
         };
-        let uniform = |which: u64| self.uniforms.unit(UNIFORMS * number + which);
+        let uniform = |which: u64| uniforms.unit(UNIFORMS * number + which);
         let GaussMarkovStep { kept, fresh } = if number == 0 { GaussMarkovStep::FIRST } else { self.bias_step };
         state.bias = state.bias.scaled(kept) + normal(0, self.bias_m * fresh);
         if number > 0 {

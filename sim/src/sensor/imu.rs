@@ -12,9 +12,9 @@
 use super::{GaussMarkovStep, Truth};
 use game::SimTime;
 use game::math;
+use game::reseed::{Seeds, TimedNoise};
 use game::sea::GRAVITY_M_S2;
 use game::sensor::Imu;
-use game::stream::Noise;
 use serde::{Deserialize, Serialize};
 
 /// Pairs of normal numbers that a reading takes: noise and bias for each of six axes.
@@ -33,7 +33,7 @@ pub struct ImuReading {
 #[derive(Clone, Debug)]
 pub struct ImuModel {
     imu: Imu,
-    noise: Noise,
+    noise: TimedNoise,
     tick: SimTime,
     bias_step: GaussMarkovStep,
 }
@@ -75,8 +75,8 @@ impl ImuReading {
 impl ImuModel {
     /// Gyro and accelerometers of the boat named `vehicle`, which are read every tick.
     #[must_use]
-    pub fn new(imu: &Imu, tick: SimTime, seed: u64, vehicle: &str) -> ImuModel {
-        let noise = Noise::new(seed, &format!("imu/{vehicle}"));
+    pub fn new(imu: &Imu, tick: SimTime, seeds: &Seeds, vehicle: &str) -> ImuModel {
+        let noise = seeds.noise(&format!("imu/{vehicle}"));
         ImuModel { imu: imu.clone(), noise, tick, bias_step: GaussMarkovStep::new(tick, imu.bias_time_s) }
     }
 
@@ -84,14 +84,14 @@ impl ImuModel {
     pub fn read(&self, state: &mut ImuState, truth: &Truth, now: SimTime) -> ImuReading {
         let number = (now.0 / self.tick.0) as u64;
         let GaussMarkovStep { kept, fresh } = if number == 0 { GaussMarkovStep::FIRST } else { self.bias_step };
-        let imu = &self.imu;
+        let (imu, drawn) = (&self.imu, self.noise.at(now));
         let mut reading = ImuReading::of(truth);
         for axis in 0..3 {
-            let (noise, step) = self.noise.normal_pair(PAIRS * number + axis as u64);
+            let (noise, step) = drawn.normal_pair(PAIRS * number + axis as u64);
             let bias = &mut state.bias.gyro_rad_s[axis];
             *bias = kept * *bias + fresh * imu.gyro_bias_rad_s * step;
             reading.gyro_rad_s[axis] += *bias + imu.gyro_noise_rad_s * noise;
-            let (noise, step) = self.noise.normal_pair(PAIRS * number + 3 + axis as u64);
+            let (noise, step) = drawn.normal_pair(PAIRS * number + 3 + axis as u64);
             let bias = &mut state.bias.accelerometer_m_s2[axis];
             *bias = kept * *bias + fresh * imu.accelerometer_bias_m_s2 * step;
             reading.accelerometer_m_s2[axis] += *bias + imu.accelerometer_noise_m_s2 * noise;

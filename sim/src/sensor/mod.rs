@@ -16,6 +16,7 @@ use game::fault::FaultSpan;
 use game::frame::{Ned, Pose, Rotation, body_from_ned};
 use game::math;
 use game::picture::Nav;
+use game::reseed::Seeds;
 use game::sensor::Sensors;
 use game::{SimTime, frame::Body};
 use gps::{GpsModel, GpsState};
@@ -84,11 +85,11 @@ impl SensorState {
 impl SensorModel {
     /// The sensors of the boat named `vehicle`, read once a tick.
     #[must_use]
-    pub fn new(sensors: &Sensors, tick: SimTime, seed: u64, vehicle: &str) -> SensorModel {
+    pub fn new(sensors: &Sensors, tick: SimTime, seeds: &Seeds, vehicle: &str) -> SensorModel {
         SensorModel {
-            gps: sensors.gps.as_ref().map(|gps| GpsModel::new(gps, tick, seed, vehicle)),
-            compass: sensors.compass.as_ref().map(|compass| CompassModel::new(compass, tick, seed, vehicle)),
-            imu: sensors.imu.as_ref().map(|imu| ImuModel::new(imu, tick, seed, vehicle)),
+            gps: sensors.gps.as_ref().map(|gps| GpsModel::new(gps, tick, seeds, vehicle)),
+            compass: sensors.compass.as_ref().map(|compass| CompassModel::new(compass, tick, seeds, vehicle)),
+            imu: sensors.imu.as_ref().map(|imu| ImuModel::new(imu, tick, seeds, vehicle)),
         }
     }
 

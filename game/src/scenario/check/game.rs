@@ -67,6 +67,7 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
     fleet.fill(diagnostics);
     check_tick(diagnostics, document, tick, &fleet.boats.items);
     check_looks(diagnostics, document, tick, rules.as_ref());
+    check_reseed(diagnostics, document);
     let Fleet { boats, strategies, entries, .. } = fleet;
     let (field, mut rules, sea) = (field?, rules?, sea?);
     if !document.is_faultless(diagnostics) {
@@ -100,6 +101,7 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
     let scenario = Scenario {
         name: document.name.clone(),
         seed: raw.seed,
+        reseed: raw.reseed.clone(),
         tick,
         ticks_per_decision,
         patience_s: raw.patience_s,
@@ -117,6 +119,18 @@ pub(in crate::scenario) fn game(diagnostics: &mut Diagnostics, document: &Docume
         recipe: None,
     };
     document.is_faultless(diagnostics).then_some(scenario)
+}
+
+/// Seeds take over one after the other.
+fn check_reseed(diagnostics: &mut Diagnostics, document: &Document<raw::Game>) {
+    for (i, pair) in document.raw.reseed.windows(2).enumerate() {
+        if pair[1].after_s <= pair[0].after_s {
+            let place = document.at(&format!("reseed.{}", i + 1));
+            let message =
+                format!("after_s is {}, expected more than {} of the one before", pair[1].after_s, pair[0].after_s);
+            diagnostics.note(place, message);
+        }
+    }
 }
 
 /// The game's sea, or the one that takes its place.

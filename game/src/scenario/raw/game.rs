@@ -3,6 +3,7 @@
 use super::{FilePath, Name, Position};
 use crate::fault::Fault;
 use crate::link::Link;
+use crate::reseed::Reseed;
 use crate::scenario::Source;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -28,6 +29,9 @@ pub(crate) struct Game {
     /// Chooses the game.
     #[schemars(range(min = 0, max = i64::MAX), extend("default" = 1))]
     pub(crate) seed: u64,
+    /// Other seeds that take its place in the midst of the game, by rising times: what is drawn after each is drawn anew, all before stays.
+    #[schemars(length(max = 1000), extend("default" = []))]
+    pub(crate) reseed: Vec<Reseed>,
     /// The game ends at this time, s. Default what the rules say.
     #[schemars(range(min = 1, max = 86400))]
     pub(crate) duration_s: Option<f64>,
