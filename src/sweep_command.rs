@@ -42,7 +42,7 @@ pub(crate) struct Args {
     /// "strategy_5.contacts > 0"; `collision` and `out_of_bounds` stand for conditions on the first entry
     #[arg(long, value_name = "CONDITION")]
     find: Option<String>,
-    /// With --find: how many games
+    /// With --find: about how many games
     #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(20..=10_000_000))]
     search_games: u32,
 }
@@ -135,7 +135,7 @@ fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsi
     let condition = Condition::parse(&condition, plan.sweep())?;
     let stop = stop::on_ctrl_c()?;
     let mut journal = journal(args, folder, plan)?;
-    let search = Search { games: args.search_games as usize, learns: true };
+    let search = Search { games: args.search_games as usize, learns: true, splits: true };
     let found = sweep::find(plan, &condition, search, &mut journal, (jobs, &stop), |games, failures| {
         screen::remark(&format!("{failures} of {games} games with {condition}"));
     });

@@ -1,4 +1,4 @@
-//! What the search for rare failures gains over brute force, in the same run: as many games of `sweeps/storm.toml`, drawn evenly.
+//! What the search for rare failures gains over brute force, in the same run: as many games of `sweeps/storm.toml`, drawn evenly; and what of that is the splitting.
 //!
 //! `cargo bench -p squall-sweep --bench find -- [GAMES] [CONDITION]`, by default 1000 games and `strategy_5.out_of_bounds > 0`.
 
@@ -21,20 +21,27 @@ fn main() {
     let jobs = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     println!("{condition}: {games} games each on {jobs} threads");
 
-    let [search, brute] = [("cross-entropy", true), ("brute force", false)].map(|(name, learns)| {
+    let ways = [("splitting", true, true), ("cross-entropy", true, false), ("brute force", false, false)];
+    let found = ways.map(|(name, learns, splits)| {
         let folder = tempfile::tempdir().expect("a folder");
         let mut journal = Journal::begin(folder.path(), &plan).unwrap_or_else(|error| panic!("{error}"));
         let stop = AtomicBool::new(false);
-        let found = find(&plan, &condition, Search { games, learns }, &mut journal, (jobs, &stop), |_, _| {});
+        let search = Search { games, learns, splits };
+        let found = find(&plan, &condition, search, &mut journal, (jobs, &stop), |_, _| {});
         let found = found.unwrap_or_else(|error| panic!("{error}"));
         let (rate, half) = (100.0 * found.rate.mean, 100.0 * half_width(&found));
-        println!("{name:14}{:5} failures, a rate of {rate:.2} % ± {half:.2}", found.failures);
+        println!("{name:14}{:5} failures in {} games, a rate of {rate:.3} % ± {half:.3}", found.failures, found.games);
         found
     });
-    println!("failures found: {:.1} times as many", search.failures as f64 / brute.failures.max(1) as f64);
-    let ratio = half_width(&brute) / half_width(&search);
-    println!("games for the same interval: {:.1} times fewer", ratio * ratio);
-    println!("the same, by those after learning: {:.1} times fewer", search.factor.unwrap_or(f64::NAN));
+    let brute = &found[2];
+    for (found, (name, ..)) in found.iter().zip(ways).take(2) {
+        let failures = found.failures as f64 / brute.failures.max(1) as f64;
+        let ratio = half_width(brute) / half_width(found);
+        let fewer = ratio * ratio * brute.games as f64 / found.games as f64;
+        let after = found.factor.unwrap_or(f64::NAN);
+        println!("{name}: {failures:.1} times as many failures; {fewer:.1} times fewer games for the same interval");
+        println!("  by the games after learning alone: {after:.1} times fewer");
+    }
 }
 
 fn half_width(found: &Found) -> f64 {

@@ -4,6 +4,7 @@
 //! A [`Study`] keeps what came of them in a folder and is taken up again from it; [`Report`] is what all of it says. Everything
 //! depends on the plan alone: not on the number of threads, not on who played which games, not on when it was stopped.
 
+mod approach;
 mod condition;
 mod effects;
 mod find;
@@ -14,6 +15,7 @@ mod parquet_file;
 mod plan;
 mod play;
 mod report;
+mod split;
 mod study;
 mod text;
 mod until;

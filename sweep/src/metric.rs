@@ -19,7 +19,7 @@ const fn metric(name: &'static str, unit: &'static str, about: &'static str) -> 
 
 /// All of them, in the order of the columns: of the entry's team, of its opponent's, and of the game. [`crate::play_one`] measures
 /// them in this order.
-pub const METRICS: [Metric; 28] = [
+pub const METRICS: [Metric; 30] = [
     metric("win_share", "", "1 for a game won, half of that for a draw"),
     metric("score", "", "points"),
     metric("grabs", "", "flags taken"),
@@ -32,6 +32,7 @@ pub const METRICS: [Metric; 28] = [
     metric("outside_s", "s", "time outside of the field, all boats together"),
     metric("distance_m", "m", "distance over the ground, all boats together"),
     metric("energy_kj", "kJ", "energy taken from batteries, all boats together; none without batteries"),
+    metric("edge_m", "m", "the least distance of its boats to the edge of the field, below 0 outside"),
     metric("opponent_score", "", "the opponent's points"),
     metric("opponent_grabs", "", "flags that the opponent took"),
     metric("opponent_captures", "", "flags that the opponent brought in"),
@@ -47,6 +48,11 @@ pub const METRICS: [Metric; 28] = [
     metric("opponent_outside_s", "s", "time that the opponent's boats were outside of the field"),
     metric("opponent_distance_m", "m", "distance of the opponent's boats over the ground"),
     metric("opponent_energy_kj", "kJ", "energy that the opponent's boats took from batteries"),
+    metric(
+        "opponent_edge_m",
+        "m",
+        "the least distance of the opponent's boats to the edge of the field, below 0 outside",
+    ),
     metric("score_difference", "", "points less the opponent's"),
     metric("contacts", "", "times that two hulls touched, of any boats"),
     metric(
@@ -64,4 +70,27 @@ pub(crate) const HEADLINES: [&str; 5] = ["win_share", "score", "opponent_score",
 /// The place of a metric among all.
 pub(crate) fn index_of(name: &str) -> Option<usize> {
     METRICS.iter().position(|metric| metric.name == name)
+}
+
+/// A distance that says at any time of a game how near it is to a failure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Nearness {
+    /// Of any two boats' centres: to a collision.
+    Boats,
+    /// Of the entry's boats to the edge of the field: to leaving it.
+    Edge,
+}
+
+impl Nearness {
+    /// All of them, in order.
+    pub(crate) const ALL: [Nearness; 2] = [Nearness::Boats, Nearness::Edge];
+
+    /// The metric that is its least value in a game.
+    pub(crate) fn metric(self) -> usize {
+        let name = match self {
+            Nearness::Boats => "closest_m",
+            Nearness::Edge => "edge_m",
+        };
+        index_of(name).expect("it is one of them")
+    }
 }

@@ -1,6 +1,7 @@
 //! Which games a sweep consists of.
 
 use game::Scenario;
+use game::reseed::Reseed;
 use game::scenario::{
     Axis, AxisValue, Design, Entrant, Files, Overrides, Packed, Problem, Problems, Setting, Sweep, UnpackError,
     digest_of, load_with_files,
@@ -32,6 +33,23 @@ pub struct Plan {
 pub struct Point {
     /// By axis.
     pub values: Vec<AxisValue>,
+    /// Seeds that take over in the midst of the game, in place of those that the game says; none is those.
+    pub reseed: Vec<Reseed>,
+}
+
+impl From<Vec<AxisValue>> for Point {
+    fn from(values: Vec<AxisValue>) -> Point {
+        Point { values, reseed: vec![] }
+    }
+}
+
+impl Point {
+    /// Its seeds as TOML; none without any.
+    pub(crate) fn reseed_toml(&self) -> Option<String> {
+        let one = |one: &Reseed| format!("{{ after_s = {:?}, seed = {} }}", one.after_s, one.seed);
+        let all: Vec<String> = self.reseed.iter().map(one).collect();
+        (!all.is_empty()).then(|| format!("[{}]", all.join(", ")))
+    }
 }
 
 /// One game of a sweep.
@@ -150,7 +168,13 @@ impl Plan {
     }
 
     fn overrides(&self, point: usize, entry: usize, side: usize) -> Overrides {
-        self.sweep.overrides(&self.teams, entry, side, &self.points[point].values)
+        let point = &self.points[point];
+        let mut overrides = self.sweep.overrides(&self.teams, entry, side, &point.values);
+        if let Some(value) = point.reseed_toml() {
+            let setting = Setting::new("game.reseed", value, self.sweep.path.clone(), (1, 1));
+            overrides.settings.push(setting.expect("a key of the game"));
+        }
+        overrides
     }
 
     fn problem(&self, message: String) -> Problems {
@@ -236,8 +260,9 @@ fn points(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
     let axes = &sweep.axes;
     let count = sweep.points as usize;
     let sampled = |share: &dyn Fn(usize, usize) -> f64| {
-        let point = |i: usize| axes.iter().enumerate().map(|(k, axis)| axis.at(share(i, k))).collect();
-        (0..count).map(|i| Point { values: point(i) }).collect()
+        let point =
+            |i: usize| axes.iter().enumerate().map(|(k, axis)| axis.at(share(i, k))).collect::<Vec<AxisValue>>();
+        (0..count).map(|i| Point::from(point(i))).collect()
     };
     Ok(match sweep.design {
         Design::Grid => grid(sweep)?,
@@ -269,10 +294,10 @@ fn grid(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
         let message = format!("the grid has more than {POINTS_MAX} points, expected fewer levels, or another design");
         return Err(Problems(vec![Problem::of_file(sweep.path.clone(), message)]));
     }
-    let mut points = vec![Point { values: vec![] }];
+    let mut points = vec![Point::from(vec![])];
     for levels in &levels {
-        let with = |point: &Point, level: &AxisValue| Point {
-            values: point.values.iter().chain(std::iter::once(level)).cloned().collect(),
+        let with = |point: &Point, level: &AxisValue| {
+            Point::from(point.values.iter().chain(std::iter::once(level)).cloned().collect::<Vec<AxisValue>>())
         };
         points = points.iter().flat_map(|point| levels.iter().map(move |level| with(point, level))).collect();
     }
@@ -281,14 +306,14 @@ fn grid(sweep: &Sweep) -> Result<Vec<Point>, Problems> {
 
 fn one_at_a_time(axes: &[Axis]) -> Vec<Point> {
     let nominal: Vec<AxisValue> = axes.iter().map(Axis::nominal).collect();
-    let mut points = vec![Point { values: nominal.clone() }];
+    let mut points = vec![Point::from(nominal.clone())];
     let mut known = BTreeMap::from([(format!("{nominal:?}"), ())]);
     for (i, axis) in axes.iter().enumerate() {
         for level in axis.levels() {
             let mut values = nominal.clone();
             values[i] = level;
             if known.insert(format!("{values:?}"), ()).is_none() {
-                points.push(Point { values });
+                points.push(Point::from(values));
             }
         }
     }

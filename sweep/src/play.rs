@@ -1,6 +1,7 @@
 //! The games of a sweep, played on several threads, and what is measured of each.
 
-use crate::metric::METRICS;
+use crate::approach::Approach;
+use crate::metric::{METRICS, Nearness};
 use crate::plan::{Job, Plan};
 use agent::MindRunner;
 use analysis::quality::GameQuality;
@@ -25,6 +26,8 @@ pub struct Played {
     pub digest: String,
     /// By vehicle.
     pub boats: Vec<BoatRow>,
+    /// By [`Nearness`].
+    pub(crate) approaches: [Approach; Nearness::ALL.len()],
 }
 
 /// What a boat did in a game.
@@ -141,7 +144,13 @@ pub fn play_one(plan: &Plan, index: usize) -> Played {
 }
 
 fn one(plan: &Plan, job: Job, loaded: &mut Loaded, is_stopped: &dyn Fn() -> bool) -> Played {
-    let failed = |why: String| Played { job, result: Err(why), digest: String::new(), boats: vec![] };
+    let failed = |why: String| Played {
+        job,
+        result: Err(why),
+        digest: String::new(),
+        boats: vec![],
+        approaches: Default::default(),
+    };
     let scenario = match loaded.scenario(plan, &job) {
         Ok(scenario) => scenario.of_seed(job.seed).map_err(|problems| problems.to_string()),
         Err(why) => Err(why.clone()),
@@ -150,7 +159,7 @@ fn one(plan: &Plan, job: Job, loaded: &mut Loaded, is_stopped: &dyn Fn() -> bool
         Ok(scenario) => scenario,
         Err(why) => return failed(why),
     };
-    let mut watch = Watch::new(&scenario);
+    let mut watch = Watch::new(&scenario, job.side);
     let outcome = arena::play_observed(&scenario, agent::minds_of(&scenario), job.seed, |contest, runner| {
         watch.see(contest, runner);
         !is_stopped()
@@ -167,19 +176,27 @@ struct Watch<'a> {
     cursor: EventCursor,
     quality: GameQuality,
     statistics: StatisticsBuilder<'a>,
-    closest_m: f64,
+    /// The least distances, by [`Nearness`], m.
+    least_m: [f64; Nearness::ALL.len()],
+    approaches: [Approach; Nearness::ALL.len()],
+    opponents_edge_m: f64,
+    /// The entry's team.
+    side: usize,
     /// By vehicle: energy taken from its battery, kJ.
     energies_kj: Vec<f64>,
 }
 
 impl<'a> Watch<'a> {
-    fn new(scenario: &'a Scenario) -> Watch<'a> {
+    fn new(scenario: &'a Scenario, side: usize) -> Watch<'a> {
         Watch {
             scenario,
             cursor: EventCursor::default(),
             quality: GameQuality::new(scenario),
             statistics: StatisticsBuilder::new(scenario),
-            closest_m: f64::INFINITY,
+            least_m: [f64::INFINITY; Nearness::ALL.len()],
+            approaches: Default::default(),
+            opponents_edge_m: f64::INFINITY,
+            side,
             energies_kj: vec![f64::NAN; scenario.vehicles.len()],
         }
     }
@@ -189,11 +206,22 @@ impl<'a> Watch<'a> {
         let step = Step::of_frame(self.scenario, &contest.frame(&mut self.cursor), orders);
         self.quality.add(&step, &[]);
         self.statistics.add(&step);
+        let (mut closest_m, mut edges_m) = (f64::INFINITY, [f64::INFINITY; 2]);
         for (i, one) in step.samples.iter().enumerate() {
+            let at = one.truth.at();
             for other in &step.samples[..i] {
-                self.closest_m = self.closest_m.min(one.truth.at().distance(other.truth.at()));
+                closest_m = at.distance(other.truth.at()).min(closest_m);
             }
+            let edge_m = &mut edges_m[usize::from(self.scenario.vehicles[i].team.index() != self.side)];
+            *edge_m = edge_m.min(self.scenario.field.inside_by_m(at));
         }
+        let now_s = contest.now().as_s();
+        for (nearness, now_m) in Nearness::ALL.into_iter().zip([closest_m, edges_m[0]]) {
+            let place = nearness as usize;
+            self.least_m[place] = self.least_m[place].min(now_m);
+            self.approaches[place].add(now_s, now_m);
+        }
+        self.opponents_edge_m = self.opponents_edge_m.min(edges_m[1]);
         for (i, energy_kj) in self.energies_kj.iter_mut().enumerate() {
             if let Drive::Thrusters { thruster, .. } = &self.scenario.boat_of(VehicleId::at(i)).drive
                 && let Some(battery) = &thruster.flaws.battery
@@ -205,7 +233,8 @@ impl<'a> Watch<'a> {
     }
 
     fn end(self, job: Job, outcome: &Outcome) -> Played {
-        let Watch { scenario, quality, statistics, closest_m, energies_kj, .. } = self;
+        let Watch { scenario, quality, statistics, energies_kj, .. } = self;
+        let [closest_m, edge_m] = self.least_m;
         let nearness = quality.end().encounters.all();
         let own = &scenario.teams[job.side].name;
         let boat = |(statistics, energy_kj): (BoatStatistics, f64)| BoatRow {
@@ -214,7 +243,7 @@ impl<'a> Watch<'a> {
             energy_kj,
         };
         let boats: Vec<BoatRow> = statistics.end().into_iter().zip(energies_kj).map(boat).collect();
-        let team = |is_own: bool| {
+        let team = |is_own: bool, edge_m: f64| {
             let name = &scenario.teams[if is_own { job.side } else { 1 - job.side }].name;
             let counts = outcome.counts.teams[name];
             let sum =
@@ -231,9 +260,10 @@ impl<'a> Watch<'a> {
                 sum(&|boat| boat.statistics.outside_s),
                 sum(&|boat| boat.statistics.distance_m),
                 sum(&|boat| boat.energy_kj),
+                edge_m,
             ]
         };
-        let (ours, theirs) = (team(true), team(false));
+        let (ours, theirs) = (team(true, edge_m), team(false, self.opponents_edge_m));
         let won = match &outcome.winner {
             Some(winner) => f64::from(u8::from(winner == own)),
             None => 0.5,
@@ -245,6 +275,6 @@ impl<'a> Watch<'a> {
         numbers.extend([nearness.contacts as f64, nearness.near_misses as f64]);
         numbers.extend([if closest_m.is_finite() { closest_m } else { f64::NAN }, outcome.duration_s]);
         assert_eq!(numbers.len(), METRICS.len(), "a number for each metric");
-        Played { job, result: Ok(numbers), digest: outcome.digest.clone(), boats }
+        Played { job, result: Ok(numbers), digest: outcome.digest.clone(), boats, approaches: self.approaches }
     }
 }

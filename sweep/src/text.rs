@@ -111,12 +111,19 @@ fn interactions(all: &[Interaction], line: &mut impl FnMut(String)) {
 /// What a search for rare failures found, for people.
 #[must_use]
 pub fn found_text(found: &Found) -> String {
-    let Found { entry, condition, games, failures, rate, .. } = found;
-    let half = rate.half_width().unwrap_or(f64::NAN);
-    let mut text = format!(
-        "{entry}: {condition} in {:.4} ± {half:.4} of all games; {failures} of {games} that were played\n",
-        rate.mean
-    );
+    let Found { entry, condition, games, failures, branches, rate, .. } = found;
+    let mut text = match rate.half_width() {
+        // Without a failure nothing is known of how rare they are.
+        _ if *failures == 0 => format!("{entry}: {condition} in none of {games} games that were played\n"),
+        half => format!(
+            "{entry}: {condition} in {:.4} ± {:.4} of all games; {failures} of {games} that were played\n",
+            rate.mean,
+            half.unwrap_or(f64::NAN)
+        ),
+    };
+    if *branches > 0 {
+        let _ = writeln!(text, "{branches} of them are others up to a time and have another future from then on");
+    }
     if let Some(factor) = found.factor {
         let _ = writeln!(text, "one of these games tells as much as {factor:.1} games drawn evenly");
     }

@@ -149,7 +149,7 @@ fn try_value(
     values[axis] = plan.sweep().axes[axis].at(share);
     let value = values[axis].number().unwrap_or(f64::NAN);
     let most = plan.seeds();
-    let plan = plan.at(vec![Point { values }], (plan.sweep().seed, most));
+    let plan = plan.at(vec![Point::from(values)], (plan.sweep().seed, most));
     let looks = (most as f64 / FIRST_SEEDS as f64).log2().ceil().max(0.0) + 1.0;
     let alpha = ALPHA / looks / f64::from(STEPS + 2);
     let mut observations: Vec<f64> = vec![];
@@ -161,7 +161,7 @@ fn try_value(
             return Err(UntilError::Stopped);
         }
         let numbers: Result<Vec<f64>, String> =
-            played.into_iter().map(|result| result.map(|numbers| numbers[condition.metric])).collect();
+            played.into_iter().map(|result| result.map(|measured| measured.numbers[condition.metric])).collect();
         observations.extend(numbers.map_err(UntilError::Game)?.chunks(2).map(|sides| 0.5 * (sides[0] + sides[1])));
         let holds = verdict(condition, &observations, alpha);
         if holds.is_some() || until >= most {

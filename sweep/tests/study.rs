@@ -216,7 +216,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
         sweep::find(
             &plan,
             &condition,
-            Search { games: 40, learns: true },
+            Search { games: 40, learns: true, splits: true },
             journal,
             (NonZeroUsize::MIN, stop),
             |_, _| {
@@ -228,7 +228,8 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
     let whole = dir.path().join("whole");
     let mut journal = Journal::begin(&whole, &plan).unwrap();
     let want = find(&mut journal, &AtomicBool::new(false), 99).unwrap();
-    assert_eq!((want.games, journal.games()), (40, 40));
+    assert!(want.branches > 0 && (want.games - want.branches..=want.games).contains(&journal.games()), "{want:?}");
+    let games = journal.games();
 
     let cut = dir.path().join("cut");
     let mut journal = Journal::begin(&cut, &plan).unwrap();
@@ -256,7 +257,7 @@ fn a_search_that_was_stopped_anywhere_goes_on_without_playing_its_games_again() 
         |_| {},
     )
     .unwrap();
-    assert!(journal.games() > 40);
+    assert!(journal.games() > games);
     drop(journal);
     let mut again = Journal::resume(&cut, &plan).unwrap();
     // With nobody to play them all games are there.
