@@ -5,6 +5,7 @@
 //! command ([`ExternalOrder`]). Commands of operators ([`OperatorCommand`]) and the status of a gateway
 //! ([`GatewayStatus`]) are JSON.
 
+use crate::frame::Ned;
 use crate::id::VehicleId;
 use crate::message::{Message, Stamp, VehicleOrder};
 use crate::picture::Nav;
@@ -180,6 +181,9 @@ pub struct GatewayStatus {
     pub nav: Option<Nav>,
     /// Age of the last good fix, s.
     pub nav_age_s: Option<f64>,
+    /// Where the boat may be, once a game says where the field is; earlier versions have none.
+    #[serde(default)]
+    pub geofence: Option<GeofenceReport>,
     /// Age of mode and operator, s; earlier versions have none.
     #[serde(default)]
     pub mode_age_s: Option<f64>,
@@ -190,11 +194,29 @@ pub struct GatewayStatus {
     pub battery_age_s: Option<f64>,
     /// The sentence that was sent last.
     pub last_sent: String,
+    /// In a dry run, what would have been sent last: what is sent is standby.
+    #[serde(default)]
+    pub would_send: Option<String>,
     /// Counts of everything, by name.
     pub counts: Vec<(String, u64)>,
     /// Median and 99th percentile in µs of: sentence in to topic out, order in to sentence out. What was not measured
     /// yet is missing.
     pub latency_us: [Option<[f64; 2]>; 2],
+}
+
+/// The geofence of a boat, and how near the boat is to it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GeofenceReport {
+    /// The corners of the water where the boat may be, in order.
+    pub outline: Vec<Ned>,
+    /// The corners of each part of it where the boat must not be.
+    pub keep_out: Vec<Vec<Ned>>,
+    /// The boat's distance to the nearest edge of either, m; negative where it must not be.
+    pub clearance_m: Option<f64>,
+    /// How far the boat would go if it were stopped now, m.
+    pub stopping_m: Option<f64>,
+    /// Where it would come to rest.
+    pub stops_at: Option<Ned>,
 }
 
 /// A failsafe: the boat was stopped.

@@ -45,8 +45,13 @@ pub struct Gateway {
     pub failsafe: FailsafeActions,
     /// How we know that the boat listens to us.
     pub control: ControlWatch,
+    /// Whether the boat is armed without a pre-flight check.
+    pub preflight: PreflightRule,
     /// Our own heading and speed loops, where `drive` is "thrust".
     pub loops: Loops,
+    /// What is switched on and off, in this order, each time that the boat's link is up and we have control.
+    #[schemars(length(max = 6))]
+    pub startup_words: Vec<SwitchWord>,
     /// Time between two lines of a mission that is taken up, s.
     #[schemars(range(min = 0.005, max = 5), extend("default" = 0.1))]
     pub upload_gap_s: f64,
@@ -60,6 +65,39 @@ pub enum Drive {
     Thrust,
     /// The boat's: it is sent heading and speed, PSEAC mode G.
     Speed,
+}
+
+/// A switch of the boat, as the fifth field of PSEAC has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "SCREAMING_SNAKE_CASE")]
+pub enum SwitchWord {
+    /// Thrusters on.
+    ThrOn,
+    /// Thrusters off.
+    ThrOff,
+    /// Satellite receiver on.
+    GpsOn,
+    /// Satellite receiver off.
+    GpsOff,
+    /// Sonar on.
+    SonarOn,
+    /// Sonar off.
+    SonarOff,
+}
+
+impl SwitchWord {
+    /// As it is sent.
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        match self {
+            SwitchWord::ThrOn => "THR_ON",
+            SwitchWord::ThrOff => "THR_OFF",
+            SwitchWord::GpsOn => "GPS_ON",
+            SwitchWord::GpsOff => "GPS_OFF",
+            SwitchWord::SonarOn => "SONAR_ON",
+            SwitchWord::SonarOff => "SONAR_OFF",
+        }
+    }
 }
 
 /// What headings count from.
@@ -89,6 +127,9 @@ pub struct Limits {
     pub slew_pct_s: f64,
 }
 
+/// The most corners of a polygon of a geofence: all of them travel with every status.
+const CORNERS_MAX: usize = 100;
+
 /// What navigation must be like; what is not makes the boat stop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NavWatch {
@@ -109,10 +150,18 @@ pub struct NavWatch {
     pub frozen_s: f64,
 }
 
-/// The geofence round the field: a boat outside, or unable to stop inside, is stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// The geofence: a boat outside, or unable to stop inside, is stopped.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Geofence {
-    /// How far outside of the field it lies, m.
+    /// Its corners in order, either way round, with no two sides crossing: [latitude, longitude], degrees. Default: the
+    /// field's rectangle, and the margin round it.
+    #[schemars(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180))))]
+    pub polygon: Option<Vec<[f64; 2]>>,
+    /// Polygons within it where the boat must not be either, nor be unable to stop before; each like `polygon`.
+    #[schemars(length(max = 50))]
+    #[schemars(inner(length(min = 3, max = CORNERS_MAX), inner(inner(range(min = -180, max = 180)))))]
+    pub keep_out: Vec<Vec<[f64; 2]>>,
+    /// How far outside of the field it lies without a `polygon`, m.
     #[schemars(range(min = 0, max = 10000), extend("default" = 30))]
     pub margin_m: f64,
     /// How hard the boat slows down with thrust at zero, m/s².
@@ -196,6 +245,17 @@ pub struct ControlWatch {
     /// How far the thrust that the boat shows may be from what it was sent, per cent (no such watch at 200).
     #[schemars(range(min = 1, max = 200), extend("default" = 2))]
     pub echo_thrust_pct: f64,
+}
+
+/// Whether a boat is armed without a pre-flight check.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PreflightRule {
+    /// Arming is refused without the report of a passed one.
+    #[schemars(extend("default" = false))]
+    pub required: bool,
+    /// How old the report may grow, h.
+    #[schemars(range(min = 0.1, max = 1000), extend("default" = 24))]
+    pub age_max_h: f64,
 }
 
 /// The Surveyor's thrust map, by the West Point missions of 2024: thrust in per cent, speed in m/s.

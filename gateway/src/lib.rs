@@ -3,6 +3,7 @@
 //! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how sentences, orders and navigation meet), then
 //! [`nmea`]. [`emulator`] is the boat's end of the link. Sockets and clocks are only in [`link`] and `node`.
 
+pub mod bow_watch;
 pub mod bridge;
 mod compass_check;
 pub mod declination;
@@ -16,6 +17,7 @@ pub mod nav_estimate;
 pub mod nmea;
 #[cfg(feature = "net")]
 pub mod node;
+pub mod preflight;
 pub mod record;
 pub mod replay;
 pub mod sensor_check;

@@ -1,14 +1,19 @@
 //! The sensor check before arming: which sentences a boat sends, how often, who commands it, and what is missing.
 
-use crate::nmea::{ControlState, Counts, Date, Framer, Gga, Operator, ParseError, Sentence, TimeOfDay};
+use crate::nmea::{ControlState, Counts, Date, Framer, Gga, M_S_PER_KN, Operator, ParseError, Sentence, TimeOfDay};
 use game::SimTime;
 use game::angle::wrap_pi;
+use game::frame::LatLon;
 use std::collections::BTreeMap;
 
 /// Below this rate a sentence comes too seldom to drive a boat, 1/s.
 const RATE_MIN_HZ: f64 = 1.0;
 /// Compass and true heading that are nearer than this are the same, rad.
 const SAME_HEADING_RAD: f64 = 0.02;
+/// The course of a slower boat is not where it points, m/s.
+const COURSE_MIN_M_S: f64 = 1.0;
+/// The most positions that are kept.
+const FIXES_MAX: usize = 20_000;
 /// The most sentences that are counted by name.
 const NAMES_MAX: usize = 64;
 
@@ -41,6 +46,10 @@ pub struct SensorCheck {
     framer: Framer,
     received: BTreeMap<String, Received>,
     fix: Option<Gga>,
+    /// Its positions, and when they came.
+    fixes: Vec<(SimTime, LatLon)>,
+    /// Course and speed over the ground, degrees and m/s.
+    track: Option<(f64, f64)>,
     /// Time of day by the boat, and when it came.
     clock: Option<(SimTime, TimeOfDay)>,
     date: Option<Date>,
@@ -77,14 +86,64 @@ impl SensorCheck {
         self.framer.counts()
     }
 
+    /// The last fix.
+    #[must_use]
+    pub fn fix(&self) -> Option<&Gga> {
+        self.fix.as_ref()
+    }
+
+    /// The positions so far, and when they came.
+    #[must_use]
+    pub fn fixes(&self) -> &[(SimTime, LatLon)] {
+        &self.fixes
+    }
+
+    /// Heading by the compass, degrees.
+    #[must_use]
+    pub fn compass_deg(&self) -> Option<f64> {
+        self.compass_deg
+    }
+
+    /// A true heading to compare it with, degrees: as reported, or the course of a boat that makes way.
+    #[must_use]
+    pub fn true_deg(&self) -> Option<f64> {
+        let course =
+            || self.track.filter(|(_, speed_m_s)| *speed_m_s >= COURSE_MIN_M_S).map(|(course_deg, _)| course_deg);
+        self.true_deg.or_else(course)
+    }
+
+    /// Mode, who commands the boat, and its thrust.
+    #[must_use]
+    pub fn control(&self) -> Option<&ControlState> {
+        self.control.as_ref()
+    }
+
+    /// The battery, V.
+    #[must_use]
+    pub fn volts(&self) -> Option<f64> {
+        self.volts
+    }
+
+    /// The last error code.
+    #[must_use]
+    pub fn error(&self) -> Option<&str> {
+        self.error.as_deref()
+    }
+
+    /// How far the boat's clock is behind the host's, s; `host` is the host's time of day at `now`.
+    #[must_use]
+    pub fn clock_behind_s(&self, now: SimTime, host: TimeOfDay) -> Option<f64> {
+        self.clock.map(|(came, time)| host.later(came - now).since_s(time))
+    }
+
     /// What the boat reports of itself, in words; `host` is the host's time of day at `now`.
     #[must_use]
     pub fn findings(&self, now: SimTime, host: TimeOfDay) -> Vec<String> {
         let mut found = Vec::new();
-        if let Some(Gga { at, quality, hdop, .. }) = &self.fix {
+        if let Some(fix @ Gga { at, quality, hdop, .. }) = &self.fix {
             let place = at.map_or("no position".to_owned(), |at| format!("{:.6}, {:.6}", at.lat_deg, at.lon_deg));
             let hdop = hdop.map_or(String::new(), |hdop| format!(", dilution {hdop}"));
-            found.push(format!("position: {place} (fix quality {quality}{hdop})"));
+            found.push(format!("position: {place} (fix quality {quality}: {}{hdop})", fix.quality_in_words()));
         }
         found.extend(self.heading());
         if let Some(ControlState { mode, operator, .. }) = &self.control {
@@ -94,8 +153,7 @@ impl SensorCheck {
         }
         found.extend(self.volts.map(|volts| format!("battery: {volts} V")));
         found.extend(self.error.as_ref().map(|code| format!("error code: {code}")));
-        if let Some((came, time)) = self.clock {
-            let behind_s = host.later(came - now).since_s(time);
+        if let Some(behind_s) = self.clock_behind_s(now, host) {
             let date = self
                 .date
                 .map_or("it sends no date".to_owned(), |d| format!("date {}-{:02}-{:02}", d.year, d.month, d.day));
@@ -107,7 +165,8 @@ impl SensorCheck {
         found
     }
 
-    fn heading(&self) -> Option<String> {
+    /// Its headings, in words.
+    pub(crate) fn heading(&self) -> Option<String> {
         let compass_deg = self.compass_deg?;
         Some(match self.true_deg {
             None => format!("heading: {compass_deg:.1} by its compass; nothing true to compare it with"),
@@ -173,9 +232,18 @@ impl SensorCheck {
         match sentence {
             Sentence::Gga(gga) => {
                 self.clock = gga.time.map(|time| (now, time)).or(self.clock);
+                if let Some(at) = gga.at
+                    && self.fixes.len() < FIXES_MAX
+                {
+                    self.fixes.push((now, at));
+                }
                 self.fix = Some(gga);
             }
             Sentence::Rmc(rmc) => self.date = rmc.date.or(self.date),
+            Sentence::Vtg(vtg) => {
+                let speed_m_s = vtg.speed_kn.map(|speed_kn| speed_kn * M_S_PER_KN);
+                self.track = vtg.course_true_deg.zip(speed_m_s);
+            }
             Sentence::Zda(zda) => self.date = zda.date.or(self.date),
             Sentence::Attitude(attitude) => self.compass_deg = attitude.heading_deg.or(self.compass_deg),
             Sentence::Hdt(hdt) => self.true_deg = hdt.heading_deg.or(self.true_deg),
@@ -223,7 +291,7 @@ mod tests {
         let host = TimeOfDay(54_302_400);
         let findings = checked(TELEMETRY, 10.0).findings(SimTime::ZERO, host).join("\n");
         for want in [
-            "position: 42.358436, -71.087448 (fix quality 2, dilution 0.98)",
+            "position: 42.358436, -71.087448 (fix quality 2: DGPS, dilution 0.98)",
             "heading: 222.6 by its compass; nothing true",
             "control: mode T (Thruster), commanded by Primary",
             "clock: fixes are 1.30 s behind this host's clock; it sends no date",

@@ -1,18 +1,33 @@
-//! `squall gateway check`: the sensor check of a boat before arming.
+//! `squall gateway check`: the sensor check of a boat, and with a vehicle the pre-flight check before arming.
 
+use super::preflight_report;
+use super::swing_guide::{Guide, guided_checks};
+use crate::net_args::LeafArgs;
 use crate::screen;
 use crate::sim_command::seconds;
 use crate::stop;
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow, bail};
+use bus::game_search::GameSearch;
 use game::SimTime;
+use game::gateway::Gateway;
+use gateway::geofence::GeofenceArea;
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use gateway::nmea::date_and_time;
+use gateway::node::machine_checks;
+use gateway::preflight::{Report, Water, boat_checks};
 use gateway::sensor_check::SensorCheck;
 use recording::utc;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
+
+/// Without and with a pre-flight check it listens for so long, s.
+const LISTEN_S: [f64; 2] = [10.0, 30.0];
+/// How long the game is looked for.
+const GAME_WAIT: Duration = Duration::from_secs(5);
 
 /// Which boat.
 #[derive(clap::Args)]
@@ -20,44 +35,129 @@ pub(crate) struct Args {
     /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL")]
     link: String,
-    /// How long to listen, s
-    #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
-    for_s: f64,
+    /// How long to listen, s [default: 10, and 30 with --vehicle]
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    for_s: Option<f64>,
+    /// Makes the pre-flight check of this vehicle, for the field of its game
+    #[arg(long, value_name = "NAME")]
+    vehicle: Option<String>,
+    /// By which gateway file it will be driven [default: a Surveyor with careful limits]
+    #[arg(long, value_name = "FILE", requires = "vehicle")]
+    config: Option<PathBuf>,
+    /// Guides through compass swing and propeller test, under remote control; asks before each
+    #[arg(long, requires = "vehicle")]
+    guided: bool,
+    /// Where the report goes [default: runs/preflight-NAME.json, and the same as .txt]
+    #[arg(long, value_name = "FILE", requires = "vehicle")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    leaf: LeafArgs,
 }
 
-#[expect(clippy::disallowed_methods, reason = "it listens for so long by the clock")]
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let address = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("--link: {e}"))?;
+    let gateway = super::gateway_file(args.config.as_deref())?;
     let stop = stop::on_ctrl_c()?;
     let (sender, events) = sync_channel(4096);
     // A full queue drops events: this only listens.
     let take = move |event| drop(sender.try_send(event));
     let _link = Link::open(&address, LinkSettings { silence: None, ..LinkSettings::default() }, take)?;
-    let start = Instant::now();
-    let at = |moment: Instant| SimTime::from_s(moment.saturating_duration_since(start).as_secs_f64());
-    let (mut check, mut reason) = (SensorCheck::new(), String::from("nothing came"));
-    while start.elapsed().as_secs_f64() < args.for_s && !stop.load(Ordering::Relaxed) {
-        match events.recv_timeout(Duration::from_millis(100)) {
-            Ok(LinkEvent::Bytes { at: moment, bytes, .. }) => check.take(at(moment), &bytes),
-            Ok(LinkEvent::Up { name, .. }) => {
-                screen::remark(&format!("connected to {name}; listening for {} s, sending nothing", args.for_s));
-            }
-            Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
-                if why != reason {
-                    screen::remark(&why);
+    let for_s = args.for_s.unwrap_or(LISTEN_S[usize::from(args.vehicle.is_some())]);
+    let mut listener = Listener::new(events, stop);
+    listener.hello = format!("listening for {for_s} s, sending nothing");
+    listener.listen(&mut |listener| listener.now().as_s() >= for_s);
+    let check = &listener.check;
+    if check.received().is_empty() {
+        let garbage = check.counts().garbage;
+        bail!("no sentence from {address} in {for_s} s: {} ({garbage} bytes of garbage)", listener.reason);
+    }
+    let host = date_and_time(utc::now_ns()).1;
+    screen::print(&report(check, listener.now(), host));
+    let Some(vehicle) = &args.vehicle else {
+        return Ok(if check.missing().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+    };
+    let water = water(args, vehicle, &gateway, &listener.stop)?;
+    let mut checks = boat_checks(check, (listener.now(), host), &gateway, water.as_ref());
+    let path = args.report.clone().unwrap_or_else(|| Path::new("runs").join(format!("preflight-{vehicle}.json")));
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    checks.extend(machine_checks(folder));
+    checks.extend(guided_checks(&mut Guide::new(args.guided), &mut listener, &gateway));
+    let now_ns = utc::now_ns();
+    let (at_unix_s, at) = (now_ns / 1_000_000_000, utc::text(now_ns));
+    let made = Report { vehicle: vehicle.clone(), link: address.to_string(), at_unix_s, at, checks };
+    screen::print(&format!("\n{}", made.text()));
+    preflight_report::write(&path, &made)?;
+    screen::remark(&format!("report in {}", path.display()));
+    Ok(if made.faults().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Where the game plays, if there is one now.
+fn water(args: &Args, vehicle: &str, gateway: &Gateway, stop: &AtomicBool) -> Result<Option<Water>> {
+    let mut tell = |reason: &str| screen::remark(&format!("looking for the game: {reason}"));
+    let place = args.leaf.place()?;
+    let found = GameSearch::new(GAME_WAIT, stop).game(&mut tell, &place, args.leaf.game.as_ref());
+    let (bus, _, info) = match found {
+        Ok(found) => found,
+        Err(e) => {
+            screen::remark(&format!("without a game: {e}"));
+            return Ok(None);
+        }
+    };
+    bus.close();
+    let number = info.scenario.vehicle_named(vehicle)?;
+    let area = GeofenceArea::new(&info.scenario.field, &gateway.geofence);
+    area.check(&info.scenario, number).with_context(|| format!("the gateway file {}: geofence", gateway.name))?;
+    Ok(Some(Water { field: info.scenario.field, area }))
+}
+
+/// Listens to a boat.
+pub(super) struct Listener {
+    pub(super) check: SensorCheck,
+    events: Receiver<LinkEvent>,
+    start: Instant,
+    stop: Arc<AtomicBool>,
+    /// Why nothing comes.
+    reason: String,
+    /// What is said when it connects.
+    hello: String,
+}
+
+impl Listener {
+    fn new(events: Receiver<LinkEvent>, stop: Arc<AtomicBool>) -> Listener {
+        let (start, reason) = (bus::clock::now(), "nothing came".to_owned());
+        Listener { check: SensorCheck::new(), events, start, stop, reason, hello: String::new() }
+    }
+
+    fn at(&self, moment: Instant) -> SimTime {
+        SimTime::from_s(moment.saturating_duration_since(self.start).as_secs_f64())
+    }
+
+    /// Time since it began.
+    pub(super) fn now(&self) -> SimTime {
+        self.at(bus::clock::now())
+    }
+
+    /// Listens until `is_enough`, which is asked after everything that comes, and ten times a second.
+    pub(super) fn listen(&mut self, is_enough: &mut dyn FnMut(&Listener) -> bool) {
+        while !self.stop.load(Ordering::Relaxed) {
+            match self.events.recv_timeout(Duration::from_millis(100)) {
+                Ok(LinkEvent::Bytes { at, bytes, .. }) => self.check.take(self.at(at), &bytes),
+                Ok(LinkEvent::Up { name, .. }) => screen::remark(&format!("connected to {name}; {}", self.hello)),
+                Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
+                    if why != self.reason {
+                        screen::remark(&why);
+                    }
+                    self.reason = why;
                 }
-                reason = why;
+                Ok(LinkEvent::Written { .. }) | Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
             }
-            Ok(LinkEvent::Written { .. }) | Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => break,
+            if is_enough(self) {
+                break;
+            }
         }
     }
-    if check.received().is_empty() {
-        let counts = check.counts();
-        bail!("no sentence from {address} in {} s: {reason} ({} bytes of garbage)", args.for_s, counts.garbage);
-    }
-    screen::print(&report(&check, at(Instant::now()), date_and_time(utc::now_ns()).1));
-    Ok(if check.missing().is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 fn report(check: &SensorCheck, now: SimTime, host: gateway::nmea::TimeOfDay) -> String {

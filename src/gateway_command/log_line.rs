@@ -2,7 +2,7 @@
 
 use crate::printer::Printer;
 use crate::screen;
-use game::external::GatewayStatus;
+use game::external::{GatewayStatus, GeofenceReport};
 use gateway::bridge::Event;
 use std::io::IsTerminal;
 
@@ -111,6 +111,12 @@ fn volts(status: &GatewayStatus) -> Option<String> {
     status.battery_v.map(|volts| with_age(format!("{volts:.1} V"), status.battery_age_s))
 }
 
+fn geofence(report: &GeofenceReport) -> Option<String> {
+    let (clearance_m, stopping_m) = (report.clearance_m?, report.stopping_m?);
+    let is_inside = if clearance_m > 0.0 { "inside" } else { "OUTSIDE" };
+    Some(format!("{is_inside}, {:.1} m to the nearest edge, {stopping_m:.1} m to stop", clearance_m.abs()))
+}
+
 /// The full status of a gateway.
 pub(super) fn full(status: &GatewayStatus) -> String {
     let or_none = |text: Option<String>| text.unwrap_or_else(|| "unknown".to_owned());
@@ -133,6 +139,7 @@ pub(super) fn full(status: &GatewayStatus) -> String {
             or_none(status.operator.clone().map(|operator| with_age(operator, status.mode_age_s)))
         ),
         format!("  navigation  {}", or_none(nav)),
+        format!("  geofence    {}", or_none(status.geofence.as_ref().and_then(geofence))),
         format!("  battery     {}", or_none(volts(status))),
         format!("  last sent   {}", status.last_sent),
     ];

@@ -1,8 +1,8 @@
 //! Missions in `.sea` files: the lines that a boat receives.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow};
 use game::external::Mission;
-use gateway::nmea::{Framer, Sentence};
+use gateway::nmea::{Command, Framer, Mode, Sentence, checksum};
 use std::path::Path;
 
 /// The longest mission file, bytes: many times what a boat takes.
@@ -11,38 +11,155 @@ const BYTES_MAX: u64 = 1 << 20;
 /// The mission in a `.sea` file.
 pub(super) fn read(path: &Path) -> Result<Mission> {
     let bytes = game::input_file::read(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))?;
-    let (mut throttle_pct, mut places, mut wrong) = (None, Vec::new(), None);
-    let mut framer = Framer::new();
-    framer.push(&[bytes.as_slice(), b"\r\n"].concat(), &mut |body| match Sentence::parse(body) {
-        Ok(Sentence::MissionSettings(settings)) => throttle_pct = Some(settings.throttle_pct),
-        Ok(Sentence::Waypoint(waypoint)) => places.push((waypoint.index, [waypoint.at.lat_deg, waypoint.at.lon_deg])),
-        Ok(Sentence::Command(_)) => {}
-        Ok(_) => wrong = Some(format!("{body:?} has no place in a mission")),
-        Err(e) => wrong = Some(e.to_string()),
-    });
-    let counts = framer.counts();
-    let unread = counts.bad_checksum + counts.broken + counts.overlong + counts.garbage;
-    if unread > 0 {
-        wrong = Some(format!(
-            "{} wrong checksums, {} lines that are no sentences",
-            counts.bad_checksum,
-            unread - counts.bad_checksum
-        ));
+    mission_of(&String::from_utf8_lossy(&bytes)).map_err(|(line, why)| {
+        let place = line.map_or(String::new(), |line| format!(":{line}"));
+        anyhow!("{}{place}: {why}", path.display())
+    })
+}
+
+/// A mistake: in which line, if in one, and what it is.
+type Mistake = (Option<usize>, String);
+
+/// What a mission's lines have told so far.
+#[derive(Default)]
+struct Lines {
+    throttle_pct: Option<f64>,
+    places: Vec<[f64; 2]>,
+    /// How many lines of the mission itself there were: settings and places.
+    count: usize,
+    /// In which line the boat is told how many will come, and how many.
+    announced: Option<(usize, f64)>,
+}
+
+fn mission_of(text: &str) -> Result<Mission, Mistake> {
+    let mut lines = Lines::default();
+    for (i, line) in text.lines().enumerate() {
+        // Sentences may follow one another without a line's end between them.
+        let mut sentences = line.trim().split('$');
+        let before = sentences.next().unwrap_or_default();
+        let wrong = |why: String| (Some(i + 1), why);
+        if !before.is_empty() {
+            return Err(wrong(format!("{before:?} is no sentence, expected it to begin with $")));
+        }
+        for sentence in sentences {
+            lines.take(i + 1, &sentence_of(sentence.trim()).map_err(wrong)?).map_err(wrong)?;
+        }
     }
-    places.sort_by_key(|(index, _)| *index);
-    let in_order = places.iter().enumerate().all(|(i, (index, _))| usize::from(*index) == i);
-    if let Some(wrong) = wrong {
-        bail!("{}: {wrong}", path.display());
+    lines.mission()
+}
+
+/// The sentence in the text behind a `$`.
+fn sentence_of(text: &str) -> Result<Sentence, String> {
+    let mut found = None;
+    Framer::new().push(format!("${text}\r\n").as_bytes(), &mut |body| found = Some(Sentence::parse(body)));
+    if let Some(parsed) = found {
+        return parsed.map_err(|e| e.to_string());
     }
-    if !in_order || places.len() < 2 {
-        bail!(
-            "{}: waypoints {:?}, expected 0 (the recovery point), 1 and so on",
-            path.display(),
-            places.iter().map(|(i, _)| i).collect::<Vec<_>>()
-        );
+    Err(match text.rsplit_once('*') {
+        Some((body, stated)) if stated.len() == 2 && body.is_ascii() && !body.contains('*') => {
+            format!("the checksum is {stated}, expected {:02X}", checksum(body.as_bytes()))
+        }
+        _ => format!("{text:?} does not end with * and a checksum of two digits"),
+    })
+}
+
+impl Lines {
+    fn take(&mut self, line: usize, sentence: &Sentence) -> Result<(), String> {
+        match sentence {
+            Sentence::MissionSettings(_) if self.throttle_pct.is_some() => {
+                return Err("a second PSEAR, expected one, with the throttle".to_owned());
+            }
+            Sentence::MissionSettings(settings) => self.throttle_pct = Some(settings.throttle_pct),
+            Sentence::Waypoint(waypoint) => {
+                let next = self.places.len();
+                if usize::from(waypoint.index) != next {
+                    return Err(format!(
+                        "waypoint {}, expected {next}: they are in order, and 0 is the recovery point",
+                        waypoint.index
+                    ));
+                }
+                self.places.push([waypoint.at.lat_deg, waypoint.at.lon_deg]);
+            }
+            Sentence::Command(Command { mode: Mode::FileDownload, heading_deg, .. }) => {
+                let announced = heading_deg.unwrap_or(0.0);
+                if announced > 0.0 {
+                    self.announced = Some((line, announced));
+                }
+                return Ok(());
+            }
+            Sentence::Command(Command { mode: Mode::Waypoint | Mode::Standby, .. }) => return Ok(()),
+            _ => return Err("a sentence that has no place in a mission, expected PSEAR or OIWPL".to_owned()),
+        }
+        self.count += 1;
+        Ok(())
     }
-    let throttle_pct = throttle_pct.with_context(|| format!("{}: no PSEAR line with the throttle", path.display()))?;
-    let mut places = places.into_iter().map(|(_, place)| place);
-    let erp = places.next().context("a recovery point is there")?;
-    Ok(Mission { throttle_pct, erp, waypoints: places.collect() })
+
+    fn mission(self) -> Result<Mission, Mistake> {
+        if let Some((line, announced)) = self.announced
+            && announced != self.count as f64
+        {
+            let why = format!("{announced} lines are announced, and {} are there: PSEAR and each OIWPL", self.count);
+            return Err((Some(line), why));
+        }
+        let throttle_pct = self.throttle_pct.ok_or_else(|| (None, "no PSEAR with the throttle".to_owned()))?;
+        let mut places = self.places.into_iter();
+        match (places.next(), places.as_slice()) {
+            (Some(erp), [_, ..]) => Ok(Mission { throttle_pct, erp, waypoints: places.collect() }),
+            _ => Err((None, "expected OIWPL with index 0, the recovery point, and one waypoint at least".to_owned())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line of a mission with its checksum.
+    fn line(body: &str) -> String {
+        format!("${body}*{:02X}\r\n", checksum(body.as_bytes()))
+    }
+
+    fn mission() -> Vec<String> {
+        let places = (0..3).map(|i| line(&format!("OIWPL,2545.491{i},N,08022.4373,W,{i}")));
+        std::iter::once(line("PSEAR,0,000,20,0,000")).chain(places).collect()
+    }
+
+    #[test]
+    fn missions_load_with_and_without_the_commands_about_them() {
+        let commands = [line("PSEAC,F,4,000,000,"), line("PSEAC,F,000,000,000"), line("PSEAC,W,0,0,0,")];
+        let [start, end, go] = &commands;
+        let whole = format!("{start}{}{end}{go}", mission().concat());
+        let unbroken = whole.replace("\r\n", "");
+        for text in [mission().concat(), whole.clone(), whole.replace("\r\n", "\n\n"), unbroken] {
+            let mission = mission_of(&text).unwrap_or_else(|(line, why)| panic!("{line:?}: {why}\n{text}"));
+            assert_eq!((mission.throttle_pct, mission.waypoints.len()), (20.0, 2));
+            assert!((mission.erp[0] - 25.758_183).abs() < 1e-6 && (mission.erp[1] + 80.373_955).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_wrong_line_is_named() {
+        let lines = mission();
+        let with = |at: usize, text: &str| {
+            let mut lines = lines.clone();
+            lines[at] = text.to_owned();
+            lines.concat()
+        };
+        for (text, place, why) in [
+            (with(0, "$PSEAR,0,000,10,0,000*7F\r\n"), Some(1), "the checksum is 7F, expected 78"),
+            (with(1, "hello\r\n"), Some(2), "\"hello\" is no sentence"),
+            (with(1, "$OIWPL,2545.4910,N,08022.4373,W,0\r\n"), Some(2), "does not end with *"),
+            (with(3, &line("OIWPL,2545.4912,N,08022.4373,W,3")), Some(4), "waypoint 3, expected 2"),
+            (with(2, &line("OIWPL,2545.4912,X,08022.4373,W,1")), Some(3), ""),
+            (with(2, &line("PSEAC,T,0,20,0,")), Some(3), "no place in a mission"),
+            (with(2, &line("PSEAR,0,000,20,0,000")), Some(3), "a second PSEAR"),
+            (line("PSEAC,F,3,000,000,") + &lines.concat(), Some(1), "3 lines are announced, and 4 are there"),
+            (lines[1..].concat(), None, "no PSEAR"),
+            (lines[..2].concat(), None, "one waypoint at least"),
+            (String::new(), None, "no PSEAR"),
+        ] {
+            let (got, said) = mission_of(&text).expect_err(&text);
+            assert!(got == place && said.contains(why), "{got:?}: {said}, expected {place:?}: {why}");
+        }
+    }
 }

@@ -5,13 +5,16 @@ mod emulate;
 mod guard;
 mod log_line;
 mod mission_file;
+mod preflight_report;
 mod replay;
 mod stop_boat;
 mod surveyor;
+mod swing_guide;
 mod tell;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::Subcommand;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// What a gateway is to do.
@@ -27,7 +30,7 @@ enum Command {
     Surveyor(surveyor::Args),
     /// Emulates a boat for a real back seat, with the real one's sentences.
     Emulate(emulate::Args),
-    /// Checks a boat's sentences before arming, without sending anything, and lists what is missing.
+    /// Checks a boat before arming, without sending anything; with --vehicle, the pre-flight check.
     Check(check::Args),
     /// Stops a boat with nothing else running: thrust zero and standby, straight over its link.
     Stop(stop_boat::Args),
@@ -38,6 +41,13 @@ enum Command {
     Guard,
     /// Plays a recording of a gateway through its codec and supervisor again.
     Replay(replay::Args),
+}
+
+/// How a boat is driven and stopped, by this file, or by the defaults.
+fn gateway_file(path: Option<&Path>) -> Result<game::gateway::Gateway> {
+    let load =
+        |path: &Path| game::scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()));
+    path.map_or_else(|| Ok(game::scenario::default_gateway()), load)
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {

@@ -1,6 +1,7 @@
 //! `squall gateway surveyor`: a real boat in a game.
 
 use super::log_line::{Log, full};
+use super::preflight_report;
 use crate::child_process;
 use crate::net_args::LeafArgs;
 use crate::sim_command::seconds;
@@ -8,6 +9,8 @@ use crate::stop;
 use anyhow::{Context, Result, anyhow};
 use bus::{Registration, Token};
 use game::external::{GatewayCommand, OperatorCommand};
+use game::gateway::Gateway;
+use gateway::bridge::Preflight;
 use gateway::link::LinkAddress;
 use gateway::node::{NodeEvent, Outside, Settings, on_enter};
 use recording::utc;
@@ -38,6 +41,15 @@ pub(crate) struct Args {
     /// Arms by itself, once, as soon as it is ready; after a failsafe it has to be armed by command
     #[arg(long)]
     arm: bool,
+    /// Does everything as on the water, and sends the boat nothing but standby
+    #[arg(long)]
+    dry_run: bool,
+    /// The report of a passed `gateway check --vehicle`, where the gateway file requires one
+    #[arg(long, value_name = "FILE")]
+    preflight: Option<PathBuf>,
+    /// Arms without such a report: this person answers for it
+    #[arg(long, value_name = "PERSON", conflicts_with = "preflight")]
+    without_preflight: Option<String>,
     /// Records to this file [default: runs/gateway-NAME-UTC.mcap]
     #[arg(long, value_name = "FILE", conflicts_with = "no_record")]
     record: Option<PathBuf>,
@@ -62,15 +74,17 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let link = LinkAddress::to_connect(&args.link).map_err(|e| anyhow!("--link: {e}"))?;
-    let gateway = match &args.config {
-        Some(path) => {
-            game::scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()))?
-        }
-        None => game::scenario::default_gateway(),
-    };
+    let gateway = super::gateway_file(args.config.as_deref())?;
+    let preflight = preflight(args, &link, &gateway)?;
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let record = recording(args)?;
     let log = Log::new(args.for_parent);
+    if args.dry_run {
+        log.remark("a dry run: the boat is sent nothing but standby".to_owned());
+    }
+    if let Some(operator) = &args.without_preflight {
+        log.remark(format!("WARNING: {operator} answers for arming without a pre-flight check"));
+    }
     if let Some(path) = &record {
         log.remark(format!("recording to {}", path.display()));
     }
@@ -81,6 +95,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         vehicle: args.vehicle.clone(),
         gateway,
         arms_itself: args.arm,
+        dry_run: args.dry_run,
+        preflight,
         at_game_pace: args.at_game_pace,
         record,
         commit: env!("SQUALL_COMMIT"),
@@ -132,6 +148,25 @@ fn control_address(text: &str) -> Result<SocketAddr, String> {
         return Err(format!("others are told this address, and {} is none: name one of this machine's", address.ip()));
     }
     Ok(address)
+}
+
+/// Whether the boat's pre-flight check lets it be armed.
+fn preflight(args: &Args, link: &LinkAddress, gateway: &Gateway) -> Result<Preflight> {
+    if let Some(person) = &args.without_preflight {
+        return Ok(Preflight::WaivedBy(person.clone()));
+    }
+    let how = "squall gateway check --vehicle, then --preflight FILE; or --without-preflight PERSON";
+    Ok(match &args.preflight {
+        Some(path) => {
+            let (report, now_s) = (preflight_report::read(path)?, utc::now_ns() / 1_000_000_000);
+            match report.admits(&args.vehicle, &link.to_string(), now_s, gateway.preflight.age_max_h) {
+                Ok(()) => Preflight::Passed,
+                Err(why) => Preflight::Missing(format!("a passed pre-flight check ({}: {why})", path.display())),
+            }
+        }
+        None if gateway.preflight.required => Preflight::Missing(format!("a passed pre-flight check ({how})")),
+        None => Preflight::NotRequired,
+    })
 }
 
 /// Where to record.

@@ -4,7 +4,7 @@ use crate::play::{WAIT, name, net};
 use crate::real_boat::{DECLINATION_RAD, Wire};
 use bus::{NodeThread, clock};
 use game::gateway::Gateway;
-use gateway::bridge::Event;
+use gateway::bridge::{Event, Preflight};
 use gateway::link::{BoatLink, LinkEvent};
 use gateway::node::{NodeError, NodeEvent, OnLinkEvent, Settings, serve_over};
 use std::path::Path;
@@ -39,6 +39,8 @@ pub(crate) fn connect(wire: &Arc<Wire>, vehicle: &str, stop: &Arc<AtomicBool>) {
         vehicle: vehicle.to_owned(),
         gateway: GATEWAY.clone(),
         arms_itself: false,
+        dry_run: false,
+        preflight: Preflight::NotRequired,
         at_game_pace: false,
         record: None,
         commit: "",

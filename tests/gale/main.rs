@@ -13,7 +13,7 @@ use game::picture::{Imu, OwnBoat};
 use game::scenario::{Overrides, load_gateway, load_with};
 use game::stream::Stream;
 use game::{Order, SimTime, VehicleId};
-use gateway::bridge::{Bridge, Event, Input, Output, Plan, Site};
+use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
 use gateway::emulator::{self, Emulator, Port};
 use gateway::nmea::{Date, TimeOfDay};
 use sim::World;
@@ -157,6 +157,8 @@ impl Voyage {
             gateway: gateway.clone(),
             site: Some(site.clone()),
             arms_itself: false,
+            dry_run: false,
+            preflight: Preflight::NotRequired,
         };
         let boats = (0..BOATS).map(|i| Boat::new(i, seed, plan(i))).collect();
         Voyage { world, ticks: game.ticks_per_decision, boats, fault: (SimTime::from_s(fault.0), fault.1) }

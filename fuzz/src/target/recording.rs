@@ -12,7 +12,7 @@ use game::external::{FailsafeReport, GatewayStatus, LinkBytes};
 use game::input::Inputs;
 use game::message::{Message, Stamp};
 use game::{Scenario, SimTime, VehicleId};
-use gateway::bridge::{Bridge, Input, Output, Plan, Site};
+use gateway::bridge::{Bridge, Input, Output, Plan, Preflight, Site};
 use gateway::record::StepEncoder;
 use recording::{Bag, Entry, FRAME, INPUTS, Kind, Recording, RecordingError, Writer};
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ fn gateway_recording() -> Vec<u8> {
     let gateway = game::scenario::default_gateway();
     let field = scenario.field.clone();
     let site = Some(Site { field, length_m: 2.0, declination_rad: 0.1 });
-    let plan = Plan { vehicle, gateway, site, arms_itself: true };
+    let plan = Plan { vehicle, gateway, site, arms_itself: true, dry_run: false, preflight: Preflight::NotRequired };
     let began_utc_ns = 1_700_000_000_000_000_000;
     let opening = gateway::record::opening(&plan, began_utc_ns, "c0ffee");
     let mut writer = Writer::begin(Cursor::new(Vec::new()), &opening).expect("memory");

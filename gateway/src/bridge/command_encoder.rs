@@ -15,6 +15,11 @@ pub(super) fn standby() -> Command {
     command(Mode::Standby, [Some(0.0); 3])
 }
 
+/// Standby with a switch: its word, or nothing.
+pub(super) fn standby_with(word: &str) -> Command {
+    Command { words: word.to_owned(), ..standby() }
+}
+
 /// A set-point.
 pub(super) fn of_set_point(set_point: SetPoint) -> Command {
     match set_point {

@@ -19,6 +19,35 @@ pub struct Plan {
     pub site: Option<Site>,
     /// Whether it arms by itself, once, as soon as it is ready.
     pub arms_itself: bool,
+    /// Whether the boat is sent nothing but standby, whatever it would be sent.
+    #[serde(default)]
+    pub dry_run: bool,
+    /// Whether its pre-flight check lets it be armed.
+    #[serde(default)]
+    pub preflight: Preflight,
+}
+
+/// Whether the pre-flight check of a boat lets it be armed.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Preflight {
+    /// None is asked for.
+    #[default]
+    NotRequired,
+    /// There is the report of one that it has passed.
+    Passed,
+    /// This person answers for arming without one.
+    WaivedBy(String),
+    /// There is no such report, and why.
+    Missing(String),
+}
+
+impl Preflight {
+    /// What is missing for arming, if anything.
+    #[must_use]
+    pub fn missing(&self) -> Option<&String> {
+        if let Preflight::Missing(why) = self { Some(why) } else { None }
+    }
 }
 
 /// What only a game says: where a boat plays, and how long it is there.

@@ -4,31 +4,38 @@
 //! The same inputs at the same times give the same outputs, byte for byte: that is how a recording is replayed.
 
 mod battery;
+mod clock_watch;
 mod command_echo;
 mod command_encoder;
 mod control;
 mod interface;
 mod on_site;
+mod operator_request;
 mod recovery_point;
 mod status;
+mod stop;
 mod upload;
 
-use crate::nmea::{Command, Framer, Mode, ParseError, Sentence, TimeOfDay};
+use crate::nmea::{Command, Framer, Mode, ParseError, Sentence};
 use crate::set_point::SetPoint;
 use crate::supervisor::{
     Action, Conditions, Control, NavFault, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task,
 };
-pub use interface::{Event, Input, NavOut, Output, Plan, Site};
+pub use interface::{Event, Input, NavOut, Output, Plan, Preflight, Site};
+pub use stop::stop_message;
 
 use battery::BatteryLog;
+use clock_watch::ClockWatch;
 use control::ControlLog;
 use game::external::{FailsafeReport, FleetCommand, Mission, OperatorCommand};
 use game::frame::Ned;
-use game::gateway::Gateway;
+use game::gateway::{Gateway, SwitchWord};
 use game::{Order, SimTime};
 use on_site::OnSite;
+use operator_request::request_from;
 use recovery_point::RecoveryPoint;
 use status::Counters;
+use std::collections::VecDeque;
 use upload::{Next, Upload};
 
 /// Two new orders are sent at least this far apart.
@@ -39,8 +46,6 @@ const OTHERS_AGE_MAX_S: f64 = 2.0;
 const TASK_AGAIN_S: f64 = 1.0;
 /// How often invalid navigation is reported.
 const INVALID_NAV_EVERY_S: f64 = 0.25;
-/// A step of the receiver's time of day against our clock that is worth a warning, s.
-const CLOCK_STEP_S: f64 = 2.0;
 /// How many failsafes and names of unknown sentences are kept.
 const FAILSAFES_MAX: usize = 32;
 const UNKNOWN_MAX: usize = 64;
@@ -72,12 +77,15 @@ pub struct Bridge {
     others: (SimTime, Vec<Ned>),
     battery: BatteryLog,
     boat_error: String,
-    /// The receiver's time of day, and when it came.
-    clock: Option<(SimTime, TimeOfDay)>,
+    clock: ClockWatch,
     upload: Option<Upload>,
     recovery_point: RecoveryPoint,
     /// The command that was sent last, and when.
     last_sent: Option<(SimTime, Command)>,
+    /// Start-up words that are still to be sent.
+    words: VecDeque<SwitchWord>,
+    /// What it would have been sent last if this were no dry run.
+    would_send: Option<Command>,
     /// Whether the boat may be moving by what it was sent.
     under_way: bool,
     /// The conditions of the last step.
@@ -99,7 +107,7 @@ impl Bridge {
             framer: Framer::new(),
             control: ControlLog::new(*control),
             on_site: plan.site.as_ref().map(|site| OnSite::new(&plan.gateway, site)),
-            supervisor: Supervisor::new(plan.arms_itself, *failsafe),
+            supervisor: Supervisor::new(plan.arms_itself && plan.preflight.missing().is_none(), *failsafe),
             battery: BatteryLog::new(*battery, SimTime::ZERO),
             plan,
             link_up: false,
@@ -109,10 +117,12 @@ impl Bridge {
             order_sent: SimTime::LONG_AGO,
             others: (SimTime::LONG_AGO, vec![]),
             boat_error: String::new(),
-            clock: None,
+            clock: ClockWatch::default(),
             upload: None,
             recovery_point: RecoveryPoint::default(),
             last_sent: None,
+            words: VecDeque::new(),
+            would_send: None,
             under_way: false,
             conditions: Conditions::UNKNOWN,
             nav_is_new: false,
@@ -146,6 +156,9 @@ impl Bridge {
             Input::OldOrder => self.counters.old_orders += 1,
             Input::Others(places) => self.others = (now, places.clone()),
             Input::Operator(OperatorCommand::Mission(mission)) => request = self.take_mission(now, mission, out),
+            Input::Operator(OperatorCommand::Arm) if self.plan.preflight.missing().is_some() => {
+                out.refused = self.plan.preflight.missing().map(|missing| format!("missing: {missing}"));
+            }
             Input::Operator(command) => request = request_from(command),
             Input::Fleet(FleetCommand::EStop) => request = Some(OperatorRequest::EStop(Scope::Fleet)),
             Input::Fleet(FleetCommand::Release) => request = Some(OperatorRequest::Release(Scope::Fleet)),
@@ -182,17 +195,6 @@ impl Bridge {
         regular || (fresh && now >= self.order_sent + SimTime::from_s(GAP_MIN_S))
     }
 
-    /// The shutdown message, sent before the link closes: thrust zero, then standby.
-    #[must_use]
-    pub fn shutdown_message(&self) -> Vec<u8> {
-        let mut message = Vec::new();
-        if self.upload.is_some() {
-            message.extend(command_encoder::bytes_of(&[command_encoder::end_of_download()]));
-        }
-        message.extend(stop_message());
-        message
-    }
-
     /// A new link: nothing is known of the boat at its end, and it is sent standby first.
     fn take_link_up(&mut self, now: SimTime) {
         self.link_up = true;
@@ -200,7 +202,8 @@ impl Bridge {
         self.framer.push(b"\r\n", &mut |_| {});
         self.on_site.iter_mut().for_each(|site| site.estimator.forget());
         self.control.forget();
-        self.clock = None;
+        self.clock = ClockWatch::default();
+        self.words = self.plan.gateway.startup_words.clone().into();
         self.battery.forget(now);
         self.upload = None;
         self.recovery_point = RecoveryPoint::default();
@@ -237,19 +240,12 @@ impl Bridge {
                     out.events.push(Event::Warning(format!("the boat reports error {:?}", error.code)));
                 }
             }
-            Sentence::Gga(gga) => self.watch_clock(now, gga.time, out),
-            _ => {}
-        }
-    }
-
-    /// Warns when the receiver's time of day steps against our clock.
-    fn watch_clock(&mut self, now: SimTime, time: Option<TimeOfDay>, out: &mut Output) {
-        let Some(time) = time else { return };
-        if let Some((at, before)) = self.clock.replace((now, time)) {
-            let step_s = time.since_s(before.later(now - at));
-            if step_s.abs() > CLOCK_STEP_S {
-                out.events.push(Event::Warning(format!("the receiver's clock stepped by {step_s:.1} s")));
+            Sentence::Gga(gga) => {
+                let step_s = self.clock.take(now, gga.time).into_iter();
+                let text = |step_s| format!("the receiver's clock stepped by {step_s:.1} s");
+                out.events.extend(step_s.map(text).map(Event::Warning));
             }
+            _ => {}
         }
     }
 
@@ -276,12 +272,12 @@ impl Bridge {
     /// Begins the upload of a mission, or refuses it.
     fn take_mission(&mut self, now: SimTime, mission: &Mission, out: &mut Output) -> Option<OperatorRequest> {
         let unfit = self.conditions_at(now).unfit(Task::Mission);
-        let begun = match self.supervisor.state() {
-            State::EStopped => Err(self.e_stop_in_force()),
+        let outside = self.on_site.as_ref().and_then(|site| site.outside(now, mission));
+        let begun = match (self.supervisor.state(), outside) {
+            (State::EStopped, _) => Err(self.e_stop_in_force()),
+            _ if self.plan.dry_run => Err("a dry run sends the boat nothing but standby, and so no mission".to_owned()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
-            _ if !self.on_site.as_ref().is_some_and(|site| site.contains(mission)) => {
-                Err("a place of it is outside of the geofence".to_owned())
-            }
+            (_, Some(outside)) => Err(outside),
             _ => Upload::new(mission, self.plan.gateway.upload_gap_s, now),
         };
         match begun {
@@ -362,7 +358,7 @@ impl Bridge {
     /// Sends the command of an action.
     fn send_action(&mut self, now: SimTime, action: Action, out: &mut Output) {
         let command = match action {
-            Action::Standby => command_encoder::standby(),
+            Action::Standby => self.standby(),
             Action::Zero => command_encoder::of_set_point(SetPoint::ZERO),
             Action::Task(task) => {
                 let command = command_encoder::of_task(task);
@@ -380,9 +376,15 @@ impl Bridge {
                 None => return,
             },
         };
+        let command = if self.plan.dry_run {
+            self.would_send = Some(command);
+            command_encoder::standby()
+        } else {
+            command
+        };
         // Thrust goes to zero before any command that is not our own set-point.
         let is_set_point = matches!(action, Action::Follow | Action::Zero);
-        if !is_set_point && std::mem::replace(&mut self.under_way, false) {
+        if !is_set_point && std::mem::replace(&mut self.under_way, false) && !self.plan.dry_run {
             out.bytes.extend(command_encoder::bytes_of(&[command_encoder::of_set_point(SetPoint::ZERO)]));
         }
         self.under_way |= action == Action::Follow;
@@ -401,7 +403,10 @@ impl Bridge {
         let site = self.on_site.as_mut()?;
         let (nav, _) = site.estimator.nav(now)?;
         let set_point = site.set_points.map(now, self.order?.order, &nav);
-        site.estimator.note_order(now, site.set_points.ordered(set_point));
+        // In a dry run the boat need not move as it is not told to.
+        if !self.plan.dry_run {
+            site.estimator.note_order(now, site.set_points.ordered(set_point));
+        }
         Some(set_point)
     }
 
@@ -453,14 +458,14 @@ impl Bridge {
         let known: &[Ned] = if (now - *others_at).as_s() <= OTHERS_AGE_MAX_S { others } else { &[] };
         let (mut nav_fault, mut thrust_fault) = (Some(NavFault::NoField), None);
         let (mut inside, mut blocked, mut recovery_point) = (false, false, false);
-        if let Some(OnSite { estimator, geofence, bow, .. }) = &mut self.on_site {
+        if let Some(site) = &mut self.on_site {
+            recovery_point = self.recovery_point.taken().is_some_and(|erp| site.is_way_to(now, erp));
+            let OnSite { estimator, geofence, bow, .. } = site;
             (nav_fault, thrust_fault) = (estimator.fault(now), estimator.thrust_fault(now));
             if let Some((nav, _)) = estimator.nav(now) {
                 inside = geofence.is_inside(now, nav.at(), estimator.fastest_velocity_m_s());
                 blocked = bow.is_blocked(now, &nav, known);
             }
-            let place = self.recovery_point.taken().map(|[lat_deg, lon_deg]| estimator.place(lat_deg, lon_deg));
-            recovery_point = place.is_some_and(|place| geofence.contains(place));
         }
         let ttl_s = self.plan.gateway.order_ttl_s;
         Conditions {
@@ -475,23 +480,5 @@ impl Bridge {
             blocked,
             order_fresh: self.order.is_some_and(|current| (now - current.came).as_s() <= ttl_s),
         }
-    }
-}
-
-/// What stops a boat, whatever it does: thrust zero, then standby.
-#[must_use]
-pub fn stop_message() -> Vec<u8> {
-    command_encoder::bytes_of(&[command_encoder::of_set_point(SetPoint::ZERO), command_encoder::standby()])
-}
-
-fn request_from(command: &OperatorCommand) -> Option<OperatorRequest> {
-    match command {
-        OperatorCommand::Arm => Some(OperatorRequest::Arm),
-        OperatorCommand::Disarm => Some(OperatorRequest::Disarm),
-        OperatorCommand::EStop => Some(OperatorRequest::EStop(Scope::Boat)),
-        OperatorCommand::Release => Some(OperatorRequest::Release(Scope::Boat)),
-        OperatorCommand::StationKeep => Some(OperatorRequest::Delegate(Task::StationKeep)),
-        OperatorCommand::GoToErp => Some(OperatorRequest::Delegate(Task::GoToErp)),
-        OperatorCommand::Status | OperatorCommand::Mission(_) => None,
     }
 }

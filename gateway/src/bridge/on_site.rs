@@ -1,11 +1,14 @@
 //! The part of a bridge that needs the field: navigation, geofence, the box about the bow, set-points.
 
 use super::Site;
+use crate::bow_watch::BowWatch;
 use crate::geodesy::LocalFrame;
-use crate::geofence::{BowWatch, GeofenceWatch};
+use crate::geofence::GeofenceWatch;
 use crate::nav_estimate::NavEstimator;
 use crate::set_point::SetPointMapper;
-use game::external::Mission;
+use game::SimTime;
+use game::external::{GeofenceReport, Mission};
+use game::frame::Ned;
 use game::gateway::Gateway;
 
 /// What only works where the field is known.
@@ -24,18 +27,47 @@ impl OnSite {
         OnSite {
             set_points: SetPointMapper::new(gateway, compass_to_true_rad),
             estimator: NavEstimator::new(frame, *nav, compass_to_true_rad, limits.speed_max_m_s),
-            geofence: GeofenceWatch::new(&site.field, *geofence),
+            geofence: GeofenceWatch::new(&site.field, geofence),
             bow: BowWatch::new(*halt, site.length_m),
         }
     }
 
-    /// Whether all places of a mission are inside of the geofence.
-    pub(super) fn contains(&self, mission: &Mission) -> bool {
-        let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
+    /// What of a mission is outside of the geofence, if anything: a place, a leg, or the way to the first waypoint.
+    pub(super) fn outside(&self, now: SimTime, mission: &Mission) -> Option<String> {
         // The upload refuses invalid positions with a better reason.
-        let spots = places.filter(|[lat_deg, lon_deg]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0);
-        spots
-            .map(|[lat_deg, lon_deg]| self.estimator.place(*lat_deg, *lon_deg))
-            .all(|place| self.geofence.contains(place))
+        let on_globe = |[lat_deg, lon_deg]: &&[f64; 2]| lat_deg.abs() <= 90.0 && lon_deg.abs() <= 180.0;
+        let place = |[lat_deg, lon_deg]: &[f64; 2]| self.estimator.place(*lat_deg, *lon_deg);
+        let area = self.geofence.area();
+        let places = std::iter::once(&mission.erp).chain(&mission.waypoints).filter(on_globe);
+        if !places.map(place).all(|place| area.contains(place)) {
+            return Some("a place of it is outside of the geofence".to_owned());
+        }
+        let boat = self.estimator.nav(now).map(|(nav, _)| nav.at());
+        let way: Vec<Ned> = boat.into_iter().chain(mission.waypoints.iter().filter(on_globe).map(place)).collect();
+        let first = usize::from(boat.is_none());
+        let leg = way.windows(2).position(|leg| !area.contains_way(leg[0], leg[1]))? + first;
+        let from = if leg == 0 { "the boat".to_owned() } else { format!("waypoint {leg}") };
+        Some(format!("the leg from {from} to waypoint {} leaves the geofence or crosses a keep-out", leg + 1))
+    }
+
+    /// Whether the boat can go straight to its recovery point, as far as the geofence goes.
+    pub(super) fn is_way_to(&self, now: SimTime, [lat_deg, lon_deg]: [f64; 2]) -> bool {
+        let erp = self.estimator.place(lat_deg, lon_deg);
+        let from = self.estimator.nav(now).map_or(erp, |(nav, _)| nav.at());
+        self.geofence.area().leads_in(from, erp)
+    }
+
+    /// The geofence, for people to look at.
+    pub(super) fn geofence_report(&self, now: SimTime) -> GeofenceReport {
+        let area = self.geofence.area();
+        let at = self.estimator.nav(now).map(|(nav, _)| nav.at());
+        let way = self.geofence.stopping_way(self.estimator.fastest_velocity_m_s());
+        GeofenceReport {
+            outline: area.outline.clone(),
+            keep_out: area.keep_out.clone(),
+            clearance_m: at.map(|at| area.clearance_m(at)),
+            stopping_m: at.map(|_| way.length()),
+            stops_at: at.map(|at| at + way),
+        }
     }
 }

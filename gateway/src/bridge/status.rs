@@ -1,7 +1,7 @@
 //! The status of a gateway, in numbers and words.
 
 use super::{Bridge, command_encoder};
-use crate::nmea::Operator;
+use crate::nmea::{Command, Operator};
 use crate::supervisor::{Cause, State};
 use game::SimTime;
 use game::external::GatewayStatus;
@@ -26,24 +26,29 @@ impl Bridge {
     pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self.on_site.as_ref().and_then(|site| site.estimator.nav(now));
         let battery = self.battery.volts(now);
-        let last_sent =
-            self.last_sent.as_ref().map(|(_, command)| command_encoder::bytes_of(std::slice::from_ref(command)));
+        let sentence = |command: &Command| {
+            let bytes = command_encoder::bytes_of(std::slice::from_ref(command));
+            String::from_utf8_lossy(&bytes).trim_end().to_owned()
+        };
+        let missing = self.conditions.missing().into_iter().map(Cause::missing);
         GatewayStatus {
             vehicle: self.plan.vehicle.clone(),
             control: None,
             at_s: now.as_s(),
             link: if self.link_up { "up" } else { "down" }.to_owned(),
             state: self.state_in_words(),
-            missing: self.conditions.missing().into_iter().map(Cause::missing).collect(),
+            missing: self.plan.preflight.missing().into_iter().cloned().chain(missing).collect(),
             failsafes: self.failsafes.clone(),
             mode: self.control.mode().map(|mode| mode.letter()),
             operator: self.control.operator().map(name_of),
             nav: known.map(|(nav, _)| nav),
+            geofence: self.on_site.as_ref().map(|site| site.geofence_report(now)),
             nav_age_s: known.map(|(_, age_s)| age_s),
             mode_age_s: self.control.age_s(now),
             battery_v: battery.map(|(volts, _)| volts),
             battery_age_s: battery.map(|(_, age_s)| age_s),
-            last_sent: last_sent.map(|bytes| String::from_utf8_lossy(&bytes).trim_end().to_owned()).unwrap_or_default(),
+            last_sent: self.last_sent.as_ref().map(|(_, command)| sentence(command)).unwrap_or_default(),
+            would_send: self.would_send.as_ref().map(sentence),
             counts: self.counts(),
             latency_us: [None; 2],
         }

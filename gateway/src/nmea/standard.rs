@@ -28,6 +28,23 @@ pub struct Gga {
 }
 
 impl Gga {
+    /// What its quality means.
+    #[must_use]
+    pub fn quality_in_words(&self) -> &'static str {
+        match self.quality {
+            0 => "no fix",
+            1 => "GPS",
+            2 => "DGPS",
+            3 => "PPS",
+            4 => "RTK fixed",
+            5 => "RTK float",
+            6 => "dead reckoning",
+            7 => "manual input",
+            8 => "simulator",
+            _ => "an unknown quality",
+        }
+    }
+
     /// 14 fields. The last, the reference station, must be empty: the driver of the fleet counts fields after it has
     /// dropped one empty one from the end, and with a station has no position at all.
     pub(super) fn layout(&mut self) -> Layout<'_> {

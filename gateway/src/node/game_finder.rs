@@ -3,6 +3,7 @@
 use super::loop_input::{Call, LoopInput};
 use super::{NodeError, Settings, declination_rad, external_vehicle, pace_factor};
 use crate::bridge::Site;
+use crate::geofence::GeofenceArea;
 use bus::game_search::{self, GameSearch};
 use bus::{Bus, NodeThread, Place};
 use game::VehicleId;
@@ -61,6 +62,9 @@ impl Wanted {
         let vehicle = external_vehicle(&info, &self.vehicle)?;
         let factor = pace_factor(&info.pace, self.at_game_pace)?;
         let field = info.scenario.field.clone();
+        let area = GeofenceArea::new(&field, &self.gateway.geofence);
+        let file = self.gateway.name.clone();
+        area.check(&info.scenario, vehicle).map_err(|source| NodeError::Geofence { file, source })?;
         let declination_rad = declination_rad(self.gateway.declination_rad, field.plan.datum)?;
         let site = Site { length_m: info.scenario.boat_of(vehicle).length_m, field, declination_rad };
         // The thread that keeps it joined asks again, and gets it again.

@@ -12,15 +12,18 @@ mod guard;
 mod join;
 mod latency;
 mod loop_input;
+mod machine_check;
 mod terminal_key;
 
 pub use emulator::{EmulatorSettings, emulate};
 pub use guard::guard;
+pub use machine_check::machine_checks;
 pub use terminal_key::on_enter;
 
-use crate::bridge::{Bridge, Event, Plan};
+use crate::bridge::{Bridge, Event, Plan, Preflight};
 use crate::declination::{DeclinationError, declination_deg};
 use crate::game_clock::GameClock;
+use crate::geofence::GeofenceError;
 use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, OnPort};
 use crate::nmea::date_and_time;
 use crate::record::{self, StepEncoder};
@@ -61,6 +64,10 @@ pub struct Settings {
     pub gateway: Gateway,
     /// Whether it arms by itself, once.
     pub arms_itself: bool,
+    /// Whether the boat is sent nothing but standby.
+    pub dry_run: bool,
+    /// Whether its pre-flight check lets it be armed.
+    pub preflight: Preflight,
     /// Whether its clock runs as fast as the game's: for emulated boats.
     pub at_game_pace: bool,
     /// The file of the recording, if any.
@@ -159,6 +166,14 @@ pub enum NodeError {
     /// The game has no such boat.
     #[error(transparent)]
     UnknownVehicle(#[from] UnknownVehicle),
+    /// The geofence does not go with the game.
+    #[error("the gateway file {file}: geofence: {source}")]
+    Geofence {
+        /// The file's stem.
+        file: String,
+        /// Why.
+        source: GeofenceError,
+    },
     /// The game and the gateway do not go together.
     #[error("{0}")]
     Refused(String),
@@ -193,7 +208,8 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
     // Until a game says which, the port has a token of its own; in a game with keys that stays so.
     let token = settings.place.token().get().unwrap_or_else(Token::random);
     let port = ControlPort::open(outside.control, &settings.vehicle, Some(token).into(), input.0.clone())?;
-    let guarded = start_guard(outside, notify);
+    // What is sent nothing but standby needs nobody to stop it.
+    let guarded = if settings.dry_run { None } else { start_guard(outside, notify) };
     let on_port = guarded.clone().map(|guarded| -> OnPort { Box::new(move |descriptor| guarded.link(descriptor)) });
     let open = |on_event: OnLinkEvent| -> Result<Box<dyn BoatLink>, LinkError> {
         let link_settings = LinkSettings { silence: Some(outside.silence), ..LinkSettings::default() };
@@ -237,8 +253,14 @@ fn connect(
     if let Some(port) = &port {
         notify(NodeEvent::ControlPort { address: port.address, token: port.token.get() });
     }
-    let Settings { vehicle, gateway, arms_itself, .. } = settings;
-    let plan = Plan { vehicle: vehicle.clone(), gateway: gateway.clone(), site: None, arms_itself: *arms_itself };
+    let plan = Plan {
+        vehicle: settings.vehicle.clone(),
+        gateway: settings.gateway.clone(),
+        site: None,
+        arms_itself: settings.arms_itself,
+        dry_run: settings.dry_run,
+        preflight: settings.preflight.clone(),
+    };
     let recorder = recorder(settings, &plan)?;
     let calls = input.calls.clone();
     let link = open(Box::new(move |event| calls.put(Call::Link(event))))?;
@@ -253,7 +275,7 @@ fn connect(
         guarded,
         back: input.clone(),
         recorder,
-        encoder: StepEncoder::new(vehicle),
+        encoder: StepEncoder::new(&settings.vehicle),
         counters: Counters::new(),
         notify: &mut *notify,
         guard: Guard::new(settings.place.token().clone()),

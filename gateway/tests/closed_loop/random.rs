@@ -30,6 +30,14 @@ fn lines() -> impl Strategy<Value = Vec<String>> {
 const QUIET: &str = "open both\ntamper none\nother none\nfixes live\nvolts 25\ncontrol Secondary\nlink up\norder hold
 appear 60 40\noperator release\nfleet release\nrun 12\noperator arm\nexpect refused =\nexpect state = armed";
 
+/// The only sentence of a dry run.
+const STANDBY: &str = "$PSEAC,L,0,0,0,*14\r\n";
+
+/// Then orders are followed and tasks delegated as on the water.
+const DRIVEN: &str = "order steer 90 2\nrun 60\nexpect state = armed\nexpect would-send ^ $PSEAC,T,0,\nexpect mode = L
+operator mission 80,60\nexpect refused ~ a dry run\noperator station_keep\nrun 20\nexpect state = delegated: station keeping
+expect would-send ^ $PSEAC,R\nfleet e_stop\nrun 1\nexpect state = e-stopped";
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -37,5 +45,19 @@ proptest! {
     fn whatever_happens_nothing_forbidden_is_sent(watchdog in any::<bool>(), lines in lines()) {
         let mut rig = played(if watchdog { "under-way watchdog 2" } else { "under-way" });
         lines.iter().map(String::as_str).chain(QUIET.lines()).for_each(|line| play(&mut rig, line));
+    }
+
+    #[test]
+    fn in_a_dry_run_every_byte_is_of_a_standby_sentence(lines in lines()) {
+        let mut rig = played("boat dry-run yes");
+        for line in lines.iter().map(String::as_str).chain(QUIET.lines()).chain(DRIVEN.lines()) {
+            play(&mut rig, line);
+        }
+        let outs = rig.turns.iter().map(|(_, _, out)| out.bytes.as_slice());
+        let bytes = outs.chain([rig.bridge.shutdown_message().as_slice()]).collect::<Vec<_>>().concat();
+        prop_assert!(!bytes.is_empty() && bytes.len() % STANDBY.len() == 0, "{} bytes", bytes.len());
+        for sentence in bytes.chunks(STANDBY.len()) {
+            prop_assert_eq!(String::from_utf8_lossy(sentence), STANDBY);
+        }
     }
 }

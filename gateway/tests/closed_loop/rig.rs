@@ -6,7 +6,7 @@ use crate::tamper::{Tamper, with_checksum};
 use game::external::{FleetCommand, OperatorCommand};
 use game::frame::Ned;
 use game::{Order, SimTime};
-use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Site};
+use gateway::bridge::{Bridge, Event, Input, NavOut, Output, Plan, Preflight, Site};
 use gateway::emulator::{self, Emulator, Port};
 use std::path::Path;
 
@@ -60,6 +60,8 @@ pub(crate) fn plan(file: &str, arms_itself: bool) -> Plan {
         gateway: game::scenario::load_gateway(&gateway).unwrap_or_else(|e| panic!("{e}")),
         site: Some(Site { length_m: 1.83, field: game.field, declination_rad: (-12.5_f64).to_radians() }),
         arms_itself,
+        dry_run: false,
+        preflight: Preflight::NotRequired,
     }
 }
 

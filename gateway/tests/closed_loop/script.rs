@@ -8,7 +8,7 @@ use game::Order;
 use game::angle::wrap_pi;
 use game::external::{Mission, OperatorCommand};
 use game::frame::Ned;
-use gateway::bridge::Input;
+use gateway::bridge::{Input, Preflight};
 use gateway::emulator::Port;
 use gateway::geodesy::LocalFrame;
 use serde::de::DeserializeOwned;
@@ -146,14 +146,24 @@ fn boat(options: &[&str]) -> Rig {
         match option {
             ["watchdog", seconds] => watchdog_s = Some(number(seconds)),
             ["battery", action] => plan.gateway.failsafe.battery_low = named(action),
+            ["polygon", corners] => plan.gateway.geofence.polygon = Some(places_of(corners)),
+            ["keep-out", corners] => plan.gateway.geofence.keep_out.push(places_of(corners)),
             ["geofence", action] => plan.gateway.failsafe.geofence = named(action),
             ["order", action] => plan.gateway.failsafe.order_stale = named(action),
             ["integers", "only"] => integers = true,
+            ["startup", words] => plan.gateway.startup_words = words.split(',').map(named).collect(),
+            ["dry-run", "yes"] => plan.dry_run = true,
+            ["preflight", "missing"] => plan.preflight = Preflight::Missing("a passed pre-flight check".to_owned()),
             ["arms-itself", "once"] => plan.arms_itself = true,
             other => panic!("no boat has {other:?}"),
         }
     }
     Rig::of(plan, watchdog_s, integers)
+}
+
+/// Places of a polygon, `x,y;x,y;…`.
+fn places_of(text: &str) -> Vec<[f64; 2]> {
+    mission_of(&text.split(';').collect::<Vec<_>>()).waypoints
 }
 
 fn order_of(words: &[&str]) -> Option<Order> {
@@ -223,6 +233,8 @@ fn value(rig: &Rig, name: &str) -> String {
     match name.split(' ').collect::<Vec<_>>().as_slice() {
         ["state"] => rig.bridge.state().to_string(),
         ["status"] => rig.bridge.status(rig.now).state,
+        ["would-send"] => rig.bridge.status(rig.now).would_send.unwrap_or_default(),
+        ["missing"] => rig.bridge.status(rig.now).missing.join("; "),
         ["refused"] => rig.refused.clone().unwrap_or_default(),
         ["remark"] => rig.remark.clone(),
         ["events"] => format!("{:?}", rig.events),

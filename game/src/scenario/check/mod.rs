@@ -10,6 +10,7 @@ mod field;
 mod file_cache;
 mod game;
 mod gateway;
+mod polygon;
 mod rewards;
 mod rules;
 mod sea;

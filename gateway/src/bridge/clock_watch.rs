@@ -1,0 +1,21 @@
+//! Watches the receiver's time of day for steps against our clock.
+
+use crate::nmea::TimeOfDay;
+use game::SimTime;
+
+/// A step that is worth a warning, s.
+const CLOCK_STEP_S: f64 = 2.0;
+
+/// The receiver's time of day, and when it came.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ClockWatch(Option<(SimTime, TimeOfDay)>);
+
+impl ClockWatch {
+    /// Takes a time of day; returns by how much it stepped, s, if that is worth a warning.
+    pub(super) fn take(&mut self, now: SimTime, time: Option<TimeOfDay>) -> Option<f64> {
+        let time = time?;
+        let (at, before) = self.0.replace((now, time))?;
+        let step_s = time.since_s(before.later(now - at));
+        (step_s.abs() > CLOCK_STEP_S).then_some(step_s)
+    }
+}

@@ -1,0 +1,125 @@
+//! The water where a boat may be: a polygon, without the keep-outs in it.
+
+use crate::geodesy::LocalFrame;
+use game::field::{Field, distance_to_outline, do_meet, is_within, sides};
+use game::frame::{LatLon, Ned};
+use game::gateway::Geofence;
+use game::scenario::{Scenario, StartPosition};
+use game::{VehicleId, math};
+use thiserror::Error;
+
+/// A round corner is drawn in steps of this, degrees: it is cut by less than half a per cent of the margin.
+const ROUND_STEP_DEG: f64 = 90.0 / 8.0;
+
+/// Why a geofence does not go with a game.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum GeofenceError {
+    /// A keep-out is no part of it.
+    #[error("keep_out {0} (the first is 0) lies outside of the geofence, expected it inside")]
+    KeepOutOutside(usize),
+    /// The boat would begin where it must not be.
+    #[error("{0} starts outside of the geofence or in a keep-out, expected its start position inside")]
+    StartOutside(String),
+}
+
+/// The water where a boat may be. Its edges do not belong to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GeofenceArea {
+    /// Its corners, in order.
+    pub outline: Vec<Ned>,
+    /// The corners of what is cut out of it.
+    pub keep_out: Vec<Vec<Ned>>,
+}
+
+impl GeofenceArea {
+    /// The geofence on this field.
+    #[must_use]
+    pub fn new(field: &Field, rules: &Geofence) -> GeofenceArea {
+        let frame = LocalFrame::new(field.plan.datum);
+        let laid_out = |corners: &Vec<[f64; 2]>| -> Vec<Ned> {
+            corners.iter().map(|&[lat_deg, lon_deg]| frame.ned(LatLon { lat_deg, lon_deg })).collect()
+        };
+        let outline = rules.polygon.as_ref().map_or_else(|| with_margin(&field.corners, rules.margin_m), laid_out);
+        GeofenceArea { outline, keep_out: rules.keep_out.iter().map(laid_out).collect() }
+    }
+
+    /// Whether it goes with the game: keep-outs are in it, and so is the start position of the boat.
+    ///
+    /// # Errors
+    /// [`GeofenceError`] says what is outside.
+    pub fn check(&self, scenario: &Scenario, vehicle: VehicleId) -> Result<(), GeofenceError> {
+        let is_apart = |keep_out: &Vec<Ned>| {
+            sides(keep_out).all(|(a, b)| !is_within(&self.outline, a) && met(&self.outline, a, b) == 0)
+        };
+        if let Some(number) = self.keep_out.iter().position(is_apart) {
+            return Err(GeofenceError::KeepOutOutside(number));
+        }
+        let boat = &scenario.vehicles[vehicle.index()];
+        let starts = match &boat.start_position {
+            StartPosition::At(pose) => vec![pose.at],
+            StartPosition::Somewhere { along_m, across_m, .. } => {
+                let ends = [along_m.0, along_m.1].into_iter();
+                let corners = ends.flat_map(|along| [across_m.0, across_m.1].map(|across| (along, across)));
+                corners.map(|(along, across)| scenario.field.seen_from(boat.team, along, across)).collect()
+            }
+        };
+        let is_inside = starts.iter().all(|start| self.contains(*start));
+        is_inside.then_some(()).ok_or_else(|| GeofenceError::StartOutside(boat.name.clone()))
+    }
+
+    /// Whether a boat may be here.
+    #[must_use]
+    pub fn contains(&self, at: Ned) -> bool {
+        is_within(&self.outline, at) && !self.keep_out.iter().any(|keep_out| is_within(keep_out, at))
+    }
+
+    /// Whether a boat may be on all of the straight way between two places. The ends alone do not tell: the outline may be
+    /// concave, and a keep-out may lie between them.
+    #[must_use]
+    pub fn contains_way(&self, from: Ned, to: Ned) -> bool {
+        self.contains(from) && self.leads_in(from, to)
+    }
+
+    /// Whether the straight way ends inside, and leaves nothing where the boat may be on the way there: a boat that is
+    /// outside, or in a keep-out, comes back by it.
+    #[must_use]
+    pub fn leads_in(&self, from: Ned, to: Ned) -> bool {
+        let crosses_once = |polygon: &[Ned], wrong: bool| met(polygon, from, to) == usize::from(wrong);
+        self.contains(to)
+            && crosses_once(&self.outline, !is_within(&self.outline, from))
+            && self.keep_out.iter().all(|keep_out| crosses_once(keep_out, is_within(keep_out, from)))
+    }
+
+    /// The distance to the nearest edge, m: negative where a boat must not be.
+    #[must_use]
+    pub fn clearance_m(&self, at: Ned) -> f64 {
+        let outlines = std::iter::once(&self.outline).chain(&self.keep_out);
+        let distance_m = outlines.map(|outline| distance_to_outline(outline, at)).fold(f64::INFINITY, f64::min);
+        if self.contains(at) { distance_m } else { -distance_m }
+    }
+}
+
+/// How many sides of a polygon have a point in common with the straight way.
+fn met(polygon: &[Ned], from: Ned, to: Ned) -> usize {
+    sides(polygon).filter(|side| do_meet(*side, (from, to))).count()
+}
+
+/// What lies within a rectangle, clockwise on the chart, or up to so far outside: a rectangle with round corners.
+fn with_margin(corners: &[Ned; 4], margin_m: f64) -> Vec<Ned> {
+    if margin_m <= 0.0 {
+        return corners.to_vec();
+    }
+    let round = |[before, corner, after]: [Ned; 3]| {
+        // From the normal of the side that ends here to that of the side that begins, a quarter turn clockwise.
+        let [first, second] = [(before, corner), (corner, after)].map(|(a, b)| {
+            let (side, length_m) = (b - a, a.distance(b));
+            Ned { north: side.east, east: -side.north }.scaled(margin_m / length_m)
+        });
+        (0..=8).map(move |step| {
+            let (sin, cos) = math::sin_cos_deg(f64::from(step) * ROUND_STEP_DEG);
+            corner + first.scaled(cos) + second.scaled(sin)
+        })
+    };
+    let [a, b, c, d] = *corners;
+    [[d, a, b], [a, b, c], [b, c, d], [c, d, a]].into_iter().flat_map(round).collect()
+}

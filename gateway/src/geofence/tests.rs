@@ -1,0 +1,244 @@
+//! The geofence on fields, in polygons, and against an independent way to see where a place is.
+
+use super::*;
+use crate::geodesy::LocalFrame;
+use game::field::sides;
+use game::frame::LatLon;
+use game::math;
+use proptest::prelude::*;
+
+fn field() -> Field {
+    let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+    game::scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}")).field
+}
+
+fn rules() -> Geofence {
+    game::scenario::default_gateway().geofence
+}
+
+fn at(seconds: f64) -> SimTime {
+    SimTime::from_s(seconds)
+}
+
+#[test]
+fn a_boat_must_be_inside_and_able_to_stop_inside() {
+    // The field is 160 x 80 m from the datum; at 3 m/s a boat needs 3 + 18 = 21 m.
+    for (x, y, east_m_s, inside) in [
+        (80.0, 40.0, 3.0, true),
+        (168.9, 40.0, 3.0, true),
+        (169.1, 40.0, 3.0, false),
+        (169.1, 40.0, -3.0, true),
+        (189.9, 40.0, 0.0, true),
+        (190.1, 40.0, 0.0, false),
+        (190.1, 40.0, -3.0, false),
+        (80.0, -30.1, 0.0, false),
+    ] {
+        let mut geofence = GeofenceWatch::new(&field(), &rules());
+        let velocity = Ned { north: 0.0, east: east_m_s };
+        geofence.is_inside(at(0.0), Ned::from_xy(x, y), velocity);
+        assert_eq!(geofence.is_inside(at(0.5), Ned::from_xy(x, y), velocity), inside, "{x}, {y} at {east_m_s}");
+    }
+}
+
+#[test]
+fn one_fix_outside_is_not_enough() {
+    let mut geofence = GeofenceWatch::new(&field(), &rules());
+    let (inside, outside) = (Ned::from_xy(80.0, 40.0), Ned::from_xy(80.0, 400.0));
+    for (seconds, place, want) in
+        [(0.0, outside, true), (0.4, outside, true), (0.45, inside, true), (0.6, outside, true), (1.2, outside, false)]
+    {
+        assert_eq!(geofence.is_inside(at(seconds), place, Ned::default()), want, "{seconds}");
+    }
+}
+
+/// What operators type for these places of the field.
+fn typed(field: &Field, corners: &[Ned]) -> Vec<[f64; 2]> {
+    let frame = LocalFrame::new(field.plan.datum);
+    let place = |corner: &Ned| {
+        let LatLon { lat_deg, lon_deg } = frame.lat_lon(*corner);
+        [lat_deg, lon_deg]
+    };
+    corners.iter().map(place).collect()
+}
+
+/// A star about a place: concave, and without crossings whatever its radii are.
+fn star(centre: Ned, radii_m: &[f64]) -> Vec<Ned> {
+    let step_deg = 360.0 / radii_m.len() as f64;
+    radii_m
+        .iter()
+        .enumerate()
+        .map(|(i, radius_m)| centre + Ned::toward_deg(i as f64 * step_deg).scaled(*radius_m))
+        .collect()
+}
+
+fn area_of(outline: Vec<Ned>, keep_out: Vec<Vec<Ned>>) -> GeofenceArea {
+    GeofenceArea { outline, keep_out }
+}
+
+/// Whether a place is in a polygon, by the angle under which its sides are seen from there: a full turn, or none.
+fn is_seen_around(polygon: &[Ned], at: Ned) -> bool {
+    let angle = |(a, b): (Ned, Ned)| {
+        let (a, b) = (a - at, b - at);
+        math::atan2(a.north * b.east - a.east * b.north, a.dot(b))
+    };
+    sides(polygon).map(angle).sum::<f64>().abs() > std::f64::consts::PI
+}
+
+fn may_be_at(area: &GeofenceArea, at: Ned) -> bool {
+    is_seen_around(&area.outline, at) && !area.keep_out.iter().any(|polygon| is_seen_around(polygon, at))
+}
+
+/// Steps of the independent check, m.
+const STEP_M: f64 = 0.25;
+
+/// Places on a straight way, `STEP_M` apart at most.
+fn along(from: Ned, to: Ned) -> impl Iterator<Item = Ned> {
+    let count = (from.distance(to) / STEP_M).ceil().max(1.0);
+    (0..=count as u32).map(move |i| from + (to - from).scaled(f64::from(i) / count))
+}
+
+fn place() -> impl Strategy<Value = Ned> {
+    (-150.0..150.0, -150.0..150.0).prop_map(|(north, east)| Ned { north, east })
+}
+
+/// Concave areas with keep-outs, some of which reach over the outline or over each other.
+fn area() -> impl Strategy<Value = GeofenceArea> {
+    let outline = prop::collection::vec(40.0..140.0_f64, 3..12);
+    let keep_out = (place(), prop::collection::vec(3.0..40.0_f64, 3..8));
+    (outline, prop::collection::vec(keep_out, 0..4)).prop_map(|(radii_m, keep_out)| {
+        let keep_out = keep_out.into_iter().map(|(at, radii_m)| star(at.scaled(0.6), &radii_m)).collect();
+        area_of(star(Ned::default(), &radii_m), keep_out)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, max_global_rejects: 200_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_place_is_inside_if_the_outline_goes_round_it_and_no_keep_out_does(area in area(), at in place()) {
+        prop_assume!(area.clearance_m(at).abs() > 1e-6);
+        prop_assert_eq!(area.contains(at), may_be_at(&area, at));
+    }
+
+    #[test]
+    fn a_way_is_inside_if_every_place_of_it_is(area in area(), from in place(), to in place()) {
+        let all_inside = along(from, to).all(|at| may_be_at(&area, at));
+        if area.contains_way(from, to) {
+            prop_assert!(all_inside, "{from:?} to {to:?} is no way inside");
+        } else if all_inside {
+            // It cuts a corner between two steps, which are near it.
+            let nearest_m = along(from, to).map(|at| area.clearance_m(at)).fold(f64::INFINITY, f64::min);
+            prop_assert!(nearest_m <= 0.5 * STEP_M, "{from:?} to {to:?} stays {nearest_m} m inside");
+        }
+    }
+
+    #[test]
+    fn a_way_back_is_outside_at_its_beginning_only(area in area(), from in place(), to in place()) {
+        prop_assume!(area.leads_in(from, to));
+        let places: Vec<bool> = along(from, to).map(|at| may_be_at(&area, at)).collect();
+        prop_assert!(places.is_sorted() && places.last() == Some(&true), "{from:?} to {to:?}");
+    }
+
+    #[test]
+    fn the_clearance_is_how_far_a_boat_can_go_in_any_direction(area in area(), at in place(), toward_deg in 0.0..360.0) {
+        let clearance_m = area.clearance_m(at);
+        let there = at + Ned::toward_deg(toward_deg).scaled(0.999 * clearance_m.abs());
+        prop_assert_eq!(area.contains(there), clearance_m > 0.0);
+    }
+
+    #[test]
+    fn a_boat_that_is_stopped_where_all_is_well_comes_to_rest_inside(
+        area in area(), from in place(), toward_deg in 0.0..360.0, speed_m_s in 0.0..5.0_f64,
+    ) {
+        let rules = Geofence { debounce_s: 0.0, ..rules() };
+        let Geofence { reaction_s, deceleration_m_s2, .. } = rules;
+        let mut watch = GeofenceWatch { area: area.clone(), rules, since: None };
+        let toward = Ned::toward_deg(toward_deg);
+        prop_assume!(watch.is_inside(SimTime::ZERO, from, toward.scaled(speed_m_s)));
+        let brakes_for_s = speed_m_s / deceleration_m_s2;
+        for tick in 0..=(20.0 * (reaction_s + brakes_for_s)) as u32 {
+            let elapsed_s = f64::from(tick) / 20.0;
+            let braked_s = (elapsed_s - reaction_s).clamp(0.0, brakes_for_s);
+            let gone_m = speed_m_s * elapsed_s.min(reaction_s) + (speed_m_s - 0.5 * deceleration_m_s2 * braked_s) * braked_s;
+            prop_assert!(may_be_at(&area, from + toward.scaled(gone_m)), "outside after {gone_m} m");
+        }
+    }
+}
+
+#[test]
+fn a_concave_geofence_and_a_keep_out_count_on_all_of_the_way_to_rest() {
+    let field = field();
+    // A horseshoe, open to the north, with a rock in its eastern arm.
+    let xy = |corners: &[(f64, f64)]| -> Vec<Ned> { corners.iter().map(|&(x, y)| Ned::from_xy(x, y)).collect() };
+    let horseshoe = [
+        (0.0, 0.0),
+        (160.0, 0.0),
+        (160.0, 80.0),
+        (100.0, 80.0),
+        (100.0, 40.0),
+        (90.0, 40.0),
+        (90.0, 80.0),
+        (0.0, 80.0),
+    ];
+    let rock = [(120.0, 50.0), (124.0, 50.0), (122.0, 54.0)];
+    let rules = Geofence {
+        polygon: Some(typed(&field, &xy(&horseshoe))),
+        keep_out: vec![typed(&field, &xy(&rock))],
+        debounce_s: 0.0,
+        ..rules()
+    };
+    // At 3 m/s a boat needs 21 m.
+    for (x, y, east_m_s, inside) in [
+        (80.0, 20.0, 3.0, true),
+        (85.0, 60.0, 3.0, false), // it would come to rest inside, beyond the gap
+        (85.0, 60.0, -3.0, true),
+        (85.0, 60.0, 0.0, true),
+        (95.0, 60.0, 0.0, false),
+        (110.0, 52.0, 3.0, false), // the same beyond the rock
+        (110.0, 56.0, 3.0, true),
+        (122.0, 52.0, 0.0, false),
+        (122.0, 48.0, 0.0, true),
+    ] {
+        let mut geofence = GeofenceWatch::new(&field, &rules);
+        let velocity = Ned { north: 0.0, east: east_m_s };
+        assert_eq!(geofence.is_inside(at(0.0), Ned::from_xy(x, y), velocity), inside, "{x}, {y} at {east_m_s}");
+    }
+}
+
+#[test]
+fn a_geofence_that_does_not_go_with_the_game_is_refused() {
+    let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+    let scenario = game::scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}"));
+    let square = |x: f64, y: f64, half_m: f64| {
+        typed(
+            &scenario.field,
+            &[(-half_m, -half_m), (half_m, -half_m), (half_m, half_m), (-half_m, half_m)]
+                .map(|(dx, dy)| Ned::from_xy(x + dx, y + dy)),
+        )
+    };
+    let starts: Vec<Ned> = scenario
+        .vehicles
+        .iter()
+        .map(|vehicle| match &vehicle.start_position {
+            game::scenario::StartPosition::At(pose) => pose.at,
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    let start = |half_m: f64| square(starts[0].east, starts[0].north, half_m);
+    let all = || Some(square(80.0, 40.0, 200.0));
+    for (polygon, keep_out, refusal) in [
+        (None, vec![], ""),
+        (all(), vec![square(80.0, 40.0, 5.0)], ""),
+        (None, vec![square(80.0, 40.0, 5.0), square(80.0, 400.0, 5.0)], "keep_out 1 (the first is 0) lies outside"),
+        (all(), vec![start(3.0)], "starts outside"),
+        (Some(square(1000.0, 40.0, 200.0)), vec![], "starts outside"),
+    ] {
+        let area = GeofenceArea::new(&scenario.field, &Geofence { polygon, keep_out, ..rules() });
+        let checked =
+            area.check(&scenario, game::VehicleId::at(0)).map_err(|e| e.to_string()).err().unwrap_or_default();
+        assert!(
+            checked.contains(refusal) && checked.is_empty() == refusal.is_empty(),
+            "{checked:?}, expected {refusal:?}"
+        );
+    }
+}

@@ -1,0 +1,78 @@
+//! What of this machine has to be well before a boat is driven from it.
+
+use crate::preflight::Check;
+use std::path::Path;
+
+/// A day of a gateway's recording takes a tenth of this.
+const SPACE_MIN_MIB: u64 = 1024;
+/// Where systemd keeps who holds off what.
+const INHIBITORS: &str = "/run/systemd/inhibit";
+
+/// Whether there is room for recordings in this folder, and whether something keeps the machine from sleeping.
+#[must_use]
+pub fn machine_checks(folder: &Path) -> Vec<Check> {
+    vec![space(folder), sleep(Path::new(INHIBITORS))]
+}
+
+fn space(folder: &Path) -> Check {
+    let name = "recording space";
+    match rustix::fs::statvfs(folder) {
+        Ok(about) => {
+            let free_mib = about.f_bavail.saturating_mul(about.f_frsize) >> 20;
+            let found = format!("{free_mib} MiB free in {}, expected {SPACE_MIN_MIB}", folder.display());
+            Check::of(name, free_mib >= SPACE_MIN_MIB, found)
+        }
+        Err(e) => Check::not_done(name, format!("{}: {e}", folder.display())),
+    }
+}
+
+fn sleep(inhibitors: &Path) -> Check {
+    let Ok(entries) = std::fs::read_dir(inhibitors) else {
+        return Check::not_done(
+            "sleep",
+            format!("there is no {}: see that this machine stays awake", inhibitors.display()),
+        );
+    };
+    let texts = entries.flatten().filter_map(|entry| std::fs::read_to_string(entry.path()).ok());
+    let holders: Vec<String> = texts.filter_map(|text| sleep_inhibitor(&text)).collect();
+    if holders.is_empty() {
+        let found = "nothing keeps this machine from sleeping, expected systemd-inhibit --what=sleep, or the unit";
+        return Check::of("sleep", false, found.to_owned());
+    }
+    Check::of("sleep", true, format!("kept off by {}", holders.join(", ")))
+}
+
+/// Who holds off sleep by this entry, if it does.
+fn sleep_inhibitor(text: &str) -> Option<String> {
+    let value = |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix('='));
+    let blocks = value("MODE")? == "block" && value("WHAT")?.split(':').any(|what| what == "sleep");
+    blocks.then(|| value("WHO").unwrap_or("somebody").to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preflight::Verdict;
+
+    #[test]
+    fn only_who_blocks_sleep_keeps_a_machine_awake() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let entry = |name: &str, what: &str, mode: &str| {
+            let text = format!("# made by logind\nWHAT={what}\nWHO={name}\nWHY=because\nMODE={mode}\nUID=0\nPID=1\n");
+            std::fs::write(folder.path().join(name), text).expect("written");
+        };
+        entry("NetworkManager", "sleep", "delay");
+        entry("desktop", "handle-lid-switch:idle", "block");
+        assert_eq!(sleep(folder.path()).verdict, Verdict::Failed);
+        entry("squall", "idle:sleep", "block");
+        assert_eq!(sleep(folder.path()), Check::of("sleep", true, "kept off by squall".to_owned()));
+        assert_eq!(sleep(&folder.path().join("none")).verdict, Verdict::NotChecked);
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_has_no_room() {
+        let folder = tempfile::tempdir().expect("a folder");
+        assert_ne!(space(folder.path()).verdict, Verdict::NotChecked);
+        assert_eq!(space(&folder.path().join("none")).verdict, Verdict::NotChecked);
+    }
+}

@@ -1,0 +1,146 @@
+//! What a boat's own sentences tell before it is armed.
+
+use super::Check;
+use super::fix_scatter::FixScatter;
+use crate::geodesy::LocalFrame;
+use crate::geofence::GeofenceArea;
+use crate::nmea::{Mode, Operator, TimeOfDay};
+use crate::sensor_check::SensorCheck;
+use game::frame::LatLon;
+use game::gateway::Gateway;
+use game::{Field, SimTime};
+
+/// Fixes of a boat at rest may be so far from their mean, 95 of 100, and their mean may drift so far, m.
+const SCATTER_MAX_M: f64 = 2.5;
+/// For how long they are looked at, s.
+const SCATTER_S: f64 = 25.0;
+/// The boat's clock may be off by so much from this machine's, s: fixes are told a moment after their time.
+const CLOCK_BEHIND_S: std::ops::RangeInclusive<f64> = -1.0..=5.0;
+
+/// Where the boat is to play.
+pub struct Water {
+    /// The field.
+    pub field: Field,
+    /// Where the boat may be.
+    pub area: GeofenceArea,
+}
+
+/// The checks of what a boat has sent until `now`, which on this machine is the time of day `host`.
+#[must_use]
+pub fn boat_checks(
+    seen: &SensorCheck,
+    (now, host): (SimTime, TimeOfDay),
+    gateway: &Gateway,
+    water: Option<&Water>,
+) -> Vec<Check> {
+    let missing = seen.missing();
+    let sentences = if missing.is_empty() { "nothing is missing".to_owned() } else { missing.join("; ") };
+    vec![
+        Check::of("sentences", missing.is_empty(), sentences),
+        fix(seen, gateway),
+        scatter(seen),
+        geofence(seen, water),
+        compass(seen),
+        control(seen, gateway),
+        battery(seen, gateway),
+        clock(seen, now, host),
+        error(seen),
+    ]
+}
+
+fn fix(seen: &SensorCheck, gateway: &Gateway) -> Check {
+    let Some(gga) = seen.fix() else { return Check::not_done("fix", "no GGA came") };
+    let nav = &gateway.nav;
+    let satellites = gga.satellites.map_or("unknown".to_owned(), |count| count.to_string());
+    let hdop = gga.hdop.map_or("unknown".to_owned(), |hdop| hdop.to_string());
+    let quality = gga.quality_in_words();
+    let found = format!(
+        "{quality}, {satellites} satellites, dilution {hdop}; expected quality {} or better, dilution up to {}",
+        nav.quality_min, nav.hdop_max
+    );
+    let is_sharp = gga.hdop.is_none_or(|hdop| hdop <= nav.hdop_max);
+    Check::of("fix", gga.at.is_some() && gga.quality >= nav.quality_min && is_sharp, found)
+}
+
+fn scatter(seen: &SensorCheck) -> Check {
+    let fixes = seen.fixes();
+    let lasted_s = fixes.first().zip(fixes.last()).map_or(0.0, |(first, last)| (last.0 - first.0).as_s());
+    let places: Vec<LatLon> = fixes.iter().map(|(_, at)| *at).collect();
+    match FixScatter::of(&places).filter(|_| lasted_s >= SCATTER_S) {
+        None => Check::not_done("scatter", format!("{lasted_s:.0} s of fixes, expected {SCATTER_S}: --for-s 30")),
+        Some(FixScatter { radius_95_m, drift_m }) => {
+            let found = format!(
+                "95 % within {radius_95_m:.2} m, drift {drift_m:.2} m in {lasted_s:.0} s; expected up to {SCATTER_MAX_M} m of a boat at rest"
+            );
+            Check::of("scatter", radius_95_m <= SCATTER_MAX_M && drift_m <= SCATTER_MAX_M, found)
+        }
+    }
+}
+
+fn geofence(seen: &SensorCheck, water: Option<&Water>) -> Check {
+    let Some(water) = water else {
+        return Check::not_done("geofence", "no game says where the field is: --vehicle NAME, with --game");
+    };
+    let Some((_, at)) = seen.fixes().last() else { return Check::not_done("geofence", "no position came") };
+    let place = LocalFrame::new(water.field.plan.datum).ned(*at);
+    let clearance_m = water.area.clearance_m(place);
+    let on_field = if water.field.contains(place) { "on the field" } else { "off the field" };
+    let found = format!(
+        "x {:.1} m, y {:.1} m, {on_field}, {:.1} m {} the nearest edge of the geofence",
+        place.east,
+        place.north,
+        clearance_m.abs(),
+        if clearance_m > 0.0 { "inside of" } else { "OUTSIDE of" }
+    );
+    Check::of("geofence", clearance_m > 0.0, found)
+}
+
+fn compass(seen: &SensorCheck) -> Check {
+    match seen.compass_deg() {
+        Some(heading_deg) if (0.0..=360.0).contains(&heading_deg) => {
+            Check::of("compass", true, seen.heading().unwrap_or_default())
+        }
+        Some(heading_deg) => Check::of("compass", false, format!("heading {heading_deg}, expected 0 to 360")),
+        None => Check::not_done("compass", "no heading came"),
+    }
+}
+
+fn control(seen: &SensorCheck, gateway: &Gateway) -> Check {
+    let Some(state) = seen.control() else {
+        let found = "the boat does not say who commands it";
+        return Check::of("control", gateway.control.assumed, format!("{found}; expected PSEAD, or control.assumed"));
+    };
+    let is_ours = state.operator.is_none_or(|operator| operator == Operator::Secondary);
+    let operator = state.operator.map_or("nobody named".to_owned(), |operator| format!("{operator:?}"));
+    let found = format!(
+        "mode {} ({:?}), commanded by {operator}; expected standby (L), and Secondary",
+        state.mode.letter(),
+        state.mode
+    );
+    Check::of("control", is_ours && state.mode == Mode::Standby, found)
+}
+
+fn battery(seen: &SensorCheck, gateway: &Gateway) -> Check {
+    let least = gateway.battery.volts_min;
+    match seen.volts() {
+        Some(volts) => Check::of("battery", volts >= least, format!("{volts:.1} V, expected {least} or more")),
+        None => Check::not_done("battery", "the boat does not report it"),
+    }
+}
+
+fn clock(seen: &SensorCheck, now: SimTime, host: TimeOfDay) -> Check {
+    match seen.clock_behind_s(now, host) {
+        Some(behind_s) => {
+            let found = format!("fixes are {behind_s:.2} s behind this machine's clock, expected -1 to 5");
+            Check::of("clock", CLOCK_BEHIND_S.contains(&behind_s), found)
+        }
+        None => Check::not_done("clock", "no time of day came"),
+    }
+}
+
+fn error(seen: &SensorCheck) -> Check {
+    match seen.error() {
+        None | Some("N") => Check::of("error", true, "the boat reports none".to_owned()),
+        Some(code) => Check::of("error", false, format!("the boat reports error {code:?}")),
+    }
+}

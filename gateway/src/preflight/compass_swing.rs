@@ -1,0 +1,178 @@
+//! A compass swing: the boat is turned through all headings, and the deviation of its compass is fitted.
+//!
+//! The deviation is A + B sin h + C cos h + D sin 2h + E cos 2h at the heading h (Bowditch, *American Practical Navigator*,
+//! ch. 6), east positive: what has to be added to the compass to have the heading.
+
+use game::angle::wrap_pi;
+use game::math;
+use std::f64::consts::TAU;
+
+/// The most pairs that are kept.
+const PAIRS_MAX: usize = 20_000;
+/// The sectors of headings, of each of which there must be pairs.
+const SECTORS: usize = 12;
+
+/// Headings by the compass beside true ones.
+#[derive(Clone, Debug, Default)]
+pub struct CompassSwing {
+    /// True heading, and what has to be added to the compass, rad.
+    pairs: Vec<(f64, f64)>,
+}
+
+/// The deviation of a compass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// A to E, degrees.
+    pub a_to_e_deg: [f64; 5],
+    /// The standard deviation of what it does not explain, degrees.
+    pub residual_deg: f64,
+    /// Its largest value on any heading, degrees.
+    pub largest_deg: f64,
+}
+
+impl CompassSwing {
+    /// Takes the heading by the compass, with the declination, and a true one of the same moment, rad.
+    pub fn take(&mut self, compass_rad: f64, true_rad: f64) {
+        if self.pairs.len() < PAIRS_MAX && compass_rad.is_finite() && true_rad.is_finite() {
+            self.pairs.push((true_rad.rem_euclid(TAU), wrap_pi(true_rad - compass_rad)));
+        }
+    }
+
+    /// How many sectors of 30 degrees the boat has pointed to.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        let sector = |psi_rad: f64| (psi_rad / TAU * SECTORS as f64) as usize % SECTORS;
+        let mut seen = [false; SECTORS];
+        self.pairs.iter().for_each(|(psi_rad, _)| seen[sector(*psi_rad)] = true);
+        seen.iter().filter(|seen| **seen).count()
+    }
+
+    /// The deviation by least squares, once the boat has pointed everywhere.
+    ///
+    /// # Errors
+    /// Says what is missing.
+    pub fn fit(&self) -> Result<Deviation, String> {
+        let sectors = self.sectors();
+        if sectors < SECTORS {
+            return Err(format!("{sectors} of {SECTORS} sectors of 30 degrees were swept, expected all of them"));
+        }
+        // About their mean, so that angles near half a turn do not jump.
+        let [sin, cos] = self.pairs.iter().fold([0.0; 2], |[s, c], (_, off)| {
+            let (sin, cos) = math::sin_cos(*off);
+            [s + sin, c + cos]
+        });
+        let mean_rad = math::atan2(sin, cos);
+        let (mut normal, mut right) = ([[0.0; 5]; 5], [0.0; 5]);
+        for (psi_rad, off_rad) in &self.pairs {
+            let row = basis(*psi_rad);
+            for i in 0..5 {
+                right[i] += row[i] * wrap_pi(off_rad - mean_rad);
+                for j in 0..5 {
+                    normal[i][j] += row[i] * row[j];
+                }
+            }
+        }
+        let mut found = solved(normal, right).ok_or_else(|| "the headings do not tell a curve".to_owned())?;
+        found[0] = wrap_pi(found[0] + mean_rad);
+        let value = |psi_rad: f64| basis(psi_rad).iter().zip(found).map(|(base, factor)| base * factor).sum::<f64>();
+        let squares = self.pairs.iter().map(|(psi_rad, off)| wrap_pi(off - value(*psi_rad))).map(|rest| rest * rest);
+        let residual_rad = (squares.sum::<f64>() / self.pairs.len() as f64).sqrt();
+        let largest_rad = (0..360).map(|deg| value(f64::from(deg).to_radians()).abs()).fold(0.0, f64::max);
+        Ok(Deviation {
+            a_to_e_deg: found.map(f64::to_degrees),
+            residual_deg: residual_rad.to_degrees(),
+            largest_deg: largest_rad.to_degrees(),
+        })
+    }
+}
+
+impl Deviation {
+    /// What to paste into the boat's file.
+    #[must_use]
+    pub fn toml(&self) -> String {
+        let names = ["a_deg", "b_deg", "c_deg", "d_deg", "e_deg"].into_iter();
+        let lines = names.zip(self.a_to_e_deg).map(|(name, value_deg)| format!("{name} = {value_deg:.2}\n"));
+        format!("[compass]\n{}noise_deg = {:.2}\n", lines.collect::<String>(), self.residual_deg)
+    }
+}
+
+/// What A to E are the factors of.
+fn basis(psi_rad: f64) -> [f64; 5] {
+    let ((sin, cos), (sin_2, cos_2)) = (math::sin_cos(psi_rad), math::sin_cos(2.0 * psi_rad));
+    [1.0, sin, cos, sin_2, cos_2]
+}
+
+/// The solution of five linear equations by elimination with the largest pivots.
+fn solved(mut matrix: [[f64; 5]; 5], mut right: [f64; 5]) -> Option<[f64; 5]> {
+    for i in 0..5 {
+        let pivot = (i..5).max_by(|a, b| matrix[*a][i].abs().total_cmp(&matrix[*b][i].abs()))?;
+        (matrix.swap(i, pivot), right.swap(i, pivot));
+        if matrix[i][i].abs() < 1e-9 {
+            return None;
+        }
+        for below in i + 1..5 {
+            let factor = matrix[below][i] / matrix[i][i];
+            for column in i..5 {
+                matrix[below][column] -= factor * matrix[i][column];
+            }
+            right[below] -= factor * right[i];
+        }
+    }
+    for i in (0..5).rev() {
+        let known: f64 = (i + 1..5).map(|j| matrix[i][j] * right[j]).sum();
+        right[i] = (right[i] - known) / matrix[i][i];
+    }
+    Some(right)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn swung(a_to_e_deg: [f64; 5], noise_deg: f64) -> CompassSwing {
+        let mut swing = CompassSwing::default();
+        for i in 0..720_u32 {
+            let psi_rad = (f64::from(i) * 0.97).to_radians();
+            let deviation_deg: f64 = basis(psi_rad).iter().zip(a_to_e_deg).map(|(base, factor)| base * factor).sum();
+            let noise_deg = if i % 2 == 0 { noise_deg } else { -noise_deg };
+            swing.take(psi_rad - (deviation_deg + noise_deg).to_radians(), psi_rad);
+        }
+        swing
+    }
+
+    proptest! {
+        #[test]
+        fn the_fit_finds_the_deviation(
+            a in -179.0..179.0_f64, rest in prop::array::uniform4(-15.0..15.0_f64), noise_deg in 0.0..2.0_f64,
+        ) {
+            let want = [a, rest[0], rest[1], rest[2], rest[3]];
+            let got = swung(want, noise_deg).fit().expect("all headings");
+            for (got, want) in got.a_to_e_deg.iter().zip(want) {
+                prop_assert!(wrap_pi((got - want).to_radians()).to_degrees().abs() < 0.3, "{got}, expected {want}");
+            }
+            prop_assert!((got.residual_deg - noise_deg).abs() < 0.1, "{} of {noise_deg}", got.residual_deg);
+        }
+    }
+
+    #[test]
+    fn half_a_circle_is_no_swing() {
+        let mut swing = CompassSwing::default();
+        (0..180).for_each(|deg| swing.take(f64::from(deg).to_radians(), f64::from(deg).to_radians()));
+        assert_eq!(swing.fit(), Err("6 of 12 sectors of 30 degrees were swept, expected all of them".to_owned()));
+    }
+
+    #[test]
+    fn what_is_to_be_pasted_is_what_boat_files_take() {
+        let toml = swung([1.0, 2.0, -3.0, 0.5, 0.25], 0.5).fit().expect("all headings").toml();
+        assert!(toml.starts_with("[compass]\na_deg = 1.00\nb_deg = 2.00\nc_deg = -3.00\n"), "{toml}");
+        let folder = tempfile::tempdir().expect("a folder");
+        let base = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/boats/surveyor_m1_8.toml");
+        let base = base.canonicalize().expect("it is there");
+        let file = folder.path().join("boat.toml");
+        std::fs::write(&file, format!("base = {base:?}\n\n{toml}")).expect("written");
+        let boat = game::scenario::load_boat(&file).unwrap_or_else(|problems| panic!("{problems}"));
+        let compass = boat.sensors.compass.expect("it has one");
+        assert!((compass.deviation_rad[2].to_degrees() + 3.0).abs() < 0.01, "{compass:?}");
+    }
+}

@@ -1,0 +1,24 @@
+//! The report of a pre-flight check as a file: JSON for the gateway, and the same as text beside it.
+
+use anyhow::{Context, Result};
+use gateway::preflight::Report;
+use std::path::Path;
+
+/// The longest report that is read, bytes.
+const BYTES_MAX: u64 = 1 << 20;
+
+/// Writes a report, and its text beside it.
+pub(super) fn write(path: &Path, report: &Report) -> Result<()> {
+    let write = |path: &Path, text: &str| {
+        std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
+    };
+    write(path, &(serde_json::to_string_pretty(report).context("a report is JSON")? + "\n"))?;
+    write(&path.with_extension("txt"), &report.text())
+}
+
+/// Reads a report.
+pub(super) fn read(path: &Path) -> Result<Report> {
+    let text =
+        game::input_file::read_text(path, BYTES_MAX).with_context(|| format!("cannot read {}", path.display()))?;
+    serde_json::from_str(&text).with_context(|| format!("{} is no report of a pre-flight check", path.display()))
+}
