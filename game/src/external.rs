@@ -194,7 +194,7 @@ pub struct GatewayStatus {
     pub battery_age_s: Option<f64>,
     /// The sentence that was sent last.
     pub last_sent: String,
-    /// In a dry run, what would have been sent last: what is sent is standby.
+    /// In a dry run, what would have been sent last, if anything: what is sent is standby.
     #[serde(default)]
     pub would_send: Option<String>,
     /// Counts of everything, by name.

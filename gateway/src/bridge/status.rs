@@ -48,7 +48,7 @@ impl Bridge {
             battery_v: battery.map(|(volts, _)| volts),
             battery_age_s: battery.map(|(_, age_s)| age_s),
             last_sent: self.last_sent.as_ref().map(|(_, command)| sentence(command)).unwrap_or_default(),
-            would_send: self.would_send.as_ref().map(sentence),
+            would_send: self.plan.dry_run.then(|| self.would_send.as_ref().map(sentence).unwrap_or_default()),
             counts: self.counts(),
             latency_us: [None; 2],
         }
