@@ -144,3 +144,103 @@ fn error(seen: &SensorCheck) -> Check {
         Some(code) => Check::of("error", false, format!("the boat reports error {code:?}")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nmea::checksum;
+    use crate::preflight::Verdict;
+    use game::frame::Ned;
+
+    fn water() -> Water {
+        let game = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/games/pav01_vs_pav01.toml");
+        let field = game::scenario::load(&game).unwrap_or_else(|problems| panic!("{problems}")).field;
+        let area = GeofenceArea::new(&field, &game::scenario::default_gateway().geofence);
+        Water { field, area }
+    }
+
+    /// A minute of a boat about this place of the field, with its GGA from the fifth field on and what else it says.
+    fn seen(water: &Water, [x, y]: [f64; 2], fix: &str, more: &[&str]) -> SensorCheck {
+        let frame = LocalFrame::new(water.field.plan.datum);
+        let mut check = SensorCheck::new();
+        for i in 0..120_u32 {
+            let at = frame.lat_lon(Ned::from_xy(x + 0.1 * f64::from(i % 3), y));
+            let minutes = |deg: f64| (deg.abs().trunc(), deg.abs().fract() * 60.0);
+            let ((lat, lat_min), (lon, lon_min)) = (minutes(at.lat_deg), minutes(at.lon_deg));
+            let gga = format!(
+                "GPGGA,1505{:02}.00,{lat:02}{lat_min:08.5},N,{lon:03}{lon_min:08.5},W,{fix},5.5,M,-33.2,M,,",
+                i / 2
+            );
+            for body in [gga.as_str()].iter().chain(more) {
+                let sentence = format!("${body}*{:02X}\r\n", checksum(body.as_bytes()));
+                check.take(SimTime::from_s(0.5 * f64::from(i)), sentence.as_bytes());
+            }
+        }
+        check
+    }
+
+    const SOUND: [&str; 4] = [
+        "PSEAA,-2.2,0.7,222.6,,47.8,-0.04,-0.01,-1.00,-0.01",
+        "PSEAD,L,0.0,0,0,,T,2,2",
+        "PSEAB,24.8,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26",
+        "GPVTG,000.0,T,012.7,M,000.08,N,0000.14,K",
+    ];
+
+    #[test]
+    fn each_thing_that_is_wrong_fails_its_own_check() {
+        let water = water();
+        let sound = |at: usize, body: &'static str| {
+            let mut sentences = SOUND;
+            sentences[at] = body;
+            sentences
+        };
+        let fix = "4,11,0.98";
+        for (place, fix, more, failed, found) in [
+            ([80.0, 40.0], fix, SOUND, "", ""),
+            ([80.0, 40.0], "0,11,0.98", SOUND, "fix", "no fix, 11 satellites"),
+            ([80.0, 40.0], "5,4,7.50", SOUND, "fix", "RTK float, 4 satellites, dilution 7.5"),
+            ([80.0, 400.0], fix, SOUND, "geofence", "off the field, 290.0 m OUTSIDE of"),
+            (
+                [80.0, 40.0],
+                fix,
+                sound(0, "PSEAA,-2.2,0.7,400000,,47.8,-0.04,-0.01,-1.00,-0.01"),
+                "compass",
+                "heading 400000",
+            ),
+            ([80.0, 40.0], fix, sound(1, "PSEAD,T,0.0,20,0,,T,2,2"), "control", "mode T"),
+            ([80.0, 40.0], fix, sound(1, "PSEAD,L,0.0,0,0,,T,2,5"), "control", "commanded by Rc"),
+            (
+                [80.0, 40.0],
+                fix,
+                sound(2, "PSEAB,21.0,15433,1.3,22.3,42308,,,24.8,,1.3,0.0,0.0,,,26"),
+                "battery",
+                "21.0 V",
+            ),
+            ([80.0, 40.0], fix, sound(3, "PSEAG,E"), "error", "error \"E\""),
+        ] {
+            let seen = seen(&water, place, fix, &more);
+            let now = (SimTime::from_s(59.5), TimeOfDay(54_360_000));
+            let checks = boat_checks(&seen, now, &game::scenario::default_gateway(), Some(&water));
+            let wrong: Vec<_> = checks.iter().filter(|check| check.verdict != Verdict::Passed).collect();
+            if failed.is_empty() {
+                assert!(wrong.is_empty(), "{wrong:?}");
+            } else {
+                assert!(
+                    wrong.iter().any(|check| check.name == failed && check.found.contains(found)),
+                    "{failed}: {wrong:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_short_look_cannot_tell_is_not_checked() {
+        let mut check = SensorCheck::new();
+        check.take(SimTime::ZERO, b"$GPGGA,150502.00,4221.50616,N,07105.24688,W,2,11,0.98,5.5,M,-33.2,M,,*62\r\n");
+        let now = (SimTime::ZERO, TimeOfDay(54_302_400));
+        let checks = boat_checks(&check, now, &game::scenario::default_gateway(), None);
+        let not_checked = checks.iter().filter(|check| check.verdict == Verdict::NotChecked);
+        let names: Vec<&str> = not_checked.map(|check| check.name.as_str()).collect();
+        assert_eq!(names, ["scatter", "geofence", "compass", "battery"], "{checks:?}");
+    }
+}
