@@ -127,11 +127,12 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
     {
         return Check::not_done(name, "not wanted");
     }
-    // By remote control, thrust ahead and astern.
-    let (mut by_remote, mut seen) = (false, [false; 2]);
+    // Whether the boat says who commands it, that it is the remote control, and thrust ahead and astern.
+    let (mut tells, mut by_remote, mut seen) = (false, false, [false; 2]);
     let what = "Run both propellers ahead and astern by remote control, 20 per cent for two seconds each.";
     guide.until_enter(what, listener, &mut |listener| {
         let Some(state) = listener.check.control() else { return };
+        tells |= state.operator.is_some();
         by_remote |= state.operator == Some(Operator::Rc);
         let thrust_pct = state.thrust.unwrap_or(0.0);
         seen = [seen[0] || thrust_pct >= THRUST_MIN_PCT, seen[1] || thrust_pct <= -THRUST_MIN_PCT];
@@ -145,5 +146,5 @@ fn propellers(guide: &Guide, listener: &mut Listener) -> Check {
         word(seen[0]),
         word(seen[1])
     );
-    Check::of(name, turned, found)
+    Check::of(name, turned && (by_remote || !tells), found)
 }
