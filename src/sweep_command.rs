@@ -45,6 +45,10 @@ pub(crate) struct Args {
     /// With --find: about how many games
     #[arg(long, value_name = "N", requires = "find", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(20..=10_000_000))]
     search_games: u32,
+    /// With --find: games that came near to the failure are played again from there with other futures; with `out_of_bounds`, `collision`
+    /// and other conditions on a distance
+    #[arg(long, requires = "find")]
+    split: bool,
 }
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
@@ -133,9 +137,14 @@ fn find(args: &Args, plan: &Plan, text: &str, (folder, jobs): (&Path, NonZeroUsi
         other => other.to_owned(),
     };
     let condition = Condition::parse(&condition, plan.sweep())?;
+    anyhow::ensure!(
+        !args.split || condition.has_nearness(),
+        "--split with {condition}: no distance says how near a game is to it, expected a condition on {}",
+        Condition::NEARNESS
+    );
     let stop = stop::on_ctrl_c()?;
     let mut journal = journal(args, folder, plan)?;
-    let search = Search { games: args.search_games as usize, learns: true, splits: true };
+    let search = Search { games: args.search_games as usize, learns: true, splits: args.split };
     let found = sweep::find(plan, &condition, search, &mut journal, (jobs, &stop), |games, failures| {
         screen::remark(&format!("{failures} of {games} games with {condition}"));
     });

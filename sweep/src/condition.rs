@@ -55,6 +55,15 @@ impl Condition {
         Ok(Condition { entry, metric, is_below: text[at..].starts_with('<'), threshold })
     }
 
+    /// The metrics of conditions that have a distance to them, for people.
+    pub const NEARNESS: &str = "closest_m or edge_m below a number, or contacts, near_misses, collisions, out_of_bounds or outside_s above one";
+
+    /// Whether a distance says at any time of a game how near it is to the condition.
+    #[must_use]
+    pub fn has_nearness(&self) -> bool {
+        self.nearness().is_some()
+    }
+
     /// The distance that says at any time of a game how near it is to the condition, if one does.
     pub(crate) fn nearness(&self) -> Option<Nearness> {
         match (METRICS[self.metric].name, self.is_below) {

@@ -7,7 +7,7 @@
 //! Technometrics 1995). A round's density depends on earlier rounds
 //! alone, so the mean of its weights over failures is unbiased whatever was learnt.
 //!
-//! Where a distance says at any time how near a game is to a failure, the games after the learning are populations that split
+//! Where a distance says at any time how near a game is to a failure, the games after the learning can be populations that split
 //! ([`crate::split`]): those that came near are played again from there with another future. So chance within a game is searched too.
 
 use crate::approach::Approach;
