@@ -1,6 +1,7 @@
 //! The emergency recovery point that a boat has from us: uploaded with a mission, and seen taken.
 
-use crate::nmea::{ControlState, Mode, Operator};
+use crate::nmea::{Mode, Operator};
+use crate::protocol::ControlReport;
 use game::external::Mission;
 
 /// How far the boat has come with it.
@@ -22,10 +23,10 @@ impl RecoveryPoint {
     }
 
     /// The boat's report: taken is what it sails after it has shown that it took lines.
-    pub(super) fn take(&mut self, state: &ControlState, is_uploading: bool) {
+    pub(super) fn take(&mut self, report: &ControlReport, is_uploading: bool) {
         let RecoveryPoint::Uploading(erp, shown) = *self else { return };
-        let is_ours = state.operator.is_none_or(|operator| operator == Operator::Secondary);
-        *self = match state.mode {
+        let is_ours = report.operator.is_none_or(|operator| operator == Operator::Secondary);
+        *self = match report.shown.mode {
             _ if !is_ours => RecoveryPoint::Unknown,
             Mode::FileDownload => RecoveryPoint::Uploading(erp, true),
             Mode::Waypoint if shown && !is_uploading => RecoveryPoint::Taken(erp),

@@ -1,6 +1,6 @@
-//! The upload of a mission: lines one after the other, with pauses.
+//! The upload of a mission to a Surveyor: lines one after the other, with pauses.
 
-use super::command_encoder;
+use super::surveyor::{end_of_download, start_of_download};
 use crate::nmea::{MissionSettings, Sentence, Waypoint};
 use game::SimTime;
 use game::external::Mission;
@@ -44,7 +44,7 @@ impl Upload {
         }
         let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
         let mut lines = VecDeque::from([
-            Sentence::Command(command_encoder::start_of_download(mission.waypoints.len() + 2)),
+            start_of_download(mission.waypoints.len() + 2),
             Sentence::MissionSettings(MissionSettings { throttle_pct: mission.throttle_pct }),
         ]);
         for (index, [lat_deg, lon_deg]) in places.enumerate() {
@@ -54,7 +54,7 @@ impl Upload {
             let at = LatLon { lat_deg: *lat_deg, lon_deg: *lon_deg };
             lines.push_back(Sentence::Waypoint(Waypoint { at, index: index as u16 }));
         }
-        lines.push_back(Sentence::Command(command_encoder::end_of_download()));
+        lines.push_back(end_of_download());
         Ok(Upload { lines, gap: SimTime::from_s(gap_s), due: now })
     }
 
