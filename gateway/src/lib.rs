@@ -11,6 +11,7 @@ pub mod game_clock;
 pub mod geodesy;
 pub mod geofence;
 pub mod link;
+pub mod mavlink;
 mod motion_check;
 pub mod nav_estimate;
 pub mod nmea;

@@ -1,10 +1,13 @@
 //! `squall gateway stop`: stops a boat with nothing else running, straight over its link.
 
+use super::emulate::ProtocolArg;
 use crate::screen;
 use crate::sim_command::seconds;
 use anyhow::{Result, anyhow, bail};
 use bus::{LinkLock, ask_gateway, clock};
+use game::SimTime;
 use game::external::{GatewayCommand, OperatorCommand};
+use game::gateway::Gateway;
 use game::scenario::default_gateway;
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use gateway::nmea::{Mode, Operator};
@@ -27,6 +30,9 @@ const EVENTS_MAX: usize = 4096;
 pub(crate) struct Args {
     /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
     link: String,
+    /// What the boat speaks
+    #[arg(long, value_name = "PROTOCOL", value_enum, default_value_t = ProtocolArg::Surveyor)]
+    protocol: ProtocolArg,
     /// How long to try, s
     #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
     wait_s: f64,
@@ -43,7 +49,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let take = move |event| drop(sender.try_send(event));
     let settings = LinkSettings { silence: None, retry_max: AGAIN, ..LinkSettings::default() };
     let link = Link::open(&address, settings, take)?;
-    let (mut protocol, mut boat) = (Protocol::new(&default_gateway()), None);
+    let gateway = Gateway { protocol: args.protocol.protocol(), ..default_gateway() };
+    let (mut protocol, mut boat) = (Protocol::new(&gateway), None);
     let (start, limit) = (clock::now(), Duration::from_secs_f64(args.wait_s));
     let (mut connected, mut due, mut reason) = (None, start, "no answer yet".to_owned());
     while clock::since(start) < limit {
@@ -52,7 +59,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
                 screen::remark(&format!("connected to {name}: thrust zero and standby"));
                 (connected, due) = (Some(clock::now()), clock::now());
             }
-            Ok(LinkEvent::Bytes { bytes, .. }) => protocol.read(&bytes, &mut |report| {
+            Ok(LinkEvent::Bytes { bytes, .. }) => protocol.read(SimTime::ZERO, &bytes, &mut |report| {
                 if let Report::Control(control) = report {
                     boat = Some(control);
                 }
@@ -65,7 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         let Some(since) = connected else { continue };
         if clock::now() >= due {
             due = clock::now() + AGAIN;
-            link.send(protocol.stop_message(), 0);
+            link.send(protocol.forced_stop_message(), 0);
         }
         if clock::since(since) >= SAY && boat.is_some_and(|boat| boat.shown.mode == Mode::Standby) {
             screen::print("the boat reports standby\n");

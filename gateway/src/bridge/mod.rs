@@ -147,9 +147,12 @@ impl Bridge {
             Input::Tick => {}
         }
         if request.is_some() && !matches!(input, Input::Operator(OperatorCommand::Mission(_))) {
-            self.cancel_upload(out);
+            self.cancel_upload(now, out);
         }
         self.advance(now, request, out);
+        if self.link_up {
+            self.protocol.keep_up(now, &mut out.bytes);
+        }
         self.report_nav(now, out);
     }
 
@@ -182,7 +185,7 @@ impl Bridge {
         let mut message = Vec::new();
         let mut protocol = self.protocol.clone();
         if protocol.abort_upload() {
-            protocol.write(Command::EndOfUpload, &mut message);
+            protocol.write(SimTime::ZERO, Command::EndOfUpload, &mut message);
         }
         message.extend(protocol.stop_message());
         message
@@ -209,7 +212,7 @@ impl Bridge {
 
     fn read(&mut self, now: SimTime, bytes: &[u8], out: &mut Output) {
         let mut reports = Vec::new();
-        self.protocol.read(bytes, &mut |report| reports.push(report));
+        self.protocol.read(now, bytes, &mut |report| reports.push(report));
         reports.into_iter().for_each(|report| self.apply(now, report, out));
     }
 
@@ -228,6 +231,7 @@ impl Bridge {
                 self.boat_fault = fault;
             }
             Report::Clock(time) => self.watch_clock(now, time, out),
+            Report::Home(home) => self.recovery_point.take_home(home),
             Report::Fix(_) | Report::Velocity(_) | Report::Heading(_) | Report::Fault(_) => {}
         }
     }
@@ -340,10 +344,10 @@ impl Bridge {
     }
 
     /// Cancels the upload of a mission.
-    fn cancel_upload(&mut self, out: &mut Output) {
+    fn cancel_upload(&mut self, now: SimTime, out: &mut Output) {
         if self.protocol.abort_upload() && self.link_up {
             self.recovery_point = RecoveryPoint::default();
-            self.protocol.write(Command::EndOfUpload, &mut out.bytes);
+            self.protocol.write(now, Command::EndOfUpload, &mut out.bytes);
         }
     }
 
@@ -372,10 +376,10 @@ impl Bridge {
         // Thrust goes to zero before any command that is not our own set-point.
         let is_set_point = matches!(action, Action::Follow | Action::Zero);
         if !is_set_point && std::mem::replace(&mut self.under_way, false) {
-            self.protocol.write(Command::SetPoint(SetPoint::ZERO), &mut out.bytes);
+            self.protocol.write(now, Command::Zero, &mut out.bytes);
         }
         self.under_way |= action == Action::Follow;
-        self.protocol.write(command, &mut out.bytes);
+        self.protocol.write(now, command, &mut out.bytes);
         out.carries_order = action == Action::Follow && self.order_is_new;
         if out.carries_order {
             (self.order_is_new, self.order_sent) = (false, now);
@@ -402,6 +406,10 @@ impl Bridge {
         match self.protocol.continue_upload(now, &mut out.bytes) {
             UploadStep::Sent => self.note_sent(now, Command::EndOfUpload),
             UploadStep::Done => self.advance(now, Some(OperatorRequest::Delegate(Task::Mission)), out),
+            UploadStep::Failed(reason) => {
+                self.recovery_point = RecoveryPoint::default();
+                out.events.push(Event::Warning(format!("the mission is not uploaded: {reason}")));
+            }
             UploadStep::Waiting => {}
         }
     }

@@ -2,6 +2,10 @@
 //!
 //! Nothing in here decides whether a boat may move: that is the supervisor's, and what a bridge sends follows from it.
 
+mod mavlink;
+mod mavlink_boat;
+mod mavlink_upload;
+mod mission_check;
 mod report;
 mod surveyor;
 mod surveyor_upload;
@@ -10,7 +14,8 @@ use crate::set_point::SetPoint;
 use crate::supervisor::Task;
 use game::SimTime;
 use game::external::Mission;
-use game::gateway::Gateway;
+use game::gateway::{BoatProtocol, Gateway};
+use mavlink::Mavlink;
 pub use report::{ControlReport, Fix, Heading, North, Report, Shown};
 use surveyor::Surveyor;
 
@@ -19,6 +24,8 @@ use surveyor::Surveyor;
 pub enum Command {
     /// Stop, and do nothing.
     Standby,
+    /// Thrust zero, whatever the boat does; it does not make it follow set-points.
+    Zero,
     /// Follow this set-point.
     SetPoint(SetPoint),
     /// Do this by its own controller.
@@ -28,7 +35,7 @@ pub enum Command {
 }
 
 /// How far the upload of a mission is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum UploadStep {
     /// Something was sent.
     Sent,
@@ -36,6 +43,8 @@ pub enum UploadStep {
     Waiting,
     /// The boat has all of it.
     Done,
+    /// The boat does not take it: why.
+    Failed(String),
 }
 
 /// A protocol, with what it must remember of a link.
@@ -43,33 +52,49 @@ pub enum UploadStep {
 pub enum Protocol {
     /// The Surveyor's NMEA.
     Surveyor(Surveyor),
+    /// MAVLink, with an ArduPilot boat.
+    Mavlink(Box<Mavlink>),
 }
 
 impl Protocol {
     /// For a boat that this gateway drives.
     #[must_use]
     pub fn new(gateway: &Gateway) -> Protocol {
-        Protocol::Surveyor(Surveyor::new(gateway.upload_gap_s))
+        match gateway.protocol {
+            BoatProtocol::Surveyor => Protocol::Surveyor(Surveyor::new(gateway.upload_gap_s)),
+            BoatProtocol::Mavlink => Protocol::Mavlink(Box::new(Mavlink::new(gateway))),
+        }
     }
 
     /// A new link: nothing of the one before counts.
     pub fn begin_link(&mut self) {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.begin_link(),
+            Protocol::Mavlink(mavlink) => mavlink.begin_link(),
         }
     }
 
     /// Reads bytes from the boat, cut as they come.
-    pub fn read(&mut self, bytes: &[u8], take: &mut dyn FnMut(Report)) {
+    pub fn read(&mut self, now: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report)) {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.read(bytes, take),
+            Protocol::Mavlink(mavlink) => mavlink.read(now, bytes, take),
         }
     }
 
     /// Appends the bytes of a command.
-    pub fn write(&mut self, command: Command, out: &mut Vec<u8>) {
+    pub fn write(&mut self, now: SimTime, command: Command, out: &mut Vec<u8>) {
         match self {
             Protocol::Surveyor(_) => surveyor::write(command, out),
+            Protocol::Mavlink(mavlink) => mavlink.write(now, command, out),
+        }
+    }
+
+    /// Appends what is due without a command, such as a heartbeat and answers to the boat.
+    pub fn keep_up(&mut self, now: SimTime, out: &mut Vec<u8>) {
+        match self {
+            Protocol::Surveyor(_) => {}
+            Protocol::Mavlink(mavlink) => mavlink.keep_up(now, out),
         }
     }
 
@@ -78,6 +103,7 @@ impl Protocol {
     pub fn shown(&self, command: Command) -> Shown {
         match self {
             Protocol::Surveyor(_) => surveyor::shown(command),
+            Protocol::Mavlink(_) => mavlink::shown(command),
         }
     }
 
@@ -86,14 +112,25 @@ impl Protocol {
     pub fn text(&self, command: Command) -> String {
         match self {
             Protocol::Surveyor(_) => surveyor::text(command),
+            Protocol::Mavlink(_) => mavlink::text(command),
         }
     }
 
-    /// What stops the boat, whatever it does: thrust zero, then standby.
+    /// What stops the boat, whatever it does: thrust zero, then standby. It takes nothing from others who command the boat.
     #[must_use]
     pub fn stop_message(&self) -> Vec<u8> {
         match self {
             Protocol::Surveyor(_) => surveyor::stop_message(),
+            Protocol::Mavlink(mavlink) => mavlink.stop_message(),
+        }
+    }
+
+    /// As [`Protocol::stop_message`], whoever commands the boat, as far as its protocol allows that.
+    #[must_use]
+    pub fn forced_stop_message(&self) -> Vec<u8> {
+        match self {
+            Protocol::Surveyor(_) => surveyor::stop_message(),
+            Protocol::Mavlink(mavlink) => mavlink.forced_stop_message(),
         }
     }
 
@@ -103,6 +140,7 @@ impl Protocol {
         match self {
             // A sentence that was cut off ends first.
             Protocol::Surveyor(_) => [b"\r\n".to_vec(), self.stop_message()].concat(),
+            Protocol::Mavlink(mavlink) => mavlink.stop_message(),
         }
     }
 
@@ -113,6 +151,7 @@ impl Protocol {
     pub fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.begin_upload(now, mission),
+            Protocol::Mavlink(mavlink) => mavlink.begin_upload(now, mission),
         }
     }
 
@@ -120,6 +159,7 @@ impl Protocol {
     pub fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.continue_upload(now, out),
+            Protocol::Mavlink(mavlink) => mavlink.continue_upload(now, out),
         }
     }
 
@@ -128,6 +168,7 @@ impl Protocol {
     pub fn is_uploading(&self) -> bool {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.is_uploading(),
+            Protocol::Mavlink(mavlink) => mavlink.is_uploading(),
         }
     }
 
@@ -135,6 +176,7 @@ impl Protocol {
     pub fn abort_upload(&mut self) -> bool {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.abort_upload(),
+            Protocol::Mavlink(mavlink) => mavlink.abort_upload(),
         }
     }
 
@@ -143,6 +185,7 @@ impl Protocol {
     pub fn due(&self) -> Option<SimTime> {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.due(),
+            Protocol::Mavlink(mavlink) => Some(mavlink.due()),
         }
     }
 
@@ -151,6 +194,7 @@ impl Protocol {
     pub fn counts(&self) -> [Vec<(String, u64)>; 2] {
         match self {
             Protocol::Surveyor(surveyor) => surveyor.counts(),
+            Protocol::Mavlink(mavlink) => mavlink.counts(),
         }
     }
 }

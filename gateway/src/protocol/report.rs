@@ -21,6 +21,8 @@ pub enum Report {
     Battery(Option<f64>),
     /// What it says is wrong with it; `None` is nothing.
     Fault(Option<String>),
+    /// Where its home is, to which it goes for recovery: latitude and longitude, degrees.
+    Home([f64; 2]),
 }
 
 /// A fix of the receiver.

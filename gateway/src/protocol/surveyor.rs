@@ -2,7 +2,7 @@
 
 use super::report::{ControlReport, Fix, Heading, North, Report, Shown};
 use super::surveyor_upload::{Next, Upload};
-use super::{Command, UploadStep};
+use super::{Command, UploadStep, mission_check};
 use crate::nmea::{self, ControlState, Framer, M_S_PER_KN, Mode, ParseError, Sentence};
 use crate::set_point::SetPoint;
 use crate::supervisor::Task;
@@ -49,7 +49,8 @@ impl Surveyor {
     }
 
     pub(super) fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
-        self.upload = Some(Upload::new(mission, self.upload_gap_s, now)?);
+        mission_check::check(mission)?;
+        self.upload = Some(Upload::new(mission, self.upload_gap_s, now));
         Ok(())
     }
 
@@ -149,6 +150,7 @@ fn pseac(mode: Mode, numbers: [Option<f64>; 3]) -> nmea::Command {
 fn sentence(command: Command) -> nmea::Command {
     match command {
         Command::Standby => pseac(Mode::Standby, [Some(0.0); 3]),
+        Command::Zero => sentence(Command::SetPoint(SetPoint::ZERO)),
         Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
             pseac(Mode::Thruster, [Some(0.0), Some(thrust_pct), Some(difference_pct)])
         }
@@ -189,7 +191,7 @@ pub(super) fn text(command: Command) -> String {
 
 pub(super) fn stop_message() -> Vec<u8> {
     let mut bytes = Vec::new();
-    write(Command::SetPoint(SetPoint::ZERO), &mut bytes);
+    write(Command::Zero, &mut bytes);
     write(Command::Standby, &mut bytes);
     bytes
 }
