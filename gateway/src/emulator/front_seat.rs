@@ -22,14 +22,11 @@ impl FrontSeat {
         }
     }
 
-    /// Takes bytes from a port, and appends what is answered at once.
-    pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8], answers: &mut Vec<u8>) {
+    /// Takes bytes from a port. What it answers goes with the next telemetry.
+    pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
         match self {
             FrontSeat::Surveyor(boat) => boat.take(now, port, bytes),
-            FrontSeat::ArduPilot(boat) => {
-                boat.take(now, bytes);
-                boat.answers(answers);
-            }
+            FrontSeat::ArduPilot(boat) => boat.take(now, bytes),
         }
     }
 

@@ -190,9 +190,8 @@ impl EmulatorNode {
             let Incoming { bytes, remarks, picture, .. } = incoming.visit(std::mem::take);
             remarks.into_iter().for_each(|text| self.remark(text, notify));
             for (port, bytes) in &bytes {
-                let (now, mut answers) = (self.now, Vec::new());
-                self.front_seat().take(now, *port, bytes, &mut answers);
-                self.send(&answers);
+                let now = self.now;
+                self.front_seat().take(now, *port, bytes);
             }
             self.report_operator(notify);
             if let Some(text) = self.front_seat().take_remark() {
@@ -255,16 +254,12 @@ impl EmulatorNode {
     fn send_telemetry(&mut self) {
         let (now, mut burst) = (self.now, Vec::with_capacity(512));
         self.front_seat().telemetry(now, &mut burst);
-        self.send(&burst);
-    }
-
-    fn send(&mut self, bytes: &[u8]) {
-        if bytes.is_empty() {
+        if burst.is_empty() {
             return;
         }
         self.sent += 1;
         for link in self.links.iter().flatten() {
-            link.send(bytes.to_vec(), self.sent);
+            link.send(burst.clone(), self.sent);
         }
     }
 }

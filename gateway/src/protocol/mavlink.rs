@@ -12,8 +12,8 @@ use super::{Command, UploadStep, mission_check};
 use crate::mavlink::dialect::{
     ATTITUDE_DATA, AttitudeTargetTypemask, COMMAND_LONG_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA,
     HEARTBEAT_DATA, HOME_POSITION_DATA, MISSION_ACK_DATA, MavAutopilot, MavCmd, MavFrame, MavMessage, MavMissionResult,
-    MavState, MavType, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
-    SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    MavModeFlag, MavState, MavType, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA,
+    SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
 };
 use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer};
 use crate::nmea::Mode;
@@ -270,6 +270,8 @@ impl Mavlink {
                 MavMessage::HEARTBEAT(HEARTBEAT_DATA {
                     mavtype: MavType::MAV_TYPE_GCS,
                     autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
+                    // By default the crate sets the first flag, which is that of an armed vehicle.
+                    base_mode: MavModeFlag::empty(),
                     system_status: MavState::MAV_STATE_ACTIVE,
                     ..HEARTBEAT_DATA::default()
                 }),
