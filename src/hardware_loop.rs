@@ -7,6 +7,7 @@ use crate::output_file;
 use anyhow::{Context, Result, anyhow, bail};
 use bus::keys::Identity;
 use game::Scenario;
+use game::gateway::{BoatProtocol, Gateway};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::Duration;
@@ -14,8 +15,8 @@ use std::time::Duration;
 /// What `run` is asked of it.
 #[derive(Clone, clap::Args)]
 pub(crate) struct LoopArgs {
-    /// Emulated boats stand in for the real ones: they float in water of their own, speak the Surveyor's sentences and are
-    /// driven through gateways, which tell how they were in the end
+    /// Emulated boats stand in for the real ones: they float in water of their own, speak the protocol of the gateway file and
+    /// are driven through gateways, which tell how they were in the end
     #[arg(long, conflicts_with_all = ["in_process", "rehearse"])]
     emulate: bool,
     /// How the gateways drive them: a gateway file [default: a Surveyor, carefully]
@@ -52,12 +53,10 @@ impl LoopArgs {
         if names.is_empty() {
             bail!("no boat of this game is real: --emulate has nothing to stand in for");
         }
-        let declination_deg = match &self.gateway {
-            None => None,
+        let gateway = match &self.gateway {
+            None => game::scenario::default_gateway(),
             Some(path) => {
-                let gateway = game::scenario::load_gateway(path)
-                    .with_context(|| format!("cannot drive by {}", path.display()))?;
-                gateway.declination_rad.map(f64::to_degrees)
+                game::scenario::load_gateway(path).with_context(|| format!("cannot drive by {}", path.display()))?
             }
         };
         if let Some(folder) = &self.record_gateways {
@@ -72,7 +71,7 @@ impl LoopArgs {
         let water = ChildProcess::start("the water", water, Stdio::null())?;
         let (mut emulators, mut gateways) = (Vec::new(), Vec::new());
         for vehicle in names {
-            let (emulator, link) = start_emulator(vehicle, declination_deg, place)?;
+            let (emulator, link) = start_emulator(vehicle, &gateway, place)?;
             emulators.push(emulator);
             gateways.push(self.start_gateway(vehicle, &link, game, keys)?);
         }
@@ -110,15 +109,18 @@ impl HardwareLoop {
 }
 
 /// Starts an emulator; gives it and the address of its link.
-fn start_emulator(
-    name: &str,
-    declination_deg: Option<f64>,
-    (water, endpoint): (&str, &str),
-) -> Result<(ChildProcess, String)> {
+fn start_emulator(name: &str, gateway: &Gateway, (water, endpoint): (&str, &str)) -> Result<(ChildProcess, String)> {
     let listen = "tcp://127.0.0.1:0";
     let mut command = child_process::squall(&["gateway", "emulate", "--game", water, "--connect", endpoint])?;
     command.args(["--vehicle", name, "--listen", listen]);
-    option(&mut command, "--declination-deg", declination_deg);
+    match gateway.protocol {
+        BoatProtocol::Surveyor => {
+            option(&mut command, "--declination-deg", gateway.declination_rad.map(f64::to_degrees));
+        }
+        BoatProtocol::Mavlink => {
+            command.args(["--protocol", "mavlink"]);
+        }
+    }
     let mut emulator = ChildProcess::start(&format!("the emulator of {name}"), command, Stdio::piped())?;
     let addresses = emulator.lines(|line| line.strip_prefix("back seat at ").map(str::to_owned))?;
     let address = addresses.recv_timeout(WINDOW);

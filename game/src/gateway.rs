@@ -13,6 +13,9 @@ pub struct Gateway {
     /// The file's stem.
     #[schemars(skip)]
     pub name: String,
+    /// What the boat speaks.
+    #[schemars(extend("default" = "surveyor"))]
+    pub protocol: BoatProtocol,
     /// Whose heading and speed loops steer.
     #[schemars(extend("default" = "thrust"))]
     pub drive: Drive,
@@ -22,7 +25,7 @@ pub struct Gateway {
     )]
     #[schemars(rename = "declination_deg", range(min = -180, max = 180), extend("x-field" = "declination_rad"))]
     pub declination_rad: Option<f64>,
-    /// What the boat's headings count from.
+    /// What a Surveyor's headings count from.
     #[schemars(extend("default" = "magnetic"))]
     pub compass: CompassFrame,
     /// How often the boat hears from us at least, 1/s.
@@ -55,15 +58,46 @@ pub struct Gateway {
     /// Time between two lines of a mission that is taken up, s.
     #[schemars(range(min = 0.005, max = 5), extend("default" = 0.1))]
     pub upload_gap_s: f64,
+    /// For a boat that speaks MAVLink.
+    pub mavlink: Mavlink,
+}
+
+/// What a boat speaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BoatProtocol {
+    /// The sentences of a SeaRobotics Surveyor.
+    Surveyor,
+    /// MAVLink, as ArduPilot's Rover and boats speak it; headings are true.
+    Mavlink,
+}
+
+/// Who is who on a MAVLink network, and what a thrust difference means there.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Mavlink {
+    /// The boat's system, 1 to 255; at 0, the first boat that is heard.
+    #[schemars(range(min = 0, max = 255), extend("default" = 0))]
+    pub boat_system: u8,
+    /// Our own system. ArduPilot's failsafe for a lost ground station watches the one that its parameter for that names, 255 by default.
+    #[schemars(range(min = 1, max = 255), extend("default" = 255))]
+    pub system: u8,
+    /// Our own component.
+    #[schemars(range(min = 1, max = 255), extend("default" = 190))]
+    pub component: u8,
+    /// Rate of turn that a thrust difference of 100 % asks for, rad/s.
+    #[schemars(description = "Rate of turn that a thrust difference of 100 % asks for, degrees a second.")]
+    #[schemars(rename = "turn_rate_max_deg_s", range(min = 1, max = 360))]
+    #[schemars(extend("x-field" = "turn_rate_max_rad_s", "default" = 90))]
+    pub turn_rate_max_rad_s: f64,
 }
 
 /// Whose loops steer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Drive {
-    /// Ours: the boat is sent thrust and thrust difference, PSEAC mode T.
+    /// Ours: the boat is sent thrust and thrust difference, PSEAC mode T (MAVLink: SET_ATTITUDE_TARGET).
     Thrust,
-    /// The boat's: it is sent heading and speed, PSEAC mode G.
+    /// The boat's: it is sent heading and speed, PSEAC mode G (MAVLink: SET_POSITION_TARGET_LOCAL_NED).
     Speed,
 }
 

@@ -1,7 +1,7 @@
 //! The gateway to real boats: Surveyor NMEA both ways, links, a safety supervisor, and an emulated boat.
 //!
-//! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how sentences, orders and navigation meet), then
-//! [`nmea`]. [`emulator`] is the boat's end of the link. Sockets and clocks are only in [`link`] and `node`.
+//! Open [`supervisor`] first (when a boat may be driven), then [`bridge`] (how reports, orders and navigation meet), then
+//! [`protocol`] and [`nmea`]. [`emulator`] is the boat's end of the link. Sockets and clocks are only in [`link`] and `node`.
 
 pub mod bow_watch;
 pub mod bridge;
@@ -12,12 +12,14 @@ pub mod game_clock;
 pub mod geodesy;
 pub mod geofence;
 pub mod link;
+pub mod mavlink;
 mod motion_check;
 pub mod nav_estimate;
 pub mod nmea;
 #[cfg(feature = "net")]
 pub mod node;
 pub mod preflight;
+pub mod protocol;
 pub mod record;
 pub mod replay;
 pub mod sensor_check;

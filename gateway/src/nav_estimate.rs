@@ -1,4 +1,4 @@
-//! The navigation estimate of a real boat, from its sentences, with their faults.
+//! The navigation estimate of a real boat, from its reports, with their faults.
 //!
 //! Position and velocity over the ground are those of the last good fix, heading and rate of turn those of the last
 //! attitude. Bad data is reported as a [`NavFault`], never covered up: a repeated or doubtful fix does not make the
@@ -7,7 +7,8 @@
 use crate::compass_check::CompassCheck;
 use crate::geodesy::LocalFrame;
 use crate::motion_check::MotionCheck;
-use crate::nmea::{Attitude, Gga, M_S_PER_KN, Rmc, Sentence, TimeOfDay, Vtg};
+use crate::nmea::TimeOfDay;
+use crate::protocol::{self, North, Report};
 use crate::supervisor::NavFault;
 use crate::thrust_check::{Ordered, ThrustCheck, ThrustFault};
 use game::SimTime;
@@ -45,7 +46,7 @@ struct Heading {
     yaw_rate_rad_s: f64,
 }
 
-/// Estimates a boat's motion from its sentences.
+/// Estimates a boat's motion from its reports.
 #[derive(Clone, Debug)]
 pub struct NavEstimator {
     frame: LocalFrame,
@@ -96,17 +97,15 @@ impl NavEstimator {
         self.known = Known::default();
     }
 
-    /// Takes a sentence; returns whether it changed the estimate.
-    pub fn take(&mut self, now: SimTime, sentence: &Sentence) -> bool {
-        match sentence {
-            Sentence::Gga(gga) => self.take_gga(now, gga),
-            Sentence::Rmc(rmc) => self.take_rmc(now, rmc),
-            Sentence::Vtg(vtg) => self.take_vtg(now, vtg),
-            Sentence::Attitude(attitude) => self.take_attitude(now, attitude),
-            Sentence::Hdt(hdt) => {
-                let heading_deg = hdt.heading_deg.filter(|heading_deg| HEADINGS_DEG.contains(heading_deg));
-                self.take_heading(now, heading_deg.map(rad_from_compass_deg), None)
+    /// Takes a report; returns whether it changed the estimate.
+    pub fn take(&mut self, now: SimTime, report: &Report) -> bool {
+        match report {
+            Report::Fix(fix) => self.take_fix(now, fix),
+            Report::Velocity(velocity) => {
+                self.known.velocity = Some((Some(now), *velocity));
+                true
             }
+            Report::Heading(heading) => self.take_heading(now, heading),
             _ => false,
         }
     }
@@ -178,29 +177,20 @@ impl NavEstimator {
             .or_else(|| self.known.compass.fault_rad().map(|off_rad| NavFault::CompassOff(off_rad.to_degrees())))
     }
 
-    fn take_gga(&mut self, now: SimTime, gga: &Gga) -> bool {
-        if self.is_repeated(gga.time, gga.at) {
+    fn take_fix(&mut self, now: SimTime, fix: &protocol::Fix) -> bool {
+        // A boat that sends a fix twice, by two sentences, has sent it already.
+        if self.is_repeated(fix.time, fix.at) {
             return false;
         }
-        self.known.time_of_fix = gga.time;
-        let bad_hdop = gga.hdop.filter(|hdop| *hdop > self.watch.hdop_max);
-        let doubt = match gga.at {
-            _ if gga.quality < self.watch.quality_min => Some(NavFault::Quality(gga.quality)),
-            None => Some(NavFault::Quality(0)),
-            _ => bad_hdop.map(NavFault::Dilution),
+        self.known.time_of_fix = fix.time;
+        let poor = fix.quality.filter(|quality| *quality < self.watch.quality_min);
+        let bad_hdop = fix.hdop.filter(|hdop| *hdop > self.watch.hdop_max);
+        let doubt = match (poor, fix.at) {
+            (Some(quality), _) => Some(NavFault::Quality(quality)),
+            (None, None) => Some(NavFault::Quality(0)),
+            (None, Some(_)) => bad_hdop.map(NavFault::Dilution),
         };
-        self.take_position(now, gga.at, doubt)
-    }
-
-    fn take_rmc(&mut self, now: SimTime, rmc: &Rmc) -> bool {
-        let is_new = self.take_course(now, rmc.course_deg, rmc.speed_kn);
-        // A boat that also sends GGA has sent this fix already, with its quality.
-        if self.is_repeated(rmc.time, rmc.at) {
-            return is_new;
-        }
-        self.known.time_of_fix = rmc.time;
-        let doubt = (!rmc.valid || rmc.at.is_none()).then_some(NavFault::Quality(0));
-        self.take_position(now, rmc.at, doubt) | is_new
+        self.take_position(now, fix.at, doubt)
     }
 
     /// A repeated fix is not a new one. Receivers that stamp whole seconds may take several in one.
@@ -252,39 +242,21 @@ impl NavEstimator {
         reported.is_some_and(|at| (now - at).as_s() <= VELOCITY_AGE_MAX_S)
     }
 
-    fn take_vtg(&mut self, now: SimTime, vtg: &Vtg) -> bool {
-        let speed_kn = vtg.speed_kn.or(vtg.speed_km_h.map(|km_h| km_h / 1.852));
-        self.take_course(now, vtg.course_true_deg, speed_kn)
-    }
-
-    fn take_course(&mut self, now: SimTime, course_deg: Option<f64>, speed_kn: Option<f64>) -> bool {
-        let velocity = match (course_deg, speed_kn) {
-            // Receivers leave the course of a boat at rest blank; it is not north.
-            (None, Some(speed_kn)) if speed_kn < 0.5 => Ned::default(),
-            (Some(course_deg), Some(speed_kn)) => Ned::toward_deg(course_deg).scaled(speed_kn * M_S_PER_KN),
-            _ => return false,
+    fn take_heading(&mut self, now: SimTime, heading: &protocol::Heading) -> bool {
+        if !HEADINGS_DEG.contains(&heading.deg) {
+            return false;
+        }
+        let psi_rad = match heading.north {
+            North::True => rad_from_compass_deg(heading.deg),
+            North::Compass => wrap_pi(rad_from_compass_deg(heading.deg) + self.compass_to_true_rad),
         };
-        self.known.velocity = Some((Some(now), velocity));
-        true
-    }
-
-    fn take_attitude(&mut self, now: SimTime, attitude: &Attitude) -> bool {
-        let heading = attitude
-            .heading_deg
-            .filter(|heading_deg| HEADINGS_DEG.contains(heading_deg))
-            .map(|heading_deg| wrap_pi(rad_from_compass_deg(heading_deg) + self.compass_to_true_rad));
-        self.take_heading(now, heading, attitude.yaw_rate_deg_s.map(f64::to_radians))
-    }
-
-    fn take_heading(&mut self, now: SimTime, psi_rad: Option<f64>, turn_rad_s: Option<f64>) -> bool {
-        let Some(psi_rad) = psi_rad else { return false };
         self.known.motion.take_heading(psi_rad);
         let turned_rad_s = || {
             let Some(before) = self.known.heading else { return 0.0 };
             let since_s = (now - before.at).as_s();
             if since_s > 0.02 { wrap_pi(psi_rad - before.psi_rad) / since_s } else { before.yaw_rate_rad_s }
         };
-        let yaw_rate_rad_s = turn_rad_s.unwrap_or_else(turned_rad_s);
+        let yaw_rate_rad_s = heading.yaw_rate_deg_s.map_or_else(turned_rad_s, f64::to_radians);
         self.known.heading = Some(Heading { at: now, psi_rad, yaw_rate_rad_s });
         true
     }

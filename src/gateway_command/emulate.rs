@@ -1,11 +1,12 @@
-//! `squall gateway emulate`: a simulated boat for a real back seat.
+//! `squall gateway emulate`: a simulated boat for a real back seat or ground station.
 
 use super::log_line::Log;
 use crate::net_args::LeafArgs;
 use crate::sim_command::seconds;
 use crate::stop;
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use clap::ValueEnum;
+use game::gateway::BoatProtocol;
 use gateway::emulator::Extra;
 use gateway::link::LinkAddress;
 use gateway::node::{EmulatorSettings, NodeEvent};
@@ -18,12 +19,18 @@ pub(crate) struct Args {
     /// The vehicle in the game, by name: the back seat becomes its agent
     #[arg(long, value_name = "NAME")]
     vehicle: String,
+    /// What the boat speaks
+    #[arg(long, value_name = "PROTOCOL", value_enum, default_value_t = ProtocolArg::Surveyor)]
+    protocol: ProtocolArg,
     /// Where the back seat connects: tcp://HOST:PORT, udp://HOST:PORT, pty, pty:///LINK, serial:///dev/ttyUSB0?baud=38400
     #[arg(long, value_name = "URL")]
     listen: String,
     /// Where the primary operator connects, who takes control by any command and gives it back with OP2_ON in the text field
     #[arg(long, value_name = "URL")]
     primary: Option<String>,
+    /// A ground station that waits for the boat, as QGroundControl does at udp://127.0.0.1:14550 (MAVLink only)
+    #[arg(long, value_name = "URL", conflicts_with = "primary")]
+    ground_station: Option<String>,
     /// Magnetic north, degrees east of true [default: by the World Magnetic Model, for the field and today]
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     declination_deg: Option<f64>,
@@ -47,6 +54,23 @@ pub(crate) struct Args {
     /// Prints errors only, and stops when standard input ends
     #[arg(long, hide = true)]
     for_parent: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub(super) enum ProtocolArg {
+    /// The sentences of a SeaRobotics Surveyor
+    Surveyor,
+    /// MAVLink, as ArduPilot's boats speak it
+    Mavlink,
+}
+
+impl ProtocolArg {
+    pub(super) fn protocol(self) -> BoatProtocol {
+        match self {
+            ProtocolArg::Surveyor => BoatProtocol::Surveyor,
+            ProtocolArg::Mavlink => BoatProtocol::Mavlink,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -78,7 +102,15 @@ fn address(option: &str, text: &str) -> Result<LinkAddress> {
 
 pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let listen = address("--listen", &args.listen)?;
-    let primary = args.primary.as_deref().map(|text| address("--primary", text)).transpose()?;
+    let primary = match (&args.primary, &args.ground_station, args.protocol) {
+        (None, None, _) => None,
+        (Some(text), _, ProtocolArg::Surveyor) => Some(address("--primary", text)?),
+        (_, Some(text), ProtocolArg::Mavlink) => {
+            Some(LinkAddress::to_connect(text).map_err(|e| anyhow!("--ground-station: {e}"))?)
+        }
+        (Some(_), ..) => bail!("--primary is for a Surveyor: MAVLink has --ground-station"),
+        (_, Some(_), _) => bail!("--ground-station is for --protocol mavlink"),
+    };
     let stop = stop::on_ctrl_c_or_parent(args.for_parent)?;
     let extra = |kind: &ExtraArg| match kind {
         ExtraArg::Rmc => Extra::Rmc,
@@ -90,6 +122,7 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         game: args.leaf.game.clone(),
         place: args.leaf.place()?,
         vehicle: args.vehicle.clone(),
+        protocol: args.protocol.protocol(),
         listen,
         primary,
         declination_rad: args.declination_deg.map(f64::to_radians),

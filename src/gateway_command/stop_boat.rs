@@ -1,13 +1,17 @@
 //! `squall gateway stop`: stops a boat with nothing else running, straight over its link.
 
+use super::emulate::ProtocolArg;
 use crate::screen;
 use crate::sim_command::seconds;
 use anyhow::{Result, anyhow, bail};
 use bus::{LinkLock, ask_gateway, clock};
+use game::SimTime;
 use game::external::{GatewayCommand, OperatorCommand};
-use gateway::bridge::stop_message;
+use game::gateway::Gateway;
+use game::scenario::default_gateway;
 use gateway::link::{Link, LinkAddress, LinkEvent, LinkSettings};
-use gateway::nmea::{Framer, Mode, Operator, Sentence};
+use gateway::nmea::{Mode, Operator};
+use gateway::protocol::{ControlReport, Protocol, Report};
 use std::process::ExitCode;
 use std::sync::mpsc::sync_channel;
 use std::time::Duration;
@@ -26,6 +30,9 @@ const EVENTS_MAX: usize = 4096;
 pub(crate) struct Args {
     /// Where the boat is: tcp://HOST:PORT, udp://HOST:PORT, serial:///dev/ttyUSB0?baud=38400
     link: String,
+    /// What the boat speaks
+    #[arg(long, value_name = "PROTOCOL", value_enum, default_value_t = ProtocolArg::Surveyor)]
+    protocol: ProtocolArg,
     /// How long to try, s
     #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
     wait_s: f64,
@@ -42,7 +49,8 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
     let take = move |event| drop(sender.try_send(event));
     let settings = LinkSettings { silence: None, retry_max: AGAIN, ..LinkSettings::default() };
     let link = Link::open(&address, settings, take)?;
-    let (mut framer, mut boat) = (Framer::new(), BoatReport::default());
+    let gateway = Gateway { protocol: args.protocol.protocol(), ..default_gateway() };
+    let (mut protocol, mut boat) = (Protocol::new(&gateway), None);
     let (start, limit) = (clock::now(), Duration::from_secs_f64(args.wait_s));
     let (mut connected, mut due, mut reason) = (None, start, "no answer yet".to_owned());
     while clock::since(start) < limit {
@@ -51,7 +59,11 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
                 screen::remark(&format!("connected to {name}: thrust zero and standby"));
                 (connected, due) = (Some(clock::now()), clock::now());
             }
-            Ok(LinkEvent::Bytes { bytes, .. }) => framer.push(&bytes, &mut |body| boat.take(body)),
+            Ok(LinkEvent::Bytes { bytes, .. }) => protocol.read(SimTime::ZERO, &bytes, &mut |report| {
+                if let Report::Control(control) = report {
+                    boat = Some(control);
+                }
+            }),
             Ok(LinkEvent::Failed { reason: why, .. } | LinkEvent::Down { reason: why, .. }) => {
                 (connected, reason) = (None, why);
             }
@@ -60,41 +72,26 @@ pub(crate) fn run(args: &Args) -> Result<ExitCode> {
         let Some(since) = connected else { continue };
         if clock::now() >= due {
             due = clock::now() + AGAIN;
-            link.send(stop_message(), 0);
+            link.send(protocol.forced_stop_message(), 0);
         }
-        if clock::since(since) >= SAY && boat.mode == Some(Mode::Standby) {
+        if clock::since(since) >= SAY && boat.is_some_and(|boat| boat.shown.mode == Mode::Standby) {
             screen::print("the boat reports standby\n");
             return Ok(ExitCode::SUCCESS);
         }
     }
     match (connected, boat) {
         (None, _) => bail!("the boat at {address} was not reached in {} s: {reason}", args.wait_s),
-        (_, BoatReport { mode: None, .. }) => {
+        (_, None) => {
             bail!("{address} was sent thrust zero and standby for {} s, and reports nothing of it", args.wait_s)
         }
-        (_, BoatReport { mode: Some(mode), operator }) => bail!(
+        (_, Some(ControlReport { shown, operator })) => bail!(
             "the boat is sent thrust zero and standby and reports mode {}{}",
-            mode.letter(),
+            shown.mode.letter(),
             match operator {
                 Some(Operator::Secondary) | None => String::new(),
                 Some(other) => format!(": operator {} commands it, who must stop it", other.number()),
             }
         ),
-    }
-}
-
-/// What the boat last reported since.
-#[derive(Default)]
-struct BoatReport {
-    mode: Option<Mode>,
-    operator: Option<Operator>,
-}
-
-impl BoatReport {
-    fn take(&mut self, body: &str) {
-        if let Ok(Sentence::ControlState(state)) = Sentence::parse(body) {
-            (self.mode, self.operator) = (Some(state.mode), state.operator);
-        }
     }
 }
 

@@ -25,12 +25,12 @@ const STILL_NEWTON: f64 = 0.5;
 const LAG: Duration = Duration::from_millis(4600);
 
 /// All of it.
-struct Loop {
-    sim: Sim,
-    agents: Process,
-    gateway: Process,
+pub(crate) struct Loop {
+    pub(crate) sim: Sim,
+    pub(crate) agents: Process,
+    pub(crate) gateway: Process,
     emulator: Process,
-    proxy: Proxy,
+    pub(crate) proxy: Proxy,
     primary: Option<String>,
     water: Sim,
     /// The truth about the water.
@@ -41,11 +41,16 @@ struct Loop {
 impl Loop {
     /// A boat under way by its agent's orders.
     fn under_way(watchdog: &str) -> Loop {
+        Loop::of(&["--primary", "tcp://127.0.0.1:0", "--watchdog-s", watchdog], &[])
+    }
+
+    /// The same, with these options of emulator and gateway.
+    pub(crate) fn of(emulator: &[&str], gateway: &[&str]) -> Loop {
         let sim = Sim::start("real_attacker", &["--pace", "realtime"]);
         let water = Sim::start("real_attacker", &["--pace", "realtime", "--afloat", "blue_one"]);
-        let (emulator, back_seat, primary) = start_emulator(&water, watchdog);
+        let (emulator, back_seat, primary) = start_emulator(&water, emulator);
         let proxy = Proxy::start(back_seat);
-        let gateway = start_gateway(&sim, proxy.port, &["--arm"]);
+        let gateway = start_gateway(&sim, proxy.port, &[&["--arm"], gateway].concat());
         let agents = sim.agent(&["blue_one", "red_one"]);
         let bus = water.bus();
         let key = topic::frame(&water.name());
@@ -56,7 +61,7 @@ impl Loop {
     }
 
     /// The boat's speed, and whether its thrusters stand still.
-    fn boat(&self) -> (f64, bool) {
+    pub(crate) fn boat(&self) -> (f64, bool) {
         let boat = self.frame.visit(|frame| frame.vehicles.first().cloned());
         boat.map_or((0.0, true), |boat| {
             let still = boat.port_newton.abs() < STILL_NEWTON && boat.starboard_newton.abs() < STILL_NEWTON;
@@ -69,7 +74,7 @@ impl Loop {
     }
 
     /// The thrusters stand still within this time, and from then on.
-    fn stops_within(&self, stated: Duration) -> Duration {
+    pub(crate) fn stops_within(&self, stated: Duration) -> Duration {
         let took = self.wait(stated + LAG + SLACK, "the thrusters stand still", |(_, still)| still);
         for _ in 0..20 {
             std::thread::sleep(Duration::from_millis(100));
@@ -78,35 +83,35 @@ impl Loop {
         took
     }
 
-    fn ask(&self, command: &OperatorCommand) -> OperatorReply {
+    pub(crate) fn ask(&self, command: &OperatorCommand) -> OperatorReply {
         self.try_ask(command).expect("the gateway answers")
     }
 
-    fn try_ask(&self, command: &OperatorCommand) -> Option<OperatorReply> {
+    pub(crate) fn try_ask(&self, command: &OperatorCommand) -> Option<OperatorReply> {
         let bus = self.sim.bus();
         let key = topic::operate(&self.sim.name(), "blue_one");
         bus.request(&key, command, Duration::from_secs(10)).expect("the hub is there")
     }
 
-    fn status(&self) -> GatewayStatus {
+    pub(crate) fn status(&self) -> GatewayStatus {
         self.ask(&OperatorCommand::Status).status
     }
 
     /// Waits until the gateway's state contains these words.
-    fn wait_for_state(&self, words: &str) {
+    pub(crate) fn wait_for_state(&self, words: &str) {
         wait_until(words, || self.status().state.contains(words));
     }
 
     /// Arms it, as soon as it can be.
-    fn arm(&self) {
+    pub(crate) fn arm(&self) {
         wait_until("it can be armed", || self.ask(&OperatorCommand::Arm).refused.is_none());
         self.wait(LIMIT, "it sails again", |boat| boat.0 > 0.6);
     }
 }
 
-fn start_emulator(water: &Sim, watchdog: &str) -> (Process, String, Option<String>) {
-    let listen = ["--listen", "tcp://127.0.0.1:0", "--primary", "tcp://127.0.0.1:0", "--watchdog-s", watchdog];
-    let mut command = water.squall(&[&["gateway", "emulate", "--vehicle", "blue_one"], &listen[..]].concat());
+fn start_emulator(water: &Sim, more: &[&str]) -> (Process, String, Option<String>) {
+    let listen = ["gateway", "emulate", "--vehicle", "blue_one", "--listen", "tcp://127.0.0.1:0"];
+    let mut command = water.squall(&[&listen[..], more].concat());
     command.stdout(Stdio::piped()).stderr(Stdio::null());
     let mut process = Process::start(command);
     let mut lines = process.lines();
@@ -114,12 +119,13 @@ fn start_emulator(water: &Sim, watchdog: &str) -> (Process, String, Option<Strin
         let line = lines.find(|line| line.starts_with(what)).expect("it prints where it listens");
         line.rsplit("tcp://").next().expect("an address").to_owned()
     };
-    let (back_seat, primary) = (reach("back seat at "), reach("primary operator at "));
+    let back_seat = reach("back seat at ");
+    let primary = more.contains(&"--primary").then(|| reach("primary operator at "));
     std::thread::spawn(move || lines.for_each(drop));
-    (process, back_seat, Some(primary))
+    (process, back_seat, primary)
 }
 
-fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
+pub(crate) fn start_gateway(sim: &Sim, port: u16, more: &[&str]) -> Process {
     let link = format!("tcp://127.0.0.1:{port}");
     let args = ["gateway", "surveyor", "--vehicle", "blue_one", "--link", &link, "--no-record"];
     sim.quiet(&[&args[..], more].concat())

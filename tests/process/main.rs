@@ -13,6 +13,7 @@ mod gateway;
 mod helm;
 mod hosts;
 mod keys;
+mod mavlink;
 mod network;
 mod place;
 mod policy;

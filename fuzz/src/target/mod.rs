@@ -2,6 +2,7 @@
 
 mod address;
 mod keys;
+mod mavlink;
 mod message;
 mod model;
 mod nmea;
@@ -32,9 +33,10 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 10] = [
+pub const TARGETS: [Target; 11] = [
     address::TARGET,
     keys::TARGET,
+    mavlink::TARGET,
     message::TARGET,
     model::TARGET,
     nmea::TARGET,

@@ -1,4 +1,4 @@
-//! The boat's battery, by its own report: PSEAB.
+//! The boat's battery, by its own report.
 
 use game::SimTime;
 use game::gateway::BatteryWatch;

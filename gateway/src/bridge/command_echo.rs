@@ -1,9 +1,10 @@
-//! What a boat shows of the commands that it follows (PSEAD), against what it was sent.
+//! What a boat shows of the commands that it follows, against what it was sent.
 //!
 //! A boat that shows an older command than it should does not listen any more. One that shows a command that it was never sent, after it
 //! has shown ours, gets orders from somebody else at the same port.
 
-use crate::nmea::{Command, ControlState, Mode};
+use crate::nmea::Mode;
+use crate::protocol::Shown;
 use game::SimTime;
 use game::angle::wrap_pi;
 use game::gateway::ControlWatch;
@@ -20,20 +21,7 @@ const FOREIGN_MEMORY_S: f64 = 5.0;
 /// The most commands that are remembered: 20 a second for as long as a boat may take to show one.
 const SENT_MAX: usize = 640;
 
-/// A command, or what a boat shows of one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Shown {
-    mode: Mode,
-    heading_deg: Option<f64>,
-    thrust: Option<f64>,
-    difference: Option<f64>,
-}
-
 impl Shown {
-    fn is_set_point(&self) -> bool {
-        matches!(self.mode, Mode::Thruster | Mode::Heading | Mode::Speed)
-    }
-
     /// Whether a boat that was sent this would show that. What a boat does not show cannot differ.
     fn agrees(&self, shown: &Shown, thrust_pct: f64) -> bool {
         let within = |sent: Option<f64>, shown: Option<f64>, apart: f64| {
@@ -86,10 +74,8 @@ impl CommandEcho {
         }
     }
 
-    /// The boat was sent this.
-    pub(super) fn note_sent(&mut self, now: SimTime, command: &Command) {
-        let Command { mode, heading_deg, thrust, difference, .. } = *command;
-        let shown = Shown { mode, heading_deg, thrust, difference };
+    /// The boat was sent what it should show as this.
+    pub(super) fn note_sent(&mut self, now: SimTime, shown: Shown) {
         if self.sent.back().is_none_or(|(_, last)| *last != shown) {
             self.sent.push_back((now, shown));
         }
@@ -101,23 +87,21 @@ impl CommandEcho {
     }
 
     /// The boat's report, while we command it.
-    pub(super) fn take(&mut self, now: SimTime, state: &ControlState) {
-        let ControlState { mode, heading_deg, thrust, difference, .. } = *state;
-        let shown = Shown { mode, heading_deg, thrust, difference };
+    pub(super) fn take(&mut self, now: SimTime, shown: Shown) {
         let is_new = self.last.replace(shown).is_none_or(|last| !last.agrees(&shown, self.watch.echo_thrust_pct));
         let was_ours = std::mem::take(&mut self.is_ours);
         if self.sent.iter().any(|(_, sent)| sent.agrees(&shown, self.watch.echo_thrust_pct)) {
             (self.is_ours, self.has_shown, self.unlike_since) = (true, true, None);
-            self.has_shown_set_point |= shown.is_set_point();
+            self.has_shown_set_point |= shown.mode.is_set_point();
             return;
         }
-        let is_same_mode = self.sent.iter().any(|(_, sent)| sent.mode == mode);
+        let is_same_mode = self.sent.iter().any(|(_, sent)| sent.mode == shown.mode);
         if is_same_mode {
             self.unlike_since.get_or_insert(now);
         }
         // How a boat shows set-points must have been seen before one of them can be called foreign.
         let knows = if is_same_mode { self.has_shown_set_point } else { self.has_shown };
-        if shown.is_set_point() {
+        if shown.mode.is_set_point() {
             if is_new && knows {
                 self.foreign_at = Some(now);
             }

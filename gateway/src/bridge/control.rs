@@ -1,7 +1,8 @@
-//! Who commands the boat, and whether it follows its commands: by its own report, PSEAD.
+//! Who commands the boat, and whether it follows its commands: by its own report.
 
 use super::command_echo::CommandEcho;
-use crate::nmea::{Command, ControlState, Mode, Operator};
+use crate::nmea::{Mode, Operator};
+use crate::protocol::{ControlReport, Shown};
 use crate::supervisor::Control;
 use game::SimTime;
 use game::gateway::ControlWatch;
@@ -36,21 +37,22 @@ impl ControlLog {
         *self = ControlLog::new(self.watch);
     }
 
-    pub(super) fn take(&mut self, now: SimTime, state: &ControlState) {
-        self.reported = Some(Report { at: now, mode: state.mode, operator: state.operator });
-        if state.operator.is_none_or(|operator| operator == Operator::Secondary) {
-            self.echo.take(now, state);
+    pub(super) fn take(&mut self, now: SimTime, report: &ControlReport) {
+        let ControlReport { shown, operator } = *report;
+        self.reported = Some(Report { at: now, mode: shown.mode, operator });
+        if operator.is_none_or(|operator| operator == Operator::Secondary) {
+            self.echo.take(now, shown);
         } else {
             self.echo = CommandEcho::new(self.watch);
         }
-        let mismatch = self.sent.is_some_and(|sent| sent != state.mode);
+        let mismatch = self.sent.is_some_and(|sent| sent != shown.mode);
         self.mismatch_since = mismatch.then(|| self.mismatch_since.unwrap_or(now));
     }
 
-    /// The boat was sent this.
-    pub(super) fn note_sent(&mut self, now: SimTime, command: &Command) {
-        self.echo.note_sent(now, command);
-        let mode = command.mode;
+    /// The boat was sent what it should show as this.
+    pub(super) fn note_sent(&mut self, now: SimTime, shown: Shown) {
+        self.echo.note_sent(now, shown);
+        let mode = shown.mode;
         if self.sent != Some(mode) {
             self.sent = Some(mode);
             let matches = self.mode() == Some(mode);

@@ -1,4 +1,4 @@
-//! The gateway's core: sentences, orders and operator commands in; sentences, navigation and events out.
+//! The gateway's core: bytes, orders and operator commands in; bytes, navigation and events out.
 //!
 //! No socket and no clock in here: [`Bridge::take`] gets an [`Input`] with its time, and fills an [`Output`].
 //! The same inputs at the same times give the same outputs, byte for byte: that is how a recording is replayed.
@@ -6,7 +6,6 @@
 mod battery;
 mod clock_watch;
 mod command_echo;
-mod command_encoder;
 mod control;
 mod interface;
 mod on_site;
@@ -14,15 +13,14 @@ mod operator_request;
 mod recovery_point;
 mod status;
 mod stop;
-mod upload;
 
-use crate::nmea::{Command, Framer, Mode, ParseError, Sentence};
+use crate::nmea::Mode;
+use crate::protocol::{Command, Protocol, Report, UploadStep};
 use crate::set_point::SetPoint;
 use crate::supervisor::{
     Action, Conditions, Control, NavFault, OperatorRequest, Refusal, Scope, State, Step, Supervisor, Task,
 };
 pub use interface::{Event, Input, NavOut, Output, Plan, Preflight, Site};
-pub use stop::stop_message;
 
 use battery::BatteryLog;
 use clock_watch::ClockWatch;
@@ -36,7 +34,6 @@ use operator_request::request_from;
 use recovery_point::RecoveryPoint;
 use status::Counters;
 use std::collections::VecDeque;
-use upload::{Next, Upload};
 
 /// Two new orders are sent at least this far apart.
 const GAP_MIN_S: f64 = 0.045;
@@ -46,9 +43,8 @@ const OTHERS_AGE_MAX_S: f64 = 2.0;
 const TASK_AGAIN_S: f64 = 1.0;
 /// How often invalid navigation is reported.
 const INVALID_NAV_EVERY_S: f64 = 0.25;
-/// How many failsafes and names of unknown sentences are kept.
+/// How many failsafes are kept.
 const FAILSAFES_MAX: usize = 32;
-const UNKNOWN_MAX: usize = 64;
 
 /// The newest order, when it came, and the time of the picture that it answers.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +57,7 @@ struct CurrentOrder {
 /// The core of a gateway.
 pub struct Bridge {
     plan: Plan,
-    framer: Framer,
+    protocol: Protocol,
     control: ControlLog,
     /// Nothing before a game says where the boat plays.
     on_site: Option<OnSite>,
@@ -76,9 +72,8 @@ pub struct Bridge {
     order_sent: SimTime,
     others: (SimTime, Vec<Ned>),
     battery: BatteryLog,
-    boat_error: String,
+    boat_fault: Option<String>,
     clock: ClockWatch,
-    upload: Option<Upload>,
     recovery_point: RecoveryPoint,
     /// The command that was sent last, and when.
     last_sent: Option<(SimTime, Command)>,
@@ -104,7 +99,7 @@ impl Bridge {
     pub fn new(plan: Plan) -> Bridge {
         let Gateway { control, battery, failsafe, .. } = &plan.gateway;
         Bridge {
-            framer: Framer::new(),
+            protocol: Protocol::new(&plan.gateway),
             control: ControlLog::new(*control),
             on_site: plan.site.as_ref().map(|site| OnSite::new(&plan.gateway, site)),
             supervisor: Supervisor::new(plan.arms_itself && plan.preflight.missing().is_none(), *failsafe),
@@ -116,9 +111,8 @@ impl Bridge {
             order_is_new: false,
             order_sent: SimTime::LONG_AGO,
             others: (SimTime::LONG_AGO, vec![]),
-            boat_error: String::new(),
+            boat_fault: None,
             clock: ClockWatch::default(),
-            upload: None,
             recovery_point: RecoveryPoint::default(),
             last_sent: None,
             words: VecDeque::new(),
@@ -165,9 +159,12 @@ impl Bridge {
             Input::Tick => {}
         }
         if request.is_some() && !matches!(input, Input::Operator(OperatorCommand::Mission(_))) {
-            self.cancel_upload(out);
+            self.cancel_upload(now, out);
         }
         self.advance(now, request, out);
+        if self.link_up {
+            self.protocol.keep_up(now, &mut out.bytes);
+        }
         self.report_nav(now, out);
     }
 
@@ -179,8 +176,7 @@ impl Bridge {
         let regular = self.last_sent.as_ref().map_or(now + period, |(at, _)| coming(*at + period));
         let new_order =
             if self.order_is_new { coming(self.order_sent + SimTime::from_s(GAP_MIN_S)) } else { SimTime::NEVER };
-        let upload = self.upload.as_ref().map_or(SimTime::NEVER, |upload| coming(upload.due()));
-        regular.min(new_order).min(upload)
+        regular.min(new_order).min(self.protocol.due().map_or(SimTime::NEVER, coming))
     }
 
     fn period(&self) -> SimTime {
@@ -198,54 +194,44 @@ impl Bridge {
     /// A new link: nothing is known of the boat at its end, and it is sent standby first.
     fn take_link_up(&mut self, now: SimTime) {
         self.link_up = true;
-        // A sentence that was cut off must not be completed by bytes of the new link.
-        self.framer.push(b"\r\n", &mut |_| {});
+        self.protocol.begin_link();
         self.on_site.iter_mut().for_each(|site| site.estimator.forget());
         self.control.forget();
         self.clock = ClockWatch::default();
         self.words = self.plan.gateway.startup_words.clone().into();
         self.battery.forget(now);
-        self.upload = None;
         self.recovery_point = RecoveryPoint::default();
         self.last_sent = None;
         self.under_way = true;
     }
 
     fn read(&mut self, now: SimTime, bytes: &[u8], out: &mut Output) {
-        let mut framer = std::mem::take(&mut self.framer);
-        framer.push(bytes, &mut |body| match Sentence::parse(body) {
-            Ok(sentence) => self.apply(now, &sentence, out),
-            Err(ParseError::Unknown { address }) => {
-                let room = self.counters.unknown.len() < UNKNOWN_MAX;
-                let name =
-                    if room || self.counters.unknown.contains_key(&address) { address } else { "others".to_owned() };
-                *self.counters.unknown.entry(name).or_default() += 1;
-            }
-            Err(_) => self.counters.unreadable += 1,
-        });
-        self.framer = framer;
+        let mut reports = Vec::new();
+        self.protocol.read(now, bytes, &mut |report| reports.push(report));
+        reports.into_iter().for_each(|report| self.apply(now, report, out));
     }
 
-    fn apply(&mut self, now: SimTime, sentence: &Sentence, out: &mut Output) {
-        self.nav_is_new |= self.on_site.as_mut().is_some_and(|site| site.estimator.take(now, sentence));
-        match sentence {
-            Sentence::ControlState(state) => {
-                self.control.take(now, state);
-                self.recovery_point.take(state, self.upload.is_some());
+    fn apply(&mut self, now: SimTime, report: Report, out: &mut Output) {
+        self.nav_is_new |= self.on_site.as_mut().is_some_and(|site| site.estimator.take(now, &report));
+        match report {
+            Report::Control(control) => {
+                self.control.take(now, &control);
+                self.recovery_point.take(&control, self.protocol.is_uploading());
             }
-            Sentence::Battery(battery) => self.battery.take(now, battery.volts),
-            Sentence::BoatError(error) if error.code != self.boat_error => {
-                self.boat_error.clone_from(&error.code);
-                if error.code != "N" {
-                    out.events.push(Event::Warning(format!("the boat reports error {:?}", error.code)));
+            Report::Battery(volts) => self.battery.take(now, volts),
+            Report::Fault(fault) if fault != self.boat_fault => {
+                if let Some(fault) = &fault {
+                    out.events.push(Event::Warning(format!("the boat reports error {fault:?}")));
                 }
+                self.boat_fault = fault;
             }
-            Sentence::Gga(gga) => {
-                let step_s = self.clock.take(now, gga.time).into_iter();
+            Report::Clock(time) => {
+                let step_s = self.clock.take(now, time).into_iter();
                 let text = |step_s| format!("the receiver's clock stepped by {step_s:.1} s");
                 out.events.extend(step_s.map(text).map(Event::Warning));
             }
-            _ => {}
+            Report::Home(home) => self.recovery_point.take_home(home),
+            Report::Fix(_) | Report::Velocity(_) | Report::Heading(_) | Report::Fault(_) => {}
         }
     }
 
@@ -278,11 +264,10 @@ impl Bridge {
             _ if self.plan.dry_run => Err("a dry run sends the boat nothing but standby, and so no mission".to_owned()),
             _ if !unfit.is_empty() => Err(Refusal::NotReady(unfit).to_string()),
             (_, Some(outside)) => Err(outside),
-            _ => Upload::new(mission, self.plan.gateway.upload_gap_s, now),
+            _ => self.protocol.begin_upload(now, mission),
         };
         match begun {
-            Ok(upload) => {
-                self.upload = Some(upload);
+            Ok(()) => {
                 self.recovery_point.begin(mission);
                 Some(OperatorRequest::Disarm)
             }
@@ -321,8 +306,8 @@ impl Bridge {
         }
         let urgent = before.is_some() || request.is_some() || self.last_sent.is_none() || changed;
         if !self.link_up {
-            self.upload = None;
-        } else if self.upload.is_some() && action == Action::Standby && !(urgent && self.under_way) {
+            self.protocol.abort_upload();
+        } else if self.protocol.is_uploading() && action == Action::Standby && !(urgent && self.under_way) {
             self.continue_upload(now, out);
         } else if urgent || self.is_due(now) {
             self.send_action(now, action, out);
@@ -348,10 +333,10 @@ impl Bridge {
     }
 
     /// Cancels the upload of a mission.
-    fn cancel_upload(&mut self, out: &mut Output) {
-        if self.upload.take().is_some() && self.link_up {
+    fn cancel_upload(&mut self, now: SimTime, out: &mut Output) {
+        if self.protocol.abort_upload() && self.link_up {
             self.recovery_point = RecoveryPoint::default();
-            out.bytes.extend(command_encoder::bytes_of(&[command_encoder::end_of_download()]));
+            self.protocol.write(now, Command::EndOfUpload, &mut out.bytes);
         }
     }
 
@@ -359,41 +344,45 @@ impl Bridge {
     fn send_action(&mut self, now: SimTime, action: Action, out: &mut Output) {
         let command = match action {
             Action::Standby => self.standby(),
-            Action::Zero => command_encoder::of_set_point(SetPoint::ZERO),
+            Action::Zero => Command::SetPoint(SetPoint::ZERO),
             Action::Task(task) => {
-                let command = command_encoder::of_task(task);
-                let is_reported = self.control.mode() == Some(command.mode);
+                let command = Command::Task(task);
+                let is_reported = self.control.mode() == Some(self.protocol.shown(command).mode);
                 // Sent again, it would begin anew.
                 if self.last_sent.as_ref().is_some_and(|(at, last)| {
-                    last.mode == command.mode && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
+                    *last == command && (is_reported || (now - *at).as_s() < TASK_AGAIN_S)
                 }) {
                     return;
                 }
                 command
             }
             Action::Follow => match self.follow(now) {
-                Some(set_point) => command_encoder::of_set_point(set_point),
+                Some(set_point) => Command::SetPoint(set_point),
                 None => return,
             },
         };
         let command = if self.plan.dry_run {
             self.would_send = Some(command);
-            command_encoder::standby()
+            Command::Standby
         } else {
             command
         };
         // Thrust goes to zero before any command that is not our own set-point.
         let is_set_point = matches!(action, Action::Follow | Action::Zero);
         if !is_set_point && std::mem::replace(&mut self.under_way, false) && !self.plan.dry_run {
-            out.bytes.extend(command_encoder::bytes_of(&[command_encoder::of_set_point(SetPoint::ZERO)]));
+            self.protocol.write(now, Command::Zero, &mut out.bytes);
         }
         self.under_way |= action == Action::Follow;
-        out.bytes.extend(command_encoder::bytes_of(std::slice::from_ref(&command)));
+        self.protocol.write(now, command, &mut out.bytes);
         out.carries_order = action == Action::Follow && self.order_is_new;
         if out.carries_order {
             (self.order_is_new, self.order_sent) = (false, now);
         }
-        self.control.note_sent(now, &command);
+        self.note_sent(now, command);
+    }
+
+    fn note_sent(&mut self, now: SimTime, command: Command) {
+        self.control.note_sent(now, self.protocol.shown(command));
         self.counters.sent += 1;
         self.last_sent = Some((now, command));
     }
@@ -411,29 +400,23 @@ impl Bridge {
     }
 
     fn continue_upload(&mut self, now: SimTime, out: &mut Output) {
-        let next = self.upload.as_mut().map(|upload| upload.next(now));
-        match next {
-            Some(Next::Line(line)) => {
-                line.write(&mut out.bytes);
-                self.counters.sent += 1;
-                let command = command_encoder::end_of_download();
-                self.control.note_sent(now, &command);
-                self.last_sent = Some((now, command));
+        match self.protocol.continue_upload(now, &mut out.bytes) {
+            UploadStep::Sent => self.note_sent(now, Command::EndOfUpload),
+            UploadStep::Done => self.advance(now, Some(OperatorRequest::Delegate(Task::Mission)), out),
+            UploadStep::Failed(reason) => {
+                self.recovery_point = RecoveryPoint::default();
+                out.events.push(Event::Warning(format!("the mission is not uploaded: {reason}")));
             }
-            Some(Next::Done) => {
-                self.upload = None;
-                self.advance(now, Some(OperatorRequest::Delegate(Task::Mission)), out);
-            }
-            Some(Next::Wait) | None => {}
+            UploadStep::Waiting => {}
         }
     }
 
     /// Warns once when a boat that is sent standby reports that it is driven.
     fn watch_standby(&mut self, now: SimTime, action: Action, out: &mut Output) {
-        let driven = |mode: &Mode| matches!(mode, Mode::Thruster | Mode::Speed | Mode::Heading);
         // Under another operator's control that is right.
         let ours = matches!(self.control.control(now), Control::Granted | Control::Disobeys(_) | Control::Foreign);
-        let ignored = action == Action::Standby && ours && self.control.mode_mismatch(now).as_ref().is_some_and(driven);
+        let ignored =
+            action == Action::Standby && ours && self.control.mode_mismatch(now).is_some_and(Mode::is_set_point);
         if ignored && !self.standby_ignored {
             out.events.push(Event::Warning("the boat is sent standby and reports that it is driven".to_owned()));
         }

@@ -9,7 +9,7 @@ use crate::set_point::SetPointMapper;
 use game::SimTime;
 use game::external::{GeofenceReport, Mission};
 use game::frame::Ned;
-use game::gateway::Gateway;
+use game::gateway::{BoatProtocol, Gateway};
 
 /// What only works where the field is known.
 pub(super) struct OnSite {
@@ -21,9 +21,13 @@ pub(super) struct OnSite {
 
 impl OnSite {
     pub(super) fn new(gateway: &Gateway, site: &Site) -> OnSite {
-        let Gateway { nav, limits, geofence, halt, compass, .. } = gateway;
+        let Gateway { nav, limits, geofence, halt, compass, protocol, .. } = gateway;
         let frame = LocalFrame::new(site.field.plan.datum);
-        let compass_to_true_rad = site.compass_to_true_rad(*compass);
+        let compass_to_true_rad = match protocol {
+            BoatProtocol::Surveyor => site.compass_to_true_rad(*compass),
+            // Its headings are true, and so are those that it is sent.
+            BoatProtocol::Mavlink => 0.0,
+        };
         OnSite {
             set_points: SetPointMapper::new(gateway, compass_to_true_rad),
             estimator: NavEstimator::new(frame, *nav, compass_to_true_rad, limits.speed_max_m_s),

@@ -1,7 +1,11 @@
 //! The emergency recovery point that a boat has from us: uploaded with a mission, and seen taken.
 
-use crate::nmea::{ControlState, Mode, Operator};
+use crate::nmea::{Mode, Operator};
+use crate::protocol::ControlReport;
 use game::external::Mission;
+
+/// A home that is as near to the recovery point as this is the one that was set, degrees: one metre.
+const HOME_DEG: f64 = 9e-6;
 
 /// How far the boat has come with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,14 +26,26 @@ impl RecoveryPoint {
     }
 
     /// The boat's report: taken is what it sails after it has shown that it took lines.
-    pub(super) fn take(&mut self, state: &ControlState, is_uploading: bool) {
+    pub(super) fn take(&mut self, report: &ControlReport, is_uploading: bool) {
         let RecoveryPoint::Uploading(erp, shown) = *self else { return };
-        let is_ours = state.operator.is_none_or(|operator| operator == Operator::Secondary);
-        *self = match state.mode {
+        let is_ours = report.operator.is_none_or(|operator| operator == Operator::Secondary);
+        *self = match report.shown.mode {
             _ if !is_ours => RecoveryPoint::Unknown,
             Mode::FileDownload => RecoveryPoint::Uploading(erp, true),
             Mode::Waypoint if shown && !is_uploading => RecoveryPoint::Taken(erp),
             _ => *self,
+        };
+    }
+
+    /// The boat shows its home, to which it goes for recovery.
+    pub(super) fn take_home(&mut self, [lat_deg, lon_deg]: [f64; 2]) {
+        let (RecoveryPoint::Uploading(erp, _) | RecoveryPoint::Taken(erp)) = *self else { return };
+        let is_it = (lat_deg - erp[0]).abs() <= HOME_DEG && (lon_deg - erp[1]).abs() <= HOME_DEG;
+        *self = match *self {
+            _ if is_it => RecoveryPoint::Taken(erp),
+            // It has another one now.
+            RecoveryPoint::Taken(_) => RecoveryPoint::Unknown,
+            before => before,
         };
     }
 

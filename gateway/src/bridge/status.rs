@@ -1,17 +1,15 @@
 //! The status of a gateway, in numbers and words.
 
-use super::{Bridge, command_encoder};
-use crate::nmea::{Command, Operator};
+use super::Bridge;
+use crate::nmea::Operator;
+use crate::protocol::Command;
 use crate::supervisor::{Cause, State};
 use game::SimTime;
 use game::external::GatewayStatus;
-use std::collections::BTreeMap;
 
 /// How often each thing happened.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Counters {
-    pub(super) unknown: BTreeMap<String, u64>,
-    pub(super) unreadable: u64,
     pub(super) orders: u64,
     pub(super) bad_orders: u64,
     pub(super) old_orders: u64,
@@ -26,10 +24,7 @@ impl Bridge {
     pub fn status(&self, now: SimTime) -> GatewayStatus {
         let known = self.on_site.as_ref().and_then(|site| site.estimator.nav(now));
         let battery = self.battery.volts(now);
-        let sentence = |command: &Command| {
-            let bytes = command_encoder::bytes_of(std::slice::from_ref(command));
-            String::from_utf8_lossy(&bytes).trim_end().to_owned()
-        };
+        let text = |command: &Command| self.protocol.text(*command);
         let missing = self.conditions.missing().into_iter().map(Cause::missing);
         GatewayStatus {
             vehicle: self.plan.vehicle.clone(),
@@ -47,8 +42,8 @@ impl Bridge {
             mode_age_s: self.control.age_s(now),
             battery_v: battery.map(|(volts, _)| volts),
             battery_age_s: battery.map(|(_, age_s)| age_s),
-            last_sent: self.last_sent.as_ref().map(|(_, command)| sentence(command)).unwrap_or_default(),
-            would_send: self.plan.dry_run.then(|| self.would_send.as_ref().map(sentence).unwrap_or_default()),
+            last_sent: self.last_sent.as_ref().map(|(_, command)| text(command)).unwrap_or_default(),
+            would_send: self.plan.dry_run.then(|| self.would_send.as_ref().map(text).unwrap_or_default()),
             counts: self.counts(),
             latency_us: [None; 2],
         }
@@ -57,30 +52,24 @@ impl Bridge {
     fn state_in_words(&self) -> String {
         match self.supervisor.state() {
             State::EStopped => format!("e-stopped (by an E-stop of {})", self.supervisor.stopped_by()),
-            state if self.upload.is_some() => format!("{state}, uploading a mission"),
+            state if self.protocol.is_uploading() => format!("{state}, uploading a mission"),
             state => state.to_string(),
         }
     }
 
     /// What was counted, by name.
     fn counts(&self) -> Vec<(String, u64)> {
-        let framed = self.framer.counts();
         let counters = &self.counters;
+        let [received, unknown] = self.protocol.counts();
         let known = [
-            ("sentences in", framed.sentences),
-            ("bad checksums", framed.bad_checksum),
-            ("overlong", framed.overlong),
-            ("broken", framed.broken),
-            ("bytes of garbage", framed.garbage),
-            ("unreadable", counters.unreadable),
             ("orders", counters.orders),
             ("bad orders", counters.bad_orders),
             ("old orders", counters.old_orders),
             ("orders ahead of the game", counters.orders_ahead),
             ("commands out", counters.sent),
         ];
-        let unknown = counters.unknown.iter().map(|(name, count)| (format!("unknown {name}"), *count));
-        known.into_iter().map(|(name, count)| (name.to_owned(), count)).chain(unknown).collect()
+        let known = known.into_iter().map(|(name, count)| (name.to_owned(), count));
+        received.into_iter().chain(known).chain(unknown).collect()
     }
 }
 

@@ -1,36 +1,37 @@
 //! What a boat is sent that is to stand still.
 
-use super::{Bridge, command_encoder};
-use crate::nmea::Command;
-use crate::set_point::SetPoint;
+use super::Bridge;
+use crate::protocol::Command;
 use crate::supervisor::Control;
-use game::gateway::SwitchWord;
-
-/// What stops a boat, whatever it does: thrust zero, then standby.
-#[must_use]
-pub fn stop_message() -> Vec<u8> {
-    command_encoder::bytes_of(&[command_encoder::of_set_point(SetPoint::ZERO), command_encoder::standby()])
-}
+use game::SimTime;
 
 impl Bridge {
     /// The shutdown message, sent before the link closes: thrust zero, then standby.
     #[must_use]
     pub fn shutdown_message(&self) -> Vec<u8> {
         let mut message = Vec::new();
+        let mut protocol = self.protocol.clone();
         if self.plan.dry_run {
-            return command_encoder::bytes_of(&[command_encoder::standby()]);
+            protocol.write(SimTime::ZERO, Command::Standby, &mut message);
+            return message;
         }
-        if self.upload.is_some() {
-            message.extend(command_encoder::bytes_of(&[command_encoder::end_of_download()]));
+        if protocol.abort_upload() {
+            protocol.write(SimTime::ZERO, Command::EndOfUpload, &mut message);
         }
-        message.extend(stop_message());
+        message.extend(protocol.stop_message());
         message
+    }
+
+    /// What its guard sends the boat when the gateway cannot.
+    #[must_use]
+    pub fn guard_message(&self) -> Vec<u8> {
+        self.protocol.guard_message()
     }
 
     /// Standby, with the next start-up word where the boat listens to us.
     pub(super) fn standby(&mut self) -> Command {
         let listens = self.conditions.control == Control::Granted && !self.under_way && !self.plan.dry_run;
         let word = if listens { self.words.pop_front() } else { None };
-        command_encoder::standby_with(word.map_or("", SwitchWord::text))
+        word.map_or(Command::Standby, Command::Switch)
     }
 }

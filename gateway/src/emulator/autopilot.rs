@@ -21,6 +21,8 @@ pub(super) struct Autopilot {
     /// By index; 0 is the emergency recovery point.
     places: BTreeMap<u16, Ned>,
     throttle_pct: Option<f64>,
+    /// Speed of a mission that names one, m/s.
+    speed_m_s: Option<f64>,
     /// The mission that is being uploaded, if any.
     upload: Option<Upload>,
     station: Option<Ned>,
@@ -54,6 +56,12 @@ pub(super) fn steer(heading_rad: Option<f64>, speed_m_s: Option<f64>) -> Order {
     }
 }
 
+/// The order that makes this speed, m/s, astern.
+pub(super) fn astern(speed_m_s: f64) -> Order {
+    let map = SURVEYOR_THRUST_MAP.iter().map(|(thrust, speed)| (*speed, *thrust));
+    thrust(math::interpolate(map, speed_m_s), 0.0)
+}
+
 /// The speed ahead that a thrust gives, m/s.
 pub(super) fn speed_of_thrust(thrust_pct: f64) -> f64 {
     math::interpolate(SURVEYOR_THRUST_MAP, thrust_pct.clamp(0.0, 100.0))
@@ -64,6 +72,18 @@ impl Autopilot {
     pub(super) fn begin(&mut self, at: Ned) {
         self.station = Some(at);
         self.next = 1;
+    }
+
+    /// The recovery point.
+    pub(super) fn set_home(&mut self, home: Ned) {
+        self.places.insert(0, home);
+    }
+
+    /// A mission as a whole, with the speed that it names, m/s; the recovery point stays.
+    pub(super) fn set_mission(&mut self, waypoints: Vec<Ned>, speed_m_s: Option<f64>) {
+        self.places.retain(|index, _| *index == 0);
+        self.places.extend((1..).zip(waypoints));
+        (self.speed_m_s, self.next) = (speed_m_s, 1);
     }
 
     /// An upload begins: the mission before is deleted.
@@ -128,7 +148,7 @@ impl Autopilot {
     }
 
     fn speed_m_s(&self) -> f64 {
-        speed_of_thrust(self.throttle_pct.unwrap_or(THROTTLE_PCT))
+        self.speed_m_s.unwrap_or_else(|| speed_of_thrust(self.throttle_pct.unwrap_or(THROTTLE_PCT)))
     }
 }
 

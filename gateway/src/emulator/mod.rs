@@ -1,12 +1,16 @@
-//! An emulated Surveyor: commands in, telemetry out, with no socket and no clock.
+//! An emulated Surveyor: commands in, telemetry out, with no socket and no clock; and an emulated boat with ArduPilot, in `ardupilot`.
 //!
 //! It is as strict and as tolerant as a Surveyor is known to be: it sends telemetry in standby too, follows commands
 //! only from the operator in control, reads four to six fields, and by default has no watchdog: it follows the last
 //! command for ever.
 
+mod ardupilot;
 mod autopilot;
+mod front_seat;
 mod telemetry;
 
+pub use ardupilot::{ArduPilot, SYSTEM};
+pub use front_seat::FrontSeat;
 pub use telemetry::Extra;
 
 use crate::geodesy::LocalFrame;

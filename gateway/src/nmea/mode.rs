@@ -61,6 +61,12 @@ impl Mode {
         Mode::LETTERS.map(|(mode, _)| mode)
     }
 
+    /// Whether the boat follows set-points in it.
+    #[must_use]
+    pub fn is_set_point(self) -> bool {
+        matches!(self, Mode::Thruster | Mode::Heading | Mode::Speed)
+    }
+
     /// The letter on the wire.
     #[must_use]
     pub fn letter(self) -> char {

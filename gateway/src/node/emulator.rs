@@ -1,14 +1,15 @@
-//! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives by the boat's own sentences.
+//! The emulator's node: joins a game as the agent of a simulated boat, which a back seat drives by the boat's own protocol.
 
 use super::{NodeError, NodeEvent, declination_rad, pace_factor};
 use crate::bridge::Event;
-use crate::emulator::{Emulator, Extra, Plan, Port};
+use crate::emulator::{ArduPilot, Emulator, Extra, FrontSeat, Plan, Port};
 use crate::link::{Link, LinkAddress, LinkEvent, LinkSettings};
 use crate::nmea::Operator;
 use crate::nmea::date_and_time;
 use agent::{Mind, MindRunner};
 use bus::game_search::{self, GameSearch};
 use bus::{Patience, Place, Priority, Publisher, SimState, SimWatch, Watched};
+use game::gateway::BoatProtocol;
 use game::message::Role;
 use game::topic::{self, GameName};
 use game::{Order, Picture, SimTime, VehicleId, codec};
@@ -25,9 +26,11 @@ pub struct EmulatorSettings {
     pub place: Place,
     /// The boat's name in the game.
     pub vehicle: String,
+    /// What it speaks. The settings from `declination_rad` to `extra` are of a Surveyor.
+    pub protocol: BoatProtocol,
     /// Where the back seat connects.
     pub listen: LinkAddress,
-    /// Where the primary operator connects, if anywhere.
+    /// Where the primary operator connects, or is, if anywhere.
     pub primary: Option<LinkAddress>,
     /// Declination, east positive, rad; `None` is by the World Magnetic Model.
     pub declination_rad: Option<f64>,
@@ -72,13 +75,20 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     pace_factor(&info.pace, true)?;
     let scenario = &info.scenario;
     let datum = scenario.field.plan.datum;
-    let plan = Plan {
+    let surveyor = |declination_rad| Plan {
         datum,
-        declination_rad: declination_rad(settings.declination_rad, datum)?,
+        declination_rad,
         watchdog_s: settings.watchdog_s,
         integers: settings.integers,
         extra: settings.extra.clone(),
         began: date_and_time(utc::now_ns()),
+    };
+    let front_seat = match settings.protocol {
+        BoatProtocol::Surveyor => {
+            let plan = surveyor(declination_rad(settings.declination_rad, datum)?);
+            FrontSeat::Surveyor(Box::new(Emulator::new(plan)))
+        }
+        BoatProtocol::Mavlink => FrontSeat::ArduPilot(Box::new(ArduPilot::new(datum))),
     };
     let incoming = Arc::new(Watched::new(Incoming::default()));
     let pictures = Arc::clone(&incoming);
@@ -96,7 +106,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
     let sim = SimWatch::open(&bus, &game, Patience::of_player(settings.silence))?;
     let (place, all) = (&settings.place, (&game, scenario));
     let joined = search.until(&mut say, || game_search::join(&bus, place, all, Role::Agent, &names))?;
-    let boat = EmulatedBoat { vehicle, emulator: Emulator::new(plan) };
+    let boat = EmulatedBoat { vehicle, front_seat };
     let mut node = EmulatorNode {
         runner: MindRunner::new([(vehicle, Box::new(boat))]),
         ticket: joined.ticket,
@@ -105,7 +115,7 @@ pub fn emulate(settings: &EmulatorSettings, notify: &mut dyn FnMut(NodeEvent<'_>
         links: [Some(back_seat), primary],
         orders: bus
             .publisher(topic::orders(&game, scenario, &[scenario.team_of(vehicle)], &bus.id()), Priority::Normal)?,
-        operator: Operator::Secondary,
+        operator: Some(Operator::Secondary),
         sent: 0,
     };
     let result = node.run(&settings.stop, &incoming, notify);
@@ -141,16 +151,16 @@ impl Incoming {
 /// The emulated boat as a mind: its order is what the back seat commands.
 struct EmulatedBoat {
     vehicle: VehicleId,
-    emulator: Emulator,
+    front_seat: FrontSeat,
 }
 
 impl Mind for EmulatedBoat {
     fn decide(&mut self, picture: &Picture) -> Order {
         let now = picture.stamp.valid_ns;
         if let Some(own) = picture.own(self.vehicle) {
-            self.emulator.observe(now, own);
+            self.front_seat.observe(now, own);
         }
-        self.emulator.order(now)
+        self.front_seat.order(now)
     }
 }
 
@@ -164,7 +174,7 @@ struct EmulatorNode {
     /// To the back seat, and to the primary operator.
     links: [Option<Link>; 2],
     orders: Publisher,
-    operator: Operator,
+    operator: Option<Operator>,
     sent: u64,
 }
 
@@ -181,10 +191,10 @@ impl EmulatorNode {
             remarks.into_iter().for_each(|text| self.remark(text, notify));
             for (port, bytes) in &bytes {
                 let now = self.now;
-                self.emulator().take(now, *port, bytes);
+                self.front_seat().take(now, *port, bytes);
             }
             self.report_operator(notify);
-            if let Some(text) = self.emulator().take_remark() {
+            if let Some(text) = self.front_seat().take_remark() {
                 self.remark(text, notify);
             }
             let picture = picture.and_then(|bytes| codec::decode::<Picture>(&bytes).ok());
@@ -204,16 +214,15 @@ impl EmulatorNode {
         Ok(())
     }
 
-    fn emulator(&mut self) -> &mut Emulator {
+    fn front_seat(&mut self) -> &mut FrontSeat {
         let (_, boat) = self.runner.minds_mut().next().expect("one boat is run here");
-        &mut boat.emulator
+        &mut boat.front_seat
     }
 
     /// Reports who commands the boat, if that changed.
     fn report_operator(&mut self, notify: &mut dyn FnMut(NodeEvent<'_>)) {
-        let operator = self.emulator().operator();
-        if operator != self.operator {
-            self.operator = operator;
+        let Some(operator) = self.front_seat().operator() else { return };
+        if self.operator.replace(operator) != Some(operator) {
             self.remark(format!("{operator:?} commands the boat"), notify);
         }
     }
@@ -229,7 +238,7 @@ impl EmulatorNode {
             self.now = picture.stamp.valid_ns;
             if self.runner.decided().is_none() {
                 let now = self.now;
-                self.emulator().set_clock(now, date_and_time(utc::now_ns()));
+                self.front_seat().set_clock(now, utc::now_ns());
             }
             self.runner.decide(picture.stamp, |_| Some(picture));
         }
@@ -244,7 +253,10 @@ impl EmulatorNode {
 
     fn send_telemetry(&mut self) {
         let (now, mut burst) = (self.now, Vec::with_capacity(512));
-        self.emulator().telemetry(now, &mut burst);
+        self.front_seat().telemetry(now, &mut burst);
+        if burst.is_empty() {
+            return;
+        }
         self.sent += 1;
         for link in self.links.iter().flatten() {
             link.send(burst.clone(), self.sent);

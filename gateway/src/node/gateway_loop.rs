@@ -151,9 +151,10 @@ impl GatewayLoop<'_> {
             self.counters.awake_since = now.moment();
             self.warn(&format!("this machine was suspended for {:.1} s", suspended.as_secs_f64()));
         }
-        if let Some(guarded) = &self.guarded
-            && !guarded.beat()
-        {
+        if let Some(guarded) = &self.guarded {
+            guarded.stop_with(&self.bridge.guard_message());
+        }
+        if self.guarded.as_ref().is_some_and(|guarded| !guarded.beat()) {
             self.warn("the guard has died: if the gateway is killed, nobody stops the boat");
         }
         if gap >= HUNG && (self.guarded.is_some() || suspended.is_some()) {

@@ -1,10 +1,9 @@
 //! The guard of a gateway: a small process that stops the boat when the gateway dies, hangs or is suspended.
 //!
 //! It has a duplicate of the link, which a killed process cannot take with it, and one end of a pair of sockets. Over that the
-//! gateway sends a heartbeat from its loop, every new link, and that it ends in order. Without a heartbeat for [`SILENCE`], or when
-//! the other end is closed, it writes thrust zero and standby.
+//! gateway sends what stops the boat by its protocol, a heartbeat from its loop, every new link, and that it ends in order. Without a
+//! heartbeat for [`SILENCE`], or when the other end is closed, it writes what stops the boat: thrust zero and standby.
 
-use crate::bridge::stop_message;
 use bus::clock;
 use parking_lot::Mutex;
 use rustix::net::sockopt::{Timeout, set_socket_timeout};
@@ -33,11 +32,14 @@ const LAST_WORDS: usize = 4;
 /// How long one sentence may take.
 const WRITE_MAX: Duration = Duration::from_millis(50);
 
-/// What the gateway tells its guard: a byte each.
+/// What the gateway tells its guard: a byte each, and what stops the boat after the byte of that.
 const ALIVE: u8 = b'.';
 const LINK: u8 = b'+';
 const NO_LINK: u8 = b'-';
 const ENDS: u8 = b'!';
+const STOP: u8 = b'=';
+/// The longest message to the guard, bytes.
+const TOLD_MAX: usize = 1024;
 
 /// The gateway's end.
 #[derive(Clone)]
@@ -47,35 +49,48 @@ struct Inner {
     socket: OwnedFd,
     process: Mutex<Child>,
     is_gone: AtomicBool,
+    /// What stops the boat, as the guard was last told.
+    stop: Mutex<Vec<u8>>,
 }
 
 impl Guarded {
-    /// Starts the guard, by a command that calls [`guard`] with its standard input.
-    pub(super) fn start(mut command: Command) -> io::Result<Guarded> {
+    /// Starts the guard, by a command that calls [`guard`] with its standard input, of a boat that this stops.
+    pub(super) fn start(mut command: Command, stop: &[u8]) -> io::Result<Guarded> {
         let (socket, its_end) = socketpair(AddressFamily::UNIX, SocketType::SEQPACKET, SocketFlags::CLOEXEC, None)?;
         // What ends the gateway by its terminal must not end the guard with it.
         command.stdin(Stdio::from(its_end)).stdout(Stdio::null()).process_group(0);
         let process = Mutex::new(command.spawn()?);
-        Ok(Guarded(Arc::new(Inner { socket, process, is_gone: AtomicBool::new(false) })))
+        let is_gone = AtomicBool::new(false);
+        let guarded = Guarded(Arc::new(Inner { socket, process, is_gone, stop: Mutex::default() }));
+        guarded.stop_with(stop);
+        Ok(guarded)
     }
 
     /// The loop runs. Whether the guard does, the first time that it does not.
     pub(super) fn beat(&self) -> bool {
-        self.tell(ALIVE, None) || self.0.is_gone.swap(true, Ordering::Relaxed)
+        self.tell(&[ALIVE], None) || self.0.is_gone.swap(true, Ordering::Relaxed)
+    }
+
+    /// This stops the boat from now on.
+    pub(super) fn stop_with(&self, message: &[u8]) {
+        let mut stop = self.0.stop.lock();
+        if *stop != message && self.tell(&[&[STOP], message].concat(), None) {
+            message.clone_into(&mut stop);
+        }
     }
 
     /// There is a new link, or none.
     pub(super) fn link(&self, descriptor: Option<BorrowedFd<'_>>) {
-        self.tell(if descriptor.is_some() { LINK } else { NO_LINK }, descriptor);
+        self.tell(&[if descriptor.is_some() { LINK } else { NO_LINK }], descriptor);
     }
 
     /// The gateway has stopped the boat itself, and ends.
     pub(super) fn end(&self) {
-        self.tell(ENDS, None);
+        self.tell(&[ENDS], None);
     }
 
     /// Whether the guard could be told; one that is suspended takes nothing more some time, and is there.
-    fn tell(&self, what: u8, descriptor: Option<BorrowedFd<'_>>) -> bool {
+    fn tell(&self, what: &[u8], descriptor: Option<BorrowedFd<'_>>) -> bool {
         let descriptors: Vec<BorrowedFd<'_>> = descriptor.into_iter().collect();
         let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
         let mut control = SendAncillaryBuffer::new(&mut space);
@@ -83,7 +98,7 @@ impl Guarded {
             control.push(SendAncillaryMessage::ScmRights(&descriptors));
         }
         let flags = SendFlags::DONTWAIT | SendFlags::NOSIGNAL;
-        match sendmsg(&self.0.socket, &[IoSlice::new(&[what])], &mut control, flags) {
+        match sendmsg(&self.0.socket, &[IoSlice::new(what)], &mut control, flags) {
             Ok(_) => true,
             Err(e) => e == rustix::io::Errno::AGAIN,
         }
@@ -100,6 +115,8 @@ impl Drop for Inner {
 /// What the guard heard.
 enum Heard {
     Told(u8, Option<OwnedFd>),
+    /// This stops the boat.
+    Stop(Vec<u8>),
     /// Nothing, for [`SILENCE`] or as long as it waits.
     Nothing,
     /// The other end is closed.
@@ -112,12 +129,13 @@ enum Heard {
 /// If the socket cannot be used.
 pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> {
     let mut link: Option<OwnedFd> = None;
-    let mut is_hung = false;
+    let (mut stop, mut is_hung) = (Vec::new(), false);
     loop {
         let wait = if is_hung { AGAIN } else { SILENCE };
         set_socket_timeout(&socket, Timeout::Recv, Some(wait))?;
         match hear(socket.as_fd())? {
             Heard::Told(ENDS, _) => return Ok(()),
+            Heard::Stop(message) => stop = message,
             Heard::Told(LINK, descriptor) => link = descriptor,
             Heard::Told(NO_LINK, _) => link = None,
             Heard::Told(..) if is_hung => {
@@ -127,7 +145,7 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
             Heard::Told(..) => {}
             Heard::Nothing => {
                 if let Some(link) = &link {
-                    write(link, &message());
+                    write(link, &stop);
                     if !is_hung {
                         remark("the gateway hangs: its boat is sent thrust zero and standby");
                     }
@@ -136,11 +154,11 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
             }
             Heard::Died => {
                 let Some(link) = &link else { return Ok(()) };
-                write(link, &message());
+                write(link, &stop);
                 remark("the gateway has died: its boat is sent thrust zero and standby");
                 for _ in 1..LAST_WORDS {
                     clock::rest(AGAIN);
-                    write(link, &message());
+                    write(link, &stop);
                 }
                 return Ok(());
             }
@@ -148,27 +166,23 @@ pub fn guard(socket: impl AsFd, remark: &mut dyn FnMut(&str)) -> io::Result<()> 
     }
 }
 
-/// A sentence that was cut off ends first.
-fn message() -> Vec<u8> {
-    [b"\r\n".to_vec(), stop_message()].concat()
-}
-
 fn hear(socket: BorrowedFd<'_>) -> io::Result<Heard> {
-    let mut byte = [0];
+    let mut bytes = [0; TOLD_MAX];
     let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
     let mut control = RecvAncillaryBuffer::new(&mut space);
     // A signal is no silence.
     let received = rustix::io::retry_on_intr(|| {
-        recvmsg(socket, &mut [IoSliceMut::new(&mut byte)], &mut control, RecvFlags::CMSG_CLOEXEC)
+        recvmsg(socket, &mut [IoSliceMut::new(&mut bytes)], &mut control, RecvFlags::CMSG_CLOEXEC)
     });
     match received {
         Ok(received) if received.bytes == 0 => Ok(Heard::Died),
+        Ok(received) if bytes[0] == STOP => Ok(Heard::Stop(bytes[1..received.bytes].to_vec())),
         Ok(_) => {
             let descriptors = control.drain().filter_map(|message| match message {
                 RecvAncillaryMessage::ScmRights(mut descriptors) => descriptors.next(),
                 _ => None,
             });
-            Ok(Heard::Told(byte[0], descriptors.last()))
+            Ok(Heard::Told(bytes[0], descriptors.last()))
         }
         Err(rustix::io::Errno::AGAIN) => Ok(Heard::Nothing),
         Err(rustix::io::Errno::CONNRESET | rustix::io::Errno::PIPE) => Ok(Heard::Died),

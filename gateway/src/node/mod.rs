@@ -26,6 +26,7 @@ use crate::game_clock::GameClock;
 use crate::geofence::GeofenceError;
 use crate::link::{BoatLink, Link, LinkAddress, LinkError, LinkEvent, LinkSettings, OnPort};
 use crate::nmea::date_and_time;
+use crate::protocol::Protocol;
 use crate::record::{self, StepEncoder};
 use crate::supervisor::Scope;
 use bus::game_search::NotFound;
@@ -209,7 +210,7 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
     let token = settings.place.token().get().unwrap_or_else(Token::random);
     let port = ControlPort::open(outside.control, &settings.vehicle, Some(token).into(), input.0.clone())?;
     // What is sent nothing but standby needs nobody to stop it.
-    let guarded = if settings.dry_run { None } else { start_guard(outside, notify) };
+    let guarded = if settings.dry_run { None } else { start_guard(settings, outside, notify) };
     let on_port = guarded.clone().map(|guarded| -> OnPort { Box::new(move |descriptor| guarded.link(descriptor)) });
     let open = |on_event: OnLinkEvent| -> Result<Box<dyn BoatLink>, LinkError> {
         let link_settings = LinkSettings { silence: Some(outside.silence), ..LinkSettings::default() };
@@ -219,10 +220,10 @@ pub fn serve(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(Node
 }
 
 /// The guard, where there is to be one. A boat is not left alone since it cannot be started.
-fn start_guard(outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
+fn start_guard(settings: &Settings, outside: &Outside, notify: &mut dyn FnMut(NodeEvent<'_>)) -> Option<Guarded> {
     let mut command = Command::new(outside.guard.as_ref()?);
     command.args(["gateway", "guard"]).env_clear();
-    let started = Guarded::start(command);
+    let started = Guarded::start(command, &Protocol::new(&settings.gateway).guard_message());
     if let Err(e) = &started {
         let text = format!("there is no guard, so if the gateway is killed, nobody stops the boat: {e}");
         notify(NodeEvent::Event { at_s: 0.0, event: &Event::Warning(text) });

@@ -1,16 +1,11 @@
-//! The upload of a mission: lines one after the other, with pauses.
+//! The upload of a mission to a Surveyor: lines one after the other, with pauses.
 
-use super::command_encoder;
+use super::surveyor::{end_of_download, start_of_download};
 use crate::nmea::{MissionSettings, Sentence, Waypoint};
 use game::SimTime;
 use game::external::Mission;
 use game::frame::LatLon;
 use std::collections::VecDeque;
-
-/// Most waypoints of a mission.
-const WAYPOINTS_MAX: usize = 200;
-/// Largest throttle that other drivers of this boat send, per cent.
-const THROTTLE_MAX_PCT: f64 = 70.0;
 
 /// What is still to be sent.
 #[derive(Clone, Debug)]
@@ -32,30 +27,18 @@ pub(super) enum Next {
 
 impl Upload {
     /// The lines of a mission: start of download, settings, emergency recovery point (index 0), waypoints, end.
-    ///
-    /// # Errors
-    /// What is wrong with the mission.
-    pub(super) fn new(mission: &Mission, gap_s: f64, now: SimTime) -> Result<Upload, String> {
-        if !(0.0..=THROTTLE_MAX_PCT).contains(&mission.throttle_pct) {
-            return Err(format!("throttle_pct is {}, expected 0 to {THROTTLE_MAX_PCT}", mission.throttle_pct));
-        }
-        if !(1..=WAYPOINTS_MAX).contains(&mission.waypoints.len()) {
-            return Err(format!("waypoints are {}, expected 1 to {WAYPOINTS_MAX}", mission.waypoints.len()));
-        }
+    pub(super) fn new(mission: &Mission, gap_s: f64, now: SimTime) -> Upload {
         let places = std::iter::once(&mission.erp).chain(&mission.waypoints);
         let mut lines = VecDeque::from([
-            Sentence::Command(command_encoder::start_of_download(mission.waypoints.len() + 2)),
+            start_of_download(mission.waypoints.len() + 2),
             Sentence::MissionSettings(MissionSettings { throttle_pct: mission.throttle_pct }),
         ]);
         for (index, [lat_deg, lon_deg]) in places.enumerate() {
-            if !((-90.0..=90.0).contains(lat_deg) && (-180.0..=180.0).contains(lon_deg)) {
-                return Err(format!("waypoint {index} is [{lat_deg}, {lon_deg}], expected latitude and longitude"));
-            }
             let at = LatLon { lat_deg: *lat_deg, lon_deg: *lon_deg };
             lines.push_back(Sentence::Waypoint(Waypoint { at, index: index as u16 }));
         }
-        lines.push_back(Sentence::Command(command_encoder::end_of_download()));
-        Ok(Upload { lines, gap: SimTime::from_s(gap_s), due: now })
+        lines.push_back(end_of_download());
+        Upload { lines, gap: SimTime::from_s(gap_s), due: now }
     }
 
     pub(super) fn next(&mut self, now: SimTime) -> Next {

@@ -1,0 +1,232 @@
+"""The emulated boat and the gateway against pymavlink, the package that most ground stations for ArduPilot are written with.
+
+    pymavlink_check.py PATH/OF/squall
+
+First pymavlink drives the emulated boat over UDP and TCP as a ground station does; then it plays a minimal boat, which the gateway is to
+stop. Ends with an error at the first thing that is not as it should be.
+"""
+
+import math
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+os.environ["MAVLINK20"] = "1"
+from pymavlink import mavutil  # noqa: E402
+from pymavlink.dialects.v20 import common as mav  # noqa: E402
+
+LIMIT_S = 30.0
+HOLD, LOITER, AUTO, RTL, GUIDED, MANUAL = 4, 5, 10, 11, 15, 0
+ARMED = mav.MAV_MODE_FLAG_SAFETY_ARMED
+
+
+class Processes:
+    """Processes of the program, which end with this."""
+
+    def __init__(self, squall):
+        self.squall = squall
+        self.started = []
+
+    def start(self, *args):
+        process = subprocess.Popen([self.squall, *args], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=subprocess.DEVNULL, text=True)
+        self.started.append(process)
+        return process
+
+    def end(self):
+        for process in reversed(self.started):
+            process.send_signal(signal.SIGTERM)
+        for process in self.started:
+            process.wait(timeout=LIMIT_S)
+
+
+def check(condition, what):
+    if not condition:
+        raise SystemExit(f"FAILED: {what}")
+    print(f"  {what}: ok")
+
+
+def wait_for(link, what, kind, is_it=lambda message: True, limit_s=LIMIT_S):
+    """The first message of a kind for which something is so."""
+    end = time.monotonic() + limit_s
+    while time.monotonic() < end:
+        message = link.recv_match(type=kind, blocking=True, timeout=0.5)
+        if message is not None and is_it(message):
+            check(True, what)
+            return message
+    raise SystemExit(f"FAILED: {what}: not within {limit_s} s")
+
+
+def command(link, what, number, *params, result=mav.MAV_RESULT_ACCEPTED):
+    """A command, and its acknowledgement."""
+    params = [*params, *[0] * (7 - len(params))]
+    link.mav.command_long_send(link.target_system, link.target_component, number, 0, *params)
+    ack = wait_for(link, f"{what} is acknowledged", "COMMAND_ACK", lambda ack: ack.command == number)
+    check(ack.result == result, f"{what}: result {ack.result}")
+
+
+def heartbeat_of(mode, armed):
+    return lambda beat: beat.custom_mode == mode and bool(beat.base_mode & ARMED) == armed
+
+
+def drive(link, seconds, send):
+    """Sends a set-point five times a second; the last position and heading."""
+    end = time.monotonic() + seconds
+    position = None
+    while time.monotonic() < end:
+        send()
+        message = link.recv_match(type="GLOBAL_POSITION_INT", blocking=True, timeout=0.2)
+        position = message or position
+    check(position is not None, "it tells where it is")
+    return position
+
+
+def drive_emulated_boat(link):
+    wait_for(link, "the boat's heartbeat", "HEARTBEAT", heartbeat_of(HOLD, False))
+    link.target_system, link.target_component = 1, 1
+    link.mav.param_request_list_send(1, 1)
+    names = set()
+    while len(names) < 10:
+        value = wait_for(link, "a parameter", "PARAM_VALUE")
+        names.add(value.param_id)
+    check({"SYSID_MYGCS", "FS_GCS_ENABLE", "CRUISE_SPEED"} <= names, "parameters by their real names")
+    for message in (mav.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mav.MAVLINK_MSG_ID_ATTITUDE):
+        command(link, f"the interval of {message}", mav.MAV_CMD_SET_MESSAGE_INTERVAL, message, 100_000)
+    command(link, "a command that it does not have", mav.MAV_CMD_NAV_TAKEOFF, result=mav.MAV_RESULT_UNSUPPORTED)
+    link.mav.set_mode_send(1, mav.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, GUIDED)
+    wait_for(link, "GUIDED", "HEARTBEAT", heartbeat_of(GUIDED, False))
+    command(link, "arming", mav.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+    wait_for(link, "armed", "HEARTBEAT", heartbeat_of(GUIDED, True))
+    before = wait_for(link, "where it is", "GLOBAL_POSITION_INT")
+
+    def to_the_south():
+        link.mav.set_position_target_local_ned_send(0, 1, 1, mav.MAV_FRAME_LOCAL_NED, 0b100111100111, 0, 0, 0, -1.2, 0, 0, 0, 0, 0,
+                                                    math.pi, 0)
+
+    after = drive(link, 12.0, to_the_south)
+    moved_m = (before.lat - after.lat) * 1e-7 * 111_200
+    check(moved_m > 4.0, f"it went {moved_m:.1f} m to the south")
+    check(abs(after.hdg - 18_000) < 2000 and after.vx < -60, f"heading {after.hdg / 100} at {after.vx} cm/s")
+
+    def turn_to_starboard():
+        link.mav.set_attitude_target_send(0, 1, 1, 0b10000011, [1, 0, 0, 0], 0, 0, 0.4, 0.3)
+
+    drive(link, 6.0, turn_to_starboard)
+    while link.recv_match(blocking=False):
+        pass
+    attitude = wait_for(link, "its rate of turn", "ATTITUDE")
+    check(attitude.yawspeed > 0.05, f"it turns to starboard, {attitude.yawspeed:.2f} rad/s")
+    drive(link, 1.0, to_the_south)
+    # It forgets the set-point after three seconds, and glides.
+    idle = wait_for(link, "without set-points it stops", "GLOBAL_POSITION_INT", lambda at: math.hypot(at.vx, at.vy) < 25, limit_s=20.0)
+    upload_mission(link, idle)
+    command(link, "HOLD", mav.MAV_CMD_DO_SET_MODE, 1, HOLD)
+    command(link, "disarming", mav.MAV_CMD_COMPONENT_ARM_DISARM, 0)
+    wait_for(link, "HOLD, disarmed", "HEARTBEAT", heartbeat_of(HOLD, False))
+
+
+def upload_mission(link, here):
+    link.mav.mission_count_send(1, 1, 3)
+    for seq in range(3):
+        request = wait_for(link, f"it asks for item {seq}", ["MISSION_REQUEST_INT", "MISSION_REQUEST"])
+        check(request.seq == seq, f"item {request.seq}")
+        link.mav.mission_item_int_send(1, 1, seq, mav.MAV_FRAME_GLOBAL_RELATIVE_ALT, mav.MAV_CMD_NAV_WAYPOINT, 0, 1, 0, 0, 0, 0,
+                                       here.lat + 100 * seq, here.lon, 0)
+    ack = wait_for(link, "it takes the mission", "MISSION_ACK")
+    check(ack.type == mav.MAV_MISSION_ACCEPTED, "the mission")
+    command(link, "AUTO", mav.MAV_CMD_DO_SET_MODE, 1, AUTO)
+    wait_for(link, "AUTO", "HEARTBEAT", heartbeat_of(AUTO, True))
+
+
+class Boat:
+    """A minimal boat: a TCP server that pymavlink reads and writes."""
+
+    def __init__(self):
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.port = self.server.getsockname()[1]
+        self.mode, self.armed = GUIDED, True
+        self.sent = []
+        self.connection = None
+
+    def serve(self, seconds, until):
+        """Serves for so long, or until something is so, or the other end is closed; what came."""
+        if self.connection is None:
+            self.connection, _ = self.server.accept()
+        connection, self.sent = self.connection, []
+        connection.settimeout(0.05)
+        codec = mav.MAVLink(connection.makefile("wb", buffering=0), srcSystem=42, srcComponent=1)
+        # Anything that is no frame, or has a wrong checksum, is an error of this reader.
+        codec.robust_parsing = False
+        end = time.monotonic() + seconds
+        beat = 0.0
+        while time.monotonic() < end and not until(self):
+            if time.monotonic() >= beat:
+                beat = time.monotonic() + 0.2
+                base = mav.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | (ARMED if self.armed else 0)
+                codec.heartbeat_send(mav.MAV_TYPE_SURFACE_BOAT, mav.MAV_AUTOPILOT_ARDUPILOTMEGA, base, self.mode,
+                                     mav.MAV_STATE_ACTIVE)
+            try:
+                received = connection.recv(4096)
+            except TimeoutError:
+                continue
+            if not received:
+                break
+            for message in codec.parse_buffer(received) or []:
+                self.sent.append(message)
+                self.obey(message)
+        return self.sent
+
+    def obey(self, message):
+        if message.get_type() != "COMMAND_LONG":
+            return
+        check((message.target_system, message.target_component) in ((42, 1), (0, 0)), "a command for this boat")
+        if message.command == mav.MAV_CMD_DO_SET_MODE:
+            self.mode = int(message.param2)
+        if message.command == mav.MAV_CMD_COMPONENT_ARM_DISARM:
+            self.armed = message.param1 == 1
+
+
+def play_boat(processes):
+    boat = Boat()
+    config = os.path.join(os.path.dirname(__file__), "../../scenarios/gateways/blueboat.toml")
+    gateway = processes.start("gateway", "surveyor", "--vehicle", "blue_one", "--no-record", "--game", "nobody", "--config", config,
+                              "--link", f"tcp://127.0.0.1:{boat.port}")
+    sent = boat.serve(LIMIT_S, lambda boat: (boat.mode, boat.armed) == (HOLD, False))
+    check((boat.mode, boat.armed) == (HOLD, False), "a boat that is in GUIDED is put into HOLD and disarmed")
+    beats = [message for message in sent if message.get_type() == "HEARTBEAT"]
+    check(beats and beats[0].type == mav.MAV_TYPE_GCS and beats[0].autopilot == mav.MAV_AUTOPILOT_INVALID, "its heartbeat")
+    check(beats[0].base_mode == 0, "which says nothing of arms")
+    check(beats[0].get_srcSystem() == 255 and beats[0].get_srcComponent() == 190, "as the ground station that it is configured as")
+    intervals = {int(message.param1) for message in sent if message.get_type() == "COMMAND_LONG"
+                 and message.command == mav.MAV_CMD_SET_MESSAGE_INTERVAL}
+    check({0, 24, 30, 33} <= intervals, f"it asks for what it needs: {sorted(intervals)}")
+    gateway.send_signal(signal.SIGTERM)
+    sent += boat.serve(LIMIT_S, lambda boat: False)
+    zeros = [message for message in sent if message.get_type() == "SET_ATTITUDE_TARGET"]
+    zero = lambda message: (message.thrust, message.body_yaw_rate, message.type_mask) == (0.0, 0.0, 0b10000011)
+    check(len(zeros) >= 3 and all(zero(message) for message in zeros), "its last words are set-points of zero, and all others are")
+
+
+def main(squall):
+    processes = Processes(squall)
+    station = mavutil.mavlink_connection("udpin:127.0.0.1:0", source_system=255, source_component=190)
+    port = station.port.getsockname()[1]
+    try:
+        game = f"water{os.getpid()}"
+        processes.start("sim", "mixed_2v2", "--afloat", "blue_one", "--pace", "realtime", "--game", game)
+        print("pymavlink drives the emulated boat over UDP, as QGroundControl")
+        processes.start("gateway", "emulate", "--protocol", "mavlink", "--game", game, "--vehicle", "blue_one",
+                        "--listen", "tcp://127.0.0.1:0", "--ground-station", f"udp://127.0.0.1:{port}")
+        drive_emulated_boat(station)
+        print("pymavlink plays a boat to the gateway over TCP")
+        play_boat(processes)
+    finally:
+        processes.end()
+    print("pymavlink: all ok")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,273 @@
+//! The telemetry of an emulated ArduPilot boat: which messages, how often, and what is in them.
+
+#![expect(deprecated, reason = "ground stations ask for streams by REQUEST_DATA_STREAM all the same")]
+
+use super::ArduPilot;
+use crate::mavlink::RoverMode;
+use crate::mavlink::dialect::{
+    ATTITUDE_DATA, AUTOPILOT_VERSION_DATA, BATTERY_STATUS_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType,
+    HEARTBEAT_DATA, HOME_POSITION_DATA, MavAutopilot, MavDataStream, MavMessage, MavModeFlag, MavProtocolCapability,
+    MavResult, MavState, MavSysStatusSensor, MavType, REQUEST_DATA_STREAM_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+    VFR_HUD_DATA,
+};
+use ::mavlink::MessageData;
+use game::angle::compass_deg_from_rad;
+use game::{SimTime, math};
+use std::collections::BTreeMap;
+
+/// A receiver reports no fix when its last is older than this, s.
+const FIX_AGE_MAX_S: f64 = 1.0;
+/// Nothing is sent more often than this, s.
+const INTERVAL_MIN_S: f64 = 0.02;
+/// The version 4.5.7, as ArduPilot counts it.
+const VERSION: u32 = 0x0405_07FF;
+
+/// Every message that it can send: its number, the stream that it is of, and how often it comes unasked, s, if it does.
+const MESSAGES: [(u32, MavDataStream, Option<f64>); 10] = [
+    (HEARTBEAT_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, Some(1.0)),
+    (SYS_STATUS_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
+    (GPS_RAW_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS, Some(1.0)),
+    (GLOBAL_POSITION_INT_DATA::ID, MavDataStream::MAV_DATA_STREAM_POSITION, Some(1.0)),
+    (ATTITUDE_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA1, Some(1.0)),
+    (VFR_HUD_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA2, Some(1.0)),
+    (SYSTEM_TIME_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA3, Some(1.0)),
+    (BATTERY_STATUS_DATA::ID, MavDataStream::MAV_DATA_STREAM_EXTRA3, Some(1.0)),
+    (HOME_POSITION_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, None),
+    (AUTOPILOT_VERSION_DATA::ID, MavDataStream::MAV_DATA_STREAM_ALL, None),
+];
+
+/// How often each message is sent, s, and when it is due.
+#[derive(Clone, Debug)]
+pub(super) struct Streams {
+    regular: BTreeMap<u32, (f64, SimTime)>,
+    once: Vec<u32>,
+}
+
+impl Streams {
+    pub(super) fn new() -> Streams {
+        let regular = MESSAGES.iter().filter_map(|(id, _, every_s)| Some((*id, ((*every_s)?, SimTime::ZERO))));
+        Streams { regular: regular.collect(), once: vec![] }
+    }
+
+    /// The messages that are due now.
+    pub(super) fn due(&mut self, now: SimTime) -> Vec<u32> {
+        let mut due = std::mem::take(&mut self.once);
+        for (id, (every_s, at)) in &mut self.regular {
+            if now >= *at {
+                // In step with what asks, which comes in steps of its own.
+                *at = (*at + SimTime::from_s(*every_s)).max(now);
+                due.push(*id);
+            }
+        }
+        due
+    }
+
+    /// The interval of a message, µs; -1 is never, 0 as unasked.
+    pub(super) fn set_interval(&mut self, id: u32, interval_us: f64) -> MavResult {
+        let Some((_, _, unasked_s)) = MESSAGES.iter().find(|(known, ..)| *known == id) else {
+            return MavResult::MAV_RESULT_FAILED;
+        };
+        let every_s =
+            if interval_us > 0.0 { Some(1e-6 * interval_us) } else { unasked_s.filter(|_| interval_us == 0.0) };
+        self.set(id, every_s);
+        MavResult::MAV_RESULT_ACCEPTED
+    }
+
+    /// A message is sent once.
+    pub(super) fn request(&mut self, id: u32) -> MavResult {
+        if !MESSAGES.iter().any(|(known, ..)| *known == id) {
+            return MavResult::MAV_RESULT_FAILED;
+        }
+        if !self.once.contains(&id) {
+            self.once.push(id);
+        }
+        MavResult::MAV_RESULT_ACCEPTED
+    }
+
+    /// The rate of a stream, or of all.
+    pub(super) fn take_request(&mut self, request: &REQUEST_DATA_STREAM_DATA) {
+        let every_s = (request.start_stop == 1 && request.req_message_rate > 0)
+            .then(|| 1.0 / f64::from(request.req_message_rate));
+        let is_all = request.req_stream_id == MavDataStream::MAV_DATA_STREAM_ALL;
+        for (id, stream, unasked_s) in MESSAGES {
+            // A heartbeat goes on.
+            if unasked_s.is_some() && id != HEARTBEAT_DATA::ID && (is_all || stream == request.req_stream_id) {
+                self.set(id, every_s);
+            }
+        }
+    }
+
+    fn set(&mut self, id: u32, every_s: Option<f64>) {
+        match every_s {
+            Some(every_s) => {
+                let due = self.regular.get(&id).map_or(SimTime::ZERO, |(_, at)| *at);
+                self.regular.insert(id, (every_s.max(INTERVAL_MIN_S), due));
+            }
+            None => drop(self.regular.remove(&id)),
+        }
+    }
+}
+
+impl ArduPilot {
+    /// A message as it is now, if there is anything to tell.
+    pub(super) fn message(&self, now: SimTime, id: u32) -> Option<MavMessage> {
+        Some(match id {
+            HEARTBEAT_DATA::ID => MavMessage::HEARTBEAT(self.heartbeat()),
+            SYS_STATUS_DATA::ID => MavMessage::SYS_STATUS(self.sys_status()),
+            GPS_RAW_INT_DATA::ID => MavMessage::GPS_RAW_INT(self.gps_raw(now)?),
+            GLOBAL_POSITION_INT_DATA::ID => MavMessage::GLOBAL_POSITION_INT(self.position(now)?),
+            ATTITUDE_DATA::ID => MavMessage::ATTITUDE(self.attitude(now)?),
+            VFR_HUD_DATA::ID => MavMessage::VFR_HUD(self.vfr_hud()?),
+            SYSTEM_TIME_DATA::ID => MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
+                time_unix_usec: self.utc_us(now),
+                time_boot_ms: boot_ms(now),
+            }),
+            BATTERY_STATUS_DATA::ID => MavMessage::BATTERY_STATUS(self.battery()),
+            HOME_POSITION_DATA::ID => MavMessage::HOME_POSITION(HOME_POSITION_DATA {
+                latitude: self.home?.0,
+                longitude: self.home?.1,
+                q: [1.0, 0.0, 0.0, 0.0],
+                ..HOME_POSITION_DATA::default()
+            }),
+            AUTOPILOT_VERSION_DATA::ID => MavMessage::AUTOPILOT_VERSION(version()),
+            _ => return None,
+        })
+    }
+
+    fn heartbeat(&self) -> HEARTBEAT_DATA {
+        let mut base_mode = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
+        base_mode |= match self.mode {
+            RoverMode::Manual | RoverMode::Acro | RoverMode::Steering => {
+                MavModeFlag::MAV_MODE_FLAG_MANUAL_INPUT_ENABLED
+            }
+            RoverMode::Hold => MavModeFlag::empty(),
+            _ => MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED,
+        };
+        if self.is_armed {
+            base_mode |= MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED;
+        }
+        HEARTBEAT_DATA {
+            custom_mode: self.mode.number(),
+            mavtype: MavType::MAV_TYPE_SURFACE_BOAT,
+            autopilot: MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA,
+            base_mode,
+            system_status: if self.is_armed { MavState::MAV_STATE_ACTIVE } else { MavState::MAV_STATE_STANDBY },
+            ..HEARTBEAT_DATA::default()
+        }
+    }
+
+    fn sys_status(&self) -> SYS_STATUS_DATA {
+        let sensors = MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_GYRO
+            | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_MAG
+            | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS
+            | MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_BATTERY;
+        SYS_STATUS_DATA {
+            onboard_control_sensors_present: sensors,
+            onboard_control_sensors_enabled: sensors,
+            onboard_control_sensors_health: sensors,
+            load: 120,
+            voltage_battery: self.millivolts(),
+            current_battery: 130,
+            battery_remaining: 87,
+            ..SYS_STATUS_DATA::default()
+        }
+    }
+
+    fn millivolts(&self) -> u16 {
+        (1000.0 * self.volts).round().clamp(0.0, 65_534.0) as u16
+    }
+
+    fn battery(&self) -> BATTERY_STATUS_DATA {
+        let mut voltages = [u16::MAX; 10];
+        voltages[0] = self.millivolts();
+        BATTERY_STATUS_DATA {
+            current_consumed: -1,
+            energy_consumed: -1,
+            temperature: i16::MAX,
+            voltages,
+            current_battery: 130,
+            battery_remaining: 87,
+            ..BATTERY_STATUS_DATA::default()
+        }
+    }
+
+    /// Whether the receiver has a fix.
+    fn has_fix(&self, now: SimTime) -> bool {
+        self.fix.is_some_and(|(seen, _)| (now - seen).as_s() <= FIX_AGE_MAX_S)
+    }
+
+    fn gps_raw(&self, now: SimTime) -> Option<GPS_RAW_INT_DATA> {
+        let (lat, lon) = self.lat_lon_e7()?;
+        let nav = self.own?.nav;
+        let has_fix = self.has_fix(now);
+        let velocity = nav.velocity_m_s();
+        let course_deg = compass_deg_from_rad(math::atan2(velocity.east, velocity.north));
+        Some(GPS_RAW_INT_DATA {
+            time_usec: self.utc_us(now),
+            lat,
+            lon,
+            alt: 5500,
+            eph: if has_fix { 98 } else { u16::MAX },
+            epv: if has_fix { 150 } else { u16::MAX },
+            vel: (100.0 * velocity.length()) as u16,
+            cog: ((100.0 * course_deg) as u16).min(35_999),
+            fix_type: if has_fix { GpsFixType::GPS_FIX_TYPE_DGPS } else { GpsFixType::GPS_FIX_TYPE_NO_FIX },
+            satellites_visible: if has_fix { 11 } else { 0 },
+        })
+    }
+
+    fn lat_lon_e7(&self) -> Option<(i32, i32)> {
+        let at = self.frame.lat_lon(self.own?.nav.at());
+        Some(((1e7 * at.lat_deg).round() as i32, (1e7 * at.lon_deg).round() as i32))
+    }
+
+    fn position(&self, now: SimTime) -> Option<GLOBAL_POSITION_INT_DATA> {
+        let (lat, lon) = self.lat_lon_e7()?;
+        let nav = self.own?.nav;
+        let velocity = nav.velocity_m_s();
+        Some(GLOBAL_POSITION_INT_DATA {
+            time_boot_ms: boot_ms(now),
+            lat,
+            lon,
+            alt: 5500,
+            relative_alt: 0,
+            vx: (100.0 * velocity.north).round() as i16,
+            vy: (100.0 * velocity.east).round() as i16,
+            vz: 0,
+            hdg: ((100.0 * compass_deg_from_rad(nav.psi_rad)) as u16).min(35_999),
+        })
+    }
+
+    fn attitude(&self, now: SimTime) -> Option<ATTITUDE_DATA> {
+        let nav = self.own?.nav;
+        Some(ATTITUDE_DATA {
+            time_boot_ms: boot_ms(now),
+            yaw: game::angle::wrap_pi(nav.psi_rad) as f32,
+            yawspeed: nav.yaw_rate_rad_s as f32,
+            ..ATTITUDE_DATA::default()
+        })
+    }
+
+    fn vfr_hud(&self) -> Option<VFR_HUD_DATA> {
+        let nav = self.own?.nav;
+        Some(VFR_HUD_DATA {
+            groundspeed: nav.velocity_m_s().length() as f32,
+            heading: compass_deg_from_rad(nav.psi_rad) as i16,
+            ..VFR_HUD_DATA::default()
+        })
+    }
+}
+
+fn boot_ms(now: SimTime) -> u32 {
+    (1000.0 * now.as_s()) as u32
+}
+
+fn version() -> AUTOPILOT_VERSION_DATA {
+    let capabilities = MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MISSION_INT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+        | MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_MAVLINK2;
+    AUTOPILOT_VERSION_DATA { capabilities, flight_sw_version: VERSION, ..AUTOPILOT_VERSION_DATA::default() }
+}

@@ -1,0 +1,73 @@
+//! The front seat of an emulated boat, whichever protocol it speaks.
+
+use super::{ArduPilot, Emulator, Port};
+use crate::nmea::{Operator, date_and_time};
+use game::picture::OwnBoat;
+use game::{Order, SimTime};
+
+/// The front seat.
+pub enum FrontSeat {
+    /// A Surveyor's.
+    Surveyor(Box<Emulator>),
+    /// One with ArduPilot, which speaks MAVLink.
+    ArduPilot(Box<ArduPilot>),
+}
+
+impl FrontSeat {
+    /// Sets the receiver's clock: UTC, ns since 1970.
+    pub fn set_clock(&mut self, now: SimTime, utc_ns: u64) {
+        match self {
+            FrontSeat::Surveyor(boat) => boat.set_clock(now, date_and_time(utc_ns)),
+            FrontSeat::ArduPilot(boat) => boat.set_clock(now, utc_ns),
+        }
+    }
+
+    /// Takes bytes from a port. What it answers goes with the next telemetry.
+    pub fn take(&mut self, now: SimTime, port: Port, bytes: &[u8]) {
+        match self {
+            FrontSeat::Surveyor(boat) => boat.take(now, port, bytes),
+            FrontSeat::ArduPilot(boat) => boat.take(now, bytes),
+        }
+    }
+
+    /// A log message, once.
+    pub fn take_remark(&mut self) -> Option<String> {
+        match self {
+            FrontSeat::Surveyor(boat) => boat.take_remark(),
+            FrontSeat::ArduPilot(boat) => boat.take_remark(),
+        }
+    }
+
+    /// Who commands it, where that is a matter of ports.
+    #[must_use]
+    pub fn operator(&self) -> Option<Operator> {
+        match self {
+            FrontSeat::Surveyor(boat) => Some(boat.operator()),
+            FrontSeat::ArduPilot(_) => None,
+        }
+    }
+
+    /// Takes what its sensors measure.
+    pub fn observe(&mut self, now: SimTime, own: &OwnBoat) {
+        match self {
+            FrontSeat::Surveyor(boat) => boat.observe(now, own),
+            FrontSeat::ArduPilot(boat) => boat.observe(now, own),
+        }
+    }
+
+    /// The boat's order to its thrusters now.
+    pub fn order(&mut self, now: SimTime) -> Order {
+        match self {
+            FrontSeat::Surveyor(boat) => boat.order(now),
+            FrontSeat::ArduPilot(boat) => boat.order(now),
+        }
+    }
+
+    /// Appends the telemetry that is due.
+    pub fn telemetry(&mut self, now: SimTime, out: &mut Vec<u8>) {
+        match self {
+            FrontSeat::Surveyor(boat) => boat.telemetry(now, out),
+            FrontSeat::ArduPilot(boat) => boat.telemetry(now, out),
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! The framer: cuts whatever comes down a wire into messages, and counts what it had to leave.
+//!
+//! It keeps at most one frame. After damage it looks for the next frame from the byte behind the one that began the damaged frame, so
+//! that a frame inside of what a wrong length covers is found.
+
+use super::dialect::MavMessage;
+use ::mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message, calculate_crc};
+use std::collections::BTreeMap;
+
+/// The longest frame, bytes: version 2, all of the payload, with a signature.
+pub const FRAME_MAX: usize = 10 + 255 + 2 + SIGNATURE;
+const SIGNATURE: usize = 13;
+/// The flag of a frame of version 2 that has a signature.
+const SIGNED: u8 = 1;
+/// How many numbers of unknown messages are kept.
+const UNKNOWN_MAX: usize = 64;
+
+/// A message, and whose it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Received {
+    /// The system that sent it.
+    pub system: u8,
+    /// The component of it.
+    pub component: u8,
+    /// The message.
+    pub message: MavMessage,
+}
+
+/// What came through a [`Framer`].
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Messages that were read.
+    pub messages: u64,
+    /// Frames of known messages with a wrong checksum.
+    pub bad_checksum: u64,
+    /// Bytes outside of frames.
+    pub garbage: u64,
+    /// Messages with a value that the dialect does not know.
+    pub unreadable: u64,
+    /// Messages that the dialect does not know, by their number; they cannot be checked.
+    pub unknown: BTreeMap<u32, u64>,
+}
+
+/// Cuts a byte stream into messages.
+#[derive(Clone, Debug, Default)]
+pub struct Framer {
+    buffer: Vec<u8>,
+    counts: Counts,
+}
+
+/// Where the parts of a frame are.
+struct Layout {
+    version: MavlinkVersion,
+    id: u32,
+    system: u8,
+    component: u8,
+    /// Where the payload begins and ends.
+    payload: (usize, usize),
+    /// How long the whole frame is.
+    len: usize,
+}
+
+impl Layout {
+    /// The layout of what begins like a frame; `Ok(None)` if too little of it is there.
+    fn of(bytes: &[u8]) -> Result<Option<Layout>, NotAFrame> {
+        match *bytes {
+            [MAV_STX, len, _, system, component, id, ..] => {
+                let end = 6 + usize::from(len);
+                let (version, id) = (MavlinkVersion::V1, u32::from(id));
+                Ok(Some(Layout { version, id, system, component, payload: (6, end), len: end + 2 }))
+            }
+            // Whoever does not understand such a flag must leave the frame.
+            [MAV_STX_V2, _, flags, ..] if flags & !SIGNED != 0 => Err(NotAFrame),
+            [MAV_STX_V2, len, flags, _, _, system, component, a, b, c, ..] => {
+                let end = 10 + usize::from(len);
+                let signature = if flags & SIGNED == 0 { 0 } else { SIGNATURE };
+                let (version, id) = (MavlinkVersion::V2, u32::from_le_bytes([a, b, c, 0]));
+                Ok(Some(Layout { version, id, system, component, payload: (10, end), len: end + 2 + signature }))
+            }
+            [MAV_STX | MAV_STX_V2, ..] | [] => Ok(None),
+            _ => Err(NotAFrame),
+        }
+    }
+
+    fn has_right_checksum(&self, frame: &[u8]) -> bool {
+        let (_, end) = self.payload;
+        let stated = u16::from_le_bytes([frame[end], frame[end + 1]]);
+        calculate_crc(&frame[1..end], MavMessage::extra_crc(self.id)) == stated
+    }
+}
+
+/// These bytes begin no frame.
+struct NotAFrame;
+
+impl Framer {
+    /// Without anything yet.
+    #[must_use]
+    pub fn new() -> Framer {
+        Framer::default()
+    }
+
+    /// Forgets a frame that is under way.
+    pub fn interrupt(&mut self) {
+        self.counts.garbage += self.buffer.len() as u64;
+        self.buffer.clear();
+    }
+
+    /// Takes bytes as they come (any split, any garbage); calls `take` with each message with a right checksum, in order.
+    pub fn push(&mut self, bytes: &[u8], take: &mut dyn FnMut(Received)) {
+        self.buffer.extend_from_slice(bytes);
+        let buffer = std::mem::take(&mut self.buffer);
+        let mut at = 0;
+        loop {
+            match Layout::of(&buffer[at..]) {
+                Err(NotAFrame) => {
+                    self.counts.garbage += 1;
+                    at += 1;
+                }
+                Ok(Some(layout)) if buffer.len() - at >= layout.len => {
+                    at += self.read(&layout, &buffer[at..at + layout.len], take);
+                }
+                Ok(_) => break,
+            }
+        }
+        self.buffer = buffer;
+        self.buffer.drain(..at);
+    }
+
+    /// What came through so far.
+    #[must_use]
+    pub fn counts(&self) -> &Counts {
+        &self.counts
+    }
+
+    /// Reads a whole frame; returns how many bytes of it are done with.
+    fn read(&mut self, layout: &Layout, frame: &[u8], take: &mut dyn FnMut(Received)) -> usize {
+        let Layout { version, id, system, component, payload: (start, end), len } = *layout;
+        if MavMessage::default_message_from_id(id).is_none() {
+            let key = if self.counts.unknown.len() < UNKNOWN_MAX { id } else { u32::MAX };
+            *self.counts.unknown.entry(key).or_default() += 1;
+            return len;
+        }
+        if !layout.has_right_checksum(frame) {
+            self.counts.bad_checksum += 1;
+            self.counts.garbage += 1;
+            return 1;
+        }
+        match MavMessage::parse(version, id, &frame[start..end]) {
+            Ok(message) => {
+                self.counts.messages += 1;
+                take(Received { system, component, message });
+            }
+            Err(_) => self.counts.unreadable += 1,
+        }
+        len
+    }
+}

@@ -1,0 +1,66 @@
+//! The modes of ArduPilot's Rover, which boats run too, by their numbers in HEARTBEAT.
+
+/// A mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RoverMode {
+    /// Steering and throttle by the remote control.
+    Manual,
+    /// Rate of turn and speed by the remote control.
+    Acro,
+    /// As `Acro`, without turning over.
+    Steering,
+    /// Thrusters idle.
+    Hold,
+    /// Keeps its station.
+    Loiter,
+    /// Sails the mission that was uploaded.
+    Auto,
+    /// Goes to its home.
+    Rtl,
+    /// Goes to its home by the way it came.
+    SmartRtl,
+    /// Follows set-points.
+    Guided,
+    /// Starts up.
+    Initialising,
+    /// Any other number.
+    Other(u32),
+}
+
+impl RoverMode {
+    /// The mode of a number.
+    #[must_use]
+    pub fn from_number(number: u32) -> RoverMode {
+        match number {
+            0 => RoverMode::Manual,
+            1 => RoverMode::Acro,
+            3 => RoverMode::Steering,
+            4 => RoverMode::Hold,
+            5 => RoverMode::Loiter,
+            10 => RoverMode::Auto,
+            11 => RoverMode::Rtl,
+            12 => RoverMode::SmartRtl,
+            15 => RoverMode::Guided,
+            16 => RoverMode::Initialising,
+            other => RoverMode::Other(other),
+        }
+    }
+
+    /// Its number.
+    #[must_use]
+    pub fn number(self) -> u32 {
+        match self {
+            RoverMode::Manual => 0,
+            RoverMode::Acro => 1,
+            RoverMode::Steering => 3,
+            RoverMode::Hold => 4,
+            RoverMode::Loiter => 5,
+            RoverMode::Auto => 10,
+            RoverMode::Rtl => 11,
+            RoverMode::SmartRtl => 12,
+            RoverMode::Guided => 15,
+            RoverMode::Initialising => 16,
+            RoverMode::Other(number) => number,
+        }
+    }
+}

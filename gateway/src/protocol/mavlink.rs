@@ -1,0 +1,417 @@
+//! MAVLink with an ArduPilot boat: reports from its messages, messages from commands.
+//!
+//! The boat follows set-points when it is armed and in mode GUIDED; standby is mode HOLD, disarmed. A boat in any other mode that we did
+//! not ask for is commanded by somebody else (a remote control, a ground station, a failsafe of its own), and is sent nothing that would take
+//! it from them. A mode is asked for until the boat shows it once, never again after it has left it: who takes the boat out of GUIDED
+//! keeps it.
+
+use super::mavlink_boat::Boat;
+use super::mavlink_upload::{Next, Upload};
+use super::report::{Report, Shown};
+use super::{Command, UploadStep, mission_check};
+use crate::mavlink::dialect::{
+    ATTITUDE_DATA, AttitudeTargetTypemask, COMMAND_LONG_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA,
+    HEARTBEAT_DATA, HOME_POSITION_DATA, MISSION_ACK_DATA, MavAutopilot, MavCmd, MavFrame, MavMessage, MavMissionResult,
+    MavModeFlag, MavState, MavType, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA,
+    SET_POSITION_TARGET_LOCAL_NED_DATA, SYS_STATUS_DATA, SYSTEM_TIME_DATA,
+};
+use crate::mavlink::{AUTOPILOT, Framer, Received, RoverMode, Writer};
+use crate::nmea::Mode;
+use crate::set_point::SetPoint;
+use crate::supervisor::Task;
+use ::mavlink::MessageData;
+use game::external::Mission;
+use game::gateway::{Gateway, Mavlink as Settings};
+use game::{SimTime, math};
+
+/// How often we say that we are there, s.
+const HEARTBEAT_S: f64 = 1.0;
+/// A mode or arming that the boat does not show is asked for again after this time, s.
+const AGAIN_S: f64 = 0.5;
+/// What we need of the boat: the numbers of messages, and how often, 1/s.
+const STREAMS: [(u32, f64); 7] = [
+    (HEARTBEAT_DATA::ID, 5.0),
+    (GLOBAL_POSITION_INT_DATA::ID, 10.0),
+    (ATTITUDE_DATA::ID, 10.0),
+    (GPS_RAW_INT_DATA::ID, 5.0),
+    (SYS_STATUS_DATA::ID, 1.0),
+    (SYSTEM_TIME_DATA::ID, 1.0),
+    (HOME_POSITION_DATA::ID, 0.5),
+];
+/// They are asked for again after this time, s: the boat may have been started anew.
+const STREAMS_AGAIN_S: f64 = 10.0;
+
+/// The system and component that a message is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Target {
+    pub(super) system: u8,
+    pub(super) component: u8,
+}
+
+/// A mode that the boat was asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    pub(super) mode: RoverMode,
+    pub(super) is_armed: bool,
+    at: SimTime,
+    /// Whether the boat has shown it.
+    pub(super) is_shown: bool,
+}
+
+/// What is remembered of a link.
+#[derive(Clone, Debug)]
+pub struct Mavlink {
+    settings: Settings,
+    /// Speeds of throttles, and the highest, m/s.
+    thrust_map: Vec<(f64, f64)>,
+    speed_max_m_s: f64,
+    framer: Framer,
+    writer: Writer,
+    boat: Boat,
+    asked: Option<Asked>,
+    heartbeat_due: SimTime,
+    streams_due: SimTime,
+    upload: Option<Upload>,
+    /// What the boat asked for.
+    answers: Vec<MavMessage>,
+}
+
+impl Mavlink {
+    pub(super) fn new(gateway: &Gateway) -> Mavlink {
+        let settings = gateway.mavlink;
+        Mavlink {
+            thrust_map: gateway.loops.thrust_map.clone(),
+            speed_max_m_s: gateway.limits.speed_max_m_s,
+            framer: Framer::new(),
+            writer: Writer::new(settings.system, settings.component),
+            boat: Boat::new(settings.boat_system),
+            asked: None,
+            heartbeat_due: SimTime::LONG_AGO,
+            streams_due: SimTime::LONG_AGO,
+            upload: None,
+            answers: vec![],
+            settings,
+        }
+    }
+
+    pub(super) fn begin_link(&mut self) {
+        self.framer.interrupt();
+        self.boat.forget(self.settings.boat_system);
+        (self.asked, self.upload) = (None, None);
+        (self.heartbeat_due, self.streams_due) = (SimTime::LONG_AGO, SimTime::LONG_AGO);
+        self.answers.clear();
+    }
+
+    pub(super) fn read(&mut self, now: SimTime, bytes: &[u8], take: &mut dyn FnMut(Report)) {
+        let mut framer = std::mem::take(&mut self.framer);
+        framer.push(bytes, &mut |received| self.take(now, &received, take));
+        self.framer = framer;
+    }
+
+    fn take(&mut self, now: SimTime, received: &Received, take: &mut dyn FnMut(Report)) {
+        if !self.boat.is_its(received) {
+            return;
+        }
+        let ours = (self.settings.system, self.settings.component);
+        match &received.message {
+            MavMessage::HEARTBEAT(heartbeat) => {
+                let control = self.boat.take_heartbeat(heartbeat, &mut self.asked);
+                take(Report::Control(control));
+            }
+            MavMessage::HOME_POSITION(home) => {
+                let upload = self.upload.iter_mut();
+                upload.for_each(|upload| upload.take_home((home.latitude, home.longitude), now));
+                take(Report::Home([1e-7 * f64::from(home.latitude), 1e-7 * f64::from(home.longitude)]));
+            }
+            MavMessage::MISSION_ACK(ack) if (ack.target_system, ack.target_component) == ours => {
+                self.upload.iter_mut().for_each(|upload| upload.take_ack(ack.mavtype, now));
+            }
+            other => match item_request(other) {
+                Some((seq, from)) if from == ours => self.answer(seq, now),
+                _ => self.boat.report(now, other, take),
+            },
+        }
+    }
+
+    fn answer(&mut self, seq: u16, now: SimTime) {
+        let item = self.upload.as_mut().and_then(|upload| upload.take_request(seq, now));
+        self.answers.extend(item);
+    }
+
+    fn target(&self) -> Target {
+        // Nobody in particular is everybody: a set-point of zero may be for all.
+        let system = self.boat.system.unwrap_or(0);
+        Target { system, component: if system == 0 { 0 } else { AUTOPILOT } }
+    }
+
+    pub(super) fn write(&mut self, now: SimTime, command: Command, out: &mut Vec<u8>) {
+        match command {
+            Command::Zero => self.write_set_point(SetPoint::ZERO, out),
+            Command::SetPoint(set_point) => {
+                self.engage(now, RoverMode::Guided, out);
+                self.write_set_point(set_point, out);
+            }
+            Command::Task(task) => self.engage(now, mode_of(task), out),
+            Command::Standby | Command::Switch(_) => self.stand_by(now, out),
+            Command::EndOfUpload => self.send(
+                MavMessage::MISSION_ACK(MISSION_ACK_DATA {
+                    target_system: self.target().system,
+                    target_component: self.target().component,
+                    mavtype: MavMissionResult::MAV_MISSION_OPERATION_CANCELLED,
+                }),
+                out,
+            ),
+        }
+    }
+
+    /// Asks for a mode, armed, until the boat shows it.
+    fn engage(&mut self, now: SimTime, mode: RoverMode, out: &mut Vec<u8>) {
+        let before = self.asked.filter(|asked| asked.mode == mode && asked.is_armed);
+        if before.is_some_and(|asked| asked.is_shown || (now - asked.at).as_s() < AGAIN_S) {
+            return;
+        }
+        self.asked = Some(Asked { mode, is_armed: true, at: now, is_shown: false });
+        self.write_mode(mode, out);
+        self.write_arming(true, out);
+    }
+
+    /// Asks for mode HOLD, disarmed, if the boat is ours: until it shows that, and whenever it is driven again.
+    fn stand_by(&mut self, now: SimTime, out: &mut Vec<u8>) {
+        let Some(shown) = self.boat.mode.filter(|_| self.boat.is_ours(self.asked.as_ref())) else { return };
+        let before = self.asked.filter(|asked| !asked.is_armed);
+        let is_driven = shown.is_armed && shown.mode != RoverMode::Hold;
+        if before.is_some_and(|asked| asked.is_shown) && !is_driven {
+            return;
+        }
+        // A mode of a task that we asked for stays ours until the boat has left it.
+        if shown.mode == RoverMode::Hold && !shown.is_armed {
+            self.asked = Some(Asked { mode: RoverMode::Hold, is_armed: false, at: now, is_shown: true });
+            return;
+        }
+        self.write_mode(RoverMode::Hold, out);
+        self.write_arming(false, out);
+        if matches!(shown.mode, RoverMode::Hold | RoverMode::Guided) {
+            self.asked = Some(Asked { mode: RoverMode::Hold, is_armed: false, at: now, is_shown: false });
+        }
+    }
+
+    fn send(&mut self, message: MavMessage, out: &mut Vec<u8>) {
+        self.writer.write(&message, out);
+    }
+
+    fn write_command(&mut self, command: MavCmd, [param1, param2]: [f32; 2], out: &mut Vec<u8>) {
+        let Target { system: target_system, component: target_component } = self.target();
+        let params = COMMAND_LONG_DATA { param1, param2, ..COMMAND_LONG_DATA::default() };
+        let message = COMMAND_LONG_DATA { command, target_system, target_component, ..params };
+        self.send(MavMessage::COMMAND_LONG(message), out);
+    }
+
+    fn write_mode(&mut self, mode: RoverMode, out: &mut Vec<u8>) {
+        // Of the base mode only the flag counts that says that there is a custom mode.
+        self.write_command(MavCmd::MAV_CMD_DO_SET_MODE, [1.0, mode.number() as f32], out);
+    }
+
+    fn write_arming(&mut self, arm: bool, out: &mut Vec<u8>) {
+        self.write_command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [f32::from(u8::from(arm)), 0.0], out);
+    }
+
+    /// As "Rover commands in guided mode" of ArduPilot's documentation. A boat forgets a set-point after three seconds.
+    fn write_set_point(&mut self, set_point: SetPoint, out: &mut Vec<u8>) {
+        let Target { system: target_system, component: target_component } = self.target();
+        let message = match set_point {
+            // Thrust is a share of the boat's cruise speed, ahead positive, and the rate of turn is to starboard.
+            SetPoint::Thrust { thrust_pct, difference_pct } => {
+                let type_mask = AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_ROLL_RATE_IGNORE
+                    | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_BODY_PITCH_RATE_IGNORE
+                    | AttitudeTargetTypemask::ATTITUDE_TARGET_TYPEMASK_ATTITUDE_IGNORE;
+                MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+                    body_yaw_rate: (0.01 * difference_pct * self.settings.turn_rate_max_rad_s) as f32,
+                    thrust: (0.01 * thrust_pct) as f32,
+                    target_system,
+                    target_component,
+                    type_mask,
+                    ..SET_ATTITUDE_TARGET_DATA::default()
+                })
+            }
+            SetPoint::Speed { heading_deg, speed_m_s } => {
+                let yaw_rad = heading_deg.to_radians();
+                let (east, north) = math::sin_cos(yaw_rad);
+                let type_mask = PositionTargetTypemask::POSITION_TARGET_TYPEMASK_X_IGNORE
+                    | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Y_IGNORE
+                    | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_Z_IGNORE
+                    | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_VZ_IGNORE
+                    | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_AX_IGNORE
+                    | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_AY_IGNORE
+                    | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_AZ_IGNORE
+                    | PositionTargetTypemask::POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE;
+                MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
+                    vx: (speed_m_s * north) as f32,
+                    vy: (speed_m_s * east) as f32,
+                    yaw: yaw_rad as f32,
+                    type_mask,
+                    target_system,
+                    target_component,
+                    coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
+                    ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
+                })
+            }
+        };
+        self.send(message, out);
+    }
+
+    /// What is due without a command: our heartbeat, what we need of the boat, and answers to it.
+    pub(super) fn keep_up(&mut self, now: SimTime, out: &mut Vec<u8>) {
+        for message in std::mem::take(&mut self.answers) {
+            self.send(message, out);
+        }
+        if now >= self.heartbeat_due {
+            self.heartbeat_due = now + SimTime::from_s(HEARTBEAT_S);
+            self.send(
+                MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+                    mavtype: MavType::MAV_TYPE_GCS,
+                    autopilot: MavAutopilot::MAV_AUTOPILOT_INVALID,
+                    // By default the crate sets the first flag, which is that of an armed vehicle.
+                    base_mode: MavModeFlag::empty(),
+                    system_status: MavState::MAV_STATE_ACTIVE,
+                    ..HEARTBEAT_DATA::default()
+                }),
+                out,
+            );
+        }
+        if self.boat.system.is_some() && now >= self.streams_due {
+            self.streams_due = now + SimTime::from_s(STREAMS_AGAIN_S);
+            for (id, rate_hz) in STREAMS {
+                let interval_us = 1e6 / rate_hz;
+                self.write_command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, [id as f32, interval_us as f32], out);
+            }
+        }
+    }
+
+    pub(super) fn due(&self) -> SimTime {
+        let upload = self.upload.as_ref().map_or(SimTime::NEVER, Upload::due);
+        upload.min(self.heartbeat_due)
+    }
+
+    /// What stops a boat that is ours; one that others command is sent a set-point of zero, which it ignores.
+    pub(super) fn stop_message(&self) -> Vec<u8> {
+        let (mut copy, mut out) = (self.clone(), Vec::new());
+        // The same bytes as long as nothing changes.
+        copy.writer = Writer::new(self.settings.system, self.settings.component);
+        copy.write_set_point(SetPoint::ZERO, &mut out);
+        if copy.boat.mode.is_some() && copy.boat.is_ours(copy.asked.as_ref()) {
+            copy.write_mode(RoverMode::Hold, &mut out);
+            copy.write_arming(false, &mut out);
+        }
+        out
+    }
+
+    /// What stops a boat whoever commands it.
+    pub(super) fn forced_stop_message(&self) -> Vec<u8> {
+        let (mut copy, mut out) = (self.clone(), Vec::new());
+        copy.write_set_point(SetPoint::ZERO, &mut out);
+        copy.write_mode(RoverMode::Hold, &mut out);
+        copy.write_arming(false, &mut out);
+        out
+    }
+
+    pub(super) fn begin_upload(&mut self, now: SimTime, mission: &Mission) -> Result<(), String> {
+        mission_check::check(mission)?;
+        let speed_m_s = math::interpolate(self.thrust_map.iter().copied(), mission.throttle_pct);
+        let speed_m_s = speed_m_s.clamp(0.0, self.speed_max_m_s);
+        self.upload = Some(Upload::new(mission, speed_m_s, self.target(), now));
+        Ok(())
+    }
+
+    pub(super) fn continue_upload(&mut self, now: SimTime, out: &mut Vec<u8>) -> UploadStep {
+        let target = self.target();
+        match self.upload.as_mut().map(|upload| upload.next(now, target)) {
+            Some(Next::Send(messages)) => {
+                messages.into_iter().for_each(|message| self.send(message, out));
+                UploadStep::Sent
+            }
+            Some(Next::Wait) => UploadStep::Waiting,
+            Some(Next::Done) | None => {
+                self.upload = None;
+                UploadStep::Done
+            }
+            Some(Next::Failed(reason)) => {
+                self.upload = None;
+                UploadStep::Failed(reason)
+            }
+        }
+    }
+
+    pub(super) fn is_uploading(&self) -> bool {
+        self.upload.is_some()
+    }
+
+    pub(super) fn abort_upload(&mut self) -> bool {
+        self.upload.take().is_some()
+    }
+
+    pub(super) fn counts(&self) -> [Vec<(String, u64)>; 2] {
+        let framed = self.framer.counts();
+        let known = [
+            ("messages in", framed.messages),
+            ("bad checksums", framed.bad_checksum),
+            ("bytes of garbage", framed.garbage),
+            ("unreadable", framed.unreadable),
+            ("messages of other systems", self.boat.others),
+        ];
+        let unknown = framed.unknown.iter().map(|(id, count)| (format!("unknown message {id}"), *count));
+        [known.into_iter().map(|(name, count)| (name.to_owned(), count)).collect(), unknown.collect()]
+    }
+}
+
+fn mode_of(task: Task) -> RoverMode {
+    match task {
+        Task::StationKeep => RoverMode::Loiter,
+        Task::GoToErp => RoverMode::Rtl,
+        Task::Mission => RoverMode::Auto,
+    }
+}
+
+/// The item of a mission that a boat asks for, and whom.
+#[expect(deprecated, reason = "ArduPilot asks by MISSION_REQUEST too, and is answered as the specification says")]
+fn item_request(message: &MavMessage) -> Option<(u16, (u8, u8))> {
+    match message {
+        MavMessage::MISSION_REQUEST_INT(request) => {
+            Some((request.seq, (request.target_system, request.target_component)))
+        }
+        MavMessage::MISSION_REQUEST(request) => Some((request.seq, (request.target_system, request.target_component))),
+        _ => None,
+    }
+}
+
+/// Degrees as messages carry them.
+pub(super) fn global_e7(deg: f64) -> i32 {
+    (1e7 * deg).round() as i32
+}
+
+pub(super) fn shown(command: Command) -> Shown {
+    let mode = match command {
+        Command::Standby | Command::Switch(_) | Command::Zero | Command::EndOfUpload => Mode::Standby,
+        Command::SetPoint(_) => Mode::Speed,
+        Command::Task(Task::StationKeep) => Mode::StationKeep,
+        Command::Task(Task::GoToErp) => Mode::GoToErp,
+        Command::Task(Task::Mission) => Mode::Waypoint,
+    };
+    Shown { mode, heading_deg: None, thrust: None, difference: None }
+}
+
+pub(super) fn text(command: Command) -> String {
+    match command {
+        Command::Standby | Command::Switch(_) => "HOLD, disarm".to_owned(),
+        Command::Zero => "SET_ATTITUDE_TARGET thrust 0".to_owned(),
+        Command::SetPoint(SetPoint::Thrust { thrust_pct, difference_pct }) => {
+            format!("GUIDED, SET_ATTITUDE_TARGET thrust {thrust_pct:.0} %, turn {difference_pct:.0} %")
+        }
+        Command::SetPoint(SetPoint::Speed { heading_deg, speed_m_s }) => {
+            format!("GUIDED, SET_POSITION_TARGET_LOCAL_NED heading {heading_deg:.1}, speed {speed_m_s:.2} m/s")
+        }
+        Command::Task(Task::StationKeep) => "LOITER".to_owned(),
+        Command::Task(Task::GoToErp) => "RTL".to_owned(),
+        Command::Task(Task::Mission) => "AUTO".to_owned(),
+        Command::EndOfUpload => "MISSION_ITEM_INT".to_owned(),
+    }
+}

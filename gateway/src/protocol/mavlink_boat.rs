@@ -1,0 +1,203 @@
+//! What is known of an ArduPilot boat, by its own messages.
+
+use super::mavlink::Asked;
+use super::report::{ControlReport, Fix, Heading, North, Report, Shown};
+use crate::mavlink::dialect::{
+    ATTITUDE_DATA, COMMAND_ACK_DATA, GLOBAL_POSITION_INT_DATA, GPS_RAW_INT_DATA, GpsFixType, HEARTBEAT_DATA,
+    MavAutopilot, MavCmd, MavMessage, MavModeFlag, MavResult, MavSeverity, MavType,
+};
+use crate::mavlink::{AUTOPILOT, Received, RoverMode};
+use crate::nmea::{Mode, Operator, date_and_time};
+use game::frame::Ned;
+use game::{LatLon, SimTime};
+
+/// A receiver that has told nothing of its fix for this long has none, s.
+const FIX_TYPE_AGE_MAX_S: f64 = 2.0;
+/// Without ATTITUDE for this long the heading is that of the position, s.
+const ATTITUDE_AGE_MAX_S: f64 = 1.0;
+
+/// A mode, and whether the boat is armed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ShownMode {
+    pub(super) mode: RoverMode,
+    pub(super) is_armed: bool,
+}
+
+/// What its messages have told.
+#[derive(Clone, Debug)]
+pub(super) struct Boat {
+    /// Its system, once that is known.
+    pub(super) system: Option<u8>,
+    pub(super) mode: Option<ShownMode>,
+    /// Messages of other systems and components.
+    pub(super) others: u64,
+    /// Quality and dilution of precision of the receiver's fix, and when they came.
+    fix: Option<(SimTime, u8, Option<f64>)>,
+    position_ms: Option<u32>,
+    attitude_at: SimTime,
+    has_volts: bool,
+}
+
+impl Boat {
+    /// The boat of this system; 0 is the first that shows itself.
+    pub(super) fn new(system: u8) -> Boat {
+        Boat {
+            system: (system != 0).then_some(system),
+            mode: None,
+            others: 0,
+            fix: None,
+            position_ms: None,
+            attitude_at: SimTime::LONG_AGO,
+            has_volts: false,
+        }
+    }
+
+    pub(super) fn forget(&mut self, system: u8) {
+        *self = Boat { others: self.others, ..Boat::new(system) };
+    }
+
+    /// Whether a message is this boat's. Without a system the first autopilot of a boat is taken.
+    pub(super) fn is_its(&mut self, received: &Received) -> bool {
+        if let (None, MavMessage::HEARTBEAT(heartbeat)) = (self.system, &received.message)
+            && received.component == AUTOPILOT
+            && is_boat(heartbeat)
+        {
+            self.system = Some(received.system);
+        }
+        let is_its = self.system == Some(received.system) && received.component == AUTOPILOT;
+        self.others += u64::from(!is_its);
+        is_its
+    }
+
+    /// Whether nobody else commands it: it is in GUIDED or HOLD, or in the mode that we asked for.
+    pub(super) fn is_ours(&self, asked: Option<&Asked>) -> bool {
+        self.mode.is_none_or(|shown| {
+            matches!(shown.mode, RoverMode::Guided | RoverMode::Hold)
+                || asked.is_some_and(|asked| asked.mode == shown.mode)
+        })
+    }
+
+    pub(super) fn take_heartbeat(&mut self, heartbeat: &HEARTBEAT_DATA, asked: &mut Option<Asked>) -> ControlReport {
+        let is_armed = heartbeat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED);
+        let shown = ShownMode { mode: RoverMode::from_number(heartbeat.custom_mode), is_armed };
+        self.mode = Some(shown);
+        let is_ours = self.is_ours(asked.as_ref());
+        if !is_ours {
+            *asked = None;
+        }
+        if let Some(asked) = asked {
+            asked.is_shown |= (asked.mode, asked.is_armed) == (shown.mode, is_armed);
+        }
+        let mode = match shown.mode {
+            _ if is_ours && !is_armed => Mode::Standby,
+            RoverMode::Hold => Mode::Standby,
+            RoverMode::Guided => Mode::Speed,
+            RoverMode::Loiter => Mode::StationKeep,
+            RoverMode::Rtl | RoverMode::SmartRtl => Mode::GoToErp,
+            RoverMode::Auto => Mode::Waypoint,
+            RoverMode::Manual => Mode::Thruster,
+            RoverMode::Acro | RoverMode::Steering => Mode::Heading,
+            RoverMode::Initialising => Mode::BootLoader,
+            RoverMode::Other(_) => Mode::Autopilot,
+        };
+        let operator = match shown.mode {
+            _ if is_ours => Operator::Secondary,
+            RoverMode::Manual | RoverMode::Acro | RoverMode::Steering => Operator::Rc,
+            // A ground station, or a failsafe of its own.
+            _ => Operator::Primary,
+        };
+        let shown = Shown { mode, heading_deg: None, thrust: None, difference: None };
+        ControlReport { shown, operator: Some(operator) }
+    }
+
+    /// What a message reports.
+    pub(super) fn report(&mut self, now: SimTime, message: &MavMessage, take: &mut dyn FnMut(Report)) {
+        match message {
+            MavMessage::GPS_RAW_INT(gps) => self.fix = Some((now, quality(gps), dilution(gps))),
+            MavMessage::GLOBAL_POSITION_INT(position) => self.take_position(now, position, take),
+            MavMessage::ATTITUDE(ATTITUDE_DATA { yaw, yawspeed, .. }) => {
+                self.attitude_at = now;
+                let (deg, yaw_rate) = (f64::from(*yaw).to_degrees(), f64::from(*yawspeed).to_degrees());
+                take(Report::Heading(Heading { deg, north: North::True, yaw_rate_deg_s: Some(yaw_rate) }));
+            }
+            MavMessage::SYS_STATUS(status) => {
+                let volts = millivolts(status.voltage_battery);
+                self.has_volts = volts.is_some();
+                volts.into_iter().for_each(|volts| take(Report::Battery(Some(volts))));
+            }
+            MavMessage::BATTERY_STATUS(battery) if battery.id == 0 && !self.has_volts => {
+                let cells: Vec<f64> = battery.voltages.iter().filter_map(|cell| millivolts(*cell)).collect();
+                let volts = (!cells.is_empty()).then(|| cells.iter().sum());
+                take(Report::Battery(volts));
+            }
+            MavMessage::SYSTEM_TIME(time) if time.time_unix_usec > 0 => {
+                let (_, time) = date_and_time(time.time_unix_usec.saturating_mul(1000));
+                take(Report::Clock(time));
+            }
+            MavMessage::STATUSTEXT(status) if status.severity as u8 <= MavSeverity::MAV_SEVERITY_WARNING as u8 => {
+                let text = status.text.to_str().unwrap_or("a text that is not UTF-8").trim().to_owned();
+                take(Report::Fault(Some(text)));
+            }
+            MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result }) => {
+                let is_orderly = matches!(
+                    command,
+                    MavCmd::MAV_CMD_DO_SET_MODE
+                        | MavCmd::MAV_CMD_COMPONENT_ARM_DISARM
+                        | MavCmd::MAV_CMD_DO_SET_HOME
+                        | MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL
+                );
+                let is_taken = matches!(result, MavResult::MAV_RESULT_ACCEPTED | MavResult::MAV_RESULT_IN_PROGRESS);
+                if is_orderly && !is_taken {
+                    take(Report::Fault(Some(format!("{command:?}: {result:?}"))));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn take_position(&mut self, now: SimTime, position: &GLOBAL_POSITION_INT_DATA, take: &mut dyn FnMut(Report)) {
+        let GLOBAL_POSITION_INT_DATA { time_boot_ms, lat, lon, vx, vy, hdg, .. } = *position;
+        // The same again is not news.
+        if self.position_ms.replace(time_boot_ms) == Some(time_boot_ms) {
+            return;
+        }
+        if hdg < 36_000 && (now - self.attitude_at).as_s() > ATTITUDE_AGE_MAX_S {
+            let deg = 0.01 * f64::from(hdg);
+            take(Report::Heading(Heading { deg, north: North::True, yaw_rate_deg_s: None }));
+        }
+        take(Report::Velocity(Ned { north: 0.01 * f64::from(vx), east: 0.01 * f64::from(vy) }));
+        // The position is an estimate that goes on without a receiver: its fix says what it is worth.
+        let fix = self.fix.filter(|(at, ..)| (now - *at).as_s() <= FIX_TYPE_AGE_MAX_S);
+        let (quality, hdop) = fix.map_or((0, None), |(_, quality, hdop)| (quality, hdop));
+        let at = LatLon { lat_deg: 1e-7 * f64::from(lat), lon_deg: 1e-7 * f64::from(lon) };
+        let is_on_globe = at.lat_deg.abs() <= 90.0 && at.lon_deg.abs() <= 180.0;
+        take(Report::Fix(Fix { time: None, at: is_on_globe.then_some(at), quality: Some(quality), hdop }));
+    }
+}
+
+/// An ArduPilot on a boat, or on a rover, which is the same program.
+fn is_boat(heartbeat: &HEARTBEAT_DATA) -> bool {
+    let is_vehicle = matches!(heartbeat.mavtype, MavType::MAV_TYPE_SURFACE_BOAT | MavType::MAV_TYPE_GROUND_ROVER);
+    is_vehicle && heartbeat.autopilot == MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA
+}
+
+/// The quality of a fix as GGA counts it.
+fn quality(gps: &GPS_RAW_INT_DATA) -> u8 {
+    match gps.fix_type {
+        GpsFixType::GPS_FIX_TYPE_NO_GPS | GpsFixType::GPS_FIX_TYPE_NO_FIX | GpsFixType::GPS_FIX_TYPE_2D_FIX => 0,
+        GpsFixType::GPS_FIX_TYPE_3D_FIX | GpsFixType::GPS_FIX_TYPE_STATIC => 1,
+        GpsFixType::GPS_FIX_TYPE_DGPS | GpsFixType::GPS_FIX_TYPE_PPP => 2,
+        GpsFixType::GPS_FIX_TYPE_RTK_FLOAT => 5,
+        GpsFixType::GPS_FIX_TYPE_RTK_FIXED => 4,
+    }
+}
+
+/// The horizontal dilution of precision, if it is told.
+fn dilution(gps: &GPS_RAW_INT_DATA) -> Option<f64> {
+    (gps.eph != u16::MAX).then(|| 0.01 * f64::from(gps.eph))
+}
+
+/// A voltage, V, if it is measured.
+fn millivolts(value: u16) -> Option<f64> {
+    (value != 0 && value != u16::MAX).then(|| 0.001 * f64::from(value))
+}

@@ -1,0 +1,81 @@
+//! What boats report of themselves, whichever protocol they speak.
+
+use crate::nmea::{Mode, Operator, TimeOfDay};
+use game::LatLon;
+use game::frame::Ned;
+
+/// Something that a boat reports.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Report {
+    /// A fix of its receiver.
+    Fix(Fix),
+    /// Velocity over the ground, m/s.
+    Velocity(Ned),
+    /// Its heading.
+    Heading(Heading),
+    /// The receiver's time of day.
+    Clock(TimeOfDay),
+    /// What it does, and who commands it.
+    Control(ControlReport),
+    /// Its battery: the voltage, V, if it is measured.
+    Battery(Option<f64>),
+    /// What it says is wrong with it; `None` is nothing.
+    Fault(Option<String>),
+    /// Where its home is, to which it goes for recovery: latitude and longitude, degrees.
+    Home([f64; 2]),
+}
+
+/// A fix of the receiver.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fix {
+    /// When, by the receiver. A fix of the same time and position as the one before is no new one.
+    pub time: Option<TimeOfDay>,
+    /// Where; nothing if the receiver does not know.
+    pub at: Option<LatLon>,
+    /// Its quality as in GGA (0 none, 1 GPS, 2 differential, 4 and 5 RTK), if it is told.
+    pub quality: Option<u8>,
+    /// The horizontal dilution of precision, if it is told.
+    pub hdop: Option<f64>,
+}
+
+/// A heading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heading {
+    /// Degrees.
+    pub deg: f64,
+    /// From which north.
+    pub north: North,
+    /// Rate of turn, degrees a second, if it is told.
+    pub yaw_rate_deg_s: Option<f64>,
+}
+
+/// What a heading counts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum North {
+    /// True north.
+    True,
+    /// The one of the boat's compass: the gateway's file says which that is.
+    Compass,
+}
+
+/// What a boat does, and who commands it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ControlReport {
+    /// What it shows of the command that it follows.
+    pub shown: Shown,
+    /// Who commands it, if it says so.
+    pub operator: Option<Operator>,
+}
+
+/// What a boat shows of a command, or should show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shown {
+    /// The mode.
+    pub mode: Mode,
+    /// Heading, degrees.
+    pub heading_deg: Option<f64>,
+    /// Thrust, per cent; in [`Mode::Speed`] the speed in knots.
+    pub thrust: Option<f64>,
+    /// Thrust difference, per cent.
+    pub difference: Option<f64>,
+}

@@ -1,0 +1,238 @@
+//! An ArduPilot boat and its gateway: who drives it when, and what stops it.
+
+use crate::rig::{Rig, plan};
+use game::Order;
+use game::angle::wrap_pi;
+use game::external::{Mission, OperatorCommand};
+use game::frame::Ned;
+use game::gateway::Drive;
+use gateway::bridge::{Event, Input};
+use gateway::emulator::ArduPilot;
+use gateway::geodesy::LocalFrame;
+use gateway::mavlink::dialect::{COMMAND_LONG_DATA, MavCmd, MavMessage};
+use gateway::mavlink::{Framer, RoverMode};
+
+const HOLD: (RoverMode, bool) = (RoverMode::Hold, false);
+
+/// What moves a boat, or makes it ready to be moved.
+fn is_driving(message: &MavMessage) -> bool {
+    match message {
+        MavMessage::SET_POSITION_TARGET_LOCAL_NED(target) => target.vx != 0.0 || target.vy != 0.0,
+        MavMessage::SET_ATTITUDE_TARGET(target) => target.thrust != 0.0 || target.body_yaw_rate != 0.0,
+        MavMessage::COMMAND_LONG(COMMAND_LONG_DATA { command, param1, param2, .. }) => match command {
+            MavCmd::MAV_CMD_COMPONENT_ARM_DISARM => *param1 == 1.0,
+            MavCmd::MAV_CMD_DO_SET_MODE => *param2 != 4.0,
+            _ => false,
+        },
+        _ => false,
+    }
+}
+
+fn is_mode_command(message: &MavMessage) -> bool {
+    matches!(message, MavMessage::COMMAND_LONG(command) if matches!(
+        command.command,
+        MavCmd::MAV_CMD_DO_SET_MODE | MavCmd::MAV_CMD_COMPONENT_ARM_DISARM
+    ))
+}
+
+#[test]
+fn a_boat_is_armed_driven_on_a_true_heading_and_disarmed() {
+    for drive in [Drive::Speed, Drive::Thrust] {
+        let mut plan = plan();
+        plan.gateway.drive = drive;
+        let mut rig = Rig::of(plan);
+        rig.order = Some(Order::Steer { heading_rad: 2.0, speed_m_s: 1.0 });
+        rig.run(2.0);
+        assert_eq!((rig.mode(), rig.sent.iter().any(|(_, sent)| is_driving(sent))), (HOLD, false));
+        rig.operator(OperatorCommand::Arm);
+        rig.run(30.0);
+        assert_eq!((rig.state().as_str(), rig.mode()), ("armed", (RoverMode::Guided, true)), "{:?}", rig.events);
+        let off_rad = wrap_pi(rig.boat.psi_rad - 2.0).abs();
+        assert!(off_rad < 0.1 && (rig.boat.speed_m_s - 1.0).abs() < 0.2, "{drive:?}: {:?}", rig.boat);
+        rig.operator(OperatorCommand::Disarm);
+        assert_eq!(rig.mode(), HOLD, "at once");
+        rig.run(15.0);
+        assert!(rig.boat.speed_m_s < 0.05 && rig.state() == "safed");
+    }
+}
+
+#[test]
+fn what_fails_stops_the_boat_in_its_time() {
+    type Fail = fn(&mut Rig);
+    let cases: [(&str, Fail, f64, &str); 5] = [
+        ("no orders", |rig| rig.order = None, 1.2, "no fresh order"),
+        ("an E-stop", |rig| rig.operator(OperatorCommand::EStop), 0.1, "e-stopped"),
+        ("a deaf boat", |rig| rig.open.1 = false, 1.7, "is 1.5 s old"),
+        ("a lost link", |rig| rig.put(&Input::LinkDown), 0.1, "the link is lost"),
+        ("a low battery", |rig| rig.ardupilot.set_volts(12.0), 6.5, "the battery is low"),
+    ];
+    for (what, fail, limit_s, words) in cases {
+        let mut rig = Rig::under_way();
+        fail(&mut rig);
+        rig.run_until(limit_s, |rig| rig.state().contains(words));
+        let sent = rig.sent.len();
+        rig.run(20.0);
+        assert!(rig.boat.speed_m_s < 0.05, "{what}: {:?}", rig.boat);
+        assert!(!rig.sent[sent..].iter().any(|(_, sent)| is_driving(sent)), "{what}");
+    }
+}
+
+#[test]
+fn a_boat_that_hears_nothing_more_forgets_its_set_point_after_three_seconds() {
+    let mut rig = Rig::under_way();
+    rig.open.0 = false;
+    rig.run(2.9);
+    assert!(rig.boat.speed_m_s > 1.0);
+    rig.run(12.0);
+    assert!(rig.boat.speed_m_s < 0.05);
+}
+
+#[test]
+fn who_takes_the_boat_by_remote_control_keeps_it() {
+    for (mode, words) in [
+        (RoverMode::Manual, "the remote control has taken over"),
+        (RoverMode::Acro, "the remote control has taken over"),
+        (RoverMode::Rtl, "the primary operator has taken over"),
+        (RoverMode::Loiter, "the primary operator has taken over"),
+    ] {
+        let mut rig = Rig::under_way();
+        rig.ardupilot.set_mode(mode);
+        let sent = rig.sent.len();
+        rig.run_until(0.4, |rig| rig.state().contains(words));
+        rig.operator(OperatorCommand::EStop);
+        rig.run(10.0);
+        assert_eq!(rig.mode(), (mode, true), "it is left to whoever has it");
+        assert!(!rig.sent[sent..].iter().any(|(_, sent)| is_mode_command(sent)), "{mode:?}");
+        rig.operator(OperatorCommand::Release);
+        rig.operator(OperatorCommand::Arm);
+        assert!(rig.refused.take().is_some_and(|reason| reason.contains("secondary control")));
+        // Given back, it is put into standby, and waits to be armed.
+        rig.ardupilot.set_mode(RoverMode::Guided);
+        rig.run(2.0);
+        assert_eq!(rig.mode(), HOLD);
+        rig.operator(OperatorCommand::Arm);
+        rig.run(2.0);
+        assert_eq!(rig.mode(), (RoverMode::Guided, true));
+    }
+}
+
+#[test]
+fn a_boat_that_leaves_guided_for_hold_is_not_taken_back() {
+    let mut rig = Rig::under_way();
+    rig.ardupilot.set_mode(RoverMode::Hold);
+    rig.run(2.0);
+    assert_eq!(rig.mode().0, RoverMode::Hold);
+    rig.run_until(2.0, |rig| rig.state().contains("does not follow the commands"));
+    rig.run(10.0);
+    assert_eq!(rig.mode(), HOLD);
+}
+
+#[test]
+fn the_first_word_takes_nothing_from_a_pilot_and_stops_a_boat_in_guided() {
+    for (mode, want) in [(RoverMode::Manual, (RoverMode::Manual, true)), (RoverMode::Guided, HOLD)] {
+        let mut rig = Rig::under_way();
+        rig.put(&Input::LinkDown);
+        rig.ardupilot.set_mode(mode);
+        rig.put(&Input::LinkUp);
+        rig.run(2.0);
+        assert_eq!(rig.mode(), want);
+        assert!(matches!(rig.bridge.state().to_string().as_str(), "safed" | "failsafe: the link is lost"));
+    }
+}
+
+/// What the guard of a gateway says to this boat.
+fn guarded(rig: &mut Rig) {
+    let message = rig.bridge.guard_message();
+    rig.ardupilot.take(rig.now, &message);
+}
+
+#[test]
+fn the_guards_message_stops_a_boat_that_is_driven_and_leaves_one_to_its_pilot() {
+    let mut rig = Rig::under_way();
+    guarded(&mut rig);
+    assert_eq!(rig.mode(), HOLD);
+    let mut rig = Rig::under_way();
+    rig.ardupilot.set_mode(RoverMode::Manual);
+    rig.run(1.5);
+    guarded(&mut rig);
+    assert_eq!(rig.mode(), (RoverMode::Manual, true));
+    let (first, again) = (rig.bridge.guard_message(), rig.bridge.guard_message());
+    assert_eq!(first, again, "the same bytes, so that the guard need not be told again");
+}
+
+#[test]
+fn a_boat_keeps_its_station_and_goes_to_the_recovery_point_that_it_showed() {
+    let mut rig = Rig::under_way();
+    rig.operator(OperatorCommand::StationKeep);
+    rig.run(2.0);
+    assert_eq!((rig.state().as_str(), rig.mode()), ("delegated: station keeping", (RoverMode::Loiter, true)));
+    rig.operator(OperatorCommand::GoToErp);
+    assert!(rig.refused.take().is_some_and(|reason| reason.contains("recovery point")), "its home is not ours");
+    let frame = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum);
+    let place = |x: f64, y: f64| {
+        let at = frame.lat_lon(Ned::from_xy(x, y));
+        [at.lat_deg, at.lon_deg]
+    };
+    let mission = Mission { throttle_pct: 40.0, erp: place(40.0, 30.0), waypoints: vec![place(80.0, 40.0)] };
+    rig.operator(OperatorCommand::Mission(mission));
+    assert_eq!(rig.refused.take(), None);
+    rig.run_until(5.0, |rig| rig.state() == "delegated: mission");
+    rig.run(3.0);
+    assert_eq!(rig.mode(), (RoverMode::Auto, true));
+    assert!(rig.remarks.iter().any(|remark| remark.contains("a mission of 1 waypoints")), "{:?}", rig.remarks);
+    rig.run_until(90.0, |rig| rig.boat.at.distance(Ned::from_xy(80.0, 40.0)) < 4.0);
+    rig.operator(OperatorCommand::GoToErp);
+    assert_eq!(rig.refused.take(), None);
+    rig.run(2.0);
+    assert_eq!(rig.mode(), (RoverMode::Rtl, true));
+    rig.run_until(120.0, |rig| rig.boat.at.distance(Ned::from_xy(40.0, 30.0)) < 4.0);
+    assert_eq!(rig.state(), "delegated: to the emergency recovery point");
+}
+
+#[test]
+fn a_mission_that_the_boat_does_not_take_is_given_up_with_the_reason() {
+    let mut rig = Rig::under_way();
+    let mission = Mission { throttle_pct: 40.0, erp: [0.0; 2], waypoints: vec![[0.0; 2]] };
+    rig.operator(OperatorCommand::Mission(mission));
+    assert!(rig.refused.take().is_some_and(|reason| reason.contains("outside of the geofence")));
+    let at = LocalFrame::new(plan().site.expect("the rig has one").field.plan.datum).lat_lon(Ned::from_xy(40.0, 30.0));
+    let there = [at.lat_deg, at.lon_deg];
+    rig.open.0 = false;
+    rig.operator(OperatorCommand::Mission(Mission { throttle_pct: 40.0, erp: there, waypoints: vec![there] }));
+    rig.run(8.0);
+    let told = |event: &Event| matches!(event, Event::Warning(text) if text.contains("the mission is not uploaded: the boat does not show"));
+    assert!(rig.events.iter().any(told), "{:?}", rig.events);
+}
+
+#[test]
+fn messages_of_other_systems_are_counted_and_ignored() {
+    let mut rig = Rig::under_way();
+    let mut other = Vec::new();
+    let mut writer = gateway::mavlink::Writer::new(7, 1);
+    let mut framer = Framer::new();
+    let mut telemetry = Vec::new();
+    // Another boat on the same network, in HOLD and with an empty battery.
+    let mut another = ArduPilot::new(plan().site.expect("the rig has one").field.plan.datum);
+    another.set_volts(5.0);
+    another.observe(rig.now, &rig.boat.measured(rig.now, rig.boat.at));
+    another.telemetry(rig.now, &mut telemetry);
+    framer.push(&telemetry, &mut |received| writer.write(&received.message, &mut other));
+    for _ in 0..100 {
+        rig.put(&Input::Bytes(other.clone()));
+        rig.run(0.1);
+    }
+    assert_eq!(rig.state(), "armed");
+    let counts = rig.bridge.status(rig.now).counts;
+    assert!(counts.iter().any(|(name, count)| name == "messages of other systems" && *count >= 100), "{counts:?}");
+}
+
+#[test]
+fn arming_that_the_boat_refuses_is_a_failsafe_with_its_own_words() {
+    let mut rig = Rig::new();
+    rig.order = Some(Order::Hold);
+    rig.run(2.0);
+    // From now on it answers, and does not listen.
+    rig.open.0 = false;
+    rig.operator(OperatorCommand::Arm);
+    rig.run_until(4.0, |rig| rig.state().contains("does not follow the commands it is sent"));
+}

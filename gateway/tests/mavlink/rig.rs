@@ -1,0 +1,149 @@
+//! The test rig: a boat with simple dynamics, its emulated ArduPilot, and the gateway. The test owns the time.
+
+use crate::boat::{Boat, STEP_S};
+use game::external::OperatorCommand;
+use game::frame::Ned;
+use game::{Order, SimTime};
+use gateway::bridge::{Bridge, Event, Input, Output, Plan, Preflight, Site};
+use gateway::emulator::ArduPilot;
+use gateway::mavlink::dialect::MavMessage;
+use gateway::mavlink::{Framer, RoverMode};
+use std::path::Path;
+
+const TELEMETRY_STEPS: u64 = 10;
+
+pub(crate) struct Rig {
+    pub(crate) now: SimTime,
+    steps: u64,
+    pub(crate) boat: Boat,
+    pub(crate) ardupilot: ArduPilot,
+    pub(crate) bridge: Bridge,
+    /// The agent's order, ten times a second.
+    pub(crate) order: Option<Order>,
+    /// Whether bytes go through: to the boat, and from it.
+    pub(crate) open: (bool, bool),
+    pub(crate) events: Vec<Event>,
+    /// What the boat was sent, without what is sent in any case.
+    pub(crate) sent: Vec<(SimTime, MavMessage)>,
+    sent_framer: Framer,
+    pub(crate) refused: Option<String>,
+    pub(crate) remarks: Vec<String>,
+}
+
+pub(crate) fn plan() -> Plan {
+    let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
+    let game = game::scenario::load(&scenarios.join("games/pav01_vs_pav01.toml")).unwrap_or_else(|e| panic!("{e}"));
+    let gateway = game::scenario::load_gateway(&scenarios.join("gateways/blueboat.toml"));
+    Plan {
+        vehicle: "blue_one".to_owned(),
+        gateway: gateway.unwrap_or_else(|e| panic!("{e}")),
+        // A declination that would be seen if it were used.
+        site: Some(Site { length_m: 1.2, field: game.field, declination_rad: (-40.0_f64).to_radians() }),
+        arms_itself: false,
+        dry_run: false,
+        preflight: Preflight::NotRequired,
+    }
+}
+
+impl Rig {
+    pub(crate) fn of(plan: Plan) -> Rig {
+        let datum = plan.site.as_ref().expect("the rig has one").field.plan.datum;
+        let mut rig = Rig {
+            now: SimTime::ZERO,
+            steps: 0,
+            boat: Boat { at: Ned::from_xy(60.0, 40.0), ..Boat::default() },
+            ardupilot: ArduPilot::new(datum),
+            bridge: Bridge::new(plan),
+            order: None,
+            open: (true, true),
+            events: vec![],
+            sent: vec![],
+            sent_framer: Framer::new(),
+            refused: None,
+            remarks: vec![],
+        };
+        rig.ardupilot.set_clock(SimTime::ZERO, 1_795_000_000_000_000_000);
+        rig.put(&Input::LinkUp);
+        rig
+    }
+
+    pub(crate) fn new() -> Rig {
+        Rig::of(plan())
+    }
+
+    /// A boat that sails east at 1.5 m/s, ten seconds on.
+    pub(crate) fn under_way() -> Rig {
+        let mut rig = Rig::new();
+        rig.order = Some(Order::Steer { heading_rad: std::f64::consts::FRAC_PI_2, speed_m_s: 1.5 });
+        rig.run(2.0);
+        rig.operator(OperatorCommand::Arm);
+        assert_eq!((rig.refused.take(), rig.state().as_str()), (None, "armed"));
+        rig.run(9.0);
+        assert!(rig.boat.speed_m_s > 1.2 && rig.state() == "armed", "{:?} {:?}", rig.boat, rig.events);
+        rig
+    }
+
+    pub(crate) fn state(&self) -> String {
+        self.bridge.state().to_string()
+    }
+
+    pub(crate) fn mode(&self) -> (RoverMode, bool) {
+        self.ardupilot.mode()
+    }
+
+    pub(crate) fn operator(&mut self, command: OperatorCommand) {
+        self.put(&Input::Operator(command));
+    }
+
+    pub(crate) fn put(&mut self, input: &Input) {
+        let mut out = Output::default();
+        self.bridge.take(self.now, input, &mut out);
+        self.events.extend(out.events);
+        self.refused = out.refused.or(self.refused.take());
+        let (now, sent) = (self.now, &mut self.sent);
+        self.sent_framer.push(&out.bytes, &mut |received| sent.push((now, received.message)));
+        if self.open.0 && !out.bytes.is_empty() {
+            self.ardupilot.take(self.now, &out.bytes);
+            let mut answers = Vec::new();
+            self.ardupilot.answers(&mut answers);
+            if self.open.1 && !answers.is_empty() {
+                self.put(&Input::Bytes(answers));
+            }
+        }
+    }
+
+    pub(crate) fn run(&mut self, seconds: f64) {
+        (0..(seconds / STEP_S).round() as u64).for_each(|_| self.step());
+    }
+
+    /// Runs until `is_so`, no longer than `limit_s`; returns after how many seconds.
+    pub(crate) fn run_until(&mut self, limit_s: f64, is_so: impl Fn(&Rig) -> bool) -> f64 {
+        let start = self.now;
+        while !is_so(self) {
+            let passed_s = (self.now - start).as_s();
+            assert!(passed_s < limit_s, "not so: {}, {:?}, {:?}", self.state(), self.mode(), self.events);
+            self.step();
+        }
+        (self.now - start).as_s()
+    }
+
+    fn step(&mut self) {
+        self.steps += 1;
+        self.now = SimTime::from_s(STEP_S * self.steps as f64);
+        let order = self.ardupilot.order(self.now);
+        self.boat.step(order);
+        if self.steps.is_multiple_of(TELEMETRY_STEPS) {
+            self.ardupilot.observe(self.now, &self.boat.measured(self.now, self.boat.at));
+            let mut bytes = Vec::new();
+            self.ardupilot.telemetry(self.now, &mut bytes);
+            if self.open.1 && !bytes.is_empty() {
+                self.put(&Input::Bytes(bytes));
+            }
+            if let Some(order) = self.order {
+                self.put(&Input::Order(order, self.now));
+            }
+        }
+        self.put(&Input::Tick);
+        self.remarks.extend(self.ardupilot.take_remark());
+    }
+}
