@@ -65,11 +65,9 @@ impl CompassSwing {
         let (mut normal, mut right) = ([[0.0; 5]; 5], [0.0; 5]);
         for (psi_rad, off_rad) in &self.pairs {
             let row = basis(*psi_rad);
-            for i in 0..5 {
-                right[i] += row[i] * wrap_pi(off_rad - mean_rad);
-                for j in 0..5 {
-                    normal[i][j] += row[i] * row[j];
-                }
+            for (i, base) in row.iter().enumerate() {
+                right[i] += base * wrap_pi(off_rad - mean_rad);
+                normal[i].iter_mut().zip(row).for_each(|(sum, other)| *sum += base * other);
             }
         }
         let mut found = solved(normal, right).ok_or_else(|| "the headings do not tell a curve".to_owned())?;
@@ -106,7 +104,8 @@ fn basis(psi_rad: f64) -> [f64; 5] {
 fn solved(mut matrix: [[f64; 5]; 5], mut right: [f64; 5]) -> Option<[f64; 5]> {
     for i in 0..5 {
         let pivot = (i..5).max_by(|a, b| matrix[*a][i].abs().total_cmp(&matrix[*b][i].abs()))?;
-        (matrix.swap(i, pivot), right.swap(i, pivot));
+        matrix.swap(i, pivot);
+        right.swap(i, pivot);
         if matrix[i][i].abs() < 1e-9 {
             return None;
         }
