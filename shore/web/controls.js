@@ -13,7 +13,7 @@ const byId = (id) => document.getElementById(id);
 
 /** What the chart showed last time; some browsers keep nothing. */
 function remembered() {
-  const all = { names: true, trails: true, circles: true, waves: true, legend: false };
+  const all = { names: true, trails: true, circles: true, waves: true, chart: true, legend: false };
   try {
     return { ...all, ...JSON.parse(localStorage.getItem(SHOWN_KEY) ?? '{}') };
   } catch {

@@ -38,6 +38,9 @@ export function expose(page) {
     events: () => [...game.events], selected: () => game.selected, following: () => page.following, driving: () => drive.vehicle,
     modes: () => game.modes, hulls: () => page.boats.hulls(game, view), labels: () => page.boats.labels.boxes(),
     helm: () => game.helm, estimate: () => game.estimate, statuses: () => Object.fromEntries(game.statuses),
+    badges: () => page.readings.map(({ name, kind, label, detail }) => ({ name, kind, label, detail })),
+    alarms: () => page.alarms.waiting.map(({ boat, text, active }) => ({ boat, text, active })),
+    sounded: () => page.alarms.sound.played, background: () => page.background.drawn,
     drawn: () => stats.drawn, fps: () => stats.fps, draw_ms: () => stats.draw_ms,
     measured: () => {
       const { range_m, bearing_deg } = (page.measure.ends.length === 2 && page.measure.reading(game, view)) || {};

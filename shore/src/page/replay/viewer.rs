@@ -57,7 +57,7 @@ impl PageViewer {
         let hello = PageMessage::hello(
             &info.version,
             Mode::Replay,
-            access.rights,
+            access,
             (game, shared.about.as_deref()),
             &shared.chart,
         );
@@ -281,7 +281,11 @@ impl Viewer for PageViewer {
             PageRequest::Seek { .. } | PageRequest::Speed { .. } => {
                 return Err("not a number that makes sense".to_owned());
             }
-            PageRequest::Control { .. } | PageRequest::Drive { .. } | PageRequest::LetGo { .. } => {
+            PageRequest::Control { .. }
+            | PageRequest::Drive { .. }
+            | PageRequest::LetGo { .. }
+            | PageRequest::Operate { .. }
+            | PageRequest::Mission { .. } => {
                 return Err("this is a recording".to_owned());
             }
         }
