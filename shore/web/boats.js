@@ -2,6 +2,7 @@
 
 import { DISABLED, MARKS, NAV_LOST, TAGGED } from './game.js';
 import { drawBadge } from './badge.js';
+import { drawFences, drawStops } from './fence.js';
 import { Labels } from './label.js';
 import { palette, teamColour } from './palette.js';
 
@@ -121,6 +122,8 @@ export class Boats {
     this.hovered = -1;
     /** What gateways say of real boats. */
     this.readings = [];
+    /** Their geofences. */
+    this.fences = [];
     /** What their badges take on the chart: left, top, right, bottom, px. */
     this.badges = [];
   }
@@ -132,7 +135,9 @@ export class Boats {
     this.selected = selected;
     context.clearRect(0, 0, view.width, view.height);
     this.measure(game, view);
+    drawFences(context, view, this.fences);
     this.drawFlagsAtHome(game, view);
+    drawStops(context, view, this.readings, game);
     if (shown.circles) this.drawCircles(game, view);
     this.drawLeads(game, view);
     for (let i = 0; i < game.count; i++) if (i !== selected) this.drawHull(game, view, i);

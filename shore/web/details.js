@@ -34,6 +34,7 @@ export class Details {
     const head = make('div', 'boat-head', '', make('div', 'boat-name', '', this.name, this.about, this.matter), this.follow, this.drive, this.close);
     this.steeringNote = make('p', 'note');
     this.facts = make('dl', 'facts');
+    this.facts.id = 'boat-facts';
     this.thrust = make('div', 'thrust', '', this.bar('Port'), this.bar('Starboard'));
     this.canvas = make('canvas');
     this.canvas.id = 'rose';

@@ -31,7 +31,7 @@ export function readStatus(game, index, now_ms) {
   const detail = silent ? `its gateway is silent since ${number(waited_s, 0, 's')}; before: ${state}` : state.slice(begins.length).replace(/^[:,\s]+/, '');
   return {
     name, kind: silent ? 'silent' : kind, label: silent ? 'Silent' : label, detail, tone: silent ? 'bad' : tone, silent_s: silent ? waited_s : 0,
-    said: kind, facts: factsOf(status, waited_s), missing: status.missing ?? [], failsafes: status.failsafes?.length ?? 0, link: status.link === 'up' && !silent,
+    said: kind, facts: factsOf(status, waited_s), fence: status.geofence ?? null, missing: status.missing ?? [], failsafes: status.failsafes?.length ?? 0, link: status.link === 'up' && !silent,
   };
 }
 
@@ -49,6 +49,11 @@ function factsOf(status, waited_s) {
     facts.push({ name: 'Battery', short: `${number(status.battery_v, 1, 'V')}${old ? ` ${age(battery_s)}` : ''}`, words: `${number(status.battery_v, 1, 'V')}${told}`, bad: old });
   }
   const told = Number.isFinite(mode_s) ? `, ${age(mode_s)}` : '';
+  const { clearance_m, stopping_m } = status.geofence ?? {};
+  if (Number.isFinite(clearance_m)) {
+    const stops = Number.isFinite(stopping_m) ? `, stops in ${number(stopping_m, 1, 'm')}` : '';
+    facts.push({ name: 'Geofence', words: `${number(clearance_m, 1, 'm')} to its edge${stops}`, bad: clearance_m < (stopping_m ?? 0) });
+  }
   if (status.operator) facts.push({ name: 'In control', words: `${status.operator}${told}`, bad: mode_s > CONTROL_OLD_S });
   if (status.mode) facts.push({ name: 'Mode', words: `${status.mode}${told}`, bad: mode_s > CONTROL_OLD_S });
   const last = status.failsafes?.at(-1);

@@ -14,6 +14,7 @@
 //   hulls, labels                 [{ name, left, top, right, bottom }]: what boats, and names beside them, take on the chart, px
 //   statuses                      of gateways, by boat
 //   badges, alarms, sounded       [{ name, kind, label, detail }] of real boats; [{ boat, text, active }] that wait; tones played so far
+//   fences                        [{ outline, keepOuts }] of real boats, and stops [{ name, stopping_m, clearance_m }]
 //   background                    whether there is an image or a shoreline below the field
 //   drawn, fps, draw_ms           frames drawn; pictures a second; mean time of a picture's making
 //   view                          { x, y, scale }: middle, and pixels to a metre
@@ -21,7 +22,8 @@
 //
 // Elements with an id that stays: score-<team>, clock, rate, phase, rights, connection, notices, events, boat-list, rose,
 // rose-function, events-fold, show-plots, plots, plot-other, share, png, film, behaviours, variables, gateway, helm-reason, follow,
-// drive, boat-badge, checks, operated, operate, operate-<command>, mission-file, operator-token, alarms, mute, acknowledge-all, show-chart,
+// drive, boat-facts, boat-badge, checks, operated, operate, operate-<command>, mission-file, operator-token, alarms, mute, acknowledge-all, show-chart, draw-
+// fence, fence-toml, fence-part, fence-<action>,
 // deselect, steering, pause, step, step-back, speed, halt, halt-confirm, halt-cancel, estop, estop-confirm, estop-cancel, stop,
 // stop-confirm, stop-cancel, timeline, event-kind, event-back, event-next, event-filter, tab-boats, tab-boat, tab-events, tab-game,
 // zoom-in, zoom-out, fit, show-names, show-trails, show-circles, show-waves, show-legend, dark, measure, measured, place, help, help-
@@ -35,6 +37,8 @@ import { Capture } from './capture.js';
 import { Controls } from './controls.js';
 import { Details, isBare } from './details.js';
 import { Drive } from './drive.js';
+import { fencesOf } from './fence.js';
+import { FenceEditor } from './fence_editor.js';
 import { drawField } from './field.js';
 import { Game } from './game.js';
 import { readStatuses } from './gateway.js';
@@ -87,6 +91,7 @@ class Page {
     this.theme = new Theme();
     this.legend = new Legend();
     this.measure = new Measure({ changed: () => { this.drawnBoats = ''; } });
+    this.fenceEditor = new FenceEditor({ changed: () => { this.drawnBoats = ''; } });
     this.status = new Status();
     this.controls = new Controls(send);
     this.drive = new Drive(send);
@@ -234,6 +239,7 @@ class Page {
     this.sea.greet(hello.chart.waves);
     this.boats.hovered = -1;
     this.measure.forget();
+    this.fenceEditor.greet(hello.chart);
     this.status.greet(game);
     this.controls.greet(hello);
     this.list.greet(game);
@@ -322,12 +328,17 @@ class Page {
   tap(x, y, touch) {
     this.sheet.focus({ preventScroll: true });
     const at = this.boats.at(this.game, this.view, x, y, touch ? REACH_TOUCH_PX : REACH_MOUSE_PX);
-    if (this.measure.active) this.measure.take(at >= 0 ? { boat: at } : { x: this.view.eastOf(x), y: this.view.northOf(y) });
+    if (this.fenceEditor.active) this.fenceEditor.take(this.view.eastOf(x), this.view.northOf(y));
+    else if (this.measure.active) this.measure.take(at >= 0 ? { boat: at } : { x: this.view.eastOf(x), y: this.view.northOf(y) });
     else if (at >= 0) this.select(this.game.vehicles[at].name, true);
   }
 
-  /** By keys an end of what is measured is taken at the selected boat, else in the middle of the chart. */
-  measureHere() {
+  /** By keys a corner of a geofence is taken in the middle of the chart, an end of what is measured at the selected boat, else there. */
+  takeHere() {
+    if (this.fenceEditor.active) {
+      this.fenceEditor.take(this.view.centreX, this.view.centreY);
+      return true;
+    }
     if (!this.measure.active) return false;
     const boat = this.game.indexOf.get(this.game.selected);
     this.measure.take(boat === undefined ? { x: this.view.centreX, y: this.view.centreY } : { boat });
@@ -430,6 +441,9 @@ class Page {
     const { game } = this;
     this.readings = readStatuses(game, now_ms);
     this.boats.readings = this.readings;
+    this.boats.fences = fencesOf(this.readings);
+    this.fenceEditor.tell(this.boats.fences);
+    this.view.widen(this.boats.fences.flatMap(({ outline }) => outline));
     this.badged = this.readings.map(({ label, detail }) => `${label} ${detail}`).join();
     this.alarms.tell(this.readings, { live: game.mode === 'live', connected: this.link.connected }, now_ms);
   }
@@ -464,6 +478,7 @@ class Page {
     if (moving || boats !== this.drawnBoats) {
       this.boats.draw(game, view, shown, this.ratio);
       this.measure.draw(this.boats.context, game, view);
+      this.fenceEditor.draw(this.boats.context, view);
     }
     this.drawnBoats = moving ? '' : boats;
     this.timeline.draw();
