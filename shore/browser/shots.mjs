@@ -4,6 +4,7 @@ import { copyFileSync, mkdirSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Program, Sight, folder, gameFile, openBrowser, scenario, squall } from './harness.mjs';
 import { arm, badge, realBoats } from './real_boats.mjs';
+import { site } from './site.mjs';
 
 const [place = 'shots', ...only] = process.argv.slice(2);
 const DESK = { size: { width: 1400, height: 900 } };
@@ -107,6 +108,14 @@ const shown = (selector) => (sight) => sight.page.waitForSelector(selector);
 const worst = (sight) => sight.page.evaluate(() => document.getElementById('worst').scrollIntoView());
 const lower = (sight) => sight.page.evaluate(() => scrollTo(0, document.body.scrollHeight));
 
+/** With a shoreline, or an image, below the field. */
+const withChart = (kind) => async (t) => live(PAV01, '--speed', '10x', '--chart', site(folder(t))[kind])(t);
+const fence = async (sight) => {
+  await badge(sight, 'red_one', 'disarmed');
+  await sight.press('#draw-fence');
+  for (const [x, y] of [[320, 300], [600, 300], [640, 520], [330, 600]]) await sight.page.mouse.click(x, y);
+};
+
 let boats;
 const station = async (t) => {
   boats = await realBoats(t);
@@ -150,9 +159,14 @@ const SCENES = {
   'station-armed': [station, HALL, 'dark', armed],
   'station-alarm': [station, DESK, 'light', alarm],
   'station-list': [station, DESK, 'dark', alarm, keys('1')],
+  'station-fence': [station, DESK, 'light', fence],
   'tablet-station': [station, TABLET, 'light', alarm],
   'phone-station': [station, PHONE, 'light', alarm],
   'phone-station-list': [station, PHONE, 'dark', alarm, keys('1')],
+  'chart': [withChart('geojson'), DESK, 'light', at(30)],
+  'chart-dark': [withChart('geojson'), HALL, 'dark', at(30)],
+  'chart-image': [withChart('image'), DESK, 'dark', at(30)],
+  'phone-chart': [withChart('geojson'), PHONE, 'light', at(30)],
   'phone': [fast, PHONE, 'light', at(60)],
   'phone-selected': [fast, PHONE, 'dark', at(60), select('blue_two')],
   'phone-game': [fast, PHONE, 'light', at(20), keys('4')],

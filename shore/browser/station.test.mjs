@@ -105,10 +105,16 @@ test('without a token of its own a page may stop real boats, and operates them w
   assert(!(await sight.page.isVisible('#operator-token')));
   assert.equal(new URL(await sight.get(() => location.href)).hash, new URL(address).hash);
   await arm(sight, 'blue_one');
-  // Who lost the token may still stop the boat.
+  // Who lost the token may still stop the boat, and all of them, and release none.
   const looking = await Sight.open(t, browser, boats.url);
   await looking.press('[data-vehicle=blue_one]');
   await looking.press('#operate-disarm');
+  await badge(sight, 'blue_one', 'disarmed');
+  await looking.press('#estop');
+  await badge(sight, 'blue_one', 'stopped');
+  await looking.until('it cannot release them', () => document.getElementById('estop').disabled);
+  await sight.press('#estop');
+  await sight.press('#estop-confirm');
   await badge(sight, 'blue_one', 'disarmed');
 });
 

@@ -88,7 +88,12 @@ export class Alarms {
     this.forget();
   }
 
-  /** Another game: what was wrong in the one before is not known of this. */
+  /** What was wrong in another game is not known of this; in the same one, which was lost meanwhile, it stays. */
+  greet({ game }) {
+    if (game !== this.game) this.forget();
+    this.game = game;
+  }
+
   forget() {
     /** By boat and kind: `{ boat, text, at, active, acknowledged }`. */
     this.alarms = new Map();

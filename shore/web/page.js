@@ -232,7 +232,7 @@ class Page {
     document.body.classList.toggle('replay', hello.mode === 'replay');
     document.body.classList.toggle('real', hello.mode === 'live' && game.vehicles.some(({ external }) => external));
     this.background.greet(hello.chart);
-    this.alarms.forget();
+    this.alarms.greet(hello);
     show(byId('connection'), false);
     const field = hello.chart.field;
     if (!sameField && field) this.view.setBounds([...field.corners, ...(field.flags ?? []).map(({ x, y }) => [x, y])]);

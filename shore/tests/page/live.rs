@@ -32,7 +32,7 @@ const BLUE_ONE: VehicleId = VehicleId(0);
 /// A sim that plays nothing: it says what a test wants said.
 pub(crate) struct Sim {
     pub(crate) bus: Bus,
-    port: u16,
+    pub(crate) port: u16,
     frames: Publisher,
     run: Publisher,
     pictures: Publisher,

@@ -4,7 +4,7 @@ use super::client::{Client, get};
 use super::live::{meet, wait_until};
 use super::settings;
 use bus::token::{self, Checked, Guard};
-use bus::{Declaration, Watched};
+use bus::{Bus, Declaration, Net, Watched};
 use game::external::{GatewayStatus, OperatorCommand, OperatorReply};
 use game::message::Control;
 use game::topic::{self, GameName};
@@ -21,7 +21,7 @@ const SIMULATED: &str = "blue_two";
 type Told = Arc<Watched<Vec<OperatorCommand>>>;
 
 /// A gateway that arms after `takes` and refuses a release; it proves nobody.
-fn gateway(bus: &bus::Bus, takes: Duration) -> (Told, Declaration) {
+fn gateway(bus: &Bus, takes: Duration) -> (Told, Declaration) {
     let told = Told::default();
     let noted = Arc::clone(&told);
     let key = topic::operate(&GameName::new("pond").expect("a good name"), BOAT);
@@ -62,6 +62,10 @@ fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() 
         assert!(refused["reason"].as_str().is_some_and(|reason| reason.contains("operator's token")), "{refused}");
     }
     assert!(told.visit(|told| told.is_empty()), "nothing of it reaches the gateway");
+    control.send(r#"{"do":"control","what":"release"}"#);
+    control.until("refused", |refused| refused["what"] == "control");
+    operator.send(r#"{"do":"control","what":"release"}"#);
+    wait_until("an operator releases all boats", || sim.controls.visit(|all| all == &[Control::Release]));
     control.send(&command(BOAT, "disarm"));
     control.until("operated", |reply| *reply == json!({"kind": "operated", "vehicle": BOAT, "command": "disarm", "refused": null}));
     operator.send(&command(BOAT, "arm"));
@@ -86,8 +90,10 @@ fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() 
 #[test]
 fn no_flood_of_commands_keeps_a_stop_waiting() {
     let (sim, page, mut control) = meet("mixed_2v2.toml");
-    // Longer than anybody waits for an answer.
-    let (told, _standing) = gateway(&sim.bus, Duration::from_secs(20));
+    // A process of its own has a link of its own. It takes longer than anybody waits for an answer.
+    let net = Net { connect: vec![format!("tcp/127.0.0.1:{}", sim.port)], ..Net::default() };
+    let other = Bus::leaf(&net).expect("the sim is there");
+    let (_, standing) = gateway(&other, Duration::from_secs(4));
     let mut operator = operator(&page);
     operator.until("hello", |_| true);
     (0..2000).for_each(|_| operator.send(&command(BOAT, "arm")));
@@ -96,7 +102,8 @@ fn no_flood_of_commands_keeps_a_stop_waiting() {
     control.send(r#"{"do":"control","what":"e_stop"}"#);
     wait_until("the E-stop arrives", || sim.controls.visit(|controls| controls.contains(&Control::EStop)));
     assert!(bus::clock::since(begun) < Duration::from_secs(2), "after {:?}", bus::clock::since(begun));
-    drop(told);
+    drop(standing);
+    other.close();
     sim.close();
 }
 

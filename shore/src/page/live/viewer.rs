@@ -58,7 +58,10 @@ impl PageViewer {
         if control.stops() {
             return stopping::stop(&self.shared, state, control);
         }
-        state.on()?;
+        let game = state.on()?;
+        if control == Control::Release && game.has_real_boats() && self.access < Access::Operate {
+            return Err("real boats are released by who opens the page with the operator's token".to_owned());
+        }
         self.send(Command::Control(control))
     }
 
