@@ -1,7 +1,7 @@
 //! `squall view`: on a page, a running game from any machine, or a report with its games.
 
-use crate::net_args::LeafArgs;
 use crate::gateway_command;
+use crate::net_args::LeafArgs;
 use crate::page_args::{self, PageArgs};
 use crate::replay_command;
 use crate::screen::{self, Screen};

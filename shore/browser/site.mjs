@@ -59,5 +59,5 @@ export function site(folder, [lat, lon] = DATUM) {
   writeFileSync(image, png(width, height, (x) => (x < width / 2 ? [230, 40, 40] : [40, 230, 40])));
   const [left, top] = at([-120 + metres / 2, 140 - metres / 2]);
   writeFileSync(join(folder, 'harbour.pgw'), `${metres * east}\n0\n0\n${-metres * north}\n${left}\n${top}\n`);
-  return { geojson, image, within: [112, 85], beside: [90, 84], red: [-5, -5], green: [163, -5] };
+  return { geojson, image, within: [112, 85], beside: [90, 84], red: [77, -5], green: [83, -5] };
 }

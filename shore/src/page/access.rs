@@ -148,7 +148,12 @@ mod tests {
             let tokens = Tokens { control, operate: "of operators".to_owned() };
             let guard = AccessControl { tokens, ..guard("127.0.0.1:1", &[]) };
             let access = guard.access(query.as_deref());
-            assert_eq!(access, if rights { Access::Control } else { Access::Watch }, "{query:?} with {:?}", guard.tokens);
+            assert_eq!(
+                access,
+                if rights { Access::Control } else { Access::Watch },
+                "{query:?} with {:?}",
+                guard.tokens
+            );
         }
     }
 
@@ -158,7 +163,9 @@ mod tests {
             let tokens = Tokens { control, operate: "of operators".to_owned() };
             let guard = AccessControl { tokens, ..guard("127.0.0.1:1", &[]) };
             assert_eq!(guard.access(Some("token=of%20operators")), Access::Operate, "{:?}", guard.tokens);
-            for query in [None, Some(""), Some("token="), Some("token=of"), Some("token=a+b%2Bc%25"), Some("x=of%20operators")] {
+            for query in
+                [None, Some(""), Some("token="), Some("token=of"), Some("token=a+b%2Bc%25"), Some("x=of%20operators")]
+            {
                 assert!(guard.access(query) < Access::Operate, "{query:?} with {:?}", guard.tokens);
             }
         }

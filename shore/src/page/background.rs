@@ -94,7 +94,8 @@ fn read(path: &Path, bytes_max: u64) -> Result<Vec<u8>, BackgroundError> {
 fn world_file(image: &Path) -> Result<(PathBuf, String), BackgroundError> {
     let found = WORLD_FILES.iter().map(|end| image.with_extension(end)).find(|path| path.exists());
     let Some(path) = found else {
-        let names: Vec<String> = WORLD_FILES.iter().map(|end| image.with_extension(end).display().to_string()).collect();
+        let names: Vec<String> =
+            WORLD_FILES.iter().map(|end| image.with_extension(end).display().to_string()).collect();
         let problem = format!(
             "has no world file beside it, which says where on the globe it is, expected one of {} (GIS programs write it \
              when they export an image, in WGS 84)",
@@ -341,7 +342,10 @@ mod tests {
             (vec![("site.png", PNG), ("site.wld", b"1 2 3".as_slice())], "/site.wld: has 3 numbers, expected 6"),
             (vec![("site.png", PNG), ("site.wld", b"1 0 0 x 5 6")], "line 4: \"x\" is not a number"),
             (vec![("site.png", PNG), ("site.wld", b"0 0 0 0 5 6")], "give pixels no size"),
-            (vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 712345 4512345")], "a corner of the image is at [712344.5, "),
+            (
+                vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 712345 4512345")],
+                "a corner of the image is at [712344.5, ",
+            ),
             (vec![("site.png", PNG), ("site.wld", b"9 0 0 -1 5 6")], "expected at most 5 degrees each way"),
             (vec![("site.png", PNG), ("site.wld", b"1 0 0 -1 5 6 7")], "more than 6 numbers"),
             (vec![("site.png", &PNG[..20])], "is damaged"),
@@ -386,7 +390,10 @@ mod tests {
         };
         let place = "features[0].geometry.coordinates[1]";
         for (file, want) in [
-            (line(json!([[0, 1], [712_345.5, 4_512_345]])), format!("{place} is at [712345.5, 4512345], expected [longitude")),
+            (
+                line(json!([[0, 1], [712_345.5, 4_512_345]])),
+                format!("{place} is at [712345.5, 4512345], expected [longitude"),
+            ),
             (line(json!([[0, 1], ["0", 1]])), format!("{place} is no position, expected [longitude, latitude]")),
             (line(json!([[0, 1], 3])), format!("{place} is no list")),
             (line(json!([[0, 1], [10, 1]])), "reaches from [0, 1] to [10, 1], expected at most 5 degrees".to_owned()),

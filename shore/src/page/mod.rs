@@ -223,7 +223,13 @@ mod tests {
     fn a_further_name_needs_a_token() {
         let open = |token: Option<&str>| {
             let (listen, hosts) = ("127.0.0.1:0".parse().unwrap(), vec!["boat.local".to_owned()]);
-            Page::open(PageSettings { listen, token: token.map(str::to_owned), hosts, background: None, stop: Arc::default() })
+            Page::open(PageSettings {
+                listen,
+                token: token.map(str::to_owned),
+                hosts,
+                background: None,
+                stop: Arc::default(),
+            })
         };
         let error = open(None).err().expect("it is refused").to_string();
         assert!(["boat.local", "--host", "--token"].iter().all(|word| error.contains(word)), "{error}");

@@ -53,7 +53,9 @@ impl PageSession {
         if !is_allowed {
             let reason = match self.access {
                 Access::Watch => "this page may only look: open it by its address with the token",
-                _ => "this page may only look at real boats and stop them: open it by its address with the operator's token",
+                _ => {
+                    "this page may only look at real boats and stop them: open it by its address with the operator's token"
+                }
             };
             return self.refuse(ask.name(), reason.to_owned());
         }
@@ -203,12 +205,9 @@ mod tests {
         let disarm = r#"{"do":"operate","vehicle":"a","command":"disarm"}"#;
         let arm = r#"{"do":"operate","vehicle":"a","command":"arm"}"#;
         let mission = r#"{"do":"mission","vehicle":"a","lines":""}"#;
-        for (act, least) in [
-            (pause, Access::Control),
-            (disarm, Access::Control),
-            (arm, Access::Operate),
-            (mission, Access::Operate),
-        ] {
+        for (act, least) in
+            [(pause, Access::Control), (disarm, Access::Control), (arm, Access::Operate), (mission, Access::Operate)]
+        {
             for access in [Access::Watch, Access::Control, Access::Operate] {
                 for mode in [Mode::Live, Mode::Replay] {
                     let (mut session, asked) = session(mode, access);
@@ -237,8 +236,9 @@ mod tests {
     }
 
     fn anything() -> impl Strategy<Value = String> {
-        let word =
-            prop::sample::select(vec!["ack", "select", "control", "speed", "step", "seek", "drive", "let_go", "operate", "x"]);
+        let word = prop::sample::select(vec![
+            "ack", "select", "control", "speed", "step", "seek", "drive", "let_go", "operate", "x",
+        ]);
         let what = prop::sample::select(vec!["pause", "stop", "e_stop", "release", "fly"]);
         let asked = (word, what, any::<f64>(), any::<i64>(), ".{0,9}").prop_map(|(word, what, x, by, vehicle)| {
             serde_json::json!({"do": word, "what": what, "command": what, "factor": x, "by": by, "t_s": x, "vehicle": vehicle,

@@ -67,7 +67,9 @@ fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() 
     operator.send(r#"{"do":"control","what":"release"}"#);
     wait_until("an operator releases all boats", || sim.controls.visit(|all| all == &[Control::Release]));
     control.send(&command(BOAT, "disarm"));
-    control.until("operated", |reply| *reply == json!({"kind": "operated", "vehicle": BOAT, "command": "disarm", "refused": null}));
+    control.until("operated", |reply| {
+        *reply == json!({"kind": "operated", "vehicle": BOAT, "command": "disarm", "refused": null})
+    });
     operator.send(&command(BOAT, "arm"));
     operator.until("operated", |reply| reply["command"] == "arm" && reply["refused"].is_null());
     control.until("status", |status| status["status"]["state"] == "armed");
@@ -83,7 +85,8 @@ fn only_who_shows_the_operators_token_arms_and_everybody_who_may_stop_disarms() 
     assert_eq!(told.visit(|told| told.clone()), want);
     drop(standing);
     operator.send(&command(BOAT, "arm"));
-    operator.until("operated", |reply| reply["refused"].as_str().is_some_and(|why| why.contains("no gateway of blue_one")));
+    operator
+        .until("operated", |reply| reply["refused"].as_str().is_some_and(|why| why.contains("no gateway of blue_one")));
     sim.close();
 }
 
@@ -113,7 +116,9 @@ fn what_is_drawn_below_the_field_is_served_and_null_without() {
     let file = dir.path().join("site.geojson");
     std::fs::write(&file, r#"{"type":"Point","coordinates":[-73.9,41.3]}"#).expect("it is written");
     let with = Background::read(&file).expect("it is good");
-    for (background, want) in [(Some(with), r#"{"areas":[],"lines":[],"name":"site.geojson","points":[[-73.9,41.3,""]]}"#), (None, "null")] {
+    for (background, want) in
+        [(Some(with), r#"{"areas":[],"lines":[],"name":"site.geojson","points":[[-73.9,41.3,""]]}"#), (None, "null")]
+    {
         let page = Page::open(shore::page::PageSettings { background, ..settings(None, &[]) }).expect("a free port");
         let host = page.address().to_string();
         let (status, answer) = get(page.address(), "/background.json", &host);

@@ -70,7 +70,12 @@ impl LiveView {
     ///
     /// # Errors
     /// If the system has no thread to give.
-    pub fn open(place: Place, game: Option<GameName>, tell: Tell, read_mission: ReadMission) -> std::io::Result<LiveView> {
+    pub fn open(
+        place: Place,
+        game: Option<GameName>,
+        tell: Tell,
+        read_mission: ReadMission,
+    ) -> std::io::Result<LiveView> {
         let (commands, to_do) = inbox(COMMANDS_MAX);
         let shared = Arc::new(SharedState::new(commands, tell, read_mission));
         let watcher = GameWatcher { shared: Arc::clone(&shared), place, game, commands: to_do };

@@ -27,7 +27,7 @@ pub(super) struct Operated {
 pub(super) struct Operating {
     /// Those under way: to which boat, and whether they need the token.
     under_way: BTreeSet<(VehicleId, bool)>,
-    /// By page what came of its own.
+    /// By page, of those that are there and have given any, what came of its own.
     replies: BTreeMap<u64, VecDeque<Operated>>,
 }
 
@@ -43,7 +43,8 @@ impl Operating {
     }
 
     /// A command is under way, unless one of its kind to the same boat is.
-    fn begin(&mut self, vehicle: VehicleId, command: &OperatorCommand) -> Result<(), String> {
+    fn begin(&mut self, page: u64, vehicle: VehicleId, command: &OperatorCommand) -> Result<(), String> {
+        self.replies.entry(page).or_default();
         if self.under_way.insert((vehicle, command.needs_token())) {
             return Ok(());
         }
@@ -52,8 +53,7 @@ impl Operating {
 
     fn end(&mut self, page: u64, needs_token: bool, operated: Operated) {
         self.under_way.remove(&(operated.vehicle, needs_token));
-        let replies = self.replies.entry(page).or_default();
-        if replies.len() < REPLIES_MAX {
+        if let Some(replies) = self.replies.get_mut(&page).filter(|replies| replies.len() < REPLIES_MAX) {
             replies.push_back(operated);
         }
     }
@@ -73,7 +73,7 @@ pub(super) fn operate(
         return Err(format!("{name} is simulated: it has no gateway"));
     }
     let Some(bus) = state.bus.clone() else { return Err("there is no game now".to_owned()) };
-    state.operating.begin(vehicle, &command)?;
+    state.operating.begin(page, vehicle, &command)?;
     let (generation, needs_token, word) = (state.generation, command.needs_token(), word(&command));
     let at_work = Arc::clone(shared);
     let thread = start_thread("page-operate", move || {
@@ -101,9 +101,14 @@ pub(super) fn operate(
 
 fn ask(bus: &Bus, game: &LiveGame, vehicle: VehicleId, command: &OperatorCommand) -> Result<OperatorReply, String> {
     let name = game.name_of(vehicle);
-    let reply: Result<Option<OperatorReply>, BusError> = bus.request(&topic::operate(&game.name, name), command, ANSWER);
+    let reply: Result<Option<OperatorReply>, BusError> =
+        bus.request(&topic::operate(&game.name, name), command, ANSWER);
     let reply = reply.map_err(|e| e.to_string())?.ok_or_else(|| format!("no gateway of {name} answers"))?;
-    if reply.status.vehicle == name { Ok(reply) } else { Err(format!("the gateway of {} answers for {name}", reply.status.vehicle)) }
+    if reply.status.vehicle == name {
+        Ok(reply)
+    } else {
+        Err(format!("the gateway of {} answers for {name}", reply.status.vehicle))
+    }
 }
 
 /// A command, as pages name it.
@@ -129,23 +134,23 @@ mod tests {
     #[test]
     fn a_stop_waits_for_no_other_command_and_a_flood_is_refused() {
         let mut operating = Operating::default();
-        assert_eq!(operating.begin(BOAT, &OperatorCommand::Arm), Ok(()));
+        assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Arm), Ok(()));
         for command in [OperatorCommand::Arm, OperatorCommand::Release, OperatorCommand::StationKeep] {
-            assert!(operating.begin(BOAT, &command).is_err(), "{command:?}");
+            assert!(operating.begin(7, BOAT, &command).is_err(), "{command:?}");
         }
-        assert_eq!(operating.begin(VehicleId(2), &OperatorCommand::Arm), Ok(()), "another boat");
-        assert_eq!(operating.begin(BOAT, &OperatorCommand::Disarm), Ok(()));
-        assert!(operating.begin(BOAT, &OperatorCommand::EStop).is_err(), "a stop is under way");
-        let operated = |refused: Option<&str>| Operated {
-            vehicle: BOAT,
-            command: "arm",
-            refused: refused.map(str::to_owned),
-        };
+        assert_eq!(operating.begin(7, VehicleId(2), &OperatorCommand::Arm), Ok(()), "another boat");
+        assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Disarm), Ok(()));
+        assert!(operating.begin(7, BOAT, &OperatorCommand::EStop).is_err(), "a stop is under way");
+        let operated =
+            |refused: Option<&str>| Operated { vehicle: BOAT, command: "arm", refused: refused.map(str::to_owned) };
         operating.end(7, true, operated(Some("missing: a fresh order")));
-        assert_eq!(operating.begin(BOAT, &OperatorCommand::Arm), Ok(()));
+        assert_eq!(operating.begin(7, BOAT, &OperatorCommand::Arm), Ok(()));
         assert_eq!(operating.reply(8), None, "it is for the page that asked");
         assert_eq!(operating.reply(7), Some(operated(Some("missing: a fresh order"))));
         (0..2 * REPLIES_MAX).for_each(|_| operating.end(7, true, operated(None)));
         assert_eq!(std::iter::from_fn(|| operating.reply(7)).count(), REPLIES_MAX);
+        operating.forget(7);
+        operating.end(7, true, operated(None));
+        assert!(operating.replies.is_empty(), "nothing is kept for a page that is gone");
     }
 }

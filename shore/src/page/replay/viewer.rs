@@ -54,13 +54,8 @@ impl PageViewer {
         let (from, to) = (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
         let (info, game) = (shared.source.info(), &shared.source.header().game);
         let gateways = info.scenario.externals().map(|vehicle| (vehicle, None)).collect();
-        let hello = PageMessage::hello(
-            &info.version,
-            Mode::Replay,
-            access,
-            (game, shared.about.as_deref()),
-            &shared.chart,
-        );
+        let hello =
+            PageMessage::hello(&info.version, Mode::Replay, access, (game, shared.about.as_deref()), &shared.chart);
         let events = shared.source.events.iter().map(EventMessage::new).collect();
         PageViewer {
             viewer,
