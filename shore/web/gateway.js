@@ -40,6 +40,10 @@ function factsOf(status, waited_s) {
   const later = (seconds) => (Number.isFinite(seconds) ? seconds + waited_s : NaN);
   const [fix_s, battery_s, mode_s] = [later(status.nav_age_s), later(status.battery_age_s), later(status.mode_age_s)];
   const facts = [{ name: 'Link', short: status.link === 'up' ? 'link up' : 'no link', words: status.link ?? '–', bad: status.link !== 'up' }];
+  // A rehearsal on the water: the boat is sent standby, whatever its state says.
+  if (typeof status.would_send === 'string') {
+    facts.unshift({ name: 'Dry run', short: 'DRY RUN', words: `only standby is sent${status.would_send ? `, in place of ${status.would_send}` : ''}`, bad: true });
+  }
   facts.push(Number.isFinite(fix_s)
     ? { name: 'Fix', short: `fix ${number(fix_s, 1, 's')}`, words: age(fix_s), bad: fix_s > FIX_OLD_S }
     : { name: 'Fix', short: 'no fix', words: 'none', bad: true });
