@@ -75,7 +75,7 @@ test('an operator arms, delegates and disarms a boat from the page, and everybod
     await mine.press('#operate-confirm');
   };
   await send(write('bad.sea', ['no sentence at all']));
-  await mine.until('a bad file is refused', () => /Not done: .*no sentences/.test(document.getElementById('operated').textContent));
+  await mine.until('a bad file is refused', () => /Not done: .*no sentence/.test(document.getElementById('operated').textContent));
   const settings = sentence('PSEAR,0,000,40,0,000');
   await send(write('good.sea', [settings, waypoint(0, 20, 30), waypoint(1, 40, 60), waypoint(2, 60, 60)]));
   await mine.until('it sails', () => squall.badges.find(({ name }) => name === 'blue_one').detail.startsWith('mission'));
